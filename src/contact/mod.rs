@@ -1,0 +1,1 @@
+//! Node-to-segment contact: pairs, their rows and their complementarity problem.

@@ -1,0 +1,1 @@
+//! From text to cards: files, logical lines, keyword lines and data fields.

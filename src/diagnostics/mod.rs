@@ -1,0 +1,1 @@
+//! Errors and warnings with their place in the deck.

@@ -1,0 +1,1 @@
+//! Plane total-Lagrangian elements: mass, internal force and tangent as pure functions.

@@ -1,0 +1,47 @@
+//! **stickslip**: large-displacement dynamics of plane deformable bodies with exact contact and
+//! Coulomb friction.
+//!
+//! A keyword deck is read ([`deck`], [`reader`]) into a [`model`]; its bodies are integrated in time
+//! ([`dynamics`]) with total-Lagrangian elements ([`elements`]), node-to-segment [`contact`] posed
+//! as a linear complementarity problem ([`lcp`]) at every pass, and sparse factorisations
+//! ([`linear`]); [`output`] observes the run and writes the result file.
+//!
+//! # Layers
+//!
+//! A module imports only from modules before it in this list:
+//! `diagnostics`, `deck`, `model`, `reader`, `elements`, `linear`, `lcp`, `contact`, `dynamics`,
+//! `output`, `cli`.
+//!
+//! # Vocabulary
+//!
+//! | word | meaning |
+//! |---|---|
+//! | increment | one time step of the integrator, from time t to t + dt |
+//! | pass | one predictor or corrector solve within an increment |
+//! | pivot | one basis exchange of Lemke's method within a pass |
+//! | slave, master | the node side and the segment side of a contact pair |
+//! | segment | an edge of the master surface from node a to node b, the body on its left |
+//! | pair | one slave node with its segment; a CONTACT PAIR of the deck is a *contact* |
+//! | gap g | distance of the slave node from its segment, positive when open |
+//! | normal e_n | unit vector out of the master body; tangent e_t points from a to b |
+//! | slip Dt | tangential motion of the slave node relative to its segment within the increment |
+//! | Pn, Pt | normal (>= 0) and tangential contact force of a pair |
+//! | Phi, Psi | normal and tangential impact impulse of a pair |
+//! | internal force F | nodal forces of the stresses; R external load, M mass, K tangent |
+//! | K* | effective matrix theta2 K + 2/dt^2 M; Q = B K*^-1 B^T its Delassus matrix |
+//! | d | displacement increment U1 - U0 |
+//! | suffix 0, 1 | start and end of the increment; V0+ is V0 after the impulses |
+
+#![deny(missing_docs)]
+
+pub mod cli;
+pub mod contact;
+pub mod deck;
+pub mod diagnostics;
+pub mod dynamics;
+pub mod elements;
+pub mod lcp;
+pub mod linear;
+pub mod model;
+pub mod output;
+pub mod reader;

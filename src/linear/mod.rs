@@ -1,0 +1,1 @@
+//! Sparse matrices with a fixed pattern, and their factorisations.

@@ -1,0 +1,1 @@
+//! The problem as plain data: indices resolved, no text.

@@ -1,0 +1,1 @@
+//! Result file, status file, log and screen.

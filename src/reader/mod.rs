@@ -1,0 +1,1 @@
+//! From cards to the model: what each keyword means, and the checks across them.
