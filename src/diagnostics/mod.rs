@@ -1,1 +1,5 @@
 //! Errors and warnings with their place in the deck.
+
+mod span;
+
+pub use span::{FileId, Span};

@@ -1,1 +1,53 @@
 //! The problem as plain data: indices resolved, no text.
+//!
+//! Everything is indexed from 0 in the order of the deck. Vectors over degrees of freedom hold
+//! `2 N` entries, dof `2 n + i` being direction i (0 = x, 1 = y) of node n.
+
+mod amplitude;
+mod contact;
+mod load;
+mod material;
+mod mesh;
+mod settings;
+mod step;
+mod surface;
+
+pub use amplitude::{Amplitude, TimeBase};
+pub use contact::{Contact, Interaction};
+pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
+pub use material::{Material, Plane, Section};
+pub use mesh::{Cell, Element, Mesh, Set};
+pub use settings::{Factorization, Impact, LcpChoice, Scheme, Settings, SolverChoice};
+pub use step::{Frames, Increments, Step};
+pub use surface::{Face, Surface, SurfaceKind};
+
+/// A whole problem: what a deck says, checked and with all names resolved to indices.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Model {
+    /// Text of `*HEADING`, lines joined by a blank.
+    pub title: String,
+    /// Nodes and elements.
+    pub mesh: Mesh,
+    /// Named node sets; members sorted, without duplicates.
+    pub node_sets: Vec<Set>,
+    /// Named element sets; members sorted, without duplicates.
+    pub element_sets: Vec<Set>,
+    /// Named surfaces.
+    pub surfaces: Vec<Surface>,
+    /// Materials.
+    pub materials: Vec<Material>,
+    /// Sections: material and thickness of elements.
+    pub sections: Vec<Section>,
+    /// Contact interactions (friction laws).
+    pub interactions: Vec<Interaction>,
+    /// Contacts: one per data line of `*CONTACT PAIR`.
+    pub contacts: Vec<Contact>,
+    /// Amplitude curves.
+    pub amplitudes: Vec<Amplitude>,
+    /// Initial velocity, `2 N` entries (length/time).
+    pub initial_velocity: Vec<f64>,
+    /// Steps in order.
+    pub steps: Vec<Step>,
+    /// Node sets (indices into `node_sets`) whose motion and reactions go to the history.
+    pub history_sets: Vec<usize>,
+}

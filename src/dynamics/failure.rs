@@ -1,0 +1,80 @@
+use std::fmt;
+
+use super::PassReport;
+
+/// Why an increment failed.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Cause {
+    /// The passes did not converge.
+    NotConverged,
+    /// The determinant of an element's deformation gradient is not positive.
+    Inverted {
+        /// Element (index).
+        element: usize,
+        /// Determinant.
+        determinant: f64,
+    },
+    /// The effective matrix is not positive definite.
+    Indefinite {
+        /// Node (index) whose pivot is not positive.
+        node: usize,
+    },
+    /// The factorisation or a solve with it failed.
+    LinearSolver(String),
+    /// The complementarity problem was not solved.
+    Lcp(String),
+    /// A quantity is not finite.
+    NotFinite(&'static str),
+}
+
+/// The node with the largest residual or correction of a failed increment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Worst {
+    /// Node (index).
+    pub node: usize,
+    /// Its current position (length).
+    pub position: [f64; 2],
+    /// Which quantity is worst there.
+    pub quantity: &'static str,
+    /// Its value relative to the tolerance's scale.
+    pub value: f64,
+}
+
+/// A failed attempt at an increment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Failure {
+    /// Number of the increment over all steps.
+    pub increment: usize,
+    /// Number of the step, from 1.
+    pub step: usize,
+    /// Time at the start of the increment.
+    pub time: f64,
+    /// Length of the attempt.
+    pub dt: f64,
+    /// Why.
+    pub cause: Cause,
+    /// Where it is worst, when there is such a place.
+    pub worst: Option<Worst>,
+    /// Passes of the attempt.
+    pub passes: Vec<PassReport>,
+    /// How many times the increment had been halved.
+    pub halvings: u32,
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Cause::NotConverged => write!(f, "the passes did not converge"),
+            Cause::Inverted { determinant, .. } => {
+                write!(
+                    f,
+                    "an element turned inside out (det F = {determinant:.3e})"
+                )
+            }
+            Cause::Indefinite { .. } => write!(f, "the effective matrix is not positive definite"),
+            Cause::LinearSolver(text) => write!(f, "the linear solver failed: {text}"),
+            Cause::Lcp(text) => write!(f, "the complementarity problem was not solved: {text}"),
+            Cause::NotFinite(what) => write!(f, "{what} is not finite"),
+        }
+    }
+}

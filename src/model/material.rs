@@ -1,0 +1,30 @@
+/// St. Venant-Kirchhoff material: second Piola-Kirchhoff stress linear in the Green-Lagrange strain.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Name in the deck.
+    pub name: String,
+    /// Young's modulus E (force/length^2).
+    pub young: f64,
+    /// Poisson's ratio nu.
+    pub poisson: f64,
+    /// Density rho of the reference configuration (mass/length^3).
+    pub density: f64,
+}
+
+/// Kinematic assumption across the thickness.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Plane {
+    /// No stress across the thickness (CPS elements).
+    Stress,
+    /// No strain across the thickness (CPE elements).
+    Strain,
+}
+
+/// Material and thickness of a group of elements.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Section {
+    /// Index into `Model::materials`.
+    pub material: usize,
+    /// Thickness t (length).
+    pub thickness: f64,
+}

@@ -1,0 +1,78 @@
+use super::Plane;
+
+/// Nodes and elements of a model.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Mesh {
+    /// Node numbers of the deck, `N` entries.
+    pub node_labels: Vec<u64>,
+    /// Reference coordinates, `N` entries (length).
+    pub coordinates: Vec<[f64; 2]>,
+    /// Elements in the order of the deck.
+    pub elements: Vec<Element>,
+}
+
+impl Mesh {
+    /// Number of nodes N.
+    pub fn node_count(&self) -> usize {
+        self.coordinates.len()
+    }
+
+    /// Number of degrees of freedom 2 N.
+    pub fn dof_count(&self) -> usize {
+        2 * self.coordinates.len()
+    }
+}
+
+/// One element.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Element {
+    /// Element number of the deck.
+    pub label: u64,
+    /// Shape and nodes.
+    pub cell: Cell,
+    /// Plane stress or plane strain.
+    pub plane: Plane,
+    /// Index into `Model::sections`.
+    pub section: usize,
+}
+
+/// Shape of an element with its node indices in counter-clockwise order.
+///
+/// ```text
+///   3 ---- 2        2
+///   |      |        | \        side i runs from node i to the next node;
+///   |      |        |  \       the body lies on its left
+///   0 ---- 1        0 -- 1
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cell {
+    /// Three-node triangle.
+    Tri3([usize; 3]),
+    /// Four-node quadrilateral.
+    Quad4([usize; 4]),
+}
+
+impl Cell {
+    /// Node indices, counter-clockwise.
+    pub fn nodes(&self) -> &[usize] {
+        match self {
+            Cell::Tri3(nodes) => nodes,
+            Cell::Quad4(nodes) => nodes,
+        }
+    }
+
+    /// Nodes of side `side` (0-based: side 0 is S1/P1), from a to b with the body on the left.
+    pub fn side(&self, side: usize) -> [usize; 2] {
+        let nodes = self.nodes();
+        [nodes[side], nodes[(side + 1) % nodes.len()]]
+    }
+}
+
+/// A named set of node or element indices.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Set {
+    /// Name as first typed in the deck.
+    pub name: String,
+    /// Member indices, sorted, without duplicates.
+    pub members: Vec<usize>,
+}

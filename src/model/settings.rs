@@ -1,0 +1,82 @@
+/// Settings of `*STICKSLIP` for one step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Time integration.
+    pub scheme: Scheme,
+    /// Impact impulses on or off.
+    pub impact: Impact,
+    /// Solver of the complementarity problem.
+    pub lcp: LcpChoice,
+    /// When the effective matrix is factored anew.
+    pub factorization: Factorization,
+    /// Sparse factorisation.
+    pub solver: SolverChoice,
+    /// Relative tolerance of an increment's convergence.
+    pub tolerance: f64,
+    /// Largest number of passes of an increment.
+    pub max_passes: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            scheme: Scheme::EnergyMomentum,
+            impact: Impact::Impulse,
+            lcp: LcpChoice::Hybrid,
+            factorization: Factorization::Keep,
+            solver: SolverChoice::Faer,
+            tolerance: 1e-11,
+            max_passes: 25,
+        }
+    }
+}
+
+/// Time integration scheme.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Scheme {
+    /// Implicit mid-point rule with the averaged stress, and energy-momentum contact.
+    EnergyMomentum,
+    /// Single-step SS22 of Zienkiewicz, Wood & Hine (1984), stable for theta2 >= theta1 >= 1/2.
+    Ss22 {
+        /// Weight of velocity and load.
+        theta1: f64,
+        /// Weight of the acceleration.
+        theta2: f64,
+    },
+}
+
+/// What happens to the velocity of landing nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Impact {
+    /// Impulses at the start of the increment.
+    Impulse,
+    /// Nothing.
+    None,
+}
+
+/// Solver of the complementarity problem of a pass.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LcpChoice {
+    /// Warm-started active set, with Lemke's method behind it.
+    Hybrid,
+    /// Lemke's method at every pass.
+    Lemke,
+}
+
+/// When the effective matrix is factored anew.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Factorization {
+    /// Kept as long as the passes converge quickly.
+    Keep,
+    /// At every pass.
+    EveryPass,
+}
+
+/// Sparse factorisation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SolverChoice {
+    /// faer, supernodal LDL^T.
+    Faer,
+    /// sprs-ldl with an AMD permutation.
+    Sprs,
+}

@@ -1,0 +1,57 @@
+use super::Mesh;
+
+/// A named surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    /// Name as typed in the deck.
+    pub name: String,
+    /// What it is made of.
+    pub kind: SurfaceKind,
+}
+
+/// Element faces or nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SurfaceKind {
+    /// Faces of elements: can be slave or master.
+    Faces(Vec<Face>),
+    /// Nodes: can be slave only.
+    Nodes(Vec<usize>),
+}
+
+/// One side of an element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Face {
+    /// Element index.
+    pub element: usize,
+    /// Side, 0-based: 0 is S1.
+    pub side: usize,
+}
+
+impl Face {
+    /// Node indices [a, b]; the body lies on the left of the way from a to b.
+    pub fn nodes(&self, mesh: &Mesh) -> [usize; 2] {
+        mesh.elements[self.element].cell.side(self.side)
+    }
+}
+
+impl Surface {
+    /// Segments [a, b] of a face surface, in order; empty for a node surface.
+    pub fn segments(&self, mesh: &Mesh) -> Vec<[usize; 2]> {
+        match &self.kind {
+            SurfaceKind::Faces(faces) => faces.iter().map(|face| face.nodes(mesh)).collect(),
+            SurfaceKind::Nodes(_) => Vec::new(),
+        }
+    }
+
+    /// Nodes of the surface in order of first appearance, without duplicates.
+    pub fn nodes(&self, mesh: &Mesh) -> Vec<usize> {
+        let all: Vec<usize> = match &self.kind {
+            SurfaceKind::Faces(faces) => faces.iter().flat_map(|f| f.nodes(mesh)).collect(),
+            SurfaceKind::Nodes(nodes) => nodes.clone(),
+        };
+        let mut seen = vec![false; mesh.node_count()];
+        all.into_iter()
+            .filter(|&n| !std::mem::replace(&mut seen[n], true))
+            .collect()
+    }
+}
