@@ -1,5 +1,5 @@
 use super::geometry::{Projection, position, project};
-use super::{ContactSurfaces, contact_surfaces};
+use super::{ContactSurfaces, PairSite, contact_surfaces};
 use crate::model::Model;
 
 /// How far beyond its ends a segment still takes a projection: round-off only.
@@ -9,8 +9,8 @@ const ROUND_OFF: f64 = 1e-10;
 ///
 /// It is the closest segment that the node projects into, not deeper than the segment's length. In
 /// the wedge of a vertex, where the node projects into neither neighbour, it is the one with the
-/// larger gap: outside a convex vertex that gap is never negative, so that no contact is made up;
-/// inside a concave one it is the way out.
+/// larger gap outside a convex vertex (never negative, so that no contact is made up) and the one
+/// with the smaller gap inside a concave vertex.
 pub fn find_segment(
     surfaces: &ContactSurfaces,
     x: &[[f64; 2]],
@@ -40,7 +40,8 @@ pub fn find_segment(
             let q = on(surfaces.segments[j]);
             let distance = beyond(&p);
             if q.xi < 0.0 && q.gap >= -q.length && wedge.is_none_or(|(d, _)| distance < d) {
-                wedge = Some((distance, if p.gap >= q.gap { i } else { j }));
+                let outside = p.gap.max(q.gap) > 0.0;
+                wedge = Some((distance, if (p.gap >= q.gap) == outside { i } else { j }));
             }
         }
     }
@@ -50,6 +51,42 @@ pub fn find_segment(
         (None, Some((_, j))) => Some(j),
         (None, None) => None,
     }
+}
+
+/// How far beyond its ends a segment that is to be kept may be (in its lengths).
+const KEPT: f64 = 0.1;
+
+/// The pairs of all contacts in the configuration of displacements `u`.
+///
+/// `kept` holds, for every slot, the segment of an earlier pass that is to be kept as long as the
+/// node does not leave it far: passes that go to and fro across a vertex come to rest with it.
+pub fn find_pairs(
+    contacts: &[ContactSurfaces],
+    x: &[[f64; 2]],
+    u: &[f64],
+    kept: Option<&[Option<usize>]>,
+) -> Vec<PairSite> {
+    let slaves = contacts
+        .iter()
+        .flat_map(|c| c.slaves.iter().map(move |&slave| (c, slave)));
+    let site = |(slot, (contact, slave)): (usize, (&ContactSurfaces, usize))| {
+        let on = |i: usize| {
+            let [a, b] = contact.segments[i];
+            project(position(x, u, slave), position(x, u, a), position(x, u, b))
+        };
+        let segment = kept
+            .and_then(|kept| kept[slot])
+            .filter(|&i| (-KEPT..=1.0 + KEPT).contains(&on(i).xi))
+            .or_else(|| find_segment(contact, x, u, slave))?;
+        let [a, b] = contact.segments[segment];
+        Some(PairSite {
+            slot,
+            segment,
+            nodes: [slave, a, b],
+            friction: contact.friction,
+        })
+    };
+    slaves.enumerate().filter_map(site).collect()
 }
 
 /// Distance of the point from the end b of the segment.
