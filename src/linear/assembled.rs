@@ -73,6 +73,13 @@ impl Assembled {
         self.matrix.view()
     }
 
+    /// The pattern with all values zero.
+    pub fn zeros(&self) -> Assembled {
+        let mut zeros = self.clone();
+        zeros.clear();
+        zeros
+    }
+
     /// Number of unknowns.
     pub fn size(&self) -> usize {
         self.matrix.cols()

@@ -6,33 +6,34 @@ use super::{Assembled, LinearError, LinearSolver};
 /// near the round-off unit; what exceeds this bound is no solution.
 const RESIDUAL: f64 = 1e-9;
 
-/// A factorised matrix whose every solve is checked for finiteness and residual.
+/// A matrix with its solver; every solve is checked for finiteness and residual.
 pub struct CheckedSolver {
     solver: Box<dyn LinearSolver>,
     matrix: Assembled,
+    factorized: bool,
 }
 
 impl CheckedSolver {
-    /// Factorises `matrix` with `solver`, which must be new or have seen the same pattern.
+    /// A matrix that is still to be factorised; `solver` must be new or have seen its pattern.
+    pub fn new(solver: Box<dyn LinearSolver>, matrix: Assembled) -> Self {
+        CheckedSolver {
+            solver,
+            matrix,
+            factorized: false,
+        }
+    }
+
+    /// The matrix for new values; they count after [`Self::factorize`].
+    pub fn matrix_mut(&mut self) -> &mut Assembled {
+        self.factorized = false;
+        &mut self.matrix
+    }
+
+    /// Factorises the matrix.
     ///
     /// # Errors
     /// What [`LinearSolver::factorize`] says, or values that are not finite.
-    pub fn new(solver: Box<dyn LinearSolver>, matrix: Assembled) -> Result<Self, LinearError> {
-        let mut checked = CheckedSolver { solver, matrix };
-        checked.factorize()?;
-        Ok(checked)
-    }
-
-    /// Factorises the matrix again after `refill` changed its values.
-    ///
-    /// # Errors
-    /// As [`CheckedSolver::new`].
-    pub fn refactorize(&mut self, refill: impl FnOnce(&mut Assembled)) -> Result<(), LinearError> {
-        refill(&mut self.matrix);
-        self.factorize()
-    }
-
-    fn factorize(&mut self) -> Result<(), LinearError> {
+    pub fn factorize(&mut self) -> Result<(), LinearError> {
         if self
             .matrix
             .matrix()
@@ -42,10 +43,17 @@ impl CheckedSolver {
         {
             return Err(LinearError::NotFinite("the matrix"));
         }
-        self.solver.factorize(self.matrix.matrix())
+        self.solver.factorize(self.matrix.matrix())?;
+        self.factorized = true;
+        Ok(())
     }
 
-    /// The matrix as factorised.
+    /// Whether the factors are those of the matrix.
+    pub fn is_factorized(&self) -> bool {
+        self.factorized
+    }
+
+    /// The matrix.
     pub fn matrix(&self) -> &Assembled {
         &self.matrix
     }
@@ -53,8 +61,11 @@ impl CheckedSolver {
     /// Solutions for the columns of `b` (n x k, column by column).
     ///
     /// # Errors
-    /// A solution that is not finite or fails the residual check.
+    /// A solution that is not finite or fails the residual check; a matrix without factors.
     pub fn solve(&mut self, b: &[f64]) -> Result<Vec<f64>, LinearError> {
+        if !self.factorized {
+            return Err(LinearError::NotFactorized);
+        }
         let n = self.matrix.size();
         let mut x = b.to_vec();
         if n == 0 {
@@ -121,6 +132,11 @@ mod tests {
         a
     }
 
+    fn factorized(choice: SolverChoice, a: Assembled) -> Result<CheckedSolver, LinearError> {
+        let mut solver = CheckedSolver::new(linear_solver(choice), a);
+        solver.factorize().map(|()| solver)
+    }
+
     #[test]
     fn both_solvers_agree_on_several_right_hand_sides() {
         let a = grid(17, 0.01);
@@ -128,7 +144,7 @@ mod tests {
             .map(|i| ((i * 31) % 17) as f64 - 8.0)
             .collect();
         let mut solutions = [SolverChoice::Faer, SolverChoice::Sprs].map(|choice| {
-            let mut solver = CheckedSolver::new(linear_solver(choice), a.clone()).unwrap();
+            let mut solver = factorized(choice, a.clone()).unwrap();
             solver.solve(&b).unwrap()
         });
         let second = std::mem::take(&mut solutions[1]);
@@ -140,12 +156,12 @@ mod tests {
     #[test]
     fn indefinite_and_non_finite_matrices_are_errors() {
         for choice in [SolverChoice::Faer, SolverChoice::Sprs] {
-            let error = CheckedSolver::new(linear_solver(choice), grid(6, -0.5)).err();
+            let error = factorized(choice, grid(6, -0.5)).err();
             assert!(
                 matches!(error, Some(LinearError::NotPositiveDefinite { .. })),
                 "{error:?}"
             );
-            let error = CheckedSolver::new(linear_solver(choice), grid(3, f64::NAN)).err();
+            let error = factorized(choice, grid(3, f64::NAN)).err();
             assert_eq!(error, Some(LinearError::NotFinite("the matrix")));
         }
     }
@@ -154,11 +170,11 @@ mod tests {
     fn empty_and_single_systems_are_solved() {
         for choice in [SolverChoice::Faer, SolverChoice::Sprs] {
             let empty = Assembled::new(0, &[vec![None, None]]);
-            let mut solver = CheckedSolver::new(linear_solver(choice), empty).unwrap();
+            let mut solver = factorized(choice, empty).unwrap();
             assert!(solver.solve(&[]).unwrap().is_empty());
             let mut one = Assembled::new(1, &[vec![Some(0)]]);
             one.add(0, &[4.0], 1.0);
-            let mut solver = CheckedSolver::new(linear_solver(choice), one).unwrap();
+            let mut solver = factorized(choice, one).unwrap();
             assert_eq!(solver.solve(&[8.0]).unwrap(), [2.0]);
         }
     }

@@ -23,6 +23,9 @@ pub enum LinearError {
         /// Residual relative to the terms it is made of.
         residual: f64,
     },
+    /// A solve without factors.
+    #[error("the matrix is not factorised")]
+    NotFactorized,
     /// The library refused.
     #[error("{0}")]
     Library(String),
