@@ -2,14 +2,19 @@
 
 use nalgebra::DVector;
 
+use super::active_set::{Outcome, active_set, first_states};
 use super::frictional::FrictionalLcp;
 use super::frictional_lemke::lemke_forces;
+use super::gauss_seidel::gauss_seidel;
 use super::lemke::LemkeSettings;
 use super::problem::{LcpError, expect_size};
 use super::reduced;
 use super::residual::{TOLERANCE, frictional_residual};
 use super::scaled::Scaled;
 use super::state::{ContactState, Counters};
+
+/// Gauss-Seidel sweeps between two calls of the active set.
+const SWEEPS: [usize; 3] = [10, 40, 160];
 
 /// The method a caller asks for.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -76,8 +81,58 @@ pub fn solve_frictional(
         ));
     }
     let scaled = Scaled::new(problem)?;
-    let _ = method;
+    if method == LcpMethod::Hybrid
+        && let Some(solution) = iterate(problem, &scaled, warm, &mut counters)
+    {
+        return Ok(solution);
+    }
     lemke(problem, &scaled, &mut counters)
+}
+
+/// The active set from the warm states, and again from the states that more and more Gauss-Seidel
+/// sweeps lead to, which break its cycles.
+fn iterate(
+    problem: &FrictionalLcp,
+    scaled: &Scaled,
+    warm: Option<&[ContactState]>,
+    counters: &mut Counters,
+) -> Option<FrictionalSolution> {
+    let mut states = warm.map_or_else(|| first_states(scaled), |warm| known(scaled, warm));
+    let mut rounds = SWEEPS.into_iter();
+    loop {
+        let mut p = match active_set(scaled, states, counters) {
+            Outcome::Converged(states, p) => {
+                let forces = scaled.forces(&admissible(scaled, &states, p.clone()));
+                let solution = finish(problem, &states, forces, Method::ActiveSet, *counters);
+                if solution.residual <= TOLERANCE {
+                    return Some(solution);
+                }
+                p
+            }
+            Outcome::Failed(p) => p,
+        };
+        project(scaled, &mut p);
+        states = gauss_seidel(scaled, &mut p, rounds.next()?, counters);
+    }
+}
+
+/// Warm states, in which frictionless contacts have one closed state only.
+fn known(scaled: &Scaled, warm: &[ContactState]) -> Vec<ContactState> {
+    let state = |(state, tangent): (&ContactState, &Option<usize>)| match tangent {
+        None if state.is_closed() => ContactState::SlipPlus,
+        _ => *state,
+    };
+    warm.iter().zip(&scaled.tangents).map(state).collect()
+}
+
+/// Brings forces into the friction cone.
+fn project(scaled: &Scaled, p: &mut [f64]) {
+    for i in 0..scaled.contacts {
+        p[i] = p[i].max(0.0);
+        if let Some(t) = scaled.tangents[i] {
+            p[t] = p[t].max(-scaled.mu[i] * p[i]).min(scaled.mu[i] * p[i]);
+        }
+    }
 }
 
 /// Lemke's method; the forces of its states are then solved for directly, which is more accurate

@@ -11,11 +11,13 @@
 //! All methods work on a problem scaled by powers of two, so that the answer of a problem whose
 //! lengths or forces are multiplied by powers of two is the same to the last bit.
 
+mod active_set;
 mod basis;
 mod dense;
 mod factors;
 mod frictional;
 mod frictional_lemke;
+mod gauss_seidel;
 mod hybrid;
 mod lemke;
 mod pivoting;
