@@ -13,7 +13,7 @@ use crate::lcp::{ContactState, LcpMethod};
 use crate::linear::LinearError;
 use crate::model::{Factorization, Impact, Model, Settings};
 
-/// Passes with kept factors; later passes of an increment factorise anew.
+/// Passes that one factorisation serves within an increment.
 const KEPT_PASSES: usize = 8;
 /// Passes after which the pairs keep their segments.
 const SEARCHING_PASSES: usize = 10;
@@ -126,7 +126,7 @@ impl StepProblem<'_> {
         worst: &mut Option<Worst>,
     ) -> Result<Solved, Cause> {
         let Interval { dt, .. } = interval;
-        let (u0, v0) = (&start.u, &start.v);
+        let u0 = &start.u;
         let method = LcpMethod::from(self.settings.lcp);
 
         // k = 0: from U0, the supports at their prescribed displacements
@@ -332,7 +332,8 @@ impl StepProblem<'_> {
         meter: &mut Meter,
     ) -> Result<(), Cause> {
         let every = self.settings.factorization == Factorization::EveryPass;
-        if effective.fits(dt) && !every && pass < KEPT_PASSES {
+        let worn = pass > 0 && pass % KEPT_PASSES == 0;
+        if effective.fits(dt) && !every && !worn {
             return Ok(());
         }
         let configuration = self.weights.configuration(u0, u, u_theta);

@@ -36,11 +36,6 @@ impl Mass {
     pub fn kinetic_energy(&self, v: &[f64]) -> f64 {
         dot(v, &self.times(v)) / 2.0
     }
-
-    /// Total mass.
-    pub fn total(&self) -> f64 {
-        self.nodal.matrix().data().iter().sum()
-    }
 }
 
 /// Scalar product.
