@@ -94,23 +94,39 @@ fn beyond(p: &Projection) -> f64 {
     ((p.xi - 1.0) * p.length).hypot(p.gap)
 }
 
-/// Smallest gap of each contact of a model in the reference configuration (length), with the slave
-/// node it belongs to; `None` where no slave node faces a segment.
-pub fn initial_gaps(model: &Model) -> Vec<Option<(f64, usize)>> {
+/// Gap of a slave node to the segment it faces in the reference configuration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InitialGap {
+    /// Slave node (index).
+    pub slave: usize,
+    /// Gap (length), negative when the node is inside the body.
+    pub gap: f64,
+    /// Length of the segment.
+    pub edge: f64,
+}
+
+/// Gaps of the slave nodes of each contact of a model in the reference configuration; nodes that
+/// face no segment are left out.
+pub fn initial_gaps(model: &Model) -> Vec<Vec<InitialGap>> {
     let x = &model.mesh.coordinates;
     let u = vec![0.0; model.mesh.dof_count()];
     let gap_of = |surfaces: &ContactSurfaces, slave: usize| {
         let [a, b] = surfaces.segments[find_segment(surfaces, x, &u, slave)?];
-        Some((project(x[slave], x[a], x[b]).gap, slave))
+        let p = project(x[slave], x[a], x[b]);
+        Some(InitialGap {
+            slave,
+            gap: p.gap,
+            edge: p.length,
+        })
     };
-    let smallest = |surfaces: &ContactSurfaces| {
+    let of_contact = |surfaces: &ContactSurfaces| {
         surfaces
             .slaves
             .iter()
             .filter_map(|&slave| gap_of(surfaces, slave))
-            .min_by(|p, q| p.0.total_cmp(&q.0))
+            .collect()
     };
-    contact_surfaces(model).iter().map(smallest).collect()
+    contact_surfaces(model).iter().map(of_contact).collect()
 }
 
 #[cfg(test)]
