@@ -1,0 +1,33 @@
+"""Runs the program from Python."""
+
+import os
+import subprocess
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+class RunFailed(Exception):
+    """The program ended with another exit code than expected."""
+
+
+def binary() -> Path:
+    """The program: $STICKSLIP, or the release build."""
+    if "STICKSLIP" in os.environ:
+        return Path(os.environ["STICKSLIP"])
+    target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+    path = target / "release" / "stickslip"
+    if not path.exists():
+        raise FileNotFoundError(f"{path} is missing: run 'cargo build --release' first")
+    return path
+
+
+def run(deck: Path, output: Path, *options: str, expected: int = 0) -> Path:
+    """Runs a deck quietly into a folder, overwriting older results; returns the result file."""
+    output.mkdir(parents=True, exist_ok=True)
+    command = [binary(), "run", deck, "-o", output, "--overwrite", "-q", *options]
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    if done.returncode != expected:
+        words = " ".join(map(str, command))
+        raise RunFailed(f"{words}\nexit code {done.returncode}\n{done.stdout}{done.stderr}")
+    return output / f"{deck.stem}.vtkhdf"

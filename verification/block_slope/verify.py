@@ -1,0 +1,232 @@
+"""Block falling on a slope: against a point mass, where the energy went, how it rebounds."""
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+DECKS = HERE.parents[1] / "input" / "block_slope"
+sys.path[:0] = [str(HERE), str(HERE.parent)]
+
+import runner  # noqa: E402  (first: it finds the modules of scripts/)
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+import style  # noqa: E402
+from plot_motion import draw_overlay  # noqa: E402
+from pointmass import Array, PointMass  # noqa: E402
+from results import Results  # noqa: E402
+
+slope = runner.load(DECKS / "generate.py")
+
+MASS = slope.DENSITY * slope.SIDE**2 * slope.THICKNESS
+ACCELERATION = (slope.FORCE / MASS * slope.SINE, -slope.FORCE / MASS * slope.COSINE)
+FRAME = np.array([[slope.COSINE, slope.SINE], [-slope.SINE, slope.COSINE]])
+"""Columns: the directions down the slope and out of it; vectors @ FRAME are (along, normal)."""
+LABELS = {"paper": "SS22 (1, 1), the paper's scheme", "default": "energy-momentum, the default"}
+IMPACT = 2e-3
+"""Time from the landing in which the first impact is over, repeated touches included."""
+
+
+def point_mass(friction: float) -> PointMass:
+    """The reference."""
+    return PointMass(slope.GAP, ACCELERATION, friction)
+
+
+class Centre:
+    """Motion of the block's mass centre, along the slope and normal to it."""
+
+    def __init__(self, results: Results) -> None:
+        history = results.nodes("BLOCK")
+        index = {int(label): i for i, label in enumerate(results.node_labels)}
+        nodes = np.array([index[int(label)] for label in history.labels])
+        # Row sums of the mass matrix: equal elements give a quarter to each of their nodes.
+        share = np.zeros(len(results.coordinates))
+        for cell in results.cells:
+            np.add.at(share, cell, 1.0)
+        weight = share[nodes] / share[nodes].sum()
+        self.displacement: Array = np.einsum("n,inj->ij", weight, history.U) @ FRAME
+        self.velocity: Array = np.einsum("n,inj->ij", weight, history.V) @ FRAME
+
+    @property
+    def kinetic(self) -> Array:
+        """Kinetic energy of the mass centre."""
+        return 0.5 * MASS * (self.velocity**2).sum(axis=1)
+
+
+def landing_time(results: Results) -> float:
+    """Time of the first landing."""
+    return float(results.impacts["time"].min())
+
+
+def after_first_impact(results: Results) -> int:
+    """Row of the last increment with contact in the first impact."""
+    (contact,) = results.contacts.values()
+    start = landing_time(results)
+    touching = (contact.closed > 0) & (results.time <= start + IMPACT)
+    return int(np.flatnonzero(touching)[-1])
+
+
+def rebound(results: Results) -> float:
+    """Speed of the mass centre normal to the slope after the first impact / landing speed."""
+    speed = Centre(results).velocity[after_first_impact(results), 1]
+    return float(speed / point_mass(0.0).landing_speed)
+
+
+def accounts(results: Results) -> dict[str, Array]:
+    """Where the energy is: accounts that sum up to what was put in."""
+    account = results.energy
+    rigid = Centre(results).kinetic
+    return {
+        "motion of the mass centre": rigid,
+        "vibration": account["kinetic"] - rigid + account["strain"],
+        "friction": account["friction_dissipation"],
+        "impact loss": account["impact_loss"],
+        "numerical dissipation": account["numerical_dissipation"],
+        "normal contact (taken)": -account["normal_contact_work"],
+    }
+
+
+def check_main(verification: runner.Verification) -> None:
+    """Landing, motion along the slope, and what every run has to satisfy."""
+    for case in verification.cases:
+        results = verification.results[case.name]
+        verification.check_run(case.name, slope.SIDE / 8 / case.refine)
+        verification.check("landing time", case.name, landing_time(results))
+        if case.deck == "mu00.inp":
+            along = Centre(results).displacement[1:, 0]
+            reference = point_mass(0.0).displacement(results.time[1:])[:, 0]
+            deviation = float((np.abs(along - reference) / reference).max())
+            verification.check("deviation along the slope, mu = 0", case.name, deviation)
+
+
+def tabulate_energy(verification: runner.Verification) -> None:
+    """The ledger after the first impact and at the end."""
+    header: list[str] = []
+    rows = []
+    for group in LABELS:
+        for case, results in verification.group(group):
+            parts = accounts(results)
+            header = ["case", "when", "put in", *parts]
+            for when, row in (("first impact", after_first_impact(results)), ("end", -1)):
+                values = [float(part[row]) for part in parts.values()]
+                rows.append((case.name, when, float(results.energy["external_work"][row]), *values))
+    if rows:
+        verification.table("Where the energy went", header, rows)
+
+
+def tabulate_rebound(verification: runner.Verification) -> None:
+    """Rebound ratio against mesh, increment and scheme."""
+    rows = []
+    for case, results in verification.group("study"):
+        row = after_first_impact(results)
+        parts = {name: float(part[row]) for name, part in accounts(results).items()}
+        arrival = 0.5 * MASS * point_mass(0.0).landing_speed ** 2
+        lost = ("vibration", "impact loss", "numerical dissipation", "normal contact (taken)")
+        shares = [parts[name] / arrival for name in lost]
+        scheme = "default" if case.settings == {} else "paper"
+        edge, dt = 0.5 / case.refine, slope.DT / case.divide
+        rows.append((scheme, edge, dt, rebound(results), *shares))
+    header = ("scheme", "block edge", "increment", "rebound", "vibration", "impact loss")
+    header += ("numerical", "normal contact")
+    verification.table(
+        "First rebound, mu = 0 (speed after / before; energies / normal kinetic energy)",
+        header,
+        rows,
+    )
+
+
+def draw_displacement(verification: runner.Verification) -> None:
+    """Horizontal and vertical displacement against time, all mu in one figure."""
+    figure, axes = plt.subplots(2, 2, figsize=(11, 7.5), sharex=True, sharey="row")
+    for column, (group, label) in enumerate(LABELS.items()):
+        for colour, (case, results) in zip(style.COLOURS, verification.group(group)):
+            friction = slope.FRICTION[Path(case.deck).stem]
+            computed = Centre(results).displacement @ FRAME.T
+            reference = point_mass(friction).displacement(results.time) @ FRAME.T
+            for row in range(2):
+                axes[row, column].plot(
+                    results.time, computed[:, row], color=colour, label=f"mu = {friction}"
+                )
+                axes[row, column].plot(results.time, reference[:, row], "--", color=colour, lw=0.8)
+        axes[0, column].plot([], [], "k--", lw=0.8, label="point mass, elastic")
+        axes[0, column].set_title(label)
+        axes[0, column].legend()
+        axes[1, column].set_xlabel("time (s)")
+    axes[0, 0].set_ylabel("horizontal displacement of the mass centre (cm)")
+    axes[1, 0].set_ylabel("vertical displacement of the mass centre (cm)")
+    style.save(figure, verification.output / "displacement.png")
+
+
+def draw_motion(verification: runner.Verification) -> None:
+    """Shapes every 0.04 s."""
+    figure, axes = plt.subplots(2, 3, figsize=(15, 7.5), sharex=True, sharey=True)
+    for row, (group, label) in enumerate(LABELS.items()):
+        for column, (case, results) in enumerate(verification.group(group)):
+            frames = [results.nearest_frame(0.04 * i) for i in range(6)]
+            draw_overlay(axes[row, column], results, frames)
+            friction = slope.FRICTION[Path(case.deck).stem]
+            axes[row, column].set_title(f"mu = {friction}; {label}", fontsize=8)
+    style.save(figure, verification.output / "motion.png")
+
+
+def draw_energy(verification: runner.Verification) -> None:
+    """The ledger against time."""
+    figure, axes = plt.subplots(3, 2, figsize=(11, 10), sharex=True, sharey="row")
+    for column, (group, label) in enumerate(LABELS.items()):
+        for row, (case, results) in enumerate(verification.group(group)):
+            parts = accounts(results)
+            at = axes[row, column]
+            at.stackplot(
+                results.time, list(parts.values()), labels=list(parts), alpha=0.85, linewidth=0
+            )
+            at.plot(results.time, results.energy["external_work"], "k--", lw=1, label="put in")
+            friction = slope.FRICTION[Path(case.deck).stem]
+            at.set_title(f"mu = {friction}; {label}", fontsize=9)
+            at.set_ylabel("energy (kg cm$^2$/s$^2$)")
+        axes[-1, column].set_xlabel("time (s)")
+    axes[0, 0].legend(loc="upper left")
+    style.save(figure, verification.output / "energy.png")
+
+
+def draw_rebound(verification: runner.Verification) -> None:
+    """Speed normal to the slope during the first impact, by mesh and increment."""
+    figure, axes = plt.subplots(2, 2, figsize=(11, 7), sharex=True, sharey=True)
+    speed = point_mass(0.0).landing_speed
+    for case, results in verification.group("study"):
+        row = 1 if case.settings == {} else 0
+        first = results.time >= point_mass(0.0).landing - 2e-4
+        time = 1e3 * (results.time[first] - point_mass(0.0).landing)
+        normal = Centre(results).velocity[first, 1] / speed
+        edge, dt = 0.5 / case.refine, slope.DT / case.divide
+        for column, shown in enumerate((case.divide == 1, case.refine == 1)):
+            if shown:
+                label = f"edge {edge:g}" if column == 0 else f"dt {dt:.3g}"
+                axes[row, column].plot(time, normal, label=label)
+    for row, label in enumerate(LABELS.values()):
+        axes[row, 0].set_title(f"meshes; {label}")
+        axes[row, 1].set_title(f"increments; {label}")
+        axes[row, 0].set_ylabel("normal speed / landing speed")
+        for at in axes[row]:
+            at.axhline(1.0, color="k", ls="--", lw=0.8, label="point mass")
+            at.legend(loc="lower right")
+            at.set_xlim(-0.2, 1.5)
+    for at in axes[1]:
+        at.set_xlabel("time since the landing (ms)")
+    style.save(figure, verification.output / "rebound.png")
+
+
+def main() -> int:
+    """Runs, checks, draws, reports."""
+    verification = runner.start(HERE, DECKS)
+    check_main(verification)
+    tabulate_energy(verification)
+    tabulate_rebound(verification)
+    draw_rebound(verification)
+    if any(verification.group("paper")):
+        draw_displacement(verification)
+        draw_motion(verification)
+        draw_energy(verification)
+    return verification.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,92 @@
+"""Writes the decks of the elastic bar that hits a fixed wall: `generate.py [-o FOLDER]`."""
+
+import argparse
+import sys
+from math import sqrt
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "scripts"))
+
+from quads import Grid, card  # noqa: E402
+
+YOUNG = 1000.0
+DENSITY = 1.0
+LENGTH, DEPTH, THICKNESS = 10.0, 1.0, 1.0
+ELEMENTS = 50
+SPEED, GAP = 0.03, 0.0015
+
+WAVE_SPEED = sqrt(YOUNG / DENSITY)
+DT = LENGTH / ELEMENTS / WAVE_SPEED  # Courant number 1
+INCREMENTS = 150  # contact from 8 to 108
+
+INCLUDE = "elastic_bar.inc"
+SCHEMES = {"ss22": "SCHEME=SS22, THETA1=1., THETA2=1.", "em": "SCHEME=ENERGY-MOMENTUM"}
+IMPACTS = {"impulse": "IMPULSE", "none": "NONE"}
+
+
+def model() -> str:
+    """Everything but the step."""
+    bar = Grid("BAR", ELEMENTS, 1, lambda i, j: (LENGTH * i / ELEMENTS, DEPTH * j))
+    wall = Grid(
+        "WALL",
+        1,
+        1,
+        lambda i, j: (i - 1.0 - GAP, (2 * j - 0.5) * DEPTH),
+        bar.next_node,
+        bar.next_element,
+    )
+    return "".join(
+        [
+            "** Written by generate.py; any consistent units.\n",
+            bar.mesh("CPS4"),
+            wall.mesh("CPS4"),
+            bar.side_nodes("BAR_FACE", "left"),
+            bar.side_surface("BAR_FACE", "left"),
+            wall.side_surface("WALL_FACE", "right"),
+            card("MATERIAL, NAME=ELASTIC"),
+            card("ELASTIC", (YOUNG, 0.0)),
+            card("DENSITY", (DENSITY,)),
+            card("SOLID SECTION, ELSET=BAR, MATERIAL=ELASTIC", (THICKNESS,)),
+            card("SOLID SECTION, ELSET=WALL, MATERIAL=ELASTIC", (THICKNESS,)),
+            card("SURFACE INTERACTION, NAME=SMOOTH"),
+            card("CONTACT PAIR, INTERACTION=SMOOTH", ("BAR_FACE", "WALL_FACE")),
+            card("BOUNDARY", ("WALL", 1, 2), ("BAR", 2, 2)),
+            card("INITIAL CONDITIONS, TYPE=VELOCITY", ("BAR", 1, -SPEED)),
+        ]
+    )
+
+
+def problem(scheme: str, impact: str) -> str:
+    """A deck: heading, include, step."""
+    return "".join(
+        [
+            card("HEADING", (f"elastic bar on a fixed wall; {scheme}, impact {impact}",)),
+            card(f"INCLUDE, INPUT={INCLUDE}"),
+            card(f"STEP, NLGEOM, INC={INCREMENTS}"),
+            card(f"STICKSLIP, {SCHEMES[scheme]}, IMPACT={IMPACTS[impact]}"),
+            card("DYNAMIC, DIRECT", (DT, INCREMENTS * DT)),
+            card("NODE PRINT, NSET=BAR", ("U", "V")),
+            card("END STEP"),
+        ]
+    )
+
+
+def write(folder: Path) -> None:
+    """Writes the include file and all decks into `folder`."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / INCLUDE).write_text(model())
+    for scheme in SCHEMES:
+        for impact in IMPACTS:
+            (folder / f"{scheme}_{impact}.inp").write_text(problem(scheme, impact))
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("-o", "--output", type=Path, default=HERE, help="folder of the decks")
+    write(parser.parse_args().output)
+
+
+if __name__ == "__main__":
+    main()

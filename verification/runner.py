@@ -1,0 +1,213 @@
+"""Runs the cases of a verification folder, checks quantities against limits, writes a report.
+
+`cases.toml` of the folder lists the cases (decks with changes) and the limits of its quantities;
+`limits.toml` beside this file lists the limits that hold for every case.
+"""
+
+import argparse
+import importlib.util
+import sys
+import tomllib
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
+sys.path.insert(0, str(ROOT / "scripts"))
+
+import program  # noqa: E402
+from deck import Deck  # noqa: E402
+from results import Results  # noqa: E402
+
+
+@dataclass(frozen=True)
+class Case:
+    """A deck with changes."""
+
+    name: str
+    deck: str
+    """The deck's name within the folder of the decks."""
+    settings: dict[str, str] | None = None
+    """Parameters of the STICKSLIP card; empty: no card, the default scheme; None: as in the deck."""
+    refine: int = 1
+    """Divides the edges of all elements."""
+    divide: float = 1.0
+    """Divides the increment."""
+    until: float | None = None
+    """Duration, if not the deck's."""
+    frames: int | None = None
+    every: float | None = None
+    """Frames of the result: how many, or how far apart in time."""
+    quick: bool = False
+    """Also run with --quick."""
+    group: str = ""
+    """What the case is for."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """What a quantity has to satisfy."""
+
+    quantity: str
+    source: str
+    """Where the limit comes from."""
+    reference: float | None = None
+    tolerance: float | None = None
+    at_most: float | None = None
+    at_least: float | None = None
+
+    def holds(self, value: float) -> bool:
+        """Whether a value satisfies the limit; never for a value that is not a number."""
+        if self.reference is not None and self.tolerance is not None:
+            return abs(value - self.reference) <= self.tolerance
+        if self.at_most is not None:
+            return value <= self.at_most
+        return self.at_least is not None and value >= self.at_least
+
+    def __str__(self) -> str:
+        if self.reference is not None:
+            return f"{self.reference:.6g} +- {self.tolerance:.3g}"
+        if self.at_most is not None:
+            return f"<= {self.at_most:.3g}"
+        return f">= {self.at_least:.3g}"
+
+
+@dataclass
+class Verification:
+    """One verification folder: its cases, their results, the checks done so far."""
+
+    folder: Path
+    decks: Path
+    """Folder of the decks; its generate.py makes refined ones."""
+    output: Path
+    title: str
+    cases: list[Case]
+    limits: dict[str, Limit]
+    reuse: bool
+    results: dict[str, Results] = field(default_factory=dict)
+    failures: int = 0
+    checks: list[Sequence[str]] = field(default_factory=list)
+    tables: list[str] = field(default_factory=list)
+
+    def run(self) -> None:
+        """Runs all cases, two at a time."""
+        with ThreadPoolExecutor(2) as pool:
+            for case, path in zip(self.cases, pool.map(self._run_case, self.cases)):
+                self.results[case.name] = Results(path)
+
+    def _run_case(self, case: Case) -> Path:
+        output = self.output / "runs"
+        path = output / f"{case.name}.vtkhdf"
+        if self.reuse and path.exists():
+            return path
+        print(f"running {case.name}", flush=True)
+        options = ["--threads", "1"]
+        if case.frames is not None:
+            options += ["--frames", str(case.frames)]
+        if case.every is not None:
+            options += ["--every", repr(case.every)]
+        return program.run(self._deck(case).write(output / f"{case.name}.inp"), output, *options)
+
+    def _deck(self, case: Case) -> Deck:
+        decks = self.decks
+        if case.refine > 1:
+            decks = self.output / "decks" / f"refine_{case.refine}"
+            load(self.decks / "generate.py").write(decks, case.refine)
+        deck = Deck.read(decks / case.deck)
+        if case.settings is not None:
+            deck.set_settings(**case.settings)
+        if case.divide != 1.0 or case.until is not None:
+            dt = deck.dt / case.divide
+            period = deck.period if case.until is None else case.until
+            deck.set_increments(dt, round(period / dt))
+        return deck
+
+    def group(self, name: str) -> Iterator[tuple[Case, Results]]:
+        """The cases of a group with their results."""
+        for case in self.cases:
+            if case.group == name:
+                yield case, self.results[case.name]
+
+    def check(self, quantity: str, case: str, value: float) -> None:
+        """Compares a value with its limit and prints the verdict."""
+        limit = self.limits[quantity]
+        holds = limit.holds(value)
+        self.failures += not holds
+        verdict = "pass" if holds else "FAIL"
+        print(f"{verdict}  {case:28} {quantity:42} {value:12.6g}   {limit}")
+        self.checks.append((verdict, case, quantity, f"{value:.6g}", str(limit), limit.source))
+
+    def check_run(self, name: str, edge: float) -> None:
+        """What every run has to satisfy; `edge` is the length of the smallest element edge."""
+        results = self.results[name]
+        self.check("increments not converged", name, float((results.solver["converged"] == 0).sum()))
+        gaps = [contact.min_gap for contact in results.contacts.values()]
+        self.check("deepest gap / element size", name, float(np.nanmin(gaps, initial=0.0)) / edge)
+        cones = [contact.cone_violation for contact in results.contacts.values()]
+        self.check("violation of Coulomb's cone", name, float(np.max(cones)))
+        balance = np.abs(results.energy["balance"]).max() / results.largest_energy
+        self.check("energy balance / largest energy", name, float(balance))
+
+    def table(self, title: str, header: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
+        """Adds a table to the report and prints it."""
+        texts = [[f"{x:.5g}" if isinstance(x, float) else str(x) for x in row] for row in rows]
+        self.tables.append(f"## {title}\n\n{markdown(header, texts)}")
+        widths = [max(map(len, column)) for column in zip(header, *texts)]
+        print(f"\n{title}")
+        for row in [header, *texts]:
+            print("  " + "  ".join(text.rjust(width) for text, width in zip(row, widths)))
+
+    def finish(self) -> int:
+        """Writes the report; the exit code."""
+        header = ("", "case", "quantity", "computed", "limit", "source")
+        verdict = f"{len(self.checks)} checks, {self.failures} failed"
+        parts = [f"# {self.title}\n\n{verdict}\n\n{markdown(header, self.checks)}", *self.tables]
+        self.output.mkdir(parents=True, exist_ok=True)
+        report = self.output / "results.md"
+        report.write_text("\n".join(parts))
+        print(f"\n{verdict}; wrote {report}")
+        return 1 if self.failures else 0
+
+
+def load(path: Path) -> ModuleType:
+    """A Python file as a module."""
+    spec = importlib.util.spec_from_file_location(f"{path.parent.name}_{path.stem}", path)
+    if spec is None or spec.loader is None:
+        raise ImportError(f"{path} cannot be loaded")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def markdown(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A Markdown table."""
+    lines = [header, ["---"] * len(header), *rows]
+    return "".join("| " + " | ".join(line) + " |\n" for line in lines)
+
+
+def start(folder: Path, decks: Path) -> Verification:
+    """Reads the command line and the folder's cases, runs them."""
+    parser = argparse.ArgumentParser(description=f"Verification {folder.name}")
+    parser.add_argument("--quick", action="store_true", help="only the short cases")
+    parser.add_argument("--reuse", action="store_true", help="keep results that exist")
+    arguments = parser.parse_args()
+    data = tomllib.loads((folder / "cases.toml").read_text())
+    common = tomllib.loads((HERE / "limits.toml").read_text())
+    limits = [Limit(**entry) for entry in common["limit"] + data.get("limit", [])]
+    cases = [Case(**entry) for entry in data["case"]]
+    verification = Verification(
+        folder,
+        decks,
+        ROOT / "results" / "verification" / folder.name,
+        data["title"],
+        [case for case in cases if case.quick or not arguments.quick],
+        {limit.quantity: limit for limit in limits},
+        arguments.reuse,
+    )
+    verification.run()
+    return verification

@@ -1,0 +1,160 @@
+"""Two cantilevers: displacements and motion as the paper shows them, convergence."""
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+DECKS = HERE.parents[1] / "input" / "two_cantilevers"
+sys.path.insert(0, str(HERE.parent))
+
+import runner  # noqa: E402  (first: it finds the modules of scripts/)
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+import style  # noqa: E402
+from plot_motion import draw_shape, frame_axes, Colouring  # noqa: E402
+from results import Array, Results  # noqa: E402
+
+beams = runner.load(DECKS / "generate.py")
+
+LABELS = {"paper": "SS22 (1, 1), the paper's scheme", "default": "energy-momentum, the default"}
+
+
+def tip(results: Results, name: str = "UPPER_TIP") -> Array:
+    """Displacement of the middle of an end face [I, 2]."""
+    history = results.nodes(name)
+    return history.U[:, len(history.labels) // 2]
+
+
+def draw_displacement(verification: runner.Verification, name: str, label: str) -> None:
+    """Horizontal and vertical displacement of a tip against time, all mu in one figure."""
+    figure, axes = plt.subplots(2, 2, figsize=(11, 7), sharex=True, sharey="row")
+    for column, load in enumerate("AB"):
+        for group, line in (("paper", "-"), ("default", "--")):
+            cases = [(c, r) for c, r in verification.group(group) if c.deck[0] == load]
+            for colour, (case, results) in zip(style.COLOURS, cases):
+                friction = beams.FRICTION[Path(case.deck).stem[2:]]
+                for row in range(2):
+                    axes[row, column].plot(
+                        results.time,
+                        tip(results, name)[:, row],
+                        line,
+                        color=colour,
+                        lw=1.3 if group == "paper" else 0.9,
+                        label=f"mu = {friction}" if group == "paper" else None,
+                    )
+        axes[0, column].set_title(f"load case {load}")
+        axes[1, column].set_xlabel("time")
+    axes[0, 0].plot([], [], "k--", lw=0.9, label="default scheme")
+    axes[0, 0].legend()
+    axes[0, 0].set_ylabel(f"horizontal displacement of {label}")
+    axes[1, 0].set_ylabel(f"vertical displacement of {label}")
+    style.save(figure, verification.output / f"displacement_{name.lower()}.png")
+
+
+def draw_motion(verification: runner.Verification, group: str) -> None:
+    """Shapes at t = 0, 2, 4, ... at mu = 0.4 for both load cases."""
+    times = np.arange(0.0, 15.0, 2.0)
+    figure, axes = plt.subplots(4, 4, figsize=(14, 13), sharex=True, sharey=True)
+    for half, load in enumerate("AB"):
+        results = verification.results[f"{group}_{load}_mu04"]
+        frames = [results.nearest_frame(time) for time in times]
+        colouring = Colouring.of(results, "von-mises", frames)
+        for at, frame in zip(axes[2 * half : 2 * half + 2].flat, frames):
+            draw_shape(at, results, frame, colouring)
+            frame_axes(at, results, frames)
+            at.set_title(f"case {load}, t = {results.frame_times[frame]:.4g}")
+        colouring.bar(figure, axes[2 * half : 2 * half + 2])
+    figure.suptitle(f"mu = 0.4; {LABELS[group]}")
+    style.save(figure, verification.output / f"motion_{group}.png")
+
+
+def sequence(verification: runner.Verification, group: str, kind: str) -> list[runner.Case]:
+    """Cases of increasing resolution, from the deck's own."""
+    first = [case for case in verification.cases if case.name == f"{group}_A_mu04"]
+    return first + [case for case, _ in verification.group(f"{group}_{kind}")]
+
+
+def deviation(results: Results, reference: Results) -> float:
+    """Largest distance of the upper tip's paths, at the increments of the coarser run."""
+    other = tip(reference)
+    at = np.stack([np.interp(results.time, reference.time, other[:, i]) for i in range(2)], axis=1)
+    return float(np.linalg.norm(tip(results) - at, axis=1).max())
+
+
+def study_convergence(verification: runner.Verification) -> None:
+    """Path of the upper tip against the finest run of each sequence."""
+    figure, axes = plt.subplots(2, 2, figsize=(11, 7), sharex=True, sharey=True)
+    rows = []
+    for row, group in enumerate(LABELS):
+        for column, kind in enumerate(("dt", "mesh")):
+            cases = sequence(verification, group, kind)
+            finest = verification.results[cases[-1].name]
+            for case in cases:
+                results = verification.results[case.name]
+                edge, dt = 0.5 / case.refine, beams.DT / case.divide
+                label = f"dt {dt:g}" if kind == "dt" else f"edge {edge:g}"
+                axes[row, column].plot(results.time, tip(results)[:, 1], label=label)
+                if results is not finest:
+                    rows.append((group, kind, edge, dt, deviation(results, finest)))
+            axes[row, column].set_title(f"{LABELS[group]}; A, mu = 0.4", fontsize=9)
+            axes[row, column].legend()
+        axes[row, 0].set_ylabel("vertical displacement of the upper tip")
+    for at in axes[1]:
+        at.set_xlabel("time")
+    style.save(figure, verification.output / "convergence.png")
+    verification.table(
+        "Convergence of the upper tip's path, A, mu = 0.4 (largest distance from the finest run)",
+        ("scheme", "refined", "edge", "increment", "distance"),
+        rows,
+    )
+
+
+def tabulate(verification: runner.Verification) -> None:
+    """Tips and energies at the end of the runs."""
+    rows = []
+    for group in LABELS:
+        for case, results in verification.group(group):
+            upper, lower = tip(results)[-1], tip(results, "LOWER_TIP")[-1]
+            account = results.energy
+            rows.append(
+                (
+                    case.name,
+                    *map(float, upper),
+                    *map(float, lower),
+                    *(
+                        float(account[name][-1])
+                        for name in (
+                            "external_work",
+                            "friction_dissipation",
+                            "impact_loss",
+                            "numerical_dissipation",
+                            "normal_contact_work",
+                        )
+                    ),
+                )
+            )
+    verification.table(
+        "End of the runs",
+        ("case", "upper x", "upper y", "lower x", "lower y", "work", "friction", "impact")
+        + ("numerical", "normal contact"),
+        rows,
+    )
+
+
+def main() -> int:
+    """Runs, checks, draws, reports."""
+    verification = runner.start(HERE, DECKS)
+    for case in verification.cases:
+        verification.check_run(case.name, 0.5 / case.refine)
+    tabulate(verification)
+    if any(verification.group("paper_dt")):
+        draw_displacement(verification, "UPPER_TIP", "the upper tip")
+        draw_displacement(verification, "LOWER_TIP", "the lower tip")
+        for group in LABELS:
+            draw_motion(verification, group)
+        study_convergence(verification)
+    return verification.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
