@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use crate::dynamics::{Observer, RunSummary};
+use crate::dynamics::{self, Observer, RunError, RunSummary};
 use crate::model::Model;
 
 /// A deck as read.
@@ -29,7 +29,6 @@ pub(super) struct Loaded {
 
 /// Why a solve gave no summary.
 #[derive(Debug)]
-#[cfg_attr(not(test), allow(dead_code))] // CONNECT: drop with the stubs below.
 pub(super) enum SolveError {
     /// The results could not be written.
     Output(io::Error),
@@ -39,26 +38,19 @@ pub(super) enum SolveError {
 
 /// Reads a deck; messages coloured or not.
 type Load = fn(&Path, bool) -> Loaded;
-/// Smallest gap of each contact at the start, infinite without candidate.
-type InitialGaps = fn(&Model) -> Vec<f64>;
 /// Solves all steps of a model.
 type Solve = fn(&Model, &mut dyn Observer) -> Result<RunSummary, SolveError>;
 
 /// What the commands need of the rest of the program.
 pub(super) struct Numerics {
     pub load: Load,
-    pub initial_gaps: InitialGaps,
     pub solve: Solve,
 }
 
 impl Numerics {
     /// The reader and the solver of this program.
     pub fn connected() -> Self {
-        Numerics {
-            load,
-            initial_gaps,
-            solve,
-        }
+        Numerics { load, solve }
     }
 }
 
@@ -87,12 +79,8 @@ fn load(_path: &Path, _colour: bool) -> Loaded {
     }
 }
 
-// CONNECT 2: contact::initial_gaps(model).
-fn initial_gaps(model: &Model) -> Vec<f64> {
-    vec![f64::INFINITY; model.contacts.len()]
-}
-
-// CONNECT 3: dynamics::run(model, observer), RunError mapped to SolveError.
-fn solve(_model: &Model, _observer: &mut dyn Observer) -> Result<RunSummary, SolveError> {
-    Err(SolveError::Setup("the solver is not connected".into()))
+fn solve(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, SolveError> {
+    dynamics::run(model, observer).map_err(|error| match error {
+        RunError::Observer(error) => SolveError::Output(error),
+    })
 }

@@ -26,7 +26,7 @@ pub(super) fn run(args: &RunArgs, command: &str, numerics: &Numerics) -> Result<
     let record = record(command, &loaded, start_threads(args.threads)?);
     let notes = overrides::apply(args, &mut model);
     let mut writer = ResultWriter::create(&model, &files, &record, args.verbosity())?;
-    for line in header(args, &files, &loaded, &record, &model, numerics) {
+    for line in header(args, &files, &loaded, &record, &model) {
         writer.line(&line)?;
     }
     for note in &notes {
@@ -107,11 +107,9 @@ fn header(
     loaded: &Loaded,
     record: &RunRecord,
     model: &Model,
-    numerics: &Numerics,
 ) -> Vec<String> {
     let mut lines = program_lines(record, PROFILE, &files.name, &model.title);
     lines.push(deck_line_of(&args.deck, loaded, Some(&files.log)));
-    let gaps = (numerics.initial_gaps)(model);
-    lines.extend(ModelEcho::new(model).lines(model, &gaps));
+    lines.extend(ModelEcho::new(model).lines(model));
     lines
 }

@@ -156,7 +156,6 @@ fn to_a_full_disk(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, 
 fn numerics() -> Numerics {
     Numerics {
         load: |_, _| loaded(Some(square())),
-        initial_gaps: |_| vec![],
         solve: to_the_end,
     }
 }
