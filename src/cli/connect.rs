@@ -1,6 +1,5 @@
 //! The calls into the reader and the solver, all of them.
 
-use std::io;
 use std::path::Path;
 
 use crate::dynamics::{self, Observer, RunError, RunSummary};
@@ -27,19 +26,10 @@ pub(super) struct Loaded {
     pub includes: usize,
 }
 
-/// Why a solve gave no summary.
-#[derive(Debug)]
-pub(super) enum SolveError {
-    /// The results could not be written.
-    Output(io::Error),
-    /// The solver could not start.
-    Setup(String),
-}
-
 /// Reads a deck; messages coloured or not.
 type Load = fn(&Path, bool) -> Loaded;
 /// Solves all steps of a model.
-type Solve = fn(&Model, &mut dyn Observer) -> Result<RunSummary, SolveError>;
+type Solve = fn(&Model, &mut dyn Observer) -> Result<RunSummary, RunError>;
 
 /// What the commands need of the rest of the program.
 pub(super) struct Numerics {
@@ -50,7 +40,10 @@ pub(super) struct Numerics {
 impl Numerics {
     /// The reader and the solver of this program.
     pub fn connected() -> Self {
-        Numerics { load, solve }
+        Numerics {
+            load,
+            solve: dynamics::run,
+        }
     }
 }
 
@@ -77,10 +70,4 @@ fn load(_path: &Path, _colour: bool) -> Loaded {
         errors: 1,
         ..Loaded::default()
     }
-}
-
-fn solve(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, SolveError> {
-    dynamics::run(model, observer).map_err(|error| match error {
-        RunError::Observer(error) => SolveError::Output(error),
-    })
 }

@@ -1,10 +1,10 @@
 use super::args::RunArgs;
 use super::check::{complain_of, deck_line_of, load};
-use super::connect::{Loaded, Numerics, SolveError};
+use super::connect::{Loaded, Numerics};
 use super::error::CliError;
 use super::version::{COMMIT, NUMBER, PROFILE};
 use super::{Exit, overrides};
-use crate::dynamics::Outcome;
+use crate::dynamics::{Outcome, RunError};
 use crate::model::Model;
 use crate::output::{
     JobFiles, ModelEcho, ResultWriter, RunRecord, Verbosity, check_names, program_lines,
@@ -59,11 +59,10 @@ fn solve(model: &Model, writer: &mut ResultWriter, numerics: &Numerics) -> Resul
     }
 }
 
-impl From<SolveError> for CliError {
-    fn from(error: SolveError) -> Self {
+impl From<RunError> for CliError {
+    fn from(error: RunError) -> Self {
         match error {
-            SolveError::Output(error) => CliError::Write(error),
-            SolveError::Setup(text) => CliError::Setup(text),
+            RunError::Observer(error) => CliError::Write(error),
         }
     }
 }

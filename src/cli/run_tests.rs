@@ -7,12 +7,12 @@ use clap::Parser;
 use tempfile::TempDir;
 
 use super::args::{Args, Command};
-use super::connect::{Loaded, Numerics, SolveError};
+use super::connect::{Loaded, Numerics};
 use super::error::CliError;
 use super::{Exit, run};
 use crate::dynamics::{
     Cause, Cutback, Failure, IncrementReport, NodalResults, NodeStatus, Observer, Outcome,
-    PassReport, RunSummary, SolverCounts, State, Timings, Worst,
+    PassReport, RunError, RunSummary, SolverCounts, State, Timings, Worst,
 };
 use crate::model::{
     Cell, Element, Frames, Increments, Material, Mesh, Model, Plane, Section, Set, Settings, Step,
@@ -127,30 +127,30 @@ fn failure() -> Failure {
     }
 }
 
-fn to_the_end(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, SolveError> {
+fn to_the_end(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
     for k in 0..=10 {
-        observer.increment(&report(k)).map_err(SolveError::Output)?;
+        observer.increment(&report(k)).map_err(RunError::Observer)?;
     }
     Ok(summary(Outcome::Finished, 10))
 }
 
-fn to_a_stop(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, SolveError> {
+fn to_a_stop(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
     for k in 0..=3 {
-        observer.increment(&report(k)).map_err(SolveError::Output)?;
+        observer.increment(&report(k)).map_err(RunError::Observer)?;
     }
     let failure = failure();
     let cutback = Cutback {
         failure: failure.clone(),
         next_dt: 0.05,
     };
-    observer.cutback(&cutback).map_err(SolveError::Output)?;
+    observer.cutback(&cutback).map_err(RunError::Observer)?;
     Ok(summary(Outcome::Stopped(Box::new(failure)), 3))
 }
 
-fn to_a_full_disk(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, SolveError> {
-    observer.increment(&report(0)).map_err(SolveError::Output)?;
+fn to_a_full_disk(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+    observer.increment(&report(0)).map_err(RunError::Observer)?;
     let full = io::Error::from(io::ErrorKind::StorageFull);
-    Err(SolveError::Output(full))
+    Err(RunError::Observer(full))
 }
 
 fn numerics() -> Numerics {
@@ -323,20 +323,4 @@ fn a_full_disk_and_a_folder_that_cannot_be_made() {
     std::fs::write(bench.path("out"), "a file").expect("file");
     let exit = bench.run(&["-q"], &numerics());
     assert_eq!(code(&exit), Exit::FileSystem);
-}
-
-#[test]
-fn a_solver_that_cannot_start_counts_as_stopped() {
-    let bench = Bench::new();
-    let solve = |_: &Model, _: &mut dyn Observer| Err(SolveError::Setup("no mass".into()));
-    let exit = bench.run(
-        &["-q"],
-        &Numerics {
-            solve,
-            ..numerics()
-        },
-    );
-    assert_eq!(code(&exit), Exit::Stopped);
-    assert_eq!(bench.summary().exit_status, 1);
-    assert!(bench.log().contains("the solver could not start: no mass"));
 }
