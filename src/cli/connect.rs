@@ -1,9 +1,8 @@
 //! The calls into the reader and the solver, all of them.
 
-use std::io;
 use std::path::Path;
 
-use crate::dynamics::{Observer, RunSummary};
+use crate::dynamics::{self, Observer, RunError, RunSummary};
 use crate::model::Model;
 
 /// A deck as read.
@@ -27,27 +26,14 @@ pub(super) struct Loaded {
     pub includes: usize,
 }
 
-/// Why a solve gave no summary.
-#[derive(Debug)]
-#[cfg_attr(not(test), allow(dead_code))] // CONNECT: drop with the stubs below.
-pub(super) enum SolveError {
-    /// The results could not be written.
-    Output(io::Error),
-    /// The solver could not start.
-    Setup(String),
-}
-
 /// Reads a deck; messages coloured or not.
 type Load = fn(&Path, bool) -> Loaded;
-/// Smallest gap of each contact at the start, infinite without candidate.
-type InitialGaps = fn(&Model) -> Vec<f64>;
 /// Solves all steps of a model.
-type Solve = fn(&Model, &mut dyn Observer) -> Result<RunSummary, SolveError>;
+type Solve = fn(&Model, &mut dyn Observer) -> Result<RunSummary, RunError>;
 
 /// What the commands need of the rest of the program.
 pub(super) struct Numerics {
     pub load: Load,
-    pub initial_gaps: InitialGaps,
     pub solve: Solve,
 }
 
@@ -56,8 +42,7 @@ impl Numerics {
     pub fn connected() -> Self {
         Numerics {
             load,
-            initial_gaps,
-            solve,
+            solve: dynamics::run,
         }
     }
 }
@@ -85,14 +70,4 @@ fn load(_path: &Path, _colour: bool) -> Loaded {
         errors: 1,
         ..Loaded::default()
     }
-}
-
-// CONNECT 2: contact::initial_gaps(model).
-fn initial_gaps(model: &Model) -> Vec<f64> {
-    vec![f64::INFINITY; model.contacts.len()]
-}
-
-// CONNECT 3: dynamics::run(model, observer), RunError mapped to SolveError.
-fn solve(_model: &Model, _observer: &mut dyn Observer) -> Result<RunSummary, SolveError> {
-    Err(SolveError::Setup("the solver is not connected".into()))
 }

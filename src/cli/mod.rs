@@ -8,6 +8,8 @@ mod exit;
 mod info;
 mod overrides;
 mod run;
+#[cfg(test)]
+mod run_tests;
 mod version;
 
 use std::ffi::OsString;
