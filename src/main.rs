@@ -1,3 +1,7 @@
 //! The `stickslip` program.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    stickslip::cli::main(std::env::args_os()).into()
+}

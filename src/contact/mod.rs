@@ -1,1 +1,15 @@
 //! Node-to-segment contact: pairs, their rows and their complementarity problem.
+
+mod compliance;
+mod geometry;
+mod pair;
+mod problem;
+mod search;
+mod surfaces;
+
+pub use compliance::Compliance;
+pub use geometry::{Projection, project};
+pub use pair::{Pair, PairSite, RowForm};
+pub use problem::{add_contact_forces, frictional_lcp};
+pub use search::{InitialGap, find_pairs, find_segment, initial_gaps};
+pub use surfaces::{ContactSurfaces, contact_surfaces};

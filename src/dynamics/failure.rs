@@ -1,6 +1,8 @@
 use std::fmt;
 
 use super::PassReport;
+use crate::elements::Inverted;
+use crate::linear::LinearError;
 
 /// Why an increment failed.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,6 +77,26 @@ impl fmt::Display for Cause {
             Cause::LinearSolver(text) => write!(f, "the linear solver failed: {text}"),
             Cause::Lcp(text) => write!(f, "the complementarity problem was not solved: {text}"),
             Cause::NotFinite(what) => write!(f, "{what} is not finite"),
+        }
+    }
+}
+
+impl From<LinearError> for Cause {
+    fn from(error: LinearError) -> Self {
+        Cause::LinearSolver(error.to_string())
+    }
+}
+
+impl From<Inverted> for Cause {
+    fn from(
+        Inverted {
+            element,
+            determinant,
+        }: Inverted,
+    ) -> Self {
+        Cause::Inverted {
+            element,
+            determinant,
         }
     }
 }

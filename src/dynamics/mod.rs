@@ -1,10 +1,23 @@
 //! Time integration with contact and impact.
 
+mod contact_forces;
+mod dofs;
+mod effective;
 mod failure;
+mod increment;
+mod ledger;
+mod loads;
+mod mass;
+mod meter;
 mod report;
+mod results;
+mod run;
+mod scheme;
+mod supports;
 
 pub use failure::{Cause, Failure, Worst};
 pub use report::{
     ContactResultant, Cutback, Energy, IncrementReport, Landing, Momentum, NodalResults,
     NodeStatus, Observer, Outcome, PassReport, RunSummary, SolverCounts, State, Timings,
 };
+pub use run::{RunError, run};

@@ -1,1 +1,14 @@
-//! Sparse matrices with a fixed pattern, and their factorisations.
+//! Sparse symmetric matrices with a fixed pattern, and their factorisations.
+
+mod assembled;
+mod checked;
+mod faer_ldl;
+mod ordering;
+mod solver;
+mod sprs_ldl;
+
+pub use assembled::Assembled;
+pub use checked::CheckedSolver;
+pub use faer_ldl::FaerLdl;
+pub use solver::{LinearError, LinearSolver, linear_solver};
+pub use sprs_ldl::SprsLdl;

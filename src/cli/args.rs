@@ -1,0 +1,129 @@
+use std::path::PathBuf;
+
+use clap::{ArgAction, Args as ClapArgs, Parser, Subcommand, ValueEnum};
+
+use super::version::{LONG_VERSION, VERSION};
+use crate::model::{Frames, SolverChoice};
+use crate::output::Verbosity;
+
+/// Large-displacement dynamics of plane deformable bodies with exact contact and Coulomb friction.
+#[derive(Debug, Parser)]
+#[command(
+    name = "stickslip",
+    version = VERSION,
+    long_version = LONG_VERSION.as_str(),
+    after_help = "Exit codes: 0 finished, 1 stopped in the solve (results so far are valid), \
+                  2 deck rejected, 3 command line, 4 file system."
+)]
+pub(super) struct Args {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Solve a deck: writes JOB.vtkhdf, JOB.sta and JOB.log, JOB being the deck's name without .inp
+    Run(RunArgs),
+    /// Read a deck, report every error in it and describe the model, without solving
+    Check(CheckArgs),
+    /// Describe a result file
+    Info(InfoArgs),
+}
+
+/// Arguments of `run`.
+#[derive(Debug, ClapArgs)]
+pub(super) struct RunArgs {
+    /// The deck
+    #[arg(value_name = "DECK.inp")]
+    pub deck: PathBuf,
+    /// Folder for the results, made when it is missing
+    #[arg(short, long, value_name = "DIR", default_value = ".")]
+    pub output: PathBuf,
+    /// Write this many field frames per step, evenly spaced (default 100, or what the deck says)
+    #[arg(long, value_name = "N", conflicts_with = "every", value_parser = positive_count)]
+    pub frames: Option<usize>,
+    /// Write a field frame every DT of time
+    #[arg(long, value_name = "DT", value_parser = positive_time)]
+    pub every: Option<f64>,
+    /// Replace the results of an earlier run
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Sparse factorisation (default faer, or what the deck says)
+    #[arg(long, value_name = "NAME")]
+    pub solver: Option<Solver>,
+    /// Number of threads (default: all of the machine)
+    #[arg(long, value_name = "N", value_parser = positive_count)]
+    pub threads: Option<usize>,
+    /// Print errors only
+    #[arg(short, long, action = ArgAction::SetTrue, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Also log the convergence of every increment
+    #[arg(short, long, action = ArgAction::SetTrue)]
+    pub verbose: bool,
+}
+
+impl RunArgs {
+    /// How much to print.
+    pub fn verbosity(&self) -> Verbosity {
+        match (self.quiet, self.verbose) {
+            (true, _) => Verbosity::Quiet,
+            (_, true) => Verbosity::Verbose,
+            _ => Verbosity::Normal,
+        }
+    }
+
+    /// Frames asked for on the command line.
+    pub fn frames(&self) -> Option<Frames> {
+        (self.frames.map(Frames::Count)).or(self.every.map(Frames::Every))
+    }
+}
+
+/// Arguments of `check`.
+#[derive(Debug, ClapArgs)]
+pub(super) struct CheckArgs {
+    /// The deck
+    #[arg(value_name = "DECK.inp")]
+    pub deck: PathBuf,
+}
+
+/// Arguments of `info`.
+#[derive(Debug, ClapArgs)]
+pub(super) struct InfoArgs {
+    /// The result file
+    #[arg(value_name = "RESULT.vtkhdf")]
+    pub result: PathBuf,
+}
+
+/// Names of the sparse factorisations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Solver {
+    /// faer, supernodal LDL^T
+    Faer,
+    /// sprs-ldl with an AMD permutation
+    Sprs,
+}
+
+impl From<Solver> for SolverChoice {
+    fn from(solver: Solver) -> Self {
+        match solver {
+            Solver::Faer => SolverChoice::Faer,
+            Solver::Sprs => SolverChoice::Sprs,
+        }
+    }
+}
+
+fn positive_count(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count) if count > 0 => Ok(count),
+        _ => Err("expected a whole number greater than 0".into()),
+    }
+}
+
+fn positive_time(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(time) if time > 0.0 && f64::is_finite(time) => Ok(time),
+        _ => Err("expected a time greater than 0".into()),
+    }
+}

@@ -1,0 +1,53 @@
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use super::args::CheckArgs;
+use super::connect::{Loaded, Numerics};
+use super::error::CliError;
+use super::{Exit, coloured, complain, print};
+use crate::output::{ModelEcho, check_names, deck_line};
+
+/// Reads a deck and describes its model.
+pub(super) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exit, CliError> {
+    let loaded = load(&args.deck, numerics)?;
+    complain_of(&loaded);
+    print(&[deck_line_of(&args.deck, &loaded, None)]);
+    let Some(model) = &loaded.model else {
+        return Ok(Exit::Rejected);
+    };
+    check_names(model)?;
+    let gaps = (numerics.initial_gaps)(model);
+    print(&ModelEcho::new(model).lines(model, &gaps));
+    Ok(Exit::Finished)
+}
+
+/// Reads a deck; a deck that cannot be opened is a matter of the file system.
+pub(super) fn load(deck: &Path, numerics: &Numerics) -> Result<Loaded, CliError> {
+    let readable = File::open(deck).and_then(|file| file.metadata());
+    let readable = readable.and_then(|data| match data.is_dir() {
+        true => Err(std::io::ErrorKind::IsADirectory.into()),
+        false => Ok(()),
+    });
+    let path = PathBuf::from(deck);
+    readable.map_err(|source| CliError::Deck { path, source })?;
+    Ok((numerics.load)(deck, coloured()))
+}
+
+/// Prints the errors and warnings of a deck.
+pub(super) fn complain_of(loaded: &Loaded) {
+    if !loaded.messages.is_empty() {
+        complain(&loaded.messages);
+    }
+}
+
+/// The line about the deck; `log` names the file that holds its warnings.
+pub(super) fn deck_line_of(deck: &Path, loaded: &Loaded, log: Option<&Path>) -> String {
+    deck_line(
+        deck,
+        loaded.includes,
+        loaded.lines,
+        loaded.errors,
+        loaded.warnings,
+        log,
+    )
+}

@@ -1,0 +1,23 @@
+use std::process::ExitCode;
+
+/// Exit codes of the program: a contract with scripts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Exit {
+    /// Everything is done.
+    Finished = 0,
+    /// Stopped in the solve; the results up to there are valid.
+    Stopped = 1,
+    /// The deck was rejected; no result file was touched.
+    Rejected = 2,
+    /// The command line is wrong.
+    Usage = 3,
+    /// A file could not be read or written.
+    FileSystem = 4,
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        ExitCode::from(exit as u8)
+    }
+}

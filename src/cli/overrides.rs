@@ -1,0 +1,42 @@
+//! What the command line changes in the model.
+
+use super::args::RunArgs;
+use crate::model::{Frames, Model, SolverChoice};
+use crate::output::{frames, solver};
+
+/// Applies the command line to the steps of the model; says where the deck wanted otherwise.
+pub(super) fn apply(args: &RunArgs, model: &mut Model) -> Vec<String> {
+    let mut notes = vec![];
+    for (i, step) in model.steps.iter_mut().enumerate() {
+        let number = i + 1;
+        if let Some(wanted) = args.frames() {
+            notes.extend(frames_note(number, &step.frames, &wanted));
+            step.frames = wanted;
+        }
+        if let Some(wanted) = args.solver.map(SolverChoice::from) {
+            notes.extend(solver_note(number, step.settings.solver, wanted));
+            step.settings.solver = wanted;
+        }
+    }
+    notes
+}
+
+fn frames_note(step: usize, deck: &Frames, wanted: &Frames) -> Option<String> {
+    (deck != wanted && *deck != Frames::Default).then(|| {
+        format!(
+            "override step {step}: {} as the command line says, not {} as the deck does",
+            frames(wanted),
+            frames(deck)
+        )
+    })
+}
+
+fn solver_note(step: usize, deck: SolverChoice, wanted: SolverChoice) -> Option<String> {
+    (deck != wanted).then(|| {
+        format!(
+            "override step {step}: solver {} as the command line says, not {} as the deck does",
+            solver(wanted),
+            solver(deck)
+        )
+    })
+}

@@ -1,0 +1,117 @@
+use super::args::RunArgs;
+use super::check::{complain_of, deck_line_of, load};
+use super::connect::{Loaded, Numerics, SolveError};
+use super::error::CliError;
+use super::version::{COMMIT, NUMBER, PROFILE};
+use super::{Exit, overrides};
+use crate::dynamics::Outcome;
+use crate::model::Model;
+use crate::output::{
+    JobFiles, ModelEcho, ResultWriter, RunRecord, Verbosity, check_names, program_lines,
+};
+
+/// Solves a deck; `command` is the command as typed.
+pub(super) fn run(args: &RunArgs, command: &str, numerics: &Numerics) -> Result<Exit, CliError> {
+    let mut loaded = load(&args.deck, numerics)?;
+    let Some(mut model) = loaded.model.take() else {
+        complain_of(&loaded);
+        return Ok(Exit::Rejected);
+    };
+    if args.verbosity() != Verbosity::Quiet {
+        complain_of(&loaded);
+    }
+    check_names(&model)?;
+    let files = JobFiles::new(&args.deck, &args.output);
+    refuse_existing(args, &files)?;
+    let record = record(command, &loaded, start_threads(args.threads)?);
+    let notes = overrides::apply(args, &mut model);
+    let mut writer = ResultWriter::create(&model, &files, &record, args.verbosity())?;
+    for line in header(args, &files, &loaded, &record, &model, numerics) {
+        writer.line(&line)?;
+    }
+    for note in &notes {
+        writer.line(note)?;
+    }
+    if !loaded.plain_messages.is_empty() {
+        writer.detail(loaded.plain_messages.trim_end())?;
+    }
+    writer.line("")?;
+    solve(&model, &mut writer, numerics)
+}
+
+/// Solves the model and completes the results.
+fn solve(model: &Model, writer: &mut ResultWriter, numerics: &Numerics) -> Result<Exit, CliError> {
+    match (numerics.solve)(model, writer) {
+        Ok(summary) => {
+            writer.finish(&summary)?;
+            Ok(match summary.outcome {
+                Outcome::Finished => Exit::Finished,
+                Outcome::Stopped(_) => Exit::Stopped,
+            })
+        }
+        Err(error) => {
+            let error = CliError::from(error);
+            // What is wrong already is told below; the files may be beyond completing.
+            let _ = writer.detail(&format!("error: {error}"));
+            let _ = writer.abandon(error.exit() as u8);
+            Err(error)
+        }
+    }
+}
+
+impl From<SolveError> for CliError {
+    fn from(error: SolveError) -> Self {
+        match error {
+            SolveError::Output(error) => CliError::Write(error),
+            SolveError::Setup(text) => CliError::Setup(text),
+        }
+    }
+}
+
+/// Stops before files of an earlier run are replaced, unless that is wanted.
+fn refuse_existing(args: &RunArgs, files: &JobFiles) -> Result<(), CliError> {
+    let existing = files.existing();
+    if args.overwrite || existing.is_empty() {
+        return Ok(());
+    }
+    let files = existing.into_iter().map(Into::into).collect();
+    Err(CliError::Exists { files })
+}
+
+/// Starts the threads of the program and gives their number.
+fn start_threads(wanted: Option<usize>) -> Result<usize, CliError> {
+    if let Some(threads) = wanted {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        pool.build_global().map_err(|error| CliError::Threads {
+            threads,
+            reason: error.to_string(),
+        })?;
+    }
+    Ok(rayon::current_num_threads())
+}
+
+fn record(command: &str, loaded: &Loaded, threads: usize) -> RunRecord {
+    RunRecord {
+        version: NUMBER.into(),
+        commit: COMMIT.into(),
+        deck: loaded.text.clone(),
+        command: command.into(),
+        threads,
+    }
+}
+
+/// The lines above the table of increments.
+fn header(
+    args: &RunArgs,
+    files: &JobFiles,
+    loaded: &Loaded,
+    record: &RunRecord,
+    model: &Model,
+    numerics: &Numerics,
+) -> Vec<String> {
+    let mut lines = program_lines(record, PROFILE, &files.name, &model.title);
+    lines.push(deck_line_of(&args.deck, loaded, Some(&files.log)));
+    let gaps = (numerics.initial_gaps)(model);
+    lines.extend(ModelEcho::new(model).lines(model, &gaps));
+    lines
+}

@@ -1,0 +1,53 @@
+/// Place of a point relative to a segment from a to b, the body lying on the left of the way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Projection {
+    /// Foot of the perpendicular, 0 at a and 1 at b; outside this range beyond the ends.
+    pub xi: f64,
+    /// Distance along the normal, positive outside the body (length).
+    pub gap: f64,
+    /// Length of the segment.
+    pub length: f64,
+    /// Unit vector from a to b.
+    pub tangent: [f64; 2],
+    /// Unit vector out of the body.
+    pub normal: [f64; 2],
+}
+
+/// Projects the point `s` on the segment from `a` to `b`.
+///
+/// ```text
+/// e_t = (x_b - x_a)/|x_b - x_a|   e_n = (e_t,y, -e_t,x)
+/// xi = (x_s - x_a).e_t/|x_b - x_a|   g = (x_s - x_a).e_n
+/// ```
+pub fn project(s: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Projection {
+    let e = [b[0] - a[0], b[1] - a[1]];
+    let length = (e[0] * e[0] + e[1] * e[1]).sqrt();
+    let tangent = [e[0] / length, e[1] / length];
+    let normal = [tangent[1], -tangent[0]];
+    let r = [s[0] - a[0], s[1] - a[1]];
+    Projection {
+        xi: (r[0] * tangent[0] + r[1] * tangent[1]) / length,
+        gap: r[0] * normal[0] + r[1] * normal[1],
+        length,
+        tangent,
+        normal,
+    }
+}
+
+/// Position of a node: reference coordinates plus displacement.
+pub(crate) fn position(x: &[[f64; 2]], u: &[f64], node: usize) -> [f64; 2] {
+    [x[node][0] + u[2 * node], x[node][1] + u[2 * node + 1]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_normal_points_out_of_the_body_on_the_left() {
+        // The top of a body runs from right to left: the body lies below, on the left of the way.
+        let p = project([1.0, 3.0], [4.0, 2.0], [0.0, 2.0]);
+        assert_eq!((p.xi, p.gap, p.length), (0.75, 1.0, 4.0));
+        assert_eq!((p.tangent, p.normal), ([-1.0, 0.0], [0.0, 1.0]));
+    }
+}

@@ -1,0 +1,185 @@
+use super::geometry::{Projection, position, project};
+use super::{ContactSurfaces, PairSite, contact_surfaces};
+use crate::model::Model;
+
+/// How far beyond its ends a segment still takes a projection: round-off only.
+const ROUND_OFF: f64 = 1e-10;
+
+/// The segment that a slave node pairs with in the configuration of displacements `u`, if any.
+///
+/// It is the closest segment that the node projects into, not deeper than the segment's length. In
+/// the wedge of a vertex, where the node projects into neither neighbour, it is the one with the
+/// larger gap outside a convex vertex (never negative, so that no contact is made up) and the one
+/// with the smaller gap inside a concave vertex.
+pub fn find_segment(
+    surfaces: &ContactSurfaces,
+    x: &[[f64; 2]],
+    u: &[f64],
+    slave: usize,
+) -> Option<usize> {
+    let s = position(x, u, slave);
+    let on = |[a, b]: [usize; 2]| project(s, position(x, u, a), position(x, u, b));
+    let mut closest: Option<(f64, usize)> = None;
+    let mut wedge: Option<(f64, usize)> = None;
+    for (i, &segment) in surfaces.segments.iter().enumerate() {
+        if segment.contains(&slave) {
+            continue;
+        }
+        let p = on(segment);
+        if p.gap < -p.length {
+            continue;
+        }
+        if (-ROUND_OFF..=1.0 + ROUND_OFF).contains(&p.xi) {
+            if closest.is_none_or(|(distance, _)| p.gap.abs() < distance) {
+                closest = Some((p.gap.abs(), i));
+            }
+        } else if p.xi > 1.0
+            && let Some(j) = surfaces.next[i]
+            && !surfaces.segments[j].contains(&slave)
+        {
+            let q = on(surfaces.segments[j]);
+            let distance = beyond(&p);
+            if q.xi < 0.0 && q.gap >= -q.length && wedge.is_none_or(|(d, _)| distance < d) {
+                let outside = p.gap.max(q.gap) > 0.0;
+                wedge = Some((distance, if (p.gap >= q.gap) == outside { i } else { j }));
+            }
+        }
+    }
+    match (closest, wedge) {
+        (Some((distance, _)), Some((d, j))) if d < distance => Some(j),
+        (Some((_, i)), _) => Some(i),
+        (None, Some((_, j))) => Some(j),
+        (None, None) => None,
+    }
+}
+
+/// How far beyond its ends a segment that is to be kept may be (in its lengths).
+const KEPT: f64 = 0.1;
+
+/// The pairs of all contacts in the configuration of displacements `u`.
+///
+/// `kept` holds, for every slot, the segment of an earlier pass that is to be kept as long as the
+/// node does not leave it far: passes that go to and fro across a vertex come to rest with it.
+pub fn find_pairs(
+    contacts: &[ContactSurfaces],
+    x: &[[f64; 2]],
+    u: &[f64],
+    kept: Option<&[Option<usize>]>,
+) -> Vec<PairSite> {
+    let slaves = contacts
+        .iter()
+        .flat_map(|c| c.slaves.iter().map(move |&slave| (c, slave)));
+    let site = |(slot, (contact, slave)): (usize, (&ContactSurfaces, usize))| {
+        let on = |i: usize| {
+            let [a, b] = contact.segments[i];
+            project(position(x, u, slave), position(x, u, a), position(x, u, b))
+        };
+        let segment = kept
+            .and_then(|kept| kept[slot])
+            .filter(|&i| (-KEPT..=1.0 + KEPT).contains(&on(i).xi))
+            .or_else(|| find_segment(contact, x, u, slave))?;
+        let [a, b] = contact.segments[segment];
+        Some(PairSite {
+            slot,
+            segment,
+            nodes: [slave, a, b],
+            friction: contact.friction,
+        })
+    };
+    slaves.enumerate().filter_map(site).collect()
+}
+
+/// Distance of the point from the end b of the segment.
+fn beyond(p: &Projection) -> f64 {
+    ((p.xi - 1.0) * p.length).hypot(p.gap)
+}
+
+/// Gap of a slave node to the segment it faces in the reference configuration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InitialGap {
+    /// Slave node (index).
+    pub slave: usize,
+    /// Gap (length), negative when the node is inside the body.
+    pub gap: f64,
+    /// Length of the segment.
+    pub edge: f64,
+}
+
+/// Gaps of the slave nodes of each contact of a model in the reference configuration; nodes that
+/// face no segment are left out.
+pub fn initial_gaps(model: &Model) -> Vec<Vec<InitialGap>> {
+    let x = &model.mesh.coordinates;
+    let u = vec![0.0; model.mesh.dof_count()];
+    let gap_of = |surfaces: &ContactSurfaces, slave: usize| {
+        let [a, b] = surfaces.segments[find_segment(surfaces, x, &u, slave)?];
+        let p = project(x[slave], x[a], x[b]);
+        Some(InitialGap {
+            slave,
+            gap: p.gap,
+            edge: p.length,
+        })
+    };
+    let of_contact = |surfaces: &ContactSurfaces| {
+        surfaces
+            .slaves
+            .iter()
+            .filter_map(|&slave| gap_of(surfaces, slave))
+            .collect()
+    };
+    contact_surfaces(model).iter().map(of_contact).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A roof: segments from right to left over the nodes 1, 2, 3 at heights 0, `top`, 0; slave 0.
+    fn roof(top: f64) -> (ContactSurfaces, Vec<[f64; 2]>) {
+        let surfaces = ContactSurfaces {
+            slaves: vec![0],
+            segments: vec![[1, 2], [2, 3]],
+            next: vec![Some(1), None],
+            friction: 0.0,
+        };
+        (
+            surfaces,
+            vec![[0.0, 0.0], [2.0, 0.0], [0.0, top], [-2.0, 0.0]],
+        )
+    }
+
+    fn found(top: f64, s: [f64; 2]) -> Option<usize> {
+        let (surfaces, mut x) = roof(top);
+        x[0] = s;
+        find_segment(&surfaces, &x, &[0.0; 8], 0)
+    }
+
+    #[test]
+    fn the_closest_segment_that_the_node_projects_into() {
+        assert_eq!(found(0.0, [1.0, 0.5]), Some(0));
+        assert_eq!(found(0.0, [-1.0, -0.5]), Some(1));
+        assert_eq!(found(0.0, [3.0, 0.5]), None);
+        assert_eq!(
+            found(0.0, [1.0, -2.5]),
+            None,
+            "deeper than the segment's length"
+        );
+    }
+
+    #[test]
+    fn a_node_in_the_wedge_of_a_vertex_keeps_a_pair() {
+        assert_eq!(found(1.0, [0.01, 1.5]), Some(0), "outside a convex vertex");
+        assert_eq!(found(1.0, [-0.01, 1.5]), Some(1));
+        assert_eq!(
+            found(-1.0, [0.01, -1.1]),
+            Some(0),
+            "inside a concave vertex"
+        );
+        assert_eq!(found(-1.0, [-0.01, -1.1]), Some(1));
+    }
+
+    #[test]
+    fn a_node_is_no_slave_of_its_own_segment() {
+        let (surfaces, x) = roof(1.0);
+        assert_eq!(find_segment(&surfaces, &x, &[0.0; 8], 2), None);
+    }
+}

@@ -1,0 +1,184 @@
+use super::Cause;
+use super::dofs::DofMap;
+use super::effective::Factored;
+use super::meter::Meter;
+use crate::contact::{Pair, add_contact_forces, frictional_lcp};
+use crate::lcp::{ContactState, LcpMethod, solve_frictional};
+
+/// Pairs with their contact forces (or impulses).
+#[derive(Debug, Clone, Default)]
+pub(super) struct ContactForces {
+    pub pairs: Vec<Pair>,
+    /// Normal force Pn >= 0 of every pair.
+    pub normal: Vec<f64>,
+    /// Tangential force Pt of every pair.
+    pub tangential: Vec<f64>,
+    /// State of every pair.
+    pub state: Vec<ContactState>,
+}
+
+impl ContactForces {
+    /// Pairs without forces.
+    pub fn open(pairs: Vec<Pair>) -> Self {
+        let n = pairs.len();
+        ContactForces {
+            pairs,
+            normal: vec![0.0; n],
+            tangential: vec![0.0; n],
+            state: vec![ContactState::Open; n],
+        }
+    }
+
+    /// Bn^T Pn + Bt^T Pt over all dofs.
+    pub fn resultant(&self, dofs: usize) -> Vec<f64> {
+        let mut force = vec![0.0; dofs];
+        for (k, pair) in self.pairs.iter().enumerate() {
+            if self.is_closed(k) {
+                add_contact_forces(pair, self.normal[k], self.tangential[k], &mut force);
+            }
+        }
+        force
+    }
+
+    /// Whether a pair carries a force.
+    pub fn is_closed(&self, k: usize) -> bool {
+        self.normal[k] > 0.0
+    }
+
+    /// Slots of the pairs that carry forces, increasing.
+    pub fn closed_slots(&self) -> Vec<usize> {
+        let closed = (0..self.pairs.len()).filter(|&k| self.is_closed(k));
+        closed.map(|k| self.pairs[k].slot).collect()
+    }
+
+    /// Numbers of closed and of sticking pairs.
+    pub fn count(&self) -> (usize, usize) {
+        let closed = (0..self.pairs.len()).filter(|&k| self.is_closed(k));
+        closed.fold((0, 0), |(closed, sticking), k| {
+            (
+                closed + 1,
+                sticking + usize::from(self.state[k] == ContactState::Stick),
+            )
+        })
+    }
+
+    /// Solves the complementarity problem of the pairs listed in `chosen`, with the given constant
+    /// terms, and stores their forces.
+    fn solve(
+        &mut self,
+        chosen: &[usize],
+        constants: (Vec<f64>, Vec<f64>),
+        warm: Vec<ContactState>,
+        matrix: &mut Factored,
+        method: LcpMethod,
+        meter: &mut Meter,
+    ) -> Result<(), Cause> {
+        let pairs: Vec<Pair> = chosen.iter().map(|&k| self.pairs[k]).collect();
+        meter.time(|t| &mut t.solve, || matrix.prepare(&pairs))?;
+        let problem = meter.time(
+            |t| &mut t.contact,
+            || frictional_lcp(&pairs, &matrix.compliance, constants.0, constants.1),
+        );
+        let solution = meter.time(
+            |t| &mut t.lcp,
+            || solve_frictional(&problem, Some(&warm), method),
+        );
+        let solution = solution.map_err(|error| Cause::Lcp(error.to_string()))?;
+        meter.count_lcp(pairs.len(), solution.counters);
+        for (i, &k) in chosen.iter().enumerate() {
+            self.normal[k] = solution.pn[i];
+            self.tangential[k] = solution.pt[i];
+            self.state[k] = solution.state[i];
+        }
+        Ok(())
+    }
+
+    /// Contact forces of a pass and the correction dU = y + W (Bn^T Pn + Bt^T Pt), y = W r being
+    /// the correction without them (all dofs).
+    ///
+    /// Pairs that y leaves open and that were open before stay out of the problem; those that the
+    /// forces of the others would close are found afterwards and enter, so that the answer is that
+    /// of all pairs.
+    pub fn of_pass(
+        pairs: Vec<Pair>,
+        warm: &[ContactState],
+        y: &[f64],
+        dofs: &DofMap,
+        matrix: &mut Factored,
+        method: LcpMethod,
+        meter: &mut Meter,
+    ) -> Result<(Self, Vec<f64>), Cause> {
+        let mut forces = ContactForces::open(pairs);
+        let gap_after = |pair: &Pair, du: &[f64]| pair.gap + pair.normal_of(du);
+        let closed_before = |pair: &Pair| warm[pair.slot].is_closed();
+        let mut inside: Vec<bool> = forces.pairs.iter().map(closed_before).collect();
+        let mut du = y.to_vec();
+        let mut entered = inside.contains(&true);
+        loop {
+            for (pair, inside) in forces.pairs.iter().zip(&mut inside) {
+                if !*inside && gap_after(pair, &du) < 0.0 {
+                    (*inside, entered) = (true, true);
+                }
+            }
+            if !entered {
+                return Ok((forces, du));
+            }
+            entered = false;
+            let chosen: Vec<usize> = (0..inside.len()).filter(|&k| inside[k]).collect();
+            let at = |k: &usize| &forces.pairs[*k];
+            let constants = (
+                chosen.iter().map(|k| gap_after(at(k), y)).collect(),
+                chosen
+                    .iter()
+                    .map(|k| at(k).slip + at(k).tangent_of(y))
+                    .collect(),
+            );
+            let states = chosen.iter().map(|k| warm[at(k).slot]).collect();
+            forces.solve(&chosen, constants, states, matrix, method, meter)?;
+            let load = dofs.restrict(&forces.resultant(y.len()));
+            let correction = meter.time(|t| &mut t.solve, || matrix.solver.solve(&load))?;
+            du.copy_from_slice(y);
+            dofs.add(&correction, &mut du);
+        }
+    }
+
+    /// Impact impulses Phi, Psi of pairs at the start of an increment and the velocity after them,
+    /// V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi) (paper eq. 30), posed as
+    ///
+    /// ```text
+    /// 0 <= Phi  complementary to  Bn V0+ + (2/dt) max(g0, 0) >= 0
+    /// |Psi| <= mu Phi, Psi opposes Bt V0+
+    /// ```
+    ///
+    /// so that kinetic energy never grows.
+    pub fn impulses(
+        pairs: Vec<Pair>,
+        v0: &[f64],
+        dt: f64,
+        dofs: &DofMap,
+        mass: &mut Factored,
+        method: LcpMethod,
+        meter: &mut Meter,
+    ) -> Result<Vec<f64>, Cause> {
+        let approach = |p: &Pair| p.normal_of(v0) + 2.0 / dt * p.start_gap.max(0.0);
+        let mut v0p = v0.to_vec();
+        if pairs.iter().all(|pair| approach(pair) >= 0.0) {
+            return Ok(v0p);
+        }
+        if !mass.solver.is_factorized() {
+            meter.time(|t| &mut t.factorization, || mass.factorize())?;
+        }
+        let constants = (
+            pairs.iter().map(approach).collect(),
+            pairs.iter().map(|pair| pair.tangent_of(v0)).collect(),
+        );
+        let chosen: Vec<usize> = (0..pairs.len()).collect();
+        let states = vec![ContactState::Stick; pairs.len()];
+        let mut impulses = ContactForces::open(pairs);
+        impulses.solve(&chosen, constants, states, mass, method, meter)?;
+        let load = dofs.restrict(&impulses.resultant(v0.len()));
+        let jump = meter.time(|t| &mut t.solve, || mass.solver.solve(&load))?;
+        dofs.add(&jump, &mut v0p);
+        Ok(v0p)
+    }
+}

@@ -1,0 +1,89 @@
+use super::dofs::DofMap;
+use super::mass::unknown_mass;
+use super::scheme::Weights;
+use crate::contact::{Compliance, Pair};
+use crate::elements::Body;
+use crate::linear::{Assembled, CheckedSolver, LinearError, linear_solver};
+use crate::model::SolverChoice;
+
+/// A symmetric matrix over the unknowns, factorised, with its compliance at the contact surfaces.
+pub(super) struct Factored {
+    pub solver: CheckedSolver,
+    pub compliance: Compliance,
+}
+
+impl Factored {
+    pub fn new(choice: SolverChoice, matrix: Assembled, compliance: Compliance) -> Self {
+        Factored {
+            solver: CheckedSolver::new(linear_solver(choice), matrix),
+            compliance,
+        }
+    }
+
+    /// Factorises the matrix anew.
+    pub fn factorize(&mut self) -> Result<(), LinearError> {
+        self.compliance.clear();
+        self.solver.factorize()
+    }
+
+    /// Solves for the columns of the compliance that `pairs` need.
+    pub fn prepare(&mut self, pairs: &[Pair]) -> Result<(), LinearError> {
+        self.compliance.prepare(pairs, &mut self.solver)
+    }
+}
+
+/// The effective matrix K* = theta2 K + (2/dt²) M, kept until it is assembled anew, and the mass
+/// matrix, both over the unknowns of a step.
+pub(super) struct Effective {
+    /// K*.
+    pub k: Factored,
+    /// M, factorised when an impulse first needs it.
+    pub m: Factored,
+    /// Increment that K* belongs to.
+    dt: f64,
+    /// Largest diagonal entry of theta2 K (force/length).
+    pub stiffness: f64,
+    /// Largest diagonal entry of (2/dt²) M (force/length).
+    pub inertia: f64,
+}
+
+impl Effective {
+    /// Both matrices for the unknowns of a step, `surface` being the nodes of the contact surfaces.
+    pub fn new(body: &Body, dofs: &DofMap, choice: SolverChoice, surface: &[usize]) -> Self {
+        let mass = unknown_mass(body, dofs);
+        let compliance = || Compliance::new(surface.iter().copied(), &dofs.unknown);
+        Effective {
+            k: Factored::new(choice, mass.zeros(), compliance()),
+            m: Factored::new(choice, mass, compliance()),
+            dt: f64::NAN,
+            stiffness: 0.0,
+            inertia: 0.0,
+        }
+    }
+
+    /// Whether K* is factorised for increments of length `dt`.
+    pub fn fits(&self, dt: f64) -> bool {
+        self.k.solver.is_factorized() && self.dt == dt
+    }
+
+    /// Assembles K* in the given configuration, to be factorised next.
+    pub fn assemble(
+        &mut self,
+        body: &Body,
+        weights: Weights,
+        dt: f64,
+        (start, u): (Option<&[f64]>, &[f64]),
+    ) {
+        let mass = self.m.solver.matrix();
+        let k = self.k.solver.matrix_mut();
+        k.clear();
+        body.for_each_tangent(start, u, |element, tangent| {
+            k.add(element, tangent, weights.theta2)
+        });
+        self.stiffness = k.largest_diagonal();
+        let c = 2.0 / (dt * dt);
+        self.inertia = c * mass.largest_diagonal();
+        k.add_matrix(mass, c);
+        self.dt = dt;
+    }
+}

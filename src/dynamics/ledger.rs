@@ -1,0 +1,83 @@
+use super::increment::{Solved, StepProblem};
+use super::mass::dot;
+use super::{Energy, Momentum, State};
+
+/// Energy ledger: every term is computed on its own, so that the balance shows what is wrong.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Ledger {
+    pub energy: Energy,
+    /// T + W at the start of the analysis.
+    start: f64,
+}
+
+impl Ledger {
+    /// Opens the ledger at the start of the analysis.
+    pub fn new(kinetic: f64, strain: f64) -> Self {
+        Ledger {
+            energy: Energy {
+                kinetic,
+                strain,
+                ..Energy::default()
+            },
+            start: kinetic + strain,
+        }
+    }
+
+    /// Enters a converged increment that started from `start`.
+    pub fn enter(&mut self, problem: &StepProblem, start: &State, solved: &Solved, dt: f64) {
+        let Solved {
+            d,
+            v0p,
+            load,
+            internal,
+            inertia,
+            end,
+            forces,
+            ..
+        } = solved;
+        let e = &mut self.energy;
+        let strain0 = e.strain;
+        e.strain = problem.body.strain_energy(&end.u);
+        e.kinetic = problem.mass.kinetic_energy(&end.v);
+
+        // d.R_theta, and the supports: dt V_mid.(M A)_p + d_p.(F - R - B^T P)_p
+        e.external_work += dot(d, load);
+        let contact = forces.resultant(d.len());
+        for p in problem.supports.dofs() {
+            let v_mid = (v0p[p] + end.v[p]) / 2.0;
+            e.external_work +=
+                dt * v_mid * inertia[p] + d[p] * (internal[p] - load[p] - contact[p]);
+        }
+        // Pn.(Bn d) and -Pt.(Bt d)
+        for (k, pair) in forces.pairs.iter().enumerate() {
+            e.normal_contact_work += forces.normal[k] * pair.normal_of(d);
+            e.friction_dissipation -= forces.tangential[k] * pair.tangent_of(d);
+        }
+        // T(V0) - T(V0+)
+        if v0p != &start.v {
+            let kinetic = |v| problem.mass.kinetic_energy(v);
+            e.impact_loss += kinetic(&start.v) - kinetic(v0p);
+        }
+        // d.F_theta - (W1 - W0)
+        e.numerical_dissipation += dot(d, internal) - (e.strain - strain0);
+
+        e.balance = e.kinetic + e.strain - self.start - e.external_work - e.normal_contact_work
+            + e.friction_dissipation
+            + e.impact_loss
+            + e.numerical_dissipation;
+    }
+}
+
+/// Linear momentum sum m v and angular momentum sum x cross m v about the origin.
+pub(super) fn momentum(problem: &StepProblem, state: &State) -> Momentum {
+    let p = problem.mass.times(&state.v);
+    let mut momentum = Momentum::default();
+    for (node, x) in problem.model.mesh.coordinates.iter().enumerate() {
+        let position = [x[0] + state.u[2 * node], x[1] + state.u[2 * node + 1]];
+        let [px, py] = [p[2 * node], p[2 * node + 1]];
+        momentum.linear[0] += px;
+        momentum.linear[1] += py;
+        momentum.angular += position[0] * py - position[1] * px;
+    }
+    momentum
+}

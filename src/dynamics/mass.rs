@@ -1,0 +1,73 @@
+use super::dofs::DofMap;
+use crate::elements::Body;
+use crate::linear::Assembled;
+
+/// Consistent mass matrix M, the same for both directions: stored over the nodes.
+pub(super) struct Mass {
+    nodal: Assembled,
+}
+
+impl Mass {
+    /// Mass of all elements of a model with `nodes` nodes.
+    pub fn new(body: &Body, nodes: usize) -> Self {
+        let elements: Vec<Vec<Option<usize>>> = (0..body.len())
+            .map(|e| body.nodes(e).iter().map(|&n| Some(n)).collect())
+            .collect();
+        let mut nodal = Assembled::new(nodes, &elements);
+        for element in 0..body.len() {
+            nodal.add(element, &body.mass(element), 1.0);
+        }
+        Mass { nodal }
+    }
+
+    /// M v for a vector over all dofs.
+    pub fn times(&self, v: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; v.len()];
+        for (column, entries) in self.nodal.matrix().outer_iterator().enumerate() {
+            for (row, m) in entries.iter() {
+                product[2 * row] += m * v[2 * column];
+                product[2 * row + 1] += m * v[2 * column + 1];
+            }
+        }
+        product
+    }
+
+    /// Kinetic energy v.M v/2.
+    pub fn kinetic_energy(&self, v: &[f64]) -> f64 {
+        dot(v, &self.times(v)) / 2.0
+    }
+}
+
+/// Scalar product.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Largest absolute value; NaN when there is one.
+pub(super) fn largest(v: &[f64]) -> f64 {
+    v.iter().fold(0.0, |m: f64, x| {
+        if x.abs() > m || x.is_nan() {
+            x.abs()
+        } else {
+            m
+        }
+    })
+}
+
+/// Mass matrix over the unknowns of a step.
+pub(super) fn unknown_mass(body: &Body, dofs: &DofMap) -> Assembled {
+    let mut mass = Assembled::new(dofs.dof.len(), &dofs.element_unknowns(body));
+    for element in 0..body.len() {
+        let (m, n) = (body.mass(element), body.nodes(element).len());
+        let d = 2 * n;
+        let mut both = vec![0.0; d * d];
+        for a in 0..n {
+            for b in 0..n {
+                both[2 * b * d + 2 * a] = m[b * n + a];
+                both[(2 * b + 1) * d + 2 * a + 1] = m[b * n + a];
+            }
+        }
+        mass.add(element, &both, 1.0);
+    }
+    mass
+}

@@ -1,0 +1,62 @@
+use std::time::{Duration, Instant};
+
+use super::{SolverCounts, Timings};
+use crate::lcp::{Counters, LcpMethod};
+use crate::model::LcpChoice;
+
+/// Time and work spent, per phase.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Meter {
+    pub timings: Timings,
+    pub counts: SolverCounts,
+}
+
+impl Meter {
+    /// Runs `work` and adds its time to a phase.
+    pub fn time<T>(
+        &mut self,
+        phase: fn(&mut Timings) -> &mut Duration,
+        work: impl FnOnce() -> T,
+    ) -> T {
+        let started = Instant::now();
+        let result = work();
+        *phase(&mut self.timings) += started.elapsed();
+        result
+    }
+
+    /// Counts a complementarity problem of `size` pairs.
+    pub fn count_lcp(&mut self, size: usize, work: Counters) {
+        let counts = &mut self.counts;
+        counts.lcps += 1;
+        counts.lcp_size = counts.lcp_size.max(size);
+        counts.pivots += work.pivots;
+        counts.active_set_iterations += work.active_set_iterations;
+        counts.gauss_seidel_sweeps += work.gauss_seidel_sweeps;
+        counts.lemke_calls += work.lemke_calls;
+    }
+}
+
+impl SolverCounts {
+    /// Adds the counts of one increment to the totals of a run.
+    pub(super) fn add(&mut self, other: &SolverCounts) {
+        self.passes += other.passes;
+        self.lcps += other.lcps;
+        self.lcp_size = self.lcp_size.max(other.lcp_size);
+        self.pivots += other.pivots;
+        self.active_set_iterations += other.active_set_iterations;
+        self.gauss_seidel_sweeps += other.gauss_seidel_sweeps;
+        self.lemke_calls += other.lemke_calls;
+        self.factorizations += other.factorizations;
+        self.residual = self.residual.max(other.residual);
+        self.converged = self.converged && other.converged;
+    }
+}
+
+impl From<LcpChoice> for LcpMethod {
+    fn from(choice: LcpChoice) -> Self {
+        match choice {
+            LcpChoice::Hybrid => LcpMethod::Hybrid,
+            LcpChoice::Lemke => LcpMethod::Lemke,
+        }
+    }
+}

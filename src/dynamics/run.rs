@@ -1,0 +1,390 @@
+use std::io;
+
+use super::dofs::DofMap;
+use super::effective::Effective;
+use super::increment::{Failed, Interval, Solved, StepProblem, remember};
+use super::ledger::{Ledger, momentum};
+use super::loads::{Loads, Moment};
+use super::mass::Mass;
+use super::meter::Meter;
+use super::results::{contact_resultants, landings, nodal_results};
+use super::scheme::Weights;
+use super::supports::Supports;
+use super::{
+    ContactResultant, Cutback, Failure, IncrementReport, NodalResults, NodeStatus, Observer,
+    Outcome, RunSummary, SolverCounts, State,
+};
+use crate::contact::{ContactSurfaces, contact_surfaces};
+use crate::elements::Body;
+use crate::lcp::ContactState;
+use crate::model::{Increments, Model, Step};
+
+/// Halvings of an increment before the run stops.
+const HALVINGS: u32 = 10;
+/// A step's duration counts as a multiple of its increment within this relative difference.
+const WHOLE: f64 = 1e-6;
+
+/// Why a run could not go on, apart from a failed increment.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The observer could not take the results.
+    #[error(transparent)]
+    Observer(#[from] io::Error),
+}
+
+/// Runs all steps of a model; the observer receives the start and every increment.
+///
+/// # Errors
+/// The observer's. A failed increment is no error but an [`Outcome`].
+pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+    let body = Body::new(model);
+    let mass = Mass::new(&body, model.mesh.node_count());
+    let contacts = contact_surfaces(model);
+    let slots = contacts.iter().map(|c| c.slaves.len()).sum();
+    let mut runner = Runner {
+        model,
+        body: &body,
+        mass: &mass,
+        contacts: &contacts,
+        state: State {
+            u: vec![0.0; model.mesh.dof_count()],
+            v: model.initial_velocity.clone(),
+            a: vec![0.0; model.mesh.dof_count()],
+        },
+        contact: vec![ContactState::Open; slots],
+        ledger: Ledger::new(0.0, 0.0),
+        increment: 0,
+        cutbacks: 0,
+        meter: Meter::default(),
+        totals: SolverCounts {
+            converged: true,
+            ..SolverCounts::default()
+        },
+        observer,
+    };
+    let mut outcome = Outcome::Finished;
+    let mut start = 0.0;
+    for (number, step) in model.steps.iter().enumerate() {
+        match runner.step(number + 1, step, start)? {
+            Outcome::Finished => start += step.increments.period,
+            stopped => {
+                outcome = stopped;
+                break;
+            }
+        }
+    }
+    Ok(RunSummary {
+        outcome,
+        increments: runner.increment,
+        cutbacks: runner.cutbacks,
+        solver: runner.totals,
+        timings: runner.meter.timings,
+    })
+}
+
+/// State of a run.
+struct Runner<'m, 'o> {
+    model: &'m Model,
+    body: &'m Body,
+    mass: &'m Mass,
+    contacts: &'m [ContactSurfaces],
+    state: State,
+    contact: Vec<ContactState>,
+    ledger: Ledger,
+    increment: usize,
+    cutbacks: usize,
+    meter: Meter,
+    totals: SolverCounts,
+    observer: &'o mut dyn Observer,
+}
+
+/// Place of a step in the run.
+#[derive(Clone, Copy)]
+struct StepPlace {
+    number: usize,
+    /// Time of the analysis at which it starts.
+    start: f64,
+    period: f64,
+}
+
+impl StepPlace {
+    fn moment(&self, step: f64) -> Moment {
+        Moment {
+            step,
+            total: self.start + step,
+            period: self.period,
+        }
+    }
+}
+
+impl<'m> Runner<'m, '_> {
+    fn step(&mut self, number: usize, step: &'m Step, start: f64) -> Result<Outcome, RunError> {
+        let Increments {
+            dt, period, dt_min, ..
+        } = step.increments;
+        let place = StepPlace {
+            number,
+            start,
+            period,
+        };
+        let problem = StepProblem {
+            model: self.model,
+            body: self.body,
+            mass: self.mass,
+            contacts: self.contacts,
+            settings: step.settings,
+            weights: Weights::new(step.settings.scheme),
+            dofs: DofMap::new(self.body, step, self.model.mesh.dof_count()),
+            loads: Loads::new(self.model, step),
+            supports: Supports::new(self.model, step, &self.state.u),
+        };
+        let surface = surface_nodes(self.contacts);
+        let choice = step.settings.solver;
+        let mut effective = Effective::new(self.body, &problem.dofs, choice, &surface);
+        if number == 1 {
+            self.report_start(&problem, &mut effective, place)?;
+        }
+        let count = increments_of(period, dt);
+        for i in 0..count {
+            let from = dt * i as f64;
+            let to = if i + 1 == count {
+                period
+            } else {
+                dt * (i + 1) as f64
+            };
+            // The nominal length keeps the factors valid; only a last, shorter one differs.
+            let length = if to - from < dt * (1.0 - WHOLE) {
+                to - from
+            } else {
+                dt
+            };
+            let grid = Grid {
+                from,
+                to,
+                length,
+                dt_min,
+            };
+            if let Some(failure) = self.grid_increment(&problem, &mut effective, place, grid)? {
+                return Ok(Outcome::Stopped(Box::new(failure)));
+            }
+        }
+        Ok(Outcome::Finished)
+    }
+
+    /// One increment of the grid, in halves, quarters ... where it does not converge.
+    fn grid_increment(
+        &mut self,
+        problem: &StepProblem,
+        effective: &mut Effective,
+        place: StepPlace,
+        grid: Grid,
+    ) -> Result<Option<Failure>, RunError> {
+        // The next piece is number `piece` of 2^halvings.
+        let (mut piece, mut halvings) = (0_u32, 0_u32);
+        while piece < 1 << halvings {
+            let interval = grid.piece(place, piece, halvings);
+            self.meter.counts = SolverCounts::default();
+            let solved = problem.solve_increment(
+                effective,
+                &self.state,
+                interval,
+                &self.contact,
+                &mut self.meter,
+            );
+            match solved {
+                Ok(solved) => {
+                    self.accept(problem, place, interval, solved)?;
+                    piece += 1;
+                    while halvings > 0 && piece % 2 == 0 {
+                        (piece, halvings) = (piece / 2, halvings - 1);
+                    }
+                }
+                Err(Failed {
+                    cause,
+                    worst,
+                    passes,
+                }) => {
+                    let failure = Failure {
+                        increment: self.increment + 1,
+                        step: place.number,
+                        time: interval.start.total,
+                        dt: interval.dt,
+                        cause,
+                        worst,
+                        passes,
+                        halvings,
+                    };
+                    let next_dt = interval.dt / 2.0;
+                    if halvings == HALVINGS || next_dt < grid.dt_min {
+                        return Ok(Some(failure));
+                    }
+                    self.cutbacks += 1;
+                    self.observer.cutback(&Cutback { failure, next_dt })?;
+                    (piece, halvings) = (2 * piece, halvings + 1);
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// Takes over a converged increment and reports it.
+    fn accept(
+        &mut self,
+        problem: &StepProblem,
+        place: StepPlace,
+        interval: Interval,
+        solved: Solved,
+    ) -> Result<(), RunError> {
+        self.ledger
+            .enter(problem, &self.state, &solved, interval.dt);
+        let landings = landings(problem, &self.state, &self.contact, &solved, interval);
+        self.meter.counts.converged = true;
+        self.totals.add(&self.meter.counts);
+        self.increment += 1;
+        let report = IncrementReport {
+            increment: self.increment,
+            step: place.number,
+            time: interval.end.total,
+            step_time: interval.end.step,
+            dt: interval.dt,
+            ends_step: interval.end.step == place.period,
+            nodal: nodal_results(problem, &solved),
+            energy: self.ledger.energy,
+            momentum: momentum(problem, &solved.end),
+            contacts: contact_resultants(problem, &solved),
+            landings,
+            solver: self.meter.counts,
+            passes: solved.passes,
+            state: solved.end,
+        };
+        remember(&solved.forces, &mut self.contact);
+        self.observer.increment(&report)?;
+        self.state = report.state;
+        Ok(())
+    }
+
+    /// Completes the start state (velocity of the supports, acceleration) and reports it.
+    fn report_start(
+        &mut self,
+        problem: &StepProblem,
+        effective: &mut Effective,
+        place: StepPlace,
+    ) -> Result<(), RunError> {
+        let now = place.moment(0.0);
+        for (dof, _, v) in problem.supports.motion(now) {
+            self.state.v[dof] = v;
+        }
+        self.state.a = problem.start_acceleration(effective, &self.state, now);
+        let kinetic = self.mass.kinetic_energy(&self.state.v);
+        self.ledger = Ledger::new(kinetic, self.body.strain_energy(&self.state.u));
+        let (dofs, nodes) = (self.state.u.len(), self.state.u.len() / 2);
+        let none = ContactResultant {
+            min_gap: f64::NAN,
+            ..ContactResultant::default()
+        };
+        let report = IncrementReport {
+            step: place.number,
+            time: now.total,
+            nodal: NodalResults {
+                reaction: vec![0.0; dofs],
+                contact_force: vec![0.0; dofs],
+                gap: vec![f64::NAN; nodes],
+                status: vec![NodeStatus::None; nodes],
+            },
+            energy: self.ledger.energy,
+            momentum: momentum(problem, &self.state),
+            contacts: vec![none; self.contacts.len()],
+            solver: SolverCounts {
+                converged: true,
+                ..SolverCounts::default()
+            },
+            state: self.state.clone(),
+            ..IncrementReport::default()
+        };
+        self.observer.increment(&report)?;
+        Ok(())
+    }
+}
+
+/// One increment of the grid of a step, in step time.
+#[derive(Clone, Copy)]
+struct Grid {
+    from: f64,
+    to: f64,
+    length: f64,
+    dt_min: f64,
+}
+
+impl Grid {
+    /// Piece number `piece` of 2^halvings.
+    fn piece(&self, place: StepPlace, piece: u32, halvings: u32) -> Interval {
+        let parts = f64::from(1_u32 << halvings);
+        let at = |k: u32| match k {
+            0 => self.from,
+            k if k == 1 << halvings => self.to,
+            k => self.from + self.length * (f64::from(k) / parts),
+        };
+        Interval {
+            start: place.moment(at(piece)),
+            end: place.moment(at(piece + 1)),
+            dt: self.length / parts,
+        }
+    }
+}
+
+/// Number of increments of length `dt` in a step; the last may be shorter.
+fn increments_of(period: f64, dt: f64) -> usize {
+    let ratio = period / dt;
+    let whole = ratio.round();
+    let count = if (ratio - whole).abs() <= WHOLE * whole {
+        whole
+    } else {
+        ratio.ceil()
+    };
+    (count as usize).max(1)
+}
+
+fn surface_nodes(contacts: &[ContactSurfaces]) -> Vec<usize> {
+    let nodes = |c: &ContactSurfaces| -> Vec<usize> {
+        c.slaves
+            .iter()
+            .copied()
+            .chain(c.segments.iter().flatten().copied())
+            .collect()
+    };
+    contacts.iter().flat_map(nodes).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn increments_fill_the_step() {
+        assert_eq!(increments_of(1.0, 0.1), 10);
+        assert_eq!(increments_of(13333.0 * 1.5e-5, 1.5e-5), 13333);
+        assert_eq!(increments_of(1.05, 0.1), 11);
+        assert_eq!(increments_of(0.05, 0.1), 1);
+    }
+
+    #[test]
+    fn pieces_of_an_increment_meet() {
+        let place = StepPlace {
+            number: 1,
+            start: 2.0,
+            period: 1.0,
+        };
+        let grid = Grid {
+            from: 0.3,
+            to: 0.4,
+            length: 0.1,
+            dt_min: 0.0,
+        };
+        let pieces: Vec<Interval> = (0..4).map(|k| grid.piece(place, k, 2)).collect();
+        assert_eq!((pieces[0].start.step, pieces[3].end.step), (0.3, 0.4));
+        for pair in pieces.windows(2) {
+            assert_eq!(pair[0].end, pair[1].start);
+        }
+        assert!(pieces.iter().all(|piece| piece.dt == 0.025));
+    }
+}

@@ -1,0 +1,110 @@
+//! Primal-dual active set on the contact states: Newton's method on the contact law.
+
+use super::dense::max_abs;
+use super::reduced;
+use super::scaled::Scaled;
+use super::state::{ContactState, Counters};
+
+/// Solves allowed in one call.
+const ITERATIONS: usize = 25;
+
+/// A condition violated by less than this, relative to the largest force, does not change a state:
+/// degenerate contacts would otherwise change for ever by round-off.
+const TOLERANCE: f64 = 1e-12;
+
+/// Result of a call.
+pub(super) enum Outcome {
+    /// The states and their forces satisfy every condition.
+    Converged(Vec<ContactState>, Vec<f64>),
+    /// The states repeat or have no forces; the last forces found.
+    Failed(Vec<f64>),
+}
+
+/// Solves for the forces of the states, changes the states that the forces and the motion
+/// contradict, and so on until none changes. A state that repeats means failure.
+pub(super) fn active_set(
+    scaled: &Scaled,
+    mut states: Vec<ContactState>,
+    counters: &mut Counters,
+) -> Outcome {
+    let mut visited: Vec<Vec<ContactState>> = Vec::new();
+    let mut last = vec![0.0; scaled.size()];
+    while visited.len() < ITERATIONS {
+        counters.active_set_iterations += 1;
+        let Some(p) = reduced::forces(scaled, &states) else {
+            break;
+        };
+        let next = next_states(scaled, &states, &p);
+        if next == states {
+            return Outcome::Converged(states, p);
+        }
+        last = p;
+        visited.push(std::mem::replace(&mut states, next));
+        if visited.contains(&states) {
+            break;
+        }
+    }
+    Outcome::Failed(last)
+}
+
+/// The states that forces p of `states` and their motion v ask for.
+fn next_states(scaled: &Scaled, states: &[ContactState], p: &[f64]) -> Vec<ContactState> {
+    let v = scaled.motion(p);
+    let tolerance = TOLERANCE * max_abs(p).max(1.0);
+    (0..scaled.contacts)
+        .map(|i| next_state(scaled, states[i], i, p, &v, tolerance))
+        .collect()
+}
+
+/// The next state of contact i.
+fn next_state(
+    scaled: &Scaled,
+    state: ContactState,
+    i: usize,
+    p: &[f64],
+    v: &[f64],
+    tolerance: f64,
+) -> ContactState {
+    use ContactState::{Open, SlipMinus, SlipPlus, Stick};
+    let keeps = if state == Open {
+        v[i] >= -tolerance
+    } else {
+        p[i] >= -tolerance
+    };
+    let Some(t) = scaled.tangents[i] else {
+        return if (state == Open) == keeps {
+            Open
+        } else {
+            SlipPlus
+        };
+    };
+    let limit = scaled.mu[i] * p[i];
+    match (state, keeps) {
+        (Open, true) => Open,
+        (Open, false) => landing(scaled, i, t, v),
+        (_, false) => Open,
+        (Stick, _) if p[t] > limit + tolerance => SlipMinus,
+        (Stick, _) if p[t] < -limit - tolerance => SlipPlus,
+        (SlipPlus, _) if v[t] < -tolerance => Stick,
+        (SlipMinus, _) if v[t] > tolerance => Stick,
+        _ => state,
+    }
+}
+
+/// State of contact i that closes with motion v: it sticks when the force that would stop its slip
+/// is within the limit of the force that would stop its penetration.
+fn landing(scaled: &Scaled, i: usize, t: usize, v: &[f64]) -> ContactState {
+    let normal = -v[i] / scaled.q[(i, i)];
+    let tangential = -v[t] / scaled.q[(t, t)];
+    if tangential.abs() <= scaled.mu[i] * normal {
+        ContactState::Stick
+    } else {
+        ContactState::sliding(v[t])
+    }
+}
+
+/// States to begin with when none are known: what the motion without forces asks for.
+pub(super) fn first_states(scaled: &Scaled) -> Vec<ContactState> {
+    let open = vec![ContactState::Open; scaled.contacts];
+    next_states(scaled, &open, &vec![0.0; scaled.size()])
+}

@@ -1,0 +1,160 @@
+//! Lemke's method on the frictional problem, by its structure.
+
+use super::basis::PivotMatrix;
+use super::dense::axpy;
+use super::lemke::LemkeSettings;
+use super::pivoting::follow_path;
+use super::problem::LcpError;
+use super::scaled::Scaled;
+use super::state::ContactState;
+
+/// What Lemke's method found.
+pub(super) struct LemkeForces {
+    /// Forces p of the scaled problem.
+    pub p: Vec<f64>,
+    /// Contact states of the final basis.
+    pub states: Vec<ContactState>,
+    /// Basis exchanges.
+    pub pivots: usize,
+}
+
+/// M of the frictional problem, z = (Pn, T+, Dt-), without being formed.
+///
+/// The tangent of a contact that would slip in the negative direction is turned round (`signs`), so
+/// that q is negative at penetrations only and open contacts need no pivots.
+struct FrictionalMatrix<'a> {
+    scaled: &'a Scaled,
+    /// 1 or -1 for each tangential unknown.
+    signs: Vec<f64>,
+}
+
+/// Solves a scaled problem by Lemke's method with covering vector d = (1, 1/(1 + mu), 0).
+pub(super) fn lemke_forces(
+    scaled: &Scaled,
+    settings: &LemkeSettings,
+) -> Result<LemkeForces, LcpError> {
+    let (n, m) = (scaled.contacts, scaled.owners.len());
+    let signs: Vec<f64> = scaled.b[n..]
+        .iter()
+        .map(|slip| if *slip < 0.0 { -1.0 } else { 1.0 })
+        .collect();
+    let mut q: Vec<f64> = scaled.b[..n].to_vec();
+    q.extend(scaled.b[n..].iter().map(|slip| slip.abs()));
+    q.resize(n + 2 * m, 0.0);
+    let mut d = vec![1.0; n];
+    d.extend(scaled.owners.iter().map(|i| 1.0 / (1.0 + scaled.mu[*i])));
+    d.resize(n + 2 * m, 0.0);
+    let matrix = FrictionalMatrix { scaled, signs };
+    let vertex = follow_path(&matrix, &q, &d, settings).map_err(|error| match error {
+        LcpError::Ray {
+            pivots,
+            mut members,
+        } => {
+            members.retain(|i| *i < n);
+            LcpError::Ray { pivots, members }
+        }
+        other => other,
+    })?;
+    let p = matrix.forces(vertex.z.iter().copied().enumerate());
+    let states = (0..n).map(|i| matrix.state(i, &vertex.basic)).collect();
+    Ok(LemkeForces {
+        p,
+        states,
+        pivots: vertex.pivots,
+    })
+}
+
+impl FrictionalMatrix<'_> {
+    /// p = (Pn, Pt) of z: Pt = sign (2 T+ - mu Pn).
+    fn forces(&self, z: impl Iterator<Item = (usize, f64)>) -> Vec<f64> {
+        let n = self.scaled.contacts;
+        let mut p = vec![0.0; self.scaled.size()];
+        for (j, value) in z.filter(|(j, _)| *j < self.scaled.size()) {
+            if j >= n {
+                p[j] += 2.0 * self.signs[j - n] * value;
+                continue;
+            }
+            p[j] += value;
+            if let Some(t) = self.scaled.tangents[j] {
+                p[t] -= self.signs[t - n] * self.scaled.mu[j] * value;
+            }
+        }
+        p
+    }
+
+    /// State of contact i by what is basic. T+ and T- both at zero mean that there is no force.
+    fn state(&self, i: usize, basic: &[bool]) -> ContactState {
+        let Some(t) = self.scaled.tangents[i] else {
+            return if basic[i] {
+                ContactState::SlipPlus
+            } else {
+                ContactState::Open
+            };
+        };
+        let (t_plus, t_minus) = (basic[t], !basic[t + self.scaled.owners.len()]);
+        let sign = self.signs[t - self.scaled.contacts];
+        match (basic[i], t_plus, t_minus) {
+            (false, _, _) | (_, false, false) => ContactState::Open,
+            (_, true, true) => ContactState::Stick,
+            (_, false, true) => ContactState::sliding(sign),
+            (_, true, false) => ContactState::sliding(-sign),
+        }
+    }
+}
+
+impl PivotMatrix for FrictionalMatrix<'_> {
+    fn size(&self) -> usize {
+        self.scaled.size() + self.scaled.owners.len()
+    }
+
+    /// Rows g = Qnn Pn + Qnt Pt;  Dt+ = sign (Qtn Pn + Qtt Pt) + Dt-;  T- = mu Pn - T+.
+    fn add_product(&self, z: &[(usize, f64)], out: &mut [f64]) {
+        let (n, end) = (self.scaled.contacts, self.scaled.size());
+        let m = self.scaled.owners.len();
+        for (j, value) in z {
+            if *j >= end {
+                out[*j - m] += value;
+            } else if *j >= n {
+                out[*j + m] -= value;
+            } else if let Some(t) = self.scaled.tangents[*j] {
+                out[t + m] += self.scaled.mu[*j] * value;
+            }
+        }
+        let mut v = vec![0.0; end];
+        for (k, force) in self.forces(z.iter().copied()).iter().enumerate() {
+            axpy(*force, self.scaled.column(k), &mut v);
+        }
+        axpy(1.0, &v[..n], &mut out[..n]);
+        for (k, sign) in (n..end).zip(&self.signs) {
+            out[k] += sign * v[k];
+        }
+    }
+
+    fn entry(&self, i: usize, j: usize) -> f64 {
+        let (n, end) = (self.scaled.contacts, self.scaled.size());
+        let m = self.scaled.owners.len();
+        let sign = |k: usize| if k >= n { self.signs[k - n] } else { 1.0 };
+        if i >= end {
+            let t = i - m;
+            let owner = self.scaled.owners[t - n];
+            return if j == owner {
+                self.scaled.mu[owner]
+            } else if j == t {
+                -1.0
+            } else {
+                0.0
+            };
+        }
+        if j >= end {
+            return if j - m == i { 1.0 } else { 0.0 };
+        }
+        let q = &self.scaled.q;
+        if j >= n {
+            return sign(i) * sign(j) * 2.0 * q[(i, j)];
+        }
+        match self.scaled.tangents[j] {
+            None => sign(i) * q[(i, j)],
+            Some(t) => sign(i) * (q[(i, j)] - sign(t) * self.scaled.mu[j] * q[(i, t)]),
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! The frictional problem as the methods see it: without units, without the tangential unknowns of
+//! frictionless contacts.
+
+use nalgebra::DMatrix;
+
+use super::dense::axpy;
+use super::frictional::FrictionalLcp;
+use super::problem::{LcpError, expect_finite};
+use super::scaling::power_of_two;
+
+/// v = Q p + b with p = (Pn of all n contacts, Pt of the m contacts with mu > 0).
+///
+/// Lengths are in units of the deepest penetration, forces in that unit over the mean diag Qnn, both
+/// rounded to powers of two. The penetration is what drives the forces: a gap or a slip many
+/// orders larger must not make a closed contact inaccurate.
+pub(super) struct Scaled {
+    /// Number of contacts n.
+    pub contacts: usize,
+    /// Contact of each tangential unknown (length m).
+    pub owners: Vec<usize>,
+    /// Position in p of the tangential unknown of each contact, None without friction (length n).
+    pub tangents: Vec<Option<usize>>,
+    /// Q, (n + m) x (n + m).
+    pub q: DMatrix<f64>,
+    /// Gaps and slips without forces (length n + m).
+    pub b: Vec<f64>,
+    /// Friction coefficients (length n).
+    pub mu: Vec<f64>,
+    /// Unit of the forces.
+    force: f64,
+}
+
+impl Scaled {
+    /// Scales a problem with at least one penetration.
+    pub fn new(problem: &FrictionalLcp) -> Result<Self, LcpError> {
+        let n = problem.len();
+        let owners: Vec<usize> = (0..n).filter(|i| problem.mu[*i] > 0.0).collect();
+        let mut tangents = vec![None; n];
+        for (f, i) in owners.iter().enumerate() {
+            tangents[*i] = Some(n + f);
+        }
+        let length = power_of_two(problem.gap.iter().fold(0.0_f64, |l, g| l.max(-g)));
+        let stiffness = power_of_two((0..n).map(|i| problem.q[(i, i)]).sum::<f64>() / n as f64);
+        let index = |k: usize| if k < n { k } else { n + owners[k - n] };
+        let size = n + owners.len();
+        let q = DMatrix::from_fn(size, size, |i, j| {
+            problem.q[(index(i), index(j))] / stiffness
+        });
+        let motion = |k: usize| {
+            if k < n {
+                problem.gap[k]
+            } else {
+                problem.slip[owners[k - n]]
+            }
+        };
+        let b: Vec<f64> = (0..size).map(|k| motion(k) / length).collect();
+        let force = length / stiffness;
+        for values in [q.as_slice(), &b, &[force]] {
+            expect_finite(values)?;
+        }
+        let mu = problem.mu.iter().copied().collect();
+        Ok(Self {
+            contacts: n,
+            owners,
+            tangents,
+            q,
+            b,
+            mu,
+            force,
+        })
+    }
+
+    /// Length of p.
+    pub fn size(&self) -> usize {
+        self.b.len()
+    }
+
+    /// Column k of Q.
+    pub fn column(&self, k: usize) -> &[f64] {
+        let size = self.size();
+        &self.q.as_slice()[k * size..(k + 1) * size]
+    }
+
+    /// Q p + b.
+    pub fn motion(&self, p: &[f64]) -> Vec<f64> {
+        let mut v = self.b.clone();
+        for (k, force) in p.iter().enumerate() {
+            axpy(*force, self.column(k), &mut v);
+        }
+        v
+    }
+
+    /// (Pn, Pt) of all contacts in the units of the problem.
+    pub fn forces(&self, p: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let pt = self
+            .tangents
+            .iter()
+            .map(|t| t.map_or(0.0, |t| p[t] * self.force));
+        (
+            p[..self.contacts].iter().map(|v| v * self.force).collect(),
+            pt.collect(),
+        )
+    }
+}

@@ -1,0 +1,181 @@
+use sprs::CsMatView;
+
+use super::{Assembled, LinearError, LinearSolver};
+
+/// Largest residual of a solve, relative to the terms it is made of. A backward stable solve stays
+/// near the round-off unit; what exceeds this bound is no solution.
+const RESIDUAL: f64 = 1e-9;
+
+/// A matrix with its solver; every solve is checked for finiteness and residual.
+pub struct CheckedSolver {
+    solver: Box<dyn LinearSolver>,
+    matrix: Assembled,
+    factorized: bool,
+}
+
+impl CheckedSolver {
+    /// A matrix that is still to be factorised; `solver` must be new or have seen its pattern.
+    pub fn new(solver: Box<dyn LinearSolver>, matrix: Assembled) -> Self {
+        CheckedSolver {
+            solver,
+            matrix,
+            factorized: false,
+        }
+    }
+
+    /// The matrix for new values; they count after [`Self::factorize`].
+    pub fn matrix_mut(&mut self) -> &mut Assembled {
+        self.factorized = false;
+        &mut self.matrix
+    }
+
+    /// Factorises the matrix.
+    ///
+    /// # Errors
+    /// What [`LinearSolver::factorize`] says, or values that are not finite.
+    pub fn factorize(&mut self) -> Result<(), LinearError> {
+        if self
+            .matrix
+            .matrix()
+            .data()
+            .iter()
+            .any(|value| !value.is_finite())
+        {
+            return Err(LinearError::NotFinite("the matrix"));
+        }
+        self.solver.factorize(self.matrix.matrix())?;
+        self.factorized = true;
+        Ok(())
+    }
+
+    /// Whether the factors are those of the matrix.
+    pub fn is_factorized(&self) -> bool {
+        self.factorized
+    }
+
+    /// The matrix.
+    pub fn matrix(&self) -> &Assembled {
+        &self.matrix
+    }
+
+    /// Solutions for the columns of `b` (n x k, column by column).
+    ///
+    /// # Errors
+    /// A solution that is not finite or fails the residual check; a matrix without factors.
+    pub fn solve(&mut self, b: &[f64]) -> Result<Vec<f64>, LinearError> {
+        if !self.factorized {
+            return Err(LinearError::NotFactorized);
+        }
+        let n = self.matrix.size();
+        let mut x = b.to_vec();
+        if n == 0 {
+            return Ok(x);
+        }
+        self.solver.solve(&mut x);
+        for (x, b) in x.chunks_exact(n).zip(b.chunks_exact(n)) {
+            if x.iter().any(|value| !value.is_finite()) {
+                return Err(LinearError::NotFinite("a solution"));
+            }
+            let residual = relative_residual(self.matrix.matrix(), x, b);
+            if residual > RESIDUAL {
+                return Err(LinearError::Residual { residual });
+            }
+        }
+        Ok(x)
+    }
+}
+
+/// max_i |b - A x|_i / max_i (|b| + |A| |x|)_i
+fn relative_residual(a: CsMatView<'_, f64>, x: &[f64], b: &[f64]) -> f64 {
+    let mut residual = b.to_vec();
+    let mut size: Vec<f64> = b.iter().map(|value| value.abs()).collect();
+    for (column, entries) in a.outer_iterator().enumerate() {
+        for (row, value) in entries.iter() {
+            let term = value * x[column];
+            residual[row] -= term;
+            size[row] += term.abs();
+        }
+    }
+    let largest = |v: &[f64]| v.iter().fold(0.0_f64, |m, value| m.max(value.abs()));
+    let scale = largest(&size);
+    if scale == 0.0 {
+        0.0
+    } else {
+        largest(&residual) / scale
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear::linear_solver;
+    use crate::model::SolverChoice;
+
+    /// Five-point stencil on an n x n grid with shifted diagonal.
+    fn grid(n: usize, shift: f64) -> Assembled {
+        let index = |i: usize, j: usize| i * n + j;
+        let mut edges = Vec::new();
+        for i in 0..n {
+            for j in 0..n {
+                if i + 1 < n {
+                    edges.push(vec![Some(index(i, j)), Some(index(i + 1, j))]);
+                }
+                if j + 1 < n {
+                    edges.push(vec![Some(index(i, j)), Some(index(i, j + 1))]);
+                }
+            }
+        }
+        let mut a = Assembled::new(n * n, &edges);
+        for edge in 0..edges.len() {
+            a.add(edge, &[1.0 + shift, -1.0, -1.0, 1.0 + shift], 1.0);
+        }
+        a
+    }
+
+    fn factorized(choice: SolverChoice, a: Assembled) -> Result<CheckedSolver, LinearError> {
+        let mut solver = CheckedSolver::new(linear_solver(choice), a);
+        solver.factorize().map(|()| solver)
+    }
+
+    #[test]
+    fn both_solvers_agree_on_several_right_hand_sides() {
+        let a = grid(17, 0.01);
+        let b: Vec<f64> = (0..3 * a.size())
+            .map(|i| ((i * 31) % 17) as f64 - 8.0)
+            .collect();
+        let mut solutions = [SolverChoice::Faer, SolverChoice::Sprs].map(|choice| {
+            let mut solver = factorized(choice, a.clone()).unwrap();
+            solver.solve(&b).unwrap()
+        });
+        let second = std::mem::take(&mut solutions[1]);
+        for (x, y) in solutions[0].iter().zip(&second) {
+            assert!((x - y).abs() < 1e-11 * 8.0 / 0.01);
+        }
+    }
+
+    #[test]
+    fn indefinite_and_non_finite_matrices_are_errors() {
+        for choice in [SolverChoice::Faer, SolverChoice::Sprs] {
+            let error = factorized(choice, grid(6, -0.5)).err();
+            assert!(
+                matches!(error, Some(LinearError::NotPositiveDefinite { .. })),
+                "{error:?}"
+            );
+            let error = factorized(choice, grid(3, f64::NAN)).err();
+            assert_eq!(error, Some(LinearError::NotFinite("the matrix")));
+        }
+    }
+
+    #[test]
+    fn empty_and_single_systems_are_solved() {
+        for choice in [SolverChoice::Faer, SolverChoice::Sprs] {
+            let empty = Assembled::new(0, &[vec![None, None]]);
+            let mut solver = factorized(choice, empty).unwrap();
+            assert!(solver.solve(&[]).unwrap().is_empty());
+            let mut one = Assembled::new(1, &[vec![Some(0)]]);
+            one.add(0, &[4.0], 1.0);
+            let mut solver = factorized(choice, one).unwrap();
+            assert_eq!(solver.solve(&[8.0]).unwrap(), [2.0]);
+        }
+    }
+}

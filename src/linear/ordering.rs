@@ -1,0 +1,32 @@
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::sparse::SymbolicSparseColMatRef;
+use faer::sparse::linalg::amd;
+use sprs::CsMatView;
+
+use super::LinearError;
+
+/// The pattern of a matrix as faer sees it.
+pub(super) fn pattern<'a>(
+    n: usize,
+    starts: &'a [usize],
+    rows: &'a [usize],
+) -> SymbolicSparseColMatRef<'a, usize> {
+    SymbolicSparseColMatRef::new_checked(n, n, starts, None, rows)
+}
+
+/// Approximate minimum degree order of a symmetric matrix: entry k is the unknown of pivot k.
+pub(super) fn minimum_degree(a: CsMatView<'_, f64>) -> Result<Vec<usize>, LinearError> {
+    let n = a.cols();
+    let starts = a.indptr().to_proper().to_vec();
+    let (mut order, mut inverse) = (vec![0; n], vec![0; n]);
+    let mut memory = MemBuffer::new(amd::order_scratch::<usize>(n, a.nnz()));
+    amd::order(
+        &mut order,
+        &mut inverse,
+        pattern(n, &starts, a.indices()),
+        amd::Control::default(),
+        MemStack::new(&mut memory),
+    )
+    .map_err(|error| LinearError::Library(format!("{error:?}")))?;
+    Ok(order)
+}

@@ -1,0 +1,65 @@
+use sprs::CsMatView;
+
+use super::{FaerLdl, SprsLdl};
+use crate::model::SolverChoice;
+
+/// Why a factorisation or a solve failed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LinearError {
+    /// A pivot of the factorisation is not positive.
+    #[error("pivot {pivot:.3e} of unknown {unknown} is not positive")]
+    NotPositiveDefinite {
+        /// Unknown.
+        unknown: usize,
+        /// Pivot.
+        pivot: f64,
+    },
+    /// The matrix or a solution holds a value that is not finite.
+    #[error("{0} is not finite")]
+    NotFinite(&'static str),
+    /// The residual of a solve is too large.
+    #[error("relative residual {residual:.1e} of a solve")]
+    Residual {
+        /// Residual relative to the terms it is made of.
+        residual: f64,
+    },
+    /// A solve without factors.
+    #[error("the matrix is not factorised")]
+    NotFactorized,
+    /// The library refused.
+    #[error("{0}")]
+    Library(String),
+}
+
+/// A direct solver for symmetric positive definite matrices.
+///
+/// The first matrix fixes the pattern; later matrices must have the same.
+pub trait LinearSolver: Send {
+    /// Factorises `a` (both triangles, by columns).
+    ///
+    /// # Errors
+    /// A pivot that is not positive, or a failure of the library.
+    fn factorize(&mut self, a: CsMatView<'_, f64>) -> Result<(), LinearError>;
+
+    /// Replaces the columns of `b` (n x k, column by column) by the solutions. Must follow a
+    /// successful `factorize`.
+    fn solve(&mut self, b: &mut [f64]);
+}
+
+/// The solver of the deck's choice.
+pub fn linear_solver(choice: SolverChoice) -> Box<dyn LinearSolver> {
+    match choice {
+        SolverChoice::Faer => Box::new(FaerLdl::default()),
+        SolverChoice::Sprs => Box::new(SprsLdl::default()),
+    }
+}
+
+/// Position and value of the first pivot that is not positive (NaN included).
+pub(super) fn check_pivots(pivots: impl Iterator<Item = (usize, f64)>) -> Result<(), LinearError> {
+    for (unknown, pivot) in pivots {
+        if !(pivot > 0.0) {
+            return Err(LinearError::NotPositiveDefinite { unknown, pivot });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,81 @@
+//! The text about a run that stopped.
+
+use super::format::{counted, scientific};
+use super::log::pass_table;
+use crate::dynamics::{Cause, Failure, Worst};
+use crate::model::Model;
+
+/// Increment, time, cause, worst place, what was tried and the passes; `u` is the last converged
+/// displacement.
+pub(super) fn failure_lines(failure: &Failure, model: &Model, u: &[f64]) -> Vec<String> {
+    let mut lines = vec![format!(
+        "stopped  increment {} of step {} failed at time {}: {}",
+        failure.increment,
+        failure.step,
+        scientific(failure.time, 6),
+        failure.cause,
+    )];
+    lines.extend(failure.worst.as_ref().map(|worst| worst_line(worst, model)));
+    lines.extend(place_line(&failure.cause, model, u));
+    lines.push(format!(
+        "tried    {} of the increment; the last attempt with dt {}",
+        counted(failure.halvings as usize, "halving"),
+        scientific(failure.dt, 3),
+    ));
+    if !failure.passes.is_empty() {
+        lines.push("passes   of the last attempt:".into());
+        lines.extend(pass_table(&failure.passes));
+    }
+    lines
+}
+
+fn worst_line(worst: &Worst, model: &Model) -> String {
+    format!(
+        "worst    node {} at {}: {} {}",
+        model.mesh.node_labels[worst.node],
+        point(worst.position),
+        worst.quantity,
+        scientific(worst.value, 2),
+    )
+}
+
+/// The element or node that the cause names.
+fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
+    match *cause {
+        Cause::Inverted { element, .. } => Some(format!(
+            "element  {} with its centre at {}",
+            model.mesh.elements[element].label,
+            point(centre(model, element, u)),
+        )),
+        Cause::Indefinite { node } => Some(format!(
+            "node     {} at {}",
+            model.mesh.node_labels[node],
+            point(position(model, node, u)),
+        )),
+        _ => None,
+    }
+}
+
+/// Current position of a node.
+fn position(model: &Model, node: usize, u: &[f64]) -> [f64; 2] {
+    let [x, y] = model.mesh.coordinates[node];
+    match u.get(2 * node..2 * node + 2) {
+        Some(d) => [x + d[0], y + d[1]],
+        None => [x, y],
+    }
+}
+
+/// Mean of the current positions of an element's nodes.
+fn centre(model: &Model, element: usize, u: &[f64]) -> [f64; 2] {
+    let nodes = model.mesh.elements[element].cell.nodes();
+    let mut sum = [0.0; 2];
+    for &node in nodes {
+        let x = position(model, node, u);
+        sum = [sum[0] + x[0], sum[1] + x[1]];
+    }
+    sum.map(|s| s / nodes.len() as f64)
+}
+
+fn point([x, y]: [f64; 2]) -> String {
+    format!("({}, {})", scientific(x, 5), scientific(y, 5))
+}

@@ -1,0 +1,170 @@
+use crate::dynamics::IncrementReport;
+use crate::model::{Frames, Model, Step};
+
+/// Frames of a step when nothing is said.
+pub const DEFAULT_FRAMES: usize = 100;
+
+/// Part of an increment by which its end may miss a frame's time: round-off only.
+const TIME_TOLERANCE: f64 = 1e-6;
+
+/// Decides which increments write a frame.
+#[derive(Debug, Clone)]
+pub struct FrameSchedule<'a> {
+    steps: &'a [Step],
+    /// Number of the current step, from 1.
+    step: usize,
+    /// Index of the step's next frame time, from 1.
+    next: usize,
+    /// Increments of the step so far.
+    increments: usize,
+}
+
+impl<'a> FrameSchedule<'a> {
+    /// The schedule of a model's steps.
+    pub fn new(model: &'a Model) -> Self {
+        FrameSchedule {
+            steps: &model.steps,
+            step: 1,
+            next: 1,
+            increments: 0,
+        }
+    }
+
+    /// Whether the increment writes a frame: the start, the end of a step, and every increment
+    /// that reaches the next scheduled time.
+    pub fn is_due(&mut self, report: &IncrementReport) -> bool {
+        if report.increment == 0 {
+            return true;
+        }
+        if report.step != self.step {
+            (self.step, self.next, self.increments) = (report.step, 1, 0);
+        }
+        self.increments += 1;
+        let reached = self.reaches(report);
+        reached || report.ends_step
+    }
+
+    /// Whether the increment reaches scheduled times; they are then done.
+    fn reaches(&mut self, report: &IncrementReport) -> bool {
+        let Some(step) = self.steps.get(self.step - 1) else {
+            return false;
+        };
+        if let Frames::Increments(every) = step.frames {
+            return self.increments.is_multiple_of(every.max(1));
+        }
+        let end = report.step_time + TIME_TOLERANCE * report.dt;
+        let first = self.next;
+        self.next = passed(step, first, end);
+        self.next > first
+    }
+}
+
+/// The first frame from `first` on whose time lies after `end`.
+fn passed(step: &Step, first: usize, end: f64) -> usize {
+    let period = step.increments.period;
+    let evenly = |count: usize| multiples(first, end, |k| period * k as f64 / count as f64);
+    match &step.frames {
+        Frames::Default => evenly(DEFAULT_FRAMES),
+        Frames::Count(count) => evenly((*count).max(1)),
+        Frames::Every(interval) => multiples(first, end, |k| interval * k as f64),
+        Frames::Times(times) => 1 + times.partition_point(|&time| time <= end),
+        Frames::Increments(_) => first,
+    }
+}
+
+/// The first k from `first` on with `time(k)` after `end`; `time` increases linearly from 0.
+fn multiples(first: usize, end: f64, time: impl Fn(usize) -> f64) -> usize {
+    let interval = time(1);
+    if interval <= 0.0 {
+        return first + 1;
+    }
+    let mut k = first.max((end / interval) as usize);
+    while time(k) <= end {
+        k += 1;
+    }
+    k
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Increments, Settings};
+
+    fn model(frames: Frames, period: f64) -> Model {
+        let increments = Increments {
+            dt: 0.1,
+            period,
+            dt_min: 0.0,
+            direct: true,
+        };
+        let step = Step {
+            name: None,
+            increments,
+            settings: Settings::default(),
+            supports: vec![],
+            point_loads: vec![],
+            body_forces: vec![],
+            pressures: vec![],
+            tractions: vec![],
+            frames,
+        };
+        Model {
+            steps: vec![step.clone(), step],
+            ..Model::default()
+        }
+    }
+
+    /// Numbers of the increments that write a frame, when every increment has length 0.1.
+    fn due(frames: Frames, increments: usize, steps: usize) -> Vec<usize> {
+        let model = model(frames, 0.1 * increments as f64);
+        let mut schedule = FrameSchedule::new(&model);
+        let mut numbers = vec![];
+        for number in 0..=increments * steps {
+            let (step, within) = match number {
+                0 => (1, 0),
+                n => ((n - 1) / increments + 1, (n - 1) % increments + 1),
+            };
+            let report = IncrementReport {
+                increment: number,
+                step,
+                step_time: (1..=within).fold(0.0, |t, _| t + 0.1),
+                dt: 0.1,
+                ends_step: within == increments,
+                ..IncrementReport::default()
+            };
+            if schedule.is_due(&report) {
+                numbers.push(number);
+            }
+        }
+        numbers
+    }
+
+    #[test]
+    fn counts_are_evenly_spaced_and_end_with_the_step() {
+        assert_eq!(due(Frames::Count(5), 10, 1), [0, 2, 4, 6, 8, 10]);
+        assert_eq!(due(Frames::Count(3), 10, 1), [0, 4, 7, 10]);
+        assert_eq!(due(Frames::Count(1), 10, 2), [0, 10, 20]);
+        assert_eq!(due(Frames::Count(0), 3, 1), [0, 3]);
+        assert_eq!(due(Frames::Default, 1000, 1).len(), DEFAULT_FRAMES + 1);
+        assert_eq!(due(Frames::Default, 7, 1).len(), 8);
+    }
+
+    #[test]
+    fn intervals_count_from_the_start_of_the_step() {
+        assert_eq!(
+            due(Frames::Every(0.3), 10, 2),
+            [0, 3, 6, 9, 10, 13, 16, 19, 20]
+        );
+        assert_eq!(due(Frames::Every(0.25), 6, 1), [0, 3, 5, 6]);
+        assert_eq!(due(Frames::Every(0.01), 3, 1), [0, 1, 2, 3]);
+        assert_eq!(due(Frames::Every(0.0), 2, 1), [0, 1, 2]);
+        assert_eq!(due(Frames::Every(9.0), 4, 1), [0, 4]);
+    }
+
+    #[test]
+    fn increments_and_times() {
+        assert_eq!(due(Frames::Increments(4), 10, 1), [0, 4, 8, 10]);
+        assert_eq!(due(Frames::Increments(4), 6, 2), [0, 4, 6, 10, 12]);
+        assert_eq!(due(Frames::Times(vec![0.2, 0.55]), 10, 1), [0, 2, 6, 10]);
+    }
+}

@@ -1,0 +1,420 @@
+//! Group `/history`: one row per increment, row 0 being the start.
+
+use hdf5::Group;
+
+use super::dataset::{Column, constant, group, meaning};
+use super::names::contact_names;
+use super::series::{Scalar, Series, scalar};
+use crate::dynamics::{ContactResultant, Energy, IncrementReport, Landing, Momentum, SolverCounts};
+use crate::model::{Model, Set};
+
+/// Writes the history.
+pub(super) struct History {
+    times: Series<IncrementReport, f64>,
+    step: Series<IncrementReport, i64>,
+    energy: Series<Energy, f64>,
+    momentum: MomentumHistory,
+    contacts: Vec<ContactHistory>,
+    impacts: Impacts,
+    nodes: Vec<NodeHistory>,
+    solver: SolverHistory,
+}
+
+impl History {
+    /// Creates the group without rows.
+    pub fn create(root: &Group, model: &Model) -> hdf5::Result<Self> {
+        let at = group(root, "history")?;
+        Ok(History {
+            times: Series::create(&at, &TIMES)?,
+            step: Series::create(&at, &STEP)?,
+            energy: Series::create(&group(&at, "energy")?, &ENERGY)?,
+            momentum: MomentumHistory::create(&group(&at, "momentum")?)?,
+            contacts: create_contacts(&group(&at, "contact")?, model)?,
+            impacts: Impacts::create(&group(&at, "impacts")?)?,
+            nodes: create_nodes(&group(&at, "nodes")?, model)?,
+            solver: SolverHistory::create(&group(&at, "solver")?)?,
+        })
+    }
+
+    /// Appends the row of an increment.
+    pub fn write(&mut self, model: &Model, report: &IncrementReport) -> hdf5::Result<()> {
+        self.times.push(report)?;
+        self.step.push(report)?;
+        self.energy.push(&report.energy)?;
+        self.momentum.push(&report.momentum)?;
+        for (contact, resultant) in self.contacts.iter_mut().zip(&report.contacts) {
+            contact.push(resultant)?;
+        }
+        for landing in &report.landings {
+            self.impacts.push(model, report.increment, landing)?;
+        }
+        for nodes in &mut self.nodes {
+            nodes.push(report)?;
+        }
+        self.solver.push(&report.solver)
+    }
+
+    /// Writes the buffered rows.
+    pub fn flush(&mut self) -> hdf5::Result<()> {
+        self.times.flush()?;
+        self.step.flush()?;
+        self.energy.flush()?;
+        self.momentum.flush()?;
+        self.contacts
+            .iter_mut()
+            .try_for_each(ContactHistory::flush)?;
+        self.impacts.flush()?;
+        self.nodes.iter_mut().try_for_each(NodeHistory::flush)?;
+        self.solver.flush()
+    }
+}
+
+const TIMES: [Scalar<IncrementReport, f64>; 2] = [
+    scalar("time", "time at the end of the increment", "time", |r| {
+        r.time
+    }),
+    scalar("dt", "length of the increment", "time", |r| r.dt),
+];
+
+const STEP: [Scalar<IncrementReport, i64>; 1] =
+    [scalar("step", "number of the step, from 1", "1", |r| {
+        r.step as i64
+    })];
+
+const ENERGY: [Scalar<Energy, f64>; 8] = [
+    scalar("kinetic", "kinetic energy", "energy", |e| e.kinetic),
+    scalar("strain", "strain energy", "energy", |e| e.strain),
+    scalar(
+        "external_work",
+        "work of the loads and of the supports' prescribed motion since the start",
+        "energy",
+        |e| e.external_work,
+    ),
+    scalar(
+        "normal_contact_work",
+        "work of the normal contact forces since the start",
+        "energy",
+        |e| e.normal_contact_work,
+    ),
+    scalar(
+        "friction_dissipation",
+        "energy dissipated by friction since the start",
+        "energy",
+        |e| e.friction_dissipation,
+    ),
+    scalar(
+        "impact_loss",
+        "kinetic energy taken by the impact impulses since the start",
+        "energy",
+        |e| e.impact_loss,
+    ),
+    scalar(
+        "numerical_dissipation",
+        "energy dissipated by the integration scheme since the start",
+        "energy",
+        |e| e.numerical_dissipation,
+    ),
+    scalar(
+        "balance",
+        "what is left of the energy balance: only the unconverged residual",
+        "energy",
+        |e| e.balance,
+    ),
+];
+
+const ANGULAR: [Scalar<Momentum, f64>; 1] = [scalar(
+    "angular",
+    "angular momentum about the origin",
+    "mass*length^2/time",
+    |m| m.angular,
+)];
+
+/// `/history/momentum`.
+struct MomentumHistory {
+    linear: Column<f64>,
+    angular: Series<Momentum, f64>,
+}
+
+impl MomentumHistory {
+    fn create(at: &Group) -> hdf5::Result<Self> {
+        let text = meaning("linear momentum", "mass*length/time");
+        Ok(MomentumHistory {
+            linear: Column::series(at, "linear", &[2], text)?,
+            angular: Series::create(at, &ANGULAR)?,
+        })
+    }
+
+    fn push(&mut self, momentum: &Momentum) -> hdf5::Result<()> {
+        self.linear.push(momentum.linear)?;
+        self.angular.push(momentum)
+    }
+
+    fn flush(&mut self) -> hdf5::Result<()> {
+        self.linear.flush()?;
+        self.angular.flush()
+    }
+}
+
+const RESULTANTS: [Scalar<ContactResultant, f64>; 5] = [
+    scalar(
+        "moment",
+        "moment of the force about the origin",
+        "force*length",
+        |c| c.moment,
+    ),
+    scalar("normal", "sum of the normal forces Pn", "force", |c| {
+        c.normal
+    }),
+    scalar(
+        "tangential",
+        "sum of the tangential forces Pt",
+        "force",
+        |c| c.tangential,
+    ),
+    scalar(
+        "min_gap",
+        "smallest gap of the candidate pairs, NaN without",
+        "length",
+        |c| c.min_gap,
+    ),
+    scalar(
+        "cone_violation",
+        "max(|Pt| - mu Pn, 0) / max(Pn)",
+        "1",
+        |c| c.cone_violation,
+    ),
+];
+
+const PAIRS: [Scalar<ContactResultant, i64>; 2] = [
+    scalar("closed", "pairs with Pn > 0", "1", |c| c.closed as i64),
+    scalar("sticking", "closed pairs that do not slip", "1", |c| {
+        c.sticking as i64
+    }),
+];
+
+/// `/history/contact/<SLAVE>_<MASTER>`.
+struct ContactHistory {
+    force: Column<f64>,
+    resultants: Series<ContactResultant, f64>,
+    pairs: Series<ContactResultant, i64>,
+}
+
+impl ContactHistory {
+    fn create(at: &Group) -> hdf5::Result<Self> {
+        let text = meaning("contact force on the slave surface", "force");
+        Ok(ContactHistory {
+            force: Column::series(at, "force", &[2], text)?,
+            resultants: Series::create(at, &RESULTANTS)?,
+            pairs: Series::create(at, &PAIRS)?,
+        })
+    }
+
+    fn push(&mut self, resultant: &ContactResultant) -> hdf5::Result<()> {
+        self.force.push(resultant.force)?;
+        self.resultants.push(resultant)?;
+        self.pairs.push(resultant)
+    }
+
+    fn flush(&mut self) -> hdf5::Result<()> {
+        self.force.flush()?;
+        self.resultants.flush()?;
+        self.pairs.flush()
+    }
+}
+
+fn create_contacts(at: &Group, model: &Model) -> hdf5::Result<Vec<ContactHistory>> {
+    (contact_names(model).iter())
+        .map(|name| ContactHistory::create(&group(at, name)?))
+        .collect()
+}
+
+const LANDINGS: [Scalar<Landing, f64>; 3] = [
+    scalar("time", "time of the landing", "time", |l| l.time),
+    scalar(
+        "xi",
+        "place on the segment: 0 at its first node, 1 at its second",
+        "1",
+        |l| l.xi,
+    ),
+    scalar(
+        "approach_speed",
+        "-dg/dt just before the landing",
+        "length/time",
+        |l| l.approach_speed,
+    ),
+];
+
+/// `/history/impacts`: one row per landing.
+struct Impacts {
+    landings: Series<Landing, f64>,
+    increment: Column<i64>,
+    slave: Column<i64>,
+    segment: Column<i64>,
+}
+
+impl Impacts {
+    fn create(at: &Group) -> hdf5::Result<Self> {
+        let column =
+            |name, row: &[usize], text| Column::<i64>::series(at, name, row, meaning(text, "1"));
+        Ok(Impacts {
+            landings: Series::create(at, &LANDINGS)?,
+            increment: column("increment", &[], "increment of the landing")?,
+            slave: column("slave", &[], "node number of the slave node")?,
+            segment: column("segment", &[2], "node numbers of the segment's ends")?,
+        })
+    }
+
+    fn push(&mut self, model: &Model, increment: usize, landing: &Landing) -> hdf5::Result<()> {
+        let label = |node: usize| model.mesh.node_labels[node] as i64;
+        self.landings.push(landing)?;
+        self.increment.push([increment as i64])?;
+        self.slave.push([label(landing.slave)])?;
+        self.segment.push(landing.segment.map(label))
+    }
+
+    fn flush(&mut self) -> hdf5::Result<()> {
+        self.landings.flush()?;
+        self.increment.flush()?;
+        self.slave.flush()?;
+        self.segment.flush()
+    }
+}
+
+/// `/history/nodes/<NSET>`.
+struct NodeHistory {
+    nodes: Vec<usize>,
+    displacement: Column<f64>,
+    velocity: Column<f64>,
+    reaction: Column<f64>,
+}
+
+impl NodeHistory {
+    fn create(at: &Group, model: &Model, set: &Set) -> hdf5::Result<Self> {
+        let nodes = set.members.clone();
+        let label = |&node: &usize| model.mesh.node_labels[node] as i64;
+        let labels: Vec<i64> = nodes.iter().map(label).collect();
+        let text = meaning("node numbers of the deck", "1");
+        constant(at, "labels", &[labels.len()], &labels, text)?;
+        let row = [nodes.len(), 2];
+        let column =
+            |name, text, dimension| Column::series(at, name, &row, meaning(text, dimension));
+        Ok(NodeHistory {
+            displacement: column("U", "displacement", "length")?,
+            velocity: column("V", "velocity", "length/time")?,
+            reaction: column("RF", "support reaction", "force")?,
+            nodes,
+        })
+    }
+
+    fn push(&mut self, report: &IncrementReport) -> hdf5::Result<()> {
+        self.displacement.push(pick(&self.nodes, &report.state.u))?;
+        self.velocity.push(pick(&self.nodes, &report.state.v))?;
+        self.reaction
+            .push(pick(&self.nodes, &report.nodal.reaction))
+    }
+
+    fn flush(&mut self) -> hdf5::Result<()> {
+        self.displacement.flush()?;
+        self.velocity.flush()?;
+        self.reaction.flush()
+    }
+}
+
+/// The histories of the requested sets; an empty set has none.
+fn create_nodes(at: &Group, model: &Model) -> hdf5::Result<Vec<NodeHistory>> {
+    let mut requested = model.history_sets.clone();
+    requested.sort_unstable();
+    requested.dedup();
+    (requested.iter())
+        .map(|&index| &model.node_sets[index])
+        .filter(|set| !set.members.is_empty())
+        .map(|set| NodeHistory::create(&group(at, &set.name)?, model, set))
+        .collect()
+}
+
+/// Both components of `values` at each of the `nodes`.
+fn pick<'a>(nodes: &'a [usize], values: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+    (nodes.iter()).flat_map(|&node| [values[2 * node], values[2 * node + 1]])
+}
+
+const COUNTS: [Scalar<SolverCounts, i64>; 8] = [
+    scalar("passes", "predictor and corrector passes", "1", |s| {
+        s.passes as i64
+    }),
+    scalar("lcps", "complementarity problems solved", "1", |s| {
+        s.lcps as i64
+    }),
+    scalar(
+        "lcp_size",
+        "largest number of pairs in one of them",
+        "1",
+        |s| s.lcp_size as i64,
+    ),
+    scalar("pivots", "pivots of Lemke's method", "1", |s| {
+        s.pivots as i64
+    }),
+    scalar(
+        "active_set_iterations",
+        "iterations of the active-set method",
+        "1",
+        |s| s.active_set_iterations as i64,
+    ),
+    scalar(
+        "gauss_seidel_sweeps",
+        "sweeps of the Gauss-Seidel method",
+        "1",
+        |s| s.gauss_seidel_sweeps as i64,
+    ),
+    scalar("lemke_calls", "calls of Lemke's method", "1", |s| {
+        s.lemke_calls as i64
+    }),
+    scalar(
+        "factorizations",
+        "factorisations of the effective matrix",
+        "1",
+        |s| s.factorizations as i64,
+    ),
+];
+
+const RESIDUAL: [Scalar<SolverCounts, f64>; 1] = [scalar(
+    "residual",
+    "relative force residual of the last pass",
+    "1",
+    |s| s.residual,
+)];
+
+const CONVERGED: [Scalar<SolverCounts, u8>; 1] = [scalar(
+    "converged",
+    "1 when the increment converged, else 0",
+    "1",
+    |s| s.converged.into(),
+)];
+
+/// `/history/solver`.
+struct SolverHistory {
+    counts: Series<SolverCounts, i64>,
+    residual: Series<SolverCounts, f64>,
+    converged: Series<SolverCounts, u8>,
+}
+
+impl SolverHistory {
+    fn create(at: &Group) -> hdf5::Result<Self> {
+        Ok(SolverHistory {
+            counts: Series::create(at, &COUNTS)?,
+            residual: Series::create(at, &RESIDUAL)?,
+            converged: Series::create(at, &CONVERGED)?,
+        })
+    }
+
+    fn push(&mut self, counts: &SolverCounts) -> hdf5::Result<()> {
+        self.counts.push(counts)?;
+        self.residual.push(counts)?;
+        self.converged.push(counts)
+    }
+
+    fn flush(&mut self) -> hdf5::Result<()> {
+        self.counts.flush()?;
+        self.residual.flush()?;
+        self.converged.flush()
+    }
+}

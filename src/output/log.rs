@@ -1,0 +1,77 @@
+//! `JOB.log` and what stands in it only.
+
+use std::fs::File;
+use std::io::{self, LineWriter, Write};
+use std::path::Path;
+
+use super::format::scientific;
+use crate::dynamics::{Cutback, IncrementReport, PassReport};
+
+/// Writes the log.
+pub(super) struct Log {
+    file: LineWriter<File>,
+}
+
+impl Log {
+    /// Creates the file, or empties it.
+    pub fn create(path: &Path) -> io::Result<Self> {
+        let file = LineWriter::new(File::create(path)?);
+        Ok(Log { file })
+    }
+
+    /// Writes a line.
+    pub fn line(&mut self, text: &str) -> io::Result<()> {
+        writeln!(self.file, "{text}")
+    }
+
+    /// Writes the passes of an increment.
+    pub fn passes(&mut self, passes: &[PassReport]) -> io::Result<()> {
+        (pass_table(passes).iter()).try_for_each(|line| self.line(line))
+    }
+}
+
+/// The convergence table of an increment.
+pub(super) fn pass_table(passes: &[PassReport]) -> Vec<String> {
+    if passes.is_empty() {
+        return vec![];
+    }
+    let header = "     pass  residual correction  active   stick     LCP  pivots".to_owned();
+    let row = |(i, pass): (usize, &PassReport)| {
+        format!(
+            "     {:>4}{:>10}{:>11}{:>8}{:>8}{:>8}{:>8}",
+            i + 1,
+            scientific(pass.residual, 2),
+            scientific(pass.correction, 2),
+            pass.active,
+            pass.stick,
+            pass.lcp_size,
+            pass.pivots,
+        )
+    };
+    let rows = passes.iter().enumerate().map(row);
+    std::iter::once(header).chain(rows).collect()
+}
+
+/// The line above an increment's convergence table.
+pub(super) fn increment_line(report: &IncrementReport) -> String {
+    format!(
+        "increment {} of step {}: time {}, dt {}",
+        report.increment,
+        report.step,
+        scientific(report.time, 6),
+        scientific(report.dt, 3),
+    )
+}
+
+/// The line that tells of a cutback.
+pub(super) fn cutback_line(cutback: &Cutback) -> String {
+    let failure = &cutback.failure;
+    format!(
+        "cutback  increment {} from time {}, dt {}: {}; next dt {}",
+        failure.increment,
+        scientific(failure.time, 3),
+        scientific(failure.dt, 2),
+        failure.cause,
+        scientific(cutback.next_dt, 2),
+    )
+}

@@ -1,0 +1,63 @@
+//! Names of the deck that become names in the result file.
+
+use std::collections::HashSet;
+
+use thiserror::Error;
+
+use crate::model::Model;
+
+/// A name that cannot stand in the result file.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error(
+    "the {what} name '{name}' cannot stand in the result file: a name there may not be empty, '.', \
+     nor hold a '/' or a NUL; rename it in the deck"
+)]
+pub struct NameError {
+    /// What has the name, such as "node set".
+    pub what: &'static str,
+    /// The name.
+    pub name: String,
+}
+
+/// Checks the names of all sets and of the surfaces in contact.
+pub fn check_names(model: &Model) -> Result<(), NameError> {
+    for set in &model.node_sets {
+        check("node set", &set.name)?;
+    }
+    for set in &model.element_sets {
+        check("element set", &set.name)?;
+    }
+    for contact in &model.contacts {
+        check("surface", &model.surfaces[contact.slave].name)?;
+        check("surface", &model.surfaces[contact.master].name)?;
+    }
+    Ok(())
+}
+
+fn check(what: &'static str, name: &str) -> Result<(), NameError> {
+    if name.is_empty() || name == "." || name.contains(['/', '\0']) {
+        let name = name.to_owned();
+        return Err(NameError { what, name });
+    }
+    Ok(())
+}
+
+/// Names of the contacts, `<SLAVE>_<MASTER>`; the second of the same name gets `_2`, and so on.
+pub fn contact_names(model: &Model) -> Vec<String> {
+    let mut taken = HashSet::new();
+    let name = |index: usize| model.surfaces[index].name.as_str();
+    (model.contacts.iter())
+        .map(|contact| format!("{}_{}", name(contact.slave), name(contact.master)))
+        .map(|base| unique(base, &mut taken))
+        .collect()
+}
+
+fn unique(base: String, taken: &mut HashSet<String>) -> String {
+    let mut name = base.clone();
+    let mut number = 2;
+    while !taken.insert(name.clone()) {
+        name = format!("{base}_{number}");
+        number += 1;
+    }
+    name
+}

@@ -1,0 +1,262 @@
+//! Group `/VTKHDF`: the field frames, as a temporal unstructured grid with a fixed mesh.
+
+use hdf5::types::FixedAscii;
+use hdf5::{Group, H5Type};
+
+use super::dataset::{Column, Meaning, constant, group, meaning, set_attribute};
+use super::means::means;
+use crate::dynamics::{NodalResults, State};
+use crate::model::{Cell, Mesh, Model};
+
+/// Cell types of VTK.
+const VTK_TRIANGLE: u8 = 5;
+const VTK_QUAD: u8 = 9;
+
+/// A field with `3` components (or one) per node or element, and where its frames start.
+struct Field<T> {
+    values: Column<T>,
+    offsets: Column<i64>,
+}
+
+impl<T: H5Type + Copy> Field<T> {
+    fn push(&mut self, values: impl IntoIterator<Item = T>) -> hdf5::Result<()> {
+        self.offsets.push([self.values.rows() as i64])?;
+        self.values.push(values)?;
+        self.values.flush()?;
+        self.offsets.flush()
+    }
+}
+
+/// The steps of the grid: their times and where their geometry starts (always at 0).
+struct Steps {
+    group: Group,
+    values: Column<f64>,
+    parts: Column<i64>,
+    zeros: Vec<Column<i64>>,
+}
+
+/// Writes the field frames.
+pub(super) struct Fields {
+    steps: Steps,
+    displacement: Field<f64>,
+    velocity: Field<f64>,
+    acceleration: Field<f64>,
+    reaction: Field<f64>,
+    contact_force: Field<f64>,
+    gap: Field<f64>,
+    status: Field<u8>,
+    stress: Field<f64>,
+    strain: Field<f64>,
+}
+
+impl Fields {
+    /// Creates the group with the reference mesh and no frame.
+    pub fn create(root: &Group, model: &Model) -> hdf5::Result<Self> {
+        let grid = group(root, "VTKHDF")?;
+        write_type(&grid)?;
+        write_mesh(&grid, &model.mesh)?;
+        let steps = Steps::create(&grid)?;
+        let points = Place::new(&grid, &steps.group, "Point", model.mesh.node_count())?;
+        let cells = Place::new(&grid, &steps.group, "Cell", model.mesh.elements.len())?;
+        Ok(Fields {
+            displacement: points.field("U", &[3], meaning("displacement", "length"))?,
+            velocity: points.field("V", &[3], meaning("velocity", "length/time"))?,
+            acceleration: points.field("A", &[3], meaning("acceleration", "length/time^2"))?,
+            reaction: points.field("RF", &[3], meaning("support reaction", "force"))?,
+            contact_force: points.field("CONTACT_FORCE", &[3], CONTACT_FORCE)?,
+            gap: points.field("GAP", &[], GAP)?,
+            status: points.field("CONTACT_STATUS", &[], STATUS)?,
+            stress: cells.field("S", &[3], STRESS)?,
+            strain: cells.field("E", &[3], STRAIN)?,
+            steps,
+        })
+    }
+
+    /// Appends a frame.
+    pub fn write(
+        &mut self,
+        model: &Model,
+        time: f64,
+        state: &State,
+        nodal: &NodalResults,
+    ) -> hdf5::Result<()> {
+        let means = means(model, &state.u);
+        self.displacement.push(in_space(&state.u))?;
+        self.velocity.push(in_space(&state.v))?;
+        self.acceleration.push(in_space(&state.a))?;
+        self.reaction.push(in_space(&nodal.reaction))?;
+        self.contact_force.push(in_space(&nodal.contact_force))?;
+        self.gap.push(nodal.gap.iter().copied())?;
+        self.status.push(nodal.status.iter().map(|&s| s as u8))?;
+        self.stress.push(means.stress.into_iter().flatten())?;
+        self.strain.push(means.strain.into_iter().flatten())?;
+        self.steps.push(time)
+    }
+
+    /// Frames written.
+    pub fn count(&self) -> usize {
+        self.steps.values.rows()
+    }
+}
+
+const CONTACT_FORCE: Meaning = meaning("contact force on the node", "force");
+const GAP: Meaning = meaning(
+    "gap of the slave node to its segment, NaN without candidate",
+    "length",
+);
+const STATUS: Meaning = meaning(
+    "contact status as slave: 0 none, 1 open, 2 stick, 3 slip",
+    "1",
+);
+const STRESS: Meaning = meaning(
+    "Cauchy stress xx yy xy, mean over the element",
+    "force/length^2",
+);
+const STRAIN: Meaning = meaning(
+    "Green-Lagrange strain xx yy xy (xy: tensor component), mean over the element",
+    "1",
+);
+
+impl Steps {
+    fn create(grid: &Group) -> hdf5::Result<Self> {
+        let steps = group(grid, "Steps")?;
+        set_attribute(&steps, "NSteps", 0i64)?;
+        let column = |name, row: &[usize], text| {
+            Column::<i64>::series(&steps, name, row, meaning(text, "1"))
+        };
+        Ok(Steps {
+            values: Column::series(&steps, "Values", &[], meaning("time of the frame", "time"))?,
+            parts: column("NumberOfParts", &[], "grids of the frame")?,
+            zeros: vec![
+                column("PartOffsets", &[], "first grid of the frame")?,
+                column("PointOffsets", &[], "first node of the frame's grid")?,
+                column("CellOffsets", &[1], "first cell of the frame's grid")?,
+                column(
+                    "ConnectivityIdOffsets",
+                    &[1],
+                    "first entry of the frame's connectivity",
+                )?,
+            ],
+            group: steps,
+        })
+    }
+
+    /// Appends a frame; the number of steps is written last.
+    fn push(&mut self, time: f64) -> hdf5::Result<()> {
+        for column in &mut self.zeros {
+            column.push([0])?;
+            column.flush()?;
+        }
+        self.parts.push([1])?;
+        self.parts.flush()?;
+        self.values.push([time])?;
+        self.values.flush()?;
+        set_attribute(&self.group, "NSteps", self.values.rows() as i64)
+    }
+}
+
+/// Where fields of one kind go: `PointData` or `CellData`.
+struct Place {
+    data: Group,
+    offsets: Group,
+    /// Rows of a frame.
+    rows: usize,
+}
+
+impl Place {
+    fn new(grid: &Group, steps: &Group, kind: &str, rows: usize) -> hdf5::Result<Self> {
+        Ok(Place {
+            data: group(grid, &format!("{kind}Data"))?,
+            offsets: group(steps, &format!("{kind}DataOffsets"))?,
+            rows,
+        })
+    }
+
+    fn field<T: H5Type + Copy>(
+        &self,
+        name: &str,
+        row: &[usize],
+        text: Meaning,
+    ) -> hdf5::Result<Field<T>> {
+        Ok(Field {
+            values: Column::frames(&self.data, name, row, self.rows, text)?,
+            offsets: Column::series(&self.offsets, name, &[], OFFSETS)?,
+        })
+    }
+}
+
+const OFFSETS: Meaning = meaning("first row of the frame", "1");
+
+/// Attributes by which readers know the group.
+fn write_type(grid: &Group) -> hdf5::Result<()> {
+    let version = grid.new_attr::<i64>().shape([2]).create("Version")?;
+    version.write_raw(&[2i64, 3])?;
+    let name = FixedAscii::<16>::from_ascii("UnstructuredGrid")
+        .map_err(|error| hdf5::Error::from(error.to_string()))?;
+    set_attribute(grid, "Type", name)
+}
+
+/// The reference mesh.
+fn write_mesh(grid: &Group, mesh: &Mesh) -> hdf5::Result<()> {
+    let (nodes, cells) = (mesh.node_count(), mesh.elements.len());
+    let connectivity = connectivity(mesh);
+    let count =
+        |name, value: usize, text| constant(grid, name, &[1], &[value as i64], meaning(text, "1"));
+    count("NumberOfPoints", nodes, "number of nodes N")?;
+    count("NumberOfCells", cells, "number of elements E")?;
+    count(
+        "NumberOfConnectivityIds",
+        connectivity.len(),
+        "length of the connectivity",
+    )?;
+    let points: Vec<f64> = (mesh.coordinates.iter())
+        .flat_map(|x| [x[0], x[1], 0.0])
+        .collect();
+    let text = meaning("reference coordinates", "length");
+    constant(grid, "Points", &[nodes, 3], &points, text)?;
+    let shape = [connectivity.len()];
+    constant(grid, "Connectivity", &shape, &connectivity, CONNECTIVITY)?;
+    let text = meaning("where each element's nodes start in the connectivity", "1");
+    constant(grid, "Offsets", &[cells + 1], &offsets(mesh), text)?;
+    let text = meaning("cell type: 5 triangle, 9 quadrilateral", "1");
+    constant(grid, "Types", &[cells], &types(mesh), text)
+}
+
+/// What a dataset with [`connectivity`] holds.
+pub(super) const CONNECTIVITY: Meaning = meaning(
+    "node indices of all elements, one element after the other",
+    "1",
+);
+
+/// Node indices of all elements, one element after the other.
+pub(super) fn connectivity(mesh: &Mesh) -> Vec<i64> {
+    (mesh.elements.iter())
+        .flat_map(|element| element.cell.nodes())
+        .map(|&node| node as i64)
+        .collect()
+}
+
+/// Start of each element in the connectivity, and its end.
+fn offsets(mesh: &Mesh) -> Vec<i64> {
+    let mut offsets = vec![0];
+    let mut end = 0;
+    for element in &mesh.elements {
+        end += element.cell.nodes().len() as i64;
+        offsets.push(end);
+    }
+    offsets
+}
+
+fn types(mesh: &Mesh) -> Vec<u8> {
+    (mesh.elements.iter())
+        .map(|element| match element.cell {
+            Cell::Tri3(_) => VTK_TRIANGLE,
+            Cell::Quad4(_) => VTK_QUAD,
+        })
+        .collect()
+}
+
+/// The vectors of a plane field with a zero third component.
+fn in_space(plane: &[f64]) -> impl Iterator<Item = f64> {
+    plane.chunks_exact(2).flat_map(|v| [v[0], v[1], 0.0])
+}

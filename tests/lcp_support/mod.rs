@@ -1,0 +1,7 @@
+//! Problems with known answers for the tests and benches of the LCP solver.
+
+#![allow(dead_code)]
+
+pub mod block;
+pub mod problems;
+pub mod random;

@@ -1,0 +1,68 @@
+//! Frictional problems built from a matrix Q.
+
+use nalgebra::{DMatrix, DVector};
+use stickslip::lcp::{ContactState, FrictionalLcp};
+
+use super::random::Random;
+
+/// States drawn with the given probabilities of open and stick; the rest slides either way.
+pub fn states(random: &mut Random, n: usize, open: f64, stick: f64) -> Vec<ContactState> {
+    (0..n)
+        .map(|_| {
+            let u = random.unit();
+            if u < open {
+                ContactState::Open
+            } else if u < open + stick {
+                ContactState::Stick
+            } else if random.unit() < 0.5 {
+                ContactState::SlipPlus
+            } else {
+                ContactState::SlipMinus
+            }
+        })
+        .collect()
+}
+
+/// A problem one solution of which has the given states, with its forces.
+pub fn planted(
+    random: &mut Random,
+    q: DMatrix<f64>,
+    mu: DVector<f64>,
+    states: &[ContactState],
+) -> (FrictionalLcp, DVector<f64>) {
+    let n = states.len();
+    let (mut p, mut motion) = (DVector::zeros(2 * n), DVector::zeros(2 * n));
+    for (i, state) in states.iter().enumerate() {
+        let (force, way) = (random.range(0.1, 1.0), random.range(0.1, 1.0));
+        match state {
+            ContactState::Open => {
+                motion[i] = way;
+                motion[n + i] = random.range(-1.0, 1.0);
+            }
+            ContactState::Stick => {
+                p[i] = force;
+                p[n + i] = mu[i] * force * random.range(-0.9, 0.9);
+            }
+            sliding => {
+                p[i] = force;
+                p[n + i] = -sliding.slip_sign() * mu[i] * force;
+                motion[n + i] = sliding.slip_sign() * way;
+            }
+        }
+    }
+    let free = motion - &q * &p;
+    let (gap, slip) = (free.rows(0, n).into_owned(), free.rows(n, n).into_owned());
+    (FrictionalLcp { q, gap, slip, mu }, p)
+}
+
+/// A problem with random gaps and slips.
+pub fn drawn(random: &mut Random, q: DMatrix<f64>, mu: f64) -> FrictionalLcp {
+    let n = q.nrows() / 2;
+    let size = q.amax();
+    FrictionalLcp {
+        gap: random.vector(n, -1.0, 0.5) * size,
+        slip: random.vector(n, -1.0, 1.0) * size,
+        mu: DVector::from_element(n, mu),
+        q,
+    }
+}

@@ -1,0 +1,255 @@
+//! A small model and made-up results for it.
+//!
+//! ```text
+//!  40 ---- 50 ---- 60
+//!   |  1   |   2   | \  3         one triangle beside two squares of side 1;
+//!  10 ---- 20 ---- 30 -- 70       contact BOTTOM -> TOP twice
+//! ```
+
+use std::f64::consts::TAU;
+use std::path::Path;
+
+use stickslip::diagnostics::Span;
+use stickslip::dynamics::{
+    ContactResultant, Energy, IncrementReport, Landing, Momentum, NodalResults, NodeStatus,
+    Observer, Outcome, PassReport, RunSummary, SolverCounts, State, Timings,
+};
+use stickslip::model::{
+    Cell, Contact, Element, Face, Frames, Increments, Interaction, Material, Mesh, Model, Plane,
+    Section, Set, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
+};
+use stickslip::output::{JobFiles, ResultWriter, RunRecord, Verbosity};
+
+/// Increments of the made-up run.
+pub const INCREMENTS: usize = 10;
+
+/// Text of the made-up deck: longer than an HDF5 attribute may be when stored in place.
+pub fn deck_text() -> String {
+    "*HEADING\nblöcke\n".to_owned() + &"** a comment line of the deck\n".repeat(4000)
+}
+
+/// The model.
+pub fn model() -> Model {
+    Model {
+        title: "two squares and a triangle".into(),
+        mesh: mesh(),
+        node_sets: vec![set("ALL", 0..7), set("TIP", [6]), set("NOTHING", [])],
+        element_sets: vec![set("SQUARES", 0..2)],
+        surfaces: vec![
+            surface("BOTTOM", SurfaceKind::Nodes(vec![0, 1, 2, 6])),
+            surface("TOP", SurfaceKind::Faces(vec![face(0, 2), face(1, 2)])),
+        ],
+        materials: vec![Material {
+            name: "M".into(),
+            young: 1000.0,
+            poisson: 0.0,
+            density: 2.0,
+        }],
+        sections: vec![Section {
+            material: 0,
+            thickness: 0.5,
+        }],
+        interactions: vec![Interaction {
+            name: "I".into(),
+            friction: 0.3,
+        }],
+        contacts: vec![contact(), contact()],
+        amplitudes: vec![],
+        initial_velocity: vec![0.0; 14],
+        steps: vec![step()],
+        history_sets: vec![1, 2, 1],
+    }
+}
+
+fn mesh() -> Mesh {
+    let element = |label, cell| Element {
+        label,
+        cell,
+        plane: Plane::Strain,
+        section: 0,
+    };
+    Mesh {
+        node_labels: vec![10, 20, 30, 40, 50, 60, 70],
+        coordinates: vec![
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [2.0, 0.0],
+            [0.0, 1.0],
+            [1.0, 1.0],
+            [2.0, 1.0],
+            [3.0, 0.0],
+        ],
+        elements: vec![
+            element(1, Cell::Quad4([0, 1, 4, 3])),
+            element(2, Cell::Quad4([1, 2, 5, 4])),
+            element(3, Cell::Tri3([2, 6, 5])),
+        ],
+    }
+}
+
+fn set(name: &str, members: impl IntoIterator<Item = usize>) -> Set {
+    Set {
+        name: name.into(),
+        members: members.into_iter().collect(),
+    }
+}
+
+fn surface(name: &str, kind: SurfaceKind) -> Surface {
+    let name = name.into();
+    Surface { name, kind }
+}
+
+fn face(element: usize, side: usize) -> Face {
+    Face { element, side }
+}
+
+fn contact() -> Contact {
+    Contact {
+        slave: 0,
+        master: 1,
+        interaction: 0,
+        span: Span::default(),
+    }
+}
+
+fn step() -> Step {
+    let to = SupportMotion::Ramp { to: 0.0 };
+    Step {
+        name: None,
+        increments: Increments {
+            dt: 0.1,
+            period: 1.0,
+            dt_min: 0.0,
+            direct: true,
+        },
+        settings: Settings::default(),
+        supports: vec![
+            Support { dof: 0, motion: to },
+            Support { dof: 1, motion: to },
+        ],
+        point_loads: vec![],
+        body_forces: vec![],
+        pressures: vec![],
+        tractions: vec![],
+        frames: Frames::Count(5),
+    }
+}
+
+/// Results of increment `k`; entry i of a vector over the dofs is k + i/100 times a factor.
+pub fn report(k: usize) -> IncrementReport {
+    let ramp = |factor: f64| -> Vec<f64> {
+        let value = |i| factor * (k as f64 + i as f64 / 100.0);
+        (0..14).map(value).collect()
+    };
+    let time = 0.1 * k as f64;
+    let (sine, cosine) = (TAU * time).sin_cos();
+    IncrementReport {
+        increment: k,
+        step: 1,
+        time,
+        step_time: time,
+        dt: if k == 0 { 0.0 } else { 0.1 },
+        ends_step: k == INCREMENTS,
+        state: State {
+            u: ramp(1.0),
+            v: ramp(2.0),
+            a: ramp(3.0),
+        },
+        nodal: nodal(k, ramp(4.0), ramp(5.0)),
+        energy: Energy {
+            kinetic: cosine * cosine,
+            strain: sine * sine,
+            balance: 1e-13 * k as f64,
+            ..Energy::default()
+        },
+        momentum: Momentum {
+            linear: [k as f64, -1.0],
+            angular: 0.5,
+        },
+        contacts: vec![resultant(k, 1.0), resultant(k, 2.0)],
+        landings: if k == 4 { vec![landing()] } else { vec![] },
+        solver: SolverCounts {
+            passes: 2,
+            lcps: 3,
+            lcp_size: k,
+            residual: 1e-12,
+            converged: true,
+            ..SolverCounts::default()
+        },
+        passes: vec![PassReport::default(); 2],
+    }
+}
+
+fn nodal(k: usize, reaction: Vec<f64>, contact_force: Vec<f64>) -> NodalResults {
+    let mut gap = vec![f64::NAN; 7];
+    gap[0] = k as f64;
+    let mut status = vec![NodeStatus::None; 7];
+    status[0] = NodeStatus::Slip;
+    NodalResults {
+        reaction,
+        contact_force,
+        gap,
+        status,
+    }
+}
+
+fn resultant(k: usize, factor: f64) -> ContactResultant {
+    ContactResultant {
+        force: [0.0, factor * k as f64],
+        normal: factor * k as f64,
+        closed: k,
+        sticking: k / 2,
+        min_gap: f64::NAN,
+        ..ContactResultant::default()
+    }
+}
+
+fn landing() -> Landing {
+    Landing {
+        time: 0.35,
+        slave: 6,
+        segment: [4, 3],
+        xi: 0.25,
+        approach_speed: 1.5,
+    }
+}
+
+/// What the run record says.
+pub fn record() -> RunRecord {
+    RunRecord {
+        version: "0.0.0".into(),
+        commit: "abcdef0".into(),
+        deck: deck_text(),
+        command: "stickslip run 'a b.inp'".into(),
+        threads: 2,
+    }
+}
+
+/// Totals of a run that did `increments` and ended so.
+pub fn summary(outcome: Outcome, increments: usize) -> RunSummary {
+    RunSummary {
+        outcome,
+        increments,
+        cutbacks: 0,
+        solver: SolverCounts::default(),
+        timings: Timings::default(),
+    }
+}
+
+/// Writes the results of a whole run and says where they are.
+pub fn write_run(folder: &Path) -> JobFiles {
+    let model = model();
+    let files = JobFiles::new(Path::new("decks/small.inp"), folder);
+    let mut writer = writer(&model, &files);
+    for k in 0..=INCREMENTS {
+        writer.increment(&report(k)).expect("increment");
+    }
+    let summary = summary(Outcome::Finished, INCREMENTS);
+    writer.finish(&summary).expect("finish");
+    files
+}
+
+/// A writer without screen.
+pub fn writer<'a>(model: &'a Model, files: &JobFiles) -> ResultWriter<'a> {
+    ResultWriter::create(model, files, &record(), Verbosity::Quiet).expect("writer")
+}
