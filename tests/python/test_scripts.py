@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 import matplotlib.image
+import program
 import pytest
 from compare import differences
 from conftest import ROOT, Job
@@ -66,8 +67,6 @@ def test_decks_are_what_their_generator_writes(folder: Path, tmp_path: Path) -> 
 
 
 def test_a_flattened_deck_is_the_same_deck(job: Job, tmp_path: Path) -> None:
-    import program
-
     flat = Deck.read(BAR / "em_impulse.inp")
     assert not flat.find("INCLUDE")
     original = program.run(BAR / "em_impulse.inp", tmp_path)
