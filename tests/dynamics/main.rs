@@ -1,0 +1,5 @@
+//! The solver as a library: problems with known answers.
+
+mod blocks;
+mod elastic_bar;
+mod invariants;
