@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::penetration::report_penetrations;
 use crate::deck;
 use crate::diagnostics::{Diagnostics, Severity, Sources};
 use crate::dynamics::{self, Observer, RunError, RunSummary};
@@ -55,7 +56,11 @@ fn load(path: &Path, colour: bool) -> Loaded {
     let mut sources = Sources::new();
     let mut d = Diagnostics::new();
     let deck = deck::read(path, &mut sources, &mut d);
-    let model = reader::build(&deck, &mut d).filter(|_| !d.has_errors());
+    let model = reader::build(&deck, &mut d);
+    if let Some(model) = &model {
+        report_penetrations(model, &mut d);
+    }
+    let model = model.filter(|_| !d.has_errors());
     Loaded {
         model,
         messages: d.render(&sources, colour),
