@@ -148,13 +148,14 @@ impl PivotMatrix for FrictionalMatrix<'_> {
         if j >= end {
             return if j - m == i { 1.0 } else { 0.0 };
         }
-        let q = &self.scaled.q;
+        // Row i of the symmetric Q, read where it is contiguous.
+        let q = self.scaled.column(i);
         if j >= n {
-            return sign(i) * sign(j) * 2.0 * q[(i, j)];
+            return sign(i) * sign(j) * 2.0 * q[j];
         }
         match self.scaled.tangents[j] {
-            None => sign(i) * q[(i, j)],
-            Some(t) => sign(i) * (q[(i, j)] - sign(t) * self.scaled.mu[j] * q[(i, t)]),
+            None => sign(i) * q[j],
+            Some(t) => sign(i) * (q[j] - sign(t) * self.scaled.mu[j] * q[t]),
         }
     }
 }

@@ -41,24 +41,29 @@ impl Scaled {
         }
         let length = power_of_two(problem.gap.iter().fold(0.0_f64, |l, g| l.max(-g)));
         let stiffness = power_of_two((0..n).map(|i| problem.q[(i, i)]).sum::<f64>() / n as f64);
-        let index = |k: usize| if k < n { k } else { n + owners[k - n] };
-        let size = n + owners.len();
-        let q = DMatrix::from_fn(size, size, |i, j| {
-            problem.q[(index(i), index(j))] / stiffness
-        });
-        let motion = |k: usize| {
-            if k < n {
-                problem.gap[k]
-            } else {
-                problem.slip[owners[k - n]]
-            }
+        let gather = |column: &[f64], unit: f64, out: &mut Vec<f64>| {
+            out.extend(column[..n].iter().map(|v| v / unit));
+            out.extend(owners.iter().map(|i| column[n + i] / unit));
         };
-        let b: Vec<f64> = (0..size).map(|k| motion(k) / length).collect();
+        let size = n + owners.len();
+        let mut q = Vec::with_capacity(size * size);
+        for k in (0..n).chain(owners.iter().map(|i| n + i)) {
+            gather(
+                &problem.q.as_slice()[2 * n * k..2 * n * (k + 1)],
+                stiffness,
+                &mut q,
+            );
+        }
+        let motion: Vec<f64> = problem.gap.iter().chain(&problem.slip).copied().collect();
+        let mut b = Vec::with_capacity(size);
+        gather(&motion, length, &mut b);
+
         let force = length / stiffness;
-        for values in [q.as_slice(), &b, &[force]] {
+        for values in [q.as_slice(), b.as_slice(), &[force]] {
             expect_finite(values)?;
         }
         let mu = problem.mu.iter().copied().collect();
+        let q = DMatrix::from_vec(size, size, q);
         Ok(Self {
             contacts: n,
             owners,
