@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::frictional::FrictionalLcp;
 use super::hybrid::{FrictionalSolution, LcpMethod, Method, solve_frictional};
-use super::lemke::{LemkeSettings, lemke};
+use super::lemke::{LemkeSettings, covering_vector, lemke};
 use super::problem::{Lcp, LcpError, LcpSolution};
 
 /// A number, or the text of one that JSON cannot hold.
@@ -68,13 +68,10 @@ pub struct JsonAnswer {
 /// Solves a problem given as JSON. A text that is no problem has the answer `invalid`.
 pub fn solve_json(text: &str) -> JsonAnswer {
     let answer = match read(text) {
-        Ok((lcp, None)) => {
-            let ones = DVector::from_element(lcp.q.len(), 1.0);
-            match lemke(&lcp, &ones, &LemkeSettings::default()) {
-                Ok(solution) => general(solution),
-                Err(error) => failed(&error),
-            }
-        }
+        Ok((lcp, None)) => match lemke(&lcp, &covering_vector(&lcp), &LemkeSettings::default()) {
+            Ok(solution) => general(solution),
+            Err(error) => failed(&error),
+        },
         Ok((_, Some(problem))) => match solve_frictional(&problem, None, LcpMethod::Hybrid) {
             Ok(solution) => frictional(&problem, &solution),
             Err(error) => failed(&error),

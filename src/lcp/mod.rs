@@ -33,7 +33,7 @@ mod state;
 pub use exchange::{JsonAnswer, solve_json};
 pub use frictional::FrictionalLcp;
 pub use hybrid::{FrictionalSolution, LcpMethod, Method, solve_frictional};
-pub use lemke::{LemkeSettings, lemke};
+pub use lemke::{LemkeSettings, covering_vector, lemke};
 pub use problem::{Lcp, LcpError, LcpSolution};
 pub use residual::residual;
 pub use state::{ContactState, Counters};
