@@ -320,8 +320,8 @@ fn non_unique_problems_have_a_valid_solution() {
     }
 }
 
-/// Q = B W B^T with more rows than degrees of freedom. The first of these sees the sum of all Pn and
-/// no Pt, which excludes self-stress: no ray, whatever gaps and mu.
+/// Q = B W B^T with more rows than degrees of freedom. The first of these sees the sum of all Pn
+/// and no Pt, which excludes self-stress: no ray, whatever gaps and mu.
 #[test]
 fn no_ray_without_self_stress() {
     let mut random = Random(29);

@@ -139,8 +139,8 @@ fn project(scaled: &Scaled, p: &mut [f64]) {
     }
 }
 
-/// Lemke's method, along up to [`PATHS`] paths, each with another covering vector: where round-off ends one
-/// path on a ray, another goes through. The error is that of the first path.
+/// Lemke's method, along up to [`PATHS`] paths with different covering vectors: where round-off
+/// ends one path on a ray, another goes through. The error is that of the first path.
 fn lemke(
     problem: &FrictionalLcp,
     scaled: &Scaled,
@@ -172,8 +172,13 @@ fn follow(
     counters: &mut Counters,
 ) -> Result<FrictionalSolution, LcpError> {
     counters.lemke_calls += 1;
-    let found = lemke_forces(scaled, covering, &LemkeSettings::default())?;
-    counters.pivots += found.pivots;
+    let found = lemke_forces(scaled, covering, &LemkeSettings::default());
+    counters.pivots += match &found {
+        Ok(found) => found.pivots,
+        Err(LcpError::Ray { pivots, .. } | LcpError::PivotLimit { pivots }) => *pivots,
+        Err(_) => 0,
+    };
+    let found = found?;
     let corrected = match active_set(scaled, found.states.clone(), &mut Counters::default()) {
         Outcome::Converged(states, p) => Some((states, p)),
         Outcome::Failed(_) => None,

@@ -10,11 +10,11 @@ use super::scaling::power_of_two;
 
 /// v = Q p + b with p = (Pn of all n contacts, Pt of the m contacts with mu > 0).
 ///
-/// With the weights w_i = root of Qnn_ii over its mean, the lengths of contact i are in units of w_i
-/// times the deepest penetration (over its weight), the forces in that over Qnn_ii; all rounded
+/// With the weights w_i = root of Qnn_ii over its mean, the lengths of contact i are in units of
+/// w_i times the deepest penetration (over its weight), the forces in that over Qnn_ii; all rounded
 /// to powers of two. One weight for normal and tangent leaves the friction law as it is. The
-/// penetration is what drives the forces: a gap or a slip many orders larger must not make a closed
-/// contact inaccurate.
+/// penetration is what drives the forces: a gap or a slip many orders larger must not make a
+/// closed contact inaccurate.
 pub(super) struct Scaled {
     /// Number of contacts n.
     pub contacts: usize,
