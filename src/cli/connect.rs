@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
+use crate::diagnostics::{Diagnostics, Severity, Sources};
 use crate::dynamics::{self, Observer, RunError, RunSummary};
 use crate::model::Model;
+use crate::reader;
 
 /// A deck as read.
 #[derive(Debug, Clone, Default)]
@@ -47,27 +49,18 @@ impl Numerics {
     }
 }
 
-// CONNECT 1: deck::read and reader::build.
-//     let mut sources = Sources::new();
-//     let mut d = Diagnostics::new();
-//     let deck = deck::read(path, &mut sources, &mut d);
-//     let model = reader::build(&deck, &mut d).filter(|_| !d.has_errors());
-//     Loaded {
-//         model,
-//         messages: d.render(&sources, colour),
-//         plain_messages: d.render(&sources, false),
-//         errors: d.count(Severity::Error),
-//         warnings: d.count(Severity::Warning),
-//         text: sources.full_text(),
-//         lines: sources.line_count(),
-//         includes: sources.files().len().saturating_sub(1),
-//     }
-fn load(_path: &Path, _colour: bool) -> Loaded {
-    let message = "error: the deck reader is not connected".to_owned();
+fn load(path: &Path, colour: bool) -> Loaded {
+    let mut sources = Sources::new();
+    let mut diagnostics = Diagnostics::new();
+    let model = reader::read_model(path, &mut sources, &mut diagnostics);
     Loaded {
-        messages: message.clone(),
-        plain_messages: message,
-        errors: 1,
-        ..Loaded::default()
+        model,
+        messages: diagnostics.render(&sources, colour),
+        plain_messages: diagnostics.render(&sources, false),
+        errors: diagnostics.count(Severity::Error),
+        warnings: diagnostics.count(Severity::Warning),
+        text: sources.full_text(),
+        lines: sources.line_count(),
+        includes: sources.files().len().saturating_sub(1),
     }
 }
