@@ -10,11 +10,12 @@
 //! ```
 
 #[allow(dead_code)]
-mod common;
+#[path = "dynamics/blocks.rs"]
+mod blocks;
 
 use std::path::Path;
 
-use common::{add_block, add_contact, model, step, throw};
+use blocks::{add_block, add_contact, model, step, throw};
 use hdf5::File;
 use stickslip::dynamics;
 use stickslip::model::{Frames, Model, Settings};

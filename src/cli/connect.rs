@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use super::penetration::report_penetrations;
-use crate::deck;
 use crate::diagnostics::{Diagnostics, Severity, Sources};
 use crate::dynamics::{self, Observer, RunError, RunSummary};
 use crate::model::Model;
@@ -51,18 +50,15 @@ impl Numerics {
     }
 }
 
-/// Reads a deck; its messages coloured or not.
 fn load(path: &Path, colour: bool) -> Loaded {
     let mut sources = Sources::new();
     let mut d = Diagnostics::new();
-    let deck = deck::read(path, &mut sources, &mut d);
-    let model = reader::build(&deck, &mut d);
+    let model = reader::read_model(path, &mut sources, &mut d);
     if let Some(model) = &model {
         report_penetrations(model, &mut d);
     }
-    let model = model.filter(|_| !d.has_errors());
     Loaded {
-        model,
+        model: model.filter(|_| !d.has_errors()),
         messages: d.render(&sources, colour),
         plain_messages: d.render(&sources, false),
         errors: d.count(Severity::Error),

@@ -178,9 +178,9 @@ fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<S
         SurfaceKind::Nodes(_) => 0,
     };
     let nodes = counted(slave.nodes(&model.mesh).len(), "node");
+    let edges = counted(edges, "edge");
     let mut pieces = vec![
-        format!("{} ({nodes})", slave.name),
-        format!("-> {} ({})", master.name, counted(edges, "edge")),
+        format!("{} ({nodes}) -> {} ({edges})", slave.name, master.name),
         format!(
             "mu {}",
             general(model.interactions[contact.interaction].friction, 4)
