@@ -225,11 +225,11 @@ fn a_run_to_the_end() {
     let log = bench.log();
     assert!(log.contains("warning: this is a test"), "{log}");
     assert!(log.contains("done     in"), "{log}");
-    assert!(
-        log.lines()
-            .filter(|l| l.contains("energy"))
-            .all(|l| l.len() <= 80)
-    );
+    let paths = ["wrote", "warning"];
+    let mut lines = log
+        .lines()
+        .filter(|l| paths.iter().all(|p| !l.starts_with(p)));
+    assert!(lines.all(|line| line.len() <= 80), "{log}");
 }
 
 #[test]
@@ -258,12 +258,14 @@ fn a_stop_leaves_the_last_good_state_and_says_where() {
     assert_eq!(summary.frames, [0.0, report(3).time]);
     let log = bench.log();
     for text in [
-        "cutback  increment 4 from time 3.000e-01, dt 5.00e-02",
-        "stopped  increment 4 of step 1 failed at time 3.000000e-01: an element turned inside",
+        "cutback  increment 4 at 3.000e-01, dt 5.00e-02 -> 5.00e-02",
+        "stopped  increment 4 of step 1 failed at time 3.000000e-01",
+        "an element turned inside out",
         "worst    node 3 at (1.50000e+00, 2.50000e+00): force residual 2.50e-01",
         "element  8 with its centre at (1.50000e+00, 1.50000e+00)",
         "tried    1 halving",
-        "job.vtkhdf is valid up to time 3.000000e-01",
+        "job.vtkhdf is valid up to its last frame",
+        "time 3.000000e-01",
     ] {
         assert!(log.contains(text), "{text}\n{log}");
     }

@@ -1,5 +1,6 @@
 //! The text about a run that stopped.
 
+use super::echo::wrap;
 use super::format::{counted, scientific};
 use super::log::pass_table;
 use crate::dynamics::{Cause, Failure, Worst};
@@ -8,13 +9,16 @@ use crate::model::Model;
 /// Increment, time, cause, worst place, what was tried and the passes; `u` is the last converged
 /// displacement.
 pub(super) fn failure_lines(failure: &Failure, model: &Model, u: &[f64]) -> Vec<String> {
-    let mut lines = vec![format!(
-        "stopped  increment {} of step {} failed at time {}: {}",
-        failure.increment,
-        failure.step,
-        scientific(failure.time, 6),
-        failure.cause,
-    )];
+    let what = [
+        format!(
+            "increment {} of step {} failed at time {}",
+            failure.increment,
+            failure.step,
+            scientific(failure.time, 6),
+        ),
+        failure.cause.to_string(),
+    ];
+    let mut lines = wrap("stopped", &what);
     lines.extend(failure.worst.as_ref().map(|worst| worst_line(worst, model)));
     lines.extend(place_line(&failure.cause, model, u));
     lines.push(format!(

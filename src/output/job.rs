@@ -18,6 +18,10 @@ impl JobFiles {
     pub fn new(deck: &Path, folder: &Path) -> Self {
         let file = deck.file_name().unwrap_or_default().to_string_lossy();
         let name = file.strip_suffix(".inp").unwrap_or(&file).to_owned();
+        let folder = match folder == Path::new(".") {
+            true => Path::new(""),
+            false => folder,
+        };
         let path = |extension| folder.join(format!("{name}.{extension}"));
         JobFiles {
             result: path("vtkhdf"),
