@@ -167,6 +167,32 @@ fn a_crash_stops_with_the_last_good_state() {
 }
 
 #[test]
+fn a_quiet_crash_is_told_on_the_standard_error() {
+    let bench = Bench::new(&DROP.replace("2, -0.5", "2, -5000."));
+    let (code, out, err) = bench.stickslip(&["run", "drop.inp", "-q"]);
+    assert_eq!((code, out.as_str()), (1, ""));
+    assert!(
+        err.starts_with("stopped ") && err.contains("worst "),
+        "{err}"
+    );
+}
+
+#[test]
+fn strict_and_lenient_reading() {
+    let bench = Bench::new(&DROP.replace("*BOUNDARY\n", "*BONDARY\n1, 1\n*BOUNDARY\n"));
+    let (code, _, err) = bench.stickslip(&["check", "drop.inp"]);
+    assert_eq!(code, 2, "{err}");
+    let (code, out, err) = bench.stickslip(&["check", "drop.inp", "--lenient"]);
+    assert_eq!(code, 0, "{err}");
+    assert!(
+        err.starts_with("warning") && out.contains("1 warning"),
+        "{err}{out}"
+    );
+    let both = ["check", "drop.inp", "--lenient", "--strict"];
+    assert_eq!(bench.stickslip(&both).0, 3);
+}
+
+#[test]
 fn threads_do_not_change_the_results() {
     let bench = Bench::new(DROP);
     for threads in ["1", "2"] {

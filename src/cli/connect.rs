@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::diagnostics::{Diagnostics, Severity, Sources};
+use crate::diagnostics::{Diagnostics, Severity, Sources, Strictness};
 use crate::dynamics::{self, Observer, RunError, RunSummary};
 use crate::model::Model;
 use crate::reader;
@@ -29,7 +29,7 @@ pub(super) struct Loaded {
 }
 
 /// Reads a deck; messages coloured or not.
-type Load = fn(&Path, bool) -> Loaded;
+type Load = fn(&Path, Strictness, bool) -> Loaded;
 /// Solves all steps of a model.
 type Solve = fn(&Model, &mut dyn Observer) -> Result<RunSummary, RunError>;
 
@@ -49,9 +49,9 @@ impl Numerics {
     }
 }
 
-fn load(path: &Path, colour: bool) -> Loaded {
+fn load(path: &Path, strictness: Strictness, colour: bool) -> Loaded {
     let mut sources = Sources::new();
-    let mut diagnostics = Diagnostics::new();
+    let mut diagnostics = Diagnostics::with_strictness(strictness);
     let model = reader::read_model(path, &mut sources, &mut diagnostics);
     Loaded {
         model,

@@ -155,7 +155,7 @@ fn to_a_full_disk(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, 
 
 fn numerics() -> Numerics {
     Numerics {
-        load: |_, _| loaded(Some(square())),
+        load: |_, _, _| loaded(Some(square())),
         solve: to_the_end,
     }
 }
@@ -290,11 +290,11 @@ fn results_are_replaced_only_when_wanted() {
 #[test]
 fn a_rejected_deck_touches_no_file() {
     let bench = Bench::new();
-    let load = |_: &Path, _| loaded(None);
+    let load = |_: &Path, _, _| loaded(None);
     let exit = bench.run(&["-q"], &Numerics { load, ..numerics() });
     assert_eq!(code(&exit), Exit::Rejected);
     assert!(!bench.touched());
-    let load = |_: &Path, _| {
+    let load = |_: &Path, _, _| {
         let name = "A/B".into();
         let mut model = square();
         model.element_sets = vec![Set {

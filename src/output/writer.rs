@@ -99,6 +99,7 @@ impl<'a> ResultWriter<'a> {
     ) -> Result<Self, OutputError> {
         check_names(model)?;
         create_folder(&files.result)?;
+        remove_old(files)?;
         let log = Log::create(&files.log).map_err(OutputError::at(&files.log))?;
         let status = StatusFile::create(&files.status).map_err(OutputError::at(&files.status))?;
         let result = ResultFile::create(&files.result, model, record)
@@ -218,7 +219,7 @@ impl<'a> ResultWriter<'a> {
 
     fn print_failure(&mut self, failure: &Failure) -> io::Result<()> {
         for line in failure_lines(failure, self.model, &self.last.state.u) {
-            self.console.line(&line)?;
+            self.console.alarm(&line)?;
         }
         let (name, _) = self.result.name_and_size();
         let pieces = [
@@ -226,7 +227,7 @@ impl<'a> ResultWriter<'a> {
             format!("time {}", scientific(self.last.time, 6)),
         ];
         for line in wrap("results", &pieces) {
-            self.console.line(&line)?;
+            self.console.alarm(&line)?;
         }
         Ok(())
     }
@@ -280,6 +281,17 @@ fn create_folder(file: &Path) -> Result<(), OutputError> {
         }
         _ => Ok(()),
     }
+}
+
+/// Removes the files of an earlier run: one that is still going on keeps writing to its own.
+fn remove_old(files: &JobFiles) -> Result<(), OutputError> {
+    for path in files.existing() {
+        fs::remove_file(path).map_err(|source| OutputError::Create {
+            path: path.to_owned(),
+            source,
+        })?;
+    }
+    Ok(())
 }
 
 /// Time of the run and the parts of its phases.
