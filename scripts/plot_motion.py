@@ -143,9 +143,7 @@ def status_legend(axes: Axes) -> None:
     axes.legend(loc="best", handletextpad=0.1)
 
 
-def panels(
-    results: Results, frames: list[int], field: str | None, forces: bool = False
-) -> Figure:
+def panels(results: Results, frames: list[int], field: str | None, forces: bool = False) -> Figure:
     """One panel per frame, in reading order."""
     columns = min(len(frames), 3 if len(frames) != 4 else 2)
     rows = -(-len(frames) // columns)
@@ -181,8 +179,9 @@ def draw_overlay(axes: Axes, results: Results, frames: list[int]) -> None:
     """All shapes in one axes, coloured by time; bodies that hardly move are drawn once, grey."""
     shades = plt.get_cmap("plasma")(np.linspace(0.0, 0.85, len(frames)))
     travel = np.max([np.linalg.norm(results.point_field("U", f), axis=1) for f in frames], axis=0)
-    moving = np.array([travel[results.body == body].max() for body in range(results.body.max() + 1)])
-    moving = (moving > 0.01 * travel.max())[results.body]
+    bodies = range(results.body.max() + 1)
+    farthest = np.array([travel[results.body == body].max() for body in bodies])
+    moving = (farthest > 0.01 * travel.max())[results.body]
 
     def draw(frame: int, select: np.ndarray, face: object, edge: object) -> None:
         position = results.positions(frame)
@@ -234,9 +233,7 @@ def animate(
     print(f"wrote {path}")
 
 
-def chosen_frames(
-    results: Results, times: list[float] | None, interval: float | None
-) -> list[int]:
+def chosen_frames(results: Results, times: list[float] | None, interval: float | None) -> list[int]:
     """Frames nearest to the given times, each once; six of the whole run when none are given."""
     end = float(results.frame_times[-1])
     if interval:
@@ -253,7 +250,7 @@ def main() -> None:
     parser.add_argument("--times", type=float, nargs="+", help="times to show (nearest frames)")
     parser.add_argument("--interval", type=float, help="show 0, INTERVAL, 2 INTERVAL, ...")
     parser.add_argument("--field", choices=[*FIELDS, "none"], default="von-mises")
-    parser.add_argument("--overlay", action="store_true", help="all shapes in one panel, coloured by time")
+    parser.add_argument("--overlay", action="store_true", help="one panel, coloured by time")
     parser.add_argument("--forces", action="store_true", help="draw contact forces as arrows")
     parser.add_argument("-o", "--output", type=Path, help="picture to write")
     parser.add_argument("--animation", type=Path, help="animation to write (.gif)")

@@ -32,8 +32,8 @@ class Case:
     name: str
     deck: str
     """The deck's name within the folder of the decks."""
-    settings: dict[str, str] | None = None
-    """Parameters of the STICKSLIP card; empty: no card, the default scheme; None: as in the deck."""
+    scheme: str = "deck"
+    """The deck's, or "default": without its STICKSLIP card."""
     refine: int = 1
     """Divides the edges of all elements."""
     divide: float = 1.0
@@ -119,8 +119,8 @@ class Verification:
             decks = self.output / "decks" / f"refine_{case.refine}"
             load(self.decks / "generate.py").write(decks, case.refine)
         deck = Deck.read(decks / case.deck)
-        if case.settings is not None:
-            deck.set_settings(**case.settings)
+        if case.scheme == "default":
+            deck.set_settings()
         if case.divide != 1.0 or case.until is not None:
             dt = deck.dt / case.divide
             period = deck.period if case.until is None else case.until
@@ -145,7 +145,8 @@ class Verification:
     def check_run(self, name: str, edge: float) -> None:
         """What every run has to satisfy; `edge` is the length of the smallest element edge."""
         results = self.results[name]
-        self.check("increments not converged", name, float((results.solver["converged"] == 0).sum()))
+        failed = int((results.solver["converged"] == 0).sum())
+        self.check("increments not converged", name, failed)
         gaps = [contact.min_gap for contact in results.contacts.values()]
         self.check("deepest gap / element size", name, float(np.nanmin(gaps, initial=0.0)) / edge)
         cones = [contact.cone_violation for contact in results.contacts.values()]
@@ -199,7 +200,8 @@ def start(folder: Path, decks: Path) -> Verification:
     data = tomllib.loads((folder / "cases.toml").read_text())
     common = tomllib.loads((HERE / "limits.toml").read_text())
     limits = [Limit(**entry) for entry in common["limit"] + data.get("limit", [])]
-    cases = [Case(**entry) for entry in data["case"]]
+    shared = data.get("defaults", {})
+    cases = [Case(**shared.get(entry.get("group"), {}) | entry) for entry in data["case"]]
     verification = Verification(
         folder,
         decks,

@@ -39,9 +39,7 @@ def place(along: float, above: float) -> tuple[float, float]:
 def model(refine: int = 1) -> str:
     """Everything but the friction and the step; `refine` divides the edges of all elements."""
     nx, ny = 40 * refine, 2 * refine
-    slope = Grid(
-        "SLOPE", nx, ny, lambda i, j: place(LENGTH * i / nx, DEPTH * j / ny - DEPTH)
-    )
+    slope = Grid("SLOPE", nx, ny, lambda i, j: place(LENGTH * i / nx, DEPTH * j / ny - DEPTH))
     n = 8 * refine
     block = Grid(
         "BLOCK",

@@ -29,9 +29,7 @@ def model(refine: int = 1) -> str:
     """Everything but the friction and the step; `refine` divides the edges of all elements."""
     nx, ny = 20 * refine, 2 * refine
     bottom = DEPTH + GAP
-    upper = Grid(
-        "UPPER", nx, ny, lambda i, j: (LENGTH * i / nx, bottom + DEPTH * j / ny)
-    )
+    upper = Grid("UPPER", nx, ny, lambda i, j: (LENGTH * i / nx, bottom + DEPTH * j / ny))
     lower = Grid(
         "LOWER",
         nx,

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::penetration::report_penetrations;
 use crate::diagnostics::{Diagnostics, Severity, Sources, Strictness};
 use crate::dynamics::{self, Observer, RunError, RunSummary};
 use crate::model::Model;
@@ -51,14 +52,17 @@ impl Numerics {
 
 fn load(path: &Path, strictness: Strictness, colour: bool) -> Loaded {
     let mut sources = Sources::new();
-    let mut diagnostics = Diagnostics::with_strictness(strictness);
-    let model = reader::read_model(path, &mut sources, &mut diagnostics);
+    let mut d = Diagnostics::with_strictness(strictness);
+    let model = reader::read_model(path, &mut sources, &mut d);
+    if let Some(model) = &model {
+        report_penetrations(model, &mut d);
+    }
     Loaded {
-        model,
-        messages: diagnostics.render(&sources, colour),
-        plain_messages: diagnostics.render(&sources, false),
-        errors: diagnostics.count(Severity::Error),
-        warnings: diagnostics.count(Severity::Warning),
+        model: model.filter(|_| !d.has_errors()),
+        messages: d.render(&sources, colour),
+        plain_messages: d.render(&sources, false),
+        errors: d.count(Severity::Error),
+        warnings: d.count(Severity::Warning),
         text: sources.full_text(),
         lines: sources.line_count(),
         includes: sources.files().len().saturating_sub(1),

@@ -7,6 +7,7 @@ mod error;
 mod exit;
 mod info;
 mod overrides;
+mod penetration;
 mod run;
 #[cfg(test)]
 mod run_tests;

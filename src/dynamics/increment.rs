@@ -1,6 +1,7 @@
 use super::contact_forces::ContactForces;
 use super::convergence::{Scales, worst};
 use super::effective::Effective;
+use super::impact::Impulses;
 use super::mass::largest;
 use super::meter::Meter;
 use super::step_problem::{Equilibrium, Interval, StepProblem, sum};
@@ -8,14 +9,12 @@ use super::{Cause, PassReport, State, Worst};
 use crate::contact::Pair;
 use crate::lcp::ContactState;
 use crate::linear::LinearError;
-use crate::model::{Factorization, Impact};
+use crate::model::Factorization;
 
 /// Passes that one factorisation serves within an increment.
 const KEPT_PASSES: usize = 8;
 /// Passes after which the pairs keep their segments.
 const SEARCHING_PASSES: usize = 10;
-/// Changes of the set of impulses after which it is kept.
-const SET_CHANGES: usize = 5;
 
 /// A converged increment.
 pub(super) struct Solved {
@@ -80,7 +79,7 @@ impl Attempt<'_, '_> {
         // k = 0: from U0, the supports at their prescribed displacements
         let mut d = problem.support_increment(u0, self.interval);
         let mut state = contact.to_vec();
-        let mut impulses = ImpulseSet::new(contact);
+        let mut impulses = Impulses::new(contact);
         let mut kept: Option<Vec<Option<usize>>> = None;
 
         for pass in 0..problem.settings.max_passes {
@@ -92,8 +91,8 @@ impl Attempt<'_, '_> {
             );
 
             // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi) for the pairs in contact
-            let set = &impulses.slots;
-            let v0p = problem.impulses(self.effective, &pairs, set, self.start, dt, self.meter)?;
+            let (effective, meter) = (&mut *self.effective, &mut *self.meter);
+            let v0p = impulses.velocity(problem, effective, &pairs, self.start, dt, meter)?;
 
             // r = R_theta - F(U_theta) - M A,  A = (2/dt²)(d - dt V0+)
             let iterate = self.meter.time(
@@ -144,8 +143,8 @@ impl Attempt<'_, '_> {
             // U^{k+1} = U^k + dU
             d = sum(&d, &du);
             forces.remember(&mut state);
-            let rests = problem.settings.impact == Impact::None || impulses.rests(&forces);
-            if rests && scales.converged(&report) {
+            let rest = impulses.rest(problem, &forces);
+            if rest && scales.converged(&report) {
                 return self.finish(v0p, d, forces);
             }
             if pass + 1 >= SEARCHING_PASSES {
@@ -239,34 +238,6 @@ impl Attempt<'_, '_> {
             end,
             passes: Vec::new(),
         })
-    }
-}
-
-/// The slots whose pairs get impulses: those that carried force in the last pass.
-struct ImpulseSet {
-    slots: Vec<usize>,
-    changes: usize,
-}
-
-impl ImpulseSet {
-    /// The slots closed in the last increment.
-    fn new(contact: &[ContactState]) -> Self {
-        let slots = (0..contact.len())
-            .filter(|&slot| contact[slot].is_closed())
-            .collect();
-        ImpulseSet { slots, changes: 0 }
-    }
-
-    /// Takes over the pairs in contact; whether they are the same as before. After some changes
-    /// the set is kept: impulses of any set take energy, never give it.
-    fn rests(&mut self, forces: &ContactForces) -> bool {
-        let slots = forces.closed_slots();
-        if slots == self.slots || self.changes >= SET_CHANGES {
-            return true;
-        }
-        self.slots = slots;
-        self.changes += 1;
-        false
     }
 }
 

@@ -1,16 +1,14 @@
-use super::contact_forces::ContactForces;
 use super::dofs::DofMap;
 use super::effective::Effective;
 use super::loads::{Loads, Moment};
 use super::mass::Mass;
-use super::meter::Meter;
 use super::scheme::Weights;
 use super::supports::Supports;
 use super::{Cause, State};
 use crate::contact::{ContactSurfaces, Pair, find_pairs};
 use crate::elements::Body;
 use crate::lcp::LcpMethod;
-use crate::model::{Impact, Model, Settings};
+use crate::model::{Model, Settings};
 
 /// What stays the same over a step.
 pub(super) struct StepProblem<'m> {
@@ -77,33 +75,6 @@ impl StepProblem<'_> {
             .into_iter()
             .map(|site| Pair::new(site, form, x, u0, u))
             .collect()
-    }
-
-    /// Velocity V0+ after the impulses of the pairs whose slots are in `set` (sorted).
-    pub fn impulses(
-        &self,
-        effective: &mut Effective,
-        pairs: &[Pair],
-        set: &[usize],
-        start: &State,
-        dt: f64,
-        meter: &mut Meter,
-    ) -> Result<Vec<f64>, Cause> {
-        if self.settings.impact == Impact::None {
-            return Ok(start.v.clone());
-        }
-        let (x, u0) = (&self.model.mesh.coordinates, &start.u);
-        let form = self.weights.row_form();
-        let at_start = |pair: &Pair| match self.weights.impulses_at_start() {
-            true => Pair::new(pair.site(), form, x, u0, u0),
-            false => *pair,
-        };
-        let struck = pairs
-            .iter()
-            .filter(|pair| set.binary_search(&pair.slot).is_ok());
-        let struck: Vec<Pair> = struck.map(at_start).collect();
-        let m = &mut effective.m;
-        ContactForces::impulses(struck, &start.v, dt, &self.dofs, m, self.method(), meter)
     }
 
     /// Load, internal force and inertia of the iterate U0 + d.

@@ -3,3 +3,5 @@
 mod blocks;
 mod elastic_bar;
 mod invariants;
+mod loads;
+mod patch;

@@ -122,7 +122,7 @@ def tabulate_rebound(verification: runner.Verification) -> None:
         arrival = 0.5 * MASS * point_mass(0.0).landing_speed ** 2
         lost = ("vibration", "impact loss", "numerical dissipation", "normal contact (taken)")
         shares = [parts[name] / arrival for name in lost]
-        scheme = "default" if case.settings == {} else "paper"
+        scheme = "default" if case.scheme == "default" else "paper"
         edge, dt = 0.5 / case.refine, slope.DT / case.divide
         rows.append((scheme, edge, dt, rebound(results), *shares))
     header = ("scheme", "block edge", "increment", "rebound", "vibration", "impact loss")
@@ -192,7 +192,7 @@ def draw_rebound(verification: runner.Verification) -> None:
     figure, axes = plt.subplots(2, 2, figsize=(11, 7), sharex=True, sharey=True)
     speed = point_mass(0.0).landing_speed
     for case, results in verification.group("study"):
-        row = 1 if case.settings == {} else 0
+        row = 1 if case.scheme == "default" else 0
         first = results.time >= point_mass(0.0).landing - 2e-4
         time = 1e3 * (results.time[first] - point_mass(0.0).landing)
         normal = Centre(results).velocity[first, 1] / speed

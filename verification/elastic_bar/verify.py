@@ -79,12 +79,8 @@ def draw(verification: runner.Verification) -> None:
             speed.plot(results.time, mean_speed(results) / bar.SPEED, label=label, **look)
         wall = [0, LANDING, LANDING, LANDING + TRANSIT, LANDING + TRANSIT, 1.5 * TRANSIT]
         force.plot(wall, [0, 0, 1, 1, 0, 0], "k--", lw=0.8, label="wave theory")
-        force.axvspan(
-            LANDING + 0.3 * TRANSIT, LANDING + 0.7 * TRANSIT, color="#eeeeee", zorder=0
-        )
-        speed.plot(
-            [0, LANDING, LANDING + TRANSIT, 1.5 * TRANSIT], [-1, -1, 1, 1], "k--", lw=0.8
-        )
+        force.axvspan(LANDING + 0.3 * TRANSIT, LANDING + 0.7 * TRANSIT, color="#eeeeee", zorder=0)
+        speed.plot([0, LANDING, LANDING + TRANSIT, 1.5 * TRANSIT], [-1, -1, 1, 1], "k--", lw=0.8)
         force.set(title=LABELS[scheme], ylabel="wall force / (rho c v0)")
         speed.set(xlabel="time", ylabel="speed of the mass centre / v0")
         force.legend(loc="upper right")

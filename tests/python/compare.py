@@ -1,0 +1,96 @@
+"""Compares result files."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import h5py
+import numpy as np
+from rescale import Dimension, Units
+
+BASE: dict[str, Dimension] = {
+    "1": (0, 0, 0),
+    "length": (1, 0, 0),
+    "mass": (0, 1, 0),
+    "time": (0, 0, 1),
+    "force": (1, 1, -2),
+    "energy": (2, 1, -2),
+}
+
+
+def dimension(text: str) -> Dimension:
+    """Exponents of length, mass and time of a `dimension` attribute: 'mass*length^2/time'."""
+    total = np.zeros(3, int)
+    for index, part in enumerate(text.split("/")):
+        for factor in part.split("*"):
+            name, _, power = factor.strip().partition("^")
+            total += np.array(BASE[name]) * int(power or 1) * (1 if index == 0 else -1)
+    return int(total[0]), int(total[1]), int(total[2])
+
+
+def datasets(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
+    """All datasets outside /run, with their paths."""
+    found: list[tuple[str, h5py.Dataset]] = []
+
+    def visit(name: str, item: object) -> None:
+        if isinstance(item, h5py.Dataset) and not name.startswith("run"):
+            found.append((name, item))
+
+    file.visititems(visit)
+    yield from found
+
+
+def attributes(item: h5py.HLObject) -> dict[str, bytes]:
+    """Attributes as bytes."""
+    return {name: np.asarray(value).tobytes() for name, value in item.attrs.items()}
+
+
+def differences(first: Path, second: Path) -> list[str]:
+    """Everything outside /run in which two files differ, bit for bit."""
+    found: list[str] = []
+    with h5py.File(first) as a, h5py.File(second) as b:
+        names: list[set[str]] = []
+        for file in (a, b):
+            members: list[str] = []
+            file.visit(members.append)
+            names.append({name for name in members if not name.startswith("run")})
+        found += [f"only in one file: {name}" for name in sorted(names[0] ^ names[1])]
+        for name in sorted(names[0] & names[1]):
+            if attributes(a[name]) != attributes(b[name]):
+                found.append(f"attributes of {name}")
+            if isinstance(a[name], h5py.Dataset):
+                if a[name].dtype != b[name].dtype or a[name][()].tobytes() != b[name][()].tobytes():
+                    found.append(name)
+    return found
+
+
+def scaled_differences(first: Path, second: Path, units: Units) -> list[str]:
+    """Datasets of `second` that are not `first` in the other units, bit for bit."""
+    found: list[str] = []
+    with h5py.File(first) as a, h5py.File(second) as b:
+        for name, data in datasets(a):
+            expected = data[()]
+            if data.dtype.kind == "f":
+                expected = expected * units.factor(dimension(data.attrs["dimension"]))
+            if not np.array_equal(expected, b[name][()], equal_nan=data.dtype.kind == "f"):
+                found.append(name)
+    return found
+
+
+def largest_deviations(first: Path, second: Path, units: Units = Units()) -> dict[str, float]:
+    """Largest difference of each history from `first` in the other units, relative to its
+    largest value; residuals and other round-off quantities left out."""
+    roundoff = ("solver", "balance", "cone_violation", "impacts")
+    found: dict[str, float] = {}
+    with h5py.File(first) as a, h5py.File(second) as b:
+        for name, data in datasets(a["history"]):
+            if data.dtype.kind != "f" or any(word in name for word in roundoff):
+                continue
+            expected = data[()] * units.factor(dimension(data.attrs["dimension"]))
+            actual = b["history"][name][()]
+            if expected.shape != actual.shape:
+                found[name] = np.inf
+                continue
+            scale = np.nanmax(np.abs(expected), initial=0.0)
+            error = np.nanmax(np.abs(actual - expected), initial=0.0)
+            found[name] = float(error / scale) if scale > 0.0 else float(error)
+    return found

@@ -1,0 +1,37 @@
+"""Paths, and the fixture that runs decks once per session."""
+
+import hashlib
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+
+import program  # noqa: E402
+from deck import Deck  # noqa: E402
+
+Job = Callable[..., Path]
+
+
+@pytest.fixture(scope="session")
+def job(tmp_path_factory: pytest.TempPathFactory) -> Job:
+    """`job(deck, *options)` runs a deck and returns the result file; equal calls run once.
+
+    `again=N` asks for a run of its own.
+    """
+    folder = tmp_path_factory.mktemp("jobs")
+    done: dict[tuple[str, ...], Path] = {}
+
+    def run(deck: Deck, *options: str, again: int = 0) -> Path:
+        text = deck.text()
+        key = (text, *options, str(again))
+        if key not in done:
+            name = hashlib.sha256(text.encode()).hexdigest()[:12]
+            path = deck.write(folder / f"{name}.inp")
+            done[key] = program.run(path, folder / str(len(done)), *options)
+        return done[key]
+
+    return run

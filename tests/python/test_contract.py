@@ -1,0 +1,152 @@
+"""The result file holds what docs/output.md promises, for both examples."""
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from compare import datasets, dimension
+from conftest import Job
+from decks import BLOCK, CANTILEVERS, shortened
+from results import ENERGIES, Results
+
+FRAMES = 5
+EXAMPLES = {
+    "block": (BLOCK / "mu02.inp", 40, "BLOCK_FACE_SLOPE_FACE", ("BLOCK", "BLOCK_CENTRE")),
+    "cantilevers": (
+        CANTILEVERS / "B_mu04.inp",
+        200,
+        "UPPER_FACE_LOWER_FACE",
+        ("UPPER_TIP", "LOWER_TIP"),
+    ),
+}
+
+POINT_DATA = {
+    "U": ("f8", (3,), "length"),
+    "V": ("f8", (3,), "length/time"),
+    "A": ("f8", (3,), "length/time^2"),
+    "RF": ("f8", (3,), "force"),
+    "CONTACT_FORCE": ("f8", (3,), "force"),
+    "GAP": ("f8", (), "length"),
+    "CONTACT_STATUS": ("u1", (), "1"),
+}
+CELL_DATA = {"S": ("f8", (3,), "force/length^2"), "E": ("f8", (3,), "1")}
+CONTACT = {
+    "force": (2,),
+    "moment": (),
+    "normal": (),
+    "tangential": (),
+    "closed": (),
+    "sticking": (),
+    "min_gap": (),
+    "cone_violation": (),
+}
+SOLVER = (
+    "passes lcps lcp_size pivots active_set_iterations gauss_seidel_sweeps lemke_calls "
+    "factorizations residual converged"
+).split()
+IMPACTS = {
+    "time": (),
+    "increment": (),
+    "slave": (),
+    "segment": (2,),
+    "xi": (),
+    "approach_speed": (),
+}
+RUN = (
+    "program version commit deck deck_sha256 command started finished exit_status threads"
+).split()
+
+
+@pytest.fixture(params=EXAMPLES)
+def example(request: pytest.FixtureRequest, job: Job) -> tuple[Path, int, str, tuple[str, ...]]:
+    """Result file, increments, contact name, history sets."""
+    deck, increments, contact, sets = EXAMPLES[request.param]
+    path = job(shortened(deck, increments), "--frames", str(FRAMES))
+    return path, increments, contact, sets
+
+
+def test_every_dataset_says_what_it_is(example: tuple) -> None:
+    with h5py.File(example[0]) as file:
+        for name, data in datasets(file):
+            assert data.attrs["description"], name
+            dimension(data.attrs["dimension"])
+
+
+def test_fields(example: tuple) -> None:
+    with h5py.File(example[0]) as file:
+        grid = file["VTKHDF"]
+        assert grid.attrs["Type"] in (b"UnstructuredGrid", "UnstructuredGrid")
+        nodes, elements = int(grid["NumberOfPoints"][0]), int(grid["NumberOfCells"][0])
+        frames = grid["Steps/Values"].shape[0]
+        assert frames == FRAMES + 1 == grid["Steps"].attrs["NSteps"]
+        for group, fields, rows in (
+            ("PointData", POINT_DATA, nodes),
+            ("CellData", CELL_DATA, elements),
+        ):
+            for name, (kind, shape, unit) in fields.items():
+                data = grid[group][name]
+                assert data.dtype == np.dtype(kind), name
+                assert data.shape == (frames * rows, *shape), name
+                assert dimension(data.attrs["dimension"]) == dimension(unit), name
+
+
+def test_model(example: tuple) -> None:
+    with h5py.File(example[0]) as file:
+        model = file["model"]
+        nodes = model["node_labels"].shape[0]
+        assert model["coordinates"].shape == (nodes, 2)
+        assert np.array_equal(model["coordinates"][:], file["VTKHDF/Points"][:, :2])
+        assert np.array_equal(model["connectivity"][:], file["VTKHDF/Connectivity"][:])
+        assert model["element_labels"].shape[0] == file["VTKHDF/NumberOfCells"][0]
+        for name in example[3]:
+            members = model["node_sets"][name][:]
+            assert members.size and members.min() >= 0 and members.max() < nodes
+
+
+def test_histories_have_one_row_per_increment(example: tuple) -> None:
+    path, increments, contact, sets = example
+    rows = increments + 1
+    with h5py.File(path) as file:
+        history = file["history"]
+        for name in ("time", "dt", "step", "momentum/angular"):
+            assert history[name].shape == (rows,), name
+        assert history["momentum/linear"].shape == (rows, 2)
+        for name in ENERGIES:
+            assert history["energy"][name].shape == (rows,), name
+        for name, shape in CONTACT.items():
+            assert history["contact"][contact][name].shape == (rows, *shape), name
+        for name in SOLVER:
+            assert history["solver"][name].shape == (rows,), name
+        landings = history["impacts/time"].shape[0]
+        for name, shape in IMPACTS.items():
+            assert history["impacts"][name].shape == (landings, *shape), name
+        assert set(history["nodes"]) == set(sets)
+        for name in sets:
+            nodes = history["nodes"][name]
+            for field in ("U", "V", "RF"):
+                assert nodes[field].shape == (rows, nodes["labels"].shape[0], 2)
+
+
+def test_run_record(example: tuple) -> None:
+    with h5py.File(example[0]) as file:
+        attributes = file["run"].attrs
+        assert all(name in attributes for name in RUN)
+        assert attributes["exit_status"] == 0
+        assert "*NODE, NSET=" in attributes["deck"], "the deck's includes are in place"
+
+
+def test_history_and_frames_agree(example: tuple) -> None:
+    with Results(example[0]) as results:
+        history = results.nodes(example[3][0])
+        index = np.searchsorted(results.node_labels, history.labels)
+        last = len(results.frame_times) - 1
+        assert results.frame_times[last] == results.time[-1]
+        assert np.array_equal(results.point_field("U", last)[index], history.U[-1])
+        assert np.array_equal(results.point_field("V", last)[index], history.V[-1])
+
+
+def test_every_increment_converged_and_the_ledger_closes(example: tuple) -> None:
+    with Results(example[0]) as results:
+        assert results.solver["converged"].all()
+        assert np.abs(results.energy["balance"]).max() < 1e-8 * results.largest_energy

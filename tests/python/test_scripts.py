@@ -1,0 +1,89 @@
+"""The scripts: plots, decks, units, generators."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib.image
+import program
+import pytest
+from compare import differences
+from conftest import ROOT, Job
+from deck import Deck
+from decks import BAR, BLOCK, CANTILEVERS, shortened
+from rescale import Units, rescale
+
+
+def script(name: str, *arguments: object) -> None:
+    """Runs a script, which has to succeed."""
+    command = [sys.executable, str(ROOT / "scripts" / name), *map(str, arguments)]
+    subprocess.run(command, check=True, stdin=subprocess.DEVNULL, capture_output=True)
+
+
+def assert_picture(path: Path) -> None:
+    """The picture is there and not blank."""
+    pixels = matplotlib.image.imread(path)
+    assert min(pixels.shape[:2]) > 200
+    assert pixels.std() > 0.01
+
+
+@pytest.fixture
+def result(job: Job) -> Path:
+    """A result with contact."""
+    return job(shortened(CANTILEVERS / "A_mu04.inp", 300))
+
+
+def test_plot_history(result: Path, tmp_path: Path) -> None:
+    script("plot_history.py", result, result, "-o", tmp_path / "history.png")
+    assert_picture(tmp_path / "history.png")
+
+
+@pytest.mark.parametrize(
+    "options",
+    [["--field", "speed", "--times", 0, 3], ["--overlay", "--interval", 1.5], ["--forces"]],
+    ids=["panels", "overlay", "forces"],
+)
+def test_plot_motion(result: Path, tmp_path: Path, options: list[object]) -> None:
+    script("plot_motion.py", result, *options, "-o", tmp_path / "motion.png")
+    assert_picture(tmp_path / "motion.png")
+
+
+def test_animation(job: Job, tmp_path: Path) -> None:
+    result = job(shortened(CANTILEVERS / "A_mu04.inp", 40), "--frames", "4")
+    film = tmp_path / "motion.gif"
+    script("plot_motion.py", result, "-o", tmp_path / "motion.png", "--animation", film)
+    assert film.read_bytes()[:6] == b"GIF89a"
+
+
+@pytest.mark.parametrize("folder", [BLOCK, CANTILEVERS, BAR], ids=lambda path: path.name)
+def test_decks_are_what_their_generator_writes(folder: Path, tmp_path: Path) -> None:
+    generate = [sys.executable, str(folder / "generate.py"), "-o", str(tmp_path)]
+    subprocess.run(generate, check=True)
+    written = {path.name: path.read_text() for path in tmp_path.iterdir()}
+    committed = {path.name for path in folder.iterdir() if path.suffix in (".inp", ".inc")}
+    assert set(written) == committed
+    for name, text in written.items():
+        assert (folder / name).read_text() == text, name
+
+
+def test_a_flattened_deck_is_the_same_deck(job: Job, tmp_path: Path) -> None:
+    flat = Deck.read(BAR / "em_impulse.inp")
+    assert not flat.find("INCLUDE")
+    original = program.run(BAR / "em_impulse.inp", tmp_path)
+    assert differences(original, job(flat)) == []
+
+
+def test_rescaling_there_and_back_gives_the_same_deck() -> None:
+    deck = Deck.read(BLOCK / "mu02.inp")
+    there = rescale(deck, Units(4.0, 0.5, 8.0))
+    assert there.text() != deck.text()
+    back = rescale(there, Units(0.25, 2.0, 0.125))
+    numbers = [[card.rows for card in deck.cards] for deck in (rescale(deck, Units()), back)]
+    assert numbers[0] == numbers[1]
+
+
+def test_a_card_with_unknown_dimensions_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "deck.inp"
+    path.write_text("*NODE\n1, 0., 0.\n*SPRING\n1.\n")
+    with pytest.raises(ValueError, match="SPRING"):
+        rescale(Deck.read(path), Units(length=2.0))

@@ -1,0 +1,29 @@
+"""VTK's own reader opens the file and sees every frame."""
+
+import numpy as np
+import pyvista
+from conftest import Job
+from decks import CANTILEVERS, shortened
+from results import Results
+
+
+def test_reader_sees_all_frames(job: Job) -> None:
+    path = job(shortened(CANTILEVERS / "B_mu04.inp", 200), "--frames", "5")
+    reader = pyvista.HDFReader(str(path))
+    with Results(path) as results:
+        assert reader.reader.GetNumberOfSteps() == len(results.frame_times) == 6
+        for frame in range(6):
+            reader.reader.SetStep(frame)
+            grid = reader.read()
+            assert grid.n_points == len(results.coordinates)
+            assert grid.n_cells == len(results.cells)
+            assert np.array_equal(grid.points[:, :2], results.coordinates)
+            for name in ("U", "V", "A", "RF", "CONTACT_FORCE"):
+                expected = results.point_field(name, frame)
+                assert np.array_equal(grid.point_data[name][:, :2], expected), (name, frame)
+            status = grid.point_data["CONTACT_STATUS"]
+            assert np.array_equal(status, results.point_field("CONTACT_STATUS", frame))
+            gap = results.point_field("GAP", frame)
+            assert np.array_equal(grid.point_data["GAP"], gap, equal_nan=True)
+            for name in ("S", "E"):
+                assert np.array_equal(grid.cell_data[name], results.cell_field(name, frame))
