@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
+use nalgebra::{DMatrix, DVector};
 use tempfile::TempDir;
 
 use super::args::{Args, Command};
@@ -11,9 +12,10 @@ use super::connect::{Loaded, Numerics};
 use super::error::CliError;
 use super::{Exit, run};
 use crate::dynamics::{
-    Cause, Cutback, Failure, IncrementReport, NodalResults, NodeStatus, Observer, Outcome,
-    PassReport, RunError, RunSummary, SolverCounts, State, Timings, Worst,
+    Cause, Cutback, FailedLcp, Failure, IncrementReport, NodalResults, NodeStatus, Observer,
+    Outcome, PassReport, RunError, RunSummary, SolverCounts, State, Timings, Worst,
 };
+use crate::lcp::{FrictionalLcp, LcpError};
 use crate::model::{
     Cell, Element, Frames, Increments, Material, Mesh, Model, Plane, Section, Set, Settings, Step,
 };
@@ -147,6 +149,26 @@ fn to_a_stop(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunEr
     Ok(summary(Outcome::Stopped(Box::new(failure)), 3))
 }
 
+fn to_an_unsolved_lcp(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+    observer.increment(&report(0)).map_err(RunError::Observer)?;
+    let mut failure = failure();
+    failure.cause = Cause::Lcp(Box::new(FailedLcp {
+        error: LcpError::PivotLimit { pivots: 9 },
+        problem: one_contact(),
+        pairs: vec![[3, 0, 1]; 6],
+    }));
+    Ok(summary(Outcome::Stopped(Box::new(failure)), 0))
+}
+
+fn one_contact() -> FrictionalLcp {
+    FrictionalLcp {
+        q: DMatrix::identity(2, 2),
+        gap: DVector::from_vec(vec![-1.0]),
+        slip: DVector::zeros(1),
+        mu: DVector::zeros(1),
+    }
+}
+
 fn to_a_full_disk(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
     observer.increment(&report(0)).map_err(RunError::Observer)?;
     let full = io::Error::from(io::ErrorKind::StorageFull);
@@ -269,6 +291,26 @@ fn a_stop_leaves_the_last_good_state_and_says_where() {
     ] {
         assert!(log.contains(text), "{text}\n{log}");
     }
+}
+
+#[test]
+fn an_unsolved_lcp_is_kept() {
+    let bench = Bench::new();
+    let solve = to_an_unsolved_lcp;
+    let numerics = Numerics {
+        solve,
+        ..numerics()
+    };
+    let exit = bench.run(&["-q"], &numerics);
+    assert_eq!(code(&exit), Exit::Stopped);
+    let json = std::fs::read_to_string(bench.path("out/job-lcp-4.json")).expect("problem");
+    assert_eq!(FrictionalLcp::from_json(&json), Ok(one_contact()));
+    let log = bench.log();
+    assert!(
+        log.contains("pairs    4 on 1-2, 4 on 1-2, 4 on 1-2, 4 on 1-2, 2 more"),
+        "{log}"
+    );
+    assert!(log.contains("job-lcp-4.json holds the problem"), "{log}");
 }
 
 #[test]

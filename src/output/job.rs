@@ -31,7 +31,13 @@ impl JobFiles {
         }
     }
 
-    /// Those that exist.
+    /// `JOB-lcp-INCREMENT.json`, for a complementarity problem that was not solved.
+    pub fn failed_lcp(&self, increment: usize) -> PathBuf {
+        let name = format!("{}-lcp-{increment}.json", self.name);
+        self.log.with_file_name(name)
+    }
+
+    /// The result, status and log files that exist.
     pub fn existing(&self) -> Vec<&Path> {
         [&self.result, &self.status, &self.log]
             .into_iter()

@@ -19,7 +19,7 @@ use super::result_file::ResultFile;
 use super::screen::{Table, row};
 use super::status::StatusFile;
 use crate::dynamics::{
-    Cutback, Failure, IncrementReport, NodalResults, Observer, Outcome, RunSummary, State,
+    Cause, Cutback, Failure, IncrementReport, NodalResults, Observer, Outcome, RunSummary, State,
 };
 use crate::model::Model;
 
@@ -29,6 +29,7 @@ const SCREEN_CUTBACKS: usize = 20;
 /// Writes everything a run leaves behind: result file, status file, log and screen.
 pub struct ResultWriter<'a> {
     model: &'a Model,
+    files: JobFiles,
     result: ResultFile,
     status: StatusFile,
     console: Console,
@@ -106,6 +107,7 @@ impl<'a> ResultWriter<'a> {
             .map_err(OutputError::at(&files.result))?;
         Ok(ResultWriter {
             model,
+            files: files.clone(),
             result,
             status,
             console: Console::new(screen, Progress::new(model, live), log),
@@ -219,6 +221,12 @@ impl<'a> ResultWriter<'a> {
 
     fn print_failure(&mut self, failure: &Failure) -> io::Result<()> {
         for line in failure_lines(failure, self.model, &self.last.state.u) {
+            self.console.alarm(&line)?;
+        }
+        if let Cause::Lcp(failed) = &failure.cause {
+            let path = self.files.failed_lcp(failure.increment);
+            fs::write(&path, failed.problem.to_json())?;
+            let line = format!("lcp      {} holds the problem", path.display());
             self.console.alarm(&line)?;
         }
         let (name, _) = self.result.name_and_size();
