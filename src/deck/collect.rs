@@ -223,6 +223,7 @@ fn resolve_keyword(typed: &str, span: Span, d: &mut Diagnostics) -> Option<&'sta
             let known = word::find(typed, keywords().map(|keyword| keyword.name));
             known_word(known, || unknown_keyword(typed, span, known), "*", span, d)
                 .and_then(keyword::find)
+                .filter(|keyword| keyword.status == Status::Read)
         }
     }?;
     report_keyword(found, span, d);
@@ -274,7 +275,7 @@ fn report_keyword(keyword: &Keyword, span: Span, d: &mut Diagnostics) {
         Status::Warned => {
             let message = format!("*{name} is left out");
             d.push_once(
-                Diagnostic::warning(Code::IgnoredKeyword, span, message).help(keyword.text),
+                Diagnostic::warning(Code::IgnoredKeyword, span, message).help(advice(keyword.text)),
             );
         }
         Status::Refused if keyword.scope == Scope::Assembly => {
@@ -286,9 +287,19 @@ fn report_keyword(keyword: &Keyword, span: Span, d: &mut Diagnostics) {
         }
         Status::Refused => {
             let message = format!("*{name} cannot be used");
-            d.push(Diagnostic::error(Code::UnsupportedKeyword, span, message).help(keyword.text));
+            d.push(
+                Diagnostic::error(Code::UnsupportedKeyword, span, message)
+                    .help(advice(keyword.text)),
+            );
         }
     }
+}
+
+/// A sentence of the table in the form of an advice: no capital, no full stop.
+fn advice(sentence: &str) -> String {
+    let mut characters = sentence.trim_end_matches('.').chars();
+    let first = characters.next().into_iter().flat_map(char::to_lowercase);
+    first.chain(characters).collect()
 }
 
 /// A parameter of `card`, checked against the table; `None` if it is left out.

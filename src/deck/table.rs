@@ -289,7 +289,11 @@ pub(super) static READ: &[Keyword] = &[
                 "discretisation",
             ),
             P::flag("SMALL SLIDING", "sliding is finite").warned(),
-            P::value("ADJUST", "nodes are not moved before the start").refused(),
+            P::value(
+                "ADJUST",
+                "not supported yet: nodes are not moved before the start",
+            )
+            .refused(),
             P::flag("TIED", "surfaces cannot be tied yet").refused(),
             P::value("EXTENSION ZONE", SMOOTHING).warned(),
             P::value("SMOOTH", SMOOTHING).warned(),

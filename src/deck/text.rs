@@ -85,6 +85,8 @@ impl<'a> Text<'a> {
         let fault = match self.quoted_content() {
             Some(content) if fits(content) => return Some(Name::quoted(content)),
             Some(_) => Some("a name has 1 to 80 characters".to_string()),
+            // An open quotation mark is reported already.
+            None if self.text.contains('"') => return None,
             None => self.fault_of_plain_name(),
         };
         match fault {

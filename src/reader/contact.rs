@@ -74,7 +74,10 @@ fn coefficient(card: &Card, cx: &mut Context) -> Option<f64> {
     let field = row.required(0, "the coefficient of friction", cx.d)?;
     let friction = field.real(cx.d)?;
     if friction < 0.0 {
-        let message = format!("the coefficient of friction must not be negative, found {friction}");
+        let message = format!(
+            "the coefficient of friction must not be negative, found {}",
+            field.text
+        );
         cx.error(Code::FrictionRange, field.span, message);
         return None;
     }

@@ -117,18 +117,23 @@ fn elastic_row(row: &Row, cx: &mut Context) -> Option<(f64, f64)> {
     let young = row.real(0, "Young's modulus", cx.d);
     let poisson = row.real_or(1, 0.0, cx.d);
     let (young, poisson) = (young?, poisson?);
-    let span = |i: usize| row.get(i).map_or(row.span(), |field| field.span);
     if young <= 0.0 {
-        let message = format!("Young's modulus must be positive, found {young}");
-        cx.error(Code::MaterialRange, span(0), message);
+        out_of_range("Young's modulus must be positive", row, 0, cx);
         return None;
     }
     if poisson <= -1.0 || poisson >= 0.5 {
-        let message = format!("Poisson's ratio must lie between -1 and 0.5, found {poisson}");
-        cx.error(Code::MaterialRange, span(1), message);
+        out_of_range("Poisson's ratio must lie between -1 and 0.5", row, 1, cx);
         return None;
     }
     Some((young, poisson))
+}
+
+/// Reports the number in a field.
+fn out_of_range(rule: &str, row: &Row, index: usize, cx: &mut Context) {
+    if let Some(field) = row.get(index) {
+        let message = format!("{rule}, found {}", field.text);
+        cx.error(Code::MaterialRange, field.span, message);
+    }
 }
 
 /// `rho[, T]`
@@ -136,8 +141,7 @@ fn density_row(row: &Row, cx: &mut Context) -> Option<f64> {
     row.at_most(2, cx.d);
     let density = row.real(0, "the density", cx.d)?;
     if density <= 0.0 {
-        let message = format!("the density must be positive, found {density}");
-        cx.error(Code::MaterialRange, row.span(), message);
+        out_of_range("the density must be positive", row, 0, cx);
         return None;
     }
     Some(density)
@@ -180,8 +184,7 @@ fn section(card: &Card, materials: &Names, cx: &mut Context) -> Option<Section> 
     if let (Some(row), Some(value)) = (row, thickness) {
         row.at_most(1, cx.d);
         if value <= 0.0 {
-            let message = format!("the thickness must be positive, found {value}");
-            cx.error(Code::MaterialRange, row.span(), message);
+            out_of_range("the thickness must be positive", row, 0, cx);
         }
     }
     if let Some(extra) = card.rows.get(1) {
@@ -222,11 +225,13 @@ impl Properties {
             }
         }
         if let Some(element) = taken.first().and_then(|&e| grid.mesh.elements.get(e)) {
-            let count = taken.len();
-            let message = format!(
-                "{count} elements of {} have a section already, the first is element {}",
-                set.name, element.label
-            );
+            let message = match taken.len() {
+                1 => format!("element {} has a section already", element.label),
+                n => format!(
+                    "{n} elements have a section already, the first is {}",
+                    element.label
+                ),
+            };
             cx.error(Code::TwoSections, card.span_of("ELSET"), message);
         }
         complete
