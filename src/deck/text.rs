@@ -36,6 +36,11 @@ impl<'a> Text<'a> {
         number::integer(self.text).ok()
     }
 
+    /// The real number it says, if it is one; reports nothing.
+    pub fn as_real(&self) -> Option<f64> {
+        number::real(self.text).ok().map(|real| real.value)
+    }
+
     /// The real number it says; reports anything else.
     pub fn real(&self, d: &mut Diagnostics) -> Option<f64> {
         match number::real(self.text) {

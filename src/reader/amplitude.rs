@@ -72,6 +72,14 @@ fn points(card: &Card, cx: &mut Context) -> Vec<(f64, f64)> {
     for row in &card.rows {
         for (time, value) in pairs(row, cx) {
             let point = (time.0 * scale_x + shift_x, value * scale_y + shift_y);
+            if !(point.0.is_finite() && point.1.is_finite()) {
+                cx.error(
+                    Code::AmplitudeTable,
+                    time.1.span,
+                    "this point lies at infinity",
+                );
+                return Vec::new();
+            }
             if points.last().is_some_and(|last| last.0 >= point.0) {
                 let text = time.1.text;
                 let message = format!("the times of an amplitude must increase, found {text}");

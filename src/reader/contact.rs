@@ -7,6 +7,7 @@ use super::surface::{self, Surfaces};
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic};
 use crate::model::{Contact, Interaction, SurfaceKind};
+use std::collections::HashSet;
 
 /// Reads interactions and contacts.
 pub(super) fn read(
@@ -38,7 +39,19 @@ pub(super) fn read(
             contacts.extend(contact(row, interaction, surfaces, cx));
         }
     }
+    report_repeated(&contacts, cx);
     (interactions, contacts)
+}
+
+/// The same slave and master twice would count each contact force twice.
+fn report_repeated(contacts: &[Contact], cx: &mut Context) {
+    let mut seen = HashSet::new();
+    for contact in contacts {
+        if !seen.insert((contact.slave, contact.master)) {
+            let message = "this slave and this master are paired already";
+            cx.error(Code::ContactSurfaces, contact.span, message);
+        }
+    }
 }
 
 /// Coefficient of friction of an interaction; `None` after a reported error.

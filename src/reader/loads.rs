@@ -271,6 +271,7 @@ fn pressure_side(kind: &str) -> Option<usize> {
 
 fn gravity_direction(row: &Row, magnitude: f64, cx: &mut Context) -> Option<[f64; 2]> {
     let direction = unit_direction(row, cx)?;
+    warn_unless_unit(row, cx);
     let usual = [9.81, 981.0, 9810.0, 32.2, 386.0];
     if !usual
         .iter()
@@ -300,12 +301,21 @@ fn unit_direction(row: &Row, cx: &mut Context) -> Option<[f64; 2]> {
         cx.error(Code::BadDirection, span, "the direction is zero");
         return None;
     }
+    Some([x / length, y / length])
+}
+
+/// CalculiX multiplies an acceleration by the length of its direction.
+fn warn_unless_unit(row: &Row, cx: &mut Context) {
+    let component = |i: usize| row.get(i).and_then(|field| field.as_real());
+    let length = component(3)
+        .unwrap_or(0.0)
+        .hypot(component(4).unwrap_or(0.0));
     if (length - 1.0).abs() > 1e-6 {
+        let span = row.get(3).map_or(row.span(), |field| field.span);
         let message = format!("the direction has the length {length}, not 1");
         let warning = Diagnostic::warning(Code::BadDirection, span, message);
         cx.d.push_once(warning.help("only its direction is taken, the magnitude stays as given"));
     }
-    Some([x / length, y / length])
 }
 
 /// Direction of a TRVEC, which must not follow the face.

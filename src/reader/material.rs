@@ -70,7 +70,10 @@ pub(super) fn read(outline: &Outline, grid: &Grid, sets: &Sets, cx: &mut Context
     }
     properties.report_without_section(complete, grid, cx);
     report_incomplete(&drafts, &used, cx);
-    properties.materials = drafts.into_iter().map(material).collect();
+    properties.materials = drafts
+        .into_iter()
+        .map(|draft| material(draft, cx))
+        .collect();
     properties.report_locking(grid, cx);
     properties
 }
@@ -165,13 +168,26 @@ fn report_incomplete(drafts: &[Draft], used: &[bool], cx: &mut Context) {
 }
 
 /// A complete material; unknown constants are zero, which a model without errors never has in use.
-fn material(draft: Draft) -> Material {
+fn material(draft: Draft, cx: &mut Context) -> Material {
     let (young, poisson) = draft.elastic.given().unwrap_or((0.0, 0.0));
-    Material {
+    let material = Material {
         name: draft.name,
         young,
         poisson,
         density: draft.density.given().unwrap_or(0.0),
+    };
+    hint_at_units(&material, draft.span, cx);
+    material
+}
+
+/// Notes a wave speed that hints at mixed units.
+fn hint_at_units(material: &Material, span: Span, cx: &mut Context) {
+    let speed = (material.young / material.density).sqrt();
+    if speed.is_finite() && speed > 0.0 && !(10.0..=1e8).contains(&speed) {
+        let name = &material.name;
+        let message = format!("the waves in material {name} run at sqrt(E/rho) = {speed:.3e}");
+        let note = Diagnostic::note(Code::UnitsHint, span, message);
+        cx.d.push(note.help("most materials lie between 10 and 1e8 in common units"));
     }
 }
 
