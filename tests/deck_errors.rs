@@ -113,7 +113,7 @@ fn faulty(code: Code) -> Source {
             "ELSET=EBLOCK, MATERIAL=STEEL\n1.",
             "ELSET=EBLOCK, MATERIAL=STEEL\n2.",
         ),
-        ContactSurfaces => shared("SBOT, STOP", "SBOT, SBOT"),
+        SurfaceUse => shared("SBOT, STOP", "SBOT, SBOT"),
         FrictionRange => shared("0.3, 2.1E5", "-0.3"),
         UnitsHint => square("1000., 0.3", "1., 0.3"),
         BadDof => square("FOOT, 1, 2", "FOOT, 1, 8"),

@@ -379,3 +379,13 @@ fn a_mesh_in_a_subfolder() {
             .contains("** ---- file tests/decks/parts/nodes.txt ----\n1, 0., 0.\n")
     );
 }
+
+#[test]
+fn a_deck_as_a_preprocessor_writes_it() {
+    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+    let model = reader::read_model(Path::new("tests/decks/exported.inp"), &mut sources, &mut d);
+    insta::assert_snapshot!(d.render(&sources, false));
+    let model = model.expect("no errors");
+    assert_eq!(model.contacts.len(), 1);
+    assert_eq!(model.steps[0].increments.dt, 1e-3);
+}

@@ -163,9 +163,7 @@ fn line_ends_byte_order_mark_and_tabs() {
         format!("\u{feff}{SQUARE}"),
         SQUARE.replace(", ", ",\t"),
         SQUARE.trim_end().to_string(),
-        SQUARE
-            .replace("one square", "one square")
-            .replace("*NODE, NSET", "\t*NODE, NSET"),
+        SQUARE.replace("*NODE, NSET", "\t*NODE, NSET"),
     ] {
         let (model, d) = build(&text);
         assert_eq!(codes(&d), []);
@@ -298,6 +296,35 @@ fn cards_in_any_order() {
     let (model, d) = build(&format!("{rest}{mesh}{step}"));
     assert_eq!(codes(&d), []);
     assert_eq!(model, build(SQUARE).0);
+}
+
+#[test]
+fn a_lenient_reader_takes_reduced_elements_as_full_ones() {
+    let lenient = Diagnostics::with_strictness(Strictness::Lenient);
+    let (mut sources, mut d) = (Sources::new(), lenient);
+    let text = SQUARE.replace("CPS4", "CPS4R");
+    let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
+    assert_eq!(reader::build(&deck, &mut d), build(SQUARE).0);
+    assert_eq!(codes(&d), [Code::ElementType]);
+}
+
+#[test]
+fn a_missing_increment_comes_with_a_guide() {
+    let (_, d) = square("*DYNAMIC, DIRECT\n0.1, 1.", "*DYNAMIC, EXPLICIT\n, 1.");
+    assert_eq!(codes(&d), [Code::IgnoredParameter, Code::MissingField]);
+    let help = d.iter().filter_map(|item| item.help.as_deref()).last();
+    assert_eq!(
+        help,
+        Some("a wave crosses the shortest element side in 3.16e-2")
+    );
+}
+
+#[test]
+fn a_contact_given_twice_is_refused() {
+    let text = include_str!("decks/shared.inp").replace("SBOT, STOP", "SBOT, STOP\nSTOP, SBOT");
+    assert!(build(&text).0.is_some());
+    let (_, d) = build(&text.replace("STOP, SBOT", "SBOT, STOP"));
+    assert!(codes(&d).contains(&Code::SurfaceUse));
 }
 
 #[test]

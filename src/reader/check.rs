@@ -85,7 +85,7 @@ pub(super) fn thickness(
         {
             let message = "the two sides of this contact differ in thickness";
             let warning = Diagnostic::warning(Code::ThicknessMismatch, contact.span, message);
-            cx.d.push(warning.help("contact forces act as if both were equally thick"));
+            cx.d.push(warning.help("the bodies touch over the whole thickness of each"));
         }
     }
 }

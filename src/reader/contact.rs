@@ -49,7 +49,7 @@ fn report_repeated(contacts: &[Contact], cx: &mut Context) {
     for contact in contacts {
         if !seen.insert((contact.slave, contact.master)) {
             let message = "this slave and this master are paired already";
-            cx.error(Code::ContactSurfaces, contact.span, message);
+            cx.error(Code::SurfaceUse, contact.span, message);
         }
     }
 }
@@ -114,19 +114,19 @@ fn contact(
     let slave = slave.and_then(|field| surface::find(surfaces, field, cx));
     let Some(master) = row.get(1) else {
         let message = "the master surface is missing: a surface cannot touch itself yet";
-        cx.error(Code::ContactSurfaces, row.span(), message);
+        cx.error(Code::SurfaceUse, row.span(), message);
         return None;
     };
     let master = surface::find(surfaces, master, cx);
     let (slave, master) = (slave?, master?);
     if slave.0 == master.0 {
         let message = format!("surface {} is slave and master at once", slave.1.name);
-        cx.error(Code::ContactSurfaces, master.2, message);
+        cx.error(Code::SurfaceUse, master.2, message);
         return None;
     }
     if let SurfaceKind::Nodes(_) = master.1.kind {
         let message = format!("the master surface {} is made of nodes", master.1.name);
-        let error = Diagnostic::error(Code::ContactSurfaces, master.2, message);
+        let error = Diagnostic::error(Code::SurfaceUse, master.2, message);
         cx.d.push(error.help("a master is made of element faces; the slave may be made of nodes"));
         return None;
     }

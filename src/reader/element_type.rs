@@ -13,17 +13,30 @@ pub(super) fn read(name: Text, cx: &mut Context) -> Option<(usize, Plane)> {
         "CPE3" => Some((3, Plane::Strain)),
         "CPS4" => Some((4, Plane::Stress)),
         "CPE4" => Some((4, Plane::Strain)),
-        _ => {
-            let message = format!("element type {} cannot be used", name.text);
-            let error = Diagnostic::error(Code::ElementType, name.span, message);
-            let meant = closest(&folded, ["CPS3", "CPE3", "CPS4", "CPE4"]);
-            cx.d.push(match reason(&folded) {
-                Some(reason) => error.help(reason),
-                None => error.suggest(meant).help("use CPS3, CPE3, CPS4 or CPE4"),
-            });
-            None
-        }
+        _ => unusable(name, &folded, cx),
     }
+}
+
+/// Reports a type; a lenient reader takes elements with one integration point as full ones.
+fn unusable(name: Text, folded: &str, cx: &mut Context) -> Option<(usize, Plane)> {
+    let plane = match folded {
+        "CPS4R" => Some(Plane::Stress),
+        "CPE4R" => Some(Plane::Strain),
+        _ => None,
+    };
+    if let Some(plane) = plane.filter(|_| cx.d.is_lenient()) {
+        let message = format!("{} is integrated with 2 x 2 points", name.text);
+        cx.d.push_once(Diagnostic::warning(Code::ElementType, name.span, message));
+        return Some((4, plane));
+    }
+    let message = format!("element type {} cannot be used", name.text);
+    let error = Diagnostic::error(Code::ElementType, name.span, message);
+    let meant = closest(folded, ["CPS3", "CPE3", "CPS4", "CPE4"]);
+    cx.d.push(match reason(folded) {
+        Some(reason) => error.help(reason),
+        None => error.suggest(meant).help("use CPS3, CPE3, CPS4 or CPE4"),
+    });
+    None
 }
 
 /// Why a type that other codes know cannot be used.
