@@ -165,6 +165,45 @@ fn one_cause_one_message() {
 }
 
 #[test]
+fn follow_ups_of_a_reported_cause_are_not_reported() {
+    for (old, new) in [
+        ("*MATERIAL, NAME=RUBBER", "*MATERIAL"),
+        ("*MATERIAL, NAME=RUBBER", "*MATERAIL, NAME=RUBBER"),
+        ("*MATERIAL, NAME=RUBBER", "*MATERIAL, NAME=RUB&BER"),
+        ("*ELASTIC", "*HYPERELASTIC"),
+        ("*ELASTIC", "*ELASTIC, TYPE=LAMINA"),
+        ("*NSET, NSET=FOOT", "*NSET, NSTE=FOOT"),
+        ("*NSET, NSET=FOOT", "*NSET"),
+        ("*NSET, NSET=FOOT", "*XYZZY, NSET=FOOT"),
+        ("7, 1, 2, 3, 4", "7, 1, 2, x, 4"),
+        ("7, 1, 2, 3, 4", "7, 1, 2, 9, 4"),
+        ("7, 1, 2, 3, 4", "x, 1, 2, 3, 4"),
+        ("7, 1, 2, 3, 4", "7, 4, 3, 2, 1"),
+        ("TYPE=CPS4", "TYPE=CPS8"),
+        ("TYPE=CPS4", "TYP=CPS4"),
+        ("*ELEMENT", "*XYZZY"),
+        ("*NODE, NSET=ALL", "*XYZZY, NSET=ALL"),
+        ("*SURFACE, NAME=TOP", "*SURFACE, NAME=TOP, TYPE=SEGMENTS"),
+        ("*SOLID SECTION", "*SHELL SECTION"),
+        ("*SOLID SECTION", "*XYZZY"),
+        ("*DYNAMIC, DIRECT", "*STATIC"),
+        ("*DYNAMIC, DIRECT", "*XYZZY"),
+        ("*STEP, NLGEOM", "*XYZZY"),
+        ("*STEP, NLGEOM", "*STPE, NLGEOM"),
+        ("*DENSITY\n1.", "*DENSITY\nx"),
+        ("0.1, 1.", "0.1, x"),
+        ("*STEP, NLGEOM\n", ""),
+        (
+            "*NODE, NSET=ALL\n1, 0., 0.\n2, 1., 0.\n3, 1., 1.\n4, 0., 1.\n",
+            "",
+        ),
+    ] {
+        let (d, text) = messages(&square(old, new));
+        assert_eq!(d.count(Severity::Error), 1, "{new}:\n{text}");
+    }
+}
+
+#[test]
 fn valid_decks_have_no_errors() {
     for deck in [SQUARE, SHARED] {
         let (d, text) = messages(&Source::Text(deck.to_string()));

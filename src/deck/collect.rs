@@ -13,6 +13,8 @@ pub struct Deck {
     pub cards: Vec<Card>,
     /// Whether something that is not read, and reported, could define anything: a missing file.
     pub incomplete: bool,
+    /// Whether a card is left out because of a reported error: something may be missing.
+    pub dropped: bool,
     /// Names, as compared, that left out cards may have defined.
     pub suspects: HashSet<String>,
 }
@@ -122,11 +124,13 @@ impl Collector {
         let typed = first.text.text.trim_start_matches('*').trim();
         let Some(keyword) = resolve::keyword(typed, first.text.span, d) else {
             self.suspect(rest);
+            self.deck.dropped |= !d.is_lenient();
             self.rows = Rows::Skip;
             return None;
         };
         if keyword.status != Status::Read {
             self.suspect(rest);
+            self.deck.dropped |= keyword.status == Status::Refused;
             self.start(keyword, first.text.span, Rows::Skip);
             return None;
         }

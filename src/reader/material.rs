@@ -152,6 +152,9 @@ fn density_row(row: &Row, cx: &mut Context) -> Option<f64> {
 
 /// Constants that a material in use lacks.
 fn report_incomplete(drafts: &[Draft], used: &[bool], cx: &mut Context) {
+    if cx.may_lack_cards() {
+        return;
+    }
     for (draft, _) in drafts.iter().zip(used).filter(|(_, used)| **used) {
         let mut missing = Vec::new();
         if draft.elastic == Constant::Missing {
@@ -266,7 +269,7 @@ impl Properties {
         };
         let element = grid.mesh.elements.get(first);
         let span = grid.element_spans.get(first);
-        if let (Some(element), Some(&span), false) = (element, span, cx.deck.incomplete) {
+        if let (Some(element), Some(&span), false) = (element, span, cx.may_lack_cards()) {
             let message = match bare().count() {
                 1 => format!("element {} has no section", element.label),
                 n => format!(

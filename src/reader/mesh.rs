@@ -50,14 +50,21 @@ struct RawElement {
 
 /// Reads nodes and elements; leaves out nodes without element.
 pub(super) fn read(outline: &Outline, cx: &mut Context) -> Grid {
-    let mut reading = Reading::default();
+    let errors = cx.errors();
+    let mut reading = Reading {
+        nodes_incomplete: outline.blocks("NODE").next().is_none(),
+        elements_incomplete: outline.blocks("ELEMENT").next().is_none(),
+        ..Reading::default()
+    };
     for card in outline.model_cards("NODE") {
         reading.node_card(card, cx);
     }
     for card in outline.model_cards("ELEMENT") {
         reading.element_card(card, cx);
     }
-    reading.report_empty(cx);
+    if cx.errors() == errors && !cx.may_lack_cards() {
+        reading.report_empty(cx);
+    }
     reading.report_not_planar(cx);
     reading.grid(cx)
 }
@@ -209,17 +216,13 @@ impl Reading {
     }
 
     fn report_empty(&self, cx: &mut Context) {
-        let nothing_read = self.nodes.is_empty() || self.elements.is_empty();
-        let reported = cx.d.has_errors() || cx.deck.incomplete;
-        if nothing_read && !reported {
-            let what = if self.nodes.is_empty() {
-                "*NODE"
-            } else {
-                "*ELEMENT"
-            };
-            let message = format!("the deck has no mesh: {what} is missing or empty");
-            cx.d.push(Diagnostic::error_without_place(Code::EmptyMesh, message));
-        }
+        let what = match (self.nodes.is_empty(), self.elements.is_empty()) {
+            (true, _) => "nodes",
+            (false, true) => "elements",
+            (false, false) => return,
+        };
+        let message = format!("the deck has no {what}");
+        cx.d.push(Diagnostic::error_without_place(Code::EmptyMesh, message));
     }
 
     /// All nodes must have the same z, to a small fraction of the model's size.

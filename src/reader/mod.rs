@@ -42,7 +42,9 @@ pub fn build(deck: &Deck, d: &mut Diagnostics) -> Option<Model> {
         return None;
     }
     let model = read(&mut Context { deck, d });
-    report_unused(deck, d);
+    if !d.has_errors() {
+        report_unused(deck, d);
+    }
     (!d.has_errors()).then_some(model)
 }
 

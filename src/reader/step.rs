@@ -140,7 +140,7 @@ impl Reading<'_> {
         let found = named(cards, "DYNAMIC");
         cx.only_once(&found);
         let Some(card) = found.first() else {
-            if !cards.refused && !cx.deck.incomplete {
+            if !cx.may_lack_cards() {
                 let message = "this step has no procedure";
                 let error = Diagnostic::error(Code::StepStructure, cards.head.span, message);
                 cx.d.push(error.help("add *DYNAMIC with the increment and the duration"));
