@@ -22,8 +22,9 @@ pub struct Deck {
 impl Deck {
     /// Whether it is an assembly deck, which is reported.
     pub fn has_assembly(&self) -> bool {
-        let mut scopes = self.cards.iter().map(|card| card.keyword.scope);
-        scopes.any(|scope| scope == Scope::Assembly)
+        let refused = |card: &Card| card.keyword.status == Status::Refused;
+        let mut cards = self.cards.iter().filter(|card| refused(card));
+        cards.any(|card| card.keyword.scope == Scope::Assembly)
     }
 }
 
@@ -123,14 +124,16 @@ impl Collector {
         let (first, rest) = pieces.split_first()?;
         let typed = first.text.text.trim_start_matches('*').trim();
         let Some(keyword) = resolve::keyword(typed, first.text.span, d) else {
-            self.suspect(rest);
-            self.deck.dropped |= !d.is_lenient();
+            if !d.is_lenient() {
+                self.drop_card(rest);
+            }
             self.rows = Rows::Skip;
             return None;
         };
         if keyword.status != Status::Read {
-            self.suspect(rest);
-            self.deck.dropped |= keyword.status == Status::Refused;
+            if keyword.status == Status::Refused {
+                self.drop_card(rest);
+            }
             self.start(keyword, first.text.span, Rows::Skip);
             return None;
         }
@@ -180,7 +183,13 @@ impl Collector {
         Some(inclusion(path, true))
     }
 
-    /// Names on the line of a card that is left out.
+    /// A card is left out because of a reported error.
+    fn drop_card(&mut self, pieces: &[Piece]) {
+        self.deck.dropped = true;
+        self.suspect(pieces);
+    }
+
+    /// Names that are left out because of a reported error.
     fn suspect(&mut self, pieces: &[Piece]) {
         for piece in pieces {
             if let Some((value, _)) = assignment(piece.text.text).value {
@@ -200,10 +209,12 @@ impl Collector {
             };
             let errors = d.count(Severity::Error);
             let param = resolve::parameter(card, piece, d);
-            card.faulty |= d.count(Severity::Error) > errors;
+            let faulty = d.count(Severity::Error) > errors;
+            card.faulty |= faulty;
             match param {
                 Some(param) => card.params.push(param),
-                None => self.suspect(std::slice::from_ref(piece)),
+                None if faulty => self.suspect(std::slice::from_ref(piece)),
+                None => {}
             }
         }
     }

@@ -10,17 +10,18 @@ use std::cell::Cell;
 
 /// The keyword that is typed, or the one that is meant; reports what is not read.
 pub(super) fn keyword(typed: &str, span: Span, d: &mut Diagnostics) -> Option<&'static Keyword> {
-    let found = match find(typed) {
-        Some(keyword) => Some(keyword),
-        None => {
-            let known = word::find(typed, keywords().map(|keyword| keyword.name));
-            known_word(known, || unknown_keyword(typed, span, known), "*", span, d)
-                .and_then(find)
-                .filter(|keyword| keyword.status == Status::Read)
-        }
-    }?;
-    report_keyword(found, span, d);
-    Some(found)
+    if let Some(keyword) = find(typed) {
+        report_keyword(keyword, span, d);
+        return Some(keyword);
+    }
+    let known = word::find(typed, keywords().map(|keyword| keyword.name));
+    let unknown = || unknown_keyword(typed, span, known);
+    let keyword = known_word(known, unknown, "*", span, d).and_then(find)?;
+    if let Match::Unknown(_) = known {
+        return Some(keyword).filter(|keyword| keyword.status == Status::Read);
+    }
+    report_keyword(keyword, span, d);
+    Some(keyword)
 }
 
 /// Reports a word that is not typed in full; the word to go on with.

@@ -264,7 +264,8 @@ impl Properties {
                 .enumerate()
                 .filter(|(_, s)| s.is_none())
         };
-        let Some((first, _)) = bare().next().filter(|_| complete) else {
+        let is_cause = complete || !cx.d.has_errors();
+        let Some((first, _)) = bare().next().filter(|_| is_cause) else {
             return;
         };
         let element = grid.mesh.elements.get(first);
