@@ -239,6 +239,20 @@ fn an_included_file_is_named_with_the_line_that_includes_it() {
 }
 
 #[test]
+fn a_file_of_data_lines_holds_no_keyword() {
+    let (d, text) = messages(&Source::File("tests/decks/keyword_in_rows.inp"));
+    assert_eq!(
+        d.iter().next().map(|item| item.code),
+        Some(Code::WrongPlace),
+        "{text}"
+    );
+    assert!(
+        text.contains("--> tests/decks/parts/faulty.inp:1:1"),
+        "{text}"
+    );
+}
+
+#[test]
 fn at_most_twenty_errors_are_shown() {
     let rows: String = (10..60).map(|node| format!("{node}, x, 0.\n")).collect();
     let (d, text) = messages(&square("1, 0., 0.\n", &format!("{rows}1, 0., 0.\n")));

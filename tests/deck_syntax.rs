@@ -320,6 +320,14 @@ fn a_missing_increment_comes_with_a_guide() {
 }
 
 #[test]
+fn parameters_without_effect_are_mentioned() {
+    let card = "*STICKSLIP, THETA1=0.7\n*CLOAD";
+    assert_eq!(faults("*CLOAD", card), [Code::IgnoredParameter]);
+    let card = "*DSLOAD, FOLLOWER=NO\nTOP, P, 1.\n*CLOAD";
+    assert_eq!(faults("*CLOAD", card), [Code::IgnoredParameter]);
+}
+
+#[test]
 fn a_contact_given_twice_is_refused() {
     let text = include_str!("decks/shared.inp").replace("SBOT, STOP", "SBOT, STOP\nSTOP, SBOT");
     assert!(build(&text).0.is_some());
