@@ -280,6 +280,7 @@ fn names_have_limits_and_name_spaces() {
     let long = "N".repeat(81);
     assert_eq!(faults("NSET=ALL", &format!("NSET={long}")), [Code::BadName]);
     assert_eq!(faults("NSET=ALL", "NSET=12"), [Code::BadName]);
+    assert_eq!(faults("NSET=ALL", "NSET=0\"ALL\""), [Code::BadName]);
     let cae = SQUARE
         .replace("TOP", "_Surf-1_S3")
         .replace("ELSET=BODY", "ELSET=FOOT")

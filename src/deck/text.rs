@@ -91,7 +91,7 @@ impl<'a> Text<'a> {
             Some(content) if fits(content) => return Some(Name::quoted(content)),
             Some(_) => Some("a name has 1 to 80 characters".to_string()),
             // An open quotation mark is reported already.
-            None if self.text.contains('"') => return None,
+            None if self.text.matches('"').count() % 2 == 1 => return None,
             None => self.fault_of_plain_name(),
         };
         match fault {
