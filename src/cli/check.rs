@@ -16,8 +16,7 @@ pub(super) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exit, CliEr
         return Ok(Exit::Rejected);
     };
     check_names(model)?;
-    let gaps = (numerics.initial_gaps)(model);
-    print(&ModelEcho::new(model).lines(model, &gaps));
+    print(&ModelEcho::new(model).lines(model));
     Ok(Exit::Finished)
 }
 

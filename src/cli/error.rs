@@ -38,9 +38,6 @@ pub(super) enum CliError {
     /// The result file cannot be read.
     #[error(transparent)]
     Summary(#[from] SummaryError),
-    /// The solver could not start.
-    #[error("the solver could not start: {0}")]
-    Setup(String),
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
@@ -56,7 +53,6 @@ impl CliError {
     pub fn exit(&self) -> Exit {
         match self {
             CliError::Name(_) | CliError::Output(OutputError::Name(_)) => Exit::Rejected,
-            CliError::Setup(_) => Exit::Stopped,
             CliError::Threads { .. } => Exit::Usage,
             CliError::Deck { .. }
             | CliError::Exists { .. }

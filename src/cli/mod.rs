@@ -7,7 +7,10 @@ mod error;
 mod exit;
 mod info;
 mod overrides;
+mod penetration;
 mod run;
+#[cfg(test)]
+mod run_tests;
 mod version;
 
 use std::ffi::OsString;

@@ -1,10 +1,10 @@
 use super::args::RunArgs;
 use super::check::{complain_of, deck_line_of, load};
-use super::connect::{Loaded, Numerics, SolveError};
+use super::connect::{Loaded, Numerics};
 use super::error::CliError;
 use super::version::{COMMIT, NUMBER, PROFILE};
 use super::{Exit, overrides};
-use crate::dynamics::Outcome;
+use crate::dynamics::{Outcome, RunError};
 use crate::model::Model;
 use crate::output::{
     JobFiles, ModelEcho, ResultWriter, RunRecord, Verbosity, check_names, program_lines,
@@ -26,7 +26,7 @@ pub(super) fn run(args: &RunArgs, command: &str, numerics: &Numerics) -> Result<
     let record = record(command, &loaded, start_threads(args.threads)?);
     let notes = overrides::apply(args, &mut model);
     let mut writer = ResultWriter::create(&model, &files, &record, args.verbosity())?;
-    for line in header(args, &files, &loaded, &record, &model, numerics) {
+    for line in header(args, &files, &loaded, &record, &model) {
         writer.line(&line)?;
     }
     for note in &notes {
@@ -59,11 +59,10 @@ fn solve(model: &Model, writer: &mut ResultWriter, numerics: &Numerics) -> Resul
     }
 }
 
-impl From<SolveError> for CliError {
-    fn from(error: SolveError) -> Self {
+impl From<RunError> for CliError {
+    fn from(error: RunError) -> Self {
         match error {
-            SolveError::Output(error) => CliError::Write(error),
-            SolveError::Setup(text) => CliError::Setup(text),
+            RunError::Observer(error) => CliError::Write(error),
         }
     }
 }
@@ -107,11 +106,9 @@ fn header(
     loaded: &Loaded,
     record: &RunRecord,
     model: &Model,
-    numerics: &Numerics,
 ) -> Vec<String> {
     let mut lines = program_lines(record, PROFILE, &files.name, &model.title);
     lines.push(deck_line_of(&args.deck, loaded, Some(&files.log)));
-    let gaps = (numerics.initial_gaps)(model);
-    lines.extend(ModelEcho::new(model).lines(model, &gaps));
+    lines.extend(ModelEcho::new(model).lines(model));
     lines
 }

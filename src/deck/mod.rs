@@ -1,1 +1,26 @@
 //! From text to cards: files, logical lines, keyword lines and data fields.
+//!
+//! A *card* is a keyword line with the data lines under it. [`read`] turns a file and its includes
+//! into a [`Deck`] of cards whose keywords and parameters are known ones, see [`keywords`]; what
+//! they mean is left to the reader.
+
+mod card;
+mod collect;
+mod keyword;
+mod lexer;
+mod name;
+mod number;
+mod reference;
+mod source;
+mod table;
+mod table_others;
+mod text;
+mod word;
+
+pub use card::{Card, Param, Row};
+pub use collect::Deck;
+pub use keyword::{Data, Keyword, Parameter, Scope, Status, Takes, Value, keywords};
+pub use name::Name;
+pub use reference::keyword_reference;
+pub use source::{parse_str, read};
+pub use text::Text;

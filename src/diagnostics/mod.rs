@@ -1,5 +1,19 @@
 //! Errors and warnings with their place in the deck.
+//!
+//! Everything that reads a deck pushes [`Diagnostic`]s into one [`Diagnostics`] and carries on, so
+//! that one run names every fault. Text is made once, by [`Diagnostics::render`].
 
+mod code;
+mod diagnostic;
+mod list;
+mod render;
+mod sources;
 mod span;
+mod suggestion;
 
+pub use code::Code;
+pub use diagnostic::{Diagnostic, Severity};
+pub use list::{Diagnostics, Strictness};
+pub use sources::{Source, Sources};
 pub use span::{FileId, Span};
+pub use suggestion::closest;

@@ -15,6 +15,8 @@ pub(super) struct ContactForces {
     pub tangential: Vec<f64>,
     /// State of every pair.
     pub state: Vec<ContactState>,
+    /// Number of pairs that entered the complementarity problem.
+    pub problem_size: usize,
 }
 
 impl ContactForces {
@@ -26,6 +28,7 @@ impl ContactForces {
             normal: vec![0.0; n],
             tangential: vec![0.0; n],
             state: vec![ContactState::Open; n],
+            problem_size: 0,
         }
     }
 
@@ -49,6 +52,16 @@ impl ContactForces {
     pub fn closed_slots(&self) -> Vec<usize> {
         let closed = (0..self.pairs.len()).filter(|&k| self.is_closed(k));
         closed.map(|k| self.pairs[k].slot).collect()
+    }
+
+    /// Stores the states per slot.
+    pub fn remember(&self, state: &mut [ContactState]) {
+        state.fill(ContactState::Open);
+        for (k, pair) in self.pairs.iter().enumerate() {
+            if self.is_closed(k) {
+                state[pair.slot] = self.state[k];
+            }
+        }
     }
 
     /// Numbers of closed and of sticking pairs.
@@ -85,6 +98,7 @@ impl ContactForces {
         );
         let solution = solution.map_err(|error| Cause::Lcp(error.to_string()))?;
         meter.count_lcp(pairs.len(), solution.counters);
+        self.problem_size = pairs.len();
         for (i, &k) in chosen.iter().enumerate() {
             self.normal[k] = solution.pn[i];
             self.tangential[k] = solution.pt[i];

@@ -1,5 +1,6 @@
-use super::increment::{Solved, StepProblem};
+use super::increment::Solved;
 use super::mass::dot;
+use super::step_problem::{Equilibrium, StepProblem};
 use super::{Energy, Momentum, State};
 
 /// Energy ledger: every term is computed on its own, so that the balance shows what is wrong.
@@ -28,13 +29,16 @@ impl Ledger {
         let Solved {
             d,
             v0p,
-            load,
-            internal,
-            inertia,
             end,
             forces,
             ..
         } = solved;
+        let Equilibrium {
+            load,
+            internal,
+            inertia,
+            ..
+        } = &solved.equilibrium;
         let e = &mut self.energy;
         let strain0 = e.strain;
         e.strain = problem.body.strain_energy(&end.u);
@@ -72,8 +76,8 @@ impl Ledger {
 pub(super) fn momentum(problem: &StepProblem, state: &State) -> Momentum {
     let p = problem.mass.times(&state.v);
     let mut momentum = Momentum::default();
-    for (node, x) in problem.model.mesh.coordinates.iter().enumerate() {
-        let position = [x[0] + state.u[2 * node], x[1] + state.u[2 * node + 1]];
+    for node in 0..problem.model.mesh.node_count() {
+        let position = problem.position(&state.u, node);
         let [px, py] = [p[2 * node], p[2 * node + 1]];
         momentum.linear[0] += px;
         momentum.linear[1] += py;

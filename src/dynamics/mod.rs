@@ -1,6 +1,7 @@
 //! Time integration with contact and impact.
 
 mod contact_forces;
+mod convergence;
 mod dofs;
 mod effective;
 mod failure;
@@ -13,6 +14,7 @@ mod report;
 mod results;
 mod run;
 mod scheme;
+mod step_problem;
 mod supports;
 
 pub use failure::{Cause, Failure, Worst};

@@ -1,4 +1,5 @@
-use super::increment::{Interval, Solved, StepProblem};
+use super::increment::Solved;
+use super::step_problem::{Equilibrium, Interval, StepProblem};
 use super::{ContactResultant, Landing, NodalResults, NodeStatus, State};
 use crate::contact::{Pair, project};
 use crate::lcp::ContactState;
@@ -7,9 +8,15 @@ use crate::lcp::ContactState;
 pub(super) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResults {
     let dofs = solved.d.len();
     let contact_force = solved.forces.resultant(dofs);
+    let Equilibrium {
+        load,
+        internal,
+        inertia,
+        ..
+    } = &solved.equilibrium;
     let mut reaction = vec![0.0; dofs];
     for p in problem.supports.dofs() {
-        reaction[p] = solved.inertia[p] + solved.internal[p] - solved.load[p] - contact_force[p];
+        reaction[p] = inertia[p] + internal[p] - load[p] - contact_force[p];
     }
     let mut results = NodalResults {
         reaction,
@@ -31,15 +38,8 @@ pub(super) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
 }
 
 fn end_gap(problem: &StepProblem, solved: &Solved, pair: &Pair) -> f64 {
-    let [s, a, b] = pair
-        .nodes
-        .map(|node| position(problem, &solved.end.u, node));
+    let [s, a, b] = pair.nodes.map(|node| problem.position(&solved.end.u, node));
     project(s, a, b).gap
-}
-
-fn position(problem: &StepProblem, u: &[f64], node: usize) -> [f64; 2] {
-    let x = problem.model.mesh.coordinates[node];
-    [x[0] + u[2 * node], x[1] + u[2 * node + 1]]
 }
 
 /// Resultants of every contact; moments about the origin, forces acting at U_theta.
@@ -61,7 +61,7 @@ pub(super) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
         }
         let (pn, pt) = (forces.normal[k], forces.tangential[k]);
         let f = [0, 1].map(|i| pair.normal[i] * pn + pair.tangent[i] * pt);
-        let x = position(problem, &solved.u_theta, pair.nodes[0]);
+        let x = problem.position(&solved.equilibrium.u_theta, pair.nodes[0]);
         r.force[0] += f[0];
         r.force[1] += f[1];
         r.moment += x[0] * f[1] - x[1] * f[0];

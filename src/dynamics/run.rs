@@ -2,13 +2,14 @@ use std::io;
 
 use super::dofs::DofMap;
 use super::effective::Effective;
-use super::increment::{Failed, Interval, Solved, StepProblem, remember};
+use super::increment::{Attempt, Failed, Solved};
 use super::ledger::{Ledger, momentum};
 use super::loads::{Loads, Moment};
 use super::mass::Mass;
 use super::meter::Meter;
 use super::results::{contact_resultants, landings, nodal_results};
 use super::scheme::Weights;
+use super::step_problem::{Interval, StepProblem};
 use super::supports::Supports;
 use super::{
     ContactResultant, Cutback, Failure, IncrementReport, NodalResults, NodeStatus, Observer,
@@ -184,14 +185,14 @@ impl<'m> Runner<'m, '_> {
         while piece < 1 << halvings {
             let interval = grid.piece(place, piece, halvings);
             self.meter.counts = SolverCounts::default();
-            let solved = problem.solve_increment(
+            let attempt = Attempt {
+                problem,
                 effective,
-                &self.state,
+                start: &self.state,
                 interval,
-                &self.contact,
-                &mut self.meter,
-            );
-            match solved {
+                meter: &mut self.meter,
+            };
+            match attempt.solve(&self.contact) {
                 Ok(solved) => {
                     self.accept(problem, place, interval, solved)?;
                     piece += 1;
@@ -257,7 +258,7 @@ impl<'m> Runner<'m, '_> {
             passes: solved.passes,
             state: solved.end,
         };
-        remember(&solved.forces, &mut self.contact);
+        solved.forces.remember(&mut self.contact);
         self.observer.increment(&report)?;
         self.state = report.state;
         Ok(())

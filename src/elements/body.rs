@@ -20,6 +20,7 @@ pub struct Inverted {
 }
 
 /// Reference geometry of an element.
+#[allow(clippy::large_enum_variant)] // most elements are quadrilaterals: kept in one piece for speed
 enum Geometry {
     Tri3([usize; 3], Reference<3, 1>),
     Quad4([usize; 4], Reference<4, 4>),
@@ -146,8 +147,7 @@ impl Body {
             .collect();
         let mut total = vec![0.0; self.dofs];
         for (element, (force, determinant)) in forces.iter().enumerate() {
-            // written so that NaN fails too
-            if !(*determinant > 0.0) {
+            if determinant.is_nan() || *determinant <= 0.0 {
                 return Err(Inverted {
                     element,
                     determinant: *determinant,

@@ -1,9 +1,9 @@
 //! The revised basis of Lemke's method: an explicit inverse of its kernel only.
 //!
-//! In the system  w - M z - d z0 = q  let beta be the rows whose w is not basic. The basic z and z0
-//! solve the small system K y = b_beta with the kernel K = -[M_beta,alpha  d_beta]; the basic w follow
-//! from their rows: w = b + M_alpha y + d y0. Every exchange changes K by a column, a row, or both,
-//! and its inverse by one outer product.
+//! In the system  w - M z - d z0 = q  let beta be the rows whose w is not basic, alpha the columns
+//! whose z is. The basic z and z0 solve the small system K y = b_beta with the kernel
+//! K = -[M_beta,alpha  d_beta]; the basic w follow from their rows: w = b + M_alpha y + d y0. Every
+//! exchange changes K by a column, a row, or both, and its inverse by one outer product.
 
 use super::dense::{axpy, dot, max_abs};
 use super::factors::Factors;

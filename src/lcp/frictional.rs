@@ -9,7 +9,8 @@ use super::problem::{Lcp, LcpError, expect_finite, expect_non_negative, expect_s
 ///
 /// ```text
 /// g  = Qnn Pn + Qnt Pt + gap     g >= 0,  Pn >= 0,  g Pn = 0
-/// Dt = Qtn Pn + Qtt Pt + slip    |Pt| <= mu Pn,  Dt = 0 while |Pt| < mu Pn,  Dt opposes Pt at the limit
+/// Dt = Qtn Pn + Qtt Pt + slip    |Pt| <= mu Pn,  Dt = 0 while |Pt| < mu Pn,
+///                                Dt opposes Pt where |Pt| = mu Pn
 /// ```
 ///
 /// Q is symmetric (compliance, length/force) and at least positive semidefinite.

@@ -28,9 +28,11 @@ struct FrictionalMatrix<'a> {
     signs: Vec<f64>,
 }
 
-/// Solves a scaled problem by Lemke's method with covering vector d = (1, 1/(1 + mu), 0).
+/// Solves a scaled problem by Lemke's method with covering vector d = (1, 1/(1 + mu), 0), both
+/// entries of a contact times its entry of `covering` > 0.
 pub(super) fn lemke_forces(
     scaled: &Scaled,
+    covering: &[f64],
     settings: &LemkeSettings,
 ) -> Result<LemkeForces, LcpError> {
     let (n, m) = (scaled.contacts, scaled.owners.len());
@@ -41,8 +43,13 @@ pub(super) fn lemke_forces(
     let mut q: Vec<f64> = scaled.b[..n].to_vec();
     q.extend(scaled.b[n..].iter().map(|slip| slip.abs()));
     q.resize(n + 2 * m, 0.0);
-    let mut d = vec![1.0; n];
-    d.extend(scaled.owners.iter().map(|i| 1.0 / (1.0 + scaled.mu[*i])));
+    let mut d = covering.to_vec();
+    d.extend(
+        scaled
+            .owners
+            .iter()
+            .map(|i| covering[*i] / (1.0 + scaled.mu[*i])),
+    );
     d.resize(n + 2 * m, 0.0);
     let matrix = FrictionalMatrix { scaled, signs };
     let vertex = follow_path(&matrix, &q, &d, settings).map_err(|error| match error {
@@ -148,13 +155,14 @@ impl PivotMatrix for FrictionalMatrix<'_> {
         if j >= end {
             return if j - m == i { 1.0 } else { 0.0 };
         }
-        let q = &self.scaled.q;
+        // Row i of the symmetric Q, read where it is contiguous.
+        let q = self.scaled.column(i);
         if j >= n {
-            return sign(i) * sign(j) * 2.0 * q[(i, j)];
+            return sign(i) * sign(j) * 2.0 * q[j];
         }
         match self.scaled.tangents[j] {
-            None => sign(i) * q[(i, j)],
-            Some(t) => sign(i) * (q[(i, j)] - sign(t) * self.scaled.mu[j] * q[(i, t)]),
+            None => sign(i) * q[j],
+            Some(t) => sign(i) * (q[j] - sign(t) * self.scaled.mu[j] * q[t]),
         }
     }
 }

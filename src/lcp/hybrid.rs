@@ -8,6 +8,7 @@ use super::frictional_lemke::lemke_forces;
 use super::gauss_seidel::gauss_seidel;
 use super::lemke::LemkeSettings;
 use super::problem::{LcpError, expect_size};
+use super::ratio::perturbation;
 use super::reduced;
 use super::residual::{TOLERANCE, frictional_residual};
 use super::scaled::Scaled;
@@ -15,6 +16,9 @@ use super::state::{ContactState, Counters};
 
 /// Gauss-Seidel sweeps between two calls of the active set.
 const SWEEPS: [usize; 3] = [10, 40, 160];
+
+/// Paths of Lemke's method that are tried.
+const PATHS: usize = 4;
 
 /// The method a caller asks for.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -135,23 +139,59 @@ fn project(scaled: &Scaled, p: &mut [f64]) {
     }
 }
 
-/// Lemke's method; the forces of its states are then solved for directly, which is more accurate
-/// than what the exchanges leave, unless redundant contacts make that system singular.
+/// Lemke's method, along up to [`PATHS`] paths with different covering vectors: where round-off
+/// ends one path on a ray, another goes through. The error is that of the first path.
 fn lemke(
     problem: &FrictionalLcp,
     scaled: &Scaled,
     counters: &mut Counters,
 ) -> Result<FrictionalSolution, LcpError> {
+    let first = follow(problem, scaled, &vec![1.0; scaled.contacts], counters);
+    if first.is_ok() {
+        return first;
+    }
+    let mut covering = perturbation(scaled.contacts);
+    for _ in 1..PATHS {
+        let other = follow(problem, scaled, &covering, counters);
+        if other.is_ok() {
+            return other;
+        }
+        covering.rotate_left(1);
+        covering.iter_mut().for_each(|d| *d *= *d);
+    }
+    first
+}
+
+/// One path of Lemke's method. The forces of its states are then solved for directly, which is
+/// more accurate than what the exchanges leave, with the states corrected that ties within the
+/// tolerance have left wrong; redundant contacts may need the forces of the path itself.
+fn follow(
+    problem: &FrictionalLcp,
+    scaled: &Scaled,
+    covering: &[f64],
+    counters: &mut Counters,
+) -> Result<FrictionalSolution, LcpError> {
     counters.lemke_calls += 1;
-    let found = lemke_forces(scaled, &LemkeSettings::default())?;
-    counters.pivots += found.pivots;
-    let direct = reduced::forces(scaled, &found.states);
-    let candidates = direct.into_iter().chain([found.p]);
-    let solutions = candidates.map(|p| {
-        let forces = scaled.forces(&admissible(scaled, &found.states, p));
-        finish(problem, &found.states, forces, Method::Lemke, *counters)
-    });
-    accept(solutions)
+    let found = lemke_forces(scaled, covering, &LemkeSettings::default());
+    counters.pivots += match &found {
+        Ok(found) => found.pivots,
+        Err(LcpError::Ray { pivots, .. } | LcpError::PivotLimit { pivots }) => *pivots,
+        Err(_) => 0,
+    };
+    let found = found?;
+    let corrected = match active_set(scaled, found.states.clone(), &mut Counters::default()) {
+        Outcome::Converged(states, p) => Some((states, p)),
+        Outcome::Failed(_) => None,
+    };
+    let direct = || reduced::forces(scaled, &found.states).map(|p| (found.states.clone(), p));
+    let candidates = corrected
+        .into_iter()
+        .chain(std::iter::once_with(direct).flatten());
+    let own = (found.states.clone(), found.p);
+    accept(candidates.chain([own]).map(|(states, p)| {
+        let forces = scaled.forces(&admissible(scaled, &states, p));
+        finish(problem, &states, forces, Method::Lemke, *counters)
+    }))
 }
 
 /// The first solution whose residual is small enough.

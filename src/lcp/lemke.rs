@@ -54,6 +54,12 @@ impl PivotMatrix for DMatrix<f64> {
     }
 }
 
+/// A covering vector for any problem: ones after the rows of M are scaled to entries near 1.
+pub fn covering_vector(lcp: &Lcp) -> DVector<f64> {
+    let rows = Equilibration::of(&lcp.m).rows;
+    DVector::from_iterator(rows.len(), rows.iter().map(|r| 1.0 / r))
+}
+
 /// Solves an [`Lcp`] by Lemke's method with covering vector `d` >= 0 (positive where q is
 /// negative), after scaling rows and columns of M, q and d by powers of two.
 pub fn lemke(

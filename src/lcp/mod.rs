@@ -14,6 +14,7 @@
 mod active_set;
 mod basis;
 mod dense;
+mod exchange;
 mod factors;
 mod frictional;
 mod frictional_lemke;
@@ -29,9 +30,10 @@ mod scaled;
 mod scaling;
 mod state;
 
+pub use exchange::{JsonAnswer, solve_json};
 pub use frictional::FrictionalLcp;
 pub use hybrid::{FrictionalSolution, LcpMethod, Method, solve_frictional};
-pub use lemke::{LemkeSettings, lemke};
+pub use lemke::{LemkeSettings, covering_vector, lemke};
 pub use problem::{Lcp, LcpError, LcpSolution};
 pub use residual::residual;
 pub use state::{ContactState, Counters};

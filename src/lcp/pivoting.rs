@@ -12,7 +12,7 @@ const CHECK_INTERVAL: usize = 50;
 const DRIFT: f64 = 1e-9;
 
 /// Column entries below this part of the largest one do not take part in a ratio test.
-const PIVOT_TOLERANCE: f64 = 1e-11;
+const PIVOT_TOLERANCE: f64 = 1e-9;
 
 /// The end of a path: a complementary basis.
 pub(super) struct Vertex {

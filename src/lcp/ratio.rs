@@ -1,9 +1,9 @@
 //! The lexicographic ratio test.
 //!
 //! The right-hand side is perturbed to q + eps p + eps^2 e_1 + eps^3 e_2 + ..., p > 0, with eps
-//! smaller than anything that occurs: ratios that tie on q are compared on p, then on the columns of
-//! the inverse basis. The entries of p follow the golden ratio, so that the second
-//! comparison decides almost always.
+//! smaller than anything that occurs: ratios that tie on q are compared on p, then on the columns
+//! of the inverse basis. The entries of p follow the golden ratio, so that the second comparison
+//! almost always decides.
 
 use super::basis::{Basis, PivotMatrix, Values, Variable};
 
@@ -45,7 +45,8 @@ impl Candidates {
         self.rows.first().map(|(v, _)| *v)
     }
 
-    /// The variable left when the ties are broken by the perturbation values and then by the columns of the inverse.
+    /// The variable left when the ties are broken by the values of p and then by the columns of
+    /// the inverse basis.
     pub fn break_ties<M: PivotMatrix>(
         mut self,
         basis: &Basis<M>,

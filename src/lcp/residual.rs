@@ -42,12 +42,20 @@ pub fn residual(lcp: &Lcp, z: &DVector<f64>) -> f64 {
 /// the deepest penetration plus 1e-6 of the terms of Q P, forces in that unit over mean diag Qnn.
 pub(super) fn frictional_residual(problem: &FrictionalLcp, pn: &[f64], pt: &[f64]) -> f64 {
     let n = problem.gap.len();
-    let mut p = DVector::zeros(2 * n);
-    p.as_mut_slice()[..n].copy_from_slice(pn);
-    p.as_mut_slice()[n..].copy_from_slice(pt);
-    let motion = &problem.q * &p;
-    let terms = max_abs((problem.q.abs() * p.abs()).as_slice());
-    let length = problem.gap.iter().fold(0.0_f64, |l, g| l.max(-g)) + ROUNDING * terms;
+    let (mut motion, mut terms) = (vec![0.0; 2 * n], vec![0.0; 2 * n]);
+    for (k, force) in pn
+        .iter()
+        .chain(pt)
+        .enumerate()
+        .filter(|(_, force)| **force != 0.0)
+    {
+        for ((v, t), q) in motion.iter_mut().zip(&mut terms).zip(&problem.q.column(k)) {
+            *v += q * force;
+            *t += (q * force).abs();
+        }
+    }
+    let length = problem.gap.iter().fold(0.0_f64, |l, g| l.max(-g)) + ROUNDING * max_abs(&terms);
+
     let stiffness = n as f64 / (0..n).map(|i| problem.q[(i, i)]).sum::<f64>();
     let per_force = if stiffness.is_finite() && stiffness > 0.0 {
         1.0 / stiffness

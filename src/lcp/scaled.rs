@@ -10,9 +10,11 @@ use super::scaling::power_of_two;
 
 /// v = Q p + b with p = (Pn of all n contacts, Pt of the m contacts with mu > 0).
 ///
-/// Lengths are in units of the deepest penetration, forces in that unit over the mean diag Qnn, both
-/// rounded to powers of two. The penetration is what drives the forces: a gap or a slip many
-/// orders larger must not make a closed contact inaccurate.
+/// With the weights w_i = root of Qnn_ii over its mean, the lengths of contact i are in units of
+/// w_i times the deepest penetration (over its weight), the forces in that over Qnn_ii; all rounded
+/// to powers of two. One weight for normal and tangent leaves the friction law as it is. The
+/// penetration is what drives the forces: a gap or a slip many orders larger must not make a
+/// closed contact inaccurate.
 pub(super) struct Scaled {
     /// Number of contacts n.
     pub contacts: usize,
@@ -26,8 +28,8 @@ pub(super) struct Scaled {
     pub b: Vec<f64>,
     /// Friction coefficients (length n).
     pub mu: Vec<f64>,
-    /// Unit of the forces.
-    force: f64,
+    /// Unit of the forces of each contact (length n).
+    units: Vec<f64>,
 }
 
 impl Scaled {
@@ -39,26 +41,36 @@ impl Scaled {
         for (f, i) in owners.iter().enumerate() {
             tangents[*i] = Some(n + f);
         }
-        let length = power_of_two(problem.gap.iter().fold(0.0_f64, |l, g| l.max(-g)));
-        let stiffness = power_of_two((0..n).map(|i| problem.q[(i, i)]).sum::<f64>() / n as f64);
-        let index = |k: usize| if k < n { k } else { n + owners[k - n] };
-        let size = n + owners.len();
-        let q = DMatrix::from_fn(size, size, |i, j| {
-            problem.q[(index(i), index(j))] / stiffness
-        });
-        let motion = |k: usize| {
-            if k < n {
-                problem.gap[k]
-            } else {
-                problem.slip[owners[k - n]]
-            }
+        let compliance = power_of_two((0..n).map(|i| problem.q[(i, i)]).sum::<f64>() / n as f64);
+        let weight = |i: usize| power_of_two((problem.q[(i, i)] / compliance).max(0.0).sqrt());
+        let weights: Vec<f64> = (0..n).map(weight).collect();
+        let penetrations = problem.gap.iter().zip(&weights).map(|(g, w)| -g / w);
+        let length = power_of_two(penetrations.fold(0.0, f64::max));
+        let gather = |column: &[f64], unit: f64, out: &mut Vec<f64>| {
+            out.extend(
+                column[..n]
+                    .iter()
+                    .zip(&weights)
+                    .map(|(v, w)| v / (unit * w)),
+            );
+            out.extend(owners.iter().map(|i| column[n + i] / (unit * weights[*i])));
         };
-        let b: Vec<f64> = (0..size).map(|k| motion(k) / length).collect();
-        let force = length / stiffness;
-        for values in [q.as_slice(), &b, &[force]] {
+        let size = n + owners.len();
+        let mut q = Vec::with_capacity(size * size);
+        for k in (0..n).chain(owners.iter().map(|i| n + i)) {
+            let column = &problem.q.as_slice()[2 * n * k..2 * n * (k + 1)];
+            gather(column, compliance * weights[k % n], &mut q);
+        }
+        let motion: Vec<f64> = problem.gap.iter().chain(&problem.slip).copied().collect();
+        let mut b = Vec::with_capacity(size);
+        gather(&motion, length, &mut b);
+
+        let units: Vec<f64> = weights.iter().map(|w| length / compliance / w).collect();
+        for values in [q.as_slice(), b.as_slice(), units.as_slice()] {
             expect_finite(values)?;
         }
         let mu = problem.mu.iter().copied().collect();
+        let q = DMatrix::from_vec(size, size, q);
         Ok(Self {
             contacts: n,
             owners,
@@ -66,7 +78,7 @@ impl Scaled {
             q,
             b,
             mu,
-            force,
+            units,
         })
     }
 
@@ -92,13 +104,11 @@ impl Scaled {
 
     /// (Pn, Pt) of all contacts in the units of the problem.
     pub fn forces(&self, p: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let pt = self
-            .tangents
-            .iter()
-            .map(|t| t.map_or(0.0, |t| p[t] * self.force));
+        let pn = p.iter().zip(&self.units).map(|(p, unit)| p * unit);
+        let pt = self.tangents.iter().zip(&self.units);
         (
-            p[..self.contacts].iter().map(|v| v * self.force).collect(),
-            pt.collect(),
+            pn.collect(),
+            pt.map(|(t, unit)| t.map_or(0.0, |t| p[t] * unit)).collect(),
         )
     }
 }

@@ -57,7 +57,7 @@ pub fn linear_solver(choice: SolverChoice) -> Box<dyn LinearSolver> {
 /// Position and value of the first pivot that is not positive (NaN included).
 pub(super) fn check_pivots(pivots: impl Iterator<Item = (usize, f64)>) -> Result<(), LinearError> {
     for (unknown, pivot) in pivots {
-        if !(pivot > 0.0) {
+        if pivot.is_nan() || pivot <= 0.0 {
             return Err(LinearError::NotPositiveDefinite { unknown, pivot });
         }
     }

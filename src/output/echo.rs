@@ -2,12 +2,16 @@
 
 use super::format::{counted, general, grouped, scientific};
 use super::frames::DEFAULT_FRAMES;
+use crate::contact::{InitialGap, initial_gaps};
 use crate::model::{
     Cell, Contact, Element, Frames, Impact, Model, Plane, Scheme, SolverChoice, Step, SurfaceKind,
 };
 
 /// Width of the screen in columns.
 const WIDTH: usize = 80;
+
+/// Depth over edge length from which a node counts as inside the other body.
+const PENETRATION: f64 = 1e-9;
 
 /// Numbers that describe a model.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,16 +65,14 @@ impl ModelEcho {
         self.edge_time = self.edge_time.min(edge / speed);
     }
 
-    /// The lines of the echo; `gaps` holds the smallest gap of each contact at the start
-    /// (infinite without candidate).
-    pub fn lines(&self, model: &Model, gaps: &[f64]) -> Vec<String> {
+    /// The lines of the echo.
+    pub fn lines(&self, model: &Model) -> Vec<String> {
         let mut lines = self.model_lines(model);
         if model.contacts.is_empty() {
             lines.push(label("contact", "none"));
         }
-        for (i, contact) in model.contacts.iter().enumerate() {
-            let gap = gaps.get(i).copied().unwrap_or(f64::INFINITY);
-            lines.extend(contact_lines(model, contact, gap));
+        for (contact, gaps) in model.contacts.iter().zip(initial_gaps(model)) {
+            lines.extend(contact_lines(model, contact, &gaps));
         }
         for (i, step) in model.steps.iter().enumerate() {
             lines.extend(self.step_lines(i, step));
@@ -166,7 +168,7 @@ fn impact(impact: Impact) -> &'static str {
     }
 }
 
-fn contact_lines(model: &Model, contact: &Contact, gap: f64) -> Vec<String> {
+fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<String> {
     let (slave, master) = (
         &model.surfaces[contact.slave],
         &model.surfaces[contact.master],
@@ -175,21 +177,35 @@ fn contact_lines(model: &Model, contact: &Contact, gap: f64) -> Vec<String> {
         SurfaceKind::Faces(faces) => faces.len(),
         SurfaceKind::Nodes(_) => 0,
     };
-    let gap = match gap.is_finite() {
-        true => format!("smallest gap {}", scientific(gap, 1)),
-        false => "no node faces its master".into(),
-    };
     let nodes = counted(slave.nodes(&model.mesh).len(), "node");
-    let pieces = [
-        format!("{} ({nodes})", slave.name),
-        format!("-> {} ({})", master.name, counted(edges, "edge")),
+    let edges = counted(edges, "edge");
+    let mut pieces = vec![
+        format!("{} ({nodes}) -> {} ({edges})", slave.name, master.name),
         format!(
             "mu {}",
             general(model.interactions[contact.interaction].friction, 4)
         ),
-        gap,
     ];
+    pieces.extend(gap_pieces(model, gaps));
     wrap("contact", &pieces)
+}
+
+/// The smallest gap at the start, and how many nodes start inside the other body.
+fn gap_pieces(model: &Model, gaps: &[InitialGap]) -> Vec<String> {
+    let Some(smallest) = gaps.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)) else {
+        return vec!["no node faces its master".into()];
+    };
+    let mut pieces = vec![format!("smallest gap {}", scientific(smallest.gap, 1))];
+    let is_inside = |gap: &&InitialGap| gap.gap < -PENETRATION * gap.edge;
+    let inside = gaps.iter().filter(is_inside).count();
+    if inside > 0 {
+        pieces.push(format!(
+            "{} inside the master at the start, deepest {}",
+            counted(inside, "node"),
+            model.mesh.node_labels[smallest.slave],
+        ));
+    }
+    pieces
 }
 
 /// Names of the element types in the mesh.

@@ -30,23 +30,33 @@ pub(super) fn signed(x: f64, decimals: usize) -> String {
     }
 }
 
-/// `x` with `digits` significant digits, plain when that is short: `0.025`, `-2`, `5.19e+06`.
+/// `x` with `digits` significant digits, plain when that is short: `0.025`, `-2`, `5.2e+06`.
 pub(super) fn general(x: f64, digits: usize) -> String {
     if x == 0.0 {
         return "0".into();
+    }
+    if !x.is_finite() {
+        return scientific(x, 0);
     }
     let text = scientific(x, digits - 1);
     let exponent: i32 = (text.split_once('e'))
         .and_then(|(_, e)| e.parse().ok())
         .unwrap_or(0);
-    if !x.is_finite() || !(-4..5).contains(&exponent) {
-        return text;
+    if !(-4..4).contains(&exponent) {
+        return match text.split_once('e') {
+            Some((mantissa, exponent)) => format!("{}e{exponent}", trimmed(mantissa)),
+            None => text,
+        };
     }
     let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
-    let plain = format!("{x:.decimals$}");
-    match plain.contains('.') {
-        true => plain.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => plain,
+    trimmed(&format!("{x:.decimals$}")).to_owned()
+}
+
+/// A number without the zeros at the end of its fraction.
+fn trimmed(number: &str) -> &str {
+    match number.contains('.') {
+        true => number.trim_end_matches('0').trim_end_matches('.'),
+        false => number,
     }
 }
 
@@ -103,7 +113,8 @@ mod tests {
             (5.19e6, "5.19e+06"),
             (100.0, "100"),
             (9.9996, "10"),
-            (1e-5, "1.00e-05"),
+            (1e-5, "1e-05"),
+            (45_644.0, "4.56e+04"),
         ];
         for (x, text) in cases {
             assert_eq!(general(x, 3), text);

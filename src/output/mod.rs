@@ -17,7 +17,6 @@ mod header;
 mod history;
 mod job;
 mod log;
-mod means;
 mod model;
 mod names;
 mod progress;

@@ -33,13 +33,13 @@ impl Progress {
     pub fn show(&self, report: &IncrementReport) {
         let Some(bar) = &self.bar else { return };
         let part = (report.time / self.end).clamp(0.0, 1.0);
-        bar.set_position((part * TICKS as f64) as u64);
         bar.set_message(format!(
             "time {}  increment {}  contacts {}",
             scientific(report.time, 3),
             report.increment,
             closed(report),
         ));
+        bar.set_position((part * TICKS as f64) as u64);
     }
 
     /// Runs `print` with the line out of the way.

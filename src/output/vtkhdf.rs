@@ -4,8 +4,8 @@ use hdf5::types::FixedAscii;
 use hdf5::{Group, H5Type};
 
 use super::dataset::{Column, Meaning, constant, group, meaning, set_attribute};
-use super::means::means;
 use crate::dynamics::{NodalResults, State};
+use crate::elements::element_means;
 use crate::model::{Cell, Mesh, Model};
 
 /// Cell types of VTK.
@@ -80,7 +80,7 @@ impl Fields {
         state: &State,
         nodal: &NodalResults,
     ) -> hdf5::Result<()> {
-        let means = means(model, &state.u);
+        let means = element_means(model, &state.u);
         self.displacement.push(in_space(&state.u))?;
         self.velocity.push(in_space(&state.v))?;
         self.acceleration.push(in_space(&state.a))?;
@@ -88,8 +88,10 @@ impl Fields {
         self.contact_force.push(in_space(&nodal.contact_force))?;
         self.gap.push(nodal.gap.iter().copied())?;
         self.status.push(nodal.status.iter().map(|&s| s as u8))?;
-        self.stress.push(means.stress.into_iter().flatten())?;
-        self.strain.push(means.strain.into_iter().flatten())?;
+        self.stress
+            .push(means.iter().flat_map(|mean| mean.stress))?;
+        self.strain
+            .push(means.iter().flat_map(|mean| mean.strain))?;
         self.steps.push(time)
     }
 

@@ -1,1 +1,116 @@
 //! From cards to the model: what each keyword means, and the checks across them.
+//!
+//! One file per family of keywords. Names and numbers are collected before they are looked up, so
+//! the order of a deck never matters; an error in a card spoils the names it defines, so that they
+//! are not reported as undefined where they are used.
+
+mod amplitude;
+mod carried;
+mod check;
+mod contact;
+mod context;
+mod loads;
+mod material;
+mod mesh;
+mod motion;
+mod names;
+mod outline;
+mod output;
+mod sets;
+mod settings;
+mod step;
+mod surface;
+
+use crate::deck::{self, Card, Deck};
+use crate::diagnostics::{Diagnostics, Sources};
+use crate::model::{Element, Mesh, Model};
+use context::Context;
+use motion::Targets;
+use outline::Outline;
+use std::path::Path;
+
+/// Reads a deck file into a model; `None` if there are errors.
+pub fn read_model(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Option<Model> {
+    let deck = deck::read(path, sources, d);
+    build(&deck, d)
+}
+
+/// The model that a deck describes; `None` if there are errors.
+pub fn build(deck: &Deck, d: &mut Diagnostics) -> Option<Model> {
+    if deck.has_assembly() || deck.cards.is_empty() {
+        return None;
+    }
+    let model = read(&mut Context { deck, d });
+    report_unused(deck, d);
+    (!d.has_errors()).then_some(model)
+}
+
+/// Reads everything; what has an error is missing in the result.
+fn read(cx: &mut Context) -> Model {
+    let outline = Outline::new(cx);
+    let grid = mesh::read(&outline, cx);
+    check::mesh(&grid, cx);
+    let sets = sets::read(&outline, &grid, cx);
+    let surfaces = surface::read(&outline, &grid, &sets, cx);
+    let properties = material::read(&outline, &grid, &sets, cx);
+    let (interactions, contacts) = contact::read(&outline, &surfaces, cx);
+    check::thickness(&contacts, &surfaces, &properties, cx);
+    let first_material = outline
+        .model_cards("MATERIAL")
+        .first()
+        .map(|card| card.span);
+    check::units(&properties, first_material, cx);
+    let amplitudes = amplitude::read(cx);
+    let targets = Targets {
+        grid: &grid,
+        sets: &sets,
+        amplitudes: &amplitudes,
+    };
+    let guide = check::crossing_time(&grid.mesh, &properties);
+    let steps = step::read(&outline, targets, &surfaces, guide, cx);
+    let initial_velocity = motion::initial_velocity(&outline, targets, &steps.at_start, cx);
+    Model {
+        title: title(&outline),
+        mesh: with_sections(grid.mesh, &properties.section_of),
+        node_sets: sets.nodes,
+        element_sets: sets.elements,
+        surfaces: surfaces.all,
+        materials: properties.materials,
+        sections: properties.sections,
+        interactions,
+        contacts,
+        amplitudes: amplitudes.all,
+        initial_velocity,
+        steps: steps.all,
+        history_sets: steps.history,
+    }
+}
+
+/// Text under `*HEADING`, lines joined by a blank.
+fn title(outline: &Outline) -> String {
+    let cards = outline.model_cards("HEADING");
+    let lines = cards
+        .iter()
+        .flat_map(|card| &card.rows)
+        .map(|row| row.text().trim());
+    lines.collect::<Vec<_>>().join(" ")
+}
+
+fn with_sections(mesh: Mesh, section_of: &[Option<usize>]) -> Mesh {
+    let elements = mesh.elements.into_iter().zip(section_of);
+    let elements = elements.map(|(element, section)| Element {
+        section: section.unwrap_or(0),
+        ..element
+    });
+    Mesh {
+        elements: elements.collect(),
+        ..mesh
+    }
+}
+
+/// Parameters that were not asked for.
+fn report_unused(deck: &Deck, d: &mut Diagnostics) {
+    for card in &deck.cards {
+        Card::report_unused(card, d);
+    }
+}

@@ -5,3 +5,4 @@
 pub mod block;
 pub mod problems;
 pub mod random;
+pub mod tableau;

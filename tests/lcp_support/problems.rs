@@ -66,3 +66,16 @@ pub fn drawn(random: &mut Random, q: DMatrix<f64>, mu: f64) -> FrictionalLcp {
         q,
     }
 }
+
+/// The problem with every contact twice.
+pub fn duplicated(problem: &FrictionalLcp) -> FrictionalLcp {
+    let n = problem.len();
+    let twice = |v: &DVector<f64>| DVector::from_iterator(2 * n, v.iter().chain(v).copied());
+    let of = |k: usize| if k < 2 * n { k % n } else { n + k % n };
+    FrictionalLcp {
+        q: DMatrix::from_fn(4 * n, 4 * n, |i, j| problem.q[(of(i), of(j))]),
+        gap: twice(&problem.gap),
+        slip: twice(&problem.slip),
+        mu: twice(&problem.mu),
+    }
+}

@@ -6,6 +6,8 @@
 //!  10 ---- 20 ---- 30 -- 70       contact BOTTOM -> TOP twice
 //! ```
 
+#![allow(dead_code)] // Each test uses its part.
+
 use std::f64::consts::TAU;
 use std::path::Path;
 

@@ -6,9 +6,7 @@
 //!        |               y fixed
 //! ```
 
-mod common;
-
-use common::{add_block, add_contact, fixed, model, run_to_end, step, throw};
+use crate::blocks::{add_block, add_contact, fixed, model, run_to_end, step, throw};
 use stickslip::dynamics::IncrementReport;
 use stickslip::model::{Impact, Model, Scheme, Settings};
 

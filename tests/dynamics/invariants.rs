@@ -1,8 +1,6 @@
 //! Energy and momentum of free bodies, with and without contact.
 
-mod common;
-
-use common::{Keep, add_block, add_contact, model, run_to_end, step, throw};
+use crate::blocks::{Keep, add_block, add_contact, model, run_to_end, step, throw};
 use stickslip::model::{Model, Scheme, Settings};
 
 /// Largest change of energy and of the momenta, relative to their scales.

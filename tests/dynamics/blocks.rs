@@ -28,7 +28,11 @@ impl Block {
 
     /// Faces of side 0 (bottom), 1 (right), 2 (top), 3 (left).
     pub fn faces(&self, side: usize) -> Vec<Face> {
-        let along = if side % 2 == 0 { self.nx } else { self.ny };
+        let along = if side.is_multiple_of(2) {
+            self.nx
+        } else {
+            self.ny
+        };
         let element = |k: usize| match side {
             0 => k,
             1 => k * self.nx + self.nx - 1,

@@ -1,0 +1,326 @@
+//! `run` with a made-up reader and solver.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use clap::Parser;
+use tempfile::TempDir;
+
+use super::args::{Args, Command};
+use super::connect::{Loaded, Numerics};
+use super::error::CliError;
+use super::{Exit, run};
+use crate::dynamics::{
+    Cause, Cutback, Failure, IncrementReport, NodalResults, NodeStatus, Observer, Outcome,
+    PassReport, RunError, RunSummary, SolverCounts, State, Timings, Worst,
+};
+use crate::model::{
+    Cell, Element, Frames, Increments, Material, Mesh, Model, Plane, Section, Set, Settings, Step,
+};
+use crate::output::ResultSummary;
+
+/// One square, one step of ten increments with a frame at its end.
+fn square() -> Model {
+    Model {
+        mesh: Mesh {
+            node_labels: vec![1, 2, 3, 4],
+            coordinates: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
+            elements: vec![Element {
+                label: 8,
+                cell: Cell::Quad4([0, 1, 2, 3]),
+                plane: Plane::Stress,
+                section: 0,
+            }],
+        },
+        materials: vec![Material {
+            name: "M".into(),
+            young: 1.0,
+            poisson: 0.0,
+            density: 1.0,
+        }],
+        sections: vec![Section {
+            material: 0,
+            thickness: 1.0,
+        }],
+        steps: vec![Step {
+            name: None,
+            increments: Increments {
+                dt: 0.1,
+                period: 1.0,
+                dt_min: 0.0,
+                direct: true,
+            },
+            settings: Settings::default(),
+            supports: vec![],
+            point_loads: vec![],
+            body_forces: vec![],
+            pressures: vec![],
+            tractions: vec![],
+            frames: Frames::Count(1),
+        }],
+        ..Model::default()
+    }
+}
+
+fn loaded(model: Option<Model>) -> Loaded {
+    Loaded {
+        errors: usize::from(model.is_none()),
+        model,
+        plain_messages: "warning: this is a test".into(),
+        text: "*HEADING\n".into(),
+        lines: 1,
+        ..Loaded::default()
+    }
+}
+
+fn report(increment: usize) -> IncrementReport {
+    IncrementReport {
+        increment,
+        step: 1,
+        time: 0.1 * increment as f64,
+        step_time: 0.1 * increment as f64,
+        dt: 0.1,
+        state: State {
+            u: vec![1.0; 8],
+            v: vec![0.0; 8],
+            a: vec![0.0; 8],
+        },
+        nodal: NodalResults {
+            reaction: vec![0.0; 8],
+            contact_force: vec![0.0; 8],
+            gap: vec![f64::NAN; 4],
+            status: vec![NodeStatus::None; 4],
+        },
+        ends_step: increment == 10,
+        ..IncrementReport::default()
+    }
+}
+
+fn summary(outcome: Outcome, increments: usize) -> RunSummary {
+    RunSummary {
+        outcome,
+        increments,
+        cutbacks: 0,
+        solver: SolverCounts::default(),
+        timings: Timings::default(),
+    }
+}
+
+fn failure() -> Failure {
+    Failure {
+        increment: 4,
+        step: 1,
+        time: 0.3,
+        dt: 0.05,
+        cause: Cause::Inverted {
+            element: 0,
+            determinant: -0.1,
+        },
+        worst: Some(Worst {
+            node: 2,
+            position: [1.5, 2.5],
+            quantity: "force residual",
+            value: 0.25,
+        }),
+        passes: vec![PassReport::default(); 2],
+        halvings: 1,
+    }
+}
+
+fn to_the_end(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+    for k in 0..=10 {
+        observer.increment(&report(k)).map_err(RunError::Observer)?;
+    }
+    Ok(summary(Outcome::Finished, 10))
+}
+
+fn to_a_stop(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+    for k in 0..=3 {
+        observer.increment(&report(k)).map_err(RunError::Observer)?;
+    }
+    let failure = failure();
+    let cutback = Cutback {
+        failure: failure.clone(),
+        next_dt: 0.05,
+    };
+    observer.cutback(&cutback).map_err(RunError::Observer)?;
+    Ok(summary(Outcome::Stopped(Box::new(failure)), 3))
+}
+
+fn to_a_full_disk(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+    observer.increment(&report(0)).map_err(RunError::Observer)?;
+    let full = io::Error::from(io::ErrorKind::StorageFull);
+    Err(RunError::Observer(full))
+}
+
+fn numerics() -> Numerics {
+    Numerics {
+        load: |_, _| loaded(Some(square())),
+        solve: to_the_end,
+    }
+}
+
+/// A folder with a deck in it.
+struct Bench {
+    folder: TempDir,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let folder = TempDir::new().expect("folder");
+        std::fs::write(folder.path().join("job.inp"), "*HEADING\n").expect("deck");
+        Bench { folder }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn run(&self, options: &[&str], numerics: &Numerics) -> Result<Exit, CliError> {
+        let deck = self.path("job.inp");
+        let out = self.path("out");
+        let fixed = [
+            "stickslip".as_ref(),
+            "run".as_ref(),
+            deck.as_os_str(),
+            "-o".as_ref(),
+            out.as_os_str(),
+        ];
+        let options = options.iter().map(|option| (*option).as_ref());
+        let args = Args::try_parse_from(fixed.into_iter().chain(options)).expect("arguments");
+        match args.command {
+            Command::Run(args) => run::run(&args, "stickslip run job.inp", numerics),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn summary(&self) -> ResultSummary {
+        ResultSummary::read(&self.path("out/job.vtkhdf")).expect("result")
+    }
+
+    fn log(&self) -> String {
+        std::fs::read_to_string(self.path("out/job.log")).expect("log")
+    }
+
+    fn touched(&self) -> bool {
+        Path::exists(&self.path("out"))
+    }
+}
+
+fn code(result: &Result<Exit, CliError>) -> Exit {
+    match result {
+        Ok(exit) => *exit,
+        Err(error) => error.exit(),
+    }
+}
+
+#[test]
+fn a_run_to_the_end() {
+    let bench = Bench::new();
+    let exit = bench.run(&["-q"], &numerics());
+    assert_eq!(code(&exit), Exit::Finished);
+    let summary = bench.summary();
+    assert_eq!((summary.exit_status, summary.increments), (0, 10));
+    assert_eq!(summary.frames, [0.0, 1.0]);
+    let log = bench.log();
+    assert!(log.contains("warning: this is a test"), "{log}");
+    assert!(log.contains("done     in"), "{log}");
+    assert!(
+        log.lines()
+            .filter(|l| l.contains("energy"))
+            .all(|l| l.len() <= 80)
+    );
+}
+
+#[test]
+fn the_command_line_wins_and_the_log_says_so() {
+    let bench = Bench::new();
+    let exit = bench.run(&["-q", "--frames", "5", "--solver", "sprs"], &numerics());
+    assert_eq!(code(&exit), Exit::Finished);
+    assert_eq!(bench.summary().frames.len(), 6);
+    let log = bench.log();
+    assert!(log.contains("output 5 frames as the command line says, not output 1 frame"));
+    assert!(log.contains("solver sprs as the command line says, not faer"));
+}
+
+#[test]
+fn a_stop_leaves_the_last_good_state_and_says_where() {
+    let bench = Bench::new();
+    let solve = to_a_stop;
+    let numerics = Numerics {
+        solve,
+        ..numerics()
+    };
+    let exit = bench.run(&["-q"], &numerics);
+    assert_eq!(code(&exit), Exit::Stopped);
+    let summary = bench.summary();
+    assert_eq!((summary.exit_status, summary.increments), (1, 3));
+    assert_eq!(summary.frames, [0.0, report(3).time]);
+    let log = bench.log();
+    for text in [
+        "cutback  increment 4 from time 3.000e-01, dt 5.00e-02",
+        "stopped  increment 4 of step 1 failed at time 3.000000e-01: an element turned inside",
+        "worst    node 3 at (1.50000e+00, 2.50000e+00): force residual 2.50e-01",
+        "element  8 with its centre at (1.50000e+00, 1.50000e+00)",
+        "tried    1 halving",
+        "job.vtkhdf is valid up to time 3.000000e-01",
+    ] {
+        assert!(log.contains(text), "{text}\n{log}");
+    }
+}
+
+#[test]
+fn results_are_replaced_only_when_wanted() {
+    let bench = Bench::new();
+    std::fs::create_dir(bench.path("out")).expect("folder");
+    std::fs::write(bench.path("out/job.sta"), "old").expect("old result");
+    let exit = bench.run(&["-q"], &numerics());
+    assert_eq!(code(&exit), Exit::FileSystem);
+    assert!(exit.is_err_and(|error| error.to_string().contains("--overwrite")));
+    let kept = std::fs::read_to_string(bench.path("out/job.sta")).expect("old result");
+    assert_eq!(kept, "old");
+    let exit = bench.run(&["-q", "--overwrite"], &numerics());
+    assert_eq!(code(&exit), Exit::Finished);
+    let exit = bench.run(&["-q", "--overwrite"], &numerics());
+    assert_eq!(code(&exit), Exit::Finished);
+}
+
+#[test]
+fn a_rejected_deck_touches_no_file() {
+    let bench = Bench::new();
+    let load = |_: &Path, _| loaded(None);
+    let exit = bench.run(&["-q"], &Numerics { load, ..numerics() });
+    assert_eq!(code(&exit), Exit::Rejected);
+    assert!(!bench.touched());
+    let load = |_: &Path, _| {
+        let name = "A/B".into();
+        let mut model = square();
+        model.element_sets = vec![Set {
+            name,
+            members: vec![0],
+        }];
+        loaded(Some(model))
+    };
+    let exit = bench.run(&["-q"], &Numerics { load, ..numerics() });
+    assert_eq!(code(&exit), Exit::Rejected);
+    assert!(!bench.touched());
+}
+
+#[test]
+fn a_full_disk_and_a_folder_that_cannot_be_made() {
+    let bench = Bench::new();
+    let solve = to_a_full_disk;
+    let exit = bench.run(
+        &["-q"],
+        &Numerics {
+            solve,
+            ..numerics()
+        },
+    );
+    assert_eq!(code(&exit), Exit::FileSystem);
+    assert_eq!(bench.summary().exit_status, 4);
+    let bench = Bench::new();
+    std::fs::write(bench.path("out"), "a file").expect("file");
+    let exit = bench.run(&["-q"], &numerics());
+    assert_eq!(code(&exit), Exit::FileSystem);
+}

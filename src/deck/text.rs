@@ -1,0 +1,127 @@
+use super::number::{self, NotANumber};
+use super::{Name, word};
+use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span};
+
+/// Longest name other codes read.
+const LONGEST_NAME: usize = 80;
+
+/// Longest number other codes read.
+const LONGEST_NUMBER: usize = 20;
+
+/// A field or a parameter's value: its text and its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Text<'a> {
+    /// As typed, without blanks around it.
+    pub text: &'a str,
+    /// Where it stands.
+    pub span: Span,
+}
+
+impl<'a> Text<'a> {
+    /// Whether nothing was typed.
+    pub fn is_empty(&self) -> bool {
+        self.text.is_empty()
+    }
+
+    /// The integer it says; reports anything else.
+    pub fn integer(&self, d: &mut Diagnostics) -> Option<i64> {
+        let parsed = number::integer(self.text);
+        parsed
+            .map_err(|why| d.push(self.not_a("an integer", why)))
+            .ok()
+    }
+
+    /// The integer it says, if it is one; reports nothing.
+    pub fn as_integer(&self) -> Option<i64> {
+        number::integer(self.text).ok()
+    }
+
+    /// The real number it says; reports anything else.
+    pub fn real(&self, d: &mut Diagnostics) -> Option<f64> {
+        match number::real(self.text) {
+            Err(why) => {
+                d.push(self.not_a("a number", why));
+                None
+            }
+            Ok(real) => {
+                self.remark_on_form(real.letterless, d);
+                Some(real.value)
+            }
+        }
+    }
+
+    fn remark_on_form(&self, letterless: bool, d: &mut Diagnostics) {
+        if letterless {
+            let message = "an exponent without its letter E";
+            d.push_once(
+                Diagnostic::warning(Code::FortranNumber, self.span, message)
+                    .label("read as a power of ten"),
+            );
+        }
+        if self.text.len() > LONGEST_NUMBER {
+            let message = "a number of more than 20 characters";
+            d.push_once(
+                Diagnostic::note(Code::LongNumber, self.span, message)
+                    .help("all of it is read here; CalculiX reads the first 20 characters only"),
+            );
+        }
+    }
+
+    fn not_a(&self, wanted: &str, why: NotANumber) -> Diagnostic {
+        let message = match self.is_empty() {
+            true => format!("expected {wanted}, found nothing"),
+            false => format!("expected {wanted}, found `{}`", self.text),
+        };
+        let diagnostic = Diagnostic::error(Code::BadNumber, self.span, message);
+        match why {
+            NotANumber::Unexpected(c) => diagnostic.label(format!("`{c}` does not belong here")),
+            NotANumber::Incomplete => diagnostic,
+            NotANumber::TooLarge => diagnostic.label("too large"),
+        }
+    }
+
+    /// The name it says; reports names that cannot be.
+    pub fn name(&self, d: &mut Diagnostics) -> Option<Name> {
+        let fault = match self.quoted_content() {
+            Some(content) if fits(content) => return Some(Name::quoted(content)),
+            Some(_) => Some("a name has 1 to 80 characters".to_string()),
+            None => self.fault_of_plain_name(),
+        };
+        match fault {
+            None => Some(Name::plain(self.text)),
+            Some(fault) => {
+                let message = format!("`{}` cannot be a name", self.text);
+                d.push(Diagnostic::error(Code::BadName, self.span, message).label(fault));
+                None
+            }
+        }
+    }
+
+    /// How the name it says is compared, whether or not it can be one.
+    pub fn name_key(&self) -> String {
+        let quoted = self.quoted_content();
+        quoted.map_or_else(|| word::fold(self.text), str::to_string)
+    }
+
+    fn quoted_content(&self) -> Option<&'a str> {
+        self.text.strip_prefix('"')?.strip_suffix('"')
+    }
+
+    fn fault_of_plain_name(&self) -> Option<String> {
+        let allowed = |c: &char| c.is_alphanumeric() || " \t_-.+/()".contains(*c);
+        if !fits(self.text) {
+            Some("a name has 1 to 80 characters".to_string())
+        } else if self.as_integer().is_some() {
+            Some("a number, not a name".to_string())
+        } else {
+            let stranger = self.text.chars().find(|c| !allowed(c))?;
+            Some(format!(
+                "`{stranger}` needs quotation marks around the name"
+            ))
+        }
+    }
+}
+
+fn fits(name: &str) -> bool {
+    (1..=LONGEST_NAME).contains(&name.chars().count())
+}

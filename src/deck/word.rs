@@ -1,0 +1,62 @@
+use crate::diagnostics::closest;
+
+/// Shortest abbreviation that is understood.
+const SHORTEST: usize = 4;
+
+/// How a typed word matches a list of known words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Match {
+    /// It is this one.
+    Exact(&'static str),
+    /// It is the beginning of this one and of no other.
+    Abbreviation(&'static str),
+    /// It is none of them, but perhaps this one is meant.
+    Unknown(Option<&'static str>),
+}
+
+/// Upper case without blanks: how words and unquoted names are compared.
+pub(crate) fn fold(word: &str) -> String {
+    let visible = word.chars().filter(|c| !c.is_whitespace());
+    visible.flat_map(char::to_uppercase).collect()
+}
+
+/// Looks a word up among known ones, blanks and case aside.
+pub(super) fn find(word: &str, known: impl Iterator<Item = &'static str> + Clone) -> Match {
+    let folded = fold(word);
+    if let Some(exact) = known.clone().find(|k| fold(k) == folded) {
+        return Match::Exact(exact);
+    }
+    let mut longer = known.clone().filter(|k| fold(k).starts_with(&folded));
+    match (longer.next(), longer.next()) {
+        (Some(only), None) if folded.chars().count() >= SHORTEST => Match::Abbreviation(only),
+        _ => Match::Unknown(suggestion(&folded, known)),
+    }
+}
+
+/// The word that is meant; a word of which this one is the beginning counts too.
+fn suggestion(
+    folded: &str,
+    known: impl Iterator<Item = &'static str> + Clone,
+) -> Option<&'static str> {
+    let pairs: Vec<(String, &'static str)> = known.map(|k| (fold(k), k)).collect();
+    let best = closest(folded, pairs.iter().map(|(f, _)| f.as_str()))?;
+    pairs.iter().find(|(f, _)| f == best).map(|&(_, k)| k)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_match_without_blanks_and_case() {
+        let known = ["NODE", "NODE FILE", "AMPLITUDE", "END STEP"].into_iter();
+        assert_eq!(find("endstep", known.clone()), Match::Exact("END STEP"));
+        assert_eq!(
+            find("AMPL", known.clone()),
+            Match::Abbreviation("AMPLITUDE")
+        );
+        assert_eq!(find("AMP", known.clone()), Match::Unknown(None));
+        assert_eq!(find("AMPLITUDEXYZ", known.clone()), Match::Unknown(None));
+        assert_eq!(find("AMPLTUDE", known), Match::Unknown(Some("AMPLITUDE")));
+    }
+}

@@ -1,0 +1,95 @@
+use super::{Code, Diagnostic, Severity};
+use std::collections::HashSet;
+
+/// What becomes of doubtful decks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Strictness {
+    /// Unknown keywords and parameters are errors.
+    #[default]
+    Normal,
+    /// Unknown keywords and parameters are left out with a warning.
+    Lenient,
+    /// Warnings are errors.
+    Strict,
+}
+
+/// All diagnostics of one deck.
+#[derive(Debug, Clone, Default)]
+pub struct Diagnostics {
+    strictness: Strictness,
+    items: Vec<Diagnostic>,
+    said: HashSet<(Code, String)>,
+}
+
+impl Diagnostics {
+    /// No diagnostics yet, the usual rules.
+    pub fn new() -> Diagnostics {
+        Diagnostics::default()
+    }
+
+    /// No diagnostics yet, with the rules of `strictness`.
+    pub fn with_strictness(strictness: Strictness) -> Diagnostics {
+        Diagnostics {
+            strictness,
+            ..Diagnostics::default()
+        }
+    }
+
+    /// Whether unknown keywords and parameters are left out with a warning.
+    pub fn is_lenient(&self) -> bool {
+        self.strictness == Strictness::Lenient
+    }
+
+    /// Adds a diagnostic.
+    pub fn push(&mut self, mut diagnostic: Diagnostic) {
+        diagnostic.severity = self.judge(&diagnostic);
+        self.items.push(diagnostic);
+    }
+
+    /// Adds a diagnostic unless one with the same code and message was added this way before.
+    pub fn push_once(&mut self, diagnostic: Diagnostic) {
+        if self
+            .said
+            .insert((diagnostic.code, diagnostic.message.clone()))
+        {
+            self.push(diagnostic);
+        }
+    }
+
+    fn judge(&self, diagnostic: &Diagnostic) -> Severity {
+        let unknown = matches!(
+            diagnostic.code,
+            Code::UnknownKeyword | Code::UnknownParameter
+        );
+        match (self.strictness, diagnostic.severity) {
+            (Strictness::Strict, Severity::Warning) => Severity::Error,
+            (Strictness::Lenient, Severity::Error) if unknown => Severity::Warning,
+            (_, severity) => severity,
+        }
+    }
+
+    /// Whether the deck is rejected.
+    pub fn has_errors(&self) -> bool {
+        self.count(Severity::Error) > 0
+    }
+
+    /// Number of diagnostics of a severity.
+    pub fn count(&self, severity: Severity) -> usize {
+        self.items
+            .iter()
+            .filter(|item| item.severity == severity)
+            .count()
+    }
+
+    /// All diagnostics in the order they were found.
+    pub fn iter(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.items.iter()
+    }
+
+    /// All diagnostics by their place: file, line, column; those without a place first.
+    pub fn sorted(&self) -> Vec<&Diagnostic> {
+        let mut sorted: Vec<&Diagnostic> = self.items.iter().collect();
+        sorted.sort_by_key(|item| (item.span, item.severity));
+        sorted
+    }
+}

@@ -1,0 +1,139 @@
+use super::{Diagnostic, Diagnostics, Severity, Sources, Span};
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use std::ops::Range;
+
+/// Most diagnostics of one severity that are shown.
+const SHOWN: usize = 20;
+
+impl Diagnostics {
+    /// Text of the diagnostics by their place, at most 20 of each severity and then their count.
+    pub fn render(&self, sources: &Sources, colour: bool) -> String {
+        let renderer = match colour {
+            true => Renderer::styled(),
+            false => Renderer::plain(),
+        };
+        let mut text = String::new();
+        let mut shown = [0; 3];
+        for item in self.sorted() {
+            let count = &mut shown[item.severity as usize];
+            *count += 1;
+            if *count <= SHOWN {
+                text.push_str(&renderer.render(&[group(item, sources)]));
+                text.push_str("\n\n");
+            }
+        }
+        text + &self.rest(&renderer)
+    }
+
+    /// One line for each severity with more diagnostics than are shown.
+    fn rest(&self, renderer: &Renderer) -> String {
+        let mut text = String::new();
+        for severity in [Severity::Error, Severity::Warning, Severity::Note] {
+            let more = self.count(severity).saturating_sub(SHOWN);
+            if more > 0 {
+                let title = format!("{more} more of these are not shown");
+                let title = level(severity).primary_title(title);
+                text.push_str(&renderer.render(&[Group::with_title(title)]));
+                text.push('\n');
+            }
+        }
+        text
+    }
+}
+
+fn level(severity: Severity) -> Level<'static> {
+    match severity {
+        Severity::Error => Level::ERROR,
+        Severity::Warning => Level::WARNING,
+        Severity::Note => Level::NOTE,
+    }
+}
+
+/// Title, source line with caret, where the file is included, advice.
+fn group<'a>(item: &'a Diagnostic, sources: &'a Sources) -> Group<'a> {
+    let title = level(item.severity).primary_title(item.message.as_str());
+    let mut group = Group::with_title(title.id(item.code.id()));
+    if let Some(span) = item.span {
+        if let Some(snippet) = snippet(span, item, sources) {
+            group = group.element(snippet);
+        }
+        for place in sources.include_chain(span) {
+            group = group.element(Level::NOTE.message(included_from(place, sources)));
+        }
+    }
+    match &item.help {
+        Some(help) => group.element(Level::HELP.message(help.as_str())),
+        None => group,
+    }
+}
+
+fn snippet<'a>(
+    span: Span,
+    item: &'a Diagnostic,
+    sources: &'a Sources,
+) -> Option<Snippet<'a, annotate_snippets::Annotation<'a>>> {
+    let source = sources.get(span.file)?;
+    let line = source.line(span.line)?;
+    let mark = AnnotationKind::Primary.span(byte_range(line, span));
+    Some(
+        Snippet::source(line)
+            .path(source.name())
+            .line_start(span.line as usize)
+            .annotation(mark.label(item.label.as_deref())),
+    )
+}
+
+fn included_from(place: Span, sources: &Sources) -> String {
+    let name = sources.get(place.file).map_or("", |source| source.name());
+    format!("included from {name}:{}:{}", place.line, place.column)
+}
+
+/// Bytes of `line` that the characters of `span` take.
+fn byte_range(line: &str, span: Span) -> Range<usize> {
+    let byte_at = |character: usize| {
+        let mut starts = line.char_indices().map(|(at, _)| at);
+        starts.nth(character).unwrap_or(line.len())
+    };
+    let first = (span.column as usize).saturating_sub(1);
+    byte_at(first)..byte_at(first + span.length as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::diagnostics::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
+
+    #[test]
+    fn shows_line_caret_include_and_help() {
+        let mut sources = Sources::new();
+        let place = |file, line, column, length| Span {
+            file: FileId(file),
+            line,
+            column,
+            length,
+        };
+        sources.add("slope.inp", "*HEADING\n*INCLUDE, INPUT=bc.inp\n", None);
+        sources.add("bc.inp", "*BONDARY, OP=NEW\n", Some(place(0, 2, 1, 8)));
+        let mut diagnostics = Diagnostics::new();
+        diagnostics.push(
+            Diagnostic::error(
+                Code::UnknownKeyword,
+                place(1, 1, 1, 8),
+                "unknown keyword *BONDARY",
+            )
+            .suggest(Some("*BOUNDARY"))
+            .help("unknown keywords stop the run"),
+        );
+        let text = diagnostics.render(&sources, false);
+        let wanted = "\
+error[D103]: unknown keyword *BONDARY
+ --> bc.inp:1:1
+  |
+1 | *BONDARY, OP=NEW
+  | ^^^^^^^^ did you mean *BOUNDARY?
+  |
+  = note: included from slope.inp:2:1
+  = help: unknown keywords stop the run
+";
+        assert_eq!(text.trim_end(), wanted.trim_end());
+    }
+}

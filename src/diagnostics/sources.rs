@@ -1,0 +1,108 @@
+use super::{FileId, Span};
+
+/// One file of a deck.
+#[derive(Debug, Clone)]
+pub struct Source {
+    name: String,
+    text: String,
+    included_at: Option<Span>,
+    line_starts: Vec<usize>,
+}
+
+impl Source {
+    /// Name as given on the command line, or as the including file and its folder make it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Text without byte order mark.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The card that included the file; `None` for the main deck.
+    pub fn included_at(&self) -> Option<Span> {
+        self.included_at
+    }
+
+    /// Number of lines.
+    pub fn line_count(&self) -> usize {
+        self.line_starts.len()
+    }
+
+    /// Line `number`, from 1, without its end.
+    pub fn line(&self, number: u32) -> Option<&str> {
+        let index = (number as usize).checked_sub(1)?;
+        let start = *self.line_starts.get(index)?;
+        let end = self.line_starts.get(index + 1).copied();
+        let line = self.text.get(start..end.unwrap_or(self.text.len()))?;
+        let line = line.strip_suffix('\n').unwrap_or(line);
+        Some(line.strip_suffix('\r').unwrap_or(line))
+    }
+}
+
+/// The texts of a deck and of the files it includes.
+#[derive(Debug, Clone, Default)]
+pub struct Sources {
+    files: Vec<Source>,
+}
+
+impl Sources {
+    /// No files yet.
+    pub fn new() -> Sources {
+        Sources::default()
+    }
+
+    /// Adds a file.
+    pub fn add(&mut self, name: &str, text: &str, included_at: Option<Span>) -> FileId {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text).to_string();
+        let starts = text.match_indices('\n').map(|(at, _)| at + 1);
+        let line_starts = std::iter::once(0)
+            .chain(starts)
+            .filter(|&at| at < text.len())
+            .collect();
+        self.files.push(Source {
+            name: name.to_string(),
+            text,
+            included_at,
+            line_starts,
+        });
+        FileId(self.files.len() as u32 - 1)
+    }
+
+    /// The file of an id.
+    pub fn get(&self, file: FileId) -> Option<&Source> {
+        self.files.get(file.0 as usize)
+    }
+
+    /// All files; the main deck comes first.
+    pub fn files(&self) -> &[Source] {
+        &self.files
+    }
+
+    /// Number of lines of all files together.
+    pub fn line_count(&self) -> usize {
+        self.files.iter().map(Source::line_count).sum()
+    }
+
+    /// The texts of all files, each but the first headed by a comment line with its name.
+    pub fn full_text(&self) -> String {
+        let mut all = String::new();
+        for source in &self.files {
+            if source.included_at.is_some() {
+                all.push_str(&format!("** ---- file {} ----\n", source.name));
+            }
+            all.push_str(&source.text);
+            if !source.text.is_empty() && !source.text.ends_with('\n') {
+                all.push('\n');
+            }
+        }
+        all
+    }
+
+    /// Where the file of `span` is included, where that file is included, and so on.
+    pub fn include_chain(&self, span: Span) -> Vec<Span> {
+        let parent = |span: &Span| self.get(span.file).and_then(Source::included_at);
+        std::iter::successors(parent(&span), parent).collect()
+    }
+}

@@ -1,0 +1,178 @@
+use super::contact_forces::ContactForces;
+use super::dofs::DofMap;
+use super::effective::Effective;
+use super::loads::{Loads, Moment};
+use super::mass::Mass;
+use super::meter::Meter;
+use super::scheme::Weights;
+use super::supports::Supports;
+use super::{Cause, State};
+use crate::contact::{ContactSurfaces, Pair, find_pairs};
+use crate::elements::Body;
+use crate::lcp::LcpMethod;
+use crate::model::{Impact, Model, Settings};
+
+/// What stays the same over a step.
+pub(super) struct StepProblem<'m> {
+    pub model: &'m Model,
+    pub body: &'m Body,
+    pub mass: &'m Mass,
+    pub contacts: &'m [ContactSurfaces],
+    pub settings: Settings,
+    pub weights: Weights,
+    pub dofs: DofMap,
+    pub loads: Loads<'m>,
+    pub supports: Supports<'m>,
+}
+
+/// Times of an increment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Interval {
+    pub start: Moment,
+    pub end: Moment,
+    pub dt: f64,
+}
+
+/// Load, internal force and inertia of an iterate.
+pub(super) struct Equilibrium {
+    /// Displacement U_theta.
+    pub u_theta: Vec<f64>,
+    /// Load R_theta.
+    pub load: Vec<f64>,
+    /// Internal force F_theta.
+    pub internal: Vec<f64>,
+    /// Acceleration A.
+    pub acceleration: Vec<f64>,
+    /// Inertia force M A.
+    pub inertia: Vec<f64>,
+}
+
+impl StepProblem<'_> {
+    /// Solver of the complementarity problems.
+    pub fn method(&self) -> LcpMethod {
+        self.settings.lcp.into()
+    }
+
+    /// Current position of a node.
+    pub fn position(&self, u: &[f64], node: usize) -> [f64; 2] {
+        let x = self.model.mesh.coordinates[node];
+        [x[0] + u[2 * node], x[1] + u[2 * node + 1]]
+    }
+
+    /// Displacement increment of the supports; zero at all other dofs.
+    pub fn support_increment(&self, u0: &[f64], interval: Interval) -> Vec<f64> {
+        let mut d = vec![0.0; u0.len()];
+        for (dof, u, _) in self.supports.motion(interval.end) {
+            d[dof] = u - u0[dof];
+        }
+        d
+    }
+
+    /// Pairs between `u0` and the iterate `u`; `kept` as in [`find_pairs`].
+    pub fn pairs(&self, u0: &[f64], u: &[f64], kept: Option<&[Option<usize>]>) -> Vec<Pair> {
+        let x = &self.model.mesh.coordinates;
+        let form = self.weights.row_form();
+        let sites = find_pairs(self.contacts, x, u, kept);
+        sites
+            .into_iter()
+            .map(|site| Pair::new(site, form, x, u0, u))
+            .collect()
+    }
+
+    /// Velocity V0+ after the impulses of the pairs whose slots are in `set` (sorted).
+    pub fn impulses(
+        &self,
+        effective: &mut Effective,
+        pairs: &[Pair],
+        set: &[usize],
+        start: &State,
+        dt: f64,
+        meter: &mut Meter,
+    ) -> Result<Vec<f64>, Cause> {
+        if self.settings.impact == Impact::None {
+            return Ok(start.v.clone());
+        }
+        let (x, u0) = (&self.model.mesh.coordinates, &start.u);
+        let form = self.weights.row_form();
+        let at_start = |pair: &Pair| match self.weights.impulses_at_start() {
+            true => Pair::new(pair.site(), form, x, u0, u0),
+            false => *pair,
+        };
+        let struck = pairs
+            .iter()
+            .filter(|pair| set.binary_search(&pair.slot).is_ok());
+        let struck: Vec<Pair> = struck.map(at_start).collect();
+        let m = &mut effective.m;
+        ContactForces::impulses(struck, &start.v, dt, &self.dofs, m, self.method(), meter)
+    }
+
+    /// Load, internal force and inertia of the iterate U0 + d.
+    pub fn equilibrium(
+        &self,
+        start: &State,
+        v0p: &[f64],
+        d: &[f64],
+        interval: Interval,
+    ) -> Result<Equilibrium, Cause> {
+        let Interval {
+            start: t0,
+            end: t1,
+            dt,
+        } = interval;
+        let u = sum(&start.u, d);
+        let u_theta = self.weights.displacement(&start.u, d, v0p, dt);
+        let internal = self
+            .weights
+            .internal_force(self.body, &start.u, &u, &u_theta)?;
+        let load = self
+            .loads
+            .weighted(self.body, self.weights.theta1, t0, t1, &u_theta);
+        // A = (2/dt²)(d - dt V0+); at supports (V1 - V0)/dt
+        let c = 2.0 / (dt * dt);
+        let mut acceleration: Vec<f64> = d
+            .iter()
+            .zip(v0p)
+            .map(|(d, v0p)| c * (d - dt * v0p))
+            .collect();
+        for (dof, _, v1) in self.supports.motion(t1) {
+            acceleration[dof] = (v1 - start.v[dof]) / dt;
+        }
+        let inertia = self.mass.times(&acceleration);
+        Ok(Equilibrium {
+            u_theta,
+            load,
+            internal,
+            acceleration,
+            inertia,
+        })
+    }
+
+    /// Acceleration at the start of the analysis, M A = R - F, the supports being at rest.
+    pub fn start_acceleration(
+        &self,
+        effective: &mut Effective,
+        start: &State,
+        now: Moment,
+    ) -> Vec<f64> {
+        let mut a = vec![0.0; start.u.len()];
+        let load = self.loads.weighted(self.body, 1.0, now, now, &start.u);
+        let Ok(internal) = self.body.internal_force(None, &start.u) else {
+            return a;
+        };
+        let r: Vec<f64> = load.iter().zip(&internal).map(|(r, f)| r - f).collect();
+        let m = &mut effective.m;
+        let solved = m
+            .factorize()
+            .and_then(|()| m.solver.solve(&self.dofs.restrict(&r)));
+        // Without it only the estimate of the first landings would be less good.
+        if let Ok(acceleration) = solved {
+            self.dofs.add(&acceleration, &mut a);
+        }
+        a
+    }
+}
+
+/// a + b
+pub(super) fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a + b).collect()
+}

@@ -1,0 +1,144 @@
+//! Checks across keywords: the quality of the mesh, thicknesses, units.
+
+use super::context::Context;
+use super::material::Properties;
+use super::mesh::Grid;
+use super::surface::Surfaces;
+use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::model::{Contact, Element, Mesh, SurfaceKind};
+use std::collections::HashMap;
+
+/// Smallest cross product of two sides, relative to the square of the longest side.
+const FLAT: f64 = 1e-10;
+
+/// Reports elements that are clockwise, degenerate, not convex or there twice.
+pub(super) fn mesh(grid: &Grid, cx: &mut Context) {
+    let mut known: HashMap<Vec<usize>, u64> = HashMap::new();
+    for (element, &span) in grid.mesh.elements.iter().zip(&grid.element_spans) {
+        shape(element, &grid.mesh, span, cx);
+        let mut nodes = element.cell.nodes().to_vec();
+        nodes.sort_unstable();
+        if let Some(first) = known.insert(nodes, element.label) {
+            let message = format!("element {} has the nodes of element {first}", element.label);
+            cx.error(Code::RepeatedElement, span, message);
+        }
+    }
+}
+
+fn shape(element: &Element, mesh: &Mesh, span: Span, cx: &mut Context) {
+    let at: Vec<[f64; 2]> = element
+        .cell
+        .nodes()
+        .iter()
+        .map(|&n| mesh.coordinates[n])
+        .collect();
+    let count = at.len();
+    let side = |i: usize| {
+        let (a, b) = (at[i % count], at[(i + 1) % count]);
+        [b[0] - a[0], b[1] - a[1]]
+    };
+    let longest = (0..count)
+        .map(|i| side(i)[0].hypot(side(i)[1]))
+        .fold(0.0, f64::max);
+    let turn = |i: usize| {
+        let (s, t) = (side(i), side(i + 1));
+        s[0] / longest * (t[1] / longest) - s[1] / longest * (t[0] / longest)
+    };
+    let left = (0..count).filter(|&i| turn(i) > FLAT).count();
+    let right = (0..count).filter(|&i| turn(i) < -FLAT).count();
+    let label = element.label;
+    let (fault, help) = if left == count {
+        return;
+    } else if right == count {
+        (
+            format!("element {label} is numbered clockwise"),
+            "reverse its node order",
+        )
+    } else if left + right < count {
+        (
+            format!("element {label} is degenerate: three of its nodes lie on one line"),
+            "mend the mesh",
+        )
+    } else if left == right {
+        (
+            format!("the sides of element {label} cross"),
+            "list its nodes in order around it",
+        )
+    } else {
+        (format!("element {label} is not convex"), "mend the mesh")
+    };
+    cx.d.push(Diagnostic::error(Code::BadShape, span, fault).help(help));
+}
+
+/// Warns where the two sides of a contact differ in thickness.
+pub(super) fn thickness(
+    contacts: &[Contact],
+    surfaces: &Surfaces,
+    properties: &Properties,
+    cx: &mut Context,
+) {
+    for contact in contacts {
+        let sides = [contact.slave, contact.master];
+        let [slave, master] = sides.map(|s| range_of_thickness(s, surfaces, properties));
+        if let (Some(slave), Some(master)) = (slave, master)
+            && slave != master
+        {
+            let message = "the two sides of this contact differ in thickness";
+            let warning = Diagnostic::warning(Code::ThicknessMismatch, contact.span, message);
+            cx.d.push(warning.help("contact forces act as if both were equally thick"));
+        }
+    }
+}
+
+fn range_of_thickness(
+    surface: usize,
+    surfaces: &Surfaces,
+    properties: &Properties,
+) -> Option<(f64, f64)> {
+    let SurfaceKind::Faces(faces) = &surfaces.all.get(surface)?.kind else {
+        return None;
+    };
+    let section = |element: usize| properties.section_of.get(element).copied().flatten();
+    let all = faces
+        .iter()
+        .filter_map(|face| properties.sections.get(section(face.element)?));
+    let all: Vec<f64> = all.map(|section| section.thickness).collect();
+    let low = all.iter().copied().reduce(f64::min)?;
+    Some((low, all.iter().copied().fold(low, f64::max)))
+}
+
+/// Notes wave speeds that hint at mixed units.
+pub(super) fn units(properties: &Properties, span: Option<Span>, cx: &mut Context) {
+    for material in &properties.materials {
+        let speed = (material.young / material.density).sqrt();
+        if let Some(span) = span
+            && speed.is_finite()
+            && speed > 0.0
+            && !(10.0..=1e8).contains(&speed)
+        {
+            let name = &material.name;
+            let message = format!("the waves in material {name} run at sqrt(E/rho) = {speed:.3e}");
+            let note = Diagnostic::note(Code::UnitsHint, span, message);
+            cx.d.push_once(note.help("most materials lie between 10 and 1e8 in common units"));
+        }
+    }
+}
+
+/// Time in which a wave crosses the shortest element side.
+pub(super) fn crossing_time(mesh: &Mesh, properties: &Properties) -> Option<f64> {
+    let speeds = properties
+        .materials
+        .iter()
+        .map(|m| (m.young / m.density).sqrt());
+    let fastest = speeds.filter(|s| s.is_finite()).reduce(f64::max)?;
+    let sides = mesh.elements.iter().flat_map(|element| {
+        let count = element.cell.nodes().len();
+        (0..count).map(|side| element.cell.side(side))
+    });
+    let length = |[a, b]: [usize; 2]| {
+        let (a, b) = (mesh.coordinates[a], mesh.coordinates[b]);
+        (b[0] - a[0]).hypot(b[1] - a[1])
+    };
+    let shortest = sides.map(length).reduce(f64::min)?;
+    Some(shortest / fastest).filter(|time| time.is_finite() && *time > 0.0)
+}

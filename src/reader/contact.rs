@@ -1,0 +1,123 @@
+//! `*SURFACE INTERACTION` with its laws, and `*CONTACT PAIR`.
+
+use super::context::Context;
+use super::names::Names;
+use super::outline::{Block, Outline};
+use super::surface::{self, Surfaces};
+use crate::deck::{Card, Row};
+use crate::diagnostics::{Code, Diagnostic};
+use crate::model::{Contact, Interaction, SurfaceKind};
+
+/// Reads interactions and contacts.
+pub(super) fn read(
+    outline: &Outline,
+    surfaces: &Surfaces,
+    cx: &mut Context,
+) -> (Vec<Interaction>, Vec<Contact>) {
+    let mut names = Names::new("surface interaction");
+    let mut interactions = Vec::new();
+    for block in outline.blocks("SURFACE INTERACTION") {
+        let Some(name) = names.new_name(block.head, cx) else {
+            continue;
+        };
+        if let Some(friction) = friction(block, cx) {
+            interactions.push(Interaction {
+                name: name.typed.clone(),
+                friction,
+            });
+            names.define(name);
+        } else {
+            names.spoil(&name);
+        }
+    }
+    let mut contacts = Vec::new();
+    for card in outline.model_cards("CONTACT PAIR") {
+        let name = card.required("INTERACTION", cx.d);
+        let interaction = name.and_then(|name| names.find(name, cx));
+        for row in &card.rows {
+            contacts.extend(contact(row, interaction, surfaces, cx));
+        }
+    }
+    (interactions, contacts)
+}
+
+/// Coefficient of friction of an interaction; `None` after a reported error.
+fn friction(block: &Block, cx: &mut Context) -> Option<f64> {
+    cx.only_once(&block.parts_of("SURFACE BEHAVIOR"));
+    if let Some(extra) = block.head.rows.get(1) {
+        let message = "*SURFACE INTERACTION takes one data line at most";
+        cx.error(Code::StrayData, extra.span(), message);
+    }
+    let cards = block.parts_of("FRICTION");
+    cx.only_once(&cards);
+    match cards.first() {
+        None => Some(0.0),
+        Some(card) if card.faulty => None,
+        Some(card) => coefficient(card, cx),
+    }
+}
+
+/// `mu[, ...]`
+fn coefficient(card: &Card, cx: &mut Context) -> Option<f64> {
+    let Some(row) = card.rows.first() else {
+        cx.error(
+            Code::MissingData,
+            card.span,
+            "*FRICTION needs the coefficient of friction",
+        );
+        return None;
+    };
+    if let Some(second) = card.rows.get(1) {
+        let message = "friction that depends on slip rate, pressure or temperature cannot be used";
+        cx.error(Code::UnsupportedParameter, second.span(), message);
+    }
+    let field = row.required(0, "the coefficient of friction", cx.d)?;
+    let friction = field.real(cx.d)?;
+    if friction < 0.0 {
+        let message = format!("the coefficient of friction must not be negative, found {friction}");
+        cx.error(Code::FrictionRange, field.span, message);
+        return None;
+    }
+    if let Some(rest) = row.get(1) {
+        let message = "only the coefficient of friction is read here";
+        let warning = Diagnostic::warning(Code::IgnoredParameter, rest.span, message);
+        cx.d.push_once(warning.help("sticking is exact: it needs no stick slope or slip rate"));
+    }
+    Some(friction)
+}
+
+/// `slave, master`
+fn contact(
+    row: &Row,
+    interaction: Option<usize>,
+    surfaces: &Surfaces,
+    cx: &mut Context,
+) -> Option<Contact> {
+    row.at_most(2, cx.d);
+    let slave = row.required(0, "the slave surface", cx.d);
+    let slave = slave.and_then(|field| surface::find(surfaces, field, cx));
+    let Some(master) = row.get(1) else {
+        let message = "the master surface is missing: a surface cannot touch itself yet";
+        cx.error(Code::ContactSurfaces, row.span(), message);
+        return None;
+    };
+    let master = surface::find(surfaces, master, cx);
+    let (slave, master) = (slave?, master?);
+    if slave.0 == master.0 {
+        let message = format!("surface {} is slave and master at once", slave.1.name);
+        cx.error(Code::ContactSurfaces, master.2, message);
+        return None;
+    }
+    if let SurfaceKind::Nodes(_) = master.1.kind {
+        let message = format!("the master surface {} is made of nodes", master.1.name);
+        let error = Diagnostic::error(Code::ContactSurfaces, master.2, message);
+        cx.d.push(error.help("a master is made of element faces; the slave may be made of nodes"));
+        return None;
+    }
+    Some(Contact {
+        slave: slave.0,
+        master: master.0,
+        interaction: interaction?,
+        span: row.span(),
+    })
+}

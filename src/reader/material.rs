@@ -1,0 +1,283 @@
+//! `*MATERIAL` with its constants, and `*SOLID SECTION`.
+
+use super::context::Context;
+use super::mesh::Grid;
+use super::names::Names;
+use super::outline::{Block, Outline};
+use super::sets::Sets;
+use crate::deck::{Card, Row};
+use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::model::{Material, Plane, Section};
+
+/// Materials and sections.
+pub(super) struct Properties {
+    /// Materials in the order of their names.
+    pub materials: Vec<Material>,
+    /// Sections.
+    pub sections: Vec<Section>,
+    /// Section of each element.
+    pub section_of: Vec<Option<usize>>,
+}
+
+/// A material as far as the deck gives it; `None` for a constant with a reported error.
+struct Draft {
+    name: String,
+    span: Span,
+    elastic: Constant<(f64, f64)>,
+    density: Constant<f64>,
+}
+
+/// A constant of a material.
+#[derive(Clone, Copy, PartialEq)]
+enum Constant<T> {
+    Missing,
+    Wrong,
+    Given(T),
+}
+
+impl<T> Constant<T> {
+    fn given(self) -> Option<T> {
+        match self {
+            Constant::Given(value) => Some(value),
+            Constant::Missing | Constant::Wrong => None,
+        }
+    }
+}
+
+/// Reads materials and sections.
+pub(super) fn read(outline: &Outline, grid: &Grid, sets: &Sets, cx: &mut Context) -> Properties {
+    let mut names = Names::new("material");
+    let mut drafts = Vec::new();
+    for block in outline.blocks("MATERIAL") {
+        if let Some(name) = names.new_name(block.head, cx) {
+            drafts.push(draft(name.typed.clone(), block, cx));
+            names.define(name);
+        }
+    }
+    let mut properties = Properties {
+        materials: Vec::new(),
+        sections: Vec::new(),
+        section_of: vec![None; grid.mesh.elements.len()],
+    };
+    let mut complete = true;
+    let mut used = vec![false; drafts.len()];
+    for card in outline.model_cards("SOLID SECTION") {
+        let section = section(card, &names, cx);
+        if let Some(used) = section.as_ref().and_then(|s| used.get_mut(s.material)) {
+            *used = true;
+        }
+        complete &= properties.assign(section, card, grid, sets, cx);
+    }
+    properties.report_without_section(complete, grid, cx);
+    report_incomplete(&drafts, &used, cx);
+    properties.materials = drafts.into_iter().map(material).collect();
+    properties.report_locking(grid, cx);
+    properties
+}
+
+fn draft(name: String, block: &Block, cx: &mut Context) -> Draft {
+    let elastic = block.parts_of("ELASTIC");
+    let density = block.parts_of("DENSITY");
+    cx.only_once(&elastic);
+    cx.only_once(&density);
+    Draft {
+        name,
+        span: block.head.span,
+        elastic: constant(&elastic, elastic_row, cx),
+        density: constant(&density, density_row, cx),
+    }
+}
+
+/// The constant that all rows of a card agree on.
+fn constant<T: PartialEq + Copy>(
+    cards: &[&Card],
+    read: fn(&Row, &mut Context) -> Option<T>,
+    cx: &mut Context,
+) -> Constant<T> {
+    let Some(card) = cards.first() else {
+        return Constant::Missing;
+    };
+    let mut found = Constant::Wrong;
+    for row in &card.rows {
+        match (read(row, cx), found) {
+            (None, _) => return Constant::Wrong,
+            (Some(value), Constant::Given(first)) if value != first => {
+                let message = "constants that depend on temperature cannot be used";
+                cx.error(Code::UnsupportedParameter, row.span(), message);
+            }
+            (Some(value), _) => found = Constant::Given(value),
+        }
+    }
+    found
+}
+
+/// `E, nu[, T]`
+fn elastic_row(row: &Row, cx: &mut Context) -> Option<(f64, f64)> {
+    row.at_most(3, cx.d);
+    let young = row.real(0, "Young's modulus", cx.d);
+    let poisson = row.real_or(1, 0.0, cx.d);
+    let (young, poisson) = (young?, poisson?);
+    let span = |i: usize| row.get(i).map_or(row.span(), |field| field.span);
+    if young <= 0.0 {
+        let message = format!("Young's modulus must be positive, found {young}");
+        cx.error(Code::MaterialRange, span(0), message);
+        return None;
+    }
+    if poisson <= -1.0 || poisson >= 0.5 {
+        let message = format!("Poisson's ratio must lie between -1 and 0.5, found {poisson}");
+        cx.error(Code::MaterialRange, span(1), message);
+        return None;
+    }
+    Some((young, poisson))
+}
+
+/// `rho[, T]`
+fn density_row(row: &Row, cx: &mut Context) -> Option<f64> {
+    row.at_most(2, cx.d);
+    let density = row.real(0, "the density", cx.d)?;
+    if density <= 0.0 {
+        let message = format!("the density must be positive, found {density}");
+        cx.error(Code::MaterialRange, row.span(), message);
+        return None;
+    }
+    Some(density)
+}
+
+/// Constants that a material in use lacks.
+fn report_incomplete(drafts: &[Draft], used: &[bool], cx: &mut Context) {
+    for (draft, _) in drafts.iter().zip(used).filter(|(_, used)| **used) {
+        let mut missing = Vec::new();
+        if draft.elastic == Constant::Missing {
+            missing.push("*ELASTIC");
+        }
+        if draft.density == Constant::Missing {
+            missing.push("*DENSITY");
+        }
+        if !missing.is_empty() {
+            let message = format!("material {} lacks {}", draft.name, missing.join(" and "));
+            cx.error(Code::IncompleteMaterial, draft.span, message);
+        }
+    }
+}
+
+/// A complete material; unknown constants are zero, which a model without errors never has in use.
+fn material(draft: Draft) -> Material {
+    let (young, poisson) = draft.elastic.given().unwrap_or((0.0, 0.0));
+    Material {
+        name: draft.name,
+        young,
+        poisson,
+        density: draft.density.given().unwrap_or(0.0),
+    }
+}
+
+/// `*SOLID SECTION`, with `thickness` on its data line.
+fn section(card: &Card, materials: &Names, cx: &mut Context) -> Option<Section> {
+    let material = card.required("MATERIAL", cx.d);
+    let material = material.and_then(|name| materials.find(name, cx));
+    let row = card.rows.first();
+    let thickness = row.map_or(Some(1.0), |row| row.real_or(0, 1.0, cx.d));
+    if let (Some(row), Some(value)) = (row, thickness) {
+        row.at_most(1, cx.d);
+        if value <= 0.0 {
+            let message = format!("the thickness must be positive, found {value}");
+            cx.error(Code::MaterialRange, row.span(), message);
+        }
+    }
+    if let Some(extra) = card.rows.get(1) {
+        let message = "*SOLID SECTION has one data line, the thickness";
+        cx.error(Code::StrayData, extra.span(), message);
+    }
+    Some(Section {
+        material: material?,
+        thickness: thickness?,
+    })
+}
+
+impl Properties {
+    /// Gives a section to its elements; says whether all of the card could be read.
+    fn assign(
+        &mut self,
+        section: Option<Section>,
+        card: &Card,
+        grid: &Grid,
+        sets: &Sets,
+        cx: &mut Context,
+    ) -> bool {
+        let errors = cx.errors();
+        let name = card.required("ELSET", cx.d);
+        let found = name.and_then(|name| sets.element_names.find(name, cx));
+        let Some(set) = found.and_then(|index| sets.elements.get(index)) else {
+            return false;
+        };
+        let complete = section.is_some() && cx.errors() == errors;
+        let index = self.sections.len();
+        self.sections.extend(section);
+        let mut taken = Vec::new();
+        for &element in &set.members {
+            match self.section_of.get_mut(element) {
+                Some(Some(_)) => taken.push(element),
+                Some(free) => *free = Some(index),
+                None => {}
+            }
+        }
+        if let Some(element) = taken.first().and_then(|&e| grid.mesh.elements.get(e)) {
+            let count = taken.len();
+            let message = format!(
+                "{count} elements of {} have a section already, the first is element {}",
+                set.name, element.label
+            );
+            cx.error(Code::TwoSections, card.span_of("ELSET"), message);
+        }
+        complete
+    }
+
+    /// Reports elements without section, unless a section could not be read.
+    fn report_without_section(&self, complete: bool, grid: &Grid, cx: &mut Context) {
+        let bare = || {
+            self.section_of
+                .iter()
+                .enumerate()
+                .filter(|(_, s)| s.is_none())
+        };
+        let Some((first, _)) = bare().next().filter(|_| complete) else {
+            return;
+        };
+        let element = grid.mesh.elements.get(first);
+        let span = grid.element_spans.get(first);
+        if let (Some(element), Some(&span), false) = (element, span, cx.deck.incomplete) {
+            let message = match bare().count() {
+                1 => format!("element {} has no section", element.label),
+                n => format!(
+                    "{n} elements have no section, the first is {}",
+                    element.label
+                ),
+            };
+            let error = Diagnostic::error(Code::NoSection, span, message);
+            cx.d.push(error.help("give them a material and a thickness with *SOLID SECTION"));
+        }
+    }
+
+    /// Warns about nearly incompressible materials in plane strain.
+    fn report_locking(&self, grid: &Grid, cx: &mut Context) {
+        for ((element, section), span) in grid
+            .mesh
+            .elements
+            .iter()
+            .zip(&self.section_of)
+            .zip(&grid.element_spans)
+        {
+            let section = section.and_then(|s| self.sections.get(s));
+            let material = section.and_then(|s| self.materials.get(s.material));
+            if let (Plane::Strain, Some(material)) = (element.plane, material)
+                && material.poisson > 0.49
+            {
+                let message = format!(
+                    "material {} with nu = {} makes plane strain elements lock",
+                    material.name, material.poisson
+                );
+                cx.d.push_once(Diagnostic::warning(Code::Locking, *span, message));
+            }
+        }
+    }
+}

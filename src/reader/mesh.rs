@@ -1,0 +1,400 @@
+//! `*NODE` and `*ELEMENT`.
+
+use super::context::Context;
+use super::names::{Labelled, Labels};
+use super::outline::Outline;
+use crate::deck::{Card, Name, Row, Text};
+use crate::diagnostics::{Code, Diagnostic, Span, closest};
+use crate::model::{Cell, Element, Mesh, Plane};
+use std::collections::HashMap;
+
+/// The mesh and what the deck calls its parts.
+pub(super) struct Grid {
+    /// Nodes that belong to elements, and elements. Sections are not yet known.
+    pub mesh: Mesh,
+    /// Node numbers.
+    pub nodes: Labels,
+    /// Element numbers.
+    pub elements: Labels,
+    /// Places of the elements.
+    pub element_spans: Vec<Span>,
+    /// Node sets named on `*NODE`.
+    pub node_groups: Vec<Group>,
+    /// Element sets named on `*ELEMENT`.
+    pub element_groups: Vec<Group>,
+}
+
+/// A set named where its members are defined.
+pub(super) struct Group {
+    /// Its name.
+    pub name: Name,
+    /// Where it is named.
+    pub span: Span,
+    /// Numbers of its members.
+    pub labels: Vec<u64>,
+}
+
+struct RawNode {
+    label: u64,
+    at: [f64; 3],
+    span: Span,
+}
+
+struct RawElement {
+    label: u64,
+    nodes: Vec<u64>,
+    plane: Plane,
+    span: Span,
+}
+
+/// Reads nodes and elements; leaves out nodes without element.
+pub(super) fn read(outline: &Outline, cx: &mut Context) -> Grid {
+    let mut reading = Reading::default();
+    for card in outline.model_cards("NODE") {
+        reading.node_card(card, cx);
+    }
+    for card in outline.model_cards("ELEMENT") {
+        reading.element_card(card, cx);
+    }
+    reading.report_empty(cx);
+    reading.report_not_planar(cx);
+    reading.grid(cx)
+}
+
+#[derive(Default)]
+struct Reading {
+    nodes: Vec<RawNode>,
+    node_index: HashMap<u64, Option<usize>>,
+    elements: Vec<RawElement>,
+    element_index: HashMap<u64, Span>,
+    node_groups: Vec<Group>,
+    element_groups: Vec<Group>,
+    nodes_incomplete: bool,
+    elements_incomplete: bool,
+}
+
+impl Reading {
+    fn node_card(&mut self, card: &Card, cx: &mut Context) {
+        let mut labels = Vec::new();
+        for row in &card.rows {
+            row.at_most(4, cx.d);
+            let numbers = Labels::new("node", Code::UndefinedNode);
+            let field = row.required(0, "the node number", cx.d);
+            match field.and_then(|field| numbers.number(field, cx)) {
+                Some(label) => {
+                    labels.push(label);
+                    self.node(label, row, cx);
+                }
+                None => self.nodes_incomplete = true,
+            }
+        }
+        self.node_groups.extend(group(card, "NSET", labels, cx));
+    }
+
+    fn node(&mut self, label: u64, row: &Row, cx: &mut Context) {
+        let coordinate = |i: usize, cx: &mut Context| row.real_or(i, 0.0, cx.d);
+        let at = [1, 2, 3].map(|i| coordinate(i, cx));
+        let [Some(x), Some(y), Some(z)] = at else {
+            self.node_index.entry(label).or_insert(None);
+            return;
+        };
+        let next = self.nodes.len();
+        let known = *self.node_index.entry(label).or_insert(Some(next));
+        match known.and_then(|index| self.nodes.get(index)) {
+            Some(first) if first.at != [x, y, z] => {
+                let message = format!(
+                    "node {label} has other coordinates on line {}",
+                    first.span.line
+                );
+                cx.error(Code::RepeatedNode, row.span(), message);
+            }
+            None if known.is_some() => self.nodes.push(RawNode {
+                label,
+                at: [x, y, z],
+                span: row.span(),
+            }),
+            _ => {}
+        }
+    }
+
+    fn element_card(&mut self, card: &Card, cx: &mut Context) {
+        let kind = card
+            .required("TYPE", cx.d)
+            .and_then(|name| element_type(name, cx));
+        let Some((corners, plane)) = kind else {
+            self.elements_incomplete = true;
+            self.element_groups
+                .extend(group(card, "ELSET", Vec::new(), cx));
+            return;
+        };
+        let mut labels = Vec::new();
+        for rows in element_rows(&card.rows, corners + 1) {
+            match self.element(rows, corners, plane, cx) {
+                Some(label) => labels.push(label),
+                None => self.elements_incomplete = true,
+            }
+        }
+        self.element_groups.extend(group(card, "ELSET", labels, cx));
+    }
+
+    /// Reads one element; returns its number.
+    fn element(
+        &mut self,
+        rows: &[Row],
+        corners: usize,
+        plane: Plane,
+        cx: &mut Context,
+    ) -> Option<u64> {
+        let span = rows.first()?.span();
+        let numbers = Labels::new("element", Code::UndefinedElement);
+        let fields: Vec<Text> = rows.iter().flat_map(Row::fields).collect();
+        let (first, rest) = fields.split_first()?;
+        let label = numbers.number(*first, cx)?;
+        if rest.len() < corners {
+            let found = rest.len();
+            let message = format!("element {label} needs {corners} nodes, found {found}");
+            cx.error(Code::MissingField, span, message);
+            return None;
+        }
+        if let Some(extra) = rest.get(corners) {
+            let message = format!("element {label} has {corners} nodes, this is one more");
+            cx.error(Code::ExtraField, extra.span, message);
+        }
+        let nodes = self.element_nodes(label, rest.get(..corners)?, cx)?;
+        if let Some(earlier) = self.element_index.insert(label, span) {
+            let message = format!("element {label} is defined on line {} too", earlier.line);
+            cx.error(Code::RepeatedElement, first.span, message);
+            return Some(label);
+        }
+        self.elements.push(RawElement {
+            label,
+            nodes,
+            plane,
+            span,
+        });
+        Some(label)
+    }
+
+    /// Numbers of an element's nodes, which must exist and differ.
+    fn element_nodes(&self, label: u64, fields: &[Text], cx: &mut Context) -> Option<Vec<u64>> {
+        let mut nodes: Vec<u64> = Vec::new();
+        let mut good = true;
+        for field in fields {
+            let numbers = Labels::new("node", Code::UndefinedNode);
+            let Some(node) = numbers.number(*field, cx) else {
+                good = false;
+                continue;
+            };
+            if nodes.contains(&node) {
+                let message = format!("element {label} has node {node} twice");
+                cx.error(Code::BadShape, field.span, message);
+                good = false;
+            }
+            if !matches!(self.node_index.get(&node), Some(Some(_))) {
+                good = false;
+                self.undefined_node(node, field.span, cx);
+            }
+            nodes.push(node);
+        }
+        good.then_some(nodes)
+    }
+
+    fn undefined_node(&self, node: u64, span: Span, cx: &mut Context) {
+        let known = self.node_index.contains_key(&node);
+        if !known && !self.nodes_incomplete && !cx.deck.incomplete {
+            let message = format!("node {node} is not defined");
+            cx.error(Code::UndefinedNode, span, message);
+        }
+    }
+
+    fn report_empty(&self, cx: &mut Context) {
+        let nothing_read = self.nodes.is_empty() || self.elements.is_empty();
+        let reported = cx.d.has_errors() || cx.deck.incomplete;
+        if nothing_read && !reported {
+            let what = if self.nodes.is_empty() {
+                "*NODE"
+            } else {
+                "*ELEMENT"
+            };
+            let message = format!("the deck has no mesh: {what} is missing or empty");
+            cx.d.push(Diagnostic::error_without_place(Code::EmptyMesh, message));
+        }
+    }
+
+    /// All nodes must have the same z, to a small fraction of the model's size.
+    fn report_not_planar(&self, cx: &mut Context) {
+        let range = |i: usize| {
+            let values = self.nodes.iter().map(|node| node.at[i]);
+            let low = values.clone().fold(f64::INFINITY, f64::min);
+            (low, values.fold(f64::NEG_INFINITY, f64::max))
+        };
+        let [x, y, z] = [0, 1, 2].map(range);
+        let size = (x.1 - x.0).max(y.1 - y.0);
+        let Some(first) = self.nodes.first() else {
+            return;
+        };
+        if z.1 - z.0 > 1e-9 * size {
+            let off = self.nodes.iter().find(|node| node.at[2] != first.at[2]);
+            let message = format!("the mesh is not plane: z runs from {} to {}", z.0, z.1);
+            cx.error(Code::NotPlanar, off.unwrap_or(first).span, message);
+        }
+    }
+
+    fn grid(self, cx: &mut Context) -> Grid {
+        let mut used = vec![false; self.nodes.len()];
+        let index_of = |label: &u64| self.node_index.get(label).copied().flatten();
+        for index in self
+            .elements
+            .iter()
+            .flat_map(|e| e.nodes.iter().filter_map(index_of))
+        {
+            used[index] = true;
+        }
+        self.report_unused(&used, cx);
+        let mut grid = Grid {
+            mesh: Mesh::default(),
+            nodes: Labels::new("node", Code::UndefinedNode),
+            elements: Labels::new("element", Code::UndefinedElement),
+            element_spans: Vec::new(),
+            node_groups: self.node_groups,
+            element_groups: self.element_groups,
+        };
+        grid.nodes.incomplete = self.nodes_incomplete;
+        grid.elements.incomplete = self.elements_incomplete;
+        for &label in self.node_index.keys() {
+            grid.nodes.insert(label, Labelled::LeftOut);
+        }
+        for (node, used) in self.nodes.iter().zip(used) {
+            if used {
+                grid.add_node(node);
+            }
+        }
+        for element in &self.elements {
+            grid.add_element(element);
+        }
+        grid
+    }
+
+    /// Warns about nodes of no element.
+    fn report_unused(&self, used: &[bool], cx: &mut Context) {
+        let unused = || self.nodes.iter().zip(used).filter(|(_, used)| !**used);
+        let Some((first, _)) = unused().next() else {
+            return;
+        };
+        if self.elements_incomplete || self.elements.is_empty() || cx.deck.incomplete {
+            return;
+        }
+        let message = match unused().count() {
+            1 => format!("node {} belongs to no element", first.label),
+            n => format!(
+                "{n} nodes belong to no element, the first is node {}",
+                first.label
+            ),
+        };
+        let warning = Diagnostic::warning(Code::UnusedNode, first.span, message);
+        cx.d.push(warning.help("left out, together with what the deck says about them"));
+    }
+}
+
+impl Grid {
+    fn add_node(&mut self, node: &RawNode) {
+        let [x, y, _] = node.at;
+        self.nodes
+            .insert(node.label, Labelled::Index(self.mesh.node_count()));
+        self.mesh.node_labels.push(node.label);
+        self.mesh.coordinates.push([x, y]);
+    }
+
+    fn add_element(&mut self, element: &RawElement) {
+        let index = |label: &u64| match self.nodes.get(*label) {
+            Some(Labelled::Index(index)) => Some(index),
+            _ => None,
+        };
+        let nodes: Option<Vec<usize>> = element.nodes.iter().map(index).collect();
+        let cell = match nodes.as_deref() {
+            Some(&[a, b, c]) => Cell::Tri3([a, b, c]),
+            Some(&[a, b, c, d]) => Cell::Quad4([a, b, c, d]),
+            _ => return,
+        };
+        let next = self.mesh.elements.len();
+        self.elements.insert(element.label, Labelled::Index(next));
+        self.element_spans.push(element.span);
+        self.mesh.elements.push(Element {
+            label: element.label,
+            cell,
+            plane: element.plane,
+            section: 0,
+        });
+    }
+}
+
+/// The set that a card names.
+fn group(card: &Card, parameter: &str, labels: Vec<u64>, cx: &mut Context) -> Option<Group> {
+    let text = card.value(parameter)?;
+    Some(Group {
+        name: text.name(cx.d)?,
+        span: text.span,
+        labels,
+    })
+}
+
+/// Rows of one element each: an element goes on until it has `count` fields, unless the next row
+/// would give it too many.
+fn element_rows(rows: &[Row], count: usize) -> Vec<&[Row]> {
+    let mut elements = Vec::new();
+    let mut rest = rows;
+    while !rest.is_empty() {
+        let mut fields = 0;
+        let fits = |row: &&Row| {
+            let before = fields;
+            fields += row.fields().count();
+            before == 0 || (before < count && fields <= count)
+        };
+        let taken = rest.iter().take_while(fits).count().max(1);
+        let (element, after) = rest.split_at(taken);
+        elements.push(element);
+        rest = after;
+    }
+    elements
+}
+
+/// Number of corners and plane of an element type.
+fn element_type(name: Text, cx: &mut Context) -> Option<(usize, Plane)> {
+    let folded = name.name_key();
+    match folded.as_str() {
+        "CPS3" => Some((3, Plane::Stress)),
+        "CPE3" => Some((3, Plane::Strain)),
+        "CPS4" => Some((4, Plane::Stress)),
+        "CPE4" => Some((4, Plane::Strain)),
+        _ => {
+            let message = format!("element type {} cannot be used", name.text);
+            let error = Diagnostic::error(Code::ElementType, name.span, message);
+            let meant = closest(&folded, ["CPS3", "CPE3", "CPS4", "CPE4"]);
+            cx.d.push(match reason(&folded) {
+                Some(reason) => error.help(reason),
+                None => error.suggest(meant).help("use CPS3, CPE3, CPS4 or CPE4"),
+            });
+            None
+        }
+    }
+}
+
+/// Why a type that other codes know cannot be used.
+fn reason(folded: &str) -> Option<&'static str> {
+    let starts = |prefixes: &[&str]| prefixes.iter().any(|prefix| folded.starts_with(prefix));
+    if starts(&["CPE4R", "CPS4R"]) && folded.len() == 5 {
+        Some("elements with one integration point are not supported: write CPE4 or CPS4")
+    } else if starts(&["CPE4", "CPS4", "CPE3", "CPS3"]) && folded.len() > 4 {
+        Some("write CPE3, CPS3, CPE4 or CPS4: other formulations are not supported")
+    } else if starts(&["CPE6", "CPS6", "CPE8", "CPS8"]) {
+        Some("quadratic elements are not supported: split them into linear ones")
+    } else if starts(&["CAX"]) {
+        Some("axisymmetric elements are not supported")
+    } else if starts(&["T2D", "T3D", "B2", "B3", "R2D"]) {
+        Some("line elements are not supported: name boundaries with *SURFACE")
+    } else if starts(&["C3D", "S3", "S4", "S6", "S8", "M3D", "R3D"]) {
+        Some("the program is plane: use CPS3, CPE3, CPS4 or CPE4")
+    } else {
+        None
+    }
+}

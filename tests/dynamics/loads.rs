@@ -1,0 +1,210 @@
+//! Loads and supports with closed forms, and the ledger that must close with them.
+
+use stickslip::dynamics::{IncrementReport, Outcome};
+use stickslip::model::{
+    Amplitude, BodyForce, Load, Model, Pressure, Scheme, Settings, Support, SupportMotion,
+    TimeBase, Traction, Variation,
+};
+
+use crate::blocks::{Block, add_block, add_contact, fixed, model, run_to_end, step};
+
+const SCHEMES: [Scheme; 2] = [
+    Scheme::EnergyMomentum,
+    Scheme::Ss22 {
+        theta1: 1.0,
+        theta2: 1.0,
+    },
+];
+
+fn settings(scheme: Scheme) -> Settings {
+    Settings {
+        scheme,
+        ..Settings::default()
+    }
+}
+
+/// A free block 2 x 1 of mass 2.
+fn free_block() -> (Model, Block) {
+    let mut model = model(1000.0, 0.3, 1.0);
+    let block = add_block(&mut model, [0.0, 0.0], [2.0, 1.0], (4, 2), 0.0);
+    (model, block)
+}
+
+fn balance_closes(reports: &[IncrementReport]) {
+    let largest = |f: fn(&IncrementReport) -> f64| reports.iter().map(f).fold(0.0, f64::max);
+    let energy = largest(|r| r.energy.kinetic + r.energy.strain);
+    let balance = largest(|r| r.energy.balance.abs());
+    assert!(balance < 1e-9 * energy, "{balance:e} of {energy:e}");
+}
+
+#[test]
+fn gravity_and_dead_traction_give_the_momentum_of_their_resultant() {
+    for scheme in SCHEMES {
+        let (mut model, block) = free_block();
+        let mut step = step(0.01, 50, settings(scheme), Vec::new());
+        step.body_forces = (0..8)
+            .map(|element| Load {
+                at: BodyForce {
+                    element,
+                    direction: [0.0, -1.0],
+                    per_mass: true,
+                },
+                magnitude: 9.81,
+                variation: Variation::Constant,
+            })
+            .collect();
+        step.tractions = block
+            .faces(1)
+            .into_iter()
+            .map(|face| Load {
+                at: Traction {
+                    face,
+                    direction: [1.0, 0.0],
+                },
+                magnitude: 3.0,
+                variation: Variation::Ramp { from: 1.0 },
+            })
+            .collect();
+        model.steps = vec![step];
+        let (keep, _) = run_to_end(&model);
+        let last = keep.reports.last().unwrap();
+        // m g t = 2 9.81 0.5; int (1 + 2 t/T) dt over T = 0.5 is 1 (theta = 1 takes the end value)
+        assert!((last.momentum.linear[1] + 9.81).abs() < 1e-10);
+        let expected = match scheme {
+            Scheme::EnergyMomentum => 1.0,
+            Scheme::Ss22 { .. } => 1.0 + 0.01,
+        };
+        assert!((last.momentum.linear[0] - expected).abs() < 1e-10);
+        balance_closes(&keep.reports);
+    }
+}
+
+#[test]
+fn pressure_all_around_has_no_resultant_and_follows_the_surface() {
+    for scheme in SCHEMES {
+        let (mut model, block) = free_block();
+        let mut step = step(0.01, 50, settings(scheme), Vec::new());
+        let faces = (0..4).flat_map(|side| block.faces(side));
+        step.pressures = faces
+            .map(|face| Load {
+                at: Pressure { face },
+                magnitude: 40.0,
+                variation: Variation::Constant,
+            })
+            .collect();
+        model.steps = vec![step];
+        let (keep, _) = run_to_end(&model);
+        let last = keep.reports.last().unwrap();
+        assert!(last.momentum.linear[0].abs() < 1e-11 && last.momentum.linear[1].abs() < 1e-11);
+        assert!(last.momentum.angular.abs() < 1e-11);
+        // It pushes inwards: the block is compressed, by work done on it.
+        assert!(last.energy.external_work > 0.0 && last.energy.strain > 0.0);
+        let width = 2.0 + last.state.u[2 * block.node(4, 1)] - last.state.u[2 * block.node(0, 1)];
+        assert!(width < 2.0);
+        balance_closes(&keep.reports);
+    }
+}
+
+#[test]
+fn a_shaken_support_moves_as_its_amplitude_says() {
+    for scheme in SCHEMES {
+        let (mut model, block) = free_block();
+        model.amplitudes = vec![Amplitude {
+            name: "SHAKE".into(),
+            time: TimeBase::Step,
+            points: vec![(0.0, 0.0), (0.2, 1.0), (0.4, -1.0), (0.6, 0.0)],
+        }];
+        let mut supports: Vec<Support> = Vec::new();
+        for j in 0..=2 {
+            let dof = 2 * block.node(0, j);
+            let motion = SupportMotion::Amplitude {
+                value: 0.1,
+                amplitude: 0,
+            };
+            supports.extend([Support { dof, motion }, fixed(dof + 1)]);
+        }
+        model.steps = vec![step(0.01, 60, settings(scheme), supports)];
+        let (keep, _) = run_to_end(&model);
+        let dof = 2 * block.node(0, 1);
+        let at = |k: usize| (keep.reports[k].state.u[dof], keep.reports[k].state.v[dof]);
+        for (k, u, v) in [
+            (10, 0.05, 0.5),
+            (20, 0.1, 0.5),
+            (30, 0.0, -1.0),
+            (60, 0.0, 0.5),
+        ] {
+            assert!(
+                (at(k).0 - u).abs() < 1e-15 && (at(k).1 - v).abs() < 1e-14,
+                "{k}: {:?}",
+                at(k)
+            );
+        }
+        assert!(keep.reports.last().unwrap().energy.external_work > 0.0);
+        balance_closes(&keep.reports);
+        // Newton: the impulse of the reactions is the change of momentum, but for the supports' own.
+        let last = keep.reports.last().unwrap();
+        assert!(
+            last.nodal.reaction[dof] != 0.0 && last.nodal.reaction[2 * block.node(4, 1)] == 0.0
+        );
+    }
+}
+
+#[test]
+fn a_body_whose_nodes_are_all_supported_costs_no_unknowns() {
+    let (mut model, block) = free_block();
+    let supports = block
+        .nodes()
+        .flat_map(|n| [fixed(2 * n), fixed(2 * n + 1)])
+        .collect();
+    model.steps = vec![step(0.01, 3, Settings::default(), supports)];
+    let (keep, summary) = run_to_end(&model);
+    assert_eq!(
+        (keep.reports.len(), summary.outcome),
+        (4, Outcome::Finished)
+    );
+}
+
+/// A block pressed on another by gravity, both orders of the two surfaces as pairs.
+#[test]
+fn both_orders_of_two_surfaces_carry_the_weight_together() {
+    for scheme in SCHEMES {
+        let mut model = model(1e4, 0.3, 1.0);
+        let base = add_block(&mut model, [-1.0, -1.0], [4.0, 1.0], (8, 2), 0.0);
+        let block = add_block(&mut model, [0.0, 0.0], [2.0, 1.0], (4, 2), 0.0);
+        let (lower, upper) = (block.faces(0), base.faces(2));
+        add_contact(&mut model, lower.clone(), upper.clone(), 0.3);
+        add_contact(&mut model, upper, lower, 0.3);
+        let supports = (0..=8)
+            .flat_map(|i| [fixed(2 * base.node(i, 0)), fixed(2 * base.node(i, 0) + 1)])
+            .collect();
+        let mut step = step(0.01, 100, settings(scheme), supports);
+        step.body_forces = (16..24)
+            .map(|element| Load {
+                at: BodyForce {
+                    element,
+                    direction: [0.0, -1.0],
+                    per_mass: true,
+                },
+                magnitude: 10.0,
+                variation: Variation::Constant,
+            })
+            .collect();
+        model.steps = vec![step];
+        let (keep, summary) = run_to_end(&model);
+        println!("{scheme:?} {summary:?}");
+        assert_eq!(keep.cutbacks.len(), 0);
+        let mean: f64 = keep.reports[50..]
+            .iter()
+            .map(|r| r.contacts[0].force[1] - r.contacts[1].force[1])
+            .sum::<f64>()
+            / 51.0;
+        assert!((mean - 20.0).abs() < 1.0, "the weight is 20: {mean}");
+        let gap = keep
+            .reports
+            .iter()
+            .flat_map(|r| &r.contacts)
+            .map(|c| c.min_gap);
+        assert!(gap.fold(f64::INFINITY, f64::min) > -1e-9 * 0.5);
+        balance_closes(&keep.reports);
+    }
+}

@@ -1,0 +1,7 @@
+//! The solver as a library: problems with known answers.
+
+mod blocks;
+mod elastic_bar;
+mod invariants;
+mod loads;
+mod patch;

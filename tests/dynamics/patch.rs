@@ -1,0 +1,127 @@
+//! Patch test: a distorted patch whose boundary is displaced affinely deforms affinely.
+
+use nalgebra::{DMatrix, DVector};
+use stickslip::elements::{Body, element_means};
+use stickslip::model::{Cell, Element, Model, Plane};
+
+use crate::blocks::model;
+
+/// Five quadrilaterals, or ten triangles, over [0, 2.4] x [0, 1.2] (MacNeal & Harder 1985, scaled):
+///
+/// ```text
+/// 3 ------------- 2
+/// | \           / |
+/// |  7 ------- 6  |
+/// |  |         |  |
+/// |  4 ------- 5  |
+/// | /           \ |
+/// 0 ------------- 1
+/// ```
+fn patch(triangles: bool) -> Model {
+    let mut model = model(1000.0, 0.3, 1.0);
+    model.mesh.coordinates = vec![
+        [0.0, 0.0],
+        [2.4, 0.0],
+        [2.4, 1.2],
+        [0.0, 1.2],
+        [0.4, 0.2],
+        [1.8, 0.3],
+        [1.6, 0.8],
+        [0.8, 0.8],
+    ];
+    let quads = [
+        [0, 1, 5, 4],
+        [1, 2, 6, 5],
+        [2, 3, 7, 6],
+        [3, 0, 4, 7],
+        [4, 5, 6, 7],
+    ];
+    let cells: Vec<Cell> = match triangles {
+        false => quads.into_iter().map(Cell::Quad4).collect(),
+        true => quads
+            .into_iter()
+            .flat_map(|[a, b, c, d]| [Cell::Tri3([a, b, c]), Cell::Tri3([a, c, d])])
+            .collect(),
+    };
+    let element = |(i, cell)| Element {
+        label: i as u64,
+        cell,
+        plane: Plane::Strain,
+        section: 0,
+    };
+    model.mesh.elements = cells.into_iter().enumerate().map(element).collect();
+    model
+}
+
+/// F = [[1.2, 0.3], [0.1, 0.9]]: u = (F - I) X.
+fn affine(model: &Model) -> Vec<f64> {
+    let u = |x: &[f64; 2]| [0.2 * x[0] + 0.3 * x[1], 0.1 * x[0] - 0.1 * x[1]];
+    model.mesh.coordinates.iter().flat_map(u).collect()
+}
+
+/// Static displacements of the inner nodes 4 to 7 for given boundary displacements, by Newton.
+fn solve_inner(body: &Body, mut u: Vec<f64>) -> Vec<f64> {
+    let inner = 8..16;
+    for _ in 0..12 {
+        let mut k = DMatrix::zeros(u.len(), u.len());
+        body.for_each_tangent(None, &u, |element, matrix| {
+            let dofs: Vec<usize> = body
+                .nodes(element)
+                .iter()
+                .flat_map(|n| [2 * n, 2 * n + 1])
+                .collect();
+            for (j, &column) in dofs.iter().enumerate() {
+                for (i, &row) in dofs.iter().enumerate() {
+                    k[(row, column)] += matrix[j * dofs.len() + i];
+                }
+            }
+        });
+        let f = body
+            .internal_force(None, &u)
+            .expect("no element is inverted");
+        let residual = DVector::from_column_slice(&f[inner.clone()]);
+        let k = k.view((8, 8), (8, 8)).into_owned();
+        let du = k.lu().solve(&residual).expect("the patch is stable");
+        for (u, du) in u[inner.clone()].iter_mut().zip(du.iter()) {
+            *u -= du;
+        }
+    }
+    u
+}
+
+#[test]
+fn an_affine_boundary_deforms_a_distorted_patch_affinely() {
+    for triangles in [false, true] {
+        let model = patch(triangles);
+        let body = Body::new(&model);
+        let exact = affine(&model);
+        let mut start = exact.clone();
+        start[8..].fill(0.0);
+        let u = solve_inner(&body, start);
+        for (dof, (u, exact)) in u.iter().zip(&exact).enumerate() {
+            assert!(
+                (u - exact).abs() < 1e-12,
+                "dof {dof}: {u} instead of {exact}"
+            );
+        }
+        // Green-Lagrange strain (F^T F - I)/2 in every element
+        for means in element_means(&model, &u) {
+            for (value, exact) in means.strain.iter().zip([0.225, -0.05, 0.225]) {
+                assert!((value - exact).abs() < 1e-12);
+            }
+        }
+        let volume = 2.4 * 1.2;
+        assert!((body.strain_energy(&u) / volume - 68.209135).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn the_mass_adds_up_to_that_of_the_patch() {
+    for triangles in [false, true] {
+        let body = Body::new(&patch(triangles));
+        let total: f64 = (0..body.len())
+            .map(|e| body.mass(e).iter().sum::<f64>())
+            .sum();
+        assert!((total - 2.88).abs() < 1e-14);
+    }
+}
