@@ -17,8 +17,7 @@ from results import Results  # noqa: E402
 
 slope = runner.load(DECKS / "generate.py")
 
-MASS = slope.DENSITY * slope.SIDE**2 * slope.THICKNESS
-ACCELERATION = (slope.FORCE / MASS * slope.SINE, -slope.FORCE / MASS * slope.COSINE)
+ACCELERATION = (slope.FORCE / slope.MASS * slope.SINE, -slope.FORCE / slope.MASS * slope.COSINE)
 FRAME = np.array([[slope.COSINE, slope.SINE], [-slope.SINE, slope.COSINE]])
 """Columns: the directions down the slope and out of it; vectors @ FRAME are (along, normal)."""
 LABELS = {"paper": "SS22 (1, 1), the paper's scheme", "default": "energy-momentum, the default"}
@@ -49,7 +48,7 @@ class Centre:
     @property
     def kinetic(self) -> Array:
         """Kinetic energy of the mass centre."""
-        return 0.5 * MASS * (self.velocity**2).sum(axis=1)
+        return 0.5 * slope.MASS * (self.velocity**2).sum(axis=1)
 
 
 def landing_time(results: Results) -> float:
@@ -90,8 +89,8 @@ def check_main(verification: runner.Verification) -> None:
     for case in verification.cases:
         results = verification.results[case.name]
         verification.check_run(case.name, slope.SIDE / 8 / case.refine)
-        verification.check("landing time", case.name, landing_time(results))
-        if case.deck == "mu00.inp":
+        verification.check("landing time", case.name, case.flight + landing_time(results))
+        if case.deck == "mu00.inp" and case.flight == 0.0:
             along = Centre(results).displacement[1:, 0]
             reference = point_mass(0.0).displacement(results.time[1:])[:, 0]
             deviation = float((np.abs(along - reference) / reference).max())
@@ -119,7 +118,7 @@ def tabulate_rebound(verification: runner.Verification) -> None:
     for case, results in verification.group("study"):
         row = after_first_impact(results)
         parts = {name: float(part[row]) for name, part in accounts(results).items()}
-        arrival = 0.5 * MASS * point_mass(0.0).landing_speed ** 2
+        arrival = 0.5 * slope.MASS * point_mass(0.0).landing_speed ** 2
         lost = ("vibration", "impact loss", "numerical dissipation", "normal contact (taken)")
         shares = [parts[name] / arrival for name in lost]
         scheme = "default" if case.scheme == "default" else "paper"
@@ -193,9 +192,8 @@ def draw_rebound(verification: runner.Verification) -> None:
     speed = point_mass(0.0).landing_speed
     for case, results in verification.group("study"):
         row = 1 if case.scheme == "default" else 0
-        first = results.time >= point_mass(0.0).landing - 2e-4
-        time = 1e3 * (results.time[first] - point_mass(0.0).landing)
-        normal = Centre(results).velocity[first, 1] / speed
+        time = 1e3 * (case.flight + results.time - point_mass(0.0).landing)
+        normal = Centre(results).velocity[:, 1] / speed
         edge, dt = 0.5 / case.refine, slope.DT / case.divide
         for column, shown in enumerate((case.divide == 1, case.refine == 1)):
             if shown:
