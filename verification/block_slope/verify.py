@@ -112,6 +112,29 @@ def tabulate_energy(verification: runner.Verification) -> None:
         verification.table("Where the energy went", header, rows)
 
 
+def tabulate_tumbling(verification: runner.Verification) -> None:
+    """How far the block turns, and whether a face that is not in the contact would touch."""
+    rows = []
+    for group in LABELS:
+        for case, results in verification.group(group):
+            history = results.nodes("BLOCK")
+            nodes = np.searchsorted(results.node_labels, history.labels)
+            face = np.isin(nodes, results.node_set("BLOCK_FACE"))
+            position = (results.coordinates[nodes] + history.U) @ FRAME
+            along, out = (position[:, face][:, -1] - position[:, face][:, 0]).T
+            turned = np.degrees(np.unwrap(np.arctan2(out, along)))[-1]
+            others = position[:, ~face, 1].min(axis=1)
+            inside = results.time[others < 0.0]
+            touch = float(inside[0]) if inside.size else "never"
+            rows.append((case.name, float(turned), float(others.min()), touch))
+    verification.table(
+        "Tumbling: rotation at the end (degrees), smallest distance of the block's other faces "
+        "from the undeformed slope (cm), time from which they would be inside (s)",
+        ("case", "rotation", "distance", "inside from"),
+        rows,
+    )
+
+
 def tabulate_rebound(verification: runner.Verification) -> None:
     """Rebound ratio against mesh, increment and scheme."""
     rows = []
@@ -206,7 +229,7 @@ def draw_rebound(verification: runner.Verification) -> None:
         for at in axes[row]:
             at.axhline(1.0, color="k", ls="--", lw=0.8, label="point mass")
             at.legend(loc="lower right")
-            at.set_xlim(-0.2, 1.5)
+            at.set_xlim(-0.05, 0.6)
     for at in axes[1]:
         at.set_xlabel("time since the landing (ms)")
     style.save(figure, verification.output / "rebound.png")
@@ -220,6 +243,7 @@ def main() -> int:
     tabulate_rebound(verification)
     draw_rebound(verification)
     if any(verification.group("paper")):
+        tabulate_tumbling(verification)
         draw_displacement(verification)
         draw_motion(verification)
         draw_energy(verification)
