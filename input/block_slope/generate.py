@@ -1,4 +1,4 @@
-"""Writes the decks of the block that falls on a slope: `generate.py [--refine N] [--flight T] [-o FOLDER]`."""
+"""Writes the decks of the block that falls on a slope: `generate.py [-o FOLDER]`."""
 
 import argparse
 import sys
