@@ -19,7 +19,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from results import SLIP, STICK, Array, Results
 
 
@@ -68,7 +68,7 @@ class Colouring:
         low = min(0.0, float(values.min()))
         return cls(field, Normalize(low, float(values.max()) or 1.0))
 
-    def bar(self, figure: Figure, axes: object) -> None:
+    def bar(self, figure: Figure | SubFigure, axes: object) -> None:
         """Adds the colour bar."""
         if self.field is not None:
             figure.colorbar(
@@ -143,22 +143,26 @@ def status_legend(axes: Axes) -> None:
     axes.legend(loc="best", handletextpad=0.1)
 
 
-def panels(results: Results, frames: list[int], field: str | None, forces: bool = False) -> Figure:
-    """One panel per frame, in reading order."""
-    columns = min(len(frames), 3 if len(frames) != 4 else 2)
-    rows = -(-len(frames) // columns)
-    everything = list(range(len(results.frame_times)))
-    probe, axes = plt.subplots()
-    frame_axes(axes, results, everything)
-    ratio = np.diff(axes.get_ylim())[0] / np.diff(axes.get_xlim())[0]
-    plt.close(probe)
-    figure, grid = plt.subplots(
-        rows,
-        columns,
-        figsize=(4.2 * columns + 1, (4.2 * ratio + 0.45) * rows),
-        sharex=True,
-        sharey=True,
-        squeeze=False,
+def height_over_width(results: Results) -> float:
+    """Proportions of a panel that holds all frames of a result."""
+    figure, axes = plt.subplots()
+    frame_axes(axes, results, list(range(len(results.frame_times))))
+    ratio = float(np.diff(axes.get_ylim())[0] / np.diff(axes.get_xlim())[0])
+    plt.close(figure)
+    return ratio
+
+
+def draw_panels(
+    figure: Figure | SubFigure,
+    results: Results,
+    frames: list[int],
+    field: str | None,
+    columns: int,
+    forces: bool = False,
+) -> None:
+    """Fills a figure with one panel per frame, in reading order."""
+    grid = figure.subplots(
+        -(-len(frames) // columns), columns, sharex=True, sharey=True, squeeze=False
     )
     colouring = Colouring.of(results, field, frames)
     scale = force_scale(results, frames)
@@ -166,12 +170,21 @@ def panels(results: Results, frames: list[int], field: str | None, forces: bool 
         draw_shape(axes, results, frame, colouring)
         if forces:
             draw_forces(axes, results, frame, scale)
-        frame_axes(axes, results, everything)
+        frame_axes(axes, results, list(range(len(results.frame_times))))
         axes.set_title(f"t = {results.frame_times[frame]:.4g}")
     for axes in grid.flat[len(frames) :]:
         axes.set_visible(False)
     status_legend(grid[0, 0])
     colouring.bar(figure, list(grid.flat))
+
+
+def panels(results: Results, frames: list[int], field: str | None, forces: bool) -> Figure:
+    """A figure with one panel per frame."""
+    columns = {4: 2, 7: 4, 8: 4}.get(len(frames), min(len(frames), 3))
+    rows = -(-len(frames) // columns)
+    height = 4.2 * height_over_width(results) + 0.45
+    figure = plt.figure(figsize=(4.2 * columns + 1, height * rows))
+    draw_panels(figure, results, frames, field, columns, forces)
     return figure
 
 

@@ -36,6 +36,8 @@ class Case:
     """The deck's, or "default": without its STICKSLIP card."""
     refine: int = 1
     """Divides the edges of all elements."""
+    flight: float = 0.0
+    """Time of free flight that the generator leaves out."""
     divide: float = 1.0
     """Divides the increment."""
     until: float | None = None
@@ -115,9 +117,11 @@ class Verification:
 
     def _deck(self, case: Case) -> Deck:
         decks = self.decks
-        if case.refine > 1:
-            decks = self.output / "decks" / f"refine_{case.refine}"
-            load(self.decks / "generate.py").write(decks, case.refine)
+        changes = {"refine": case.refine} if case.refine > 1 else {}
+        changes |= {"flight": case.flight} if case.flight > 0.0 else {}
+        if changes:
+            decks = self.output / "decks" / case.name
+            load(self.decks / "generate.py").write(decks, **changes)
         deck = Deck.read(decks / case.deck)
         if case.scheme == "default":
             deck.set_settings()

@@ -1,4 +1,4 @@
-"""Writes the decks of the block that falls on a slope: `generate.py [--refine N] [-o FOLDER]`."""
+"""Writes the decks of the block that falls on a slope: `generate.py [-o FOLDER]`."""
 
 import argparse
 import sys
@@ -24,6 +24,7 @@ FRICTION = {"mu00": 0.0, "mu02": 0.2, "mu05": 0.5}
 SINE, COSINE = 0.5, sqrt(3) / 2  # 30 degrees
 LENGTH, DEPTH = 40.0, 2.0
 SIDE, START, GAP = 4.0, 2.0, 2.0
+MASS = DENSITY * SIDE**2 * THICKNESS
 
 INCLUDE = "block_slope.inc"
 
@@ -36,8 +37,14 @@ def place(along: float, above: float) -> tuple[float, float]:
     return along * COSINE + above * SINE, above * COSINE - along * SINE
 
 
-def model(refine: int = 1) -> str:
-    """Everything but the friction and the step; `refine` divides the edges of all elements."""
+def model(refine: int = 1, flight: float = 0.0) -> str:
+    """Everything but the friction and the step.
+
+    `refine` divides the edges of all elements. After `flight`, a time before the landing, the
+    block's fall continues: it starts from where it is then, with the velocity that it has then.
+    """
+    along, normal = (flight * FORCE / MASS * direction for direction in (SINE, -COSINE))
+    start, gap = START + 0.5 * flight * along, GAP + 0.5 * flight * normal
     nx, ny = 40 * refine, 2 * refine
     slope = Grid("SLOPE", nx, ny, lambda i, j: place(LENGTH * i / nx, DEPTH * j / ny - DEPTH))
     n = 8 * refine
@@ -45,11 +52,11 @@ def model(refine: int = 1) -> str:
         "BLOCK",
         n,
         n,
-        lambda i, j: place(START + SIDE * i / n, GAP + SIDE * j / n),
+        lambda i, j: place(start + SIDE * i / n, gap + SIDE * j / n),
         slope.next_node,
         slope.next_element,
     )
-    return "".join(
+    cards = "".join(
         [
             "** Written by generate.py; kg, cm, s (force: kg cm/s^2 = 0.01 N).\n",
             slope.mesh("CPS4"),
@@ -71,11 +78,16 @@ def model(refine: int = 1) -> str:
             card("BOUNDARY", ("SLOPE_BASE", 1, 2)),
         ]
     )
+    if flight > 0.0:
+        velocity = place(along, normal)
+        rows = [("BLOCK", i + 1, velocity[i]) for i in range(2)]
+        cards += card("INITIAL CONDITIONS, TYPE=VELOCITY", *rows)
+    return cards
 
 
 def problem(friction: float) -> str:
     """A deck: heading, include, friction, step."""
-    body_force = FORCE / (SIDE * SIDE * THICKNESS)
+    body_force = FORCE / (SIDE**2 * THICKNESS)
     return "".join(
         [
             card("HEADING", (f"block falling on a slope of 30 degrees; friction {friction}",)),
@@ -95,10 +107,10 @@ def problem(friction: float) -> str:
     )
 
 
-def write(folder: Path, refine: int = 1) -> None:
+def write(folder: Path, refine: int = 1, flight: float = 0.0) -> None:
     """Writes the include file and all decks into `folder`."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / INCLUDE).write_text(model(refine))
+    (folder / INCLUDE).write_text(model(refine, flight))
     for name, friction in FRICTION.items():
         (folder / f"{name}.inp").write_text(problem(friction))
 
@@ -107,9 +119,10 @@ def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--refine", type=int, default=1, help="divide the edges of all elements")
+    parser.add_argument("--flight", type=float, default=0.0, help="time of fall left out")
     parser.add_argument("-o", "--output", type=Path, default=HERE, help="folder of the decks")
     arguments = parser.parse_args()
-    write(arguments.output, arguments.refine)
+    write(arguments.output, arguments.refine, arguments.flight)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Writes the decks of the two cantilevers: `generate.py [--refine N] [-o FOLDER]`."""
+"""Writes the decks of the two cantilevers: `generate.py [-o FOLDER]`."""
 
 import argparse
 import sys

@@ -17,6 +17,9 @@ BASE: dict[str, Dimension] = {
 }
 
 
+SAME = Units()
+
+
 def dimension(text: str) -> Dimension:
     """Exponents of length, mass and time of a `dimension` attribute: 'mass*length^2/time'."""
     total = np.zeros(3, int)
@@ -76,21 +79,25 @@ def scaled_differences(first: Path, second: Path, units: Units) -> list[str]:
     return found
 
 
-def largest_deviations(first: Path, second: Path, units: Units = Units()) -> dict[str, float]:
-    """Largest difference of each history from `first` in the other units, relative to its
-    largest value; residuals and other round-off quantities left out."""
-    roundoff = ("solver", "balance", "cone_violation", "impacts")
-    found: dict[str, float] = {}
+def largest_deviations(first: Path, second: Path, units: Units = SAME) -> dict[str, float]:
+    """Largest difference of each history from `first` in the other units.
+
+    It is relative to the largest value among all histories of the same dimension, so that a force
+    or an energy that vanishes but for round-off does not count. Pure numbers (residuals, cone
+    violation) and the list of impacts are left out.
+    """
+    errors: dict[str, tuple[Dimension, float]] = {}
+    scales: dict[Dimension, float] = {}
     with h5py.File(first) as a, h5py.File(second) as b:
         for name, data in datasets(a["history"]):
-            if data.dtype.kind != "f" or any(word in name for word in roundoff):
+            unit = dimension(data.attrs["dimension"])
+            if unit == BASE["1"] or name.startswith("impacts"):
                 continue
-            expected = data[()] * units.factor(dimension(data.attrs["dimension"]))
+            expected = data[()] * units.factor(unit)
             actual = b["history"][name][()]
-            if expected.shape != actual.shape:
-                found[name] = np.inf
-                continue
-            scale = np.nanmax(np.abs(expected), initial=0.0)
-            error = np.nanmax(np.abs(actual - expected), initial=0.0)
-            found[name] = float(error / scale) if scale > 0.0 else float(error)
-    return found
+            same = expected.shape == actual.shape
+            error = np.nanmax(np.abs(actual - expected), initial=0.0) if same else np.inf
+            errors[name] = unit, float(error)
+            largest = float(np.nanmax(np.abs(expected), initial=0.0))
+            scales[unit] = max(scales.get(unit, 0.0), largest)
+    return {name: error / (scales[unit] or 1.0) for name, (unit, error) in errors.items()}

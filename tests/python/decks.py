@@ -81,7 +81,7 @@ def spinning_bar(folder: Path) -> Deck:
 def oblique_impact(friction: float, folder: Path) -> Deck:
     """A spinning block flies obliquely onto a free beam; nothing is supported."""
     beam = Grid("BEAM", 24, 3, lambda i, j: (0.5 * i - 6.0, 0.4 * j - 1.2))
-    angle, centre = 0.2, (-1.0, 1.6)
+    angle, centre = 0.04, (-1.0, 1.3)
 
     def place(i: int, j: int) -> tuple[float, float]:
         x, y = 0.5 * i - 1.0, 0.5 * j - 1.0
@@ -93,7 +93,7 @@ def oblique_impact(friction: float, folder: Path) -> Deck:
         [
             card("HEADING", (f"oblique impact of two free bodies, friction {friction}",)),
             body(beam, (0.0, 0.4), 0.0, (0.0, 0.0)),
-            body(block, (0.8, -1.0), 0.3, centre),
+            body(block, (0.8, -1.0), 0.05, centre),
             material(1000.0, 1.0, "BEAM", "BLOCK"),
             block.side_surface("BLOCK_FACE", "bottom"),
             beam.side_surface("BEAM_FACE", "top"),

@@ -11,7 +11,7 @@ import runner  # noqa: E402  (first: it finds the modules of scripts/)
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 import style  # noqa: E402
-from plot_motion import draw_shape, frame_axes, Colouring  # noqa: E402
+from plot_motion import draw_panels  # noqa: E402
 from results import Array, Results  # noqa: E402
 
 beams = runner.load(DECKS / "generate.py")
@@ -27,7 +27,7 @@ def tip(results: Results, name: str = "UPPER_TIP") -> Array:
 
 def draw_displacement(verification: runner.Verification, name: str, label: str) -> None:
     """Horizontal and vertical displacement of a tip against time, all mu in one figure."""
-    figure, axes = plt.subplots(2, 2, figsize=(11, 7), sharex=True, sharey="row")
+    figure, axes = plt.subplots(2, 2, figsize=(11, 7), sharex=True)
     for column, load in enumerate("AB"):
         for group, line in (("paper", "-"), ("default", "--")):
             cases = [(c, r) for c, r in verification.group(group) if c.deck[0] == load]
@@ -53,18 +53,13 @@ def draw_displacement(verification: runner.Verification, name: str, label: str) 
 
 def draw_motion(verification: runner.Verification, group: str) -> None:
     """Shapes at t = 0, 2, 4, ... at mu = 0.4 for both load cases."""
-    times = np.arange(0.0, 15.0, 2.0)
-    figure, axes = plt.subplots(4, 4, figsize=(14, 13), sharex=True, sharey=True)
-    for half, load in enumerate("AB"):
+    figure = plt.figure(figsize=(14, 12))
+    parts = figure.subfigures(2, 1, height_ratios=(2.2, 1.0))
+    for part, load in zip(parts, "AB"):
         results = verification.results[f"{group}_{load}_mu04"]
-        frames = [results.nearest_frame(time) for time in times]
-        colouring = Colouring.of(results, "von-mises", frames)
-        for at, frame in zip(axes[2 * half : 2 * half + 2].flat, frames):
-            draw_shape(at, results, frame, colouring)
-            frame_axes(at, results, frames)
-            at.set_title(f"case {load}, t = {results.frame_times[frame]:.4g}")
-        colouring.bar(figure, axes[2 * half : 2 * half + 2])
-    figure.suptitle(f"mu = 0.4; {LABELS[group]}")
+        frames = [results.nearest_frame(time) for time in np.arange(0.0, 15.0, 2.0)]
+        draw_panels(part, results, frames, "von-mises", columns=4)
+        part.suptitle(f"load case {load}, mu = 0.4; {LABELS[group]}")
     style.save(figure, verification.output / f"motion_{group}.png")
 
 
