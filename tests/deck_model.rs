@@ -2,7 +2,7 @@
 
 use std::path::Path;
 use stickslip::diagnostics::{Diagnostics, Sources};
-use stickslip::model::Model;
+use stickslip::model::*;
 use stickslip::{deck, reader};
 
 /// The model of a deck, which must have no errors, and the text of its warnings.
@@ -23,37 +23,369 @@ fn shared_deck_reads_with_its_warnings() {
     insta::assert_debug_snapshot!(model.expect("no errors"));
 }
 
-const SQUARE: &str = "\
-*NODE, NSET=ALL
-1, 0., 0.
-2, 1., 0.
-3, 1., 1.
-4, 0., 1.
-*ELEMENT, TYPE=CPS4, ELSET=BODY
-7, 1, 2, 3, 4
-*MATERIAL, NAME=RUBBER
-*ELASTIC
-1000., 0.3
-*DENSITY
-1.
-*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER
-0.5
-";
+const SQUARE: &str = include_str!("decks/square.inp");
 
-/// The model of a square with further cards.
-fn square(more: &str) -> (Model, String) {
-    read(&format!("{SQUARE}{more}"))
+/// The model of the square with `old` replaced by `new`.
+fn square(old: &str, new: &str) -> (Model, String) {
+    assert!(SQUARE.contains(old), "{old}");
+    read(&SQUARE.replacen(old, new, 1))
+}
+
+/// The model of the square with further model cards and one more step.
+fn with(model: &str, step: &str) -> Model {
+    let text = SQUARE.replacen("*STEP", &format!("{model}\n*STEP"), 1);
+    read(&text.replacen("*END STEP", &format!("{step}\n*END STEP"), 1)).0
+}
+
+/// The model of the square with a second step made of these cards.
+fn second_step(head: &str, first: &str, second: &str) -> Model {
+    let text = SQUARE.replacen("*END STEP", &format!("{first}\n*END STEP"), 1);
+    read(&format!(
+        "{text}{head}\n*DYNAMIC\n0.1, 1.\n{second}\n*END STEP\n"
+    ))
+    .0
 }
 
 #[test]
-fn one_square_without_messages() {
-    let (model, messages) = square(
-        "*STEP, NLGEOM, NAME=push\n*DYNAMIC, DIRECT\n0.1, 1.\n\
-         *STICKSLIP, SCHEME=SS22, THETA1=1., THETA2=1.\n*CLOAD\nALL, 2, 4.\n*END STEP\n",
-    );
+fn square_reads_without_messages() {
+    let (model, messages) = read(SQUARE);
     assert_eq!(messages, "");
+    assert_eq!(model.title, "one square");
+    assert_eq!(model.mesh.node_labels, [1, 2, 3, 4]);
     assert_eq!(model.mesh.elements[0].label, 7);
+    assert_eq!(model.mesh.elements[0].plane, Plane::Stress);
     assert_eq!(model.sections[0].thickness, 0.5);
-    assert_eq!(model.steps[0].point_loads.len(), 4);
-    assert_eq!(model.steps[0].name.as_deref(), Some("push"));
+    assert_eq!(model.materials[0].young, 1000.0);
+    assert_eq!(model.node_sets[1].name, "FOOT");
+    assert_eq!(model.history_sets, [1]);
+    let step = &model.steps[0];
+    let dofs: Vec<usize> = step.supports.iter().map(|s| s.dof).collect();
+    assert_eq!(dofs, [0, 1, 2, 3]);
+    assert_eq!(step.increments.dt, 0.1);
+    assert_eq!(step.frames, Frames::Default);
+    let load = Load {
+        at: PointLoad { dof: 5 },
+        magnitude: 4.0,
+        variation: Variation::Constant,
+    };
+    assert_eq!(step.point_loads, [load]);
+}
+
+#[test]
+fn a_deck_that_uses_everything() {
+    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+    let model = reader::read_model(Path::new("tests/decks/steps.inp"), &mut sources, &mut d);
+    insta::assert_snapshot!(d.render(&sources, false));
+    insta::assert_debug_snapshot!(model.expect("no errors"));
+}
+
+#[test]
+fn forces_on_a_node_add_up_in_a_step_and_are_replaced_in_the_next() {
+    let model = second_step("*STEP", "*CLOAD\n3, 2, 1.", "*CLOAD\n3, 2, 7.");
+    let sum = |i: usize| -> f64 { model.steps[i].point_loads.iter().map(|l| l.magnitude).sum() };
+    assert_eq!((sum(0), sum(1)), (5.0, 7.0));
+}
+
+#[test]
+fn loads_and_supports_are_kept_until_op_new() {
+    let model = second_step("*STEP", "", "*CLOAD\n4, 1, 1.");
+    assert_eq!(model.steps[1].point_loads.len(), 2);
+    assert_eq!(model.steps[1].supports.len(), 4);
+    let model = second_step("*STEP", "", "*CLOAD, OP=NEW\n4, 1, 1.\n*BOUNDARY, OP=NEW");
+    assert_eq!(model.steps[1].point_loads.len(), 1);
+    assert_eq!(model.steps[1].supports, []);
+    assert_eq!(model.steps[0].supports.len(), 4);
+}
+
+#[test]
+fn ramps_start_where_the_step_before_ended() {
+    let model = second_step("*STEP, AMPLITUDE=RAMP", "", "*CLOAD\n3, 2, 7.\n4, 1, 1.");
+    let loads = &model.steps[1].point_loads;
+    let ramp = |dof, from, magnitude| Load {
+        at: PointLoad { dof },
+        magnitude,
+        variation: Variation::Ramp { from },
+    };
+    assert_eq!(loads[..], [ramp(5, 4.0, 7.0), ramp(6, 0.0, 1.0)]);
+    let model = second_step("*STEP, AMPLITUDE=RAMP", "", "*CLOAD, OP=NEW");
+    assert_eq!(model.steps[1].point_loads, [ramp(5, 4.0, 0.0)]);
+}
+
+#[test]
+fn a_load_on_step_time_stays_at_its_last_value() {
+    let amplitude = "*AMPLITUDE, NAME=A\n0., 0., 4., 8.";
+    let model = second_step(
+        "*STEP",
+        &format!("{amplitude}\n*CLOAD, AMPLITUDE=A\n4, 1, 3."),
+        "",
+    );
+    let (first, second) = (
+        &model.steps[0].point_loads[1],
+        &model.steps[1].point_loads[1],
+    );
+    assert_eq!(first.variation, Variation::Amplitude(0));
+    assert_eq!(
+        (second.variation, second.magnitude),
+        (Variation::Constant, 6.0)
+    );
+}
+
+#[test]
+fn a_gravity_that_turns_fades_out_and_in() {
+    let model = second_step(
+        "*STEP, AMPLITUDE=RAMP",
+        "*DLOAD\nBODY, GRAV, 9.81, 0., -1.",
+        "*DLOAD\nBODY, GRAV, 9.81, 1., 0.",
+    );
+    let loads: Vec<_> = model.steps[1]
+        .body_forces
+        .iter()
+        .map(|l| (l.at.direction, l.magnitude, l.variation))
+        .collect();
+    let ramp = |from| Variation::Ramp { from };
+    assert_eq!(
+        loads,
+        [
+            ([0.0, -1.0], 0.0, ramp(9.81)),
+            ([1.0, 0.0], 9.81, ramp(0.0))
+        ]
+    );
+}
+
+#[test]
+fn prescribed_displacements_ramp_or_follow_an_amplitude() {
+    let model = with(
+        "*AMPLITUDE, NAME=A\n0., 0., 1., 1.",
+        "*BOUNDARY\n3, 1, 1, 0.2\n*BOUNDARY, AMPLITUDE=A\n3, 2, 2, 0.3",
+    );
+    let motions: Vec<_> = model.steps[0]
+        .supports
+        .iter()
+        .filter(|s| s.dof > 3)
+        .map(|s| s.motion)
+        .collect();
+    let follow = SupportMotion::Amplitude {
+        value: 0.3,
+        amplitude: 0,
+    };
+    assert_eq!(motions, [SupportMotion::Ramp { to: 0.2 }, follow]);
+}
+
+#[test]
+fn named_supports_fix_their_directions() {
+    for (name, dofs) in [
+        ("XSYMM", vec![6]),
+        ("YSYMM", vec![7]),
+        ("ZSYMM", vec![]),
+        ("PINNED", vec![6, 7]),
+        ("ENCASTRE", vec![6, 7]),
+    ] {
+        let model = with(&format!("*BOUNDARY\n4, {name}"), "");
+        let found: Vec<usize> = model.steps[0]
+            .supports
+            .iter()
+            .map(|s| s.dof)
+            .filter(|&d| d > 3)
+            .collect();
+        assert_eq!(found, dofs, "{name}");
+    }
+    let model = with("*BOUNDARY\n4, 1, 6", "");
+    assert_eq!(model.steps[0].supports.len(), 6);
+}
+
+#[test]
+fn increments_are_limited_unless_direct() {
+    let times = |row: &str, direct: bool| {
+        let head = if direct {
+            "*DYNAMIC, DIRECT\n"
+        } else {
+            "*DYNAMIC\n"
+        };
+        let model = square("*DYNAMIC, DIRECT\n0.1, 1.", &format!("{head}{row}")).0;
+        let i = model.steps[0].increments;
+        (i.dt, i.period, i.dt_min, i.direct)
+    };
+    assert_eq!(
+        times("0.1, 1., 1e-3, 0.05", false),
+        (0.05, 1.0, 1e-3, false)
+    );
+    assert_eq!(times("0.1, 1., , 0.05", true), (0.1, 1.0, 0.0, true));
+}
+
+#[test]
+fn settings_are_read_and_kept() {
+    let card = "*STICKSLIP, SCHEME=SS22, THETA1=0.5, THETA2=0.6, IMPACT=NONE, IMPACT TIME=INCREMENT, \
+                LCP=LEMKE, FACTORIZATION=EVERY PASS, SOLVER=SPRS, TOLERANCE=1e-9, MAX PASSES=9";
+    let model = second_step("*STEP", card, "*STICKSLIP, SCHEME=energy-momentum");
+    let settings = Settings {
+        scheme: Scheme::Ss22 {
+            theta1: 0.5,
+            theta2: 0.6,
+        },
+        impact: Impact::None,
+        lcp: LcpChoice::Lemke,
+        factorization: Factorization::EveryPass,
+        solver: SolverChoice::Sprs,
+        tolerance: 1e-9,
+        max_passes: 9,
+    };
+    assert_eq!(model.steps[0].settings, settings);
+    let scheme = Scheme::EnergyMomentum;
+    assert_eq!(model.steps[1].settings, Settings { scheme, ..settings });
+    assert_eq!(read(SQUARE).0.steps[0].settings, Settings::default());
+}
+
+#[test]
+fn weights_default_to_the_published_scheme() {
+    let model = with("", "*STICKSLIP, SCHEME=SS22");
+    let scheme = Scheme::Ss22 {
+        theta1: 1.0,
+        theta2: 1.0,
+    };
+    assert_eq!(model.steps[0].settings.scheme, scheme);
+}
+
+#[test]
+fn frames_as_each_request_says() {
+    for (card, frames) in [
+        ("*OUTPUT, FIELD, NUMBER INTERVAL=7", Frames::Count(7)),
+        ("*OUTPUT, FIELD, TIME INTERVAL=0.25", Frames::Every(0.25)),
+        (
+            "*OUTPUT, FIELD, FREQUENCY=3\n*NODE OUTPUT\nU",
+            Frames::Increments(3),
+        ),
+        ("*OUTPUT, FIELD, FREQUENCY=0", Frames::Count(1)),
+        ("*OUTPUT, FIELD", Frames::Default),
+        ("*OUTPUT, HISTORY, FREQUENCY=3", Frames::Default),
+        (
+            "*NODE FILE, FREQUENCY=2\nU\n*EL FILE, FREQUENCY=4\nS",
+            Frames::Increments(4),
+        ),
+        ("*CONTACT FILE, FREQUENCY=5\nCDIS", Frames::Increments(5)),
+        ("*NODE FILE\nU", Frames::Default),
+        (
+            "*OUTPUT, FIELD, TIME POINTS=P",
+            Frames::Times(vec![0.5, 1.0]),
+        ),
+    ] {
+        let model = with("*TIME POINTS, NAME=P\n0.5, 0., 3.\n1.", card);
+        assert_eq!(model.steps[0].frames, frames, "{card}");
+    }
+}
+
+#[test]
+fn history_sets_of_both_families() {
+    let model = with(
+        "",
+        "*OUTPUT, HISTORY\n*NODE OUTPUT, NSET=ALL\nU\n*NODE PRINT, NSET=ALL\nV",
+    );
+    assert_eq!(model.history_sets, [1, 0]);
+}
+
+#[test]
+fn tractions_have_unit_directions() {
+    let model = with(
+        "",
+        "*DSLOAD, FOLLOWER=NO\nTOP, TRVEC, 10., 3., -4.\n*DSLOAD\nTOP, P, 2.",
+    );
+    let traction = &model.steps[0].tractions[0];
+    assert_eq!(
+        (traction.magnitude, traction.at.direction),
+        (10.0, [0.6, -0.8])
+    );
+    assert_eq!(
+        traction.at.face,
+        Face {
+            element: 0,
+            side: 2
+        }
+    );
+    assert_eq!(model.steps[0].pressures[0].magnitude, 2.0);
+}
+
+#[test]
+fn loads_without_a_set_act_on_all_elements() {
+    let model = with(
+        "",
+        "*DLOAD\n, GRAV, 981., 0., -1., 0.\n, BY, -2500.\n7, P4, 3.",
+    );
+    let forces = &model.steps[0].body_forces;
+    let what: Vec<_> = forces
+        .iter()
+        .map(|l| (l.at.per_mass, l.at.direction, l.magnitude))
+        .collect();
+    assert_eq!(
+        what,
+        [(true, [0.0, -1.0], 981.0), (false, [0.0, 1.0], -2500.0)]
+    );
+    assert_eq!(model.steps[0].pressures[0].at.face.side, 3);
+}
+
+#[test]
+fn amplitudes_are_scaled_and_shifted() {
+    let model = with(
+        "*AMPLITUDE, NAME=A, SCALEX=2., SHIFTX=1., SCALEY=3., SHIFTY=-1., VALUE=ABSOLUTE\n0., 0., 1., 1.",
+        "",
+    );
+    assert_eq!(model.amplitudes[0].points, [(1.0, -1.0), (3.0, 2.0)]);
+}
+
+#[test]
+fn unused_nodes_are_left_out() {
+    let (model, messages) = square("4, 0., 1.", "4, 0., 1.\n3000, 5., 5.");
+    assert!(messages.contains("D310"), "{messages}");
+    assert_eq!(model.mesh.node_count(), 4);
+    assert_eq!(model.node_sets[0].members, [0, 1, 2, 3]);
+}
+
+#[test]
+fn sets_in_sets_in_any_order() {
+    let model = with(
+        "*NSET, NSET=OUTER\nINNER, 4\n*NSET, NSET=INNER\n1\n*NSET, NSET=INNER\n2\n*NSET, NSET=WHOLE, ELSET=BODY",
+        "",
+    );
+    let members = |name: &str| {
+        let found = model.node_sets.iter().find(|set| set.name == name);
+        found.map(|set| set.members.clone()).unwrap_or_default()
+    };
+    assert_eq!(members("OUTER"), [0, 1, 3]);
+    assert_eq!(members("INNER"), [0, 1]);
+    assert_eq!(members("WHOLE"), [0, 1, 2, 3]);
+}
+
+#[test]
+fn a_surface_without_faces_takes_the_free_sides() {
+    let model = with("*SURFACE, NAME=SKIN\nBODY", "");
+    let SurfaceKind::Faces(faces) = &model.surfaces[1].kind else {
+        panic!("no faces")
+    };
+    assert_eq!(faces.len(), 4);
+}
+
+#[test]
+fn a_mesh_in_a_subfolder() {
+    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+    let model = reader::read_model(Path::new("tests/decks/folder.inp"), &mut sources, &mut d);
+    assert_eq!(d.render(&sources, false), "");
+    assert_eq!(model.expect("no errors").mesh.elements[0].label, 7);
+    let names: Vec<&str> = sources.files().iter().map(|file| file.name()).collect();
+    let parts = ["mesh.inp", "nodes.txt", "elements.txt"].map(|n| format!("tests/decks/parts/{n}"));
+    assert_eq!(names[0], "tests/decks/folder.inp");
+    assert_eq!(names[1..], parts);
+    assert_eq!(sources.line_count(), 13 + 3 + 4 + 2);
+    assert!(
+        sources
+            .full_text()
+            .contains("** ---- file tests/decks/parts/nodes.txt ----\n1, 0., 0.\n")
+    );
+}
+
+#[test]
+fn a_deck_as_a_preprocessor_writes_it() {
+    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+    let model = reader::read_model(Path::new("tests/decks/exported.inp"), &mut sources, &mut d);
+    insta::assert_snapshot!(d.render(&sources, false));
+    let model = model.expect("no errors");
+    assert_eq!(model.contacts.len(), 1);
+    assert_eq!(model.steps[0].increments.dt, 1e-3);
 }

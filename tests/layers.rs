@@ -35,7 +35,9 @@ fn rust_files(folder: &Path) -> Vec<PathBuf> {
 fn imports(text: &str) -> impl Iterator<Item = &str> {
     text.match_indices("crate::").map(|(at, found)| {
         let rest = &text[at + found.len()..];
-        rest.split(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or("")
+        rest.split(|c: char| !(c.is_alphanumeric() || c == '_'))
+            .next()
+            .unwrap_or("")
     })
 }
 
@@ -61,7 +63,9 @@ fn modules_import_only_from_lower_layers() {
 #[test]
 fn every_module_has_a_layer() {
     let library = include_str!("../src/lib.rs");
-    let modules = library.lines().filter_map(|line| line.strip_prefix("pub mod "));
+    let modules = library
+        .lines()
+        .filter_map(|line| line.strip_prefix("pub mod "));
     let modules: Vec<&str> = modules.map(|name| name.trim_end_matches(';')).collect();
     assert_eq!(modules.len(), LAYERS.len());
     assert!(modules.iter().all(|module| LAYERS.contains(module)));

@@ -8,7 +8,8 @@ use lcp_support::random::Random;
 use nalgebra::{DMatrix, DVector};
 use stickslip::lcp::ContactState::{Open, SlipMinus, SlipPlus, Stick};
 use stickslip::lcp::{
-    FrictionalLcp, FrictionalSolution, LcpError, LcpMethod, Method, residual, solve_frictional,
+    FrictionalLcp, FrictionalSolution, LcpError, LcpMethod, LemkeSettings, Method, covering_vector,
+    lemke, residual, solve_frictional,
 };
 
 const METHODS: [LcpMethod; 2] = [LcpMethod::Lemke, LcpMethod::Hybrid];
@@ -416,4 +417,51 @@ fn warm_states_are_only_a_guess() {
             ..
         })
     ));
+}
+
+/// Data that are no problem at all: an error or a checked answer, never a panic.
+#[test]
+fn extreme_numbers_never_panic() {
+    let mut random = Random(32);
+    let extremes = [
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        1e308,
+        -1e308,
+        5e-324,
+        -1e-300,
+        1e-16,
+        f64::MAX,
+    ];
+    for case in 0..3000 {
+        let n = 1 + case % 4;
+        let mut draw = || extremes[random.below(extremes.len())];
+        let mut problem = FrictionalLcp {
+            q: DMatrix::from_fn(2 * n, 2 * n, |_, _| draw()),
+            gap: DVector::from_fn(n, |_, _| draw()),
+            slip: DVector::from_fn(n, |_, _| draw()),
+            mu: DVector::from_fn(n, |_, _| draw().abs()),
+        };
+        if case % 2 == 0 {
+            problem.q.fill_lower_triangle_with_upper_triangle();
+        }
+        if case % 50 == 0 {
+            problem.q.fill(0.0);
+        }
+        for method in METHODS {
+            if let Ok(s) = solve_frictional(&problem, None, method) {
+                assert!(s.residual < 1e-9);
+            }
+        }
+        let general = problem.to_lcp();
+        if let Ok(s) = lemke(
+            &general,
+            &covering_vector(&general),
+            &LemkeSettings::default(),
+        ) {
+            assert!(s.residual < 1e-9);
+        }
+    }
 }

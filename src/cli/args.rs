@@ -3,6 +3,7 @@ use std::path::PathBuf;
 use clap::{ArgAction, Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
 use super::version::{LONG_VERSION, VERSION};
+use crate::diagnostics::Strictness;
 use crate::model::{Frames, SolverChoice};
 use crate::output::Verbosity;
 
@@ -32,12 +33,37 @@ pub(super) enum Command {
     Info(InfoArgs),
 }
 
+/// A deck and how to read it.
+#[derive(Debug, ClapArgs)]
+pub(super) struct DeckArgs {
+    /// The deck
+    #[arg(value_name = "DECK.inp")]
+    pub path: PathBuf,
+    /// Count warnings as errors
+    #[arg(long, conflicts_with = "lenient")]
+    pub strict: bool,
+    /// Leave out unknown keywords and parameters with a warning
+    #[arg(long)]
+    pub lenient: bool,
+}
+
+impl DeckArgs {
+    /// What becomes of doubtful decks.
+    pub fn strictness(&self) -> Strictness {
+        match (self.strict, self.lenient) {
+            (true, _) => Strictness::Strict,
+            (_, true) => Strictness::Lenient,
+            _ => Strictness::Normal,
+        }
+    }
+}
+
 /// Arguments of `run`.
 #[derive(Debug, ClapArgs)]
 pub(super) struct RunArgs {
     /// The deck
-    #[arg(value_name = "DECK.inp")]
-    pub deck: PathBuf,
+    #[command(flatten)]
+    pub deck: DeckArgs,
     /// Folder for the results, made when it is missing
     #[arg(short, long, value_name = "DIR", default_value = ".")]
     pub output: PathBuf,
@@ -84,8 +110,8 @@ impl RunArgs {
 #[derive(Debug, ClapArgs)]
 pub(super) struct CheckArgs {
     /// The deck
-    #[arg(value_name = "DECK.inp")]
-    pub deck: PathBuf,
+    #[command(flatten)]
+    pub deck: DeckArgs,
 }
 
 /// Arguments of `info`.

@@ -1,7 +1,8 @@
 use std::fs::File;
-use std::path::{Path, PathBuf};
+use std::io::ErrorKind;
+use std::path::Path;
 
-use super::args::CheckArgs;
+use super::args::{CheckArgs, DeckArgs};
 use super::connect::{Loaded, Numerics};
 use super::error::CliError;
 use super::{Exit, coloured, complain, print};
@@ -11,7 +12,7 @@ use crate::output::{ModelEcho, check_names, deck_line};
 pub(super) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exit, CliError> {
     let loaded = load(&args.deck, numerics)?;
     complain_of(&loaded);
-    print(&[deck_line_of(&args.deck, &loaded, None)]);
+    print(&[deck_line_of(&args.deck.path, &loaded, None)]);
     let Some(model) = &loaded.model else {
         return Ok(Exit::Rejected);
     };
@@ -21,15 +22,18 @@ pub(super) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exit, CliEr
 }
 
 /// Reads a deck; a deck that cannot be opened is a matter of the file system.
-pub(super) fn load(deck: &Path, numerics: &Numerics) -> Result<Loaded, CliError> {
-    let readable = File::open(deck).and_then(|file| file.metadata());
+pub(super) fn load(deck: &DeckArgs, numerics: &Numerics) -> Result<Loaded, CliError> {
+    let path = &deck.path;
+    let readable = File::open(path).and_then(|file| file.metadata());
     let readable = readable.and_then(|data| match data.is_dir() {
-        true => Err(std::io::ErrorKind::IsADirectory.into()),
+        true => Err(ErrorKind::IsADirectory.into()),
         false => Ok(()),
     });
-    let path = PathBuf::from(deck);
-    readable.map_err(|source| CliError::Deck { path, source })?;
-    Ok((numerics.load)(deck, coloured()))
+    readable.map_err(|source| CliError::Deck {
+        path: path.clone(),
+        source,
+    })?;
+    Ok((numerics.load)(path, deck.strictness(), coloured()))
 }
 
 /// Prints the errors and warnings of a deck.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::penetration::report_penetrations;
-use crate::diagnostics::{Diagnostics, Severity, Sources};
+use crate::diagnostics::{Diagnostics, Severity, Sources, Strictness};
 use crate::dynamics::{self, Observer, RunError, RunSummary};
 use crate::model::Model;
 use crate::reader;
@@ -30,7 +30,7 @@ pub(super) struct Loaded {
 }
 
 /// Reads a deck; messages coloured or not.
-type Load = fn(&Path, bool) -> Loaded;
+type Load = fn(&Path, Strictness, bool) -> Loaded;
 /// Solves all steps of a model.
 type Solve = fn(&Model, &mut dyn Observer) -> Result<RunSummary, RunError>;
 
@@ -50,9 +50,9 @@ impl Numerics {
     }
 }
 
-fn load(path: &Path, colour: bool) -> Loaded {
+fn load(path: &Path, strictness: Strictness, colour: bool) -> Loaded {
     let mut sources = Sources::new();
-    let mut d = Diagnostics::new();
+    let mut d = Diagnostics::with_strictness(strictness);
     let model = reader::read_model(path, &mut sources, &mut d);
     if let Some(model) = &model {
         report_penetrations(model, &mut d);

@@ -21,7 +21,7 @@ pub(super) fn run(args: &RunArgs, command: &str, numerics: &Numerics) -> Result<
         complain_of(&loaded);
     }
     check_names(&model)?;
-    let files = JobFiles::new(&args.deck, &args.output);
+    let files = JobFiles::new(&args.deck.path, &args.output);
     refuse_existing(args, &files)?;
     let record = record(command, &loaded, start_threads(args.threads)?);
     let notes = overrides::apply(args, &mut model);
@@ -108,7 +108,7 @@ fn header(
     model: &Model,
 ) -> Vec<String> {
     let mut lines = program_lines(record, PROFILE, &files.name, &model.title);
-    lines.push(deck_line_of(&args.deck, loaded, Some(&files.log)));
+    lines.push(deck_line_of(&args.deck.path, loaded, Some(&files.log)));
     lines.extend(ModelEcho::new(model).lines(model));
     lines
 }

@@ -11,5 +11,5 @@ pub use compliance::Compliance;
 pub use geometry::{Projection, project};
 pub use pair::{Pair, PairSite, RowForm};
 pub use problem::{add_contact_forces, frictional_lcp};
-pub use search::{InitialGap, find_pairs, find_segment, initial_gaps};
+pub use search::{InitialGap, Pairing, find_pairs, find_segment, initial_gaps};
 pub use surfaces::{ContactSurfaces, contact_surfaces};

@@ -2,8 +2,9 @@ use super::geometry::{Projection, position, project};
 use super::{ContactSurfaces, PairSite, contact_surfaces};
 use crate::model::Model;
 
-/// How far beyond its ends a segment still takes a projection: round-off only.
-const ROUND_OFF: f64 = 1e-10;
+/// How far beyond its ends a segment still takes a projection (in its lengths): what round-off and
+/// the tolerance of many increments make of a node that sticks at the end of a surface.
+const ROUND_OFF: f64 = 1e-6;
 
 /// The segment that a slave node pairs with in the configuration of displacements `u`, if any.
 ///
@@ -53,31 +54,45 @@ pub fn find_segment(
     }
 }
 
-/// How far beyond its ends a segment that is to be kept may be (in its lengths).
+/// How far beyond its ends a segment that is kept may be left (in its lengths).
 const KEPT: f64 = 0.1;
+
+/// Segments that the slots had in the pass before.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Pairing {
+    /// Segment of every slot, if any; empty before the first pass.
+    pub segments: Vec<Option<usize>>,
+    /// Whether segments are kept even where others are closer now: passes that go to and fro
+    /// across a vertex come to rest with it.
+    pub settled: bool,
+}
 
 /// The pairs of all contacts in the configuration of displacements `u`.
 ///
-/// `kept` holds, for every slot, the segment of an earlier pass that is to be kept as long as the
-/// node does not leave it far: passes that go to and fro across a vertex come to rest with it.
+/// A node that has just left its segment by a little and finds no other keeps it: whether it has
+/// slid off is decided by the end of the increment, not by one of its passes.
 pub fn find_pairs(
     contacts: &[ContactSurfaces],
     x: &[[f64; 2]],
     u: &[f64],
-    kept: Option<&[Option<usize>]>,
+    before: &Pairing,
 ) -> Vec<PairSite> {
     let slaves = contacts
         .iter()
         .flat_map(|c| c.slaves.iter().map(move |&slave| (c, slave)));
     let site = |(slot, (contact, slave)): (usize, (&ContactSurfaces, usize))| {
-        let on = |i: usize| {
+        let near = |&i: &usize| {
             let [a, b] = contact.segments[i];
-            project(position(x, u, slave), position(x, u, a), position(x, u, b))
+            let p = project(position(x, u, slave), position(x, u, a), position(x, u, b));
+            (-KEPT..=1.0 + KEPT).contains(&p.xi)
         };
-        let segment = kept
-            .and_then(|kept| kept[slot])
-            .filter(|&i| (-KEPT..=1.0 + KEPT).contains(&on(i).xi))
-            .or_else(|| find_segment(contact, x, u, slave))?;
+        let kept = || before.segments.get(slot).copied().flatten().filter(near);
+        let found = || find_segment(contact, x, u, slave);
+        let segment = if before.settled {
+            kept().or_else(found)?
+        } else {
+            found().or_else(kept)?
+        };
         let [a, b] = contact.segments[segment];
         Some(PairSite {
             slot,

@@ -1,4 +1,4 @@
-use super::{table, table_others, word};
+use super::{table_model, table_others, table_steps, word};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
@@ -101,7 +101,8 @@ pub struct Keyword {
 
 /// All known keywords: those read first, then the others.
 pub fn keywords() -> impl Iterator<Item = &'static Keyword> + Clone {
-    table::READ.iter().chain(table_others::OTHERS)
+    let read = table_model::MODEL.iter().chain(table_steps::STEPS);
+    read.chain(table_others::OTHERS)
 }
 
 /// The keyword with this name, blanks and case aside.

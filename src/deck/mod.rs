@@ -11,9 +11,11 @@ mod lexer;
 mod name;
 mod number;
 mod reference;
+mod resolve;
 mod source;
-mod table;
+mod table_model;
 mod table_others;
+mod table_steps;
 mod text;
 mod word;
 

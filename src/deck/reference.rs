@@ -24,7 +24,7 @@ pub fn keyword_reference() -> String {
 const HEAD: &str = "\
 # Keywords
 
-Generated from the table that the reader uses (`src/deck/table.rs`); do not edit by hand.
+Generated from the table that the reader uses (`src/deck/table_*.rs`); do not edit by hand.
 
 A deck is a text file. A keyword line begins with `*`, a comment line with `**`; data lines follow
 their keyword, with fields between commas. Case and blanks in keywords, parameters and names do not
@@ -51,7 +51,12 @@ fn push_keyword(text: &mut String, keyword: &Keyword) {
         Data::Required => "at least one data line",
         Data::Text => "free text",
     };
-    let _ = write!(text, "\n### `*{}`\n\n{}\n", keyword.name, keyword.text);
+    let _ = write!(
+        text,
+        "\n### `*{}`\n\n{}\n",
+        keyword.name,
+        plain(keyword.text)
+    );
     let _ = write!(text, "\nStands {place}; {data}.\n");
     if !keyword.parameters.is_empty() {
         text.push_str("\n| parameter | | meaning |\n|---|---|---|\n");
@@ -67,10 +72,10 @@ fn push_parameter(text: &mut String, parameter: &Parameter) {
         Takes::Value | Takes::Choice(_) => format!("{}=", parameter.name),
         Takes::Optional | Takes::OptionalChoice(_) => format!("{}[=]", parameter.name),
     };
-    let (status, meaning) = (word(parameter.status), parameter.text);
+    let (status, meaning) = (word(parameter.status), plain(parameter.text));
     let _ = writeln!(text, "| `{form}` | {status} | {meaning} |");
     for value in parameter.values() {
-        let (status, name, meaning) = (word(value.status), value.name, value.text);
+        let (status, name, meaning) = (word(value.status), value.name, plain(value.text));
         let _ = writeln!(text, "| &nbsp;&nbsp;`{name}` | {status} | {meaning} |");
     }
 }
@@ -78,8 +83,13 @@ fn push_parameter(text: &mut String, parameter: &Parameter) {
 fn push_list(text: &mut String, status: Status, title: &str) {
     let _ = write!(text, "\n## {title}\n\n| keyword | |\n|---|---|\n");
     for keyword in keywords().filter(|k| k.status == status) {
-        let _ = writeln!(text, "| `*{}` | {} |", keyword.name, keyword.text);
+        let _ = writeln!(text, "| `*{}` | {} |", keyword.name, plain(keyword.text));
     }
+}
+
+/// A sentence with its stars kept from being taken as markup.
+fn plain(sentence: &str) -> String {
+    sentence.replace('*', "\\*")
 }
 
 fn word(status: Status) -> &'static str {

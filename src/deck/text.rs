@@ -36,6 +36,11 @@ impl<'a> Text<'a> {
         number::integer(self.text).ok()
     }
 
+    /// The real number it says, if it is one; reports nothing.
+    pub fn as_real(&self) -> Option<f64> {
+        number::real(self.text).ok().map(|real| real.value)
+    }
+
     /// The real number it says; reports anything else.
     pub fn real(&self, d: &mut Diagnostics) -> Option<f64> {
         match number::real(self.text) {
@@ -85,6 +90,8 @@ impl<'a> Text<'a> {
         let fault = match self.quoted_content() {
             Some(content) if fits(content) => return Some(Name::quoted(content)),
             Some(_) => Some("a name has 1 to 80 characters".to_string()),
+            // An open quotation mark is reported already.
+            None if self.text.matches('"').count() % 2 == 1 => return None,
             None => self.fault_of_plain_name(),
         };
         match fault {

@@ -81,7 +81,7 @@ codes! {
     TwoSections "D404" "An element has two sections."
     Locking "D405" "A nearly incompressible material in plane strain locks."
     ThicknessMismatch "D406" "The two sides of a contact differ in thickness."
-    ContactSurfaces "D407" "The surfaces of a contact cannot be used as they are."
+    SurfaceUse "D407" "A surface that cannot be used as it is: slave and master at once, or nodes where faces are needed."
     FrictionRange "D408" "A friction coefficient lies outside its range."
     UnitsHint "D409" "A magnitude that hints at mixed units."
     InitialPenetration "D410" "A slave node starts inside the master body."

@@ -18,6 +18,7 @@ pub enum Strictness {
 pub struct Diagnostics {
     strictness: Strictness,
     items: Vec<Diagnostic>,
+    counts: [usize; 3],
     said: HashSet<(Code, String)>,
 }
 
@@ -43,6 +44,7 @@ impl Diagnostics {
     /// Adds a diagnostic.
     pub fn push(&mut self, mut diagnostic: Diagnostic) {
         diagnostic.severity = self.judge(&diagnostic);
+        self.counts[diagnostic.severity as usize] += 1;
         self.items.push(diagnostic);
     }
 
@@ -75,10 +77,7 @@ impl Diagnostics {
 
     /// Number of diagnostics of a severity.
     pub fn count(&self, severity: Severity) -> usize {
-        self.items
-            .iter()
-            .filter(|item| item.severity == severity)
-            .count()
+        self.counts[severity as usize]
     }
 
     /// All diagnostics in the order they were found.

@@ -1,7 +1,7 @@
-use super::Cause;
 use super::dofs::DofMap;
 use super::effective::Factored;
 use super::meter::Meter;
+use super::{Cause, FailedLcp};
 use crate::contact::{Pair, add_contact_forces, frictional_lcp};
 use crate::lcp::{ContactState, LcpMethod, solve_frictional};
 
@@ -96,7 +96,14 @@ impl ContactForces {
             |t| &mut t.lcp,
             || solve_frictional(&problem, Some(&warm), method),
         );
-        let solution = solution.map_err(|error| Cause::Lcp(error.to_string()))?;
+        let solution = solution.map_err(|error| {
+            let pairs = pairs.iter().map(|pair| pair.nodes).collect();
+            Cause::Lcp(Box::new(FailedLcp {
+                error,
+                problem,
+                pairs,
+            }))
+        })?;
         meter.count_lcp(pairs.len(), solution.counters);
         self.problem_size = pairs.len();
         for (i, &k) in chosen.iter().enumerate() {

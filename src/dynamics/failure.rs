@@ -2,6 +2,7 @@ use std::fmt;
 
 use super::PassReport;
 use crate::elements::Inverted;
+use crate::lcp::{FrictionalLcp, LcpError};
 use crate::linear::LinearError;
 
 /// Why an increment failed.
@@ -23,10 +24,21 @@ pub enum Cause {
     },
     /// The factorisation or a solve with it failed.
     LinearSolver(String),
-    /// The complementarity problem was not solved.
-    Lcp(String),
+    /// A complementarity problem was not solved.
+    Lcp(Box<FailedLcp>),
     /// A quantity is not finite.
     NotFinite(&'static str),
+}
+
+/// A complementarity problem without solution, of a pass or of the impulses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FailedLcp {
+    /// Why it was not solved.
+    pub error: LcpError,
+    /// The problem.
+    pub problem: FrictionalLcp,
+    /// Nodes (indices) of its pairs: slave, segment ends a and b.
+    pub pairs: Vec<[usize; 3]>,
 }
 
 /// The node with the largest residual or correction of a failed increment.
@@ -75,7 +87,13 @@ impl fmt::Display for Cause {
             }
             Cause::Indefinite { .. } => write!(f, "the effective matrix is not positive definite"),
             Cause::LinearSolver(text) => write!(f, "the linear solver failed: {text}"),
-            Cause::Lcp(text) => write!(f, "the complementarity problem was not solved: {text}"),
+            Cause::Lcp(failed) => {
+                write!(
+                    f,
+                    "a complementarity problem was not solved: {}",
+                    failed.error
+                )
+            }
             Cause::NotFinite(what) => write!(f, "{what} is not finite"),
         }
     }

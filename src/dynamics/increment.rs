@@ -1,21 +1,20 @@
 use super::contact_forces::ContactForces;
 use super::convergence::{Scales, worst};
 use super::effective::Effective;
+use super::impact::Impulses;
 use super::mass::largest;
 use super::meter::Meter;
-use super::step_problem::{Equilibrium, Interval, StepProblem, sum};
+use super::step_problem::{Equilibrium, Interval, StepProblem, difference, sum};
 use super::{Cause, PassReport, State, Worst};
-use crate::contact::Pair;
+use crate::contact::{Pair, Pairing};
 use crate::lcp::ContactState;
 use crate::linear::LinearError;
-use crate::model::{Factorization, Impact};
+use crate::model::Factorization;
 
 /// Passes that one factorisation serves within an increment.
 const KEPT_PASSES: usize = 8;
 /// Passes after which the pairs keep their segments.
-const SEARCHING_PASSES: usize = 10;
-/// Changes of the set of impulses after which it is kept.
-const SET_CHANGES: usize = 5;
+const SEARCHING_PASSES: usize = 4;
 
 /// A converged increment.
 pub(super) struct Solved {
@@ -77,42 +76,36 @@ impl Attempt<'_, '_> {
         let problem = self.problem;
         let (u0, dt) = (&self.start.u, self.interval.dt);
 
-        // k = 0: from U0, the supports at their prescribed displacements
-        let mut d = problem.support_increment(u0, self.interval);
+        // k = 0: from U0; the supports move by their prescribed increment in the predictor
+        let mut d = vec![0.0; u0.len()];
+        let mut prescribed = problem.support_increment(u0, self.interval);
         let mut state = contact.to_vec();
-        let mut impulses = ImpulseSet::new(contact);
-        let mut kept: Option<Vec<Option<usize>>> = None;
+        let mut impulses = Impulses::new(contact);
+        let mut pairing = Pairing::default();
 
         for pass in 0..problem.settings.max_passes {
             // contact geometry of the iterate U^k
             let u = sum(u0, &d);
-            let pairs = self.meter.time(
-                |t| &mut t.contact,
-                || problem.pairs(u0, &u, kept.as_deref()),
-            );
+            let pairs = self
+                .meter
+                .time(|t| &mut t.contact, || problem.pairs(u0, &u, &pairing));
 
             // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi) for the pairs in contact
-            let set = &impulses.slots;
-            let v0p = problem.impulses(self.effective, &pairs, set, self.start, dt, self.meter)?;
+            let (effective, meter) = (&mut *self.effective, &mut *self.meter);
+            let v0p = impulses.velocity(problem, effective, &pairs, self.start, dt, meter)?;
 
             // r = R_theta - F(U_theta) - M A,  A = (2/dt²)(d - dt V0+)
             let iterate = self.meter.time(
                 |t| &mut t.assembly,
                 || problem.equilibrium(self.start, &v0p, &d, self.interval),
             )?;
-            let Equilibrium {
-                load,
-                internal,
-                inertia,
-                ..
-            } = &iterate;
-            let mut r: Vec<f64> = (0..d.len())
-                .map(|i| load[i] - internal[i] - inertia[i])
-                .collect();
+            let mut r = iterate.out_of_balance();
 
-            // y = K*^-1 r
+            // y = K*^-1 r; in the predictor the supports move by d_p, with the force -theta2 K d_p
             self.refresh(pass, &u, &iterate.u_theta)?;
-            let mut y = vec![0.0; d.len()];
+            let mut y = std::mem::replace(&mut prescribed, vec![0.0; d.len()]);
+            let support_force = self.support_force(&y, &u, &iterate.u_theta);
+            r = difference(&r, &support_force);
             let free = problem.dofs.restrict(&r);
             let k = &mut self.effective.k;
             let solution = self
@@ -130,7 +123,11 @@ impl Attempt<'_, '_> {
             // residual with the contact forces of this pass
             let contact_force = forces.resultant(d.len());
             r = problem.dofs.restrict(&sum(&r, &contact_force));
-            let scales = self.scales(&iterate, &contact_force, &u, largest(&d).max(largest(&du)));
+            let force = iterate
+                .largest()
+                .max(largest(&contact_force))
+                .max(largest(&support_force));
+            let scales = self.scales(force, &u, largest(&d).max(largest(&du)));
             let report = scales.report(&r, &du, &forces, pivots);
             let position = |node| problem.position(&u, node);
             trace.worst = worst(&r, &problem.dofs.dof, position, report.residual);
@@ -144,15 +141,26 @@ impl Attempt<'_, '_> {
             // U^{k+1} = U^k + dU
             d = sum(&d, &du);
             forces.remember(&mut state);
-            let rests = problem.settings.impact == Impact::None || impulses.rests(&forces);
-            if rests && scales.converged(&report) {
+            let rest = impulses.rest(problem, &forces);
+            if rest && scales.converged(&report) {
                 return self.finish(v0p, d, forces);
             }
-            if pass + 1 >= SEARCHING_PASSES {
-                kept = Some(segments(&forces.pairs, contact.len()));
-            }
+            pairing = Pairing {
+                segments: segments(&forces.pairs, contact.len()),
+                settled: pass + 1 >= SEARCHING_PASSES,
+            };
         }
         Err(Cause::NotConverged)
+    }
+
+    /// theta2 K d_p, the force of the supports' motion in the predictor.
+    fn support_force(&mut self, prescribed: &[f64], u: &[f64], u_theta: &[f64]) -> Vec<f64> {
+        let StepProblem { weights, body, .. } = self.problem;
+        let (start, u) = weights.configuration(&self.start.u, u, u_theta);
+        let product = || body.tangent_product(start, u, prescribed);
+        let mut force = self.meter.time(|t| &mut t.assembly, product);
+        force.iter_mut().for_each(|f| *f *= weights.theta2);
+        force
     }
 
     /// Factorises K* anew when the rules say so.
@@ -187,17 +195,7 @@ impl Attempt<'_, '_> {
         })
     }
 
-    fn scales(
-        &self,
-        iterate: &Equilibrium,
-        contact_force: &[f64],
-        u: &[f64],
-        increment: f64,
-    ) -> Scales {
-        let forces = [&iterate.load, &iterate.internal, &iterate.inertia];
-        let force = forces
-            .into_iter()
-            .fold(largest(contact_force), |m, f| m.max(largest(f)));
+    fn scales(&self, force: f64, u: &[f64], increment: f64) -> Scales {
         let diagonals = (self.effective.stiffness, self.effective.inertia);
         Scales::new(
             force,
@@ -239,34 +237,6 @@ impl Attempt<'_, '_> {
             end,
             passes: Vec::new(),
         })
-    }
-}
-
-/// The slots whose pairs get impulses: those that carried force in the last pass.
-struct ImpulseSet {
-    slots: Vec<usize>,
-    changes: usize,
-}
-
-impl ImpulseSet {
-    /// The slots closed in the last increment.
-    fn new(contact: &[ContactState]) -> Self {
-        let slots = (0..contact.len())
-            .filter(|&slot| contact[slot].is_closed())
-            .collect();
-        ImpulseSet { slots, changes: 0 }
-    }
-
-    /// Takes over the pairs in contact; whether they are the same as before. After some changes
-    /// the set is kept: impulses of any set take energy, never give it.
-    fn rests(&mut self, forces: &ContactForces) -> bool {
-        let slots = forces.closed_slots();
-        if slots == self.slots || self.changes >= SET_CHANGES {
-            return true;
-        }
-        self.slots = slots;
-        self.changes += 1;
-        false
     }
 }
 

@@ -5,6 +5,7 @@ mod convergence;
 mod dofs;
 mod effective;
 mod failure;
+mod impact;
 mod increment;
 mod ledger;
 mod loads;
@@ -17,7 +18,7 @@ mod scheme;
 mod step_problem;
 mod supports;
 
-pub use failure::{Cause, Failure, Worst};
+pub use failure::{Cause, FailedLcp, Failure, Worst};
 pub use report::{
     ContactResultant, Cutback, Energy, IncrementReport, Landing, Momentum, NodalResults,
     NodeStatus, Observer, Outcome, PassReport, RunSummary, SolverCounts, State, Timings,

@@ -1,16 +1,14 @@
-use super::contact_forces::ContactForces;
 use super::dofs::DofMap;
 use super::effective::Effective;
 use super::loads::{Loads, Moment};
-use super::mass::Mass;
-use super::meter::Meter;
+use super::mass::{Mass, largest};
 use super::scheme::Weights;
 use super::supports::Supports;
 use super::{Cause, State};
-use crate::contact::{ContactSurfaces, Pair, find_pairs};
+use crate::contact::{ContactSurfaces, Pair, Pairing, find_pairs};
 use crate::elements::Body;
 use crate::lcp::LcpMethod;
-use crate::model::{Impact, Model, Settings};
+use crate::model::{Model, Settings};
 
 /// What stays the same over a step.
 pub(super) struct StepProblem<'m> {
@@ -47,6 +45,19 @@ pub(super) struct Equilibrium {
     pub inertia: Vec<f64>,
 }
 
+impl Equilibrium {
+    /// R_theta - F_theta - M A.
+    pub fn out_of_balance(&self) -> Vec<f64> {
+        difference(&difference(&self.load, &self.internal), &self.inertia)
+    }
+
+    /// Largest of the forces.
+    pub fn largest(&self) -> f64 {
+        let forces = [&self.load, &self.internal, &self.inertia];
+        forces.into_iter().fold(0.0, |m, f| m.max(largest(f)))
+    }
+}
+
 impl StepProblem<'_> {
     /// Solver of the complementarity problems.
     pub fn method(&self) -> LcpMethod {
@@ -68,42 +79,15 @@ impl StepProblem<'_> {
         d
     }
 
-    /// Pairs between `u0` and the iterate `u`; `kept` as in [`find_pairs`].
-    pub fn pairs(&self, u0: &[f64], u: &[f64], kept: Option<&[Option<usize>]>) -> Vec<Pair> {
+    /// Pairs between `u0` and the iterate `u`, `before` being those of the last pass.
+    pub fn pairs(&self, u0: &[f64], u: &[f64], before: &Pairing) -> Vec<Pair> {
         let x = &self.model.mesh.coordinates;
         let form = self.weights.row_form();
-        let sites = find_pairs(self.contacts, x, u, kept);
+        let sites = find_pairs(self.contacts, x, u, before);
         sites
             .into_iter()
             .map(|site| Pair::new(site, form, x, u0, u))
             .collect()
-    }
-
-    /// Velocity V0+ after the impulses of the pairs whose slots are in `set` (sorted).
-    pub fn impulses(
-        &self,
-        effective: &mut Effective,
-        pairs: &[Pair],
-        set: &[usize],
-        start: &State,
-        dt: f64,
-        meter: &mut Meter,
-    ) -> Result<Vec<f64>, Cause> {
-        if self.settings.impact == Impact::None {
-            return Ok(start.v.clone());
-        }
-        let (x, u0) = (&self.model.mesh.coordinates, &start.u);
-        let form = self.weights.row_form();
-        let at_start = |pair: &Pair| match self.weights.impulses_at_start() {
-            true => Pair::new(pair.site(), form, x, u0, u0),
-            false => *pair,
-        };
-        let struck = pairs
-            .iter()
-            .filter(|pair| set.binary_search(&pair.slot).is_ok());
-        let struck: Vec<Pair> = struck.map(at_start).collect();
-        let m = &mut effective.m;
-        ContactForces::impulses(struck, &start.v, dt, &self.dofs, m, self.method(), meter)
     }
 
     /// Load, internal force and inertia of the iterate U0 + d.
@@ -159,7 +143,7 @@ impl StepProblem<'_> {
         let Ok(internal) = self.body.internal_force(None, &start.u) else {
             return a;
         };
-        let r: Vec<f64> = load.iter().zip(&internal).map(|(r, f)| r - f).collect();
+        let r = difference(&load, &internal);
         let m = &mut effective.m;
         let solved = m
             .factorize()
@@ -175,4 +159,9 @@ impl StepProblem<'_> {
 /// a + b
 pub(super) fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + b).collect()
+}
+
+/// a - b
+pub(super) fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
 }

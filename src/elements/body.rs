@@ -181,6 +181,25 @@ impl Body {
             }
         }
     }
+
+    /// K v with the tangent in the configuration of [`Self::internal_force`], 2 N entries. Elements
+    /// at whose nodes `v` is zero cost nothing.
+    pub fn tangent_product(&self, start: Option<&[f64]>, u: &[f64], v: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; self.dofs];
+        for solid in &self.solids {
+            let dofs = || solid.nodes().iter().flat_map(|n| [2 * n, 2 * n + 1]);
+            if dofs().all(|dof| v[dof] == 0.0) {
+                continue;
+            }
+            let (k, d) = (solid.tangent(start, u), 2 * solid.nodes().len());
+            for (j, column) in dofs().enumerate() {
+                for (i, row) in dofs().enumerate() {
+                    product[row] += k[j * d + i] * v[column];
+                }
+            }
+        }
+        product
+    }
 }
 
 impl Solid {

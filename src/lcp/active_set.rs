@@ -31,10 +31,10 @@ pub(super) fn active_set(
     let mut last = vec![0.0; scaled.size()];
     while visited.len() < ITERATIONS {
         counters.active_set_iterations += 1;
-        let Some(p) = reduced::forces(scaled, &states) else {
+        let Some((p, v)) = reduced::forces(scaled, &states) else {
             break;
         };
-        let next = next_states(scaled, &states, &p);
+        let next = next_states(scaled, &states, &p, &v);
         if next == states {
             return Outcome::Converged(states, p);
         }
@@ -48,11 +48,15 @@ pub(super) fn active_set(
 }
 
 /// The states that forces p of `states` and their motion v ask for.
-fn next_states(scaled: &Scaled, states: &[ContactState], p: &[f64]) -> Vec<ContactState> {
-    let v = scaled.motion(p);
+fn next_states(
+    scaled: &Scaled,
+    states: &[ContactState],
+    p: &[f64],
+    v: &[f64],
+) -> Vec<ContactState> {
     let tolerance = TOLERANCE * max_abs(p).max(1.0);
     (0..scaled.contacts)
-        .map(|i| next_state(scaled, states[i], i, p, &v, tolerance))
+        .map(|i| next_state(scaled, states[i], i, p, v, tolerance))
         .collect()
 }
 
@@ -85,8 +89,14 @@ fn next_state(
         (_, false) => Open,
         (Stick, _) if p[t] > limit + tolerance => SlipMinus,
         (Stick, _) if p[t] < -limit - tolerance => SlipPlus,
-        (SlipPlus, _) if v[t] < -tolerance => Stick,
-        (SlipMinus, _) if v[t] > tolerance => Stick,
+        (SlipPlus | SlipMinus, _) if state.slip_sign() * v[t] < -tolerance => {
+            // The force that stops the slip comes on top of the friction that drove it.
+            if v[t].abs() / scaled.q[(t, t)] <= 2.0 * limit {
+                Stick
+            } else {
+                ContactState::sliding(v[t])
+            }
+        }
         _ => state,
     }
 }
@@ -106,5 +116,5 @@ fn landing(scaled: &Scaled, i: usize, t: usize, v: &[f64]) -> ContactState {
 /// States to begin with when none are known: what the motion without forces asks for.
 pub(super) fn first_states(scaled: &Scaled) -> Vec<ContactState> {
     let open = vec![ContactState::Open; scaled.contacts];
-    next_states(scaled, &open, &vec![0.0; scaled.size()])
+    next_states(scaled, &open, &vec![0.0; scaled.size()], &scaled.b)
 }

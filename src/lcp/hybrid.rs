@@ -183,7 +183,7 @@ fn follow(
         Outcome::Converged(states, p) => Some((states, p)),
         Outcome::Failed(_) => None,
     };
-    let direct = || reduced::forces(scaled, &found.states).map(|p| (found.states.clone(), p));
+    let direct = || reduced::forces(scaled, &found.states).map(|(p, _)| (found.states.clone(), p));
     let candidates = corrected
         .into_iter()
         .chain(std::iter::once_with(direct).flatten());

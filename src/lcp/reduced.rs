@@ -12,26 +12,26 @@ const SHIFT: f64 = 1e-10;
 /// by the shifted system.
 const CORRECTIONS: usize = 6;
 
-/// Solves for the forces of the given states:
+/// Solves for the forces p of the given states, and their motion v = Q p + b:
 /// gap = 0 where closed, slip = 0 where sticking, Pt = -+mu Pn where sliding, no force where open.
 /// None when there is no finite answer. Where redundant contacts leave the forces undetermined the
 /// load is shared.
-pub(super) fn forces(scaled: &Scaled, states: &[ContactState]) -> Option<Vec<f64>> {
+pub(super) fn forces(scaled: &Scaled, states: &[ContactState]) -> Option<(Vec<f64>, Vec<f64>)> {
     let unknowns = unknowns(scaled, states);
     if unknowns.is_empty() {
-        return Some(vec![0.0; scaled.size()]);
+        return Some((vec![0.0; scaled.size()], scaled.b.clone()));
     }
-    let matrix = matrix(scaled, states, &unknowns);
+    let matrix = || matrix(scaled, states, &unknowns);
     let size = unknowns.len();
     let symmetric = scaled.owners.iter().all(|i| states[*i].slip_sign() == 0.0);
     let regular = if symmetric {
-        Factors::cholesky(matrix.clone(), size)
+        Factors::cholesky(matrix(), size)
     } else {
-        Factors::lu(matrix.clone(), size)
+        Factors::lu(matrix(), size)
     };
-    let factors = regular.or_else(|| Factors::lu(shifted(matrix, size), size))?;
-    let p = refine(scaled, states, &unknowns, &factors);
-    p.iter().all(|v| v.is_finite()).then_some(p)
+    let factors = regular.or_else(|| Factors::lu(shifted(matrix(), size), size))?;
+    let (p, v) = refine(scaled, states, &unknowns, &factors);
+    p.iter().all(|v| v.is_finite()).then_some((p, v))
 }
 
 /// Positions in p of the unknowns, which are also the rows that must vanish.
@@ -77,24 +77,27 @@ fn shifted(mut matrix: Vec<f64>, size: usize) -> Vec<f64> {
     matrix
 }
 
-/// p from the factors, corrected by the residual of the unfactored system as long as that shrinks.
+/// p and v from the factors, corrected by the residual of the unfactored system as long as that
+/// shrinks.
 fn refine(
     scaled: &Scaled,
     states: &[ContactState],
     unknowns: &[usize],
     factors: &Factors,
-) -> Vec<f64> {
+) -> (Vec<f64>, Vec<f64>) {
     let mut p = vec![0.0; scaled.size()];
-    let mut best = (f64::INFINITY, p.clone());
+    let mut best = (p.clone(), scaled.b.clone());
+    let mut smallest = f64::INFINITY;
     for _ in 0..=CORRECTIONS {
         let v = scaled.motion(&p);
         let mut residual: Vec<f64> = unknowns.iter().map(|k| -v[*k]).collect();
         let error = max_abs(&residual);
-        if error >= best.0 {
+        if error >= smallest {
             break;
         }
-        let stagnates = error > 0.1 * best.0 && best.0.is_finite();
-        best = (error, p.clone());
+        let stagnates = error > 0.1 * smallest;
+        best = (p.clone(), v);
+        smallest = error;
         if stagnates {
             break;
         }
@@ -106,5 +109,5 @@ fn refine(
             }
         }
     }
-    best.1
+    best
 }

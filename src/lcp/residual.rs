@@ -29,7 +29,7 @@ pub fn residual(lcp: &Lcp, z: &DVector<f64>) -> f64 {
     let (mut error, mut scale) = (0.0_f64, 0.0_f64);
     for i in 0..z.len() {
         let (z_i, w_i) = (z[i] / columns[i], w[i] * rows[i]);
-        error = worse(error, z_i.min(w_i));
+        error = worse(error, smaller(z_i, w_i));
         scale = scale.max(rows[i] * lcp.q[i].abs() + ROUNDING * rows[i] * terms[i]);
     }
     relative(error, scale)
@@ -56,9 +56,9 @@ pub(super) fn frictional_residual(problem: &FrictionalLcp, pn: &[f64], pt: &[f64
     }
     let length = problem.gap.iter().fold(0.0_f64, |l, g| l.max(-g)) + ROUNDING * max_abs(&terms);
 
-    let stiffness = n as f64 / (0..n).map(|i| problem.q[(i, i)]).sum::<f64>();
-    let per_force = if stiffness.is_finite() && stiffness > 0.0 {
-        1.0 / stiffness
+    let mean = (0..n).map(|i| problem.q[(i, i)]).sum::<f64>() / n as f64;
+    let compliance = if mean > 0.0 && mean.is_finite() {
+        mean
     } else {
         1.0
     };
@@ -67,14 +67,14 @@ pub(super) fn frictional_residual(problem: &FrictionalLcp, pn: &[f64], pt: &[f64
         let gap = motion[i] + problem.gap[i];
         let slip = motion[n + i] + problem.slip[i];
         let limit = problem.mu[i] * pn[i];
-        error = worse(error, (per_force * pn[i]).min(gap));
+        error = worse(error, smaller(compliance * pn[i], gap));
         error = worse(
             error,
-            (per_force * 0.5 * (limit + pt[i])).min(slip.max(0.0)),
+            smaller(compliance * 0.5 * (limit + pt[i]), part(slip)),
         );
         error = worse(
             error,
-            (per_force * 0.5 * (limit - pt[i])).min((-slip).max(0.0)),
+            smaller(compliance * 0.5 * (limit - pt[i]), part(-slip)),
         );
     }
     relative(error, length)
@@ -89,12 +89,24 @@ fn worse(error: f64, value: f64) -> f64 {
     }
 }
 
-/// error / scale, never NaN: no error is 0 at any scale, an infinite one stays so.
+/// The smaller of two numbers, NaN if either is.
+fn smaller(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a < b { a } else { b }
+}
+
+/// The positive part, NaN of NaN.
+fn part(slip: f64) -> f64 {
+    if slip < 0.0 { 0.0 } else { slip }
+}
+
+/// error / scale, never NaN: no error is 0 at any scale; a scale that overflows proves nothing.
 fn relative(error: f64, scale: f64) -> f64 {
-    if error == 0.0 || error.is_infinite() {
-        error
+    if error == 0.0 {
+        0.0
+    } else if scale > 0.0 && scale.is_finite() {
+        error / scale
     } else {
-        error / scale.min(f64::MAX)
+        f64::INFINITY
     }
 }
 

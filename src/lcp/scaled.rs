@@ -46,14 +46,14 @@ impl Scaled {
         let weights: Vec<f64> = (0..n).map(weight).collect();
         let penetrations = problem.gap.iter().zip(&weights).map(|(g, w)| -g / w);
         let length = power_of_two(penetrations.fold(0.0, f64::max));
+        // Reciprocals of powers of two are exact.
+        let inverses: Vec<f64> = weights.iter().map(|w| 1.0 / w).collect();
         let gather = |column: &[f64], unit: f64, out: &mut Vec<f64>| {
-            out.extend(
-                column[..n]
-                    .iter()
-                    .zip(&weights)
-                    .map(|(v, w)| v / (unit * w)),
-            );
-            out.extend(owners.iter().map(|i| column[n + i] / (unit * weights[*i])));
+            let factor = 1.0 / unit;
+            let normal = column[..n].iter().zip(&inverses);
+            out.extend(normal.map(|(v, w)| v * (w * factor)));
+            let tangential = owners.iter().map(|i| (column[n + i], inverses[*i]));
+            out.extend(tangential.map(|(v, w)| v * (w * factor)));
         };
         let size = n + owners.len();
         let mut q = Vec::with_capacity(size * size);

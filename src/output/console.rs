@@ -19,6 +19,8 @@ pub enum Verbosity {
 /// The screen with its live line, and the log, which gets everything the screen does.
 pub(super) struct Console {
     screen: Option<Box<dyn Write>>,
+    /// Whether there was no screen from the start.
+    quiet: bool,
     progress: Progress,
     log: Log,
 }
@@ -27,6 +29,7 @@ impl Console {
     /// Prints to `screen`, if any, and to the log.
     pub fn new(screen: Option<Box<dyn Write>>, progress: Progress, log: Log) -> Self {
         Console {
+            quiet: screen.is_none(),
             screen,
             progress,
             log,
@@ -47,6 +50,15 @@ impl Console {
             self.screen = None;
         }
         self.log.line(text)
+    }
+
+    /// Prints a line that even a quiet run shows, on the standard error.
+    pub fn alarm(&mut self, text: &str) -> io::Result<()> {
+        if self.quiet {
+            // A closed pipe is no reason to stop.
+            let _ = writeln!(io::stderr(), "{text}");
+        }
+        self.line(text)
     }
 
     /// Writes a line to the log only.

@@ -10,9 +10,6 @@ use crate::model::{
 /// Width of the screen in columns.
 const WIDTH: usize = 80;
 
-/// Depth over edge length from which a node counts as inside the other body.
-const PENETRATION: f64 = 1e-9;
-
 /// Numbers that describe a model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelEcho {
@@ -179,33 +176,23 @@ fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<S
     };
     let nodes = counted(slave.nodes(&model.mesh).len(), "node");
     let edges = counted(edges, "edge");
-    let mut pieces = vec![
+    let pieces = [
         format!("{} ({nodes}) -> {} ({edges})", slave.name, master.name),
         format!(
             "mu {}",
             general(model.interactions[contact.interaction].friction, 4)
         ),
+        smallest_gap(gaps),
     ];
-    pieces.extend(gap_pieces(model, gaps));
     wrap("contact", &pieces)
 }
 
-/// The smallest gap at the start, and how many nodes start inside the other body.
-fn gap_pieces(model: &Model, gaps: &[InitialGap]) -> Vec<String> {
-    let Some(smallest) = gaps.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)) else {
-        return vec!["no node faces its master".into()];
-    };
-    let mut pieces = vec![format!("smallest gap {}", scientific(smallest.gap, 1))];
-    let is_inside = |gap: &&InitialGap| gap.gap < -PENETRATION * gap.edge;
-    let inside = gaps.iter().filter(is_inside).count();
-    if inside > 0 {
-        pieces.push(format!(
-            "{} inside the master at the start, deepest {}",
-            counted(inside, "node"),
-            model.mesh.node_labels[smallest.slave],
-        ));
+/// The smallest gap at the start.
+fn smallest_gap(gaps: &[InitialGap]) -> String {
+    match gaps.iter().map(|gap| gap.gap).reduce(f64::min) {
+        Some(gap) => format!("smallest gap {}", scientific(gap, 1)),
+        None => "no node faces its master".into(),
     }
-    pieces
 }
 
 /// Names of the element types in the mesh.

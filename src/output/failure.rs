@@ -1,20 +1,27 @@
 //! The text about a run that stopped.
 
+use super::echo::wrap;
 use super::format::{counted, scientific};
 use super::log::pass_table;
-use crate::dynamics::{Cause, Failure, Worst};
+use crate::dynamics::{Cause, FailedLcp, Failure, Worst};
 use crate::model::Model;
+
+/// Pairs of a complementarity problem that the text names.
+const SHOWN_PAIRS: usize = 4;
 
 /// Increment, time, cause, worst place, what was tried and the passes; `u` is the last converged
 /// displacement.
 pub(super) fn failure_lines(failure: &Failure, model: &Model, u: &[f64]) -> Vec<String> {
-    let mut lines = vec![format!(
-        "stopped  increment {} of step {} failed at time {}: {}",
-        failure.increment,
-        failure.step,
-        scientific(failure.time, 6),
-        failure.cause,
-    )];
+    let what = [
+        format!(
+            "increment {} of step {} failed at time {}",
+            failure.increment,
+            failure.step,
+            scientific(failure.time, 6),
+        ),
+        failure.cause.to_string(),
+    ];
+    let mut lines = wrap("stopped", &what);
     lines.extend(failure.worst.as_ref().map(|worst| worst_line(worst, model)));
     lines.extend(place_line(&failure.cause, model, u));
     lines.push(format!(
@@ -47,6 +54,7 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
             model.mesh.elements[element].label,
             point(centre(model, element, u)),
         )),
+        Cause::Lcp(ref failed) => Some(pairs_line(failed, model)),
         Cause::Indefinite { node } => Some(format!(
             "node     {} at {}",
             model.mesh.node_labels[node],
@@ -54,6 +62,19 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
         )),
         _ => None,
     }
+}
+
+/// The first pairs of a complementarity problem that was not solved.
+fn pairs_line(failed: &FailedLcp, model: &Model) -> String {
+    let label = |node: usize| model.mesh.node_labels[node];
+    let shown = failed.pairs.iter().take(SHOWN_PAIRS);
+    let mut texts: Vec<String> = shown
+        .map(|&[slave, a, b]| format!("{} on {}-{}", label(slave), label(a), label(b)))
+        .collect();
+    if let Some(more @ 1..) = failed.pairs.len().checked_sub(SHOWN_PAIRS) {
+        texts.push(format!("{more} more"));
+    }
+    format!("pairs    {}", texts.join(", "))
 }
 
 /// Current position of a node.

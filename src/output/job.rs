@@ -18,6 +18,10 @@ impl JobFiles {
     pub fn new(deck: &Path, folder: &Path) -> Self {
         let file = deck.file_name().unwrap_or_default().to_string_lossy();
         let name = file.strip_suffix(".inp").unwrap_or(&file).to_owned();
+        let folder = match folder == Path::new(".") {
+            true => Path::new(""),
+            false => folder,
+        };
         let path = |extension| folder.join(format!("{name}.{extension}"));
         JobFiles {
             result: path("vtkhdf"),
@@ -27,7 +31,13 @@ impl JobFiles {
         }
     }
 
-    /// Those that exist.
+    /// `JOB-lcp-INCREMENT.json`, for a complementarity problem that was not solved.
+    pub fn failed_lcp(&self, increment: usize) -> PathBuf {
+        let name = format!("{}-lcp-{increment}.json", self.name);
+        self.log.with_file_name(name)
+    }
+
+    /// The result, status and log files that exist.
     pub fn existing(&self) -> Vec<&Path> {
         [&self.result, &self.status, &self.log]
             .into_iter()

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, LineWriter, Write};
 use std::path::Path;
 
+use super::echo::wrap;
 use super::format::scientific;
 use crate::dynamics::{Cutback, IncrementReport, PassReport};
 
@@ -63,15 +64,18 @@ pub(super) fn increment_line(report: &IncrementReport) -> String {
     )
 }
 
-/// The line that tells of a cutback.
-pub(super) fn cutback_line(cutback: &Cutback) -> String {
+/// The lines that tell of a cutback.
+pub(super) fn cutback_lines(cutback: &Cutback) -> Vec<String> {
     let failure = &cutback.failure;
-    format!(
-        "cutback  increment {} from time {}, dt {}: {}; next dt {}",
-        failure.increment,
-        scientific(failure.time, 3),
-        scientific(failure.dt, 2),
-        failure.cause,
-        scientific(cutback.next_dt, 2),
-    )
+    let pieces = [
+        format!(
+            "increment {} at {}, dt {} -> {}",
+            failure.increment,
+            scientific(failure.time, 3),
+            scientific(failure.dt, 2),
+            scientific(cutback.next_dt, 2),
+        ),
+        failure.cause.to_string(),
+    ];
+    wrap("cutback", &pieces)
 }

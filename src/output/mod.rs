@@ -7,6 +7,7 @@
 mod balance;
 mod clock;
 mod console;
+mod contact_history;
 mod dataset;
 mod echo;
 mod error;

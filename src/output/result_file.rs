@@ -2,7 +2,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use hdf5::File;
+use hdf5::{File, FileBuilder};
 
 use super::error::io_error;
 use super::history::History;
@@ -27,7 +27,7 @@ impl ResultFile {
     }
 
     fn build(path: &Path, model: &Model, record: &RunRecord) -> hdf5::Result<Self> {
-        let file = hdf5::FileBuilder::new()
+        let file = FileBuilder::new()
             .with_fcpl(|properties| properties.obj_track_times(false))
             .create(path)?;
         super::model::write(&file, model)?;

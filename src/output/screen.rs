@@ -13,29 +13,40 @@ const MOST_LINES: f64 = 50.0;
 const HEADER: &str =
     "step   incr      time       dt pass active stick residual  LCP pivots energy err";
 
-/// Chooses and formats the lines of the table.
+/// Chooses the lines of the table.
 #[derive(Debug, Clone)]
 pub(super) struct Table {
-    /// Increments from one line to the next.
-    stride: usize,
-    /// Lines since the last header.
+    /// Increment of each step (time).
+    increments: Vec<f64>,
+    /// Increments from one line to the next, as long as none is cut back.
+    stride: f64,
+    /// Increments since the last line; one that was cut back counts by its length.
+    since: f64,
+    /// Lines so far.
     lines: usize,
 }
 
 impl Table {
     /// A table with 20 to 50 lines for the increments the model's steps ask for.
     pub fn new(model: &Model) -> Self {
-        let count =
-            |step: &crate::model::Step| (step.increments.period / step.increments.dt).ceil();
+        let increments = model.steps.iter().map(|step| step.increments);
         Table {
-            stride: stride(model.steps.iter().map(count).sum()),
+            stride: stride(increments.clone().map(|i| (i.period / i.dt).ceil()).sum()) as f64,
+            increments: increments.map(|i| i.dt).collect(),
+            since: 0.0,
             lines: 0,
         }
     }
 
     /// Whether the increment has a line.
-    pub fn shows(&self, report: &IncrementReport) -> bool {
-        report.increment > 0 && (report.increment.is_multiple_of(self.stride) || report.ends_step)
+    pub fn shows(&mut self, report: &IncrementReport) -> bool {
+        let whole = self.increments.get(report.step.wrapping_sub(1));
+        self.since += whole.map_or(1.0, |dt| report.dt / dt);
+        let due = self.since >= self.stride - 0.5 || report.ends_step;
+        if due {
+            self.since = 0.0;
+        }
+        due && report.increment > 0
     }
 
     /// The header, when one is due before the next line.
@@ -103,6 +114,31 @@ mod tests {
             let lines = increments / stride(f64::from(increments)) as i32;
             assert!((20..=50).contains(&lines), "{increments}: {lines}");
         }
+    }
+
+    #[test]
+    fn cut_back_increments_count_by_their_length() {
+        let mut table = Table {
+            increments: vec![0.1],
+            stride: 2.0,
+            since: 0.0,
+            lines: 0,
+        };
+        let mut shows = |increment, dt, ends_step| {
+            table.shows(&IncrementReport {
+                increment,
+                step: 1,
+                dt,
+                ends_step,
+                ..IncrementReport::default()
+            })
+        };
+        assert!(!shows(0, 0.0, false));
+        assert!(!shows(1, 0.1, false));
+        assert!(shows(2, 0.1, false));
+        let shown = (3..19).filter(|&k| shows(k, 0.0125, false)).count();
+        assert_eq!(shown, 1);
+        assert!(shows(19, 0.1, true));
     }
 
     #[test]

@@ -3,7 +3,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use hdf5::types::VarLenUnicode;
-use hdf5::{File, Group, H5Type};
+use hdf5::{FileBuilder, Group, H5Type};
 use thiserror::Error;
 
 use super::echo::{label, wrap};
@@ -91,7 +91,10 @@ impl ResultSummary {
     }
 
     fn read_file(path: &Path, size: u64) -> hdf5::Result<Self> {
-        let file = File::open(path)?;
+        // Without a lock, so that a run can be looked at while it writes.
+        let file = FileBuilder::new()
+            .with_fapl(|properties| properties.file_locking(false))
+            .open(path)?;
         let (run, history) = (file.group("run")?, file.group("history")?);
         let times: Vec<f64> = column(&history, "time")?;
         let steps: Vec<i64> = column(&history, "step")?;

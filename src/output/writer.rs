@@ -11,7 +11,7 @@ use super::failure::failure_lines;
 use super::format::{bytes, counted, general, scientific};
 use super::frames::FrameSchedule;
 use super::job::JobFiles;
-use super::log::{Log, cutback_line, increment_line};
+use super::log::{Log, cutback_lines, increment_line};
 use super::names::check_names;
 use super::progress::Progress;
 use super::record::{RunRecord, phases};
@@ -19,13 +19,17 @@ use super::result_file::ResultFile;
 use super::screen::{Table, row};
 use super::status::StatusFile;
 use crate::dynamics::{
-    Cutback, Failure, IncrementReport, NodalResults, Observer, Outcome, RunSummary, State,
+    Cause, Cutback, Failure, IncrementReport, NodalResults, Observer, Outcome, RunSummary, State,
 };
 use crate::model::Model;
+
+/// Cutbacks that the screen shows.
+const SCREEN_CUTBACKS: usize = 20;
 
 /// Writes everything a run leaves behind: result file, status file, log and screen.
 pub struct ResultWriter<'a> {
     model: &'a Model,
+    files: JobFiles,
     result: ResultFile,
     status: StatusFile,
     console: Console,
@@ -36,6 +40,8 @@ pub struct ResultWriter<'a> {
     last: LastState,
     /// Failed attempts since the last increment.
     failed_attempts: usize,
+    /// Failed attempts of the run.
+    cutbacks: usize,
     landings: usize,
     /// Largest violation of Coulomb's cone.
     cone_violation: f64,
@@ -94,12 +100,14 @@ impl<'a> ResultWriter<'a> {
     ) -> Result<Self, OutputError> {
         check_names(model)?;
         create_folder(&files.result)?;
+        remove_old(files)?;
         let log = Log::create(&files.log).map_err(OutputError::at(&files.log))?;
         let status = StatusFile::create(&files.status).map_err(OutputError::at(&files.status))?;
         let result = ResultFile::create(&files.result, model, record)
             .map_err(OutputError::at(&files.result))?;
         Ok(ResultWriter {
             model,
+            files: files.clone(),
             result,
             status,
             console: Console::new(screen, Progress::new(model, live), log),
@@ -109,6 +117,7 @@ impl<'a> ResultWriter<'a> {
             balance: Balance::new(model),
             last: LastState::default(),
             failed_attempts: 0,
+            cutbacks: 0,
             landings: 0,
             cone_violation: 0.0,
             started: Instant::now(),
@@ -133,7 +142,7 @@ impl<'a> ResultWriter<'a> {
             Outcome::Finished => 0,
             Outcome::Stopped(failure) => {
                 self.write_last_state()?;
-                self.print_failure(failure, summary)?;
+                self.print_failure(failure)?;
                 1
             }
         };
@@ -194,17 +203,41 @@ impl<'a> ResultWriter<'a> {
         Ok(())
     }
 
-    fn print_failure(&mut self, failure: &Failure, summary: &RunSummary) -> io::Result<()> {
+    /// All cutbacks go to the log, the first ones to the screen too.
+    fn print_cutback(&mut self, cutback: &Cutback) -> io::Result<()> {
+        self.cutbacks += 1;
+        for line in cutback_lines(cutback) {
+            match self.cutbacks <= SCREEN_CUTBACKS {
+                true => self.console.line(&line)?,
+                false => self.console.detail(&line)?,
+            }
+        }
+        if self.cutbacks == SCREEN_CUTBACKS {
+            self.console
+                .line("         further cutbacks stand in the log only")?;
+        }
+        Ok(())
+    }
+
+    fn print_failure(&mut self, failure: &Failure) -> io::Result<()> {
         for line in failure_lines(failure, self.model, &self.last.state.u) {
-            self.console.line(&line)?;
+            self.console.alarm(&line)?;
+        }
+        if let Cause::Lcp(failed) = &failure.cause {
+            let path = self.files.failed_lcp(failure.increment);
+            fs::write(&path, failed.problem.to_json())?;
+            let line = format!("lcp      {} holds the problem", path.display());
+            self.console.alarm(&line)?;
         }
         let (name, _) = self.result.name_and_size();
-        self.console.line(&format!(
-            "results  {name} is valid up to time {}, its last frame; {}, {} in this run",
-            scientific(self.last.time, 6),
-            counted(summary.increments, "increment"),
-            counted(summary.cutbacks, "cutback"),
-        ))
+        let pieces = [
+            format!("{name} is valid up to its last frame"),
+            format!("time {}", scientific(self.last.time, 6)),
+        ];
+        for line in wrap("results", &pieces) {
+            self.console.alarm(&line)?;
+        }
+        Ok(())
     }
 
     fn print_totals(&mut self, summary: &RunSummary, output: f64, total: f64) -> io::Result<()> {
@@ -244,7 +277,7 @@ impl Observer for ResultWriter<'_> {
 
     fn cutback(&mut self, cutback: &Cutback) -> io::Result<()> {
         self.failed_attempts += 1;
-        self.console.line(&cutback_line(cutback))?;
+        self.print_cutback(cutback)?;
         self.console.passes(&cutback.failure.passes)
     }
 }
@@ -256,6 +289,17 @@ fn create_folder(file: &Path) -> Result<(), OutputError> {
         }
         _ => Ok(()),
     }
+}
+
+/// Removes the files of an earlier run: one that is still going on keeps writing to its own.
+fn remove_old(files: &JobFiles) -> Result<(), OutputError> {
+    for path in files.existing() {
+        fs::remove_file(path).map_err(|source| OutputError::Create {
+            path: path.to_owned(),
+            source,
+        })?;
+    }
+    Ok(())
 }
 
 /// Time of the run and the parts of its phases.

@@ -2,8 +2,8 @@
 
 use super::context::Context;
 use super::names::Names;
-use crate::deck::{Card, Row};
-use crate::diagnostics::{Code, Span};
+use crate::deck::{Card, Row, Text};
+use crate::diagnostics::Code;
 use crate::model::{Amplitude, TimeBase};
 
 /// All amplitudes.
@@ -70,11 +70,20 @@ fn points(card: &Card, cx: &mut Context) -> Vec<(f64, f64)> {
     let (scale_y, shift_y) = (number("SCALEY", 1.0), number("SHIFTY", 0.0));
     let mut points: Vec<(f64, f64)> = Vec::new();
     for row in &card.rows {
-        for (time, value, span) in pairs(row, cx) {
-            let point = (time * scale_x + shift_x, value * scale_y + shift_y);
+        for (time, value) in pairs(row, cx) {
+            let point = (time.0 * scale_x + shift_x, value * scale_y + shift_y);
+            if !(point.0.is_finite() && point.1.is_finite()) {
+                cx.error(
+                    Code::AmplitudeTable,
+                    time.1.span,
+                    "this point lies at infinity",
+                );
+                return Vec::new();
+            }
             if points.last().is_some_and(|last| last.0 >= point.0) {
-                let message = format!("the times of an amplitude must increase, found {time}");
-                cx.error(Code::AmplitudeTable, span, message);
+                let text = time.1.text;
+                let message = format!("the times of an amplitude must increase, found {text}");
+                cx.error(Code::AmplitudeTable, time.1.span, message);
                 return Vec::new();
             }
             points.push(point);
@@ -83,8 +92,8 @@ fn points(card: &Card, cx: &mut Context) -> Vec<(f64, f64)> {
     points
 }
 
-/// Times and values of a row, with the places of the times.
-fn pairs(row: &Row, cx: &mut Context) -> Vec<(f64, f64, Span)> {
+/// Times, as numbers and as typed, and values of a row.
+fn pairs<'a>(row: &'a Row, cx: &mut Context) -> Vec<((f64, Text<'a>), f64)> {
     let mut pairs = Vec::new();
     let count = row.fields().count();
     for index in (0..count).step_by(2) {
@@ -96,7 +105,7 @@ fn pairs(row: &Row, cx: &mut Context) -> Vec<(f64, f64, Span)> {
         }
         let (time, value) = (field.real(cx.d), row.real_or(index + 1, 0.0, cx.d));
         if let (Some(time), Some(value)) = (time, value) {
-            pairs.push((time, value, field.span));
+            pairs.push(((time, field), value));
         }
     }
     pairs

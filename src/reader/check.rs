@@ -1,4 +1,4 @@
-//! Checks across keywords: the quality of the mesh, thicknesses, units.
+//! Checks across keywords: the quality of the mesh, thicknesses.
 
 use super::context::Context;
 use super::material::Properties;
@@ -85,7 +85,7 @@ pub(super) fn thickness(
         {
             let message = "the two sides of this contact differ in thickness";
             let warning = Diagnostic::warning(Code::ThicknessMismatch, contact.span, message);
-            cx.d.push(warning.help("contact forces act as if both were equally thick"));
+            cx.d.push(warning.help("the bodies touch over the whole thickness of each"));
         }
     }
 }
@@ -105,23 +105,6 @@ fn range_of_thickness(
     let all: Vec<f64> = all.map(|section| section.thickness).collect();
     let low = all.iter().copied().reduce(f64::min)?;
     Some((low, all.iter().copied().fold(low, f64::max)))
-}
-
-/// Notes wave speeds that hint at mixed units.
-pub(super) fn units(properties: &Properties, span: Option<Span>, cx: &mut Context) {
-    for material in &properties.materials {
-        let speed = (material.young / material.density).sqrt();
-        if let Some(span) = span
-            && speed.is_finite()
-            && speed > 0.0
-            && !(10.0..=1e8).contains(&speed)
-        {
-            let name = &material.name;
-            let message = format!("the waves in material {name} run at sqrt(E/rho) = {speed:.3e}");
-            let note = Diagnostic::note(Code::UnitsHint, span, message);
-            cx.d.push_once(note.help("most materials lie between 10 and 1e8 in common units"));
-        }
-    }
 }
 
 /// Time in which a wave crosses the shortest element side.

@@ -7,6 +7,7 @@ use super::surface::{self, Surfaces};
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic};
 use crate::model::{Contact, Interaction, SurfaceKind};
+use std::collections::HashSet;
 
 /// Reads interactions and contacts.
 pub(super) fn read(
@@ -38,7 +39,19 @@ pub(super) fn read(
             contacts.extend(contact(row, interaction, surfaces, cx));
         }
     }
+    report_repeated(&contacts, cx);
     (interactions, contacts)
+}
+
+/// The same slave and master twice would count each contact force twice.
+fn report_repeated(contacts: &[Contact], cx: &mut Context) {
+    let mut seen = HashSet::new();
+    for contact in contacts {
+        if !seen.insert((contact.slave, contact.master)) {
+            let message = "this slave and this master are paired already";
+            cx.error(Code::SurfaceUse, contact.span, message);
+        }
+    }
 }
 
 /// Coefficient of friction of an interaction; `None` after a reported error.
@@ -74,7 +87,10 @@ fn coefficient(card: &Card, cx: &mut Context) -> Option<f64> {
     let field = row.required(0, "the coefficient of friction", cx.d)?;
     let friction = field.real(cx.d)?;
     if friction < 0.0 {
-        let message = format!("the coefficient of friction must not be negative, found {friction}");
+        let message = format!(
+            "the coefficient of friction must not be negative, found {}",
+            field.text
+        );
         cx.error(Code::FrictionRange, field.span, message);
         return None;
     }
@@ -98,19 +114,19 @@ fn contact(
     let slave = slave.and_then(|field| surface::find(surfaces, field, cx));
     let Some(master) = row.get(1) else {
         let message = "the master surface is missing: a surface cannot touch itself yet";
-        cx.error(Code::ContactSurfaces, row.span(), message);
+        cx.error(Code::SurfaceUse, row.span(), message);
         return None;
     };
     let master = surface::find(surfaces, master, cx);
     let (slave, master) = (slave?, master?);
     if slave.0 == master.0 {
         let message = format!("surface {} is slave and master at once", slave.1.name);
-        cx.error(Code::ContactSurfaces, master.2, message);
+        cx.error(Code::SurfaceUse, master.2, message);
         return None;
     }
     if let SurfaceKind::Nodes(_) = master.1.kind {
         let message = format!("the master surface {} is made of nodes", master.1.name);
-        let error = Diagnostic::error(Code::ContactSurfaces, master.2, message);
+        let error = Diagnostic::error(Code::SurfaceUse, master.2, message);
         cx.d.push(error.help("a master is made of element faces; the slave may be made of nodes"));
         return None;
     }

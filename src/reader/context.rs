@@ -20,6 +20,11 @@ impl Context<'_> {
         self.d.push(Diagnostic::warning(code, span, message));
     }
 
+    /// Whether something may be missing because of a reported error.
+    pub fn may_lack_cards(&self) -> bool {
+        self.deck.incomplete || self.deck.dropped
+    }
+
     /// Number of errors so far.
     pub fn errors(&self) -> usize {
         self.d.count(Severity::Error)

@@ -198,6 +198,7 @@ impl Loads {
         let direction = match kind.name_key().as_str() {
             "P" => {
                 row.at_most(3, cx.d);
+                warn_that_pressure_follows(source.card, cx);
                 None
             }
             "TRVEC" => Some(dead_direction(kind, row, source.card, cx)?),
@@ -206,7 +207,7 @@ impl Loads {
         let (index, surface, span) = surface?;
         let SurfaceKind::Faces(faces) = &surface.kind else {
             let message = format!("surface {} is made of nodes: it has no faces", surface.name);
-            cx.error(Code::ContactSurfaces, span, message);
+            cx.error(Code::SurfaceUse, span, message);
             return None;
         };
         for &face in faces {
@@ -271,17 +272,23 @@ fn pressure_side(kind: &str) -> Option<usize> {
 
 fn gravity_direction(row: &Row, magnitude: f64, cx: &mut Context) -> Option<[f64; 2]> {
     let direction = unit_direction(row, cx)?;
-    let usual = [9.81, 981.0, 9810.0, 32.2, 386.0];
-    if !usual
-        .iter()
-        .any(|g| (magnitude.abs() / g - 1.0).abs() < 0.02)
-    {
-        let message = format!("{magnitude} is not the gravity of the earth in common units");
-        let span = row.get(2).map_or(row.span(), |field| field.span);
-        let note = Diagnostic::note(Code::UnitsHint, span, message);
-        cx.d.push_once(note.help("9.81 m/s^2 = 981 cm/s^2 = 9810 mm/s^2 = 386 in/s^2"));
+    warn_unless_unit(row, cx);
+    if magnitude != 0.0 {
+        hint_at_units(row, magnitude, cx);
     }
     Some(direction)
+}
+
+/// Notes a gravity that hints at mixed units.
+fn hint_at_units(row: &Row, magnitude: f64, cx: &mut Context) {
+    let usual = [9.81, 981.0, 9810.0, 32.2, 386.0];
+    let near = |g: &f64| (magnitude.abs() / g - 1.0).abs() < 0.02;
+    if let (false, Some(field)) = (usual.iter().any(near), row.get(2)) {
+        let text = field.text;
+        let message = format!("{text} is not the gravity of the earth in common units");
+        let note = Diagnostic::note(Code::UnitsHint, field.span, message);
+        cx.d.push_once(note.help("9.81 m/s^2 = 981 cm/s^2 = 9810 mm/s^2 = 386 in/s^2"));
+    }
 }
 
 /// Fields 3 to 5: dx, dy, dz with dz = 0, made a unit vector.
@@ -300,12 +307,29 @@ fn unit_direction(row: &Row, cx: &mut Context) -> Option<[f64; 2]> {
         cx.error(Code::BadDirection, span, "the direction is zero");
         return None;
     }
+    Some([x / length, y / length])
+}
+
+/// CalculiX multiplies an acceleration by the length of its direction.
+fn warn_unless_unit(row: &Row, cx: &mut Context) {
+    let component = |i: usize| row.get(i).and_then(|field| field.as_real());
+    let length = component(3)
+        .unwrap_or(0.0)
+        .hypot(component(4).unwrap_or(0.0));
     if (length - 1.0).abs() > 1e-6 {
+        let span = row.get(3).map_or(row.span(), |field| field.span);
         let message = format!("the direction has the length {length}, not 1");
         let warning = Diagnostic::warning(Code::BadDirection, span, message);
         cx.d.push_once(warning.help("only its direction is taken, the magnitude stays as given"));
     }
-    Some([x / length, y / length])
+}
+
+fn warn_that_pressure_follows(card: &Card, cx: &mut Context) {
+    if card.choice("FOLLOWER") == Some("NO") {
+        let message = "FOLLOWER=NO has no effect on P: a pressure always follows its face";
+        let span = card.span_of("FOLLOWER");
+        cx.d.push_once(Diagnostic::warning(Code::IgnoredParameter, span, message));
+    }
 }
 
 /// Direction of a TRVEC, which must not follow the face.

@@ -70,7 +70,10 @@ pub(super) fn read(outline: &Outline, grid: &Grid, sets: &Sets, cx: &mut Context
     }
     properties.report_without_section(complete, grid, cx);
     report_incomplete(&drafts, &used, cx);
-    properties.materials = drafts.into_iter().map(material).collect();
+    properties.materials = drafts
+        .into_iter()
+        .map(|draft| material(draft, cx))
+        .collect();
     properties.report_locking(grid, cx);
     properties
 }
@@ -117,18 +120,23 @@ fn elastic_row(row: &Row, cx: &mut Context) -> Option<(f64, f64)> {
     let young = row.real(0, "Young's modulus", cx.d);
     let poisson = row.real_or(1, 0.0, cx.d);
     let (young, poisson) = (young?, poisson?);
-    let span = |i: usize| row.get(i).map_or(row.span(), |field| field.span);
     if young <= 0.0 {
-        let message = format!("Young's modulus must be positive, found {young}");
-        cx.error(Code::MaterialRange, span(0), message);
+        out_of_range("Young's modulus must be positive", row, 0, cx);
         return None;
     }
     if poisson <= -1.0 || poisson >= 0.5 {
-        let message = format!("Poisson's ratio must lie between -1 and 0.5, found {poisson}");
-        cx.error(Code::MaterialRange, span(1), message);
+        out_of_range("Poisson's ratio must lie between -1 and 0.5", row, 1, cx);
         return None;
     }
     Some((young, poisson))
+}
+
+/// Reports the number in a field.
+fn out_of_range(rule: &str, row: &Row, index: usize, cx: &mut Context) {
+    if let Some(field) = row.get(index) {
+        let message = format!("{rule}, found {}", field.text);
+        cx.error(Code::MaterialRange, field.span, message);
+    }
 }
 
 /// `rho[, T]`
@@ -136,8 +144,7 @@ fn density_row(row: &Row, cx: &mut Context) -> Option<f64> {
     row.at_most(2, cx.d);
     let density = row.real(0, "the density", cx.d)?;
     if density <= 0.0 {
-        let message = format!("the density must be positive, found {density}");
-        cx.error(Code::MaterialRange, row.span(), message);
+        out_of_range("the density must be positive", row, 0, cx);
         return None;
     }
     Some(density)
@@ -145,6 +152,9 @@ fn density_row(row: &Row, cx: &mut Context) -> Option<f64> {
 
 /// Constants that a material in use lacks.
 fn report_incomplete(drafts: &[Draft], used: &[bool], cx: &mut Context) {
+    if cx.may_lack_cards() {
+        return;
+    }
     for (draft, _) in drafts.iter().zip(used).filter(|(_, used)| **used) {
         let mut missing = Vec::new();
         if draft.elastic == Constant::Missing {
@@ -161,13 +171,26 @@ fn report_incomplete(drafts: &[Draft], used: &[bool], cx: &mut Context) {
 }
 
 /// A complete material; unknown constants are zero, which a model without errors never has in use.
-fn material(draft: Draft) -> Material {
+fn material(draft: Draft, cx: &mut Context) -> Material {
     let (young, poisson) = draft.elastic.given().unwrap_or((0.0, 0.0));
-    Material {
+    let material = Material {
         name: draft.name,
         young,
         poisson,
         density: draft.density.given().unwrap_or(0.0),
+    };
+    hint_at_units(&material, draft.span, cx);
+    material
+}
+
+/// Notes a wave speed that hints at mixed units.
+fn hint_at_units(material: &Material, span: Span, cx: &mut Context) {
+    let speed = (material.young / material.density).sqrt();
+    if speed.is_finite() && speed > 0.0 && !(10.0..=1e8).contains(&speed) {
+        let name = &material.name;
+        let message = format!("the waves in material {name} run at sqrt(E/rho) = {speed:.3e}");
+        let note = Diagnostic::note(Code::UnitsHint, span, message);
+        cx.d.push(note.help("most materials lie between 10 and 1e8 in common units"));
     }
 }
 
@@ -180,8 +203,7 @@ fn section(card: &Card, materials: &Names, cx: &mut Context) -> Option<Section> 
     if let (Some(row), Some(value)) = (row, thickness) {
         row.at_most(1, cx.d);
         if value <= 0.0 {
-            let message = format!("the thickness must be positive, found {value}");
-            cx.error(Code::MaterialRange, row.span(), message);
+            out_of_range("the thickness must be positive", row, 0, cx);
         }
     }
     if let Some(extra) = card.rows.get(1) {
@@ -222,11 +244,13 @@ impl Properties {
             }
         }
         if let Some(element) = taken.first().and_then(|&e| grid.mesh.elements.get(e)) {
-            let count = taken.len();
-            let message = format!(
-                "{count} elements of {} have a section already, the first is element {}",
-                set.name, element.label
-            );
+            let message = match taken.len() {
+                1 => format!("element {} has a section already", element.label),
+                n => format!(
+                    "{n} elements have a section already, the first is {}",
+                    element.label
+                ),
+            };
             cx.error(Code::TwoSections, card.span_of("ELSET"), message);
         }
         complete
@@ -240,12 +264,13 @@ impl Properties {
                 .enumerate()
                 .filter(|(_, s)| s.is_none())
         };
-        let Some((first, _)) = bare().next().filter(|_| complete) else {
+        let is_cause = complete || !cx.d.has_errors();
+        let Some((first, _)) = bare().next().filter(|_| is_cause) else {
             return;
         };
         let element = grid.mesh.elements.get(first);
         let span = grid.element_spans.get(first);
-        if let (Some(element), Some(&span), false) = (element, span, cx.deck.incomplete) {
+        if let (Some(element), Some(&span), false) = (element, span, cx.may_lack_cards()) {
             let message = match bare().count() {
                 1 => format!("element {} has no section", element.label),
                 n => format!(

@@ -1,10 +1,11 @@
 //! `*NODE` and `*ELEMENT`.
 
 use super::context::Context;
+use super::element_type;
 use super::names::{Labelled, Labels};
 use super::outline::Outline;
 use crate::deck::{Card, Name, Row, Text};
-use crate::diagnostics::{Code, Diagnostic, Span, closest};
+use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Cell, Element, Mesh, Plane};
 use std::collections::HashMap;
 
@@ -49,14 +50,21 @@ struct RawElement {
 
 /// Reads nodes and elements; leaves out nodes without element.
 pub(super) fn read(outline: &Outline, cx: &mut Context) -> Grid {
-    let mut reading = Reading::default();
+    let errors = cx.errors();
+    let mut reading = Reading {
+        nodes_incomplete: outline.blocks("NODE").next().is_none(),
+        elements_incomplete: outline.blocks("ELEMENT").next().is_none(),
+        ..Reading::default()
+    };
     for card in outline.model_cards("NODE") {
         reading.node_card(card, cx);
     }
     for card in outline.model_cards("ELEMENT") {
         reading.element_card(card, cx);
     }
-    reading.report_empty(cx);
+    if cx.errors() == errors && !cx.may_lack_cards() {
+        reading.report_empty(cx);
+    }
     reading.report_not_planar(cx);
     reading.grid(cx)
 }
@@ -120,7 +128,7 @@ impl Reading {
     fn element_card(&mut self, card: &Card, cx: &mut Context) {
         let kind = card
             .required("TYPE", cx.d)
-            .and_then(|name| element_type(name, cx));
+            .and_then(|name| element_type::read(name, cx));
         let Some((corners, plane)) = kind else {
             self.elements_incomplete = true;
             self.element_groups
@@ -208,17 +216,13 @@ impl Reading {
     }
 
     fn report_empty(&self, cx: &mut Context) {
-        let nothing_read = self.nodes.is_empty() || self.elements.is_empty();
-        let reported = cx.d.has_errors() || cx.deck.incomplete;
-        if nothing_read && !reported {
-            let what = if self.nodes.is_empty() {
-                "*NODE"
-            } else {
-                "*ELEMENT"
-            };
-            let message = format!("the deck has no mesh: {what} is missing or empty");
-            cx.d.push(Diagnostic::error_without_place(Code::EmptyMesh, message));
-        }
+        let what = match (self.nodes.is_empty(), self.elements.is_empty()) {
+            (true, _) => "nodes",
+            (false, true) => "elements",
+            (false, false) => return,
+        };
+        let message = format!("the deck has no {what}");
+        cx.d.push(Diagnostic::error_without_place(Code::EmptyMesh, message));
     }
 
     /// All nodes must have the same z, to a small fraction of the model's size.
@@ -356,45 +360,4 @@ fn element_rows(rows: &[Row], count: usize) -> Vec<&[Row]> {
         rest = after;
     }
     elements
-}
-
-/// Number of corners and plane of an element type.
-fn element_type(name: Text, cx: &mut Context) -> Option<(usize, Plane)> {
-    let folded = name.name_key();
-    match folded.as_str() {
-        "CPS3" => Some((3, Plane::Stress)),
-        "CPE3" => Some((3, Plane::Strain)),
-        "CPS4" => Some((4, Plane::Stress)),
-        "CPE4" => Some((4, Plane::Strain)),
-        _ => {
-            let message = format!("element type {} cannot be used", name.text);
-            let error = Diagnostic::error(Code::ElementType, name.span, message);
-            let meant = closest(&folded, ["CPS3", "CPE3", "CPS4", "CPE4"]);
-            cx.d.push(match reason(&folded) {
-                Some(reason) => error.help(reason),
-                None => error.suggest(meant).help("use CPS3, CPE3, CPS4 or CPE4"),
-            });
-            None
-        }
-    }
-}
-
-/// Why a type that other codes know cannot be used.
-fn reason(folded: &str) -> Option<&'static str> {
-    let starts = |prefixes: &[&str]| prefixes.iter().any(|prefix| folded.starts_with(prefix));
-    if starts(&["CPE4R", "CPS4R"]) && folded.len() == 5 {
-        Some("elements with one integration point are not supported: write CPE4 or CPS4")
-    } else if starts(&["CPE4", "CPS4", "CPE3", "CPS3"]) && folded.len() > 4 {
-        Some("write CPE3, CPS3, CPE4 or CPS4: other formulations are not supported")
-    } else if starts(&["CPE6", "CPS6", "CPE8", "CPS8"]) {
-        Some("quadratic elements are not supported: split them into linear ones")
-    } else if starts(&["CAX"]) {
-        Some("axisymmetric elements are not supported")
-    } else if starts(&["T2D", "T3D", "B2", "B3", "R2D"]) {
-        Some("line elements are not supported: name boundaries with *SURFACE")
-    } else if starts(&["C3D", "S3", "S4", "S6", "S8", "M3D", "R3D"]) {
-        Some("the program is plane: use CPS3, CPE3, CPS4 or CPE4")
-    } else {
-        None
-    }
 }

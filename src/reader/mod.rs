@@ -9,6 +9,7 @@ mod carried;
 mod check;
 mod contact;
 mod context;
+mod element_type;
 mod loads;
 mod material;
 mod mesh;
@@ -41,7 +42,9 @@ pub fn build(deck: &Deck, d: &mut Diagnostics) -> Option<Model> {
         return None;
     }
     let model = read(&mut Context { deck, d });
-    report_unused(deck, d);
+    if !d.has_errors() {
+        report_unused(deck, d);
+    }
     (!d.has_errors()).then_some(model)
 }
 
@@ -55,11 +58,6 @@ fn read(cx: &mut Context) -> Model {
     let properties = material::read(&outline, &grid, &sets, cx);
     let (interactions, contacts) = contact::read(&outline, &surfaces, cx);
     check::thickness(&contacts, &surfaces, &properties, cx);
-    let first_material = outline
-        .model_cards("MATERIAL")
-        .first()
-        .map(|card| card.span);
-    check::units(&properties, first_material, cx);
     let amplitudes = amplitude::read(cx);
     let targets = Targets {
         grid: &grid,

@@ -26,8 +26,6 @@ pub(super) struct StepCards<'a> {
     pub head: &'a Card,
     /// The cards up to `*END STEP`.
     pub cards: Vec<&'a Card>,
-    /// Whether a card was refused; a procedure may be missing because of that.
-    pub refused: bool,
 }
 
 /// The cards of a deck by their place.
@@ -37,6 +35,8 @@ pub(super) struct Outline<'a> {
     pub model: Vec<Block<'a>>,
     /// Steps in order.
     pub steps: Vec<StepCards<'a>>,
+    /// Whether the deck has steps at all.
+    has_steps: bool,
     /// Whether a step is open.
     open: bool,
 }
@@ -44,14 +44,15 @@ pub(super) struct Outline<'a> {
 impl<'a> Outline<'a> {
     /// Sorts the cards of a deck; reports those out of place.
     pub fn new(cx: &mut Context<'a>) -> Outline<'a> {
-        let mut outline = Outline::default();
         let deck = cx.deck;
+        let mut outline = Outline {
+            has_steps: deck.cards.iter().any(|card| card.keyword.name == "STEP"),
+            ..Outline::default()
+        };
         for card in &deck.cards {
             if card.keyword.status == Status::Read {
                 outline.check_data(card, cx);
                 outline.place(card, cx);
-            } else if let Some(step) = outline.steps.last_mut().filter(|_| outline.open) {
-                step.refused |= card.keyword.status == Status::Refused;
             }
         }
         outline.finish(cx);
@@ -108,12 +109,11 @@ impl<'a> Outline<'a> {
         self.steps.push(StepCards {
             head: card,
             cards: Vec::new(),
-            refused: false,
         });
     }
 
     fn end_step(&mut self, card: &Card, cx: &mut Context) {
-        if !self.open {
+        if !self.open && self.has_steps {
             cx.error(Code::StepStructure, card.span, "*END STEP without *STEP");
         }
         self.open = false;
@@ -136,6 +136,7 @@ impl<'a> Outline<'a> {
     fn place_in_step(&mut self, card: &'a Card, cx: &mut Context) {
         match self.steps.last_mut().filter(|_| self.open) {
             Some(step) => step.cards.push(card),
+            None if !self.has_steps => {}
             None => {
                 let help = "move it between *STEP and *END STEP";
                 out_of_place(card, "must stand in a step", help, cx);
@@ -149,7 +150,7 @@ impl<'a> Outline<'a> {
                 let message = "this step is not closed by *END STEP";
                 cx.warning(Code::MissingEndStep, step.head.span, message);
             }
-            None if !cx.deck.incomplete => {
+            None if !cx.may_lack_cards() => {
                 let message = "the deck has no *STEP: there is nothing to compute";
                 cx.d.push(Diagnostic::error_without_place(Code::NoStep, message));
             }

@@ -210,7 +210,9 @@ impl Requests {
     /// Frames of a step that begins at total time `start` and takes `period`.
     pub fn frames(&self, start: f64, period: f64) -> Frames {
         let within = |times: Vec<f64>| {
-            let inside = times.into_iter().filter(|&t| t > 0.0 && t <= period);
+            let inside = times
+                .into_iter()
+                .filter(|&t| t > 0.0 && t <= period * (1.0 + 1e-9));
             Frames::Times(inside.collect())
         };
         match (&self.total_times, &self.frames) {

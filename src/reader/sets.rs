@@ -265,6 +265,11 @@ fn resolve(names: &Names, mut drafts: Vec<Draft>, cx: &mut Context) -> Vec<Set> 
     for (draft, _) in drafts.iter().zip(&open).filter(|(_, open)| **open > 0) {
         cx.error(Code::SetCycle, draft.span, "this set contains itself");
     }
+    for draft in drafts.iter().filter(|draft| draft.members.is_empty()) {
+        if !cx.d.has_errors() && !cx.deck.incomplete {
+            cx.warning(Code::EmptySurface, draft.span, "this set has no members");
+        }
+    }
     let named = names.typed().zip(drafts);
     named
         .map(|(name, draft)| Set {

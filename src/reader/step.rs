@@ -140,7 +140,7 @@ impl Reading<'_> {
         let found = named(cards, "DYNAMIC");
         cx.only_once(&found);
         let Some(card) = found.first() else {
-            if !cards.refused && !cx.deck.incomplete {
+            if !cx.may_lack_cards() {
                 let message = "this step has no procedure";
                 let error = Diagnostic::error(Code::StepStructure, cards.head.span, message);
                 cx.d.push(error.help("add *DYNAMIC with the increment and the duration"));
@@ -268,7 +268,7 @@ fn note_short_end(row: &Row, dt: f64, period: f64, cx: &mut Context) {
     let count = period / dt;
     if (count - count.round()).abs() > 1e-6 * count.clamp(1.0, 1e5) {
         let span = row.get(1).map_or(row.span(), |field| field.span);
-        let message = format!("{period} is no multiple of {dt}: the last increment is shorter");
+        let message = "the duration is no multiple of the increment: the last one is shorter";
         cx.d.push(Diagnostic::note(Code::ShortIncrement, span, message));
     }
 }

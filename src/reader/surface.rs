@@ -180,15 +180,17 @@ impl Sides {
 
     fn report_interior(&self, faces: &[Face], row: &Row, mesh: &Mesh, cx: &mut Context) {
         let interior = || faces.iter().filter(|&&face| self.is_interior(face, mesh));
-        let Some(first) = interior().next() else {
+        let Some(first) = interior().next().filter(|_| !cx.d.has_errors()) else {
             return;
         };
         let label = mesh.elements.get(first.element).map_or(0, |e| e.label);
-        let message = format!(
-            "{} of these faces lie between two elements, the first is S{} of element {label}",
-            interior().count(),
-            first.side + 1
-        );
+        let side = first.side + 1;
+        let message = match interior().count() {
+            1 => format!("face S{side} of element {label} lies between two elements"),
+            n => format!(
+                "{n} of these faces lie between two elements, the first is S{side} of {label}"
+            ),
+        };
         cx.warning(Code::InteriorFace, row.span(), message);
     }
 }

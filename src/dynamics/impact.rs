@@ -1,0 +1,86 @@
+use super::contact_forces::ContactForces;
+use super::effective::Effective;
+use super::meter::Meter;
+use super::step_problem::StepProblem;
+use super::{Cause, State};
+use crate::contact::{Pair, PairSite};
+use crate::lcp::ContactState;
+use crate::model::Impact;
+
+/// Changes of the set of pairs with impulses after which it is kept.
+const SET_CHANGES: usize = 5;
+
+/// The impact impulses of an increment: they act on the pairs that carry force at its end.
+pub(super) struct Impulses {
+    /// Slots of these pairs, increasing: those of the last pass.
+    slots: Vec<usize>,
+    changes: usize,
+    /// V0+ of the last pass with the pairs it is for.
+    last: Option<(Vec<PairSite>, Vec<f64>)>,
+}
+
+impl Impulses {
+    /// Starts with the pairs that were closed in the last increment.
+    pub fn new(contact: &[ContactState]) -> Self {
+        let slots = (0..contact.len())
+            .filter(|&slot| contact[slot].is_closed())
+            .collect();
+        Impulses {
+            slots,
+            changes: 0,
+            last: None,
+        }
+    }
+
+    /// Velocity V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi) for the pairs of the iterate.
+    pub fn velocity(
+        &mut self,
+        problem: &StepProblem,
+        effective: &mut Effective,
+        pairs: &[Pair],
+        start: &State,
+        dt: f64,
+        meter: &mut Meter,
+    ) -> Result<Vec<f64>, Cause> {
+        if problem.settings.impact == Impact::None {
+            return Ok(start.v.clone());
+        }
+        let struck = pairs
+            .iter()
+            .filter(|pair| self.slots.binary_search(&pair.slot).is_ok());
+        let sites: Vec<PairSite> = struck.clone().map(Pair::site).collect();
+        let at_start = problem.weights.impulses_at_start();
+        if let Some((last, v0p)) = &self.last
+            && at_start
+            && *last == sites
+        {
+            // rows of the start do not change with the iterate
+            return Ok(v0p.clone());
+        }
+        let (x, u0) = (&problem.model.mesh.coordinates, &start.u);
+        let form = problem.weights.row_form();
+        let rows = |pair: &Pair| match at_start {
+            true => Pair::new(pair.site(), form, x, u0, u0),
+            false => *pair,
+        };
+        let struck: Vec<Pair> = struck.map(rows).collect();
+        let (m, method) = (&mut effective.m, problem.method());
+        let v0p = ContactForces::impulses(struck, &start.v, dt, &problem.dofs, m, method, meter)?;
+        self.last = Some((sites, v0p.clone()));
+        Ok(v0p)
+    }
+
+    /// Takes over the pairs in contact after a pass; whether they are the same as before. After
+    /// some changes the set is kept: impulses of any set take energy, never give it.
+    pub fn rest(&mut self, problem: &StepProblem, forces: &ContactForces) -> bool {
+        let slots = forces.closed_slots();
+        let rest = problem.settings.impact == Impact::None
+            || slots == self.slots
+            || self.changes >= SET_CHANGES;
+        if !rest {
+            self.slots = slots;
+            self.changes += 1;
+        }
+        rest
+    }
+}

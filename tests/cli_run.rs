@@ -1,0 +1,212 @@
+//! Decks through the real binary: exit codes, files, messages.
+
+use std::fs;
+use std::path::PathBuf;
+
+use assert_cmd::Command;
+use stickslip::output::ResultSummary;
+use tempfile::TempDir;
+
+/// A square that lands on a base: 50 increments, a frame every 10.
+const DROP: &str = include_str!("decks/drop.inp");
+
+/// A folder with decks in which the program runs.
+struct Bench {
+    folder: TempDir,
+}
+
+impl Bench {
+    fn new(deck: &str) -> Self {
+        let folder = TempDir::new().expect("folder");
+        fs::write(folder.path().join("drop.inp"), deck).expect("deck");
+        Bench { folder }
+    }
+
+    /// Exit code, standard output and standard error.
+    fn stickslip(&self, arguments: &[&str]) -> (i32, String, String) {
+        let mut command = Command::cargo_bin("stickslip").expect("binary");
+        let command = command.args(arguments).current_dir(self.folder.path());
+        let output = command.output().expect("started");
+        let text = |bytes| String::from_utf8_lossy(bytes).into_owned();
+        let code = output.status.code().expect("ended by itself");
+        (code, text(&output.stdout), text(&output.stderr))
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).expect(name)
+    }
+
+    fn summary(&self, name: &str) -> ResultSummary {
+        ResultSummary::read(&self.path(name)).expect(name)
+    }
+}
+
+#[test]
+fn a_run_from_deck_to_results() {
+    let bench = Bench::new(DROP);
+    let (code, out, err) = bench.stickslip(&["run", "drop.inp"]);
+    assert_eq!((code, err.as_str()), (0, ""), "{out}");
+    let summary = bench.summary("drop.vtkhdf");
+    assert_eq!((summary.increments, summary.frames.len()), (50, 6));
+    assert_eq!(summary.command, "stickslip run drop.inp");
+    assert_eq!(bench.read("drop.sta").lines().count(), 52);
+    for text in [
+        "deck     drop.inp, 49 lines: 0 errors, 0 warnings",
+        "model    8 nodes   2 elements (CPS4)   16 dofs, 4 fixed   mass 3",
+        "contact  FOOT (2 nodes) -> TOP (1 edge)   mu 0.2   smallest gap 1.0e-02",
+        "wrote drop.vtkhdf (6 frames,",
+    ] {
+        assert!(out.contains(text), "{text}\n{out}");
+    }
+    assert_eq!(bench.read("drop.log"), out);
+    assert!(out.lines().all(|line| line.len() <= 80), "{out}");
+}
+
+#[test]
+fn earlier_results_are_kept_unless_told() {
+    let bench = Bench::new(DROP);
+    let first = bench.stickslip(&["run", "drop.inp", "-o", "a/b", "-q"]);
+    assert_eq!(first, (0, String::new(), String::new()));
+    let (code, _, err) = bench.stickslip(&["run", "drop.inp", "-o", "a/b", "-q"]);
+    assert_eq!(code, 4);
+    assert!(err.contains("--overwrite"), "{err}");
+    let again = [
+        "run",
+        "drop.inp",
+        "-o",
+        "a/b",
+        "-q",
+        "--overwrite",
+        "--every",
+        "0.05",
+    ];
+    assert_eq!(bench.stickslip(&again).0, 0);
+    assert_eq!(bench.summary("a/b/drop.vtkhdf").frames.len(), 3);
+}
+
+#[test]
+fn the_command_line_wins_over_the_deck() {
+    let bench = Bench::new(DROP);
+    let options = ["--frames", "2", "--solver", "sprs", "--threads", "1", "-v"];
+    let arguments = [&["run", "drop.inp"], &options[..]].concat();
+    let (code, out, _) = bench.stickslip(&arguments);
+    assert_eq!(code, 0);
+    assert_eq!(bench.summary("drop.vtkhdf").frames.len(), 3);
+    let log = bench.read("drop.log");
+    for text in [
+        "output 2 frames as the command line says, not output every 10 increments",
+        "solver sprs as the command line says, not faer",
+        "1 thread",
+    ] {
+        assert!(out.contains(text) && log.contains(text), "{text}\n{out}");
+    }
+    assert!(log.contains("increment 50 of step 1: time 1.000000e-01, dt 2.000e-03"));
+    assert!(log.contains("     pass  residual correction"));
+}
+
+#[test]
+fn a_deck_with_errors_touches_no_result() {
+    let deck = DROP
+        .replace("*BOUNDARY", "*BONDARY")
+        .replace("\n1000., ", "\n1.x, ");
+    let bench = Bench::new(&deck);
+    fs::write(bench.path("drop.vtkhdf"), "precious").expect("old result");
+    for arguments in [
+        &["run", "drop.inp", "--overwrite"][..],
+        &["check", "drop.inp"],
+    ] {
+        let (code, _, err) = bench.stickslip(arguments);
+        assert_eq!(code, 2, "{err}");
+        assert!(
+            err.contains("*BONDARY") && err.contains("^^^^^^^^"),
+            "{err}"
+        );
+        assert!(
+            err.contains("drop.inp:37:1") && err.contains("1.x"),
+            "{err}"
+        );
+    }
+    assert_eq!(bench.read("drop.vtkhdf"), "precious");
+    assert!(!bench.path("drop.log").exists());
+}
+
+#[test]
+fn check_describes_the_model_and_solves_nothing() {
+    let bench = Bench::new(DROP);
+    let (code, out, _) = bench.stickslip(&["check", "drop.inp"]);
+    assert_eq!(code, 0);
+    assert!(out.contains("extents [0,2] x [0,2.01]"), "{out}");
+    assert!(!bench.path("drop.vtkhdf").exists());
+    let sunk = Bench::new(&DROP.replace("1.01\n", "0.9\n"));
+    let (code, _, err) = sunk.stickslip(&["check", "drop.inp"]);
+    assert_eq!(code, 2);
+    assert!(
+        err.contains("2 nodes of FOOT inside the body of TOP"),
+        "{err}"
+    );
+}
+
+#[test]
+fn a_crash_stops_with_the_last_good_state() {
+    let bench = Bench::new(&DROP.replace("2, -0.5", "2, -5000."));
+    let (code, out, _) = bench.stickslip(&["run", "drop.inp"]);
+    assert_eq!(code, 1, "{out}");
+    for text in [
+        "cutback ",
+        "stopped ",
+        "tried ",
+        "is valid up to its last frame",
+    ] {
+        assert!(out.contains(text), "{text}\n{out}");
+    }
+    let summary = bench.summary("drop.vtkhdf");
+    assert_eq!(summary.exit_status, 1);
+    assert_eq!(summary.frames.last(), Some(&summary.time));
+}
+
+#[test]
+fn a_quiet_crash_is_told_on_the_standard_error() {
+    let bench = Bench::new(&DROP.replace("2, -0.5", "2, -5000."));
+    let (code, out, err) = bench.stickslip(&["run", "drop.inp", "-q"]);
+    assert_eq!((code, out.as_str()), (1, ""));
+    assert!(
+        err.starts_with("stopped ") && err.contains("worst "),
+        "{err}"
+    );
+}
+
+#[test]
+fn strict_and_lenient_reading() {
+    let bench = Bench::new(&DROP.replace("*BOUNDARY\n", "*BONDARY\n1, 1\n*BOUNDARY\n"));
+    let (code, _, err) = bench.stickslip(&["check", "drop.inp"]);
+    assert_eq!(code, 2, "{err}");
+    let (code, out, err) = bench.stickslip(&["check", "drop.inp", "--lenient"]);
+    assert_eq!(code, 0, "{err}");
+    assert!(
+        err.starts_with("warning") && out.contains("1 warning"),
+        "{err}{out}"
+    );
+    let both = ["check", "drop.inp", "--lenient", "--strict"];
+    assert_eq!(bench.stickslip(&both).0, 3);
+}
+
+#[test]
+fn threads_do_not_change_the_results() {
+    let bench = Bench::new(DROP);
+    for threads in ["1", "2"] {
+        let folder = format!("t{threads}");
+        let arguments = ["run", "drop.inp", "-q", "-o", &folder, "--threads", threads];
+        assert_eq!(bench.stickslip(&arguments).0, 0);
+    }
+    assert_eq!(bench.read("t1/drop.sta"), bench.read("t2/drop.sta"));
+    let mut diff = std::process::Command::new("h5diff");
+    diff.args(["--exclude-path", "/run", "t1/drop.vtkhdf", "t2/drop.vtkhdf"]);
+    match diff.current_dir(bench.folder.path()).output() {
+        Ok(output) => assert!(output.status.success(), "{output:?}"),
+        Err(_) => eprintln!("h5diff is not installed: not compared"),
+    }
+}

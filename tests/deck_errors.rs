@@ -1,0 +1,262 @@
+//! One deck and one golden text for every diagnostic code.
+
+use std::path::Path;
+use stickslip::diagnostics::{Code, Diagnostics, Severity, Sources};
+use stickslip::{deck, reader};
+
+const SQUARE: &str = include_str!("decks/square.inp");
+const SHARED: &str = include_str!("decks/shared.inp");
+
+/// A deck to be read.
+enum Source {
+    Text(String),
+    File(&'static str),
+}
+
+/// Messages of a deck.
+fn messages(source: &Source) -> (Diagnostics, String) {
+    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+    let deck = match source {
+        Source::Text(text) => deck::parse_str("deck.inp", text, &mut sources, &mut d),
+        Source::File(path) => deck::read(Path::new(path), &mut sources, &mut d),
+    };
+    let model = reader::build(&deck, &mut d);
+    assert_eq!(model.is_some(), !d.has_errors());
+    let text = d.render(&sources, false);
+    (d, text)
+}
+
+/// A deck with `old` replaced by `new`, once.
+fn change(deck: &str, old: &str, new: &str) -> Source {
+    assert!(deck.contains(old), "{old}");
+    Source::Text(deck.replacen(old, new, 1))
+}
+
+/// The square with a change.
+fn square(old: &str, new: &str) -> Source {
+    change(SQUARE, old, new)
+}
+
+/// The square with further model cards.
+fn model(more: &str) -> Source {
+    square("*STEP", &format!("{more}\n*STEP"))
+}
+
+/// The square with further step cards.
+fn step(more: &str) -> Source {
+    square("*END STEP", &format!("{more}\n*END STEP"))
+}
+
+/// The block on its base with a change.
+fn shared(old: &str, new: &str) -> Source {
+    change(SHARED, old, new)
+}
+
+/// A deck that has this fault.
+fn faulty(code: Code) -> Source {
+    use Code::*;
+    match code {
+        FileUnreadable => Source::File("tests/decks/missing_include.inp"),
+        IncludeCycle => Source::File("tests/decks/cycle.inp"),
+        UnknownKeyword => square("*BOUNDARY", "*BONDARY"),
+        UnknownParameter => square("ELSET=BODY\n7", "ELST=BODY\n7"),
+        RepeatedParameter => square("NSET=ALL", "NSET=ALL, NSET=ALL"),
+        MissingParameter => square("*ELEMENT, TYPE=CPS4,", "*ELEMENT,"),
+        BadValue => square("NLGEOM", "NLGEOM=PERHAPS"),
+        BadNumber => square("2, 1., 0.", "2, 1.x, 0."),
+        MissingField => square("FOOT, 1, 2", "FOOT"),
+        ExtraField => square("3, 2, 4.", "3, 2, 4., 5."),
+        StrayData => square("*HEADING", "one\n*HEADING"),
+        MissingData => square("0.1, 1.\n", ""),
+        BadName => square("NSET=ALL", "NSET=A&B"),
+        EmptyDeck => Source::Text("** nothing\n\n".to_string()),
+        OpenQuote => square("NSET=ALL", "NSET=\"ALL"),
+        LongLine => square(
+            "one square\n*NODE",
+            &format!("one\n*NODE, {}", " ".repeat(260)),
+        ),
+        FortranNumber => square("1000.", "1.+3"),
+        LongNumber => square("1000.", "0.10000000000000000000E+04"),
+        Abbreviation => square("*ELASTIC", "*ELAS"),
+        NonAscii => square("NAME=TOP", "NAME=TÖP"),
+        UnsupportedKeyword => model("*TIE, NAME=GLUE\nTOP, TOP"),
+        UnsupportedParameter => model("*AMPLITUDE, NAME=A, DEFINITION=SMOOTH STEP\n0., 0., 1., 1."),
+        IgnoredKeyword => step("*CONTROLS, RESET"),
+        IgnoredParameter => square("*DYNAMIC, DIRECT", "*DYNAMIC, DIRECT, ALPHA=-0.05"),
+        WrongPlace => step("*MATERIAL, NAME=STEEL"),
+        MissingEndStep => square("*END STEP\n", ""),
+        StepStructure => square("*DYNAMIC, DIRECT\n0.1, 1.\n", ""),
+        RepeatedCard => square("*DENSITY", "*DENSITY\n2.\n*DENSITY"),
+        RepeatedNode => square("4, 0., 1.", "4, 0., 1.\n4, 0., 2."),
+        NotPlanar => square("4, 0., 1.", "4, 0., 1., 0.5"),
+        RepeatedElement => square("7, 1, 2, 3, 4", "7, 1, 2, 3, 4\n8, 2, 3, 4, 1"),
+        UndefinedNode => square("1, 2\n", "1, 999\n"),
+        UndefinedElement => model("*ELSET, ELSET=MORE\n7, 8"),
+        UndefinedName => square("MATERIAL=RUBBER", "MATERIAL=RUBER"),
+        RepeatedName => model("*SURFACE, NAME=top\nBODY, S1"),
+        ElementType => square("CPS4", "CPS4R"),
+        BadShape => square("7, 1, 2, 3, 4", "7, 1, 4, 3, 2"),
+        UnusedNode => square("4, 0., 1.", "4, 0., 1.\n5, 9., 9.\n6, 9., 8."),
+        BadRange => model("*NSET, NSET=ODD, GENERATE\n1, 4, 2"),
+        SetCycle => model("*NSET, NSET=A\nB\n*NSET, NSET=B\nA"),
+        NoSuchFace => square("BODY, S3", "BODY, S5"),
+        InteriorFace => shared("EBASE, S3", "EBASE, S3\n1, S2"),
+        RepeatedFace => square("BODY, S3", "BODY, S3\n7, S3"),
+        EmptyMesh => Source::Text("*STEP, NLGEOM\n*DYNAMIC\n1., 1.\n*END STEP\n".to_string()),
+        EmptySurface => model("*NSET, NSET=NONE\n*SURFACE, TYPE=NODE, NAME=S\nNONE"),
+        IncompleteMaterial => square("*DENSITY\n1.\n", ""),
+        MaterialRange => square("1000., 0.3", "1000., 0.5"),
+        NoSection => square("*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER\n0.5\n", ""),
+        TwoSections => model("*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER"),
+        Locking => Source::Text(SQUARE.replace("CPS4", "CPE4").replace("0.3", "0.495")),
+        ThicknessMismatch => shared(
+            "ELSET=EBLOCK, MATERIAL=STEEL\n1.",
+            "ELSET=EBLOCK, MATERIAL=STEEL\n2.",
+        ),
+        SurfaceUse => shared("SBOT, STOP", "SBOT, SBOT"),
+        FrictionRange => shared("0.3, 2.1E5", "-0.3"),
+        UnitsHint => square("1000., 0.3", "1., 0.3"),
+        BadDof => square("FOOT, 1, 2", "FOOT, 1, 8"),
+        ValueOutsideStep => square("FOOT, 1, 2", "FOOT, 1, 2, 0.1"),
+        VelocityOnSupport => model("*INITIAL CONDITIONS, TYPE=VELOCITY\nALL, 2, -1."),
+        RampedSupport => step("*BOUNDARY\n4, 1, 1, 0.1"),
+        AmplitudeTable => model("*AMPLITUDE, NAME=A\n0., 0., 1., 1., 1., 0."),
+        BadIncrement => square("0.1, 1.", "2., 1."),
+        UnstableScheme => step("*STICKSLIP, SCHEME=SS22, THETA1=0.4"),
+        BadDirection => step("*DLOAD\nBODY, GRAV, 9.81, 0., 0."),
+        NoStep => Source::Text(SQUARE.split("*STEP").next().unwrap_or("").to_string()),
+        OutputTimes => step("*OUTPUT, FIELD, FREQUENCY=1, TIME INTERVAL=0.1"),
+        ShortIncrement => square("0.1, 1.", "0.3, 1."),
+        NonlinearStep => square("*STEP, NLGEOM", "*STEP"),
+        MixedOperation => step("*CLOAD, OP=NEW\n4, 2, 1."),
+        ConflictingSupport => step("*BOUNDARY\n4, 1\n*BOUNDARY\n4, 1, 1, 0.1"),
+        IgnoredVariable => square("U, RF", "U, PEEQ"),
+    }
+}
+
+#[test]
+fn golden_text_of_every_code() {
+    for &code in Code::ALL {
+        let (_, text) = messages(&faulty(code));
+        assert!(text.contains(code.id()), "{} is not in:\n{text}", code.id());
+        insta::assert_snapshot!(code.id(), text);
+    }
+}
+
+#[test]
+fn one_cause_one_message() {
+    let lone = [
+        Code::UnknownKeyword,
+        Code::UnknownParameter,
+        Code::BadNumber,
+        Code::ElementType,
+        Code::UndefinedNode,
+        Code::UndefinedName,
+        Code::MissingParameter,
+        Code::FileUnreadable,
+        Code::BadShape,
+        Code::NoSuchFace,
+        Code::StrayData,
+    ];
+    for code in lone {
+        let (d, text) = messages(&faulty(code));
+        assert_eq!(d.count(Severity::Error), 1, "{text}");
+    }
+}
+
+#[test]
+fn follow_ups_of_a_reported_cause_are_not_reported() {
+    for (old, new) in [
+        ("*MATERIAL, NAME=RUBBER", "*MATERIAL"),
+        ("*MATERIAL, NAME=RUBBER", "*MATERAIL, NAME=RUBBER"),
+        ("*MATERIAL, NAME=RUBBER", "*MATERIAL, NAME=RUB&BER"),
+        ("*ELASTIC", "*HYPERELASTIC"),
+        ("*ELASTIC", "*ELASTIC, TYPE=LAMINA"),
+        ("*NSET, NSET=FOOT", "*NSET, NSTE=FOOT"),
+        ("*NSET, NSET=FOOT", "*NSET"),
+        ("*NSET, NSET=FOOT", "*XYZZY, NSET=FOOT"),
+        ("7, 1, 2, 3, 4", "7, 1, 2, x, 4"),
+        ("7, 1, 2, 3, 4", "7, 1, 2, 9, 4"),
+        ("7, 1, 2, 3, 4", "x, 1, 2, 3, 4"),
+        ("7, 1, 2, 3, 4", "7, 4, 3, 2, 1"),
+        ("TYPE=CPS4", "TYPE=CPS8"),
+        ("TYPE=CPS4", "TYP=CPS4"),
+        ("*ELEMENT", "*XYZZY"),
+        ("*NODE, NSET=ALL", "*XYZZY, NSET=ALL"),
+        ("*SURFACE, NAME=TOP", "*SURFACE, NAME=TOP, TYPE=SEGMENTS"),
+        ("*SOLID SECTION", "*SHELL SECTION"),
+        ("*SOLID SECTION", "*XYZZY"),
+        ("*DYNAMIC, DIRECT", "*STATIC"),
+        ("*DYNAMIC, DIRECT", "*XYZZY"),
+        ("*STEP, NLGEOM", "*XYZZY"),
+        ("*STEP, NLGEOM", "*STPE, NLGEOM"),
+        ("*DENSITY\n1.", "*DENSITY\nx"),
+        ("0.1, 1.", "0.1, x"),
+        ("*STEP, NLGEOM\n", ""),
+        (
+            "*NODE, NSET=ALL\n1, 0., 0.\n2, 1., 0.\n3, 1., 1.\n4, 0., 1.\n",
+            "",
+        ),
+    ] {
+        let (d, text) = messages(&square(old, new));
+        assert_eq!(d.count(Severity::Error), 1, "{new}:\n{text}");
+    }
+}
+
+#[test]
+fn valid_decks_have_no_errors() {
+    for deck in [SQUARE, SHARED] {
+        let (d, text) = messages(&Source::Text(deck.to_string()));
+        assert!(!d.has_errors(), "{text}");
+    }
+}
+
+#[test]
+fn all_errors_of_a_deck_in_one_run() {
+    let deck = SQUARE
+        .replace("2, 1., 0.", "2, 1., zero")
+        .replace("1000., 0.3", "-1000., 0.3")
+        .replace("FOOT, 1, 2", "FEET, 1, 2")
+        .replace("3, 2, 4.", "3, 7, 4.")
+        .replace("*DENSITY", "*DENISTY")
+        .replace("0.1, 1.", "0.1");
+    let (d, text) = messages(&Source::Text(deck));
+    insta::assert_snapshot!(text);
+    assert_eq!(d.count(Severity::Error), 6);
+}
+
+#[test]
+fn an_included_file_is_named_with_the_line_that_includes_it() {
+    let (_, text) = messages(&Source::File("tests/decks/faulty_include.inp"));
+    assert!(
+        text.contains("--> tests/decks/parts/faulty.inp:2:8"),
+        "{text}"
+    );
+    assert!(
+        text.contains("included from tests/decks/faulty_include.inp:3:17"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_file_of_data_lines_holds_no_keyword() {
+    let (d, text) = messages(&Source::File("tests/decks/keyword_in_rows.inp"));
+    assert_eq!(
+        d.iter().next().map(|item| item.code),
+        Some(Code::WrongPlace),
+        "{text}"
+    );
+    assert!(
+        text.contains("--> tests/decks/parts/faulty.inp:1:1"),
+        "{text}"
+    );
+}
+
+#[test]
+fn at_most_twenty_errors_are_shown() {
+    let rows: String = (10..60).map(|node| format!("{node}, x, 0.\n")).collect();
+    let (d, text) = messages(&square("1, 0., 0.\n", &format!("{rows}1, 0., 0.\n")));
+    assert_eq!(d.count(Severity::Error), 50);
+    assert_eq!(text.matches("error[D108]").count(), 20);
+    assert!(text.contains("30 more"), "{text}");
+}

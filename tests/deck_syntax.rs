@@ -1,0 +1,432 @@
+//! Lines, fields, numbers and names: one small deck for each rule of the deck language, and the
+//! faults that other codes let pass.
+
+use stickslip::deck::{self, Card, Deck};
+use stickslip::diagnostics::{Code, Diagnostics, Severity, Sources, Strictness};
+use stickslip::model::Model;
+use stickslip::reader;
+
+const SQUARE: &str = include_str!("decks/square.inp");
+
+/// Cards and messages of a text.
+fn parse(text: &str) -> (Deck, Diagnostics) {
+    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+    let deck = deck::parse_str("deck.inp", text, &mut sources, &mut d);
+    (deck, d)
+}
+
+/// Codes of the messages, in the order they were found.
+fn codes(d: &Diagnostics) -> Vec<Code> {
+    d.iter().map(|item| item.code).collect()
+}
+
+/// Cards as text: keyword, parameters, rows of fields.
+fn shape(deck: &Deck) -> Vec<String> {
+    let one = |card: &Card| {
+        let rows: Vec<String> = card
+            .rows
+            .iter()
+            .map(|row| {
+                let fields: Vec<&str> = row.fields().map(|field| field.text).collect();
+                format!("[{}]", fields.join("|"))
+            })
+            .collect();
+        format!("{}{}", card.title(), rows.join(""))
+    };
+    deck.cards.iter().map(one).collect()
+}
+
+/// The model and the messages of the square with `old` replaced by `new`.
+fn square(old: &str, new: &str) -> (Option<Model>, Diagnostics) {
+    assert!(SQUARE.contains(old), "{old}");
+    build(&SQUARE.replacen(old, new, 1))
+}
+
+fn build(text: &str) -> (Option<Model>, Diagnostics) {
+    let (deck, mut d) = parse(text);
+    let model = reader::build(&deck, &mut d);
+    (model, d)
+}
+
+/// Codes of the errors and warnings of the square with a change.
+fn faults(old: &str, new: &str) -> Vec<Code> {
+    let (_, d) = square(old, new);
+    let serious = d.iter().filter(|item| item.severity != Severity::Note);
+    serious.map(|item| item.code).collect()
+}
+
+/// The change must neither matter nor be mentioned.
+fn same(old: &str, new: &str) {
+    let (model, d) = square(old, new);
+    assert_eq!(codes(&d), [], "{new}");
+    assert_eq!(model, build(SQUARE).0, "{new}");
+}
+
+#[test]
+fn comments_and_blank_lines_are_skipped() {
+    same(
+        "1, 0., 0.\n",
+        "** one\n   ** two\n***NODE\n****** N O D E S ****\n\n  \n1, 0., 0.\n",
+    );
+}
+
+#[test]
+fn keyword_lines_may_be_indented() {
+    let (deck, d) = parse("  *NODE , NSET = ALL \n 1 , 2. , 3. \n");
+    assert_eq!(
+        (shape(&deck), codes(&d)),
+        (vec!["*NODE[1|2.|3.]".to_string()], vec![])
+    );
+    assert_eq!(deck.cards[0].value("NSET").map(|v| v.text), Some("ALL"));
+}
+
+#[test]
+fn blanks_and_case_in_words_do_not_matter() {
+    same("*END STEP", "*endstep");
+    same("*SOLID SECTION", "*Solid Section");
+    same("*NODE PRINT, NSET=FOOT", "*NodePrint, n set = foot");
+    same("*ELEMENT, TYPE=CPS4", "*ELEMENT, TYPE = cps4");
+}
+
+#[test]
+fn quoted_names_keep_case_and_blanks() {
+    let quoted = SQUARE.replace("RUBBER", "\"Soft, red\"");
+    let (model, d) = build(&quoted);
+    assert_eq!(codes(&d), []);
+    assert_eq!(
+        model.map(|m| m.materials[0].name.clone()),
+        Some("Soft, red".to_string())
+    );
+    assert_eq!(
+        faults("MATERIAL=RUBBER", "MATERIAL=\"rubber\""),
+        [Code::UndefinedName]
+    );
+    same("MATERIAL=RUBBER", "MATERIAL=\"RUBBER\"");
+}
+
+#[test]
+fn long_lines_are_read_with_a_warning() {
+    let long = format!("1, 0.{}, 0.\n", " ".repeat(300));
+    let (model, d) = square("1, 0., 0.\n", &long);
+    assert_eq!(codes(&d), [Code::LongLine]);
+    assert!(model.is_some());
+}
+
+#[test]
+fn keyword_lines_continue_after_a_comma() {
+    same(
+        "*ELEMENT, TYPE=CPS4, ELSET=BODY",
+        "*ELEMENT,\n** comment\n TYPE=CPS4,\n ELSET=BODY",
+    );
+    same("*STEP, NLGEOM\n", "*STEP, NLGEOM,\n");
+}
+
+#[test]
+fn element_lines_continue_until_complete() {
+    same("7, 1, 2, 3, 4", "7, 1,\n2, 3,\n4");
+    same("7, 1, 2, 3, 4", "7, 1\n2, 3\n4");
+    assert_eq!(faults("7, 1, 2, 3, 4", "7, 1, 2, 3"), [Code::MissingField]);
+    let (_, d) = square("7, 1, 2, 3, 4", "6, 1, 2, 3\n7, 1, 2, 3, 4");
+    assert_eq!(codes(&d), [Code::MissingField]);
+}
+
+#[test]
+fn trailing_commas_are_no_field() {
+    same("1000., 0.3\n", "1000., 0.3,\n");
+    same("FOOT, 1, 2\n", "FOOT, 1, 2,\n");
+    same("1, 2\n", "1, 2, \n");
+}
+
+#[test]
+fn a_lone_comma_is_a_row_of_defaults_and_an_empty_line_is_none() {
+    let (deck, _) = parse("*SOLID SECTION, ELSET=A, MATERIAL=B\n,\n\n*NODE\n1,,2.\n");
+    assert_eq!(shape(&deck), ["*SOLID SECTION[]", "*NODE[1||2.]"]);
+    assert_eq!(deck.cards[0].rows.len(), 1);
+    let (model, d) = square("0.5\n", ",\n");
+    assert_eq!(
+        (model.map(|m| m.sections[0].thickness), codes(&d)),
+        (Some(1.0), vec![])
+    );
+}
+
+#[test]
+fn empty_fields_have_defaults_unless_required() {
+    same("1, 0., 0.\n", "1\n");
+    same("2, 1., 0.\n", "2, 1.,\n");
+    assert_eq!(faults("2, 1., 0.", ", 1., 0."), [Code::MissingField]);
+}
+
+#[test]
+fn line_ends_byte_order_mark_and_tabs() {
+    for text in [
+        SQUARE.replace('\n', "\r\n"),
+        format!("\u{feff}{SQUARE}"),
+        SQUARE.replace(", ", ",\t"),
+        SQUARE.trim_end().to_string(),
+        SQUARE.replace("*NODE, NSET", "\t*NODE, NSET"),
+    ] {
+        let (model, d) = build(&text);
+        assert_eq!(codes(&d), []);
+        assert_eq!(model, build(SQUARE).0);
+    }
+}
+
+#[test]
+fn other_letters_pass_in_comments_and_headings() {
+    let text = SQUARE
+        .replace("one square", "ein Würfel")
+        .replace("*NODE,", "** Länge\n*NODE,");
+    let (model, d) = build(&text);
+    assert_eq!(codes(&d), []);
+    assert_eq!(model.map(|m| m.title), Some("ein Würfel".to_string()));
+}
+
+#[test]
+fn a_missing_end_of_step_is_mentioned() {
+    let (model, d) = square("*END STEP\n", "");
+    assert_eq!(codes(&d), [Code::MissingEndStep]);
+    assert_eq!(model, build(SQUARE).0);
+}
+
+#[test]
+fn unique_beginnings_are_read_with_a_warning() {
+    assert_eq!(faults("*BOUNDARY", "*BOUN"), [Code::Abbreviation]);
+    assert_eq!(
+        faults("*ELEMENT, TYPE=CPS4, ELSET", "*ELEMENT, TYPE=CPS4, ELSE"),
+        [Code::Abbreviation]
+    );
+    assert_eq!(faults("*BOUNDARY", "*BOU"), [Code::UnknownKeyword]);
+}
+
+#[test]
+fn words_with_a_tail_are_unknown() {
+    assert_eq!(faults("*BOUNDARY", "*BOUNDARYXYZ"), [Code::UnknownKeyword]);
+    assert_eq!(
+        faults("*NODE PRINT", "*NODE PRINTXYZ"),
+        [Code::UnknownKeyword]
+    );
+}
+
+#[test]
+fn repeated_and_unknown_parameters() {
+    assert_eq!(
+        faults("NSET=ALL", "NSET=ALL, NSET=B"),
+        [Code::RepeatedParameter]
+    );
+    assert_eq!(
+        faults("NSET=ALL", "NSET=ALL, COLOUR=RED"),
+        [Code::UnknownParameter]
+    );
+}
+
+#[test]
+fn lenient_reading_leaves_out_what_is_unknown() {
+    let (mut sources, mut d) = (
+        Sources::new(),
+        Diagnostics::with_strictness(Strictness::Lenient),
+    );
+    let text = SQUARE
+        .replace("*BOUNDARY", "*BONDARY")
+        .replace("NSET=ALL", "NSET=ALL, COLOUR=RED");
+    let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
+    let model = reader::build(&deck, &mut d);
+    assert_eq!(codes(&d), [Code::UnknownParameter, Code::UnknownKeyword]);
+    assert_eq!(model.map(|m| m.steps[0].supports.len()), Some(0));
+}
+
+#[test]
+fn strict_reading_stops_at_warnings() {
+    let (mut sources, mut d) = (
+        Sources::new(),
+        Diagnostics::with_strictness(Strictness::Strict),
+    );
+    let text = SQUARE.replace("*BOUNDARY", "*BOUN");
+    let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
+    assert_eq!(reader::build(&deck, &mut d), None);
+}
+
+#[test]
+fn real_numbers_in_every_form() {
+    for form in [
+        "1000",
+        "1.D3",
+        "1E3",
+        "1.e+03",
+        "+.1d4",
+        "0.10000000000000000000E+04",
+    ] {
+        let (model, _) = square("1000., 0.3", &format!("{form}, 0.3"));
+        assert_eq!(model.map(|m| m.materials[0].young), Some(1000.0), "{form}");
+    }
+    assert_eq!(faults("1000., 0.3", "1.+3, 0.3"), [Code::FortranNumber]);
+    for form in ["nan", "inf", "0x1", "1_000", "1e", "1e999", "1 000"] {
+        assert_eq!(
+            faults("1000., 0.3", &format!("{form}, 0.3")),
+            [Code::BadNumber],
+            "{form}"
+        );
+    }
+}
+
+#[test]
+fn integers_are_not_reals() {
+    assert_eq!(faults("7, 1, 2, 3, 4", "7, 1., 2, 3, 4"), [Code::BadNumber]);
+    assert_eq!(faults("FOOT, 1, 2", "FOOT, 1., 2"), [Code::BadNumber]);
+    assert_eq!(faults("7, 1, 2", "-7, 1, 2"), [Code::BadNumber]);
+}
+
+#[test]
+fn names_have_limits_and_name_spaces() {
+    let long = "N".repeat(81);
+    assert_eq!(faults("NSET=ALL", &format!("NSET={long}")), [Code::BadName]);
+    assert_eq!(faults("NSET=ALL", "NSET=12"), [Code::BadName]);
+    assert_eq!(faults("NSET=ALL", "NSET=0\"ALL\""), [Code::BadName]);
+    let cae = SQUARE
+        .replace("TOP", "_Surf-1_S3")
+        .replace("ELSET=BODY", "ELSET=FOOT")
+        .replace("BODY, S3", "FOOT, S3");
+    let (model, d) = build(&cae);
+    assert_eq!(codes(&d), []);
+    assert!(model.is_some());
+}
+
+#[test]
+fn cards_in_any_order() {
+    let (head, step) = SQUARE.split_at(SQUARE.find("*STEP").unwrap_or(0));
+    let (mesh, rest) = head.split_at(head.find("*SURFACE").unwrap_or(0));
+    let (model, d) = build(&format!("{rest}{mesh}{step}"));
+    assert_eq!(codes(&d), []);
+    assert_eq!(model, build(SQUARE).0);
+}
+
+#[test]
+fn a_lenient_reader_takes_reduced_elements_as_full_ones() {
+    let lenient = Diagnostics::with_strictness(Strictness::Lenient);
+    let (mut sources, mut d) = (Sources::new(), lenient);
+    let text = SQUARE.replace("CPS4", "CPS4R");
+    let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
+    assert_eq!(reader::build(&deck, &mut d), build(SQUARE).0);
+    assert_eq!(codes(&d), [Code::ElementType]);
+}
+
+#[test]
+fn a_missing_increment_comes_with_a_guide() {
+    let (_, d) = square("*DYNAMIC, DIRECT\n0.1, 1.", "*DYNAMIC, EXPLICIT\n, 1.");
+    assert_eq!(codes(&d), [Code::IgnoredParameter, Code::MissingField]);
+    let help = d.iter().filter_map(|item| item.help.as_deref()).last();
+    assert_eq!(
+        help,
+        Some("a wave crosses the shortest element side in 3.16e-2")
+    );
+}
+
+#[test]
+fn parameters_without_effect_are_mentioned() {
+    let card = "*STICKSLIP, THETA1=0.7\n*CLOAD";
+    assert_eq!(faults("*CLOAD", card), [Code::IgnoredParameter]);
+    let card = "*DSLOAD, FOLLOWER=NO\nTOP, P, 1.\n*CLOAD";
+    assert_eq!(faults("*CLOAD", card), [Code::IgnoredParameter]);
+}
+
+#[test]
+fn a_contact_given_twice_is_refused() {
+    let text = include_str!("decks/shared.inp").replace("SBOT, STOP", "SBOT, STOP\nSTOP, SBOT");
+    assert!(build(&text).0.is_some());
+    let (_, d) = build(&text.replace("STOP, SBOT", "SBOT, STOP"));
+    assert!(codes(&d).contains(&Code::SurfaceUse));
+}
+
+#[test]
+fn assembly_decks_are_refused_once() {
+    let (model, d) = build(
+        "*PART, NAME=A\n*NODE\n1, x, 0.\n*END PART\n*ASSEMBLY, NAME=B\n*INSTANCE, NAME=I, PART=A\n*END INSTANCE\n*END ASSEMBLY\n",
+    );
+    assert_eq!((model, codes(&d)), (None, vec![Code::UnsupportedKeyword]));
+}
+
+/// Small faults that a solver was seen to pass over or to report elsewhere.
+mod faults_that_pass_elsewhere {
+    use super::*;
+
+    #[test]
+    fn typing_errors_stop() {
+        assert_eq!(faults("*BOUNDARY", "*BONDARY"), [Code::UnknownKeyword]);
+        assert_eq!(
+            faults("ELSET=BODY\n7", "ELST=BODY\n7"),
+            [Code::UnknownParameter]
+        );
+        assert_eq!(faults("*BOUNDARY", "*AMPLITUDEXYZ"), [Code::UnknownKeyword]);
+    }
+
+    #[test]
+    fn sets_from_element_sets_are_read() {
+        let (model, d) = square("*NSET, NSET=FOOT\n1, 2", "*NSET, NSET=FOOT, ELSET=BODY");
+        assert_eq!(codes(&d), []);
+        assert_eq!(model.map(|m| m.node_sets[1].members.len()), Some(4));
+    }
+
+    #[test]
+    fn named_supports_are_read() {
+        same("FOOT, 1, 2", "FOOT, ENCASTRE");
+        same("FOOT, 1, 2", "FOOT, PINNED");
+        same("FOOT, 1, 2", "FOOT, 1, 3");
+    }
+
+    #[test]
+    fn a_curve_of_another_kind_stops() {
+        let curve = "*AMPLITUDE, NAME=A, DEFINITION=SMOOTH STEP\n0., 0., 1., 1.\n*BOUNDARY";
+        assert_eq!(faults("*BOUNDARY", curve), [Code::UnsupportedParameter]);
+    }
+
+    #[test]
+    fn a_thickness_under_the_interaction_is_read() {
+        same("*BOUNDARY\n", "*BOUNDARY\n");
+        let (model, d) = square("*BOUNDARY", "*SURFACE INTERACTION, NAME=I\n1.,\n*BOUNDARY");
+        assert_eq!(codes(&d), []);
+        assert_eq!(model.map(|m| m.interactions[0].friction), Some(0.0));
+    }
+
+    #[test]
+    fn undefined_members_stop() {
+        assert_eq!(faults("1, 2\n", "1, 999\n"), [Code::UndefinedNode]);
+        let generate = "*NSET, NSET=FOOT, GENERATE\n1, 6";
+        assert_eq!(
+            faults("*NSET, NSET=FOOT\n1, 2", generate),
+            [Code::UndefinedNode]
+        );
+    }
+
+    #[test]
+    fn a_bad_coordinate_is_one_error() {
+        assert_eq!(faults("2, 1., 0.", "2, abc, 0."), [Code::BadNumber]);
+        assert_eq!(faults("2, 1., 0.", "abc, 1., 0."), [Code::BadNumber]);
+    }
+
+    #[test]
+    fn misshapen_elements_stop_at_their_line() {
+        for nodes in ["1, 4, 3, 2", "1, 3, 2, 4", "1, 2, 3, 3"] {
+            let (_, d) = square("7, 1, 2, 3, 4", &format!("7, {nodes}"));
+            assert_eq!(codes(&d)[0], Code::BadShape, "{nodes}");
+            assert_eq!(
+                d.iter().next().and_then(|item| item.span).map(|s| s.line),
+                Some(9)
+            );
+        }
+        assert_eq!(faults("3, 1., 1.", "3, 0.2, 0.2"), [Code::BadShape]);
+        assert_eq!(faults("3, 1., 1.", "3, 0.5, 0.5"), [Code::BadShape]);
+    }
+
+    #[test]
+    fn an_undefined_material_is_one_error() {
+        assert_eq!(
+            faults("MATERIAL=RUBBER", "MATERIAL=STONE"),
+            [Code::UndefinedName]
+        );
+    }
+
+    #[test]
+    fn empty_files_stop() {
+        assert_eq!(codes(&parse("").1), [Code::EmptyDeck]);
+        assert_eq!(codes(&parse("\n\n** only a comment").1), [Code::EmptyDeck]);
+    }
+}
