@@ -209,7 +209,7 @@ def start(folder: Path, decks: Path) -> Verification:
     verification = Verification(
         folder,
         decks,
-        ROOT / "results" / "verification" / folder.name,
+        ROOT / "results" / "verification" / ("quick" if arguments.quick else "") / folder.name,
         data["title"],
         [case for case in cases if case.quick or not arguments.quick],
         {limit.quantity: limit for limit in limits},
