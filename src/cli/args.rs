@@ -31,6 +31,11 @@ pub(super) enum Command {
     Check(CheckArgs),
     /// Describe a result file
     Info(InfoArgs),
+    /// Solve a complementarity problem, such as one that a stopped run has left behind
+    ///
+    /// The file holds {"M": [[..]], "q": [..], "mu": number or list, "n_contacts": number}; the
+    /// answer is JSON too. Exit code 0 when it is solved, 1 otherwise.
+    Lcp(LcpArgs),
 }
 
 /// A deck and how to read it.
@@ -120,6 +125,14 @@ pub(super) struct InfoArgs {
     /// The result file
     #[arg(value_name = "RESULT.vtkhdf")]
     pub result: PathBuf,
+}
+
+/// Arguments of `lcp`.
+#[derive(Debug, ClapArgs)]
+pub(super) struct LcpArgs {
+    /// The problem
+    #[arg(value_name = "FILE.json")]
+    pub problem: PathBuf,
 }
 
 /// Names of the sparse factorisations.

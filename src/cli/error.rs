@@ -38,6 +38,14 @@ pub(super) enum CliError {
     /// The result file cannot be read.
     #[error(transparent)]
     Summary(#[from] SummaryError),
+    /// A complementarity problem cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Problem {
+        /// Its file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
@@ -55,6 +63,7 @@ impl CliError {
             CliError::Name(_) | CliError::Output(OutputError::Name(_)) => Exit::Rejected,
             CliError::Threads { .. } => Exit::Usage,
             CliError::Deck { .. }
+            | CliError::Problem { .. }
             | CliError::Exists { .. }
             | CliError::Output(OutputError::Create { .. })
             | CliError::Write(_)

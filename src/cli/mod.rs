@@ -1,4 +1,4 @@
-//! Command line: `run`, `check` and `info`.
+//! Command line: `run`, `check`, `info` and `lcp`.
 
 mod args;
 mod check;
@@ -6,6 +6,7 @@ mod connect;
 mod error;
 mod exit;
 mod info;
+mod lcp;
 mod overrides;
 mod run;
 #[cfg(test)]
@@ -34,6 +35,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Run(args) => run::run(args, &typed(&arguments), &numerics),
         Command::Check(args) => check::check(args, &numerics),
         Command::Info(args) => info::info(args),
+        Command::Lcp(args) => lcp::lcp(args),
     };
     done.unwrap_or_else(|error| {
         complain(&format!("error: {error}"));
