@@ -144,7 +144,10 @@ fn a_run_that_stops_on_a_ray_names_the_pairs_and_leaves_the_problem() {
     assert_eq!(code, 1, "{err}");
     // The plates meet after 0.2 of 0.3, at time 2/3.
     assert!(err.contains("ray") && err.contains("6.6666"), "{err}");
-    assert!(err.contains("pairs    3 on 13-14, 3 on 21-22"), "{err}");
+    assert!(
+        err.contains("node 3 on segment 13-14, node 3 on segment 21-22"),
+        "{err}"
+    );
     let left = fs::read_dir(folder.path())
         .expect("folder")
         .filter_map(Result::ok);

@@ -4,6 +4,7 @@ use super::echo::wrap;
 use super::format::{counted, scientific};
 use super::log::pass_table;
 use crate::dynamics::{Cause, FailedLcp, Failure, Worst};
+use crate::lcp::LcpError;
 use crate::model::Model;
 
 /// Pairs of a complementarity problem that the text names.
@@ -64,14 +65,22 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
     }
 }
 
-/// The first pairs of a complementarity problem that was not solved.
+/// The pairs that an unsolved complementarity problem is about: those that press against each other
+/// on a ray, else all; the first of them.
 fn pairs_line(failed: &FailedLcp, model: &Model) -> String {
+    let pairs: Vec<[usize; 3]> = match &failed.error {
+        LcpError::Ray { members, .. } if !members.is_empty() => members
+            .iter()
+            .filter_map(|&k| failed.pairs.get(k).copied())
+            .collect(),
+        _ => failed.pairs.clone(),
+    };
     let label = |node: usize| model.mesh.node_labels[node];
-    let shown = failed.pairs.iter().take(SHOWN_PAIRS);
-    let mut texts: Vec<String> = shown
-        .map(|&[slave, a, b]| format!("{} on {}-{}", label(slave), label(a), label(b)))
-        .collect();
-    if let Some(more @ 1..) = failed.pairs.len().checked_sub(SHOWN_PAIRS) {
+    let text = |&[slave, a, b]: &[usize; 3]| {
+        format!("node {} on segment {}-{}", label(slave), label(a), label(b))
+    };
+    let mut texts: Vec<String> = pairs.iter().take(SHOWN_PAIRS).map(text).collect();
+    if let Some(more @ 1..) = pairs.len().checked_sub(SHOWN_PAIRS) {
         texts.push(format!("{more} more"));
     }
     format!("pairs    {}", texts.join(", "))

@@ -67,7 +67,7 @@ fn the_plain_mid_point_rule_does_not_keep_energy() {
 }
 
 /// Two elastic beams thrown at each other obliquely.
-fn oblique_impact(friction: f64, scheme: Scheme) -> Model {
+pub fn oblique_impact(friction: f64, scheme: Scheme) -> Model {
     let mut model = model(1e3, 0.3, 1.0);
     let lower = add_block(&mut model, [0.0, 0.0], [4.0, 0.8], (16, 3), 0.0);
     let upper = add_block(&mut model, [0.7, 1.0], [3.0, 0.8], (10, 3), 0.1);
@@ -83,7 +83,7 @@ fn oblique_impact(friction: f64, scheme: Scheme) -> Model {
 }
 
 #[test]
-fn oblique_impact_keeps_both_momenta() {
+pub fn oblique_impact_keeps_both_momenta() {
     for friction in [0.0, 0.3] {
         let (keep, summary) = run_to_end(&oblique_impact(friction, Scheme::EnergyMomentum));
         let [_, linear, angular] = drift(&keep);

@@ -3,5 +3,6 @@
 mod blocks;
 mod elastic_bar;
 mod invariants;
+mod lcp_methods;
 mod loads;
 mod patch;
