@@ -1,50 +1,43 @@
-use crate::linear::{CheckedSolver, LinearError};
+use nalgebra::DMatrix;
 
 use super::Pair;
+use crate::linear::{CheckedSolver, LinearError};
 
-/// Columns solved for at once.
-const BATCH: usize = 32;
-
-/// The inverse of a factorised matrix at the unknowns of the contact surfaces.
+/// The inverse of a factorised matrix at the unknowns that pairs act on.
 ///
-/// Columns are solved for when a pair first needs them and kept until the matrix changes, so that a
-/// Delassus matrix for any normals costs no further solves.
-#[derive(Debug, Default)]
+/// It is computed when pairs first need it and kept until the matrix changes, so that a Delassus
+/// matrix for any normals costs no further solves.
+#[derive(Debug)]
 pub struct Compliance {
-    /// Unknowns of the contact surfaces.
-    unknowns: Vec<usize>,
-    /// For every dof its position among them; `None` off the surfaces and at supports.
+    /// Unknown of every dof; `None` at supports.
+    unknown: Vec<Option<usize>>,
+    /// Row of the inverse of every dof, where it has been computed.
     place: Vec<Option<usize>>,
-    /// Column of the inverse at each of them, restricted to them.
-    columns: Vec<Option<Vec<f64>>>,
+    /// Dofs of the rows.
+    dofs: Vec<usize>,
+    inverse: DMatrix<f64>,
 }
 
 impl Compliance {
-    /// Compliance at the `nodes` of the contact surfaces, `unknown` being the number of each dof's
-    /// unknown (`None` at supports).
-    pub fn new(nodes: impl Iterator<Item = usize>, unknown: &[Option<usize>]) -> Self {
-        let mut place = vec![None; unknown.len()];
-        let mut unknowns = Vec::new();
-        for dof in nodes.flat_map(|node| [2 * node, 2 * node + 1]) {
-            if let (Some(unknown), None) = (unknown[dof], place[dof]) {
-                place[dof] = Some(unknowns.len());
-                unknowns.push(unknown);
-            }
-        }
-        let columns = vec![None; unknowns.len()];
+    /// Compliance for the given unknowns of all dofs (`None` at supports).
+    pub fn new(unknown: Vec<Option<usize>>) -> Self {
+        let place = vec![None; unknown.len()];
         Compliance {
-            unknowns,
+            unknown,
             place,
-            columns,
+            dofs: Vec::new(),
+            inverse: DMatrix::zeros(0, 0),
         }
     }
 
-    /// Forgets all columns: the matrix has changed.
+    /// Forgets the inverse: the matrix has changed.
     pub fn clear(&mut self) {
-        self.columns.fill(None);
+        self.place.fill(None);
+        self.dofs.clear();
+        self.inverse = DMatrix::zeros(0, 0);
     }
 
-    /// Solves for the columns that `pairs` need and that are missing.
+    /// Computes the inverse at the dofs of `pairs` too, if some are missing.
     ///
     /// # Errors
     /// What the solver says.
@@ -53,42 +46,42 @@ impl Compliance {
         pairs: &[Pair],
         solver: &mut CheckedSolver,
     ) -> Result<(), LinearError> {
-        let n = solver.matrix().size();
-        let mut missing: Vec<usize> = pairs
+        let missing = |dof: &usize| self.unknown[*dof].is_some() && self.place[*dof].is_none();
+        let missing: Vec<usize> = pairs.iter().flat_map(Pair::dofs).filter(missing).collect();
+        if missing.is_empty() {
+            return Ok(());
+        }
+        self.dofs.extend(missing);
+        self.dofs.sort_unstable();
+        self.dofs.dedup();
+        let unknowns: Vec<usize> = self
+            .dofs
             .iter()
-            .flat_map(Pair::dofs)
-            .filter_map(|dof| self.place[dof])
-            .filter(|&place| self.columns[place].is_none())
+            .filter_map(|&dof| self.unknown[dof])
             .collect();
-        missing.sort_unstable();
-        missing.dedup();
-        for batch in missing.chunks(BATCH) {
-            let mut b = vec![0.0; n * batch.len()];
-            for (k, &place) in batch.iter().enumerate() {
-                b[k * n + self.unknowns[place]] = 1.0;
-            }
-            let x = solver.solve(&b)?;
-            for (k, &place) in batch.iter().enumerate() {
-                let column = self.unknowns.iter().map(|&row| x[k * n + row]).collect();
-                self.columns[place] = Some(column);
-            }
+        let inverse = solver.inverse_at(&unknowns)?;
+        self.inverse = DMatrix::from_vec(unknowns.len(), unknowns.len(), inverse);
+        for (place, &dof) in self.dofs.iter().enumerate() {
+            self.place[dof] = Some(place);
         }
         Ok(())
     }
 
-    /// The inverse times one row of a pair, at the unknowns of the surfaces.
+    /// The inverse times one row of a pair, at the rows of the inverse.
     pub(super) fn times_row(&self, pair: &Pair, row: &[f64; 6]) -> Vec<f64> {
-        let mut result = vec![0.0; self.unknowns.len()];
+        let mut result = vec![0.0; self.dofs.len()];
         for (dof, factor) in pair.dofs().into_iter().zip(row) {
-            let column = self.place[dof].and_then(|place| self.columns[place].as_ref());
-            for (sum, value) in result.iter_mut().zip(column.into_iter().flatten()) {
+            let Some(place) = self.place[dof] else {
+                continue;
+            };
+            for (sum, value) in result.iter_mut().zip(self.inverse.column(place).iter()) {
                 *sum += factor * value;
             }
         }
         result
     }
 
-    /// One row of a pair times a vector over the unknowns of the surfaces.
+    /// One row of a pair times a vector over the rows of the inverse.
     pub(super) fn row_times(&self, pair: &Pair, row: &[f64; 6], v: &[f64]) -> f64 {
         let at = |(dof, factor): (usize, &f64)| self.place[dof].map_or(0.0, |i| factor * v[i]);
         pair.dofs().into_iter().zip(row).map(at).sum()

@@ -6,7 +6,7 @@ use crate::elements::Body;
 use crate::linear::{Assembled, CheckedSolver, LinearError, linear_solver};
 use crate::model::SolverChoice;
 
-/// A symmetric matrix over the unknowns, factorised, with its compliance at the contact surfaces.
+/// A symmetric matrix over the unknowns, factorised, with its compliance at the contacts.
 pub(super) struct Factored {
     pub solver: CheckedSolver,
     pub compliance: Compliance,
@@ -48,10 +48,10 @@ pub(super) struct Effective {
 }
 
 impl Effective {
-    /// Both matrices for the unknowns of a step, `surface` being the nodes of the contact surfaces.
-    pub fn new(body: &Body, dofs: &DofMap, choice: SolverChoice, surface: &[usize]) -> Self {
+    /// Both matrices for the unknowns of a step.
+    pub fn new(body: &Body, dofs: &DofMap, choice: SolverChoice) -> Self {
         let mass = unknown_mass(body, dofs);
-        let compliance = || Compliance::new(surface.iter().copied(), &dofs.unknown);
+        let compliance = || Compliance::new(dofs.unknown.clone());
         Effective {
             k: Factored::new(choice, mass.zeros(), compliance()),
             m: Factored::new(choice, mass, compliance()),

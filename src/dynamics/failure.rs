@@ -87,13 +87,12 @@ impl fmt::Display for Cause {
             }
             Cause::Indefinite { .. } => write!(f, "the effective matrix is not positive definite"),
             Cause::LinearSolver(text) => write!(f, "the linear solver failed: {text}"),
-            Cause::Lcp(failed) => {
-                write!(
-                    f,
-                    "a complementarity problem was not solved: {}",
-                    failed.error
-                )
-            }
+            Cause::Lcp(failed) => match &failed.error {
+                LcpError::Ray { .. } => {
+                    write!(f, "contacts exclude each other (an LCP ended on a ray)")
+                }
+                error => write!(f, "a complementarity problem was not solved: {error}"),
+            },
             Cause::NotFinite(what) => write!(f, "{what} is not finite"),
         }
     }

@@ -139,9 +139,8 @@ impl<'m> Runner<'m, '_> {
             loads: Loads::new(self.model, step),
             supports: Supports::new(self.model, step, &self.state.u),
         };
-        let surface = surface_nodes(self.contacts);
         let choice = step.settings.solver;
-        let mut effective = Effective::new(self.body, &problem.dofs, choice, &surface);
+        let mut effective = Effective::new(self.body, &problem.dofs, choice);
         if number == 1 {
             self.report_start(&problem, &mut effective, place)?;
         }
@@ -343,17 +342,6 @@ fn increments_of(period: f64, dt: f64) -> usize {
         ratio.ceil()
     };
     (count as usize).max(1)
-}
-
-fn surface_nodes(contacts: &[ContactSurfaces]) -> Vec<usize> {
-    let nodes = |c: &ContactSurfaces| -> Vec<usize> {
-        c.slaves
-            .iter()
-            .copied()
-            .chain(c.segments.iter().flatten().copied())
-            .collect()
-    };
-    contacts.iter().flat_map(nodes).collect()
 }
 
 #[cfg(test)]

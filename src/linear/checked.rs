@@ -81,12 +81,43 @@ impl CheckedSolver {
         }
         Ok(x)
     }
+
+    /// The inverse at the rows and columns `unknowns` (distinct), m x m column by column.
+    ///
+    /// # Errors
+    /// Values that are not finite, or row sums that disagree with a solve; a matrix without factors.
+    pub fn inverse_at(&mut self, unknowns: &[usize]) -> Result<Vec<f64>, LinearError> {
+        let (n, m) = (self.matrix.size(), unknowns.len());
+        let mut b = vec![0.0; n];
+        unknowns.iter().for_each(|&unknown| b[unknown] = 1.0);
+        let x = self.solve(&b)?;
+        let inverse = self.solver.inverse_at(unknowns, n);
+        let sums = sum(&inverse, m);
+        let difference = |(sum, &unknown): (&f64, &usize)| (sum - x[unknown]).abs();
+        let worst = sums
+            .iter()
+            .zip(unknowns)
+            .map(difference)
+            .fold(0.0, f64::max);
+        let scale = inverse
+            .iter()
+            .fold(0.0_f64, |scale, value| scale.max(value.abs()));
+        if sums.iter().any(|sum| !sum.is_finite()) {
+            return Err(LinearError::NotFinite("an inverse"));
+        }
+        if worst > RESIDUAL * scale * m as f64 {
+            return Err(LinearError::Residual {
+                residual: worst / scale,
+            });
+        }
+        Ok(inverse)
+    }
 }
 
 /// Sum of columns of length `n`: one product with the matrix checks all of them.
 fn sum(columns: &[f64], n: usize) -> Vec<f64> {
     let mut sum = vec![0.0; n];
-    for column in columns.chunks_exact(n) {
+    for column in columns.chunks_exact(n.max(1)) {
         for (sum, value) in sum.iter_mut().zip(column) {
             *sum += value;
         }
@@ -159,6 +190,29 @@ mod tests {
         let second = std::mem::take(&mut solutions[1]);
         for (x, y) in solutions[0].iter().zip(&second) {
             assert!((x - y).abs() < 1e-11 * 8.0 / 0.01);
+        }
+    }
+
+    #[test]
+    fn parts_of_the_inverse_agree_with_solves() {
+        let a = grid(17, 0.01);
+        let n = a.size();
+        let unknowns: Vec<usize> = (0..n)
+            .filter(|i| i % 17 == 0 || i % 23 == 5)
+            .rev()
+            .collect();
+        for choice in [SolverChoice::Faer, SolverChoice::Sprs] {
+            let mut solver = factorized(choice, a.clone()).unwrap();
+            let inverse = solver.inverse_at(&unknowns).unwrap();
+            for (j, &column) in unknowns.iter().enumerate() {
+                let mut b = vec![0.0; n];
+                b[column] = 1.0;
+                let x = solver.solve(&b).unwrap();
+                for (i, &row) in unknowns.iter().enumerate() {
+                    let value = inverse[j * unknowns.len() + i];
+                    assert!((value - x[row]).abs() < 1e-11, "{choice:?} {row} {column}");
+                }
+            }
         }
     }
 

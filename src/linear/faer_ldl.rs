@@ -11,6 +11,7 @@ use faer::{Conj, MatMut, Par, Side, Spec};
 use sprs::CsMatView;
 
 use super::ordering::pattern;
+use super::partial_inverse::inverse_at;
 use super::solver::check_pivots;
 use super::{LinearError, LinearSolver};
 
@@ -71,7 +72,7 @@ impl LinearSolver for FaerLdl {
                 parameters,
             )
             .map_err(library)?;
-        check_pivots(pivots(symbolic, &self.values))
+        check_pivots(pivots(symbolic, &self.values).into_iter())
     }
 
     fn solve(&mut self, b: &mut [f64]) {
@@ -96,19 +97,42 @@ impl LinearSolver for FaerLdl {
             MemStack::new(memory),
         );
     }
+
+    fn inverse_at(&mut self, unknowns: &[usize], _n: usize) -> Vec<f64> {
+        let Some((symbolic, factor)) = self
+            .symbolic
+            .as_ref()
+            .and_then(|symbolic| Some((symbolic, supernodal(symbolic, &self.values)?)))
+        else {
+            return Vec::new();
+        };
+        let position = |&unknown: &usize| match symbolic.perm() {
+            Some(order) => order.arrays().1[unknown],
+            None => unknown,
+        };
+        let positions: Vec<usize> = unknowns.iter().map(position).collect();
+        inverse_at(factor, &positions)
+    }
+}
+
+/// The factors of a supernodal analysis, which [`analyse`] always asks for.
+fn supernodal<'a>(
+    symbolic: &'a SymbolicCholesky<usize>,
+    values: &'a [f64],
+) -> Option<SupernodalLdltRef<'a, usize, f64>> {
+    match symbolic.raw() {
+        SymbolicCholeskyRaw::Supernodal(raw) => Some(SupernodalLdltRef::new(raw, values)),
+        SymbolicCholeskyRaw::Simplicial(_) => None,
+    }
 }
 
 /// Diagonal of D with the unknowns it belongs to.
-fn pivots<'a>(
-    symbolic: &'a SymbolicCholesky<usize>,
-    values: &'a [f64],
-) -> Box<dyn Iterator<Item = (usize, f64)> + 'a> {
-    let SymbolicCholeskyRaw::Supernodal(supernodal) = symbolic.raw() else {
-        return Box::new(std::iter::empty());
+fn pivots(symbolic: &SymbolicCholesky<usize>, values: &[f64]) -> Vec<(usize, f64)> {
+    let Some(factor) = supernodal(symbolic, values) else {
+        return Vec::new();
     };
-    let factor = SupernodalLdltRef::new(supernodal, values);
     let order = symbolic.perm().map(|p| p.arrays().0);
-    Box::new((0..supernodal.n_supernodes()).flat_map(move |s| {
+    let of_node = |s: usize| {
         let node = factor.supernode(s);
         let block = node.val();
         (0..block.ncols()).map(move |j| {
@@ -118,5 +142,8 @@ fn pivots<'a>(
                 block[(j, j)],
             )
         })
-    }))
+    };
+    (0..factor.symbolic().n_supernodes())
+        .flat_map(of_node)
+        .collect()
 }

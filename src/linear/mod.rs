@@ -4,6 +4,7 @@ mod assembled;
 mod checked;
 mod faer_ldl;
 mod ordering;
+mod partial_inverse;
 mod solver;
 mod sprs_ldl;
 

@@ -44,6 +44,19 @@ pub trait LinearSolver: Send {
     /// Replaces the columns of `b` (n x k, column by column) by the solutions. Must follow a
     /// successful `factorize`.
     fn solve(&mut self, b: &mut [f64]);
+
+    /// The inverse at the rows and columns `unknowns` (distinct), m x m column by column. Must
+    /// follow a successful `factorize` of a matrix of size `n`.
+    fn inverse_at(&mut self, unknowns: &[usize], n: usize) -> Vec<f64> {
+        let mut inverse = Vec::with_capacity(unknowns.len() * unknowns.len());
+        for &column in unknowns {
+            let mut x = vec![0.0; n];
+            x[column] = 1.0;
+            self.solve(&mut x);
+            inverse.extend(unknowns.iter().map(|&row| x[row]));
+        }
+        inverse
+    }
 }
 
 /// The solver of the deck's choice.

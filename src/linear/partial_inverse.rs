@@ -1,0 +1,143 @@
+use std::collections::BTreeMap;
+
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
+use faer::prelude::{Reborrow, ReborrowMut};
+use faer::sparse::linalg::cholesky::supernodal::SupernodalLdltRef;
+use faer::{Accum, Mat, Par};
+
+/// What the supernodes below have left to one above: rows of L^-1 P that are still to be finished.
+struct Front {
+    /// Columns (positions in the list of unknowns) that are not zero, increasing.
+    columns: Vec<usize>,
+    /// Rows in the order of pivots, increasing.
+    rows: Vec<usize>,
+    /// Values, rows x columns.
+    values: Mat<f64>,
+}
+
+/// The inverse of P^T L D L^T P at some unknowns, given by their `positions` in the order of pivots,
+/// m x m column by column:
+///
+/// ```text
+/// Y = L^-1 E,   E the unit vectors of the positions
+/// inverse = Y^T D^-1 Y
+/// ```
+///
+/// Column j of Y is zero but on the way from its position to the root of the elimination tree, so
+/// that the supernodes off these ways are never visited.
+pub(super) fn inverse_at(
+    factor: SupernodalLdltRef<'_, usize, f64>,
+    positions: &[usize],
+) -> Vec<f64> {
+    let m = positions.len();
+    let supernode_of = supernode_of(factor);
+    let mut inverse = Mat::<f64>::zeros(m, m);
+    let mut waiting: BTreeMap<usize, Vec<Front>> = BTreeMap::new();
+    for (column, &position) in positions.iter().enumerate() {
+        let unit = Front {
+            columns: vec![column],
+            rows: vec![position],
+            values: Mat::from_fn(1, 1, |_, _| 1.0),
+        };
+        waiting
+            .entry(supernode_of[position])
+            .or_default()
+            .push(unit);
+    }
+    // Children come before their parents in the order of pivots.
+    while let Some((s, fronts)) = waiting.pop_first() {
+        let node = factor.supernode(s);
+        let size = node.val().ncols();
+        let rows: Vec<usize> = (node.start()..node.start() + size)
+            .chain(node.pattern().iter().copied())
+            .collect();
+        let Front {
+            columns,
+            mut values,
+            ..
+        } = assemble(rows, &fronts);
+
+        let (l_top, l_below) = node.val().split_at_row(size);
+        let (mut top, mut below) = values.as_mut().split_at_row_mut(size);
+        solve_unit_lower_triangular_in_place(l_top, top.rb_mut(), Par::Seq);
+        matmul(
+            below.rb_mut(),
+            Accum::Add,
+            l_below,
+            top.rb(),
+            -1.0,
+            Par::Seq,
+        );
+        let scaled = Mat::from_fn(size, columns.len(), |i, j| top[(i, j)] / l_top[(i, i)]);
+        let mut product = Mat::<f64>::zeros(columns.len(), columns.len());
+        matmul(
+            product.as_mut(),
+            Accum::Replace,
+            top.rb().transpose(),
+            &scaled,
+            1.0,
+            Par::Seq,
+        );
+        for (j, &column) in columns.iter().enumerate() {
+            for (i, &row) in columns.iter().enumerate() {
+                inverse[(row, column)] += product[(i, j)];
+            }
+        }
+
+        if let Some(&first) = node.pattern().first() {
+            let values = below.to_owned();
+            let front = Front {
+                columns,
+                rows: node.pattern().to_vec(),
+                values,
+            };
+            waiting.entry(supernode_of[first]).or_default().push(front);
+        }
+    }
+    (0..m)
+        .flat_map(|j| (0..m).map(move |i| (i, j)))
+        .map(|(i, j)| inverse[(i, j)])
+        .collect()
+}
+
+/// Adds up fronts on the given rows.
+fn assemble(rows: Vec<usize>, fronts: &[Front]) -> Front {
+    let mut columns: Vec<usize> = fronts
+        .iter()
+        .flat_map(|f| f.columns.iter().copied())
+        .collect();
+    columns.sort_unstable();
+    columns.dedup();
+    let mut values = Mat::<f64>::zeros(rows.len(), columns.len());
+    for front in fronts {
+        // `rows` holds the supernode's own rows, then its pattern, both increasing.
+        let at: Vec<usize> = front
+            .rows
+            .iter()
+            .map(|row| rows.partition_point(|r| r < row))
+            .collect();
+        for (j, column) in front.columns.iter().enumerate() {
+            let to = columns.partition_point(|c| c < column);
+            for (i, &row) in at.iter().enumerate() {
+                values[(row, to)] += front.values[(i, j)];
+            }
+        }
+    }
+    Front {
+        columns,
+        rows,
+        values,
+    }
+}
+
+/// Supernode of every position in the order of pivots.
+fn supernode_of(factor: SupernodalLdltRef<'_, usize, f64>) -> Vec<usize> {
+    let symbolic = factor.symbolic();
+    let mut supernode_of = vec![0; symbolic.nrows()];
+    for s in 0..symbolic.n_supernodes() {
+        let node = factor.supernode(s);
+        supernode_of[node.start()..node.start() + node.val().ncols()].fill(s);
+    }
+    supernode_of
+}
