@@ -117,7 +117,7 @@ class Verification:
 
     def _deck(self, case: Case) -> Deck:
         decks = self.decks
-        changes = {"refine": case.refine} if case.refine > 1 else {}
+        changes: dict[str, float] = {"refine": case.refine} if case.refine > 1 else {}
         changes |= {"flight": case.flight} if case.flight > 0.0 else {}
         if changes:
             decks = self.output / "decks" / case.name
