@@ -1,6 +1,7 @@
 //! One deck and one golden text for every diagnostic code.
 
 use std::path::Path;
+use stickslip::contact::report_penetrations;
 use stickslip::diagnostics::{Code, Diagnostics, Severity, Sources};
 use stickslip::{deck, reader};
 
@@ -22,6 +23,9 @@ fn messages(source: &Source) -> (Diagnostics, String) {
     };
     let model = reader::build(&deck, &mut d);
     assert_eq!(model.is_some(), !d.has_errors());
+    if let Some(model) = &model {
+        report_penetrations(model, &mut d);
+    }
     let text = d.render(&sources, false);
     (d, text)
 }
@@ -115,6 +119,7 @@ fn faulty(code: Code) -> Source {
         ),
         SurfaceUse => shared("SBOT, STOP", "SBOT, SBOT"),
         FrictionRange => shared("0.3, 2.1E5", "-0.3"),
+        InitialPenetration => shared("11, 1., 1.1", "11, 1., 0.99"),
         UnitsHint => square("1000., 0.3", "1., 0.3"),
         BadDof => square("FOOT, 1, 2", "FOOT, 1, 8"),
         ValueOutsideStep => square("FOOT, 1, 2", "FOOT, 1, 2, 0.1"),

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::penetration::report_penetrations;
+use crate::contact::report_penetrations;
 use crate::diagnostics::{Diagnostics, Severity, Sources, Strictness};
 use crate::dynamics::{self, Observer, RunError, RunSummary};
 use crate::model::Model;

@@ -7,7 +7,6 @@ mod error;
 mod exit;
 mod info;
 mod overrides;
-mod penetration;
 mod run;
 #[cfg(test)]
 mod run_tests;

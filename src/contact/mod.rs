@@ -3,6 +3,7 @@
 mod compliance;
 mod geometry;
 mod pair;
+mod penetration;
 mod problem;
 mod search;
 mod surfaces;
@@ -10,6 +11,7 @@ mod surfaces;
 pub use compliance::Compliance;
 pub use geometry::{Projection, project};
 pub use pair::{Pair, PairSite, RowForm};
+pub use penetration::report_penetrations;
 pub use problem::{add_contact_forces, frictional_lcp};
 pub use search::{InitialGap, Pairing, find_pairs, find_segment, initial_gaps};
 pub use surfaces::{ContactSurfaces, contact_surfaces};

@@ -1,7 +1,7 @@
 //! Linear complementarity problems, general and frictional. Knows no mechanics.
 //!
 //! The general problem ([`Lcp`]): find z >= 0 with w = M z + q >= 0 and z.w = 0; solved by
-//! [`lemke`], Lemke's method with a lexicographic ratio test on a revised basis.
+//! [`lemke()`], Lemke's method with a lexicographic ratio test on a revised basis.
 //!
 //! The frictional problem ([`FrictionalLcp`]): unilateral contacts with Coulomb friction, coupled
 //! by a symmetric matrix Q; solved by [`solve_frictional`] on the states open, stick, slip+ and

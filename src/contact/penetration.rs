@@ -1,4 +1,4 @@
-use crate::contact::{InitialGap, initial_gaps};
+use super::{InitialGap, initial_gaps};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
 use crate::model::{Contact, Model};
 
@@ -9,7 +9,7 @@ const ROUND_OFF: f64 = 1e-9;
 
 /// Reports slave nodes that start inside the master body: deep ones as errors, shallow ones, which
 /// the first increment pushes out, as warnings.
-pub(super) fn report_penetrations(model: &Model, d: &mut Diagnostics) {
+pub fn report_penetrations(model: &Model, d: &mut Diagnostics) {
     for (contact, gaps) in model.contacts.iter().zip(initial_gaps(model)) {
         let depth = |gap: &InitialGap| -gap.gap / gap.edge;
         let inside: Vec<InitialGap> = gaps
