@@ -192,7 +192,8 @@ def load(path: Path) -> ModuleType:
 def markdown(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """A Markdown table."""
     lines = [header, ["---"] * len(header), *rows]
-    return "".join("| " + " | ".join(line) + " |\n" for line in lines)
+    escaped = [[text.replace("|", "\\|") for text in line] for line in lines]
+    return "".join("| " + " | ".join(line) + " |\n" for line in escaped)
 
 
 def start(folder: Path, decks: Path) -> Verification:
