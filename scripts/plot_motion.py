@@ -68,7 +68,7 @@ class Colouring:
         low = min(0.0, float(values.min()))
         return cls(field, Normalize(low, float(values.max()) or 1.0))
 
-    def bar(self, figure: Figure | SubFigure, axes: object) -> None:
+    def bar(self, figure: Figure | SubFigure, axes: Axes | list[Axes]) -> None:
         """Adds the colour bar."""
         if self.field is not None:
             figure.colorbar(
@@ -221,7 +221,7 @@ def overlay(results: Results, frames: list[int]) -> Figure:
 
 
 def animate(
-    results: Results, field: str | None, forces: bool, path: Path, frames_per_second: float
+    results: Results, field: str | None, forces: bool, path: Path, frames_per_second: int
 ) -> None:
     """Writes an animation of all frames."""
     frames = list(range(len(results.frame_times)))
@@ -267,7 +267,7 @@ def main() -> None:
     parser.add_argument("--forces", action="store_true", help="draw contact forces as arrows")
     parser.add_argument("-o", "--output", type=Path, help="picture to write")
     parser.add_argument("--animation", type=Path, help="animation to write (.gif)")
-    parser.add_argument("--fps", type=float, default=15.0, help="frames per second")
+    parser.add_argument("--fps", type=int, default=15, help="frames per second")
     arguments = parser.parse_args()
     field = None if arguments.field == "none" else arguments.field
     with Results(arguments.result) as results:

@@ -25,7 +25,7 @@ def binary() -> Path:
 def run(deck: Path, output: Path, *options: str, expected: int = 0) -> Path:
     """Runs a deck quietly into a folder, overwriting older results; returns the result file."""
     output.mkdir(parents=True, exist_ok=True)
-    command = [binary(), "run", deck, "-o", output, "--overwrite", "-q", *options]
+    command: list[str | Path] = [binary(), "run", deck, "-o", output, "--overwrite", "-q", *options]
     done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     if done.returncode != expected:
         words = " ".join(map(str, command))

@@ -117,7 +117,7 @@ class Verification:
 
     def _deck(self, case: Case) -> Deck:
         decks = self.decks
-        changes = {"refine": case.refine} if case.refine > 1 else {}
+        changes: dict[str, float] = {"refine": case.refine} if case.refine > 1 else {}
         changes |= {"flight": case.flight} if case.flight > 0.0 else {}
         if changes:
             decks = self.output / "decks" / case.name
@@ -192,7 +192,8 @@ def load(path: Path) -> ModuleType:
 def markdown(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """A Markdown table."""
     lines = [header, ["---"] * len(header), *rows]
-    return "".join("| " + " | ".join(line) + " |\n" for line in lines)
+    escaped = [[text.replace("|", "\\|") for text in line] for line in lines]
+    return "".join("| " + " | ".join(line) + " |\n" for line in escaped)
 
 
 def start(folder: Path, decks: Path) -> Verification:
