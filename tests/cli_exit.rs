@@ -2,9 +2,18 @@
 
 mod output_support;
 
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
 use assert_cmd::Command;
 use output_support::write_run;
 use tempfile::TempDir;
+
+/// One test at a time: a child process started while another test has a result file open would
+/// inherit it, and with it HDF5's lock.
+fn alone() -> MutexGuard<'static, ()> {
+    static ONE: Mutex<()> = Mutex::new(());
+    ONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 fn stickslip(arguments: &[&str]) -> (i32, String, String) {
     let mut command = Command::cargo_bin("stickslip").expect("binary");
@@ -16,6 +25,7 @@ fn stickslip(arguments: &[&str]) -> (i32, String, String) {
 
 #[test]
 fn help_and_version_are_no_errors() {
+    let _alone = alone();
     let (code, out, _) = stickslip(&["--help"]);
     assert_eq!(code, 0);
     assert!(out.contains("check") && out.contains("Exit codes"), "{out}");
@@ -33,6 +43,7 @@ fn help_and_version_are_no_errors() {
 
 #[test]
 fn a_wrong_command_line_is_3() {
+    let _alone = alone();
     for arguments in [
         &[] as &[&str],
         &["run"],
@@ -53,6 +64,7 @@ fn a_wrong_command_line_is_3() {
 
 #[test]
 fn a_missing_file_is_4() {
+    let _alone = alone();
     for command in ["run", "check", "info"] {
         let (code, out, err) = stickslip(&[command, "no/such/file"]);
         assert_eq!((code, out.as_str()), (4, ""), "{command}: {err}");
@@ -63,6 +75,7 @@ fn a_missing_file_is_4() {
 
 #[test]
 fn info_describes_a_result_file() {
+    let _alone = alone();
     let folder = TempDir::new().expect("folder");
     let files = write_run(folder.path());
     let (code, out, _) = stickslip(&["info", &files.result.to_string_lossy()]);
@@ -84,6 +97,7 @@ fn info_describes_a_result_file() {
 #[cfg(unix)]
 #[test]
 fn a_closed_pipe_is_no_panic() {
+    let _alone = alone();
     let folder = TempDir::new().expect("folder");
     let files = write_run(folder.path());
     let script = format!(

@@ -307,7 +307,7 @@ fn an_unsolved_lcp_is_kept() {
     assert_eq!(FrictionalLcp::from_json(&json), Ok(one_contact()));
     let log = bench.log();
     assert!(
-        log.contains("pairs    4 on 1-2, 4 on 1-2, 4 on 1-2, 4 on 1-2, 2 more"),
+        log.contains("pairs    node 4 on segment 1-2, node 4 on segment 1-2, "),
         "{log}"
     );
     assert!(log.contains("job-lcp-4.json holds the problem"), "{log}");

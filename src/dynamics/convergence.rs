@@ -21,19 +21,22 @@ pub(super) struct Scales {
 
 impl Scales {
     /// `force`: largest force in equilibrium; `stiffness`, `inertia`: largest diagonal entries of
-    /// theta2 K and (2/dt²) M; `displacement`, `increment`: largest U and d.
+    /// theta2 K and (2/dt²) M; `displacement`, `increment`: largest U and d; `position`: largest
+    /// coordinate of a pair in contact.
     ///
     /// A force from displacements U carries the round-off of K U, the inertia force that of
-    /// (2/dt²) M d: a residual is not measured finer than that.
+    /// (2/dt²) M d, and a force that closes a gap between positions x that of K* x: a residual is
+    /// not measured finer than that.
     pub fn new(
         force: f64,
         (stiffness, inertia): (f64, f64),
-        (displacement, increment): (f64, f64),
+        (displacement, increment, position): (f64, f64, f64),
         tolerance: f64,
     ) -> Self {
         Scales {
             force,
-            noise: ROUND_OFF * (stiffness * displacement + inertia * increment),
+            noise: ROUND_OFF
+                * (stiffness * displacement.max(position) + inertia * increment.max(position)),
             increment,
             resolution: ROUND_OFF * displacement,
             tolerance,

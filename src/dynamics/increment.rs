@@ -127,7 +127,7 @@ impl Attempt<'_, '_> {
                 .largest()
                 .max(largest(&contact_force))
                 .max(largest(&support_force));
-            let scales = self.scales(force, &u, largest(&d).max(largest(&du)));
+            let scales = self.scales(force, &u, largest(&d).max(largest(&du)), &forces);
             let report = scales.report(&r, &du, &forces, pivots);
             let position = |node| problem.position(&u, node);
             trace.worst = worst(&r, &problem.dofs.dof, position, report.residual);
@@ -195,14 +195,15 @@ impl Attempt<'_, '_> {
         })
     }
 
-    fn scales(&self, force: f64, u: &[f64], increment: f64) -> Scales {
+    fn scales(&self, force: f64, u: &[f64], increment: f64, contact: &ContactForces) -> Scales {
+        let closed = (0..contact.pairs.len()).filter(|&k| contact.is_closed(k));
+        let position = closed
+            .flat_map(|k| contact.pairs[k].nodes)
+            .map(|node| largest(&self.problem.position(u, node)))
+            .fold(0.0, f64::max);
         let diagonals = (self.effective.stiffness, self.effective.inertia);
-        Scales::new(
-            force,
-            diagonals,
-            (largest(u), increment),
-            self.problem.settings.tolerance,
-        )
+        let lengths = (largest(u), increment, position);
+        Scales::new(force, diagonals, lengths, self.problem.settings.tolerance)
     }
 
     /// Motion and forces at the end of a converged increment.
