@@ -11,7 +11,7 @@ use crate::output::{ModelEcho, check_names, deck_line};
 /// Reads a deck and describes its model.
 pub(super) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exit, CliError> {
     let loaded = load(&args.deck, numerics)?;
-    complain_of(&loaded);
+    complain_of(&loaded.all_messages);
     print(&[deck_line_of(&args.deck.path, &loaded, None)]);
     let Some(model) = &loaded.model else {
         return Ok(Exit::Rejected);
@@ -37,9 +37,9 @@ pub(super) fn load(deck: &DeckArgs, numerics: &Numerics) -> Result<Loaded, CliEr
 }
 
 /// Prints the errors and warnings of a deck.
-pub(super) fn complain_of(loaded: &Loaded) {
-    if !loaded.messages.is_empty() {
-        complain(&loaded.messages);
+pub(super) fn complain_of(messages: &str) {
+    if !messages.is_empty() {
+        complain(messages);
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::contact::report_penetrations;
-use crate::diagnostics::{Diagnostics, Severity, Sources, Strictness};
+use crate::diagnostics::{Code, Diagnostics, Severity, Sources, Strictness};
 use crate::dynamics::{self, Observer, RunError, RunSummary};
 use crate::model::Model;
 use crate::reader;
@@ -13,7 +13,9 @@ use crate::reader;
 pub(super) struct Loaded {
     /// The model, when the deck has no errors.
     pub model: Option<Model>,
-    /// Errors and warnings for the screen.
+    /// Errors, warnings and notes for the screen of `check`.
+    pub all_messages: String,
+    /// The same for that of `run`, which does not care what other codes would make of the deck.
     pub messages: String,
     /// The same without colour, for the log.
     pub plain_messages: String,
@@ -57,10 +59,12 @@ fn load(path: &Path, strictness: Strictness, colour: bool) -> Loaded {
     if let Some(model) = &model {
         report_penetrations(model, &mut d);
     }
+    let ours = d.without(Code::LongNumber);
     Loaded {
         model: model.filter(|_| !d.has_errors()),
-        messages: d.render(&sources, colour),
-        plain_messages: d.render(&sources, false),
+        all_messages: d.render(&sources, colour),
+        messages: ours.render(&sources, colour),
+        plain_messages: ours.render(&sources, false),
         errors: d.count(Severity::Error),
         warnings: d.count(Severity::Warning),
         text: sources.full_text(),

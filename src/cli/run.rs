@@ -14,11 +14,11 @@ use crate::output::{
 pub(super) fn run(args: &RunArgs, command: &str, numerics: &Numerics) -> Result<Exit, CliError> {
     let mut loaded = load(&args.deck, numerics)?;
     let Some(mut model) = loaded.model.take() else {
-        complain_of(&loaded);
+        complain_of(&loaded.messages);
         return Ok(Exit::Rejected);
     };
     if args.verbosity() != Verbosity::Quiet {
-        complain_of(&loaded);
+        complain_of(&loaded.messages);
     }
     check_names(&model)?;
     let files = JobFiles::new(&args.deck.path, &args.output);

@@ -80,6 +80,16 @@ impl Diagnostics {
         self.counts[severity as usize]
     }
 
+    /// All diagnostics but those of one code.
+    pub fn without(&self, code: Code) -> Diagnostics {
+        let mut rest = Diagnostics::with_strictness(self.strictness);
+        for item in self.items.iter().filter(|item| item.code != code) {
+            rest.counts[item.severity as usize] += 1;
+            rest.items.push(item.clone());
+        }
+        rest
+    }
+
     /// All diagnostics in the order they were found.
     pub fn iter(&self) -> impl Iterator<Item = &Diagnostic> {
         self.items.iter()

@@ -19,7 +19,8 @@ use super::result_file::ResultFile;
 use super::screen::{Table, row};
 use super::status::StatusFile;
 use crate::dynamics::{
-    Cause, Cutback, Failure, IncrementReport, NodalResults, Observer, Outcome, RunSummary, State,
+    Cause, Cutback, Failure, IncrementReport, NodalResults, Observer, Outcome, RunSummary,
+    SolverCounts, State,
 };
 use crate::model::Model;
 
@@ -259,6 +260,11 @@ impl<'a> ResultWriter<'a> {
                 scientific(self.cone_violation, 1),
             ))?;
         }
+        if summary.solver.lcps > 0 {
+            for line in lcp_lines(&summary.solver) {
+                self.console.line(&line)?;
+            }
+        }
         let (name, size) = self.result.name_and_size();
         let frames = counted(self.result.frames(), "frame");
         let line = format!("wrote {name} ({frames}, {})", bytes(size));
@@ -300,6 +306,18 @@ fn remove_old(files: &JobFiles) -> Result<(), OutputError> {
         })?;
     }
     Ok(())
+}
+
+/// What the complementarity problems took, by method.
+fn lcp_lines(solver: &SolverCounts) -> Vec<String> {
+    let problems = counted(solver.lcps, "problem");
+    let pieces = [
+        format!("{problems}, at most {}", counted(solver.lcp_size, "pair")),
+        counted(solver.active_set_iterations, "active-set iteration"),
+        counted(solver.gauss_seidel_sweeps, "sweep"),
+        counted(solver.lemke_calls, "Lemke solve"),
+    ];
+    wrap("LCP", &pieces)
 }
 
 /// Time of the run and the parts of its phases.

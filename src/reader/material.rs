@@ -119,6 +119,7 @@ fn elastic_row(row: &Row, cx: &mut Context) -> Option<(f64, f64)> {
     row.at_most(3, cx.d);
     let young = row.real(0, "Young's modulus", cx.d);
     let poisson = row.real_or(1, 0.0, cx.d);
+    row.real_or(2, 0.0, cx.d)?; // a temperature: one row serves all of them
     let (young, poisson) = (young?, poisson?);
     if young <= 0.0 {
         out_of_range("Young's modulus must be positive", row, 0, cx);
