@@ -2,6 +2,7 @@
 
 mod blocks;
 mod elastic_bar;
+mod friction;
 mod invariants;
 mod lcp_methods;
 mod loads;
