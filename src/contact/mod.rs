@@ -1,5 +1,6 @@
 //! Node-to-segment contact: pairs, their rows and their complementarity problem.
 
+mod circles;
 mod compliance;
 mod geometry;
 mod pair;
@@ -7,11 +8,15 @@ mod penetration;
 mod problem;
 mod search;
 mod surfaces;
+mod territory;
 
 pub use compliance::Compliance;
 pub use geometry::{Projection, project};
 pub use pair::{Pair, PairSite, RowForm};
 pub use penetration::report_penetrations;
 pub use problem::{add_contact_forces, frictional_lcp};
-pub use search::{InitialGap, Pairing, find_pairs, find_segment, initial_gaps};
+pub use search::{
+    Candidate, InitialGap, Pairing, all_segments, find_pairs, find_segment, initial_gaps,
+};
 pub use surfaces::{ContactSurfaces, contact_surfaces};
+pub use territory::{Search, Territory};

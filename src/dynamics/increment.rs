@@ -6,7 +6,7 @@ use super::mass::largest;
 use super::meter::Meter;
 use super::step_problem::{Equilibrium, Interval, StepProblem, difference, sum};
 use super::{Cause, PassReport, State, Worst};
-use crate::contact::{Pair, Pairing};
+use crate::contact::{Pair, Pairing, Search};
 use crate::lcp::ContactState;
 use crate::linear::LinearError;
 use crate::model::Factorization;
@@ -43,6 +43,7 @@ pub(super) struct Failed {
 pub(super) struct Attempt<'a, 'm> {
     pub problem: &'a StepProblem<'m>,
     pub effective: &'a mut Effective,
+    pub search: &'a mut Search<'m>,
     pub start: &'a State,
     pub interval: Interval,
     pub meter: &'a mut Meter,
@@ -82,13 +83,16 @@ impl Attempt<'_, '_> {
         let mut state = contact.to_vec();
         let mut impulses = Impulses::new(contact);
         let mut pairing = Pairing::default();
+        self.search.start(&self.start.v, dt);
 
         for pass in 0..problem.settings.max_passes {
             // contact geometry of the iterate U^k
             let u = sum(u0, &d);
-            let pairs = self
-                .meter
-                .time(|t| &mut t.contact, || problem.pairs(u0, &u, &pairing));
+            let search = &mut *self.search;
+            let pairs = self.meter.time(
+                |t| &mut t.contact,
+                || problem.pairs(search, u0, &u, &pairing),
+            );
 
             // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi) for the pairs in contact
             let (effective, meter) = (&mut *self.effective, &mut *self.meter);
