@@ -2,15 +2,18 @@
 
 mod circles;
 mod compliance;
+mod crossing;
 mod geometry;
 mod pair;
 mod penetration;
 mod problem;
+mod quartic;
 mod search;
 mod surfaces;
 mod territory;
 
 pub use compliance::Compliance;
+pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
 pub use geometry::{Projection, project};
 pub use pair::{Pair, PairSite, RowForm};
 pub use penetration::report_penetrations;
