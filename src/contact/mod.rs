@@ -5,6 +5,7 @@ mod compliance;
 mod crossing;
 mod geometry;
 mod pair;
+mod passage;
 mod penetration;
 mod problem;
 mod quartic;
@@ -16,6 +17,7 @@ pub use compliance::Compliance;
 pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
 pub use geometry::{Projection, project};
 pub use pair::{Pair, PairSite, RowForm};
+pub use passage::{Passage, Touch, find_passage};
 pub use penetration::report_penetrations;
 pub use problem::{add_contact_forces, frictional_lcp};
 pub use search::{

@@ -6,7 +6,7 @@ use super::mass::largest;
 use super::meter::Meter;
 use super::step_problem::{Equilibrium, Interval, StepProblem, difference, sum};
 use super::{Cause, PassReport, State, Worst};
-use crate::contact::{Pair, Pairing, Search};
+use crate::contact::{Pair, Pairing, Search, Touch, find_passage};
 use crate::lcp::ContactState;
 use crate::linear::LinearError;
 use crate::model::Factorization;
@@ -147,6 +147,7 @@ impl Attempt<'_, '_> {
             forces.remember(&mut state);
             let rest = impulses.rest(problem, &forces);
             if rest && scales.converged(&report) {
+                self.check_ways(&d, contact, &forces)?;
                 return self.finish(v0p, d, forces);
             }
             pairing = Pairing {
@@ -155,6 +156,32 @@ impl Attempt<'_, '_> {
             };
         }
         Err(Cause::NotConverged)
+    }
+
+    /// No node may have gone into a body on its way from U0 to U0 + d.
+    fn check_ways(
+        &mut self,
+        d: &[f64],
+        contact: &[ContactState],
+        forces: &ContactForces,
+    ) -> Result<(), Cause> {
+        let before = |state: &ContactState| Touch {
+            before: state.is_closed(),
+            now: None,
+        };
+        let mut touch: Vec<Touch> = contact.iter().map(before).collect();
+        for (k, pair) in forces.pairs.iter().enumerate() {
+            if forces.is_closed(k) {
+                touch[pair.slot].now = Some(pair.segment);
+            }
+        }
+        let (u0, search) = (&self.start.u, &mut *self.search);
+        let tolerance = self.problem.settings.tolerance * largest(d);
+        let passage = self.meter.time(
+            |t| &mut t.contact,
+            || find_passage(search, u0, &sum(u0, d), &touch, tolerance),
+        );
+        passage.map_or(Ok(()), |passage| Err(passage.into()))
     }
 
     /// theta2 K d_p, the force of the supports' motion in the predictor.

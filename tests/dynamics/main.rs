@@ -2,6 +2,7 @@
 
 mod blocks;
 mod elastic_bar;
+mod fast;
 mod invariants;
 mod lcp_methods;
 mod loads;
