@@ -1,17 +1,27 @@
 //! Node-to-segment contact: pairs, their rows and their complementarity problem.
 
+mod circles;
 mod compliance;
+mod crossing;
 mod geometry;
 mod pair;
+mod passage;
 mod penetration;
 mod problem;
+mod quartic;
 mod search;
 mod surfaces;
+mod territory;
 
 pub use compliance::Compliance;
+pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
 pub use geometry::{Projection, project};
 pub use pair::{Pair, PairSite, RowForm};
+pub use passage::{Passage, Touch, find_passage};
 pub use penetration::report_penetrations;
 pub use problem::{add_contact_forces, frictional_lcp};
-pub use search::{InitialGap, Pairing, find_pairs, find_segment, initial_gaps};
+pub use search::{
+    Candidate, InitialGap, Pairing, all_segments, find_pairs, find_segment, initial_gaps,
+};
 pub use surfaces::{ContactSurfaces, contact_surfaces};
+pub use territory::{Search, Territory};

@@ -1,12 +1,30 @@
 use super::geometry::{Projection, position, project};
-use super::{ContactSurfaces, PairSite, contact_surfaces};
+use super::{ContactSurfaces, PairSite, Search, Territory, contact_surfaces};
 use crate::model::Model;
 
 /// How far beyond its ends a segment still takes a projection (in its lengths): what round-off and
 /// the tolerance of many increments make of a node that sticks at the end of a surface.
-const ROUND_OFF: f64 = 1e-6;
+pub(super) const ROUND_OFF: f64 = 1e-6;
 
-/// The segment that a slave node pairs with in the configuration of displacements `u`, if any.
+/// A segment that a slave node may pair with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate {
+    /// Index of the segment in its contact.
+    pub segment: usize,
+    /// Distance up to which it pairs (length).
+    pub reach: f64,
+}
+
+/// All segments of a contact, at any distance: the search without territories.
+pub fn all_segments(surfaces: &ContactSurfaces) -> impl Iterator<Item = Candidate> + Clone {
+    (0..surfaces.segments.len()).map(|segment| Candidate {
+        segment,
+        reach: f64::INFINITY,
+    })
+}
+
+/// The segment that a slave node pairs with in the configuration of displacements `u`, if any of
+/// the candidates, which come with increasing segments.
 ///
 /// It is the closest segment that the node projects into, not deeper than the segment's length. In
 /// the wedge of a vertex, where the node projects into neither neighbour, it is the one with the
@@ -17,12 +35,14 @@ pub fn find_segment(
     x: &[[f64; 2]],
     u: &[f64],
     slave: usize,
+    candidates: impl Iterator<Item = Candidate>,
 ) -> Option<usize> {
     let s = position(x, u, slave);
     let on = |[a, b]: [usize; 2]| project(s, position(x, u, a), position(x, u, b));
     let mut closest: Option<(f64, usize)> = None;
     let mut wedge: Option<(f64, usize)> = None;
-    for (i, &segment) in surfaces.segments.iter().enumerate() {
+    for Candidate { segment: i, reach } in candidates {
+        let segment = surfaces.segments[i];
         if segment.contains(&slave) {
             continue;
         }
@@ -31,7 +51,7 @@ pub fn find_segment(
             continue;
         }
         if (-ROUND_OFF..=1.0 + ROUND_OFF).contains(&p.xi) {
-            if closest.is_none_or(|(distance, _)| p.gap.abs() < distance) {
+            if p.gap.abs() <= reach && closest.is_none_or(|(d, _)| p.gap.abs() < d) {
                 closest = Some((p.gap.abs(), i));
             }
         } else if p.xi > 1.0
@@ -40,7 +60,8 @@ pub fn find_segment(
         {
             let q = on(surfaces.segments[j]);
             let distance = beyond(&p);
-            if q.xi < 0.0 && q.gap >= -q.length && wedge.is_none_or(|(d, _)| distance < d) {
+            let is_wedge = q.xi < 0.0 && q.gap >= -q.length && distance <= reach;
+            if is_wedge && wedge.is_none_or(|(d, _)| distance < d) {
                 let outside = p.gap.max(q.gap) > 0.0;
                 wedge = Some((distance, if (p.gap >= q.gap) == outside { i } else { j }));
             }
@@ -67,27 +88,25 @@ pub struct Pairing {
     pub settled: bool,
 }
 
-/// The pairs of all contacts in the configuration of displacements `u`.
+/// The pairs of all contacts in the configuration of displacements `u`, which the search covers.
 ///
 /// A node that has just left its segment by a little and finds no other keeps it: whether it has
 /// slid off is decided by the end of the increment, not by one of its passes.
-pub fn find_pairs(
-    contacts: &[ContactSurfaces],
-    x: &[[f64; 2]],
-    u: &[f64],
-    before: &Pairing,
-) -> Vec<PairSite> {
-    let slaves = contacts
-        .iter()
-        .flat_map(|c| c.slaves.iter().map(move |&slave| (c, slave)));
-    let site = |(slot, (contact, slave)): (usize, (&ContactSurfaces, usize))| {
+pub fn find_pairs(search: &Search, u: &[f64], before: &Pairing) -> Vec<PairSite> {
+    let x = search.coordinates();
+    let slaves = search.territories().iter().flat_map(|territory| {
+        let slaves = territory.surfaces().slaves.iter().enumerate();
+        slaves.map(move |(k, &slave)| (territory, k, slave))
+    });
+    let site = |(slot, (territory, k, slave)): (usize, (&Territory, usize, usize))| {
+        let contact = territory.surfaces();
         let near = |&i: &usize| {
             let [a, b] = contact.segments[i];
             let p = project(position(x, u, slave), position(x, u, a), position(x, u, b));
             (-KEPT..=1.0 + KEPT).contains(&p.xi)
         };
         let kept = || before.segments.get(slot).copied().flatten().filter(near);
-        let found = || find_segment(contact, x, u, slave);
+        let found = || find_segment(contact, x, u, slave, territory.candidates(k));
         let segment = if before.settled {
             kept().or_else(found)?
         } else {
@@ -126,7 +145,8 @@ pub fn initial_gaps(model: &Model) -> Vec<Vec<InitialGap>> {
     let x = &model.mesh.coordinates;
     let u = vec![0.0; model.mesh.dof_count()];
     let gap_of = |surfaces: &ContactSurfaces, slave: usize| {
-        let [a, b] = surfaces.segments[find_segment(surfaces, x, &u, slave)?];
+        let found = find_segment(surfaces, x, &u, slave, all_segments(surfaces))?;
+        let [a, b] = surfaces.segments[found];
         let p = project(x[slave], x[a], x[b]);
         Some(InitialGap {
             slave,
@@ -165,7 +185,7 @@ mod tests {
     fn found(top: f64, s: [f64; 2]) -> Option<usize> {
         let (surfaces, mut x) = roof(top);
         x[0] = s;
-        find_segment(&surfaces, &x, &[0.0; 8], 0)
+        find_segment(&surfaces, &x, &[0.0; 8], 0, all_segments(&surfaces))
     }
 
     #[test]
@@ -195,6 +215,7 @@ mod tests {
     #[test]
     fn a_node_is_no_slave_of_its_own_segment() {
         let (surfaces, x) = roof(1.0);
-        assert_eq!(find_segment(&surfaces, &x, &[0.0; 8], 2), None);
+        let all = all_segments(&surfaces);
+        assert_eq!(find_segment(&surfaces, &x, &[0.0; 8], 2, all), None);
     }
 }

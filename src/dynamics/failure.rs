@@ -1,6 +1,7 @@
 use std::fmt;
 
 use super::PassReport;
+use crate::contact::Passage;
 use crate::elements::Inverted;
 use crate::lcp::{FrictionalLcp, LcpError};
 use crate::linear::LinearError;
@@ -24,6 +25,13 @@ pub enum Cause {
     },
     /// The factorisation or a solve with it failed.
     LinearSolver(String),
+    /// A node has gone into a body through a segment.
+    Crossed {
+        /// Slave node (index).
+        slave: usize,
+        /// Ends (indices) of the segment.
+        segment: [usize; 2],
+    },
     /// A complementarity problem was not solved.
     Lcp(Box<FailedLcp>),
     /// A quantity is not finite.
@@ -86,6 +94,7 @@ impl fmt::Display for Cause {
                 )
             }
             Cause::Indefinite { .. } => write!(f, "the effective matrix is not positive definite"),
+            Cause::Crossed { .. } => write!(f, "a node went through a segment"),
             Cause::LinearSolver(text) => write!(f, "the linear solver failed: {text}"),
             Cause::Lcp(failed) => match &failed.error {
                 LcpError::Ray { .. } => {
@@ -101,6 +110,12 @@ impl fmt::Display for Cause {
 impl From<LinearError> for Cause {
     fn from(error: LinearError) -> Self {
         Cause::LinearSolver(error.to_string())
+    }
+}
+
+impl From<Passage> for Cause {
+    fn from(Passage { slave, segment }: Passage) -> Self {
+        Cause::Crossed { slave, segment }
     }
 }
 

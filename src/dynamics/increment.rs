@@ -6,7 +6,7 @@ use super::mass::largest;
 use super::meter::Meter;
 use super::step_problem::{Equilibrium, Interval, StepProblem, difference, sum};
 use super::{Cause, PassReport, State, Worst};
-use crate::contact::{Pair, Pairing};
+use crate::contact::{Pair, Pairing, Search, Touch, find_passage};
 use crate::lcp::ContactState;
 use crate::linear::LinearError;
 use crate::model::Factorization;
@@ -43,6 +43,7 @@ pub(super) struct Failed {
 pub(super) struct Attempt<'a, 'm> {
     pub problem: &'a StepProblem<'m>,
     pub effective: &'a mut Effective,
+    pub search: &'a mut Search<'m>,
     pub start: &'a State,
     pub interval: Interval,
     pub meter: &'a mut Meter,
@@ -82,13 +83,16 @@ impl Attempt<'_, '_> {
         let mut state = contact.to_vec();
         let mut impulses = Impulses::new(contact);
         let mut pairing = Pairing::default();
+        self.search.start(&self.start.v, dt);
 
         for pass in 0..problem.settings.max_passes {
             // contact geometry of the iterate U^k
             let u = sum(u0, &d);
-            let pairs = self
-                .meter
-                .time(|t| &mut t.contact, || problem.pairs(u0, &u, &pairing));
+            let search = &mut *self.search;
+            let pairs = self.meter.time(
+                |t| &mut t.contact,
+                || problem.pairs(search, u0, &u, &pairing),
+            );
 
             // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi) for the pairs in contact
             let (effective, meter) = (&mut *self.effective, &mut *self.meter);
@@ -143,6 +147,7 @@ impl Attempt<'_, '_> {
             forces.remember(&mut state);
             let rest = impulses.rest(problem, &forces);
             if rest && scales.converged(&report) {
+                self.check_ways(&d, contact, &forces)?;
                 return self.finish(v0p, d, forces);
             }
             pairing = Pairing {
@@ -151,6 +156,32 @@ impl Attempt<'_, '_> {
             };
         }
         Err(Cause::NotConverged)
+    }
+
+    /// No node may have gone into a body on its way from U0 to U0 + d.
+    fn check_ways(
+        &mut self,
+        d: &[f64],
+        contact: &[ContactState],
+        forces: &ContactForces,
+    ) -> Result<(), Cause> {
+        let before = |state: &ContactState| Touch {
+            before: state.is_closed(),
+            now: None,
+        };
+        let mut touch: Vec<Touch> = contact.iter().map(before).collect();
+        for (k, pair) in forces.pairs.iter().enumerate() {
+            if forces.is_closed(k) {
+                touch[pair.slot].now = Some(pair.segment);
+            }
+        }
+        let (u0, search) = (&self.start.u, &mut *self.search);
+        let tolerance = self.problem.settings.tolerance * largest(d);
+        let passage = self.meter.time(
+            |t| &mut t.contact,
+            || find_passage(search, u0, &sum(u0, d), &touch, tolerance),
+        );
+        passage.map_or(Ok(()), |passage| Err(passage.into()))
     }
 
     /// theta2 K d_p, the force of the supports' motion in the predictor.

@@ -1,7 +1,7 @@
 use super::increment::Solved;
 use super::step_problem::{Equilibrium, Interval, StepProblem};
 use super::{ContactResultant, Landing, NodalResults, NodeStatus, State};
-use crate::contact::{Pair, project};
+use crate::contact::{Crossing, Direction, Motion, Pair, crossings, line_crossings, project};
 use crate::lcp::ContactState;
 
 /// Reactions, contact forces, gaps and status at the nodes.
@@ -93,7 +93,7 @@ fn contact_of_slots(problem: &StepProblem) -> Vec<usize> {
 }
 
 /// Pairs that carry force now and were open before: time and place from the second-order motion
-/// of the start (paper eq. 50).
+/// of the start (paper eq. 50), with the exact condition of meeting.
 pub(super) fn landings(
     problem: &StepProblem,
     start: &State,
@@ -109,69 +109,74 @@ pub(super) fn landings(
 }
 
 fn landing(problem: &StepProblem, start: &State, pair: &Pair, interval: Interval) -> Landing {
-    let at = |tau: f64| {
-        pair.nodes.map(|node| {
-            let x = problem.model.mesh.coordinates[node];
-            [0, 1].map(|i| {
-                let dof = 2 * node + i;
-                x[i] + start.u[dof] + (start.v[dof] + start.a[dof] * tau / 2.0) * tau
-            })
-        })
-    };
-    let [s, a, b] = at(0.0);
+    let motions = pair.nodes.map(|node| {
+        let of = |v: &[f64]| [v[2 * node], v[2 * node + 1]];
+        Motion {
+            position: problem.position(&start.u, node),
+            velocity: of(&start.v),
+            acceleration: of(&start.a),
+        }
+    });
+    let tau = impact_time(&motions, interval.dt);
+    let [s, a, b] = motions.map(|m| m.at(tau));
     let p = project(s, a, b);
-    // e_n.(w_s - (1 - xi) w_a - xi w_b)
-    let relative = |w: &[f64]| {
-        let [s, a, b] = pair.nodes;
-        (0..2)
-            .map(|i| {
-                let on_segment = (1.0 - p.xi) * w[2 * a + i] + p.xi * w[2 * b + i];
-                p.normal[i] * (w[2 * s + i] - on_segment)
-            })
-            .sum::<f64>()
-    };
-    let (rate, acceleration) = (relative(&start.v), relative(&start.a));
-    let tau = first_root(acceleration / 2.0, rate, p.gap, interval.dt);
-    let [s, a, b] = at(tau);
+    // -e_n.(v_s - (1 - xi) v_a - xi v_b)
+    let [s, a, b] = motions.map(|m| m.velocity_at(tau));
+    let relative = |i: usize| s[i] - (1.0 - p.xi) * a[i] - p.xi * b[i];
     Landing {
         time: interval.start.total + tau,
         slave: pair.nodes[0],
         segment: [pair.nodes[1], pair.nodes[2]],
-        xi: project(s, a, b).xi,
-        approach_speed: -(rate + acceleration * tau),
+        xi: p.xi,
+        approach_speed: -(p.normal[0] * relative(0) + p.normal[1] * relative(1)),
     }
 }
 
-/// Smallest root of a tau² + b tau + c in [0, dt]; 0 when c <= 0, dt when there is none.
-fn first_root(a: f64, b: f64, c: f64, dt: f64) -> f64 {
-    if c <= 0.0 {
+/// First time in [0, dt] at which the node meets the segment, or else its line, from outside; 0
+/// when it is not outside at the start, dt when it stays there.
+fn impact_time(motions: &[Motion; 3], dt: f64) -> f64 {
+    let [s, a, b] = motions.map(|m| m.position);
+    if project(s, a, b).gap <= 0.0 {
         return 0.0;
     }
-    let discriminant = b * b - 4.0 * a * c;
-    if discriminant < 0.0 {
-        return dt;
-    }
-    // 2c/(-b + sqrt) is the stable form of the smaller root when b < 0; when b >= 0 and a < 0 it
-    // is the only positive one.
-    let root = 2.0 * c / (-b + discriminant.sqrt());
-    if root > 0.0 { root.min(dt) } else { dt }
+    let first = |found: Vec<Crossing>| {
+        let from_outside = |c: &&Crossing| c.direction != Direction::Leaving;
+        found.iter().find(from_outside).map(|c| c.time)
+    };
+    first(crossings(motions, dt))
+        .or_else(|| first(line_crossings(motions, dt)))
+        .unwrap_or(dt)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::first_root;
+    use super::*;
+
+    /// Time at which a node thrown from the height `c`, y = a t² + b t + c, lands on a segment.
+    fn landing_time(a: f64, b: f64, c: f64, dt: f64) -> f64 {
+        let s = Motion {
+            position: [0.2, c],
+            velocity: [0.0, b],
+            acceleration: [0.0, 2.0 * a],
+        };
+        let rest = |x: f64| Motion {
+            position: [x, 0.0],
+            ..Motion::default()
+        };
+        impact_time(&[s, rest(1.0), rest(-1.0)], dt)
+    }
 
     #[test]
-    fn the_first_root_within_the_increment() {
-        assert_eq!(first_root(0.0, -2.0, 1.0, 1.0), 0.5);
-        assert_eq!(
-            first_root(1.0, -3.0, 2.0, 5.0),
-            1.0,
+    fn the_first_meeting_within_the_increment() {
+        let near = |time: f64, expected: f64| (time - expected).abs() < 1e-14;
+        assert!(near(landing_time(0.0, -2.0, 1.0, 1.0), 0.5));
+        assert!(
+            near(landing_time(1.0, -3.0, 2.0, 5.0), 1.0),
             "the smaller of 1 and 2"
         );
-        assert_eq!(first_root(-1.0, 1.0, 2.0, 5.0), 2.0, "falling back");
-        assert_eq!(first_root(1.0, 0.0, 1.0, 3.0), 3.0, "none");
-        assert_eq!(first_root(0.0, -1.0, 4.0, 3.0), 3.0, "later");
-        assert_eq!(first_root(0.0, -1.0, -1e-9, 3.0), 0.0, "already there");
+        assert!(near(landing_time(-1.0, 1.0, 2.0, 5.0), 2.0), "falling back");
+        assert_eq!(landing_time(1.0, 0.0, 1.0, 3.0), 3.0, "none");
+        assert_eq!(landing_time(0.0, -1.0, 4.0, 3.0), 3.0, "later");
+        assert_eq!(landing_time(0.0, -1.0, -1e-9, 3.0), 0.0, "already there");
     }
 }

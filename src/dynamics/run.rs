@@ -15,7 +15,7 @@ use super::{
     ContactResultant, Cutback, Failure, IncrementReport, NodalResults, NodeStatus, Observer,
     Outcome, RunSummary, SolverCounts, State,
 };
-use crate::contact::{ContactSurfaces, contact_surfaces};
+use crate::contact::{ContactSurfaces, Search, contact_surfaces};
 use crate::elements::Body;
 use crate::lcp::ContactState;
 use crate::model::{Increments, Model, Step};
@@ -47,6 +47,7 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
         body: &body,
         mass: &mass,
         contacts: &contacts,
+        search: Search::new(&contacts, &model.mesh.coordinates),
         state: State {
             u: vec![0.0; model.mesh.dof_count()],
             v: model.initial_velocity.clone(),
@@ -89,6 +90,7 @@ struct Runner<'m, 'o> {
     body: &'m Body,
     mass: &'m Mass,
     contacts: &'m [ContactSurfaces],
+    search: Search<'m>,
     state: State,
     contact: Vec<ContactState>,
     ledger: Ledger,
@@ -174,7 +176,7 @@ impl<'m> Runner<'m, '_> {
     /// One increment of the grid, in halves, quarters ... where it does not converge.
     fn grid_increment(
         &mut self,
-        problem: &StepProblem,
+        problem: &StepProblem<'m>,
         effective: &mut Effective,
         place: StepPlace,
         grid: Grid,
@@ -187,6 +189,7 @@ impl<'m> Runner<'m, '_> {
             let attempt = Attempt {
                 problem,
                 effective,
+                search: &mut self.search,
                 start: &self.state,
                 interval,
                 meter: &mut self.meter,

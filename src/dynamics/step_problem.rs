@@ -5,7 +5,7 @@ use super::mass::{Mass, largest};
 use super::scheme::Weights;
 use super::supports::Supports;
 use super::{Cause, State};
-use crate::contact::{ContactSurfaces, Pair, Pairing, find_pairs};
+use crate::contact::{ContactSurfaces, Pair, Pairing, Search, find_pairs};
 use crate::elements::Body;
 use crate::lcp::LcpMethod;
 use crate::model::{Model, Settings};
@@ -80,11 +80,11 @@ impl StepProblem<'_> {
     }
 
     /// Pairs between `u0` and the iterate `u`, `before` being those of the last pass.
-    pub fn pairs(&self, u0: &[f64], u: &[f64], before: &Pairing) -> Vec<Pair> {
+    pub fn pairs(&self, search: &mut Search, u0: &[f64], u: &[f64], before: &Pairing) -> Vec<Pair> {
         let x = &self.model.mesh.coordinates;
         let form = self.weights.row_form();
-        let sites = find_pairs(self.contacts, x, u, before);
-        sites
+        search.cover(u);
+        find_pairs(search, u, before)
             .into_iter()
             .map(|site| Pair::new(site, form, x, u0, u))
             .collect()

@@ -55,6 +55,16 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
             model.mesh.elements[element].label,
             point(centre(model, element, u)),
         )),
+        Cause::Crossed {
+            slave,
+            segment: [a, b],
+        } => Some(format!(
+            "node     {} at {} through the segment {}-{}",
+            model.mesh.node_labels[slave],
+            point(position(model, slave, u)),
+            model.mesh.node_labels[a],
+            model.mesh.node_labels[b],
+        )),
         Cause::Lcp(ref failed) => Some(pairs_line(failed, model)),
         Cause::Indefinite { node } => Some(format!(
             "node     {} at {}",

@@ -1,0 +1,55 @@
+//! Time of contact search against the number of segments.
+//!
+//! `cargo bench --bench search` measures a lattice of discs in contact with all others and with
+//! themselves: a search anew, the pairs found with lists that hold, and the search among all segments.
+
+#[path = "../tests/contact_support/mod.rs"]
+mod contact_support;
+
+use std::hint::black_box;
+use std::time::Duration;
+
+use contact_support::lattice;
+use criterion::{BenchmarkId, Criterion};
+use stickslip::contact::{Pairing, Search, all_segments, find_pairs, find_segment};
+
+fn main() {
+    let mut criterion = Criterion::default().configure_from_args();
+    let mut group = criterion.benchmark_group("search");
+    group
+        .sample_size(10)
+        .measurement_time(Duration::from_secs(2));
+    for n in [100, 1_000, 10_000, 100_000] {
+        let (surfaces, x) = lattice(n);
+        let contacts = [surfaces];
+        let u = vec![0.0; 2 * x.len()];
+        group.bench_function(BenchmarkId::new("anew", n), |bencher| {
+            bencher.iter(|| {
+                let mut search = Search::new(&contacts, &x);
+                search.cover(black_box(&u));
+                search.searches()
+            });
+        });
+        let mut search = Search::new(&contacts, &x);
+        search.cover(&u);
+        let before = Pairing::default();
+        group.bench_function(BenchmarkId::new("pairs", n), |bencher| {
+            bencher.iter(|| {
+                search.cover(black_box(&u));
+                find_pairs(&search, &u, &before).len()
+            });
+        });
+        if n <= 1_000 {
+            group.bench_function(BenchmarkId::new("all_segments", n), |bencher| {
+                let [surfaces] = &contacts;
+                let find = |s: &usize| {
+                    let all = all_segments(surfaces);
+                    find_segment(surfaces, &x, black_box(&u), *s, all)
+                };
+                bencher.iter(|| surfaces.slaves.iter().filter_map(find).count());
+            });
+        }
+    }
+    group.finish();
+    criterion.final_summary();
+}

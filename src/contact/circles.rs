@@ -1,0 +1,178 @@
+/// Members of the groups that are not split further.
+const GROUP: usize = 4;
+/// Growth that covers the round-off of distances.
+const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
+
+/// A territory: all points within `radius` of `centre`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Circle {
+    /// Centre.
+    pub centre: [f64; 2],
+    /// Radius (length).
+    pub radius: f64,
+}
+
+impl Circle {
+    /// Whether the two have a point in common: |c1 - c2| <= r1 + r2.
+    fn overlaps(&self, other: &Circle) -> bool {
+        let [x, y] = [0, 1].map(|i| self.centre[i] - other.centre[i]);
+        let reach = (self.radius + other.radius) * (1.0 + ROUND_OFF);
+        x * x + y * y <= reach * reach
+    }
+
+    /// A circle about the middle of some circles that holds them all.
+    fn around(circles: impl Iterator<Item = Circle> + Clone) -> Circle {
+        let extent = |i: usize| {
+            let bounds = |(low, high): (f64, f64), c: Circle| {
+                let [below, above] = [c.centre[i] - c.radius, c.centre[i] + c.radius];
+                (low.min(below), high.max(above))
+            };
+            circles
+                .clone()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), bounds)
+        };
+        let centre = [0, 1].map(|i| {
+            let (low, high) = extent(i);
+            low + (high - low) / 2.0
+        });
+        let farthest = |radius: f64, c: Circle| {
+            let [x, y] = [0, 1].map(|i| c.centre[i] - centre[i]);
+            radius.max((x * x + y * y).sqrt() + c.radius)
+        };
+        Circle {
+            centre,
+            radius: circles.fold(0.0, farthest) * (1.0 + ROUND_OFF),
+        }
+    }
+}
+
+/// A hierarchy of circles: all members, halves of them, quarters ... down to small groups.
+///
+/// Halves are split at the median of the centres along their longer extent, ties by index, so that
+/// the hierarchy depends on nothing but the circles.
+#[derive(Debug, Default)]
+pub(super) struct CircleTree {
+    members: Vec<Circle>,
+    /// Indices of the members; every group is a range of it.
+    order: Vec<u32>,
+    /// Circle and range of group 1, the whole, and of the halves 2k and 2k + 1 of every group k.
+    groups: Vec<(Circle, [usize; 2])>,
+}
+
+impl CircleTree {
+    /// The hierarchy of some circles.
+    pub fn new(members: Vec<Circle>) -> Self {
+        let last_level = members.len().div_ceil(GROUP).next_power_of_two();
+        let mut tree = CircleTree {
+            order: (0..members.len() as u32).collect(),
+            groups: vec![(Circle::default(), [0, 0]); 2 * last_level],
+            members,
+        };
+        if !tree.members.is_empty() {
+            tree.split(1, 0, tree.members.len());
+        }
+        tree
+    }
+
+    fn split(&mut self, group: usize, from: usize, to: usize) {
+        let is_smallest = self.is_smallest(group);
+        let CircleTree {
+            members,
+            order,
+            groups,
+        } = self;
+        let range = &mut order[from..to];
+        let circle = Circle::around(range.iter().map(|&i| members[i as usize]));
+        groups[group] = (circle, [from, to]);
+        if is_smallest {
+            return;
+        }
+        let spread = |axis: usize| {
+            let centres = range.iter().map(|&i| members[i as usize].centre[axis]);
+            let (low, high) = centres.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), c| {
+                (l.min(c), h.max(c))
+            });
+            high - low
+        };
+        let axis = usize::from(spread(1) > spread(0));
+        let along = |i: u32| members[i as usize].centre[axis];
+        let middle = from + (to - from) / 2;
+        range.select_nth_unstable_by(middle - from, |&i, &j| {
+            along(i).total_cmp(&along(j)).then(i.cmp(&j))
+        });
+        self.split(2 * group, from, middle);
+        self.split(2 * group + 1, middle, to);
+    }
+
+    fn is_smallest(&self, group: usize) -> bool {
+        2 * group >= self.groups.len()
+    }
+
+    fn members_of(&self, group: usize) -> impl Iterator<Item = (u32, &Circle)> + Clone {
+        let [from, to] = self.groups[group].1;
+        self.order[from..to]
+            .iter()
+            .map(|&i| (i, &self.members[i as usize]))
+    }
+
+    /// All overlapping pairs of a member of this hierarchy and one of the other; two groups are
+    /// looked into only when their circles overlap.
+    pub fn overlaps(&self, other: &CircleTree) -> Vec<[u32; 2]> {
+        let mut found = Vec::new();
+        if self.members.is_empty() || other.members.is_empty() {
+            return found;
+        }
+        let mut open = vec![[1, 1]];
+        while let Some([k, l]) = open.pop() {
+            let (circle, other_circle) = (&self.groups[k].0, &other.groups[l].0);
+            if !circle.overlaps(other_circle) {
+                continue;
+            }
+            match (self.is_smallest(k), other.is_smallest(l)) {
+                (true, true) => {
+                    for (i, circle) in self.members_of(k) {
+                        let near = other.members_of(l).filter(|(_, c)| circle.overlaps(c));
+                        found.extend(near.map(|(j, _)| [i, j]));
+                    }
+                }
+                (true, false) => open.extend([[k, 2 * l], [k, 2 * l + 1]]),
+                (false, true) => open.extend([[2 * k, l], [2 * k + 1, l]]),
+                // the larger of the two is split
+                (false, false) if circle.radius >= other_circle.radius => {
+                    open.extend([[2 * k, l], [2 * k + 1, l]]);
+                }
+                (false, false) => open.extend([[k, 2 * l], [k, 2 * l + 1]]),
+            }
+        }
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn circles(most: usize) -> impl Strategy<Value = Vec<Circle>> {
+        let circle = ((-10.0..10.0), (-10.0..10.0), 0.0..1.5).prop_map(|(x, y, radius)| Circle {
+            centre: [x, y],
+            radius,
+        });
+        prop::collection::vec(circle, 0..most)
+    }
+
+    proptest! {
+        #[test]
+        fn the_hierarchy_finds_all_overlaps(a in circles(60), b in circles(200)) {
+            let mut expected = Vec::new();
+            for (i, p) in a.iter().enumerate() {
+                let near = (0..b.len()).filter(|&j| p.overlaps(&b[j]));
+                expected.extend(near.map(|j| [i as u32, j as u32]));
+            }
+            let mut found = CircleTree::new(a).overlaps(&CircleTree::new(b));
+            found.sort_unstable();
+            prop_assert_eq!(found, expected);
+        }
+    }
+}

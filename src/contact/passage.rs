@@ -1,0 +1,360 @@
+use super::crossing::{Crossing, Direction, Motion, crossings};
+use super::geometry::{Projection, position, project};
+use super::{ContactSurfaces, Search};
+
+/// Depth (in segment lengths) that is round-off.
+const ROUND_OFF: f64 = 1e-9;
+/// Depth (in segment lengths) to which a free node may cut a corner on its way. The halves of an
+/// increment need not hit upon a node inside when it is less.
+const CLIP: f64 = 0.01;
+/// Depth (in segment lengths) at which a node that lands beside a vertex may end behind the line
+/// of the segment it came through.
+const CORNER: f64 = 0.1;
+/// Distance (in segment lengths) from the end of a segment that is no distance.
+const VERTEX: f64 = 1e-6;
+
+/// Contact of a slave node in an increment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Touch {
+    /// Whether it carried a force before.
+    pub before: bool,
+    /// Segment at which it carries a force at the end.
+    pub now: Option<usize>,
+}
+
+/// A slave node that went into a body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Passage {
+    /// Slave node.
+    pub slave: usize,
+    /// Ends of the segment it went through.
+    pub segment: [usize; 2],
+}
+
+/// A slave node that goes into a body on the straight way from the displacements `u0` to `u1`, if
+/// there is one; `touch` holds the contact of every slot, `tolerance` is a depth that does not count
+/// (length).
+///
+/// To go in is allowed for nodes that are held by the segment or come out again in contact: a node
+/// that slides round a corner cuts it, for its way is straight.
+pub fn find_passage(
+    search: &mut Search,
+    u0: &[f64],
+    u1: &[f64],
+    touch: &[Touch],
+    tolerance: f64,
+) -> Option<Passage> {
+    search.cover_way(u0, u1);
+    let x = search.coordinates();
+    let mut slot = 0;
+    let mut events = Vec::new();
+    for territory in search.territories() {
+        let contact = territory.surfaces();
+        for (k, &slave) in contact.slaves.iter().enumerate() {
+            let way = Way {
+                contact,
+                x,
+                u: [u0, u1],
+                slave,
+                touch: touch[slot],
+                tolerance,
+            };
+            slot += 1;
+            events.clear();
+            for candidate in territory.candidates(k) {
+                let found = crossings(&way.motions(candidate.segment), 1.0);
+                events.extend(found.into_iter().map(|c| (candidate.segment, c)));
+            }
+            if let Some(segment) = way.passage(&mut events) {
+                let segment = contact.segments[segment];
+                return Some(Passage { slave, segment });
+            }
+        }
+    }
+    None
+}
+
+/// The way of one slave node.
+struct Way<'a> {
+    contact: &'a ContactSurfaces,
+    x: &'a [[f64; 2]],
+    u: [&'a [f64]; 2],
+    slave: usize,
+    touch: Touch,
+    tolerance: f64,
+}
+
+impl Way<'_> {
+    fn motions(&self, segment: usize) -> [Motion; 3] {
+        let [a, b] = self.contact.segments[segment];
+        [self.slave, a, b].map(|node| {
+            let [from, to] = self.u.map(|u| position(self.x, u, node));
+            Motion::straight(from, to)
+        })
+    }
+
+    /// Place relative to a segment at a part of the way.
+    fn place(&self, segment: usize, part: f64) -> Projection {
+        let [s, a, b] = self.motions(segment).map(|m| m.at(part));
+        project(s, a, b)
+    }
+
+    /// The segment through which the node goes in without a reason.
+    fn passage(&self, events: &mut [(usize, Crossing)]) -> Option<usize> {
+        events.sort_by(|(_, c), (_, d)| c.time.total_cmp(&d.time));
+        for (n, (segment, entering)) in events.iter().enumerate() {
+            if entering.direction != Direction::Entering {
+                continue;
+            }
+            let later = events[n..].iter();
+            let leaving = later
+                .clone()
+                .find(|(_, c)| c.direction == Direction::Leaving);
+            let is_harmless = match leaving {
+                Some((exit, leaving)) => {
+                    self.may_leave((*segment, entering.time), (*exit, leaving.time))
+                }
+                None => self.may_stay(*segment, entering.xi),
+            };
+            if !is_harmless {
+                return Some(*segment);
+            }
+        }
+        None
+    }
+
+    /// Whether a node that enters through one segment may leave through another.
+    fn may_leave(&self, (i, entered): (usize, f64), (j, left): (usize, f64)) -> bool {
+        let middle = entered + (left - entered) / 2.0;
+        let (p, q) = (self.place(i, middle), self.place(j, middle));
+        let depth = (-p.gap).min(-q.gap);
+        let slides = || {
+            let is_held = |k| self.are_near(i, k);
+            self.touch.before || self.touch.now.is_some_and(is_held)
+        };
+        self.is_round_off(depth, p.length)
+            || (self.are_near(i, j) && (depth <= CLIP * p.length || slides()))
+    }
+
+    /// Whether a node that enters through a segment and does not leave is not inside for that.
+    fn may_stay(&self, i: usize, xi: f64) -> bool {
+        let p = self.place(i, 1.0);
+        if self.is_round_off(-p.gap, p.length)
+            || self.touch.now == Some(i)
+            || self.is_beside(i, xi, &p)
+        {
+            return true;
+        }
+        match self.touch.now {
+            Some(j) => self.are_near(i, j) && (self.touch.before || -p.gap <= CORNER * p.length),
+            None => self.touch.before && self.has_slid_off(i, &p),
+        }
+    }
+
+    fn is_round_off(&self, depth: f64, length: f64) -> bool {
+        depth <= self.tolerance + ROUND_OFF * length
+    }
+
+    /// Whether the node has met a segment at its very end and is outside the vertex there: behind its
+    /// line, but before that of the neighbour.
+    fn is_beside(&self, i: usize, xi: f64, p: &Projection) -> bool {
+        let is_end_b = xi > 0.5;
+        if xi.min(1.0 - xi) > VERTEX {
+            return false;
+        }
+        let neighbour = if is_end_b {
+            self.contact.next[i]
+        } else {
+            self.previous(i)
+        };
+        let Some(j) = neighbour else {
+            return !(0.0..=1.0).contains(&p.xi);
+        };
+        let q = self.place(j, 1.0);
+        let [e, f] = if is_end_b {
+            [p.tangent, q.tangent]
+        } else {
+            [q.tangent, p.tangent]
+        };
+        let is_convex = e[0] * f[1] - e[1] * f[0] > 0.0;
+        is_convex && self.is_round_off(-q.gap, q.length)
+    }
+
+    /// Whether the node has slid off the end of a surface that is not closed.
+    fn has_slid_off(&self, i: usize, p: &Projection) -> bool {
+        let next = |k: usize| self.contact.next[k];
+        let previous = |k: usize| self.previous(k);
+        (p.xi > 1.0 && self.walk(i, &next, None)) || (p.xi < 0.0 && self.walk(i, &previous, None))
+    }
+
+    fn previous(&self, segment: usize) -> Option<usize> {
+        let next = &self.contact.next;
+        next.iter().position(|next| *next == Some(segment))
+    }
+
+    /// Whether two segments follow each other, or do so with others between them that are not longer
+    /// than twice the node's way: the other side of a thin body is far in this sense.
+    fn are_near(&self, i: usize, j: usize) -> bool {
+        let step = |k: usize| self.contact.next[k];
+        i == j || self.walk(i, &step, Some(j)) || self.walk(j, &step, Some(i))
+    }
+
+    /// Whether steps from a segment lead to another, or to the end of the surface, over segments that
+    /// are not longer than twice the node's way.
+    fn walk(&self, from: usize, step: &dyn Fn(usize) -> Option<usize>, to: Option<usize>) -> bool {
+        let [start, end] = [0.0, 1.0].map(|part| {
+            let [s, a, _] = self.motions(from).map(|m| m.at(part));
+            [s[0] - a[0], s[1] - a[1]]
+        });
+        let way = (end[0] - start[0]).hypot(end[1] - start[1]);
+        let (mut segment, mut between) = (from, 0.0);
+        loop {
+            let following = step(segment);
+            match following {
+                _ if following == to => return true,
+                Some(k) if k != from => segment = k,
+                _ => return false,
+            }
+            between += self.place(segment, 1.0).length;
+            if between > 2.0 * way {
+                return false;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A plate from (0, 0) to (8, 0.5) with segments of length 1 along and 0.5 across, its body on
+    /// the left of the way; node 0 is the slave.
+    fn plate(closed: bool) -> (ContactSurfaces, Vec<[f64; 2]>) {
+        let mut x = vec![[0.0, 0.0]];
+        x.extend((0..=8).map(|i| [f64::from(i), 0.0]));
+        x.extend((0..=8).rev().map(|i| [f64::from(i), 0.5]));
+        let count = if closed { 18 } else { 17 };
+        let segments: Vec<[usize; 2]> = (0..count).map(|i| [i + 1, (i + 1) % 18 + 1]).collect();
+        let next = (0..count).map(|i| match (i + 1 < count, closed) {
+            (true, _) => Some(i + 1),
+            (false, true) => Some(0),
+            (false, false) => None,
+        });
+        let surfaces = ContactSurfaces {
+            slaves: vec![0],
+            next: next.collect(),
+            segments,
+            friction: 0.0,
+        };
+        (surfaces, x)
+    }
+
+    fn passes_of(closed: bool, from: [f64; 2], to: [f64; 2], touch: Touch) -> Option<[usize; 2]> {
+        let (surfaces, mut x) = plate(closed);
+        x[0] = from;
+        let u0 = vec![0.0; 2 * x.len()];
+        let mut u1 = u0.clone();
+        (u1[0], u1[1]) = (to[0] - from[0], to[1] - from[1]);
+        let contacts = [surfaces];
+        let mut search = Search::new(&contacts, &x);
+        search.cover(&u0);
+        find_passage(&mut search, &u0, &u1, &[touch], 0.0).map(|passage| passage.segment)
+    }
+
+    fn passes(from: [f64; 2], to: [f64; 2], touch: Touch) -> Option<[usize; 2]> {
+        passes_of(true, from, to, touch)
+    }
+
+    const FREE: Touch = Touch {
+        before: false,
+        now: None,
+    };
+    /// The segments from (5, 0.5) to (4, 0.5) on top and from (4, 0) to (5, 0) below.
+    const TOP: [usize; 2] = [13, 14];
+    const BOTTOM: [usize; 2] = [5, 6];
+
+    fn held(before: bool, now: usize) -> Touch {
+        let now = Some(now);
+        Touch { before, now }
+    }
+
+    #[test]
+    fn a_free_node_may_not_end_inside_nor_go_through() {
+        assert_eq!(passes([4.5, 2.0], [4.5, 0.6], FREE), None);
+        assert_eq!(passes([4.5, 2.0], [4.5, 0.4], FREE), Some(TOP));
+        assert_eq!(passes([4.5, 2.0], [4.5, -70.0], FREE), Some(TOP));
+        assert_eq!(passes([4.5, -20.0], [4.5, 90.0], FREE), Some(BOTTOM));
+        assert_eq!(passes([4.5, 0.4], [4.5, 0.1], FREE), None, "was inside");
+        assert_eq!(
+            passes([4.5, 2.0], [4.5, 0.5 - 1e-12], FREE),
+            None,
+            "round-off"
+        );
+    }
+
+    #[test]
+    fn a_node_that_the_other_side_holds_has_gone_through() {
+        let (top, bottom) = (12, 4);
+        assert_eq!(
+            passes([4.5, 2.0], [4.5, 0.0], held(false, bottom)),
+            Some(TOP)
+        );
+        assert_eq!(
+            passes([4.5, 0.5], [4.5, 0.0], held(true, bottom)),
+            Some(TOP)
+        );
+        assert_eq!(
+            passes([4.5, 2.0], [4.5, 0.5 - 1e-6], held(false, top)),
+            None
+        );
+    }
+
+    #[test]
+    fn corners_may_be_cut_in_contact() {
+        // The right side runs from (8, 0) to (8, 0.5), segment 8; the last one on top is 9.
+        let (on_top, on_side) = ([7.9, 0.5], [8.0, 0.4]);
+        assert_eq!(passes(on_top, on_side, held(true, 8)), None, "slides round");
+        assert_eq!(passes(on_side, on_top, held(true, 9)), None);
+        let beyond = [8.1, 0.3];
+        let leaves = Touch {
+            before: true,
+            now: None,
+        };
+        assert_eq!(passes(on_top, beyond, leaves), None, "slides off");
+        assert!(
+            passes([7.7, 0.6], [8.1, 0.2], FREE).is_some(),
+            "flies through"
+        );
+        assert_eq!(passes([7.985, 0.51], [8.015, 0.48], FREE), None, "clips");
+        let lands = held(false, 8);
+        assert_eq!(passes([7.95, 0.55], [8.0, 0.48], lands), None);
+    }
+
+    #[test]
+    fn a_node_on_a_vertex_may_go_anywhere_outside() {
+        let vertex = [8.0, 0.5 - 1e-16];
+        assert_eq!(passes(vertex, [8.1, 0.4], FREE), None);
+        assert_eq!(passes(vertex, [7.9, 0.6], FREE), None);
+        assert_eq!(passes(vertex, [8.3, 0.6], FREE), None);
+        assert!(passes(vertex, [7.9, 0.3], FREE).is_some());
+    }
+
+    #[test]
+    fn a_node_may_slide_off_the_end_of_an_open_surface() {
+        // Without the left side the top ends at (0, 0.5).
+        let slides = Touch {
+            before: true,
+            now: None,
+        };
+        let off = |touch| passes_of(false, [0.1, 0.5], [-0.1, 0.3], touch);
+        assert_eq!(off(slides), None);
+        assert!(off(FREE).is_some());
+        assert!(passes_of(false, [4.5, 0.5], [4.4, 0.3], slides).is_some());
+    }
+
+    #[test]
+    fn a_node_may_slide_over_several_segments() {
+        let slides = held(true, 9);
+        assert_eq!(passes([3.5, 0.5], [7.4, 0.5 - 1e-15], slides), None);
+    }
+}

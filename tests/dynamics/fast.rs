@@ -1,0 +1,153 @@
+//! Fast bodies and thin ones: nothing goes through anything.
+//!
+//! ```text
+//!          +---+
+//!          |   |  2 x 2 Q4 of 0.25
+//!          +---+
+//!            |  many elements per increment
+//!            v
+//!   |==================| plate, 6 long, 24 x 1 Q4, ends fixed
+//! ```
+
+use crate::blocks::{Block, Keep, add_block, add_contact, fixed, model, run_to_end, step, throw};
+use stickslip::dynamics::{Cause, Cutback};
+use stickslip::model::{BodyForce, Load, Model, Scheme, Settings, Variation};
+
+/// Length of an element.
+const SIZE: f64 = 0.25;
+
+const PAPER: Scheme = Scheme::Ss22 {
+    theta1: 1.0,
+    theta2: 1.0,
+};
+
+/// A block, turned by `angle`, above a plate of the given thickness.
+struct Bodies {
+    model: Model,
+    plate: Block,
+    block: Block,
+}
+
+impl Bodies {
+    fn new(thickness: f64, height: f64, angle: f64) -> Self {
+        let mut model = model(4e5, 0.2, 1.0);
+        let plate = add_block(&mut model, [0.0, 0.0], [6.0, thickness], (24, 1), 0.0);
+        let corner = [2.7, thickness + height];
+        let block = add_block(&mut model, corner, [0.5, 0.5], (2, 2), angle);
+        let around = |of: &Block| -> Vec<_> { (0..4).flat_map(|side| of.faces(side)).collect() };
+        let (on_block, on_plate) = (around(&block), around(&plate));
+        // each node is kept out of the other body
+        add_contact(&mut model, on_block.clone(), on_plate.clone(), 0.1);
+        add_contact(&mut model, on_plate, on_block, 0.1);
+        Bodies {
+            model,
+            plate,
+            block,
+        }
+    }
+
+    fn step(&mut self, scheme: Scheme, dt: f64, count: usize) {
+        let ends = [0, 24].map(|i| [self.plate.node(i, 0), self.plate.node(i, 1)]);
+        let dofs = ends.concat().into_iter().flat_map(|n| [2 * n, 2 * n + 1]);
+        let settings = Settings {
+            scheme,
+            ..Settings::default()
+        };
+        self.model.steps = vec![step(dt, count, settings, dofs.map(fixed).collect())];
+    }
+
+    /// Depth of the deepest node of the block below the upper side of the plate.
+    fn depth(&self, keep: &Keep) -> f64 {
+        let in_report = |u: &[f64]| {
+            let at = |n: usize| {
+                let x = self.model.mesh.coordinates[n];
+                [x[0] + u[2 * n], x[1] + u[2 * n + 1]]
+            };
+            let below = |node: usize| {
+                let s = at(node);
+                let on_face = |i: usize| {
+                    let [p, q] = [i, i + 1].map(|i| at(self.plate.node(i, 1)));
+                    let part = (s[0] - p[0]) / (q[0] - p[0]);
+                    let is_above = (0.0..=1.0).contains(&part);
+                    is_above.then(|| p[1] + part * (q[1] - p[1]) - s[1])
+                };
+                (0..24).find_map(on_face).expect("above the plate")
+            };
+            self.block.nodes().map(below).fold(0.0, f64::max)
+        };
+        let reports = keep.reports.iter().map(|r| in_report(&r.state.u));
+        reports.fold(0.0, f64::max)
+    }
+}
+
+fn crossings(keep: &Keep) -> usize {
+    let crossed = |c: &&Cutback| matches!(c.failure.cause, Cause::Crossed { .. });
+    keep.cutbacks.iter().filter(crossed).count()
+}
+
+fn touch(keep: &Keep) -> bool {
+    let closed = |c: &stickslip::dynamics::ContactResultant| c.closed > 0;
+    keep.reports.iter().any(|r| r.contacts.iter().any(closed))
+}
+
+#[test]
+fn a_fast_bullet_does_not_go_through_a_thin_plate() {
+    let speed = 12.0;
+    for scheme in [PAPER, Scheme::EnergyMomentum] {
+        for elements in [0.5, 3.3, 7.0, 11.3] {
+            for angle in [0.0, 0.3, 0.8] {
+                let mut bodies = Bodies::new(0.25, 2.85, angle);
+                let Bodies { model, block, .. } = &mut bodies;
+                throw(model, block, [0.0, -speed], 0.0, [0.0; 2]);
+                let dt = elements * SIZE / speed;
+                bodies.step(scheme, dt, (8.0 / (speed * dt)).ceil() as usize);
+                let (keep, summary) = run_to_end(&bodies.model);
+                let depth = bodies.depth(&keep);
+                println!(
+                    "{scheme:?} {elements} {angle}: depth {:.1e} elements, {} increments, {} \
+                     cutbacks, {} of them for crossings",
+                    depth / SIZE,
+                    summary.increments,
+                    summary.cutbacks,
+                    crossings(&keep),
+                );
+                assert!(touch(&keep) && depth < 1e-9 * SIZE, "{depth:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_body_that_gathers_speed_in_an_increment_does_not_go_through_a_thin_plate() {
+    let (thickness, dt) = (0.05, 0.25);
+    for scheme in [PAPER, Scheme::EnergyMomentum] {
+        for elements in [12.0, 20.0] {
+            // at rest 9 elements above the plate, it goes g dt²/2 in the first increment
+            let mut bodies = Bodies::new(thickness, 9.0 * SIZE, 0.3);
+            bodies.step(scheme, dt, 2);
+            let first = bodies.block.first_element;
+            let pull = |element| Load {
+                at: BodyForce {
+                    element,
+                    direction: [0.0, -1.0],
+                    per_mass: true,
+                },
+                magnitude: 2.0 * elements * SIZE / (dt * dt),
+                variation: Variation::Constant,
+            };
+            bodies.model.steps[0].body_forces = (first..first + 4).map(pull).collect();
+            let (keep, summary) = run_to_end(&bodies.model);
+            let depth = bodies.depth(&keep);
+            println!(
+                "{scheme:?} {elements}: depth {:.1e} elements, {} increments, {} cutbacks, {} of \
+                 them for crossings",
+                depth / SIZE,
+                summary.increments,
+                summary.cutbacks,
+                crossings(&keep),
+            );
+            assert!(crossings(&keep) > 0);
+            assert!(touch(&keep) && depth < 1e-9 * SIZE, "{depth:e}");
+        }
+    }
+}
