@@ -146,8 +146,23 @@ impl Way<'_> {
             return true;
         }
         match self.touch.now {
-            Some(j) => self.are_near(i, j) && (self.touch.before || -p.gap <= CORNER * p.length),
+            Some(j) => {
+                let is_shallow = -p.gap <= CORNER * p.length;
+                self.are_near(i, j)
+                    && (is_shallow || (self.touch.before && self.is_round(i, j, &p)))
+            }
             None => self.touch.before && self.has_slid_off(i, &p),
+        }
+    }
+
+    /// Whether the body bulges between two segments.
+    fn is_round(&self, i: usize, j: usize, p: &Projection) -> bool {
+        let q = self.place(j, 1.0);
+        let next = |k: usize| self.contact.next[k];
+        if self.walk(i, &next, Some(j)) {
+            turns_left(p, &q)
+        } else {
+            turns_left(&q, p)
         }
     }
 
@@ -171,12 +186,11 @@ impl Way<'_> {
             return !(0.0..=1.0).contains(&p.xi);
         };
         let q = self.place(j, 1.0);
-        let [e, f] = if is_end_b {
-            [p.tangent, q.tangent]
+        let is_convex = if is_end_b {
+            turns_left(p, &q)
         } else {
-            [q.tangent, p.tangent]
+            turns_left(&q, p)
         };
-        let is_convex = e[0] * f[1] - e[1] * f[0] > 0.0;
         is_convex && self.is_round_off(-q.gap, q.length)
     }
 
@@ -221,6 +235,12 @@ impl Way<'_> {
             }
         }
     }
+}
+
+/// Whether the way along one segment turns left into another: round a convex vertex.
+fn turns_left(first: &Projection, second: &Projection) -> bool {
+    let [e, f] = [first.tangent, second.tangent];
+    e[0] * f[1] - e[1] * f[0] > 0.0
 }
 
 #[cfg(test)]

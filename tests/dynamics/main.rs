@@ -7,4 +7,5 @@ mod friction;
 mod invariants;
 mod lcp_methods;
 mod loads;
+mod many;
 mod patch;
