@@ -160,6 +160,16 @@ fn to_an_unsolved_lcp(_: &Model, observer: &mut dyn Observer) -> Result<RunSumma
     Ok(summary(Outcome::Stopped(Box::new(failure)), 0))
 }
 
+fn to_a_passage(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+    observer.increment(&report(0)).map_err(RunError::Observer)?;
+    let mut failure = failure();
+    failure.cause = Cause::Crossed {
+        slave: 3,
+        segment: [0, 1],
+    };
+    Ok(summary(Outcome::Stopped(Box::new(failure)), 0))
+}
+
 fn one_contact() -> FrictionalLcp {
     FrictionalLcp {
         q: DMatrix::identity(2, 2),
@@ -291,6 +301,21 @@ fn a_stop_leaves_the_last_good_state_and_says_where() {
     ] {
         assert!(log.contains(text), "{text}\n{log}");
     }
+}
+
+#[test]
+fn a_stop_at_a_passage_names_the_node_and_the_segment() {
+    let bench = Bench::new();
+    let solve = to_a_passage;
+    let numerics = Numerics {
+        solve,
+        ..numerics()
+    };
+    assert_eq!(code(&bench.run(&["-q"], &numerics)), Exit::Stopped);
+    let log = bench.log();
+    assert!(log.contains("a node went through a segment"), "{log}");
+    let place = "node     4 at (1.00000e+00, 2.00000e+00) through the segment 1-2";
+    assert!(log.contains(place), "{log}");
 }
 
 #[test]

@@ -6,6 +6,8 @@ mod crossing;
 mod geometry;
 mod pair;
 mod passage;
+#[cfg(test)]
+mod passage_tests;
 mod penetration;
 mod problem;
 mod quartic;

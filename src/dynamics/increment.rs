@@ -147,6 +147,7 @@ impl Attempt<'_, '_> {
             forces.remember(&mut state);
             let rest = impulses.rest(problem, &forces);
             if rest && scales.converged(&report) {
+                trace.worst = None;
                 self.check_ways(&d, contact, &forces)?;
                 return self.finish(v0p, d, forces);
             }
