@@ -1,7 +1,8 @@
 //! Time of contact search against the number of segments.
 //!
 //! `cargo bench --bench search` measures a lattice of discs in contact with all others and with
-//! themselves: a search anew, the pairs found with lists that hold, and the search among all segments.
+//! themselves: a search anew, the pairs found with lists that hold, the ways of an increment followed,
+//! and the search among all segments.
 
 #[path = "../tests/contact_support/mod.rs"]
 mod contact_support;
@@ -11,7 +12,9 @@ use std::time::Duration;
 
 use contact_support::lattice;
 use criterion::{BenchmarkId, Criterion};
-use stickslip::contact::{Pairing, Search, all_segments, find_pairs, find_segment};
+use stickslip::contact::{
+    Pairing, Search, Touch, all_segments, find_pairs, find_passage, find_segment,
+};
 
 fn main() {
     let mut criterion = Criterion::default().configure_from_args();
@@ -38,6 +41,11 @@ fn main() {
                 search.cover(black_box(&u));
                 find_pairs(&search, &u, &before).len()
             });
+        });
+        let moved: Vec<f64> = (0..u.len()).map(|i| 1e-3 * (i as f64).sin()).collect();
+        let touch = vec![Touch::default(); x.len()];
+        group.bench_function(BenchmarkId::new("ways", n), |bencher| {
+            bencher.iter(|| find_passage(&mut search, &u, black_box(&moved), &touch, 0.0));
         });
         if n <= 1_000 {
             group.bench_function(BenchmarkId::new("all_segments", n), |bencher| {
