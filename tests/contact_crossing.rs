@@ -1,7 +1,7 @@
 //! Crossings of moving nodes and segments against dense sampling.
 
 #[path = "lcp_support/random.rs"]
-#[allow(dead_code)]
+#[allow(dead_code)] // shared: each test uses its part
 mod random;
 
 use random::Random;

@@ -9,7 +9,7 @@
 //!    +-------------+
 //! ```
 
-#[allow(dead_code)]
+#[allow(dead_code)] // shared: each test uses its part
 #[path = "dynamics/blocks.rs"]
 mod blocks;
 

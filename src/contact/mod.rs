@@ -17,6 +17,7 @@ mod territory;
 
 pub use compliance::Compliance;
 pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
+pub(crate) use geometry::position;
 pub use geometry::{Projection, project};
 pub use pair::{Pair, PairSite, RowForm};
 pub use passage::{Passage, Touch, find_passage};

@@ -81,7 +81,7 @@ impl<'m> Loads<'m> {
                 1.0
             };
             let f = weight * density * moment.magnitude(self.model, load);
-            let (volumes, _) = body.nodal_volumes(element);
+            let volumes = body.nodal_volumes(element);
             for (&node, volume) in body.nodes(element).iter().zip(volumes) {
                 r[2 * node] += f * volume * load.at.direction[0];
                 r[2 * node + 1] += f * volume * load.at.direction[1];

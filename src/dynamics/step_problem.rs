@@ -5,7 +5,7 @@ use super::mass::{Mass, largest};
 use super::scheme::Weights;
 use super::supports::Supports;
 use super::{Cause, State};
-use crate::contact::{ContactSurfaces, Pair, Pairing, Search, find_pairs};
+use crate::contact::{ContactSurfaces, Pair, Pairing, Search, find_pairs, position};
 use crate::elements::Body;
 use crate::lcp::LcpMethod;
 use crate::model::{Model, Settings};
@@ -66,8 +66,7 @@ impl StepProblem<'_> {
 
     /// Current position of a node.
     pub fn position(&self, u: &[f64], node: usize) -> [f64; 2] {
-        let x = self.model.mesh.coordinates[node];
-        [x[0] + u[2 * node], x[1] + u[2 * node + 1]]
+        position(&self.model.mesh.coordinates, u, node)
     }
 
     /// Displacement increment of the supports; zero at all other dofs.

@@ -101,14 +101,15 @@ impl Body {
         self.solids[element].thickness
     }
 
-    /// Share of each node of an element in a uniform force per volume (length^3).
-    pub fn nodal_volumes(&self, element: usize) -> ([f64; 4], usize) {
+    /// Share of each node of an element in a uniform force per volume (length^3); the fourth entry of a
+    /// triangle is 0.
+    pub fn nodal_volumes(&self, element: usize) -> [f64; 4] {
         let mut shares = [0.0; 4];
         match &self.solids[element].geometry {
             Geometry::Tri3(_, r) => shares[..3].copy_from_slice(r.nodal_volume().as_slice()),
             Geometry::Quad4(_, r) => shares.copy_from_slice(r.nodal_volume().as_slice()),
         }
-        (shares, self.nodes(element).len())
+        shares
     }
 
     /// Consistent mass of an element per direction, n x n column by column (mass).
