@@ -180,7 +180,7 @@ impl Way<'_> {
         let neighbour = if is_end_b {
             self.contact.next[i]
         } else {
-            self.previous(i)
+            self.contact.previous[i]
         };
         let Some(j) = neighbour else {
             return !(0.0..=1.0).contains(&p.xi);
@@ -197,13 +197,8 @@ impl Way<'_> {
     /// Whether the node has slid off the end of a surface that is not closed.
     fn has_slid_off(&self, i: usize, p: &Projection) -> bool {
         let next = |k: usize| self.contact.next[k];
-        let previous = |k: usize| self.previous(k);
+        let previous = |k: usize| self.contact.previous[k];
         (p.xi > 1.0 && self.walk(i, &next, None)) || (p.xi < 0.0 && self.walk(i, &previous, None))
-    }
-
-    fn previous(&self, segment: usize) -> Option<usize> {
-        let next = &self.contact.next;
-        next.iter().position(|next| *next == Some(segment))
     }
 
     /// Whether two segments follow each other, or do so with others between them that are not longer

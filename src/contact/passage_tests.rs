@@ -8,17 +8,7 @@ fn plate(closed: bool) -> (ContactSurfaces, Vec<[f64; 2]>) {
     x.extend((0..=8).rev().map(|i| [f64::from(i), 0.5]));
     let count = if closed { 18 } else { 17 };
     let segments: Vec<[usize; 2]> = (0..count).map(|i| [i + 1, (i + 1) % 18 + 1]).collect();
-    let next = (0..count).map(|i| match (i + 1 < count, closed) {
-        (true, _) => Some(i + 1),
-        (false, true) => Some(0),
-        (false, false) => None,
-    });
-    let surfaces = ContactSurfaces {
-        slaves: vec![0],
-        next: next.collect(),
-        segments,
-        friction: 0.0,
-    };
+    let surfaces = ContactSurfaces::new(vec![0], &[], segments, 0.0);
     (surfaces, x)
 }
 
@@ -134,12 +124,7 @@ fn a_node_may_slide_over_several_segments() {
 #[test]
 fn a_hollow_corner_holds_a_node_only_so_deep() {
     // A valley over (2, 1), (0, 0), (-2, 1): the node goes on along the line of its left slope.
-    let surfaces = ContactSurfaces {
-        slaves: vec![0],
-        segments: vec![[1, 2], [2, 3]],
-        next: vec![Some(1), None],
-        friction: 0.0,
-    };
+    let surfaces = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]], 0.0);
     let passage = |way: f64| {
         let x = [[0.2, 0.1], [2.0, 1.0], [0.0, 0.0], [-2.0, 1.0]];
         let u0 = [0.0; 8];

@@ -170,12 +170,7 @@ mod tests {
 
     /// A roof: segments from right to left over the nodes 1, 2, 3 at heights 0, `top`, 0; slave 0.
     fn roof(top: f64) -> (ContactSurfaces, Vec<[f64; 2]>) {
-        let surfaces = ContactSurfaces {
-            slaves: vec![0],
-            segments: vec![[1, 2], [2, 3]],
-            next: vec![Some(1), None],
-            friction: 0.0,
-        };
+        let surfaces = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]], 0.0);
         (
             surfaces,
             vec![[0.0, 0.0], [2.0, 0.0], [0.0, top], [-2.0, 0.0]],

@@ -8,24 +8,18 @@ pub type Body = ([f64; 2], f64, usize, f64);
 /// Bodies in contact with each other and with themselves.
 pub fn scene(bodies: &[Body]) -> (ContactSurfaces, Vec<[f64; 2]>) {
     let mut x = Vec::new();
-    let (mut segments, mut next) = (Vec::new(), Vec::new());
+    let mut segments = Vec::new();
     for &(centre, radius, count, depth) in bodies {
         let first = x.len();
         for i in 0..count {
             let angle = std::f64::consts::TAU * i as f64 / count as f64;
             let r = radius * (1.0 + depth * (3.0 * angle).sin());
             x.push([centre[0] + r * angle.cos(), centre[1] + r * angle.sin()]);
-            let following = (i + 1) % count;
-            segments.push([first + i, first + following]);
-            next.push(Some(first + following));
+            segments.push([first + i, first + (i + 1) % count]);
         }
     }
-    let surfaces = ContactSurfaces {
-        slaves: (0..x.len()).collect(),
-        segments,
-        next,
-        friction: 0.0,
-    };
+    let slaves = (0..x.len()).collect();
+    let surfaces = ContactSurfaces::new(slaves, &segments.clone(), segments, 0.0);
     (surfaces, x)
 }
 
