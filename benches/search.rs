@@ -12,9 +12,7 @@ use std::time::Duration;
 
 use contact_support::lattice;
 use criterion::{BenchmarkId, Criterion};
-use stickslip::contact::{
-    Pairing, Search, Touch, all_segments, find_pairs, find_passage, find_segment,
-};
+use stickslip::contact::{Look, Pairing, Search, Touch, all_segments, find_pairs, find_passage};
 
 fn main() {
     let mut criterion = Criterion::default().configure_from_args();
@@ -39,7 +37,7 @@ fn main() {
         group.bench_function(BenchmarkId::new("pairs", n), |bencher| {
             bencher.iter(|| {
                 search.cover(black_box(&u));
-                find_pairs(&search, &u, &before).len()
+                find_pairs(&search, &u, &u, &before).len()
             });
         });
         let moved: Vec<f64> = (0..u.len()).map(|i| 1e-3 * (i as f64).sin()).collect();
@@ -50,11 +48,17 @@ fn main() {
         if n <= 1_000 {
             group.bench_function(BenchmarkId::new("all_segments", n), |bencher| {
                 let [surfaces] = &contacts;
-                let find = |s: &usize| {
-                    let all = all_segments(surfaces);
-                    find_segment(surfaces, &x, black_box(&u), *s, all)
+                let sites = |slave: usize| {
+                    let look = Look {
+                        surfaces,
+                        x: &x,
+                        u0: &u,
+                        u: black_box(&u),
+                        slave,
+                    };
+                    look.sites(all_segments(surfaces)).len()
                 };
-                bencher.iter(|| surfaces.slaves.iter().filter_map(find).count());
+                bencher.iter(|| (0..surfaces.slaves.len()).map(sites).sum::<usize>());
             });
         }
     }

@@ -4,7 +4,7 @@ mod contact_support;
 
 use contact_support::{Body, lattice, scene};
 use proptest::prelude::*;
-use stickslip::contact::{Candidate, ContactSurfaces, Search, find_segment, project};
+use stickslip::contact::{Candidate, ContactSurfaces, Look, Search, project};
 
 fn bodies() -> impl Strategy<Value = Vec<Body>> {
     let body = (
@@ -36,17 +36,24 @@ fn distance(s: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     (s[0] - foot[0]).hypot(s[1] - foot[1])
 }
 
-/// Every slave node finds the same segment among its candidates as among all segments.
-fn finds_all(search: &Search, surfaces: &ContactSurfaces, x: &[[f64; 2]], u: &[f64]) {
+/// Every slave node finds the same sites among its candidates as among all segments.
+fn finds_all(search: &Search, surfaces: &ContactSurfaces, x: &[[f64; 2]], [u0, u]: [&[f64]; 2]) {
     let territory = &search.territories()[0];
-    for (k, &slave) in surfaces.slaves.iter().enumerate() {
+    for slave in 0..surfaces.slaves.len() {
         let all = (0..surfaces.segments.len()).map(|segment| Candidate {
             segment,
-            reach: territory.reach(k, segment),
+            reach: territory.reach(slave, segment),
         });
+        let look = Look {
+            surfaces,
+            x,
+            u0,
+            u,
+            slave,
+        };
         assert_eq!(
-            find_segment(surfaces, x, u, slave, territory.candidates(k)),
-            find_segment(surfaces, x, u, slave, all),
+            look.sites(territory.candidates(slave)),
+            look.sites(all),
             "slave {slave}"
         );
     }
@@ -79,9 +86,10 @@ proptest! {
             let (u, v) = (at(scale), at(1.0));
             search.start(&v, dt);
             for pass in 0..3 {
-                let u: Vec<f64> = u.iter().map(|u| u * (1.0 + 0.2 * f64::from(pass))).collect();
-                search.cover(&u);
-                finds_all(&search, &surfaces, &x, &u);
+                let iterate = 1.0 + 0.2 * f64::from(pass);
+                let iterate: Vec<f64> = u.iter().map(|u| u * iterate).collect();
+                search.cover(&iterate);
+                finds_all(&search, &surfaces, &x, [&u, &iterate]);
             }
         }
     }
@@ -158,7 +166,7 @@ fn lists_hold_until_a_margin_is_left() {
         search.start(&v, 1.0);
         search.cover(&u);
         if increment % 50 == 0 {
-            finds_all(&search, &surfaces, &x, &u);
+            finds_all(&search, &surfaces, &x, [&u, &u]);
         }
     }
     let searches = search.searches();

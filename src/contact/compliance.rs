@@ -68,7 +68,7 @@ impl Compliance {
     }
 
     /// The inverse times one row of a pair, at the rows of the inverse.
-    pub(super) fn times_row(&self, pair: &Pair, row: &[f64; 6]) -> Vec<f64> {
+    pub(super) fn times_row(&self, pair: &Pair, row: &[f64; 8]) -> Vec<f64> {
         let mut result = vec![0.0; self.dofs.len()];
         for (dof, factor) in pair.dofs().into_iter().zip(row) {
             let Some(place) = self.place[dof] else {
@@ -82,7 +82,7 @@ impl Compliance {
     }
 
     /// One row of a pair times a vector over the rows of the inverse.
-    pub(super) fn row_times(&self, pair: &Pair, row: &[f64; 6], v: &[f64]) -> f64 {
+    pub(super) fn row_times(&self, pair: &Pair, row: &[f64; 8], v: &[f64]) -> f64 {
         let at = |(dof, factor): (usize, &f64)| self.place[dof].map_or(0.0, |i| factor * v[i]);
         pair.dofs().into_iter().zip(row).map(at).sum()
     }

@@ -12,8 +12,10 @@ mod penetration;
 mod problem;
 mod quartic;
 mod search;
+mod sites;
 mod surfaces;
 mod territory;
+mod vertex;
 
 pub use compliance::Compliance;
 pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
@@ -23,8 +25,8 @@ pub use pair::{Pair, PairSite, RowForm};
 pub use passage::{Passage, Touch, find_passage};
 pub use penetration::report_penetrations;
 pub use problem::{add_contact_forces, frictional_lcp};
-pub use search::{
-    Candidate, InitialGap, Pairing, all_segments, find_pairs, find_segment, initial_gaps,
-};
+pub use search::{Candidate, InitialGap, Pairing, all_segments, find_pairs, initial_gaps};
+pub use sites::{Look, Site};
 pub use surfaces::{ContactSurfaces, contact_surfaces};
 pub use territory::{Search, Territory};
+pub use vertex::{Vertex, common_normal};

@@ -1,4 +1,5 @@
 use super::geometry::{position, project};
+use super::sites::Site;
 
 /// How the rows Bn and Bt of a pair are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -10,64 +11,79 @@ pub enum RowForm {
     DiscreteGradient,
 }
 
-/// Which slave node meets which segment.
+/// Which slave node meets which segment, or which vertex.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PairSite {
     /// Place of the slave node among all slave nodes of all contacts.
     pub slot: usize,
-    /// Index of the segment in its contact.
-    pub segment: usize,
-    /// Nodes: slave s, segment ends a and b.
-    pub nodes: [usize; 3],
+    /// Segment in its contact, or vertex.
+    pub site: Site,
+    /// Nodes: slave s, segment ends a and b, and c, the end of the next segment behind a vertex;
+    /// without vertex it is b again.
+    pub nodes: [usize; 4],
     /// Coefficient of friction mu.
     pub friction: f64,
 }
 
-/// A slave node with its master segment, linearised at the current iterate.
+impl PairSite {
+    /// What tells pairs of an increment apart: slot and segment.
+    pub fn key(&self) -> [usize; 2] {
+        [self.slot, self.site.segment]
+    }
+}
+
+/// A slave node with its master segment or vertex, linearised at the current iterate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
-    /// Place of the slave node among all slave nodes of all contacts.
-    pub slot: usize,
-    /// Index of the segment in its contact.
-    pub segment: usize,
-    /// Nodes: slave s, segment ends a and b.
-    pub nodes: [usize; 3],
-    /// Coefficient of friction mu.
-    pub friction: f64,
+    /// Its place.
+    pub at: PairSite,
     /// Gap g of the iterate (length).
     pub gap: f64,
     /// Gap of the start in the sense of the rows, g - Bn d (length).
     pub start_gap: f64,
     /// Slip Dt = Bt d accumulated since the start of the increment (length).
     pub slip: f64,
-    /// Row of Bn at the dofs of s, a and b.
-    pub normal: [f64; 6],
+    /// Row of Bn at the dofs of s, a, b and c.
+    pub normal: [f64; 8],
     /// Row of Bt at the same dofs.
-    pub tangent: [f64; 6],
+    pub tangent: [f64; 8],
 }
 
 impl Pair {
-    /// The pair `site` between the displacements `u0` of the start and `u` of the iterate.
-    pub fn new(site: PairSite, form: RowForm, x: &[[f64; 2]], u0: &[f64], u: &[f64]) -> Self {
-        let PairSite {
-            slot,
-            segment,
-            nodes,
-            friction,
-        } = site;
-        let end = nodes.map(|n| position(x, u, n));
-        let (normal, tangent) = match form {
-            RowForm::End => end_rows(end),
-            RowForm::DiscreteGradient => {
-                discrete_gradient_rows(nodes.map(|n| position(x, u0, n)), end)
+    /// The pair `at` between the displacements `u0` of the start and `u` of the iterate.
+    pub fn new(at: PairSite, form: RowForm, x: &[[f64; 2]], u0: &[f64], u: &[f64]) -> Self {
+        let [s, a, b, c] = at.nodes;
+        let face = |nodes: [usize; 3]| {
+            let end = nodes.map(|n| position(x, u, n));
+            let (normal, tangent) = match form {
+                RowForm::End => end_rows(end),
+                RowForm::DiscreteGradient => {
+                    discrete_gradient_rows(nodes.map(|n| position(x, u0, n)), end)
+                }
+            };
+            (project(end[0], end[1], end[2]), normal, tangent)
+        };
+        let (p, normal, tangent) = face([s, a, b]);
+        let (gap, normal, tangent) = match at.site.vertex {
+            None => (p.gap, wide(normal), wide(tangent)),
+            // g, Bn, Bt of both segments with their weights, so that the normal has the length 1
+            Some(vertex) => {
+                let (q, next_normal, next_tangent) = face([s, b, c]);
+                let n = [0, 1].map(|i| vertex.blend(p.normal[i], q.normal[i]));
+                let length = n[0].hypot(n[1]);
+                let blend = |row: [f64; 6], next: [f64; 6]| {
+                    let (row, next) = (wide(row), beyond(next));
+                    std::array::from_fn(|k| vertex.blend(row[k], next[k]) / length)
+                };
+                (
+                    vertex.blend(p.gap, q.gap) / length,
+                    blend(normal, next_normal),
+                    blend(tangent, next_tangent),
+                )
             }
         };
-        let gap = project(end[0], end[1], end[2]).gap;
         let mut pair = Pair {
-            slot,
-            segment,
-            nodes,
-            friction,
+            at,
             gap,
             start_gap: gap,
             slip: 0.0,
@@ -80,26 +96,9 @@ impl Pair {
         pair
     }
 
-    /// The pair's place, without its linearisation.
-    pub fn site(&self) -> PairSite {
-        let Pair {
-            slot,
-            segment,
-            nodes,
-            friction,
-            ..
-        } = *self;
-        PairSite {
-            slot,
-            segment,
-            nodes,
-            friction,
-        }
-    }
-
-    /// Dofs of s, a and b.
-    pub fn dofs(&self) -> [usize; 6] {
-        std::array::from_fn(|k| 2 * self.nodes[k / 2] + k % 2)
+    /// Dofs of s, a, b and c.
+    pub fn dofs(&self) -> [usize; 8] {
+        std::array::from_fn(|k| 2 * self.at.nodes[k / 2] + k % 2)
     }
 
     /// Bn v for a vector over all dofs.
@@ -113,8 +112,18 @@ impl Pair {
     }
 }
 
-fn dot(row: &[f64; 6], v: &[f64; 6]) -> f64 {
+fn dot(row: &[f64; 8], v: &[f64; 8]) -> f64 {
     row.iter().zip(v).map(|(b, v)| b * v).sum()
+}
+
+/// A row at s, a, b as one at s, a, b, c.
+fn wide([sx, sy, ax, ay, bx, by]: [f64; 6]) -> [f64; 8] {
+    [sx, sy, ax, ay, bx, by, 0.0, 0.0]
+}
+
+/// A row at s, b, c as one at s, a, b, c.
+fn beyond([sx, sy, bx, by, cx, cy]: [f64; 6]) -> [f64; 8] {
+    [sx, sy, 0.0, 0.0, bx, by, cx, cy]
 }
 
 /// Rows of the end configuration: e_n at s, -(1 - xi) e_n at a, -xi e_n at b; the same with e_t.
@@ -186,8 +195,11 @@ mod tests {
 
     const SITE: PairSite = PairSite {
         slot: 0,
-        segment: 0,
-        nodes: [0, 1, 2],
+        site: Site {
+            segment: 0,
+            vertex: None,
+        },
+        nodes: [0, 1, 2, 2],
         friction: 0.3,
     };
 

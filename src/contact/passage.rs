@@ -7,19 +7,16 @@ const ROUND_OFF: f64 = 1e-9;
 /// Depth (in segment lengths) to which a free node may cut a corner on its way. The halves of an
 /// increment need not hit upon a node inside when it is less.
 const CLIP: f64 = 0.01;
-/// Depth (in segment lengths) at which a node that lands beside a vertex may end behind the line
-/// of the segment it came through.
-const CORNER: f64 = 0.1;
 /// Distance (in segment lengths) from the end of a segment that is no distance.
 const VERTEX: f64 = 1e-6;
 
 /// Contact of a slave node in an increment.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Touch {
     /// Whether it carried a force before.
     pub before: bool,
-    /// Segment at which it carries a force at the end.
-    pub now: Option<usize>,
+    /// Segments at which it carries forces at the end.
+    pub now: Vec<usize>,
 }
 
 /// A slave node that went into a body.
@@ -56,7 +53,7 @@ pub fn find_passage(
                 x,
                 u: [u0, u1],
                 slave,
-                touch: touch[slot],
+                touch: &touch[slot],
                 tolerance,
             };
             slot += 1;
@@ -80,7 +77,7 @@ struct Way<'a> {
     x: &'a [[f64; 2]],
     u: [&'a [f64]; 2],
     slave: usize,
-    touch: Touch,
+    touch: &'a Touch,
     tolerance: f64,
 }
 
@@ -130,7 +127,7 @@ impl Way<'_> {
         let depth = (-p.gap).min(-q.gap);
         let slides = || {
             let is_held = |k| self.are_near(i, k);
-            self.touch.before || self.touch.now.is_some_and(is_held)
+            self.touch.before || self.touch.now.iter().copied().any(is_held)
         };
         self.is_round_off(depth, p.length)
             || (self.are_near(i, j) && (depth <= CLIP * p.length || slides()))
@@ -140,30 +137,15 @@ impl Way<'_> {
     fn may_stay(&self, i: usize, xi: f64) -> bool {
         let p = self.place(i, 1.0);
         if self.is_round_off(-p.gap, p.length)
-            || self.touch.now == Some(i)
+            || self.touch.now.contains(&i)
             || self.is_beside(i, xi, &p)
         {
             return true;
         }
-        match self.touch.now {
-            Some(j) => {
-                let is_shallow = -p.gap <= CORNER * p.length;
-                self.are_near(i, j)
-                    && (is_shallow || (self.touch.before && self.is_round(i, j, &p)))
-            }
-            None => self.touch.before && self.has_slid_off(i, &p),
-        }
-    }
-
-    /// Whether the body bulges between two segments.
-    fn is_round(&self, i: usize, j: usize, p: &Projection) -> bool {
-        let q = self.place(j, 1.0);
-        let next = |k: usize| self.contact.next[k];
-        if self.walk(i, &next, Some(j)) {
-            turns_left(p, &q)
-        } else {
-            turns_left(&q, p)
-        }
+        let is_on = |j: usize| (0.0..=1.0).contains(&self.place(j, 1.0).xi);
+        let mut held = self.touch.now.iter();
+        held.any(|&j| is_on(j) && self.are_near(i, j))
+            || (self.touch.before && self.has_slid_off(i, &p))
     }
 
     fn is_round_off(&self, depth: f64, length: f64) -> bool {

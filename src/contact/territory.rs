@@ -1,6 +1,6 @@
 use super::circles::{Circle, CircleTree};
 use super::geometry::position;
-use super::search::ROUND_OFF;
+use super::sites::ROUND_OFF;
 use super::{Candidate, ContactSurfaces};
 
 /// Distance up to which a node at rest may pair (in mean segment lengths of its contact).
@@ -71,6 +71,14 @@ impl<'m> Search<'m> {
     /// The contacts with their candidates.
     pub fn territories(&self) -> &[Territory<'m>] {
         &self.territories
+    }
+
+    /// Number of slots: of slave nodes of all contacts.
+    pub fn slots(&self) -> usize {
+        self.territories
+            .iter()
+            .map(|t| t.contact.slaves.len())
+            .sum()
     }
 
     /// Reference coordinates of the nodes.

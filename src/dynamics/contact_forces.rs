@@ -1,6 +1,7 @@
 use super::dofs::DofMap;
 use super::effective::Factored;
 use super::meter::Meter;
+use super::touching::Touching;
 use super::{Cause, FailedLcp};
 use crate::contact::{Pair, add_contact_forces, frictional_lcp};
 use crate::lcp::{ContactState, LcpMethod, solve_frictional};
@@ -48,22 +49,6 @@ impl ContactForces {
         self.normal[k] > 0.0
     }
 
-    /// Slots of the pairs that carry forces, increasing.
-    pub fn closed_slots(&self) -> Vec<usize> {
-        let closed = (0..self.pairs.len()).filter(|&k| self.is_closed(k));
-        closed.map(|k| self.pairs[k].slot).collect()
-    }
-
-    /// Stores the states per slot.
-    pub fn remember(&self, state: &mut [ContactState]) {
-        state.fill(ContactState::Open);
-        for (k, pair) in self.pairs.iter().enumerate() {
-            if self.is_closed(k) {
-                state[pair.slot] = self.state[k];
-            }
-        }
-    }
-
     /// Numbers of closed and of sticking pairs.
     pub fn count(&self) -> (usize, usize) {
         let closed = (0..self.pairs.len()).filter(|&k| self.is_closed(k));
@@ -97,7 +82,8 @@ impl ContactForces {
             || solve_frictional(&problem, Some(&warm), method),
         );
         let solution = solution.map_err(|error| {
-            let pairs = pairs.iter().map(|pair| pair.nodes).collect();
+            let nodes = |[s, a, b, _]: [usize; 4]| [s, a, b];
+            let pairs = pairs.iter().map(|pair| nodes(pair.at.nodes)).collect();
             Cause::Lcp(Box::new(FailedLcp {
                 error,
                 problem,
@@ -122,7 +108,7 @@ impl ContactForces {
     /// of all pairs.
     pub fn of_pass(
         pairs: Vec<Pair>,
-        warm: &[ContactState],
+        warm: &Touching,
         y: &[f64],
         dofs: &DofMap,
         matrix: &mut Factored,
@@ -131,7 +117,7 @@ impl ContactForces {
     ) -> Result<(Self, Vec<f64>), Cause> {
         let mut forces = ContactForces::open(pairs);
         let gap_after = |pair: &Pair, du: &[f64]| pair.gap + pair.normal_of(du);
-        let closed_before = |pair: &Pair| warm[pair.slot].is_closed();
+        let closed_before = |pair: &Pair| warm.state(&pair.at).is_closed();
         let mut inside: Vec<bool> = forces.pairs.iter().map(closed_before).collect();
         let mut du = y.to_vec();
         let mut entered = inside.contains(&true);
@@ -154,7 +140,7 @@ impl ContactForces {
                     .map(|k| at(k).slip + at(k).tangent_of(y))
                     .collect(),
             );
-            let states = chosen.iter().map(|k| warm[at(k).slot]).collect();
+            let states = chosen.iter().map(|k| warm.state(&at(k).at)).collect();
             forces.solve(&chosen, constants, states, matrix, method, meter)?;
             let load = dofs.restrict(&forces.resultant(y.len()));
             let correction = meter.time(|t| &mut t.solve, || matrix.solver.solve(&load))?;

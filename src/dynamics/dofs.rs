@@ -31,6 +31,13 @@ impl DofMap {
         DofMap { unknown, dof }
     }
 
+    /// Whether one of the nodes has an unknown.
+    pub fn moves(&self, nodes: &[usize]) -> bool {
+        nodes
+            .iter()
+            .any(|node| self.unknown[2 * node].is_some() || self.unknown[2 * node + 1].is_some())
+    }
+
     /// Unknowns of every element, in the order of its dofs.
     pub fn element_unknowns(&self, body: &Body) -> Vec<Vec<Option<usize>>> {
         let of_node = |&node: &usize| [self.unknown[2 * node], self.unknown[2 * node + 1]];

@@ -2,9 +2,9 @@ use super::contact_forces::ContactForces;
 use super::effective::Effective;
 use super::meter::Meter;
 use super::step_problem::StepProblem;
+use super::touching::Touching;
 use super::{Cause, State};
 use crate::contact::{Pair, PairSite};
-use crate::lcp::ContactState;
 use crate::model::Impact;
 
 /// Changes of the set of pairs with impulses after which it is kept.
@@ -12,8 +12,8 @@ const SET_CHANGES: usize = 5;
 
 /// The impact impulses of an increment: they act on the pairs that carry force at its end.
 pub(super) struct Impulses {
-    /// Slots of these pairs, increasing: those of the last pass.
-    slots: Vec<usize>,
+    /// Slots and segments of these pairs, increasing: those of the last pass.
+    keys: Vec<[usize; 2]>,
     changes: usize,
     /// V0+ of the last pass with the pairs it is for.
     last: Option<(Vec<PairSite>, Vec<f64>)>,
@@ -21,12 +21,9 @@ pub(super) struct Impulses {
 
 impl Impulses {
     /// Starts with the pairs that were closed in the last increment.
-    pub fn new(contact: &[ContactState]) -> Self {
-        let slots = (0..contact.len())
-            .filter(|&slot| contact[slot].is_closed())
-            .collect();
+    pub fn new(contact: &Touching) -> Self {
         Impulses {
-            slots,
+            keys: contact.keys(),
             changes: 0,
             last: None,
         }
@@ -47,8 +44,8 @@ impl Impulses {
         }
         let struck = pairs
             .iter()
-            .filter(|pair| self.slots.binary_search(&pair.slot).is_ok());
-        let sites: Vec<PairSite> = struck.clone().map(Pair::site).collect();
+            .filter(|pair| self.keys.binary_search(&pair.at.key()).is_ok());
+        let sites: Vec<PairSite> = struck.clone().map(|pair| pair.at).collect();
         let at_start = problem.weights.impulses_at_start();
         if let Some((last, v0p)) = &self.last
             && at_start
@@ -60,7 +57,7 @@ impl Impulses {
         let (x, u0) = (&problem.model.mesh.coordinates, &start.u);
         let form = problem.weights.row_form();
         let rows = |pair: &Pair| match at_start {
-            true => Pair::new(pair.site(), form, x, u0, u0),
+            true => Pair::new(pair.at, form, x, u0, u0),
             false => *pair,
         };
         let struck: Vec<Pair> = struck.map(rows).collect();
@@ -72,13 +69,13 @@ impl Impulses {
 
     /// Takes over the pairs in contact after a pass; whether they are the same as before. After
     /// some changes the set is kept: impulses of any set take energy, never give it.
-    pub fn rest(&mut self, problem: &StepProblem, forces: &ContactForces) -> bool {
-        let slots = forces.closed_slots();
+    pub fn rest(&mut self, problem: &StepProblem, contact: &Touching) -> bool {
+        let keys = contact.keys();
         let rest = problem.settings.impact == Impact::None
-            || slots == self.slots
+            || keys == self.keys
             || self.changes >= SET_CHANGES;
         if !rest {
-            self.slots = slots;
+            self.keys = keys;
             self.changes += 1;
         }
         rest

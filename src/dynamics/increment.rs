@@ -5,9 +5,9 @@ use super::impact::Impulses;
 use super::mass::largest;
 use super::meter::Meter;
 use super::step_problem::{Equilibrium, Interval, StepProblem, difference, sum};
+use super::touching::Touching;
 use super::{Cause, PassReport, State, Worst};
-use crate::contact::{Pair, Pairing, Search, Touch, find_passage};
-use crate::lcp::ContactState;
+use crate::contact::{Pairing, Search, Touch, find_passage};
 use crate::linear::LinearError;
 use crate::model::Factorization;
 
@@ -58,7 +58,7 @@ struct Trace {
 
 impl Attempt<'_, '_> {
     /// Solves the increment; `contact` holds the states of the last one, per slot.
-    pub fn solve(mut self, contact: &[ContactState]) -> Result<Solved, Failed> {
+    pub fn solve(mut self, contact: &Touching) -> Result<Solved, Failed> {
         let mut trace = Trace::default();
         let solved = self.passes(contact, &mut trace);
         let Trace { passes, worst } = trace;
@@ -73,14 +73,14 @@ impl Attempt<'_, '_> {
     }
 
     /// Predictor and correctors, which share one form (paper eqs 27, 29 and 36 to 49).
-    fn passes(&mut self, contact: &[ContactState], trace: &mut Trace) -> Result<Solved, Cause> {
+    fn passes(&mut self, contact: &Touching, trace: &mut Trace) -> Result<Solved, Cause> {
         let problem = self.problem;
         let (u0, dt) = (&self.start.u, self.interval.dt);
 
         // k = 0: from U0; the supports move by their prescribed increment in the predictor
         let mut d = vec![0.0; u0.len()];
         let mut prescribed = problem.support_increment(u0, self.interval);
-        let mut state = contact.to_vec();
+        let mut state = contact.clone();
         let mut impulses = Impulses::new(contact);
         let mut pairing = Pairing::default();
         self.search.start(&self.start.v, dt);
@@ -144,15 +144,15 @@ impl Attempt<'_, '_> {
 
             // U^{k+1} = U^k + dU
             d = sum(&d, &du);
-            forces.remember(&mut state);
-            let rest = impulses.rest(problem, &forces);
+            state = Touching::new(&forces);
+            let rest = impulses.rest(problem, &state);
             if rest && scales.converged(&report) {
                 trace.worst = None;
                 self.check_ways(&d, contact, &forces)?;
                 return self.finish(v0p, d, forces);
             }
             pairing = Pairing {
-                segments: segments(&forces.pairs, contact.len()),
+                sites: forces.pairs.iter().map(|pair| pair.at).collect(),
                 settled: pass + 1 >= SEARCHING_PASSES,
             };
         }
@@ -163,17 +163,16 @@ impl Attempt<'_, '_> {
     fn check_ways(
         &mut self,
         d: &[f64],
-        contact: &[ContactState],
+        contact: &Touching,
         forces: &ContactForces,
     ) -> Result<(), Cause> {
-        let before = |state: &ContactState| Touch {
-            before: state.is_closed(),
-            now: None,
-        };
-        let mut touch: Vec<Touch> = contact.iter().map(before).collect();
+        let mut touch = vec![Touch::default(); self.search.slots()];
+        for (slot, touch) in touch.iter_mut().enumerate() {
+            touch.before = contact.holds(slot);
+        }
         for (k, pair) in forces.pairs.iter().enumerate() {
             if forces.is_closed(k) {
-                touch[pair.slot].now = Some(pair.segment);
+                touch[pair.at.slot].now.extend(pair.at.site.segments());
             }
         }
         let (u0, search) = (&self.start.u, &mut *self.search);
@@ -230,7 +229,7 @@ impl Attempt<'_, '_> {
     fn scales(&self, force: f64, u: &[f64], increment: f64, contact: &ContactForces) -> Scales {
         let closed = (0..contact.pairs.len()).filter(|&k| contact.is_closed(k));
         let position = closed
-            .flat_map(|k| contact.pairs[k].nodes)
+            .flat_map(|k| contact.pairs[k].at.nodes)
             .map(|node| largest(&self.problem.position(u, node)))
             .fold(0.0, f64::max);
         let diagonals = (self.effective.stiffness, self.effective.inertia);
@@ -271,13 +270,4 @@ impl Attempt<'_, '_> {
             passes: Vec::new(),
         })
     }
-}
-
-/// Segment of every slot.
-fn segments(pairs: &[Pair], slots: usize) -> Vec<Option<usize>> {
-    let mut segments = vec![None; slots];
-    for pair in pairs {
-        segments[pair.slot] = Some(pair.segment);
-    }
-    segments
 }

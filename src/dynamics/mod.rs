@@ -17,6 +17,7 @@ mod run;
 mod scheme;
 mod step_problem;
 mod supports;
+mod touching;
 
 pub use failure::{Cause, FailedLcp, Failure, Worst};
 pub use report::{

@@ -1,7 +1,10 @@
 use super::increment::Solved;
 use super::step_problem::{Equilibrium, Interval, StepProblem};
+use super::touching::Touching;
 use super::{ContactResultant, Landing, NodalResults, NodeStatus, State};
-use crate::contact::{Crossing, Direction, Motion, Pair, crossings, line_crossings, project};
+use crate::contact::{
+    Crossing, Direction, Motion, Pair, RowForm, crossings, line_crossings, project,
+};
 use crate::lcp::ContactState;
 
 /// Reactions, contact forces, gaps and status at the nodes.
@@ -25,7 +28,7 @@ pub(super) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         status: vec![NodeStatus::None; dofs / 2],
     };
     for (k, pair) in solved.forces.pairs.iter().enumerate() {
-        let slave = pair.nodes[0];
+        let slave = pair.at.nodes[0];
         results.gap[slave] = results.gap[slave].min(end_gap(problem, solved, pair));
         let status = match (solved.forces.is_closed(k), solved.forces.state[k]) {
             (false, _) => NodeStatus::Open,
@@ -38,8 +41,8 @@ pub(super) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
 }
 
 fn end_gap(problem: &StepProblem, solved: &Solved, pair: &Pair) -> f64 {
-    let [s, a, b] = pair.nodes.map(|node| problem.position(&solved.end.u, node));
-    project(s, a, b).gap
+    let u = &solved.end.u;
+    Pair::new(pair.at, RowForm::End, &problem.model.mesh.coordinates, u, u).gap
 }
 
 /// Resultants of every contact; moments about the origin, forces acting at U_theta.
@@ -53,7 +56,7 @@ pub(super) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
     let contact_of = contact_of_slots(problem);
     let forces = &solved.forces;
     for (k, pair) in forces.pairs.iter().enumerate() {
-        let contact = contact_of[pair.slot];
+        let contact = contact_of[pair.at.slot];
         let r = &mut resultants[contact];
         r.min_gap = r.min_gap.min(end_gap(problem, solved, pair));
         if !forces.is_closed(k) {
@@ -61,7 +64,7 @@ pub(super) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
         }
         let (pn, pt) = (forces.normal[k], forces.tangential[k]);
         let f = [0, 1].map(|i| pair.normal[i] * pn + pair.tangent[i] * pt);
-        let x = problem.position(&solved.equilibrium.u_theta, pair.nodes[0]);
+        let x = problem.position(&solved.equilibrium.u_theta, pair.at.nodes[0]);
         r.force[0] += f[0];
         r.force[1] += f[1];
         r.moment += x[0] * f[1] - x[1] * f[0];
@@ -69,7 +72,7 @@ pub(super) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
         r.tangential += pt;
         r.closed += 1;
         r.sticking += usize::from(forces.state[k] == ContactState::Stick);
-        r.cone_violation = r.cone_violation.max(pt.abs() - pair.friction * pn);
+        r.cone_violation = r.cone_violation.max(pt.abs() - pair.at.friction * pn);
         largest_normal[contact] = largest_normal[contact].max(pn);
     }
     for (r, largest) in resultants.iter_mut().zip(largest_normal) {
@@ -97,19 +100,20 @@ fn contact_of_slots(problem: &StepProblem) -> Vec<usize> {
 pub(super) fn landings(
     problem: &StepProblem,
     start: &State,
-    before: &[ContactState],
+    before: &Touching,
     solved: &Solved,
     interval: Interval,
 ) -> Vec<Landing> {
     let forces = &solved.forces;
     (0..forces.pairs.len())
-        .filter(|&k| forces.is_closed(k) && !before[forces.pairs[k].slot].is_closed())
+        .filter(|&k| forces.is_closed(k) && !before.holds(forces.pairs[k].at.slot))
         .map(|k| landing(problem, start, &forces.pairs[k], interval))
         .collect()
 }
 
 fn landing(problem: &StepProblem, start: &State, pair: &Pair, interval: Interval) -> Landing {
-    let motions = pair.nodes.map(|node| {
+    let [s, a, b, _] = pair.at.nodes;
+    let motions = [s, a, b].map(|node| {
         let of = |v: &[f64]| [v[2 * node], v[2 * node + 1]];
         Motion {
             position: problem.position(&start.u, node),
@@ -125,8 +129,8 @@ fn landing(problem: &StepProblem, start: &State, pair: &Pair, interval: Interval
     let relative = |i: usize| s[i] - (1.0 - p.xi) * a[i] - p.xi * b[i];
     Landing {
         time: interval.start.total + tau,
-        slave: pair.nodes[0],
-        segment: [pair.nodes[1], pair.nodes[2]],
+        slave: pair.at.nodes[0],
+        segment: [pair.at.nodes[1], pair.at.nodes[2]],
         xi: p.xi,
         approach_speed: -(p.normal[0] * relative(0) + p.normal[1] * relative(1)),
     }

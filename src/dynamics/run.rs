@@ -11,13 +11,13 @@ use super::results::{contact_resultants, landings, nodal_results};
 use super::scheme::Weights;
 use super::step_problem::{Interval, StepProblem};
 use super::supports::Supports;
+use super::touching::Touching;
 use super::{
     ContactResultant, Cutback, Failure, IncrementReport, NodalResults, NodeStatus, Observer,
     Outcome, RunSummary, SolverCounts, State,
 };
 use crate::contact::{ContactSurfaces, Search, contact_surfaces};
 use crate::elements::Body;
-use crate::lcp::ContactState;
 use crate::model::{Increments, Model, Step};
 
 /// Halvings of an increment before the run stops.
@@ -41,7 +41,6 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
     let body = Body::new(model);
     let mass = Mass::new(&body, model.mesh.node_count());
     let contacts = contact_surfaces(model);
-    let slots = contacts.iter().map(|c| c.slaves.len()).sum();
     let mut runner = Runner {
         model,
         body: &body,
@@ -53,7 +52,7 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
             v: model.initial_velocity.clone(),
             a: vec![0.0; model.mesh.dof_count()],
         },
-        contact: vec![ContactState::Open; slots],
+        contact: Touching::default(),
         ledger: Ledger::new(0.0, 0.0),
         increment: 0,
         cutbacks: 0,
@@ -92,7 +91,7 @@ struct Runner<'m, 'o> {
     contacts: &'m [ContactSurfaces],
     search: Search<'m>,
     state: State,
-    contact: Vec<ContactState>,
+    contact: Touching,
     ledger: Ledger,
     increment: usize,
     cutbacks: usize,
@@ -260,7 +259,7 @@ impl<'m> Runner<'m, '_> {
             passes: solved.passes,
             state: solved.end,
         };
-        solved.forces.remember(&mut self.contact);
+        self.contact = Touching::new(&solved.forces);
         self.observer.increment(&report)?;
         self.state = report.state;
         Ok(())

@@ -78,14 +78,16 @@ impl StepProblem<'_> {
         d
     }
 
-    /// Pairs between `u0` and the iterate `u`, `before` being those of the last pass.
+    /// Pairs between `u0` and the iterate `u`, `before` being those of the last pass; obstacles have
+    /// none among themselves.
     pub fn pairs(&self, search: &mut Search, u0: &[f64], u: &[f64], before: &Pairing) -> Vec<Pair> {
         let x = &self.model.mesh.coordinates;
         let form = self.weights.row_form();
         search.cover(u);
-        find_pairs(search, u, before)
+        find_pairs(search, u0, u, before)
             .into_iter()
-            .map(|site| Pair::new(site, form, x, u0, u))
+            .filter(|at| self.dofs.moves(&at.nodes))
+            .map(|at| Pair::new(at, form, x, u0, u))
             .collect()
     }
 

@@ -146,7 +146,6 @@ fn a_body_that_gathers_speed_in_an_increment_does_not_go_through_a_thin_plate() 
                 summary.cutbacks,
                 crossings(&keep),
             );
-            assert!(crossings(&keep) > 0);
             assert!(touch(&keep) && depth < 1e-9 * SIZE, "{depth:e}");
         }
     }

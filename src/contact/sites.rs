@@ -1,0 +1,335 @@
+use super::crossing::{Direction, Motion, crossings};
+use super::geometry::{Projection, position, project};
+use super::vertex::{Vertex, common_normal};
+use super::{Candidate, ContactSurfaces};
+
+/// How far beyond its ends a segment still takes a projection (in its lengths): what round-off and
+/// the tolerance of many increments make of a node that sticks at the end of a surface.
+pub(super) const ROUND_OFF: f64 = 1e-6;
+/// Gap at the start of an increment (in segment lengths) that is no penetration.
+const TOUCHING: f64 = 1e-9;
+/// Penetration of a mesh at the start of the analysis (in segment lengths) that is pushed out.
+const PENETRATING: f64 = 2e-3;
+/// How far beyond its ends a segment that is kept may be left (in its lengths), and how near the
+/// end of a segment the other side of a hollow is taken into account.
+const NEAR: f64 = 0.1;
+/// Sine of the turn at a vertex below which its two segments count as one face.
+const STRAIGHT: f64 = 1e-3;
+/// Distance sideways from a vertex (in segment lengths) at which a node meets the vertex itself.
+const TIP: f64 = 1e-5;
+
+/// What a slave node may not go through.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Site {
+    /// Index of the segment in its contact.
+    pub segment: usize,
+    /// The vertex at the segment's end b, if it is that which the node meets.
+    pub vertex: Option<Vertex>,
+}
+
+impl Site {
+    fn face(segment: usize) -> Self {
+        Site {
+            segment,
+            vertex: None,
+        }
+    }
+
+    /// Segments it is made of.
+    pub fn segments(&self) -> impl Iterator<Item = usize> + use<> {
+        [Some(self.segment), self.vertex.map(|v| v.next)]
+            .into_iter()
+            .flatten()
+    }
+}
+
+/// A slave node between the displacements `u0` of the start of an increment and those of an iterate.
+///
+/// The body lies behind each of its segments near a hollow (concave) vertex, and behind one of them
+/// near a convex vertex; a node outside is therefore held by all segments that it faces, but only by
+/// one of those that follow each other round convex vertices. It was outside at the start, and is
+/// held by segments that it was in front of then: such contact never adds energy.
+#[derive(Clone, Copy)]
+pub struct Look<'a> {
+    /// Surfaces of the contact.
+    pub surfaces: &'a ContactSurfaces,
+    /// Reference coordinates (length).
+    pub x: &'a [[f64; 2]],
+    /// Displacements of the start (length).
+    pub u0: &'a [f64],
+    /// Displacements of the iterate (length).
+    pub u: &'a [f64],
+    /// Number of the slave node in the contact.
+    pub slave: usize,
+}
+
+impl Look<'_> {
+    /// The sites of the node, with increasing segments; the candidates come with increasing segments
+    /// too.
+    pub fn sites(&self, candidates: impl Iterator<Item = Candidate>) -> Vec<Site> {
+        let faced = self.faced(candidates);
+        let mut sites = Vec::new();
+        for run in self.runs(&faced) {
+            if let Some(segment) = self.choose(&run) {
+                sites.push(self.vertex_site(segment).unwrap_or(Site::face(segment)));
+                sites.extend(self.across_hollows(segment).map(Site::face));
+            }
+        }
+        sites.sort_by_key(|site| site.segment);
+        sites.dedup_by_key(|site| site.segment);
+        sites
+    }
+
+    /// Whether a site of a pass before may be kept.
+    pub fn may_keep(&self, site: &Site) -> bool {
+        site.segments().any(|i| {
+            let p = self.place(i);
+            (-NEAR..=1.0 + NEAR).contains(&p.xi) && p.gap >= -p.length
+        })
+    }
+
+    /// Whether two sites belong to one run round convex vertices, so that one is enough.
+    pub fn same_face(&self, one: &Site, other: &Site) -> bool {
+        one.segments().any(|i| {
+            other.segments().any(|j| {
+                i == j
+                    || (self.surfaces.next[i] == Some(j) && self.turn(i, j) >= 0.0)
+                    || (self.surfaces.next[j] == Some(i) && self.turn(j, i) >= 0.0)
+            })
+        })
+    }
+
+    /// Segments into which the node projects, and the two at a vertex where it projects into neither.
+    fn faced(&self, candidates: impl Iterator<Item = Candidate>) -> Vec<usize> {
+        let mut faced = Vec::new();
+        let node = self.surfaces.slaves[self.slave];
+        let is_own = |i: usize| self.surfaces.segments[i].contains(&node);
+        for Candidate { segment: i, reach } in candidates {
+            if is_own(i) {
+                continue;
+            }
+            let p = self.place(i);
+            if (-ROUND_OFF..=1.0 + ROUND_OFF).contains(&p.xi) {
+                if p.gap <= reach && (p.gap >= -p.length || self.enters(i)) {
+                    faced.push(i);
+                }
+            } else if p.xi > 1.0
+                && p.gap >= -p.length
+                && ((p.xi - 1.0) * p.length).hypot(p.gap) <= reach
+                && let Some(j) = self.surfaces.next[i]
+                && !is_own(j)
+                && self.place(j).xi < 0.0
+            {
+                faced.extend([i, j]);
+            }
+        }
+        faced.sort_unstable();
+        faced.dedup();
+        faced
+    }
+
+    /// Whether the straight way of the node goes into the body through the segment.
+    fn enters(&self, segment: usize) -> bool {
+        let [a, b] = self.surfaces.segments[segment];
+        let motions = [self.surfaces.slaves[self.slave], a, b].map(|node| {
+            let at = |u| position(self.x, u, node);
+            Motion::straight(at(self.u0), at(self.u))
+        });
+        let is_entering = |c: &super::Crossing| c.direction == Direction::Entering;
+        crossings(&motions, 1.0).iter().any(is_entering)
+    }
+
+    /// The faced segments in runs round vertices that are not hollow.
+    fn runs(&self, faced: &[usize]) -> Vec<Vec<usize>> {
+        let is_faced = |i: &usize| faced.binary_search(i).is_ok();
+        let next = |i: usize| {
+            let j = self.surfaces.next[i].filter(is_faced)?;
+            (self.turn(i, j) >= -STRAIGHT).then_some(j)
+        };
+        let has_previous = |i: &usize| {
+            self.surfaces.previous[*i].is_some_and(|h| next(h) == Some(*i) && is_faced(&h))
+        };
+        let mut seen = vec![false; faced.len()];
+        let mut runs = Vec::new();
+        // first the runs with a head, then those all around a body
+        let heads = faced.iter().filter(|i| !has_previous(i));
+        for &head in heads.chain(faced) {
+            let mut run = Vec::new();
+            let mut following = Some(head);
+            while let Some(i) = following
+                && let Ok(k) = faced.binary_search(&i)
+                && !std::mem::replace(&mut seen[k], true)
+            {
+                run.push(i);
+                following = next(i);
+            }
+            if !run.is_empty() {
+                runs.push(run);
+            }
+        }
+        runs
+    }
+
+    /// The segment of a run that holds the node: of those that it was in front of at the start the
+    /// one that it is in front of now.
+    fn choose(&self, run: &[usize]) -> Option<usize> {
+        let gap = |i: usize| self.place(i).gap;
+        let mut best: Option<usize> = None;
+        for &i in run.iter().filter(|&&i| self.was_in_front(i)) {
+            best = match best {
+                None => Some(i),
+                Some(h) => {
+                    let is_hollow = self.surfaces.next[h] == Some(i) && self.turn(h, i) < 0.0;
+                    Some(if (gap(i) > gap(h)) != is_hollow { i } else { h })
+                }
+            };
+        }
+        best.or_else(|| self.came_from(run)).or_else(|| {
+            let nearest = |i: &&usize, j: &&usize| gap(**i).total_cmp(&gap(**j));
+            run.iter()
+                .copied()
+                .filter(|&i| self.was_pushed_in(i))
+                .max_by(|i, j| nearest(&i, &j))
+        })
+    }
+
+    /// Whether the node was in front of the line of a segment at the start.
+    fn was_in_front(&self, segment: usize) -> bool {
+        let p = self.start(segment);
+        p.gap >= -TOUCHING * p.length
+    }
+
+    /// Whether the node started a little inside, as a mesh may have it.
+    fn was_pushed_in(&self, segment: usize) -> bool {
+        let p = self.start(segment);
+        p.gap >= -PENETRATING * p.length && (-NEAR..=1.0 + NEAR).contains(&p.xi)
+    }
+
+    /// The segment before or behind a run from which the node came round convex vertices.
+    fn came_from(&self, run: &[usize]) -> Option<usize> {
+        let (&first, &last) = (run.first()?, run.last()?);
+        let walk = |from: usize, step: &[Option<usize>]| {
+            let way = self.way(from);
+            let (mut i, mut between) = (from, 0.0);
+            loop {
+                let j = step[i].filter(|&j| j != from)?;
+                let turn = if std::ptr::eq(step, &self.surfaces.next[..]) {
+                    self.turn(i, j)
+                } else {
+                    self.turn(j, i)
+                };
+                if turn < -STRAIGHT || between > 2.0 * way {
+                    return None;
+                }
+                if self.was_in_front(j) {
+                    return Some(j);
+                }
+                between += self.place(j).length;
+                i = j;
+            }
+        };
+        let own = |j: &usize| {
+            let node = self.surfaces.slaves[self.slave];
+            !self.surfaces.segments[*j].contains(&node)
+        };
+        if self.start(first).xi < 0.0 {
+            walk(first, &self.surfaces.previous).filter(own)
+        } else if self.start(last).xi > 1.0 {
+            walk(last, &self.surfaces.next).filter(own)
+        } else {
+            None
+        }
+    }
+
+    /// The other sides of the hollows at the ends of a segment, where the node is near them.
+    fn across_hollows(&self, i: usize) -> impl Iterator<Item = usize> {
+        let p = self.place(i);
+        let near = NEAR * p.length + 2.0 * self.way(i);
+        let node = self.surfaces.slaves[self.slave];
+        let at_b = self.surfaces.next[i].filter(|&j| {
+            (1.0 - p.xi) * p.length <= near
+                && self.turn(i, j) < -STRAIGHT
+                && self.place(j).xi <= 1.0
+        });
+        let at_a = self.surfaces.previous[i].filter(|&h| {
+            p.xi * p.length <= near && self.turn(h, i) < -STRAIGHT && self.place(h).xi >= 0.0
+        });
+        let holds =
+            |j: &usize| !self.surfaces.segments[*j].contains(&node) && self.was_in_front(*j);
+        [at_a, at_b]
+            .into_iter()
+            .flatten()
+            .filter(holds)
+            .collect::<Vec<_>>()
+            .into_iter()
+    }
+
+    /// The vertex at an end of a segment, if the node meets it: node against node.
+    fn vertex_site(&self, i: usize) -> Option<Site> {
+        let before = self.surfaces.previous[i].map(|h| [h, i]);
+        let behind = self.surfaces.next[i].map(|j| [i, j]);
+        [before, behind].into_iter().flatten().find_map(|[i, j]| {
+            let (p, q) = (self.place(i), self.place(j));
+            let across = [p.tangent[0] + q.tangent[0], p.tangent[1] + q.tangent[1]];
+            let aside = (p.xi - 1.0) * p.length + q.xi * q.length;
+            let length = p.length.min(q.length) * across[0].hypot(across[1]);
+            if self.turn(i, j) <= STRAIGHT || aside.abs() > TIP * length {
+                return None;
+            }
+            let node = self.surfaces.slaves[self.slave];
+            let [before, behind] = self.surfaces.beside[self.slave]?;
+            let at = |n: usize| position(self.x, self.u, n);
+            let own =
+                [[before, node], [node, behind]].map(|[a, b]| project(at(a), at(a), at(b)).normal);
+            let vertex = Vertex {
+                next: j,
+                weight: common_normal([p.normal, q.normal], own)?,
+            };
+            let start_gap = vertex.blend(self.start(i).gap, self.start(j).gap);
+            let is_outside = start_gap >= -TOUCHING * length;
+            match vertex.weight {
+                0.0 if self.was_in_front(i) => Some(Site::face(i)),
+                1.0 if self.was_in_front(j) => Some(Site::face(j)),
+                weight if weight > 0.0 && weight < 1.0 && is_outside => Some(Site {
+                    segment: i,
+                    vertex: Some(vertex),
+                }),
+                _ => None,
+            }
+        })
+    }
+
+    /// How far the node has gone relative to a segment since the start.
+    fn way(&self, segment: usize) -> f64 {
+        let [a, b] = self.surfaces.segments[segment];
+        let xi = self.place(segment).xi.clamp(0.0, 1.0);
+        let node = self.surfaces.slaves[self.slave];
+        let d = |n: usize, i: usize| self.u[2 * n + i] - self.u0[2 * n + i];
+        let relative = |i: usize| d(node, i) - (1.0 - xi) * d(a, i) - xi * d(b, i);
+        relative(0).hypot(relative(1))
+    }
+
+    /// Sine of the turn to the left from one segment to the next: positive at a convex vertex.
+    fn turn(&self, i: usize, j: usize) -> f64 {
+        let [e, f] = [i, j].map(|i| {
+            let [a, b] = self.surfaces.segments[i].map(|n| position(self.x, self.u, n));
+            project(a, a, b).tangent
+        });
+        e[0] * f[1] - e[1] * f[0]
+    }
+
+    /// Place of the node relative to a segment in the iterate.
+    fn place(&self, segment: usize) -> Projection {
+        self.place_at(self.u, segment)
+    }
+
+    /// The same at the start.
+    fn start(&self, segment: usize) -> Projection {
+        self.place_at(self.u0, segment)
+    }
+
+    fn place_at(&self, u: &[f64], segment: usize) -> Projection {
+        let [a, b] = self.surfaces.segments[segment].map(|n| position(self.x, u, n));
+        project(position(self.x, u, self.surfaces.slaves[self.slave]), a, b)
+    }
+}
