@@ -8,6 +8,9 @@ use stickslip::{deck, reader};
 const SQUARE: &str = include_str!("decks/square.inp");
 const SHARED: &str = include_str!("decks/shared.inp");
 
+const GENERAL: &str = "*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n";
+const PAIR: &str = "*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE\nSBOT, STOP\n";
+
 /// A deck to be read.
 enum Source {
     Text(String),
@@ -119,6 +122,7 @@ fn faulty(code: Code) -> Source {
         ),
         SurfaceUse => shared("SBOT, STOP", "SBOT, SBOT"),
         FrictionRange => shared("0.3, 2.1E5", "-0.3"),
+        GeneralContact => shared("*CONTACT PAIR", &format!("{GENERAL}*CONTACT PAIR")),
         InitialPenetration => shared("11, 1., 1.1", "11, 1., 0.99"),
         UnitsHint => square("1000., 0.3", "1., 0.3"),
         BadDof => square("FOOT, 1, 2", "FOOT, 1, 8"),
@@ -167,6 +171,36 @@ fn one_cause_one_message() {
         let (d, text) = messages(&faulty(code));
         assert_eq!(d.count(Severity::Error), 1, "{text}");
     }
+}
+
+#[test]
+fn contacts_that_cannot_be() {
+    let general = |more: &str| format!("{GENERAL}{more}");
+    let of_nodes = format!(
+        "*SURFACE, NAME=S, TYPE=NODE\nNFIX\n{}",
+        PAIR.replace("SBOT, STOP", "S")
+    );
+    let decks = [
+        shared(PAIR, &of_nodes),
+        shared(PAIR, "*CONTACT\n"),
+        shared(PAIR, "*CONTACT\n*CONTACT INCLUSIONS\n"),
+        shared(PAIR, &general("SBOT, STOP\n")),
+        shared(PAIR, &general("*CONTACT EXCLUSIONS\nSBOT, STOP\n")),
+        shared(
+            PAIR,
+            &general("*CONTACT PROPERTY ASSIGNMENT\nSBOT, , DRY\n"),
+        ),
+        shared(PAIR, &general("*CONTACT PROPERTY ASSIGNMENT\n, , WET\n")),
+        shared(PAIR, &general("*SURFACE, NAME=All_Exterior\nEBASE, S3\n")),
+        shared(PAIR, &format!("*CONTACT INCLUSIONS, ALL EXTERIOR\n{PAIR}")),
+        step(GENERAL.trim_end()),
+    ];
+    let texts = decks.map(|deck| {
+        let (d, text) = messages(&deck);
+        assert_eq!(d.count(Severity::Error), 1, "{text}");
+        text
+    });
+    insta::assert_snapshot!(texts.join("\n"));
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use std::path::Path;
 use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::model::*;
+use stickslip::output::contact_names;
 use stickslip::{deck, reader};
 
 /// The model of a deck, which must have no errors, and the text of its warnings.
@@ -69,6 +70,49 @@ fn square_reads_without_messages() {
         variation: Variation::Constant,
     };
     assert_eq!(step.point_loads, [load]);
+}
+
+const PAIR: &str = "*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE\nSBOT, STOP\n";
+
+/// The model of the block on its base with other contacts.
+fn contacts(cards: &str) -> Model {
+    let deck = include_str!("decks/shared.inp");
+    assert!(deck.contains(PAIR));
+    read(&deck.replacen(PAIR, cards, 1)).0
+}
+
+#[test]
+fn one_surface_on_a_pair_touches_itself() {
+    let model = contacts(&PAIR.replace("SBOT, STOP", "STOP"));
+    let contact = &model.contacts[0];
+    assert!(contact.is_self_contact());
+    assert_eq!(model.surfaces[contact.master].name, "STOP");
+    assert_eq!(contact_names(&model), ["STOP_STOP"]);
+}
+
+#[test]
+fn general_contact_is_that_of_all_exterior_faces() {
+    let general = "*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n";
+    let model = contacts(general);
+    assert_eq!(model.friction(&model.contacts[0]), 0.0);
+    let assigned = format!("{general}*CONTACT PROPERTY ASSIGNMENT\n ,  , DRY\n");
+    let model = contacts(&assigned);
+    let [contact] = &model.contacts[..] else {
+        panic!("{:?}", model.contacts);
+    };
+    assert!(contact.is_self_contact());
+    assert_eq!(model.friction(contact), 0.3);
+    assert_eq!(contact_names(&model), [ALL_EXTERIOR]);
+    let labels = |[a, b]: [usize; 2]| [a, b].map(|node| model.mesh.node_labels[node]);
+    let surface = &model.surfaces[contact.slave];
+    let segments: Vec<[u64; 2]> = surface
+        .segments(&model.mesh)
+        .into_iter()
+        .map(labels)
+        .collect();
+    let base = [[1, 2], [2, 3], [3, 6], [6, 5], [5, 4], [4, 1]];
+    let block = [[11, 12], [12, 13], [13, 14], [14, 11]];
+    assert_eq!(segments, [&base[..], &block].concat());
 }
 
 #[test]

@@ -31,7 +31,7 @@ pub fn contact_surfaces(model: &Model) -> Vec<ContactSurfaces> {
                 .map(|[_, b]| starts.get(b).copied())
                 .collect(),
             segments,
-            friction: model.interactions[contact.interaction].friction,
+            friction: model.friction(contact),
         }
     };
     model.contacts.iter().map(of_contact).collect()

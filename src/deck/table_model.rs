@@ -272,7 +272,32 @@ pub(super) static MODEL: &[Keyword] = &[
             P::value("OP", "contact pairs hold for all steps").refused(),
         ],
         "Slave surface, master surface; one contact per row. The master consists of faces; both \
-         orders of two surfaces may be given.",
+         orders of two surfaces may be given. One surface alone touches itself.",
+    ),
+    Keyword::read(
+        "CONTACT",
+        Scope::Model,
+        Data::None,
+        &[P::value("OP", "contacts hold for all steps").refused()],
+        "Begins general contact: every exterior face against every other, of its own body too.",
+    ),
+    Keyword::read(
+        "CONTACT INCLUSIONS",
+        Scope::Block("CONTACT"),
+        Data::Rows,
+        &[P::flag(
+            "ALL EXTERIOR",
+            "all faces that belong to one element only; required",
+        )],
+        "What takes part in general contact: a surface ALL_EXTERIOR is made.",
+    ),
+    Keyword::read(
+        "CONTACT PROPERTY ASSIGNMENT",
+        Scope::Block("CONTACT"),
+        Data::Required,
+        &[],
+        "Interaction of general contact: a row of two empty fields, which stand for all surfaces, \
+         and its name. Without it there is no friction.",
     ),
     // --- amplitudes, initial and boundary conditions, loads --------------------------------
     Keyword::read(

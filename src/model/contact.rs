@@ -9,15 +9,23 @@ pub struct Interaction {
     pub friction: f64,
 }
 
-/// A slave surface whose nodes may not enter the body behind the master surface.
+/// A slave surface whose nodes may not enter the body behind the master surface; self-contact if
+/// both are the same surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
     /// Index of the slave surface.
     pub slave: usize,
     /// Index of the master surface (made of faces).
     pub master: usize,
-    /// Index of the interaction.
-    pub interaction: usize,
+    /// Index of the interaction; `None` is hard contact without friction.
+    pub interaction: Option<usize>,
     /// Where the deck says so, for messages.
     pub span: Span,
+}
+
+impl Contact {
+    /// Whether a surface touches itself.
+    pub fn is_self_contact(&self) -> bool {
+        self.slave == self.master
+    }
 }

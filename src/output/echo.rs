@@ -176,12 +176,13 @@ fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<S
     };
     let nodes = counted(slave.nodes(&model.mesh).len(), "node");
     let edges = counted(edges, "edge");
+    let sides = match contact.is_self_contact() {
+        true => format!("{} ({nodes}, {edges}) with itself", slave.name),
+        false => format!("{} ({nodes}) -> {} ({edges})", slave.name, master.name),
+    };
     let pieces = [
-        format!("{} ({nodes}) -> {} ({edges})", slave.name, master.name),
-        format!(
-            "mu {}",
-            general(model.interactions[contact.interaction].friction, 4)
-        ),
+        sides,
+        format!("mu {}", general(model.friction(contact), 4)),
         smallest_gap(gaps),
     ];
     wrap("contact", &pieces)

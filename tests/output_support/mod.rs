@@ -109,7 +109,7 @@ fn contact() -> Contact {
     Contact {
         slave: 0,
         master: 1,
-        interaction: 0,
+        interaction: Some(0),
         span: Span::default(),
     }
 }
