@@ -258,7 +258,7 @@ fn increments_are_limited_unless_direct() {
 
 #[test]
 fn settings_are_read_and_kept() {
-    let card = "*STICKSLIP, SCHEME=SS22, THETA1=0.5, THETA2=0.6, IMPACT=NONE, IMPACT TIME=INCREMENT, \
+    let card = "*STICKSLIP, SCHEME=SS22, THETA1=0.5, THETA2=0.6, IMPACT=NONE, IMPACT TIME=EVENT, \
                 LCP=LEMKE, FACTORIZATION=EVERY PASS, SOLVER=SPRS, TOLERANCE=1e-9, MAX PASSES=9";
     let model = second_step("*STEP", card, "*STICKSLIP, SCHEME=energy-momentum");
     let settings = Settings {
@@ -267,6 +267,7 @@ fn settings_are_read_and_kept() {
             theta2: 0.6,
         },
         impact: Impact::None,
+        impact_time: ImpactTime::Event,
         lcp: LcpChoice::Lemke,
         factorization: Factorization::EveryPass,
         solver: SolverChoice::Sprs,

@@ -17,7 +17,7 @@ pub use contact::{Contact, Interaction};
 pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
 pub use material::{Material, Plane, Section};
 pub use mesh::{Cell, Element, Mesh, Set};
-pub use settings::{Factorization, Impact, LcpChoice, Scheme, Settings, SolverChoice};
+pub use settings::{Factorization, Impact, ImpactTime, LcpChoice, Scheme, Settings, SolverChoice};
 pub use step::{Frames, Increments, Step};
 pub use surface::{ALL_EXTERIOR, Face, Surface, SurfaceKind};
 
