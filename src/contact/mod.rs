@@ -4,6 +4,7 @@ mod circles;
 mod compliance;
 mod crossing;
 mod geometry;
+mod initial;
 mod pair;
 mod passage;
 #[cfg(test)]
@@ -19,12 +20,11 @@ pub use compliance::Compliance;
 pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
 pub(crate) use geometry::position;
 pub use geometry::{Projection, project};
+pub use initial::{InitialGap, initial_gaps};
 pub use pair::{Pair, PairSite, RowForm};
 pub use passage::{Passage, Touch, find_passage};
 pub use penetration::report_penetrations;
 pub use problem::{add_contact_forces, frictional_lcp};
-pub use search::{
-    Candidate, InitialGap, Pairing, all_segments, find_pairs, find_segment, initial_gaps,
-};
+pub use search::{Candidate, Pairing, all_segments, find_pairs, find_segment};
 pub use surfaces::{ContactSurfaces, contact_surfaces};
 pub use territory::{Search, Territory};

@@ -1,6 +1,5 @@
 use super::geometry::{Projection, position, project};
-use super::{ContactSurfaces, PairSite, Search, Territory, contact_surfaces};
-use crate::model::Model;
+use super::{ContactSurfaces, PairSite, Search, Territory};
 
 /// How far beyond its ends a segment still takes a projection (in its lengths): what round-off and
 /// the tolerance of many increments make of a node that sticks at the end of a surface.
@@ -126,42 +125,6 @@ pub fn find_pairs(search: &Search, u: &[f64], before: &Pairing) -> Vec<PairSite>
 /// Distance of the point from the end b of the segment.
 fn beyond(p: &Projection) -> f64 {
     ((p.xi - 1.0) * p.length).hypot(p.gap)
-}
-
-/// Gap of a slave node to the segment it faces in the reference configuration.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct InitialGap {
-    /// Slave node (index).
-    pub slave: usize,
-    /// Gap (length), negative when the node is inside the body.
-    pub gap: f64,
-    /// Length of the segment.
-    pub edge: f64,
-}
-
-/// Gaps of the slave nodes of each contact of a model in the reference configuration; nodes that
-/// face no segment are left out.
-pub fn initial_gaps(model: &Model) -> Vec<Vec<InitialGap>> {
-    let x = &model.mesh.coordinates;
-    let u = vec![0.0; model.mesh.dof_count()];
-    let gap_of = |surfaces: &ContactSurfaces, slave: usize| {
-        let found = find_segment(surfaces, x, &u, slave, all_segments(surfaces))?;
-        let [a, b] = surfaces.segments[found];
-        let p = project(x[slave], x[a], x[b]);
-        Some(InitialGap {
-            slave,
-            gap: p.gap,
-            edge: p.length,
-        })
-    };
-    let of_contact = |surfaces: &ContactSurfaces| {
-        surfaces
-            .slaves
-            .iter()
-            .filter_map(|&slave| gap_of(surfaces, slave))
-            .collect()
-    };
-    contact_surfaces(model).iter().map(of_contact).collect()
 }
 
 #[cfg(test)]
