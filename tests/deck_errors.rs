@@ -1,7 +1,7 @@
 //! One deck and one golden text for every diagnostic code.
 
 use std::path::Path;
-use stickslip::contact::report_penetrations;
+use stickslip::contact::{adjust, report_adjusted, report_penetrations};
 use stickslip::diagnostics::{Code, Diagnostics, Severity, Sources};
 use stickslip::{deck, reader};
 
@@ -24,9 +24,11 @@ fn messages(source: &Source) -> (Diagnostics, String) {
         Source::Text(text) => deck::parse_str("deck.inp", text, &mut sources, &mut d),
         Source::File(path) => deck::read(Path::new(path), &mut sources, &mut d),
     };
-    let model = reader::build(&deck, &mut d);
+    let mut model = reader::build(&deck, &mut d);
     assert_eq!(model.is_some(), !d.has_errors());
-    if let Some(model) = &model {
+    if let Some(model) = &mut model {
+        let adjusted = adjust(model);
+        report_adjusted(model, &adjusted, &mut d);
         report_penetrations(model, &mut d);
     }
     let text = d.render(&sources, false);
@@ -125,6 +127,7 @@ fn faulty(code: Code) -> Source {
         GeneralContact => shared("*CONTACT PAIR", &format!("{GENERAL}*CONTACT PAIR")),
         InitialPenetration => shared("11, 1., 1.1", "11, 1., 0.99"),
         UnitsHint => square("1000., 0.3", "1., 0.3"),
+        Adjusted => shared("DRY, TYPE", "DRY, ADJUST=0.2, TYPE"),
         BadDof => square("FOOT, 1, 2", "FOOT, 1, 8"),
         ValueOutsideStep => square("FOOT, 1, 2", "FOOT, 1, 2, 0.1"),
         VelocityOnSupport => model("*INITIAL CONDITIONS, TYPE=VELOCITY\nALL, 2, -1."),
@@ -176,12 +179,27 @@ fn one_cause_one_message() {
 #[test]
 fn contacts_that_cannot_be() {
     let general = |more: &str| format!("{GENERAL}{more}");
+    let pair = |adjust: &str, row: &str| {
+        format!("*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE, {adjust}\n{row}\n")
+    };
     let of_nodes = format!(
         "*SURFACE, NAME=S, TYPE=NODE\nNFIX\n{}",
         PAIR.replace("SBOT, STOP", "S")
     );
     let decks = [
         shared(PAIR, &of_nodes),
+        shared(PAIR, &pair("ADJUST=-0.1", "SBOT, STOP")),
+        shared(PAIR, &pair("ADJUST=NFOX", "SBOT, STOP")),
+        shared(PAIR, &pair("ADJUST=0.1", "SBOT")),
+        shared(
+            PAIR,
+            &pair(
+                "ADJUST=1.2",
+                "SALL, STOP
+*SURFACE, NAME=SALL
+EBLOCK",
+            ),
+        ),
         shared(PAIR, "*CONTACT\n"),
         shared(PAIR, "*CONTACT\n*CONTACT INCLUSIONS\n"),
         shared(PAIR, &general("SBOT, STOP\n")),

@@ -1,6 +1,7 @@
 //! Valid decks and the model they describe.
 
 use std::path::Path;
+use stickslip::contact::adjust as adjust_nodes;
 use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::model::*;
 use stickslip::output::contact_names;
@@ -433,4 +434,35 @@ fn a_deck_as_a_preprocessor_writes_it() {
     let model = model.expect("no errors");
     assert_eq!(model.contacts.len(), 1);
     assert_eq!(model.steps[0].increments.dt, 1e-3);
+}
+
+/// Heights of the nodes 11 and 12 of the block, which are 0.1 above and 0.05 inside its base, after
+/// they are adjusted.
+fn adjusted(adjust: &str) -> ([f64; 2], usize) {
+    let deck = include_str!("decks/shared.inp")
+        .replacen("12, 3., 1.1", "12, 3., 0.95", 1)
+        .replacen(
+            PAIR,
+            &PAIR.replace("TYPE", &format!("ADJUST={adjust}, TYPE")),
+            1,
+        );
+    let mut model = read(&deck).0;
+    let moved = adjust_nodes(&mut model);
+    let height = |label: u64| {
+        let found = model.mesh.node_labels.iter().position(|&l| l == label);
+        model.mesh.coordinates[found.expect("node")][1]
+    };
+    assert_eq!(moved.iter().filter_map(|m| m.spoiled).count(), 0);
+    (
+        [height(11), height(12)],
+        moved.iter().map(|m| m.count).sum(),
+    )
+}
+
+#[test]
+fn adjusted_nodes_are_moved_onto_the_master() {
+    assert_eq!(adjusted("0.2"), ([1.0, 1.0], 2));
+    assert_eq!(adjusted("0.0"), ([1.1, 1.0], 1));
+    assert_eq!(adjusted("NBLOCK"), ([1.0, 1.0], 2));
+    assert_eq!(adjusted("NFIX"), ([1.1, 0.95], 0));
 }

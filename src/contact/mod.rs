@@ -1,5 +1,6 @@
 //! Node-to-segment contact: pairs, their rows and their complementarity problem.
 
+mod adjust;
 mod circles;
 mod compliance;
 mod crossing;
@@ -16,6 +17,7 @@ mod search;
 mod surfaces;
 mod territory;
 
+pub use adjust::{Adjusted, adjust, report_adjusted};
 pub use compliance::Compliance;
 pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
 pub(crate) use geometry::position;

@@ -254,9 +254,9 @@ pub(super) static MODEL: &[Keyword] = &[
             P::flag("SMALL SLIDING", "sliding is finite").warned(),
             P::value(
                 "ADJUST",
-                "not supported yet: nodes are not moved before the start",
-            )
-            .refused(),
+                "largest clearance, or node set, of the slave nodes that are moved onto the master \
+                 before the start, free of strain; with a clearance those inside the master too",
+            ),
             P::flag("TIED", "surfaces cannot be tied yet").refused(),
             P::value("EXTENSION ZONE", SMOOTHING).warned(),
             P::value("SMOOTH", SMOOTHING).warned(),

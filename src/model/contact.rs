@@ -19,8 +19,19 @@ pub struct Contact {
     pub master: usize,
     /// Index of the interaction; `None` is hard contact without friction.
     pub interaction: Option<usize>,
+    /// Slave nodes that are moved onto the master surface before the start.
+    pub adjust: Option<Adjust>,
     /// Where the deck says so, for messages.
     pub span: Span,
+}
+
+/// Which slave nodes are moved onto the master surface before the start, free of strain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Adjust {
+    /// Those inside the master body and those with at most this clearance (length).
+    Within(f64),
+    /// Those of the node set with this index.
+    Nodes(usize),
 }
 
 impl Contact {

@@ -13,7 +13,7 @@ mod step;
 mod surface;
 
 pub use amplitude::{Amplitude, TimeBase};
-pub use contact::{Contact, Interaction};
+pub use contact::{Adjust, Contact, Interaction};
 pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
 pub use material::{Material, Plane, Section};
 pub use mesh::{Cell, Element, Mesh, Set};

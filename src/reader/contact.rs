@@ -5,16 +5,18 @@ use super::general_contact;
 use super::mesh::Grid;
 use super::names::Names;
 use super::outline::{Block, Outline};
+use super::sets::Sets;
 use super::surface::{self, Found, Surfaces};
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic};
-use crate::model::{Contact, Interaction, SurfaceKind};
+use crate::model::{Adjust, Contact, Interaction, SurfaceKind};
 use std::collections::HashSet;
 
 /// Reads interactions and contacts.
 pub(super) fn read(
     outline: &Outline,
     grid: &Grid,
+    sets: &Sets,
     surfaces: &mut Surfaces,
     cx: &mut Context,
 ) -> (Vec<Interaction>, Vec<Contact>) {
@@ -38,8 +40,11 @@ pub(super) fn read(
     for card in outline.model_cards("CONTACT PAIR") {
         let name = card.required("INTERACTION", cx.d);
         let interaction = name.and_then(|name| names.find(name, cx));
+        let adjust = adjust(card, sets, cx);
         for row in &card.rows {
-            contacts.extend(contact(row, interaction, surfaces, cx));
+            let contact = contact(row, interaction, surfaces, cx);
+            report_adjusted_self_contact(contact.as_ref(), card, cx);
+            contacts.extend(contact.map(|contact| Contact { adjust, ..contact }));
         }
     }
     report_repeated(&contacts, cx);
@@ -49,6 +54,27 @@ pub(super) fn read(
     }
     contacts.extend(general);
     (interactions, contacts)
+}
+
+/// A clearance or a node set.
+fn adjust(card: &Card, sets: &Sets, cx: &mut Context) -> Option<Adjust> {
+    let value = card.value("ADJUST")?;
+    match value.as_real() {
+        None => sets.node_names.find(value, cx).map(Adjust::Nodes),
+        Some(clearance) if clearance >= 0.0 => Some(Adjust::Within(clearance)),
+        Some(_) => {
+            let message = format!("the clearance must not be negative, found {}", value.text);
+            cx.error(Code::BadValue, value.span, message);
+            None
+        }
+    }
+}
+
+fn report_adjusted_self_contact(contact: Option<&Contact>, card: &Card, cx: &mut Context) {
+    if card.has("ADJUST") && contact.is_some_and(Contact::is_self_contact) {
+        let message = "the nodes of a surface that touches itself cannot be moved onto it";
+        cx.error(Code::SurfaceUse, card.span_of("ADJUST"), message);
+    }
 }
 
 /// The same slave and master twice would count each contact force twice.
@@ -130,6 +156,7 @@ fn contact(
         slave: slave.0,
         master: master.0,
         interaction: Some(interaction?),
+        adjust: None,
         span: row.span(),
     })
 }

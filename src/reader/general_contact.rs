@@ -40,6 +40,7 @@ pub(super) fn read(
         slave: surface,
         master: surface,
         interaction: assigned.ok()?,
+        adjust: None,
         span,
     })
 }

@@ -57,7 +57,7 @@ fn read(cx: &mut Context) -> Model {
     let sets = sets::read(&outline, &grid, cx);
     let mut surfaces = surface::read(&outline, &grid, &sets, cx);
     let properties = material::read(&outline, &grid, &sets, cx);
-    let (interactions, contacts) = contact::read(&outline, &grid, &mut surfaces, cx);
+    let (interactions, contacts) = contact::read(&outline, &grid, &sets, &mut surfaces, cx);
     check::thickness(&contacts, &surfaces, &properties, cx);
     let amplitudes = amplitude::read(cx);
     let targets = Targets {

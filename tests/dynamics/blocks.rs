@@ -144,6 +144,7 @@ pub fn add_contact(model: &mut Model, slave: Vec<Face>, master: Vec<Face>, frict
         slave: master - 1,
         master,
         interaction: Some(interaction),
+        adjust: None,
         span: Span::default(),
     });
 }

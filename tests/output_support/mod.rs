@@ -110,6 +110,7 @@ fn contact() -> Contact {
         slave: 0,
         master: 1,
         interaction: Some(0),
+        adjust: None,
         span: Span::default(),
     }
 }
