@@ -1,12 +1,15 @@
 //! One deck and one golden text for every diagnostic code.
 
 use std::path::Path;
-use stickslip::contact::report_penetrations;
+use stickslip::contact::{adjust, report_adjusted, report_penetrations};
 use stickslip::diagnostics::{Code, Diagnostics, Severity, Sources};
 use stickslip::{deck, reader};
 
 const SQUARE: &str = include_str!("decks/square.inp");
 const SHARED: &str = include_str!("decks/shared.inp");
+
+const GENERAL: &str = "*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n";
+const PAIR: &str = "*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE\nSBOT, STOP\n";
 
 /// A deck to be read.
 enum Source {
@@ -21,9 +24,11 @@ fn messages(source: &Source) -> (Diagnostics, String) {
         Source::Text(text) => deck::parse_str("deck.inp", text, &mut sources, &mut d),
         Source::File(path) => deck::read(Path::new(path), &mut sources, &mut d),
     };
-    let model = reader::build(&deck, &mut d);
+    let mut model = reader::build(&deck, &mut d);
     assert_eq!(model.is_some(), !d.has_errors());
-    if let Some(model) = &model {
+    if let Some(model) = &mut model {
+        let adjusted = adjust(model);
+        report_adjusted(model, &adjusted, &mut d);
         report_penetrations(model, &mut d);
     }
     let text = d.render(&sources, false);
@@ -119,8 +124,10 @@ fn faulty(code: Code) -> Source {
         ),
         SurfaceUse => shared("SBOT, STOP", "SBOT, SBOT"),
         FrictionRange => shared("0.3, 2.1E5", "-0.3"),
+        GeneralContact => shared("*CONTACT PAIR", &format!("{GENERAL}*CONTACT PAIR")),
         InitialPenetration => shared("11, 1., 1.1", "11, 1., 0.99"),
         UnitsHint => square("1000., 0.3", "1., 0.3"),
+        Adjusted => shared("DRY, TYPE", "DRY, ADJUST=0.2, TYPE"),
         BadDof => square("FOOT, 1, 2", "FOOT, 1, 8"),
         ValueOutsideStep => square("FOOT, 1, 2", "FOOT, 1, 2, 0.1"),
         VelocityOnSupport => model("*INITIAL CONDITIONS, TYPE=VELOCITY\nALL, 2, -1."),
@@ -167,6 +174,51 @@ fn one_cause_one_message() {
         let (d, text) = messages(&faulty(code));
         assert_eq!(d.count(Severity::Error), 1, "{text}");
     }
+}
+
+#[test]
+fn contacts_that_cannot_be() {
+    let general = |more: &str| format!("{GENERAL}{more}");
+    let pair = |adjust: &str, row: &str| {
+        format!("*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE, {adjust}\n{row}\n")
+    };
+    let of_nodes = format!(
+        "*SURFACE, NAME=S, TYPE=NODE\nNFIX\n{}",
+        PAIR.replace("SBOT, STOP", "S")
+    );
+    let decks = [
+        shared(PAIR, &of_nodes),
+        shared(PAIR, &pair("ADJUST=-0.1", "SBOT, STOP")),
+        shared(PAIR, &pair("ADJUST=NFOX", "SBOT, STOP")),
+        shared(PAIR, &pair("ADJUST=0.1", "SBOT")),
+        shared(
+            PAIR,
+            &pair(
+                "ADJUST=1.2",
+                "SALL, STOP
+*SURFACE, NAME=SALL
+EBLOCK",
+            ),
+        ),
+        shared(PAIR, "*CONTACT\n"),
+        shared(PAIR, "*CONTACT\n*CONTACT INCLUSIONS\n"),
+        shared(PAIR, &general("SBOT, STOP\n")),
+        shared(PAIR, &general("*CONTACT EXCLUSIONS\nSBOT, STOP\n")),
+        shared(
+            PAIR,
+            &general("*CONTACT PROPERTY ASSIGNMENT\nSBOT, , DRY\n"),
+        ),
+        shared(PAIR, &general("*CONTACT PROPERTY ASSIGNMENT\n, , WET\n")),
+        shared(PAIR, &general("*SURFACE, NAME=All_Exterior\nEBASE, S3\n")),
+        shared(PAIR, &format!("*CONTACT INCLUSIONS, ALL EXTERIOR\n{PAIR}")),
+        step(GENERAL.trim_end()),
+    ];
+    let texts = decks.map(|deck| {
+        let (d, text) = messages(&deck);
+        assert_eq!(d.count(Severity::Error), 1, "{text}");
+        text
+    });
+    insta::assert_snapshot!(texts.join("\n"));
 }
 
 #[test]

@@ -112,7 +112,7 @@ fn check(model: &Model) {
                 .is_empty()
         );
         assert!(!model.surfaces[contact.slave].nodes(&model.mesh).is_empty());
-        assert!(model.interactions[contact.interaction].friction >= 0.0);
+        assert!(model.friction(contact) >= 0.0);
     }
     for amplitude in &model.amplitudes {
         assert!(!amplitude.points.is_empty());

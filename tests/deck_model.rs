@@ -1,8 +1,10 @@
 //! Valid decks and the model they describe.
 
 use std::path::Path;
+use stickslip::contact::adjust as adjust_nodes;
 use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::model::*;
+use stickslip::output::contact_names;
 use stickslip::{deck, reader};
 
 /// The model of a deck, which must have no errors, and the text of its warnings.
@@ -69,6 +71,49 @@ fn square_reads_without_messages() {
         variation: Variation::Constant,
     };
     assert_eq!(step.point_loads, [load]);
+}
+
+const PAIR: &str = "*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE\nSBOT, STOP\n";
+
+/// The model of the block on its base with other contacts.
+fn contacts(cards: &str) -> Model {
+    let deck = include_str!("decks/shared.inp");
+    assert!(deck.contains(PAIR));
+    read(&deck.replacen(PAIR, cards, 1)).0
+}
+
+#[test]
+fn one_surface_on_a_pair_touches_itself() {
+    let model = contacts(&PAIR.replace("SBOT, STOP", "STOP"));
+    let contact = &model.contacts[0];
+    assert!(contact.is_self_contact());
+    assert_eq!(model.surfaces[contact.master].name, "STOP");
+    assert_eq!(contact_names(&model), ["STOP_STOP"]);
+}
+
+#[test]
+fn general_contact_is_that_of_all_exterior_faces() {
+    let general = "*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n";
+    let model = contacts(general);
+    assert_eq!(model.friction(&model.contacts[0]), 0.0);
+    let assigned = format!("{general}*CONTACT PROPERTY ASSIGNMENT\n ,  , DRY\n");
+    let model = contacts(&assigned);
+    let [contact] = &model.contacts[..] else {
+        panic!("{:?}", model.contacts);
+    };
+    assert!(contact.is_self_contact());
+    assert_eq!(model.friction(contact), 0.3);
+    assert_eq!(contact_names(&model), [ALL_EXTERIOR]);
+    let labels = |[a, b]: [usize; 2]| [a, b].map(|node| model.mesh.node_labels[node]);
+    let surface = &model.surfaces[contact.slave];
+    let segments: Vec<[u64; 2]> = surface
+        .segments(&model.mesh)
+        .into_iter()
+        .map(labels)
+        .collect();
+    let base = [[1, 2], [2, 3], [3, 6], [6, 5], [5, 4], [4, 1]];
+    let block = [[11, 12], [12, 13], [13, 14], [14, 11]];
+    assert_eq!(segments, [&base[..], &block].concat());
 }
 
 #[test]
@@ -214,7 +259,7 @@ fn increments_are_limited_unless_direct() {
 
 #[test]
 fn settings_are_read_and_kept() {
-    let card = "*STICKSLIP, SCHEME=SS22, THETA1=0.5, THETA2=0.6, IMPACT=NONE, IMPACT TIME=INCREMENT, \
+    let card = "*STICKSLIP, SCHEME=SS22, THETA1=0.5, THETA2=0.6, IMPACT=NONE, IMPACT TIME=EVENT, \
                 LCP=LEMKE, FACTORIZATION=EVERY PASS, SOLVER=SPRS, TOLERANCE=1e-9, MAX PASSES=9";
     let model = second_step("*STEP", card, "*STICKSLIP, SCHEME=energy-momentum");
     let settings = Settings {
@@ -223,6 +268,7 @@ fn settings_are_read_and_kept() {
             theta2: 0.6,
         },
         impact: Impact::None,
+        impact_time: ImpactTime::Event,
         lcp: LcpChoice::Lemke,
         factorization: Factorization::EveryPass,
         solver: SolverChoice::Sprs,
@@ -388,4 +434,35 @@ fn a_deck_as_a_preprocessor_writes_it() {
     let model = model.expect("no errors");
     assert_eq!(model.contacts.len(), 1);
     assert_eq!(model.steps[0].increments.dt, 1e-3);
+}
+
+/// Heights of the nodes 11 and 12 of the block, which are 0.1 above and 0.05 inside its base, after
+/// they are adjusted.
+fn adjusted(adjust: &str) -> ([f64; 2], usize) {
+    let deck = include_str!("decks/shared.inp")
+        .replacen("12, 3., 1.1", "12, 3., 0.95", 1)
+        .replacen(
+            PAIR,
+            &PAIR.replace("TYPE", &format!("ADJUST={adjust}, TYPE")),
+            1,
+        );
+    let mut model = read(&deck).0;
+    let moved = adjust_nodes(&mut model);
+    let height = |label: u64| {
+        let found = model.mesh.node_labels.iter().position(|&l| l == label);
+        model.mesh.coordinates[found.expect("node")][1]
+    };
+    assert_eq!(moved.iter().filter_map(|m| m.spoiled).count(), 0);
+    (
+        [height(11), height(12)],
+        moved.iter().map(|m| m.count).sum(),
+    )
+}
+
+#[test]
+fn adjusted_nodes_are_moved_onto_the_master() {
+    assert_eq!(adjusted("0.2"), ([1.0, 1.0], 2));
+    assert_eq!(adjusted("0.0"), ([1.1, 1.0], 1));
+    assert_eq!(adjusted("NBLOCK"), ([1.0, 1.0], 2));
+    assert_eq!(adjusted("NFIX"), ([1.1, 0.95], 0));
 }

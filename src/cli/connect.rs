@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::contact::report_penetrations;
+use crate::contact::{adjust, report_adjusted, report_penetrations};
 use crate::diagnostics::{Code, Diagnostics, Severity, Sources, Strictness};
 use crate::dynamics::{self, Observer, RunError, RunSummary};
 use crate::model::Model;
@@ -55,8 +55,10 @@ impl Numerics {
 fn load(path: &Path, strictness: Strictness, colour: bool) -> Loaded {
     let mut sources = Sources::new();
     let mut d = Diagnostics::with_strictness(strictness);
-    let model = reader::read_model(path, &mut sources, &mut d);
-    if let Some(model) = &model {
+    let mut model = reader::read_model(path, &mut sources, &mut d);
+    if let Some(model) = &mut model {
+        let adjusted = adjust(model);
+        report_adjusted(model, &adjusted, &mut d);
         report_penetrations(model, &mut d);
     }
     let ours = d.without(Code::LongNumber);

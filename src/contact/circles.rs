@@ -20,6 +20,12 @@ impl Circle {
         x * x + y * y <= reach * reach
     }
 
+    /// Distance of a point from the circle, negative inside (length); never too large.
+    fn distance(&self, [x, y]: [f64; 2]) -> f64 {
+        let [dx, dy] = [x - self.centre[0], y - self.centre[1]];
+        (dx * dx + dy * dy).sqrt() * (1.0 - ROUND_OFF) - self.radius
+    }
+
     /// A circle about the middle of some circles that holds them all.
     fn around(circles: impl Iterator<Item = Circle> + Clone) -> Circle {
         let extent = |i: usize| {
@@ -115,6 +121,38 @@ impl CircleTree {
             .map(|&i| (i, &self.members[i as usize]))
     }
 
+    /// Visits members in about the order of their distance from a point, until all others are
+    /// further away than the limit (length) that the last visit gave.
+    pub fn visit_near(&self, point: [f64; 2], mut visit: impl FnMut(usize) -> f64) {
+        if self.members.is_empty() {
+            return;
+        }
+        let distance = |group: usize| self.groups[group].0.distance(point);
+        let mut limit = f64::INFINITY;
+        let mut open = vec![1];
+        while let Some(group) = open.pop() {
+            if distance(group) > limit {
+                continue;
+            }
+            if self.is_smallest(group) {
+                for (i, circle) in self.members_of(group) {
+                    if circle.distance(point) <= limit {
+                        limit = visit(i as usize);
+                    }
+                }
+            } else {
+                let halves = [2 * group, 2 * group + 1];
+                let nearer_first = distance(halves[0]) <= distance(halves[1]);
+                // the last one is looked into first
+                open.extend(if nearer_first {
+                    [halves[1], halves[0]]
+                } else {
+                    halves
+                });
+            }
+        }
+    }
+
     /// All overlapping pairs of a member of this hierarchy and one of the other; two groups are
     /// looked into only when their circles overlap.
     pub fn overlaps(&self, other: &CircleTree) -> Vec<[u32; 2]> {
@@ -173,6 +211,18 @@ mod tests {
             let mut found = CircleTree::new(a).overlaps(&CircleTree::new(b));
             found.sort_unstable();
             prop_assert_eq!(found, expected);
+        }
+
+        #[test]
+        fn the_nearest_member_is_visited(all in circles(60), x in -12.0..12.0, y in -12.0..12.0) {
+            let distance = |i: usize| all[i].distance([x, y]);
+            let expected = (0..all.len()).map(distance).fold(f64::INFINITY, f64::min);
+            let mut nearest = f64::INFINITY;
+            CircleTree::new(all.clone()).visit_near([x, y], |i| {
+                nearest = nearest.min(distance(i));
+                nearest
+            });
+            prop_assert_eq!(nearest, expected);
         }
     }
 }

@@ -1,9 +1,11 @@
 //! Node-to-segment contact: pairs, their rows and their complementarity problem.
 
+mod adjust;
 mod circles;
 mod compliance;
 mod crossing;
 mod geometry;
+mod initial;
 mod pair;
 mod passage;
 #[cfg(test)]
@@ -17,15 +19,17 @@ mod surfaces;
 mod territory;
 mod vertex;
 
+pub use adjust::{Adjusted, adjust, report_adjusted};
 pub use compliance::Compliance;
 pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
 pub(crate) use geometry::position;
 pub use geometry::{Projection, project};
+pub use initial::{InitialGap, initial_gaps};
 pub use pair::{Pair, PairSite, RowForm};
 pub use passage::{Passage, Touch, find_passage};
 pub use penetration::report_penetrations;
 pub use problem::{add_contact_forces, frictional_lcp};
-pub use search::{Candidate, InitialGap, Pairing, all_segments, find_pairs, initial_gaps};
+pub use search::{Candidate, Pairing, all_segments, find_pairs};
 pub use sites::{Look, Site};
 pub use surfaces::{ContactSurfaces, contact_surfaces};
 pub use territory::{Search, Territory};

@@ -24,12 +24,15 @@ pub fn report_penetrations(model: &Model, d: &mut Diagnostics) {
 }
 
 fn diagnostic(model: &Model, contact: &Contact, deepest: &InitialGap, count: usize) -> Diagnostic {
+    let master = match contact.is_self_contact() {
+        true => "another body",
+        false => &format!("the body of {}", model.surfaces[contact.master].name),
+    };
     let message = format!(
-        "{count} {} of {} inside the body of {} at the start; deepest: node {} by {:.3e} \
+        "{count} {} of {} inside {master} at the start; deepest: node {} by {:.3e} \
          ({:.1e} of the edge length)",
         if count == 1 { "node" } else { "nodes" },
         model.surfaces[contact.slave].name,
-        model.surfaces[contact.master].name,
         model.mesh.node_labels[deepest.slave],
         -deepest.gap,
         -deepest.gap / deepest.edge,

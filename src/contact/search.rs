@@ -1,7 +1,5 @@
-use super::geometry::project;
 use super::sites::{Look, Site};
-use super::{ContactSurfaces, PairSite, Search, contact_surfaces};
-use crate::model::Model;
+use super::{ContactSurfaces, PairSite, Search};
 
 /// A segment that a slave node may pair with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,46 +103,4 @@ fn without_twins(mut pairs: Vec<PairSite>) -> Vec<PairSite> {
         pair.site.vertex.is_none() || s < v || !vertices.contains(&[v, s])
     });
     pairs
-}
-
-/// Gap of a slave node to the segment it faces in the reference configuration.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct InitialGap {
-    /// Slave node (index).
-    pub slave: usize,
-    /// Gap (length), negative when the node is inside the body.
-    pub gap: f64,
-    /// Length of the segment.
-    pub edge: f64,
-}
-
-/// Gaps of the slave nodes of each contact of a model in the reference configuration; nodes that
-/// face no segment are left out.
-pub fn initial_gaps(model: &Model) -> Vec<Vec<InitialGap>> {
-    let x = &model.mesh.coordinates;
-    let gap_of = |surfaces: &ContactSurfaces, slave: usize| {
-        let place = |i: usize| {
-            let [a, b] = surfaces.segments[i];
-            project(x[slave], x[a], x[b])
-        };
-        let faced =
-            (0..surfaces.segments.len()).filter(|i| !surfaces.segments[*i].contains(&slave));
-        let p = faced
-            .map(place)
-            .filter(|p| (0.0..=1.0).contains(&p.xi) && p.gap >= -p.length)
-            .min_by(|p, q| p.gap.abs().total_cmp(&q.gap.abs()))?;
-        Some(InitialGap {
-            slave,
-            gap: p.gap,
-            edge: p.length,
-        })
-    };
-    let of_contact = |surfaces: &ContactSurfaces| {
-        surfaces
-            .slaves
-            .iter()
-            .filter_map(|&slave| gap_of(surfaces, slave))
-            .collect()
-    };
-    contact_surfaces(model).iter().map(of_contact).collect()
 }

@@ -56,7 +56,7 @@ pub fn contact_surfaces(model: &Model) -> Vec<ContactSurfaces> {
             slave.nodes(&model.mesh),
             &slave.segments(&model.mesh),
             master.segments(&model.mesh),
-            model.interactions[contact.interaction].friction,
+            model.friction(contact),
         )
     };
     model.contacts.iter().map(of_contact).collect()

@@ -254,9 +254,9 @@ pub(super) static MODEL: &[Keyword] = &[
             P::flag("SMALL SLIDING", "sliding is finite").warned(),
             P::value(
                 "ADJUST",
-                "not supported yet: nodes are not moved before the start",
-            )
-            .refused(),
+                "largest clearance, or node set, of the slave nodes that are moved onto the master \
+                 before the start, free of strain; with a clearance those inside the master too",
+            ),
             P::flag("TIED", "surfaces cannot be tied yet").refused(),
             P::value("EXTENSION ZONE", SMOOTHING).warned(),
             P::value("SMOOTH", SMOOTHING).warned(),
@@ -272,7 +272,32 @@ pub(super) static MODEL: &[Keyword] = &[
             P::value("OP", "contact pairs hold for all steps").refused(),
         ],
         "Slave surface, master surface; one contact per row. The master consists of faces; both \
-         orders of two surfaces may be given.",
+         orders of two surfaces may be given. One surface alone touches itself.",
+    ),
+    Keyword::read(
+        "CONTACT",
+        Scope::Model,
+        Data::None,
+        &[P::value("OP", "contacts hold for all steps").refused()],
+        "Begins general contact: every exterior face against every other, of its own body too.",
+    ),
+    Keyword::read(
+        "CONTACT INCLUSIONS",
+        Scope::Block("CONTACT"),
+        Data::Rows,
+        &[P::flag(
+            "ALL EXTERIOR",
+            "all faces that belong to one element only; required",
+        )],
+        "What takes part in general contact: a surface ALL_EXTERIOR is made.",
+    ),
+    Keyword::read(
+        "CONTACT PROPERTY ASSIGNMENT",
+        Scope::Block("CONTACT"),
+        Data::Required,
+        &[],
+        "Interaction of general contact: a row of two empty fields, which stand for all surfaces, \
+         and its name. Without it there is no friction.",
     ),
     // --- amplitudes, initial and boundary conditions, loads --------------------------------
     Keyword::read(

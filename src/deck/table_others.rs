@@ -32,7 +32,7 @@ const RIGID: &str =
     "Rigid bodies are not supported yet: mesh the body and fix it or make it stiff.";
 const DISCRETE: &str = "Springs, dashpots, masses and connectors are not supported yet.";
 const INELASTIC: &str = "Materials are elastic, St. Venant-Kirchhoff.";
-const GENERAL: &str = "General contact is not supported yet: define *CONTACT PAIR.";
+const GENERAL: &str = "General contact is that of all exterior faces alike.";
 const CONTACT_CHANGE: &str = "Contacts hold for all steps.";
 const THERMAL: &str = "There are no temperatures.";
 const THERMAL_DATA: &str = "Material data of heat conduction without temperatures.";
@@ -151,10 +151,7 @@ pub(super) static OTHERS: &[Keyword] = &[
     refused("DAMAGE EVOLUTION", INELASTIC),
     refused("DAMPING", "Material damping is not supported yet."),
     refused("MODAL DAMPING", "Material damping is not supported yet."),
-    refused("CONTACT", GENERAL),
-    refused("CONTACT INCLUSIONS", GENERAL),
     refused("CONTACT EXCLUSIONS", GENERAL),
-    refused("CONTACT PROPERTY ASSIGNMENT", GENERAL),
     refused("CONTACT INITIALIZATION DATA", GENERAL),
     refused("CONTACT INITIALIZATION ASSIGNMENT", GENERAL),
     refused("CONTACT FORMULATION", GENERAL),

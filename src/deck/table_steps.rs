@@ -233,7 +233,7 @@ pub(super) static STEPS: &[Keyword] = &[
                 "IMPACT TIME",
                 &[
                     V::read("INCREMENT", "nodes land within the increment (default)"),
-                    V::refused("EVENT", "not available yet"),
+                    V::read("EVENT", "the increment is cut at the time of an impact"),
                 ],
                 "when nodes land",
             ),

@@ -9,15 +9,34 @@ pub struct Interaction {
     pub friction: f64,
 }
 
-/// A slave surface whose nodes may not enter the body behind the master surface.
+/// A slave surface whose nodes may not enter the body behind the master surface; self-contact if
+/// both are the same surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
     /// Index of the slave surface.
     pub slave: usize,
     /// Index of the master surface (made of faces).
     pub master: usize,
-    /// Index of the interaction.
-    pub interaction: usize,
+    /// Index of the interaction; `None` is hard contact without friction.
+    pub interaction: Option<usize>,
+    /// Slave nodes that are moved onto the master surface before the start.
+    pub adjust: Option<Adjust>,
     /// Where the deck says so, for messages.
     pub span: Span,
+}
+
+/// Which slave nodes are moved onto the master surface before the start, free of strain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Adjust {
+    /// Those inside the master body and those with at most this clearance (length).
+    Within(f64),
+    /// Those of the node set with this index.
+    Nodes(usize),
+}
+
+impl Contact {
+    /// Whether a surface touches itself.
+    pub fn is_self_contact(&self) -> bool {
+        self.slave == self.master
+    }
 }

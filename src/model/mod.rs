@@ -13,13 +13,13 @@ mod step;
 mod surface;
 
 pub use amplitude::{Amplitude, TimeBase};
-pub use contact::{Contact, Interaction};
+pub use contact::{Adjust, Contact, Interaction};
 pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
 pub use material::{Material, Plane, Section};
 pub use mesh::{Cell, Element, Mesh, Set};
-pub use settings::{Factorization, Impact, LcpChoice, Scheme, Settings, SolverChoice};
+pub use settings::{Factorization, Impact, ImpactTime, LcpChoice, Scheme, Settings, SolverChoice};
 pub use step::{Frames, Increments, Step};
-pub use surface::{Face, Surface, SurfaceKind};
+pub use surface::{ALL_EXTERIOR, Face, Surface, SurfaceKind};
 
 /// A whole problem: what a deck says, checked and with all names resolved to indices.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -40,7 +40,7 @@ pub struct Model {
     pub sections: Vec<Section>,
     /// Contact interactions (friction laws).
     pub interactions: Vec<Interaction>,
-    /// Contacts: one per data line of `*CONTACT PAIR`.
+    /// Contacts: one per data line of `*CONTACT PAIR`, then general contact.
     pub contacts: Vec<Contact>,
     /// Amplitude curves.
     pub amplitudes: Vec<Amplitude>,
@@ -50,4 +50,12 @@ pub struct Model {
     pub steps: Vec<Step>,
     /// Node sets (indices into `node_sets`) whose motion and reactions go to the history.
     pub history_sets: Vec<usize>,
+}
+
+impl Model {
+    /// Coefficient of friction mu of a contact.
+    pub fn friction(&self, contact: &Contact) -> f64 {
+        let interaction = contact.interaction.map(|index| &self.interactions[index]);
+        interaction.map_or(0.0, |interaction| interaction.friction)
+    }
 }

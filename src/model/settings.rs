@@ -5,6 +5,8 @@ pub struct Settings {
     pub scheme: Scheme,
     /// Impact impulses on or off.
     pub impact: Impact,
+    /// When nodes land.
+    pub impact_time: ImpactTime,
     /// Solver of the complementarity problem.
     pub lcp: LcpChoice,
     /// When the effective matrix is factored anew.
@@ -22,6 +24,7 @@ impl Default for Settings {
         Settings {
             scheme: Scheme::EnergyMomentum,
             impact: Impact::Impulse,
+            impact_time: ImpactTime::Increment,
             lcp: LcpChoice::Hybrid,
             factorization: Factorization::Keep,
             solver: SolverChoice::Faer,
@@ -52,6 +55,15 @@ pub enum Impact {
     Impulse,
     /// Nothing.
     None,
+}
+
+/// When nodes land.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ImpactTime {
+    /// Within the increment.
+    Increment,
+    /// At the time of the impact, where the increment is cut.
+    Event,
 }
 
 /// Solver of the complementarity problem of a pass.

@@ -1,5 +1,8 @@
 use super::Mesh;
 
+/// Name of the surface of general contact: all faces that belong to one element only.
+pub const ALL_EXTERIOR: &str = "ALL_EXTERIOR";
+
 /// A named surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {

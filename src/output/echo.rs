@@ -4,7 +4,8 @@ use super::format::{counted, general, grouped, scientific};
 use super::frames::DEFAULT_FRAMES;
 use crate::contact::{InitialGap, initial_gaps};
 use crate::model::{
-    Cell, Contact, Element, Frames, Impact, Model, Plane, Scheme, SolverChoice, Step, SurfaceKind,
+    Cell, Contact, Element, Frames, Impact, ImpactTime, Model, Plane, Scheme, Settings,
+    SolverChoice, Step, SurfaceKind,
 };
 
 /// Width of the screen in columns.
@@ -119,7 +120,7 @@ impl ModelEcho {
         let settings = &step.settings;
         let numerics = [
             scheme(settings.scheme),
-            impact(settings.impact).to_owned(),
+            impact(settings).to_owned(),
             format!("solver {}", solver(settings.solver)),
         ];
         let mut lines = wrap(&format!("step {}", index + 1), &times);
@@ -158,10 +159,11 @@ fn scheme(scheme: Scheme) -> String {
     }
 }
 
-fn impact(impact: Impact) -> &'static str {
-    match impact {
-        Impact::Impulse => "impact impulses",
-        Impact::None => "no impact impulses",
+fn impact(settings: &Settings) -> &'static str {
+    match (settings.impact, settings.impact_time) {
+        (Impact::None, _) => "no impact impulses",
+        (Impact::Impulse, ImpactTime::Increment) => "impact impulses",
+        (Impact::Impulse, ImpactTime::Event) => "impact impulses at the times of impacts",
     }
 }
 
@@ -176,12 +178,13 @@ fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<S
     };
     let nodes = counted(slave.nodes(&model.mesh).len(), "node");
     let edges = counted(edges, "edge");
+    let sides = match contact.is_self_contact() {
+        true => format!("{} ({nodes}, {edges}) with itself", slave.name),
+        false => format!("{} ({nodes}) -> {} ({edges})", slave.name, master.name),
+    };
     let pieces = [
-        format!("{} ({nodes}) -> {} ({edges})", slave.name, master.name),
-        format!(
-            "mu {}",
-            general(model.interactions[contact.interaction].friction, 4)
-        ),
+        sides,
+        format!("mu {}", general(model.friction(contact), 4)),
         smallest_gap(gaps),
     ];
     wrap("contact", &pieces)

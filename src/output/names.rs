@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use thiserror::Error;
 
-use crate::model::Model;
+use crate::model::{ALL_EXTERIOR, Contact, Model};
 
 /// A name that cannot stand in the result file.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -42,14 +42,21 @@ fn check(what: &'static str, name: &str) -> Result<(), NameError> {
     Ok(())
 }
 
-/// Names of the contacts, `<SLAVE>_<MASTER>`; the second of the same name gets `_2`, and so on.
+/// Names of the contacts, `<SLAVE>_<MASTER>`, for general contact `ALL_EXTERIOR`; the second of the
+/// same name gets `_2`, and so on.
 pub fn contact_names(model: &Model) -> Vec<String> {
     let mut taken = HashSet::new();
-    let name = |index: usize| model.surfaces[index].name.as_str();
     (model.contacts.iter())
-        .map(|contact| format!("{}_{}", name(contact.slave), name(contact.master)))
-        .map(|base| unique(base, &mut taken))
+        .map(|contact| unique(base_name(model, contact), &mut taken))
         .collect()
+}
+
+fn base_name(model: &Model, contact: &Contact) -> String {
+    let [slave, master] = [contact.slave, contact.master].map(|i| &model.surfaces[i].name);
+    match contact.is_self_contact() && slave == ALL_EXTERIOR {
+        true => slave.clone(),
+        false => format!("{slave}_{master}"),
+    }
 }
 
 fn unique(base: String, taken: &mut HashSet<String>) -> String {

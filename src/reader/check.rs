@@ -81,7 +81,7 @@ pub(super) fn thickness(
         let sides = [contact.slave, contact.master];
         let [slave, master] = sides.map(|s| range_of_thickness(s, surfaces, properties));
         if let (Some(slave), Some(master)) = (slave, master)
-            && slave != master
+            && (slave != master || slave.0 < slave.1 && contact.is_self_contact())
         {
             let message = "the two sides of this contact differ in thickness";
             let warning = Diagnostic::warning(Code::ThicknessMismatch, contact.span, message);

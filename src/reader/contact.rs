@@ -1,18 +1,23 @@
-//! `*SURFACE INTERACTION` with its laws, and `*CONTACT PAIR`.
+//! `*SURFACE INTERACTION` with its laws, `*CONTACT PAIR`, and general contact.
 
 use super::context::Context;
+use super::general_contact;
+use super::mesh::Grid;
 use super::names::Names;
 use super::outline::{Block, Outline};
-use super::surface::{self, Surfaces};
+use super::sets::Sets;
+use super::surface::{self, Found, Surfaces};
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic};
-use crate::model::{Contact, Interaction, SurfaceKind};
+use crate::model::{Adjust, Contact, Interaction, SurfaceKind};
 use std::collections::HashSet;
 
 /// Reads interactions and contacts.
 pub(super) fn read(
     outline: &Outline,
-    surfaces: &Surfaces,
+    grid: &Grid,
+    sets: &Sets,
+    surfaces: &mut Surfaces,
     cx: &mut Context,
 ) -> (Vec<Interaction>, Vec<Contact>) {
     let mut names = Names::new("surface interaction");
@@ -35,12 +40,41 @@ pub(super) fn read(
     for card in outline.model_cards("CONTACT PAIR") {
         let name = card.required("INTERACTION", cx.d);
         let interaction = name.and_then(|name| names.find(name, cx));
+        let adjust = adjust(card, sets, cx);
         for row in &card.rows {
-            contacts.extend(contact(row, interaction, surfaces, cx));
+            let contact = contact(row, interaction, surfaces, cx);
+            report_adjusted_self_contact(contact.as_ref(), card, cx);
+            contacts.extend(contact.map(|contact| Contact { adjust, ..contact }));
         }
     }
     report_repeated(&contacts, cx);
+    let general = general_contact::read(outline, grid, surfaces, &names, cx);
+    if general.is_some() {
+        general_contact::report_pairs(&contacts, cx);
+    }
+    contacts.extend(general);
     (interactions, contacts)
+}
+
+/// A clearance or a node set.
+fn adjust(card: &Card, sets: &Sets, cx: &mut Context) -> Option<Adjust> {
+    let value = card.value("ADJUST")?;
+    match value.as_real() {
+        None => sets.node_names.find(value, cx).map(Adjust::Nodes),
+        Some(clearance) if clearance >= 0.0 => Some(Adjust::Within(clearance)),
+        Some(_) => {
+            let message = format!("the clearance must not be negative, found {}", value.text);
+            cx.error(Code::BadValue, value.span, message);
+            None
+        }
+    }
+}
+
+fn report_adjusted_self_contact(contact: Option<&Contact>, card: &Card, cx: &mut Context) {
+    if card.has("ADJUST") && contact.is_some_and(Contact::is_self_contact) {
+        let message = "the nodes of a surface that touches itself cannot be moved onto it";
+        cx.error(Code::SurfaceUse, card.span_of("ADJUST"), message);
+    }
 }
 
 /// The same slave and master twice would count each contact force twice.
@@ -102,7 +136,7 @@ fn coefficient(card: &Card, cx: &mut Context) -> Option<f64> {
     Some(friction)
 }
 
-/// `slave, master`
+/// `slave, master`; one surface touches itself.
 fn contact(
     row: &Row,
     interaction: Option<usize>,
@@ -112,28 +146,44 @@ fn contact(
     row.at_most(2, cx.d);
     let slave = row.required(0, "the slave surface", cx.d);
     let slave = slave.and_then(|field| surface::find(surfaces, field, cx));
-    let Some(master) = row.get(1) else {
-        let message = "the master surface is missing: a surface cannot touch itself yet";
-        cx.error(Code::SurfaceUse, row.span(), message);
-        return None;
+    let master = match row.get(1) {
+        Some(field) => surface::find(surfaces, field, cx),
+        None => slave,
     };
-    let master = surface::find(surfaces, master, cx);
     let (slave, master) = (slave?, master?);
-    if slave.0 == master.0 {
-        let message = format!("surface {} is slave and master at once", slave.1.name);
-        cx.error(Code::SurfaceUse, master.2, message);
-        return None;
-    }
-    if let SurfaceKind::Nodes(_) = master.1.kind {
-        let message = format!("the master surface {} is made of nodes", master.1.name);
-        let error = Diagnostic::error(Code::SurfaceUse, master.2, message);
-        cx.d.push(error.help("a master is made of element faces; the slave may be made of nodes"));
-        return None;
-    }
+    check_use(row, slave, master, cx)?;
     Some(Contact {
         slave: slave.0,
         master: master.0,
-        interaction: interaction?,
+        interaction: Some(interaction?),
+        adjust: None,
         span: row.span(),
     })
+}
+
+/// Reports surfaces that cannot be slave or master.
+fn check_use(row: &Row, slave: Found, master: Found, cx: &mut Context) -> Option<()> {
+    let once = row.get(1).is_none();
+    let name = &master.1.name;
+    let is_of_nodes = matches!(master.1.kind, SurfaceKind::Nodes(_));
+    let (message, help) = if once && is_of_nodes {
+        (
+            format!("surface {name} is made of nodes and cannot touch itself"),
+            "self-contact needs element faces",
+        )
+    } else if !once && slave.0 == master.0 {
+        (
+            format!("surface {name} is slave and master at once"),
+            "for self-contact write its name once",
+        )
+    } else if is_of_nodes {
+        (
+            format!("the master surface {name} is made of nodes"),
+            "a master is made of element faces; the slave may be made of nodes",
+        )
+    } else {
+        return Some(());
+    };
+    cx.d.push(Diagnostic::error(Code::SurfaceUse, master.2, message).help(help));
+    None
 }

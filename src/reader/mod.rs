@@ -10,6 +10,7 @@ mod check;
 mod contact;
 mod context;
 mod element_type;
+mod general_contact;
 mod loads;
 mod material;
 mod mesh;
@@ -54,9 +55,9 @@ fn read(cx: &mut Context) -> Model {
     let grid = mesh::read(&outline, cx);
     check::mesh(&grid, cx);
     let sets = sets::read(&outline, &grid, cx);
-    let surfaces = surface::read(&outline, &grid, &sets, cx);
+    let mut surfaces = surface::read(&outline, &grid, &sets, cx);
     let properties = material::read(&outline, &grid, &sets, cx);
-    let (interactions, contacts) = contact::read(&outline, &surfaces, cx);
+    let (interactions, contacts) = contact::read(&outline, &grid, &sets, &mut surfaces, cx);
     check::thickness(&contacts, &surfaces, &properties, cx);
     let amplitudes = amplitude::read(cx);
     let targets = Targets {

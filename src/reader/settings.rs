@@ -3,7 +3,7 @@
 use super::context::Context;
 use crate::deck::Card;
 use crate::diagnostics::{Code, Diagnostic};
-use crate::model::{Factorization, Impact, LcpChoice, Scheme, Settings, SolverChoice};
+use crate::model::{Factorization, Impact, ImpactTime, LcpChoice, Scheme, Settings, SolverChoice};
 
 /// Changes settings as a card says.
 pub(super) fn apply(card: &Card, settings: &mut Settings, cx: &mut Context) {
@@ -11,6 +11,11 @@ pub(super) fn apply(card: &Card, settings: &mut Settings, cx: &mut Context) {
     match card.choice("IMPACT") {
         Some("NONE") => settings.impact = Impact::None,
         Some(_) => settings.impact = Impact::Impulse,
+        None => {}
+    }
+    match card.choice("IMPACT TIME") {
+        Some("EVENT") => settings.impact_time = ImpactTime::Event,
+        Some(_) => settings.impact_time = ImpactTime::Increment,
         None => {}
     }
     match card.choice("LCP") {

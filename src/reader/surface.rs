@@ -171,7 +171,8 @@ impl Sides {
         self.0.get(&key(mesh, face)).is_some_and(|&count| count > 1)
     }
 
-    fn free_faces(&self, elements: &[usize], mesh: &Mesh) -> Vec<Face> {
+    /// Sides that no other element shares, of these elements in order.
+    pub fn free_faces(&self, elements: &[usize], mesh: &Mesh) -> Vec<Face> {
         let sides =
             |&element: &usize| (0..corners(mesh, element)).map(move |side| Face { element, side });
         let all = elements.iter().flat_map(sides);
@@ -201,12 +202,11 @@ fn key(mesh: &Mesh, face: Face) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// The surface that a field names, with its index.
-pub(super) fn find<'a>(
-    surfaces: &'a Surfaces,
-    field: Text,
-    cx: &mut Context,
-) -> Option<(usize, &'a Surface, Span)> {
+/// A surface with its index and the place of its name.
+pub(super) type Found<'a> = (usize, &'a Surface, Span);
+
+/// The surface that a field names.
+pub(super) fn find<'a>(surfaces: &'a Surfaces, field: Text, cx: &mut Context) -> Option<Found<'a>> {
     let index = surfaces.names.find(field, cx)?;
     Some((index, surfaces.all.get(index)?, field.span))
 }

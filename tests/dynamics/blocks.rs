@@ -143,7 +143,8 @@ pub fn add_contact(model: &mut Model, slave: Vec<Face>, master: Vec<Face>, frict
     model.contacts.push(Contact {
         slave: master - 1,
         master,
-        interaction,
+        interaction: Some(interaction),
+        adjust: None,
         span: Span::default(),
     });
 }

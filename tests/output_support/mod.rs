@@ -109,7 +109,8 @@ fn contact() -> Contact {
     Contact {
         slave: 0,
         master: 1,
-        interaction: 0,
+        interaction: Some(0),
+        adjust: None,
         span: Span::default(),
     }
 }
