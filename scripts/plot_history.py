@@ -111,10 +111,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("result", type=Path, nargs="+", help="result files JOB.vtkhdf")
     parser.add_argument("-o", "--output", type=Path, help="picture to write")
+    parser.add_argument("--dpi", type=float, help="pixels per inch of the picture")
     arguments = parser.parse_args()
     all_results = [Results(path) for path in arguments.result]
     first = arguments.result[0]
-    style.save(draw(all_results), arguments.output or first.with_name(f"{first.stem}_history.png"))
+    path = arguments.output or first.with_name(f"{first.stem}_history.png")
+    style.save(draw(all_results), path, arguments.dpi)
 
 
 if __name__ == "__main__":

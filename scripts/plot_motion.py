@@ -178,9 +178,15 @@ def draw_panels(
     colouring.bar(figure, list(grid.flat))
 
 
-def panels(results: Results, frames: list[int], field: str | None, forces: bool) -> Figure:
+def panels(
+    results: Results,
+    frames: list[int],
+    field: str | None,
+    forces: bool,
+    columns: int | None = None,
+) -> Figure:
     """A figure with one panel per frame."""
-    columns = {4: 2, 7: 4, 8: 4}.get(len(frames), min(len(frames), 3))
+    columns = columns or {4: 2, 7: 4, 8: 4}.get(len(frames), min(len(frames), 3))
     rows = -(-len(frames) // columns)
     height = 4.2 * height_over_width(results) + 0.45
     figure = plt.figure(figsize=(4.2 * columns + 1, height * rows))
@@ -263,9 +269,11 @@ def main() -> None:
     parser.add_argument("--times", type=float, nargs="+", help="times to show (nearest frames)")
     parser.add_argument("--interval", type=float, help="show 0, INTERVAL, 2 INTERVAL, ...")
     parser.add_argument("--field", choices=[*FIELDS, "none"], default="von-mises")
+    parser.add_argument("--columns", type=int, help="panels side by side")
     parser.add_argument("--overlay", action="store_true", help="one panel, coloured by time")
     parser.add_argument("--forces", action="store_true", help="draw contact forces as arrows")
     parser.add_argument("-o", "--output", type=Path, help="picture to write")
+    parser.add_argument("--dpi", type=float, help="pixels per inch of the picture")
     parser.add_argument("--animation", type=Path, help="animation to write (.gif)")
     parser.add_argument("--fps", type=int, default=15, help="frames per second")
     arguments = parser.parse_args()
@@ -275,9 +283,9 @@ def main() -> None:
         if arguments.overlay:
             figure = overlay(results, frames)
         else:
-            figure = panels(results, frames, field, arguments.forces)
+            figure = panels(results, frames, field, arguments.forces, arguments.columns)
         path = arguments.output or arguments.result.with_name(f"{results.job}_motion.png")
-        style.save(figure, path)
+        style.save(figure, path, arguments.dpi)
         if arguments.animation:
             animate(results, field, arguments.forces, arguments.animation, arguments.fps)
 

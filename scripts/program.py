@@ -6,9 +6,16 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 
+STOPPED = 1
+"""Exit code of a run that stopped in the solve: the results up to there are valid."""
+
 
 class RunFailed(Exception):
     """The program ended with another exit code than expected."""
+
+    def __init__(self, message: str, code: int) -> None:
+        super().__init__(message)
+        self.code = code
 
 
 def binary() -> Path:
@@ -29,5 +36,6 @@ def run(deck: Path, output: Path, *options: str, expected: int = 0) -> Path:
     done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     if done.returncode != expected:
         words = " ".join(map(str, command))
-        raise RunFailed(f"{words}\nexit code {done.returncode}\n{done.stdout}{done.stderr}")
+        message = f"{words}\nexit code {done.returncode}\n{done.stdout}{done.stderr}"
+        raise RunFailed(message, done.returncode)
     return output / f"{deck.stem}.vtkhdf"

@@ -1,6 +1,7 @@
-"""Structured meshes of four-node quadrilaterals, written as deck cards."""
+"""Meshes of four-node quadrilaterals, written as deck cards."""
 
 from collections.abc import Callable, Sequence
+from math import cos, pi, sin, sqrt
 
 
 def card(keyword: str, *rows: Sequence[object]) -> str:
@@ -99,3 +100,119 @@ class Grid:
         return card(f"ELSET, ELSET={name}, GENERATE", (first, last, step)) + card(
             f"SURFACE, NAME={name}", (name, self.FACES[side])
         )
+
+
+class Mesh:
+    """Any quadrilaterals: nodes and elements by their indices, labels in order."""
+
+    def __init__(
+        self,
+        name: str,
+        nodes: Sequence[tuple[float, float]],
+        elements: Sequence[tuple[int, int, int, int]],
+        first_node: int = 1,
+        first_element: int = 1,
+    ) -> None:
+        self.name, self.nodes, self.elements = name, nodes, elements
+        self.first_node, self.first_element = first_node, first_element
+
+    @property
+    def next_node(self) -> int:
+        """First label behind those of the nodes."""
+        return self.first_node + len(self.nodes)
+
+    @property
+    def next_element(self) -> int:
+        """First label behind those of the elements."""
+        return self.first_element + len(self.elements)
+
+    def mesh(self, element_type: str) -> str:
+        """Cards NODE and ELEMENT; both sets bear the name of the mesh."""
+        nodes = [(self.first_node + k, *place) for k, place in enumerate(self.nodes)]
+        elements = [
+            (self.first_element + k, *(self.first_node + node for node in corners))
+            for k, corners in enumerate(self.elements)
+        ]
+        return card(f"NODE, NSET={self.name}", *nodes) + card(
+            f"ELEMENT, TYPE={element_type}, ELSET={self.name}", *elements
+        )
+
+
+def outline(*names: str) -> str:
+    """Cards SURFACE with all free sides of element sets; surfaces bear the names of the sets."""
+    return "".join(card(f"SURFACE, NAME={name}", (name,)) for name in names)
+
+
+def ring(
+    name: str,
+    centre: tuple[float, float],
+    radii: tuple[float, float],
+    around: int,
+    across: int,
+    first_node: int = 1,
+    first_element: int = 1,
+) -> Mesh:
+    """A ring between two radii; node (k, j) is the k-th around and the j-th from the inside."""
+    nodes = []
+    for j in range(across + 1):
+        radius = radii[0] + (radii[1] - radii[0]) * j / across
+        for k in range(around):
+            angle = 2 * pi * k / around
+            nodes.append((centre[0] + radius * cos(angle), centre[1] + radius * sin(angle)))
+    elements = [
+        (
+            j * around + k,
+            (j + 1) * around + k,
+            (j + 1) * around + (k + 1) % around,
+            j * around + (k + 1) % around,
+        )
+        for j in range(across)
+        for k in range(around)
+    ]
+    return Mesh(name, nodes, elements, first_node, first_element)
+
+
+def disc(
+    name: str,
+    centre: tuple[float, float],
+    radius: float,
+    turn: float,
+    side: int,
+    rings: int,
+    first_node: int = 1,
+    first_element: int = 1,
+) -> Mesh:
+    """A disc turned by an angle: a square of side x side elements, bulging, with rings around.
+
+    It has 4 side nodes on its rim.
+    """
+    core = 0.55 * radius
+    flat = [(2 * i / side - 1, 2 * j / side - 1) for j in range(side + 1) for i in range(side + 1)]
+    nodes = []
+    for u, v in flat:
+        bulge = 0.5 + 0.5 * sqrt(1 - 0.5 * v * v), 0.5 + 0.5 * sqrt(1 - 0.5 * u * u)
+        nodes.append((core * u * bulge[0], core * v * bulge[1]))
+    row = side + 1
+    rim = [*range(side), *range(side, side * row + side, row)]
+    rim += [*range(side * row + side, side * row, -1), *range(side * row, 0, -row)]
+    elements = [
+        (j * row + i, j * row + i + 1, (j + 1) * row + i + 1, (j + 1) * row + i)
+        for j in range(side)
+        for i in range(side)
+    ]
+    inner = rim
+    for level in range(1, rings + 1):
+        outer = [len(nodes) + k for k in range(len(rim))]
+        for k, node in enumerate(rim):
+            angle = 2 * pi * k / len(rim) - 0.75 * pi
+            start, end = nodes[node], (radius * cos(angle), radius * sin(angle))
+            part = level / rings
+            nodes.append(tuple(a + (b - a) * part for a, b in zip(start, end)))
+        after = {k: (k + 1) % len(rim) for k in range(len(rim))}
+        elements += [(inner[k], outer[k], outer[n], inner[n]) for k, n in after.items()]
+        inner = outer
+    turned = [
+        (centre[0] + x * cos(turn) - y * sin(turn), centre[1] + x * sin(turn) + y * cos(turn))
+        for x, y in nodes
+    ]
+    return Mesh(name, turned, elements, first_node, first_element)

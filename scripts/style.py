@@ -10,6 +10,7 @@ if not os.environ.get("DISPLAY"):
 
 from cycler import cycler  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
+from PIL import Image  # noqa: E402
 
 COLOURS = ("#0b559f", "#d1495b", "#2e8b57", "#e08e0b", "#6a4c93", "#5c6b73", "#17a2b8")
 
@@ -36,10 +37,14 @@ matplotlib.rcParams.update(
 )
 
 
-def save(figure: Figure, path: Path | str) -> Path:
-    """Writes a figure and says so."""
+def save(figure: Figure, path: Path | str, dpi: float | None = None) -> Path:
+    """Writes a figure and says so; a .png gets a palette of 256 colours, which halves its size."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path)
+    figure.savefig(path, dpi=dpi or matplotlib.rcParams["savefig.dpi"])
+    if path.suffix == ".png":
+        with Image.open(path) as picture:
+            small = picture.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, dither=0)
+        small.save(path, optimize=True)
     print(f"wrote {path}")
     return path

@@ -97,23 +97,33 @@ class Verification:
     tables: list[str] = field(default_factory=list)
 
     def run(self) -> None:
-        """Runs all cases, two at a time."""
+        """Runs all cases, two at a time; those without any result are left out."""
         with ThreadPoolExecutor(2) as pool:
-            for case, path in zip(self.cases, pool.map(self._run_case, self.cases)):
-                self.results[case.name] = Results(path)
+            for case, (path, code) in zip(self.cases, pool.map(self._run_case, self.cases)):
+                self.check("exit code of the run", case.name, code)
+                if path is not None:
+                    self.results[case.name] = Results(path)
+        self.cases = [case for case in self.cases if case.name in self.results]
 
-    def _run_case(self, case: Case) -> Path:
+    def _run_case(self, case: Case) -> tuple[Path | None, int]:
+        """The result file, up to where a run stopped; the exit code."""
         output = self.output / "runs"
         path = output / f"{case.name}.vtkhdf"
         if self.reuse and path.exists():
-            return path
+            with Results(path) as results:
+                return path, int(results.run["exit_status"])
         print(f"running {case.name}", flush=True)
         options = ["--threads", "1"]
         if case.frames is not None:
             options += ["--frames", str(case.frames)]
         if case.every is not None:
             options += ["--every", repr(case.every)]
-        return program.run(self._deck(case).write(output / f"{case.name}.inp"), output, *options)
+        deck = self._deck(case).write(output / f"{case.name}.inp")
+        try:
+            return program.run(deck, output, *options), 0
+        except program.RunFailed as failure:
+            print(failure)
+            return path if failure.code == program.STOPPED else None, failure.code
 
     def _deck(self, case: Case) -> Deck:
         decks = self.decks

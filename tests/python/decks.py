@@ -10,6 +10,11 @@ from quads import Grid, card
 ROOT = Path(__file__).resolve().parents[2]
 BLOCK = ROOT / "input" / "block_slope"
 CANTILEVERS = ROOT / "input" / "two_cantilevers"
+RINGS = ROOT / "input" / "bouncing_rings"
+PILE = ROOT / "input" / "disc_pile"
+COLUMN = ROOT / "input" / "buckling_self_contact"
+CORNERS = ROOT / "input" / "corner_to_corner"
+BULLET = ROOT / "input" / "fast_bullet"
 BAR = ROOT / "verification" / "elastic_bar"
 
 SS22 = {"SCHEME": "SS22", "THETA1": "1.", "THETA2": "1."}

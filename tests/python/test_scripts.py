@@ -10,7 +10,17 @@ import pytest
 from compare import differences
 from conftest import ROOT, Job
 from deck import Deck
-from decks import BAR, BLOCK, CANTILEVERS, shortened
+from decks import (
+    BAR,
+    BLOCK,
+    BULLET,
+    CANTILEVERS,
+    COLUMN,
+    CORNERS,
+    PILE,
+    RINGS,
+    shortened,
+)
 from rescale import Units, rescale
 
 
@@ -55,7 +65,11 @@ def test_animation(job: Job, tmp_path: Path) -> None:
     assert film.read_bytes()[:6] == b"GIF89a"
 
 
-@pytest.mark.parametrize("folder", [BLOCK, CANTILEVERS, BAR], ids=lambda path: path.name)
+@pytest.mark.parametrize(
+    "folder",
+    [BLOCK, CANTILEVERS, BAR, RINGS, PILE, COLUMN, CORNERS, BULLET],
+    ids=lambda path: path.name,
+)
 def test_decks_are_what_their_generator_writes(folder: Path, tmp_path: Path) -> None:
     generate = [sys.executable, str(folder / "generate.py"), "-o", str(tmp_path)]
     subprocess.run(generate, check=True)

@@ -1,0 +1,189 @@
+"""Contact of many kinds: nobody inside anybody, momenta and energy of free flight."""
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+DECKS = HERE.parents[1] / "input"
+sys.path.insert(0, str(HERE.parent))
+
+import runner  # noqa: E402  (first: it finds the modules of scripts/)
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+import penetration  # noqa: E402
+import style  # noqa: E402
+from plot_motion import panels  # noqa: E402
+from results import Array, Results  # noqa: E402
+
+MOTION = {
+    "rings_mu02": (0.0, 0.6, 1.2, 2.0, 3.0, 4.0),
+    "corners_left_mu00": (0.0, 0.05, 0.2, 0.5, 1.0, 1.5),
+    "corners_right_mu00": (0.0, 0.05, 0.2, 0.5, 1.0, 1.5),
+    "bullet_one": (0.0, 0.1, 0.12, 0.15, 0.2, 0.3),
+    "column_mu02": (2.0, 4.0, 6.0, 8.0, 9.0, 12.0),
+    "pile": (0.0, 0.4, 0.8, 1.2, 2.0, 4.0),
+}
+"""Times of the pictures."""
+
+FLOOR = 1e-18
+"""Least value in logarithmic pictures."""
+
+
+def element_size(results: Results) -> float:
+    """Length of the shortest edge."""
+    place = results.coordinates
+    return min(
+        float(np.linalg.norm(place[cell] - place[np.roll(cell, -1)], axis=1).min())
+        for cell in results.cells
+    )
+
+
+def momentum_changes(results: Results) -> tuple[Array, Array]:
+    """Changes of the linear and the angular momentum at every increment, relative.
+
+    The scale is the sum of m |v| at the start, which is 2 T / |v| as all nodes start with about
+    the same speed; times the size of the model.
+    """
+    speed = float(np.linalg.norm(results.point_field("V", 0), axis=1).max())
+    scale = 2 * float(results.energy["kinetic"][0]) / speed
+    size = float(np.ptp(results.coordinates, axis=0).max())
+    linear = results.linear_momentum - results.linear_momentum[0]
+    angular = results.angular_momentum - results.angular_momentum[0]
+    return np.linalg.norm(linear, axis=1) / scale, np.abs(angular) / (scale * size)
+
+
+def energy(results: Results) -> Array:
+    """Kinetic and strain energy at every increment, without the work put in from outside."""
+    account = results.energy
+    return account["kinetic"] + account["strain"] - account["external_work"]
+
+
+def rise(results: Results) -> float:
+    """Largest rise of the energy above what it has been."""
+    total = energy(results)
+    return float((total - np.minimum.accumulate(total)).max())
+
+
+def imbalance(results: Results) -> float:
+    """Largest sum of all contact forces of a frame against the sum of their magnitudes."""
+    worst = 0.0
+    for frame in range(len(results.frame_times)):
+        force = results.point_field("CONTACT_FORCE", frame)
+        size = float(np.linalg.norm(force, axis=1).sum())
+        if size > 0.0:
+            worst = max(worst, float(np.linalg.norm(force.sum(axis=0))) / size)
+    return worst
+
+
+def above(results: Results) -> float:
+    """Height of the bullet's centre above that of the plate at the end, in plate lengths."""
+    position = results.positions(len(results.frame_times) - 1)
+    bullet, plate = (position[results.node_set(name)] for name in ("BULLET", "PLATE"))
+    gap = bullet[:, 1].mean() - plate[:, 1].mean()
+    return float(gap / np.ptp(plate[:, 0]))
+
+
+def outside(results: Results) -> int:
+    """Nodes of discs that are not between the walls and above the floor at the end."""
+    position = results.positions(len(results.frame_times) - 1)
+    box = results.node_set("BOX")
+    discs = np.setdiff1d(np.arange(len(position)), box)
+    x, y = position[discs].T
+    width = np.abs(position[box][:, 0]).max()
+    return int(((np.abs(x) > width) | (y < position[box][:, 1].min())).sum())
+
+
+def check(verification: runner.Verification, case: runner.Case, results: Results) -> list[object]:
+    """Checks one case; its row of the table."""
+    name = case.name
+    verification.check_run(name, element_size(results))
+    overlaps = penetration.follow(results)
+    worst = max(range(len(overlaps)), key=lambda frame: overlaps[frame].depth)
+    crossed = sum(overlap.crossings > 0 for overlap in overlaps)
+    depth = overlaps[worst].depth
+    verification.check("deepest node in a body / element size", name, depth)
+    verification.check("frames in which edges cross", name, crossed)
+    if depth > penetration.LIMIT:
+        print(f"      {penetration.describe(results, worst, overlaps[worst])}")
+    verification.check("sum of contact forces / their magnitudes", name, imbalance(results))
+    account = results.energy
+    if case.group == "free":
+        linear, angular = momentum_changes(results)
+        verification.check("change of linear momentum", name, float(linear.max()))
+        verification.check("change of angular momentum", name, float(angular.max()))
+    if case.group in ("free", "bullet"):
+        verification.check("rise of the energy / start", name, rise(results) / energy(results)[0])
+    if case.group == "bullet":
+        verification.check("bullet above the plate at the end", name, above(results))
+    if case.group == "pile":
+        verification.check("nodes of discs outside the box", name, outside(results))
+        if case.until is None:
+            kinetic = account["kinetic"]
+            verification.check(
+                "energy at rest / kinetic energy before", name, float(kinetic[-1] / kinetic.max())
+            )
+    closed = sum(contact.closed for contact in results.contacts.values())
+    return [
+        name,
+        len(results.time) - 1,
+        int(results.run["cutbacks"]),
+        float(results.run["seconds_total"]),
+        int(np.max(closed)),
+        depth,
+        rise(results) / results.largest_energy,
+        *(
+            float(account[entry][-1] / results.largest_energy)
+            for entry in ("friction_dissipation", "impact_loss", "normal_contact_work")
+        ),
+    ]
+
+
+def draw_conservation(verification: runner.Verification) -> None:
+    """What free flight keeps, against time."""
+    figure, axes = plt.subplots(3, 1, figsize=(8, 8))
+    for case, results in verification.group("free"):
+        label = {"label": case.name, "lw": 0.8}
+        part = results.time / results.time[-1]
+        for axis, change in zip(axes, momentum_changes(results)):
+            axis.semilogy(part, np.maximum(change, FLOOR), **label)
+        axes[2].plot(part, energy(results) / energy(results)[0], **label)
+    titles = ("change of linear momentum", "change of angular momentum", "energy / start")
+    for axis, title in zip(axes, titles):
+        axis.set_title(title)
+    for axis in axes[:2]:
+        axis.axhline(penetration.LIMIT, color="k", ls="--", lw=0.8)
+    axes[2].set_xlabel("time / duration")
+    axes[2].legend(ncols=2)
+    style.save(figure, verification.output / "conservation.png")
+
+
+def draw_motion(verification: runner.Verification) -> None:
+    """The motion of the cases."""
+    for name, times in MOTION.items():
+        results = verification.results.get(name)
+        if results is None:
+            continue
+        frames = sorted({results.nearest_frame(time) for time in times})
+        columns = 6 if name in ("column_mu02", "pile") else 3
+        figure = panels(results, frames, "von-mises", False, columns)
+        style.save(figure, verification.output / f"motion_{name}.png", 75)
+
+
+def main() -> int:
+    """Runs, checks, draws, reports."""
+    verification = runner.start(HERE, DECKS)
+    cases = verification.cases
+    rows = [check(verification, case, verification.results[case.name]) for case in cases]
+    verification.table(
+        "Runs (energies against the largest of the ledger)",
+        ("case", "increments", "cutbacks", "seconds", "pairs", "deepest", "rise of energy")
+        + ("friction", "impact", "normal contact"),
+        rows,
+    )
+    draw_conservation(verification)
+    draw_motion(verification)
+    return verification.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
