@@ -37,6 +37,8 @@ impl PairSite {
 pub struct Pair {
     /// Its place.
     pub at: PairSite,
+    /// Length of the segment, at a vertex that before it.
+    pub length: f64,
     /// Gap g of the iterate (length).
     pub gap: f64,
     /// Gap of the start in the sense of the rows, g - Bn d (length).
@@ -64,19 +66,20 @@ impl Pair {
             (project(end[0], end[1], end[2]), normal, tangent)
         };
         let (p, normal, tangent) = face([s, a, b]);
+        let length = p.length;
         let (gap, normal, tangent) = match at.site.vertex {
             None => (p.gap, wide(normal), wide(tangent)),
             // g, Bn, Bt of both segments with their weights, so that the normal has the length 1
             Some(vertex) => {
                 let (q, next_normal, next_tangent) = face([s, b, c]);
                 let n = [0, 1].map(|i| vertex.blend(p.normal[i], q.normal[i]));
-                let length = n[0].hypot(n[1]);
+                let size = n[0].hypot(n[1]);
                 let blend = |row: [f64; 6], next: [f64; 6]| {
                     let (row, next) = (wide(row), beyond(next));
-                    std::array::from_fn(|k| vertex.blend(row[k], next[k]) / length)
+                    std::array::from_fn(|k| vertex.blend(row[k], next[k]) / size)
                 };
                 (
-                    vertex.blend(p.gap, q.gap) / length,
+                    vertex.blend(p.gap, q.gap) / size,
                     blend(normal, next_normal),
                     blend(tangent, next_tangent),
                 )
@@ -84,6 +87,7 @@ impl Pair {
         };
         let mut pair = Pair {
             at,
+            length,
             gap,
             start_gap: gap,
             slip: 0.0,

@@ -6,6 +6,9 @@ use super::{Cause, FailedLcp};
 use crate::contact::{Pair, add_contact_forces, frictional_lcp};
 use crate::lcp::{ContactState, LcpMethod, solve_frictional};
 
+/// Overlap (in segment lengths) that is none once the passes have settled.
+const ROUND_OFF: f64 = 1e-10;
+
 /// Pairs with their contact forces (or impulses).
 #[derive(Debug, Clone, Default)]
 pub(super) struct ContactForces {
@@ -105,10 +108,12 @@ impl ContactForces {
     ///
     /// Pairs that y leaves open and that were open before stay out of the problem; those that the
     /// forces of the others would close are found afterwards and enter, so that the answer is that
-    /// of all pairs.
+    /// of all pairs. When the passes have settled, the pairs that were closed come first and others
+    /// enter only if they would overlap by more than round-off: two nodes that face each other may
+    /// carry the same force, and it must not go to and fro between them.
     pub fn of_pass(
         pairs: Vec<Pair>,
-        warm: &Touching,
+        (warm, settled): (&Touching, bool),
         y: &[f64],
         dofs: &DofMap,
         matrix: &mut Factored,
@@ -117,16 +122,28 @@ impl ContactForces {
     ) -> Result<(Self, Vec<f64>), Cause> {
         let mut forces = ContactForces::open(pairs);
         let gap_after = |pair: &Pair, du: &[f64]| pair.gap + pair.normal_of(du);
-        let closed_before = |pair: &Pair| warm.state(&pair.at).is_closed();
+        let closed_before = |pair: &Pair| match settled {
+            true => warm.closes(&pair.at),
+            false => warm.state(&pair.at).is_closed(),
+        };
+        let overlap = |pair: &Pair| {
+            if settled {
+                ROUND_OFF * pair.length
+            } else {
+                0.0
+            }
+        };
         let mut inside: Vec<bool> = forces.pairs.iter().map(closed_before).collect();
         let mut du = y.to_vec();
         let mut entered = inside.contains(&true);
+        let mut may_enter = !(settled && entered);
         loop {
             for (pair, inside) in forces.pairs.iter().zip(&mut inside) {
-                if !*inside && gap_after(pair, &du) < 0.0 {
+                if may_enter && !*inside && gap_after(pair, &du) < -overlap(pair) {
                     (*inside, entered) = (true, true);
                 }
             }
+            may_enter = true;
             if !entered {
                 return Ok((forces, du));
             }

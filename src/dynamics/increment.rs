@@ -120,8 +120,15 @@ impl Attempt<'_, '_> {
             // Pn, Pt of the complementarity problem; dU = y + K*^-1 (Bn^T Pn + Bt^T Pt)
             let pivots = self.meter.counts.pivots;
             let method = problem.method();
-            let (forces, du) =
-                ContactForces::of_pass(pairs, &state, &y, &problem.dofs, k, method, self.meter)?;
+            let (forces, du) = ContactForces::of_pass(
+                pairs,
+                (&state, pairing.settled),
+                &y,
+                &problem.dofs,
+                k,
+                method,
+                self.meter,
+            )?;
             let pivots = self.meter.counts.pivots - pivots;
 
             // residual with the contact forces of this pass

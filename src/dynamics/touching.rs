@@ -27,6 +27,13 @@ impl Touching {
         !self.of_slot(slot).is_empty()
     }
 
+    /// Whether this very pair carries a force.
+    pub fn closes(&self, at: &PairSite) -> bool {
+        self.of_slot(at.slot)
+            .iter()
+            .any(|(key, _)| *key == at.key())
+    }
+
     /// State of a pair; a node that has come to another segment keeps the one it had.
     pub fn state(&self, at: &PairSite) -> ContactState {
         let own = self.of_slot(at.slot);
