@@ -2,7 +2,7 @@
 
 use std::path::Path;
 use stickslip::contact::{adjust, report_adjusted, report_penetrations};
-use stickslip::diagnostics::{Code, Diagnostics, Severity, Sources};
+use stickslip::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Sources};
 use stickslip::{deck, reader};
 
 const SQUARE: &str = include_str!("decks/square.inp");
@@ -232,6 +232,22 @@ EBLOCK",
         text
     });
     insta::assert_snapshot!(texts.join("\n"));
+}
+
+#[test]
+fn only_nodes_in_other_bodies_penetrate_in_general_contact() {
+    let general = |height: &str| {
+        let deck = SHARED.replacen(PAIR, GENERAL, 1);
+        let deck = deck.replacen("11, 1., 1.1", &format!("11, 1., {height}"), 1);
+        messages(&change(&deck, "12, 3., 1.1", "12, 3., 1.")).0
+    };
+    let found = |d: &Diagnostics| {
+        let about = |item: &&Diagnostic| item.code == Code::InitialPenetration;
+        d.iter().find(about).map(|item| item.severity)
+    };
+    assert_eq!(found(&general("1.")), None, "bodies that touch");
+    assert_eq!(found(&general("0.9995")), Some(Severity::Warning));
+    assert_eq!(found(&general("0.99")), Some(Severity::Error));
 }
 
 #[test]

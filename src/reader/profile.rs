@@ -76,7 +76,12 @@ impl Profile {
             }
             _ => {
                 let message = format!("expected START, LINE or CIRCL, found `{}`", word.text);
-                return fault(word.span, &message, "see --explain SURFACE", cx);
+                return fault(
+                    word.span,
+                    &message,
+                    "a profile is START, x, y; LINE, x, y; CIRCL, x, y, xc, yc",
+                    cx,
+                );
             }
         }
         Some(())
