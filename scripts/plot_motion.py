@@ -92,6 +92,7 @@ def draw_shape(axes: Axes, results: Results, frame: int, colouring: Colouring) -
         bodies.set_norm(colouring.norm)
     axes.add_collection(bodies)
     axes.add_collection(LineCollection(position[results.boundary], colors=EDGE, linewidths=0.8))
+    axes.add_collection(LineCollection(position[results.rigid], colors=EDGE, linewidths=1.6))
     status = results.point_field("CONTACT_STATUS", frame)
     for value, face in ((STICK, "#d1495b"), (SLIP, "white")):
         at = position[status == value]
@@ -119,13 +120,13 @@ def force_scale(results: Results, frames: list[int]) -> float:
     largest = max(
         float(np.linalg.norm(results.point_field("CONTACT_FORCE", f), axis=1).max()) for f in frames
     )
-    extent = float(np.ptp(results.coordinates, axis=0).max())
+    extent = float(np.ptp(results.coordinates[results.drawn], axis=0).max())
     return max(largest, 1e-300) / (0.1 * extent)
 
 
 def frame_axes(axes: Axes, results: Results, frames: list[int]) -> None:
     """Limits that hold all given frames, equal scales."""
-    positions = [results.positions(frame) for frame in frames]
+    positions = [results.positions(frame)[results.drawn] for frame in frames]
     low = np.min([p.min(axis=0) for p in positions], axis=0)
     high = np.max([p.max(axis=0) for p in positions], axis=0)
     margin = 0.03 * (high - low).max()
@@ -207,7 +208,9 @@ def draw_overlay(axes: Axes, results: Results, frames: list[int]) -> None:
         cells = [position[cell] for cell in results.cells if select[cell[0]]]
         outline = position[[side for side in results.boundary if select[side[0]]]]
         axes.add_collection(PolyCollection(cells, facecolors=face, linewidths=0))
+        rigid = position[[side for side in results.rigid if select[side[0]]]]
         axes.add_collection(LineCollection(outline, colors=[edge], linewidths=1.1))
+        axes.add_collection(LineCollection(rigid, colors=[edge], linewidths=1.6))
 
     if not moving.all():
         draw(frames[0], ~moving, BACKGROUND, EDGE)

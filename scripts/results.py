@@ -90,8 +90,19 @@ class Results:
     def cells(self) -> list[NDArray[np.int64]]:
         """Node indices of each element."""
         connectivity = self.file["VTKHDF/Connectivity"][:]
-        offsets = self.file["VTKHDF/Offsets"][:]
+        offsets = self.file["VTKHDF/Offsets"][: len(self.file["model/element_labels"]) + 1]
         return [connectivity[a:b] for a, b in zip(offsets[:-1], offsets[1:])]
+
+    @cached_property
+    def rigid(self) -> NDArray[np.int64]:
+        """Segments of rigid surfaces, [segments, 2] node indices, obstacle on the left."""
+        end = self.file["VTKHDF/Offsets"][len(self.cells)]
+        return self.file["VTKHDF/Connectivity"][end:].reshape(-1, 2)
+
+    @cached_property
+    def drawn(self) -> NDArray[np.int64]:
+        """Nodes of elements and of rigid surfaces."""
+        return np.unique(np.concatenate([*self.cells, self.rigid.ravel()]))
 
     @cached_property
     def boundary(self) -> NDArray[np.int64]:
@@ -195,7 +206,8 @@ class Results:
 
     def cell_field(self, name: str, frame: int) -> NDArray[np.float64]:
         """A field of element means in one frame: S and E as (xx, yy, xy)."""
-        return self._field("CellData", name, len(self.cells), frame)
+        count = len(self.cells) + len(self.rigid)
+        return self._field("CellData", name, count, frame)[: len(self.cells)]
 
     def _field(self, kind: str, name: str, count: int, frame: int) -> NDArray[np.float64]:
         data = self.file[f"VTKHDF/{kind}/{name}"][frame * count : (frame + 1) * count]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 use stickslip::contact::{adjust, report_adjusted, report_penetrations};
-use stickslip::diagnostics::{Code, Diagnostics, Severity, Sources};
+use stickslip::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Sources};
 use stickslip::{deck, reader};
 
 const SQUARE: &str = include_str!("decks/square.inp");
@@ -59,6 +59,18 @@ fn step(more: &str) -> Source {
 /// The block on its base with a change.
 fn shared(old: &str, new: &str) -> Source {
     change(SHARED, old, new)
+}
+
+const LINE: &str = "START, 4., 0.\nLINE, 0., 0.\n";
+
+/// The block above a rigid floor with these rows, further cards, and conditions in the step.
+fn rigid(rows: &str, model: &str, step: &str) -> Source {
+    let cards = format!(
+        "*NODE, NSET=REF\n100, 0., -5.\n*SURFACE, NAME=FLOOR, TYPE=SEGMENTS\n{rows}\
+         *RIGID BODY, ANALYTICAL SURFACE=FLOOR, REF NODE=100\n{model}{PAIR}"
+    );
+    let deck = SHARED.replacen(PAIR, &cards.replace("STOP", "FLOOR"), 1);
+    change(&deck, "*DLOAD", &format!("{step}*DLOAD"))
 }
 
 /// A deck that has this fault.
@@ -127,6 +139,7 @@ fn faulty(code: Code) -> Source {
         GeneralContact => shared("*CONTACT PAIR", &format!("{GENERAL}*CONTACT PAIR")),
         InitialPenetration => shared("11, 1., 1.1", "11, 1., 0.99"),
         UnitsHint => square("1000., 0.3", "1., 0.3"),
+        RigidSurface => rigid(LINE, "", ""),
         Adjusted => shared("DRY, TYPE", "DRY, ADJUST=0.2, TYPE"),
         BadDof => square("FOOT, 1, 2", "FOOT, 1, 8"),
         ValueOutsideStep => square("FOOT, 1, 2", "FOOT, 1, 2, 0.1"),
@@ -217,6 +230,69 @@ EBLOCK",
         let (d, text) = messages(&deck);
         assert_eq!(d.count(Severity::Error), 1, "{text}");
         text
+    });
+    insta::assert_snapshot!(texts.join("\n"));
+}
+
+#[test]
+fn only_nodes_in_other_bodies_penetrate_in_general_contact() {
+    let general = |height: &str| {
+        let deck = SHARED.replacen(PAIR, GENERAL, 1);
+        let deck = deck.replacen("11, 1., 1.1", &format!("11, 1., {height}"), 1);
+        messages(&change(&deck, "12, 3., 1.1", "12, 3., 1.")).0
+    };
+    let found = |d: &Diagnostics| {
+        let about = |item: &&Diagnostic| item.code == Code::InitialPenetration;
+        d.iter().find(about).map(|item| item.severity)
+    };
+    assert_eq!(found(&general("1.")), None, "bodies that touch");
+    assert_eq!(found(&general("0.9995")), Some(Severity::Warning));
+    assert_eq!(found(&general("0.99")), Some(Severity::Error));
+}
+
+#[test]
+fn rigid_surfaces_that_cannot_be() {
+    let fixed = "*BOUNDARY\n100, 1, 2\n";
+    let profile = |rows: &str| rigid(rows, "", fixed);
+    let decks = [
+        profile("LINE, 4., 0.\n"),
+        profile("START, 4., 0.\n"),
+        profile("START, 4., 0.\nLINE, 4., 0.\n"),
+        profile("START, 4., 0.\nCIRCL, 2., 1., 2., 0.\n"),
+        profile("START, 4., 0.\nCIRCL, 0., 0., 2., 0.\n"),
+        profile("START, 4., 0.\nPARAB, 1., 1., 2., 0.\n"),
+        profile("START, 4., 0.\nLINEAR, 0., 0.\n"),
+        profile("START, 4.\n"),
+        rigid(LINE, "", "*BOUNDARY\n100, 1\n"),
+        rigid(LINE, "", "*BOUNDARY\n100, 1, 2\n100, 6, 6, 0.1\n"),
+        rigid(
+            LINE,
+            "*RIGID BODY, ANALYTICAL SURFACE=FLOOR, REF NODE=100\n",
+            fixed,
+        ),
+        rigid(
+            LINE,
+            "*RIGID BODY, ANALYTICAL SURFACE=SBOT, REF NODE=100\n",
+            fixed,
+        ),
+        rigid(LINE, "*RIGID BODY, ELSET=EBASE, REF NODE=100\n", fixed),
+        rigid(LINE, "*CONTACT PAIR, INTERACTION=DRY\nFLOOR, SBOT\n", fixed),
+        rigid(LINE, "*CONTACT PAIR, INTERACTION=DRY\nFLOOR\n", fixed),
+        shared(
+            PAIR,
+            &format!("*SURFACE, NAME=R, TYPE=SEGMENTS\n{LINE}{PAIR}"),
+        ),
+        rigid(
+            LINE,
+            "*SURFACE, NAME=R, TYPE=SEGMENTS\nSTART, 0., 0.\nLINE, 1., 0.\n\
+             *RIGID BODY, ANALYTICAL SURFACE=R, REF NODE=NFIX\n",
+            fixed,
+        ),
+    ];
+    let texts = decks.map(|deck| {
+        let (d, text) = messages(&deck);
+        assert_eq!(d.count(Severity::Error), 1, "{text}");
+        text.split("error[").skip(1).collect::<String>()
     });
     insta::assert_snapshot!(texts.join("\n"));
 }

@@ -466,3 +466,62 @@ fn adjusted_nodes_are_moved_onto_the_master() {
     assert_eq!(adjusted("NBLOCK"), ([1.0, 1.0], 2));
     assert_eq!(adjusted("NFIX"), ([1.1, 0.95], 0));
 }
+
+/// The model of the block above a rigid floor with these rows, moved as the step says.
+fn on_floor(rows: &str, step: &str) -> Model {
+    let cards = format!(
+        "*NODE\n100, 0., -5.\n*NSET, NSET=REF\n100\n*SURFACE, NAME=FLOOR, TYPE=SEGMENTS\n{rows}\
+         *RIGID BODY, ANALYTICAL SURFACE=FLOOR, REF NODE=REF\n{}*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n",
+        PAIR.replace("STOP", "FLOOR")
+    );
+    let deck = include_str!("decks/shared.inp").replacen(PAIR, &cards, 1);
+    read(&deck.replacen("*DLOAD", &format!("{step}*DLOAD"), 1)).0
+}
+
+#[test]
+fn a_rigid_surface_moves_with_its_reference_node() {
+    let model = on_floor(
+        "START, 0., 1.\nLINE, 4., 1.\nLINE, 4., 0.\n",
+        "*BOUNDARY, AMPLITUDE=A\n100, 2, 2, 0.5\n*BOUNDARY\nREF, 1\n100, 6\n",
+    );
+    let nodes = model.mesh.node_count();
+    assert_eq!(model.mesh.node_labels[nodes - 4..], [100, 101, 102, 103]);
+    assert_eq!(
+        model.mesh.coordinates[nodes - 3..],
+        [[0.0, 1.0], [4.0, 1.0], [4.0, 0.0]]
+    );
+    let [a, b, c] = [nodes - 3, nodes - 2, nodes - 1];
+    let surface = &model.surfaces[model.contacts[0].master];
+    assert_eq!(surface.kind, SurfaceKind::Rigid(vec![[c, b], [b, a]]));
+    let supports = &model.steps[0].supports;
+    assert!(supports.windows(2).all(|pair| pair[0].dof < pair[1].dof));
+    for node in [nodes - 4, a, b, c] {
+        let motion = |dof| supports.iter().find(|s| s.dof == dof).map(|s| s.motion);
+        assert_eq!(motion(2 * node), Some(SupportMotion::Ramp { to: 0.0 }));
+        let moved = SupportMotion::Amplitude {
+            value: 0.5,
+            amplitude: 0,
+        };
+        assert_eq!(motion(2 * node + 1), Some(moved));
+    }
+    assert_eq!(model.initial_velocity.len(), 2 * nodes);
+}
+
+#[test]
+fn an_arc_is_cut_into_chords_of_one_degree() {
+    let fixed = "*BOUNDARY\n100, 1, 2\n";
+    let rows = "START, -1., 0.\nCIRCL, 0., 1., 0., 0.\nCIRCL, 1., 0., 0., 0.\nLINE, -1., 0.\n";
+    let model = on_floor(rows, fixed);
+    let surface = &model.surfaces[model.contacts[0].master];
+    let segments = surface.segments(&model.mesh);
+    assert_eq!(
+        (segments.len(), surface.nodes(&model.mesh).len()),
+        (181, 181)
+    );
+    let x = &model.mesh.coordinates;
+    assert!(segments.iter().skip(1).all(|&[a, b]| {
+        let middle = [0, 1].map(|i| (x[a][i] + x[b][i]) / 2.0);
+        let radius = middle[0].hypot(middle[1]);
+        (1.0 - 3.9e-5..1.0 - 3.7e-5).contains(&radius)
+    }));
+}

@@ -99,7 +99,10 @@ pub(super) static MODEL: &[Keyword] = &[
                 &[
                     V::read("ELEMENT", "rows are element or element set, face (default)"),
                     V::read("NODE", "rows are node or node set"),
-                    V::refused("SEGMENTS", "mesh the obstacle and fix it"),
+                    V::read(
+                        "SEGMENTS",
+                        "a rigid profile; rows are START, x, y; LINE, x, y; CIRCL, x, y, xc, yc",
+                    ),
                     V::refused("CYLINDER", "surfaces of solids are not plane"),
                     V::refused("REVOLUTION", "surfaces of solids are not plane"),
                     V::refused("CUTTING SURFACE", "list the faces"),
@@ -112,11 +115,37 @@ pub(super) static MODEL: &[Keyword] = &[
             P::value("MAX RATIO", SMOOTHING).warned(),
             P::flag("NO THICK", SMOOTHING).warned(),
             P::flag("NO OFFSET", SMOOTHING).warned(),
+            P::value("FILLET RADIUS", "give the arcs with CIRCL").refused(),
             P::value("COMBINE", "list the faces in one surface").refused(),
             P::flag("CROP", "list the faces in one surface").refused(),
         ],
         "A surface: faces S1 = side 1-2, S2 = 2-3, S3 = 3-4 (triangle: 3-1), S4 = 4-1; without a \
-         face the free sides.",
+         face the free sides. The outside of a rigid profile lies on the left of the way from START, \
+         the obstacle on the right; an arc (less than 180 degrees) is cut into equal chords of at \
+         most 1 degree, 3.8e-5 of its radius off the arc at most.",
+    ),
+    Keyword::read(
+        "RIGID BODY",
+        Scope::Model,
+        Data::None,
+        &[
+            P::value("ANALYTICAL SURFACE", "surface of TYPE=SEGMENTS; required"),
+            P::value("REF NODE", "node, or node set of one node; required"),
+            P::value("ELSET", "fix or prescribe all nodes of the elements").refused(),
+            P::value("NSET", "fix or prescribe all nodes").refused(),
+            P::value("PIN NSET", "fix or prescribe all nodes").refused(),
+            P::value("TIE NSET", "fix or prescribe all nodes").refused(),
+            P::value("ROT NODE", "rotation is not supported").refused(),
+            P::value(
+                "POSITION",
+                "without rotation the place of the node does not matter",
+            )
+            .ignored(),
+            P::optional("ISOTHERMAL", "there are no temperatures").ignored(),
+        ],
+        "Moves a rigid surface with its reference node, whose directions 1 and 2 are prescribed in \
+         every step; it does not turn. Its points become nodes without element, numbered from the \
+         largest node number of the deck on.",
     ),
     // --- materials and sections ------------------------------------------------------------
     Keyword::read(

@@ -28,8 +28,7 @@ const fn assembly(name: &'static str, status: Status) -> Keyword {
 const PROCEDURE: &str = "Steps are dynamic: use *DYNAMIC.";
 const SECTION: &str = "Elements have solid sections: use *SOLID SECTION.";
 const CONSTRAINT: &str = "Constraints between nodes are not supported yet.";
-const RIGID: &str =
-    "Rigid bodies are not supported yet: mesh the body and fix it or make it stiff.";
+const RIGID: &str = "Define it with *SURFACE, TYPE=SEGMENTS and *RIGID BODY.";
 const DISCRETE: &str = "Springs, dashpots, masses and connectors are not supported yet.";
 const INELASTIC: &str = "Materials are elastic, St. Venant-Kirchhoff.";
 const GENERAL: &str = "General contact is that of all exterior faces alike.";
@@ -101,7 +100,6 @@ pub(super) static OTHERS: &[Keyword] = &[
     refused("EMBEDDED ELEMENT", CONSTRAINT),
     refused("PRE-TENSION SECTION", CONSTRAINT),
     refused("CYCLIC SYMMETRY MODEL", CONSTRAINT),
-    refused("RIGID BODY", RIGID),
     refused("RIGID SURFACE", RIGID),
     refused("SPRING", DISCRETE),
     refused("DASHPOT", DISCRETE),

@@ -87,6 +87,7 @@ codes! {
     InitialPenetration "D410" "A slave node starts inside the master body."
     GeneralContact "D411" "General contact of other than all exterior faces alike, or pairs beside it."
     Adjusted "D412" "Slave nodes are moved onto the master surface before the start."
+    RigidSurface "D413" "A rigid surface, or its reference node, that cannot be used as it is."
     BadDof "D501" "A degree of freedom that plane elements do not have."
     ValueOutsideStep "D502" "A motion is prescribed before the first step."
     VelocityOnSupport "D503" "An initial velocity on a prescribed degree of freedom."

@@ -53,6 +53,15 @@ pub struct Model {
 }
 
 impl Model {
+    /// Segments [a, b] of all rigid surfaces.
+    pub fn rigid_segments(&self) -> Vec<[usize; 2]> {
+        let segments = self.surfaces.iter().map(|surface| match &surface.kind {
+            SurfaceKind::Rigid(segments) => segments.as_slice(),
+            SurfaceKind::Faces(_) | SurfaceKind::Nodes(_) => &[],
+        });
+        segments.flatten().copied().collect()
+    }
+
     /// Coefficient of friction mu of a contact.
     pub fn friction(&self, contact: &Contact) -> f64 {
         let interaction = contact.interaction.map(|index| &self.interactions[index]);

@@ -12,13 +12,16 @@ pub struct Surface {
     pub kind: SurfaceKind,
 }
 
-/// Element faces or nodes.
+/// Element faces, nodes or rigid segments.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SurfaceKind {
     /// Faces of elements: can be slave or master.
     Faces(Vec<Face>),
     /// Nodes: can be slave only.
     Nodes(Vec<usize>),
+    /// Segments [a, b] between nodes without element, the obstacle on the left of the way from a
+    /// to b: can be master only.
+    Rigid(Vec<[usize; 2]>),
 }
 
 /// One side of an element.
@@ -38,11 +41,12 @@ impl Face {
 }
 
 impl Surface {
-    /// Segments [a, b] of a face surface, in order; empty for a node surface.
+    /// Segments [a, b] in order, the body on the left; empty for a node surface.
     pub fn segments(&self, mesh: &Mesh) -> Vec<[usize; 2]> {
         match &self.kind {
             SurfaceKind::Faces(faces) => faces.iter().map(|face| face.nodes(mesh)).collect(),
             SurfaceKind::Nodes(_) => Vec::new(),
+            SurfaceKind::Rigid(segments) => segments.clone(),
         }
     }
 
@@ -51,6 +55,7 @@ impl Surface {
         let all: Vec<usize> = match &self.kind {
             SurfaceKind::Faces(faces) => faces.iter().flat_map(|f| f.nodes(mesh)).collect(),
             SurfaceKind::Nodes(nodes) => nodes.clone(),
+            SurfaceKind::Rigid(segments) => segments.as_flattened().to_vec(),
         };
         let mut seen = vec![false; mesh.node_count()];
         all.into_iter()

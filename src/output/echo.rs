@@ -172,12 +172,12 @@ fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<S
         &model.surfaces[contact.slave],
         &model.surfaces[contact.master],
     );
-    let edges = match &master.kind {
-        SurfaceKind::Faces(faces) => faces.len(),
-        SurfaceKind::Nodes(_) => 0,
+    let edge = match master.kind {
+        SurfaceKind::Rigid(_) => "rigid edge",
+        SurfaceKind::Faces(_) | SurfaceKind::Nodes(_) => "edge",
     };
     let nodes = counted(slave.nodes(&model.mesh).len(), "node");
-    let edges = counted(edges, "edge");
+    let edges = counted(master.segments(&model.mesh).len(), edge);
     let sides = match contact.is_self_contact() {
         true => format!("{} ({nodes}, {edges}) with itself", slave.name),
         false => format!("{} ({nodes}) -> {} ({edges})", slave.name, master.name),

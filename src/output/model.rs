@@ -3,9 +3,13 @@
 use hdf5::Group;
 
 use super::dataset::{Meaning, constant, group, meaning};
-use super::vtkhdf::{CONNECTIVITY, connectivity};
+use super::vtkhdf::connectivity;
 use crate::model::{Model, Set};
 
+const CONNECTIVITY: Meaning = meaning(
+    "node indices of all elements, one element after the other",
+    "1",
+);
 const SET: Meaning = meaning("indices of the members, from 0", "1");
 
 /// Writes the group.

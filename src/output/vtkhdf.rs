@@ -9,6 +9,7 @@ use crate::elements::element_means;
 use crate::model::{Cell, Mesh, Model};
 
 /// Cell types of VTK.
+const VTK_LINE: u8 = 3;
 const VTK_TRIANGLE: u8 = 5;
 const VTK_QUAD: u8 = 9;
 
@@ -47,6 +48,8 @@ pub(super) struct Fields {
     status: Field<u8>,
     stress: Field<f64>,
     strain: Field<f64>,
+    /// Cells after the elements: the segments of rigid surfaces.
+    lines: usize,
 }
 
 impl Fields {
@@ -54,10 +57,12 @@ impl Fields {
     pub fn create(root: &Group, model: &Model) -> hdf5::Result<Self> {
         let grid = group(root, "VTKHDF")?;
         write_type(&grid)?;
-        write_mesh(&grid, &model.mesh)?;
+        let lines = model.rigid_segments();
+        write_mesh(&grid, &model.mesh, &lines)?;
         let steps = Steps::create(&grid)?;
         let points = Place::new(&grid, &steps.group, "Point", model.mesh.node_count())?;
-        let cells = Place::new(&grid, &steps.group, "Cell", model.mesh.elements.len())?;
+        let cells = model.mesh.elements.len() + lines.len();
+        let cells = Place::new(&grid, &steps.group, "Cell", cells)?;
         Ok(Fields {
             displacement: points.field("U", &[3], meaning("displacement", "length"))?,
             velocity: points.field("V", &[3], meaning("velocity", "length/time"))?,
@@ -69,6 +74,7 @@ impl Fields {
             stress: cells.field("S", &[3], STRESS)?,
             strain: cells.field("E", &[3], STRAIN)?,
             steps,
+            lines: lines.len(),
         })
     }
 
@@ -88,10 +94,11 @@ impl Fields {
         self.contact_force.push(in_space(&nodal.contact_force))?;
         self.gap.push(nodal.gap.iter().copied())?;
         self.status.push(nodal.status.iter().map(|&s| s as u8))?;
-        self.stress
-            .push(means.iter().flat_map(|mean| mean.stress))?;
-        self.strain
-            .push(means.iter().flat_map(|mean| mean.strain))?;
+        let of_lines = || std::iter::repeat_n(f64::NAN, 3 * self.lines);
+        let stress = means.iter().flat_map(|mean| mean.stress);
+        self.stress.push(stress.chain(of_lines()))?;
+        let strain = means.iter().flat_map(|mean| mean.strain);
+        self.strain.push(strain.chain(of_lines()))?;
         self.steps.push(time)
     }
 
@@ -198,14 +205,19 @@ fn write_type(grid: &Group) -> hdf5::Result<()> {
     set_attribute(grid, "Type", name)
 }
 
-/// The reference mesh.
-fn write_mesh(grid: &Group, mesh: &Mesh) -> hdf5::Result<()> {
-    let (nodes, cells) = (mesh.node_count(), mesh.elements.len());
-    let connectivity = connectivity(mesh);
+/// The reference mesh, and lines between its nodes.
+fn write_mesh(grid: &Group, mesh: &Mesh, lines: &[[usize; 2]]) -> hdf5::Result<()> {
+    let (nodes, cells) = (mesh.node_count(), mesh.elements.len() + lines.len());
+    let mut connectivity = connectivity(mesh);
+    connectivity.extend(lines.as_flattened().iter().map(|&node| node as i64));
     let count =
         |name, value: usize, text| constant(grid, name, &[1], &[value as i64], meaning(text, "1"));
     count("NumberOfPoints", nodes, "number of nodes N")?;
-    count("NumberOfCells", cells, "number of elements E")?;
+    count(
+        "NumberOfCells",
+        cells,
+        "number of elements and rigid segments",
+    )?;
     count(
         "NumberOfConnectivityIds",
         connectivity.len(),
@@ -217,18 +229,19 @@ fn write_mesh(grid: &Group, mesh: &Mesh) -> hdf5::Result<()> {
     let text = meaning("reference coordinates", "length");
     constant(grid, "Points", &[nodes, 3], &points, text)?;
     let shape = [connectivity.len()];
-    constant(grid, "Connectivity", &shape, &connectivity, CONNECTIVITY)?;
-    let text = meaning("where each element's nodes start in the connectivity", "1");
-    constant(grid, "Offsets", &[cells + 1], &offsets(mesh), text)?;
-    let text = meaning("cell type: 5 triangle, 9 quadrilateral", "1");
-    constant(grid, "Types", &[cells], &types(mesh), text)
+    let text = meaning("node indices of all cells, one cell after the other", "1");
+    constant(grid, "Connectivity", &shape, &connectivity, text)?;
+    let text = meaning("where each cell's nodes start in the connectivity", "1");
+    let offsets = offsets(mesh, lines.len());
+    constant(grid, "Offsets", &[cells + 1], &offsets, text)?;
+    let text = meaning(
+        "cell type: 3 rigid segment, 5 triangle, 9 quadrilateral",
+        "1",
+    );
+    let mut types = types(mesh);
+    types.resize(cells, VTK_LINE);
+    constant(grid, "Types", &[cells], &types, text)
 }
-
-/// What a dataset with [`connectivity`] holds.
-pub(super) const CONNECTIVITY: Meaning = meaning(
-    "node indices of all elements, one element after the other",
-    "1",
-);
 
 /// Node indices of all elements, one element after the other.
 pub(super) fn connectivity(mesh: &Mesh) -> Vec<i64> {
@@ -238,12 +251,16 @@ pub(super) fn connectivity(mesh: &Mesh) -> Vec<i64> {
         .collect()
 }
 
-/// Start of each element in the connectivity, and its end.
-fn offsets(mesh: &Mesh) -> Vec<i64> {
+/// Start of each element and of each line in the connectivity, and its end.
+fn offsets(mesh: &Mesh, lines: usize) -> Vec<i64> {
+    let elements = mesh
+        .elements
+        .iter()
+        .map(|element| element.cell.nodes().len());
     let mut offsets = vec![0];
     let mut end = 0;
-    for element in &mesh.elements {
-        end += element.cell.nodes().len() as i64;
+    for nodes in elements.chain(std::iter::repeat_n(2, lines)) {
+        end += nodes as i64;
         offsets.push(end);
     }
     offsets

@@ -50,7 +50,7 @@ pub(super) fn read(
     report_repeated(&contacts, cx);
     let general = general_contact::read(outline, grid, surfaces, &names, cx);
     if general.is_some() {
-        general_contact::report_pairs(&contacts, cx);
+        general_contact::report_pairs(&contacts, surfaces, cx);
     }
     contacts.extend(general);
     (interactions, contacts)
@@ -175,6 +175,11 @@ fn check_use(row: &Row, slave: Found, master: Found, cx: &mut Context) -> Option
         (
             format!("surface {name} is slave and master at once"),
             "for self-contact write its name once",
+        )
+    } else if let SurfaceKind::Rigid(_) = slave.1.kind {
+        (
+            format!("the rigid surface {} cannot be slave", slave.1.name),
+            "a rigid surface is a master: write the other surface first",
         )
     } else if is_of_nodes {
         (

@@ -45,9 +45,13 @@ pub(super) fn read(
     })
 }
 
-/// Pairs of faces touch in general contact already.
-pub(super) fn report_pairs(pairs: &[Contact], cx: &mut Context) {
-    for pair in pairs {
+/// Pairs of faces touch in general contact already; rigid surfaces take no part in it.
+pub(super) fn report_pairs(pairs: &[Contact], surfaces: &Surfaces, cx: &mut Context) {
+    let is_rigid = |pair: &Contact| {
+        let master = surfaces.all.get(pair.master);
+        master.is_some_and(|master| matches!(master.kind, SurfaceKind::Rigid(_)))
+    };
+    for pair in pairs.iter().filter(|pair| !is_rigid(pair)) {
         let message = "general contact holds between these surfaces already";
         let error = Diagnostic::error(Code::GeneralContact, pair.span, message);
         cx.d.push(error.help("leave out the pair or *CONTACT: their forces would add up"));

@@ -206,7 +206,7 @@ impl Loads {
         };
         let (index, surface, span) = surface?;
         let SurfaceKind::Faces(faces) = &surface.kind else {
-            let message = format!("surface {} is made of nodes: it has no faces", surface.name);
+            let message = format!("surface {} has no element faces", surface.name);
             cx.error(Code::SurfaceUse, span, message);
             return None;
         };

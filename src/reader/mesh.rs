@@ -48,7 +48,7 @@ struct RawElement {
     span: Span,
 }
 
-/// Reads nodes and elements; leaves out nodes without element.
+/// Reads nodes and elements; leaves out nodes without element that are no reference nodes.
 pub(super) fn read(outline: &Outline, cx: &mut Context) -> Grid {
     let errors = cx.errors();
     let mut reading = Reading {
@@ -66,7 +66,8 @@ pub(super) fn read(outline: &Outline, cx: &mut Context) -> Grid {
         reading.report_empty(cx);
     }
     reading.report_not_planar(cx);
-    reading.grid(cx)
+    let references = reading.reference_labels(outline);
+    reading.grid(&references, cx)
 }
 
 #[derive(Default)]
@@ -244,13 +245,42 @@ impl Reading {
         }
     }
 
-    fn grid(self, cx: &mut Context) -> Grid {
+    /// Numbers that may be those of reference nodes, which need no element.
+    fn reference_labels(&self, outline: &Outline) -> Vec<u64> {
+        let mut labels = Vec::new();
+        for card in outline.model_cards("RIGID BODY") {
+            let Some(named) = card.value("REF NODE") else {
+                continue;
+            };
+            let label = named.as_integer();
+            labels.extend(label.and_then(|label| u64::try_from(label).ok()));
+            let groups = self.node_groups.iter();
+            let meant = groups.filter(|group| group.name.key == named.name_key());
+            labels.extend(meant.flat_map(|group| &group.labels));
+            let sets = outline.model_cards("NSET");
+            let is_meant = |set: &&&Card| {
+                let name = set.value("NSET");
+                name.is_some_and(|name| name.name_key() == named.name_key())
+            };
+            for set in sets.iter().filter(is_meant) {
+                let count = if set.has("GENERATE") { 2 } else { usize::MAX };
+                let numbers = set.rows.iter().flat_map(|row| row.fields().take(count));
+                let numbers = numbers.filter_map(|field| field.as_integer());
+                labels.extend(numbers.filter_map(|label| u64::try_from(label).ok()));
+            }
+        }
+        labels
+    }
+
+    fn grid(self, references: &[u64], cx: &mut Context) -> Grid {
         let mut used = vec![false; self.nodes.len()];
         let index_of = |label: &u64| self.node_index.get(label).copied().flatten();
         for index in self
             .elements
             .iter()
-            .flat_map(|e| e.nodes.iter().filter_map(index_of))
+            .flat_map(|e| &e.nodes)
+            .chain(references)
+            .filter_map(index_of)
         {
             used[index] = true;
         }
@@ -301,6 +331,14 @@ impl Reading {
 }
 
 impl Grid {
+    /// Adds nodes without element at these points; their numbers follow the largest one.
+    pub fn add_points(&mut self, points: &[[f64; 2]]) {
+        let largest = self.mesh.node_labels.iter().max().copied().unwrap_or(0);
+        let labels = (1..).map(|i| largest.saturating_add(i));
+        self.mesh.node_labels.extend(labels.take(points.len()));
+        self.mesh.coordinates.extend(points);
+    }
+
     fn add_node(&mut self, node: &RawNode) {
         let [x, y, _] = node.at;
         self.nodes

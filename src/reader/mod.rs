@@ -18,6 +18,8 @@ mod motion;
 mod names;
 mod outline;
 mod output;
+mod profile;
+mod rigid;
 mod sets;
 mod settings;
 mod step;
@@ -52,10 +54,12 @@ pub fn build(deck: &Deck, d: &mut Diagnostics) -> Option<Model> {
 /// Reads everything; what has an error is missing in the result.
 fn read(cx: &mut Context) -> Model {
     let outline = Outline::new(cx);
-    let grid = mesh::read(&outline, cx);
+    let mut grid = mesh::read(&outline, cx);
     check::mesh(&grid, cx);
     let sets = sets::read(&outline, &grid, cx);
     let mut surfaces = surface::read(&outline, &grid, &sets, cx);
+    grid.add_points(&surfaces.rigid_points);
+    let obstacles = rigid::read(&outline, &grid, &sets, &surfaces, cx);
     let properties = material::read(&outline, &grid, &sets, cx);
     let (interactions, contacts) = contact::read(&outline, &grid, &sets, &mut surfaces, cx);
     check::thickness(&contacts, &surfaces, &properties, cx);
@@ -64,6 +68,7 @@ fn read(cx: &mut Context) -> Model {
         grid: &grid,
         sets: &sets,
         amplitudes: &amplitudes,
+        obstacles: &obstacles,
     };
     let guide = check::crossing_time(&grid.mesh, &properties);
     let steps = step::read(&outline, targets, &surfaces, guide, cx);

@@ -4,6 +4,7 @@ use super::amplitude::Amplitudes;
 use super::context::Context;
 use super::mesh::Grid;
 use super::outline::Outline;
+use super::rigid::Obstacle;
 use super::sets::Sets;
 use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
@@ -19,6 +20,8 @@ pub(super) struct Targets<'a> {
     pub sets: &'a Sets,
     /// Amplitudes.
     pub amplitudes: &'a Amplitudes,
+    /// Rigid surfaces.
+    pub obstacles: &'a [Obstacle],
 }
 
 /// A direction that the deck may name.

@@ -7,8 +7,8 @@ use super::loads::Loads;
 use super::motion::{Supports, Targets};
 use super::outline::{Outline, StepCards};
 use super::output::{Requests, restart, time_points};
-use super::settings;
 use super::surface::Surfaces;
+use super::{rigid, settings};
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic};
 use crate::model::{Impact, Increments, Settings, Step, Support};
@@ -95,10 +95,15 @@ impl Reading<'_> {
         self.own_settings(cards, cx);
         self.conditions(cards, moment, cx);
         self.requests.cards(&cards.cards, self.targets.sets, cx);
-        at_start.get_or_insert_with(|| self.supports.list());
+        let mut supports = self.supports.list();
+        rigid::follow(self.targets.obstacles, number, &mut supports, cx);
+        at_start.get_or_insert_with(|| supports.clone());
         let name = cards.head.value("NAME").and_then(|name| name.name(cx.d));
         let period = increments.map_or(0.0, |increments| increments.period);
-        let step = increments.map(|increments| self.build(name.map(|n| n.typed), increments));
+        let step = increments.map(|increments| Step {
+            supports,
+            ..self.build(name.map(|n| n.typed), increments)
+        });
         self.end(period);
         step
     }
@@ -108,7 +113,7 @@ impl Reading<'_> {
             name,
             increments,
             settings: self.settings,
-            supports: self.supports.list(),
+            supports: Vec::new(),
             point_loads: Vec::new(),
             body_forces: Vec::new(),
             pressures: Vec::new(),

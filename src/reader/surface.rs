@@ -4,6 +4,7 @@ use super::context::Context;
 use super::mesh::Grid;
 use super::names::Names;
 use super::outline::Outline;
+use super::profile::Profile;
 use super::sets::Sets;
 use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span, closest};
@@ -16,6 +17,10 @@ pub(super) struct Surfaces {
     pub names: Names,
     /// Surfaces in the order of their names.
     pub all: Vec<Surface>,
+    /// Rigid surfaces and their places.
+    pub rigid: Vec<(usize, Span)>,
+    /// Points of the rigid surfaces: nodes that follow those of the mesh.
+    pub rigid_points: Vec<[f64; 2]>,
 }
 
 /// Reads all surfaces.
@@ -23,6 +28,8 @@ pub(super) fn read(outline: &Outline, grid: &Grid, sets: &Sets, cx: &mut Context
     let mut surfaces = Surfaces {
         names: Names::new("surface"),
         all: Vec::new(),
+        rigid: Vec::new(),
+        rigid_points: Vec::new(),
     };
     let sides = Sides::new(&grid.mesh);
     for card in outline.model_cards("SURFACE") {
@@ -32,6 +39,12 @@ pub(super) fn read(outline: &Outline, grid: &Grid, sets: &Sets, cx: &mut Context
         let errors = cx.errors();
         let kind = match card.choice("TYPE") {
             Some("NODE") => SurfaceKind::Nodes(nodes(card, grid, sets, cx)),
+            Some("SEGMENTS") => {
+                let first = grid.mesh.node_count() + surfaces.rigid_points.len();
+                let profile = Profile::read(card, cx);
+                surfaces.rigid_points.extend(&profile.points);
+                SurfaceKind::Rigid(profile.segments(first))
+            }
             _ => SurfaceKind::Faces(faces(card, grid, sets, &sides, cx)),
         };
         if card.faulty || cx.errors() > errors {
@@ -40,6 +53,11 @@ pub(super) fn read(outline: &Outline, grid: &Grid, sets: &Sets, cx: &mut Context
         }
         report_empty(&kind, card, cx);
         let typed = name.typed.clone();
+        if let SurfaceKind::Rigid(_) = kind {
+            surfaces
+                .rigid
+                .push((surfaces.all.len(), card.span_of("NAME")));
+        }
         surfaces.names.define(name);
         surfaces.all.push(Surface { name: typed, kind });
     }
@@ -50,6 +68,7 @@ fn report_empty(kind: &SurfaceKind, card: &Card, cx: &mut Context) {
     let empty = match kind {
         SurfaceKind::Faces(faces) => faces.is_empty(),
         SurfaceKind::Nodes(nodes) => nodes.is_empty(),
+        SurfaceKind::Rigid(segments) => segments.is_empty(),
     };
     if empty && !card.rows.is_empty() && !cx.d.has_errors() && !cx.deck.incomplete {
         cx.error(

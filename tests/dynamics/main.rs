@@ -9,3 +9,4 @@ mod lcp_methods;
 mod loads;
 mod many;
 mod patch;
+mod rigid;

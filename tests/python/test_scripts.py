@@ -48,6 +48,13 @@ def test_plot_history(result: Path, tmp_path: Path) -> None:
     assert_picture(tmp_path / "history.png")
 
 
+def test_plot_motion_draws_rigid_surfaces(job: Job, tmp_path: Path) -> None:
+    path = job(Deck.read(ROOT / "tests/decks/rigid_floor.inp"))
+    for option in ("--forces", "--overlay"):
+        script("plot_motion.py", path, option, "-o", tmp_path / "motion.png")
+        assert_picture(tmp_path / "motion.png")
+
+
 @pytest.mark.parametrize(
     "options",
     [["--field", "speed", "--times", 0, 3], ["--overlay", "--interval", 1.5], ["--forces"]],

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pyvista
-from conftest import Job
+from conftest import ROOT, Job
+from deck import Deck
 from decks import CANTILEVERS, shortened
 from results import Results
 
@@ -27,3 +28,15 @@ def test_reader_sees_all_frames(job: Job) -> None:
             assert np.array_equal(grid.point_data["GAP"], gap, equal_nan=True)
             for name in ("S", "E"):
                 assert np.array_equal(grid.cell_data[name], results.cell_field(name, frame))
+
+
+def test_rigid_surfaces_are_lines(job: Job) -> None:
+    path = job(Deck.read(ROOT / "tests/decks/rigid_floor.inp"), "--frames", "2")
+    with Results(path) as results:
+        assert (len(results.cells), results.rigid.shape) == (1, (91, 2))
+        grid = pyvista.read(path)
+        assert grid.n_cells == 92
+        assert set(grid.celltypes) == {pyvista.CellType.LINE, pyvista.CellType.QUAD}
+        floor = results.point_field("U", 2)[results.rigid.ravel()]
+        assert np.allclose(floor, [0.5, 0.0], rtol=0.0, atol=1e-15)
+        assert np.isfinite(results.cell_field("S", 2)).all()
