@@ -18,6 +18,11 @@ pub fn all_segments(surfaces: &ContactSurfaces) -> impl Iterator<Item = Candidat
     })
 }
 
+/// How far beyond its ends (in its lengths) a segment is kept that a node has just left to no other.
+const SLIDING_OFF: f64 = 0.1;
+/// How far beyond its ends (in its lengths) a segment is kept when the passes have settled.
+const WAVERING: f64 = 1e-3;
+
 /// Pairs that the slots had in the pass before.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Pairing {
@@ -69,7 +74,8 @@ fn with_kept(look: &Look, found: Vec<Site>, before: &[PairSite], settled: bool) 
         return found;
     }
     let mut sites: Vec<Site> = before.iter().map(|pair| pair.site).collect();
-    sites.retain(|site| look.may_keep(site));
+    let beyond = if settled { WAVERING } else { SLIDING_OFF };
+    sites.retain(|site| look.is_over(site, beyond));
     let kept = sites.len();
     for site in found {
         if !sites[..kept].iter().any(|old| look.same_face(old, &site)) {

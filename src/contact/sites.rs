@@ -10,8 +10,7 @@ pub(super) const ROUND_OFF: f64 = 1e-6;
 const TOUCHING: f64 = 1e-9;
 /// Penetration of a mesh at the start of the analysis (in segment lengths) that is pushed out.
 const PENETRATING: f64 = 2e-3;
-/// How far beyond its ends a segment that is kept may be left (in its lengths), and how near the
-/// end of a segment the other side of a hollow is taken into account.
+/// How near the end of a segment the other side of a hollow is taken into account (in its lengths).
 const NEAR: f64 = 0.1;
 /// Sine of the turn at a vertex below which its two segments count as one face.
 const STRAIGHT: f64 = 1e-3;
@@ -80,11 +79,12 @@ impl Look<'_> {
         sites
     }
 
-    /// Whether a site of a pass before may be kept.
-    pub fn may_keep(&self, site: &Site) -> bool {
+    /// Whether the node is not beyond the ends of a site of a pass before by more than `beyond` (in
+    /// segment lengths).
+    pub fn is_over(&self, site: &Site, beyond: f64) -> bool {
         site.segments().any(|i| {
             let p = self.place(i);
-            (-NEAR..=1.0 + NEAR).contains(&p.xi) && p.gap >= -p.length
+            (-beyond..=1.0 + beyond).contains(&p.xi) && p.gap >= -p.length
         })
     }
 
