@@ -36,6 +36,16 @@ impl ContactForces {
         }
     }
 
+    /// With further pairs that carry no force.
+    pub fn with_open(mut self, pairs: Vec<Pair>) -> Self {
+        let open = ContactForces::open(pairs);
+        self.pairs.extend(open.pairs);
+        self.normal.extend(open.normal);
+        self.tangential.extend(open.tangential);
+        self.state.extend(open.state);
+        self
+    }
+
     /// Bn^T Pn + Bt^T Pt over all dofs.
     pub fn resultant(&self, dofs: usize) -> Vec<f64> {
         let mut force = vec![0.0; dofs];

@@ -61,9 +61,10 @@ impl Effective {
         }
     }
 
-    /// Whether K* is factorised for increments of length `dt`.
-    pub fn fits(&self, dt: f64) -> bool {
-        self.k.solver.is_factorized() && self.dt == dt
+    /// Whether K* is factorised for increments of length `dt`, or of one that differs from it by no
+    /// more than the part `near`.
+    pub fn fits(&self, dt: f64, near: f64) -> bool {
+        self.k.solver.is_factorized() && (self.dt - dt).abs() <= near * dt
     }
 
     /// Assembles K* in the given configuration, to be factorised next.

@@ -10,20 +10,25 @@ use crate::model::Impact;
 /// Changes of the set of pairs with impulses after which it is kept.
 const SET_CHANGES: usize = 5;
 
-/// The impact impulses of an increment: they act on the pairs that carry force at its end.
+/// The impact impulses of an increment: they act on the pairs that carry force at its end, and on
+/// those that touch at its start where an impact ended the piece before.
 pub(super) struct Impulses {
     /// Slots and segments of these pairs, increasing: those of the last pass.
     keys: Vec<[usize; 2]>,
+    /// Slots and segments, increasing, of pairs on which they act in any case.
+    pub touching: Vec<[usize; 2]>,
     changes: usize,
     /// V0+ of the last pass with the pairs it is for.
     last: Option<(Vec<PairSite>, Vec<f64>)>,
 }
 
 impl Impulses {
-    /// Starts with the pairs that were closed in the last increment.
-    pub fn new(contact: &Touching) -> Self {
+    /// Starts with the pairs that were closed in the last increment; those of `touching` have
+    /// impulses in any case.
+    pub fn new(contact: &Touching, touching: Vec<[usize; 2]>) -> Self {
         Impulses {
             keys: contact.keys(),
+            touching,
             changes: 0,
             last: None,
         }
@@ -42,9 +47,7 @@ impl Impulses {
         if problem.settings.impact == Impact::None {
             return Ok(start.v.clone());
         }
-        let struck = pairs
-            .iter()
-            .filter(|pair| self.keys.binary_search(&pair.at.key()).is_ok());
+        let struck = pairs.iter().filter(|pair| self.strikes(&pair.at));
         let sites: Vec<PairSite> = struck.clone().map(|pair| pair.at).collect();
         let at_start = problem.weights.impulses_at_start();
         if let Some((last, v0p)) = &self.last
@@ -71,13 +74,23 @@ impl Impulses {
     /// some changes the set is kept: impulses of any set take energy, never give it.
     pub fn rest(&mut self, problem: &StepProblem, contact: &Touching) -> bool {
         let keys = contact.keys();
+        let others = |keys: &[[usize; 2]]| -> Vec<[usize; 2]> {
+            let touches = |key: &[usize; 2]| self.touching.binary_search(key).is_ok();
+            keys.iter().copied().filter(|key| !touches(key)).collect()
+        };
         let rest = problem.settings.impact == Impact::None
-            || keys == self.keys
+            || others(&keys) == others(&self.keys)
             || self.changes >= SET_CHANGES;
         if !rest {
             self.keys = keys;
             self.changes += 1;
         }
         rest
+    }
+
+    fn strikes(&self, at: &PairSite) -> bool {
+        let mut segments = at.site.segments();
+        self.keys.binary_search(&at.key()).is_ok()
+            || segments.any(|i| self.touching.binary_search(&[at.slot, i]).is_ok())
     }
 }

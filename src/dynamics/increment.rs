@@ -1,6 +1,7 @@
 use super::contact_forces::ContactForces;
 use super::convergence::{Scales, worst};
 use super::effective::Effective;
+use super::hold::Hold;
 use super::impact::Impulses;
 use super::mass::largest;
 use super::meter::Meter;
@@ -13,10 +14,13 @@ use crate::model::Factorization;
 
 /// Passes that one factorisation serves within an increment.
 const KEPT_PASSES: usize = 8;
+/// Relative difference of lengths between which pieces of an increment share the factors of K*.
+const NEAR: f64 = 1e-3;
 /// Passes after which the pairs keep their segments.
 const SEARCHING_PASSES: usize = 4;
 
 /// A converged increment.
+#[derive(Default)]
 pub(super) struct Solved {
     /// Displacement increment d = U1 - U0.
     pub d: Vec<f64>,
@@ -26,10 +30,21 @@ pub(super) struct Solved {
     pub equilibrium: Equilibrium,
     /// Contact forces.
     pub forces: ContactForces,
+    /// Slots and segments that touched at the start, where impacts end the pieces of an increment.
+    pub touching: Vec<[usize; 2]>,
     /// Motion at the end.
     pub end: State,
     /// Its passes.
     pub passes: Vec<PassReport>,
+}
+
+impl Solved {
+    /// A = (2/dt²)(d - dt V0+) of an increment of length `dt`, at the supports too.
+    pub fn mean_acceleration(&self, dt: f64) -> Vec<f64> {
+        let both = self.d.iter().zip(&self.v0p);
+        both.map(|(d, v0p)| 2.0 / (dt * dt) * (d - dt * v0p))
+            .collect()
+    }
 }
 
 /// Why an attempt failed, and how far it came.
@@ -47,6 +62,8 @@ pub(super) struct Attempt<'a, 'm> {
     pub start: &'a State,
     pub interval: Interval,
     pub meter: &'a mut Meter,
+    /// The pairs that are constraints; without it all, and nodes land within the increment.
+    pub hold: Option<&'a Hold>,
 }
 
 /// What an attempt leaves behind even when it fails.
@@ -81,7 +98,8 @@ impl Attempt<'_, '_> {
         let mut d = vec![0.0; u0.len()];
         let mut prescribed = problem.support_increment(u0, self.interval);
         let mut state = contact.clone();
-        let mut impulses = Impulses::new(contact);
+        let touching = self.hold.map_or(Vec::new(), Hold::keys);
+        let mut impulses = Impulses::new(contact, touching);
         let mut pairing = Pairing::default();
         self.search.start(&self.start.v, dt);
 
@@ -93,6 +111,10 @@ impl Attempt<'_, '_> {
                 |t| &mut t.contact,
                 || problem.pairs(search, u0, &u, &pairing),
             );
+            let [pairs, left_out] = match self.hold {
+                Some(hold) => hold.split(problem, u0, pairs),
+                None => [pairs, Vec::new()],
+            };
 
             // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi) for the pairs in contact
             let (effective, meter) = (&mut *self.effective, &mut *self.meter);
@@ -155,8 +177,11 @@ impl Attempt<'_, '_> {
             let rest = impulses.rest(problem, &state);
             if rest && scales.converged(&report) {
                 trace.worst = None;
-                self.check_ways(&d, contact, &forces)?;
-                return self.finish(v0p, d, forces);
+                if self.hold.is_none() {
+                    self.check_ways(&d, contact, &forces)?;
+                }
+                let touching = impulses.touching;
+                return self.finish(v0p, d, forces.with_open(left_out), touching);
             }
             pairing = Pairing {
                 sites: forces.pairs.iter().map(|pair| pair.at).collect(),
@@ -167,7 +192,7 @@ impl Attempt<'_, '_> {
     }
 
     /// No node may have gone into a body on its way from U0 to U0 + d.
-    fn check_ways(
+    pub fn check_ways(
         &mut self,
         d: &[f64],
         contact: &Touching,
@@ -213,7 +238,8 @@ impl Attempt<'_, '_> {
         let (effective, dt) = (&mut *self.effective, self.interval.dt);
         let every = settings.factorization == Factorization::EveryPass;
         let worn = pass > 0 && pass.is_multiple_of(KEPT_PASSES);
-        if effective.fits(dt) && !every && !worn {
+        let near = self.hold.map_or(0.0, |_| NEAR);
+        if effective.fits(dt, near) && !every && !worn {
             return Ok(());
         }
         let configuration = weights.configuration(&self.start.u, u, u_theta);
@@ -250,6 +276,7 @@ impl Attempt<'_, '_> {
         v0p: Vec<f64>,
         d: Vec<f64>,
         forces: ContactForces,
+        touching: Vec<[usize; 2]>,
     ) -> Result<Solved, Cause> {
         let (problem, start, interval) = (self.problem, self.start, self.interval);
         let equilibrium = self.meter.time(
@@ -273,6 +300,7 @@ impl Attempt<'_, '_> {
             v0p,
             equilibrium,
             forces,
+            touching,
             end,
             passes: Vec::new(),
         })

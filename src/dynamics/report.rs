@@ -226,6 +226,8 @@ pub struct RunSummary {
     pub increments: usize,
     /// Number of cutbacks.
     pub cutbacks: usize,
+    /// Number of increments that an impact ended (`IMPACT TIME=EVENT`).
+    pub events: usize,
     /// Counters summed over the increments (`lcp_size` and `residual`: the largest).
     pub solver: SolverCounts,
     /// Time per phase.

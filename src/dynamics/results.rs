@@ -1,4 +1,5 @@
 use super::increment::Solved;
+use super::mass::largest;
 use super::step_problem::{Equilibrium, Interval, StepProblem};
 use super::touching::Touching;
 use super::{ContactResultant, Landing, NodalResults, NodeStatus, State};
@@ -6,6 +7,9 @@ use crate::contact::{
     Crossing, Direction, Motion, Pair, RowForm, crossings, line_crossings, project,
 };
 use crate::lcp::ContactState;
+
+/// Change of velocity, relative to the largest velocity, from which an impulse is an impact.
+const STRUCK: f64 = 1e-9;
 
 /// Reactions, contact forces, gaps and status at the nodes.
 pub(super) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResults {
@@ -95,8 +99,8 @@ fn contact_of_slots(problem: &StepProblem) -> Vec<usize> {
         .collect()
 }
 
-/// Pairs that carry force now and were open before: time and place from the second-order motion
-/// of the start (paper eq. 50), with the exact condition of meeting.
+/// Pairs that carry force now, or were struck at the start, and were open before: time and place from
+/// the second-order motion of the start (paper eq. 50), with the exact condition of meeting.
 pub(super) fn landings(
     problem: &StepProblem,
     start: &State,
@@ -105,23 +109,37 @@ pub(super) fn landings(
     interval: Interval,
 ) -> Vec<Landing> {
     let forces = &solved.forces;
-    (0..forces.pairs.len())
-        .filter(|&k| forces.is_closed(k) && !before.holds(forces.pairs[k].at.slot))
-        .map(|k| landing(problem, start, &forces.pairs[k], interval))
-        .collect()
+    let least = STRUCK * largest(&start.v);
+    let landing = |k: usize| {
+        let pair = &forces.pairs[k];
+        let touched = solved.touching.binary_search(&pair.at.key()).is_ok();
+        let is_struck = || {
+            let x = &problem.model.mesh.coordinates;
+            let rows = Pair::new(pair.at, RowForm::End, x, &start.u, &start.u);
+            let [before, after] = [&start.v, &solved.v0p].map(|v| rows.normal_of(v));
+            before < -least && after > before + least
+        };
+        let lands =
+            !before.holds(pair.at.slot) && (forces.is_closed(k) || (touched && is_struck()));
+        lands.then(|| landing(problem, start, pair, interval, touched))
+    };
+    (0..forces.pairs.len()).filter_map(landing).collect()
 }
 
-fn landing(problem: &StepProblem, start: &State, pair: &Pair, interval: Interval) -> Landing {
+fn landing(
+    problem: &StepProblem,
+    start: &State,
+    pair: &Pair,
+    interval: Interval,
+    touched: bool,
+) -> Landing {
     let [s, a, b, _] = pair.at.nodes;
-    let motions = [s, a, b].map(|node| {
-        let of = |v: &[f64]| [v[2 * node], v[2 * node + 1]];
-        Motion {
-            position: problem.position(&start.u, node),
-            velocity: of(&start.v),
-            acceleration: of(&start.a),
-        }
-    });
-    let tau = impact_time(&motions, interval.dt);
+    let motions = [s, a, b].map(|node| motion(problem, &start.u, &start.v, &start.a, node));
+    let tau = match impact_time(&motions, interval.dt) {
+        // it touches and does not meet again
+        tau if touched && tau == interval.dt => 0.0,
+        tau => tau,
+    };
     let [s, a, b] = motions.map(|m| m.at(tau));
     let p = project(s, a, b);
     // -e_n.(v_s - (1 - xi) v_a - xi v_b)
@@ -133,6 +151,22 @@ fn landing(problem: &StepProblem, start: &State, pair: &Pair, interval: Interval
         segment: [pair.at.nodes[1], pair.at.nodes[2]],
         xi: p.xi,
         approach_speed: -(p.normal[0] * relative(0) + p.normal[1] * relative(1)),
+    }
+}
+
+/// Second-order motion of a node from the displacements `u`.
+pub(super) fn motion(
+    problem: &StepProblem,
+    u: &[f64],
+    v: &[f64],
+    a: &[f64],
+    node: usize,
+) -> Motion {
+    let of = |v: &[f64]| [v[2 * node], v[2 * node + 1]];
+    Motion {
+        position: problem.position(u, node),
+        velocity: of(v),
+        acceleration: of(a),
     }
 }
 

@@ -2,6 +2,7 @@ use std::io;
 
 use super::dofs::DofMap;
 use super::effective::Effective;
+use super::events::{MOST_EVENTS, Piece, Pieces};
 use super::increment::{Attempt, Failed, Solved};
 use super::ledger::{Ledger, momentum};
 use super::loads::{Loads, Moment};
@@ -18,7 +19,7 @@ use super::{
 };
 use crate::contact::{ContactSurfaces, Search, contact_surfaces};
 use crate::elements::Body;
-use crate::model::{Increments, Model, Step};
+use crate::model::{ImpactTime, Increments, Model, Step};
 
 /// Halvings of an increment before the run stops.
 const HALVINGS: u32 = 10;
@@ -56,6 +57,7 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
         ledger: Ledger::new(0.0, 0.0),
         increment: 0,
         cutbacks: 0,
+        events: 0,
         meter: Meter::default(),
         totals: SolverCounts {
             converged: true,
@@ -78,6 +80,7 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
         outcome,
         increments: runner.increment,
         cutbacks: runner.cutbacks,
+        events: runner.events,
         solver: runner.totals,
         timings: runner.meter.timings,
     })
@@ -95,6 +98,7 @@ struct Runner<'m, 'o> {
     ledger: Ledger,
     increment: usize,
     cutbacks: usize,
+    events: usize,
     meter: Meter,
     totals: SolverCounts,
     observer: &'o mut dyn Observer,
@@ -165,7 +169,11 @@ impl<'m> Runner<'m, '_> {
                 length,
                 dt_min,
             };
-            if let Some(failure) = self.grid_increment(&problem, &mut effective, place, grid)? {
+            let failure = match step.settings.impact_time {
+                ImpactTime::Increment => self.grid_increment(&problem, &mut effective, place, grid),
+                ImpactTime::Event => self.cut_increment(&problem, &mut effective, place, grid),
+            };
+            if let Some(failure) = failure? {
                 return Ok(Outcome::Stopped(Box::new(failure)));
             }
         }
@@ -192,6 +200,7 @@ impl<'m> Runner<'m, '_> {
                 start: &self.state,
                 interval,
                 meter: &mut self.meter,
+                hold: None,
             };
             match attempt.solve(&self.contact) {
                 Ok(solved) => {
@@ -201,31 +210,112 @@ impl<'m> Runner<'m, '_> {
                         (piece, halvings) = (piece / 2, halvings - 1);
                     }
                 }
-                Err(Failed {
-                    cause,
-                    worst,
-                    passes,
-                }) => {
-                    let failure = Failure {
-                        increment: self.increment + 1,
-                        step: place.number,
-                        time: interval.start.total,
-                        dt: interval.dt,
-                        cause,
-                        worst,
-                        passes,
-                        halvings,
-                    };
-                    let next_dt = interval.dt / 2.0;
-                    if halvings == HALVINGS || next_dt < grid.dt_min {
+                Err(failed) => {
+                    let failure = self.failure(place, interval, failed, halvings);
+                    if let Some(failure) = self.cut_back(failure, grid.dt_min)? {
                         return Ok(Some(failure));
                     }
-                    self.cutbacks += 1;
-                    self.observer.cutback(&Cutback { failure, next_dt })?;
                     (piece, halvings) = (2 * piece, halvings + 1);
                 }
             }
         }
+        Ok(None)
+    }
+
+    /// One increment of the grid, in pieces that end at impacts, or halfway where one does not
+    /// converge.
+    fn cut_increment(
+        &mut self,
+        problem: &StepProblem<'m>,
+        effective: &mut Effective,
+        place: StepPlace,
+        grid: Grid,
+    ) -> Result<Option<Failure>, RunError> {
+        let (mut events, mut from) = (0, grid.from);
+        // Ends of what is left, and of its halves; the next piece goes no further than the last.
+        let mut ends = vec![grid.to];
+        while let Some(&to) = ends.last() {
+            let is_whole = from == grid.from && to == grid.to;
+            let rest = Interval {
+                start: place.moment(from),
+                end: place.moment(to),
+                dt: if is_whole { grid.length } else { to - from },
+            };
+            self.meter.counts = SolverCounts::default();
+            let mut pieces = Pieces {
+                problem,
+                effective,
+                search: &mut self.search,
+                start: &self.state,
+                contact: &self.contact,
+                meter: &mut self.meter,
+                rest,
+                grid: grid.length,
+            };
+            let next = match events < MOST_EVENTS {
+                true => pieces.next(),
+                false => pieces.rest(),
+            };
+            match next {
+                Ok(Piece {
+                    interval,
+                    solved,
+                    is_cut,
+                }) => {
+                    self.accept(problem, place, interval, solved)?;
+                    from = interval.end.step;
+                    if is_cut {
+                        (events, self.events) = (events + 1, self.events + 1);
+                    } else {
+                        ends.pop();
+                    }
+                }
+                Err((interval, failed)) => {
+                    let halvings = ends.len() as u32 - 1;
+                    let failure = self.failure(place, interval, failed, halvings);
+                    if let Some(failure) = self.cut_back(failure, grid.dt_min)? {
+                        return Ok(Some(failure));
+                    }
+                    ends.push(from + interval.dt / 2.0);
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    fn failure(
+        &self,
+        place: StepPlace,
+        interval: Interval,
+        failed: Failed,
+        halvings: u32,
+    ) -> Failure {
+        let Failed {
+            cause,
+            worst,
+            passes,
+        } = failed;
+        Failure {
+            increment: self.increment + 1,
+            step: place.number,
+            time: interval.start.total,
+            dt: interval.dt,
+            cause,
+            worst,
+            passes,
+            halvings,
+        }
+    }
+
+    /// Reports a failed attempt that is to be repeated with half its length; gives it back if it
+    /// may not be halved any more.
+    fn cut_back(&mut self, failure: Failure, dt_min: f64) -> Result<Option<Failure>, RunError> {
+        let next_dt = failure.dt / 2.0;
+        if failure.halvings == HALVINGS || next_dt < dt_min {
+            return Ok(Some(failure));
+        }
+        self.cutbacks += 1;
+        self.observer.cutback(&Cutback { failure, next_dt })?;
         Ok(None)
     }
 

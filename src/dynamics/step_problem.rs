@@ -32,6 +32,7 @@ pub(super) struct Interval {
 }
 
 /// Load, internal force and inertia of an iterate.
+#[derive(Default)]
 pub(super) struct Equilibrium {
     /// Displacement U_theta.
     pub u_theta: Vec<f64>,

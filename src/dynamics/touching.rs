@@ -29,9 +29,12 @@ impl Touching {
 
     /// Whether this very pair carries a force.
     pub fn closes(&self, at: &PairSite) -> bool {
-        self.of_slot(at.slot)
-            .iter()
-            .any(|(key, _)| *key == at.key())
+        self.closes_key(at.key())
+    }
+
+    /// Whether the pair of a slot and a segment carries a force.
+    pub fn closes_key(&self, key: [usize; 2]) -> bool {
+        self.0.binary_search_by_key(&key, |(key, _)| *key).is_ok()
     }
 
     /// State of a pair; a node that has come to another segment keeps the one it had.

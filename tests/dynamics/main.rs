@@ -2,6 +2,7 @@
 
 mod blocks;
 mod elastic_bar;
+mod events;
 mod fast;
 mod friction;
 mod invariants;

@@ -234,6 +234,7 @@ pub fn summary(outcome: Outcome, increments: usize) -> RunSummary {
         outcome,
         increments,
         cutbacks: 0,
+        events: 0,
         solver: SolverCounts::default(),
         timings: Timings::default(),
     }

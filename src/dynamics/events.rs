@@ -1,0 +1,332 @@
+use super::effective::Effective;
+use super::hold::{Hold, place};
+use super::increment::{Attempt, Failed, Solved};
+use super::loads::Moment;
+use super::meter::Meter;
+use super::step_problem::{Interval, StepProblem};
+use super::touching::Touching;
+use super::{State, results};
+use crate::contact::{Direction, Search, crossings};
+
+/// Impacts within an increment of the grid, after which nodes land within what is left of it.
+pub(super) const MOST_EVENTS: usize = 50;
+/// Part of an increment of the grid within which impacts are taken together; no piece is shorter.
+const GROUP: f64 = 1e-3;
+/// Accuracy of the time of an impact, in increments of the grid.
+const ACCURACY: f64 = 1e-10;
+/// Gap (in segment lengths) that is none at an impact.
+const MET: f64 = 1e-12;
+/// Attempts to find the time of an impact.
+const TRIALS: usize = 12;
+/// Trials from which on the time is bracketed by halving.
+const HALVING_TRIALS: usize = 7;
+
+/// A piece of an increment that ends at the next impact, or at the end of the increment.
+pub(super) struct Piece {
+    pub interval: Interval,
+    pub solved: Solved,
+    /// Whether an impact ends it.
+    pub is_cut: bool,
+}
+
+/// Solves the next piece of an increment.
+pub(super) struct Pieces<'a, 'm> {
+    pub problem: &'a StepProblem<'m>,
+    pub effective: &'a mut Effective,
+    pub search: &'a mut Search<'m>,
+    pub start: &'a State,
+    /// The pairs that carried forces up to the start.
+    pub contact: &'a Touching,
+    pub meter: &'a mut Meter,
+    /// What is left of the increment.
+    pub rest: Interval,
+    /// Length of an increment of the grid.
+    pub grid: f64,
+}
+
+/// A node goes into a body.
+#[derive(Clone, Copy)]
+struct Entry {
+    /// Time since the start of the piece.
+    time: f64,
+    slot: usize,
+    segment: usize,
+    nodes: [usize; 3],
+}
+
+impl<'m> Pieces<'_, 'm> {
+    /// The piece up to the earliest impact of a pair that does not touch at the start.
+    ///
+    /// Its length tau is predicted from the second-order motion of the start (paper eq. 50), with
+    /// the exact condition of meeting. The motion of the converged piece,
+    ///
+    /// ```text
+    /// U(t) = U0 + t V0+ + t²/2 A,   A = (2/tau²)(d - tau V0+),
+    /// ```
+    ///
+    /// then tells when the pairs that stay out meet: at T(tau). The piece ends at the impact when
+    /// T(tau) = tau, which secants find; without elastic forces T does not depend on tau.
+    pub fn next(&mut self) -> Result<Piece, (Interval, Failed)> {
+        let (rest, group) = (self.rest.dt, GROUP * self.grid);
+        self.search.start(&self.start.v, rest);
+        self.search.cover(&self.start.u);
+        let mut hold = Hold::new(self.problem, self.search, &self.start.u, self.contact);
+        let mut tau = self.predicted(&mut hold);
+        let mut root = Root::new(rest);
+        for trial in 0..TRIALS {
+            let solved = self.attempt(tau, Some(&hold))?;
+            let entry = self.first_entry(&hold, &solved.v0p, &solved.mean_acceleration(tau));
+            let met = match entry {
+                None => rest,
+                Some(entry) if entry.time < group => {
+                    self.join_at_start(&mut hold, entry);
+                    root = Root::new(rest);
+                    continue;
+                }
+                Some(entry) if entry.time > rest - group => {
+                    if tau == rest {
+                        // it lands within the piece, at its very end
+                        hold.join(entry.slot);
+                        root = Root::new(rest);
+                        continue;
+                    }
+                    rest
+                }
+                Some(entry) => {
+                    let gap = place(self.problem, &solved.end.u, entry.nodes);
+                    if gap.gap.abs() <= MET * gap.length {
+                        tau
+                    } else {
+                        entry.time
+                    }
+                }
+            };
+            if (met - tau).abs() <= ACCURACY * self.grid {
+                return self.accept(tau, solved);
+            }
+            tau = root.next(tau, met, solved, trial >= HALVING_TRIALS);
+        }
+        match root.before {
+            // not as far as the impact
+            Some((tau, solved)) if tau >= group => self.accept(tau, solved),
+            _ => self.rest(),
+        }
+    }
+
+    /// All that is left of the increment; nodes land within it.
+    pub fn rest(&mut self) -> Result<Piece, (Interval, Failed)> {
+        let solved = self.attempt(self.rest.dt, None)?;
+        Ok(Piece {
+            interval: self.rest,
+            solved,
+            is_cut: false,
+        })
+    }
+
+    /// Length of the piece by the motion of the start.
+    fn predicted(&mut self, hold: &mut Hold) -> f64 {
+        let (rest, group) = (self.rest.dt, GROUP * self.grid);
+        let start = self.start;
+        loop {
+            match self.first_entry(hold, &start.v, &start.a) {
+                Some(entry) if entry.time < group => self.join_at_start(hold, entry),
+                Some(entry) if entry.time <= rest - group => return entry.time,
+                _ => return rest,
+            }
+        }
+    }
+
+    fn join_at_start(&self, hold: &mut Hold, entry: Entry) {
+        let p = place(self.problem, &self.start.u, entry.nodes);
+        hold.join_at_start(entry.slot, entry.segment, p.normal);
+    }
+
+    /// The first entry of a node, not kept out of the segment, in the motion with velocity `v` and
+    /// acceleration `a` from the start through all that is left of the increment.
+    fn first_entry(&mut self, hold: &Hold, v: &[f64], a: &[f64]) -> Option<Entry> {
+        let rest = self.rest.dt;
+        let Pieces { problem, start, .. } = *self;
+        let search = &mut *self.search;
+        let u0 = &start.u;
+        let far = |i: usize| u0[i] + rest * (v[i] + rest / 2.0 * a[i]);
+        let end: Vec<f64> = (0..u0.len()).map(far).collect();
+        let moving = State {
+            u: Vec::new(),
+            v: v.to_vec(),
+            a: a.to_vec(),
+        };
+        // no node goes further
+        let reach = |node: usize| {
+            let size = |x: &[f64]| x[2 * node].hypot(x[2 * node + 1]);
+            rest * (size(v) + rest / 2.0 * size(a))
+        };
+        let mut find = || {
+            search.cover_way(u0, &end);
+            let mut first: Option<Entry> = None;
+            let mut slot = 0;
+            for territory in search.territories() {
+                let surfaces = territory.surfaces();
+                for (k, &s) in surfaces.slaves.iter().enumerate() {
+                    for candidate in territory.candidates(k) {
+                        let segment = candidate.segment;
+                        let [a, b] = surfaces.segments[segment];
+                        let nodes = [s, a, b];
+                        let p = place(problem, u0, nodes);
+                        if p.gap.abs() > reach(s) + reach(a).max(reach(b))
+                            || s == a
+                            || s == b
+                            || hold.holds(slot, &p)
+                            || !problem.dofs.moves(&nodes)
+                        {
+                            continue;
+                        }
+                        let motions = nodes
+                            .map(|node| results::motion(problem, u0, &moving.v, &moving.a, node));
+                        let is_entering =
+                            |c: &&crate::contact::Crossing| c.direction == Direction::Entering;
+                        if let Some(found) = crossings(&motions, rest).iter().find(is_entering)
+                            && first.is_none_or(|first| found.time < first.time)
+                        {
+                            first = Some(Entry {
+                                time: found.time,
+                                slot,
+                                segment,
+                                nodes,
+                            });
+                        }
+                    }
+                    slot += 1;
+                }
+            }
+            first
+        };
+        self.meter.time(|t| &mut t.contact, &mut find)
+    }
+
+    fn attempt(&mut self, tau: f64, hold: Option<&Hold>) -> Result<Solved, (Interval, Failed)> {
+        let (interval, contact) = (self.interval(tau), self.contact);
+        let attempt = self.attempt_at(interval, hold);
+        attempt.solve(contact).map_err(|failed| (interval, failed))
+    }
+
+    /// Takes a converged piece, if no node has gone into a body otherwise than by an impact.
+    fn accept(&mut self, tau: f64, solved: Solved) -> Result<Piece, (Interval, Failed)> {
+        let (interval, contact) = (self.interval(tau), self.contact);
+        let mut attempt = self.attempt_at(interval, None);
+        match attempt.check_ways(&solved.d, contact, &solved.forces) {
+            Ok(()) => Ok(Piece {
+                interval,
+                solved,
+                is_cut: tau < self.rest.dt,
+            }),
+            Err(cause) => {
+                let failed = Failed {
+                    cause,
+                    worst: None,
+                    passes: solved.passes,
+                };
+                Err((interval, failed))
+            }
+        }
+    }
+
+    fn attempt_at<'b>(&'b mut self, interval: Interval, hold: Option<&'b Hold>) -> Attempt<'b, 'm> {
+        Attempt {
+            problem: self.problem,
+            effective: self.effective,
+            search: self.search,
+            start: self.start,
+            interval,
+            meter: self.meter,
+            hold,
+        }
+    }
+
+    /// The first part, of length `tau`, of what is left; all of it when that is its length.
+    fn interval(&self, tau: f64) -> Interval {
+        let Interval { start, end, dt } = self.rest;
+        let end = match tau == dt {
+            true => end,
+            false => Moment {
+                step: start.step + tau,
+                total: start.total + tau,
+                ..start
+            },
+        };
+        Interval {
+            start,
+            end,
+            dt: tau,
+        }
+    }
+}
+
+/// Looks for the length of a piece that ends at the impact.
+struct Root {
+    /// What is left of the increment.
+    rest: f64,
+    /// The longest piece tried that ends before an impact.
+    before: Option<(f64, Solved)>,
+    /// The shortest one that ends after it.
+    after: Option<f64>,
+    /// The last one, with T(tau) - tau.
+    last: Option<(f64, f64)>,
+}
+
+impl Root {
+    fn new(rest: f64) -> Self {
+        Root {
+            rest,
+            before: None,
+            after: None,
+            last: None,
+        }
+    }
+
+    /// The length to try next after `tau`, in whose motion the impact is at `met`.
+    fn next(&mut self, tau: f64, met: f64, solved: Solved, halve: bool) -> f64 {
+        let f = met - tau;
+        if f < 0.0 {
+            self.after = Some(tau);
+        } else {
+            self.before = Some((tau, solved));
+        }
+        let secant = self
+            .last
+            .map(|(old, f_old)| tau - f * (tau - old) / (f - f_old));
+        self.last = Some((tau, f));
+        let low = self.before.as_ref().map_or(0.0, |(tau, _)| *tau);
+        let high = self.after.unwrap_or(self.rest);
+        let inside = |t: &f64| *t > low && (*t < high || (*t == high && self.after.is_none()));
+        match secant.filter(inside).unwrap_or(met) {
+            t if inside(&t) && !halve => t,
+            _ => low + (high - low) / 2.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Number of trials until the root of met(tau) = tau is found, or none.
+    fn trials(met: impl Fn(f64) -> f64, rest: f64, first: f64, root: f64) -> Option<usize> {
+        let (mut search, mut tau) = (Root::new(rest), first);
+        (0..60).find(|&trial| {
+            let is_found = (tau - root).abs() < 1e-12;
+            tau = search.next(tau, met(tau), Solved::default(), trial >= HALVING_TRIALS);
+            is_found
+        })
+    }
+
+    #[test]
+    fn the_time_of_an_impact_is_found() {
+        assert_eq!(trials(|_| 0.3, 1.0, 1.0, 0.3), Some(1), "free flight");
+        let elastic = |tau: f64| 0.3 + 0.2 * (tau - 0.3) + 0.1 * (tau - 0.3) * (tau - 0.3);
+        assert!(trials(elastic, 1.0, 0.35, 0.3).unwrap() < TRIALS);
+        // the piece as a whole seems free, its first part does not
+        let jump = |tau: f64| if tau < 0.4 { 1.0 } else { 0.2 };
+        assert!(trials(jump, 1.0, 1.0, 0.4).is_some(), "bracketed");
+        assert_eq!(trials(|_| 1.0, 1.0, 0.5, 1.0), Some(1), "no impact");
+    }
+}

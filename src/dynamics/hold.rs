@@ -1,0 +1,114 @@
+use super::step_problem::StepProblem;
+use super::touching::Touching;
+use crate::contact::{Pair, Projection, Search, project};
+
+/// Gap (in segment lengths) of nodes that touch.
+const TOUCHING: f64 = 1e-9;
+/// Penetration (in segment lengths) with which a node touches too: what a mesh may have.
+const PENETRATING: f64 = 2e-3;
+/// How far beyond its ends (in its lengths) a segment is touched.
+const ENDS: f64 = 1e-6;
+/// Cosine of the turn from a touched segment to another that a node may slide on to.
+const FACING_ALIKE: f64 = 0.9;
+
+/// The pairs that are constraints in a piece of an increment between impacts: those that touch at
+/// its start, and those that have joined them.
+///
+/// A node that touches may slide on to other segments that face nearly the same way, or that it was
+/// not in front of; that is no impact. One that runs against a wall meets it later.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Hold {
+    /// Slots and segments that touch at the start, increasing, with the normals of the segments.
+    touching: Vec<([usize; 2], [f64; 2])>,
+    /// Slots that have joined, with all their segments; increasing.
+    joined: Vec<usize>,
+}
+
+impl Hold {
+    /// The pairs that touch in the displacements `u0`, which the search covers; `before` are those
+    /// that carried forces up to then.
+    pub fn new(problem: &StepProblem, search: &Search, u0: &[f64], before: &Touching) -> Self {
+        let mut touching = Vec::new();
+        let mut slot = 0;
+        for territory in search.territories() {
+            let surfaces = territory.surfaces();
+            for (k, &slave) in surfaces.slaves.iter().enumerate() {
+                for candidate in territory.candidates(k) {
+                    let [a, b] = surfaces.segments[candidate.segment];
+                    if slave == a || slave == b {
+                        continue;
+                    }
+                    let key = [slot, candidate.segment];
+                    let p = place(problem, u0, [slave, a, b]);
+                    if touches(&p) || before.closes_key(key) {
+                        touching.push((key, p.normal));
+                    }
+                }
+                slot += 1;
+            }
+        }
+        Hold {
+            touching,
+            joined: Vec::new(),
+        }
+    }
+
+    /// Takes in a slot that lands soon after the start.
+    pub fn join_at_start(&mut self, slot: usize, segment: usize, normal: [f64; 2]) {
+        let key = [slot, segment];
+        if let Err(at) = self.touching.binary_search_by_key(&key, |(key, _)| *key) {
+            self.touching.insert(at, (key, normal));
+        }
+        self.join(slot);
+    }
+
+    /// Takes in a slot that lands within the piece.
+    pub fn join(&mut self, slot: usize) {
+        if let Err(at) = self.joined.binary_search(&slot) {
+            self.joined.insert(at, slot);
+        }
+    }
+
+    /// Slots and segments that touch at the start.
+    pub fn keys(&self) -> Vec<[usize; 2]> {
+        self.touching.iter().map(|(key, _)| *key).collect()
+    }
+
+    /// Whether a slot is kept out of a segment that has the place `start` relative to its node at
+    /// the start.
+    pub fn holds(&self, slot: usize, start: &Projection) -> bool {
+        if self.joined.binary_search(&slot).is_ok() {
+            return true;
+        }
+        let from = self.touching.partition_point(|(key, _)| key[0] < slot);
+        let mut own = self.touching[from..]
+            .iter()
+            .take_while(|(key, _)| key[0] == slot)
+            .peekable();
+        let is_behind = start.gap <= TOUCHING * start.length;
+        let faces_alike =
+            |n: &[f64; 2]| n[0] * start.normal[0] + n[1] * start.normal[1] >= FACING_ALIKE;
+        own.peek().is_some() && (is_behind || own.any(|(_, normal)| faces_alike(normal)))
+    }
+
+    /// The pairs that are constraints, and the others.
+    pub fn split(&self, problem: &StepProblem, u0: &[f64], pairs: Vec<Pair>) -> [Vec<Pair>; 2] {
+        let (held, free) = pairs.into_iter().partition(|pair| {
+            let [s, a, b, c] = pair.at.nodes;
+            let is_held = |nodes| self.holds(pair.at.slot, &place(problem, u0, nodes));
+            is_held([s, a, b]) || (pair.at.site.vertex.is_some() && is_held([s, b, c]))
+        });
+        [held, free]
+    }
+}
+
+/// Place of a node relative to a segment.
+pub(super) fn place(problem: &StepProblem, u: &[f64], nodes: [usize; 3]) -> Projection {
+    let [s, a, b] = nodes.map(|node| problem.position(u, node));
+    project(s, a, b)
+}
+
+fn touches(p: &Projection) -> bool {
+    (-ENDS..=1.0 + ENDS).contains(&p.xi)
+        && (-PENETRATING * p.length..=TOUCHING * p.length).contains(&p.gap)
+}
