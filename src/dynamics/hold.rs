@@ -9,7 +9,7 @@ const PENETRATING: f64 = 2e-3;
 /// How far beyond its ends (in its lengths) a segment is touched.
 const ENDS: f64 = 1e-6;
 /// Cosine of the turn from a touched segment to another that a node may slide on to.
-const FACING_ALIKE: f64 = 0.9;
+const FACING_ALIKE: f64 = 0.9999;
 
 /// The pairs that are constraints in a piece of an increment between impacts: those that touch at
 /// its start, and those that have joined them.
