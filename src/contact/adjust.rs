@@ -1,4 +1,4 @@
-use super::initial::{bodies, gaps};
+use super::initial::gaps;
 use super::{InitialGap, contact_surfaces};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
 use crate::model::{Adjust, Contact, Element, Model};
@@ -35,7 +35,7 @@ pub fn adjust(model: &mut Model) -> Vec<Adjusted> {
     {
         return Vec::new();
     }
-    let bodies = bodies(&model.mesh);
+    let bodies = model.mesh.bodies();
     let mut adjusted = Vec::new();
     for (i, surfaces) in contact_surfaces(model).iter().enumerate() {
         let Some(wanted) = model.contacts[i].adjust else {

@@ -11,6 +11,8 @@ use crate::linear::{CheckedSolver, LinearError};
 pub struct Compliance {
     /// Unknown of every dof; `None` at supports.
     unknown: Vec<Option<usize>>,
+    /// Body of every node: the inverse is zero between bodies.
+    bodies: Vec<usize>,
     /// Row of the inverse of every dof, where it has been computed.
     place: Vec<Option<usize>>,
     /// Dofs of the rows.
@@ -19,11 +21,12 @@ pub struct Compliance {
 }
 
 impl Compliance {
-    /// Compliance for the given unknowns of all dofs (`None` at supports).
-    pub fn new(unknown: Vec<Option<usize>>) -> Self {
+    /// Compliance for the given unknowns of all dofs (`None` at supports) and bodies of all nodes.
+    pub fn new(unknown: Vec<Option<usize>>, bodies: Vec<usize>) -> Self {
         let place = vec![None; unknown.len()];
         Compliance {
             unknown,
+            bodies,
             place,
             dofs: Vec::new(),
             inverse: DMatrix::zeros(0, 0),
@@ -67,23 +70,36 @@ impl Compliance {
         Ok(())
     }
 
-    /// The inverse times one row of a pair, at the rows of the inverse.
-    pub(super) fn times_row(&self, pair: &Pair, row: &[f64; 8]) -> Vec<f64> {
-        let mut result = vec![0.0; self.dofs.len()];
-        for (dof, factor) in pair.dofs().into_iter().zip(row) {
-            let Some(place) = self.place[dof] else {
+    /// Rows of a pair times the inverse times the rows of another: B_p W B_q^T, normal before
+    /// tangential.
+    pub(super) fn between(&self, p: &Pair, q: &Pair) -> [[f64; 2]; 2] {
+        let mut product = [[0.0; 2]; 2];
+        let bodies = |pair: &Pair| pair.at.nodes.map(|node| self.bodies[node]);
+        let (of_p, of_q) = (bodies(p), bodies(q));
+        if !of_p.iter().any(|body| of_q.contains(body)) {
+            return product;
+        }
+        let places = |pair: &Pair| pair.dofs().map(|dof| self.place[dof]);
+        let (rows, columns) = (places(p), places(q));
+        for (k, &column) in columns.iter().enumerate() {
+            let Some(column) = column else { continue };
+            let is_zero = q.normal[k] == 0.0 && q.tangent[k] == 0.0;
+            if is_zero || !of_p.contains(&of_q[k / 2]) {
                 continue;
-            };
-            for (sum, value) in result.iter_mut().zip(self.inverse.column(place).iter()) {
-                *sum += factor * value;
+            }
+            let column = self.inverse.column(column);
+            let mut sum = [0.0; 2];
+            for (l, &row) in rows.iter().enumerate() {
+                if let Some(row) = row {
+                    sum[0] += p.normal[l] * column[row];
+                    sum[1] += p.tangent[l] * column[row];
+                }
+            }
+            for (product, sum) in product.iter_mut().zip(sum) {
+                product[0] += sum * q.normal[k];
+                product[1] += sum * q.tangent[k];
             }
         }
-        result
-    }
-
-    /// One row of a pair times a vector over the rows of the inverse.
-    pub(super) fn row_times(&self, pair: &Pair, row: &[f64; 8], v: &[f64]) -> f64 {
-        let at = |(dof, factor): (usize, &f64)| self.place[dof].map_or(0.0, |i| factor * v[i]);
-        pair.dofs().into_iter().zip(row).map(at).sum()
+        product
     }
 }

@@ -1,6 +1,6 @@
 use super::circles::{Circle, CircleTree};
 use super::{ContactSurfaces, Projection, contact_surfaces, project};
-use crate::model::{Mesh, Model};
+use crate::model::Model;
 
 /// How far beyond its ends a segment still takes a projection (in its lengths).
 const ROUND_OFF: f64 = 1e-6;
@@ -26,7 +26,7 @@ pub struct InitialGap {
 /// Gaps of the slave nodes of each contact of a model in the reference configuration; nodes that
 /// face no segment are left out.
 pub fn initial_gaps(model: &Model) -> Vec<Vec<InitialGap>> {
-    let bodies = bodies(&model.mesh);
+    let bodies = model.mesh.bodies();
     let of_contact = |contact: &ContactSurfaces| gaps(contact, &model.mesh.coordinates, &bodies);
     contact_surfaces(model).iter().map(of_contact).collect()
 }
@@ -50,27 +50,6 @@ fn circle(a: [f64; 2], b: [f64; 2]) -> Circle {
         centre: [0, 1].map(|i| a[i] + (b[i] - a[i]) / 2.0),
         radius: (b[0] - a[0]).hypot(b[1] - a[1]) * (0.5 + 2.0 * ROUND_OFF),
     }
-}
-
-/// For every node the body it belongs to: the smallest index of the nodes that elements connect.
-pub(super) fn bodies(mesh: &Mesh) -> Vec<usize> {
-    let mut parent: Vec<usize> = (0..mesh.node_count()).collect();
-    for element in &mesh.elements {
-        let nodes = element.cell.nodes();
-        for pair in nodes.windows(2) {
-            let [p, q] = [root(&mut parent, pair[0]), root(&mut parent, pair[1])];
-            parent[p.max(q)] = p.min(q);
-        }
-    }
-    (0..parent.len()).map(|n| root(&mut parent, n)).collect()
-}
-
-fn root(parent: &mut [usize], mut node: usize) -> usize {
-    while parent[node] != node {
-        parent[node] = parent[parent[node]];
-        node = parent[node];
-    }
-    node
 }
 
 /// One contact in the reference configuration.

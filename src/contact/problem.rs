@@ -14,21 +14,21 @@ pub fn frictional_lcp(
     tangential: Vec<f64>,
 ) -> FrictionalLcp {
     let n = pairs.len();
-    let row = |k: usize| {
-        let pair = &pairs[k % n];
-        (pair, if k < n { &pair.normal } else { &pair.tangent })
-    };
     let mut q = DMatrix::zeros(2 * n, 2 * n);
-    for k in 0..2 * n {
-        let (pair, b) = row(k);
-        let column = compliance.times_row(pair, b);
-        for l in 0..2 * n {
-            let (pair, b) = row(l);
-            q[(l, k)] = compliance.row_times(pair, b, &column);
+    for k in 0..n {
+        for l in k..n {
+            let product = compliance.between(&pairs[k], &pairs[l]);
+            for (i, row) in product.into_iter().enumerate() {
+                for (j, value) in row.into_iter().enumerate() {
+                    q[(k + i * n, l + j * n)] = value;
+                    q[(l + j * n, k + i * n)] = value;
+                }
+            }
         }
+        // symmetric but for round-off
+        let mean = (q[(k, k + n)] + q[(k + n, k)]) / 2.0;
+        (q[(k, k + n)], q[(k + n, k)]) = (mean, mean);
     }
-    // symmetric but for round-off
-    let q = (&q + q.transpose()) * 0.5;
     FrictionalLcp {
         q,
         gap: DVector::from_vec(normal),

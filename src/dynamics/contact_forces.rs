@@ -4,10 +4,13 @@ use super::meter::Meter;
 use super::touching::Touching;
 use super::{Cause, FailedLcp};
 use crate::contact::{Pair, add_contact_forces, frictional_lcp};
-use crate::lcp::{ContactState, LcpMethod, solve_frictional};
+use crate::lcp::{ContactState, FrictionalLcp, LcpMethod, solve_frictional};
 
 /// Overlap (in segment lengths) that is none once the passes have settled.
 const ROUND_OFF: f64 = 1e-10;
+
+/// Part of the compliance of a pair that holds its force near that of the pass before.
+const HELD: f64 = 1e-5;
 
 /// Pairs with their contact forces (or impulses).
 #[derive(Debug, Clone, Default)]
@@ -74,22 +77,25 @@ impl ContactForces {
     }
 
     /// Solves the complementarity problem of the pairs listed in `chosen`, with the given constant
-    /// terms, and stores their forces.
+    /// terms, and stores their forces; with `nearest`, of several solutions that near these forces.
     fn solve(
         &mut self,
         chosen: &[usize],
         constants: (Vec<f64>, Vec<f64>),
-        warm: Vec<ContactState>,
+        (warm, nearest): (Vec<ContactState>, Option<Vec<[f64; 2]>>),
         matrix: &mut Factored,
         method: LcpMethod,
         meter: &mut Meter,
     ) -> Result<(), Cause> {
         let pairs: Vec<Pair> = chosen.iter().map(|&k| self.pairs[k]).collect();
         meter.time(|t| &mut t.solve, || matrix.prepare(&pairs))?;
-        let problem = meter.time(
+        let mut problem = meter.time(
             |t| &mut t.contact,
             || frictional_lcp(&pairs, &matrix.compliance, constants.0, constants.1),
         );
+        if let Some(forces) = nearest {
+            hold_near(&mut problem, &forces);
+        }
         let solution = meter.time(
             |t| &mut t.lcp,
             || solve_frictional(&problem, Some(&warm), method),
@@ -116,11 +122,11 @@ impl ContactForces {
     /// Contact forces of a pass and the correction dU = y + W (Bn^T Pn + Bt^T Pt), y = W r being
     /// the correction without them (all dofs).
     ///
-    /// Pairs that y leaves open and that were open before stay out of the problem; those that the
-    /// forces of the others would close are found afterwards and enter, so that the answer is that
-    /// of all pairs. When the passes have settled, the pairs that were closed come first and others
-    /// enter only if they would overlap by more than round-off: two nodes that face each other may
-    /// carry the same force, and it must not go to and fro between them.
+    /// Pairs that were open before (or without any before, that y leaves open) stay out of the problem
+    /// first; those that would overlap with the forces of the others enter afterwards, so that the
+    /// answer is that of all pairs. When the passes have settled, they enter only if they would
+    /// overlap by more than round-off: two nodes that face each other may carry the same force, and
+    /// it must not go to and fro between them.
     pub fn of_pass(
         pairs: Vec<Pair>,
         (warm, settled): (&Touching, bool),
@@ -132,10 +138,7 @@ impl ContactForces {
     ) -> Result<(Self, Vec<f64>), Cause> {
         let mut forces = ContactForces::open(pairs);
         let gap_after = |pair: &Pair, du: &[f64]| pair.gap + pair.normal_of(du);
-        let closed_before = |pair: &Pair| match settled {
-            true => warm.closes(&pair.at),
-            false => warm.state(&pair.at).is_closed(),
-        };
+        let closed_before = |pair: &Pair| warm.closes(&pair.at);
         let overlap = |pair: &Pair| {
             if settled {
                 ROUND_OFF * pair.length
@@ -146,7 +149,7 @@ impl ContactForces {
         let mut inside: Vec<bool> = forces.pairs.iter().map(closed_before).collect();
         let mut du = y.to_vec();
         let mut entered = inside.contains(&true);
-        let mut may_enter = !(settled && entered);
+        let mut may_enter = !entered;
         loop {
             for (pair, inside) in forces.pairs.iter().zip(&mut inside) {
                 if may_enter && !*inside && gap_after(pair, &du) < -overlap(pair) {
@@ -168,7 +171,9 @@ impl ContactForces {
                     .collect(),
             );
             let states = chosen.iter().map(|k| warm.state(&at(k).at)).collect();
-            forces.solve(&chosen, constants, states, matrix, method, meter)?;
+            let last = || chosen.iter().map(|k| warm.force(&at(k).at)).collect();
+            let warm = (states, settled.then(last));
+            forces.solve(&chosen, constants, warm, matrix, method, meter)?;
             let load = dofs.restrict(&forces.resultant(y.len()));
             let correction = meter.time(|t| &mut t.solve, || matrix.solver.solve(&load))?;
             du.copy_from_slice(y);
@@ -209,10 +214,24 @@ impl ContactForces {
         let chosen: Vec<usize> = (0..pairs.len()).collect();
         let states = vec![ContactState::Stick; pairs.len()];
         let mut impulses = ContactForces::open(pairs);
-        impulses.solve(&chosen, constants, states, mass, method, meter)?;
+        impulses.solve(&chosen, constants, (states, None), mass, method, meter)?;
         let load = dofs.restrict(&impulses.resultant(v0.len()));
         let jump = meter.time(|t| &mut t.solve, || mass.solver.solve(&load))?;
         dofs.add(&jump, &mut v0p);
         Ok(v0p)
+    }
+}
+
+/// Adds eps Q_kk (P_k - P_k^0) to what a problem makes zero or positive, P^0 being the forces of the
+/// pass before: where several pairs can carry the same force, the solution near that of the pass
+/// before is the one. When the passes come to rest, the term vanishes.
+fn hold_near(problem: &mut FrictionalLcp, forces: &[[f64; 2]]) {
+    let n = forces.len();
+    for (k, [pn, pt]) in forces.iter().enumerate() {
+        let [normal, tangential] = [k, k + n].map(|i| HELD * problem.q[(i, i)]);
+        problem.q[(k, k)] += normal;
+        problem.q[(k + n, k + n)] += tangential;
+        problem.gap[k] -= normal * pn;
+        problem.slip[k] -= tangential * pt;
     }
 }

@@ -48,10 +48,10 @@ pub(super) struct Effective {
 }
 
 impl Effective {
-    /// Both matrices for the unknowns of a step.
-    pub fn new(body: &Body, dofs: &DofMap, choice: SolverChoice) -> Self {
+    /// Both matrices for the unknowns of a step; `bodies` of all nodes.
+    pub fn new(body: &Body, dofs: &DofMap, bodies: Vec<usize>, choice: SolverChoice) -> Self {
         let mass = unknown_mass(body, dofs);
-        let compliance = || Compliance::new(dofs.unknown.clone());
+        let compliance = || Compliance::new(dofs.unknown.clone(), bodies.clone());
         Effective {
             k: Factored::new(choice, mass.zeros(), compliance()),
             m: Factored::new(choice, mass, compliance()),

@@ -28,7 +28,7 @@ impl Hold {
     /// The pairs that touch in the displacements `u0`, which the search covers; `before` are those
     /// that carried forces up to then.
     pub fn new(problem: &StepProblem, search: &Search, u0: &[f64], before: &Touching) -> Self {
-        let mut touching = Vec::new();
+        let (mut touching, before) = (Vec::new(), before.keys());
         let mut slot = 0;
         for territory in search.territories() {
             let surfaces = territory.surfaces();
@@ -40,7 +40,7 @@ impl Hold {
                     }
                     let key = [slot, candidate.segment];
                     let p = place(problem, u0, [slave, a, b]);
-                    if touches(&p) || before.closes_key(key) {
+                    if touches(&p) || before.binary_search(&key).is_ok() {
                         touching.push((key, p.normal));
                     }
                 }

@@ -145,7 +145,8 @@ impl<'m> Runner<'m, '_> {
             supports: Supports::new(self.model, step, &self.state.u),
         };
         let choice = step.settings.solver;
-        let mut effective = Effective::new(self.body, &problem.dofs, choice);
+        let mut effective =
+            Effective::new(self.body, &problem.dofs, self.model.mesh.bodies(), choice);
         if number == 1 {
             self.report_start(&problem, &mut effective, place)?;
         }

@@ -2,9 +2,19 @@ use super::contact_forces::ContactForces;
 use crate::contact::PairSite;
 use crate::lcp::ContactState;
 
-/// The pairs that carry forces with their states, increasing by slot and segment.
+/// The pairs that carry forces, increasing by slot and segment.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Touching(Vec<([usize; 2], ContactState)>);
+pub(super) struct Touching(Vec<Touch>);
+
+/// A pair that carries a force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Touch {
+    /// Slot and segment.
+    key: [usize; 2],
+    state: ContactState,
+    /// Pn and Pt.
+    force: [f64; 2],
+}
 
 impl Touching {
     /// The pairs in contact.
@@ -12,14 +22,18 @@ impl Touching {
         let closed = (0..forces.pairs.len()).filter(|&k| forces.is_closed(k));
         Touching(
             closed
-                .map(|k| (forces.pairs[k].at.key(), forces.state[k]))
+                .map(|k| Touch {
+                    key: forces.pairs[k].at.key(),
+                    state: forces.state[k],
+                    force: [forces.normal[k], forces.tangential[k]],
+                })
                 .collect(),
         )
     }
 
     /// Slots and segments of the pairs.
     pub fn keys(&self) -> Vec<[usize; 2]> {
-        self.0.iter().map(|(key, _)| *key).collect()
+        self.0.iter().map(|touch| touch.key).collect()
     }
 
     /// Whether a pair of the slot carries a force.
@@ -29,25 +43,30 @@ impl Touching {
 
     /// Whether this very pair carries a force.
     pub fn closes(&self, at: &PairSite) -> bool {
-        self.closes_key(at.key())
+        self.find(at).is_some()
     }
 
-    /// Whether the pair of a slot and a segment carries a force.
-    pub fn closes_key(&self, key: [usize; 2]) -> bool {
-        self.0.binary_search_by_key(&key, |(key, _)| *key).is_ok()
+    /// Normal and tangential force of this very pair.
+    pub fn force(&self, at: &PairSite) -> [f64; 2] {
+        self.find(at).map_or([0.0; 2], |touch| touch.force)
     }
 
     /// State of a pair; a node that has come to another segment keeps the one it had.
     pub fn state(&self, at: &PairSite) -> ContactState {
-        let own = self.of_slot(at.slot);
-        let same = own.iter().find(|(key, _)| *key == at.key());
-        same.or(own.first())
-            .map_or(ContactState::Open, |(_, state)| *state)
+        self.find(at)
+            .or(self.of_slot(at.slot).first())
+            .map_or(ContactState::Open, |touch| touch.state)
     }
 
-    fn of_slot(&self, slot: usize) -> &[([usize; 2], ContactState)] {
-        let from = self.0.partition_point(|(key, _)| key[0] < slot);
-        let to = self.0.partition_point(|(key, _)| key[0] <= slot);
+    fn find(&self, at: &PairSite) -> Option<&Touch> {
+        self.of_slot(at.slot)
+            .iter()
+            .find(|touch| touch.key == at.key())
+    }
+
+    fn of_slot(&self, slot: usize) -> &[Touch] {
+        let from = self.0.partition_point(|touch| touch.key[0] < slot);
+        let to = self.0.partition_point(|touch| touch.key[0] <= slot);
         &self.0[from..to]
     }
 }

@@ -21,6 +21,27 @@ impl Mesh {
     pub fn dof_count(&self) -> usize {
         2 * self.coordinates.len()
     }
+
+    /// For every node the body it belongs to: the smallest index of the nodes that elements connect.
+    pub fn bodies(&self) -> Vec<usize> {
+        let mut parent: Vec<usize> = (0..self.node_count()).collect();
+        for element in &self.elements {
+            let nodes = element.cell.nodes();
+            for pair in nodes.windows(2) {
+                let [p, q] = [root(&mut parent, pair[0]), root(&mut parent, pair[1])];
+                parent[p.max(q)] = p.min(q);
+            }
+        }
+        (0..parent.len()).map(|n| root(&mut parent, n)).collect()
+    }
+}
+
+fn root(parent: &mut [usize], mut node: usize) -> usize {
+    while parent[node] != node {
+        parent[node] = parent[parent[node]];
+        node = parent[node];
+    }
+    node
 }
 
 /// One element.

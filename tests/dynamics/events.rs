@@ -139,7 +139,10 @@ fn the_nodes_of_a_tilted_block_land_one_after_the_other() {
                 summary.events,
                 summary.increments,
                 summary.cutbacks,
-                landings.iter().map(|l| (l.slave, l.time)).collect::<Vec<_>>()
+                landings
+                    .iter()
+                    .map(|l| (l.slave, l.time))
+                    .collect::<Vec<_>>()
             );
             // the first is that of the lower corner, before the block feels anything
             let corner = fall.block.node(0, 0);
@@ -167,18 +170,31 @@ fn free_bodies_keep_their_momenta_through_impacts() {
             let (keep, summary) = run_to_end(&model);
             let first = &keep.reports[0];
             let scale = (2.0 * total(first)).sqrt();
-            let worst = keep.reports.iter().fold([0.0_f64; 2], |[linear, angular], r| {
-                let d = |i: usize| r.momentum.linear[i] - first.momentum.linear[i];
-                let a = r.momentum.angular - first.momentum.angular;
-                [
-                    linear.max(d(0).hypot(d(1)) / scale),
-                    angular.max(a.abs() / scale),
-                ]
-            });
+            let worst = keep
+                .reports
+                .iter()
+                .fold([0.0_f64; 2], |[linear, angular], r| {
+                    let d = |i: usize| r.momentum.linear[i] - first.momentum.linear[i];
+                    let a = r.momentum.angular - first.momentum.angular;
+                    [
+                        linear.max(d(0).hypot(d(1)) / scale),
+                        angular.max(a.abs() / scale),
+                    ]
+                });
             let last = keep.reports.last().unwrap();
             for p in keep.reports.windows(2) {
                 let w = p[1].energy.normal_contact_work - p[0].energy.normal_contact_work;
-                if w.abs() > 1e-6 * total(first) { println!("DBG {} dt {} w {:e} land {} closed {} {}", p[1].time, p[1].dt, w/total(first), p[1].landings.len(), p[0].contacts[0].closed, p[1].contacts[0].closed); }
+                if w.abs() > 1e-6 * total(first) {
+                    println!(
+                        "DBG {} dt {} w {:e} land {} closed {} {}",
+                        p[1].time,
+                        p[1].dt,
+                        w / total(first),
+                        p[1].landings.len(),
+                        p[0].contacts[0].closed,
+                        p[1].contacts[0].closed
+                    );
+                }
             }
             println!(
                 "{scheme:?} {friction}: linear {:.1e} angular {:.1e}, {} events, {} increments, \
@@ -275,6 +291,9 @@ fn two_runs_are_the_same_to_the_last_bit() {
     let (one, other) = (run().0, run().0);
     assert_eq!(one.reports.len(), other.reports.len());
     for (a, b) in one.reports.iter().zip(&other.reports) {
-        assert_eq!((&a.state, a.time, &a.landings), (&b.state, b.time, &b.landings));
+        assert_eq!(
+            (&a.state, a.time, &a.landings),
+            (&b.state, b.time, &b.landings)
+        );
     }
 }

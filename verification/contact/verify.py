@@ -138,6 +138,17 @@ def check(verification: runner.Verification, case: runner.Case, results: Results
     ]
 
 
+def tabulate_corners(verification: runner.Verification) -> None:
+    """How the upper square flies off; left and right are mirror images."""
+    rows = []
+    for case, results in verification.group("free"):
+        if case.name.startswith("corners"):
+            frame = len(results.frame_times) - 1
+            x, y = results.point_field("V", frame)[results.node_set("UPPER")].mean(axis=0)
+            rows.append((case.name, float(x), float(y)))
+    verification.table("Mean velocity of the upper square at the end", ("case", "x", "y"), rows)
+
+
 def draw_conservation(verification: runner.Verification) -> None:
     """What free flight keeps, against time."""
     figure, axes = plt.subplots(3, 1, figsize=(8, 8))
@@ -180,6 +191,7 @@ def main() -> int:
         + ("friction", "impact", "normal contact"),
         rows,
     )
+    tabulate_corners(verification)
     draw_conservation(verification)
     draw_motion(verification)
     return verification.finish()
