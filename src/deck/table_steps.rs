@@ -233,7 +233,10 @@ pub(super) static STEPS: &[Keyword] = &[
                 "IMPACT TIME",
                 &[
                     V::read("INCREMENT", "nodes land within the increment (default)"),
-                    V::read("EVENT", "the increment is cut at the time of an impact"),
+                    V::read(
+                        "EVENT",
+                        "increments are cut at impacts, where the impulses act",
+                    ),
                 ],
                 "when nodes land",
             ),

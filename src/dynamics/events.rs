@@ -1,12 +1,13 @@
+use super::State;
 use super::effective::Effective;
 use super::hold::{Hold, place};
 use super::increment::{Attempt, Failed, Solved};
 use super::loads::Moment;
 use super::meter::Meter;
+use super::results::motion;
 use super::step_problem::{Interval, StepProblem};
 use super::touching::Touching;
-use super::{State, results};
-use crate::contact::{Direction, Search, crossings};
+use crate::contact::{Crossing, Direction, Projection, Search, crossings};
 
 /// Impacts within an increment of the grid, after which nodes land within what is left of it.
 pub(super) const MOST_EVENTS: usize = 50;
@@ -16,10 +17,12 @@ const GROUP: f64 = 1e-3;
 const ACCURACY: f64 = 1e-10;
 /// Gap (in segment lengths) that is none at an impact.
 const MET: f64 = 1e-12;
+/// How far beyond a piece (in its lengths) its motion tells of impacts.
+const FAR: f64 = 2.0;
 /// Attempts to find the time of an impact.
 const TRIALS: usize = 12;
-/// Trials from which on the time is bracketed by halving.
-const HALVING_TRIALS: usize = 7;
+/// Reduction of the error by a trial from which on the time is bracketed by halving.
+const SLOW: f64 = 0.5;
 
 /// A piece of an increment that ends at the next impact, or at the end of the increment.
 pub(super) struct Piece {
@@ -28,6 +31,9 @@ pub(super) struct Piece {
     /// Whether an impact ends it.
     pub is_cut: bool,
 }
+
+/// A piece that failed, with its times.
+type Broken = Box<(Interval, Failed)>;
 
 /// Solves the next piece of an increment.
 pub(super) struct Pieces<'a, 'm> {
@@ -42,6 +48,8 @@ pub(super) struct Pieces<'a, 'm> {
     pub rest: Interval,
     /// Length of an increment of the grid.
     pub grid: f64,
+    /// Length of the last piece.
+    pub last: f64,
 }
 
 /// A node goes into a body.
@@ -52,6 +60,50 @@ struct Entry {
     slot: usize,
     segment: usize,
     nodes: [usize; 3],
+}
+
+/// Second-order motion of all nodes from the start of a piece.
+struct Flight<'a> {
+    v: &'a [f64],
+    a: &'a [f64],
+    /// End of the piece, if it is the motion of one.
+    end: f64,
+    /// How long it is followed.
+    duration: f64,
+}
+
+impl Flight<'_> {
+    /// U0 + t V + t²/2 A at the end.
+    fn displacement(&self, u0: &[f64]) -> Vec<f64> {
+        let t = self.duration;
+        let at = |i: usize| u0[i] + t * (self.v[i] + t / 2.0 * self.a[i]);
+        (0..u0.len()).map(at).collect()
+    }
+
+    /// Whether the ways of the nodes are long enough for them to meet.
+    fn may_meet(&self, start: &Projection, [s, a, b]: [usize; 3]) -> bool {
+        let way = |node: usize| {
+            let size = |x: &[f64]| x[2 * node].hypot(x[2 * node + 1]);
+            self.duration * (size(self.v) + self.duration / 2.0 * size(self.a))
+        };
+        start.gap.abs() <= way(s) + way(a).max(way(b))
+    }
+
+    /// When the node s goes in through the segment from a to b. One that comes out again before the
+    /// end of the piece has not gone in: between its ends the motion of a piece is an estimate.
+    fn entry(&self, problem: &StepProblem, u0: &[f64], nodes: [usize; 3]) -> Option<f64> {
+        let motions = nodes.map(|node| motion(problem, u0, self.v, self.a, node));
+        let found = crossings(&motions, self.duration);
+        let stays = |&(k, crossing): &(usize, &Crossing)| {
+            let is_out = |c: &Crossing| c.direction == Direction::Leaving && c.time < self.end;
+            crossing.direction == Direction::Entering && !found[k..].iter().any(is_out)
+        };
+        found
+            .iter()
+            .enumerate()
+            .find(stays)
+            .map(|(_, crossing)| crossing.time)
+    }
 }
 
 impl<'m> Pieces<'_, 'm> {
@@ -66,16 +118,23 @@ impl<'m> Pieces<'_, 'm> {
     ///
     /// then tells when the pairs that stay out meet: at T(tau). The piece ends at the impact when
     /// T(tau) = tau, which secants find; without elastic forces T does not depend on tau.
-    pub fn next(&mut self) -> Result<Piece, (Interval, Failed)> {
+    pub fn next(&mut self) -> Result<Piece, Broken> {
         let (rest, group) = (self.rest.dt, GROUP * self.grid);
         self.search.start(&self.start.v, rest);
         self.search.cover(&self.start.u);
         let mut hold = Hold::new(self.problem, self.search, &self.start.u, self.contact);
         let mut tau = self.predicted(&mut hold);
         let mut root = Root::new(rest);
-        for trial in 0..TRIALS {
+        for _ in 0..TRIALS {
             let solved = self.attempt(tau, Some(&hold))?;
-            let entry = self.first_entry(&hold, &solved.v0p, &solved.mean_acceleration(tau));
+            let a = solved.mean_acceleration(tau);
+            let flight = Flight {
+                v: &solved.v0p,
+                a: &a,
+                end: tau,
+                duration: rest.min(FAR * tau),
+            };
+            let entry = self.first_entry(&hold, flight);
             let met = match entry {
                 None => rest,
                 Some(entry) if entry.time < group => {
@@ -104,7 +163,7 @@ impl<'m> Pieces<'_, 'm> {
             if (met - tau).abs() <= ACCURACY * self.grid {
                 return self.accept(tau, solved);
             }
-            tau = root.next(tau, met, solved, trial >= HALVING_TRIALS);
+            tau = root.next(tau, met, solved);
         }
         match root.before {
             // not as far as the impact
@@ -114,7 +173,7 @@ impl<'m> Pieces<'_, 'm> {
     }
 
     /// All that is left of the increment; nodes land within it.
-    pub fn rest(&mut self) -> Result<Piece, (Interval, Failed)> {
+    pub fn rest(&mut self) -> Result<Piece, Broken> {
         let solved = self.attempt(self.rest.dt, None)?;
         Ok(Piece {
             interval: self.rest,
@@ -128,7 +187,13 @@ impl<'m> Pieces<'_, 'm> {
         let (rest, group) = (self.rest.dt, GROUP * self.grid);
         let start = self.start;
         loop {
-            match self.first_entry(hold, &start.v, &start.a) {
+            let flight = Flight {
+                v: &start.v,
+                a: &start.a,
+                end: 0.0,
+                duration: rest.min(FAR * self.last),
+            };
+            match self.first_entry(hold, flight) {
                 Some(entry) if entry.time < group => self.join_at_start(hold, entry),
                 Some(entry) if entry.time <= rest - group => return entry.time,
                 _ => return rest,
@@ -141,27 +206,12 @@ impl<'m> Pieces<'_, 'm> {
         hold.join_at_start(entry.slot, entry.segment, p.normal);
     }
 
-    /// The first entry of a node, not kept out of the segment, in the motion with velocity `v` and
-    /// acceleration `a` from the start through all that is left of the increment.
-    fn first_entry(&mut self, hold: &Hold, v: &[f64], a: &[f64]) -> Option<Entry> {
-        let rest = self.rest.dt;
-        let Pieces { problem, start, .. } = *self;
+    /// The first entry of a node into a body that does not hold it.
+    fn first_entry(&mut self, hold: &Hold, flight: Flight) -> Option<Entry> {
+        let (problem, u0) = (self.problem, &self.start.u);
         let search = &mut *self.search;
-        let u0 = &start.u;
-        let far = |i: usize| u0[i] + rest * (v[i] + rest / 2.0 * a[i]);
-        let end: Vec<f64> = (0..u0.len()).map(far).collect();
-        let moving = State {
-            u: Vec::new(),
-            v: v.to_vec(),
-            a: a.to_vec(),
-        };
-        // no node goes further
-        let reach = |node: usize| {
-            let size = |x: &[f64]| x[2 * node].hypot(x[2 * node + 1]);
-            rest * (size(v) + rest / 2.0 * size(a))
-        };
-        let mut find = || {
-            search.cover_way(u0, &end);
+        let find = || {
+            search.cover_way(u0, &flight.displacement(u0));
             let mut first: Option<Entry> = None;
             let mut slot = 0;
             for territory in search.territories() {
@@ -172,23 +222,17 @@ impl<'m> Pieces<'_, 'm> {
                         let [a, b] = surfaces.segments[segment];
                         let nodes = [s, a, b];
                         let p = place(problem, u0, nodes);
-                        if p.gap.abs() > reach(s) + reach(a).max(reach(b))
-                            || s == a
-                            || s == b
-                            || hold.holds(slot, &p)
-                            || !problem.dofs.moves(&nodes)
-                        {
-                            continue;
-                        }
-                        let motions = nodes
-                            .map(|node| results::motion(problem, u0, &moving.v, &moving.a, node));
-                        let is_entering =
-                            |c: &&crate::contact::Crossing| c.direction == Direction::Entering;
-                        if let Some(found) = crossings(&motions, rest).iter().find(is_entering)
-                            && first.is_none_or(|first| found.time < first.time)
+                        let is_free = flight.may_meet(&p, nodes)
+                            && s != a
+                            && s != b
+                            && problem.dofs.moves(&nodes)
+                            && !hold.holds(slot, &p);
+                        if is_free
+                            && let Some(time) = flight.entry(problem, u0, nodes)
+                            && first.is_none_or(|first| time < first.time)
                         {
                             first = Some(Entry {
-                                time: found.time,
+                                time,
                                 slot,
                                 segment,
                                 nodes,
@@ -200,17 +244,19 @@ impl<'m> Pieces<'_, 'm> {
             }
             first
         };
-        self.meter.time(|t| &mut t.contact, &mut find)
+        self.meter.time(|t| &mut t.contact, find)
     }
 
-    fn attempt(&mut self, tau: f64, hold: Option<&Hold>) -> Result<Solved, (Interval, Failed)> {
+    fn attempt(&mut self, tau: f64, hold: Option<&Hold>) -> Result<Solved, Broken> {
         let (interval, contact) = (self.interval(tau), self.contact);
         let attempt = self.attempt_at(interval, hold);
-        attempt.solve(contact).map_err(|failed| (interval, failed))
+        attempt
+            .solve(contact)
+            .map_err(|failed| Box::new((interval, failed)))
     }
 
     /// Takes a converged piece, if no node has gone into a body otherwise than by an impact.
-    fn accept(&mut self, tau: f64, solved: Solved) -> Result<Piece, (Interval, Failed)> {
+    fn accept(&mut self, tau: f64, solved: Solved) -> Result<Piece, Broken> {
         let (interval, contact) = (self.interval(tau), self.contact);
         let mut attempt = self.attempt_at(interval, None);
         match attempt.check_ways(&solved.d, contact, &solved.forces) {
@@ -225,7 +271,7 @@ impl<'m> Pieces<'_, 'm> {
                     worst: None,
                     passes: solved.passes,
                 };
-                Err((interval, failed))
+                Err(Box::new((interval, failed)))
             }
         }
     }
@@ -283,23 +329,30 @@ impl Root {
         }
     }
 
-    /// The length to try next after `tau`, in whose motion the impact is at `met`.
-    fn next(&mut self, tau: f64, met: f64, solved: Solved, halve: bool) -> f64 {
+    /// The length to try next after `tau`, in whose motion the impact is at `met`: by the secant
+    /// through the last two, or else at `met`; halfway where these do not help.
+    fn next(&mut self, tau: f64, met: f64, solved: Solved) -> f64 {
         let f = met - tau;
         if f < 0.0 {
+            self.before.take_if(|(before, _)| *before > tau);
             self.after = Some(tau);
         } else {
+            self.after.take_if(|after| *after < tau);
             self.before = Some((tau, solved));
         }
-        let secant = self
-            .last
-            .map(|(old, f_old)| tau - f * (tau - old) / (f - f_old));
-        self.last = Some((tau, f));
-        let low = self.before.as_ref().map_or(0.0, |(tau, _)| *tau);
-        let high = self.after.unwrap_or(self.rest);
-        let inside = |t: &f64| *t > low && (*t < high || (*t == high && self.after.is_none()));
-        match secant.filter(inside).unwrap_or(met) {
-            t if inside(&t) && !halve => t,
+        let (low, high) = (
+            self.before.as_ref().map_or(0.0, |(tau, _)| *tau),
+            self.after.unwrap_or(self.rest),
+        );
+        let last = self.last.replace((tau, f));
+        let is_slow = last.is_some_and(|(_, f_old)| f.abs() > SLOW * f_old.abs());
+        if is_slow && self.after.is_some() {
+            return low + (high - low) / 2.0;
+        }
+        let secant = last.map(|(old, f_old)| tau - f * (tau - old) / (f - f_old));
+        match secant.filter(|t| *t > low).unwrap_or(met) {
+            t if t > low && t < high => t,
+            _ if self.after.is_none() => self.rest,
             _ => low + (high - low) / 2.0,
         }
     }
@@ -312,9 +365,9 @@ mod tests {
     /// Number of trials until the root of met(tau) = tau is found, or none.
     fn trials(met: impl Fn(f64) -> f64, rest: f64, first: f64, root: f64) -> Option<usize> {
         let (mut search, mut tau) = (Root::new(rest), first);
-        (0..60).find(|&trial| {
+        (0..60).find(|_| {
             let is_found = (tau - root).abs() < 1e-12;
-            tau = search.next(tau, met(tau), Solved::default(), trial >= HALVING_TRIALS);
+            tau = search.next(tau, met(tau), Solved::default());
             is_found
         })
     }

@@ -232,7 +232,7 @@ impl<'m> Runner<'m, '_> {
         place: StepPlace,
         grid: Grid,
     ) -> Result<Option<Failure>, RunError> {
-        let (mut events, mut from) = (0, grid.from);
+        let (mut events, mut from, mut last) = (0, grid.from, grid.length);
         // Ends of what is left, and of its halves; the next piece goes no further than the last.
         let mut ends = vec![grid.to];
         while let Some(&to) = ends.last() {
@@ -252,6 +252,7 @@ impl<'m> Runner<'m, '_> {
                 meter: &mut self.meter,
                 rest,
                 grid: grid.length,
+                last,
             };
             let next = match events < MOST_EVENTS {
                 true => pieces.next(),
@@ -264,14 +265,15 @@ impl<'m> Runner<'m, '_> {
                     is_cut,
                 }) => {
                     self.accept(problem, place, interval, solved)?;
-                    from = interval.end.step;
+                    (from, last) = (interval.end.step, interval.dt);
                     if is_cut {
                         (events, self.events) = (events + 1, self.events + 1);
                     } else {
                         ends.pop();
                     }
                 }
-                Err((interval, failed)) => {
+                Err(broken) => {
+                    let (interval, failed) = *broken;
                     let halvings = ends.len() as u32 - 1;
                     let failure = self.failure(place, interval, failed, halvings);
                     if let Some(failure) = self.cut_back(failure, grid.dt_min)? {
