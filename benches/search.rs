@@ -51,9 +51,8 @@ fn main() {
                 let sites = |slave: usize| {
                     let look = Look {
                         surfaces,
-                        x: &x,
-                        u0: &u,
-                        u: black_box(&u),
+                        start: &x,
+                        now: black_box(&x),
                         slave,
                     };
                     look.sites(all_segments(surfaces)).len()
