@@ -43,7 +43,10 @@ fn main() {
         let moved: Vec<f64> = (0..u.len()).map(|i| 1e-3 * (i as f64).sin()).collect();
         let touch = vec![Touch::default(); x.len()];
         group.bench_function(BenchmarkId::new("ways", n), |bencher| {
-            bencher.iter(|| find_passage(&mut search, &u, black_box(&moved), &touch, 0.0));
+            bencher.iter(|| {
+                search.cover_way(&u, &moved);
+                find_passage(&search, &u, black_box(&moved), &touch, 0.0)
+            });
         });
         if n <= 1_000 {
             group.bench_function(BenchmarkId::new("all_segments", n), |bencher| {
@@ -51,9 +54,8 @@ fn main() {
                 let sites = |slave: usize| {
                     let look = Look {
                         surfaces,
-                        x: &x,
-                        u0: &u,
-                        u: black_box(&u),
+                        start: &x,
+                        now: black_box(&x),
                         slave,
                     };
                     look.sites(all_segments(surfaces)).len()

@@ -29,19 +29,18 @@ pub struct Passage {
 }
 
 /// A slave node that goes into a body on the straight way from the displacements `u0` to `u1`, if
-/// there is one; `touch` holds the contact of every slot, `tolerance` is a depth that does not count
+/// there is one; the search covers the way, `touch` holds the contact of every slot, `tolerance` is a depth that does not count
 /// (length).
 ///
 /// To go in is allowed for nodes that are held by the segment or come out again in contact: a node
 /// that slides round a corner cuts it, for its way is straight.
 pub fn find_passage(
-    search: &mut Search,
+    search: &Search,
     u0: &[f64],
     u1: &[f64],
     touch: &[Touch],
     tolerance: f64,
 ) -> Option<Passage> {
-    search.cover_way(u0, u1);
     let x = search.coordinates();
     let mut slot = 0;
     let mut events = Vec::new();

@@ -20,8 +20,8 @@ fn passes_of(closed: bool, from: [f64; 2], to: [f64; 2], touch: Touch) -> Option
     (u1[0], u1[1]) = (to[0] - from[0], to[1] - from[1]);
     let contacts = [surfaces];
     let mut search = Search::new(&contacts, &x);
-    search.cover(&u0);
-    find_passage(&mut search, &u0, &u1, &[touch], 0.0).map(|passage| passage.segment)
+    search.cover_way(&u0, &u1);
+    find_passage(&search, &u0, &u1, &[touch], 0.0).map(|passage| passage.segment)
 }
 
 fn passes(from: [f64; 2], to: [f64; 2], touch: Touch) -> Option<[usize; 2]> {
@@ -132,7 +132,8 @@ fn a_hollow_corner_holds_a_node_with_both_sides() {
         (u1[0], u1[1]) = (-way, -way / 2.0);
         let contacts = [surfaces.clone()];
         let mut search = Search::new(&contacts, &x);
-        find_passage(&mut search, &u0, &u1, &[held(true, 0)], 0.0)
+        search.cover_way(&u0, &u1);
+        find_passage(&search, &u0, &u1, &[held(true, 0)], 0.0)
     };
     let through = Passage {
         slave: 0,

@@ -1,3 +1,4 @@
+use super::geometry::position;
 use super::sites::{Look, Site};
 use super::{ContactSurfaces, PairSite, Search};
 
@@ -40,6 +41,9 @@ pub struct Pairing {
 /// slid off is decided by the end of the increment, not by one of its passes.
 pub fn find_pairs(search: &Search, u0: &[f64], u: &[f64], before: &Pairing) -> Vec<PairSite> {
     let x = search.coordinates();
+    let positions =
+        |u: &[f64]| -> Vec<[f64; 2]> { (0..x.len()).map(|n| position(x, u, n)).collect() };
+    let (start, now) = (positions(u0), positions(u));
     let mut pairs: Vec<PairSite> = Vec::new();
     let mut old = before.sites.as_slice();
     let mut slot = 0;
@@ -48,9 +52,8 @@ pub fn find_pairs(search: &Search, u0: &[f64], u: &[f64], before: &Pairing) -> V
         for slave in 0..surfaces.slaves.len() {
             let look = Look {
                 surfaces,
-                x,
-                u0,
-                u,
+                start: &start,
+                now: &now,
                 slave,
             };
             let (own, rest) = old.split_at(old.partition_point(|site| site.slot <= slot));

@@ -1,5 +1,5 @@
 use super::crossing::{Direction, Motion, crossings};
-use super::geometry::{Projection, position, project};
+use super::geometry::{Projection, project};
 use super::vertex::{Vertex, common_normal};
 use super::{Candidate, ContactSurfaces};
 
@@ -42,7 +42,7 @@ impl Site {
     }
 }
 
-/// A slave node between the displacements `u0` of the start of an increment and those of an iterate.
+/// A slave node between the start of an increment and an iterate.
 ///
 /// The body lies behind each of its segments near a hollow (concave) vertex, and behind one of them
 /// near a convex vertex; a node outside is therefore held by all segments that it faces, but only by
@@ -52,12 +52,10 @@ impl Site {
 pub struct Look<'a> {
     /// Surfaces of the contact.
     pub surfaces: &'a ContactSurfaces,
-    /// Reference coordinates (length).
-    pub x: &'a [[f64; 2]],
-    /// Displacements of the start (length).
-    pub u0: &'a [f64],
-    /// Displacements of the iterate (length).
-    pub u: &'a [f64],
+    /// Positions of all nodes at the start (length).
+    pub start: &'a [[f64; 2]],
+    /// Positions of all nodes in the iterate (length).
+    pub now: &'a [[f64; 2]],
     /// Number of the slave node in the contact.
     pub slave: usize,
 }
@@ -67,12 +65,20 @@ impl Look<'_> {
     /// too.
     pub fn sites(&self, candidates: impl Iterator<Item = Candidate>) -> Vec<Site> {
         let faced = self.faced(candidates);
+        if faced.is_empty() {
+            return Vec::new();
+        }
         let mut sites = Vec::new();
         for run in self.runs(&faced) {
-            if let Some(segment) = self.choose(&run) {
-                sites.push(self.vertex_site(segment).unwrap_or(Site::face(segment)));
-                sites.extend(self.across_hollows(segment).map(Site::face));
+            let Some(segment) = self.choose(&run) else {
+                continue;
+            };
+            if self.is_far(segment) {
+                sites.push(Site::face(segment));
+                continue;
             }
+            sites.push(self.vertex_site(segment).unwrap_or(Site::face(segment)));
+            sites.extend(self.across_hollows(segment).map(Site::face));
         }
         sites.sort_by_key(|site| site.segment);
         sites.dedup_by_key(|site| site.segment);
@@ -105,42 +111,53 @@ impl Look<'_> {
         let node = self.surfaces.slaves[self.slave];
         let is_own = |i: usize| self.surfaces.segments[i].contains(&node);
         for Candidate { segment: i, reach } in candidates {
-            if is_own(i) {
+            let along = self.along(i);
+            if along < -ROUND_OFF || is_own(i) {
                 continue;
             }
-            let p = self.place(i);
-            if (-ROUND_OFF..=1.0 + ROUND_OFF).contains(&p.xi) {
+            if along <= 1.0 + ROUND_OFF {
+                let p = self.place(i);
                 if p.gap <= reach && (p.gap >= -p.length || self.enters(i)) {
                     faced.push(i);
                 }
-            } else if p.xi > 1.0
-                && p.gap >= -p.length
-                && ((p.xi - 1.0) * p.length).hypot(p.gap) <= reach
-                && let Some(j) = self.surfaces.next[i]
+            } else if let Some(j) = self.surfaces.next[i]
+                && self.along(j) < 0.0
                 && !is_own(j)
-                && self.place(j).xi < 0.0
             {
-                faced.extend([i, j]);
+                let p = self.place(i);
+                let beyond = (p.xi - 1.0) * p.length;
+                if p.gap >= -p.length && beyond * beyond + p.gap * p.gap <= reach * reach {
+                    faced.extend([i, j]);
+                }
             }
         }
-        faced.sort_unstable();
-        faced.dedup();
+        if faced.len() > 1 {
+            faced.sort_unstable();
+            faced.dedup();
+        }
         faced
+    }
+
+    /// Whether the node is so far in front of a segment that it does not matter what is beside it.
+    fn is_far(&self, segment: usize) -> bool {
+        let p = self.place(segment);
+        p.gap > p.length && p.gap > 2.0 * self.way(segment)
     }
 
     /// Whether the straight way of the node goes into the body through the segment.
     fn enters(&self, segment: usize) -> bool {
         let [a, b] = self.surfaces.segments[segment];
-        let motions = [self.surfaces.slaves[self.slave], a, b].map(|node| {
-            let at = |u| position(self.x, u, node);
-            Motion::straight(at(self.u0), at(self.u))
-        });
+        let motions = [self.surfaces.slaves[self.slave], a, b]
+            .map(|node| Motion::straight(self.start[node], self.now[node]));
         let is_entering = |c: &super::Crossing| c.direction == Direction::Entering;
         crossings(&motions, 1.0).iter().any(is_entering)
     }
 
     /// The faced segments in runs round vertices that are not hollow.
     fn runs(&self, faced: &[usize]) -> Vec<Vec<usize>> {
+        if faced.len() == 1 {
+            return vec![faced.to_vec()];
+        }
         let is_faced = |i: &usize| faced.binary_search(i).is_ok();
         let next = |i: usize| {
             let j = self.surfaces.next[i].filter(is_faced)?;
@@ -266,37 +283,41 @@ impl Look<'_> {
 
     /// The vertex at an end of a segment, if the node meets it: node against node.
     fn vertex_site(&self, i: usize) -> Option<Site> {
-        let before = self.surfaces.previous[i].map(|h| [h, i]);
-        let behind = self.surfaces.next[i].map(|j| [i, j]);
-        [before, behind].into_iter().flatten().find_map(|[i, j]| {
-            let (p, q) = (self.place(i), self.place(j));
-            let across = [p.tangent[0] + q.tangent[0], p.tangent[1] + q.tangent[1]];
-            let aside = (p.xi - 1.0) * p.length + q.xi * q.length;
-            let length = p.length.min(q.length) * across[0].hypot(across[1]);
-            if self.turn(i, j) <= STRAIGHT || aside.abs() > TIP * length {
-                return None;
-            }
-            let node = self.surfaces.slaves[self.slave];
-            let [before, behind] = self.surfaces.beside[self.slave]?;
-            let at = |n: usize| position(self.x, self.u, n);
-            let own =
-                [[before, node], [node, behind]].map(|[a, b]| project(at(a), at(a), at(b)).normal);
-            let vertex = Vertex {
-                next: j,
-                weight: common_normal([p.normal, q.normal], own)?,
-            };
-            let start_gap = vertex.blend(self.start(i).gap, self.start(j).gap);
-            let is_outside = start_gap >= -TOUCHING * length;
-            match vertex.weight {
-                0.0 if self.was_in_front(i) => Some(Site::face(i)),
-                1.0 if self.was_in_front(j) => Some(Site::face(j)),
-                weight if weight > 0.0 && weight < 1.0 && is_outside => Some(Site {
-                    segment: i,
-                    vertex: Some(vertex),
-                }),
-                _ => None,
-            }
-        })
+        let xi = self.along(i);
+        let before = self.surfaces.previous[i].filter(|_| xi < NEAR);
+        let behind = self.surfaces.next[i].filter(|_| xi > 1.0 - NEAR);
+        [before.map(|h| [h, i]), behind.map(|j| [i, j])]
+            .into_iter()
+            .flatten()
+            .find_map(|[i, j]| {
+                let (p, q) = (self.place(i), self.place(j));
+                // along the bisector of both tangents, times its length, which is 2 at most
+                let aside = (p.xi - 1.0) * p.length + q.xi * q.length;
+                let length = p.length.min(q.length);
+                if aside.abs() > 2.0 * TIP * length || self.turn(i, j) <= STRAIGHT {
+                    return None;
+                }
+                let node = self.surfaces.slaves[self.slave];
+                let [before, behind] = self.surfaces.beside[self.slave]?;
+                let at = |n: usize| self.now[n];
+                let own = [[before, node], [node, behind]]
+                    .map(|[a, b]| project(at(a), at(a), at(b)).normal);
+                let vertex = Vertex {
+                    next: j,
+                    weight: common_normal([p.normal, q.normal], own)?,
+                };
+                let start_gap = vertex.blend(self.start(i).gap, self.start(j).gap);
+                let is_outside = start_gap >= -TOUCHING * length;
+                match vertex.weight {
+                    0.0 if self.was_in_front(i) => Some(Site::face(i)),
+                    1.0 if self.was_in_front(j) => Some(Site::face(j)),
+                    weight if weight > 0.0 && weight < 1.0 && is_outside => Some(Site {
+                        segment: i,
+                        vertex: Some(vertex),
+                    }),
+                    _ => None,
+                }
+            })
     }
 
     /// How far the node has gone relative to a segment since the start.
@@ -304,32 +325,40 @@ impl Look<'_> {
         let [a, b] = self.surfaces.segments[segment];
         let xi = self.place(segment).xi.clamp(0.0, 1.0);
         let node = self.surfaces.slaves[self.slave];
-        let d = |n: usize, i: usize| self.u[2 * n + i] - self.u0[2 * n + i];
+        let d = |n: usize, i: usize| self.now[n][i] - self.start[n][i];
         let relative = |i: usize| d(node, i) - (1.0 - xi) * d(a, i) - xi * d(b, i);
-        relative(0).hypot(relative(1))
+        (relative(0).powi(2) + relative(1).powi(2)).sqrt()
     }
 
     /// Sine of the turn to the left from one segment to the next: positive at a convex vertex.
     fn turn(&self, i: usize, j: usize) -> f64 {
         let [e, f] = [i, j].map(|i| {
-            let [a, b] = self.surfaces.segments[i].map(|n| position(self.x, self.u, n));
+            let [a, b] = self.surfaces.segments[i].map(|n| self.now[n]);
             project(a, a, b).tangent
         });
         e[0] * f[1] - e[1] * f[0]
     }
 
+    /// The foot xi of the node on a segment in the iterate.
+    fn along(&self, segment: usize) -> f64 {
+        let [a, b] = self.surfaces.segments[segment].map(|n| self.now[n]);
+        let s = self.now[self.surfaces.slaves[self.slave]];
+        let (r, e) = ([s[0] - a[0], s[1] - a[1]], [b[0] - a[0], b[1] - a[1]]);
+        (r[0] * e[0] + r[1] * e[1]) / (e[0] * e[0] + e[1] * e[1])
+    }
+
     /// Place of the node relative to a segment in the iterate.
     fn place(&self, segment: usize) -> Projection {
-        self.place_at(self.u, segment)
+        self.place_at(self.now, segment)
     }
 
     /// The same at the start.
     fn start(&self, segment: usize) -> Projection {
-        self.place_at(self.u0, segment)
+        self.place_at(self.start, segment)
     }
 
-    fn place_at(&self, u: &[f64], segment: usize) -> Projection {
-        let [a, b] = self.surfaces.segments[segment].map(|n| position(self.x, u, n));
-        project(position(self.x, u, self.surfaces.slaves[self.slave]), a, b)
+    fn place_at(&self, at: &[[f64; 2]], segment: usize) -> Projection {
+        let [a, b] = self.surfaces.segments[segment];
+        project(at[self.surfaces.slaves[self.slave]], at[a], at[b])
     }
 }

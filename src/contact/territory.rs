@@ -4,9 +4,9 @@ use super::sites::ROUND_OFF;
 use super::{Candidate, ContactSurfaces};
 
 /// Distance up to which a node at rest may pair (in mean segment lengths of its contact).
-const REACH: f64 = 4.0;
+const REACH: f64 = 2.0;
 /// Margin of an entity at rest (in mean segment lengths): how far it may go before lists are worn.
-const SKIN: f64 = 1.0;
+const SKIN: f64 = 0.5;
 /// Margin of a moving entity beyond it (in ways per increment).
 const WAYS: f64 = 2.0;
 
@@ -116,8 +116,7 @@ impl<'m> Territory<'m> {
         let mean = lengths().sum::<f64>() / contact.segments.len().max(1) as f64;
         Territory {
             contact,
-            // a node may be as deep as a segment is long
-            reach: lengths().fold(REACH * mean, f64::max),
+            reach: REACH * mean,
             skin: SKIN * mean,
             slaves: Side::new(contact.slaves.iter().map(|&s| [s, s]).collect()),
             segments: Side::new(contact.segments.clone()),

@@ -107,6 +107,7 @@ impl Attempt<'_, '_> {
             // contact geometry of the iterate U^k
             let u = sum(u0, &d);
             let search = &mut *self.search;
+            self.meter.time(|t| &mut t.search, || search.cover(&u));
             let pairs = self.meter.time(
                 |t| &mut t.contact,
                 || problem.pairs(search, u0, &u, &pairing),
@@ -207,11 +208,14 @@ impl Attempt<'_, '_> {
                 touch[pair.at.slot].now.extend(pair.at.site.segments());
             }
         }
-        let (u0, search) = (&self.start.u, &mut *self.search);
+        let (u0, u1) = (&self.start.u, sum(&self.start.u, d));
+        let search = &mut *self.search;
+        self.meter
+            .time(|t| &mut t.search, || search.cover_way(u0, &u1));
         let tolerance = self.problem.settings.tolerance * largest(d);
         let passage = self.meter.time(
             |t| &mut t.contact,
-            || find_passage(search, u0, &sum(u0, d), &touch, tolerance),
+            || find_passage(search, u0, &u1, &touch, tolerance),
         );
         passage.map_or(Ok(()), |passage| Err(passage.into()))
     }

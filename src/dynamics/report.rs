@@ -202,7 +202,9 @@ pub struct Timings {
     pub factorization: Duration,
     /// Solves with the factors, those for the Delassus matrices included.
     pub solve: Duration,
-    /// Contact search and rows.
+    /// Contact search: territories and their candidates.
+    pub search: Duration,
+    /// Pairs among the candidates, their rows and complementarity problems, check of the ways.
     pub contact: Duration,
     /// Complementarity problems.
     pub lcp: Duration,

@@ -79,12 +79,11 @@ impl StepProblem<'_> {
         d
     }
 
-    /// Pairs between `u0` and the iterate `u`, `before` being those of the last pass; obstacles have
-    /// none among themselves.
-    pub fn pairs(&self, search: &mut Search, u0: &[f64], u: &[f64], before: &Pairing) -> Vec<Pair> {
+    /// Pairs between `u0` and the iterate `u`, which the search covers, `before` being those of the
+    /// last pass; obstacles have none among themselves.
+    pub fn pairs(&self, search: &Search, u0: &[f64], u: &[f64], before: &Pairing) -> Vec<Pair> {
         let x = &self.model.mesh.coordinates;
         let form = self.weights.row_form();
-        search.cover(u);
         find_pairs(search, u0, u, before)
             .into_iter()
             .filter(|at| self.dofs.moves(&at.nodes))

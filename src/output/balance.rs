@@ -1,13 +1,20 @@
 use crate::dynamics::{Energy, IncrementReport, Momentum};
 use crate::model::Model;
 
-/// Follows the energy balance and, of a free model, the momentum.
+/// Work of the normal contact forces in an increment (as a part of the largest energy) that is
+/// round-off.
+const ROUND_OFF: f64 = 1e-12;
+
+/// Follows the energy balance, the energy that contact puts in and, of a free model, the momentum.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Balance {
     /// Largest energy or external work so far.
     largest: f64,
     /// Largest absolute balance so far.
     worst: f64,
+    /// Work of the normal contact forces so far.
+    contact_work: f64,
+    gains: Gains,
     /// Momentum at the start, when nothing outside may change it.
     start: Option<Momentum>,
     /// Largest linear momentum so far.
@@ -15,6 +22,16 @@ pub(super) struct Balance {
     /// Largest change of the linear momentum so far.
     drift: f64,
     free: bool,
+}
+
+/// Increments in which the normal contact forces did positive work: with energy-momentum contact
+/// those that a pair enters with a negative gap.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Gains {
+    /// Their number.
+    pub count: usize,
+    /// The energy put in.
+    pub energy: f64,
 }
 
 impl Balance {
@@ -33,8 +50,8 @@ impl Balance {
         }
     }
 
-    /// Takes an increment in.
-    pub fn add(&mut self, report: &IncrementReport) {
+    /// Takes an increment in; the energy that contact put in, if it did.
+    pub fn add(&mut self, report: &IncrementReport) -> Option<f64> {
         let Energy {
             kinetic,
             strain,
@@ -49,6 +66,19 @@ impl Balance {
         if self.free {
             self.add_momentum(report.momentum);
         }
+        let work = report.energy.normal_contact_work;
+        let gain = work - std::mem::replace(&mut self.contact_work, work);
+        let puts_in = gain > ROUND_OFF * self.largest;
+        if puts_in {
+            self.gains.count += 1;
+            self.gains.energy += gain;
+        }
+        puts_in.then_some(gain)
+    }
+
+    /// The increments in which contact put energy in.
+    pub fn gains(&self) -> Gains {
+        self.gains
     }
 
     fn add_momentum(&mut self, momentum: Momentum) {

@@ -74,11 +74,12 @@ impl Record {
 }
 
 /// Phases of a run with their wall-clock seconds.
-pub(super) fn phases(timings: &Timings) -> [(&'static str, f64); 5] {
+pub(super) fn phases(timings: &Timings) -> [(&'static str, f64); 6] {
     [
         ("assembly", timings.assembly.as_secs_f64()),
         ("factorization", timings.factorization.as_secs_f64()),
         ("solve", timings.solve.as_secs_f64()),
+        ("search", timings.search.as_secs_f64()),
         ("contact", timings.contact.as_secs_f64()),
         ("lcp", timings.lcp.as_secs_f64()),
     ]

@@ -26,6 +26,8 @@ use crate::model::Model;
 
 /// Cutbacks that the screen shows.
 const SCREEN_CUTBACKS: usize = 20;
+/// Increments with energy from contact that the log shows.
+const LOGGED_GAINS: usize = 100;
 
 /// Writes everything a run leaves behind: result file, status file, log and screen.
 pub struct ResultWriter<'a> {
@@ -170,7 +172,9 @@ impl<'a> ResultWriter<'a> {
     }
 
     fn record_increment(&mut self, report: &IncrementReport) -> io::Result<()> {
-        self.balance.add(report);
+        if let Some(gain) = self.balance.add(report) {
+            self.print_gain(report.increment, gain)?;
+        }
         self.landings += report.landings.len();
         for contact in &report.contacts {
             self.cone_violation = self.cone_violation.max(contact.cone_violation);
@@ -201,6 +205,24 @@ impl<'a> ResultWriter<'a> {
             self.console.line(&row(report, error))?;
         }
         self.console.progress(report);
+        Ok(())
+    }
+
+    /// The energy that contact put in goes to the log, increment by increment up to a number.
+    fn print_gain(&mut self, increment: usize, gain: f64) -> io::Result<()> {
+        let count = self.balance.gains().count;
+        if count > LOGGED_GAINS {
+            return Ok(());
+        }
+        let (energy, part) = (scientific(gain, 2), self.balance.relative(gain));
+        let part = scientific(part, 1);
+        self.console.detail(&format!(
+            "contact  put energy in in increment {increment}: {energy}, {part} of the largest"
+        ))?;
+        if count == LOGGED_GAINS {
+            self.console
+                .detail("         further such increments are counted only")?;
+        }
         Ok(())
     }
 
@@ -258,6 +280,14 @@ impl<'a> ResultWriter<'a> {
                 "contact  {}; largest violation of Coulomb's cone {}",
                 counted(self.landings, "landing"),
                 scientific(self.cone_violation, 1),
+            ))?;
+        }
+        let gains = self.balance.gains();
+        if gains.count > 0 {
+            let part = scientific(self.balance.relative(gains.energy), 1);
+            self.console.line(&format!(
+                "         contact put energy in in {}: {part} of the largest in all",
+                counted(gains.count, "increment")
             ))?;
         }
         if summary.solver.lcps > 0 {
