@@ -63,6 +63,7 @@ impl Record {
         set_attribute(&self.at, "seconds_total", total)?;
         set_attribute(&self.at, "increments", summary.increments as i64)?;
         set_attribute(&self.at, "cutbacks", summary.cutbacks as i64)?;
+        set_attribute(&self.at, "events", summary.events as i64)?;
         self.close(exit_status)
     }
 

@@ -362,6 +362,9 @@ fn timing_lines(summary: &RunSummary, output: f64, total: f64) -> Vec<String> {
         counted(summary.increments, "increment"),
         counted(summary.cutbacks, "cutback")
     )];
+    if summary.events > 0 {
+        pieces.push(format!("{} cut at impacts", summary.events));
+    }
     let phases = phases(&summary.timings);
     pieces.extend(phases.iter().map(|&(name, seconds)| part(name, seconds)));
     pieces.push(part("output", output));

@@ -182,20 +182,6 @@ fn free_bodies_keep_their_momenta_through_impacts() {
                     ]
                 });
             let last = keep.reports.last().unwrap();
-            for p in keep.reports.windows(2) {
-                let w = p[1].energy.normal_contact_work - p[0].energy.normal_contact_work;
-                if w.abs() > 1e-6 * total(first) {
-                    println!(
-                        "DBG {} dt {} w {:e} land {} closed {} {}",
-                        p[1].time,
-                        p[1].dt,
-                        w / total(first),
-                        p[1].landings.len(),
-                        p[0].contacts[0].closed,
-                        p[1].contacts[0].closed
-                    );
-                }
-            }
             println!(
                 "{scheme:?} {friction}: linear {:.1e} angular {:.1e}, {} events, {} increments, \
                  {} landings, energy kept {:.4}, normal work {:.1e}",
@@ -212,6 +198,9 @@ fn free_bodies_keep_their_momenta_through_impacts() {
             assert!(last.energy.balance.abs() < 1e-8 * total(first));
             if scheme == Scheme::EnergyMomentum {
                 check(&keep, "oblique");
+                // the default rule takes a thirtieth of the energy here
+                let work = last.energy.normal_contact_work;
+                assert!(work.abs() < 1e-5 * total(first), "{work:e}");
             }
         }
     }
