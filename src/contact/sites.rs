@@ -115,7 +115,7 @@ impl Look<'_> {
             }
             if along <= 1.0 + ROUND_OFF {
                 let p = self.place(i);
-                if p.gap <= reach && (p.gap >= -p.length || self.enters(i)) {
+                if p.gap.abs() <= reach && (p.gap >= -p.length || self.enters(i)) {
                     faced.push(i);
                 }
             } else if let Some(j) = self.surfaces.next[i]
