@@ -108,21 +108,19 @@ impl Look<'_> {
     /// Segments into which the node projects, and the two at a vertex where it projects into neither.
     fn faced(&self, candidates: impl Iterator<Item = Candidate>) -> Vec<usize> {
         let mut faced = Vec::new();
-        let node = self.surfaces.slaves[self.slave];
-        let is_own = |i: usize| self.surfaces.segments[i].contains(&node);
         for Candidate { segment: i, reach } in candidates {
             let along = self.along(i);
-            if along < -ROUND_OFF || is_own(i) {
+            if along < -ROUND_OFF || self.is_own(i) {
                 continue;
             }
             if along <= 1.0 + ROUND_OFF {
                 let p = self.place(i);
-                if p.gap <= reach && (p.gap >= -p.length || self.enters(i)) {
+                if p.gap.abs() <= reach && (p.gap >= -p.length || self.enters(i)) {
                     faced.push(i);
                 }
             } else if let Some(j) = self.surfaces.next[i]
                 && self.along(j) < 0.0
-                && !is_own(j)
+                && !self.is_own(j)
             {
                 let p = self.place(i);
                 let beyond = (p.xi - 1.0) * p.length;
@@ -225,99 +223,101 @@ impl Look<'_> {
     /// The segment before or behind a run from which the node came round convex vertices.
     fn came_from(&self, run: &[usize]) -> Option<usize> {
         let (&first, &last) = (run.first()?, run.last()?);
-        let walk = |from: usize, step: &[Option<usize>]| {
-            let way = self.way(from);
-            let (mut i, mut between) = (from, 0.0);
-            loop {
-                let j = step[i].filter(|&j| j != from)?;
-                let turn = if std::ptr::eq(step, &self.surfaces.next[..]) {
-                    self.turn(i, j)
-                } else {
-                    self.turn(j, i)
-                };
-                if turn < -STRAIGHT || between > 2.0 * way {
-                    return None;
-                }
-                if self.was_in_front(j) {
-                    return Some(j);
-                }
-                between += self.place(j).length;
-                i = j;
-            }
-        };
-        let own = |j: &usize| {
-            let node = self.surfaces.slaves[self.slave];
-            !self.surfaces.segments[*j].contains(&node)
-        };
-        if self.start(first).xi < 0.0 {
-            walk(first, &self.surfaces.previous).filter(own)
-        } else if self.start(last).xi > 1.0 {
-            walk(last, &self.surfaces.next).filter(own)
-        } else {
-            None
+        let before = || self.walk(first, false);
+        let behind = || self.walk(last, true);
+        match self.start(first).xi < 0.5 {
+            true => before().or_else(behind),
+            false => behind().or_else(before),
         }
+    }
+
+    /// The first segment before or behind another that the node was over at the start, round convex
+    /// vertices and not farther than twice its way.
+    fn walk(&self, from: usize, forward: bool) -> Option<usize> {
+        let ContactSurfaces { next, previous, .. } = self.surfaces;
+        let farthest = 2.0 * self.way(from);
+        let (mut i, mut between) = (from, 0.0);
+        loop {
+            let j = if forward { next[i]? } else { previous[i]? };
+            let turn = if forward {
+                self.turn(i, j)
+            } else {
+                self.turn(j, i)
+            };
+            if j == from || turn < -STRAIGHT || between > farthest {
+                return None;
+            }
+            let is_over = (-NEAR..=1.0 + NEAR).contains(&self.start(j).xi);
+            if is_over && self.was_in_front(j) && !self.is_own(j) {
+                return Some(j);
+            }
+            between += self.place(j).length;
+            i = j;
+        }
+    }
+
+    /// Whether the node is an end of the segment.
+    fn is_own(&self, segment: usize) -> bool {
+        let node = self.surfaces.slaves[self.slave];
+        self.surfaces.segments[segment].contains(&node)
     }
 
     /// The other sides of the hollows at the ends of a segment, where the node is near them.
     fn across_hollows(&self, i: usize) -> impl Iterator<Item = usize> {
         let p = self.place(i);
         let near = NEAR * p.length + 2.0 * self.way(i);
-        let node = self.surfaces.slaves[self.slave];
-        let at_b = self.surfaces.next[i].filter(|&j| {
-            (1.0 - p.xi) * p.length <= near
-                && self.turn(i, j) < -STRAIGHT
-                && self.place(j).xi <= 1.0
-        });
         let at_a = self.surfaces.previous[i].filter(|&h| {
             p.xi * p.length <= near && self.turn(h, i) < -STRAIGHT && self.place(h).xi >= 0.0
         });
-        let holds =
-            |j: &usize| !self.surfaces.segments[*j].contains(&node) && self.was_in_front(*j);
+        let at_b = self.surfaces.next[i].filter(|&j| {
+            let is_near = (1.0 - p.xi) * p.length <= near;
+            is_near && self.turn(i, j) < -STRAIGHT && self.place(j).xi <= 1.0
+        });
         [at_a, at_b]
+            .map(|j| j.filter(|&j| !self.is_own(j) && self.was_in_front(j)))
             .into_iter()
             .flatten()
-            .filter(holds)
-            .collect::<Vec<_>>()
-            .into_iter()
     }
 
-    /// The vertex at an end of a segment, if the node meets it: node against node.
+    /// The vertex at an end of a segment, if the node meets it.
     fn vertex_site(&self, i: usize) -> Option<Site> {
         let xi = self.along(i);
         let before = self.surfaces.previous[i].filter(|_| xi < NEAR);
         let behind = self.surfaces.next[i].filter(|_| xi > 1.0 - NEAR);
-        [before.map(|h| [h, i]), behind.map(|j| [i, j])]
-            .into_iter()
-            .flatten()
-            .find_map(|[i, j]| {
-                let (p, q) = (self.place(i), self.place(j));
-                // along the bisector of both tangents, times its length, which is 2 at most
-                let aside = (p.xi - 1.0) * p.length + q.xi * q.length;
-                let length = p.length.min(q.length);
-                if aside.abs() > 2.0 * TIP * length || self.turn(i, j) <= STRAIGHT {
-                    return None;
-                }
-                let node = self.surfaces.slaves[self.slave];
-                let [before, behind] = self.surfaces.beside[self.slave]?;
-                let at = |n: usize| self.now[n];
-                let own = [[before, node], [node, behind]]
-                    .map(|[a, b]| project(at(a), at(a), at(b)).normal);
-                let vertex = Vertex {
-                    next: j,
-                    weight: common_normal([p.normal, q.normal], own)?,
-                };
-                let start_gap = vertex.blend(self.start(i).gap, self.start(j).gap);
-                let is_outside = start_gap >= -TOUCHING * length;
-                match vertex.weight {
-                    0.0 if self.was_in_front(i) => Some(Site::face(i)),
-                    1.0 if self.was_in_front(j) => Some(Site::face(j)),
-                    weight if weight > 0.0 && weight < 1.0 && is_outside => Some(Site {
-                        segment: i,
-                        vertex: Some(vertex),
-                    }),
-                    _ => None,
-                }
-            })
+        before
+            .and_then(|h| self.vertex_between(h, i))
+            .or_else(|| behind.and_then(|j| self.vertex_between(i, j)))
+    }
+
+    /// The vertex between a segment and the next, if the node meets it: node against node.
+    fn vertex_between(&self, i: usize, j: usize) -> Option<Site> {
+        let (p, q) = (self.place(i), self.place(j));
+        // along the bisector of both tangents, times its length, which is 2 at most
+        let aside = (p.xi - 1.0) * p.length + q.xi * q.length;
+        let length = p.length.min(q.length);
+        if aside.abs() > 2.0 * TIP * length || self.turn(i, j) <= STRAIGHT {
+            return None;
+        }
+        let node = self.surfaces.slaves[self.slave];
+        let [before, behind] = self.surfaces.beside[self.slave]?;
+        let at = |n: usize| self.now[n];
+        let own =
+            [[before, node], [node, behind]].map(|[a, b]| project(at(a), at(a), at(b)).normal);
+        let vertex = Vertex {
+            next: j,
+            weight: common_normal([p.normal, q.normal], own)?,
+        };
+        if vertex.weight == 0.0 {
+            return self.was_in_front(i).then(|| Site::face(i));
+        }
+        if vertex.weight == 1.0 {
+            return self.was_in_front(j).then(|| Site::face(j));
+        }
+        let start_gap = vertex.blend(self.start(i).gap, self.start(j).gap);
+        (start_gap >= -TOUCHING * length).then_some(Site {
+            segment: i,
+            vertex: Some(vertex),
+        })
     }
 
     /// How far the node has gone relative to a segment since the start.

@@ -114,3 +114,47 @@ pub fn oblique_impact_keeps_both_momenta() {
         assert!(last.energy.balance.abs() < 1e-8 * start);
     }
 }
+
+/// Positions at which the contact forces of an increment act: half way with energy-momentum
+/// contact, at the end with SS22.
+fn acting(model: &Model, scheme: Scheme, [before, after]: [&[f64]; 2], node: usize) -> [f64; 2] {
+    let x = model.mesh.coordinates[node];
+    let u = |i: usize| match scheme {
+        Scheme::EnergyMomentum => (before[2 * node + i] + after[2 * node + i]) / 2.0,
+        Scheme::Ss22 { .. } => after[2 * node + i],
+    };
+    [x[0] + u(0), x[1] + u(1)]
+}
+
+#[test]
+fn forces_of_opposite_sides_balance_in_force_and_moment() {
+    let paper = Scheme::Ss22 {
+        theta1: 1.0,
+        theta2: 1.0,
+    };
+    for scheme in [Scheme::EnergyMomentum, paper] {
+        let model = oblique_impact(0.3, scheme);
+        let (keep, _) = run_to_end(&model);
+        let (mut force_worst, mut moment_worst, mut touching) = (0.0_f64, 0.0_f64, 0);
+        for pair in keep.reports.windows(2) {
+            let (mut sum, mut size, mut moment, mut arm) = ([0.0; 2], 0.0, 0.0, 0.0);
+            let force = &pair[1].nodal.contact_force;
+            for node in 0..model.mesh.node_count() {
+                let [fx, fy] = [force[2 * node], force[2 * node + 1]];
+                let u = [0, 1].map(|i| pair[i].state.u.as_slice());
+                let [x, y] = acting(&model, scheme, u, node);
+                sum = [sum[0] + fx, sum[1] + fy];
+                size += fx.hypot(fy);
+                moment += x * fy - y * fx;
+                arm += fx.hypot(fy) * x.hypot(y);
+            }
+            if size > 0.0 {
+                touching += 1;
+                force_worst = force_worst.max(sum[0].hypot(sum[1]) / size);
+                moment_worst = moment_worst.max(moment.abs() / arm);
+            }
+        }
+        println!("{scheme:?}: force {force_worst:.1e} moment {moment_worst:.1e} in {touching}");
+        assert!(touching > 10 && force_worst < 1e-14 && moment_worst < 1e-12);
+    }
+}

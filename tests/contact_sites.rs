@@ -1,0 +1,169 @@
+//! Which segments and vertices hold a slave node.
+
+use stickslip::contact::{ContactSurfaces, Look, Site, all_segments};
+
+/// A closed or open chain of master segments over `points`, the body on the left of the way.
+fn chain(points: &[[f64; 2]], closed: bool) -> Vec<[usize; 2]> {
+    let count = points.len();
+    let last = if closed { count } else { count - 1 };
+    (0..last).map(|i| [i, (i + 1) % count]).collect()
+}
+
+/// Sites of a node that goes from `from` to `to` beside chains of points at rest.
+fn sites_beside(chains: &[&[[f64; 2]]], closed: bool, from: [f64; 2], to: [f64; 2]) -> Vec<Site> {
+    let mut x = Vec::new();
+    let mut segments = Vec::new();
+    for points in chains {
+        let first = x.len();
+        segments.extend(chain(points, closed).iter().map(|s| s.map(|n| first + n)));
+        x.extend_from_slice(points);
+    }
+    let slave = x.len();
+    let surfaces = ContactSurfaces::new(vec![slave], &[], segments, 0.0);
+    let (mut start, mut now) = (x.clone(), x);
+    start.push(from);
+    now.push(to);
+    let look = Look {
+        surfaces: &surfaces,
+        start: &start,
+        now: &now,
+        slave: 0,
+    };
+    look.sites(all_segments(&surfaces))
+}
+
+fn segments(sites: &[Site]) -> Vec<usize> {
+    assert!(sites.iter().all(|site| site.vertex.is_none()));
+    sites.iter().map(|site| site.segment).collect()
+}
+
+/// Sites beside a square from (0, 0) to (1, 1): bottom 0, right 1, top 2, left 3.
+fn beside_square(from: [f64; 2], to: [f64; 2]) -> Vec<usize> {
+    let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    segments(&sites_beside(&[&square], true, from, to))
+}
+
+#[test]
+fn a_node_is_held_by_the_face_that_it_came_to() {
+    assert_eq!(beside_square([0.5, 1.2], [0.5, 1.1]), [2]);
+    assert_eq!(beside_square([0.5, 1.2], [0.5, 0.9]), [2]);
+    assert_eq!(
+        beside_square([0.9, 1.1], [0.95, 0.8]),
+        [2],
+        "not by the right side, which is nearer"
+    );
+    assert_eq!(
+        beside_square([1.1, 0.9], [0.8, 0.95]),
+        [1],
+        "nor by the top"
+    );
+}
+
+#[test]
+fn the_other_sides_of_a_body_do_not_hold() {
+    let plate = [[0.0, 0.0], [4.0, 0.0], [4.0, 0.1], [0.0, 0.1]];
+    let beside = |from, to| segments(&sites_beside(&[&plate], true, from, to));
+    assert_eq!(beside([2.0, 0.2], [2.0, 0.03]), [2], "nearer to the bottom");
+    assert_eq!(beside([2.0, -0.1], [2.0, 0.09]), [0]);
+    assert_eq!(
+        beside([2.0, 0.05], [2.0, 0.06]),
+        [0; 0],
+        "inside from the start"
+    );
+    assert_eq!(
+        beside([2.0, 9.0], [2.0, -9.0]),
+        [2],
+        "through and far beyond"
+    );
+}
+
+#[test]
+fn a_node_that_slides_round_a_convex_vertex_keeps_its_segment() {
+    let slides = beside_square([0.9, 1.0], [1.05, 0.95]);
+    assert_eq!(slides, [2], "it was behind the right side at the start");
+    let falls = beside_square([1.05, 1.0], [1.05, 0.9]);
+    assert_eq!(falls, [1], "past the vertex it may fall along the side");
+    assert_eq!(
+        beside_square([1.2, 1.3], [1.02, 1.04]),
+        [2],
+        "in the wedge the larger gap"
+    );
+    assert_eq!(beside_square([1.3, 1.2], [1.04, 1.02]), [1]);
+}
+
+#[test]
+fn both_sides_of_a_hollow_hold() {
+    // a valley over (2, 1), (0, 0), (-2, 1)
+    let valley = [[2.0, 1.0], [0.0, 0.0], [-2.0, 1.0]];
+    let beside = |from, to| segments(&sites_beside(&[&valley], false, from, to));
+    assert_eq!(beside([0.0, 0.5], [0.0, 0.1]), [0, 1]);
+    assert_eq!(beside([0.0, 0.5], [0.0, -0.2]), [0, 1]);
+    assert_eq!(beside([0.4, 0.2], [0.1, 0.05]), [0, 1], "near its ground");
+    assert_eq!(beside([1.5, 0.76], [1.5, 0.75]), [0], "far from it");
+    assert_eq!(beside([0.4, 0.2], [-0.2, -0.1]), [0, 1], "beyond it");
+}
+
+#[test]
+fn several_bodies_hold_a_node_at_once() {
+    let floor = [[4.0, 0.0], [-4.0, 0.0]];
+    let wall = [[0.5, -4.0], [0.5, 4.0]];
+    let wall_to_the_left: Vec<[f64; 2]> = wall.iter().rev().copied().collect();
+    let sites = |wall: &[[f64; 2]]| {
+        segments(&sites_beside(
+            &[&floor, wall],
+            false,
+            [0.3, 0.2],
+            [0.4, 0.1],
+        ))
+    };
+    assert_eq!(sites(&wall_to_the_left), [0, 1]);
+    assert_eq!(sites(&wall), [0], "the back of a wall does not hold");
+}
+
+#[test]
+fn a_mesh_that_starts_a_little_inside_is_held() {
+    assert_eq!(beside_square([0.5, 0.999], [0.5, 0.998]), [2]);
+    assert_eq!(beside_square([0.5, 0.9], [0.5, 0.9]), [0; 0], "deep inside");
+}
+
+/// Sites of the lowest node of a triangle that comes down from `from` to `to`, with the slopes of
+/// its two sides, on the tip of a roof at (0, 0) with slopes of 45 degrees.
+fn tip_to_tip(from: [f64; 2], to: [f64; 2], sides: [[f64; 2]; 2]) -> Vec<Site> {
+    let mut start = vec![[1.0, -1.0], [0.0, 0.0], [-1.0, -1.0], from];
+    start.extend(sides.map(|side| [from[0] + side[0], from[1] + side[1]]));
+    let mut now = start.clone();
+    for node in &mut now[3..] {
+        *node = [0, 1].map(|i| node[i] + to[i] - from[i]);
+    }
+    // the triangle's way round, body on the left: left upper node, tip, right upper node
+    let own = [[4, 3], [3, 5]];
+    let surfaces = ContactSurfaces::new(vec![3], &own, vec![[0, 1], [1, 2]], 0.0);
+    let look = Look {
+        surfaces: &surfaces,
+        start: &start,
+        now: &now,
+        slave: 0,
+    };
+    look.sites(all_segments(&surfaces))
+}
+
+#[test]
+fn tips_meet_as_node_against_node() {
+    let corner = [[-1.0, 1.0], [1.0, 1.0]];
+    for aside in [0.0, 1e-6, -1e-6] {
+        let sites = tip_to_tip([aside, 0.1], [aside, -0.01], corner);
+        let weight = sites[0].vertex.map(|vertex| vertex.weight);
+        assert_eq!(sites.len(), 1);
+        assert!((weight.unwrap_or(f64::NAN) - 0.5).abs() < 1e-12, "{aside}");
+    }
+    let aside = tip_to_tip([1e-3, 0.1], [1e-3, -0.01], corner);
+    assert_eq!(segments(&aside), [0], "a tip beside the tip meets a face");
+}
+
+#[test]
+fn flush_tips_meet_with_the_normal_of_their_faces() {
+    // a corner whose left side lies flush on the right slope
+    let flush = [[-0.1, 1.0], [1.0, -1.0]];
+    let sites = tip_to_tip([0.0, 0.0], [0.0, -0.01], flush);
+    assert_eq!(segments(&sites), [0]);
+}
