@@ -21,7 +21,9 @@
 //! | pivot | one basis exchange of Lemke's method within a pass |
 //! | slave, master | the node side and the segment side of a contact pair |
 //! | segment | an edge of the master surface from node a to node b, the body on its left |
-//! | pair | one slave node with its segment; a CONTACT PAIR of the deck is a *contact* |
+//! | candidate | a segment that the search lists for a slave node |
+//! | site | what a slave node may not go through: a segment, or the vertex between two |
+//! | pair | one slave node with one site; a CONTACT PAIR of the deck is a *contact* |
 //! | gap g | distance of the slave node from its segment, positive when open |
 //! | normal e_n | unit vector out of the master body; tangent e_t points from a to b |
 //! | slip Dt | tangential motion of the slave node relative to its segment within the increment |
@@ -29,6 +31,7 @@
 //! | Phi, Psi | normal and tangential impact impulse of a pair |
 //! | internal force F | nodal forces of the stresses; R external load, M mass, K tangent |
 //! | K* | effective matrix theta2 K + 2/dt^2 M; Q = B K*^-1 B^T its Delassus matrix |
+//! | event | an impact at which an increment is cut (`IMPACT TIME=EVENT`) |
 //! | d | displacement increment U1 - U0 |
 //! | suffix 0, 1 | start and end of the increment; V0+ is V0 after the impulses |
 
