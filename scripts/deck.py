@@ -87,12 +87,13 @@ class Deck:
         step.head = ",".join(parts) + f", INC={count}"
 
     def set_settings(self, **settings: object) -> None:
-        """Replaces the STICKSLIP card of the only step; without settings it is removed."""
+        """Replaces the STICKSLIP cards of all steps; without settings they are removed."""
         self.cards = [card for card in self.cards if card.keyword != "STICKSLIP"]
         if settings:
             text = "".join(f", {key.replace('_', ' ')}={value}" for key, value in settings.items())
-            place = self.cards.index(self.one("STEP")) + 1
-            self.cards.insert(place, Card("STICKSLIP", "*STICKSLIP" + text))
+            for step in self.find("STEP"):
+                place = next(i for i, card in enumerate(self.cards) if card is step) + 1
+                self.cards.insert(place, Card("STICKSLIP", "*STICKSLIP" + text))
 
 
 def _lines(path: Path, depth: int = 0) -> list[str]:

@@ -34,6 +34,8 @@ class Case:
     """The deck's name within the folder of the decks."""
     scheme: str = "deck"
     """The deck's, or "default": without its STICKSLIP card."""
+    impact_time: str = "deck"
+    """The deck's, or the value of IMPACT TIME on the only setting of all steps."""
     refine: int = 1
     """Divides the edges of all elements."""
     flight: float = 0.0
@@ -135,6 +137,8 @@ class Verification:
         deck = Deck.read(decks / case.deck)
         if case.scheme == "default":
             deck.set_settings()
+        if case.impact_time != "deck":
+            deck.set_settings(IMPACT_TIME=case.impact_time)
         if case.divide != 1.0 or case.until is not None:
             dt = deck.dt / case.divide
             period = deck.period if case.until is None else case.until
