@@ -11,8 +11,19 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use contact_support::lattice;
-use criterion::{BenchmarkId, Criterion};
+use criterion::{BenchmarkId, Criterion, Throughput};
 use stickslip::contact::{Look, Pairing, Search, Touch, all_segments, find_pairs, find_passage};
+
+/// Segments searched in one go: in many small scenes, or few large ones. Only so many that no branch
+/// or cache of the processor learns a small scene by heart.
+const TOTAL: usize = 200_000;
+
+/// Displacements number `k`: all bodies further than any margin from where they were, and shaken.
+fn elsewhere(dofs: usize, k: usize) -> Vec<f64> {
+    let shift = [0.0, 9.0][k % 2];
+    let shake = |i: usize| 1e-2 * ((i * (k + 1)) as f64).sin();
+    (0..dofs).map(|i| shift + shake(i)).collect()
+}
 
 fn main() {
     let mut criterion = Criterion::default().configure_from_args();
@@ -24,14 +35,18 @@ fn main() {
         let (surfaces, x) = lattice(n);
         let contacts = [surfaces];
         let u = vec![0.0; 2 * x.len()];
+        let mut search = Search::new(&contacts, &x);
+        let places: Vec<_> = (0..TOTAL / n).map(|k| elsewhere(u.len(), k)).collect();
+        group.throughput(Throughput::Elements(TOTAL as u64));
         group.bench_function(BenchmarkId::new("anew", n), |bencher| {
             bencher.iter(|| {
-                let mut search = Search::new(&contacts, &x);
-                search.cover(black_box(&u));
+                for u in &places {
+                    search.cover(black_box(u));
+                }
                 search.searches()
             });
         });
-        let mut search = Search::new(&contacts, &x);
+        group.throughput(Throughput::Elements(n as u64));
         search.cover(&u);
         let before = Pairing::default();
         group.bench_function(BenchmarkId::new("pairs", n), |bencher| {

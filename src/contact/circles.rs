@@ -1,5 +1,5 @@
 /// Members of the groups that are not split further.
-const GROUP: usize = 4;
+const GROUP: usize = 8;
 /// Growth that covers the round-off of distances.
 const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 
@@ -58,53 +58,53 @@ impl Circle {
 /// the hierarchy depends on nothing but the circles.
 #[derive(Debug, Default)]
 pub(super) struct CircleTree {
-    members: Vec<Circle>,
-    /// Indices of the members; every group is a range of it.
-    order: Vec<u32>,
+    /// The members with their indices; every group is a range of it.
+    members: Vec<(Circle, u32)>,
     /// Circle and range of group 1, the whole, and of the halves 2k and 2k + 1 of every group k.
     groups: Vec<(Circle, [usize; 2])>,
 }
 
 impl CircleTree {
     /// The hierarchy of some circles.
-    pub fn new(members: Vec<Circle>) -> Self {
-        let last_level = members.len().div_ceil(GROUP).next_power_of_two();
-        let mut tree = CircleTree {
-            order: (0..members.len() as u32).collect(),
-            groups: vec![(Circle::default(), [0, 0]); 2 * last_level],
-            members,
-        };
-        if !tree.members.is_empty() {
-            tree.split(1, 0, tree.members.len());
-        }
+    pub fn new(members: impl IntoIterator<Item = Circle>) -> Self {
+        let mut tree = CircleTree::default();
+        tree.rebuild(members);
         tree
+    }
+
+    /// The hierarchy of other circles, in the same memory.
+    pub fn rebuild(&mut self, members: impl IntoIterator<Item = Circle>) {
+        self.members.clear();
+        self.members.extend(members.into_iter().zip(0..));
+        let count = self.members.len();
+        let last_level = count.div_ceil(GROUP).next_power_of_two();
+        self.groups
+            .resize(2 * last_level, (Circle::default(), [0, 0]));
+        if count > 0 {
+            self.split(1, 0, count);
+        }
     }
 
     fn split(&mut self, group: usize, from: usize, to: usize) {
         let is_smallest = self.is_smallest(group);
-        let CircleTree {
-            members,
-            order,
-            groups,
-        } = self;
-        let range = &mut order[from..to];
-        let circle = Circle::around(range.iter().map(|&i| members[i as usize]));
-        groups[group] = (circle, [from, to]);
+        let range = &mut self.members[from..to];
+        let circle = Circle::around(range.iter().map(|(circle, _)| *circle));
+        self.groups[group] = (circle, [from, to]);
         if is_smallest {
             return;
         }
         let spread = |axis: usize| {
-            let centres = range.iter().map(|&i| members[i as usize].centre[axis]);
+            let centres = range.iter().map(|(circle, _)| circle.centre[axis]);
             let (low, high) = centres.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), c| {
                 (l.min(c), h.max(c))
             });
             high - low
         };
         let axis = usize::from(spread(1) > spread(0));
-        let along = |i: u32| members[i as usize].centre[axis];
         let middle = from + (to - from) / 2;
-        range.select_nth_unstable_by(middle - from, |&i, &j| {
-            along(i).total_cmp(&along(j)).then(i.cmp(&j))
+        range.select_nth_unstable_by(middle - from, |(c, i), (d, j)| {
+            let along = c.centre[axis].total_cmp(&d.centre[axis]);
+            along.then(i.cmp(j))
         });
         self.split(2 * group, from, middle);
         self.split(2 * group + 1, middle, to);
@@ -114,11 +114,9 @@ impl CircleTree {
         2 * group >= self.groups.len()
     }
 
-    fn members_of(&self, group: usize) -> impl Iterator<Item = (u32, &Circle)> + Clone {
+    fn members_of(&self, group: usize) -> &[(Circle, u32)] {
         let [from, to] = self.groups[group].1;
-        self.order[from..to]
-            .iter()
-            .map(|&i| (i, &self.members[i as usize]))
+        &self.members[from..to]
     }
 
     /// Visits members in about the order of their distance from a point, until all others are
@@ -135,9 +133,9 @@ impl CircleTree {
                 continue;
             }
             if self.is_smallest(group) {
-                for (i, circle) in self.members_of(group) {
+                for (circle, i) in self.members_of(group) {
                     if circle.distance(point) <= limit {
-                        limit = visit(i as usize);
+                        limit = visit(*i as usize);
                     }
                 }
             } else {
@@ -153,12 +151,11 @@ impl CircleTree {
         }
     }
 
-    /// All overlapping pairs of a member of this hierarchy and one of the other; two groups are
-    /// looked into only when their circles overlap.
-    pub fn overlaps(&self, other: &CircleTree) -> Vec<[u32; 2]> {
-        let mut found = Vec::new();
+    /// Appends all overlapping pairs of a member of this hierarchy and one of the other; two groups
+    /// are looked into only when their circles overlap.
+    pub fn overlaps(&self, other: &CircleTree, found: &mut Vec<[u32; 2]>) {
         if self.members.is_empty() || other.members.is_empty() {
-            return found;
+            return;
         }
         let mut open = vec![[1, 1]];
         while let Some([k, l]) = open.pop() {
@@ -168,9 +165,10 @@ impl CircleTree {
             }
             match (self.is_smallest(k), other.is_smallest(l)) {
                 (true, true) => {
-                    for (i, circle) in self.members_of(k) {
-                        let near = other.members_of(l).filter(|(_, c)| circle.overlaps(c));
-                        found.extend(near.map(|(j, _)| [i, j]));
+                    for (circle, i) in self.members_of(k) {
+                        let near = other.members_of(l).iter();
+                        let near = near.filter(|(c, _)| circle.overlaps(c));
+                        found.extend(near.map(|(_, j)| [*i, *j]));
                     }
                 }
                 (true, false) => open.extend([[k, 2 * l], [k, 2 * l + 1]]),
@@ -182,7 +180,6 @@ impl CircleTree {
                 (false, false) => open.extend([[k, 2 * l], [k, 2 * l + 1]]),
             }
         }
-        found
     }
 }
 
@@ -208,7 +205,8 @@ mod tests {
                 let near = (0..b.len()).filter(|&j| p.overlaps(&b[j]));
                 expected.extend(near.map(|j| [i as u32, j as u32]));
             }
-            let mut found = CircleTree::new(a).overlaps(&CircleTree::new(b));
+            let mut found = Vec::new();
+            CircleTree::new(a).overlaps(&CircleTree::new(b), &mut found);
             found.sort_unstable();
             prop_assert_eq!(found, expected);
         }

@@ -38,7 +38,7 @@ pub(super) fn gaps(contact: &ContactSurfaces, x: &[[f64; 2]], bodies: &[usize]) 
         contact,
         x,
         bodies,
-        tree: CircleTree::new(circles.collect()),
+        tree: CircleTree::new(circles),
     };
     let slaves = contact.slaves.iter();
     slaves.filter_map(|&slave| start.gap(slave)).collect()
@@ -168,7 +168,7 @@ mod tests {
             contact: &contact,
             x: &x,
             bodies: &bodies,
-            tree: CircleTree::new(Vec::new()),
+            tree: CircleTree::new([]),
         };
         let expected = |slave: usize| {
             let all = (0..39).flat_map(|i| [start.over(slave, i), start.in_wedge(slave, i)]);

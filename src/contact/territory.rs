@@ -105,6 +105,8 @@ pub struct Territory<'m> {
     candidates: Vec<u32>,
     /// Where the list of each slave starts, and the end of the last.
     starts: Vec<usize>,
+    /// The same as pairs, in the order in which they are found.
+    found: Vec<[u32; 2]>,
 }
 
 impl<'m> Territory<'m> {
@@ -122,6 +124,7 @@ impl<'m> Territory<'m> {
             segments: Side::new(contact.segments.clone()),
             candidates: Vec::new(),
             starts: Vec::new(),
+            found: Vec::new(),
         }
     }
 
@@ -163,23 +166,37 @@ impl<'m> Territory<'m> {
 
     /// Lists the segments that each slave node may come near before an entity leaves its margin.
     fn search(&mut self, at: impl Fn(usize) -> [f64; 2]) {
-        let slaves = self.slaves.territories(&at, self.skin, 0.0);
-        let segments = self.segments.territories(&at, self.skin, self.reach);
-        let mut pairs = CircleTree::new(slaves).overlaps(&CircleTree::new(segments));
-        let Self { contact, .. } = self;
-        pairs.retain(|&[k, i]| !contact.segments[i as usize].contains(&contact.slaves[k as usize]));
-        pairs.sort_unstable();
+        self.slaves.draw(&at, self.skin, 0.0);
+        self.segments.draw(&at, self.skin, self.reach);
+        let Self {
+            contact,
+            candidates,
+            starts,
+            found,
+            ..
+        } = self;
+        found.clear();
+        self.slaves.circles.overlaps(&self.segments.circles, found);
+        found.retain(|&[k, i]| !contact.segments[i as usize].contains(&contact.slaves[k as usize]));
 
-        self.starts.clear();
-        self.starts.resize(contact.slaves.len() + 1, 0);
-        for [k, _] in &pairs {
-            self.starts[*k as usize + 1] += 1;
+        starts.clear();
+        starts.resize(contact.slaves.len() + 1, 0);
+        for [k, _] in &*found {
+            starts[*k as usize + 1] += 1;
         }
         for k in 0..contact.slaves.len() {
-            self.starts[k + 1] += self.starts[k];
+            starts[k + 1] += starts[k];
         }
-        self.candidates.clear();
-        self.candidates.extend(pairs.iter().map(|[_, i]| i));
+        let mut next = starts.clone();
+        candidates.resize(found.len(), 0);
+        for [k, i] in found {
+            let place = &mut next[*k as usize];
+            candidates[*place] = *i;
+            *place += 1;
+        }
+        for list in starts.windows(2) {
+            candidates[list[0]..list[1]].sort_unstable();
+        }
     }
 }
 
@@ -192,6 +209,8 @@ struct Side {
     reference: Vec<[[f64; 2]; 2]>,
     /// How far the ends may go from there (length).
     margin: Vec<f64>,
+    /// Their territories at the last search.
+    circles: CircleTree,
 }
 
 impl Side {
@@ -200,6 +219,7 @@ impl Side {
             way: vec![0.0; ends.len()],
             reference: Vec::new(),
             margin: Vec::new(),
+            circles: CircleTree::default(),
             ends,
         }
     }
@@ -232,7 +252,7 @@ impl Side {
 
     /// Takes the positions as the reference; circles about the entities, grown by their margins and
     /// by `more`.
-    fn territories(&mut self, at: impl Fn(usize) -> [f64; 2], skin: f64, more: f64) -> Vec<Circle> {
+    fn draw(&mut self, at: impl Fn(usize) -> [f64; 2], skin: f64, more: f64) {
         self.reference.clear();
         self.reference
             .extend(self.ends.iter().map(|ends| ends.map(&at)));
@@ -244,11 +264,8 @@ impl Side {
             // a node pairs a little beyond the ends as well
             radius: (distance(*a, *b) / 2.0 + margin + more) * (1.0 + 4.0 * ROUND_OFF),
         };
-        self.reference
-            .iter()
-            .zip(&self.margin)
-            .map(circle)
-            .collect()
+        self.circles
+            .rebuild(self.reference.iter().zip(&self.margin).map(circle));
     }
 }
 
