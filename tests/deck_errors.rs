@@ -29,7 +29,9 @@ fn messages(source: &Source) -> (Diagnostics, String) {
     if let Some(model) = &mut model {
         let adjusted = adjust(model);
         report_adjusted(model, &adjusted, &mut d);
-        report_penetrations(model, &mut d);
+        if !d.has_errors() {
+            report_penetrations(model, &mut d);
+        }
     }
     let text = d.render(&sources, false);
     (d, text)
@@ -61,7 +63,7 @@ fn shared(old: &str, new: &str) -> Source {
     change(SHARED, old, new)
 }
 
-const LINE: &str = "START, 4., 0.\nLINE, 0., 0.\n";
+const LINE: &str = "START, 0., 0.\nLINE, 4., 0.\n";
 
 /// The block above a rigid floor with these rows, further cards, and conditions in the step.
 fn rigid(rows: &str, model: &str, step: &str) -> Source {
@@ -263,6 +265,7 @@ fn rigid_surfaces_that_cannot_be() {
         profile("START, 4., 0.\nPARAB, 1., 1., 2., 0.\n"),
         profile("START, 4., 0.\nLINEAR, 0., 0.\n"),
         profile("START, 4.\n"),
+        profile("START, 4., 1.1\nLINE, 0., 1.1\n"),
         rigid(LINE, "", "*BOUNDARY\n100, 1\n"),
         rigid(LINE, "", "*BOUNDARY\n100, 1, 2\n100, 6, 6, 0.1\n"),
         rigid(

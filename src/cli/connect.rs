@@ -59,7 +59,9 @@ fn load(path: &Path, strictness: Strictness, colour: bool) -> Loaded {
     if let Some(model) = &mut model {
         let adjusted = adjust(model);
         report_adjusted(model, &adjusted, &mut d);
-        report_penetrations(model, &mut d);
+        if !d.has_errors() {
+            report_penetrations(model, &mut d);
+        }
     }
     let ours = d.without(Code::LongNumber);
     Loaded {

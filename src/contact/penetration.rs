@@ -1,6 +1,7 @@
-use super::{InitialGap, initial_gaps};
+use super::{InitialGap, initial_gaps, project};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
-use crate::model::{Contact, Model};
+use crate::model::{Contact, Model, SurfaceKind};
+use std::collections::HashMap;
 
 /// Penetration (in edge lengths) that is a fault of the mesh rather than of its digits.
 const FAULT: f64 = 1e-3;
@@ -8,9 +9,13 @@ const FAULT: f64 = 1e-3;
 const ROUND_OFF: f64 = 1e-9;
 
 /// Reports slave nodes that start inside the master body: deep ones as errors, shallow ones, which
-/// the first increment pushes out, as warnings.
+/// the first increment pushes out, as warnings. Bodies that lie on the same side of a common face
+/// are errors too: all gaps are zero there, and contact would never close.
 pub fn report_penetrations(model: &Model, d: &mut Diagnostics) {
     for (contact, gaps) in model.contacts.iter().zip(initial_gaps(model)) {
+        if let Some(face) = common_face(model, contact, &gaps) {
+            d.push(overlap(model, contact, face));
+        }
         let depth = |gap: &InitialGap| -gap.gap / gap.edge;
         let inside: Vec<InitialGap> = gaps
             .into_iter()
@@ -23,16 +28,53 @@ pub fn report_penetrations(model: &Model, d: &mut Diagnostics) {
     }
 }
 
-fn diagnostic(model: &Model, contact: &Contact, deepest: &InitialGap, count: usize) -> Diagnostic {
-    let master = match contact.is_self_contact() {
-        true => "another body",
-        false => &format!("the body of {}", model.surfaces[contact.master].name),
+/// A slave face that lies on a master face and looks the same way.
+fn common_face(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Option<[usize; 2]> {
+    let x = &model.mesh.coordinates;
+    let touching: HashMap<usize, [usize; 2]> = gaps
+        .iter()
+        .filter(|gap| gap.gap.abs() <= ROUND_OFF * gap.edge)
+        .map(|gap| (gap.slave, gap.segment))
+        .collect();
+    let coincides = |&[a, b]: &[usize; 2]| {
+        let own = project(x[a], x[a], x[b]);
+        let middle = [0, 1].map(|i| x[a][i] + (x[b][i] - x[a][i]) / 2.0);
+        let faced = [a, b].into_iter().filter_map(|node| touching.get(&node));
+        faced.map(|&[p, q]| project(middle, x[p], x[q])).any(|at| {
+            let alike = at.normal[0] * own.normal[0] + at.normal[1] * own.normal[1];
+            let is_on = at.gap.abs() <= ROUND_OFF * at.length && (0.0..=1.0).contains(&at.xi);
+            is_on && alike > 0.0
+        })
     };
+    let slave = &model.surfaces[contact.slave];
+    slave.segments(&model.mesh).into_iter().find(coincides)
+}
+
+fn overlap(model: &Model, contact: &Contact, face: [usize; 2]) -> Diagnostic {
+    let [a, b] = face.map(|node| model.mesh.node_labels[node]);
     let message = format!(
-        "{count} {} of {} inside {master} at the start; deepest: node {} by {:.3e} \
+        "the face of {} between the nodes {a} and {b} lies in the boundary of {} and looks the \
+         same way: the bodies overlap",
+        model.surfaces[contact.slave].name,
+        opposite(model, contact)
+    );
+    let help = match model.surfaces[contact.master].kind {
+        SurfaceKind::Rigid(_) => {
+            "the outside of a rigid surface is on the left of the way from START: list its points \
+             in the other order"
+        }
+        _ => "move the bodies apart",
+    };
+    Diagnostic::error(Code::InitialPenetration, contact.span, message).help(help)
+}
+
+fn diagnostic(model: &Model, contact: &Contact, deepest: &InitialGap, count: usize) -> Diagnostic {
+    let message = format!(
+        "{count} {} of {} inside {} at the start; deepest: node {} by {:.3e} \
          ({:.1e} of the edge length)",
         if count == 1 { "node" } else { "nodes" },
         model.surfaces[contact.slave].name,
+        opposite(model, contact),
         model.mesh.node_labels[deepest.slave],
         -deepest.gap,
         -deepest.gap / deepest.edge,
@@ -43,5 +85,13 @@ fn diagnostic(model: &Model, contact: &Contact, deepest: &InitialGap, count: usi
             .help("move the bodies apart: pushing the nodes out would add energy")
     } else {
         Diagnostic::warning(code, contact.span, message).help("the first increment pushes them out")
+    }
+}
+
+/// What the slave surface is in contact with.
+fn opposite(model: &Model, contact: &Contact) -> String {
+    match contact.is_self_contact() {
+        true => "another body".into(),
+        false => format!("the body of {}", model.surfaces[contact.master].name),
     }
 }
