@@ -10,19 +10,31 @@ mod contact_support;
 use std::hint::black_box;
 use std::time::Duration;
 
-use contact_support::lattice;
+use contact_support::{DISC, lattice};
 use criterion::{BenchmarkId, Criterion, Throughput};
 use stickslip::contact::{Look, Pairing, Search, Touch, all_segments, find_pairs, find_passage};
 
-/// Segments searched in one go: in many small scenes, or few large ones. Only so many that no branch
-/// or cache of the processor learns a small scene by heart.
+/// Segments searched in one go: in many small scenes, or few large ones. Only so do caches and branch
+/// predictors not learn the small ones by heart.
 const TOTAL: usize = 200_000;
 
-/// Displacements number `k`: all bodies further than any margin from where they were, and shaken.
-fn elsewhere(dofs: usize, k: usize) -> Vec<f64> {
+/// Displacements number `k` of the discs of a lattice: all are further than any margin from where they
+/// were, and turned and pushed by other amounts.
+fn elsewhere(x: &[[f64; 2]], k: usize) -> Vec<f64> {
     let shift = [0.0, 9.0][k % 2];
-    let shake = |i: usize| 1e-2 * ((i * (k + 1)) as f64).sin();
-    (0..dofs).map(|i| shift + shake(i)).collect()
+    let mut u = Vec::with_capacity(2 * x.len());
+    for (i, disc) in x.chunks(DISC).enumerate() {
+        let centre = [0, 1].map(|c| disc.iter().map(|p| p[c]).sum::<f64>() / DISC as f64);
+        let by_chance = 1e3 * ((i + 1) as f64 * (k + 1) as f64).sin();
+        let (sin, cos) = by_chance.sin_cos();
+        let push = [0.03 * sin, 0.03 * (2.0 * by_chance).sin()];
+        for p in disc {
+            let r = [p[0] - centre[0], p[1] - centre[1]];
+            let turned = [cos * r[0] - sin * r[1], sin * r[0] + cos * r[1]];
+            u.extend([0, 1].map(|c| shift + push[c] + turned[c] - r[c]));
+        }
+    }
+    u
 }
 
 fn main() {
@@ -36,7 +48,7 @@ fn main() {
         let contacts = [surfaces];
         let u = vec![0.0; 2 * x.len()];
         let mut search = Search::new(&contacts, &x);
-        let places: Vec<_> = (0..TOTAL / n).map(|k| elsewhere(u.len(), k)).collect();
+        let places: Vec<_> = (0..TOTAL / n).map(|k| elsewhere(&x, k)).collect();
         group.throughput(Throughput::Elements(TOTAL as u64));
         group.bench_function(BenchmarkId::new("anew", n), |bencher| {
             bencher.iter(|| {

@@ -23,16 +23,19 @@ pub fn scene(bodies: &[Body]) -> (ContactSurfaces, Vec<[f64; 2]>) {
     (surfaces, x)
 }
 
-/// Discs of 32 segments, about `segments` segments, in fours with small distances. The fours lie in a
+/// Segments of a disc of a lattice.
+pub const DISC: usize = 32;
+
+/// Discs, about `segments` segments, in fours with small distances. The fours lie in a
 /// square lattice and too far apart to touch: what a disc has near it does not depend on their number.
 pub fn lattice(segments: usize) -> (ContactSurfaces, Vec<[f64; 2]>) {
-    let fours = segments.div_ceil(4 * 32);
+    let fours = segments.div_ceil(4 * DISC);
     let columns = (fours as f64).sqrt().ceil() as usize;
     let disc = |i: usize| {
         let four = [i / 4 % columns, i / 4 / columns];
         let place = [i % 2, i % 4 / 2];
         let centre = [0, 1].map(|k| 6.0 * four[k] as f64 + 2.1 * place[k] as f64);
-        (centre, 1.0, 32, 0.0)
+        (centre, 1.0, DISC, 0.0)
     };
     scene(&(0..4 * fours).map(disc).collect::<Vec<_>>())
 }
