@@ -148,6 +148,19 @@ def distances(point: Array, start: Array, end: Array) -> Array:
     return np.linalg.norm(offset - at[..., None] * along, axis=2)
 
 
+def closed_hollow(point: Array, before: Array, after: Array) -> Array:
+    """How deep the legs of closed hollows lie in each other; infinite where a node has other legs.
+
+    At a hollow whose legs lie on each other the angle is zero but for round-off. When it is
+    negative by that much, the node itself is covered once more, and far from all other edges.
+    """
+    one, two = before - point, after - point
+    lengths = np.linalg.norm(one, axis=1), np.linalg.norm(two, axis=1)
+    area = np.abs(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0])
+    alike = np.einsum("ni,ni->n", one, two) > 0.0
+    return np.where(alike, area / np.maximum(*lengths), np.inf)
+
+
 def intrusions(position: Array, host: Outline, guest: Outline, number: int) -> list[Intrusion]:
     """The guest's nodes inside the host, body `number`; the guest may be the host itself."""
     start, end = position[host.nodes], position[host.after]
@@ -165,6 +178,9 @@ def intrusions(position: Array, host: Outline, guest: Outline, number: int) -> l
     distance = np.where(counted, distances(point, start, end), np.inf)
     edge = distance.argmin(axis=1) if len(nodes) else np.empty(0, np.int64)
     distance = distance[np.arange(len(nodes)), edge]
+    if own:
+        closed = closed_hollow(point, position[host.before[covered]], end[covered])
+        distance = np.minimum(distance, closed)
     depth = distance / np.linalg.norm(end - start, axis=1)[edge]
     return [
         Intrusion(float(a), float(b), int(node), number, (int(host.nodes[e]), int(host.after[e])))

@@ -61,7 +61,8 @@ pub fn find_passage(
                 let found = crossings(&way.motions(candidate.segment), 1.0);
                 events.extend(found.into_iter().map(|c| (candidate.segment, c)));
             }
-            if let Some(segment) = way.passage(&mut events) {
+            let ends_inside = || way.ends_inside(territory.candidates(k).map(|c| c.segment));
+            if let Some(segment) = way.passage(&mut events).or_else(ends_inside) {
                 let segment = contact.segments[segment];
                 return Some(Passage { slave, segment });
             }
@@ -117,6 +118,37 @@ impl Way<'_> {
             }
         }
         None
+    }
+
+    /// The segment that the node is behind at the end, nearest to it of all and not held by it, although
+    /// the node was outside at the start: it came round a vertex that has become a hollow.
+    fn ends_inside(&self, segments: impl Iterator<Item = usize> + Clone) -> Option<usize> {
+        let is_own = |i: &usize| self.contact.segments[*i].contains(&self.slave);
+        let others = segments.filter(|i| !is_own(i));
+        let is_behind = |&i: &usize| {
+            let p = self.place(i, 1.0);
+            (0.0..=1.0).contains(&p.xi)
+                && p.gap < 0.0
+                && !self.is_round_off(-p.gap, p.length)
+                && -p.gap <= 2.0 * self.length_of_way(i)
+        };
+        let depth = |i: usize| -self.place(i, 1.0).gap;
+        let nearest = |i: &usize, j: &usize| depth(*i).total_cmp(&depth(*j));
+        let i = others.clone().filter(is_behind).min_by(nearest)?;
+        let is_nearest = others.clone().all(|j| self.distance(j) >= depth(i));
+        let was_outside = |j: usize| {
+            let p = self.place(j, 0.0);
+            self.is_round_off(-p.gap, p.length) && self.are_near(i, j)
+        };
+        let is_held = self.touch.now.contains(&i);
+        (is_nearest && !is_held && others.clone().any(was_outside)).then_some(i)
+    }
+
+    /// Distance from a segment at the end.
+    fn distance(&self, i: usize) -> f64 {
+        let p = self.place(i, 1.0);
+        let beyond = (p.xi - p.xi.clamp(0.0, 1.0)) * p.length;
+        beyond.hypot(p.gap)
     }
 
     /// Whether a node that enters through one segment may leave through another.
@@ -189,14 +221,19 @@ impl Way<'_> {
         i == j || self.walk(i, &step, Some(j)) || self.walk(j, &step, Some(i))
     }
 
+    /// How far the node goes relative to the start of a segment.
+    fn length_of_way(&self, segment: usize) -> f64 {
+        let [start, end] = [0.0, 1.0].map(|part| {
+            let [s, a, _] = self.motions(segment).map(|m| m.at(part));
+            [s[0] - a[0], s[1] - a[1]]
+        });
+        (end[0] - start[0]).hypot(end[1] - start[1])
+    }
+
     /// Whether steps from a segment lead to another, or to the end of the surface, over segments that
     /// are not longer than twice the node's way.
     fn walk(&self, from: usize, step: &dyn Fn(usize) -> Option<usize>, to: Option<usize>) -> bool {
-        let [start, end] = [0.0, 1.0].map(|part| {
-            let [s, a, _] = self.motions(from).map(|m| m.at(part));
-            [s[0] - a[0], s[1] - a[1]]
-        });
-        let way = (end[0] - start[0]).hypot(end[1] - start[1]);
+        let way = self.length_of_way(from);
         let (mut segment, mut between) = (from, 0.0);
         loop {
             let following = step(segment);

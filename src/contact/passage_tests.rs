@@ -143,3 +143,34 @@ fn a_hollow_corner_holds_a_node_with_both_sides() {
     assert_eq!(passage(0.21), Some(through));
     assert_eq!(passage(0.6), Some(through));
 }
+
+#[test]
+fn a_node_may_not_end_inside_a_vertex_that_has_become_a_hollow() {
+    // The node touches the roof beside its top, which sinks to a hollow; it ends on the line of the
+    // first side, behind the second.
+    let x = [[0.05, -0.05], [1.0, -1.0], [0.0, 0.0], [-1.0, -0.9]];
+    let surfaces = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]], 0.0);
+    let end = [[-0.2, -0.36], [1.0, 0.0], [0.0, -0.3], [-1.0, 0.0]];
+    let contacts = [surfaces];
+    let mut search = Search::new(&contacts, &x);
+    let u0 = vec![0.0; 8];
+    let move_to = |end: [[f64; 2]; 4]| -> Vec<f64> {
+        let pairs = end.iter().zip(&x);
+        pairs
+            .flat_map(|(e, x)| [e[0] - x[0], e[1] - x[1]])
+            .collect()
+    };
+    let touch = [Touch {
+        before: true,
+        now: Vec::new(),
+    }];
+    let u1 = move_to(end);
+    search.cover_way(&u0, &u1);
+    let passage = find_passage(&search, &u0, &u1, &touch, 0.0);
+    assert_eq!(passage.map(|p| p.segment), Some([2, 3]));
+    // in the hollow
+    let above = [[-0.2, -0.2], end[1], end[2], end[3]];
+    let u1 = move_to(above);
+    search.cover_way(&u0, &u1);
+    assert_eq!(find_passage(&search, &u0, &u1, &touch, 0.0), None);
+}

@@ -10,10 +10,13 @@ pub(super) const ROUND_OFF: f64 = 1e-6;
 const TOUCHING: f64 = 1e-9;
 /// Penetration of a mesh at the start of the analysis (in segment lengths) that is pushed out.
 const PENETRATING: f64 = 2e-3;
-/// How near the end of a segment the other side of a hollow is taken into account (in its lengths).
+/// How near the end of a segment the other side of a hollow is taken into account (in its lengths),
+/// besides the way of the node.
 const NEAR: f64 = 0.1;
 /// Sine of the turn at a vertex below which its two segments count as one face.
 const STRAIGHT: f64 = 1e-3;
+/// Sine of the angle between the legs of a vertex below which a hollow may have closed.
+const CLOSED: f64 = 0.3;
 /// Distance sideways from a vertex (in segment lengths) at which a node meets the vertex itself.
 const TIP: f64 = 1e-5;
 
@@ -123,8 +126,13 @@ impl Look<'_> {
                 && !self.is_own(j)
             {
                 let p = self.place(i);
+                // between the segments of a hollow there is nothing but the body
+                let near = match self.turn(i, j) < 0.0 {
+                    true => reach.min(self.near(i)),
+                    false => reach,
+                };
                 let beyond = (p.xi - 1.0) * p.length;
-                if p.gap >= -p.length && beyond * beyond + p.gap * p.gap <= reach * reach {
+                if p.gap >= -p.length && beyond * beyond + p.gap * p.gap <= near * near {
                     faced.extend([i, j]);
                 }
             }
@@ -265,7 +273,7 @@ impl Look<'_> {
     /// The other sides of the hollows at the ends of a segment, where the node is near them.
     fn across_hollows(&self, i: usize) -> impl Iterator<Item = usize> {
         let p = self.place(i);
-        let near = NEAR * p.length + 2.0 * self.way(i);
+        let near = self.near(i);
         let at_a = self.surfaces.previous[i].filter(|&h| {
             p.xi * p.length <= near && self.turn(h, i) < -STRAIGHT && self.place(h).xi >= 0.0
         });
@@ -320,6 +328,12 @@ impl Look<'_> {
         })
     }
 
+    /// Distance from the end of a segment within which the other side of a hollow is taken into
+    /// account.
+    fn near(&self, segment: usize) -> f64 {
+        NEAR * self.place(segment).length + 2.0 * self.way(segment)
+    }
+
     /// How far the node has gone relative to a segment since the start.
     fn way(&self, segment: usize) -> f64 {
         let [a, b] = self.surfaces.segments[segment];
@@ -330,13 +344,23 @@ impl Look<'_> {
         (relative(0).powi(2) + relative(1).powi(2)).sqrt()
     }
 
-    /// Sine of the turn to the left from one segment to the next: positive at a convex vertex.
+    /// Sine of the turn to the left from one segment to the next: positive at a convex vertex; 1 or
+    /// -1 beyond a right angle.
     fn turn(&self, i: usize, j: usize) -> f64 {
         let [e, f] = [i, j].map(|i| {
             let [a, b] = self.surfaces.segments[i].map(|n| self.now[n]);
             project(a, a, b).tangent
         });
-        e[0] * f[1] - e[1] * f[0]
+        let [sin, cos] = [e[0] * f[1] - e[1] * f[0], e[0] * f[0] + e[1] * f[1]];
+        if cos >= 0.0 {
+            sin
+        } else if sin.abs() > CLOSED {
+            sin.signum()
+        } else if self.surfaces.corners[i] {
+            1.0
+        } else {
+            -1.0
+        }
     }
 
     /// The foot xi of the node on a segment in the iterate.

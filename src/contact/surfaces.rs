@@ -1,6 +1,10 @@
 use std::collections::HashMap;
 
+use super::project;
 use crate::model::{Contact, Model};
+
+/// Cosine of the turn at a corner.
+const CORNER: f64 = 0.5;
 
 /// The two sides of a contact of the model, as nodes and segments.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +19,9 @@ pub struct ContactSurfaces {
     pub next: Vec<Option<usize>>,
     /// For every segment the one that ends where it starts, if any.
     pub previous: Vec<Option<usize>>,
+    /// For every segment whether the body has a corner at its end b from the start: an angle below
+    /// 120 degrees. Where both legs of any other vertex lie on each other, a hollow has closed.
+    pub corners: Vec<bool>,
     /// Coefficient of friction mu.
     pub friction: f64,
 }
@@ -41,10 +48,28 @@ impl ContactSurfaces {
             beside: slaves.iter().map(beside).collect(),
             next: segments.iter().map(|&[_, b]| at(&starting, b)).collect(),
             previous: segments.iter().map(|&[a, _]| at(&ending, a)).collect(),
+            corners: vec![false; segments.len()],
             slaves,
             segments,
             friction,
         }
+    }
+
+    /// With the corners that the surfaces have at the positions `x`.
+    pub fn with_corners(mut self, x: &[[f64; 2]]) -> Self {
+        let tangent = |i: usize| {
+            let [a, b] = self.segments[i].map(|node| x[node]);
+            project(a, a, b).tangent
+        };
+        let is_corner = |i: usize| {
+            self.next[i].is_some_and(|j| {
+                let (e, f) = (tangent(i), tangent(j));
+                let [sin, cos] = [e[0] * f[1] - e[1] * f[0], e[0] * f[0] + e[1] * f[1]];
+                sin > 0.0 && cos < CORNER
+            })
+        };
+        self.corners = (0..self.segments.len()).map(is_corner).collect();
+        self
     }
 }
 
@@ -58,6 +83,7 @@ pub fn contact_surfaces(model: &Model) -> Vec<ContactSurfaces> {
             master.segments(&model.mesh),
             model.friction(contact),
         )
+        .with_corners(&model.mesh.coordinates)
     };
     model.contacts.iter().map(of_contact).collect()
 }
