@@ -104,6 +104,42 @@ fn both_sides_of_a_hollow_hold() {
 }
 
 #[test]
+fn nothing_holds_a_node_far_behind_a_hollow() {
+    // in the line of the first side, two lengths beyond its end: across the body of a cross
+    let arm = [[-1.0, 0.0], [0.0, 0.0], [0.0, -1.0]];
+    let across = [2.0, 1e-12];
+    assert_eq!(
+        segments(&sites_beside(&[&arm], false, across, across)),
+        [0; 0]
+    );
+    // a hollow that has closed, but for round-off to either side: it is no sharp corner
+    for x in [1e-16, -1e-16] {
+        let closed = [[x, 1.0], [0.0, 0.0], [-x, 1.0]];
+        let below = [1e-6, -2.0];
+        let sites = sites_beside(&[&closed], false, below, below);
+        assert_eq!(segments(&sites), [0; 0], "{x}");
+    }
+}
+
+#[test]
+fn a_sharp_corner_is_no_closed_hollow() {
+    let tip = [[-0.01, -1.0], [0.0, 0.0], [0.01, -1.0]].map(|[x, y]: [f64; 2]| [-x, y]);
+    let mut x = tip.to_vec();
+    x.push([1e-3, 0.5]);
+    let surfaces = ContactSurfaces::new(vec![3], &[], vec![[0, 1], [1, 2]], 0.0).with_corners(&x);
+    let mut now = x.clone();
+    now[3] = [1e-3, 0.1];
+    let look = Look {
+        surfaces: &surfaces,
+        start: &x,
+        now: &now,
+        slave: 0,
+    };
+    let sites = look.sites(all_segments(&surfaces));
+    assert_eq!(sites.len(), 1, "one side of the tip, or the tip: {sites:?}");
+}
+
+#[test]
 fn several_bodies_hold_a_node_at_once() {
     let floor = [[4.0, 0.0], [-4.0, 0.0]];
     let wall = [[0.5, -4.0], [0.5, 4.0]];

@@ -1,14 +1,14 @@
 use super::contact_forces::ContactForces;
 use super::convergence::{Scales, worst};
 use super::effective::Effective;
-use super::hold::Hold;
+use super::hold::{Hold, place};
 use super::impact::Impulses;
 use super::mass::largest;
 use super::meter::Meter;
 use super::step_problem::{Equilibrium, Interval, StepProblem, difference, sum};
 use super::touching::Touching;
 use super::{Cause, PassReport, State, Worst};
-use crate::contact::{Pairing, Search, Touch, find_passage};
+use crate::contact::{Pair, Pairing, Search, Touch, find_passage};
 use crate::linear::LinearError;
 use crate::model::Factorization;
 
@@ -182,7 +182,14 @@ impl Attempt<'_, '_> {
                     self.check_ways(&d, contact, &forces)?;
                 }
                 let touching = impulses.touching;
-                return self.finish(v0p, d, forces.with_open(left_out), touching);
+                // a free node past a vertex may be behind the line of the segment it came from
+                let is_over = |pair: &Pair| {
+                    let [s, a, b, _] = pair.at.nodes;
+                    (0.0..=1.0).contains(&place(problem, &u, [s, a, b]).xi)
+                };
+                let open = left_out.into_iter();
+                let open = open.filter(|pair| pair.gap >= 0.0 || is_over(pair));
+                return self.finish(v0p, d, forces.with_open(open.collect()), touching);
             }
             pairing = Pairing {
                 sites: forces.pairs.iter().map(|pair| pair.at).collect(),

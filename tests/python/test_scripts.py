@@ -19,6 +19,7 @@ from decks import (
     CORNERS,
     PILE,
     RINGS,
+    SHAPES,
     shortened,
 )
 from rescale import Units, rescale
@@ -74,7 +75,7 @@ def test_animation(job: Job, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "folder",
-    [BLOCK, CANTILEVERS, BAR, RINGS, PILE, COLUMN, CORNERS, BULLET],
+    [BLOCK, CANTILEVERS, BAR, RINGS, PILE, COLUMN, CORNERS, BULLET, SHAPES],
     ids=lambda path: path.name,
 )
 def test_decks_are_what_their_generator_writes(folder: Path, tmp_path: Path) -> None:

@@ -21,6 +21,7 @@ MOTION = {
     "corners_right_mu00": (0.0, 0.05, 0.2, 0.5, 1.0, 1.5),
     "bullet_one": (0.0, 0.1, 0.12, 0.15, 0.2, 0.3),
     "column_mu02": (2.0, 4.0, 6.0, 8.0, 9.0, 12.0),
+    "shapes_two": (0.0, 0.2, 0.4, 0.8, 1.2, 1.6),
     "pile": (0.0, 0.4, 0.8, 1.2, 2.0, 4.0),
 }
 """Times of the pictures."""
@@ -84,11 +85,11 @@ def above(results: Results) -> float:
 
 
 def outside(results: Results) -> int:
-    """Nodes of discs that are not between the walls and above the floor at the end."""
+    """Nodes of bodies that are not between the walls and above the floor at the end."""
     position = results.positions(len(results.frame_times) - 1)
     box = results.node_set("BOX")
-    discs = np.setdiff1d(np.arange(len(position)), box)
-    x, y = position[discs].T
+    bodies = np.setdiff1d(np.arange(len(position)), box)
+    x, y = position[bodies].T
     width = np.abs(position[box][:, 0]).max()
     return int(((np.abs(x) > width) | (y < position[box][:, 1].min())).sum())
 
@@ -115,13 +116,13 @@ def check(verification: runner.Verification, case: runner.Case, results: Results
         verification.check("rise of the energy / start", name, rise(results) / energy(results)[0])
     if case.group == "bullet":
         verification.check("bullet above the plate at the end", name, above(results))
-    if case.group == "pile":
-        verification.check("nodes of discs outside the box", name, outside(results))
-        if case.until is None:
-            kinetic = account["kinetic"]
-            verification.check(
-                "energy at rest / kinetic energy before", name, float(kinetic[-1] / kinetic.max())
-            )
+    if case.group in ("pile", "shapes"):
+        verification.check("nodes outside the box", name, outside(results))
+    if case.group == "pile" and case.until is None:
+        kinetic = account["kinetic"]
+        verification.check(
+            "energy at rest / kinetic energy before", name, float(kinetic[-1] / kinetic.max())
+        )
     closed = sum(contact.closed for contact in results.contacts.values())
     return [
         name,
