@@ -92,6 +92,33 @@ fn a_node_that_slides_round_a_convex_vertex_keeps_its_segment() {
 }
 
 #[test]
+fn a_corner_that_slides_over_a_corner_is_held_by_the_face_that_its_surface_lies_on() {
+    // the right lower corner of a block on the square, past the square's right side; it goes down
+    // behind the line of the top, but the block's own bottom lies behind the right side
+    let mut start = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let segments = chain(&start, true);
+    start.extend([[0.2, 1.0], [1.01, 1.0], [1.01, 2.0]]);
+    let mut now = start.clone();
+    now[5][1] = 0.99;
+    let held_by = |own: &[[usize; 2]]| {
+        let surfaces = ContactSurfaces::new(vec![5], own, segments.clone(), 0.0);
+        let look = Look {
+            surfaces: &surfaces,
+            start: &start,
+            now: &now,
+            slave: 0,
+        };
+        self::segments(&look.sites(all_segments(&surfaces)))
+    };
+    assert_eq!(held_by(&[[4, 5], [5, 6]]), [2]);
+    assert_eq!(
+        held_by(&[]),
+        [1],
+        "a node without a surface falls along the side"
+    );
+}
+
+#[test]
 fn both_sides_of_a_hollow_hold() {
     // a valley over (2, 1), (0, 0), (-2, 1)
     let valley = [[2.0, 1.0], [0.0, 0.0], [-2.0, 1.0]];

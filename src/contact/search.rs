@@ -1,5 +1,6 @@
 use super::geometry::position;
-use super::sites::{Look, Site};
+use super::look::Look;
+use super::sites::Site;
 use super::{ContactSurfaces, PairSite, Search};
 
 /// A segment that a slave node may pair with.

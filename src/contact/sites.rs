@@ -1,22 +1,13 @@
-use super::crossing::{Direction, Motion, crossings};
-use super::geometry::{Projection, project};
+use super::geometry::project;
+use super::look::{Look, NEAR, TOUCHING};
 use super::vertex::{Vertex, common_normal};
 use super::{Candidate, ContactSurfaces};
 
 /// How far beyond its ends a segment still takes a projection (in its lengths): what round-off and
 /// the tolerance of many increments make of a node that sticks at the end of a surface.
 pub(super) const ROUND_OFF: f64 = 1e-6;
-/// Gap at the start of an increment (in segment lengths) that is no penetration.
-const TOUCHING: f64 = 1e-9;
-/// Penetration of a mesh at the start of the analysis (in segment lengths) that is pushed out.
-const PENETRATING: f64 = 2e-3;
-/// How near the end of a segment the other side of a hollow is taken into account (in its lengths),
-/// besides the way of the node.
-const NEAR: f64 = 0.1;
 /// Sine of the turn at a vertex below which its two segments count as one face.
 const STRAIGHT: f64 = 1e-3;
-/// Sine of the angle between the legs of a vertex below which a hollow may have closed.
-const CLOSED: f64 = 0.3;
 /// Distance sideways from a vertex (in segment lengths) at which a node meets the vertex itself.
 const TIP: f64 = 1e-5;
 
@@ -45,24 +36,12 @@ impl Site {
     }
 }
 
-/// A slave node between the start of an increment and an iterate.
+/// Which sites hold a node.
 ///
 /// The body lies behind each of its segments near a hollow (concave) vertex, and behind one of them
 /// near a convex vertex; a node outside is therefore held by all segments that it faces, but only by
 /// one of those that follow each other round convex vertices. It was outside at the start, and is
 /// held by segments that it was in front of then: such contact never adds energy.
-#[derive(Clone, Copy)]
-pub struct Look<'a> {
-    /// Surfaces of the contact.
-    pub surfaces: &'a ContactSurfaces,
-    /// Positions of all nodes at the start (length).
-    pub start: &'a [[f64; 2]],
-    /// Positions of all nodes in the iterate (length).
-    pub now: &'a [[f64; 2]],
-    /// Number of the slave node in the contact.
-    pub slave: usize,
-}
-
 impl Look<'_> {
     /// The sites of the node, with increasing segments; the candidates come with increasing segments
     /// too.
@@ -80,6 +59,7 @@ impl Look<'_> {
                 sites.push(Site::face(segment));
                 continue;
             }
+            let segment = self.beside_faced_away(segment).unwrap_or(segment);
             sites.push(self.vertex_site(segment).unwrap_or(Site::face(segment)));
             sites.extend(self.across_hollows(segment).map(Site::face));
         }
@@ -144,21 +124,6 @@ impl Look<'_> {
         faced
     }
 
-    /// Whether the node is so far in front of a segment that it does not matter what is beside it.
-    fn is_far(&self, segment: usize) -> bool {
-        let p = self.place(segment);
-        p.gap > p.length && p.gap > 2.0 * self.way(segment)
-    }
-
-    /// Whether the straight way of the node goes into the body through the segment.
-    fn enters(&self, segment: usize) -> bool {
-        let [a, b] = self.surfaces.segments[segment];
-        let motions = [self.surfaces.slaves[self.slave], a, b]
-            .map(|node| Motion::straight(self.start[node], self.now[node]));
-        let is_entering = |c: &super::Crossing| c.direction == Direction::Entering;
-        crossings(&motions, 1.0).iter().any(is_entering)
-    }
-
     /// The faced segments in runs round vertices that are not hollow.
     fn runs(&self, faced: &[usize]) -> Vec<Vec<usize>> {
         if faced.len() == 1 {
@@ -216,16 +181,24 @@ impl Look<'_> {
         })
     }
 
-    /// Whether the node was in front of the line of a segment at the start.
-    fn was_in_front(&self, segment: usize) -> bool {
-        let p = self.start(segment);
-        p.gap >= -TOUCHING * p.length
-    }
-
-    /// Whether the node started a little inside, as a mesh may have it.
-    fn was_pushed_in(&self, segment: usize) -> bool {
-        let p = self.start(segment);
-        p.gap >= -PENETRATING * p.length && (-NEAR..=1.0 + NEAR).contains(&p.xi)
+    /// The segment beside one that the surface of the node does not face, round a convex vertex that the
+    /// node is near: where a corner slides over a corner, one face of it holds the node and not the
+    /// other, behind which the node's own body would lie.
+    fn beside_faced_away(&self, i: usize) -> Option<usize> {
+        if self.is_opposite(i)? {
+            return None;
+        }
+        let (p, near) = (self.place(i), self.near(i));
+        let before = self.surfaces.previous[i]
+            .filter(|&h| p.xi * p.length <= near && self.turn(h, i) > STRAIGHT);
+        let behind = self.surfaces.next[i]
+            .filter(|&j| (1.0 - p.xi) * p.length <= near && self.turn(i, j) > STRAIGHT);
+        let holds = |&j: &usize| {
+            let start = self.start(j);
+            let was_near = (-near..=start.length + near).contains(&(start.xi * start.length));
+            was_near && self.was_in_front(j) && !self.is_own(j) && self.is_opposite(j) == Some(true)
+        };
+        before.filter(holds).or(behind.filter(holds))
     }
 
     /// The segment before or behind a run from which the node came round convex vertices.
@@ -262,12 +235,6 @@ impl Look<'_> {
             between += self.place(j).length;
             i = j;
         }
-    }
-
-    /// Whether the node is an end of the segment.
-    fn is_own(&self, segment: usize) -> bool {
-        let node = self.surfaces.slaves[self.slave];
-        self.surfaces.segments[segment].contains(&node)
     }
 
     /// The other sides of the hollows at the ends of a segment, where the node is near them.
@@ -326,63 +293,5 @@ impl Look<'_> {
             segment: i,
             vertex: Some(vertex),
         })
-    }
-
-    /// Distance from the end of a segment within which the other side of a hollow is taken into
-    /// account.
-    fn near(&self, segment: usize) -> f64 {
-        NEAR * self.place(segment).length + 2.0 * self.way(segment)
-    }
-
-    /// How far the node has gone relative to a segment since the start.
-    fn way(&self, segment: usize) -> f64 {
-        let [a, b] = self.surfaces.segments[segment];
-        let xi = self.place(segment).xi.clamp(0.0, 1.0);
-        let node = self.surfaces.slaves[self.slave];
-        let d = |n: usize, i: usize| self.now[n][i] - self.start[n][i];
-        let relative = |i: usize| d(node, i) - (1.0 - xi) * d(a, i) - xi * d(b, i);
-        (relative(0).powi(2) + relative(1).powi(2)).sqrt()
-    }
-
-    /// Sine of the turn to the left from one segment to the next: positive at a convex vertex; 1 or
-    /// -1 beyond a right angle.
-    fn turn(&self, i: usize, j: usize) -> f64 {
-        let [e, f] = [i, j].map(|i| {
-            let [a, b] = self.surfaces.segments[i].map(|n| self.now[n]);
-            project(a, a, b).tangent
-        });
-        let [sin, cos] = [e[0] * f[1] - e[1] * f[0], e[0] * f[0] + e[1] * f[1]];
-        if cos >= 0.0 {
-            sin
-        } else if sin.abs() > CLOSED {
-            sin.signum()
-        } else if self.surfaces.corners[i] {
-            1.0
-        } else {
-            -1.0
-        }
-    }
-
-    /// The foot xi of the node on a segment in the iterate.
-    fn along(&self, segment: usize) -> f64 {
-        let [a, b] = self.surfaces.segments[segment].map(|n| self.now[n]);
-        let s = self.now[self.surfaces.slaves[self.slave]];
-        let (r, e) = ([s[0] - a[0], s[1] - a[1]], [b[0] - a[0], b[1] - a[1]]);
-        (r[0] * e[0] + r[1] * e[1]) / (e[0] * e[0] + e[1] * e[1])
-    }
-
-    /// Place of the node relative to a segment in the iterate.
-    fn place(&self, segment: usize) -> Projection {
-        self.place_at(self.now, segment)
-    }
-
-    /// The same at the start.
-    fn start(&self, segment: usize) -> Projection {
-        self.place_at(self.start, segment)
-    }
-
-    fn place_at(&self, at: &[[f64; 2]], segment: usize) -> Projection {
-        let [a, b] = self.surfaces.segments[segment];
-        project(at[self.surfaces.slaves[self.slave]], at[a], at[b])
     }
 }
