@@ -1,5 +1,7 @@
 """Decks as cards: read with their includes, change, write as one file."""
 
+import argparse
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -114,3 +116,10 @@ def _lines(path: Path, depth: int = 0) -> list[str]:
 
 def _fold(text: str) -> str:
     return "".join(text.split()).upper()
+
+
+def write_to_folder(about: str | None, folder: Path, write: Callable[[Path], None]) -> None:
+    """Command line of a script that writes decks: into `folder`, or that of the option `-o`."""
+    parser = argparse.ArgumentParser(description=about)
+    parser.add_argument("-o", "--output", type=Path, default=folder, help="folder of the decks")
+    write(parser.parse_args().output)

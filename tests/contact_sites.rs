@@ -23,13 +23,18 @@ fn sites_beside(chains: &[&[[f64; 2]]], closed: bool, from: [f64; 2], to: [f64; 
     let (mut start, mut now) = (x.clone(), x);
     start.push(from);
     now.push(to);
+    sites_of(&surfaces, &start, &now)
+}
+
+/// Sites of the only slave node of surfaces between two sets of positions.
+fn sites_of(surfaces: &ContactSurfaces, start: &[[f64; 2]], now: &[[f64; 2]]) -> Vec<Site> {
     let look = Look {
-        surfaces: &surfaces,
-        start: &start,
-        now: &now,
+        surfaces,
+        start,
+        now,
         slave: 0,
     };
-    look.sites(all_segments(&surfaces))
+    look.sites(all_segments(surfaces))
 }
 
 fn segments(sites: &[Site]) -> Vec<usize> {
@@ -102,13 +107,7 @@ fn a_corner_that_slides_over_a_corner_is_held_by_the_face_that_its_surface_lies_
     now[5][1] = 0.99;
     let held_by = |own: &[[usize; 2]]| {
         let surfaces = ContactSurfaces::new(vec![5], own, segments.clone(), 0.0);
-        let look = Look {
-            surfaces: &surfaces,
-            start: &start,
-            now: &now,
-            slave: 0,
-        };
-        self::segments(&look.sites(all_segments(&surfaces)))
+        self::segments(&sites_of(&surfaces, &start, &now))
     };
     assert_eq!(held_by(&[[4, 5], [5, 6]]), [2]);
     assert_eq!(
@@ -156,13 +155,7 @@ fn a_sharp_corner_is_no_closed_hollow() {
     let surfaces = ContactSurfaces::new(vec![3], &[], vec![[0, 1], [1, 2]], 0.0).with_corners(&x);
     let mut now = x.clone();
     now[3] = [1e-3, 0.1];
-    let look = Look {
-        surfaces: &surfaces,
-        start: &x,
-        now: &now,
-        slave: 0,
-    };
-    let sites = look.sites(all_segments(&surfaces));
+    let sites = sites_of(&surfaces, &x, &now);
     assert_eq!(sites.len(), 1, "one side of the tip, or the tip: {sites:?}");
 }
 
@@ -201,13 +194,7 @@ fn tip_to_tip(from: [f64; 2], to: [f64; 2], sides: [[f64; 2]; 2]) -> Vec<Site> {
     // the triangle's way round, body on the left: left upper node, tip, right upper node
     let own = [[4, 3], [3, 5]];
     let surfaces = ContactSurfaces::new(vec![3], &own, vec![[0, 1], [1, 2]], 0.0);
-    let look = Look {
-        surfaces: &surfaces,
-        start: &start,
-        now: &now,
-        slave: 0,
-    };
-    look.sites(all_segments(&surfaces))
+    sites_of(&surfaces, &start, &now)
 }
 
 #[test]

@@ -1,6 +1,5 @@
 """Writes the decks of the two squares that meet with their corners: `generate.py [-o FOLDER]`."""
 
-import argparse
 import sys
 from math import sqrt
 from pathlib import Path
@@ -8,6 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "scripts"))
 
+from deck import write_to_folder  # noqa: E402
 from quads import Grid, card, outline  # noqa: E402
 
 YOUNG, POISSON, DENSITY, THICKNESS = 1000.0, 0.3, 1.0, 1.0
@@ -79,12 +79,5 @@ def write(folder: Path) -> None:
             (folder / f"{side}_{name}.inp").write_text(problem(side, friction))
 
 
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("-o", "--output", type=Path, default=HERE, help="folder of the decks")
-    write(parser.parse_args().output)
-
-
 if __name__ == "__main__":
-    main()
+    write_to_folder(__doc__, HERE, write)

@@ -1,6 +1,5 @@
 """Writes the deck of the discs that fall into a box: `generate.py [-o FOLDER]`."""
 
-import argparse
 import sys
 from math import pi
 from pathlib import Path
@@ -9,6 +8,7 @@ from random import Random
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "scripts"))
 
+from deck import write_to_folder  # noqa: E402
 from quads import Grid, Mesh, card, disc  # noqa: E402
 
 YOUNG, POISSON, DENSITY, THICKNESS = 4000.0, 0.3, 1.0, 1.0
@@ -114,12 +114,5 @@ def write(folder: Path) -> None:
     (folder / "disc_pile.inp").write_text(deck())
 
 
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("-o", "--output", type=Path, default=HERE, help="folder of the decks")
-    write(parser.parse_args().output)
-
-
 if __name__ == "__main__":
-    main()
+    write_to_folder(__doc__, HERE, write)

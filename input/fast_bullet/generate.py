@@ -1,6 +1,5 @@
 """Writes the decks of the fast bullet that hits a thin plate: `generate.py [-o FOLDER]`."""
 
-import argparse
 import sys
 from math import cos, radians, sin
 from pathlib import Path
@@ -8,6 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "scripts"))
 
+from deck import write_to_folder  # noqa: E402
 from quads import Grid, card, outline  # noqa: E402
 
 YOUNG, POISSON, THICKNESS = 1e4, 0.3, 1.0
@@ -93,12 +93,5 @@ def write(folder: Path) -> None:
         (folder / f"{name}.inp").write_text(problem(name))
 
 
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("-o", "--output", type=Path, default=HERE, help="folder of the decks")
-    write(parser.parse_args().output)
-
-
 if __name__ == "__main__":
-    main()
+    write_to_folder(__doc__, HERE, write)

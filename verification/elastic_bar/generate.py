@@ -1,6 +1,5 @@
 """Writes the decks of the elastic bar that hits a fixed wall: `generate.py [-o FOLDER]`."""
 
-import argparse
 import sys
 from math import sqrt
 from pathlib import Path
@@ -8,6 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "scripts"))
 
+from deck import write_to_folder  # noqa: E402
 from quads import Grid, card  # noqa: E402
 
 YOUNG = 1000.0
@@ -81,12 +81,5 @@ def write(folder: Path) -> None:
             (folder / f"{scheme}_{impact}.inp").write_text(problem(scheme, impact))
 
 
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("-o", "--output", type=Path, default=HERE, help="folder of the decks")
-    write(parser.parse_args().output)
-
-
 if __name__ == "__main__":
-    main()
+    write_to_folder(__doc__, HERE, write)
