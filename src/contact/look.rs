@@ -12,7 +12,7 @@ pub(super) const NEAR: f64 = 0.1;
 /// Sine of the angle between the legs of a vertex below which a hollow may have closed.
 const CLOSED: f64 = 0.3;
 /// Sine of the angle by which the surface of a node may lean to a segment that it faces.
-const FACING: f64 = 0.1;
+const FACING: f64 = 0.5;
 
 /// A slave node between the start of an increment and an iterate, and where it is relative to the
 /// segments around it.
