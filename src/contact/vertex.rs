@@ -23,7 +23,7 @@ impl Vertex {
 /// behind the slave node on its own surface. A normal that separates the two vertices lies in the
 /// cone between `normals` and in the cone between the opposites of `own`; it is the middle of what
 /// these have in common, if anything: flush blocks meet with the normal of their faces, corners
-/// with that of the bisectors.
+/// with that of the bisectors. A vertex that is not convex has none.
 pub fn common_normal(normals: [[f64; 2]; 2], own: [[f64; 2]; 2]) -> Option<f64> {
     let [n, m] = normals;
     let angle =
@@ -31,6 +31,9 @@ pub fn common_normal(normals: [[f64; 2]; 2], own: [[f64; 2]; 2]) -> Option<f64> 
     let opposite = own.map(|n| [-n[0], -n[1]]);
     // angles from the first normal
     let width = angle(n, m);
+    if width.is_nan() || width <= 0.0 {
+        return None;
+    }
     let from = angle(n, opposite[0]);
     let to = from + angle(opposite[0], opposite[1]);
     if to < from - MISSED {
@@ -85,5 +88,8 @@ mod tests {
     fn corners_that_cannot_separate_have_none() {
         assert_eq!(common_normal([RIGHT, UP], [RIGHT, UP]), None);
         assert_eq!(common_normal([RIGHT, UP], [DOWN, LEFT]), None, "a hollow");
+        assert_eq!(common_normal([UP, RIGHT], [LEFT, DOWN]), None, "not convex");
+        let nowhere = [f64::NAN; 2];
+        assert_eq!(common_normal([RIGHT, nowhere], [LEFT, DOWN]), None);
     }
 }

@@ -18,6 +18,11 @@ pub enum Cause {
         /// Determinant.
         determinant: f64,
     },
+    /// A segment has no length left.
+    Collapsed {
+        /// Its ends (indices).
+        segment: [usize; 2],
+    },
     /// The effective matrix is not positive definite.
     Indefinite {
         /// Node (index) whose pivot is not positive.
@@ -93,6 +98,7 @@ impl fmt::Display for Cause {
                     "an element turned inside out (det F = {determinant:.3e})"
                 )
             }
+            Cause::Collapsed { .. } => write!(f, "a segment shrank to a point"),
             Cause::Indefinite { .. } => write!(f, "the effective matrix is not positive definite"),
             Cause::Crossed { .. } => write!(f, "a node went through a segment"),
             Cause::LinearSolver(text) => write!(f, "the linear solver failed: {text}"),

@@ -106,6 +106,7 @@ impl Attempt<'_, '_> {
         for pass in 0..problem.settings.max_passes {
             // contact geometry of the iterate U^k
             let u = sum(u0, &d);
+            problem.check_segments(&u)?;
             let search = &mut *self.search;
             self.meter.time(|t| &mut t.search, || search.cover(&u));
             let pairs = self.meter.time(

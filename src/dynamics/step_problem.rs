@@ -10,6 +10,9 @@ use crate::elements::Body;
 use crate::lcp::LcpMethod;
 use crate::model::{Model, Settings};
 
+/// Part of its length in the reference configuration below which a segment counts as a point.
+const COLLAPSED: f64 = 1e-9;
+
 /// What stays the same over a step.
 pub(super) struct StepProblem<'m> {
     pub model: &'m Model,
@@ -77,6 +80,25 @@ impl StepProblem<'_> {
             d[dof] = u - u0[dof];
         }
         d
+    }
+
+    /// Every segment must have a length to have a normal.
+    ///
+    /// # Errors
+    /// [`Cause::Collapsed`] with the first one that has next to none of its own left.
+    pub fn check_segments(&self, u: &[f64]) -> Result<(), Cause> {
+        let x = &self.model.mesh.coordinates;
+        let length = |[p, q]: [[f64; 2]; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
+        let has_collapsed = |segment: &&[usize; 2]| {
+            let now = length(segment.map(|node| self.position(u, node)));
+            let least = COLLAPSED * length(segment.map(|node| x[node]));
+            now.is_nan() || now <= least
+        };
+        let mut segments = self.contacts.iter().flat_map(|contact| &contact.segments);
+        match segments.find(has_collapsed) {
+            Some(&segment) => Err(Cause::Collapsed { segment }),
+            None => Ok(()),
+        }
     }
 
     /// Pairs between `u0` and the iterate `u`, which the search covers, `before` being those of the

@@ -65,6 +65,12 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
             model.mesh.node_labels[a],
             model.mesh.node_labels[b],
         )),
+        Cause::Collapsed { segment: [a, b] } => Some(format!(
+            "segment  {}-{} at {}",
+            model.mesh.node_labels[a],
+            model.mesh.node_labels[b],
+            point(position(model, a, u)),
+        )),
         Cause::Lcp(ref failed) => Some(pairs_line(failed, model)),
         Cause::Indefinite { node } => Some(format!(
             "node     {} at {}",

@@ -1,6 +1,7 @@
 //! The solver as a library: problems with known answers.
 
 mod blocks;
+mod collapse;
 mod elastic_bar;
 mod events;
 mod fast;
