@@ -37,6 +37,11 @@ pub enum Cause {
         /// Ends (indices) of the segment.
         segment: [usize; 2],
     },
+    /// Contact would put energy in.
+    GainedEnergy {
+        /// As a part of the largest energy.
+        part: f64,
+    },
     /// A complementarity problem was not solved.
     Lcp(Box<FailedLcp>),
     /// A quantity is not finite.
@@ -101,6 +106,9 @@ impl fmt::Display for Cause {
             Cause::Collapsed { .. } => write!(f, "a segment shrank to a point"),
             Cause::Indefinite { .. } => write!(f, "the effective matrix is not positive definite"),
             Cause::Crossed { .. } => write!(f, "a node went through a segment"),
+            Cause::GainedEnergy { part } => {
+                write!(f, "contact would put energy in ({part:.1e} of the largest)")
+            }
             Cause::LinearSolver(text) => write!(f, "the linear solver failed: {text}"),
             Cause::Lcp(failed) => match &failed.error {
                 LcpError::Ray { .. } => {

@@ -3,7 +3,7 @@ use super::touching::Touching;
 use crate::contact::{Pair, Projection, Search, project};
 
 /// Gap (in segment lengths) of nodes that touch.
-const TOUCHING: f64 = 1e-9;
+pub(super) const TOUCHING: f64 = 1e-9;
 /// Penetration (in segment lengths) with which a node touches too: what a mesh may have.
 const PENETRATING: f64 = 2e-3;
 /// How far beyond its ends (in its lengths) a segment is touched.

@@ -7,6 +7,8 @@ use super::{Energy, Momentum, State};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Ledger {
     pub energy: Energy,
+    /// Largest energy or external work so far.
+    pub largest: f64,
     /// T + W at the start of the analysis.
     start: f64,
 }
@@ -20,6 +22,7 @@ impl Ledger {
                 strain,
                 ..Energy::default()
             },
+            largest: kinetic.max(strain),
             start: kinetic + strain,
         }
     }
@@ -69,6 +72,9 @@ impl Ledger {
             + e.friction_dissipation
             + e.impact_loss
             + e.numerical_dissipation;
+        for energy in [e.kinetic, e.strain, e.external_work.abs()] {
+            self.largest = self.largest.max(energy);
+        }
     }
 }
 

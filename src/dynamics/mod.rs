@@ -6,6 +6,7 @@ mod dofs;
 mod effective;
 mod events;
 mod failure;
+mod gain;
 mod grid;
 mod hold;
 mod impact;

@@ -3,6 +3,7 @@ use std::io;
 use super::dofs::DofMap;
 use super::effective::Effective;
 use super::events::{MOST_EVENTS, Piece, Pieces};
+use super::gain::check_gain;
 use super::grid::{Grid, StepPlace, WHOLE, increments_of};
 use super::increment::{Attempt, Failed, Solved};
 use super::ledger::{Ledger, momentum};
@@ -24,6 +25,8 @@ use crate::model::{ImpactTime, Increments, Model, Step};
 
 /// Halvings of an increment before the run stops.
 const HALVINGS: u32 = 10;
+/// Halvings of an increment because of the energy that contact puts in.
+const GAIN_HALVINGS: u32 = 5;
 
 /// Why a run could not go on, apart from a failed increment.
 #[derive(Debug, thiserror::Error)]
@@ -183,7 +186,8 @@ impl<'m> Runner<'m, '_> {
                 meter: &mut self.meter,
                 hold: None,
             };
-            match attempt.solve(&self.contact) {
+            let solved = attempt.solve(&self.contact);
+            match solved.and_then(|s| self.checked(problem, s, interval.dt, halvings, grid)) {
                 Ok(solved) => {
                     self.accept(problem, place, interval, solved)?;
                     piece += 1;
@@ -238,7 +242,9 @@ impl<'m> Runner<'m, '_> {
                 true => pieces.next(),
                 false => pieces.rest(),
             };
-            match next {
+            let halvings = ends.len() as u32 - 1;
+            let checked = |dt, s| self.checked(problem, s, dt, halvings, grid);
+            match next.and_then(|piece| piece.checked(checked)) {
                 Ok(Piece {
                     interval,
                     solved,
@@ -254,7 +260,6 @@ impl<'m> Runner<'m, '_> {
                 }
                 Err(broken) => {
                     let (interval, failed) = *broken;
-                    let halvings = ends.len() as u32 - 1;
                     let failure = self.failure(place, interval, failed, halvings);
                     if let Some(failure) = self.cut_back(failure, grid.dt_min)? {
                         return Ok(Some(failure));
@@ -264,6 +269,21 @@ impl<'m> Runner<'m, '_> {
             }
         }
         Ok(None)
+    }
+
+    /// A converged increment; one into which contact puts energy is halved, a few times.
+    fn checked(
+        &self,
+        problem: &StepProblem,
+        solved: Solved,
+        dt: f64,
+        halvings: u32,
+        grid: Grid,
+    ) -> Result<Solved, Failed> {
+        if halvings >= GAIN_HALVINGS || dt / 2.0 < grid.dt_min {
+            return Ok(solved);
+        }
+        check_gain(problem, &self.state, self.ledger.largest, solved)
     }
 
     fn failure(

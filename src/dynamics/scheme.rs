@@ -7,7 +7,7 @@ use crate::model::Scheme;
 pub(super) struct Weights {
     pub theta1: f64,
     pub theta2: f64,
-    energy_momentum: bool,
+    pub energy_momentum: bool,
 }
 
 impl Weights {

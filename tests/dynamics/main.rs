@@ -6,6 +6,7 @@ mod elastic_bar;
 mod events;
 mod fast;
 mod friction;
+mod gain;
 mod invariants;
 mod lcp_methods;
 mod loads;

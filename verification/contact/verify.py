@@ -65,6 +65,15 @@ def rise(results: Results) -> float:
     return float((total - np.minimum.accumulate(total)).max())
 
 
+def put_in(results: Results) -> float:
+    """Work of the normal contact forces in increments in which it is positive, against the largest
+    energy."""
+    account = results.energy
+    works = np.diff(account["normal_contact_work"])
+    largest = max(np.abs(account[name]).max() for name in ("kinetic", "strain", "external_work"))
+    return float(works[works > 0.0].sum() / largest)
+
+
 def imbalance(results: Results) -> float:
     """Largest sum of all contact forces of a frame against the sum of their magnitudes."""
     worst = 0.0
@@ -107,6 +116,7 @@ def check(verification: runner.Verification, case: runner.Case, results: Results
     if depth > penetration.LIMIT:
         print(f"      {penetration.describe(results, worst, overlaps[worst])}")
     verification.check("sum of contact forces / their magnitudes", name, imbalance(results))
+    verification.check("energy that contact put in / largest", name, put_in(results))
     account = results.energy
     if case.group == "free":
         linear, angular = momentum_changes(results)

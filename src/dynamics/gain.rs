@@ -1,0 +1,55 @@
+use super::hold::{TOUCHING, place};
+use super::increment::{Failed, Solved};
+use super::step_problem::StepProblem;
+use super::{Cause, State};
+
+/// Energy that contact may put in, as a part of the largest energy.
+const NEGLIGIBLE: f64 = 1e-10;
+
+/// Takes a converged increment from `start`, unless contact puts energy in that counts beside the
+/// `largest` so far.
+///
+/// # Errors
+/// The increment counts as failed, with [`Cause::GainedEnergy`]: in its halves a node passes a vertex
+/// before or after the vertex turns hollow.
+pub(super) fn check_gain(
+    problem: &StepProblem,
+    start: &State,
+    largest: f64,
+    solved: Solved,
+) -> Result<Solved, Failed> {
+    let part = gain(problem, start, &solved) / largest;
+    if part.is_nan() || part <= NEGLIGIBLE {
+        return Ok(solved);
+    }
+    Err(Failed {
+        cause: Cause::GainedEnergy { part },
+        worst: None,
+        passes: solved.passes,
+    })
+}
+
+/// The energy that contact puts in because nodes slide on to segments that they were behind (energy).
+///
+/// With energy-momentum rows a pair does the work Pn (g1 - g0). It is positive where a node slides over
+/// a convex vertex on to a segment with g0 < 0, and that segment holds it because the vertex turns
+/// hollow in the same increment. Nodes that start inside, as a mesh may have them, do not count.
+fn gain(problem: &StepProblem, start: &State, solved: &Solved) -> f64 {
+    if !problem.weights.energy_momentum {
+        return 0.0;
+    }
+    let Solved { d, forces, .. } = solved;
+    let pairs = forces.pairs.iter().zip(&forces.normal);
+    let works = pairs.map(|(pair, normal)| {
+        let [slave, a, b, _] = pair.at.nodes;
+        let p = place(problem, &start.u, [slave, a, b]);
+        let was_beyond = !(0.0..=1.0).contains(&p.xi) && p.gap < -TOUCHING * p.length;
+        // Pn.(Bn d)
+        if was_beyond {
+            normal * pair.normal_of(d)
+        } else {
+            0.0
+        }
+    });
+    works.filter(|&work| work > 0.0).sum()
+}
