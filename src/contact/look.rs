@@ -3,9 +3,9 @@ use super::crossing::{Crossing, Direction, Motion, crossings};
 use super::geometry::{Projection, project};
 
 /// Gap at the start of an increment (in segment lengths) that is no penetration.
-pub(super) const TOUCHING: f64 = 1e-9;
+pub(crate) const TOUCHING: f64 = 1e-9;
 /// Penetration of a mesh at the start of the analysis (in segment lengths) that is pushed out.
-const PENETRATING: f64 = 2e-3;
+pub(crate) const PENETRATING: f64 = 2e-3;
 /// How near the end of a segment the other side of a hollow is taken into account (in its lengths),
 /// besides the way of the node.
 pub(super) const NEAR: f64 = 0.1;

@@ -27,6 +27,7 @@ pub(crate) use geometry::position;
 pub use geometry::{Projection, project};
 pub use initial::{InitialGap, initial_gaps};
 pub use look::Look;
+pub(crate) use look::{PENETRATING, TOUCHING};
 pub use pair::{Pair, PairSite, RowForm};
 pub use passage::{Passage, Touch, find_passage};
 pub use penetration::report_penetrations;

@@ -1,6 +1,6 @@
 use super::State;
 use super::effective::Effective;
-use super::hold::{Hold, place};
+use super::hold::Hold;
 use super::increment::{Attempt, Failed, Solved};
 use super::loads::Moment;
 use super::meter::Meter;
@@ -173,7 +173,7 @@ impl<'m> Pieces<'_, 'm> {
                     rest
                 }
                 Some(entry) => {
-                    let gap = place(self.problem, &solved.end.u, entry.nodes);
+                    let gap = self.problem.place(&solved.end.u, entry.nodes);
                     if gap.gap.abs() <= MET * gap.length {
                         tau
                     } else {
@@ -223,7 +223,7 @@ impl<'m> Pieces<'_, 'm> {
     }
 
     fn join_at_start(&self, hold: &mut Hold, entry: Entry) {
-        let p = place(self.problem, &self.start.u, entry.nodes);
+        let p = self.problem.place(&self.start.u, entry.nodes);
         hold.join_at_start(entry.slot, entry.segment, p.normal);
     }
 
@@ -242,7 +242,7 @@ impl<'m> Pieces<'_, 'm> {
                         let segment = candidate.segment;
                         let [a, b] = surfaces.segments[segment];
                         let nodes = [s, a, b];
-                        let p = place(problem, u0, nodes);
+                        let p = problem.place(u0, nodes);
                         let is_free = flight.may_meet(&p, nodes)
                             && s != a
                             && s != b

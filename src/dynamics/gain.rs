@@ -1,7 +1,7 @@
-use super::hold::{TOUCHING, place};
 use super::increment::{Failed, Solved};
 use super::step_problem::StepProblem;
 use super::{Cause, State};
+use crate::contact::TOUCHING;
 
 /// Energy that contact may put in, as a part of the largest energy.
 const NEGLIGIBLE: f64 = 1e-10;
@@ -42,7 +42,7 @@ fn gain(problem: &StepProblem, start: &State, solved: &Solved) -> f64 {
     let pairs = forces.pairs.iter().zip(&forces.normal);
     let works = pairs.map(|(pair, normal)| {
         let [slave, a, b, _] = pair.at.nodes;
-        let p = place(problem, &start.u, [slave, a, b]);
+        let p = problem.place(&start.u, [slave, a, b]);
         let was_beyond = !(0.0..=1.0).contains(&p.xi) && p.gap < -TOUCHING * p.length;
         // Pn.(Bn d)
         if was_beyond {

@@ -1,11 +1,7 @@
 use super::step_problem::StepProblem;
 use super::touching::Touching;
-use crate::contact::{Pair, Projection, Search, project};
+use crate::contact::{PENETRATING, Pair, Projection, Search, TOUCHING};
 
-/// Gap (in segment lengths) of nodes that touch.
-pub(super) const TOUCHING: f64 = 1e-9;
-/// Penetration (in segment lengths) with which a node touches too: what a mesh may have.
-const PENETRATING: f64 = 2e-3;
 /// How far beyond its ends (in its lengths) a segment is touched.
 const ENDS: f64 = 1e-6;
 /// Cosine of the turn from a touched segment to another that a node may slide on to.
@@ -39,7 +35,7 @@ impl Hold {
                         continue;
                     }
                     let key = [slot, candidate.segment];
-                    let p = place(problem, u0, [slave, a, b]);
+                    let p = problem.place(u0, [slave, a, b]);
                     if touches(&p) || before.binary_search(&key).is_ok() {
                         touching.push((key, p.normal));
                     }
@@ -95,17 +91,11 @@ impl Hold {
     pub fn split(&self, problem: &StepProblem, u0: &[f64], pairs: Vec<Pair>) -> [Vec<Pair>; 2] {
         let (held, free) = pairs.into_iter().partition(|pair| {
             let [s, a, b, c] = pair.at.nodes;
-            let is_held = |nodes| self.holds(pair.at.slot, &place(problem, u0, nodes));
+            let is_held = |nodes| self.holds(pair.at.slot, &problem.place(u0, nodes));
             is_held([s, a, b]) || (pair.at.site.vertex.is_some() && is_held([s, b, c]))
         });
         [held, free]
     }
-}
-
-/// Place of a node relative to a segment.
-pub(super) fn place(problem: &StepProblem, u: &[f64], nodes: [usize; 3]) -> Projection {
-    let [s, a, b] = nodes.map(|node| problem.position(u, node));
-    project(s, a, b)
 }
 
 fn touches(p: &Projection) -> bool {

@@ -1,7 +1,7 @@
 use super::contact_forces::ContactForces;
 use super::convergence::{Scales, worst};
 use super::effective::Effective;
-use super::hold::{Hold, place};
+use super::hold::Hold;
 use super::impact::Impulses;
 use super::mass::largest;
 use super::meter::Meter;
@@ -186,7 +186,7 @@ impl Attempt<'_, '_> {
                 // a free node past a vertex may be behind the line of the segment it came from
                 let is_over = |pair: &Pair| {
                     let [s, a, b, _] = pair.at.nodes;
-                    (0.0..=1.0).contains(&place(problem, &u, [s, a, b]).xi)
+                    (0.0..=1.0).contains(&problem.place(&u, [s, a, b]).xi)
                 };
                 let open = left_out.into_iter();
                 let open = open.filter(|pair| pair.gap >= 0.0 || is_over(pair));

@@ -5,7 +5,9 @@ use super::mass::{Mass, largest};
 use super::scheme::Weights;
 use super::supports::Supports;
 use super::{Cause, State};
-use crate::contact::{ContactSurfaces, Pair, Pairing, Search, find_pairs, position};
+use crate::contact::{
+    ContactSurfaces, Pair, Pairing, Projection, Search, find_pairs, position, project,
+};
 use crate::elements::Body;
 use crate::lcp::LcpMethod;
 use crate::model::{Model, Settings};
@@ -71,6 +73,12 @@ impl StepProblem<'_> {
     /// Current position of a node.
     pub fn position(&self, u: &[f64], node: usize) -> [f64; 2] {
         position(&self.model.mesh.coordinates, u, node)
+    }
+
+    /// Place of a node relative to a segment: of slave, a and b.
+    pub fn place(&self, u: &[f64], nodes: [usize; 3]) -> Projection {
+        let [s, a, b] = nodes.map(|node| self.position(u, node));
+        project(s, a, b)
     }
 
     /// Displacement increment of the supports; zero at all other dofs.
