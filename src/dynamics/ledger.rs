@@ -1,7 +1,7 @@
 use super::increment::Solved;
 use super::mass::dot;
 use super::step_problem::{Equilibrium, StepProblem};
-use super::{Energy, Momentum, State};
+use super::{Energy, State};
 
 /// Energy ledger: every term is computed on its own, so that the balance shows what is wrong.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,8 +27,16 @@ impl Ledger {
         }
     }
 
-    /// Enters a converged increment that started from `start`.
-    pub fn enter(&mut self, problem: &StepProblem, start: &State, solved: &Solved, dt: f64) {
+    /// Enters a converged increment that started from `start` and ends with the strain energy
+    /// `strain`.
+    pub fn enter(
+        &mut self,
+        problem: &StepProblem,
+        start: &State,
+        solved: &Solved,
+        strain: f64,
+        dt: f64,
+    ) {
         let Solved {
             d,
             v0p,
@@ -44,7 +52,7 @@ impl Ledger {
         } = &solved.equilibrium;
         let e = &mut self.energy;
         let strain0 = e.strain;
-        e.strain = problem.body.strain_energy(&end.u);
+        e.strain = strain;
         e.kinetic = problem.mass.kinetic_energy(&end.v);
 
         // d.R_theta, and the supports: dt V_mid.(M A)_p + d_p.(F - R - B^T P)_p
@@ -76,18 +84,4 @@ impl Ledger {
             self.largest = self.largest.max(energy);
         }
     }
-}
-
-/// Linear momentum sum m v and angular momentum sum x cross m v about the origin.
-pub(super) fn momentum(problem: &StepProblem, state: &State) -> Momentum {
-    let p = problem.mass.times(&state.v);
-    let mut momentum = Momentum::default();
-    for node in 0..problem.model.mesh.node_count() {
-        let position = problem.position(&state.u, node);
-        let [px, py] = [p[2 * node], p[2 * node + 1]];
-        momentum.linear[0] += px;
-        momentum.linear[1] += py;
-        momentum.angular += position[0] * py - position[1] * px;
-    }
-    momentum
 }

@@ -1,6 +1,9 @@
 //! Time integration with contact and impact.
 
+mod accounts;
+mod bodies;
 mod contact_forces;
+mod contact_ledger;
 mod convergence;
 mod dofs;
 mod effective;
@@ -15,8 +18,10 @@ mod ledger;
 mod loads;
 mod mass;
 mod meter;
+mod pressure;
 mod report;
 mod results;
+mod rigid;
 mod root;
 mod run;
 mod scheme;
@@ -26,7 +31,8 @@ mod touching;
 
 pub use failure::{Cause, FailedLcp, Failure, Worst};
 pub use report::{
-    ContactResultant, Cutback, Energy, IncrementReport, Landing, Momentum, NodalResults,
-    NodeStatus, Observer, Outcome, PassReport, RunSummary, SolverCounts, State, Timings,
+    BodyResult, ContactImpulse, ContactOnBody, ContactResultant, Cutback, Energy, IncrementReport,
+    Landing, Momentum, NodalResults, NodeStatus, Observer, Outcome, PassReport, RigidReaction,
+    RunSummary, SolverCounts, State, Timings,
 };
 pub use run::{RunError, run};

@@ -1,23 +1,23 @@
 use std::io;
 
+use super::accounts::Accounts;
 use super::dofs::DofMap;
 use super::effective::Effective;
 use super::events::{MOST_EVENTS, Piece, Pieces};
 use super::gain::check_gain;
 use super::grid::{Grid, StepPlace, WHOLE, increments_of};
 use super::increment::{Attempt, Failed, Solved};
-use super::ledger::{Ledger, momentum};
+use super::ledger::Ledger;
 use super::loads::Loads;
 use super::mass::Mass;
 use super::meter::Meter;
-use super::results::{contact_resultants, landings, nodal_results};
+use super::results::landings;
 use super::scheme::Weights;
 use super::step_problem::{Interval, StepProblem};
 use super::supports::Supports;
 use super::touching::Touching;
 use super::{
-    ContactResultant, Cutback, Failure, IncrementReport, NodalResults, NodeStatus, Observer,
-    Outcome, RunSummary, SolverCounts, State,
+    Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State,
 };
 use crate::contact::{ContactSurfaces, Search, contact_surfaces};
 use crate::elements::Body;
@@ -57,6 +57,7 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
         },
         contact: Touching::default(),
         ledger: Ledger::new(0.0, 0.0),
+        accounts: Accounts::new(model, &mass, &contacts),
         increment: 0,
         cutbacks: 0,
         events: 0,
@@ -98,6 +99,7 @@ struct Runner<'m, 'o> {
     state: State,
     contact: Touching,
     ledger: Ledger,
+    accounts: Accounts,
     increment: usize,
     cutbacks: usize,
     events: usize,
@@ -330,8 +332,11 @@ impl<'m> Runner<'m, '_> {
         interval: Interval,
         solved: Solved,
     ) -> Result<(), RunError> {
+        let strain = self.body.strain_energies(&solved.end.u);
+        let total = strain.iter().sum();
         self.ledger
-            .enter(problem, &self.state, &solved, interval.dt);
+            .enter(problem, &self.state, &solved, total, interval.dt);
+        let accounted = self.accounts.enter(problem, &solved, interval, &strain);
         let landings = landings(problem, &self.state, &self.contact, &solved, interval);
         self.meter.counts.converged = true;
         self.totals.add(&self.meter.counts);
@@ -343,14 +348,12 @@ impl<'m> Runner<'m, '_> {
             step_time: interval.end.step,
             dt: interval.dt,
             ends_step: interval.end.step == place.period,
-            nodal: nodal_results(problem, &solved),
             energy: self.ledger.energy,
-            momentum: momentum(problem, &solved.end),
-            contacts: contact_resultants(problem, &solved),
             landings,
             solver: self.meter.counts,
             passes: solved.passes,
             state: solved.end,
+            ..accounted
         };
         self.contact = Touching::new(&solved.forces);
         self.observer.increment(&report)?;
@@ -371,30 +374,18 @@ impl<'m> Runner<'m, '_> {
         }
         self.state.a = problem.start_acceleration(effective, &self.state, now);
         let kinetic = self.mass.kinetic_energy(&self.state.v);
-        self.ledger = Ledger::new(kinetic, self.body.strain_energy(&self.state.u));
-        let (dofs, nodes) = (self.state.u.len(), self.state.u.len() / 2);
-        let none = ContactResultant {
-            min_gap: f64::NAN,
-            ..ContactResultant::default()
-        };
+        let strain = self.body.strain_energies(&self.state.u);
+        self.ledger = Ledger::new(kinetic, strain.iter().sum());
         let report = IncrementReport {
             step: place.number,
             time: now.total,
-            nodal: NodalResults {
-                reaction: vec![0.0; dofs],
-                contact_force: vec![0.0; dofs],
-                gap: vec![f64::NAN; nodes],
-                status: vec![NodeStatus::None; nodes],
-            },
             energy: self.ledger.energy,
-            momentum: momentum(problem, &self.state),
-            contacts: vec![none; self.contacts.len()],
             solver: SolverCounts {
                 converged: true,
                 ..SolverCounts::default()
             },
             state: self.state.clone(),
-            ..IncrementReport::default()
+            ..self.accounts.start(problem, &self.state, &strain)
         };
         self.observer.increment(&report)?;
         Ok(())

@@ -5,6 +5,8 @@
 //! and the screen (`screen`, `progress`). `docs/output.md` describes them.
 
 mod balance;
+mod body_history;
+mod body_times;
 mod clock;
 mod console;
 mod contact_history;
@@ -20,9 +22,11 @@ mod job;
 mod log;
 mod model;
 mod names;
+mod node_history;
 mod progress;
 mod record;
 mod result_file;
+mod rigid_history;
 mod screen;
 mod series;
 mod status;

@@ -3,10 +3,11 @@
 use hdf5::types::FixedAscii;
 use hdf5::{Group, H5Type};
 
+use super::model::number;
 use super::dataset::{Column, Meaning, constant, group, meaning, set_attribute};
 use crate::dynamics::{NodalResults, State};
-use crate::elements::element_means;
-use crate::model::{Cell, Mesh, Model};
+use crate::elements::{ElementMeans, element_means};
+use crate::model::{Bodies, Cell, Mesh, Model};
 
 /// Cell types of VTK.
 const VTK_LINE: u8 = 3;
@@ -46,8 +47,14 @@ pub(super) struct Fields {
     contact_force: Field<f64>,
     gap: Field<f64>,
     status: Field<u8>,
+    pressure: Field<f64>,
+    slip: Field<f64>,
     stress: Field<f64>,
+    across: Field<f64>,
+    von_mises: Field<f64>,
     strain: Field<f64>,
+    /// First row of `CellData/BODY`, which is the same in all frames.
+    body_offsets: Column<i64>,
     /// Cells after the elements: the segments of rigid surfaces.
     lines: usize,
 }
@@ -63,6 +70,7 @@ impl Fields {
         let points = Place::new(&grid, &steps.group, "Point", model.mesh.node_count())?;
         let cells = model.mesh.elements.len() + lines.len();
         let cells = Place::new(&grid, &steps.group, "Cell", cells)?;
+        write_bodies(&cells.data, model, lines.len())?;
         Ok(Fields {
             displacement: points.field("U", &[3], meaning("displacement", "length"))?,
             velocity: points.field("V", &[3], meaning("velocity", "length/time"))?,
@@ -71,8 +79,13 @@ impl Fields {
             contact_force: points.field("CONTACT_FORCE", &[3], CONTACT_FORCE)?,
             gap: points.field("GAP", &[], GAP)?,
             status: points.field("CONTACT_STATUS", &[], STATUS)?,
+            pressure: points.field("CONTACT_PRESSURE", &[], PRESSURE)?,
+            slip: points.field("SLIP", &[], SLIP)?,
             stress: cells.field("S", &[3], STRESS)?,
+            across: cells.field("S33", &[], ACROSS)?,
+            von_mises: cells.field("MISES", &[], VON_MISES)?,
             strain: cells.field("E", &[3], STRAIN)?,
+            body_offsets: Column::series(&cells.offsets, "BODY", &[], OFFSETS)?,
             steps,
             lines: lines.len(),
         })
@@ -94,11 +107,19 @@ impl Fields {
         self.contact_force.push(in_space(&nodal.contact_force))?;
         self.gap.push(nodal.gap.iter().copied())?;
         self.status.push(nodal.status.iter().map(|&s| s as u8))?;
-        let of_lines = || std::iter::repeat_n(f64::NAN, 3 * self.lines);
+        self.pressure.push(nodal.pressure.iter().copied())?;
+        self.slip.push(nodal.slip.iter().copied())?;
+        let of_lines = |components| std::iter::repeat_n(f64::NAN, components * self.lines);
         let stress = means.iter().flat_map(|mean| mean.stress);
-        self.stress.push(stress.chain(of_lines()))?;
+        self.stress.push(stress.chain(of_lines(3)))?;
+        let across = means.iter().map(|mean| mean.across);
+        self.across.push(across.chain(of_lines(1)))?;
+        let von_mises = means.iter().map(ElementMeans::von_mises);
+        self.von_mises.push(von_mises.chain(of_lines(1)))?;
         let strain = means.iter().flat_map(|mean| mean.strain);
-        self.strain.push(strain.chain(of_lines()))?;
+        self.strain.push(strain.chain(of_lines(3)))?;
+        self.body_offsets.push([0])?;
+        self.body_offsets.flush()?;
         self.steps.push(time)
     }
 
@@ -117,6 +138,20 @@ const STATUS: Meaning = meaning(
     "contact status as slave: 0 none, 1 open, 2 stick, 3 slip",
     "1",
 );
+const PRESSURE: Meaning = meaning(
+    "contact pressure at slave nodes, NaN at others",
+    "force/length^2",
+);
+const SLIP: Meaning = meaning(
+    "way slid in contact since the start at slave nodes, NaN at others",
+    "length",
+);
+const ACROSS: Meaning = meaning(
+    "Cauchy stress across the thickness, mean over the element",
+    "force/length^2",
+);
+const VON_MISES: Meaning = meaning("von Mises stress of S and S33", "force/length^2");
+const BODY: Meaning = meaning("body of the cell, -1 for rigid segments", "1");
 const STRESS: Meaning = meaning(
     "Cauchy stress xx yy xy, mean over the element",
     "force/length^2",
@@ -241,6 +276,16 @@ fn write_mesh(grid: &Group, mesh: &Mesh, lines: &[[usize; 2]]) -> hdf5::Result<(
     let mut types = types(mesh);
     types.resize(cells, VTK_LINE);
     constant(grid, "Types", &[cells], &types, text)
+}
+
+/// The body of every cell, `lines` rigid segments being the last.
+fn write_bodies(at: &Group, model: &Model, lines: usize) -> hdf5::Result<()> {
+    let of_element = Bodies::new(&model.mesh).of_element;
+    let elements = of_element.into_iter().map(|body| number(Some(body)));
+    let cells: Vec<i64> = elements
+        .chain(std::iter::repeat_n(number(None), lines))
+        .collect();
+    constant(at, "BODY", &[cells.len()], &cells, BODY)
 }
 
 /// Node indices of all elements, one element after the other.

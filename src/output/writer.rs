@@ -74,6 +74,8 @@ impl LastState {
         self.nodal.contact_force.clone_from(&nodal.contact_force);
         self.nodal.gap.clone_from(&nodal.gap);
         self.nodal.status.clone_from(&nodal.status);
+        self.nodal.pressure.clone_from(&nodal.pressure);
+        self.nodal.slip.clone_from(&nodal.slip);
         self.written = written;
     }
 }

@@ -11,14 +11,14 @@ use super::surface::Surfaces;
 use super::{rigid, settings};
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic};
-use crate::model::{Impact, Increments, Settings, Step, Support};
+use crate::model::{HistorySet, Impact, Increments, Settings, Step, Support};
 
 /// Everything the steps of a deck say.
 pub(super) struct Steps {
     /// Steps in order.
     pub all: Vec<Step>,
     /// Node sets of the history.
-    pub history: Vec<usize>,
+    pub history: Vec<HistorySet>,
     /// Supports of the first step.
     pub at_start: Vec<Support>,
 }
