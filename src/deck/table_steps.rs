@@ -39,7 +39,10 @@ const TOTALS: P = P::choice(
     &[
         V::read("NO", "motion and reactions of every node too (default)"),
         V::read("YES", "the same"),
-        V::read("ONLY", "sums and means only, unless another card asks for all"),
+        V::read(
+            "ONLY",
+            "sums and means only, unless another card asks for all",
+        ),
     ],
     "sums over the set are always in the history",
 );

@@ -7,7 +7,8 @@ use super::results::{contact_resultants, nodal_results};
 use super::rigid::RigidSurfaces;
 use super::step_problem::{Interval, StepProblem};
 use super::{
-    ContactOnBody, ContactResultant, IncrementReport, NodalResults, NodeStatus, RigidReaction, State,
+    ContactOnBody, ContactResultant, IncrementReport, NodalResults, NodeStatus, RigidReaction,
+    State,
 };
 use crate::contact::ContactSurfaces;
 use crate::model::{Contact, Model};

@@ -163,7 +163,10 @@ mod tests {
         let means = element_means(&square(Plane::Stress), &u)[0];
         assert_eq!(means.across, 0.0);
         let [xx, yy, _] = means.stress;
-        assert!(near(means.von_mises(), (xx * xx - xx * yy + yy * yy).sqrt()));
+        assert!(near(
+            means.von_mises(),
+            (xx * xx - xx * yy + yy * yy).sqrt()
+        ));
     }
 
     #[test]

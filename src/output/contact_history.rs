@@ -57,7 +57,10 @@ const REFERENCE_MOMENT: [Scalar<ContactResultant, f64>; 1] = [scalar(
     |c| c.reference_moment,
 )];
 
-const IMPULSE: Meaning = meaning("impulse on the slave surface in the increment", "force*time");
+const IMPULSE: Meaning = meaning(
+    "impulse on the slave surface in the increment",
+    "force*time",
+);
 const IMPULSES: [Scalar<ContactImpulse, f64>; 4] = [
     scalar(
         "normal_impulse",

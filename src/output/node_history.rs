@@ -87,11 +87,7 @@ impl NodeHistory {
     }
 }
 
-fn columns(
-    at: &Group,
-    row: &[usize],
-    shown: &[Shown],
-) -> hdf5::Result<Vec<(Column<f64>, Vector)>> {
+fn columns(at: &Group, row: &[usize], shown: &[Shown]) -> hdf5::Result<Vec<(Column<f64>, Vector)>> {
     let column = |&(name, text, dimension, vector): &Shown| {
         let column = Column::series(at, name, row, meaning(text, dimension))?;
         Ok((column, vector))

@@ -3,8 +3,8 @@
 use hdf5::types::FixedAscii;
 use hdf5::{Group, H5Type};
 
-use super::model::number;
 use super::dataset::{Column, Meaning, constant, group, meaning, set_attribute};
+use super::model::number;
 use crate::dynamics::{NodalResults, State};
 use crate::elements::{ElementMeans, element_means};
 use crate::model::{Bodies, Cell, Mesh, Model};
