@@ -14,18 +14,13 @@ const VTK_LINE: u8 = 3;
 const VTK_TRIANGLE: u8 = 5;
 const VTK_QUAD: u8 = 9;
 
-/// A field with `3` components (or one) per node or element, and where its frames start.
-struct Field<T> {
-    values: Column<T>,
-    offsets: Column<i64>,
-}
+/// A field with `3` components (or one) per node or element.
+struct Field<T>(Column<T>);
 
 impl<T: H5Type + Copy> Field<T> {
     fn push(&mut self, values: impl IntoIterator<Item = T>) -> hdf5::Result<()> {
-        self.offsets.push([self.values.rows() as i64])?;
-        self.values.push(values)?;
-        self.values.flush()?;
-        self.offsets.flush()
+        self.0.push(values)?;
+        self.0.flush()
     }
 }
 
@@ -40,6 +35,8 @@ struct Steps {
 /// Writes the field frames.
 pub(super) struct Fields {
     steps: Steps,
+    points: Offsets,
+    cells: Offsets,
     displacement: Field<f64>,
     velocity: Field<f64>,
     acceleration: Field<f64>,
@@ -67,9 +64,9 @@ impl Fields {
         let lines = model.rigid_segments();
         write_mesh(&grid, &model.mesh, &lines)?;
         let steps = Steps::create(&grid)?;
-        let points = Place::new(&grid, &steps.group, "Point", model.mesh.node_count())?;
+        let mut points = Place::new(&grid, &steps.group, "Point", model.mesh.node_count())?;
         let cells = model.mesh.elements.len() + lines.len();
-        let cells = Place::new(&grid, &steps.group, "Cell", cells)?;
+        let mut cells = Place::new(&grid, &steps.group, "Cell", cells)?;
         write_bodies(&cells.data, model, lines.len())?;
         Ok(Fields {
             displacement: points.field("U", &[3], meaning("displacement", "length"))?,
@@ -85,7 +82,9 @@ impl Fields {
             across: cells.field("S33", &[], ACROSS)?,
             von_mises: cells.field("MISES", &[], VON_MISES)?,
             strain: cells.field("E", &[3], STRAIN)?,
-            body_offsets: Column::series(&cells.offsets, "BODY", &[], OFFSETS)?,
+            body_offsets: Column::series(&cells.offsets.group, "BODY", &[], OFFSETS)?,
+            points: points.offsets,
+            cells: cells.offsets,
             steps,
             lines: lines.len(),
         })
@@ -120,6 +119,8 @@ impl Fields {
         self.strain.push(strain.chain(of_lines(3)))?;
         self.body_offsets.push([0])?;
         self.body_offsets.flush()?;
+        self.points.push()?;
+        self.cells.push()?;
         self.steps.push(time)
     }
 
@@ -202,30 +203,65 @@ impl Steps {
 /// Where fields of one kind go: `PointData` or `CellData`.
 struct Place {
     data: Group,
-    offsets: Group,
+    offsets: Offsets,
     /// Rows of a frame.
     rows: usize,
+}
+
+/// First rows of the frames: the same for all fields of one kind, one dataset under their names.
+struct Offsets {
+    group: Group,
+    /// The first name, and the dataset.
+    column: Option<(String, Column<i64>)>,
+    /// Rows of a frame.
+    rows: usize,
+}
+
+impl Offsets {
+    /// Gives the dataset the name of a further field.
+    fn add(&mut self, name: &str) -> hdf5::Result<()> {
+        match &self.column {
+            Some((first, _)) => self.group.link_hard(first, name),
+            None => {
+                let column = Column::series(&self.group, name, &[], OFFSETS)?;
+                self.column = Some((name.to_owned(), column));
+                Ok(())
+            }
+        }
+    }
+
+    /// Appends a frame.
+    fn push(&mut self) -> hdf5::Result<()> {
+        let rows = self.rows;
+        self.column.iter_mut().try_for_each(|(_, column)| {
+            column.push([(column.rows() * rows) as i64])?;
+            column.flush()
+        })
+    }
 }
 
 impl Place {
     fn new(grid: &Group, steps: &Group, kind: &str, rows: usize) -> hdf5::Result<Self> {
         Ok(Place {
             data: group(grid, &format!("{kind}Data"))?,
-            offsets: group(steps, &format!("{kind}DataOffsets"))?,
+            offsets: Offsets {
+                group: group(steps, &format!("{kind}DataOffsets"))?,
+                column: None,
+                rows,
+            },
             rows,
         })
     }
 
     fn field<T: H5Type + Copy>(
-        &self,
+        &mut self,
         name: &str,
         row: &[usize],
         text: Meaning,
     ) -> hdf5::Result<Field<T>> {
-        Ok(Field {
-            values: Column::frames(&self.data, name, row, self.rows, text)?,
-            offsets: Column::series(&self.offsets, name, &[], OFFSETS)?,
-        })
+        self.offsets.add(name)?;
+        let column = Column::frames(&self.data, name, row, self.rows, text)?;
+        Ok(Field(column))
     }
 }
 
