@@ -9,7 +9,7 @@ use crate::model::{
 };
 
 /// Width of the screen in columns.
-const WIDTH: usize = 80;
+pub(super) const WIDTH: usize = 80;
 
 /// Numbers that describe a model.
 #[derive(Debug, Clone, PartialEq)]

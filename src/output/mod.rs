@@ -32,6 +32,7 @@ mod series;
 mod status;
 mod summary;
 mod vtkhdf;
+mod warnings;
 mod writer;
 
 pub use console::Verbosity;

@@ -18,6 +18,7 @@ use super::record::{RunRecord, phases};
 use super::result_file::ResultFile;
 use super::screen::{Table, row};
 use super::status::StatusFile;
+use super::warnings::Watch;
 use crate::dynamics::{
     Cause, Cutback, Failure, IncrementReport, NodalResults, Observer, Outcome, RunSummary,
     SolverCounts, State,
@@ -40,6 +41,7 @@ pub struct ResultWriter<'a> {
     table: Table,
     schedule: FrameSchedule<'a>,
     balance: Balance,
+    watch: Watch,
     last: LastState,
     /// Failed attempts since the last increment.
     failed_attempts: usize,
@@ -120,6 +122,7 @@ impl<'a> ResultWriter<'a> {
             table: Table::new(model),
             schedule: FrameSchedule::new(model),
             balance: Balance::new(model),
+            watch: Watch::default(),
             last: LastState::default(),
             failed_attempts: 0,
             cutbacks: 0,
@@ -177,6 +180,7 @@ impl<'a> ResultWriter<'a> {
         if let Some(gain) = self.balance.add(report) {
             self.print_gain(report.increment, gain)?;
         }
+        self.watch.add(report);
         self.landings += report.landings.len();
         for contact in &report.contacts {
             self.cone_violation = self.cone_violation.max(contact.cone_violation);
@@ -296,6 +300,9 @@ impl<'a> ResultWriter<'a> {
             for line in lcp_lines(&summary.solver) {
                 self.console.line(&line)?;
             }
+        }
+        for line in self.watch.findings(self.model, &self.balance).lines() {
+            self.console.line(&line)?;
         }
         let (name, size) = self.result.name_and_size();
         let frames = counted(self.result.frames(), "frame");
