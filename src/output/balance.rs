@@ -70,7 +70,9 @@ impl Balance {
         }
         let work = report.energy.normal_contact_work;
         let gain = work - std::mem::replace(&mut self.contact_work, work);
-        self.most_contact_work = self.most_contact_work.max(work.abs());
+        if work.is_nan() || work.abs() > self.most_contact_work {
+            self.most_contact_work = work.abs();
+        }
         let puts_in = gain > ROUND_OFF * self.largest;
         if puts_in {
             self.gains.count += 1;

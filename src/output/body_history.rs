@@ -71,10 +71,10 @@ impl BodyHistory {
     /// Appends a row to each dataset.
     pub fn push(&mut self, bodies: &[BodyResult]) -> hdf5::Result<()> {
         for (column, value) in &mut self.vectors {
-            column.push(bodies.iter().flat_map(|body| value(body)))?;
+            column.push(bodies.iter().flat_map(&*value))?;
         }
         for (column, value) in &mut self.scalars {
-            column.push(bodies.iter().map(|body| value(body)))?;
+            column.push(bodies.iter().map(&*value))?;
         }
         Ok(())
     }

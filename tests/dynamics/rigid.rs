@@ -56,10 +56,10 @@ fn check_reaction(model: &Model, report: &IncrementReport, floor: &[usize]) {
     }
     let contact = &report.contacts[0];
     let scale = 1e-12 * (1.0 + contact.normal.abs());
-    for i in 0..2 {
-        assert_eq!(reaction.force[i], force[i]);
-        assert_eq!(nodal.reaction[2 * reference + i], force[i]);
-        assert!((reaction.force[i] - contact.force[i]).abs() < scale);
+    assert_eq!(reaction.force, force);
+    assert_eq!(nodal.reaction[2 * reference..2 * reference + 2], force);
+    for (reaction, force) in reaction.force.iter().zip(contact.force) {
+        assert!((reaction - force).abs() < scale);
     }
     assert!((reaction.moment - moment).abs() < 10.0 * scale);
     assert!((reaction.moment - contact.reference_moment).abs() < 10.0 * scale);
