@@ -131,6 +131,7 @@ impl Way<'_> {
                 && p.gap < 0.0
                 && !self.is_round_off(-p.gap, p.length)
                 && -p.gap <= 2.0 * self.length_of_way(i)
+                && !self.is_far_side(i)
         };
         let depth = |i: usize| -self.place(i, 1.0).gap;
         let nearest = |i: &usize, j: &usize| depth(*i).total_cmp(&depth(*j));
@@ -142,6 +143,15 @@ impl Way<'_> {
         };
         let is_held = self.touch.now.contains(&i);
         (is_nearest && !is_held && others.clone().any(was_outside)).then_some(i)
+    }
+
+    /// Whether the node is part of the body behind a segment at the end.
+    fn is_far_side(&self, i: usize) -> bool {
+        let at = |node: usize| position(self.x, self.u[1], node);
+        let ContactSurfaces {
+            interior, segments, ..
+        } = self.contact;
+        interior.joins(segments[i], self.slave, at)
     }
 
     /// Distance from a segment at the end.

@@ -111,6 +111,7 @@ fn contact() -> Contact {
         master: 1,
         interaction: Some(0),
         adjust: None,
+        left_out: Vec::new(),
         span: Span::default(),
     }
 }
