@@ -167,6 +167,7 @@ fn to_a_passage(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Ru
     failure.cause = Cause::Crossed {
         slave: 3,
         segment: [0, 1],
+        prescribed: true,
     };
     Ok(summary(Outcome::Stopped(Box::new(failure)), 0))
 }

@@ -21,7 +21,7 @@ fn passes_of(closed: bool, from: [f64; 2], to: [f64; 2], touch: Touch) -> Option
     let contacts = [surfaces];
     let mut search = Search::new(&contacts, &x);
     search.cover_way(&u0, &u1);
-    find_passage(&search, &u0, &u1, &[touch], 0.0).map(|passage| passage.segment)
+    find_passage(&search, &u0, &u1, &[touch], &vec![0.0; x.len()]).map(|passage| passage.segment)
 }
 
 fn passes(from: [f64; 2], to: [f64; 2], touch: Touch) -> Option<[usize; 2]> {
@@ -133,7 +133,7 @@ fn a_hollow_corner_holds_a_node_with_both_sides() {
         let contacts = [surfaces.clone()];
         let mut search = Search::new(&contacts, &x);
         search.cover_way(&u0, &u1);
-        find_passage(&search, &u0, &u1, &[held(true, 0)], 0.0)
+        find_passage(&search, &u0, &u1, &[held(true, 0)], &[0.0; 4])
     };
     let through = Passage {
         slave: 0,
@@ -166,11 +166,11 @@ fn a_node_may_not_end_inside_a_vertex_that_has_become_a_hollow() {
     }];
     let u1 = move_to(end);
     search.cover_way(&u0, &u1);
-    let passage = find_passage(&search, &u0, &u1, &touch, 0.0);
+    let passage = find_passage(&search, &u0, &u1, &touch, &[0.0; 4]);
     assert_eq!(passage.map(|p| p.segment), Some([2, 3]));
     // in the hollow
     let above = [[-0.2, -0.2], end[1], end[2], end[3]];
     let u1 = move_to(above);
     search.cover_way(&u0, &u1);
-    assert_eq!(find_passage(&search, &u0, &u1, &touch, 0.0), None);
+    assert_eq!(find_passage(&search, &u0, &u1, &touch, &[0.0; 4]), None);
 }

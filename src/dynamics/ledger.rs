@@ -1,10 +1,11 @@
 use super::increment::Solved;
 use super::mass::dot;
 use super::step_problem::{Equilibrium, StepProblem};
-use super::{Energy, Momentum, State};
+use super::{Cause, Energy, Momentum, State};
+use crate::linear::{larger, largest};
 
 /// Energy ledger: every term is computed on its own, so that the balance shows what is wrong.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Ledger {
     pub energy: Energy,
     /// Largest energy or external work so far.
@@ -22,13 +23,22 @@ impl Ledger {
                 strain,
                 ..Energy::default()
             },
-            largest: kinetic.max(strain),
+            largest: larger(kinetic, strain),
             start: kinetic + strain,
         }
     }
 
-    /// Enters a converged increment that started from `start`.
-    pub fn enter(&mut self, problem: &StepProblem, start: &State, solved: &Solved, dt: f64) {
+    /// The ledger with a converged increment that started from `start`.
+    ///
+    /// # Errors
+    /// An energy that is not finite.
+    pub fn with(
+        mut self,
+        problem: &StepProblem,
+        start: &State,
+        solved: &Solved,
+        dt: f64,
+    ) -> Result<Self, Cause> {
         let Solved {
             d,
             v0p,
@@ -72,9 +82,37 @@ impl Ledger {
             + e.friction_dissipation
             + e.impact_loss
             + e.numerical_dissipation;
-        for energy in [e.kinetic, e.strain, e.external_work.abs()] {
-            self.largest = self.largest.max(energy);
-        }
+        let largest = largest(&[self.largest, e.kinetic, e.strain, e.external_work]);
+        self.largest = largest;
+        self.check(end)?;
+        Ok(self)
+    }
+
+    /// All energies must be finite.
+    ///
+    /// # Errors
+    /// [`Cause::NotFinite`] with the node that moves most in `state`, or is the fastest.
+    pub fn check(&self, state: &State) -> Result<(), Cause> {
+        let e = &self.energy;
+        let energies = [
+            ("the strain energy", e.strain, &state.u),
+            ("the kinetic energy", e.kinetic, &state.v),
+            ("the external work", e.external_work, &state.v),
+            ("the work of the contact forces", e.normal_contact_work, &state.v),
+            ("the friction dissipation", e.friction_dissipation, &state.v),
+            ("the impact loss", e.impact_loss, &state.v),
+            ("the numerical dissipation", e.numerical_dissipation, &state.u),
+            ("the energy balance", e.balance, &state.v),
+        ];
+        let wrong = energies.iter().find(|(_, energy, _)| !energy.is_finite());
+        wrong.map_or(Ok(()), |&(what, _, motion)| {
+            let larger = |i: &usize, j: &usize| motion[*i].abs().total_cmp(&motion[*j].abs());
+            let dof = (0..motion.len()).max_by(larger).unwrap_or(0);
+            Err(Cause::NotFinite {
+                what,
+                node: dof / 2,
+            })
+        })
     }
 }
 

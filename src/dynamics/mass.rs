@@ -43,17 +43,6 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Largest absolute value; NaN when there is one.
-pub(super) fn largest(v: &[f64]) -> f64 {
-    v.iter().fold(0.0, |m: f64, x| {
-        if x.abs() > m || x.is_nan() {
-            x.abs()
-        } else {
-            m
-        }
-    })
-}
-
 /// Mass matrix over the unknowns of a step.
 pub(super) fn unknown_mass(body: &Body, dofs: &DofMap) -> Assembled {
     let mut mass = Assembled::new(dofs.dof.len(), &dofs.element_unknowns(body));

@@ -15,6 +15,7 @@ mod ledger;
 mod loads;
 mod mass;
 mod meter;
+mod parts;
 mod report;
 mod results;
 mod root;

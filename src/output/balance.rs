@@ -1,3 +1,4 @@
+use crate::linear::larger;
 use crate::dynamics::{Energy, IncrementReport, Momentum};
 use crate::model::Model;
 
@@ -60,9 +61,9 @@ impl Balance {
             ..
         } = report.energy;
         for energy in [kinetic, strain, external_work] {
-            self.largest = self.largest.max(energy.abs());
+            self.largest = larger(self.largest, energy.abs());
         }
-        self.worst = self.worst.max(balance.abs());
+        self.worst = larger(self.worst, balance.abs());
         if self.free {
             self.add_momentum(report.momentum);
         }
@@ -84,8 +85,8 @@ impl Balance {
     fn add_momentum(&mut self, momentum: Momentum) {
         let [x, y] = momentum.linear;
         let [x0, y0] = self.start.get_or_insert(momentum).linear;
-        self.momentum = self.momentum.max(x.hypot(y));
-        self.drift = self.drift.max((x - x0).hypot(y - y0));
+        self.momentum = larger(self.momentum, x.hypot(y));
+        self.drift = larger(self.drift, (x - x0).hypot(y - y0));
     }
 
     /// `balance` as a part of the largest energy so far.

@@ -3,6 +3,7 @@
 use super::echo::wrap;
 use super::format::{counted, scientific};
 use super::log::pass_table;
+use super::strain::LIMIT;
 use crate::dynamics::{Cause, FailedLcp, Failure, Worst};
 use crate::lcp::LcpError;
 use crate::model::Model;
@@ -13,23 +14,26 @@ const SHOWN_PAIRS: usize = 4;
 /// Increment, time, cause, worst place, what was tried and the passes; `u` is the last converged
 /// displacement.
 pub(super) fn failure_lines(failure: &Failure, model: &Model, u: &[f64]) -> Vec<String> {
-    let what = [
-        format!(
-            "increment {} of step {} failed at time {}",
-            failure.increment,
-            failure.step,
-            scientific(failure.time, 6),
-        ),
-        failure.cause.to_string(),
-    ];
+    let time = scientific(failure.time, 6);
+    let (increment, step) = (failure.increment, failure.step);
+    let where_it_failed = match increment {
+        0 => format!("the start of step {step} failed at time {time}"),
+        _ => format!("increment {increment} of step {step} failed at time {time}"),
+    };
+    let what = [where_it_failed, failure.cause.to_string()];
     let mut lines = wrap("stopped", &what);
     lines.extend(failure.worst.as_ref().map(|worst| worst_line(worst, model)));
     lines.extend(place_line(&failure.cause, model, u));
-    lines.push(format!(
-        "tried    {} of the increment; the last attempt with dt {}",
-        counted(failure.halvings as usize, "halving"),
-        scientific(failure.dt, 3),
-    ));
+    if let Cause::Inverted { .. } = failure.cause {
+        lines.extend(LIMIT.map(str::to_owned));
+    }
+    if increment > 0 {
+        lines.push(format!(
+            "tried    {} of the increment; the last attempt with dt {}",
+            counted(failure.halvings as usize, "halving"),
+            scientific(failure.dt, 3),
+        ));
+    }
     if !failure.passes.is_empty() {
         lines.push("passes   of the last attempt:".into());
         lines.extend(pass_table(&failure.passes));
@@ -58,13 +62,20 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
         Cause::Crossed {
             slave,
             segment: [a, b],
-        } => Some(format!(
-            "node     {} at {} through the segment {}-{}",
-            model.mesh.node_labels[slave],
-            point(position(model, slave, u)),
-            model.mesh.node_labels[a],
-            model.mesh.node_labels[b],
-        )),
+            prescribed,
+        } => {
+            let both = match prescribed {
+                true => "; both sides are prescribed: they are driven into each other",
+                false => "",
+            };
+            Some(format!(
+                "node     {} at {} through the segment {}-{}{both}",
+                model.mesh.node_labels[slave],
+                point(position(model, slave, u)),
+                model.mesh.node_labels[a],
+                model.mesh.node_labels[b],
+            ))
+        }
         Cause::Collapsed { segment: [a, b] } => Some(format!(
             "segment  {}-{} at {}",
             model.mesh.node_labels[a],
@@ -72,7 +83,7 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
             point(position(model, a, u)),
         )),
         Cause::Lcp(ref failed) => Some(pairs_line(failed, model)),
-        Cause::Indefinite { node } => Some(format!(
+        Cause::Indefinite { node } | Cause::NotFinite { node, .. } => Some(format!(
             "node     {} at {}",
             model.mesh.node_labels[node],
             point(position(model, node, u)),
