@@ -121,10 +121,7 @@ impl<'a> Scales<'a> {
             is_noise[body] &= residual <= self.noise[part];
         }
         (0..self.increment.len()).all(|body| {
-            let most = larger(
-                self.tolerance * self.increment[body],
-                self.resolution[body],
-            );
+            let most = larger(self.tolerance * self.increment[body], self.resolution[body]);
             is_noise[body] || errors.correction[body] <= most
         })
     }

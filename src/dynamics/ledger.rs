@@ -98,10 +98,18 @@ impl Ledger {
             ("the strain energy", e.strain, &state.u),
             ("the kinetic energy", e.kinetic, &state.v),
             ("the external work", e.external_work, &state.v),
-            ("the work of the contact forces", e.normal_contact_work, &state.v),
+            (
+                "the work of the contact forces",
+                e.normal_contact_work,
+                &state.v,
+            ),
             ("the friction dissipation", e.friction_dissipation, &state.v),
             ("the impact loss", e.impact_loss, &state.v),
-            ("the numerical dissipation", e.numerical_dissipation, &state.u),
+            (
+                "the numerical dissipation",
+                e.numerical_dissipation,
+                &state.u,
+            ),
             ("the energy balance", e.balance, &state.v),
         ];
         let wrong = energies.iter().find(|(_, energy, _)| !energy.is_finite());

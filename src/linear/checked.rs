@@ -94,11 +94,7 @@ impl CheckedSolver {
         let inverse = self.solver.inverse_at(unknowns, n);
         let sums = sum(&inverse, m);
         let difference = |(sum, &unknown): (&f64, &usize)| (sum - x[unknown]).abs();
-        let worst = sums
-            .iter()
-            .zip(unknowns)
-            .map(difference)
-            .fold(0.0, larger);
+        let worst = sums.iter().zip(unknowns).map(difference).fold(0.0, larger);
         let scale = largest(&inverse);
         if sums.iter().any(|sum| !sum.is_finite()) {
             return Err(LinearError::NotFinite("an inverse"));

@@ -1,5 +1,5 @@
-use crate::linear::larger;
 use crate::dynamics::{Energy, IncrementReport, Momentum};
+use crate::linear::larger;
 use crate::model::Model;
 
 /// Work of the normal contact forces in an increment (as a part of the largest energy) that is
@@ -108,4 +108,26 @@ impl Balance {
 /// `value / whole`, 0 of nothing.
 fn part(value: f64, whole: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value / whole }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_balance_that_is_no_number_is_the_worst() {
+        let report = |balance| IncrementReport {
+            energy: Energy {
+                kinetic: 1.0,
+                balance,
+                ..Energy::default()
+            },
+            ..IncrementReport::default()
+        };
+        let mut balance = Balance::default();
+        for value in [1e-3, f64::NAN, 1e-9] {
+            balance.add(&report(value));
+        }
+        assert!(balance.worst().is_nan());
+    }
 }

@@ -24,9 +24,7 @@ pub(super) fn failure_lines(failure: &Failure, model: &Model, u: &[f64]) -> Vec<
     let mut lines = wrap("stopped", &what);
     lines.extend(failure.worst.as_ref().map(|worst| worst_line(worst, model)));
     lines.extend(place_line(&failure.cause, model, u));
-    if let Cause::Inverted { .. } = failure.cause {
-        lines.extend(LIMIT.map(str::to_owned));
-    }
+    lines.extend(hint(&failure.cause).iter().map(|&line| line.to_owned()));
     if increment > 0 {
         lines.push(format!(
             "tried    {} of the increment; the last attempt with dt {}",
@@ -51,6 +49,17 @@ fn worst_line(worst: &Worst, model: &Model) -> String {
     )
 }
 
+/// What lies behind the cause.
+fn hint(cause: &Cause) -> &'static [&'static str] {
+    match cause {
+        Cause::Inverted { .. } => &LIMIT,
+        Cause::Crossed {
+            prescribed: true, ..
+        } => &["         both sides are prescribed: they are driven into each other"],
+        _ => &[],
+    }
+}
+
 /// The element or node that the cause names.
 fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
     match *cause {
@@ -62,20 +71,14 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
         Cause::Crossed {
             slave,
             segment: [a, b],
-            prescribed,
-        } => {
-            let both = match prescribed {
-                true => "; both sides are prescribed: they are driven into each other",
-                false => "",
-            };
-            Some(format!(
-                "node     {} at {} through the segment {}-{}{both}",
-                model.mesh.node_labels[slave],
-                point(position(model, slave, u)),
-                model.mesh.node_labels[a],
-                model.mesh.node_labels[b],
-            ))
-        }
+            ..
+        } => Some(format!(
+            "node     {} at {} through the segment {}-{}",
+            model.mesh.node_labels[slave],
+            point(position(model, slave, u)),
+            model.mesh.node_labels[a],
+            model.mesh.node_labels[b],
+        )),
         Cause::Collapsed { segment: [a, b] } => Some(format!(
             "segment  {}-{} at {}",
             model.mesh.node_labels[a],

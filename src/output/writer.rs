@@ -262,10 +262,13 @@ impl<'a> ResultWriter<'a> {
             self.console.alarm(&line)?;
         }
         let (name, _) = self.result.name_and_size();
-        let pieces = [
-            format!("{name} is valid up to its last frame"),
-            format!("time {}", scientific(self.last.time, 6)),
-        ];
+        let pieces = match self.result.frames() {
+            0 => vec![format!("{name} has no frame")],
+            _ => vec![
+                format!("{name} is valid up to its last frame"),
+                format!("time {}", scientific(self.last.time, 6)),
+            ],
+        };
         for line in wrap("results", &pieces) {
             self.console.alarm(&line)?;
         }
