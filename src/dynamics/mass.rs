@@ -1,4 +1,5 @@
 use super::dofs::DofMap;
+use super::parts::Parts;
 use crate::elements::Body;
 use crate::linear::Assembled;
 
@@ -35,6 +36,17 @@ impl Mass {
     /// Kinetic energy v.M v/2.
     pub fn kinetic_energy(&self, v: &[f64]) -> f64 {
         dot(v, &self.times(v)) / 2.0
+    }
+
+    /// Kinetic energy of every body.
+    pub fn kinetic_energies(&self, v: &[f64], parts: &Parts) -> Vec<f64> {
+        let (p, mut energies) = (self.times(v), vec![0.0; parts.bodies()]);
+        for (node, &body) in parts.of_nodes().iter().enumerate() {
+            for i in [2 * node, 2 * node + 1] {
+                energies[body] += v[i] * p[i] / 2.0;
+            }
+        }
+        energies
     }
 }
 

@@ -53,6 +53,11 @@ impl Parts {
         }
     }
 
+    /// Number of bodies.
+    pub fn bodies(&self) -> usize {
+        self.bodies
+    }
+
     /// Body of every node.
     pub fn of_nodes(&self) -> &[usize] {
         &self.body

@@ -59,7 +59,7 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
             a: vec![0.0; model.mesh.dof_count()],
         },
         contact: Touching::default(),
-        ledger: Ledger::new(0.0, 0.0),
+        ledger: Ledger::default(),
         increment: 0,
         cutbacks: 0,
         events: 0,
@@ -299,7 +299,8 @@ impl<'m> Runner<'m, '_> {
         halvings: u32,
         grid: Grid,
     ) -> Result<Entered, Failed> {
-        let ledger = match self.ledger.with(problem, &self.state, &solved, dt) {
+        let ledger = self.ledger.clone();
+        let ledger = match ledger.with(problem, &self.state, &solved, dt) {
             Ok(ledger) => ledger,
             Err(cause) => {
                 return Err(Failed {
@@ -311,7 +312,7 @@ impl<'m> Runner<'m, '_> {
         };
         let solved = match halvings >= GAIN_HALVINGS || dt / 2.0 < grid.dt_min {
             true => solved,
-            false => check_gain(problem, &self.state, self.ledger.largest, solved)?,
+            false => check_gain(problem, &self.state, &self.ledger, solved)?,
         };
         Ok(Entered { solved, ledger })
     }
@@ -401,8 +402,7 @@ impl<'m> Runner<'m, '_> {
             self.state.v[dof] = v;
         }
         self.state.a = problem.start_acceleration(effective, &self.state, now);
-        let kinetic = self.mass.kinetic_energy(&self.state.v);
-        self.ledger = Ledger::new(kinetic, self.body.strain_energy(&self.state.u));
+        self.ledger = Ledger::new(problem, &self.state);
         let checked = self.state.check_finite();
         if let Err(cause) = checked.and_then(|()| self.ledger.check(&self.state)) {
             return Ok(Some(Failure {

@@ -132,16 +132,19 @@ impl Body {
 
     /// Strain energy of all elements at displacements `u` (force length).
     pub fn strain_energy(&self, u: &[f64]) -> f64 {
-        let energies: Vec<f64> = self
-            .solids
+        self.strain_energies(u).iter().sum()
+    }
+
+    /// Strain energy of every element at displacements `u` (force length).
+    pub fn strain_energies(&self, u: &[f64]) -> Vec<f64> {
+        self.solids
             .par_iter()
             .with_min_len(PARALLEL_CHUNK)
             .map(|solid| match &solid.geometry {
                 Geometry::Tri3(n, r) => strain_energy(r, &solid.c, &gather(n, u)),
                 Geometry::Quad4(n, r) => strain_energy(r, &solid.c, &gather(n, u)),
             })
-            .collect();
-        energies.iter().sum()
+            .collect()
     }
 
     /// The first element with the largest principal strain at displacements `u` (2 N entries).
