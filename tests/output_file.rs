@@ -116,6 +116,7 @@ const POINT_VECTOR_OFFSETS: [&str; 5] = [
 
 const PER_INCREMENT: [&str; 35] = [
     "/history/time",
+    "/history/strain/largest_principal",
     "/history/dt",
     "/history/step",
     "/history/energy/kinetic",

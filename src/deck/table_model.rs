@@ -320,7 +320,7 @@ pub(super) static MODEL: &[Keyword] = &[
             "all faces that belong to one element only; required",
         )],
         "What takes part in general contact: a surface ALL_EXTERIOR is made, which touches itself and \
-         every rigid surface. The nodes of a `*CONTACT PAIR` with a rigid surface are held by the pair, \
+         every rigid surface. The nodes of a *CONTACT PAIR with a rigid surface are held by the pair, \
          with its interaction, and left out of general contact with that surface; rigid surfaces do not \
          touch each other.",
     ),

@@ -10,8 +10,8 @@ const LARGE: f64 = 0.2;
 
 /// What an element that turned inside out may come from.
 pub(super) const LIMIT: [&str; 2] = [
-    "material St. Venant-Kirchhoff: under compression its force falls from a length of 58 %",
-    "         on (strain -1/3); below that shorter increments do not help, smaller loads do",
+    "material St. Venant-Kirchhoff gives way at 58 % of its length (strain -1/3):",
+    "         beyond that shorter increments do not help, smaller loads do",
 ];
 
 /// Follows the largest principal strain.
@@ -53,15 +53,14 @@ pub(super) fn warning_lines(
     Strained { element, strain }: Strained,
     report: &IncrementReport,
     model: &Model,
-) -> [String; 3] {
+) -> [String; 4] {
     [
         format!(
             "warning  principal strain {strain:.2} in element {} in increment {}",
             model.mesh.elements[element].label, report.increment
         ),
-        "         above 0.2 a St. Venant-Kirchhoff material is too stiff in tension and too soft in"
-            .to_owned(),
-        "         compression: trust no forces there, and expect elements to turn inside out"
-            .to_owned(),
+        "         above 0.2 a St. Venant-Kirchhoff material is too stiff in tension and".to_owned(),
+        "         too soft in compression: take its forces for a guess,".to_owned(),
+        "         or use smaller loads".to_owned(),
     ]
 }

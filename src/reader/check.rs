@@ -124,6 +124,8 @@ pub(super) fn magnitudes(grid: &Grid, properties: &Properties, cx: &mut Context)
         };
         let section = section.and_then(|section| properties.sections.get(section));
         let material = section.and_then(|section| properties.materials.get(section.material));
+        // a faulty material has no density
+        let material = material.filter(|material| material.density > 0.0);
         let (Some(section), Some(material)) = (section, material) else {
             continue;
         };
