@@ -114,7 +114,7 @@ const POINT_VECTOR_OFFSETS: [&str; 5] = [
     "/VTKHDF/Steps/PointDataOffsets/CONTACT_FORCE",
 ];
 
-const PER_INCREMENT: [&str; 35] = [
+const PER_INCREMENT: [&str; 36] = [
     "/history/time",
     "/history/strain/largest_principal",
     "/history/dt",

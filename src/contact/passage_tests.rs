@@ -56,6 +56,26 @@ fn a_free_node_may_not_end_inside_nor_go_through() {
 }
 
 #[test]
+fn what_other_bodies_leave_unsolved_is_no_excuse() {
+    let (surfaces, mut x) = plate(true);
+    x[0] = [4.5, 2.0];
+    let u0 = vec![0.0; 2 * x.len()];
+    let mut u1 = u0.clone();
+    u1[1] = -1.6;
+    let contacts = [surfaces];
+    let mut search = Search::new(&contacts, &x);
+    search.cover_way(&u0, &u1);
+    let passage = |fast: usize| {
+        let mut unsolved = vec![0.0; x.len()];
+        unsolved[fast] = 0.2;
+        find_passage(&search, &u0, &u1, &[FREE], &unsolved).map(|passage| passage.segment)
+    };
+    // 0.1 deep: a node far away, those of the segment, the node itself
+    assert_eq!(passage(1), Some(TOP));
+    assert_eq!([passage(TOP[0]), passage(TOP[1]), passage(0)], [None; 3]);
+}
+
+#[test]
 fn a_node_that_the_other_side_holds_has_gone_through() {
     let (top, bottom) = (12, 4);
     assert_eq!(
