@@ -88,6 +88,16 @@ def test_decks_are_what_their_generator_writes(folder: Path, tmp_path: Path) -> 
         assert (folder / name).read_text() == text, name
 
 
+def test_no_two_decks_write_the_same_files() -> None:
+    """A job is named after its deck, and all results go to one folder by default."""
+    decks = [path for place in ("input", "verification") for path in ROOT.glob(f"{place}/*/*.inp")]
+    places: dict[str, list[str]] = {}
+    for path in decks:
+        places.setdefault(path.stem.lower(), []).append(str(path.relative_to(ROOT)))
+    assert len(decks) > 20
+    assert {job: paths for job, paths in places.items() if len(paths) > 1} == {}
+
+
 def test_a_flattened_deck_is_the_same_deck(job: Job, tmp_path: Path) -> None:
     flat = Deck.read(BAR / "em_impulse.inp")
     assert not flat.find("INCLUDE")
@@ -96,7 +106,7 @@ def test_a_flattened_deck_is_the_same_deck(job: Job, tmp_path: Path) -> None:
 
 
 def test_rescaling_there_and_back_gives_the_same_deck() -> None:
-    deck = Deck.read(BLOCK / "mu02.inp")
+    deck = Deck.read(BLOCK / "block_slope_mu02.inp")
     there = rescale(deck, Units(4.0, 0.5, 8.0))
     assert there.text() != deck.text()
     back = rescale(there, Units(0.25, 2.0, 0.125))
