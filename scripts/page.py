@@ -13,14 +13,14 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from results import Array
 
-WIDTH, HEIGHT = 10.0, 7.0
+WIDTH, HEIGHT = 11.0, 7.7
 """Largest page that is filled; one with very many panels is higher."""
-LEFT, RIGHT, TOP, BOTTOM = 0.55, 0.15, 0.1, 0.45
+LEFT, RIGHT, TOP, BOTTOM = 0.5, 0.1, 0.05, 0.42
 """Margins for tick labels and titles of the axes."""
-TITLE, ROW_GAP, COLUMN_GAP = 0.25, 0.12, 0.15
+TITLE, ROW_GAP, COLUMN_GAP = 0.22, 0.08, 0.1
 """Room for a panel's title, and between panels."""
-BAR, LOW_STRIP = 0.95, 0.8
-"""Width of a colour bar beside the panels; height of the legends below low pages."""
+BAR, LOW_BAR = 0.85, 0.7
+"""Width of a colour bar beside the panels; height of one below low pages."""
 CHARACTER, LINE = 0.068, 0.18
 """Width of a character and height of a line of the legends."""
 LEAST_BESIDE = 3.2
@@ -92,8 +92,26 @@ class Legends:
     def width(self) -> float:
         """Room that they take beside the panels."""
         bar = BAR if self.norm is not None else 0.0
-        listed = 0.45 + CHARACTER * max(map(len, self.lines)) if self.entries else 0.0
-        return max(bar, listed)
+        return max(bar, self.column if self.entries else 0.0)
+
+    @property
+    def column(self) -> float:
+        """Width of a column of entries."""
+        return 0.45 + CHARACTER * max(map(len, self.lines))
+
+    @property
+    def columns(self) -> int:
+        """Columns of entries below the panels, beside a colour bar if there is one."""
+        if self.norm is not None:
+            return -(-len(self.lines) // 3)
+        return max(1, min(len(self.entries), int((WIDTH - LEFT) / self.column)))
+
+    @property
+    def height(self) -> float:
+        """Room that they take below the panels."""
+        if self.norm is not None or not self.entries:
+            return LOW_BAR if self else 0.0
+        return 0.1 + LINE * -(-len(self.lines) // self.columns)
 
 
 class Page:
@@ -116,14 +134,14 @@ class Page:
             if self.grid.size[1] > LEAST_BESIDE:
                 break
         width, height = self.grid.size
-        below = LOW_STRIP if legends and not beside else 0.0
+        below = 0.0 if beside else legends.height
         self.width = LEFT + width + RIGHT + (strip if beside else 0.0)
         self.height = TOP + height + BOTTOM + below
         self.bottom = BOTTOM + below
         self.figure: Figure = plt.figure(figsize=(self.width, self.height))
         self.figure.set_layout_engine("none")  # every place is given
         if legends and beside:
-            self._beside(legends, LEFT + width + 0.2)
+            self._beside(legends, LEFT + width + 0.15)
         elif legends:
             self._below(legends)
 
@@ -133,8 +151,8 @@ class Page:
         axes = self._axes(LEFT + x, self.bottom + y, self.grid.width, self.grid.height)
         self.frame(axes)
         axes.tick_params(labelleft=column == 0, labelbottom=last)
-        axes.set_xlabel("x" if last else "", labelpad=1)
-        axes.set_ylabel("y" if column == 0 else "", labelpad=1)
+        axes.set_xlabel("x" if last else "", labelpad=0)
+        axes.set_ylabel("y" if column == 0 else "", labelpad=0)
         return axes
 
     def frame(self, axes: Axes) -> None:
@@ -167,7 +185,7 @@ class Page:
         """The colour bar on the left, entries on the right of it."""
         left = LEFT
         if legends.norm is not None:
-            axes = self._axes(left, 0.42, 0.55 * self.width, 0.15)
+            axes = self._axes(left, 0.4, 0.55 * self.width, 0.15)
             self.figure.colorbar(
                 ScalarMappable(legends.norm, "viridis"),
                 axes,
@@ -175,8 +193,8 @@ class Page:
                 orientation="horizontal",
             )
             left += 0.55 * self.width + 0.3
-        columns = -(-len(legends.lines) // 3)
-        self._list(legends.entries, (left / self.width, 0.62 / self.height), columns)
+        top = legends.height - 0.1
+        self._list(legends.entries, (left / self.width, top / self.height), legends.columns)
 
     def _list(self, entries: Sequence[Artist], place: tuple[float, float], columns: int) -> None:
         """Entries with their upper left corner at a place."""

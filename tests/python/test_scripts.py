@@ -1,5 +1,6 @@
 """The scripts: plots, decks, units, generators."""
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -47,6 +48,9 @@ def result(job: Job) -> Path:
 def test_plot_history(result: Path, tmp_path: Path) -> None:
     script("plot_history.py", result, result, "-o", tmp_path / "history.png")
     assert_picture(tmp_path / "history.png")
+    names = ["--x", "nodes/UPPER_TIP/U:2", "--y", "energy/strain", "energy/kinetic"]
+    script("plot_history.py", result, *names, "-o", tmp_path / "named.png")
+    assert_picture(tmp_path / "named.png")
 
 
 def test_plot_motion_draws_rigid_surfaces(job: Job, tmp_path: Path) -> None:
@@ -66,11 +70,13 @@ def test_plot_motion(result: Path, tmp_path: Path, options: list[object]) -> Non
     assert_picture(tmp_path / "motion.png")
 
 
-def test_animation(job: Job, tmp_path: Path) -> None:
-    result = job(shortened(CANTILEVERS / "A_mu04.inp", 40), "--frames", "4")
+def test_an_animation_is_all_that_is_written(job: Job, tmp_path: Path) -> None:
+    made = job(shortened(CANTILEVERS / "A_mu04.inp", 40), "--frames", "4")
+    result = Path(shutil.copy(made, tmp_path / "JOB.vtkhdf"))
     film = tmp_path / "motion.gif"
-    script("plot_motion.py", result, "-o", tmp_path / "motion.png", "--animation", film)
+    script("plot_motion.py", result, "--animation", film)
     assert film.read_bytes()[:6] == b"GIF89a"
+    assert {path.name for path in tmp_path.iterdir()} == {"JOB.vtkhdf", "motion.gif"}
 
 
 @pytest.mark.parametrize(
