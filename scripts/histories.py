@@ -128,6 +128,8 @@ def _of_body(results: Results, path: str, matched: re.Match[str]) -> tuple[Array
 
 def _description(results: Results, path: str) -> str:
     """What a dataset says it is, without the explanation after a colon."""
+    if path == "time":
+        return path
     text = results.histories[path].attrs.get("description", path)
     return str(text).partition(":")[0]
 

@@ -11,20 +11,23 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator, ScalarFormatter
 from results import Array
 
 WIDTH, HEIGHT = 11.0, 7.7
 """Largest page that is filled; one with very many panels is higher."""
-LEFT, RIGHT, TOP, BOTTOM = 0.5, 0.1, 0.05, 0.42
-"""Margins for tick labels and titles of the axes."""
-TITLE, ROW_GAP, COLUMN_GAP = 0.22, 0.08, 0.1
+LEFT, RIGHT, TOP, BOTTOM = 0.33, 0.1, 0.05, 0.42
+"""Margins for titles of the axes and tick labels, the width of those on the left apart."""
+TITLE, ROW_GAP, COLUMN_GAP = 0.22, 0.08, 0.18
 """Room for a panel's title, and between panels."""
-BAR, LOW_BAR = 0.85, 0.7
+BAR, LOW_BAR = 0.95, 0.7
 """Width of a colour bar beside the panels; height of one below low pages."""
 CHARACTER, LINE = 0.068, 0.18
 """Width of a character and height of a line of the legends."""
 LEAST_BESIDE = 3.2
 """Pages lower than this have their legends below."""
+TICKS = 8
+"""At most so many ticks on an axis."""
 LEAST = 0.9
 """Least size of a panel's longer side."""
 
@@ -42,17 +45,20 @@ class Grid:
     height: float
 
     @classmethod
-    def fitted(cls, rows: int, columns: int, ratio: float, strip: float) -> "Grid":
-        """The largest panels of a given height over width that find room on a page."""
-        across = WIDTH - LEFT - RIGHT - strip - COLUMN_GAP * (columns - 1)
+    def fitted(cls, rows: int, columns: int, ratio: float, beside: float) -> "Grid":
+        """The largest panels of a given height over width that find room on a page.
+
+        `beside` is the width of what stands on their left and right.
+        """
+        across = WIDTH - beside - COLUMN_GAP * (columns - 1)
         up = HEIGHT - TOP - BOTTOM - TITLE * rows - ROW_GAP * (rows - 1)
         width = max(min(across / columns, up / rows / ratio), LEAST / max(ratio, 1.0))
         return cls(rows, columns, width, width * ratio)
 
     @classmethod
-    def best(cls, count: int, ratio: float, strip: float) -> "Grid":
+    def best(cls, count: int, ratio: float, beside: float) -> "Grid":
         """The arrangement of some panels that makes them largest, with few places left empty."""
-        grids = [cls.fitted(-(-count // n), n, ratio, strip) for n in range(1, count + 1)]
+        grids = [cls.fitted(-(-count // n), n, ratio, beside) for n in range(1, count + 1)]
         return max(grids, key=lambda grid: grid.width * count / (grid.rows * grid.columns))
 
     @property
@@ -104,7 +110,7 @@ class Legends:
         """Columns of entries below the panels, beside a colour bar if there is one."""
         if self.norm is not None:
             return -(-len(self.lines) // 3)
-        return max(1, min(len(self.entries), int((WIDTH - LEFT) / self.column)))
+        return max(1, min(len(self.entries), int((WIDTH - 1.0) / self.column)))
 
     @property
     def height(self) -> float:
@@ -112,6 +118,16 @@ class Legends:
         if self.norm is not None or not self.entries:
             return LOW_BAR if self else 0.0
         return 0.1 + LINE * -(-len(self.lines) // self.columns)
+
+
+def longest_tick(low: float, high: float) -> int:
+    """Characters of the longest tick label of an axis, with any number of ticks."""
+    formatter = ScalarFormatter(useMathText=False)
+    formatter.create_dummy_axis()
+    labels = []
+    for bins in range(1, TICKS + 1):
+        labels += formatter.format_ticks(MaxNLocator(bins).tick_values(low, high))
+    return max(map(len, labels))
 
 
 class Page:
@@ -124,9 +140,10 @@ class Page:
         self.box = box
         across, up = box[1] - box[0]
         ratio = float(up / across)
-        strip = legends.width
+        self.left = LEFT + CHARACTER * longest_tick(float(box[0][1]), float(box[1][1]))
         for beside in (True, False):
-            room = strip if beside else 0.0
+            strip = RIGHT + (legends.width if beside else 0.0)
+            room = self.left + strip
             if isinstance(places, int):
                 self.grid = Grid.best(places, ratio, room)
             else:
@@ -135,31 +152,31 @@ class Page:
                 break
         width, height = self.grid.size
         below = 0.0 if beside else legends.height
-        self.width = LEFT + width + RIGHT + (strip if beside else 0.0)
+        self.width = self.left + width + strip
         self.height = TOP + height + BOTTOM + below
         self.bottom = BOTTOM + below
         self.figure: Figure = plt.figure(figsize=(self.width, self.height))
         self.figure.set_layout_engine("none")  # every place is given
         if legends and beside:
-            self._beside(legends, LEFT + width + 0.15)
+            self._beside(legends, self.left + width + 0.15)
         elif legends:
             self._below(legends)
 
     def panel(self, row: int, column: int, last: bool = True) -> Axes:
         """Axes of a panel; `last` says that none stands below it."""
         x, y = self.grid.corner(row, column)
-        axes = self._axes(LEFT + x, self.bottom + y, self.grid.width, self.grid.height)
+        axes = self._axes(self.left + x, self.bottom + y, self.grid.width, self.grid.height)
         self.frame(axes)
         axes.tick_params(labelleft=column == 0, labelbottom=last)
         axes.set_xlabel("x" if last else "", labelpad=0)
-        axes.set_ylabel("y" if column == 0 else "", labelpad=0)
+        axes.set_ylabel("y" if column == 0 else "", labelpad=2)
         return axes
 
     def frame(self, axes: Axes) -> None:
         """Limits of a panel."""
         low, high = self.box
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
-        bins = np.clip(np.array((self.grid.width, self.grid.height)) / 0.45, 1, 8).astype(int)
+        bins = np.clip(np.array((self.grid.width, self.grid.height)) / 0.45, 1, TICKS).astype(int)
         axes.locator_params(axis="x", nbins=bins[0])
         axes.locator_params(axis="y", nbins=bins[1])
 
@@ -183,7 +200,7 @@ class Page:
 
     def _below(self, legends: Legends) -> None:
         """The colour bar on the left, entries on the right of it."""
-        left = LEFT
+        left = self.left
         if legends.norm is not None:
             axes = self._axes(left, 0.4, 0.55 * self.width, 0.15)
             self.figure.colorbar(

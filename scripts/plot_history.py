@@ -127,7 +127,9 @@ def legend_beside(axes: Sequence[Axes]) -> None:
         entries |= dict(zip(labels, handles))
     if entries:
         place = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
-        axes[-1].legend(list(entries.values()), list(entries), **place)
+        legend = axes[-1].legend(list(entries.values()), list(entries), **place)
+        for line in legend.get_lines():
+            line.set_linewidth(1.8)  # thin ones have pale colours
 
 
 def draw(all_results: list[Results]) -> Figure:

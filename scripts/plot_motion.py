@@ -48,7 +48,7 @@ class Scene:
     def __init__(self, shown: Sequence[Shown], look: Look) -> None:
         self.colouring = Colouring.of(look.field, shown) if look.field else None
         self.arrows = Arrows.of(look.vectors, shown) if look.vectors else None
-        self.box = limits(shown)
+        self.box = limits(shown, self.arrows)
         entries = status_legend(shown) + (self.arrows.legend() if self.arrows else [])
         if self.colouring:
             self.legends = Legends(entries, self.colouring.norm, self.colouring.label)

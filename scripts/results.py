@@ -85,11 +85,6 @@ class Results:
         """Name of the job."""
         return self.path.stem
 
-    @property
-    def unfinished(self) -> bool:
-        """Whether the job is still running, or was killed."""
-        return bool(self.file["run"].attrs.get("exit_status", -1) == -1)
-
     def read(self, name: str) -> NDArray[np.float64]:
         """A whole dataset by its path in the file."""
         with self._reading(name):

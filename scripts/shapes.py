@@ -68,6 +68,11 @@ class Arrows:
             zorder=6,
         )
 
+    def tips(self, results: Results, frame: int) -> Array:
+        """Where the arrows end [nodes, 2]."""
+        vector = results.point_field(self.name, frame)[results.drawn]
+        return results.positions(frame)[results.drawn] + vector / self.per_length
+
     def _thinned(self, nodes: NDArray[np.int64], position: Array) -> NDArray[np.int64]:
         """One node of each square of a lattice."""
         squares = np.floor(position[nodes] / self.spacing).astype(np.int64)
@@ -94,9 +99,9 @@ def draw_shape(axes: Axes, results: Results, frame: int, colouring: Colouring | 
         values = colouring.field.values(results, frame)
         coloured = bodies
         if colouring.field.on_edges:
-            known = np.isfinite(values)
-            values = values[known]
-            coloured = LineCollection(position[results.boundary[known]], linewidths=3.0, zorder=3)
+            there = np.isfinite(values) & (values != 0.0)
+            values = values[there]
+            coloured = LineCollection(position[results.boundary[there]], linewidths=3.0, zorder=3)
             axes.add_collection(coloured)
         coloured.set(array=values, cmap="viridis", norm=colouring.norm)
     axes.add_collection(LineCollection(position[results.rigid], colors=EDGE, linewidths=1.6))
@@ -121,9 +126,11 @@ def status_legend(shown: Sequence[Shown]) -> list[Artist]:
     ]
 
 
-def limits(shown: Sequence[Shown]) -> tuple[Array, Array]:
+def limits(shown: Sequence[Shown], arrows: Arrows | None = None) -> tuple[Array, Array]:
     """Lower left and upper right corner of the box that holds everything shown, with a margin."""
     positions = [results.positions(frame)[results.drawn] for results, frame in shown]
+    if arrows is not None:
+        positions += [arrows.tips(*each) for each in shown]
     low = np.min([np.nanmin(p, axis=0) for p in positions], axis=0)
     high = np.max([np.nanmax(p, axis=0) for p in positions], axis=0)
     margin = 0.03 * float((high - low).max()) or 1.0
