@@ -61,7 +61,7 @@ def test_histories_by_name(contact: Results) -> None:
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("energi/kinetic", "there are contact, dt, energy, "),
+        ("energi/kinetic", "contact, dt, energy, "),
         ("energy/kinetik", "energy has balance, external_work, "),
         ("nodes/TIP/U:2", "nodes has LOWER_TIP, UPPER_TIP"),
         ("nodes/UPPER_TIP[1]/U:2", "there are 21, 42, 63"),

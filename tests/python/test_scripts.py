@@ -1,11 +1,14 @@
 """The scripts: plots, decks, units, generators."""
 
+import runpy
 import shutil
 import subprocess
 import sys
 from pathlib import Path
+from unittest.mock import patch
 
 import matplotlib.image
+import matplotlib.pyplot as plt
 import program
 import pytest
 from compare import differences
@@ -27,9 +30,13 @@ from rescale import Units, rescale
 
 
 def script(name: str, *arguments: object) -> None:
-    """Runs a script, which has to succeed."""
-    command = [sys.executable, str(ROOT / "scripts" / name), *map(str, arguments)]
-    subprocess.run(command, check=True, stdin=subprocess.DEVNULL, capture_output=True)
+    """Runs a script as from the command line, in this process; it has to succeed."""
+    path = str(ROOT / "scripts" / name)
+    with patch.object(sys, "argv", [path, *map(str, arguments)]):
+        with pytest.raises(SystemExit) as ended:
+            runpy.run_path(path, run_name="__main__")
+    plt.close("all")
+    assert not ended.value.code
 
 
 def assert_picture(path: Path) -> None:
