@@ -32,6 +32,9 @@ ENERGIES = (
 NONE, OPEN, STICK, SLIP = range(4)
 """Values of CONTACT_STATUS."""
 
+LARGEST = 1e150
+"""Largest position whose square is a number."""
+
 
 @dataclass(frozen=True)
 class Contact:
@@ -302,8 +305,11 @@ class Results:
             return self.file[f"VTKHDF/{kind}/{name}"][first : first + self._sizes[kind]]
 
     def positions(self, frame: int) -> Array:
-        """Current coordinates of the nodes in one frame [N, 2]."""
-        return self.coordinates + self.point_field("U", frame)
+        """Current coordinates of the nodes in one frame [N, 2]; a Fault when areas overflow."""
+        positions = self.coordinates + self.point_field("U", frame)
+        if not (np.abs(positions) < LARGEST).all():
+            raise Fault(f"{self.path}: frame {frame} has positions that are no numbers or huge")
+        return positions
 
     # The run.
 

@@ -131,8 +131,8 @@ def limits(shown: Sequence[Shown], arrows: Arrows | None = None) -> tuple[Array,
     positions = [results.positions(frame)[results.drawn] for results, frame in shown]
     if arrows is not None:
         positions += [arrows.tips(*each) for each in shown]
-    low = np.min([np.nanmin(p, axis=0) for p in positions], axis=0)
-    high = np.max([np.nanmax(p, axis=0) for p in positions], axis=0)
+    low = np.min([place.min(axis=0) for place in positions], axis=0)
+    high = np.max([place.max(axis=0) for place in positions], axis=0)
     margin = 0.03 * float((high - low).max()) or 1.0
     return low - margin, high + margin
 

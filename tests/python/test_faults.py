@@ -102,6 +102,19 @@ def test_a_file_without_frames(script: str, result: Path, run: Run) -> None:
     assert "no frame yet" in errors
 
 
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), -1e200])
+@pytest.mark.parametrize("script", ["plot_motion", "penetration"])
+def test_positions_that_are_no_numbers(
+    script: str, value: float, result: Path, run: Run
+) -> None:
+    """A node nowhere is not a node outside of all bodies."""
+    with h5py.File(result, "r+") as file:
+        file["VTKHDF/PointData/U"][-1] = value
+    code, errors = run(script, result)
+    assert (code, errors.count("\n")) == (FAULT, 1)
+    assert "frame 4 has positions that are no numbers or huge" in errors
+
+
 def test_a_file_without_history(result: Path, run: Run) -> None:
     with h5py.File(result, "r+") as file:
         file["history/energy/kinetic"].resize(0, axis=0)
