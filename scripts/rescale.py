@@ -8,7 +8,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-import command
 from deck import Card, Deck
 
 STRESS = (-1, 1, -2)
@@ -121,11 +120,8 @@ def main() -> None:
         parser.add_argument(f"--{unit}", type=float, default=1.0, help="new units per old unit")
     arguments = parser.parse_args()
     units = Units(arguments.length, arguments.mass, arguments.time)
-    try:
-        rescale(Deck.read(arguments.deck), units).write(arguments.output)
-    except ValueError as error:
-        raise command.Fault(f"{arguments.deck}: {error}") from None
+    rescale(Deck.read(arguments.deck), units).write(arguments.output)
 
 
 if __name__ == "__main__":
-    command.finish(main)
+    main()

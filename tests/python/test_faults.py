@@ -12,7 +12,6 @@ import penetration
 import plot_history
 import plot_motion
 import pytest
-import rescale
 from command import FAULT, Fault
 from conftest import ROOT, Job
 from decks import CANTILEVERS, shortened
@@ -32,10 +31,9 @@ def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> 
     """`run(script, *arguments)` runs a script's command line: its exit code and its errors."""
 
     def call(script: str, *arguments: object) -> tuple[int, str]:
-        main = MAINS.get(script, rescale.main)
         monkeypatch.setattr(sys, "argv", [f"{script}.py", *map(str, arguments)])
         with pytest.raises(SystemExit) as ended:
-            command.finish(main)
+            command.finish(MAINS[script])
         return int(ended.value.code or 0), capsys.readouterr().err
 
     return call
@@ -104,9 +102,7 @@ def test_a_file_without_frames(script: str, result: Path, run: Run) -> None:
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), -1e200])
 @pytest.mark.parametrize("script", ["plot_motion", "penetration"])
-def test_positions_that_are_no_numbers(
-    script: str, value: float, result: Path, run: Run
-) -> None:
+def test_positions_that_are_no_numbers(script: str, value: float, result: Path, run: Run) -> None:
     """A node nowhere is not a node outside of all bodies."""
     with h5py.File(result, "r+") as file:
         file["VTKHDF/PointData/U"][-1] = value
@@ -141,15 +137,6 @@ def test_rows_and_frames_that_are_not_complete_are_left_out(result: Path) -> Non
     with Results(result) as results:
         assert (len(results.time), len(results.frame_times)) == (41, 5)
         assert len(results.energy["kinetic"]) == len(results.dt) == 41
-
-
-def test_a_deck_that_cannot_be_read(tmp_path: Path, run: Run) -> None:
-    deck = tmp_path / "deck.inp"
-    assert run("rescale", deck, "-o", tmp_path / "new.inp")[0] == FAULT
-    deck.write_text("*NODE\n1, 0., 0.\n*SPRING\n1.\n")
-    code, errors = run("rescale", deck, "-o", tmp_path / "new.inp")
-    assert (code, errors.count("\n")) == (FAULT, 1)
-    assert str(deck) in errors and "*SPRING" in errors
 
 
 @pytest.mark.parametrize(
