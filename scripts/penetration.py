@@ -8,8 +8,10 @@ covers the place once more. The depth is the distance to the nearest other edge 
 lengths of that edge. Edges that cross are counted besides.
 
 Rigid surfaces are compared with all bodies too, whether the deck has a contact for them or not:
-their nodes with the bodies, and the nodes of the bodies with the obstacles behind the surfaces (see
-profiles.py), the depth in lengths of the longer edge at the node.
+their corners with the bodies, and the nodes of the bodies with the obstacles behind the surfaces
+(see profiles.py), the depth in lengths of the longer edge at the node. Contact keeps the nodes of
+bodies out of obstacles; the corners of a surface that is finer than the mesh, or convex, can lie
+behind the edge between two of these nodes.
 
 The exit code is 1 when a node is deeper than 1e-9 element sizes or edges cross.
 """
@@ -60,15 +62,18 @@ class Overlap:
     """What was found in one frame."""
 
     deepest: Intrusion | None
+    """The deepest node of a body."""
     inside: int
-    """How many nodes are deeper than LIMIT."""
+    """How many nodes of bodies are deeper than LIMIT."""
     crossings: int
     """Pairs of edges that cross, with all four ends further than LIMIT from the other edge."""
+    corner: Intrusion | None = None
+    """The deepest corner of a rigid surface in a body."""
 
     @property
     def depth(self) -> float:
-        """Depth of the deepest node, 0 when there is none."""
-        return self.deepest.depth if self.deepest else 0.0
+        """Depth of the deepest node or corner, 0 when there is none."""
+        return max((found.depth for found in (self.deepest, self.corner) if found), default=0.0)
 
 
 def intrusions(position: Array, host: Outline, guests: Integers, number: int) -> list[Intrusion]:
@@ -127,6 +132,7 @@ def compare(
 ) -> Overlap:
     """Compares the nodes of all outlines with all bodies and with the obstacles."""
     found: list[Intrusion] = []
+    corners: list[Intrusion] = []
     crossings = 0
     boxes = [_box(position[outline.nodes]) for outline in bodies]
     for number, host in enumerate(bodies):
@@ -137,12 +143,16 @@ def compare(
             if other <= number:
                 crossings += count_crossings(position, host, guest)
         for other, obstacle in enumerate(obstacles or []):
-            found += intrusions(position, host, obstacle.corners, number)
+            corners += intrusions(position, host, obstacle.corners, number)
             found += in_obstacle(position, host, obstacle, (number, other) in gone)
             crossings += count_crossings(position, host, obstacle)
     inside = sum(intrusion.depth > LIMIT for intrusion in found)
+    return Overlap(_deepest(found), inside, crossings, _deepest(corners))
+
+
+def _deepest(found: list[Intrusion]) -> Intrusion | None:
     deepest = max(found, key=lambda intrusion: intrusion.depth, default=None)
-    return Overlap(deepest if deepest and deepest.depth > 0.0 else None, inside, crossings)
+    return deepest if deepest and deepest.depth > 0.0 else None
 
 
 def count_crossings(position: Array, one: Outline, two: Outline | Profile) -> int:
@@ -207,18 +217,25 @@ def still_gone(
 def describe(results: Results, frame: int, overlap: Overlap) -> str:
     """What was found in a frame in words."""
     text = f"frame {frame:4}, t = {results.frame_times[frame]:<10.6g} "
-    found = overlap.deepest
-    if found is None:
-        text += "no node inside"
+    parts = []
+    if overlap.deepest is not None:
+        parts.append(f"node {_words(overlap.deepest, results, frame)}")
+        parts.append(f"{overlap.inside} nodes deeper than {LIMIT:g}")
     else:
-        label = results.node_labels
-        x, y = results.positions(frame)[found.node]
-        text += (
-            f"node {label[found.node]} at ({x:.6g}, {y:.6g}) is {found.depth:.3g} element sizes"
-            f" ({found.distance:.3g}) behind {_place(found, results)};"
-            f" {overlap.inside} nodes deeper than {LIMIT:g}"
-        )
-    return text + (f"; {overlap.crossings} crossings of edges" if overlap.crossings else "")
+        parts.append("no node inside")
+    if overlap.corner is not None:
+        parts.append(f"rigid corner {_words(overlap.corner, results, frame)}")
+    if overlap.crossings:
+        parts.append(f"{overlap.crossings} crossings of edges")
+    return text + "; ".join(parts)
+
+
+def _words(found: Intrusion, results: Results, frame: int) -> str:
+    x, y = results.positions(frame)[found.node]
+    return (
+        f"{results.node_labels[found.node]} at ({x:.6g}, {y:.6g}) is {found.depth:.3g} element"
+        f" sizes ({found.distance:.3g}) behind {_place(found, results)}"
+    )
 
 
 def _place(found: Intrusion, results: Results) -> str:

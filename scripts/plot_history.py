@@ -115,6 +115,7 @@ def contact_state(axes: Axes, results: Results) -> None:
         prefix = f"{contact.name}: " if len(results.contacts) > 1 else ""
         axes.plot(results.time, contact.closed, lw=0.8, label=f"{prefix}closed")
         axes.plot(results.time, contact.sticking, lw=0.8, label=f"{prefix}sticking")
+    axes.update_datalim([(results.time[0], 0.0), (results.time[0], 1.0)])
     axes.yaxis.set_major_locator(MaxNLocator(nbins=4, integer=True))
     axes.set_ylabel("pairs")
 

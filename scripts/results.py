@@ -210,8 +210,8 @@ class Results:
 
     @property
     def largest_energy(self) -> float:
-        """Largest magnitude of any account of the ledger except the balance."""
-        return max(float(np.abs(self.energy[name]).max()) for name in ENERGIES[:-1])
+        """Largest magnitude of any account of the ledger except the balance; NaN if one is NaN."""
+        return float(np.max([np.abs(self.energy[name]).max() for name in ENERGIES[:-1]]))
 
     @cached_property
     def linear_momentum(self) -> Array:

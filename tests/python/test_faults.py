@@ -8,6 +8,7 @@ from pathlib import Path
 
 import command
 import h5py
+import numpy as np
 import penetration
 import plot_history
 import plot_motion
@@ -109,6 +110,14 @@ def test_positions_that_are_no_numbers(script: str, value: float, result: Path, 
     code, errors = run(script, result)
     assert (code, errors.count("\n")) == (FAULT, 1)
     assert "frame 4 has positions that are no numbers or huge" in errors
+
+
+@pytest.mark.parametrize("account", ["kinetic", "strain", "normal_contact_work"])
+def test_the_largest_energy_drops_no_nan(account: str, result: Path) -> None:
+    with h5py.File(result, "r+") as file:
+        file[f"history/energy/{account}"][3] = float("nan")
+    with Results(result) as results:
+        assert np.isnan(results.largest_energy)
 
 
 def test_a_file_without_history(result: Path, run: Run) -> None:

@@ -217,20 +217,21 @@ def test_the_corner_of_a_punch_in_a_body() -> None:
     """No node of the body is in the obstacle, but the punch's corner is in the body."""
     punch = [(0.3, 5.0), (0.5, 0.75), (0.7, 5.0)]
     found = rigid(punch, UNIT)
-    assert found.deepest is not None
-    assert (found.deepest.node, found.deepest.body) == (5, 0)
-    assert found.deepest.distance == pytest.approx(0.25)
-    assert (found.inside, found.crossings) == (1, 2)
+    assert found.corner is not None
+    assert (found.corner.node, found.corner.body) == (5, 0)
+    assert found.depth == found.corner.distance == pytest.approx(0.25)
+    assert (found.deepest, found.inside, found.crossings) == (None, 0, 2)
 
 
 def test_a_node_at_a_corner_of_an_obstacle() -> None:
     """Convex: inside is what is left of both segments; hollow: what is left of one."""
     step = [(5.0, 0.0), (0.0, 0.0), (0.0, -5.0)]  # the obstacle below and right: convex
     assert rigid(step, moved(UNIT, -1.1, -0.5)).inside == 0
-    assert rigid(step, moved(UNIT, -0.75, -0.25)).inside == 2, "and its corner in the body"
+    found = rigid(step, moved(UNIT, -0.75, -0.25))
+    assert found.inside == 1 and found.corner is not None, "the corner is in the body"
     pit = [(5.0, 0.0), (0.0, 0.0), (0.0, 5.0)]  # the obstacle below and left: hollow
     assert rigid(pit, UNIT).inside == 0
-    assert rigid(pit, moved(UNIT, -0.25, -0.25)).inside == 4, "and its corner in the body"
+    assert rigid(pit, moved(UNIT, -0.25, -0.25)).inside == 3
 
 
 def test_closed_rigid_surfaces() -> None:
@@ -297,6 +298,7 @@ def test_a_punch_without_contact_is_found(job: Job, tmp_path: Path) -> None:
     done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     assert done.returncode == 1, done.stderr
     assert "edges cross in 8 of them" in done.stdout
+    assert "no node inside; rigid corner" in done.stdout
     assert "at (0.5, 0.6) is 0.4 element sizes (0.4) behind edge" in done.stdout
 
 
