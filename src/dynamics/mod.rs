@@ -4,6 +4,7 @@ mod contact_forces;
 mod convergence;
 mod dofs;
 mod effective;
+mod entry;
 mod events;
 mod failure;
 mod gain;

@@ -2,8 +2,8 @@ use std::io;
 
 use super::dofs::DofMap;
 use super::effective::Effective;
+use super::entry::{Entered, start_failure};
 use super::events::{MOST_EVENTS, Piece, Pieces};
-use super::gain::check_gain;
 use super::grid::{Grid, StepPlace, WHOLE, increments_of};
 use super::increment::{Attempt, Failed, Solved};
 use super::ledger::{Ledger, momentum};
@@ -89,12 +89,6 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
         solver: runner.totals,
         timings: runner.meter.timings,
     })
-}
-
-/// A converged increment and the ledger with it.
-struct Entered {
-    solved: Solved,
-    ledger: Ledger,
 }
 
 /// State of a run.
@@ -261,10 +255,9 @@ impl<'m> Runner<'m, '_> {
                     solved,
                     is_cut,
                 } = piece;
-                match self.checked(problem, solved, interval.dt, halvings, grid) {
-                    Ok(entered) => Ok((interval, entered, is_cut)),
-                    Err(failed) => Err(Box::new((interval, failed))),
-                }
+                let checked = self.checked(problem, solved, interval.dt, halvings, grid);
+                let entered = checked.map_err(|failed| Box::new((interval, failed)))?;
+                Ok((interval, entered, is_cut))
             });
             match checked {
                 Ok((interval, entered, is_cut)) => {
@@ -299,22 +292,9 @@ impl<'m> Runner<'m, '_> {
         halvings: u32,
         grid: Grid,
     ) -> Result<Entered, Failed> {
-        let ledger = self.ledger.clone();
-        let ledger = match ledger.with(problem, &self.state, &solved, dt) {
-            Ok(ledger) => ledger,
-            Err(cause) => {
-                return Err(Failed {
-                    cause,
-                    worst: None,
-                    passes: solved.passes,
-                });
-            }
-        };
-        let solved = match halvings >= GAIN_HALVINGS || dt / 2.0 < grid.dt_min {
-            true => solved,
-            false => check_gain(problem, &self.state, &self.ledger, solved)?,
-        };
-        Ok(Entered { solved, ledger })
+        let may_be_halved = halvings < GAIN_HALVINGS && dt / 2.0 >= grid.dt_min;
+        let before = (&self.state, &self.ledger);
+        Entered::new(problem, before, solved, dt, may_be_halved)
     }
 
     fn failure(
@@ -403,18 +383,8 @@ impl<'m> Runner<'m, '_> {
         }
         self.state.a = problem.start_acceleration(effective, &self.state, now);
         self.ledger = Ledger::new(problem, &self.state);
-        let checked = self.state.check_finite();
-        if let Err(cause) = checked.and_then(|()| self.ledger.check(&self.state)) {
-            return Ok(Some(Failure {
-                increment: 0,
-                step: place.number,
-                time: now.total,
-                dt: 0.0,
-                cause,
-                worst: None,
-                passes: Vec::new(),
-                halvings: 0,
-            }));
+        if let Some(failure) = start_failure(&self.state, &self.ledger, place) {
+            return Ok(Some(failure));
         }
         let (dofs, nodes) = (self.state.u.len(), self.state.u.len() / 2);
         let none = ContactResultant {
