@@ -308,7 +308,8 @@ pub(super) static MODEL: &[Keyword] = &[
         Scope::Model,
         Data::None,
         &[P::value("OP", "contacts hold for all steps").refused()],
-        "Begins general contact: every exterior face against every other, of its own body too.",
+        "Begins general contact: every exterior face against every other, of its own body too, and \
+         every exterior node against the rigid surfaces.",
     ),
     Keyword::read(
         "CONTACT INCLUSIONS",
@@ -318,7 +319,10 @@ pub(super) static MODEL: &[Keyword] = &[
             "ALL EXTERIOR",
             "all faces that belong to one element only; required",
         )],
-        "What takes part in general contact: a surface ALL_EXTERIOR is made.",
+        "What takes part in general contact: a surface ALL_EXTERIOR is made, which touches itself and \
+         every rigid surface. The nodes of a *CONTACT PAIR with a rigid surface are held by the pair, \
+         with its interaction, and left out of general contact with that surface; rigid surfaces do not \
+         touch each other.",
     ),
     Keyword::read(
         "CONTACT PROPERTY ASSIGNMENT",

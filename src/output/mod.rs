@@ -26,6 +26,7 @@ mod result_file;
 mod screen;
 mod series;
 mod status;
+mod strain;
 mod summary;
 mod vtkhdf;
 mod writer;

@@ -48,8 +48,8 @@ pub(super) fn read(
         }
     }
     report_repeated(&contacts, cx);
-    let general = general_contact::read(outline, grid, surfaces, &names, cx);
-    if general.is_some() {
+    let general = general_contact::read(outline, grid, (surfaces, &contacts), &names, cx);
+    if !general.is_empty() {
         general_contact::report_pairs(&contacts, surfaces, cx);
     }
     contacts.extend(general);
@@ -157,6 +157,7 @@ fn contact(
         master: master.0,
         interaction: Some(interaction?),
         adjust: None,
+        left_out: Vec::new(),
         span: row.span(),
     })
 }

@@ -61,6 +61,7 @@ fn read(cx: &mut Context) -> Model {
     grid.add_points(&surfaces.rigid_points);
     let obstacles = rigid::read(&outline, &grid, &sets, &surfaces, cx);
     let properties = material::read(&outline, &grid, &sets, cx);
+    check::magnitudes(&grid, &properties, cx);
     let (interactions, contacts) = contact::read(&outline, &grid, &sets, &mut surfaces, cx);
     check::thickness(&contacts, &surfaces, &properties, cx);
     let amplitudes = amplitude::read(cx);
