@@ -469,6 +469,21 @@ fn fields_without_effect() {
 }
 
 #[test]
+fn times_of_histories_are_read_though_histories_hold_every_increment() {
+    for (when, code) in [
+        ("FREQUENCY=often", Code::BadNumber),
+        ("FREQUENCY=-1", Code::OutputTimes),
+        ("TIME INTERVAL=-0.1", Code::OutputTimes),
+        ("TIME POINTS=NEVER", Code::UndefinedName),
+    ] {
+        let (d, text) = messages(&step(&format!("*OUTPUT, HISTORY, {when}")));
+        let codes: Vec<Code> = d.iter().map(|item| item.code).collect();
+        assert_eq!(codes, [code], "{when}:\n{text}");
+    }
+    assert_eq!(messages(&step("*OUTPUT, HISTORY, FREQUENCY=3")).1, "");
+}
+
+#[test]
 fn increments_that_do_not_grow() {
     let dynamic = |row: &str| square("*DYNAMIC, DIRECT\n0.1, 1.", &format!("*DYNAMIC\n{row}"));
     insta::assert_snapshot!(texts_of(

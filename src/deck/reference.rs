@@ -33,12 +33,18 @@ next line. Empty lines are skipped, an empty field has its default. Units are up
 consistent set gives the same answer.
 
 Keywords, parameters and values not listed here are errors. A unique beginning of at least four
-letters is understood, with a warning.
+letters is understood, with a warning. Fields beyond those described are errors. Keywords of the model
+stand before the first step, those under another one directly below it. Node and element numbers run
+from 1 to 999 999 999, the largest that Abaqus reads. Numbers have a decimal point.
+
+A wave speed, or an element's area, stiffness or mass, that overflows or vanishes in floating-point
+numbers is an error.
 
 ";
 
 fn push_keyword(text: &mut String, keyword: &Keyword) {
     let place = match keyword.scope {
+        Scope::Model if keyword.name == "STEP" => "after the keywords of the model".to_string(),
         Scope::Model => "before the first step".to_string(),
         Scope::Step => "in a step".to_string(),
         Scope::Anywhere => "before the first step or in a step".to_string(),
