@@ -1,6 +1,6 @@
 //! The keyword reference, generated from the table the reader uses.
 
-use super::{Data, Keyword, Parameter, Scope, Status, Takes, keywords};
+use super::{Data, Keyword, Parameter, Scope, Status, Takes, dimensions, keywords};
 use std::fmt::Write;
 
 /// Markdown text of the keyword reference.
@@ -64,6 +64,9 @@ fn push_keyword(text: &mut String, keyword: &Keyword) {
         plain(keyword.text)
     );
     let _ = write!(text, "\nStands {place}; {data}.\n");
+    if let Some(words) = dimensions::in_words(keyword) {
+        let _ = write!(text, "\nDimensions: {words}.\n");
+    }
     if !keyword.parameters.is_empty() {
         text.push_str("\n| parameter | | meaning |\n|---|---|---|\n");
     }
