@@ -1,6 +1,6 @@
 use super::{InitialGap, initial_gaps, project};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
-use crate::model::{Contact, Model, SurfaceKind};
+use crate::model::{ALL_EXTERIOR, Contact, Model, SurfaceKind};
 use std::collections::{HashMap, HashSet};
 
 /// Penetration (in edge lengths) that is a fault of the mesh rather than of its digits.
@@ -41,7 +41,7 @@ fn report_nothing_faced(model: &Model, gaps: &[Vec<InitialGap>], d: &mut Diagnos
         .flat_map(|(c, _)| [[c.slave, c.master], [c.master, c.slave]])
         .collect();
     for contact in &model.contacts {
-        if contact.is_self_contact() || faced.contains(&[contact.slave, contact.master]) {
+        if !is_pair(model, contact) || faced.contains(&[contact.slave, contact.master]) {
             continue;
         }
         let [slave, master] = [contact.slave, contact.master].map(|s| &model.surfaces[s]);
@@ -127,14 +127,22 @@ fn remedy(model: &Model, contact: &Contact) -> String {
     let apart = "move the bodies apart: pushing the nodes out would add energy";
     let adjust = "ADJUST= on *CONTACT PAIR moves the nodes onto the master before the start, free \
                   of strain";
+    let apart = match is_pair(model, contact) {
+        true => format!("{apart}; {adjust}"),
+        false => apart.to_string(),
+    };
     match model.surfaces[contact.master].kind {
-        _ if contact.is_self_contact() => apart.into(),
         SurfaceKind::Rigid(_) => format!(
             "if the rigid surface is the wrong way round, list its points in the other order: its \
-             outside is on the left of the way from START; else {apart}; {adjust}"
+             outside is on the left of the way from START; else {apart}"
         ),
-        _ => format!("{apart}; {adjust}"),
+        _ => apart,
     }
+}
+
+/// Whether a contact is that of two surfaces that the deck pairs.
+fn is_pair(model: &Model, contact: &Contact) -> bool {
+    !contact.is_self_contact() && model.surfaces[contact.slave].name != ALL_EXTERIOR
 }
 
 /// What the slave surface is in contact with.
