@@ -18,7 +18,7 @@ EVERY_CARD = ROOT / "tests/decks/every_card.inp"
 EXAMPLES = sorted((ROOT / "input").glob("*/*.inp"))
 POWERS_OF_TWO = [Units(length=2.0**7), Units(mass=2.0**-11), Units(time=2.0**5)]
 ALL_AT_ONCE = Units(2.0**-6, 2.0**9, 2.0**-13)
-INCREMENTS = 3
+INCREMENTS = 25
 """Increments of each step of an example; the option --full runs them all."""
 
 
