@@ -524,10 +524,15 @@ fn magnitudes_that_cannot_be_computed_with() {
     };
     let heavy = sized("100.").replace("1000.,", "1.e307,");
     let decks = [
-        // the mass, the stiffness, the area of the element
+        // the mass, the stiffness, the area, the length of a side of the element
         change(&heavy, "*DENSITY\n1.", "*DENSITY\n5.e304"),
         square("0.5\n", "1.e-320\n"),
         Source::Text(sized("1.e-200")),
+        Source::Text(
+            SQUARE
+                .replace("4, 0., 1.\n", "4, 0., 1.7e308\n")
+                .replace("1, 0., 0.\n", "1, 0., -1.e308\n"),
+        ),
     ];
     insta::assert_snapshot!(texts_of(Code::Magnitude, &decks));
 }
@@ -573,6 +578,21 @@ fn one_faced_order_of_two_is_enough() {
     let lone = narrow.replacen("SBOT, STOP\nSTOP, SBOT", "STOP, SBOT", 1);
     let text = messages(&Source::Text(lone)).1;
     assert!(text.contains("no node of STOP faces SBOT"), "{text}");
+}
+
+#[test]
+fn a_reference_node_that_cannot_be_read_is_one_error() {
+    let floor = rigid(LINE, "", "*BOUNDARY\n100, 1, 2\n");
+    let Source::Text(floor) = floor else { return };
+    for (old, new) in [
+        ("100, 0., -5.", "1000000000, 0., -5."),
+        ("100, 0., -5.", "x, 0., -5."),
+    ] {
+        let named = floor.replace("REF NODE=100", "REF NODE=REF");
+        let named = named.replace("*BOUNDARY\n100,", "*BOUNDARY\nREF,");
+        let (d, text) = messages(&change(&named, old, new));
+        assert_eq!(d.count(Severity::Error), 1, "{text}");
+    }
 }
 
 #[test]

@@ -40,6 +40,10 @@ fn shape(element: &Element, mesh: &Mesh, span: Span, cx: &mut Context) {
     let longest = (0..count)
         .map(|i| side(i)[0].hypot(side(i)[1]))
         .fold(0.0, f64::max);
+    if !longest.is_finite() {
+        let what = format!("the longest side of element {}", element.label);
+        return unusable(&what, longest, span, cx);
+    }
     let turn = |i: usize| {
         let (s, t) = (side(i), side(i + 1));
         s[0] / longest * (t[1] / longest) - s[1] / longest * (t[0] / longest)
