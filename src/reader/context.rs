@@ -56,24 +56,34 @@ impl<'a> Context<'a> {
         }
         let message = format!("{what} {} is not defined", name.text);
         let error = Diagnostic::error(Code::UndefinedName, name.span, message);
+        let error = self.with_what_is_meant(error, what, name, known);
+        self.d.push(error);
+    }
+
+    /// An undefined name with what it may be: a thing of another kind, a name with a comma missing
+    /// behind it, a typing error, or else one of the names that there are.
+    fn with_what_is_meant<'n>(
+        &self,
+        error: Diagnostic,
+        what: &str,
+        name: Text,
+        known: impl Iterator<Item = &'n str> + Clone,
+    ) -> Diagnostic {
         let catalogue = self.catalogue.get_or_init(|| Catalogue::new(self.deck));
-        let (other, cut) = (
-            catalogue.other_kind(&name.name_key(), what),
-            name_before_blank(name, known.clone()),
-        );
-        let meant = closest(name.text, known.clone());
-        self.d.push(if let Some(kind) = other {
+        if let Some(kind) = catalogue.other_kind(&name.name_key(), what) {
             let label = format!("{} is {}", name.text, with_article(kind));
             let way = way_out(what, kind, name.text).map(|way| way + "; ");
-            let help = way.unwrap_or_default() + &list_of(what, known);
-            error.label(label).help(help)
-        } else if let Some(cut) = cut {
-            error.label(format!("is a comma missing after {cut}?"))
-        } else if meant.is_some() {
-            error.suggest(meant)
-        } else {
-            error.help(list_of(what, known))
-        });
+            return error
+                .label(label)
+                .help(way.unwrap_or_default() + &list_of(what, known));
+        }
+        if let Some(cut) = name_before_blank(name, known.clone()) {
+            return error.label(format!("is a comma missing after {cut}?"));
+        }
+        match closest(name.text, known.clone()) {
+            Some(meant) => error.suggest(Some(meant)),
+            None => error.help(list_of(what, known)),
+        }
     }
 
     /// Reports a second card of a kind that may appear once.
