@@ -124,7 +124,7 @@ def _lines(path: Path, main: Path, depth: int = 0) -> list[str]:
 
 
 def _read_input(lines: list[str], path: Path, main: Path, depth: int) -> None:
-    """Puts the lines of a file in the place of the INPUT= of the last line, a complete keyword line."""
+    """Puts the lines of a file in the place of the INPUT= of the last line, a keyword line."""
     if not lines or not lines[-1].startswith("*"):
         return
     head = fields(lines[-1])

@@ -66,9 +66,10 @@ def dimension(text: str) -> Dimension:
 
 
 def table() -> dict[str, Any]:
-    """What the numbers of each keyword measure; keywords and parameters in capitals without blanks."""
+    """What the numbers of each keyword measure; keywords and parameters are folded."""
     path = Path(__file__).with_name("dimensions.json")
-    entries: dict[str, Any] = {fold(name): entry for name, entry in json.loads(path.read_text()).items()}
+    read = json.loads(path.read_text())
+    entries: dict[str, Any] = {fold(name): entry for name, entry in read.items()}
     for entry in entries.values():
         parameters = entry.get("parameters", {})
         entry["parameters"] = {fold(name): measure for name, measure in parameters.items()}

@@ -77,11 +77,14 @@ def test_words_of_loads_and_profiles_are_all_used() -> None:
             assert set(words) <= said, keyword
 
 
-@pytest.mark.parametrize("units", [*POWERS_OF_TWO, ALL_AT_ONCE], ids=["length", "mass", "time", "all"])
+@pytest.mark.parametrize(
+    "units", [*POWERS_OF_TWO, ALL_AT_ONCE], ids=["length", "mass", "time", "all"]
+)
 def test_every_card_in_other_units_gives_the_same_bits(units: Units, job: Job) -> None:
     deck = Deck.read(EVERY_CARD)
     with Results(job(deck)) as results:
-        assert all(contact.closed.any() for contact in results.contacts.values())
+        closed = [name for name, contact in results.contacts.items() if contact.closed.any()]
+    assert len(closed) >= 2, "the pair and general contact"
     assert scaled_differences(job(deck), job(rescale(deck, units)), units) == []
 
 
