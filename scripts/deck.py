@@ -5,6 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from command import Fault
+
 
 FREE_TEXT = ("HEADING", "STEP")
 """Keywords whose data lines are text."""
@@ -46,7 +48,7 @@ class Deck:
             if line.startswith("*"):
                 cards.append(Card(fold(fields(line)[0][1:]), line))
             elif not cards:
-                raise ValueError(f"{path}: data before the first keyword: {line}")
+                raise Fault(f"{path}: data before the first keyword: {line}")
             elif cards[-1].keyword in FREE_TEXT:
                 cards[-1].rows.append([line])
             else:
@@ -105,7 +107,7 @@ class Deck:
 def _lines(path: Path, main: Path, depth: int = 0) -> list[str]:
     """Logical lines of a deck without comments and empty lines, with those of included files."""
     if depth > 9:
-        raise ValueError(f"{path}: includes are nested too deep")
+        raise Fault(f"{path}: includes are nested too deep")
     lines: list[str] = []
     is_open = False
     for text in path.read_text(encoding="utf-8-sig", errors="replace").splitlines():

@@ -1,12 +1,13 @@
 """Writes a deck in other units: every number with a dimension is multiplied by its factor.
 
-The factors are given as new units per old unit: from cm to m it is `--length 0.01`. What the numbers
-of each keyword measure stands in dimensions.json, which the program writes from its own tables; a
-card, parameter or field that is not there is refused by its name.
+The factors are given as new units per old unit: from cm to m it is `--length 0.01`. What the
+numbers of each keyword measure stands in dimensions.json, which is written from the program's own
+tables; a card, parameter or field that is not there is refused by its name.
 """
 
 import argparse
 import json
+import math
 import re
 import sys
 from collections.abc import Iterator
@@ -15,6 +16,8 @@ from itertools import chain, repeat
 from pathlib import Path
 from typing import Any
 
+import command
+from command import Fault
 from deck import Card, Deck, fields, fold
 
 BASE: dict[str, "Dimension"] = {
@@ -38,7 +41,7 @@ NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[EeDd]([+-]?\d+)|([+-]\d+))?"
 """A number as the program reads it: `1.D3` and `1.5-5` too."""
 
 
-class Unscalable(ValueError):
+class Unscalable(Fault):
     """Something in a deck whose dimension is not known."""
 
 
@@ -155,8 +158,11 @@ def _scaled(text: str, measure: Measure, units: Units, place: str) -> str:
     number = NUMBER.fullmatch(text)
     if number:
         mantissa, *exponents = number.groups()
-        value = float(f"{mantissa}e{exponents[0] or exponents[1] or 0}")
-        return repr(value * units.factor(dimension(what)))
+        old = float(f"{mantissa}e{exponents[0] or exponents[1] or 0}")
+        new = old * units.factor(dimension(what))
+        if old and not sys.float_info.min <= abs(new) < math.inf:
+            raise Unscalable(f"{place} leaves the range of numbers: {text}")
+        return repr(new)
     if about.get("or_name"):
         return text
     raise Unscalable(f"{place} is no number: {text}")
@@ -168,14 +174,12 @@ def main() -> None:
     parser.add_argument("deck", type=Path)
     parser.add_argument("-o", "--output", type=Path, required=True, help="the deck to write")
     for unit in ("length", "mass", "time"):
-        parser.add_argument(f"--{unit}", type=float, default=1.0, help="new units per old unit")
+        help_ = "new units per old unit"
+        parser.add_argument(f"--{unit}", type=command.positive, default=1.0, help=help_)
     arguments = parser.parse_args()
     units = Units(arguments.length, arguments.mass, arguments.time)
-    try:
-        rescale(Deck.read(arguments.deck), units).write(arguments.output)
-    except (OSError, ValueError) as error:
-        sys.exit(f"{arguments.deck}: {error}")
+    rescale(Deck.read(arguments.deck), units).write(arguments.output)
 
 
 if __name__ == "__main__":
-    main()
+    command.finish(main)

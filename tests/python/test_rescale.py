@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from command import FAULT
 from compare import scaled_differences
 from conftest import ROOT, Job
 from deck import Card, Deck, fields, fold
@@ -169,23 +170,28 @@ def test_files_of_data_lines_are_read_in_their_place(tmp_path: Path) -> None:
         ("*SURFACE, NAME=S, TYPE=SEGMENTS\nPARAB, 1., 2., 3., 4.\n", "PARAB|field 3"),
         ("*DLOAD\nA, CENTRIF, 3.\n", "CENTRIF"),
         ("*INITIAL CONDITIONS, TYPE=STRESS\nA, 1.\n", "TYPE of \\*INITIAL CONDITIONS"),
+        ("*DENSITY\n1.E-308\n", "field 1 of \\*DENSITY.* range of numbers"),
         ("*MATERIAL, NAME=M, STRAIN RATE REGULARIZATION=1.\n", "STRAIN RATE"),
     ],
 )
 def test_what_has_no_known_dimension_is_refused(text: str, named: str, tmp_path: Path) -> None:
     with pytest.raises(Unscalable, match=named):
-        small(text, tmp_path, Units(length=2.0))
+        small(text, tmp_path, Units(length=2.0**10))
 
 
 def test_the_script_says_in_one_line_what_it_refuses(tmp_path: Path) -> None:
     deck = tmp_path / "deck.inp"
     deck.write_text("*FRICTION\n0.3, 2.1E5\n")
     script = [sys.executable, str(ROOT / "scripts/rescale.py")]
-    for path in (deck, tmp_path / "missing.inp"):
+    stray = tmp_path / "stray.inp"
+    stray.write_text("1, 2.\n")
+    missing = tmp_path / "missing.inp"
+    faults = {deck: "field 2 of *FRICTION", stray: str(stray), missing: str(missing)}
+    for path, named in faults.items():
         command = [*script, str(path), "-o", str(tmp_path / "new.inp"), "--length", "2"]
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
-        assert done.returncode == 1 and len(done.stderr.splitlines()) == 1, done.stderr
-        assert str(path) in done.stderr
+        assert done.returncode == FAULT and len(done.stderr.splitlines()) == 1, done.stderr
+        assert named in done.stderr
     assert not (tmp_path / "new.inp").exists()
 
 
