@@ -1,5 +1,7 @@
 //! One deck and one golden text for every diagnostic code.
 
+mod deck_advice;
+
 use std::path::Path;
 use stickslip::contact::{adjust, report_adjusted, report_penetrations};
 use stickslip::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Sources};
@@ -142,6 +144,8 @@ fn faulty(code: Code) -> Source {
         InitialPenetration => shared("11, 1., 1.1", "11, 1., 0.99"),
         UnitsHint => square("1000., 0.3", "1., 0.3"),
         RigidSurface => rigid(LINE, "", ""),
+        NothingFaced => shared("EBASE, S3", "2, S2"),
+        Magnitude => square("*DENSITY\n1.", "*DENSITY\n1.e-310"),
         Adjusted => shared("DRY, TYPE", "DRY, ADJUST=0.2, TYPE"),
         BadDof => square("FOOT, 1, 2", "FOOT, 1, 8"),
         ValueOutsideStep => square("FOOT, 1, 2", "FOOT, 1, 2, 0.1"),
@@ -158,6 +162,7 @@ fn faulty(code: Code) -> Source {
         MixedOperation => step("*CLOAD, OP=NEW\n4, 2, 1."),
         ConflictingSupport => step("*BOUNDARY\n4, 1\n*BOUNDARY\n4, 1, 1, 0.1"),
         IgnoredVariable => square("U, RF", "U, PEEQ"),
+        ConstantIncrement => square("*DYNAMIC, DIRECT\n0.1, 1.", "*DYNAMIC\n0.1, 1., 1.e-3, 0.2"),
     }
 }
 

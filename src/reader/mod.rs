@@ -6,6 +6,7 @@
 
 mod amplitude;
 mod carried;
+mod catalogue;
 mod check;
 mod contact;
 mod context;
@@ -44,7 +45,7 @@ pub fn build(deck: &Deck, d: &mut Diagnostics) -> Option<Model> {
     if deck.has_assembly() || deck.cards.is_empty() {
         return None;
     }
-    let model = read(&mut Context { deck, d });
+    let model = read(&mut Context::new(deck, d));
     if !d.has_errors() {
         report_unused(deck, d);
     }
