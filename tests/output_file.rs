@@ -158,7 +158,7 @@ const VECTOR_PER_INCREMENT: [&str; 18] = [
     "/history/nodes/TIP/mean/A",
 ];
 
-const PER_INCREMENT: [&str; 55] = [
+const PER_INCREMENT: [&str; 56] = [
     "/history/contact/BOTTOM_TOP/normal_work",
     "/history/contact/BOTTOM_TOP/friction_dissipation",
     "/history/contact/BOTTOM_TOP/normal_impulse",
@@ -180,6 +180,7 @@ const PER_INCREMENT: [&str; 55] = [
     "/history/contact/BOTTOM_TOP_2/impact_normal_impulse_sum",
     "/history/contact/BOTTOM_TOP_2/impact_tangential_impulse_sum",
     "/history/time",
+    "/history/strain/largest_principal",
     "/history/dt",
     "/history/step",
     "/history/energy/kinetic",

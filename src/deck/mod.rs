@@ -6,6 +6,7 @@
 
 mod card;
 mod collect;
+mod dimensions;
 mod keyword;
 mod lexer;
 mod name;
@@ -13,6 +14,7 @@ mod number;
 mod reference;
 mod resolve;
 mod source;
+mod table_dimensions;
 mod table_model;
 mod table_others;
 mod table_steps;
@@ -21,6 +23,7 @@ mod word;
 
 pub use card::{Card, Param, Row};
 pub use collect::Deck;
+pub use dimensions::{dimension_faults, dimensions_json};
 pub use keyword::{Data, Keyword, Parameter, Scope, Status, Takes, Value, keywords};
 pub use name::Name;
 pub use reference::keyword_reference;

@@ -2,6 +2,7 @@ use std::io;
 use std::time::Duration;
 
 use super::Failure;
+use crate::elements::Strained;
 
 /// Motion at one time; `2 N` entries each.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -250,6 +251,8 @@ pub struct IncrementReport {
     pub bodies: Vec<BodyResult>,
     /// Reactions, one per rigid surface with a reference node.
     pub rigid: Vec<RigidReaction>,
+    /// Largest principal strain.
+    pub strain: Strained,
     /// Resultants, one per contact of the model.
     pub contacts: Vec<ContactResultant>,
     /// Landings of this increment.

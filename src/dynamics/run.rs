@@ -3,14 +3,15 @@ use std::io;
 use super::accounts::Accounts;
 use super::dofs::DofMap;
 use super::effective::Effective;
+use super::entry::{Entered, start_failure};
 use super::events::{MOST_EVENTS, Piece, Pieces};
-use super::gain::check_gain;
 use super::grid::{Grid, StepPlace, WHOLE, increments_of};
 use super::increment::{Attempt, Failed, Solved};
 use super::ledger::Ledger;
 use super::loads::Loads;
 use super::mass::Mass;
 use super::meter::Meter;
+use super::parts::Parts;
 use super::results::landings;
 use super::scheme::Weights;
 use super::step_problem::{Interval, StepProblem};
@@ -43,11 +44,13 @@ pub enum RunError {
 pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
     let body = Body::new(model);
     let mass = Mass::new(&body, model.mesh.node_count());
+    let parts = Parts::new(model);
     let contacts = contact_surfaces(model);
     let mut runner = Runner {
         model,
         body: &body,
         mass: &mass,
+        parts: &parts,
         contacts: &contacts,
         search: Search::new(&contacts, &model.mesh.coordinates),
         state: State {
@@ -56,7 +59,7 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
             a: vec![0.0; model.mesh.dof_count()],
         },
         contact: Touching::default(),
-        ledger: Ledger::new(0.0, 0.0),
+        ledger: Ledger::default(),
         accounts: Accounts::new(model, &mass, &contacts),
         increment: 0,
         cutbacks: 0,
@@ -94,6 +97,7 @@ struct Runner<'m, 'o> {
     model: &'m Model,
     body: &'m Body,
     mass: &'m Mass,
+    parts: &'m Parts,
     contacts: &'m [ContactSurfaces],
     search: Search<'m>,
     state: State,
@@ -122,6 +126,7 @@ impl<'m> Runner<'m, '_> {
             model: self.model,
             body: self.body,
             mass: self.mass,
+            parts: self.parts,
             contacts: self.contacts,
             settings: step.settings,
             weights: Weights::new(step.settings.scheme),
@@ -130,10 +135,11 @@ impl<'m> Runner<'m, '_> {
             supports: Supports::new(self.model, step, &self.state.u),
         };
         let choice = step.settings.solver;
-        let mut effective =
-            Effective::new(self.body, &problem.dofs, self.model.mesh.bodies(), choice);
-        if number == 1 {
-            self.report_start(&problem, &mut effective, place)?;
+        let mut effective = Effective::new(self.body, &problem.dofs, self.parts, choice);
+        if number == 1
+            && let Some(failure) = self.report_start(&problem, &mut effective, place)?
+        {
+            return Ok(Outcome::Stopped(Box::new(failure)));
         }
         let count = increments_of(period, dt);
         for i in 0..count {
@@ -190,8 +196,8 @@ impl<'m> Runner<'m, '_> {
             };
             let solved = attempt.solve(&self.contact);
             match solved.and_then(|s| self.checked(problem, s, interval.dt, halvings, grid)) {
-                Ok(solved) => {
-                    self.accept(problem, place, interval, solved)?;
+                Ok(entered) => {
+                    self.accept(problem, place, interval, entered)?;
                     piece += 1;
                     while halvings > 0 && piece % 2 == 0 {
                         (piece, halvings) = (piece / 2, halvings - 1);
@@ -245,14 +251,19 @@ impl<'m> Runner<'m, '_> {
                 false => pieces.rest(),
             };
             let halvings = ends.len() as u32 - 1;
-            let checked = |dt, s| self.checked(problem, s, dt, halvings, grid);
-            match next.and_then(|piece| piece.checked(checked)) {
-                Ok(Piece {
+            let checked = next.and_then(|piece| {
+                let Piece {
                     interval,
                     solved,
                     is_cut,
-                }) => {
-                    self.accept(problem, place, interval, solved)?;
+                } = piece;
+                let checked = self.checked(problem, solved, interval.dt, halvings, grid);
+                let entered = checked.map_err(|failed| Box::new((interval, failed)))?;
+                Ok((interval, entered, is_cut))
+            });
+            match checked {
+                Ok((interval, entered, is_cut)) => {
+                    self.accept(problem, place, interval, entered)?;
                     (from, last) = (interval.end.step, interval.dt);
                     if is_cut {
                         (events, self.events) = (events + 1, self.events + 1);
@@ -273,7 +284,8 @@ impl<'m> Runner<'m, '_> {
         Ok(None)
     }
 
-    /// A converged increment; one into which contact puts energy is halved, a few times.
+    /// A converged increment with its energies, which must be finite; one into which contact puts
+    /// energy is halved, a few times.
     fn checked(
         &self,
         problem: &StepProblem,
@@ -281,11 +293,10 @@ impl<'m> Runner<'m, '_> {
         dt: f64,
         halvings: u32,
         grid: Grid,
-    ) -> Result<Solved, Failed> {
-        if halvings >= GAIN_HALVINGS || dt / 2.0 < grid.dt_min {
-            return Ok(solved);
-        }
-        check_gain(problem, &self.state, self.ledger.largest, solved)
+    ) -> Result<Entered, Failed> {
+        let may_be_halved = halvings < GAIN_HALVINGS && dt / 2.0 >= grid.dt_min;
+        let before = (&self.state, &self.ledger);
+        Entered::new(problem, before, solved, dt, may_be_halved)
     }
 
     fn failure(
@@ -330,13 +341,10 @@ impl<'m> Runner<'m, '_> {
         problem: &StepProblem,
         place: StepPlace,
         interval: Interval,
-        solved: Solved,
+        Entered { solved, ledger }: Entered,
     ) -> Result<(), RunError> {
-        let strain = self.body.strain_energies(&solved.end.u);
-        let total = strain.iter().sum();
-        self.ledger
-            .enter(problem, &self.state, &solved, total, interval.dt);
-        let accounted = self.accounts.enter(problem, &solved, interval, &strain);
+        self.ledger = ledger;
+        let accounted = (self.accounts).enter(problem, &solved, interval, &self.ledger.strains);
         let landings = landings(problem, &self.state, &self.contact, &solved, interval);
         self.meter.counts.converged = true;
         self.totals.add(&self.meter.counts);
@@ -349,6 +357,7 @@ impl<'m> Runner<'m, '_> {
             dt: interval.dt,
             ends_step: interval.end.step == place.period,
             energy: self.ledger.energy,
+            strain: self.body.most_strained(&solved.end.u),
             landings,
             solver: self.meter.counts,
             passes: solved.passes,
@@ -361,21 +370,23 @@ impl<'m> Runner<'m, '_> {
         Ok(())
     }
 
-    /// Completes the start state (velocity of the supports, acceleration) and reports it.
+    /// Completes the start state (velocity of the supports, acceleration) and reports it, or gives
+    /// the failure when it is not finite.
     fn report_start(
         &mut self,
         problem: &StepProblem,
         effective: &mut Effective,
         place: StepPlace,
-    ) -> Result<(), RunError> {
+    ) -> Result<Option<Failure>, RunError> {
         let now = place.moment(0.0);
         for (dof, _, v) in problem.supports.motion(now) {
             self.state.v[dof] = v;
         }
         self.state.a = problem.start_acceleration(effective, &self.state, now);
-        let kinetic = self.mass.kinetic_energy(&self.state.v);
-        let strain = self.body.strain_energies(&self.state.u);
-        self.ledger = Ledger::new(kinetic, strain.iter().sum());
+        self.ledger = Ledger::new(problem, &self.state);
+        if let Some(failure) = start_failure(&self.state, &self.ledger, place) {
+            return Ok(Some(failure));
+        }
         let report = IncrementReport {
             step: place.number,
             time: now.total,
@@ -385,9 +396,11 @@ impl<'m> Runner<'m, '_> {
                 ..SolverCounts::default()
             },
             state: self.state.clone(),
-            ..self.accounts.start(problem, &self.state, &strain)
+            ..self
+                .accounts
+                .start(problem, &self.state, &self.ledger.strains)
         };
         self.observer.increment(&report)?;
-        Ok(())
+        Ok(None)
     }
 }

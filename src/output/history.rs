@@ -9,6 +9,7 @@ use super::node_history::{NodeHistory, create_nodes};
 use super::rigid_history::{RigidHistory, create_rigid};
 use super::series::{Scalar, Series, scalar};
 use crate::dynamics::{Energy, IncrementReport, Momentum, SolverCounts};
+use crate::elements::Strained;
 use crate::model::Model;
 
 /// Writes the history.
@@ -18,6 +19,7 @@ pub(super) struct History {
     energy: Series<Energy, f64>,
     momentum: MomentumHistory,
     bodies: BodyHistory,
+    strain: Series<Strained, f64>,
     contacts: Vec<ContactHistory>,
     impacts: Impacts,
     rigid: Vec<RigidHistory>,
@@ -35,6 +37,7 @@ impl History {
             energy: Series::create(&group(&at, "energy")?, &ENERGY)?,
             momentum: MomentumHistory::create(&group(&at, "momentum")?)?,
             bodies: BodyHistory::create(&group(&at, "bodies")?, model)?,
+            strain: Series::create(&group(&at, "strain")?, &STRAIN)?,
             contacts: create_contacts(&group(&at, "contact")?, model)?,
             impacts: Impacts::create(&group(&at, "impacts")?)?,
             rigid: create_rigid(&group(&at, "rigid")?, model)?,
@@ -50,6 +53,7 @@ impl History {
         self.energy.push(&report.energy)?;
         self.momentum.push(&report.momentum)?;
         self.bodies.push(&report.bodies)?;
+        self.strain.push(&report.strain)?;
         for (contact, resultant) in self.contacts.iter_mut().zip(&report.contacts) {
             contact.push(resultant)?;
         }
@@ -72,6 +76,7 @@ impl History {
         self.energy.flush()?;
         self.momentum.flush()?;
         self.bodies.flush()?;
+        self.strain.flush()?;
         self.contacts
             .iter_mut()
             .try_for_each(ContactHistory::flush)?;
@@ -134,6 +139,14 @@ const ENERGY: [Scalar<Energy, f64>; 8] = [
         |e| e.balance,
     ),
 ];
+
+const STRAIN: [Scalar<Strained, f64>; 1] = [scalar(
+    "largest_principal",
+    "largest absolute principal value of the Green-Lagrange strain in the plane, of all integration \
+     points",
+    "1",
+    |s| s.strain,
+)];
 
 const ANGULAR: [Scalar<Momentum, f64>; 1] = [scalar(
     "angular",

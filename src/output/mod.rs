@@ -30,6 +30,7 @@ mod rigid_history;
 mod screen;
 mod series;
 mod status;
+mod strain;
 mod summary;
 mod vtkhdf;
 mod warnings;

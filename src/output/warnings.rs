@@ -5,15 +5,15 @@ use super::body_times::{BodyTimes, body_times};
 use super::echo::{WIDTH, label};
 use super::format::{general, scientific};
 use super::names::contact_names;
+use super::strain::LARGE;
 use crate::dynamics::IncrementReport;
-use crate::model::{Bodies, Model};
+use crate::linear::larger;
+use crate::model::{ALL_EXTERIOR, Bodies, Model};
 
 /// Energy balance, as a part of the largest energy, that converged passes leave.
 const BALANCE: f64 = 1e-8;
 /// Work of the normal contact forces, as a part of the largest energy, that counts.
 const CONTACT_WORK: f64 = 0.01;
-/// Principal strain above which a St. Venant-Kirchhoff material is no guide.
-const STRAIN: f64 = 0.2;
 /// Increments, in the time that a wave takes along the shortest edge, that are more than a mesh can show.
 const MANY: f64 = 100.0;
 /// Increments in the longest period that show its motion well.
@@ -77,12 +77,12 @@ impl Findings {
     }
 
     fn strain_text(&self) -> Option<String> {
-        let strain = self.strain.filter(|&strain| strain > STRAIN)?;
+        let strain = self.strain.filter(|&strain| strain > LARGE)?;
         Some(format!(
             "the largest principal strain is {}, above {}, where a St. Venant-Kirchhoff material is \
              too stiff in tension and too soft in compression: trust no forces there, or lower the loads",
             general(strain, 2),
-            general(STRAIN, 1),
+            general(LARGE, 1),
         ))
     }
 
@@ -143,11 +143,11 @@ impl Watch {
         for (closed, contact) in self.closed.iter_mut().zip(&report.contacts) {
             *closed |= contact.closed > 0 || contact.impulse.impact_normal > 0.0;
         }
-        self.dt = self.dt.max(report.dt);
+        self.dt = larger(self.dt, report.dt);
         self.time = report.time;
     }
 
-    /// What was found up to the end.
+    /// What was found up to the end; large strains are told at their increment.
     pub fn findings(&self, model: &Model, balance: &Balance) -> Findings {
         let closed = self.closed.iter().copied();
         let contacts: Vec<(String, bool)> = contact_names(model).into_iter().zip(closed).collect();
@@ -167,7 +167,8 @@ impl Watch {
 }
 
 /// Names of the contacts that never closed, sorted, from the names of all and whether they did. Where
-/// the same surfaces meet the other way round, nodes of one of them may carry it all.
+/// the same surfaces meet the other way round, nodes of one of them may carry it all; in general contact
+/// it is enough that something has met something.
 pub(super) fn never_closed(contacts: &[(String, bool)]) -> Vec<String> {
     let has_closed = |wanted: &str| {
         contacts
@@ -178,14 +179,15 @@ pub(super) fn never_closed(contacts: &[(String, bool)]) -> Vec<String> {
         let mut cuts = name.match_indices('_');
         cuts.any(|(i, _)| has_closed(&format!("{}_{}", &name[i + 1..], &name[..i])))
     };
+    let is_general = |name: &str| name.starts_with(ALL_EXTERIOR);
+    let mut general = contacts.iter().filter(|(name, _)| is_general(name));
+    let has_met = general.any(|(_, closed)| *closed);
+    let is_met = |name: &str| other_way_round(name) || (has_met && is_general(name));
     let open = contacts
         .iter()
         .filter(|(_, closed)| !closed)
         .map(|(name, _)| name);
-    let mut open: Vec<String> = open
-        .filter(|name| !other_way_round(name))
-        .cloned()
-        .collect();
+    let mut open: Vec<String> = open.filter(|name| !is_met(name)).cloned().collect();
     open.sort();
     open
 }
@@ -265,6 +267,9 @@ mod tests {
         };
         assert_eq!(never_closed(&contacts([false, true, true])), [""; 0]);
         assert_eq!(never_closed(&contacts([false, true, false])), ["A_B"]);
+        let general = [("ALL_EXTERIOR", false), ("ALL_EXTERIOR_FLOOR", true)];
+        let general = general.map(|(name, closed)| (name.to_owned(), closed));
+        assert_eq!(never_closed(&general), [""; 0]);
         assert_eq!(
             never_closed(&contacts([false; 3])),
             ["A_B", "LOW_UP_X", "UP_X_LOW"]

@@ -17,6 +17,7 @@ use stickslip::dynamics::{
     NodalResults, NodeStatus, Observer, Outcome, PassReport, RunSummary, SolverCounts, State,
     Timings,
 };
+use stickslip::elements::Strained;
 use stickslip::model::{
     Cell, Contact, Element, Face, Frames, HistorySet, Increments, Interaction, Material, Mesh,
     Model, Plane, Section, Set, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
@@ -117,6 +118,7 @@ fn contact() -> Contact {
         master: 1,
         interaction: Some(0),
         adjust: None,
+        left_out: Vec::new(),
         span: Span::default(),
     }
 }
@@ -174,6 +176,10 @@ pub fn report(k: usize) -> IncrementReport {
         momentum: Momentum {
             linear: [k as f64, -1.0],
             angular: 0.5,
+        },
+        strain: Strained {
+            element: 1,
+            strain: 0.05 * k as f64,
         },
         contacts: vec![resultant(k, 1.0), resultant(k, 2.0)],
         rigid: vec![],
