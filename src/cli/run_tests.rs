@@ -19,7 +19,7 @@ use crate::lcp::{FrictionalLcp, LcpError};
 use crate::model::{
     Cell, Element, Frames, Increments, Material, Mesh, Model, Plane, Section, Set, Settings, Step,
 };
-use crate::output::ResultSummary;
+use crate::output::{Interrupt, ResultSummary};
 
 /// One square, one step of ten increments with a frame at its end.
 fn square() -> Model {
@@ -196,13 +196,15 @@ fn numerics() -> Numerics {
 /// A folder with a deck in it.
 struct Bench {
     folder: TempDir,
+    interrupt: Interrupt,
 }
 
 impl Bench {
     fn new() -> Self {
         let folder = TempDir::new().expect("folder");
         std::fs::write(folder.path().join("job.inp"), "*HEADING\n").expect("deck");
-        Bench { folder }
+        let interrupt = Interrupt::default();
+        Bench { folder, interrupt }
     }
 
     fn path(&self, name: &str) -> PathBuf {
@@ -222,7 +224,9 @@ impl Bench {
         let options = options.iter().map(|option| (*option).as_ref());
         let args = Args::try_parse_from(fixed.into_iter().chain(options)).expect("arguments");
         match args.command {
-            Command::Run(args) => run::run(&args, "stickslip run job.inp", numerics),
+            Command::Run(args) => {
+                run::run(&args, "stickslip run job.inp", numerics, &self.interrupt)
+            },
             other => panic!("{other:?}"),
         }
     }
