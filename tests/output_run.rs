@@ -38,8 +38,7 @@ fn solve(model: &Model, folder: &Path) -> JobFiles {
     let files = JobFiles::new("blocks.inp".as_ref(), folder);
     let record = RunRecord::default();
     let claim = Claim::take(&files, true).expect("claim");
-    let mut writer =
-        ResultWriter::create(model, claim, &record, Verbosity::Quiet).expect("writer");
+    let mut writer = ResultWriter::create(model, claim, &record, Verbosity::Quiet).expect("writer");
     let summary = dynamics::run(model, &mut writer).expect("run");
     writer.finish(&summary).expect("finish");
     files

@@ -80,5 +80,6 @@ impl CliError {
 }
 
 fn after(kept: &Option<String>) -> String {
-    kept.as_ref().map_or(String::new(), |kept| format!("; {kept}"))
+    kept.as_ref()
+        .map_or(String::new(), |kept| format!("; {kept}"))
 }

@@ -186,6 +186,20 @@ fn to_a_full_disk(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, 
     Err(RunError::Observer(full))
 }
 
+fn to_an_error_at_the_start(_: &Model, _: &mut dyn Observer) -> Result<RunSummary, RunError> {
+    Err(RunError::Observer(io::ErrorKind::StorageFull.into()))
+}
+
+fn until_told(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+    for k in 0..=10 {
+        if k == 4 && observer.wants_stop() {
+            return Ok(summary(Outcome::Interrupted, 3));
+        }
+        observer.increment(&report(k)).map_err(RunError::Observer)?;
+    }
+    Ok(summary(Outcome::Finished, 10))
+}
+
 fn numerics() -> Numerics {
     Numerics {
         load: |_, _, _| loaded(Some(square())),
@@ -226,7 +240,7 @@ impl Bench {
         match args.command {
             Command::Run(args) => {
                 run::run(&args, "stickslip run job.inp", numerics, &self.interrupt)
-            },
+            }
             other => panic!("{other:?}"),
         }
     }
@@ -393,8 +407,104 @@ fn a_full_disk_and_a_folder_that_cannot_be_made() {
     );
     assert_eq!(code(&exit), Exit::FileSystem);
     assert_eq!(bench.summary().exit_status, 4);
+    let text = exit.expect_err("a full disk").to_string();
+    let wanted = "cannot write the results: no space left on device; it is valid up to time 0";
+    assert!(
+        text.starts_with(wanted) || text.contains("valid up to time 0"),
+        "{text}"
+    );
     let bench = Bench::new();
     std::fs::write(bench.path("out"), "a file").expect("file");
     let exit = bench.run(&["-q"], &numerics());
     assert_eq!(code(&exit), Exit::FileSystem);
+}
+
+#[test]
+fn earlier_results_stay_until_the_first_frame() {
+    let bench = Bench::new();
+    assert_eq!(code(&bench.run(&["-q"], &numerics())), Exit::Finished);
+    let read = |name: &str| std::fs::read(bench.path(name)).expect(name);
+    let names = ["out/job.vtkhdf", "out/job.sta", "out/job.log"];
+    let before = names.map(read);
+    let solve = to_an_error_at_the_start;
+    let fails = Numerics {
+        solve,
+        ..numerics()
+    };
+    let exit = bench.run(&["-q", "--overwrite"], &fails);
+    assert_eq!(code(&exit), Exit::FileSystem);
+    assert!(names.map(read) == before);
+    assert!(!bench.path("out/job.vtkhdf.part").exists());
+    // Without earlier results nothing is left at all.
+    let bench = Bench::new();
+    assert_eq!(code(&bench.run(&["-q"], &fails)), Exit::FileSystem);
+    let left = std::fs::read_dir(bench.path("out")).expect("folder");
+    assert_eq!(left.count(), 0);
+}
+
+#[test]
+fn what_a_killed_start_leaves_is_in_nobodys_way() {
+    let bench = Bench::new();
+    std::fs::create_dir(bench.path("out")).expect("folder");
+    for name in ["out/job.log", "out/job.vtkhdf.part"] {
+        std::fs::write(bench.path(name), "").expect(name);
+    }
+    assert_eq!(code(&bench.run(&["-q"], &numerics())), Exit::Finished);
+    assert_eq!(bench.summary().frames, [0.0, 1.0]);
+    assert!(!bench.path("out/job.vtkhdf.part").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn links_are_replaced_and_what_they_point_to_stays() {
+    let bench = Bench::new();
+    std::fs::create_dir(bench.path("out")).expect("folder");
+    std::fs::write(bench.path("precious"), "precious").expect("file");
+    for name in [
+        "out/job.log",
+        "out/job.sta",
+        "out/job.vtkhdf",
+        "out/job.vtkhdf.part",
+    ] {
+        std::os::unix::fs::symlink(bench.path("precious"), bench.path(name)).expect(name);
+    }
+    assert_eq!(code(&bench.run(&["-q"], &numerics())), Exit::FileSystem);
+    assert_eq!(
+        code(&bench.run(&["-q", "--overwrite"], &numerics())),
+        Exit::Finished
+    );
+    let kept = std::fs::read_to_string(bench.path("precious")).expect("file");
+    assert_eq!(
+        (kept.as_str(), bench.summary().increments),
+        ("precious", 10)
+    );
+}
+
+#[test]
+fn an_interrupt_ends_the_run_with_a_frame_and_its_exit_code() {
+    for (signal, wanted) in [
+        (2, Exit::Interrupted),
+        (15, Exit::Terminated),
+        (1, Exit::HungUp),
+    ] {
+        let bench = Bench::new();
+        bench.interrupt.request(signal);
+        let solve = until_told;
+        let exit = bench.run(
+            &["-q"],
+            &Numerics {
+                solve,
+                ..numerics()
+            },
+        );
+        assert_eq!(code(&exit), wanted);
+        let summary = bench.summary();
+        assert_eq!(summary.exit_status, wanted as i64);
+        assert_eq!(summary.frames, [0.0, report(3).time]);
+        assert!(
+            bench
+                .log()
+                .contains("asked for the end   increment 3 is the last")
+        );
+    }
 }

@@ -6,6 +6,7 @@
 
 mod card;
 mod collect;
+mod content;
 mod keyword;
 mod lexer;
 mod name;

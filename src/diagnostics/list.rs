@@ -1,5 +1,6 @@
-use super::{Code, Diagnostic, Severity};
-use std::collections::HashSet;
+use super::render::SHOWN;
+use super::{Code, Diagnostic, Severity, Span};
+use std::collections::{BinaryHeap, HashSet};
 
 /// What becomes of doubtful decks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -19,6 +20,8 @@ pub struct Diagnostics {
     strictness: Strictness,
     items: Vec<Diagnostic>,
     counts: [usize; 3],
+    /// Places of the first diagnostics of each severity, as many as are shown.
+    first: [BinaryHeap<Option<Span>>; 3],
     said: HashSet<(Code, String)>,
 }
 
@@ -45,7 +48,19 @@ impl Diagnostics {
     pub fn push(&mut self, mut diagnostic: Diagnostic) {
         diagnostic.severity = self.judge(&diagnostic);
         self.counts[diagnostic.severity as usize] += 1;
+        let first = &mut self.first[diagnostic.severity as usize];
+        first.push(diagnostic.span);
+        if first.len() > SHOWN {
+            first.pop();
+        }
         self.items.push(diagnostic);
+    }
+
+    /// Whether a diagnostic would be shown if it were the last one: an advice that takes time is
+    /// made for those only. One that is not shown now will not be later.
+    pub fn may_show(&self, diagnostic: &Diagnostic) -> bool {
+        let first = &self.first[self.judge(diagnostic) as usize];
+        first.len() < SHOWN || first.peek().is_some_and(|last| diagnostic.span < *last)
     }
 
     /// Adds a diagnostic unless one with the same code and message was added this way before.

@@ -1,9 +1,9 @@
 use super::{Diagnostic, Diagnostics, Severity, Sources, Span};
-use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 use std::ops::Range;
 
 /// Most diagnostics of one severity that are shown.
-const SHOWN: usize = 20;
+pub(super) const SHOWN: usize = 20;
 
 impl Diagnostics {
     /// Text of the diagnostics by their place, at most 20 of each severity and then their count.
@@ -54,9 +54,10 @@ fn group<'a>(item: &'a Diagnostic, sources: &'a Sources) -> Group<'a> {
     let title = level(item.severity).primary_title(item.message.as_str());
     let mut group = Group::with_title(title.id(item.code.id()));
     if let Some(span) = item.span {
-        if let Some(snippet) = snippet(span, item, sources) {
-            group = group.element(snippet);
-        }
+        group = match snippet(span, item, sources) {
+            Some(snippet) => group.element(snippet),
+            None => group.elements(origin(span, sources)),
+        };
         for place in sources.include_chain(span) {
             group = group.element(Level::NOTE.message(included_from(place, sources)));
         }
@@ -81,6 +82,13 @@ fn snippet<'a>(
             .line_start(span.line as usize)
             .annotation(mark.label(item.label.as_deref())),
     )
+}
+
+/// The place alone, where its file has no such line: an empty file.
+fn origin(span: Span, sources: &Sources) -> Option<Origin<'_>> {
+    let source = sources.get(span.file)?;
+    let origin = Origin::path(source.name()).line(span.line as usize);
+    Some(origin.char_column(span.column as usize))
 }
 
 fn included_from(place: Span, sources: &Sources) -> String {

@@ -39,7 +39,8 @@ impl JobFiles {
 
     /// `JOB.vtkhdf.part`, the result before its first frame is in it.
     pub(super) fn draft(&self) -> PathBuf {
-        self.result.with_file_name(format!("{}.vtkhdf.part", self.name))
+        self.result
+            .with_file_name(format!("{}.vtkhdf.part", self.name))
     }
 
     /// The files that exist and tell of a run; an empty log is what one left that was killed
@@ -79,7 +80,16 @@ mod tests {
     #[test]
     fn the_name_of_a_job_is_that_of_its_deck() {
         let name = |deck: &str| JobFiles::new(Path::new(deck), Path::new("out")).name;
-        let names = ["a/b.inp", "B.INP", "b.Inp", "b.inp.txt", "b", ".inp", "größe.inp"].map(name);
+        let names = [
+            "a/b.inp",
+            "B.INP",
+            "b.Inp",
+            "b.inp.txt",
+            "b",
+            ".inp",
+            "größe.inp",
+        ]
+        .map(name);
         assert_eq!(names, ["b", "B", "b", "b.inp.txt", "b", "", "größe"]);
         let files = JobFiles::new(Path::new("B.INP"), Path::new("out"));
         assert_eq!(files.log, Path::new("out/B.log"));

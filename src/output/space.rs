@@ -48,7 +48,10 @@ impl Space {
         if end <= self.kept {
             return Ok(());
         }
-        if getrlimit(Resource::Fsize).current.is_some_and(|limit| end > limit) {
+        if getrlimit(Resource::Fsize)
+            .current
+            .is_some_and(|limit| end > limit)
+        {
             return Err(ErrorKind::FileTooLarge.into());
         }
         match fallocate(&self.file, FallocateFlags::KEEP_SIZE, size, self.room) {
@@ -79,7 +82,10 @@ impl Space {
     pub fn release(&mut self) {
         self.kept = 0;
         // What stays is lost until the file is removed, nothing else.
-        let _ = self.file.metadata().and_then(|data| self.file.set_len(data.len()));
+        let _ = self
+            .file
+            .metadata()
+            .and_then(|data| self.file.set_len(data.len()));
     }
 }
 

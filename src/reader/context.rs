@@ -41,8 +41,9 @@ impl Context<'_> {
             return;
         }
         let message = format!("{what} {} is not defined", name.text);
-        let meant = closest(name.text, known);
         let error = Diagnostic::error(Code::UndefinedName, name.span, message);
+        let is_shown = self.d.may_show(&error);
+        let meant = is_shown.then(|| closest(name.text, known)).flatten();
         self.d.push(error.suggest(meant));
     }
 
