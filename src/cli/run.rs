@@ -27,6 +27,9 @@ pub(super) fn run(
         complain_of(&loaded.messages);
     }
     check_names(&model)?;
+    if interrupt.signal().is_some() {
+        return Ok(signals::exit(interrupt));
+    }
     let files = JobFiles::new(&args.deck.path, &args.output);
     let claim = Claim::take(&files, args.overwrite)?;
     let record = record(command, &loaded, start_threads(args.threads)?);

@@ -1,5 +1,6 @@
 //! `run` with a made-up reader and solver.
 
+use std::cell::Cell;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -190,10 +191,18 @@ fn to_an_error_at_the_start(_: &Model, _: &mut dyn Observer) -> Result<RunSummar
     Err(RunError::Observer(io::ErrorKind::StorageFull.into()))
 }
 
+thread_local! {
+    /// What comes in while [`until_told`] solves.
+    static INTERRUPT: (Interrupt, Cell<i32>) = (Interrupt::default(), Cell::new(0));
+}
+
 fn until_told(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
     for k in 0..=10 {
-        if k == 4 && observer.wants_stop() {
-            return Ok(summary(Outcome::Interrupted, 3));
+        if k == 3 {
+            INTERRUPT.with(|(interrupt, signal)| interrupt.request(signal.get()));
+        }
+        if observer.wants_stop() {
+            return Ok(summary(Outcome::Interrupted, k - 1));
         }
         observer.increment(&report(k)).map_err(RunError::Observer)?;
     }

@@ -26,16 +26,24 @@ fn folded(word: &str) -> impl Iterator<Item = char> {
 
 /// Looks a word up among known ones, blanks and case aside.
 pub(super) fn find(word: &str, known: impl Iterator<Item = &'static str> + Clone) -> Match {
+    match find_known(word, known.clone()) {
+        Match::Unknown(_) => Match::Unknown(suggestion(&fold(word), known)),
+        found => found,
+    }
+}
+
+/// The same, but of an unknown word nobody asks what is meant.
+pub(super) fn find_known(word: &str, known: impl Iterator<Item = &'static str> + Clone) -> Match {
     let short = fold(word);
     if let Some(exact) = known.clone().find(|k| folded(k).eq(short.chars())) {
         return Match::Exact(exact);
     }
     let size = short.chars().count();
     let begins = |k: &&str| folded(k).take(size).eq(short.chars());
-    let mut longer = known.clone().filter(begins);
+    let mut longer = known.filter(begins);
     match (longer.next(), longer.next()) {
         (Some(only), None) if size >= SHORTEST => Match::Abbreviation(only),
-        _ => Match::Unknown(suggestion(&short, known)),
+        _ => Match::Unknown(None),
     }
 }
 

@@ -117,3 +117,32 @@ impl Diagnostics {
         sorted
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_may_be_shown_is_among_the_first_by_place() {
+        let at = |line| {
+            let span = Span {
+                line,
+                ..Span::default()
+            };
+            Diagnostic::error(Code::UndefinedName, span, "")
+        };
+        let mut d = Diagnostics::new();
+        for line in 0..SHOWN as u32 {
+            assert!(d.may_show(&at(100 + line)));
+            d.push(at(100 + line));
+        }
+        assert!(d.may_show(&at(118)) && !d.may_show(&at(119)) && !d.may_show(&at(500)));
+        d.push(at(3));
+        assert!(d.may_show(&at(117)) && !d.may_show(&at(118)));
+        let warning = Diagnostic {
+            severity: Severity::Warning,
+            ..at(500)
+        };
+        assert!(d.may_show(&warning));
+    }
+}
