@@ -1,6 +1,6 @@
 //! `run` with a made-up reader and solver.
 
-use std::cell::Cell;
+use std::cell;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -193,7 +193,7 @@ fn to_an_error_at_the_start(_: &Model, _: &mut dyn Observer) -> Result<RunSummar
 
 thread_local! {
     /// What comes in while [`until_told`] solves.
-    static INTERRUPT: (Interrupt, Cell<i32>) = (Interrupt::default(), Cell::new(0));
+    static INTERRUPT: (Interrupt, cell::Cell<i32>) = (Interrupt::default(), cell::Cell::new(0));
 }
 
 fn until_told(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
