@@ -20,6 +20,7 @@ mod header;
 mod history;
 mod interrupt;
 mod job;
+mod last;
 mod log;
 mod model;
 mod names;

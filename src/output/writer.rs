@@ -12,6 +12,7 @@ use super::failure::failure_lines;
 use super::format::{bytes, counted, general, scientific};
 use super::frames::FrameSchedule;
 use super::interrupt::Interrupt;
+use super::last::LastState;
 use super::log::{Log, cutback_lines, increment_line};
 use super::names::check_names;
 use super::progress::Progress;
@@ -20,8 +21,7 @@ use super::result_file::ResultFile;
 use super::screen::{Table, row};
 use super::status::StatusFile;
 use crate::dynamics::{
-    Cause, Cutback, Failure, IncrementReport, NodalResults, Observer, Outcome, RunSummary,
-    SolverCounts, State,
+    Cause, Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts,
 };
 use crate::model::Model;
 
@@ -53,37 +53,6 @@ pub struct ResultWriter<'a> {
     spent: Duration,
     interrupt: Interrupt,
     claim: Claim,
-}
-
-/// The last good state: the final frame of a run that stops.
-#[derive(Default)]
-struct LastState {
-    time: f64,
-    state: State,
-    nodal: NodalResults,
-    /// Whether it is in the file.
-    written: bool,
-    /// Time of the last frame in the file.
-    frame: f64,
-}
-
-impl LastState {
-    /// Copies the state into the memory at hand.
-    fn set(&mut self, report: &IncrementReport, written: bool) {
-        let (state, nodal) = (&report.state, &report.nodal);
-        self.time = report.time;
-        self.state.u.clone_from(&state.u);
-        self.state.v.clone_from(&state.v);
-        self.state.a.clone_from(&state.a);
-        self.nodal.reaction.clone_from(&nodal.reaction);
-        self.nodal.contact_force.clone_from(&nodal.contact_force);
-        self.nodal.gap.clone_from(&nodal.gap);
-        self.nodal.status.clone_from(&nodal.status);
-        self.written = written;
-        if written {
-            self.frame = report.time;
-        }
-    }
 }
 
 impl<'a> ResultWriter<'a> {
@@ -141,7 +110,10 @@ impl<'a> ResultWriter<'a> {
     /// What there is to read of the results after an error: up to which time.
     pub fn kept(&self) -> Option<String> {
         let is_kept = self.status.is_some() && self.result.is_readable();
-        is_kept.then(|| format!("it is valid up to time {}", scientific(self.last.frame, 6)))
+        is_kept.then(|| {
+            let time = scientific(self.last.frame, 6);
+            format!("the results up to time {time} are kept")
+        })
     }
 
     /// Why the screen was given up; a closed pipe is no reason.
