@@ -1,4 +1,4 @@
-"""Looks for nodes inside bodies, in every frame of a result, from the deformed meshes alone.
+"""Looks for nodes inside bodies and obstacles, in every frame, from the deformed meshes alone.
 
 Nothing of the solver's contact search is used: each body is the region that its outline (the edges
 that belong to one element only) winds around, and a node of an outline is inside when the winding
@@ -7,37 +7,52 @@ included: there the two edges that meet in it are left out, and what counts is w
 covers the place once more. The depth is the distance to the nearest other edge of that body, in
 lengths of that edge. Edges that cross are counted besides.
 
+Rigid surfaces are compared with all bodies too, whether the deck has a contact for them or not:
+their corners with the bodies, and the nodes of the bodies with the obstacles behind the surfaces
+(see profiles.py), the depth in lengths of the longer edge at the node. Contact keeps the nodes of
+bodies out of obstacles; the corners of a surface that is finer than the mesh, or convex, can lie
+behind the edge between two of these nodes.
+
 The exit code is 1 when a node is deeper than 1e-9 element sizes or edges cross.
 """
 
 import argparse
-import sys
+from collections.abc import Set
 from dataclasses import dataclass
-from fractions import Fraction
 from pathlib import Path
 
+import command
 import numpy as np
 from numpy.typing import NDArray
+from outlines import (
+    LIMIT,
+    Integers,
+    Outline,
+    closed_hollow,
+    distances,
+    outlines,
+    ray_starts_inside,
+    winding,
+)
+from profiles import Profile, nearest, passed, profiles, sunk
 from results import Array, Results
 
-Integers = NDArray[np.int64]
-
-LIMIT = 1e-9
-"""Depth in element sizes from which a node counts as inside."""
+Gone = Set[tuple[int, int]]
+"""Bodies that have gone through obstacles: numbers of both."""
 
 
 @dataclass(frozen=True)
 class Intrusion:
-    """A node inside a body."""
+    """A node inside a body or an obstacle."""
 
     depth: float
-    """In lengths of the nearest edge."""
+    """In lengths of the body's edge that is nearest, or that is the longer one at the node."""
     distance: float
     """To the nearest edge."""
     node: int
     """Index of the node."""
-    body: int
-    """Number of the body that it is in."""
+    body: int | None
+    """Number of the body that it is in; none for the obstacle behind a rigid surface."""
     edge: tuple[int, int]
     """Indices of the ends of the nearest edge."""
 
@@ -47,128 +62,28 @@ class Overlap:
     """What was found in one frame."""
 
     deepest: Intrusion | None
+    """The deepest node of a body."""
     inside: int
-    """How many nodes are deeper than LIMIT."""
+    """How many nodes of bodies are deeper than LIMIT."""
     crossings: int
     """Pairs of edges that cross, with all four ends further than LIMIT from the other edge."""
+    corner: Intrusion | None = None
+    """The deepest corner of a rigid surface in a body."""
 
     @property
     def depth(self) -> float:
-        """Depth of the deepest node, 0 when there is none."""
-        return self.deepest.depth if self.deepest else 0.0
+        """Depth of the deepest node or corner, 0 when there is none."""
+        return max((found.depth for found in (self.deepest, self.corner) if found), default=0.0)
 
 
-@dataclass(frozen=True)
-class Outline:
-    """The edges around one body, body on the left; every node is the start of one edge."""
-
-    nodes: Integers
-    after: Integers
-    before: Integers
-    """Next and last node along the outline."""
-
-    @classmethod
-    def of(cls, edges: Integers) -> "Outline":
-        """Takes [edges, 2] node indices in any order."""
-        nodes = np.unique(edges)
-        one, two = edges[np.argsort(edges[:, 0])], edges[np.argsort(edges[:, 1])]
-        if not (np.array_equal(one[:, 0], nodes) and np.array_equal(two[:, 1], nodes)):
-            raise ValueError("an outline touches itself in a node")
-        return cls(nodes, one[:, 1], two[:, 0])
-
-
-def outlines(results: Results) -> list[Outline]:
-    """The outlines of all bodies, in the order of `Results.body`."""
-    body = results.body[results.boundary[:, 0]]
-    return [Outline.of(results.boundary[body == number]) for number in np.unique(body)]
-
-
-def side(start: Array, end: Array, point: Array) -> Integers:
-    """Sign of the area of the triangles start, end, point: 1 when it turns left; exact."""
-    one, two = np.broadcast_arrays(
-        (start[..., 0] - point[..., 0]) * (end[..., 1] - point[..., 1]),
-        (start[..., 1] - point[..., 1]) * (end[..., 0] - point[..., 0]),
-    )
-    area = one - two
-    sign = np.sign(area).astype(np.int64)
-    doubtful = np.abs(area) <= 4e-16 * (np.abs(one) + np.abs(two))
-    if doubtful.any():
-        shape = (*area.shape, 2)
-        corners = [np.broadcast_to(x, shape)[doubtful] for x in (start, end, point)]
-        sign[doubtful] = [_exact_side(*map(tuple, x)) for x in zip(*corners)]
-    return sign
-
-
-def _exact_side(start: tuple[float, ...], end: tuple[float, ...], at: tuple[float, ...]) -> int:
-    (ax, ay), (bx, by), (x, y) = ([Fraction(float(v)) for v in p] for p in (start, end, at))
-    area = (ax - x) * (by - y) - (ay - y) * (bx - x)
-    return (area > 0) - (area < 0)
-
-
-def winding(point: Array, start: Array, end: Array, counted: NDArray[np.bool_]) -> Integers:
-    """How often edges wind around points, by the crossings of a ray to the right of each point.
-
-    `counted` [points, edges] says which edges count for which point. For points on an edge it is
-    the number of either side.
-    """
-    y, low, high = point[:, None, 1], start[None, :, 1], end[None, :, 1]
-    up, down = (low <= y) & (y < high), (high <= y) & (y < low)
-    right = np.maximum(start[:, 0], end[:, 0])[None] > point[:, None, 0]
-    rows, columns = np.nonzero((up | down) & right & counted)
-    turn = side(start[columns], end[columns], point[rows])
-    step = np.where(up[rows, columns], turn > 0, -1 * (turn < 0))
-    total = np.zeros(len(point), np.int64)
-    np.add.at(total, rows, step)
-    return total
-
-
-def ray_starts_inside(point: Array, before: Array, after: Array) -> NDArray[np.bool_]:
-    """Whether the ray to the right of an outline's node starts in the body's angle there.
-
-    The ray lies above the node by less than anything: its direction is (1, 0+).
-    """
-    one, two = after - point, before - point
-
-    def rising(direction: Array) -> NDArray[np.bool_]:
-        """Whether the ray is to the right of a direction."""
-        level = direction[:, 1] == 0.0
-        return np.where(level, direction[:, 0] < 0.0, direction[:, 1] > 0.0)
-
-    left_of_one, right_of_two = ~rising(one), rising(two)
-    convex = side(before, point, after) > 0
-    return np.where(convex, left_of_one & right_of_two, left_of_one | right_of_two)
-
-
-def distances(point: Array, start: Array, end: Array) -> Array:
-    """Distances of points from edges [points, edges]."""
-    along = end - start
-    offset = point[:, None] - start
-    length = np.einsum("ei,ei->e", along, along)
-    at = np.clip(np.einsum("pei,ei->pe", offset, along) / np.where(length > 0, length, 1), 0, 1)
-    return np.linalg.norm(offset - at[..., None] * along, axis=2)
-
-
-def closed_hollow(point: Array, before: Array, after: Array) -> Array:
-    """How deep the legs of closed hollows lie in each other; infinite where a node has other legs.
-
-    At a hollow whose legs lie on each other the angle is zero but for round-off. When it is
-    negative by that much, the node itself is covered once more, and far from all other edges.
-    """
-    one, two = before - point, after - point
-    lengths = np.linalg.norm(one, axis=1), np.linalg.norm(two, axis=1)
-    area = np.abs(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0])
-    alike = np.einsum("ni,ni->n", one, two) > 0.0
-    return np.where(alike, area / np.maximum(*lengths), np.inf)
-
-
-def intrusions(position: Array, host: Outline, guest: Outline, number: int) -> list[Intrusion]:
-    """The guest's nodes inside the host, body `number`; the guest may be the host itself."""
+def intrusions(position: Array, host: Outline, guests: Integers, number: int) -> list[Intrusion]:
+    """The guests, nodes, inside the host, body `number`; they may be all of the host's own."""
     start, end = position[host.nodes], position[host.after]
-    own = guest is host
-    point = position[guest.nodes]
+    own = guests is host.nodes
+    point = position[guests]
     box = _box(start)
     near = own | ((point >= box[0]) & (point <= box[1])).all(axis=1)
-    nodes, point = guest.nodes[near], point[near]
+    nodes, point = guests[near], point[near]
     counted = (host.nodes != nodes[:, None]) & (host.after != nodes[:, None])
     turns = winding(point, start, end, counted)
     if own:
@@ -188,24 +103,59 @@ def intrusions(position: Array, host: Outline, guest: Outline, number: int) -> l
     ]
 
 
-def compare(position: Array, bodies: list[Outline]) -> Overlap:
-    """Compares the nodes of all outlines with all bodies."""
+def in_obstacle(position: Array, body: Outline, obstacle: Profile, gone: bool) -> list[Intrusion]:
+    """A body's nodes inside the obstacle behind a rigid surface; `gone`: it has gone through."""
+    inside = sunk(position, body, obstacle) | gone
+    ways = (position[ends] - position[body.nodes] for ends in (body.after, body.before))
+    edges = [np.linalg.norm(way, axis=1) for way in ways]
+    nodes, size = body.nodes[inside], np.maximum(*edges)[inside]
+    distance, segment, left = nearest(position, nodes, obstacle)
+    found = np.flatnonzero(left)
+    ends = np.stack([obstacle.nodes[segment], obstacle.after[segment]], axis=1)
+    return [
+        Intrusion(
+            float(distance[i] / size[i]),
+            float(distance[i]),
+            int(nodes[i]),
+            None,
+            (int(ends[i, 0]), int(ends[i, 1])),
+        )
+        for i in found
+    ]
+
+
+def compare(
+    position: Array,
+    bodies: list[Outline],
+    obstacles: list[Profile] | None = None,
+    gone: Gone = frozenset(),
+) -> Overlap:
+    """Compares the nodes of all outlines with all bodies and with the obstacles."""
     found: list[Intrusion] = []
+    corners: list[Intrusion] = []
     crossings = 0
     boxes = [_box(position[outline.nodes]) for outline in bodies]
     for number, host in enumerate(bodies):
         for other, guest in enumerate(bodies):
             if _apart(boxes[number], boxes[other]):
                 continue
-            found += intrusions(position, host, guest, number)
+            found += intrusions(position, host, guest.nodes, number)
             if other <= number:
                 crossings += count_crossings(position, host, guest)
+        for other, obstacle in enumerate(obstacles or []):
+            corners += intrusions(position, host, obstacle.corners, number)
+            found += in_obstacle(position, host, obstacle, (number, other) in gone)
+            crossings += count_crossings(position, host, obstacle)
     inside = sum(intrusion.depth > LIMIT for intrusion in found)
+    return Overlap(_deepest(found), inside, crossings, _deepest(corners))
+
+
+def _deepest(found: list[Intrusion]) -> Intrusion | None:
     deepest = max(found, key=lambda intrusion: intrusion.depth, default=None)
-    return Overlap(deepest if deepest and deepest.depth > 0.0 else None, inside, crossings)
+    return deepest if deepest and deepest.depth > 0.0 else None
 
 
-def count_crossings(position: Array, one: Outline, two: Outline) -> int:
+def count_crossings(position: Array, one: Outline, two: Outline | Profile) -> int:
     """Pairs of edges that cross by more than LIMIT; within one outline each pair counts once."""
     a, b = position[one.nodes], position[one.after]
     c, d = position[two.nodes], position[two.after]
@@ -239,25 +189,60 @@ def _apart(one: tuple[Array, Array], two: tuple[Array, Array]) -> bool:
 
 def follow(results: Results) -> list[Overlap]:
     """The overlap in every frame."""
-    bodies = outlines(results)
-    return [compare(results.positions(frame), bodies) for frame in range(len(results.frame_times))]
+    bodies, obstacles = outlines(results), profiles(results)
+    found: list[Overlap] = []
+    gone: Gone = frozenset()
+    before = results.positions(0)
+    for frame in range(len(results.frame_times)):
+        position = results.positions(frame)
+        gone = still_gone(before, position, bodies, obstacles, gone)
+        found.append(compare(position, bodies, obstacles, gone))
+        before = position
+    return found
+
+
+def still_gone(
+    before: Array, position: Array, bodies: list[Outline], obstacles: list[Profile], gone: Gone
+) -> Gone:
+    """Bodies that have gone through open profiles as a whole, and have not come back."""
+    return {
+        (number, other)
+        for number, body in enumerate(bodies)
+        for other, obstacle in enumerate(obstacles)
+        if passed(before, position, body, obstacle)
+        or ((number, other) in gone and nearest(position, body.nodes, obstacle)[2].any())
+    }
 
 
 def describe(results: Results, frame: int, overlap: Overlap) -> str:
     """What was found in a frame in words."""
     text = f"frame {frame:4}, t = {results.frame_times[frame]:<10.6g} "
-    found = overlap.deepest
-    if found is None:
-        text += "no node inside"
+    parts = []
+    if overlap.deepest is not None:
+        parts.append(f"node {_words(overlap.deepest, results, frame)}")
+        parts.append(f"{overlap.inside} nodes deeper than {LIMIT:g}")
     else:
-        label = results.node_labels
-        x, y = results.positions(frame)[found.node]
-        text += (
-            f"node {label[found.node]} at ({x:.6g}, {y:.6g}) is {found.depth:.3g} element sizes"
-            f" ({found.distance:.3g}) behind edge {label[found.edge[0]]}-{label[found.edge[1]]}"
-            f" of body {found.body + 1}; {overlap.inside} nodes deeper than {LIMIT:g}"
-        )
-    return text + (f"; {overlap.crossings} crossings of edges" if overlap.crossings else "")
+        parts.append("no node inside")
+    if overlap.corner is not None:
+        parts.append(f"rigid corner {_words(overlap.corner, results, frame)}")
+    if overlap.crossings:
+        parts.append(f"{overlap.crossings} crossings of edges")
+    return text + "; ".join(parts)
+
+
+def _words(found: Intrusion, results: Results, frame: int) -> str:
+    x, y = results.positions(frame)[found.node]
+    return (
+        f"{results.node_labels[found.node]} at ({x:.6g}, {y:.6g}) is {found.depth:.3g} element"
+        f" sizes ({found.distance:.3g}) behind {_place(found, results)}"
+    )
+
+
+def _place(found: Intrusion, results: Results) -> str:
+    one, two = (results.node_labels[node] for node in found.edge)
+    if found.body is None:
+        return f"rigid segment {one}-{two}"
+    return f"edge {one}-{two} of body {found.body + 1}"
 
 
 def main() -> int:
@@ -281,4 +266,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    command.finish(main)

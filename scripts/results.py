@@ -1,5 +1,11 @@
-"""Reads result files `JOB.vtkhdf` (see docs/output.md) with h5py alone."""
+"""Reads result files `JOB.vtkhdf` (see docs/output.md) with h5py alone.
 
+The file of a running job is read up to the rows and frames that all its datasets have. What cannot
+be read is told as a `Fault`.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -7,6 +13,7 @@ from types import TracebackType
 
 import h5py
 import numpy as np
+from command import Fault, one_line
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -24,6 +31,9 @@ ENERGIES = (
 
 NONE, OPEN, STICK, SLIP = range(4)
 """Values of CONTACT_STATUS."""
+
+LARGEST = 1e150
+"""Largest position whose square is a number."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +66,11 @@ class Results:
 
     def __init__(self, path: Path | str) -> None:
         self.path = Path(path)
-        self.file = h5py.File(self.path, "r")
+        self.file = _open(self.path)
+        missing = [name for name in ("VTKHDF", "model", "history", "run") if name not in self.file]
+        if missing:
+            self.file.close()
+            raise Fault(f"{self.path} is no result of stickslip: it has no group /{missing[0]}")
 
     def __enter__(self) -> "Results":
         return self
@@ -74,30 +88,45 @@ class Results:
         """Name of the job."""
         return self.path.stem
 
+    def read(self, name: str) -> NDArray[np.float64]:
+        """A whole dataset by its path in the file."""
+        with self._reading(name):
+            return self.file[name][()]
+
+    @contextmanager
+    def _reading(self, name: str) -> Iterator[None]:
+        """Tells what goes wrong while `name` is read: a file can be damaged or being written."""
+        try:
+            yield
+        except KeyError:
+            raise Fault(f"{self.path} has no {name}") from None
+        except (OSError, RuntimeError, ValueError, TypeError) as error:
+            raise Fault(f"{self.path}: {name} cannot be read: {one_line(error)}") from None
+
     # The model.
 
     @cached_property
     def coordinates(self) -> Array:
         """Reference coordinates [N, 2]."""
-        return self.file["model/coordinates"][:]
+        return self.read("model/coordinates")
 
     @cached_property
     def node_labels(self) -> NDArray[np.int64]:
         """Node numbers of the deck [N]."""
-        return self.file["model/node_labels"][:]
+        return self.read("model/node_labels")
 
     @cached_property
     def cells(self) -> list[NDArray[np.int64]]:
         """Node indices of each element."""
-        connectivity = self.file["VTKHDF/Connectivity"][:]
-        offsets = self.file["VTKHDF/Offsets"][: len(self.file["model/element_labels"]) + 1]
+        connectivity = self.read("VTKHDF/Connectivity")
+        offsets = self.read("VTKHDF/Offsets")[: len(self.read("model/element_labels")) + 1]
         return [connectivity[a:b] for a, b in zip(offsets[:-1], offsets[1:])]
 
     @cached_property
     def rigid(self) -> NDArray[np.int64]:
         """Segments of rigid surfaces, [segments, 2] node indices, obstacle on the left."""
-        end = self.file["VTKHDF/Offsets"][len(self.cells)]
-        return self.file["VTKHDF/Connectivity"][end:].reshape(-1, 2)
+        end = self.read("VTKHDF/Offsets")[len(self.cells)]
+        return self.read("VTKHDF/Connectivity")[end:].reshape(-1, 2)
 
     @cached_property
     def drawn(self) -> NDArray[np.int64]:
@@ -126,43 +155,73 @@ class Results:
 
     def node_set(self, name: str) -> NDArray[np.int64]:
         """Node indices of a set."""
-        return self.file[f"model/node_sets/{name}"][:]
+        return self.read(f"model/node_sets/{name}")
 
     def element_set(self, name: str) -> NDArray[np.int64]:
         """Element indices of a set."""
-        return self.file[f"model/element_sets/{name}"][:]
+        return self.read(f"model/element_sets/{name}")
 
     # Histories.
 
     @cached_property
+    def histories(self) -> dict[str, h5py.Dataset]:
+        """All histories by their paths below /history, such as `energy/kinetic`.
+
+        The landings (impacts) and node numbers of the deck are none: they have other rows.
+        """
+        found: dict[str, h5py.Dataset] = {}
+
+        def visit(name: str, item: object) -> None:
+            last = name.rpartition("/")[2]
+            other = name.startswith("impacts/") or last in ("labels", "node")
+            if isinstance(item, h5py.Dataset) and item.ndim > 0 and not other:
+                found[name] = item
+
+        with self._reading("history"):
+            self.file["history"].visititems(visit)
+        return found
+
+    @cached_property
+    def rows(self) -> int:
+        """Rows that all histories have."""
+        rows = min((len(data) for data in self.histories.values()), default=0)
+        if rows == 0:
+            raise Fault(f"{self.path} has no history yet")
+        return rows
+
+    def history(self, name: str) -> Array:
+        """A history by its path below /history."""
+        return self.read(f"history/{name}")[: self.rows]
+
+    @cached_property
     def time(self) -> Array:
         """Time at the end of each increment."""
-        return self.file["history/time"][:]
+        return self.history("time")
 
     @cached_property
     def dt(self) -> Array:
         """Length of each increment; 0 at the start."""
-        return self.file["history/dt"][:]
+        return self.history("dt")
 
     @cached_property
     def energy(self) -> dict[str, Array]:
         """Energy ledger, by the names in ENERGIES."""
-        return {name: self.file[f"history/energy/{name}"][:] for name in ENERGIES}
+        return {name: self.history(f"energy/{name}") for name in ENERGIES}
 
     @property
     def largest_energy(self) -> float:
-        """Largest magnitude of any account of the ledger except the balance."""
-        return max(float(np.abs(self.energy[name]).max()) for name in ENERGIES[:-1])
+        """Largest magnitude of any account of the ledger except the balance; NaN if one is NaN."""
+        return float(np.max([np.abs(self.energy[name]).max() for name in ENERGIES[:-1]]))
 
     @cached_property
     def linear_momentum(self) -> Array:
         """Linear momentum [I, 2]."""
-        return self.file["history/momentum/linear"][:]
+        return self.history("momentum/linear")
 
     @cached_property
     def angular_momentum(self) -> Array:
         """Angular momentum about the origin [I]."""
-        return self.file["history/momentum/angular"][:]
+        return self.history("momentum/angular")
 
     @cached_property
     def contacts(self) -> dict[str, Contact]:
@@ -170,52 +229,87 @@ class Results:
         fields = [field for field in Contact.__dataclass_fields__ if field != "name"]
         groups = self.file["history"].get("contact", {})
         return {
-            name: Contact(name, *(group[field][:] for field in fields))
-            for name, group in groups.items()
+            name: Contact(name, *(self.history(f"contact/{name}/{field}") for field in fields))
+            for name in groups
         }
 
     @cached_property
     def solver(self) -> dict[str, NDArray[np.float64]]:
         """Counters of the solver per increment."""
-        return {name: data[:] for name, data in self.file["history/solver"].items()}
+        return {name: self.history(f"solver/{name}") for name in self.file["history/solver"]}
 
     @cached_property
     def impacts(self) -> dict[str, NDArray[np.float64]]:
         """Landings: time, increment, slave, segment, xi, approach_speed."""
-        return {name: data[:] for name, data in self.file["history/impacts"].items()}
+        names = self.file["history/impacts"]
+        found = {name: self.read(f"history/impacts/{name}") for name in names}
+        rows = min(map(len, found.values()), default=0)
+        return {name: data[:rows] for name, data in found.items()}
 
     def nodes(self, name: str) -> NodeHistory:
         """History of a node set."""
-        group = self.file[f"history/nodes/{name}"]
-        return NodeHistory(*(group[field][:] for field in ("labels", "U", "V", "RF")))
+        labels = self.read(f"history/nodes/{name}/labels")
+        motion = (self.history(f"nodes/{name}/{field}") for field in ("U", "V", "RF"))
+        return NodeHistory(labels, *motion)
 
     # Frames.
 
     @cached_property
     def frame_times(self) -> Array:
         """Times of the frames [F]."""
-        return self.file["VTKHDF/Steps/Values"][:]
+        with self._reading("frames"):
+            frames = len(self.file["VTKHDF/Steps/Values"])
+            for kind, count in self._sizes.items():
+                for name, data in self.file[f"VTKHDF/{kind}"].items():
+                    ends = self._offsets(kind, name) + count
+                    frames = min(frames, int((ends <= len(data)).sum()))
+        if frames == 0:
+            raise Fault(f"{self.path} has no frame yet")
+        return self.read("VTKHDF/Steps/Values")[:frames]
+
+    @cached_property
+    def _sizes(self) -> dict[str, int]:
+        """Rows of a frame in the nodal and in the element fields."""
+        return {
+            "PointData": len(self.coordinates),
+            "CellData": len(self.cells) + len(self.rigid),
+        }
 
     def nearest_frame(self, time: float) -> int:
         """Index of the frame nearest to a time."""
         return int(np.abs(self.frame_times - time).argmin())
 
+    def _offsets(self, kind: str, name: str) -> NDArray[np.int64]:
+        """First row of each frame in a field; fields that do not change are there once."""
+        return self.read(f"VTKHDF/Steps/{kind}Offsets/{name}")
+
+    def has_field(self, name: str) -> bool:
+        """Whether the frames have a field, at the nodes or of the elements."""
+        return any(f"VTKHDF/{kind}/{name}" in self.file for kind in self._sizes)
+
     def point_field(self, name: str, frame: int) -> NDArray[np.float64]:
         """A field at the nodes in one frame; plane vectors lose their third component."""
-        return self._field("PointData", name, len(self.coordinates), frame)
+        data = self._field("PointData", name, frame)
+        return data[:, :2] if data.ndim == 2 else data
 
     def cell_field(self, name: str, frame: int) -> NDArray[np.float64]:
         """A field of element means in one frame: S and E as (xx, yy, xy)."""
-        count = len(self.cells) + len(self.rigid)
-        return self._field("CellData", name, count, frame)[: len(self.cells)]
+        return self._field("CellData", name, frame)[: len(self.cells)]
 
-    def _field(self, kind: str, name: str, count: int, frame: int) -> NDArray[np.float64]:
-        data = self.file[f"VTKHDF/{kind}/{name}"][frame * count : (frame + 1) * count]
-        return data[:, :2] if kind == "PointData" and data.ndim == 2 else data
+    def _field(self, kind: str, name: str, frame: int) -> NDArray[np.float64]:
+        if name not in self.file[f"VTKHDF/{kind}"]:
+            there = ", ".join(self.file[f"VTKHDF/{kind}"])
+            raise Fault(f"{self.path} has no field {name}; there are {there}")
+        first = int(self._offsets(kind, name)[frame])
+        with self._reading(name):
+            return self.file[f"VTKHDF/{kind}/{name}"][first : first + self._sizes[kind]]
 
     def positions(self, frame: int) -> Array:
-        """Current coordinates of the nodes in one frame [N, 2]."""
-        return self.coordinates + self.point_field("U", frame)
+        """Current coordinates of the nodes in one frame [N, 2]; a Fault when areas overflow."""
+        positions = self.coordinates + self.point_field("U", frame)
+        if not (np.abs(positions) < LARGEST).all():
+            raise Fault(f"{self.path}: frame {frame} has positions that are no numbers or huge")
+        return positions
 
     # The run.
 
@@ -228,3 +322,22 @@ class Results:
     def run(self) -> dict[str, object]:
         """Attributes of the run record."""
         return dict(self.file["run"].attrs)
+
+
+def _open(path: Path) -> h5py.File:
+    """Opens a file that may be being written: without a lock."""
+    if not path.exists():
+        raise Fault(f"there is no file {path}")
+    if not path.is_file():
+        kind = "a folder" if path.is_dir() else "no regular file"
+        raise Fault(f"{path} is {kind}: a result JOB.vtkhdf is needed")
+    with path.open("rb"):
+        pass  # a file that may not be read is told by the system
+    if not h5py.is_hdf5(path):
+        raise Fault(f"{path} is no HDF5 file: results are named JOB.vtkhdf")
+    try:
+        return h5py.File(path, "r", locking=False)
+    except OSError as error:
+        text = one_line(error)
+        reason = "it is cut short" if "truncated" in text else text
+        raise Fault(f"{path} cannot be opened: {reason}") from None

@@ -8,9 +8,13 @@ import matplotlib
 if not os.environ.get("DISPLAY"):
     matplotlib.use("Agg")
 
+from command import Fault, one_line  # noqa: E402
 from cycler import cycler  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from PIL import Image  # noqa: E402
+
+MOST_PIXELS = 1e8
+"""Larger pictures are refused: they would need gigabytes of memory."""
 
 COLOURS = ("#0b559f", "#d1495b", "#2e8b57", "#e08e0b", "#6a4c93", "#5c6b73", "#17a2b8")
 
@@ -39,12 +43,17 @@ matplotlib.rcParams.update(
 
 def save(figure: Figure, path: Path | str, dpi: float | None = None) -> Path:
     """Writes a figure and says so; a .png gets a palette of 256 colours, which halves its size."""
-    path = Path(path)
+    path, dpi = Path(path), dpi or float(matplotlib.rcParams["savefig.dpi"])
+    if figure.get_size_inches().prod() * dpi**2 > MOST_PIXELS:
+        raise Fault(f"{path} would have more than {MOST_PIXELS:.0e} pixels: lower --dpi")
     path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=dpi or matplotlib.rcParams["savefig.dpi"])
+    try:
+        figure.savefig(path, dpi=dpi)
+    except ValueError as error:  # a format that does not exist, a picture that is too large
+        raise Fault(f"{path} cannot be written: {one_line(error)}") from None
     if path.suffix == ".png":
         with Image.open(path) as picture:
-            small = picture.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, dither=0)
+            small = picture.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, 3, dither=0)
         small.save(path, optimize=True)
     print(f"wrote {path}")
     return path

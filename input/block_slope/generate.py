@@ -18,7 +18,7 @@ THICKNESS = 1.0
 FORCE = 400 * 100.0  # 400 N
 DT = 1.5e-5
 INCREMENTS = 13333
-FRICTION = {"mu00": 0.0, "mu02": 0.2, "mu05": 0.5}
+FRICTION = {"block_slope_mu00": 0.0, "block_slope_mu02": 0.2, "block_slope_mu05": 0.5}
 
 # Our choice of geometry.
 SINE, COSINE = 0.5, sqrt(3) / 2  # 30 degrees

@@ -14,7 +14,7 @@ RADII = 0.8, 1.0
 AROUND, ACROSS = 60, 2
 GAP, OFFSET = 0.1, 0.7
 SPEED, SPIN = 0.8, 0.5
-FRICTION = {"mu00": 0.0, "mu02": 0.2}
+FRICTION = {"rings_mu00": 0.0, "rings_mu02": 0.2}
 DT = 0.005
 INCREMENTS = 800
 

@@ -20,7 +20,7 @@ PUSH = 11.0
 RISE, HOLD = 10.0, 2.0
 """Duration of the push, and of the time after it."""
 DT = 0.01
-FRICTION = {"mu00": 0.0, "mu02": 0.2}
+FRICTION = {"column_mu00": 0.0, "column_mu02": 0.2}
 
 INCLUDE = "column.inc"
 

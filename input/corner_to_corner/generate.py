@@ -76,7 +76,7 @@ def write(folder: Path) -> None:
     for side, offset in OFFSETS.items():
         (folder / f"{side}.inc").write_text(model(offset))
         for name, friction in FRICTION.items():
-            (folder / f"{side}_{name}.inp").write_text(problem(side, friction))
+            (folder / f"corners_{side}_{name}.inp").write_text(problem(side, friction))
 
 
 if __name__ == "__main__":

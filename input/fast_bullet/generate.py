@@ -90,7 +90,7 @@ def write(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     for name, layers in LAYERS.items():
         (folder / f"{name}.inc").write_text(model(layers))
-        (folder / f"{name}.inp").write_text(problem(name))
+        (folder / f"bullet_{name}.inp").write_text(problem(name))
 
 
 if __name__ == "__main__":

@@ -135,7 +135,7 @@ def write(folder: Path) -> None:
     """Writes the decks into `folder`."""
     folder.mkdir(parents=True, exist_ok=True)
     for name in FRICTION:
-        (folder / f"{name}.inp").write_text(deck(name))
+        (folder / f"shapes_{name}.inp").write_text(deck(name))
 
 
 if __name__ == "__main__":

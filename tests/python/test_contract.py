@@ -12,7 +12,12 @@ from results import ENERGIES, Results
 
 FRAMES = 5
 EXAMPLES = {
-    "block": (BLOCK / "mu02.inp", 40, "BLOCK_FACE_SLOPE_FACE", ("BLOCK", "BLOCK_CENTRE")),
+    "block": (
+        BLOCK / "block_slope_mu02.inp",
+        40,
+        "BLOCK_FACE_SLOPE_FACE",
+        ("BLOCK", "BLOCK_CENTRE"),
+    ),
     "cantilevers": (
         CANTILEVERS / "B_mu04.inp",
         200,

@@ -44,7 +44,7 @@ def test_units_scaled_by_powers_of_two_change_nothing(deck: Deck, units: Units, 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_units_scaled_by_powers_of_two_change_nothing_for_the_block(scheme: str, job: Job) -> None:
     units = POWERS_OF_TWO[-1]
-    deck = shortened(BLOCK / "mu05.inp", 200, scheme)
+    deck = shortened(BLOCK / "block_slope_mu05.inp", 200, scheme)
     assert scaled_differences(job(deck), job(rescale(deck, units)), units) == []
 
 

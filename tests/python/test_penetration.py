@@ -9,8 +9,10 @@ import numpy as np
 import penetration
 import pytest
 from conftest import ROOT, Job
-from decks import CANTILEVERS, shortened
-from penetration import Outline, Overlap, compare, side
+from decks import CANTILEVERS, parse, shortened
+from outlines import Outline, side
+from penetration import Overlap, compare, in_obstacle, still_gone
+from profiles import Profile
 
 Points = list[tuple[float, float]]
 
@@ -151,6 +153,153 @@ def test_all_turns_of_a_body_are_found_alike() -> None:
 def test_an_outline_that_touches_itself_in_a_node_is_refused() -> None:
     with pytest.raises(ValueError, match="touches itself"):
         Outline.of(np.array([(0, 1), (1, 2), (2, 0), (0, 3), (3, 4), (4, 0)]))
+
+
+def rigid(chain: Points, *polygons: Points, closed: bool = False) -> Overlap:
+    """Compares bodies with a rigid surface, the obstacle on the left of its chain."""
+    place, bodies, obstacle = placed(chain, *polygons, closed=closed)
+    return compare(place, bodies, [obstacle])
+
+
+def placed(
+    chain: Points, *polygons: Points, closed: bool = False
+) -> tuple[np.ndarray, list[Outline], Profile]:
+    """Positions, outlines of bodies and the profile behind them."""
+    bodies, first = [], 0
+    for polygon in polygons:
+        nodes = np.arange(first, first + len(polygon))
+        bodies.append(Outline.of(np.stack([nodes, np.roll(nodes, -1)], axis=1)))
+        first += len(polygon)
+    nodes = np.arange(first, first + len(chain))
+    ends = nodes[1:] if not closed else np.roll(nodes, -1)
+    profile = Profile(nodes[: len(ends)], ends)
+    return np.array([point for shape in (*polygons, chain) for point in shape]), bodies, profile
+
+
+def moved(polygon: Points, x: float, y: float) -> Points:
+    """A polygon somewhere else."""
+    return [(a + x, b + y) for a, b in polygon]
+
+
+FLOOR: Points = [(9.0, 0.0), (3.0, 0.0), (-3.0, 0.0)]
+"""The obstacle below."""
+
+
+@pytest.mark.parametrize("depth", [0.25, 1e-3, 1e-8, 1e-12])
+def test_a_body_in_a_rigid_floor(depth: float) -> None:
+    found = rigid(FLOOR, moved(UNIT, 0.0, -depth))
+    assert found.inside == (2 if depth > 1e-9 else 0)
+    if depth > 1e-9:
+        assert found.deepest is not None
+        assert (found.deepest.body, found.deepest.edge) == (None, (5, 6))
+        assert found.depth == pytest.approx(depth, rel=1e-6)
+        assert found.crossings == 2
+
+
+@pytest.mark.parametrize("x", [-5.0, -3.0, 0.0, 2.5, 3.0])
+def test_a_body_on_a_rigid_floor_is_not_inside(x: float) -> None:
+    """Nor over its end, nor by as little as round-off below it."""
+    for y in (1e-16, 0.0, -1e-16):
+        found = rigid(FLOOR, moved(UNIT, x, y))
+        assert (found.inside, found.crossings) == (0, 0)
+
+
+def test_what_hangs_behind_a_rigid_floor_is_not_inside() -> None:
+    """A whole body, and one that grips the floor's end, whose jaw lies on the floor."""
+    assert rigid(FLOOR, moved(UNIT, 0.0, -1.5)) == Overlap(None, 0, 0)
+    for y in (1e-16, 0.0, -1e-16):
+        hook = [(0.0, y), (0.0, 1.0), (-5.0, 1.0), (-5.0, -2.0), (0.0, -2.0), (0.0, -1.0)]
+        hook += [(-4.0, -1.0), (-4.0, y)]
+        assert rigid(FLOOR, hook[::-1]).inside == 0
+
+
+def test_the_corner_of_a_punch_in_a_body() -> None:
+    """No node of the body is in the obstacle, but the punch's corner is in the body."""
+    punch = [(0.3, 5.0), (0.5, 0.75), (0.7, 5.0)]
+    found = rigid(punch, UNIT)
+    assert found.corner is not None
+    assert (found.corner.node, found.corner.body) == (5, 0)
+    assert found.depth == found.corner.distance == pytest.approx(0.25)
+    assert (found.deepest, found.inside, found.crossings) == (None, 0, 2)
+
+
+def test_a_node_at_a_corner_of_an_obstacle() -> None:
+    """Convex: inside is what is left of both segments; hollow: what is left of one."""
+    step = [(5.0, 0.0), (0.0, 0.0), (0.0, -5.0)]  # the obstacle below and right: convex
+    assert rigid(step, moved(UNIT, -1.1, -0.5)).inside == 0
+    found = rigid(step, moved(UNIT, -0.75, -0.25))
+    assert found.inside == 1 and found.corner is not None, "the corner is in the body"
+    pit = [(5.0, 0.0), (0.0, 0.0), (0.0, 5.0)]  # the obstacle below and left: hollow
+    assert rigid(pit, UNIT).inside == 0
+    assert rigid(pit, moved(UNIT, -0.25, -0.25)).inside == 3
+
+
+def test_closed_rigid_surfaces() -> None:
+    square = [(3 * x - 1.0, 3 * y - 1.0) for x, y in UNIT]
+    assert rigid(square, UNIT, closed=True).inside == 4, "an obstacle around the body"
+    assert rigid(square, moved(UNIT, 5.0, 0.0), closed=True) == Overlap(None, 0, 0)
+    assert rigid(square[::-1], UNIT, closed=True) == Overlap(None, 0, 0), "a box"
+    assert rigid(square[::-1], moved(UNIT, 1.5, 0.0), closed=True).inside == 2
+
+
+def test_a_body_that_jumps_through_a_rigid_floor() -> None:
+    before, bodies, floor = placed(FLOOR, moved(UNIT, 0.0, 1.0))
+    after = placed(FLOOR, moved(UNIT, 0.0, -3.0))[0]
+    gone = still_gone(before, after, bodies, [floor], frozenset())
+    assert gone == {(0, 0)}
+    assert len(in_obstacle(after, bodies[0], floor, True)) == 4
+    assert compare(after, bodies, [floor], gone).depth == pytest.approx(3.0)
+    # it stays there, is lifted by the floor, which jumps below it, and is not taken for gone
+    assert still_gone(after, after, bodies, [floor], gone) == gone
+    below = placed(moved(FLOOR, 0.0, -9.0), moved(UNIT, 0.0, -3.0))[0]
+    assert still_gone(after, below, bodies, [floor], gone) == set()
+    together = placed(moved(FLOOR, 0.0, -9.0), moved(UNIT, 0.0, -8.0))[0]
+    assert still_gone(before, together, bodies, [floor], frozenset()) == set()
+
+
+PUNCH = """*NODE, NSET=ALL
+1, 0., 0.
+2, 1., 0.
+3, 1., 1.
+4, 0., 1.
+*NODE, NSET=REF
+9, 0., 5.
+*ELEMENT, TYPE=CPE4, ELSET=BODY
+1, 1, 2, 3, 4
+*MATERIAL, NAME=M
+*ELASTIC
+1000., 0.3
+*DENSITY
+1.
+*SOLID SECTION, ELSET=BODY, MATERIAL=M
+*SURFACE, NAME=PUNCH, TYPE=SEGMENTS
+START, 0.7, 5.
+LINE, 0.5, 1.1
+LINE, 0.3, 5.
+*RIGID BODY, ANALYTICAL SURFACE=PUNCH, REF NODE=REF
+*BOUNDARY
+ALL, 1, 2
+*AMPLITUDE, NAME=DOWN
+0., 0., 1., 1.
+*STEP, NLGEOM
+*DYNAMIC
+0.1, 1.
+*BOUNDARY, AMPLITUDE=DOWN
+REF, 1, 1, 0.
+REF, 2, 2, -0.5
+*END STEP
+"""
+"""A punch that no contact keeps out of a block."""
+
+
+def test_a_punch_without_contact_is_found(job: Job, tmp_path: Path) -> None:
+    result = job(parse(PUNCH, tmp_path), "--frames", "10")
+    command = [sys.executable, str(ROOT / "scripts" / "penetration.py"), str(result)]
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    assert done.returncode == 1, done.stderr
+    assert "edges cross in 8 of them" in done.stdout
+    assert "no node inside; rigid corner" in done.stdout
+    assert "at (0.5, 0.6) is 0.4 element sizes (0.4) behind edge" in done.stdout
 
 
 def test_command_line(job: Job) -> None:

@@ -1,10 +1,14 @@
 """The scripts: plots, decks, units, generators."""
 
+import runpy
+import shutil
 import subprocess
 import sys
 from pathlib import Path
+from unittest.mock import patch
 
 import matplotlib.image
+import matplotlib.pyplot as plt
 import program
 import pytest
 from compare import differences
@@ -26,9 +30,13 @@ from rescale import Units, rescale
 
 
 def script(name: str, *arguments: object) -> None:
-    """Runs a script, which has to succeed."""
-    command = [sys.executable, str(ROOT / "scripts" / name), *map(str, arguments)]
-    subprocess.run(command, check=True, stdin=subprocess.DEVNULL, capture_output=True)
+    """Runs a script as from the command line, in this process; it has to succeed."""
+    path = str(ROOT / "scripts" / name)
+    with patch.object(sys, "argv", [path, *map(str, arguments)]):
+        with pytest.raises(SystemExit) as ended:
+            runpy.run_path(path, run_name="__main__")
+    plt.close("all")
+    assert not ended.value.code
 
 
 def assert_picture(path: Path) -> None:
@@ -47,6 +55,9 @@ def result(job: Job) -> Path:
 def test_plot_history(result: Path, tmp_path: Path) -> None:
     script("plot_history.py", result, result, "-o", tmp_path / "history.png")
     assert_picture(tmp_path / "history.png")
+    names = ["--x", "nodes/UPPER_TIP/U:2", "--y", "energy/strain", "energy/kinetic"]
+    script("plot_history.py", result, *names, "-o", tmp_path / "named.png")
+    assert_picture(tmp_path / "named.png")
 
 
 def test_plot_motion_draws_rigid_surfaces(job: Job, tmp_path: Path) -> None:
@@ -66,11 +77,13 @@ def test_plot_motion(result: Path, tmp_path: Path, options: list[object]) -> Non
     assert_picture(tmp_path / "motion.png")
 
 
-def test_animation(job: Job, tmp_path: Path) -> None:
-    result = job(shortened(CANTILEVERS / "A_mu04.inp", 40), "--frames", "4")
+def test_an_animation_is_all_that_is_written(job: Job, tmp_path: Path) -> None:
+    made = job(shortened(CANTILEVERS / "A_mu04.inp", 40), "--frames", "4")
+    result = Path(shutil.copy(made, tmp_path / "JOB.vtkhdf"))
     film = tmp_path / "motion.gif"
-    script("plot_motion.py", result, "-o", tmp_path / "motion.png", "--animation", film)
+    script("plot_motion.py", result, "--animation", film)
     assert film.read_bytes()[:6] == b"GIF89a"
+    assert {path.name for path in tmp_path.iterdir()} == {"JOB.vtkhdf", "motion.gif"}
 
 
 @pytest.mark.parametrize(
@@ -88,6 +101,16 @@ def test_decks_are_what_their_generator_writes(folder: Path, tmp_path: Path) -> 
         assert (folder / name).read_text() == text, name
 
 
+def test_no_two_decks_write_the_same_files() -> None:
+    """A job is named after its deck, and all results go to one folder by default."""
+    decks = [path for place in ("input", "verification") for path in ROOT.glob(f"{place}/*/*.inp")]
+    places: dict[str, list[str]] = {}
+    for path in decks:
+        places.setdefault(path.stem.lower(), []).append(str(path.relative_to(ROOT)))
+    assert len(decks) > 20
+    assert {job: paths for job, paths in places.items() if len(paths) > 1} == {}
+
+
 def test_a_flattened_deck_is_the_same_deck(job: Job, tmp_path: Path) -> None:
     flat = Deck.read(BAR / "em_impulse.inp")
     assert not flat.find("INCLUDE")
@@ -96,7 +119,7 @@ def test_a_flattened_deck_is_the_same_deck(job: Job, tmp_path: Path) -> None:
 
 
 def test_rescaling_there_and_back_gives_the_same_deck() -> None:
-    deck = Deck.read(BLOCK / "mu02.inp")
+    deck = Deck.read(BLOCK / "block_slope_mu02.inp")
     there = rescale(deck, Units(4.0, 0.5, 8.0))
     assert there.text() != deck.text()
     back = rescale(there, Units(0.25, 2.0, 0.125))

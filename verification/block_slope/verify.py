@@ -11,9 +11,11 @@ import runner  # noqa: E402  (first: it finds the modules of scripts/)
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 import style  # noqa: E402
-from plot_motion import draw_overlay  # noqa: E402
+from page import Legends, Page  # noqa: E402
+from plot_motion import shades, shown_at, time_legend  # noqa: E402
 from pointmass import Array, PointMass  # noqa: E402
 from results import Results  # noqa: E402
+from shapes import draw_overlay, limits  # noqa: E402
 
 slope = runner.load(DECKS / "generate.py")
 
@@ -90,7 +92,7 @@ def check_main(verification: runner.Verification) -> None:
         results = verification.results[case.name]
         verification.check_run(case.name, slope.SIDE / 8 / case.refine)
         verification.check("landing time", case.name, case.flight + landing_time(results))
-        if case.deck == "mu00.inp" and case.flight == 0.0:
+        if case.deck == "block_slope_mu00.inp" and case.flight == 0.0:
             along = Centre(results).displacement[1:, 0]
             reference = point_mass(0.0).displacement(results.time[1:])[:, 0]
             deviation = float((np.abs(along - reference) / reference).max())
@@ -180,14 +182,22 @@ def draw_displacement(verification: runner.Verification) -> None:
 
 def draw_motion(verification: runner.Verification) -> None:
     """Shapes every 0.04 s."""
-    figure, axes = plt.subplots(2, 3, figsize=(15, 7.5), sharex=True, sharey=True)
-    for row, (group, label) in enumerate(LABELS.items()):
-        for column, (case, results) in enumerate(verification.group(group)):
-            frames = [results.nearest_frame(0.04 * i) for i in range(6)]
-            draw_overlay(axes[row, column], results, frames)
-            friction = slope.FRICTION[Path(case.deck).stem]
-            axes[row, column].set_title(f"mu = {friction}; {label}", fontsize=8)
-    style.save(figure, verification.output / "motion.png")
+    runs = {
+        (row, column): (label, *each)
+        for row, (group, label) in enumerate(LABELS.items())
+        for column, each in enumerate(verification.group(group))
+    }
+    shown = {place: shown_at(run[2], np.arange(6) * 0.04) for place, run in runs.items()}
+    everything = [each for frames in shown.values() for each in frames]
+    legends = Legends(time_legend(max(shown.values(), key=len)))
+    page = Page((2, 3), limits(everything), legends)
+    for (row, column), (label, case, _) in runs.items():
+        axes = page.panel(row, column, row == 1)
+        frames = shown[row, column]
+        draw_overlay(axes, frames, shades(len(frames)))
+        friction = slope.FRICTION[Path(case.deck).stem]
+        axes.set_title(f"mu = {friction}; {label}", fontsize=8)
+    style.save(page.figure, verification.output / "motion.png")
 
 
 def draw_energy(verification: runner.Verification) -> None:

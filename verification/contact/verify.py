@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 import penetration  # noqa: E402
 import style  # noqa: E402
-from plot_motion import panels  # noqa: E402
+from plot_motion import Look, panels, shown_at  # noqa: E402
 from results import Array, Results  # noqa: E402
 
 MOTION = {
@@ -185,10 +185,8 @@ def draw_motion(verification: runner.Verification) -> None:
         results = verification.results.get(name)
         if results is None:
             continue
-        frames = sorted({results.nearest_frame(time) for time in times})
-        columns = 6 if name in ("column_mu02", "pile") else 3
-        figure = panels(results, frames, "von-mises", False, columns)
-        style.save(figure, verification.output / f"motion_{name}.png", 75)
+        figure = panels([shown_at(results, times)], Look("von-mises"))
+        style.save(figure, verification.output / f"motion_{name}.png", 90)
 
 
 def main() -> int:

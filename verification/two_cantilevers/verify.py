@@ -11,7 +11,7 @@ import runner  # noqa: E402  (first: it finds the modules of scripts/)
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 import style  # noqa: E402
-from plot_motion import draw_panels  # noqa: E402
+from plot_motion import Look, panels, shown_at  # noqa: E402
 from results import Array, Results  # noqa: E402
 
 beams = runner.load(DECKS / "generate.py")
@@ -53,14 +53,10 @@ def draw_displacement(verification: runner.Verification, name: str, label: str) 
 
 def draw_motion(verification: runner.Verification, group: str) -> None:
     """Shapes at t = 0, 2, 4, ... at mu = 0.4 for both load cases."""
-    figure = plt.figure(figsize=(14, 12))
-    parts = figure.subfigures(2, 1, height_ratios=(2.2, 1.0))
-    for part, load in zip(parts, "AB"):
-        results = verification.results[f"{group}_{load}_mu04"]
-        frames = [results.nearest_frame(time) for time in np.arange(0.0, 15.0, 2.0)]
-        draw_panels(part, results, frames, "von-mises", columns=4)
-        part.suptitle(f"load case {load}, mu = 0.4; {LABELS[group]}")
-    style.save(figure, verification.output / f"motion_{group}.png")
+    cases = [verification.results[f"{group}_{load}_mu04"] for load in "AB"]
+    rows = [shown_at(results, np.arange(0.0, 15.0, 2.0)) for results in cases]
+    figure = panels(rows, Look("von-mises"), columns=4)
+    style.save(figure, verification.output / f"motion_{group}.png", 120)
 
 
 def sequence(verification: runner.Verification, group: str, kind: str) -> list[runner.Case]:

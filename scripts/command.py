@@ -1,0 +1,65 @@
+"""Command lines of the scripts: what the user can mend is told in one line, without a traceback."""
+
+import argparse
+import math
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import NoReturn
+
+FAULT = 2
+"""Exit code after a fault; argparse's own."""
+
+
+class Fault(Exception):
+    """Something that the user can mend; its text is one line."""
+
+
+def one_line(error: BaseException) -> str:
+    """The text of an error without line ends."""
+    return " ".join(str(error).split()) or type(error).__name__
+
+
+def finish(main: Callable[[], int | None]) -> NoReturn:
+    """Runs a script's `main` and exits with its code, or with FAULT and one line."""
+    name = Path(sys.argv[0]).name
+    try:
+        code = main() or 0
+        sys.stdout.flush()
+    except Fault as fault:
+        print(f"{name}: error: {one_line(fault)}", file=sys.stderr)
+        code = FAULT
+    except BrokenPipeError:
+        sys.stderr.close()  # the reader of the output has gone: nobody to tell
+        code = FAULT
+    except OSError as error:
+        text = f"{error.filename}: {error.strerror}" if error.filename else one_line(error)
+        print(f"{name}: error: {text}", file=sys.stderr)
+        code = FAULT
+    except KeyboardInterrupt:
+        code = 130
+    sys.exit(code)
+
+
+def finite(text: str) -> float:
+    """A finite number, as a type of argparse."""
+    number = float(text)
+    if not math.isfinite(number):
+        raise argparse.ArgumentTypeError(f"{text} is not finite")
+    return number
+
+
+def positive(text: str) -> float:
+    """A finite number above zero, as a type of argparse."""
+    number = finite(text)
+    if number <= 0.0:
+        raise argparse.ArgumentTypeError(f"{text} is not above zero")
+    return number
+
+
+def positive_integer(text: str) -> int:
+    """A whole number above zero, as a type of argparse."""
+    number = int(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"{text} is not above zero")
+    return number

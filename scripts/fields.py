@@ -1,0 +1,101 @@
+"""Fields that colour pictures of the mesh, with their colour scale."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from matplotlib.colors import Normalize
+from results import Array, Results
+
+Shown = tuple[Results, int]
+"""A result and one of its frames."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """A scalar per element, or per edge of the outlines."""
+
+    label: Callable[[Results], str]
+    """What it is, as far as the result holds it."""
+    values: Callable[[Results, int], Array]
+    """Values per element or edge in a frame; NaN where there is none."""
+    on_edges: bool = False
+
+
+def magnitude(name: str, results: Results, frame: int) -> Array:
+    """Element means of the magnitude of a vector at the nodes."""
+    length = np.linalg.norm(results.point_field(name, frame), axis=1)
+    return np.array([length[cell].mean() for cell in results.cells])
+
+
+def von_mises(results: Results, frame: int) -> Array:
+    """Von Mises stress; without the stress across the thickness where the result has none."""
+    if results.has_field("MISES"):
+        return results.cell_field("MISES", frame)
+    xx, yy, xy = results.cell_field("S", frame).T
+    # syy = 0 across the thickness: plane stress
+    return np.sqrt(xx**2 - xx * yy + yy**2 + 3 * xy**2)
+
+
+def von_mises_label(results: Results) -> str:
+    """Says when the stress across the thickness is not in it."""
+    if results.has_field("MISES"):
+        return "von Mises stress"
+    return "von Mises stress of the stresses in the plane"
+
+
+def mean_stress(results: Results, frame: int) -> Array:
+    """Mean of the two normal stresses in the plane."""
+    return results.cell_field("S", frame)[:, :2].mean(axis=1)
+
+
+def on_outline(name: str, results: Results, frame: int) -> Array:
+    """Means of a scalar of slave nodes on the edges of the outlines.
+
+    An edge with one node that has no value takes that of the other one.
+    """
+    ends = results.point_field(name, frame)[results.boundary]
+    known = np.isfinite(ends)
+    total = np.where(known, ends, 0.0).sum(axis=1)
+    return np.where(known.any(axis=1), total / np.maximum(known.sum(axis=1), 1), np.nan)
+
+
+def _plain(text: str) -> Callable[[Results], str]:
+    return lambda _: text
+
+
+FIELDS = {
+    "von-mises": Field(von_mises_label, von_mises),
+    "mean-stress": Field(_plain("mean stress in the plane"), mean_stress),
+    "speed": Field(_plain("speed"), partial(magnitude, "V")),
+    "displacement": Field(_plain("displacement"), partial(magnitude, "U")),
+    "contact-force": Field(
+        _plain("contact force on a node, mean of the element"), partial(magnitude, "CONTACT_FORCE")
+    ),
+    "contact-pressure": Field(
+        _plain("contact pressure"), partial(on_outline, "CONTACT_PRESSURE"), on_edges=True
+    ),
+    "slip": Field(_plain("way slid in contact"), partial(on_outline, "SLIP"), on_edges=True),
+}
+"""Fields by their names on the command line."""
+
+
+@dataclass(frozen=True)
+class Colouring:
+    """A field with one colour scale for all that is shown."""
+
+    field: Field
+    label: str
+    norm: Normalize
+
+    @classmethod
+    def of(cls, name: str, shown: Sequence[Shown]) -> "Colouring":
+        """Scale that holds 0 and the field in all given frames."""
+        field = FIELDS[name]
+        values = np.concatenate([field.values(*each) for each in shown])
+        values = values[np.isfinite(values)]
+        low = min(0.0, float(values.min(initial=0.0)))
+        high = max(0.0, float(values.max(initial=0.0)))
+        labels = dict.fromkeys(field.label(results) for results, _ in shown)
+        return cls(field, " / ".join(labels), Normalize(low, high if high > low else low + 1.0))

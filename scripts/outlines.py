@@ -1,0 +1,116 @@
+"""Outlines of bodies, and where points are relative to them; signs of areas are exact."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+from results import Array, Results
+
+Integers = NDArray[np.int64]
+
+LIMIT = 1e-9
+"""Depth in element sizes from which a node counts as inside."""
+
+
+@dataclass(frozen=True)
+class Outline:
+    """The edges around one body, body on the left; every node is the start of one edge."""
+
+    nodes: Integers
+    after: Integers
+    before: Integers
+    """Next and last node along the outline."""
+
+    @classmethod
+    def of(cls, edges: Integers) -> "Outline":
+        """Takes [edges, 2] node indices in any order."""
+        nodes = np.unique(edges)
+        one, two = edges[np.argsort(edges[:, 0])], edges[np.argsort(edges[:, 1])]
+        if not (np.array_equal(one[:, 0], nodes) and np.array_equal(two[:, 1], nodes)):
+            raise ValueError("an outline touches itself in a node")
+        return cls(nodes, one[:, 1], two[:, 0])
+
+
+def outlines(results: Results) -> list[Outline]:
+    """The outlines of all bodies, in the order of `Results.body`."""
+    body = results.body[results.boundary[:, 0]]
+    return [Outline.of(results.boundary[body == number]) for number in np.unique(body)]
+
+
+def side(start: Array, end: Array, point: Array) -> Integers:
+    """Sign of the area of the triangles start, end, point: 1 when it turns left; exact."""
+    one, two = np.broadcast_arrays(
+        (start[..., 0] - point[..., 0]) * (end[..., 1] - point[..., 1]),
+        (start[..., 1] - point[..., 1]) * (end[..., 0] - point[..., 0]),
+    )
+    area = one - two
+    sign = np.sign(area).astype(np.int64)
+    doubtful = np.abs(area) <= 4e-16 * (np.abs(one) + np.abs(two))
+    if doubtful.any():
+        shape = (*area.shape, 2)
+        corners = [np.broadcast_to(x, shape)[doubtful] for x in (start, end, point)]
+        sign[doubtful] = [_exact_side(*map(tuple, x)) for x in zip(*corners)]
+    return sign
+
+
+def _exact_side(start: tuple[float, ...], end: tuple[float, ...], at: tuple[float, ...]) -> int:
+    (ax, ay), (bx, by), (x, y) = ([Fraction(float(v)) for v in p] for p in (start, end, at))
+    area = (ax - x) * (by - y) - (ay - y) * (bx - x)
+    return (area > 0) - (area < 0)
+
+
+def winding(point: Array, start: Array, end: Array, counted: NDArray[np.bool_]) -> Integers:
+    """How often edges wind around points, by the crossings of a ray to the right of each point.
+
+    `counted` [points, edges] says which edges count for which point. For points on an edge it is
+    the number of either side.
+    """
+    y, low, high = point[:, None, 1], start[None, :, 1], end[None, :, 1]
+    up, down = (low <= y) & (y < high), (high <= y) & (y < low)
+    right = np.maximum(start[:, 0], end[:, 0])[None] > point[:, None, 0]
+    rows, columns = np.nonzero((up | down) & right & counted)
+    turn = side(start[columns], end[columns], point[rows])
+    step = np.where(up[rows, columns], turn > 0, -1 * (turn < 0))
+    total = np.zeros(len(point), np.int64)
+    np.add.at(total, rows, step)
+    return total
+
+
+def ray_starts_inside(point: Array, before: Array, after: Array) -> NDArray[np.bool_]:
+    """Whether the ray to the right of an outline's node starts in the body's angle there.
+
+    The ray lies above the node by less than anything: its direction is (1, 0+).
+    """
+    one, two = after - point, before - point
+
+    def rising(direction: Array) -> NDArray[np.bool_]:
+        """Whether the ray is to the right of a direction."""
+        level = direction[:, 1] == 0.0
+        return np.where(level, direction[:, 0] < 0.0, direction[:, 1] > 0.0)
+
+    left_of_one, right_of_two = ~rising(one), rising(two)
+    convex = side(before, point, after) > 0
+    return np.where(convex, left_of_one & right_of_two, left_of_one | right_of_two)
+
+
+def distances(point: Array, start: Array, end: Array) -> Array:
+    """Distances of points from edges [points, edges]."""
+    along = end - start
+    offset = point[:, None] - start
+    length = np.einsum("ei,ei->e", along, along)
+    at = np.clip(np.einsum("pei,ei->pe", offset, along) / np.where(length > 0, length, 1), 0, 1)
+    return np.linalg.norm(offset - at[..., None] * along, axis=2)
+
+
+def closed_hollow(point: Array, before: Array, after: Array) -> Array:
+    """How deep the legs of closed hollows lie in each other; infinite where a node has other legs.
+
+    At a hollow whose legs lie on each other the angle is zero but for round-off. When it is
+    negative by that much, the node itself is covered once more, and far from all other edges.
+    """
+    one, two = before - point, after - point
+    lengths = np.linalg.norm(one, axis=1), np.linalg.norm(two, axis=1)
+    area = np.abs(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0])
+    alike = np.einsum("ni,ni->n", one, two) > 0.0
+    return np.where(alike, area / np.maximum(*lengths), np.inf)

@@ -1,0 +1,164 @@
+"""Draws one frame of a result: deformed bodies, rigid surfaces, nodes in contact, arrows."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from fields import Colouring, Shown
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+from results import SLIP, STICK, Array, Results
+
+BACKGROUND, EDGE, MARK, ARROW = "#eef1f4", "#40464d", "#d1495b", "#111111"
+
+VECTORS = {
+    "U": "displacement",
+    "V": "velocity",
+    "A": "acceleration",
+    "RF": "support reaction",
+    "CONTACT_FORCE": "contact force",
+}
+"""Vector fields at the nodes: what they are."""
+
+CROWD = 40
+"""At most so many arrows of a field that is everywhere stand side by side."""
+
+
+@dataclass(frozen=True)
+class Arrows:
+    """A vector field with one scale for all that is shown."""
+
+    name: str
+    largest: float
+    per_length: float
+    """Magnitude of an arrow of the length 1."""
+    spacing: float
+    """Arrows of a field that is everywhere are about so far apart."""
+
+    @classmethod
+    def of(cls, name: str, shown: Sequence[Shown]) -> "Arrows":
+        """Scale that makes the largest arrow a tenth of the picture."""
+        largest = max(
+            float(np.linalg.norm(results.point_field(name, frame), axis=1).max())
+            for results, frame in shown
+        )
+        low, high = limits(shown)
+        extent = float((high - low).max()) or 1.0
+        return cls(name, largest, (largest or 1.0) / (0.1 * extent), extent / CROWD)
+
+    def draw(self, axes: Axes, results: Results, frame: int) -> None:
+        """The arrows of a frame, forces at all nodes that bear them."""
+        vector = results.point_field(self.name, frame)
+        position = results.positions(frame)
+        nodes = results.drawn[np.linalg.norm(vector[results.drawn], axis=1) > 0.0]
+        if self.name in ("U", "V", "A"):
+            nodes = self._thinned(nodes, position)
+        axes.quiver(
+            *position[nodes].T,
+            *vector[nodes].T,
+            angles="xy",
+            scale_units="xy",
+            scale=self.per_length,
+            units="inches",
+            width=0.013,
+            color=ARROW,
+            zorder=6,
+        )
+
+    def tips(self, results: Results, frame: int) -> Array:
+        """Where the arrows end [nodes, 2]."""
+        vector = results.point_field(self.name, frame)[results.drawn]
+        return results.positions(frame)[results.drawn] + vector / self.per_length
+
+    def _thinned(self, nodes: NDArray[np.int64], position: Array) -> NDArray[np.int64]:
+        """One node of each square of a lattice."""
+        squares = np.floor(position[nodes] / self.spacing).astype(np.int64)
+        return nodes[np.unique(squares, axis=0, return_index=True)[1]]
+
+    def legend(self) -> list[Artist]:
+        """What an arrow is."""
+        label = f"{VECTORS[self.name]},\nlongest {self.largest:.3g}"
+        look = {"color": ARROW, "marker": r"$\rightarrow$", "markersize": 11, "linestyle": "none"}
+        return [Line2D([], [], label=label, **look)]
+
+
+def draw_shape(axes: Axes, results: Results, frame: int, colouring: Colouring | None) -> None:
+    """The deformed mesh in one frame, its outline and the nodes in contact."""
+    position = results.positions(frame)
+    on_cells = colouring is not None and not colouring.field.on_edges
+    bodies = PolyCollection([position[cell] for cell in results.cells], linewidths=0.25)
+    bodies.set_edgecolor("#ffffff80" if on_cells else "#b8c0c8")
+    bodies.set_facecolor(BACKGROUND)
+    outline = LineCollection(position[results.boundary], colors=EDGE, linewidths=0.8)
+    axes.add_collection(bodies)
+    axes.add_collection(outline)
+    if colouring is not None:
+        values = colouring.field.values(results, frame)
+        coloured = bodies
+        if colouring.field.on_edges:
+            there = np.isfinite(values) & (values != 0.0)
+            values = values[there]
+            coloured = LineCollection(position[results.boundary[there]], linewidths=3.0, zorder=3)
+            axes.add_collection(coloured)
+        coloured.set(array=values, cmap="viridis", norm=colouring.norm)
+    axes.add_collection(LineCollection(position[results.rigid], colors=EDGE, linewidths=1.6))
+    status = results.point_field("CONTACT_STATUS", frame)
+    for value, face in ((STICK, MARK), (SLIP, "white")):
+        at = position[status == value]
+        axes.scatter(*at.T, s=11, facecolor=face, edgecolor=MARK, linewidth=0.9, zorder=5)
+
+
+def status_legend(shown: Sequence[Shown]) -> list[Artist]:
+    """What the marks mean, of those that there are."""
+    found = {
+        int(value)
+        for results, frame in shown
+        for value in np.unique(results.point_field("CONTACT_STATUS", frame))
+    }
+    look = {"marker": "o", "markersize": 3.6, "markeredgecolor": MARK, "linestyle": "none"}
+    return [
+        Line2D([], [], markerfacecolor=face, label=label, **look)
+        for value, face, label in ((STICK, MARK, "stick"), (SLIP, "white", "slip"))
+        if value in found
+    ]
+
+
+def limits(shown: Sequence[Shown], arrows: Arrows | None = None) -> tuple[Array, Array]:
+    """Lower left and upper right corner of the box that holds everything shown, with a margin."""
+    positions = [results.positions(frame)[results.drawn] for results, frame in shown]
+    if arrows is not None:
+        positions += [arrows.tips(*each) for each in shown]
+    low = np.min([place.min(axis=0) for place in positions], axis=0)
+    high = np.max([place.max(axis=0) for place in positions], axis=0)
+    margin = 0.03 * float((high - low).max()) or 1.0
+    return low - margin, high + margin
+
+
+def draw_overlay(axes: Axes, shown: Sequence[Shown], shades: Sequence[Array]) -> None:
+    """Frames of one result in one pair of axes, each in its shade.
+
+    Bodies that hardly move are drawn once, grey.
+    """
+    results = shown[0][0]
+    travel = [np.linalg.norm(results.point_field("U", frame), axis=1) for _, frame in shown]
+    way = np.max(travel, axis=0)
+    bodies = range(results.body.max() + 1)
+    farthest = np.array([way[results.body == body].max() for body in bodies])
+    moving = (farthest > 0.01 * way.max())[results.body]
+
+    def draw(frame: int, select: NDArray[np.bool_], face: object, edge: object) -> None:
+        position = results.positions(frame)
+        cells = [position[cell] for cell in results.cells if select[cell[0]]]
+        outline = position[[side for side in results.boundary if select[side[0]]]]
+        rigid = position[[side for side in results.rigid if select[side[0]]]]
+        axes.add_collection(PolyCollection(cells, facecolors=face, linewidths=0))
+        axes.add_collection(LineCollection(outline, colors=[edge], linewidths=1.1))
+        axes.add_collection(LineCollection(rigid, colors=[edge], linewidths=1.6))
+
+    if not moving.all():
+        draw(shown[0][1], ~moving, BACKGROUND, EDGE)
+    for (_, frame), shade in zip(shown, shades):
+        draw(frame, moving, [(*shade[:3], 0.10)], shade)

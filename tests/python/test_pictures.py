@@ -1,0 +1,300 @@
+"""What the pictures show: histories by name, panels that fill their page, one scale."""
+
+import shutil
+from pathlib import Path
+
+import h5py
+import matplotlib.pyplot as plt
+import numpy as np
+import plot_history
+import pytest
+from command import Fault
+from conftest import ROOT, Job
+from deck import Deck
+from decks import CANTILEVERS, RINGS, shortened
+from fields import FIELDS, Colouring
+from histories import find, listed
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.quiver import Quiver
+from plot_motion import Look, chosen_times, overlay, panels, shown_at
+from results import Results
+
+PLAIN = Look()
+
+
+@pytest.fixture
+def contact(job: Job) -> Results:
+    """Case A of the cantilevers, up to the contact."""
+    return Results(job(shortened(CANTILEVERS / "A_mu04.inp", 300)))
+
+
+@pytest.fixture
+def other(job: Job) -> Results:
+    """The same without friction."""
+    return Results(job(shortened(CANTILEVERS / "A_mu00.inp", 300)))
+
+
+@pytest.fixture(autouse=True)
+def close_figures() -> object:
+    """Figures are drawn and forgotten."""
+    yield
+    plt.close("all")
+
+
+# Histories.
+
+
+def test_histories_by_name(contact: Results) -> None:
+    tip = contact.nodes("UPPER_TIP")
+    (part,) = find(contact, "nodes/UPPER_TIP/U:2").parts.values()
+    assert np.array_equal(part, tip.U[:, :, 1].mean(axis=1))
+    (part,) = find(contact, f"nodes/UPPER_TIP[{tip.labels[1]}]/U:1").parts.values()
+    assert np.array_equal(part, tip.U[:, 1, 0])
+    parts = find(contact, "nodes/UPPER_TIP/RF").parts
+    assert np.array_equal(parts["y"], tip.RF.sum(axis=1)[:, 1])
+    assert find(contact, "energy/kinetic").title == "kinetic energy"
+    assert find(contact, "momentum/linear:1").title == "linear momentum, x"
+    assert find(contact, "nodes/UPPER_TIP/U:2").title == "displacement, mean over UPPER_TIP, y"
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("energi/kinetic", "contact, dt, energy, "),
+        ("energy/kinetik", "energy has balance, external_work, "),
+        ("nodes/TIP/U:2", "nodes has LOWER_TIP, UPPER_TIP"),
+        ("nodes/UPPER_TIP[1]/U:2", "there are 21, 42, 63"),
+        ("nodes/UPPER_TIP/U:3", "components 1 to 2"),
+        ("energy/kinetic:1", "leave out the :1"),
+        ("contact/UPPER_FACE_LOWER_FACE", "closed, cone_violation"),
+        ("a:b", "no name of a history"),
+    ],
+)
+def test_names_that_there_are_not(contact: Results, name: str, words: str) -> None:
+    with pytest.raises(Fault) as fault:
+        find(contact, name)
+    assert words in str(fault.value)
+
+
+def test_every_listed_history_is_found(contact: Results) -> None:
+    names = listed(contact)
+    assert "energy/kinetic" in names and "nodes/UPPER_TIP/U:1 to :2" in names
+    for name in names:
+        find(contact, name.partition(" ")[0].replace("[BODY]", "[0]"))
+
+
+def test_one_column_for_each_body(contact: Results, tmp_path: Path) -> None:
+    path = Path(shutil.copy(contact.path, tmp_path / "bodies.vtkhdf"))
+    rows = contact.rows
+    with h5py.File(path, "r+") as file:
+        history = file["history"]
+        for name in ("bodies/kinetic", "bodies/velocity"):
+            if name in history:
+                del history[name]
+        history["bodies/kinetic"] = np.arange(2.0 * rows).reshape(rows, 2)
+        history["bodies/velocity"] = np.arange(4.0 * rows).reshape(rows, 2, 2)
+    with Results(path) as results:
+        both = find(results, "bodies/kinetic").parts
+        assert list(both) == ["body 0", "body 1"]
+        assert np.array_equal(find(results, "bodies/kinetic[1]").parts[""], both["body 1"])
+        (part,) = find(results, "bodies/velocity[1]:2").parts.values()
+        assert part[:2].tolist() == [3.0, 7.0]
+        assert "bodies/velocity[BODY]:1 to :2" in listed(results)
+        for name, words in (("bodies/velocity", "[0]"), ("bodies/kinetic[2]", "2 bodies")):
+            with pytest.raises(Fault, match="bodies") as fault:
+                find(results, name)
+            assert words in str(fault.value)
+
+
+def test_a_history_against_another(contact: Results, other: Results) -> None:
+    along, shown = "nodes/UPPER_TIP/U:2", "contact/UPPER_FACE_LOWER_FACE/force:1"
+    figure = plot_history.draw_named([contact, other], along, [[shown], ["energy/kinetic"]])
+    first, second = figure.axes
+    for results, line in zip((contact, other), first.lines):
+        assert np.array_equal(line.get_xdata(), find(results, along).parts["y"])
+        assert np.array_equal(line.get_ydata(), find(results, shown).parts["x"])
+    words = [text.get_text() for text in first.get_legend().get_texts()]
+    assert words == plot_history.names([contact, other])
+    assert " ".join(first.get_ylabel().split()) == (
+        "contact force on the slave surface, UPPER_FACE_LOWER_FACE, x"
+    )
+    assert second.get_xlabel() == "displacement, mean over UPPER_TIP, y"
+    with pytest.raises(Fault, match="which component"):
+        plot_history.draw_named([contact], "momentum/linear", [["time"]])
+
+
+def test_results_of_one_name_are_told_apart(contact: Results) -> None:
+    assert plot_history.names([contact]) == [contact.job]
+    assert plot_history.names([contact, contact])[0] == str(contact.path.with_suffix(""))
+
+
+def test_results_side_by_side_have_the_same_scales(contact: Results, other: Results) -> None:
+    figure = plot_history.draw([contact, other])
+    left, right = figure.axes[0:-1:2], figure.axes[1::2]
+    assert len(left) == len(right) == 6
+    for one, two in zip(left, right):
+        assert one.get_ylim() == two.get_ylim()
+        assert one.get_legend() is None, "one legend, on the right"
+
+
+def test_results_on_top_of_each_other(contact: Results, other: Results) -> None:
+    figure = plot_history.compare([contact, other])
+    kinetic = figure.axes[0]
+    assert [len(axes.lines) for axes in figure.axes] == [2] * 7
+    assert np.array_equal(kinetic.lines[1].get_ydata(), other.energy["kinetic"])
+    words = [text.get_text() for text in kinetic.get_legend().get_texts()]
+    assert words == plot_history.names([contact, other])
+
+
+def test_the_stacked_accounts_sum_up_to_what_was_put_in(contact: Results) -> None:
+    _, axes = plt.subplots()
+    plot_history.energy(axes, contact)
+    account = contact.energy
+    put_in = account["kinetic"][0] + account["strain"][0] + account["external_work"]
+    parts = sum(sign * account[name] for name, _, sign in plot_history.LEDGER)
+    assert np.abs(parts - put_in).max() < 1e-9 * contact.largest_energy
+    tops = [layer.get_paths()[0].vertices[:, 1] for layer in axes.collections]
+    assert max(top.max() for top in tops) == pytest.approx(put_in.max(), rel=1e-9)
+
+
+def test_round_off_of_a_momentum_looks_like_nothing(job: Job) -> None:
+    with Results(job(shortened(RINGS / "rings_mu02.inp", 40, "default"))) as results:
+        _, axes = plt.subplots(2)
+        plot_history.linear_momentum(axes[0], results)
+        plot_history.angular_momentum(axes[1], results)
+        assert np.ptp(axes[0].get_ylim()) > 0.1
+        assert np.ptp(axes[1].get_ylim()) > 0.1
+
+
+# Motion.
+
+
+def filled(figure: Figure) -> float:
+    """Part of the page that panels take, without their titles and labels."""
+    boxes = [axes.get_window_extent() for axes in shapes(figure)]
+    return sum(box.width * box.height for box in boxes) / figure.bbox.width / figure.bbox.height
+
+
+def shapes(figure: Figure) -> list[Axes]:
+    """The axes that are no colour bars."""
+    figure.canvas.draw()
+    return [axes for axes in figure.axes if axes.get_aspect() == 1.0]
+
+
+@pytest.mark.parametrize("count", [1, 4, 6, 8])
+def test_panels_of_a_long_model_fill_their_page(other: Results, count: int) -> None:
+    figure = panels([shown_at(other, np.linspace(0.0, 0.5, count))], Look("von-mises"))
+    assert filled(figure) > 0.55
+    assert figure.get_size_inches().max() <= 11.0
+
+
+def test_an_overlay_of_a_long_model_fills_its_page(other: Results) -> None:
+    assert filled(overlay([shown_at(other, [0.0, 0.5])])) > 0.65
+
+
+def test_legends_stand_beside_the_mesh_when_there_is_something_in_them(contact: Results) -> None:
+    start = panels([[(contact, 0)]], PLAIN)
+    assert start.legends == []
+    touching = panels([shown_at(contact, contact.frame_times[::10])], Look(vectors="CONTACT_FORCE"))
+    touching.canvas.draw()
+    (legend,) = touching.legends
+    words = [text.get_text() for text in legend.get_texts()]
+    assert words[0] == "stick" and words[-1].startswith("contact force,\nlongest ")
+    box = legend.get_window_extent()
+    assert not any(box.overlaps(axes.get_window_extent()) for axes in touching.axes)
+    assert touching.bbox.containsx(box.x0) and touching.bbox.containsx(box.x1)
+    assert all(axes.get_legend() is None for axes in touching.axes)
+
+
+def test_several_results_have_one_scale(contact: Results, other: Results) -> None:
+    rows = [shown_at(results, np.array([0.0, 2.0, 4.0])) for results in (contact, other)]
+    figure = panels(rows, Look("von-mises"))
+    shown = shapes(figure)
+    assert len(shown) == 6
+    assert len({(axes.get_xlim(), axes.get_ylim()) for axes in shown}) == 1
+    assert len({axes.collections[0].norm.vmax for axes in shown}) == 1
+    assert [axes.get_title().startswith(contact.job) for axes in shown[:3]] == [True, False, False]
+    assert shown[3].get_title().startswith(other.job)
+
+
+def test_vectors_are_drawn_as_arrows(contact: Results) -> None:
+    last = len(contact.frame_times) - 1
+    for name, most in (("V", len(contact.coordinates)), ("CONTACT_FORCE", 3)):
+        figure = panels([[(contact, last)]], Look(vectors=name))
+        (quiver,) = (each for each in figure.axes[0].collections if isinstance(each, Quiver))
+        assert 0 < quiver.N <= most
+        drawn = np.stack([quiver.U, quiver.V], axis=1)
+        vectors = contact.point_field(name, last)
+        assert all((vectors == arrow).all(axis=1).any() for arrow in drawn)
+        assert (drawn != 0.0).any(axis=1).all()
+
+
+def test_without_contact_there_are_no_arrows_and_no_marks(job: Job) -> None:
+    deck = shortened(CANTILEVERS / "A_mu04.inp", 3)
+    with Results(job(deck, "--frames", "1")) as results:
+        figure = panels([[(results, 0), (results, 1)]], Look(vectors="CONTACT_FORCE"))
+        assert "longest 0" in figure.legends[0].get_texts()[0].get_text()
+
+
+def test_von_mises_says_what_it_is(contact: Results, tmp_path: Path) -> None:
+    path = Path(shutil.copy(contact.path, tmp_path / "stress.vtkhdf"))
+    cells, frames = len(contact.cells), len(contact.frame_times)
+    true = np.arange(float(cells * frames))
+    with h5py.File(path, "r+") as file:
+        grid = file["VTKHDF"]
+        for name in ("CellData/MISES", "Steps/CellDataOffsets/MISES"):
+            if name in grid:
+                del grid[name]
+    field = FIELDS["von-mises"]
+    with Results(path) as results:
+        xx, yy, xy = results.cell_field("S", 1).T
+        plane = np.sqrt(xx**2 - xx * yy + yy**2 + 3 * xy**2)
+        assert np.array_equal(field.values(results, 1), plane)
+        assert "in the plane" in Colouring.of("von-mises", [(results, 1)]).label
+    with h5py.File(path, "r+") as file:
+        file["VTKHDF/CellData/MISES"] = true
+        file["VTKHDF/Steps/CellDataOffsets/MISES"] = np.arange(frames) * cells
+    with Results(path) as results:
+        assert np.array_equal(field.values(results, 1), true[cells : 2 * cells])
+        assert Colouring.of("von-mises", [(results, 1)]).label == "von Mises stress"
+
+
+def test_fields_of_slave_nodes_colour_the_outline(contact: Results, tmp_path: Path) -> None:
+    path = Path(shutil.copy(contact.path, tmp_path / "slip.vtkhdf"))
+    nodes, frames = len(contact.coordinates), len(contact.frame_times)
+    slid = np.full(nodes * frames, np.nan)
+    edge = contact.boundary[0]
+    slid[nodes + edge] = 1.0, 3.0
+    with h5py.File(path, "r+") as file:
+        grid = file["VTKHDF"]
+        for name in ("PointData/SLIP", "Steps/PointDataOffsets/SLIP"):
+            if name in grid:
+                del grid[name]
+        grid["PointData/SLIP"] = slid
+        grid["Steps/PointDataOffsets/SLIP"] = np.arange(frames) * nodes
+    with Results(path) as results:
+        values = FIELDS["slip"].values(results, 1)
+        assert values[0] == 2.0
+        assert sorted(values[np.isfinite(values)]) == [1.0, 2.0, 3.0], "with the edges beside it"
+        figure = panels([[(results, 0), (results, 1)]], Look("slip"))
+        assert Colouring.of("slip", [(results, 1)]).norm.vmax == 3.0
+        assert len(figure.axes) == 3
+
+
+def test_times(contact: Results) -> None:
+    assert chosen_times(contact, None, 2.0).tolist() == [0.0, 2.0, 4.0]
+    assert len(chosen_times(contact, None, None)) == 6
+    with pytest.raises(Fault, match="100 at most"):
+        chosen_times(contact, None, 1e-3)
+    assert shown_at(contact, [1e9, -1.0, 0.0]) == [
+        (contact, 0),
+        (contact, len(contact.frame_times) - 1),
+    ]
+
+
+def test_rigid_surfaces_are_in_the_picture(job: Job) -> None:
+    with Results(job(Deck.read(ROOT / "tests/decks/rigid_floor.inp"))) as results:
+        figure = panels([[(results, 0)]], PLAIN)
+        low, high = figure.axes[0].get_xlim()
+        assert low < -3.0 and high > 5.0
