@@ -5,6 +5,8 @@ mod check;
 mod connect;
 mod error;
 mod exit;
+#[cfg(test)]
+mod files_tests;
 mod info;
 mod lcp;
 mod overrides;
