@@ -69,10 +69,11 @@ fn main() {
         });
         let moved: Vec<f64> = (0..u.len()).map(|i| 1e-3 * (i as f64).sin()).collect();
         let touch = vec![Touch::default(); x.len()];
+        let unsolved = vec![0.0; x.len()];
         group.bench_function(BenchmarkId::new("ways", n), |bencher| {
             bencher.iter(|| {
                 search.cover_way(&u, &moved);
-                find_passage(&search, &u, black_box(&moved), &touch, 0.0)
+                find_passage(&search, &u, black_box(&moved), &touch, &unsolved)
             });
         });
         if n <= 1_000 {

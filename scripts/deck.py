@@ -1,9 +1,15 @@
-"""Decks as cards: read with their includes, change, write as one file."""
+"""Decks as cards: read with the files they name, change, write as one file."""
 
 import argparse
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+
+from command import Fault
+
+
+FREE_TEXT = ("HEADING", "STEP")
+"""Keywords whose data lines are text."""
 
 
 @dataclass
@@ -15,13 +21,13 @@ class Card:
     head: str
     """Text of the keyword line."""
     rows: list[list[str]] = field(default_factory=list)
-    """Fields of the data lines; the lines of HEADING are one field each."""
+    """Fields of the data lines; free text, under HEADING and STEP, is one field a line."""
 
     @property
     def parameters(self) -> dict[str, str]:
         """Parameters of the keyword line, names in capitals without blanks."""
-        pairs = (part.partition("=") for part in self.head.split(",")[1:])
-        return {_fold(name): value.strip() for name, _, value in pairs if name.strip()}
+        pairs = (part.partition("=") for part in fields(self.head)[1:])
+        return {fold(name): value.strip() for name, _, value in pairs if name.strip()}
 
     def text(self) -> str:
         """The card as deck lines."""
@@ -36,17 +42,17 @@ class Deck:
 
     @classmethod
     def read(cls, path: Path | str) -> "Deck":
-        """Reads a deck; INCLUDE cards are replaced by what they include."""
+        """Reads a deck; what its cards ask for with INPUT= stands in their place."""
         cards: list[Card] = []
-        for line in _lines(Path(path)):
+        for line in _lines(Path(path), Path(path).parent):
             if line.startswith("*"):
-                cards.append(Card(_fold(line[1:].split(",")[0]), line))
+                cards.append(Card(fold(fields(line)[0][1:]), line))
             elif not cards:
-                raise ValueError(f"{path}: data before the first keyword: {line}")
-            elif cards[-1].keyword == "HEADING":
+                raise Fault(f"{path}: data before the first keyword: {line}")
+            elif cards[-1].keyword in FREE_TEXT:
                 cards[-1].rows.append([line])
             else:
-                cards[-1].rows.append([part.strip() for part in line.split(",")])
+                cards[-1].rows.append(fields(line))
         return cls(cards)
 
     def text(self) -> str:
@@ -62,7 +68,7 @@ class Deck:
 
     def find(self, keyword: str) -> list[Card]:
         """All cards with this keyword."""
-        return [card for card in self.cards if card.keyword == _fold(keyword)]
+        return [card for card in self.cards if card.keyword == fold(keyword)]
 
     def one(self, keyword: str) -> Card:
         """The only card with this keyword."""
@@ -85,7 +91,7 @@ class Deck:
         """Gives the only step `count` increments of `dt`."""
         self.one("DYNAMIC").rows = [[repr(dt), repr(count * dt)]]
         step = self.one("STEP")
-        parts = [part for part in step.head.split(",") if not _fold(part).startswith("INC=")]
+        parts = [part for part in step.head.split(",") if not fold(part).startswith("INC=")]
         step.head = ",".join(parts) + f", INC={count}"
 
     def set_settings(self, **settings: object) -> None:
@@ -98,23 +104,61 @@ class Deck:
                 self.cards.insert(place, Card("STICKSLIP", "*STICKSLIP" + text))
 
 
-def _lines(path: Path, depth: int = 0) -> list[str]:
-    """Lines of a deck without comments and empty lines, includes in place."""
+def _lines(path: Path, main: Path, depth: int = 0) -> list[str]:
+    """Logical lines of a deck without comments and empty lines, with those of included files."""
     if depth > 9:
-        raise ValueError(f"{path}: includes are nested too deep")
+        raise Fault(f"{path}: includes are nested too deep")
     lines: list[str] = []
-    for line in (text.strip() for text in path.read_text().splitlines()):
+    is_open = False
+    for text in path.read_text(encoding="utf-8-sig", errors="replace").splitlines():
+        line = text.strip()
         if not line or line.startswith("**"):
             continue
-        if _fold(line.split(",")[0]) == "*INCLUDE":
-            name = line.partition("=")[2].strip().strip('"')
-            lines += _lines(path.parent / name, depth + 1)
+        if is_open and not line.startswith("*"):
+            lines[-1] = f"{lines[-1]} {line}"
         else:
+            _read_input(lines, path, main, depth)
             lines.append(line)
+        starts = line.startswith("*") or is_open
+        is_open = starts and line.endswith(",")
+    _read_input(lines, path, main, depth)
     return lines
 
 
-def _fold(text: str) -> str:
+def _read_input(lines: list[str], path: Path, main: Path, depth: int) -> None:
+    """Puts the lines of a file in the place of the INPUT= of the last line, a keyword line."""
+    if not lines or not lines[-1].startswith("*"):
+        return
+    head = fields(lines[-1])
+    if fold(head[0]) in ("*HEADING", "*STEP"):
+        return
+    inputs = [part for part in head[1:] if fold(part.partition("=")[0]) == "INPUT"]
+    if not inputs:
+        return
+    name = inputs[0].partition("=")[2].strip().strip('"')
+    near = path.parent / name
+    more = _lines(near if near.exists() else main / name, main, depth + 1)
+    kept = [part for part in head if part not in inputs]
+    lines[-1:] = more if fold(head[0]) == "*INCLUDE" else [", ".join(kept), *more]
+
+
+def fields(line: str) -> list[str]:
+    """What stands between the commas of a line; commas between quotation marks do not count."""
+    if '"' not in line:
+        return [part.strip() for part in line.split(",")]
+    parts = [""]
+    quoted = False
+    for character in line:
+        quoted ^= character == '"'
+        if character == "," and not quoted:
+            parts.append("")
+        else:
+            parts[-1] += character
+    return [part.strip() for part in parts]
+
+
+def fold(text: str) -> str:
+    """A word as it is compared: in capitals, without blanks."""
     return "".join(text.split()).upper()
 
 

@@ -198,6 +198,23 @@ fn strict_and_lenient_reading() {
 }
 
 #[test]
+fn what_is_doubtful_before_the_run_is_on_the_screen_and_in_the_log() {
+    let wrong_side = DROP
+        .replace("BASE, S3", "BASE, S1")
+        .replace("DYNAMIC, DIRECT", "DYNAMIC");
+    let bench = Bench::new(&wrong_side.replace("2.01", "3.01").replace("1.01", "2.01"));
+    let told = |text: &str| ["D414", "D516"].map(|code| text.contains(code)) == [true, true];
+    let (code, out, err) = bench.stickslip(&["check", "drop.inp"]);
+    assert_eq!(code, 0, "{err}");
+    assert!(told(&err) && out.contains("2 warnings"), "{err}{out}");
+    let (code, out, err) = bench.stickslip(&["run", "drop.inp"]);
+    assert_eq!(code, 0, "{err}");
+    assert!(told(&err) && told(&bench.read("drop.log")), "{err}{out}");
+    let strict = bench.stickslip(&["check", "drop.inp", "--strict"]);
+    assert_eq!(strict.0, 2, "{}", strict.2);
+}
+
+#[test]
 fn threads_do_not_change_the_results() {
     let bench = Bench::new(DROP);
     for threads in ["1", "2"] {

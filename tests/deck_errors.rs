@@ -1,5 +1,7 @@
 //! One deck and one golden text for every diagnostic code.
 
+mod deck_advice;
+
 use std::path::Path;
 use stickslip::contact::{adjust, report_adjusted, report_penetrations};
 use stickslip::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Sources};
@@ -144,6 +146,8 @@ fn faulty(code: Code) -> Source {
         InitialPenetration => shared("11, 1., 1.1", "11, 1., 0.99"),
         UnitsHint => square("1000., 0.3", "1., 0.3"),
         RigidSurface => rigid(LINE, "", ""),
+        NothingFaced => shared("EBASE, S3", "2, S2"),
+        Magnitude => square("*DENSITY\n1.", "*DENSITY\n1.e-310"),
         Adjusted => shared("DRY, TYPE", "DRY, ADJUST=0.2, TYPE"),
         BadDof => square("FOOT, 1, 2", "FOOT, 1, 8"),
         ValueOutsideStep => square("FOOT, 1, 2", "FOOT, 1, 2, 0.1"),
@@ -160,6 +164,7 @@ fn faulty(code: Code) -> Source {
         MixedOperation => step("*CLOAD, OP=NEW\n4, 2, 1."),
         ConflictingSupport => step("*BOUNDARY\n4, 1\n*BOUNDARY\n4, 1, 1, 0.1"),
         IgnoredVariable => square("U, RF", "U, PEEQ"),
+        ConstantIncrement => square("*DYNAMIC, DIRECT\n0.1, 1.", "*DYNAMIC\n0.1, 1., 1.e-3, 0.2"),
     }
 }
 
@@ -252,6 +257,27 @@ fn only_nodes_in_other_bodies_penetrate_in_general_contact() {
     assert_eq!(found(&general("1.")), None, "bodies that touch");
     assert_eq!(found(&general("0.9995")), Some(Severity::Warning));
     assert_eq!(found(&general("0.99")), Some(Severity::Error));
+}
+
+#[test]
+fn magnitudes_that_overflow_together_are_errors_of_the_deck() {
+    let found = |old: &str, new: &str| {
+        let d = messages(&change(SHARED, old, new)).0;
+        let wrong = d.iter().find(|item| item.severity == Severity::Error);
+        wrong.map(|item| (item.code, item.message.clone()))
+    };
+    let at = |what: &str| Some((Code::BadNumber, format!("the {what} is too large")));
+    let density = "7.8E-9";
+    assert_eq!(
+        found(density, "1.7976931348623157e308"),
+        at("mass of element 1")
+    );
+    let sum = "mass of all elements up to element 3";
+    assert_eq!(found(density, "3e307"), at(sum));
+    assert_eq!(found(density, "1e-308"), at("wave speed in element 1"));
+    let thick = "*SOLID SECTION, ELSET=EBASE, MATERIAL=STEEL\n1.";
+    let thicker = "*SOLID SECTION, ELSET=EBASE, MATERIAL=STEEL\n1e304";
+    assert_eq!(found(thick, thicker), at("stiffness of element 1"));
 }
 
 #[test]

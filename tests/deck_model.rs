@@ -1,7 +1,7 @@
 //! Valid decks and the model they describe.
 
 use std::path::Path;
-use stickslip::contact::adjust as adjust_nodes;
+use stickslip::contact::{adjust as adjust_nodes, contact_surfaces};
 use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::model::*;
 use stickslip::output::contact_names;
@@ -469,9 +469,14 @@ fn adjusted_nodes_are_moved_onto_the_master() {
 
 /// The model of the block above a rigid floor with these rows, moved as the step says.
 fn on_floor(rows: &str, step: &str) -> Model {
+    on_floor_with(rows, step, "")
+}
+
+/// The same with further model cards.
+fn on_floor_with(rows: &str, step: &str, more: &str) -> Model {
     let cards = format!(
         "*NODE\n100, 0., -5.\n*NSET, NSET=REF\n100\n*SURFACE, NAME=FLOOR, TYPE=SEGMENTS\n{rows}\
-         *RIGID BODY, ANALYTICAL SURFACE=FLOOR, REF NODE=REF\n{}*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n",
+         *RIGID BODY, ANALYTICAL SURFACE=FLOOR, REF NODE=REF\n{}{more}*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n",
         PAIR.replace("STOP", "FLOOR")
     );
     let deck = include_str!("decks/shared.inp").replacen(PAIR, &cards, 1);
@@ -505,6 +510,30 @@ fn a_rigid_surface_moves_with_its_reference_node() {
         assert_eq!(motion(2 * node + 1), Some(moved));
     }
     assert_eq!(model.initial_velocity.len(), 2 * nodes);
+}
+
+#[test]
+fn rigid_surfaces_take_part_in_general_contact() {
+    let rows = "START, 0., 1.\nLINE, 4., 1.\n";
+    let general = "*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n\
+                   *CONTACT PROPERTY ASSIGNMENT\n, , DRY\n";
+    let support = "*BOUNDARY\nREF, 1, 2\n";
+    let with_pair = on_floor_with(rows, support, general);
+    let names = contact_names(&with_pair);
+    assert_eq!(names, ["SBOT_FLOOR", ALL_EXTERIOR, "ALL_EXTERIOR_FLOOR"]);
+    // the pair's nodes are held by the pair
+    let labels = |nodes: &[usize]| -> Vec<u64> {
+        nodes
+            .iter()
+            .map(|&n| with_pair.mesh.node_labels[n])
+            .collect()
+    };
+    let contact = &with_pair.contacts[2];
+    assert_eq!(labels(&contact.left_out), [11, 12]);
+    assert!(with_pair.contacts[1].left_out.is_empty());
+    assert_eq!(with_pair.friction(contact), 0.3);
+    let slaves = &contact_surfaces(&with_pair)[2].slaves;
+    assert_eq!(labels(slaves), [1, 2, 3, 6, 5, 4, 13, 14]);
 }
 
 #[test]

@@ -1,20 +1,34 @@
-//! `docs/keywords.md` says what the reader's table says. To write it anew after a change of the
-//! table, run this test with the environment variable `BLESS` set.
+//! `docs/keywords.md` and `scripts/dimensions.json` say what the reader's tables say. To write them
+//! anew after a change of the tables, run these tests with the environment variable `BLESS` set.
 
-use stickslip::deck::{Status, keyword_reference, keywords};
+use stickslip::deck::{Status, dimension_faults, dimensions_json, keyword_reference, keywords};
+
+/// The file holds this text; with `BLESS` it is made to.
+fn check(path: &str, wanted: &str) {
+    let whole = format!("{}/{path}", env!("CARGO_MANIFEST_DIR"));
+    if std::env::var_os("BLESS").is_some() {
+        std::fs::write(&whole, wanted).expect("the file can be written");
+    }
+    let found = std::fs::read_to_string(&whole).unwrap_or_default();
+    assert!(
+        found == wanted,
+        "{path} is out of date: run this test with BLESS=1"
+    );
+}
 
 #[test]
 fn keyword_reference_is_up_to_date() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/keywords.md");
-    let wanted = keyword_reference();
-    if std::env::var_os("BLESS").is_some() {
-        std::fs::write(path, &wanted).expect("docs/keywords.md can be written");
-    }
-    let found = std::fs::read_to_string(path).unwrap_or_default();
-    assert!(
-        found == wanted,
-        "docs/keywords.md is out of date: run this test with BLESS=1"
-    );
+    check("docs/keywords.md", &keyword_reference());
+}
+
+#[test]
+fn dimensions_of_the_scripts_are_up_to_date() {
+    check("scripts/dimensions.json", &dimensions_json());
+}
+
+#[test]
+fn all_that_is_read_has_a_dimension_or_is_known_to_have_none() {
+    assert_eq!(dimension_faults(), Vec::<String>::new());
 }
 
 #[test]

@@ -114,8 +114,9 @@ const POINT_VECTOR_OFFSETS: [&str; 5] = [
     "/VTKHDF/Steps/PointDataOffsets/CONTACT_FORCE",
 ];
 
-const PER_INCREMENT: [&str; 35] = [
+const PER_INCREMENT: [&str; 36] = [
     "/history/time",
+    "/history/strain/largest_principal",
     "/history/dt",
     "/history/step",
     "/history/energy/kinetic",

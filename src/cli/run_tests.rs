@@ -15,6 +15,7 @@ use crate::dynamics::{
     Cause, Cutback, FailedLcp, Failure, IncrementReport, NodalResults, NodeStatus, Observer,
     Outcome, PassReport, RunError, RunSummary, SolverCounts, State, Timings, Worst,
 };
+use crate::elements::Strained;
 use crate::lcp::{FrictionalLcp, LcpError};
 use crate::model::{
     Cell, Element, Frames, Increments, Material, Mesh, Model, Plane, Section, Set, Settings, Step,
@@ -94,6 +95,10 @@ pub(super) fn report(increment: usize) -> IncrementReport {
             status: vec![NodeStatus::None; 4],
         },
         ends_step: increment == 10,
+        strain: Strained {
+            element: 0,
+            strain: 0.03 * increment as f64,
+        },
         ..IncrementReport::default()
     }
 }
@@ -167,6 +172,7 @@ fn to_a_passage(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Ru
     failure.cause = Cause::Crossed {
         slave: 3,
         segment: [0, 1],
+        prescribed: true,
     };
     Ok(summary(Outcome::Stopped(Box::new(failure)), 0))
 }
@@ -262,6 +268,11 @@ fn a_run_to_the_end() {
     let log = bench.log();
     assert!(log.contains("warning: this is a test"), "{log}");
     assert!(log.contains("done     in"), "{log}");
+    let warned = "warning  principal strain 0.21 in element 8 in increment 7\n";
+    assert_eq!(log.matches("principal strain").count(), 1, "{log}");
+    assert!(log.contains(warned), "{log}");
+    let most = "strain   largest principal 3.0e-01 in element 8 in increment 10\n";
+    assert!(log.contains(most), "{log}");
     let paths = ["wrote", "warning"];
     let mut lines = log
         .lines()
@@ -300,6 +311,7 @@ fn a_stop_leaves_the_last_good_state_and_says_where() {
         "an element turned inside out",
         "worst    node 3 at (1.50000e+00, 2.50000e+00): force residual 2.50e-01",
         "element  8 with its centre at (1.50000e+00, 1.50000e+00)",
+        "material St. Venant-Kirchhoff gives way at 58 % of its length",
         "tried    1 halving",
         "job.vtkhdf is valid up to its last frame",
         "time 3.000000e-01",
@@ -321,6 +333,8 @@ fn a_stop_at_a_passage_names_the_node_and_the_segment() {
     assert!(log.contains("a node went through a segment"), "{log}");
     let place = "node     4 at (1.00000e+00, 2.00000e+00) through the segment 1-2";
     assert!(log.contains(place), "{log}");
+    let both = "both sides are prescribed: they are driven into each other";
+    assert!(log.contains(both), "{log}");
 }
 
 #[test]

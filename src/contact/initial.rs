@@ -4,9 +4,6 @@ use crate::model::Model;
 
 /// How far beyond its ends a segment still takes a projection (in its lengths).
 const ROUND_OFF: f64 = 1e-6;
-/// Depth (in edge lengths) behind a segment of its own body from which on a node lies on another
-/// side of that body.
-const OWN_BODY: f64 = 2e-3;
 
 /// Gap of a slave node to the segment it faces in the reference configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,16 +114,23 @@ impl Start<'_> {
     fn faced(&self, slave: usize, i: usize) -> Option<Projection> {
         let [a, b] = self.contact.segments[i];
         let p = self.project(slave, i);
+        let may_face = ![a, b].contains(&slave) && p.gap >= -p.length;
         let is_own_body = self.bodies[a] == self.bodies[slave];
-        let deepest = if is_own_body { OWN_BODY } else { 1.0 };
-        let may_face = ![a, b].contains(&slave) && p.gap >= -deepest * p.length;
-        may_face.then_some(p)
+        let is_back = || {
+            let interior = &self.contact.interior;
+            is_own_body && p.gap < 0.0 && !interior.contains([a, b], slave, |node| self.x[node])
+        };
+        (may_face && !is_back()).then_some(p)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
+    use crate::contact::Interior;
+    use crate::model::{Cell, Element, Mesh, Plane};
 
     /// Gap of a node at `s` to the roof over the nodes 1, 2, 3 at heights 0, `top`, 0, whose body
     /// is `body`.
@@ -147,11 +151,37 @@ mod tests {
         assert!(gap(-1.0, [0.01, -1.1], 1).is_some_and(|g| g < 0.0));
     }
 
+    /// Gap of a node at `s` to the top of a plate of two elements and the thickness `t`, as a node of
+    /// the same body that is none of theirs, and that of a node below on the plate itself.
+    fn own_gaps(t: f64, s: [f64; 2]) -> [Option<f64>; 2] {
+        let x = [[2.0, 0.0], [0.0, 0.0], [-2.0, 0.0]];
+        let below = x.map(|[x, y]| [x, y - t]);
+        let coordinates: Vec<[f64; 2]> = [&[s], &x[..], &below].concat();
+        let plane = Plane::Stress;
+        let element = |nodes| Element {
+            label: 1,
+            cell: Cell::Quad4(nodes),
+            plane,
+            section: 0,
+        };
+        let mesh = Mesh {
+            elements: [[1, 2, 5, 4], [2, 3, 6, 5]].map(element).into(),
+            ..Mesh::default()
+        };
+        let contact = ContactSurfaces::new(vec![0, 5], &[], vec![[1, 2], [2, 3]], 0.0)
+            .with_interior(Arc::new(Interior::new(&mesh)));
+        let found = gaps(&contact, &coordinates, &[0; 7]);
+        let of = |slave| found.iter().find(|g| g.slave == slave).map(|g| g.gap);
+        [of(0), of(5)]
+    }
+
     #[test]
     fn the_back_of_the_own_body_is_no_contact() {
-        assert_eq!(gap(0.0, [1.0, -0.5], 0), None);
-        assert_eq!(gap(0.0, [1.0, -0.001], 0), Some(-0.001));
-        assert_eq!(gap(0.0, [1.0, 0.5], 0), Some(0.5));
+        for t in [1.0, 1e-2, 1e-4] {
+            assert_eq!(own_gaps(t, [1.0, 0.5]), [Some(0.5), None]);
+            assert_eq!(own_gaps(t, [1.0, -t / 8.0]), [Some(-t / 8.0), None]);
+            assert_eq!(own_gaps(t, [1.0, -1.5 * t]), [None, None]);
+        }
     }
 
     #[test]

@@ -66,7 +66,27 @@ impl Look<'_> {
     /// Whether the node started a little inside, as a mesh may have it.
     pub(super) fn was_pushed_in(&self, segment: usize) -> bool {
         let p = self.start(segment);
-        p.gap >= -PENETRATING * p.length && (-NEAR..=1.0 + NEAR).contains(&p.xi)
+        let is_shallow = p.gap >= -PENETRATING * p.length && (-NEAR..=1.0 + NEAR).contains(&p.xi);
+        let ContactSurfaces {
+            interior,
+            segments,
+            slaves,
+            ..
+        } = self.surfaces;
+        let start = |node: usize| self.start[node];
+        is_shallow && interior.takes_in(segments[segment], slaves[self.slave], start)
+    }
+
+    /// Whether the node was part of the body behind the segment: on the far side of a thin body.
+    pub(super) fn was_far_side(&self, segment: usize) -> bool {
+        let ContactSurfaces {
+            interior,
+            segments,
+            slaves,
+            ..
+        } = self.surfaces;
+        let start = |node: usize| self.start[node];
+        interior.joins(segments[segment], slaves[self.slave], start)
     }
 
     /// Whether the node is an end of the segment.

@@ -1,6 +1,7 @@
 use super::crossing::{Crossing, Direction, Motion, crossings};
 use super::geometry::{Projection, position, project};
 use super::{ContactSurfaces, Search};
+use crate::linear::largest;
 
 /// Depth (in segment lengths) that is round-off.
 const ROUND_OFF: f64 = 1e-9;
@@ -29,8 +30,8 @@ pub struct Passage {
 }
 
 /// A slave node that goes into a body on the straight way from the displacements `u0` to `u1`, if
-/// there is one; the search covers the way, `touch` holds the contact of every slot, `tolerance` is a depth that does not count
-/// (length).
+/// there is one; the search covers the way, `touch` holds the contact of every slot, `unsolved` what the
+/// tolerance of the increment leaves of the way of every node (length): a depth that does not count.
 ///
 /// To go in is allowed for nodes that are held by the segment or come out again in contact: a node
 /// that slides round a corner cuts it, for its way is straight.
@@ -39,7 +40,7 @@ pub fn find_passage(
     u0: &[f64],
     u1: &[f64],
     touch: &[Touch],
-    tolerance: f64,
+    unsolved: &[f64],
 ) -> Option<Passage> {
     let x = search.coordinates();
     let mut slot = 0;
@@ -53,7 +54,7 @@ pub fn find_passage(
                 u: [u0, u1],
                 slave,
                 touch: &touch[slot],
-                tolerance,
+                unsolved,
             };
             slot += 1;
             events.clear();
@@ -78,7 +79,7 @@ struct Way<'a> {
     u: [&'a [f64]; 2],
     slave: usize,
     touch: &'a Touch,
-    tolerance: f64,
+    unsolved: &'a [f64],
 }
 
 impl Way<'_> {
@@ -129,8 +130,9 @@ impl Way<'_> {
             let p = self.place(i, 1.0);
             (0.0..=1.0).contains(&p.xi)
                 && p.gap < 0.0
-                && !self.is_round_off(-p.gap, p.length)
+                && !self.is_round_off(i, -p.gap, p.length)
                 && -p.gap <= 2.0 * self.length_of_way(i)
+                && !self.is_far_side(i)
         };
         let depth = |i: usize| -self.place(i, 1.0).gap;
         let nearest = |i: &usize, j: &usize| depth(*i).total_cmp(&depth(*j));
@@ -138,10 +140,19 @@ impl Way<'_> {
         let is_nearest = others.clone().all(|j| self.distance(j) >= depth(i));
         let was_outside = |j: usize| {
             let p = self.place(j, 0.0);
-            self.is_round_off(-p.gap, p.length) && self.are_near(i, j)
+            self.is_round_off(j, -p.gap, p.length) && self.are_near(i, j)
         };
         let is_held = self.touch.now.contains(&i);
         (is_nearest && !is_held && others.clone().any(was_outside)).then_some(i)
+    }
+
+    /// Whether the node is part of the body behind a segment at the end.
+    fn is_far_side(&self, i: usize) -> bool {
+        let at = |node: usize| position(self.x, self.u[1], node);
+        let ContactSurfaces {
+            interior, segments, ..
+        } = self.contact;
+        interior.joins(segments[i], self.slave, at)
     }
 
     /// Distance from a segment at the end.
@@ -160,14 +171,14 @@ impl Way<'_> {
             let is_held = |k| self.are_near(i, k);
             self.touch.before || self.touch.now.iter().copied().any(is_held)
         };
-        self.is_round_off(depth, p.length)
+        self.is_round_off(i, depth, p.length)
             || (self.are_near(i, j) && (depth <= CLIP * p.length || slides()))
     }
 
     /// Whether a node that enters through a segment and does not leave is not inside for that.
     fn may_stay(&self, i: usize, xi: f64) -> bool {
         let p = self.place(i, 1.0);
-        if self.is_round_off(-p.gap, p.length)
+        if self.is_round_off(i, -p.gap, p.length)
             || self.touch.now.contains(&i)
             || self.is_beside(i, xi, &p)
         {
@@ -179,8 +190,11 @@ impl Way<'_> {
             || (self.touch.before && self.has_slid_off(i, &p))
     }
 
-    fn is_round_off(&self, depth: f64, length: f64) -> bool {
-        depth <= self.tolerance + ROUND_OFF * length
+    /// Whether a depth behind segment `i`, whose length is given, does not count.
+    fn is_round_off(&self, i: usize, depth: f64, length: f64) -> bool {
+        let [a, b] = self.contact.segments[i];
+        let unsolved = [self.slave, a, b].map(|node| self.unsolved[node]);
+        depth <= largest(&unsolved) + ROUND_OFF * length
     }
 
     /// Whether the node has met a segment at its very end and is outside the vertex there: behind its
@@ -204,7 +218,7 @@ impl Way<'_> {
         } else {
             turns_left(&q, p)
         };
-        is_convex && self.is_round_off(-q.gap, q.length)
+        is_convex && self.is_round_off(j, -q.gap, q.length)
     }
 
     /// Whether the node has slid off the end of a surface that is not closed.

@@ -21,7 +21,7 @@ fn passes_of(closed: bool, from: [f64; 2], to: [f64; 2], touch: Touch) -> Option
     let contacts = [surfaces];
     let mut search = Search::new(&contacts, &x);
     search.cover_way(&u0, &u1);
-    find_passage(&search, &u0, &u1, &[touch], 0.0).map(|passage| passage.segment)
+    find_passage(&search, &u0, &u1, &[touch], &vec![0.0; x.len()]).map(|passage| passage.segment)
 }
 
 fn passes(from: [f64; 2], to: [f64; 2], touch: Touch) -> Option<[usize; 2]> {
@@ -53,6 +53,26 @@ fn a_free_node_may_not_end_inside_nor_go_through() {
         None,
         "round-off"
     );
+}
+
+#[test]
+fn what_other_bodies_leave_unsolved_is_no_excuse() {
+    let (surfaces, mut x) = plate(true);
+    x[0] = [4.5, 2.0];
+    let u0 = vec![0.0; 2 * x.len()];
+    let mut u1 = u0.clone();
+    u1[1] = -1.6;
+    let contacts = [surfaces];
+    let mut search = Search::new(&contacts, &x);
+    search.cover_way(&u0, &u1);
+    let passage = |fast: usize| {
+        let mut unsolved = vec![0.0; x.len()];
+        unsolved[fast] = 0.2;
+        find_passage(&search, &u0, &u1, &[FREE], &unsolved).map(|passage| passage.segment)
+    };
+    // 0.1 deep: a node far away, those of the segment, the node itself
+    assert_eq!(passage(1), Some(TOP));
+    assert_eq!([passage(TOP[0]), passage(TOP[1]), passage(0)], [None; 3]);
 }
 
 #[test]
@@ -133,7 +153,7 @@ fn a_hollow_corner_holds_a_node_with_both_sides() {
         let contacts = [surfaces.clone()];
         let mut search = Search::new(&contacts, &x);
         search.cover_way(&u0, &u1);
-        find_passage(&search, &u0, &u1, &[held(true, 0)], 0.0)
+        find_passage(&search, &u0, &u1, &[held(true, 0)], &[0.0; 4])
     };
     let through = Passage {
         slave: 0,
@@ -166,11 +186,11 @@ fn a_node_may_not_end_inside_a_vertex_that_has_become_a_hollow() {
     }];
     let u1 = move_to(end);
     search.cover_way(&u0, &u1);
-    let passage = find_passage(&search, &u0, &u1, &touch, 0.0);
+    let passage = find_passage(&search, &u0, &u1, &touch, &[0.0; 4]);
     assert_eq!(passage.map(|p| p.segment), Some([2, 3]));
     // in the hollow
     let above = [[-0.2, -0.2], end[1], end[2], end[3]];
     let u1 = move_to(above);
     search.cover_way(&u0, &u1);
-    assert_eq!(find_passage(&search, &u0, &u1, &touch, 0.0), None);
+    assert_eq!(find_passage(&search, &u0, &u1, &touch, &[0.0; 4]), None);
 }

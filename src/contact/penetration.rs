@@ -1,7 +1,7 @@
 use super::{InitialGap, initial_gaps, project};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
-use crate::model::{Contact, Model, SurfaceKind};
-use std::collections::HashMap;
+use crate::model::{ALL_EXTERIOR, Contact, Model, SurfaceKind};
+use std::collections::{HashMap, HashSet};
 
 /// Penetration (in edge lengths) that is a fault of the mesh rather than of its digits.
 const FAULT: f64 = 1e-3;
@@ -10,9 +10,12 @@ const ROUND_OFF: f64 = 1e-9;
 
 /// Reports slave nodes that start inside the master body: deep ones as errors, shallow ones, which
 /// the first increment pushes out, as warnings. Bodies that lie on the same side of a common face
-/// are errors too: all gaps are zero there, and contact would never close.
+/// are errors too: all gaps are zero there, and contact would never close. A pair of which no node
+/// faces the other surface is a warning.
 pub fn report_penetrations(model: &Model, d: &mut Diagnostics) {
-    for (contact, gaps) in model.contacts.iter().zip(initial_gaps(model)) {
+    let all_gaps = initial_gaps(model);
+    report_nothing_faced(model, &all_gaps, d);
+    for (contact, gaps) in model.contacts.iter().zip(all_gaps) {
         if let Some(face) = common_face(model, contact, &gaps) {
             d.push(overlap(model, contact, face));
         }
@@ -25,6 +28,38 @@ pub fn report_penetrations(model: &Model, d: &mut Diagnostics) {
         if let Some(deepest) = deepest {
             d.push(diagnostic(model, contact, deepest, inside.len()));
         }
+    }
+}
+
+/// Warns about pairs without a node that faces the master, in both orders if both are given.
+fn report_nothing_faced(model: &Model, gaps: &[Vec<InitialGap>], d: &mut Diagnostics) {
+    let faced: HashSet<[usize; 2]> = model
+        .contacts
+        .iter()
+        .zip(gaps)
+        .filter(|(_, gaps)| !gaps.is_empty())
+        .flat_map(|(c, _)| [[c.slave, c.master], [c.master, c.slave]])
+        .collect();
+    for contact in &model.contacts {
+        if !is_pair(model, contact) || faced.contains(&[contact.slave, contact.master]) {
+            continue;
+        }
+        let [slave, master] = [contact.slave, contact.master].map(|s| &model.surfaces[s]);
+        let message = format!(
+            "no node of {} faces {} at the start",
+            slave.name, master.name
+        );
+        let help = match master.kind {
+            SurfaceKind::Rigid(_) => {
+                "they may meet later; if not, its points are listed in the wrong order: the outside \
+                 of a rigid surface is on the left of the way from START"
+            }
+            _ => {
+                "they may meet later; if not, these are the wrong faces: a face looks out of its body"
+            }
+        };
+        let warning = Diagnostic::warning(Code::NothingFaced, contact.span, message);
+        d.push(warning.help(help));
     }
 }
 
@@ -63,7 +98,7 @@ fn overlap(model: &Model, contact: &Contact, face: [usize; 2]) -> Diagnostic {
             "the outside of a rigid surface is on the left of the way from START: list its points \
              in the other order"
         }
-        _ => "move the bodies apart",
+        _ => "move the bodies apart, or name faces that look at each other",
     };
     Diagnostic::error(Code::InitialPenetration, contact.span, message).help(help)
 }
@@ -81,11 +116,33 @@ fn diagnostic(model: &Model, contact: &Contact, deepest: &InitialGap, count: usi
     );
     let code = Code::InitialPenetration;
     if -deepest.gap > FAULT * deepest.edge {
-        Diagnostic::error(code, contact.span, message)
-            .help("move the bodies apart: pushing the nodes out would add energy")
+        Diagnostic::error(code, contact.span, message).help(remedy(model, contact))
     } else {
         Diagnostic::warning(code, contact.span, message).help("the first increment pushes them out")
     }
+}
+
+/// What to do about nodes that are deep inside a body.
+fn remedy(model: &Model, contact: &Contact) -> String {
+    let apart = "move the bodies apart: pushing the nodes out would add energy";
+    let adjust = "ADJUST= on *CONTACT PAIR moves the nodes onto the master before the start, free \
+                  of strain";
+    let apart = match is_pair(model, contact) {
+        true => format!("{apart}; {adjust}"),
+        false => apart.to_string(),
+    };
+    match model.surfaces[contact.master].kind {
+        SurfaceKind::Rigid(_) => format!(
+            "if the rigid surface is the wrong way round, list its points in the other order: its \
+             outside is on the left of the way from START; else {apart}"
+        ),
+        _ => apart,
+    }
+}
+
+/// Whether a contact is that of two surfaces that the deck pairs.
+fn is_pair(model: &Model, contact: &Contact) -> bool {
+    !contact.is_self_contact() && model.surfaces[contact.slave].name != ALL_EXTERIOR
 }
 
 /// What the slave surface is in contact with.

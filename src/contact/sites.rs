@@ -172,7 +172,11 @@ impl Look<'_> {
                 }
             };
         }
-        best.or_else(|| self.came_from(run)).or_else(|| {
+        let came_from = || {
+            let is_far_side = |&i: &usize| self.was_far_side(i);
+            self.came_from(run).filter(|_| !run.iter().all(is_far_side))
+        };
+        best.or_else(came_from).or_else(|| {
             let nearest = |i: &&usize, j: &&usize| gap(**i).total_cmp(&gap(**j));
             run.iter()
                 .copied()

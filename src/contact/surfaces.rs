@@ -1,6 +1,7 @@
 use std::collections::HashMap;
+use std::sync::Arc;
 
-use super::project;
+use super::{Interior, project};
 use crate::model::{Contact, Model};
 
 /// Cosine of the turn at a corner.
@@ -24,6 +25,8 @@ pub struct ContactSurfaces {
     pub corners: Vec<bool>,
     /// Coefficient of friction mu.
     pub friction: f64,
+    /// The inside of the bodies; without elements all is inside behind a segment.
+    pub interior: Arc<Interior>,
 }
 
 impl ContactSurfaces {
@@ -52,7 +55,14 @@ impl ContactSurfaces {
             slaves,
             segments,
             friction,
+            interior: Arc::default(),
         }
+    }
+
+    /// With the inside of the bodies behind the segments.
+    pub fn with_interior(mut self, interior: Arc<Interior>) -> Self {
+        self.interior = interior;
+        self
     }
 
     /// With the corners that the surfaces have at the positions `x`.
@@ -75,15 +85,22 @@ impl ContactSurfaces {
 
 /// The contacts of a model.
 pub fn contact_surfaces(model: &Model) -> Vec<ContactSurfaces> {
+    if model.contacts.is_empty() {
+        return Vec::new();
+    }
+    let interior = Arc::new(Interior::new(&model.mesh));
     let of_contact = |contact: &Contact| {
         let [slave, master] = [contact.slave, contact.master].map(|i| &model.surfaces[i]);
+        let mut slaves = slave.nodes(&model.mesh);
+        slaves.retain(|node| contact.left_out.binary_search(node).is_err());
         ContactSurfaces::new(
-            slave.nodes(&model.mesh),
+            slaves,
             &slave.segments(&model.mesh),
             master.segments(&model.mesh),
             model.friction(contact),
         )
         .with_corners(&model.mesh.coordinates)
+        .with_interior(Arc::clone(&interior))
     };
     model.contacts.iter().map(of_contact).collect()
 }

@@ -178,8 +178,32 @@ impl Row {
     /// Reports fields beyond the first `count`.
     pub fn at_most(&self, count: usize, d: &mut Diagnostics) {
         if let Some(extra) = self.fields().skip(count).find(|field| !field.is_empty()) {
-            let message = format!("only {count} fields are read on this line");
-            d.push(Diagnostic::error(Code::ExtraField, extra.span, message));
+            let fields = if count == 1 { "field is" } else { "fields are" };
+            let message = format!("only {count} {fields} read on this line");
+            let error = Diagnostic::error(Code::ExtraField, extra.span, message);
+            d.push(match self.has_decimal_comma() {
+                true => error.help(
+                    "a comma ends a field: write a decimal point where a decimal comma is meant",
+                ),
+                false => error,
+            });
+        }
+    }
+
+    /// Whether the line may have a decimal comma: two fields of digits one after the other, such as
+    /// `0,25`, after the first.
+    fn has_decimal_comma(&self) -> bool {
+        let fields: Vec<Text> = self.fields().skip(1).collect();
+        fields
+            .windows(2)
+            .any(|pair| pair.iter().all(Text::is_digits))
+    }
+
+    /// Warns about the first field from `count` on in which something is typed: it has no effect.
+    pub fn without_effect(&self, count: usize, message: &str, help: &str, d: &mut Diagnostics) {
+        if let Some(field) = self.fields().skip(count).find(|field| !field.is_empty()) {
+            let warning = Diagnostic::warning(Code::IgnoredParameter, field.span, message);
+            d.push_once(warning.help(help));
         }
     }
 }

@@ -122,8 +122,7 @@ impl Collector {
     /// Adds a keyword line; returns the file it asks for.
     pub fn keyword(&mut self, pieces: &[Piece], d: &mut Diagnostics) -> Option<Inclusion> {
         let (first, rest) = pieces.split_first()?;
-        let typed = first.text.text.trim_start_matches('*').trim();
-        let Some(keyword) = resolve::keyword(typed, first.text.span, d) else {
+        let Some(keyword) = resolve::keyword(first.text, d) else {
             if !d.is_lenient() {
                 self.drop_card(rest);
             }

@@ -7,6 +7,7 @@
 mod card;
 mod collect;
 mod content;
+mod dimensions;
 mod keyword;
 mod lexer;
 mod name;
@@ -14,6 +15,7 @@ mod number;
 mod reference;
 mod resolve;
 mod source;
+mod table_dimensions;
 mod table_model;
 mod table_others;
 mod table_steps;
@@ -22,6 +24,7 @@ mod word;
 
 pub use card::{Card, Param, Row};
 pub use collect::Deck;
+pub use dimensions::{dimension_faults, dimensions_json};
 pub use keyword::{Data, Keyword, Parameter, Scope, Status, Takes, Value, keywords};
 pub use name::Name;
 pub use reference::keyword_reference;

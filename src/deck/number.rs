@@ -25,6 +25,8 @@ pub(super) enum NotANumber {
     Unexpected(char),
     /// The field ends too early.
     Incomplete,
+    /// It is an exponent with no number before it.
+    BareExponent,
     /// The value is too large to be stored.
     TooLarge,
 }
@@ -40,7 +42,10 @@ pub(super) fn integer(text: &str) -> Result<i64, NotANumber> {
 /// `[+-]digits[.digits][(E|D)[+-]digits]`, `.5`, `1.`, and `1.5-5` for `1.5E-5`
 pub(super) fn real(text: &str) -> Result<Real, NotANumber> {
     let parsed = (mantissa, opt(exponent)).parse(Input::new(text));
-    let (mantissa, exponent) = whole(text, parsed)?;
+    let (mantissa, exponent) = whole(text, parsed).map_err(|why| match is_exponent(text) {
+        true => NotANumber::BareExponent,
+        false => why,
+    })?;
     let (digits, letterless) = exponent.unwrap_or((Input::new("0"), false));
     let standard = format!("{mantissa}e{digits}");
     match standard.parse::<f64>() {
@@ -64,6 +69,13 @@ fn exponent(input: Input) -> IResult<Input, (Input, bool)> {
     let lettered = (one_of("EeDd"), signed).map(|(_, digits)| (digits, false));
     let letterless = recognize((one_of("+-"), digit1)).map(|digits| (digits, true));
     alt((lettered, letterless)).parse(input)
+}
+
+/// `(E|D)[+-]digits`, what a decimal comma leaves of `1,E6`
+fn is_exponent(text: &str) -> bool {
+    let lettered = text.starts_with(|c: char| c.is_ascii_alphabetic());
+    let parsed = exponent(Input::new(text));
+    lettered && parsed.is_ok_and(|(rest, _)| rest.fragment().is_empty())
 }
 
 /// What was parsed, if it is the whole of `text`.
@@ -125,5 +137,8 @@ mod tests {
         ] {
             assert!(real(text).is_err(), "{text}");
         }
+        assert_eq!(real("e5"), Err(NotANumber::BareExponent));
+        assert_eq!(real("E"), Err(NotANumber::Incomplete));
+        assert_eq!(real("e5x"), Err(NotANumber::Unexpected('5')));
     }
 }

@@ -1,6 +1,6 @@
 //! The keyword reference, generated from the table the reader uses.
 
-use super::{Data, Keyword, Parameter, Scope, Status, Takes, keywords};
+use super::{Data, Keyword, Parameter, Scope, Status, Takes, dimensions, keywords};
 use std::fmt::Write;
 
 /// Markdown text of the keyword reference.
@@ -30,16 +30,23 @@ A deck is a text file. A keyword line begins with `*`, a comment line with `**`;
 their keyword, with fields between commas. Case and blanks in keywords, parameters and names do not
 matter; a name in quotation marks keeps both. A keyword line that ends with a comma continues on the
 next line. Empty lines are skipped, an empty field has its default. Units are up to the user: any
-consistent set gives the same answer. A file holds text, ASCII or UTF-8, without NUL bytes, and no line
-of more than 65536 bytes (Abaqus reads 256): anything else is an error at once.
+consistent set gives the same answer, and `scripts/rescale.py` writes a deck in another one. A file holds
+text, ASCII or UTF-8, without NUL bytes, and no line of more than 65536 bytes (Abaqus reads 256): anything
+else is an error at once.
 
 Keywords, parameters and values not listed here are errors. A unique beginning of at least four
-letters is understood, with a warning.
+letters is understood, with a warning. Fields beyond those described are errors. Keywords of the model
+stand before the first step, those under another one directly below it. Node and element numbers run
+from 1 to 999 999 999, the largest that Abaqus reads. Numbers have a decimal point.
+
+A wave speed, or an element's area, stiffness or mass, that overflows or vanishes in floating-point
+numbers is an error.
 
 ";
 
 fn push_keyword(text: &mut String, keyword: &Keyword) {
     let place = match keyword.scope {
+        Scope::Model if keyword.name == "STEP" => "after the keywords of the model".to_string(),
         Scope::Model => "before the first step".to_string(),
         Scope::Step => "in a step".to_string(),
         Scope::Anywhere => "before the first step or in a step".to_string(),
@@ -59,6 +66,9 @@ fn push_keyword(text: &mut String, keyword: &Keyword) {
         plain(keyword.text)
     );
     let _ = write!(text, "\nStands {place}; {data}.\n");
+    if let Some(words) = dimensions::in_words(keyword) {
+        let _ = write!(text, "\nDimensions: {words}.\n");
+    }
     if !keyword.parameters.is_empty() {
         text.push_str("\n| parameter | | meaning |\n|---|---|---|\n");
     }

@@ -4,12 +4,14 @@ use super::collect::Piece;
 use super::keyword::find;
 use super::lexer::assignment;
 use super::word::{self, Match};
-use super::{Card, Keyword, Param, Parameter, Scope, Status, Takes, Value, keywords};
+use super::{Card, Keyword, Param, Parameter, Scope, Status, Takes, Text, Value, keywords};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span};
 use std::cell::Cell;
 
-/// The keyword that is typed, or the one that is meant; reports what is not read.
-pub(super) fn keyword(typed: &str, span: Span, d: &mut Diagnostics) -> Option<&'static Keyword> {
+/// The keyword that is typed with its star, or the one that is meant; reports what is not read.
+pub(super) fn keyword(text: Text, d: &mut Diagnostics) -> Option<&'static Keyword> {
+    let (starred, span) = (text.text.trim_start_matches('*'), text.span);
+    let typed = starred.trim();
     if let Some(keyword) = find(typed) {
         report_keyword(keyword, span, d);
         return Some(keyword);
@@ -19,7 +21,7 @@ pub(super) fn keyword(typed: &str, span: Span, d: &mut Diagnostics) -> Option<&'
         true => word::find(typed, names),
         false => word::find_known(typed, names),
     };
-    let unknown = || unknown_keyword(typed, span, known);
+    let unknown = || unknown_keyword(starred, span, known);
     let keyword = known_word(known, unknown, "*", span, d).and_then(find)?;
     if let Match::Unknown(_) = known {
         return Some(keyword).filter(|keyword| keyword.status == Status::Read);
@@ -52,18 +54,25 @@ fn known_word(
     }
 }
 
-fn unknown_keyword(typed: &str, span: Span, found: Match) -> Diagnostic {
+/// An unknown keyword as typed after its star; several words, or a blank first, may be a comment.
+fn unknown_keyword(starred: &str, span: Span, found: Match) -> Diagnostic {
     let meant = match found {
         Match::Unknown(Some(name)) => Some(format!("*{name}")),
         _ => None,
     };
-    let message = format!("unknown keyword *{typed}");
+    let message = format!("unknown keyword *{}", starred.trim_end());
+    let is_sentence = meant.is_none() && starred.trim_end().contains(char::is_whitespace);
+    let comment = match is_sentence {
+        true => "a comment begins with two stars, `**`; ",
+        false => "",
+    };
+    let help = format!(
+        "{comment}unknown keywords stop the run because ignoring one can change the answer; \
+         --lenient turns this into a warning"
+    );
     Diagnostic::error(Code::UnknownKeyword, span, message)
         .suggest(meant)
-        .help(
-            "unknown keywords stop the run because ignoring one can change the answer; \
-             --lenient turns this into a warning",
-        )
+        .help(help)
 }
 
 fn report_keyword(keyword: &Keyword, span: Span, d: &mut Diagnostics) {

@@ -4,7 +4,7 @@ use super::Text;
 use super::collect::{Collector, Deck, Inclusion, Piece};
 use super::content::Content;
 use super::lexer::{Kind, Line};
-use crate::diagnostics::{Code, Diagnostic, Diagnostics, FileId, Sources};
+use crate::diagnostics::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
 use std::path::{Path, PathBuf};
 
 /// Deepest nesting of included files.
@@ -61,8 +61,15 @@ fn collect(
     reading.content(file, content, false);
     let deck = reading.collector.deck;
     if deck.cards.is_empty() && !d.has_errors() {
+        let start = Span {
+            file,
+            line: 1,
+            column: 1,
+            length: 1,
+        };
         let message = format!("{name} holds no keyword");
-        d.push(Diagnostic::error_without_place(Code::EmptyDeck, message));
+        let error = Diagnostic::error(Code::EmptyDeck, start, message);
+        d.push(error.help("a keyword line begins with one star, such as *NODE"));
     }
     deck
 }

@@ -46,7 +46,7 @@ pub(super) static MODEL: &[Keyword] = &[
                 "coordinate system",
             ),
         ],
-        "Nodes: number, x, y and a z that is the same for all.",
+        "Nodes: number (1 to 999 999 999), x, y and a z that is the same for all.",
     ),
     Keyword::read(
         "ELEMENT",
@@ -57,7 +57,8 @@ pub(super) static MODEL: &[Keyword] = &[
             P::value("ELSET", "element set that takes the elements"),
             INPUT,
         ],
-        "Elements: number and nodes, counter-clockwise; a row may run over several lines.",
+        "Elements: number (1 to 999 999 999) and nodes, counter-clockwise; a row may run over several \
+         lines.",
     ),
     Keyword::read(
         "NSET",
@@ -98,7 +99,10 @@ pub(super) static MODEL: &[Keyword] = &[
                 "TYPE",
                 &[
                     V::read("ELEMENT", "rows are element or element set, face (default)"),
-                    V::read("NODE", "rows are node or node set"),
+                    V::read(
+                        "NODE",
+                        "rows are node or node set, and an area that has no effect (warning unless 1)",
+                    ),
                     V::read(
                         "SEGMENTS",
                         "a rigid profile; rows are START, x, y; LINE, x, y; CIRCL, x, y, xc, yc",
@@ -184,14 +188,16 @@ pub(super) static MODEL: &[Keyword] = &[
             "symmetry",
         )],
         "E, nu of a St. Venant-Kirchhoff material: second Piola-Kirchhoff stress linear in the \
-         Green-Lagrange strain, as in CalculiX; Abaqus' law agrees for small strains.",
+         Green-Lagrange strain, as in CalculiX; Abaqus' law agrees for small strains. In plane strain \
+         elements lock from nu = 0.45 on (warning). A temperature in the third field has no effect \
+         (warning).",
     ),
     Keyword::read(
         "DENSITY",
         Scope::Block("MATERIAL"),
         Data::Required,
         &[],
-        "Mass per volume.",
+        "Mass per volume; a temperature in the second field has no effect (warning).",
     ),
     Keyword::read(
         "SOLID SECTION",
@@ -218,7 +224,8 @@ pub(super) static MODEL: &[Keyword] = &[
             P::optional("PAD THICKNESS", "surfaces have no pads").refused(),
             P::flag("USER", "user interactions are not supported").refused(),
         ],
-        "Begins an interaction; its laws follow. A data line (out-of-plane thickness) is ignored.",
+        "Begins an interaction; its laws follow. The out-of-plane thickness on a data line has no \
+         effect (warning unless 1).",
     ),
     Keyword::read(
         "SURFACE BEHAVIOR",
@@ -242,7 +249,7 @@ pub(super) static MODEL: &[Keyword] = &[
             P::flag("AUGMENTED LAGRANGE", "contact is enforced exactly").warned(),
             P::flag("NO SEPARATION", "surfaces always separate").refused(),
         ],
-        "Normal contact: exact, without penetration.",
+        "Normal contact: exact, without penetration; numbers on a data line have no effect (warning).",
     ),
     Keyword::read(
         "FRICTION",
@@ -259,7 +266,7 @@ pub(super) static MODEL: &[Keyword] = &[
             P::flag("USER", "user friction is not supported").refused(),
         ],
         "Coulomb's coefficient of friction mu; further fields, a slip rate for Abaqus and a stick \
-         slope for CalculiX, are left out because sticking is exact.",
+         slope for CalculiX, are left out because sticking is exact (warning).",
     ),
     Keyword::read(
         "CONTACT PAIR",
@@ -301,14 +308,17 @@ pub(super) static MODEL: &[Keyword] = &[
             P::value("OP", "contact pairs hold for all steps").refused(),
         ],
         "Slave surface, master surface; one contact per row. The master consists of faces; both \
-         orders of two surfaces may be given. One surface alone touches itself.",
+         orders of two surfaces may be given. One surface alone touches itself. Nodes that start \
+         inside the master body by more than 0.001 of a segment are an error unless ADJUST= moves \
+         them; a pair of which no node faces the master at the start is a warning.",
     ),
     Keyword::read(
         "CONTACT",
         Scope::Model,
         Data::None,
         &[P::value("OP", "contacts hold for all steps").refused()],
-        "Begins general contact: every exterior face against every other, of its own body too.",
+        "Begins general contact: every exterior face against every other, of its own body too, and \
+         every exterior node against the rigid surfaces.",
     ),
     Keyword::read(
         "CONTACT INCLUSIONS",
@@ -318,7 +328,10 @@ pub(super) static MODEL: &[Keyword] = &[
             "ALL EXTERIOR",
             "all faces that belong to one element only; required",
         )],
-        "What takes part in general contact: a surface ALL_EXTERIOR is made.",
+        "What takes part in general contact: a surface ALL_EXTERIOR is made, which touches itself and \
+         every rigid surface. The nodes of a *CONTACT PAIR with a rigid surface are held by the pair, \
+         with its interaction, and left out of general contact with that surface; rigid surfaces do not \
+         touch each other.",
     ),
     Keyword::read(
         "CONTACT PROPERTY ASSIGNMENT",

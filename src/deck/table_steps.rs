@@ -201,7 +201,9 @@ pub(super) static STEPS: &[Keyword] = &[
             P::value("SOLVER", "use *STICKSLIP, SOLVER=").warned(),
             P::flag("RELATIVE TO ABSOLUTE", OTHER_SOLVER).warned(),
         ],
-        "A dynamic step: increment, duration, smallest increment, largest increment.",
+        "A dynamic step: increment, duration, smallest increment, largest increment. Increments that \
+         fail are halved; none grows beyond the first, with DIRECT or without (a warning without). The \
+         largest increment bounds the first one, and has no effect with DIRECT (warning).",
     ),
     Keyword::read(
         "STICKSLIP",
@@ -293,14 +295,19 @@ pub(super) static STEPS: &[Keyword] = &[
             ALL_VARIABLES,
             P::value("NAME", "requests have no names").ignored(),
         ],
-        "Begins output requests; the last request of frames holds, for later steps too.",
+        "Begins output requests; the last request of frames holds, for later steps too. Histories hold \
+         every increment, whatever the times asked for.",
     ),
     Keyword::read(
         "NODE OUTPUT",
         Scope::Step,
         Data::Rows,
         &[
-            P::value("NSET", "under *OUTPUT, HISTORY: node set of the history"),
+            P::value(
+                "NSET",
+                "under *OUTPUT, HISTORY: node set of the history; else without effect, fields are \
+                 written on the whole mesh",
+            ),
             FREQUENCY,
             TIME_POINTS,
             OUTPUT_2D,
@@ -431,7 +438,7 @@ pub(super) static STEPS: &[Keyword] = &[
             ),
             P::flag("GENERATE", "rows are first, last, increment"),
         ],
-        "Times for frames.",
+        "Times for frames; those outside a step are left out in it.",
     ),
     Keyword::read(
         "RESTART",

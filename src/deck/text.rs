@@ -77,12 +77,41 @@ impl<'a> Text<'a> {
             true => format!("expected {wanted}, found nothing"),
             false => format!("expected {wanted}, found `{}`", self.text),
         };
+        if let Some(gap) = self.gap_between_numbers() {
+            let diagnostic = Diagnostic::error(Code::BadNumber, gap, message);
+            return diagnostic.label("is a comma missing here?");
+        }
         let diagnostic = Diagnostic::error(Code::BadNumber, self.span, message);
         match why {
+            NotANumber::Unexpected(c) if c.is_whitespace() => {
+                diagnostic.label("a blank inside a number")
+            }
             NotANumber::Unexpected(c) => diagnostic.label(format!("`{c}` does not belong here")),
             NotANumber::Incomplete => diagnostic,
+            NotANumber::BareExponent => diagnostic
+                .label("an exponent without its number")
+                .help("a comma ends a field: a number has a decimal point, not a decimal comma"),
             NotANumber::TooLarge => diagnostic.label("too large"),
         }
+    }
+
+    /// Place of the first blanks, if nothing but numbers stand between the blanks.
+    fn gap_between_numbers(&self) -> Option<Span> {
+        let start = self.text.find(char::is_whitespace)?;
+        let (before, after) = self.text.split_at(start);
+        let blanks = after.chars().take_while(|c| c.is_whitespace()).count();
+        let mut parts = self.text.split_whitespace();
+        let numbers = parts.all(|part| number::real(part).is_ok());
+        numbers.then(|| Span {
+            column: self.span.column + before.chars().count() as u32,
+            length: blanks as u32,
+            ..self.span
+        })
+    }
+
+    /// Whether it is digits only: a number without point, sign or exponent.
+    pub(super) fn is_digits(&self) -> bool {
+        !self.is_empty() && self.text.bytes().all(|byte| byte.is_ascii_digit())
     }
 
     /// The name it says; reports names that cannot be.

@@ -90,6 +90,8 @@ codes! {
     GeneralContact "D411" "General contact of other than all exterior faces alike, or pairs beside it."
     Adjusted "D412" "Slave nodes are moved onto the master surface before the start."
     RigidSurface "D413" "A rigid surface, or its reference node, that cannot be used as it is."
+    NothingFaced "D414" "No node of the slave surface faces the master surface at the start."
+    Magnitude "D415" "A quantity of the model is too large or too small to be computed with."
     BadDof "D501" "A degree of freedom that plane elements do not have."
     ValueOutsideStep "D502" "A motion is prescribed before the first step."
     VelocityOnSupport "D503" "An initial velocity on a prescribed degree of freedom."
@@ -105,6 +107,7 @@ codes! {
     MixedOperation "D513" "OP=NEW and OP=MOD are mixed in one step."
     ConflictingSupport "D514" "A degree of freedom is prescribed twice in a step."
     IgnoredVariable "D515" "An output variable that is not written."
+    ConstantIncrement "D516" "Increments do not grow, although the step lets them."
 }
 
 #[cfg(test)]

@@ -50,7 +50,7 @@ impl Diagnostic {
         Diagnostic::new(Severity::Note, code, Some(span), message.into())
     }
 
-    /// An error about the deck as a whole.
+    /// An error about a deck that cannot be opened: there is no line to show.
     pub fn error_without_place(code: Code, message: impl Into<String>) -> Diagnostic {
         Diagnostic::new(Severity::Error, code, None, message.into())
     }

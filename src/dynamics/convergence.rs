@@ -1,64 +1,106 @@
 use super::contact_forces::ContactForces;
-use super::mass::largest;
+use super::parts::Parts;
 use super::{PassReport, Worst};
+use crate::linear::{larger, largest};
 
 /// Round-off of a sum of some terms, in units of its largest term.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
 /// What residual and correction of a pass are measured against: computed scales, so that the
-/// answer does not depend on the system of units.
-pub(super) struct Scales {
-    /// Largest of the forces in equilibrium.
-    force: f64,
-    /// Round-off of the residual.
-    noise: f64,
-    /// Largest displacement increment.
-    increment: f64,
-    /// Round-off of the displacements.
-    resolution: f64,
+/// answer does not depend on the system of units, of every part and body its own, so that a light one
+/// is solved beside a heavy one.
+pub(super) struct Scales<'a> {
+    parts: &'a Parts,
+    /// Largest of the forces in equilibrium, of every part.
+    force: Vec<f64>,
+    /// Round-off of the residual, of every part.
+    noise: Vec<f64>,
+    /// Largest displacement increment of every body.
+    increment: Vec<f64>,
+    /// Round-off of the displacements of every body.
+    resolution: Vec<f64>,
     tolerance: f64,
 }
 
-impl Scales {
-    /// `force`: largest force in equilibrium; `stiffness`, `inertia`: largest diagonal entries of
-    /// theta2 K and (2/dt²) M; `displacement`, `increment`: largest U and d; `position`: largest
-    /// coordinate of a pair in contact.
+/// Lengths of every body.
+pub(super) struct Lengths {
+    /// Largest displacement U.
+    pub displacement: Vec<f64>,
+    /// Largest displacement increment d.
+    pub increment: Vec<f64>,
+    /// Largest coordinate of a pair in contact.
+    pub position: Vec<f64>,
+}
+
+/// Residual of every part and correction of every body in a pass (force; length).
+pub(super) struct Errors {
+    residual: Vec<f64>,
+    correction: Vec<f64>,
+}
+
+impl Errors {
+    /// `residual` over the unknowns, whose dofs are given, `du` over all dofs.
+    pub fn new(parts: &Parts, residual: &[f64], dof_of: &[usize], du: &[f64]) -> Self {
+        let mut all = vec![0.0; du.len()];
+        for (&dof, value) in dof_of.iter().zip(residual) {
+            all[dof] = *value;
+        }
+        Errors {
+            residual: parts.largest(&all),
+            correction: parts.largest_of_bodies(du),
+        }
+    }
+}
+
+impl<'a> Scales<'a> {
+    /// `force`: largest force in equilibrium of every part; `stiffness`, `inertia`: largest diagonal
+    /// entries of theta2 K and (2/dt²) M of every part.
     ///
     /// A force from displacements U carries the round-off of K U, the inertia force that of
     /// (2/dt²) M d, and a force that closes a gap between positions x that of K* x: a residual is
-    /// not measured finer than that.
+    /// not measured finer than that. Displacements that close a gap carry the round-off of x.
     pub fn new(
-        force: f64,
-        (stiffness, inertia): (f64, f64),
-        (displacement, increment, position): (f64, f64, f64),
+        parts: &'a Parts,
+        force: Vec<f64>,
+        (stiffness, inertia): (&[f64], &[f64]),
+        lengths: Lengths,
         tolerance: f64,
     ) -> Self {
-        Scales {
-            force,
-            noise: ROUND_OFF
-                * (stiffness * displacement.max(position) + inertia * increment.max(position)),
+        let Lengths {
+            displacement,
             increment,
-            resolution: ROUND_OFF * displacement,
+            position,
+        } = lengths;
+        let noise = |(part, &body): (usize, &usize)| {
+            ROUND_OFF
+                * (stiffness[part] * larger(displacement[body], position[body])
+                    + inertia[part] * larger(increment[body], position[body]))
+        };
+        let bodies = displacement.iter().zip(&position);
+        Scales {
+            parts,
+            force,
+            noise: parts.of_parts().iter().enumerate().map(noise).collect(),
+            resolution: bodies.map(|(u, x)| ROUND_OFF * larger(*u, *x)).collect(),
+            increment,
             tolerance,
         }
     }
 
-    /// Relative residual and correction of a pass.
-    pub fn report(
-        &self,
-        residual: &[f64],
-        du: &[f64],
-        forces: &ContactForces,
-        pivots: usize,
-    ) -> PassReport {
-        let relative = |value: f64, scale: f64, floor: f64| {
-            let scale = scale.max(floor / self.tolerance);
-            if scale == 0.0 { value } else { value / scale }
-        };
+    /// Largest relative residual and correction of a pass.
+    pub fn report(&self, errors: &Errors, forces: &ContactForces, pivots: usize) -> PassReport {
         let (active, stick) = forces.count();
+        let residuals = (0..self.force.len()).map(|part| self.residual(errors, part));
+        let corrections = (0..self.increment.len()).map(|body| {
+            self.relative(
+                errors.correction[body],
+                self.increment[body],
+                self.resolution[body],
+            )
+        });
         PassReport {
-            residual: relative(largest(residual), self.force, self.noise),
-            correction: relative(largest(du), self.increment, self.resolution),
+            residual: residuals.fold(0.0, larger),
+            correction: corrections.fold(0.0, larger),
             active,
             stick,
             lcp_size: forces.problem_size,
@@ -66,27 +108,63 @@ impl Scales {
         }
     }
 
-    /// Whether residual and correction are both below the tolerance. A residual that is all
-    /// round-off says the same of the correction that follows from it.
-    pub fn converged(&self, report: &PassReport) -> bool {
-        let all_noise = self.noise > self.tolerance * self.force;
-        report.residual <= self.tolerance && (report.correction <= self.tolerance || all_noise)
+    /// Whether residual and correction of every part and body are below the tolerance, or round-off.
+    /// A residual that is all round-off says the same of the correction that follows from it.
+    pub fn converged(&self, errors: &Errors) -> bool {
+        let mut is_noise = vec![true; self.increment.len()];
+        for (part, &body) in self.parts.of_parts().iter().enumerate() {
+            let residual = errors.residual[part];
+            let most = larger(self.tolerance * self.force[part], self.noise[part]);
+            if residual.is_nan() || residual > most || most == f64::INFINITY {
+                return false;
+            }
+            is_noise[body] &= residual <= self.noise[part];
+        }
+        (0..self.increment.len()).all(|body| {
+            let most = larger(self.tolerance * self.increment[body], self.resolution[body]);
+            is_noise[body] || errors.correction[body] <= most
+        })
+    }
+
+    /// The node with the largest relative residual; `residual` over the unknowns, whose dofs are given.
+    pub fn worst(
+        &self,
+        residual: &[f64],
+        dof_of: &[usize],
+        position: impl Fn(usize) -> [f64; 2],
+    ) -> Option<Worst> {
+        let at = |unknown: usize| {
+            let part = self.parts.part(dof_of[unknown]);
+            self.relative(residual[unknown].abs(), self.force[part], self.noise[part])
+        };
+        let larger = |a: &usize, b: &usize| at(*a).total_cmp(&at(*b));
+        let unknown = (0..residual.len()).max_by(larger)?;
+        let node = dof_of[unknown] / 2;
+        Some(Worst {
+            node,
+            position: position(node),
+            quantity: "force residual",
+            value: at(unknown),
+        })
+    }
+
+    fn residual(&self, errors: &Errors, part: usize) -> f64 {
+        self.relative(errors.residual[part], self.force[part], self.noise[part])
+    }
+
+    /// `value` in units of its scale, or of the round-off over the tolerance where that is larger.
+    fn relative(&self, value: f64, scale: f64, floor: f64) -> f64 {
+        let scale = larger(scale, floor / self.tolerance);
+        if scale == 0.0 { value } else { value / scale }
     }
 }
 
-/// The node with the largest residual; `residual` over the unknowns, whose dofs are given.
-pub(super) fn worst(
-    residual: &[f64],
-    dof_of: &[usize],
-    position: impl Fn(usize) -> [f64; 2],
-    value: f64,
-) -> Option<Worst> {
-    let larger = |a: &usize, b: &usize| residual[*a].abs().total_cmp(&residual[*b].abs());
-    let node = dof_of[(0..residual.len()).max_by(larger)?] / 2;
-    Some(Worst {
-        node,
-        position: position(node),
-        quantity: "force residual",
-        value,
-    })
+/// Largest of some forces (over all dofs) in every part.
+pub(super) fn largest_forces<'a>(
+    parts: &Parts,
+    forces: impl Iterator<Item = &'a [f64]>,
+) -> Vec<f64> {
+    let each: Vec<Vec<f64>> = forces.map(|force| parts.largest(force)).collect();
+    let of_part = |part: usize| largest(each.iter().map(|force| &force[part]));
+    (0..parts.of_parts().len()).map(of_part).collect()
 }

@@ -1,6 +1,7 @@
 use super::dofs::DofMap;
 use super::mass::unknown_mass;
-use super::scheme::Weights;
+use super::parts::Parts;
+use super::step_problem::StepProblem;
 use crate::contact::{Compliance, Pair};
 use crate::elements::Body;
 use crate::linear::{Assembled, CheckedSolver, LinearError, linear_solver};
@@ -41,23 +42,23 @@ pub(super) struct Effective {
     pub m: Factored,
     /// Increment that K* belongs to.
     dt: f64,
-    /// Largest diagonal entry of theta2 K (force/length).
-    pub stiffness: f64,
-    /// Largest diagonal entry of (2/dt²) M (force/length).
-    pub inertia: f64,
+    /// Largest diagonal entry of theta2 K in every part (force/length).
+    pub stiffness: Vec<f64>,
+    /// Largest diagonal entry of (2/dt²) M in every part (force/length).
+    pub inertia: Vec<f64>,
 }
 
 impl Effective {
-    /// Both matrices for the unknowns of a step; `bodies` of all nodes.
-    pub fn new(body: &Body, dofs: &DofMap, bodies: Vec<usize>, choice: SolverChoice) -> Self {
+    /// Both matrices for the unknowns of a step.
+    pub fn new(body: &Body, dofs: &DofMap, parts: &Parts, choice: SolverChoice) -> Self {
         let mass = unknown_mass(body, dofs);
-        let compliance = || Compliance::new(dofs.unknown.clone(), bodies.clone());
+        let compliance = || Compliance::new(dofs.unknown.clone(), parts.of_nodes().to_vec());
         Effective {
             k: Factored::new(choice, mass.zeros(), compliance()),
             m: Factored::new(choice, mass, compliance()),
             dt: f64::NAN,
-            stiffness: 0.0,
-            inertia: 0.0,
+            stiffness: Vec::new(),
+            inertia: Vec::new(),
         }
     }
 
@@ -70,20 +71,27 @@ impl Effective {
     /// Assembles K* in the given configuration, to be factorised next.
     pub fn assemble(
         &mut self,
-        body: &Body,
-        weights: Weights,
+        problem: &StepProblem,
         dt: f64,
         (start, u): (Option<&[f64]>, &[f64]),
     ) {
+        let StepProblem {
+            body,
+            weights,
+            dofs,
+            parts,
+            ..
+        } = problem;
         let mass = self.m.solver.matrix();
         let k = self.k.solver.matrix_mut();
         k.clear();
         body.for_each_tangent(start, u, |element, tangent| {
             k.add(element, tangent, weights.theta2)
         });
-        self.stiffness = k.largest_diagonal();
+        self.stiffness = parts.largest_diagonal(k, &dofs.dof);
         let c = 2.0 / (dt * dt);
-        self.inertia = c * mass.largest_diagonal();
+        let inertia = parts.largest_diagonal(mass, &dofs.dof);
+        self.inertia = inertia.into_iter().map(|m| c * m).collect();
         k.add_matrix(mass, c);
         self.dt = dt;
     }

@@ -34,28 +34,6 @@ pub(super) struct Piece {
 /// A piece that failed, with its times.
 pub(super) type Broken = Box<(Interval, Failed)>;
 
-impl Piece {
-    /// The piece, if a check of its length and what was solved passes.
-    pub fn checked(
-        self,
-        check: impl FnOnce(f64, Solved) -> Result<Solved, Failed>,
-    ) -> Result<Self, Broken> {
-        let Piece {
-            interval,
-            solved,
-            is_cut,
-        } = self;
-        match check(interval.dt, solved) {
-            Ok(solved) => Ok(Piece {
-                interval,
-                solved,
-                is_cut,
-            }),
-            Err(failed) => Err(Box::new((interval, failed))),
-        }
-    }
-}
-
 /// Solves the next piece of an increment.
 pub(super) struct Pieces<'a, 'm> {
     pub problem: &'a StepProblem<'m>,

@@ -1,7 +1,6 @@
 use std::fmt;
 
 use super::PassReport;
-use crate::contact::Passage;
 use crate::elements::Inverted;
 use crate::lcp::{FrictionalLcp, LcpError};
 use crate::linear::LinearError;
@@ -29,13 +28,17 @@ pub enum Cause {
         node: usize,
     },
     /// The factorisation or a solve with it failed.
-    LinearSolver(String),
+    LinearSolver(LinearError),
+    /// The passes went away from any solution until numbers were not finite.
+    Diverged,
     /// A node has gone into a body through a segment.
     Crossed {
         /// Slave node (index).
         slave: usize,
         /// Ends (indices) of the segment.
         segment: [usize; 2],
+        /// Whether the motion of all three is prescribed.
+        prescribed: bool,
     },
     /// Contact would put energy in.
     GainedEnergy {
@@ -45,7 +48,12 @@ pub enum Cause {
     /// A complementarity problem was not solved.
     Lcp(Box<FailedLcp>),
     /// A quantity is not finite.
-    NotFinite(&'static str),
+    NotFinite {
+        /// Which.
+        what: &'static str,
+        /// Node (index) where it is not, or that moves most.
+        node: usize,
+    },
 }
 
 /// A complementarity problem without solution, of a pass or of the impulses.
@@ -109,27 +117,34 @@ impl fmt::Display for Cause {
             Cause::GainedEnergy { part } => {
                 write!(f, "contact would put energy in ({part:.1e} of the largest)")
             }
-            Cause::LinearSolver(text) => write!(f, "the linear solver failed: {text}"),
+            Cause::LinearSolver(error) => write!(f, "the linear solver failed: {error}"),
+            Cause::Diverged => write!(f, "the passes diverged"),
             Cause::Lcp(failed) => match &failed.error {
                 LcpError::Ray { .. } => {
                     write!(f, "contacts exclude each other (an LCP ended on a ray)")
                 }
                 error => write!(f, "a complementarity problem was not solved: {error}"),
             },
-            Cause::NotFinite(what) => write!(f, "{what} is not finite"),
+            Cause::NotFinite { what, .. } => write!(f, "{what} is not finite"),
         }
     }
 }
 
 impl From<LinearError> for Cause {
     fn from(error: LinearError) -> Self {
-        Cause::LinearSolver(error.to_string())
+        Cause::LinearSolver(error)
     }
 }
 
-impl From<Passage> for Cause {
-    fn from(Passage { slave, segment }: Passage) -> Self {
-        Cause::Crossed { slave, segment }
+impl Cause {
+    /// Whether it says only that a number has become too large.
+    pub(super) fn is_overflow(&self) -> bool {
+        match self {
+            Cause::LinearSolver(LinearError::NotFinite(_)) | Cause::NotFinite { .. } => true,
+            Cause::Inverted { determinant, .. } => !determinant.is_finite(),
+            Cause::Lcp(failed) => failed.error == LcpError::NotFinite,
+            _ => false,
+        }
     }
 }
 

@@ -1,13 +1,14 @@
 use super::increment::{Failed, Solved};
+use super::ledger::Ledger;
 use super::step_problem::StepProblem;
 use super::{Cause, State};
-use crate::contact::TOUCHING;
+use crate::contact::{Pair, TOUCHING};
 
-/// Energy that contact may put in, as a part of the largest energy.
+/// Energy that a pair may put in, as a part of the largest energy of its bodies.
 const NEGLIGIBLE: f64 = 1e-10;
 
 /// Takes a converged increment from `start`, unless contact puts energy in that counts beside the
-/// `largest` so far.
+/// largest energy that the bodies in contact have had so far.
 ///
 /// # Errors
 /// The increment counts as failed, with [`Cause::GainedEnergy`]: in its halves a node passes a vertex
@@ -15,11 +16,11 @@ const NEGLIGIBLE: f64 = 1e-10;
 pub(super) fn check_gain(
     problem: &StepProblem,
     start: &State,
-    largest: f64,
+    ledger: &Ledger,
     solved: Solved,
 ) -> Result<Solved, Failed> {
-    let part = gain(problem, start, &solved) / largest;
-    if part.is_nan() || part <= NEGLIGIBLE {
+    let part = gain(problem, start, ledger, &solved);
+    if part <= NEGLIGIBLE {
         return Ok(solved);
     }
     Err(Failed {
@@ -29,12 +30,13 @@ pub(super) fn check_gain(
     })
 }
 
-/// The energy that contact puts in because nodes slide on to segments that they were behind (energy).
+/// The energy that contact puts in because nodes slide on to segments that they were behind, as a part of
+/// the largest energy of the bodies of each pair, summed.
 ///
 /// With energy-momentum rows a pair does the work Pn (g1 - g0). It is positive where a node slides over
 /// a convex vertex on to a segment with g0 < 0, and that segment holds it because the vertex turns
 /// hollow in the same increment. Nodes that start inside, as a mesh may have them, do not count.
-fn gain(problem: &StepProblem, start: &State, solved: &Solved) -> f64 {
+fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) -> f64 {
     if !problem.weights.energy_momentum {
         return 0.0;
     }
@@ -45,11 +47,14 @@ fn gain(problem: &StepProblem, start: &State, solved: &Solved) -> f64 {
         let p = problem.place(&start.u, [slave, a, b]);
         let was_beyond = !(0.0..=1.0).contains(&p.xi) && p.gap < -TOUCHING * p.length;
         // Pn.(Bn d)
-        if was_beyond {
+        let work = if was_beyond {
             normal * pair.normal_of(d)
         } else {
             0.0
-        }
+        };
+        (pair, work)
     });
-    works.filter(|&work| work > 0.0).sum()
+    let largest = |pair: &Pair| problem.parts.most(&ledger.largest, pair.at.nodes);
+    let parts = works.filter(|&(_, work)| work > 0.0);
+    parts.map(|(pair, work)| work / largest(pair)).sum()
 }

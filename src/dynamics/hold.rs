@@ -36,7 +36,12 @@ impl Hold {
                     }
                     let key = [slot, candidate.segment];
                     let p = problem.place(u0, [slave, a, b]);
-                    if touches(&p) || before.binary_search(&key).is_ok() {
+                    let is_inside = || {
+                        let at = |node: usize| problem.position(u0, node);
+                        p.gap >= -TOUCHING * p.length
+                            || surfaces.interior.takes_in([a, b], slave, at)
+                    };
+                    if (touches(&p) && is_inside()) || before.binary_search(&key).is_ok() {
                         touching.push((key, p.normal));
                     }
                 }

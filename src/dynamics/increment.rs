@@ -1,15 +1,14 @@
 use super::contact_forces::ContactForces;
-use super::convergence::{Scales, worst};
+use super::convergence::{Errors, Lengths, Scales, largest_forces};
 use super::effective::Effective;
 use super::hold::Hold;
 use super::impact::Impulses;
-use super::mass::largest;
 use super::meter::Meter;
-use super::step_problem::{Equilibrium, Interval, StepProblem, difference, sum};
+use super::step_problem::{Equilibrium, Interval, StepProblem, check_finite, difference, sum};
 use super::touching::Touching;
 use super::{Cause, PassReport, State, Worst};
-use crate::contact::{Pair, Pairing, Search, Touch, find_passage};
-use crate::linear::LinearError;
+use crate::contact::{Pair, Pairing, Passage, Search, Touch, find_passage};
+use crate::linear::{LinearError, larger, largest};
 use crate::model::Factorization;
 
 /// Passes that one factorisation serves within an increment.
@@ -71,20 +70,40 @@ pub(super) struct Attempt<'a, 'm> {
 struct Trace {
     passes: Vec<PassReport>,
     worst: Option<Worst>,
+    /// Largest force that the passes were to balance, of the first pass and of the last.
+    unbalanced: Option<[f64; 2]>,
 }
 
-impl Attempt<'_, '_> {
+impl Trace {
+    fn balance(&mut self, force: f64) {
+        let [first, _] = self.unbalanced.unwrap_or([force; 2]);
+        self.unbalanced = Some([first, force]);
+    }
+
+    /// The cause as it is, or that passes with ever larger forces have made numbers overflow.
+    fn explain(&self, cause: Cause) -> Cause {
+        let has_grown = |[first, last]: [f64; 2]| last > first || last.is_nan();
+        match cause.is_overflow() && self.unbalanced.is_some_and(has_grown) {
+            true => Cause::Diverged,
+            false => cause,
+        }
+    }
+}
+
+impl<'m> Attempt<'_, 'm> {
     /// Solves the increment; `contact` holds the states of the last one, per slot.
     pub fn solve(mut self, contact: &Touching) -> Result<Solved, Failed> {
         let mut trace = Trace::default();
         let solved = self.passes(contact, &mut trace);
-        let Trace { passes, worst } = trace;
         match solved {
-            Ok(solved) => Ok(Solved { passes, ..solved }),
+            Ok(solved) => Ok(Solved {
+                passes: trace.passes,
+                ..solved
+            }),
             Err(cause) => Err(Failed {
-                cause,
-                worst,
-                passes,
+                cause: trace.explain(cause),
+                worst: trace.worst,
+                passes: trace.passes,
             }),
         }
     }
@@ -128,6 +147,7 @@ impl Attempt<'_, '_> {
                 || problem.equilibrium(self.start, &v0p, &d, self.interval),
             )?;
             let mut r = iterate.out_of_balance();
+            trace.balance(largest(&problem.dofs.restrict(&r)));
 
             // y = K*^-1 r; in the predictor the supports move by d_p, with the force -theta2 K d_p
             self.refresh(pass, &u, &iterate.u_theta)?;
@@ -158,26 +178,31 @@ impl Attempt<'_, '_> {
             // residual with the contact forces of this pass
             let contact_force = forces.resultant(d.len());
             r = problem.dofs.restrict(&sum(&r, &contact_force));
-            let force = iterate
-                .largest()
-                .max(largest(&contact_force))
-                .max(largest(&support_force));
-            let scales = self.scales(force, &u, largest(&d).max(largest(&du)), &forces);
-            let report = scales.report(&r, &du, &forces, pivots);
+            let forces_of = [
+                ("the load", &iterate.load),
+                ("the internal force", &iterate.internal),
+                ("the inertia force", &iterate.inertia),
+                ("the contact force", &contact_force),
+                ("the force of the supports", &support_force),
+                ("the displacement correction", &du),
+            ];
+            check_finite(&forces_of)?;
+            let force = forces_of[..5].iter().map(|(_, force)| force.as_slice());
+            let force = largest_forces(problem.parts, force);
+            let scales = self.scales(force, &u, [&d, &du], &forces);
+            let errors = Errors::new(problem.parts, &r, &problem.dofs.dof, &du);
+            let report = scales.report(&errors, &forces, pivots);
             let position = |node| problem.position(&u, node);
-            trace.worst = worst(&r, &problem.dofs.dof, position, report.residual);
+            trace.worst = scales.worst(&r, &problem.dofs.dof, position);
             trace.passes.push(report);
             self.meter.counts.passes += 1;
             self.meter.counts.residual = report.residual;
-            if !(report.residual.is_finite() && report.correction.is_finite()) {
-                return Err(Cause::NotFinite("the residual of a pass"));
-            }
 
             // U^{k+1} = U^k + dU
             d = sum(&d, &du);
             state = Touching::new(&forces);
             let rest = impulses.rest(problem, &state);
-            if rest && scales.converged(&report) {
+            if rest && scales.converged(&errors) {
                 trace.worst = None;
                 if self.hold.is_none() {
                     self.check_ways(&d, contact, &forces)?;
@@ -220,12 +245,24 @@ impl Attempt<'_, '_> {
         let search = &mut *self.search;
         self.meter
             .time(|t| &mut t.search, || search.cover_way(u0, &u1));
-        let tolerance = self.problem.settings.tolerance * largest(d);
+        let StepProblem {
+            parts, settings, ..
+        } = self.problem;
+        let ways = parts.largest_of_bodies(d);
+        let unsolved = |&body: &usize| settings.tolerance * ways[body];
+        let unsolved: Vec<f64> = parts.of_nodes().iter().map(unsolved).collect();
         let passage = self.meter.time(
             |t| &mut t.contact,
-            || find_passage(search, u0, &u1, &touch, tolerance),
+            || find_passage(search, u0, &u1, &touch, &unsolved),
         );
-        passage.map_or(Ok(()), |passage| Err(passage.into()))
+        passage.map_or(Ok(()), |Passage { slave, segment }| {
+            let [a, b] = segment;
+            Err(Cause::Crossed {
+                slave,
+                segment,
+                prescribed: !self.problem.dofs.moves(&[slave, a, b]),
+            })
+        })
     }
 
     /// theta2 K d_p, the force of the supports' motion in the predictor.
@@ -243,11 +280,10 @@ impl Attempt<'_, '_> {
         let StepProblem {
             settings,
             weights,
-            body,
             dofs,
             ..
         } = self.problem;
-        let (effective, dt) = (&mut *self.effective, self.interval.dt);
+        let (problem, effective, dt) = (self.problem, &mut *self.effective, self.interval.dt);
         let every = settings.factorization == Factorization::EveryPass;
         let worn = pass > 0 && pass.is_multiple_of(KEPT_PASSES);
         let near = self.hold.map_or(0.0, |_| NEAR);
@@ -257,7 +293,7 @@ impl Attempt<'_, '_> {
         let configuration = weights.configuration(&self.start.u, u, u_theta);
         self.meter.time(
             |t| &mut t.assembly,
-            || effective.assemble(body, *weights, dt, configuration),
+            || effective.assemble(problem, dt, configuration),
         );
         self.meter.counts.factorizations += 1;
         let factorized = self
@@ -271,15 +307,38 @@ impl Attempt<'_, '_> {
         })
     }
 
-    fn scales(&self, force: f64, u: &[f64], increment: f64, contact: &ContactForces) -> Scales {
+    /// What a pass with the given forces of all parts and the increments `d` and `du` is measured
+    /// against.
+    fn scales(
+        &self,
+        force: Vec<f64>,
+        u: &[f64],
+        [d, du]: [&[f64]; 2],
+        contact: &ContactForces,
+    ) -> Scales<'m> {
+        let StepProblem {
+            parts, settings, ..
+        } = self.problem;
         let closed = (0..contact.pairs.len()).filter(|&k| contact.is_closed(k));
-        let position = closed
-            .flat_map(|k| contact.pairs[k].at.nodes)
-            .map(|node| largest(&self.problem.position(u, node)))
-            .fold(0.0, f64::max);
-        let diagonals = (self.effective.stiffness, self.effective.inertia);
-        let lengths = (largest(u), increment, position);
-        Scales::new(force, diagonals, lengths, self.problem.settings.tolerance)
+        let mut positions = vec![0.0; u.len()];
+        for k in closed {
+            let nodes = contact.pairs[k].at.nodes;
+            let of_nodes = nodes.map(|node| largest(&self.problem.position(u, node)));
+            for node in nodes {
+                positions[2 * node] = larger(positions[2 * node], largest(&of_nodes));
+            }
+        }
+        let [d, du] = [d, du].map(|d| parts.largest_of_bodies(d));
+        let lengths = Lengths {
+            displacement: parts.largest_of_bodies(u),
+            increment: d.into_iter().zip(du).map(|(d, du)| larger(d, du)).collect(),
+            position: parts.largest_of_bodies(&positions),
+        };
+        let diagonals = (
+            self.effective.stiffness.as_slice(),
+            self.effective.inertia.as_slice(),
+        );
+        Scales::new(parts, force, diagonals, lengths, settings.tolerance)
     }
 
     /// Motion and forces at the end of a converged increment.
@@ -307,6 +366,7 @@ impl Attempt<'_, '_> {
             v,
             a: equilibrium.acceleration.clone(),
         };
+        end.check_finite()?;
         Ok(Solved {
             d,
             v0p,

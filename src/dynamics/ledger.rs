@@ -1,34 +1,66 @@
 use super::increment::Solved;
 use super::mass::dot;
 use super::step_problem::{Equilibrium, StepProblem};
-use super::{Energy, Momentum, State};
+use super::{Cause, Energy, Momentum, State};
+use crate::linear::largest;
 
 /// Energy ledger: every term is computed on its own, so that the balance shows what is wrong.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Ledger {
     pub energy: Energy,
-    /// Largest energy or external work so far.
-    pub largest: f64,
+    /// Largest kinetic or strain energy of every body so far.
+    pub largest: Vec<f64>,
     /// T + W at the start of the analysis.
     start: f64,
 }
 
 impl Ledger {
     /// Opens the ledger at the start of the analysis.
-    pub fn new(kinetic: f64, strain: f64) -> Self {
-        Ledger {
-            energy: Energy {
-                kinetic,
-                strain,
-                ..Energy::default()
-            },
-            largest: kinetic.max(strain),
+    pub fn new(problem: &StepProblem, start: &State) -> Self {
+        let kinetic = problem.mass.kinetic_energy(&start.v);
+        let strains = problem.body.strain_energies(&start.u);
+        let strain = strains.iter().sum();
+        let energy = Energy {
+            kinetic,
+            strain,
+            ..Energy::default()
+        };
+        let mut ledger = Ledger {
+            energy,
+            largest: vec![0.0; problem.parts.bodies()],
             start: kinetic + strain,
+        };
+        ledger.enter_bodies(problem, start, &strains);
+        ledger
+    }
+
+    /// Takes in the kinetic energy of every body in a state, and the strain energy of every element.
+    fn enter_bodies(&mut self, problem: &StepProblem, state: &State, strain: &[f64]) {
+        let parts = problem.parts;
+        let kinetic = problem.mass.kinetic_energies(&state.v, parts);
+        let mut strains = vec![0.0; parts.bodies()];
+        for (element, energy) in strain.iter().enumerate() {
+            let [node, ..] = problem.body.nodes(element) else {
+                continue;
+            };
+            strains[parts.of_nodes()[*node]] += energy;
+        }
+        for (most, (kinetic, strain)) in self.largest.iter_mut().zip(kinetic.iter().zip(strains)) {
+            *most = largest(&[*most, *kinetic, strain]);
         }
     }
 
-    /// Enters a converged increment that started from `start`.
-    pub fn enter(&mut self, problem: &StepProblem, start: &State, solved: &Solved, dt: f64) {
+    /// The ledger with a converged increment that started from `start`.
+    ///
+    /// # Errors
+    /// An energy that is not finite.
+    pub fn with(
+        mut self,
+        problem: &StepProblem,
+        start: &State,
+        solved: &Solved,
+        dt: f64,
+    ) -> Result<Self, Cause> {
         let Solved {
             d,
             v0p,
@@ -42,9 +74,11 @@ impl Ledger {
             inertia,
             ..
         } = &solved.equilibrium;
+        let strain = problem.body.strain_energies(&end.u);
+        self.enter_bodies(problem, end, &strain);
         let e = &mut self.energy;
         let strain0 = e.strain;
-        e.strain = problem.body.strain_energy(&end.u);
+        e.strain = strain.iter().sum();
         e.kinetic = problem.mass.kinetic_energy(&end.v);
 
         // d.R_theta, and the supports: dt V_mid.(M A)_p + d_p.(F - R - B^T P)_p
@@ -72,9 +106,43 @@ impl Ledger {
             + e.friction_dissipation
             + e.impact_loss
             + e.numerical_dissipation;
-        for energy in [e.kinetic, e.strain, e.external_work.abs()] {
-            self.largest = self.largest.max(energy);
-        }
+        self.check(end)?;
+        Ok(self)
+    }
+
+    /// All energies must be finite.
+    ///
+    /// # Errors
+    /// [`Cause::NotFinite`] with the node that moves most in `state`, or is the fastest.
+    pub fn check(&self, state: &State) -> Result<(), Cause> {
+        let e = &self.energy;
+        let energies = [
+            ("the strain energy", e.strain, &state.u),
+            ("the kinetic energy", e.kinetic, &state.v),
+            ("the external work", e.external_work, &state.v),
+            (
+                "the work of the contact forces",
+                e.normal_contact_work,
+                &state.v,
+            ),
+            ("the friction dissipation", e.friction_dissipation, &state.v),
+            ("the impact loss", e.impact_loss, &state.v),
+            (
+                "the numerical dissipation",
+                e.numerical_dissipation,
+                &state.u,
+            ),
+            ("the energy balance", e.balance, &state.v),
+        ];
+        let wrong = energies.iter().find(|(_, energy, _)| !energy.is_finite());
+        wrong.map_or(Ok(()), |&(what, _, motion)| {
+            let larger = |i: &usize, j: &usize| motion[*i].abs().total_cmp(&motion[*j].abs());
+            let dof = (0..motion.len()).max_by(larger).unwrap_or(0);
+            Err(Cause::NotFinite {
+                what,
+                node: dof / 2,
+            })
+        })
     }
 }
 

@@ -1,4 +1,5 @@
 use super::dofs::DofMap;
+use super::parts::Parts;
 use crate::elements::Body;
 use crate::linear::Assembled;
 
@@ -36,22 +37,22 @@ impl Mass {
     pub fn kinetic_energy(&self, v: &[f64]) -> f64 {
         dot(v, &self.times(v)) / 2.0
     }
+
+    /// Kinetic energy of every body.
+    pub fn kinetic_energies(&self, v: &[f64], parts: &Parts) -> Vec<f64> {
+        let (p, mut energies) = (self.times(v), vec![0.0; parts.bodies()]);
+        for (node, &body) in parts.of_nodes().iter().enumerate() {
+            for i in [2 * node, 2 * node + 1] {
+                energies[body] += v[i] * p[i] / 2.0;
+            }
+        }
+        energies
+    }
 }
 
 /// Scalar product.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// Largest absolute value; NaN when there is one.
-pub(super) fn largest(v: &[f64]) -> f64 {
-    v.iter().fold(0.0, |m: f64, x| {
-        if x.abs() > m || x.is_nan() {
-            x.abs()
-        } else {
-            m
-        }
-    })
 }
 
 /// Mass matrix over the unknowns of a step.

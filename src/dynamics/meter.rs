@@ -2,6 +2,7 @@ use std::time::{Duration, Instant};
 
 use super::{SolverCounts, Timings};
 use crate::lcp::{Counters, LcpMethod};
+use crate::linear::larger;
 use crate::model::LcpChoice;
 
 /// Time and work spent, per phase.
@@ -47,7 +48,7 @@ impl SolverCounts {
         self.gauss_seidel_sweeps += other.gauss_seidel_sweeps;
         self.lemke_calls += other.lemke_calls;
         self.factorizations += other.factorizations;
-        self.residual = self.residual.max(other.residual);
+        self.residual = larger(self.residual, other.residual);
         self.converged = self.converged && other.converged;
     }
 }

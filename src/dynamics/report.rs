@@ -2,6 +2,7 @@ use std::io;
 use std::time::Duration;
 
 use super::Failure;
+use crate::elements::Strained;
 
 /// Motion at one time; `2 N` entries each.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -174,6 +175,8 @@ pub struct IncrementReport {
     pub energy: Energy,
     /// Momentum.
     pub momentum: Momentum,
+    /// Largest principal strain.
+    pub strain: Strained,
     /// Resultants, one per contact of the model.
     pub contacts: Vec<ContactResultant>,
     /// Landings of this increment.

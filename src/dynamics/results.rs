@@ -1,5 +1,4 @@
 use super::increment::Solved;
-use super::mass::largest;
 use super::step_problem::{Equilibrium, Interval, StepProblem};
 use super::touching::Touching;
 use super::{ContactResultant, Landing, NodalResults, NodeStatus, State};
@@ -7,8 +6,10 @@ use crate::contact::{
     Crossing, Direction, Motion, Pair, RowForm, crossings, line_crossings, project,
 };
 use crate::lcp::ContactState;
+use crate::linear::larger;
 
-/// Change of velocity, relative to the largest velocity, from which an impulse is an impact.
+/// Change of velocity, relative to the largest velocity of the two bodies, from which an impulse is an
+/// impact.
 const STRUCK: f64 = 1e-9;
 
 /// Reactions, contact forces, gaps and status at the nodes.
@@ -76,8 +77,8 @@ pub(super) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
         r.tangential += pt;
         r.closed += 1;
         r.sticking += usize::from(forces.state[k] == ContactState::Stick);
-        r.cone_violation = r.cone_violation.max(pt.abs() - pair.at.friction * pn);
-        largest_normal[contact] = largest_normal[contact].max(pn);
+        r.cone_violation = larger(r.cone_violation, pt.abs() - pair.at.friction * pn);
+        largest_normal[contact] = larger(largest_normal[contact], pn);
     }
     for (r, largest) in resultants.iter_mut().zip(largest_normal) {
         if largest > 0.0 {
@@ -109,9 +110,10 @@ pub(super) fn landings(
     interval: Interval,
 ) -> Vec<Landing> {
     let forces = &solved.forces;
-    let least = STRUCK * largest(&start.v);
+    let fastest = problem.parts.largest_of_bodies(&start.v);
     let landing = |k: usize| {
         let pair = &forces.pairs[k];
+        let least = STRUCK * problem.parts.most(&fastest, pair.at.nodes);
         let touched = solved.touching.binary_search(&pair.at.key()).is_ok();
         let is_struck = || {
             let x = &problem.model.mesh.coordinates;

@@ -2,14 +2,15 @@ use std::io;
 
 use super::dofs::DofMap;
 use super::effective::Effective;
+use super::entry::{Entered, start_failure};
 use super::events::{MOST_EVENTS, Piece, Pieces};
-use super::gain::check_gain;
 use super::grid::{Grid, StepPlace, WHOLE, increments_of};
 use super::increment::{Attempt, Failed, Solved};
 use super::ledger::{Ledger, momentum};
 use super::loads::Loads;
 use super::mass::Mass;
 use super::meter::Meter;
+use super::parts::Parts;
 use super::results::{contact_resultants, landings, nodal_results};
 use super::scheme::Weights;
 use super::step_problem::{Interval, StepProblem};
@@ -43,11 +44,13 @@ pub enum RunError {
 pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
     let body = Body::new(model);
     let mass = Mass::new(&body, model.mesh.node_count());
+    let parts = Parts::new(model);
     let contacts = contact_surfaces(model);
     let mut runner = Runner {
         model,
         body: &body,
         mass: &mass,
+        parts: &parts,
         contacts: &contacts,
         search: Search::new(&contacts, &model.mesh.coordinates),
         state: State {
@@ -56,7 +59,7 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
             a: vec![0.0; model.mesh.dof_count()],
         },
         contact: Touching::default(),
-        ledger: Ledger::new(0.0, 0.0),
+        ledger: Ledger::default(),
         increment: 0,
         cutbacks: 0,
         events: 0,
@@ -93,6 +96,7 @@ struct Runner<'m, 'o> {
     model: &'m Model,
     body: &'m Body,
     mass: &'m Mass,
+    parts: &'m Parts,
     contacts: &'m [ContactSurfaces],
     search: Search<'m>,
     state: State,
@@ -120,6 +124,7 @@ impl<'m> Runner<'m, '_> {
             model: self.model,
             body: self.body,
             mass: self.mass,
+            parts: self.parts,
             contacts: self.contacts,
             settings: step.settings,
             weights: Weights::new(step.settings.scheme),
@@ -128,10 +133,11 @@ impl<'m> Runner<'m, '_> {
             supports: Supports::new(self.model, step, &self.state.u),
         };
         let choice = step.settings.solver;
-        let mut effective =
-            Effective::new(self.body, &problem.dofs, self.model.mesh.bodies(), choice);
-        if number == 1 {
-            self.report_start(&problem, &mut effective, place)?;
+        let mut effective = Effective::new(self.body, &problem.dofs, self.parts, choice);
+        if number == 1
+            && let Some(failure) = self.report_start(&problem, &mut effective, place)?
+        {
+            return Ok(Outcome::Stopped(Box::new(failure)));
         }
         let count = increments_of(period, dt);
         for i in 0..count {
@@ -192,8 +198,8 @@ impl<'m> Runner<'m, '_> {
             };
             let solved = attempt.solve(&self.contact);
             match solved.and_then(|s| self.checked(problem, s, interval.dt, halvings, grid)) {
-                Ok(solved) => {
-                    self.accept(problem, place, interval, solved)?;
+                Ok(entered) => {
+                    self.accept(problem, place, interval, entered)?;
                     piece += 1;
                     while halvings > 0 && piece % 2 == 0 {
                         (piece, halvings) = (piece / 2, halvings - 1);
@@ -250,14 +256,19 @@ impl<'m> Runner<'m, '_> {
                 false => pieces.rest(),
             };
             let halvings = ends.len() as u32 - 1;
-            let checked = |dt, s| self.checked(problem, s, dt, halvings, grid);
-            match next.and_then(|piece| piece.checked(checked)) {
-                Ok(Piece {
+            let checked = next.and_then(|piece| {
+                let Piece {
                     interval,
                     solved,
                     is_cut,
-                }) => {
-                    self.accept(problem, place, interval, solved)?;
+                } = piece;
+                let checked = self.checked(problem, solved, interval.dt, halvings, grid);
+                let entered = checked.map_err(|failed| Box::new((interval, failed)))?;
+                Ok((interval, entered, is_cut))
+            });
+            match checked {
+                Ok((interval, entered, is_cut)) => {
+                    self.accept(problem, place, interval, entered)?;
                     (from, last) = (interval.end.step, interval.dt);
                     if is_cut {
                         (events, self.events) = (events + 1, self.events + 1);
@@ -278,7 +289,8 @@ impl<'m> Runner<'m, '_> {
         Ok(None)
     }
 
-    /// A converged increment; one into which contact puts energy is halved, a few times.
+    /// A converged increment with its energies, which must be finite; one into which contact puts
+    /// energy is halved, a few times.
     fn checked(
         &self,
         problem: &StepProblem,
@@ -286,11 +298,10 @@ impl<'m> Runner<'m, '_> {
         dt: f64,
         halvings: u32,
         grid: Grid,
-    ) -> Result<Solved, Failed> {
-        if halvings >= GAIN_HALVINGS || dt / 2.0 < grid.dt_min {
-            return Ok(solved);
-        }
-        check_gain(problem, &self.state, self.ledger.largest, solved)
+    ) -> Result<Entered, Failed> {
+        let may_be_halved = halvings < GAIN_HALVINGS && dt / 2.0 >= grid.dt_min;
+        let before = (&self.state, &self.ledger);
+        Entered::new(problem, before, solved, dt, may_be_halved)
     }
 
     fn failure(
@@ -335,10 +346,9 @@ impl<'m> Runner<'m, '_> {
         problem: &StepProblem,
         place: StepPlace,
         interval: Interval,
-        solved: Solved,
+        Entered { solved, ledger }: Entered,
     ) -> Result<(), RunError> {
-        self.ledger
-            .enter(problem, &self.state, &solved, interval.dt);
+        self.ledger = ledger;
         let landings = landings(problem, &self.state, &self.contact, &solved, interval);
         self.meter.counts.converged = true;
         self.totals.add(&self.meter.counts);
@@ -353,6 +363,7 @@ impl<'m> Runner<'m, '_> {
             nodal: nodal_results(problem, &solved),
             energy: self.ledger.energy,
             momentum: momentum(problem, &solved.end),
+            strain: self.body.most_strained(&solved.end.u),
             contacts: contact_resultants(problem, &solved),
             landings,
             solver: self.meter.counts,
@@ -365,20 +376,23 @@ impl<'m> Runner<'m, '_> {
         Ok(())
     }
 
-    /// Completes the start state (velocity of the supports, acceleration) and reports it.
+    /// Completes the start state (velocity of the supports, acceleration) and reports it, or gives
+    /// the failure when it is not finite.
     fn report_start(
         &mut self,
         problem: &StepProblem,
         effective: &mut Effective,
         place: StepPlace,
-    ) -> Result<(), RunError> {
+    ) -> Result<Option<Failure>, RunError> {
         let now = place.moment(0.0);
         for (dof, _, v) in problem.supports.motion(now) {
             self.state.v[dof] = v;
         }
         self.state.a = problem.start_acceleration(effective, &self.state, now);
-        let kinetic = self.mass.kinetic_energy(&self.state.v);
-        self.ledger = Ledger::new(kinetic, self.body.strain_energy(&self.state.u));
+        self.ledger = Ledger::new(problem, &self.state);
+        if let Some(failure) = start_failure(&self.state, &self.ledger, place) {
+            return Ok(Some(failure));
+        }
         let (dofs, nodes) = (self.state.u.len(), self.state.u.len() / 2);
         let none = ContactResultant {
             min_gap: f64::NAN,
@@ -404,6 +418,6 @@ impl<'m> Runner<'m, '_> {
             ..IncrementReport::default()
         };
         self.observer.increment(&report)?;
-        Ok(())
+        Ok(None)
     }
 }

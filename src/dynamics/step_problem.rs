@@ -1,7 +1,8 @@
 use super::dofs::DofMap;
 use super::effective::Effective;
 use super::loads::{Loads, Moment};
-use super::mass::{Mass, largest};
+use super::mass::Mass;
+use super::parts::Parts;
 use super::scheme::Weights;
 use super::supports::Supports;
 use super::{Cause, State};
@@ -20,6 +21,7 @@ pub(super) struct StepProblem<'m> {
     pub model: &'m Model,
     pub body: &'m Body,
     pub mass: &'m Mass,
+    pub parts: &'m Parts,
     pub contacts: &'m [ContactSurfaces],
     pub settings: Settings,
     pub weights: Weights,
@@ -55,12 +57,6 @@ impl Equilibrium {
     /// R_theta - F_theta - M A.
     pub fn out_of_balance(&self) -> Vec<f64> {
         difference(&difference(&self.load, &self.internal), &self.inertia)
-    }
-
-    /// Largest of the forces.
-    pub fn largest(&self) -> f64 {
-        let forces = [&self.load, &self.internal, &self.inertia];
-        forces.into_iter().fold(0.0, |m, f| m.max(largest(f)))
     }
 }
 
@@ -184,6 +180,34 @@ impl StepProblem<'_> {
             self.dofs.add(&acceleration, &mut a);
         }
         a
+    }
+}
+
+/// All values of some quantities, each over all dofs, must be finite.
+///
+/// # Errors
+/// [`Cause::NotFinite`] with the first quantity and node that is not.
+pub(super) fn check_finite(quantities: &[(&'static str, &Vec<f64>)]) -> Result<(), Cause> {
+    for &(what, values) in quantities {
+        if let Some(dof) = values.iter().position(|value| !value.is_finite()) {
+            let node = dof / 2;
+            return Err(Cause::NotFinite { what, node });
+        }
+    }
+    Ok(())
+}
+
+impl State {
+    /// Displacement, velocity and acceleration must be finite.
+    ///
+    /// # Errors
+    /// [`Cause::NotFinite`].
+    pub(super) fn check_finite(&self) -> Result<(), Cause> {
+        check_finite(&[
+            ("the displacement", &self.u),
+            ("the velocity", &self.v),
+            ("the acceleration", &self.a),
+        ])
     }
 }
 

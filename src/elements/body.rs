@@ -2,8 +2,8 @@ use nalgebra::SMatrix;
 use rayon::prelude::*;
 
 use super::{
-    Configuration, Elasticity, Reference, elasticity, internal_force, mass, quad4, strain_energy,
-    tangent, tri3,
+    Configuration, Elasticity, Reference, elasticity, internal_force, largest_strain, mass, quad4,
+    strain_energy, tangent, tri3,
 };
 use crate::model::{Cell, Model};
 
@@ -17,6 +17,15 @@ pub struct Inverted {
     pub element: usize,
     /// Determinant.
     pub determinant: f64,
+}
+
+/// The element with the largest principal strain.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Strained {
+    /// Element (index).
+    pub element: usize,
+    /// Largest absolute principal value of its Green-Lagrange strain in the plane.
+    pub strain: f64,
 }
 
 /// Reference geometry of an element.
@@ -123,16 +132,39 @@ impl Body {
 
     /// Strain energy of all elements at displacements `u` (force length).
     pub fn strain_energy(&self, u: &[f64]) -> f64 {
-        let energies: Vec<f64> = self
-            .solids
+        self.strain_energies(u).iter().sum()
+    }
+
+    /// Strain energy of every element at displacements `u` (force length).
+    pub fn strain_energies(&self, u: &[f64]) -> Vec<f64> {
+        self.solids
             .par_iter()
             .with_min_len(PARALLEL_CHUNK)
             .map(|solid| match &solid.geometry {
                 Geometry::Tri3(n, r) => strain_energy(r, &solid.c, &gather(n, u)),
                 Geometry::Quad4(n, r) => strain_energy(r, &solid.c, &gather(n, u)),
             })
+            .collect()
+    }
+
+    /// The first element with the largest principal strain at displacements `u` (2 N entries).
+    pub fn most_strained(&self, u: &[f64]) -> Strained {
+        let strains: Vec<f64> = self
+            .solids
+            .par_iter()
+            .with_min_len(PARALLEL_CHUNK)
+            .map(|solid| match &solid.geometry {
+                Geometry::Tri3(n, r) => largest_strain(r, &gather(n, u)),
+                Geometry::Quad4(n, r) => largest_strain(r, &gather(n, u)),
+            })
             .collect();
-        energies.iter().sum()
+        let mut most = Strained::default();
+        for (element, strain) in strains.into_iter().enumerate() {
+            if strain > most.strain || strain.is_nan() {
+                most = Strained { element, strain };
+            }
+        }
+        most
     }
 
     /// Internal force F(u), or its energy-momentum form between `start` and `u`, 2 N entries.

@@ -50,11 +50,16 @@ impl<const N: usize> Configuration<N> {
                 PointState {
                     f,
                     s: stress(c, &e),
-                    determinant: f.determinant().min(end),
+                    determinant: smaller(f.determinant(), end),
                 }
             }
         }
     }
+}
+
+/// The smaller of two values; NaN when one is.
+pub(super) fn smaller(a: f64, b: f64) -> f64 {
+    if a < b || a.is_nan() { a } else { b }
 }
 
 /// Displacement gradient H = du/dX.

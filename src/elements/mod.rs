@@ -12,11 +12,11 @@ mod solid;
 mod tri3;
 mod voigt;
 
-pub use body::{Body, Inverted};
+pub use body::{Body, Inverted, Strained};
 pub use kinematics::{Configuration, PointState};
 pub use quad4::quad4;
 pub use recovery::{ElementMeans, element_means};
 pub use reference::{Point, Reference};
-pub use solid::{internal_force, mass, strain_energy, tangent};
+pub use solid::{internal_force, largest_strain, mass, strain_energy, tangent};
 pub use tri3::tri3;
 pub use voigt::{Elasticity, elasticity};

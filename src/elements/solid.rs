@@ -1,6 +1,6 @@
 use nalgebra::{SMatrix, Vector3};
 
-use super::kinematics::{displacement_gradient, green_lagrange};
+use super::kinematics::{displacement_gradient, green_lagrange, smaller};
 use super::voigt::stress;
 use super::{Configuration, Elasticity, PointState, Reference};
 
@@ -25,6 +25,25 @@ pub fn strain_energy<const N: usize, const P: usize>(
     element.points.iter().map(at_point).sum()
 }
 
+/// Largest absolute principal value of the Green-Lagrange strain in the plane at the integration
+/// points; NaN when there is one.
+///
+/// ```text
+/// E_1,2 = (E_xx + E_yy)/2 +- sqrt((E_xx - E_yy)²/4 + E_xy²)
+/// ```
+pub fn largest_strain<const N: usize, const P: usize>(
+    element: &Reference<N, P>,
+    u: &SMatrix<f64, 2, N>,
+) -> f64 {
+    let mut largest = 0.0;
+    for point in &element.points {
+        let e = green_lagrange(&displacement_gradient(point, u));
+        let (mean, half) = ((e.m11 + e.m22) / 2.0, (e.m11 - e.m22) / 2.0);
+        largest = -smaller(-largest, -(mean.abs() + half.hypot(e.m12)));
+    }
+    largest
+}
+
 /// Internal force F = int B_L^T S dOmega (paper eq. 12), 2 x N (force), with the smallest
 /// determinant of the deformation gradient.
 pub fn internal_force<const N: usize, const P: usize>(
@@ -42,7 +61,7 @@ pub fn internal_force<const N: usize, const P: usize>(
         } = configuration.state(point, c);
         // B_L^T S of node a is F S dh_a/dX: the first Piola-Kirchhoff stress times the gradient.
         force += f * s * point.gradient.transpose() * point.volume;
-        determinant = determinant.min(det);
+        determinant = smaller(determinant, det);
     }
     (force, determinant)
 }
@@ -195,6 +214,26 @@ mod tests {
         check_rotation(&quad(), &x);
         let x = SMatrix::from_columns(&[[0.1, 0.0], [2.0, 0.3], [0.7, 1.9]].map(|p| p.into()));
         check_rotation(&tri(), &x);
+    }
+
+    #[test]
+    fn principal_strain_by_hand() {
+        // simple shear g: E = [[0, g/2], [g/2, g²/2]], turned by any angle
+        let (g, element) = (0.3_f64, quad());
+        let expected = g * g / 4.0 + (g * g / 4.0).hypot(g / 2.0);
+        let x = SMatrix::from_columns(
+            &[[0.0, 0.0], [2.0, 0.3], [1.7, 1.9], [-0.2, 1.2]].map(|p| p.into()),
+        );
+        for degrees in [0.0_f64, 40.0, 200.0] {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            let f = Matrix2::new(cos, -sin, sin, cos) * Matrix2::new(1.0, g, 0.0, 1.0);
+            let found = largest_strain(&element, &(f * x - x));
+            assert!((found - expected).abs() < 1e-14, "{found}");
+        }
+        // compression to 0.6: E = (0.36 - 1)/2
+        let f = Matrix2::new(0.6, 0.0, 0.0, 1.0);
+        assert!((largest_strain(&element, &(f * x - x)) - 0.32).abs() < 1e-14);
+        assert!(largest_strain(&element, &(f * x * f64::NAN)).is_nan());
     }
 
     #[test]

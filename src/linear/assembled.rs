@@ -85,10 +85,9 @@ impl Assembled {
         self.matrix.cols()
     }
 
-    /// Largest diagonal entry; 0 without unknowns.
-    pub fn largest_diagonal(&self) -> f64 {
-        let diagonal = |i| self.matrix.get(i, i).copied().unwrap_or(0.0);
-        (0..self.size()).map(diagonal).fold(0.0, f64::max)
+    /// The entries of the diagonal.
+    pub fn diagonal(&self) -> impl Iterator<Item = f64> {
+        (0..self.size()).map(|i| self.matrix.get(i, i).copied().unwrap_or(0.0))
     }
 }
 
@@ -136,6 +135,6 @@ mod tests {
                 assert_eq!(dense[[i, j]], *value, "({i}, {j})");
             }
         }
-        assert_eq!(a.largest_diagonal(), 40.0);
+        assert_eq!(a.diagonal().collect::<Vec<_>>(), [0.0, 8.0, 40.0]);
     }
 }

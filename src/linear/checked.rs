@@ -1,6 +1,6 @@
 use sprs::CsMatView;
 
-use super::{Assembled, LinearError, LinearSolver};
+use super::{Assembled, LinearError, LinearSolver, larger, largest};
 
 /// Largest residual of a solve, relative to the terms it is made of. A backward stable solve stays
 /// near the round-off unit; what exceeds this bound is no solution.
@@ -76,7 +76,7 @@ impl CheckedSolver {
             return Err(LinearError::NotFinite("a solution"));
         }
         let residual = relative_residual(self.matrix.matrix(), &sum(&x, n), &sum(b, n));
-        if residual > RESIDUAL {
+        if residual.is_nan() || residual > RESIDUAL {
             return Err(LinearError::Residual { residual });
         }
         Ok(x)
@@ -94,18 +94,12 @@ impl CheckedSolver {
         let inverse = self.solver.inverse_at(unknowns, n);
         let sums = sum(&inverse, m);
         let difference = |(sum, &unknown): (&f64, &usize)| (sum - x[unknown]).abs();
-        let worst = sums
-            .iter()
-            .zip(unknowns)
-            .map(difference)
-            .fold(0.0, f64::max);
-        let scale = inverse
-            .iter()
-            .fold(0.0_f64, |scale, value| scale.max(value.abs()));
+        let worst = sums.iter().zip(unknowns).map(difference).fold(0.0, larger);
+        let scale = largest(&inverse);
         if sums.iter().any(|sum| !sum.is_finite()) {
             return Err(LinearError::NotFinite("an inverse"));
         }
-        if worst > RESIDUAL * scale * m as f64 {
+        if worst.is_nan() || worst > RESIDUAL * scale * m as f64 {
             return Err(LinearError::Residual {
                 residual: worst / scale,
             });
@@ -136,7 +130,6 @@ fn relative_residual(a: CsMatView<'_, f64>, x: &[f64], b: &[f64]) -> f64 {
             size[row] += term.abs();
         }
     }
-    let largest = |v: &[f64]| v.iter().fold(0.0_f64, |m, value| m.max(value.abs()));
     let scale = largest(&size);
     if scale == 0.0 {
         0.0

@@ -3,6 +3,7 @@
 mod assembled;
 mod checked;
 mod faer_ldl;
+mod largest;
 mod ordering;
 mod partial_inverse;
 mod solver;
@@ -11,5 +12,6 @@ mod sprs_ldl;
 pub use assembled::Assembled;
 pub use checked::CheckedSolver;
 pub use faer_ldl::FaerLdl;
+pub use largest::{larger, largest};
 pub use solver::{LinearError, LinearSolver, linear_solver};
 pub use sprs_ldl::SprsLdl;

@@ -15,12 +15,14 @@ pub struct Interaction {
 pub struct Contact {
     /// Index of the slave surface.
     pub slave: usize,
-    /// Index of the master surface (made of faces).
+    /// Index of the master surface (made of faces or rigid).
     pub master: usize,
     /// Index of the interaction; `None` is hard contact without friction.
     pub interaction: Option<usize>,
     /// Slave nodes that are moved onto the master surface before the start.
     pub adjust: Option<Adjust>,
+    /// Slave nodes that take no part (indices, increasing).
+    pub left_out: Vec<usize>,
     /// Where the deck says so, for messages.
     pub span: Span,
 }

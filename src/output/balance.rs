@@ -1,4 +1,5 @@
 use crate::dynamics::{Energy, IncrementReport, Momentum};
+use crate::linear::larger;
 use crate::model::Model;
 
 /// Work of the normal contact forces in an increment (as a part of the largest energy) that is
@@ -60,9 +61,9 @@ impl Balance {
             ..
         } = report.energy;
         for energy in [kinetic, strain, external_work] {
-            self.largest = self.largest.max(energy.abs());
+            self.largest = larger(self.largest, energy.abs());
         }
-        self.worst = self.worst.max(balance.abs());
+        self.worst = larger(self.worst, balance.abs());
         if self.free {
             self.add_momentum(report.momentum);
         }
@@ -84,8 +85,8 @@ impl Balance {
     fn add_momentum(&mut self, momentum: Momentum) {
         let [x, y] = momentum.linear;
         let [x0, y0] = self.start.get_or_insert(momentum).linear;
-        self.momentum = self.momentum.max(x.hypot(y));
-        self.drift = self.drift.max((x - x0).hypot(y - y0));
+        self.momentum = larger(self.momentum, x.hypot(y));
+        self.drift = larger(self.drift, (x - x0).hypot(y - y0));
     }
 
     /// `balance` as a part of the largest energy so far.
@@ -107,4 +108,26 @@ impl Balance {
 /// `value / whole`, 0 of nothing.
 fn part(value: f64, whole: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value / whole }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_balance_that_is_no_number_is_the_worst() {
+        let report = |balance| IncrementReport {
+            energy: Energy {
+                kinetic: 1.0,
+                balance,
+                ..Energy::default()
+            },
+            ..IncrementReport::default()
+        };
+        let mut balance = Balance::default();
+        for value in [1e-3, f64::NAN, 1e-9] {
+            balance.add(&report(value));
+        }
+        assert!(balance.worst().is_nan());
+    }
 }

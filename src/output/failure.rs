@@ -3,6 +3,7 @@
 use super::echo::wrap;
 use super::format::{counted, scientific};
 use super::log::pass_table;
+use super::strain::LIMIT;
 use crate::dynamics::{Cause, FailedLcp, Failure, Worst};
 use crate::lcp::LcpError;
 use crate::model::Model;
@@ -13,23 +14,24 @@ const SHOWN_PAIRS: usize = 4;
 /// Increment, time, cause, worst place, what was tried and the passes; `u` is the last converged
 /// displacement.
 pub(super) fn failure_lines(failure: &Failure, model: &Model, u: &[f64]) -> Vec<String> {
-    let what = [
-        format!(
-            "increment {} of step {} failed at time {}",
-            failure.increment,
-            failure.step,
-            scientific(failure.time, 6),
-        ),
-        failure.cause.to_string(),
-    ];
+    let time = scientific(failure.time, 6);
+    let (increment, step) = (failure.increment, failure.step);
+    let where_it_failed = match increment {
+        0 => format!("the start of step {step} failed at time {time}"),
+        _ => format!("increment {increment} of step {step} failed at time {time}"),
+    };
+    let what = [where_it_failed, failure.cause.to_string()];
     let mut lines = wrap("stopped", &what);
     lines.extend(failure.worst.as_ref().map(|worst| worst_line(worst, model)));
     lines.extend(place_line(&failure.cause, model, u));
-    lines.push(format!(
-        "tried    {} of the increment; the last attempt with dt {}",
-        counted(failure.halvings as usize, "halving"),
-        scientific(failure.dt, 3),
-    ));
+    lines.extend(hint(&failure.cause).iter().map(|&line| line.to_owned()));
+    if increment > 0 {
+        lines.push(format!(
+            "tried    {} of the increment; the last attempt with dt {}",
+            counted(failure.halvings as usize, "halving"),
+            scientific(failure.dt, 3),
+        ));
+    }
     if !failure.passes.is_empty() {
         lines.push("passes   of the last attempt:".into());
         lines.extend(pass_table(&failure.passes));
@@ -47,6 +49,17 @@ fn worst_line(worst: &Worst, model: &Model) -> String {
     )
 }
 
+/// What lies behind the cause.
+fn hint(cause: &Cause) -> &'static [&'static str] {
+    match cause {
+        Cause::Inverted { .. } => &LIMIT,
+        Cause::Crossed {
+            prescribed: true, ..
+        } => &["         both sides are prescribed: they are driven into each other"],
+        _ => &[],
+    }
+}
+
 /// The element or node that the cause names.
 fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
     match *cause {
@@ -58,6 +71,7 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
         Cause::Crossed {
             slave,
             segment: [a, b],
+            ..
         } => Some(format!(
             "node     {} at {} through the segment {}-{}",
             model.mesh.node_labels[slave],
@@ -72,7 +86,7 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
             point(position(model, a, u)),
         )),
         Cause::Lcp(ref failed) => Some(pairs_line(failed, model)),
-        Cause::Indefinite { node } => Some(format!(
+        Cause::Indefinite { node } | Cause::NotFinite { node, .. } => Some(format!(
             "node     {} at {}",
             model.mesh.node_labels[node],
             point(position(model, node, u)),

@@ -6,6 +6,7 @@ use super::contact_history::{ContactHistory, Impacts, create_contacts};
 use super::dataset::{Column, constant, group, meaning};
 use super::series::{Scalar, Series, scalar};
 use crate::dynamics::{Energy, IncrementReport, Momentum, SolverCounts};
+use crate::elements::Strained;
 use crate::model::{Model, Set};
 
 /// Writes the history.
@@ -14,6 +15,7 @@ pub(super) struct History {
     step: Series<IncrementReport, i64>,
     energy: Series<Energy, f64>,
     momentum: MomentumHistory,
+    strain: Series<Strained, f64>,
     contacts: Vec<ContactHistory>,
     impacts: Impacts,
     nodes: Vec<NodeHistory>,
@@ -29,6 +31,7 @@ impl History {
             step: Series::create(&at, &STEP)?,
             energy: Series::create(&group(&at, "energy")?, &ENERGY)?,
             momentum: MomentumHistory::create(&group(&at, "momentum")?)?,
+            strain: Series::create(&group(&at, "strain")?, &STRAIN)?,
             contacts: create_contacts(&group(&at, "contact")?, model)?,
             impacts: Impacts::create(&group(&at, "impacts")?)?,
             nodes: create_nodes(&group(&at, "nodes")?, model)?,
@@ -42,6 +45,7 @@ impl History {
         self.step.push(report)?;
         self.energy.push(&report.energy)?;
         self.momentum.push(&report.momentum)?;
+        self.strain.push(&report.strain)?;
         for (contact, resultant) in self.contacts.iter_mut().zip(&report.contacts) {
             contact.push(resultant)?;
         }
@@ -60,6 +64,7 @@ impl History {
         self.step.flush()?;
         self.energy.flush()?;
         self.momentum.flush()?;
+        self.strain.flush()?;
         self.contacts
             .iter_mut()
             .try_for_each(ContactHistory::flush)?;
@@ -121,6 +126,14 @@ const ENERGY: [Scalar<Energy, f64>; 8] = [
         |e| e.balance,
     ),
 ];
+
+const STRAIN: [Scalar<Strained, f64>; 1] = [scalar(
+    "largest_principal",
+    "largest absolute principal value of the Green-Lagrange strain in the plane, of all integration \
+     points",
+    "1",
+    |s| s.strain,
+)];
 
 const ANGULAR: [Scalar<Momentum, f64>; 1] = [scalar(
     "angular",

@@ -32,6 +32,7 @@ mod screen;
 mod series;
 mod space;
 mod status;
+mod strain;
 mod summary;
 mod vtkhdf;
 mod writer;

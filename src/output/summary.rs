@@ -10,6 +10,7 @@ use super::error::reason;
 use super::format::{bytes, counted, general, scientific};
 use super::record::UNFINISHED;
 use super::regular::regular_file;
+use crate::linear::{larger, largest};
 
 /// Why a result file could not be read.
 #[derive(Debug, Error)]
@@ -212,7 +213,7 @@ fn read_energies(at: &Group) -> hdf5::Result<(Vec<(String, f64)>, f64)> {
     ] {
         let values: Vec<f64> = column(at, name)?;
         if energies.len() < 3 {
-            scale = scale.max(largest(&values));
+            scale = larger(scale, largest(&values));
         }
         energies.push((name.to_owned(), values.last().copied().unwrap_or(0.0)));
     }
@@ -225,11 +226,6 @@ fn read_contacts(at: &Group) -> hdf5::Result<Vec<(String, f64)>> {
         Ok((name, largest(&normal)))
     };
     at.member_names()?.into_iter().map(read).collect()
-}
-
-/// Largest absolute value, NaN aside.
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
 fn column<T: H5Type>(at: &Group, name: &str) -> hdf5::Result<Vec<T>> {

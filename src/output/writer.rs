@@ -20,9 +20,11 @@ use super::record::{RunRecord, phases};
 use super::result_file::ResultFile;
 use super::screen::{Table, row};
 use super::status::StatusFile;
+use super::strain::{StrainWatch, warning_lines};
 use crate::dynamics::{
     Cause, Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts,
 };
+use crate::linear::larger;
 use crate::model::Model;
 
 /// Cutbacks that the screen shows.
@@ -41,6 +43,7 @@ pub struct ResultWriter<'a> {
     table: Table,
     schedule: FrameSchedule<'a>,
     balance: Balance,
+    strain: StrainWatch,
     last: LastState,
     /// Failed attempts since the last increment.
     failed_attempts: usize,
@@ -90,6 +93,7 @@ impl<'a> ResultWriter<'a> {
             table: Table::new(model),
             schedule: FrameSchedule::new(model),
             balance: Balance::new(model),
+            strain: StrainWatch::default(),
             last: LastState::default(),
             failed_attempts: 0,
             cutbacks: 0,
@@ -188,9 +192,14 @@ impl<'a> ResultWriter<'a> {
         if let Some(gain) = self.balance.add(report) {
             self.print_gain(report.increment, gain)?;
         }
+        if let Some(strained) = self.strain.add(report) {
+            for line in warning_lines(strained, report, self.model) {
+                self.console.line(&line)?;
+            }
+        }
         self.landings += report.landings.len();
         for contact in &report.contacts {
-            self.cone_violation = self.cone_violation.max(contact.cone_violation);
+            self.cone_violation = larger(self.cone_violation, contact.cone_violation);
         }
         self.result.history(self.model, report)?;
         let due = self.schedule.is_due(report);
@@ -283,10 +292,13 @@ impl<'a> ResultWriter<'a> {
     /// Up to where the results are good.
     fn print_kept(&mut self) -> io::Result<()> {
         let (name, _) = self.result.name_and_size();
-        let pieces = [
-            format!("{name} is valid up to its last frame"),
-            format!("time {}", scientific(self.last.time, 6)),
-        ];
+        let pieces = match self.result.frames() {
+            0 => vec![format!("{name} has no frame")],
+            _ => vec![
+                format!("{name} is valid up to its last frame"),
+                format!("time {}", scientific(self.last.time, 6)),
+            ],
+        };
         for line in wrap("results", &pieces) {
             self.console.alarm(&line)?;
         }
@@ -305,6 +317,7 @@ impl<'a> ResultWriter<'a> {
             balance.push_str(&format!("; momentum {}", scientific(drift, 1)));
         }
         self.console.line(&balance)?;
+        self.console.line(&self.strain.line(self.model))?;
         if !self.model.contacts.is_empty() {
             self.console.line(&format!(
                 "contact  {}; largest violation of Coulomb's cone {}",

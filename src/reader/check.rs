@@ -1,11 +1,11 @@
-//! Checks across keywords: the quality of the mesh, thicknesses.
+//! Checks across keywords: the quality of the mesh, magnitudes, thicknesses.
 
 use super::context::Context;
 use super::material::Properties;
 use super::mesh::Grid;
 use super::surface::Surfaces;
 use crate::diagnostics::{Code, Diagnostic, Span};
-use crate::model::{Contact, Element, Mesh, SurfaceKind};
+use crate::model::{Cell, Contact, Element, Mesh, SurfaceKind};
 use std::collections::HashMap;
 
 /// Smallest cross product of two sides, relative to the square of the longest side.
@@ -40,6 +40,10 @@ fn shape(element: &Element, mesh: &Mesh, span: Span, cx: &mut Context) {
     let longest = (0..count)
         .map(|i| side(i)[0].hypot(side(i)[1]))
         .fold(0.0, f64::max);
+    if !longest.is_finite() {
+        let what = format!("the longest side of element {}", element.label);
+        return unusable(&what, longest, span, cx);
+    }
     let turn = |i: usize| {
         let (s, t) = (side(i), side(i + 1));
         s[0] / longest * (t[1] / longest) - s[1] / longest * (t[0] / longest)
@@ -68,6 +72,63 @@ fn shape(element: &Element, mesh: &Mesh, span: Span, cx: &mut Context) {
         (format!("element {label} is not convex"), "mend the mesh")
     };
     cx.d.push(Diagnostic::error(Code::BadShape, span, fault).help(help));
+}
+
+/// Reports materials and elements whose wave speed, area, stiffness or mass overflows or vanishes:
+/// nothing can be computed with them.
+pub(super) fn magnitudes(grid: &Grid, properties: &Properties, cx: &mut Context) {
+    if cx.d.has_errors() {
+        return;
+    }
+    for (material, &span) in properties.materials.iter().zip(&properties.material_spans) {
+        // c = sqrt(E / rho)
+        let speed = (material.young / material.density).sqrt();
+        if material.density > 0.0 && !speed.is_normal() {
+            let what = format!("the wave speed sqrt(E/rho) of material {}", material.name);
+            unusable(&what, speed, span, cx);
+        }
+    }
+    let mut total = 0.0;
+    let places = grid.element_spans.iter().zip(&properties.section_of);
+    for (element, (&span, section)) in grid.mesh.elements.iter().zip(places) {
+        let section = section.and_then(|s| properties.sections.get(s));
+        let material = section.and_then(|s| properties.materials.get(s.material));
+        let (Some(section), Some(material)) = (section, material) else {
+            continue;
+        };
+        let area = area(element, &grid.mesh);
+        let mass = material.density * section.thickness * area;
+        let stiffness = material.young * section.thickness;
+        total += mass;
+        let magnitudes = [
+            ("area of", area),
+            ("stiffness E t of", stiffness),
+            ("mass of", mass),
+            ("mass of all elements up to", total),
+        ];
+        if let Some((what, value)) = magnitudes.iter().find(|(_, value)| !value.is_normal()) {
+            let what = format!("the {what} element {}", element.label);
+            return unusable(&what, *value, span, cx);
+        }
+    }
+}
+
+fn unusable(what: &str, value: f64, span: Span, cx: &mut Context) {
+    let message = format!("{what} is {value:e}: it cannot be computed with");
+    let error = Diagnostic::error(Code::Magnitude, span, message);
+    cx.d.push(error.help("choose units in which the numbers of the deck are not so extreme"));
+}
+
+/// Area of an element.
+fn area(element: &Element, mesh: &Mesh) -> f64 {
+    let at = |&node: &usize| mesh.coordinates[node];
+    let corners: Vec<[f64; 2]> = element.cell.nodes().iter().map(at).collect();
+    let from_first = |p: &[f64; 2]| [p[0] - corners[0][0], p[1] - corners[0][1]];
+    let triangles = corners.windows(2).map(|side| {
+        let [p, q] = [from_first(&side[0]), from_first(&side[1])];
+        p[0] * q[1] - p[1] * q[0]
+    });
+    triangles.sum::<f64>() / 2.0
 }
 
 /// Warns where the two sides of a contact differ in thickness.
@@ -105,6 +166,48 @@ fn range_of_thickness(
     let all: Vec<f64> = all.map(|section| section.thickness).collect();
     let low = all.iter().copied().reduce(f64::min)?;
     Some((low, all.iter().copied().fold(low, f64::max)))
+}
+
+/// Reports the first element whose mass, stiffness or wave speed is too large for a number, or with whose
+/// mass that of the model is.
+pub(super) fn magnitudes(grid: &Grid, properties: &Properties, cx: &mut Context) {
+    let mut total = 0.0;
+    let elements = grid.mesh.elements.iter().zip(&grid.element_spans);
+    for ((element, &span), section) in elements.zip(&properties.section_of) {
+        let at = |i: usize| grid.mesh.coordinates[element.cell.nodes()[i]];
+        let triangle = |[i, j, k]: [usize; 3]| {
+            let [p, q] = [j, k].map(|n| [at(n)[0] - at(i)[0], at(n)[1] - at(i)[1]]);
+            (p[0] * q[1] - p[1] * q[0]) / 2.0
+        };
+        let area = match element.cell {
+            Cell::Tri3(_) => triangle([0, 1, 2]),
+            Cell::Quad4(_) => triangle([0, 1, 2]) + triangle([0, 2, 3]),
+        };
+        let section = section.and_then(|section| properties.sections.get(section));
+        let material = section.and_then(|section| properties.materials.get(section.material));
+        // a faulty material has no density
+        let material = material.filter(|material| material.density > 0.0);
+        let (Some(section), Some(material)) = (section, material) else {
+            continue;
+        };
+        let mass = material.density * section.thickness * area;
+        total += mass;
+        let what = [
+            ("mass of", mass),
+            ("stiffness of", material.young * section.thickness),
+            ("wave speed in", (material.young / material.density).sqrt()),
+            ("mass of all elements up to", total),
+        ];
+        if let Some((what, _)) = what.iter().find(|(_, value)| *value == f64::INFINITY) {
+            let message = format!("the {what} element {} is too large", element.label);
+            let error = Diagnostic::error(Code::BadNumber, span, message);
+            cx.d.push(
+                error
+                    .help("look at the density, the modulus, the thickness and the unit of length"),
+            );
+            return;
+        }
+    }
 }
 
 /// Time in which a wave crosses the shortest element side.

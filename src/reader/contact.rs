@@ -48,8 +48,8 @@ pub(super) fn read(
         }
     }
     report_repeated(&contacts, cx);
-    let general = general_contact::read(outline, grid, surfaces, &names, cx);
-    if general.is_some() {
+    let general = general_contact::read(outline, grid, (surfaces, &contacts), &names, cx);
+    if !general.is_empty() {
         general_contact::report_pairs(&contacts, surfaces, cx);
     }
     contacts.extend(general);
@@ -90,17 +90,44 @@ fn report_repeated(contacts: &[Contact], cx: &mut Context) {
 
 /// Coefficient of friction of an interaction; `None` after a reported error.
 fn friction(block: &Block, cx: &mut Context) -> Option<f64> {
-    cx.only_once(&block.parts_of("SURFACE BEHAVIOR"));
-    if let Some(extra) = block.head.rows.get(1) {
-        let message = "*SURFACE INTERACTION takes one data line at most";
-        cx.error(Code::StrayData, extra.span(), message);
-    }
+    let behaviors = block.parts_of("SURFACE BEHAVIOR");
+    cx.only_once(&behaviors);
+    behaviors
+        .iter()
+        .for_each(|card| warn_of_behavior_data(card, cx));
+    out_of_plane_thickness(block.head, cx);
     let cards = block.parts_of("FRICTION");
     cx.only_once(&cards);
     match cards.first() {
         None => Some(0.0),
         Some(card) if card.faulty => None,
         Some(card) => coefficient(card, cx),
+    }
+}
+
+/// Warns about numbers of a law that is exact; LINEAR is warned about as a whole.
+fn warn_of_behavior_data(card: &Card, cx: &mut Context) {
+    if let (Some(row), None | Some("HARD")) =
+        (card.rows.first(), card.choice("PRESSURE-OVERCLOSURE"))
+    {
+        let message = "this data line has no effect";
+        let warning = Diagnostic::warning(Code::IgnoredParameter, row.span(), message);
+        cx.d.push_once(warning.help("contact is enforced exactly: it needs no numbers"));
+    }
+}
+
+/// `[thickness]` under `*SURFACE INTERACTION`; 1 is the default of other codes.
+fn out_of_plane_thickness(head: &Card, cx: &mut Context) {
+    let Some(row) = head.rows.first() else { return };
+    row.at_most(1, cx.d);
+    let thickness = row.real_or(0, 1.0, cx.d);
+    if thickness.is_some_and(|thickness| thickness != 1.0) {
+        let help = "the bodies touch over the thickness of their sections";
+        row.without_effect(0, "this thickness has no effect", help, cx.d);
+    }
+    if let Some(extra) = head.rows.get(1) {
+        let message = "*SURFACE INTERACTION takes one data line at most";
+        cx.error(Code::StrayData, extra.span(), message);
     }
 }
 
@@ -128,11 +155,9 @@ fn coefficient(card: &Card, cx: &mut Context) -> Option<f64> {
         cx.error(Code::FrictionRange, field.span, message);
         return None;
     }
-    if let Some(rest) = row.get(1) {
-        let message = "only the coefficient of friction is read here";
-        let warning = Diagnostic::warning(Code::IgnoredParameter, rest.span, message);
-        cx.d.push_once(warning.help("sticking is exact: it needs no stick slope or slip rate"));
-    }
+    let message = "only the coefficient of friction is read here";
+    let help = "sticking is exact: it needs no stick slope or slip rate";
+    row.without_effect(1, message, help, cx.d);
     Some(friction)
 }
 
@@ -157,6 +182,7 @@ fn contact(
         master: master.0,
         interaction: Some(interaction?),
         adjust: None,
+        left_out: Vec::new(),
         span: row.span(),
     })
 }

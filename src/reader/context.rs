@@ -1,5 +1,7 @@
+use super::catalogue::{Catalogue, list_of, way_out, with_article};
 use crate::deck::{Card, Deck, Text};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Span, closest};
+use std::cell::OnceCell;
 
 /// What every reader function needs: the deck as a whole and a place for messages.
 pub(super) struct Context<'a> {
@@ -7,9 +9,20 @@ pub(super) struct Context<'a> {
     pub deck: &'a Deck,
     /// Messages so far.
     pub d: &'a mut Diagnostics,
+    /// What the names of the deck stand for, collected for the first name that is not found.
+    catalogue: OnceCell<Catalogue>,
 }
 
-impl Context<'_> {
+impl<'a> Context<'a> {
+    /// A deck and its messages.
+    pub fn new(deck: &'a Deck, d: &'a mut Diagnostics) -> Context<'a> {
+        Context {
+            deck,
+            d,
+            catalogue: OnceCell::new(),
+        }
+    }
+
     /// Adds an error.
     pub fn error(&mut self, code: Code, span: Span, message: impl Into<String>) {
         self.d.push(Diagnostic::error(code, span, message));
@@ -30,21 +43,51 @@ impl Context<'_> {
         self.d.count(Severity::Error)
     }
 
-    /// Reports a name that is not defined, unless the cause may be reported already.
+    /// Reports a name of a thing called `what` that is not defined, unless the cause may be
+    /// reported already.
     pub fn undefined<'n>(
         &mut self,
         what: &str,
         name: Text,
-        known: impl IntoIterator<Item = &'n str>,
+        known: impl Iterator<Item = &'n str> + Clone,
     ) {
         if self.deck.incomplete || self.deck.suspects.contains(&name.name_key()) {
             return;
         }
         let message = format!("{what} {} is not defined", name.text);
         let error = Diagnostic::error(Code::UndefinedName, name.span, message);
-        let is_shown = self.d.may_show(&error);
-        let meant = is_shown.then(|| closest(name.text, known)).flatten();
-        self.d.push(error.suggest(meant));
+        // What takes time to find is found for what is shown.
+        let error = match self.d.may_show(&error) {
+            true => self.with_what_is_meant(error, what, name, known),
+            false => error,
+        };
+        self.d.push(error);
+    }
+
+    /// An undefined name with what it may be: a thing of another kind, a name with a comma missing
+    /// behind it, a typing error, or else one of the names that there are.
+    fn with_what_is_meant<'n>(
+        &self,
+        error: Diagnostic,
+        what: &str,
+        name: Text,
+        known: impl Iterator<Item = &'n str> + Clone,
+    ) -> Diagnostic {
+        let catalogue = self.catalogue.get_or_init(|| Catalogue::new(self.deck));
+        if let Some(kind) = catalogue.other_kind(&name.name_key(), what) {
+            let label = format!("{} is {}", name.text, with_article(kind));
+            let way = way_out(what, kind, name.text).map(|way| way + "; ");
+            return error
+                .label(label)
+                .help(way.unwrap_or_default() + &list_of(what, known));
+        }
+        if let Some(cut) = name_before_blank(name, known.clone()) {
+            return error.label(format!("is a comma missing after {cut}?"));
+        }
+        match closest(name.text, known.clone()) {
+            Some(meant) => error.suggest(Some(meant)),
+            None => error.help(list_of(what, known)),
+        }
     }
 
     /// Reports a second card of a kind that may appear once.
@@ -54,4 +97,15 @@ impl Context<'_> {
             self.error(Code::RepeatedCard, card.span, message);
         }
     }
+}
+
+/// The known name, or the number, that stands before a blank.
+fn name_before_blank<'t, 'n>(
+    name: Text<'t>,
+    mut known: impl Iterator<Item = &'n str>,
+) -> Option<&'t str> {
+    let (before, _) = name.text.split_once(char::is_whitespace)?;
+    let is_number = before.bytes().all(|byte| byte.is_ascii_digit());
+    let is_known = known.any(|known| known.eq_ignore_ascii_case(before));
+    (is_number || is_known).then_some(before)
 }

@@ -1,4 +1,4 @@
-//! `*CONTACT`: every exterior face against every other.
+//! `*CONTACT`: every exterior face against every other and against the rigid surfaces.
 
 use super::context::Context;
 use super::mesh::Grid;
@@ -10,8 +10,42 @@ use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{ALL_EXTERIOR, Contact, Face, Mesh, Surface, SurfaceKind};
 use std::collections::HashMap;
 
-/// Reads general contact and adds its surface.
+/// Reads general contact and adds its surface: its contact with itself and one with every rigid
+/// surface, which a pair of the deck may hold already for some nodes.
 pub(super) fn read(
+    outline: &Outline,
+    grid: &Grid,
+    (surfaces, pairs): (&mut Surfaces, &[Contact]),
+    interactions: &Names,
+    cx: &mut Context,
+) -> Vec<Contact> {
+    let mut all = Vec::new();
+    if let Some(general) = general(outline, grid, surfaces, interactions, cx) {
+        for &(master, _) in &surfaces.rigid {
+            let left_out = paired(master, pairs, surfaces, grid);
+            all.push(Contact {
+                master,
+                left_out,
+                ..general.clone()
+            });
+        }
+        all.insert(0, general);
+    }
+    all
+}
+
+/// Nodes that pairs of the deck hold away from a rigid surface, increasing.
+fn paired(rigid: usize, pairs: &[Contact], surfaces: &Surfaces, grid: &Grid) -> Vec<usize> {
+    let pairs = pairs.iter().filter(|pair| pair.master == rigid);
+    let slaves = pairs.filter_map(|pair| surfaces.all.get(pair.slave));
+    let mut nodes: Vec<usize> = slaves.flat_map(|slave| slave.nodes(&grid.mesh)).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
+/// The contact of all exterior faces with each other.
+fn general(
     outline: &Outline,
     grid: &Grid,
     surfaces: &mut Surfaces,
@@ -41,11 +75,13 @@ pub(super) fn read(
         master: surface,
         interaction: assigned.ok()?,
         adjust: None,
+        left_out: Vec::new(),
         span,
     })
 }
 
-/// Pairs of faces touch in general contact already; rigid surfaces take no part in it.
+/// Pairs of faces touch in general contact already; the nodes of a pair with a rigid surface are left
+/// out of its general contact.
 pub(super) fn report_pairs(pairs: &[Contact], surfaces: &Surfaces, cx: &mut Context) {
     let is_rigid = |pair: &Contact| {
         let master = surfaces.all.get(pair.master);

@@ -9,6 +9,10 @@ use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Material, Plane, Section};
 
+/// Poisson's ratio from which on fully integrated elements lock in plane strain: lambda / mu =
+/// 2 nu / (1 - 2 nu) is 9 there.
+const LOCKING: f64 = 0.45;
+
 /// Materials and sections.
 pub(super) struct Properties {
     /// Materials in the order of their names.
@@ -17,12 +21,16 @@ pub(super) struct Properties {
     pub sections: Vec<Section>,
     /// Section of each element.
     pub section_of: Vec<Option<usize>>,
+    /// Places of the materials.
+    pub material_spans: Vec<Span>,
 }
 
 /// A material as far as the deck gives it; `None` for a constant with a reported error.
 struct Draft {
     name: String,
     span: Span,
+    /// Place of Poisson's ratio.
+    poisson_span: Span,
     elastic: Constant<(f64, f64)>,
     density: Constant<f64>,
 }
@@ -58,7 +66,9 @@ pub(super) fn read(outline: &Outline, grid: &Grid, sets: &Sets, cx: &mut Context
         materials: Vec::new(),
         sections: Vec::new(),
         section_of: vec![None; grid.mesh.elements.len()],
+        material_spans: drafts.iter().map(|draft| draft.span).collect(),
     };
+    let poisson_spans: Vec<Span> = drafts.iter().map(|draft| draft.poisson_span).collect();
     let mut complete = true;
     let mut used = vec![false; drafts.len()];
     for card in outline.model_cards("SOLID SECTION") {
@@ -74,7 +84,7 @@ pub(super) fn read(outline: &Outline, grid: &Grid, sets: &Sets, cx: &mut Context
         .into_iter()
         .map(|draft| material(draft, cx))
         .collect();
-    properties.report_locking(grid, cx);
+    properties.report_locking(grid, &poisson_spans, cx);
     properties
 }
 
@@ -83,9 +93,12 @@ fn draft(name: String, block: &Block, cx: &mut Context) -> Draft {
     let density = block.parts_of("DENSITY");
     cx.only_once(&elastic);
     cx.only_once(&density);
+    let row = elastic.first().and_then(|card| card.rows.first());
+    let poisson = row.and_then(|row| row.get(1)).map(|field| field.span);
     Draft {
         name,
         span: block.head.span,
+        poisson_span: poisson.unwrap_or(block.head.span),
         elastic: constant(&elastic, elastic_row, cx),
         density: constant(&density, density_row, cx),
     }
@@ -119,7 +132,7 @@ fn elastic_row(row: &Row, cx: &mut Context) -> Option<(f64, f64)> {
     row.at_most(3, cx.d);
     let young = row.real(0, "Young's modulus", cx.d);
     let poisson = row.real_or(1, 0.0, cx.d);
-    row.real_or(2, 0.0, cx.d)?; // a temperature: one row serves all of them
+    temperature(row, 2, cx)?;
     let (young, poisson) = (young?, poisson?);
     if young <= 0.0 {
         out_of_range("Young's modulus must be positive", row, 0, cx);
@@ -130,6 +143,14 @@ fn elastic_row(row: &Row, cx: &mut Context) -> Option<(f64, f64)> {
         return None;
     }
     Some((young, poisson))
+}
+
+/// A temperature in field `index`: one row serves all of them.
+fn temperature(row: &Row, index: usize, cx: &mut Context) -> Option<()> {
+    row.real_or(index, 0.0, cx.d)?;
+    let message = "this temperature has no effect";
+    row.without_effect(index, message, "there are no temperatures", cx.d);
+    Some(())
 }
 
 /// Reports the number in a field.
@@ -143,7 +164,9 @@ fn out_of_range(rule: &str, row: &Row, index: usize, cx: &mut Context) {
 /// `rho[, T]`
 fn density_row(row: &Row, cx: &mut Context) -> Option<f64> {
     row.at_most(2, cx.d);
-    let density = row.real(0, "the density", cx.d)?;
+    let density = row.real(0, "the density", cx.d);
+    temperature(row, 1, cx)?;
+    let density = density?;
     if density <= 0.0 {
         out_of_range("the density must be positive", row, 0, cx);
         return None;
@@ -284,25 +307,29 @@ impl Properties {
         }
     }
 
-    /// Warns about nearly incompressible materials in plane strain.
-    fn report_locking(&self, grid: &Grid, cx: &mut Context) {
-        for ((element, section), span) in grid
-            .mesh
-            .elements
-            .iter()
-            .zip(&self.section_of)
-            .zip(&grid.element_spans)
-        {
+    /// Warns about nearly incompressible materials in plane strain, at their Poisson's ratios; in
+    /// plane stress the thickness gives way and nothing locks.
+    fn report_locking(&self, grid: &Grid, poisson_spans: &[Span], cx: &mut Context) {
+        let mut locks = vec![false; self.materials.len()];
+        for (element, section) in grid.mesh.elements.iter().zip(&self.section_of) {
             let section = section.and_then(|s| self.sections.get(s));
-            let material = section.and_then(|s| self.materials.get(s.material));
-            if let (Plane::Strain, Some(material)) = (element.plane, material)
-                && material.poisson > 0.49
-            {
+            let locks = section.and_then(|s| locks.get_mut(s.material));
+            if let (Plane::Strain, Some(locks)) = (element.plane, locks) {
+                *locks = true;
+            }
+        }
+        let materials = self.materials.iter().zip(poisson_spans).zip(locks);
+        for ((material, &span), _) in materials.filter(|(_, locks)| *locks) {
+            if material.poisson >= LOCKING {
                 let message = format!(
                     "material {} with nu = {} makes plane strain elements lock",
                     material.name, material.poisson
                 );
-                cx.d.push_once(Diagnostic::warning(Code::Locking, *span, message));
+                let warning = Diagnostic::warning(Code::Locking, span, message);
+                cx.d.push(warning.help(
+                    "CPE3 and CPE4 are integrated fully: from nu = 0.45 on they are too stiff, the \
+                     more so the closer nu is to 0.5",
+                ));
             }
         }
     }

@@ -63,7 +63,7 @@ pub(super) fn read(outline: &Outline, cx: &mut Context) -> Grid {
         reading.element_card(card, cx);
     }
     if cx.errors() == errors && !cx.may_lack_cards() {
-        reading.report_empty(cx);
+        reading.report_empty(outline, cx);
     }
     reading.report_not_planar(cx);
     let references = reading.reference_labels(outline);
@@ -159,7 +159,7 @@ impl Reading {
         let fields: Vec<Text> = rows.iter().flat_map(Row::fields).collect();
         let (first, rest) = fields.split_first()?;
         let label = numbers.number(*first, cx)?;
-        if rest.len() < corners {
+        if rest.len() < corners && rest.iter().all(|field| field.integer(cx.d).is_some()) {
             let found = rest.len();
             let message = format!("element {label} needs {corners} nodes, found {found}");
             cx.error(Code::MissingField, span, message);
@@ -216,14 +216,20 @@ impl Reading {
         }
     }
 
-    fn report_empty(&self, cx: &mut Context) {
-        let what = match (self.nodes.is_empty(), self.elements.is_empty()) {
-            (true, _) => "nodes",
-            (false, true) => "elements",
+    /// A mesh without nodes or elements is reported at their card, or else where it should stand:
+    /// elements after the last nodes, nodes at the first keyword of the deck.
+    fn report_empty(&self, outline: &Outline, cx: &mut Context) {
+        let (keyword, before) = match (self.nodes.is_empty(), self.elements.is_empty()) {
+            (true, _) => ("NODE", None),
+            (false, true) => ("ELEMENT", outline.model_cards("NODE").pop()),
             (false, false) => return,
         };
-        let message = format!("the deck has no {what}");
-        cx.d.push(Diagnostic::error_without_place(Code::EmptyMesh, message));
+        let card = outline.model_cards(keyword).first().copied();
+        if let Some(card) = card.or(before).or(cx.deck.cards.first()) {
+            let message = format!("the deck has no {}s", keyword.to_lowercase());
+            let error = Diagnostic::error(Code::EmptyMesh, card.span, message);
+            cx.d.push(error.help(format!("give them with *{keyword}")));
+        }
     }
 
     /// All nodes must have the same z, to a small fraction of the model's size.

@@ -6,6 +6,7 @@
 
 mod amplitude;
 mod carried;
+mod catalogue;
 mod check;
 mod contact;
 mod context;
@@ -44,7 +45,7 @@ pub fn build(deck: &Deck, d: &mut Diagnostics) -> Option<Model> {
     if deck.has_assembly() || deck.cards.is_empty() {
         return None;
     }
-    let model = read(&mut Context { deck, d });
+    let model = read(&mut Context::new(deck, d));
     if !d.has_errors() {
         report_unused(deck, d);
     }
@@ -61,6 +62,7 @@ fn read(cx: &mut Context) -> Model {
     grid.add_points(&surfaces.rigid_points);
     let obstacles = rigid::read(&outline, &grid, &sets, &surfaces, cx);
     let properties = material::read(&outline, &grid, &sets, cx);
+    check::magnitudes(&grid, &properties, cx);
     let (interactions, contacts) = contact::read(&outline, &grid, &sets, &mut surfaces, cx);
     check::thickness(&contacts, &surfaces, &properties, cx);
     let amplitudes = amplitude::read(cx);

@@ -23,7 +23,7 @@ impl Names {
     }
 
     /// Names as first typed.
-    pub fn typed(&self) -> impl Iterator<Item = &str> {
+    pub fn typed(&self) -> impl Iterator<Item = &str> + Clone {
         self.typed.iter().map(|name| name.typed.as_str())
     }
 
@@ -102,6 +102,10 @@ impl Labelled {
     }
 }
 
+/// Largest node or element number: the largest that Abaqus reads. CalculiX keeps 32 bits, and the
+/// numbers that are given to the points of rigid surfaces have to follow the largest one of the deck.
+const LARGEST_LABEL: i64 = 999_999_999;
+
 /// Node or element numbers of the deck.
 pub(super) struct Labels {
     what: &'static str,
@@ -145,14 +149,19 @@ impl Labels {
         }
     }
 
-    /// The positive number that `text` says.
+    /// The number from 1 to the largest allowed that `text` says.
     pub fn number(&self, text: Text, cx: &mut Context) -> Option<u64> {
         let value = text.integer(cx.d)?;
-        if value < 1 {
-            let message = format!("{} numbers are positive, found {value}", self.what);
-            cx.error(Code::BadNumber, text.span, message);
-        }
-        u64::try_from(value).ok().filter(|&label| label > 0)
+        let what = self.what;
+        let fault = if value < 1 {
+            format!("{what} numbers are positive, found {value}")
+        } else if value > LARGEST_LABEL {
+            format!("{what} numbers end at {LARGEST_LABEL}, found {value}")
+        } else {
+            return u64::try_from(value).ok();
+        };
+        cx.error(Code::BadNumber, text.span, fault);
+        None
     }
 
     /// Reports a number that does not exist.

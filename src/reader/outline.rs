@@ -39,6 +39,8 @@ pub(super) struct Outline<'a> {
     has_steps: bool,
     /// Whether a step is open.
     open: bool,
+    /// Whether the last card belongs to the model, so that a block may go on.
+    in_model: bool,
 }
 
 impl<'a> Outline<'a> {
@@ -86,17 +88,24 @@ impl<'a> Outline<'a> {
             (_, Scope::Block(head)) => self.place_in_block(card, head, cx),
             (_, Scope::Step) => self.place_in_step(card, cx),
             (_, Scope::Anywhere) if self.open => self.place_in_step(card, cx),
-            (_, Scope::Model | Scope::Anywhere | Scope::Assembly) => {
-                if self.open {
-                    let help = "move it above *STEP";
-                    out_of_place(card, "cannot stand in a step", help, cx);
-                }
-                self.model.push(Block {
-                    head: card,
-                    parts: Vec::new(),
-                });
-            }
+            (_, Scope::Model | Scope::Anywhere | Scope::Assembly) => self.place_in_model(card, cx),
         }
+    }
+
+    fn place_in_model(&mut self, card: &'a Card, cx: &mut Context) {
+        let fault = match (self.open, self.steps.is_empty()) {
+            (true, _) => Some("cannot stand in a step"),
+            (false, false) => Some("must stand before the first step"),
+            (false, true) => None,
+        };
+        if let Some(fault) = fault {
+            out_of_place(card, fault, "move it above the first *STEP", cx);
+        }
+        self.in_model = true;
+        self.model.push(Block {
+            head: card,
+            parts: Vec::new(),
+        });
     }
 
     fn begin_step(&mut self, card: &'a Card, cx: &mut Context) {
@@ -106,6 +115,7 @@ impl<'a> Outline<'a> {
             cx.d.push(error.help("close the step before with *END STEP"));
         }
         self.open = true;
+        self.in_model = false;
         self.steps.push(StepCards {
             head: card,
             cards: Vec::new(),
@@ -117,14 +127,12 @@ impl<'a> Outline<'a> {
             cx.error(Code::StepStructure, card.span, "*END STEP without *STEP");
         }
         self.open = false;
+        self.in_model = false;
     }
 
     fn place_in_block(&mut self, card: &'a Card, head: &str, cx: &mut Context) {
-        match self
-            .model
-            .last_mut()
-            .filter(|block| block.head.keyword.name == head)
-        {
+        let last = self.model.last_mut().filter(|_| self.in_model);
+        match last.filter(|block| block.head.keyword.name == head) {
             Some(block) => block.parts.push(card),
             None => {
                 let help = format!("put it under the *{head} it belongs to");
@@ -135,7 +143,10 @@ impl<'a> Outline<'a> {
 
     fn place_in_step(&mut self, card: &'a Card, cx: &mut Context) {
         match self.steps.last_mut().filter(|_| self.open) {
-            Some(step) => step.cards.push(card),
+            Some(step) => {
+                self.in_model = false;
+                step.cards.push(card);
+            }
             None if !self.has_steps => {}
             None => {
                 let help = "move it between *STEP and *END STEP";
@@ -152,7 +163,11 @@ impl<'a> Outline<'a> {
             }
             None if !cx.may_lack_cards() => {
                 let message = "the deck has no *STEP: there is nothing to compute";
-                cx.d.push(Diagnostic::error_without_place(Code::NoStep, message));
+                let end = cx.deck.cards.last().map(|card| card.span);
+                if let Some(end) = end {
+                    let error = Diagnostic::error(Code::NoStep, end, message);
+                    cx.d.push(error.label("the last keyword of the deck"));
+                }
             }
             _ => {}
         }

@@ -145,9 +145,7 @@ impl Requests {
                 Some(false)
             }
             (false, true) => {
-                for name in WHEN {
-                    card.value(name);
-                }
+                self.check_when(card, cx);
                 Some(true)
             }
             (false, false) => {
@@ -163,9 +161,7 @@ impl Requests {
             true => card.required("NSET", cx.d),
             false => card.value("NSET"),
         };
-        for name in WHEN {
-            card.value(name);
-        }
+        self.check_when(card, cx);
         let Some(name) = name else {
             if !required {
                 let message = "the history of all nodes is not written";
@@ -190,26 +186,41 @@ impl Requests {
             return;
         }
         let Some(&name) = given.first() else { return };
+        if let Some((frames, total_times)) = self.asked(name, card, cx) {
+            self.frames = frames;
+            self.total_times = total_times;
+        }
+    }
+
+    /// Histories hold every increment: what a card says about their times must be right, though.
+    fn check_when(&self, card: &Card, cx: &mut Context) {
+        for name in WHEN.into_iter().filter(|name| card.has(name)) {
+            self.asked(name, card, cx);
+        }
+    }
+
+    /// What a parameter asks for: frames, and time points that follow the total time.
+    fn asked(
+        &self,
+        name: &str,
+        card: &Card,
+        cx: &mut Context,
+    ) -> Option<(Frames, Option<Vec<f64>>)> {
         let frames = match name {
             "FREQUENCY" => frequency(card, cx),
             "NUMBER INTERVAL" => number_interval(card, cx),
             "TIME INTERVAL" => time_interval(card, cx),
-            _ => self.at_time_points(card, cx),
+            _ => return self.at_time_points(card, cx),
         };
-        if let Some(frames) = frames {
-            self.frames = frames;
-        }
-        if name != "TIME POINTS" {
-            self.total_times = None;
-        }
+        Some((frames?, None))
     }
 
-    fn at_time_points(&mut self, card: &Card, cx: &mut Context) -> Option<Frames> {
+    fn at_time_points(&self, card: &Card, cx: &mut Context) -> Option<(Frames, Option<Vec<f64>>)> {
         let name = card.value("TIME POINTS")?;
         let index = self.points.names.find(name, cx)?;
         let (base, times) = self.points.all.get(index)?;
-        self.total_times = (*base == TimeBase::Total).then(|| times.clone());
-        Some(Frames::Times(times.clone()))
+        let total_times = (*base == TimeBase::Total).then(|| times.clone());
+        Some((Frames::Times(times.clone()), total_times))
     }
 
     /// Frames of a step that begins at total time `start` and takes `period`.

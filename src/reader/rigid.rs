@@ -91,7 +91,7 @@ fn reference_node(field: Text, grid: &Grid, sets: &Sets, cx: &mut Context) -> Op
     let errors = cx.errors();
     match sets.nodes_of(field, grid, cx)[..] {
         [node] => Some(node),
-        _ if cx.errors() > errors || cx.may_lack_cards() => None,
+        _ if cx.errors() > errors || cx.may_lack_cards() || grid.nodes.incomplete => None,
         ref nodes => {
             let message = format!("{} holds {} nodes", field.text, nodes.len());
             let error = Diagnostic::error(Code::RigidSurface, field.span, message);

@@ -215,7 +215,11 @@ fn increments(card: &Card, guide: Option<f64>, cx: &mut Context) -> Option<Incre
     let dt = if direct { first } else { first.min(dt_max) };
     check_times(row, dt, period, dt_min, dt_max, cx)?;
     if direct {
+        let help = "with DIRECT increments keep their size but for cutbacks";
+        row.without_effect(3, "this largest increment has no effect", help, cx.d);
         note_short_end(row, dt, period, cx);
+    } else if dt < dt_max.min(period) {
+        warn_that_increments_stay(row, cx);
     }
     Some(Increments {
         dt,
@@ -281,6 +285,19 @@ fn check_times(
     let span = row.get(field).map_or(row.span(), |field| field.span);
     cx.error(Code::BadIncrement, span, fault);
     None
+}
+
+/// Other codes let increments grow where they converge easily.
+fn warn_that_increments_stay(row: &Row, cx: &mut Context) {
+    let [first, largest] = [0, 3].map(|i| row.get(i));
+    let span = largest.or(first).map_or(row.span(), |field| field.span);
+    let message = "increments do not grow: none is longer than the first";
+    let warning = Diagnostic::warning(Code::ConstantIncrement, span, message);
+    let warning = match largest {
+        Some(_) => warning.label("bounds the first increment only"),
+        None => warning,
+    };
+    cx.d.push_once(warning.help("give the increment that suits the whole step in the first field"));
 }
 
 /// Notes that the duration is no multiple of the increment.

@@ -88,6 +88,11 @@ fn nodes(card: &Card, grid: &Grid, sets: &Sets, cx: &mut Context) -> Vec<usize> 
         let Some(field) = row.required(0, "a node or node set", cx.d) else {
             continue;
         };
+        let area = row.real_or(1, 1.0, cx.d);
+        if area.is_some_and(|area| area != 1.0) {
+            let help = "contact forces of nodes need no area";
+            row.without_effect(1, "this area has no effect", help, cx.d);
+        }
         let found = sets.nodes_of(field, grid, cx);
         nodes.extend(found.into_iter().filter(|&node| seen.insert(node)));
     }

@@ -145,6 +145,7 @@ pub fn add_contact(model: &mut Model, slave: Vec<Face>, master: Vec<Face>, frict
         master,
         interaction: Some(interaction),
         adjust: None,
+        left_out: Vec::new(),
         span: Span::default(),
     });
 }

@@ -102,3 +102,38 @@ fn without_impulses_the_wall_force_alternates() {
         assert!(deviation > 0.3);
     }
 }
+
+/// A node that closes the gap g0 in an increment starts it with the velocity V0+ = -(2/dt) g0 after the
+/// impulse, so that it ends it at rest on the wall, V1 = (2/dt) d - V0+ = 0 with d = -g0. When it lands in
+/// the second half it is not fast enough for an impulse: V0+ = -v0.
+#[test]
+fn a_node_is_at_rest_at_the_end_of_the_increment_it_lands_in() {
+    let paper = Scheme::Ss22 {
+        theta1: 1.0,
+        theta2: 1.0,
+    };
+    for scheme in [paper, Scheme::EnergyMomentum] {
+        for part in [0.1, 0.4, 0.9] {
+            let mut model = bar(scheme, Impact::Impulse);
+            // what is left of the way in the increment of the landing
+            let way = SPEED * model.steps[0].increments.dt;
+            let first = model.mesh.node_count() - 2 * 51;
+            for x in &mut model.mesh.coordinates[first..] {
+                x[0] += 3.0 * way + part * way - GAP;
+            }
+            model.steps[0] = step(model.steps[0].increments.dt, 5, model.steps[0].settings, {
+                std::mem::take(&mut model.steps[0].supports)
+            });
+            let (keep, _) = run_to_end(&model);
+            let at = |k: usize| &keep.reports[k];
+            assert_eq!((at(3).contacts[0].closed, at(4).contacts[0].closed), (0, 2));
+            for node in [first, first + 51] {
+                let [before, after] = [3, 4].map(|k| at(k).state.v[2 * node]);
+                println!("{scheme:?} {part}: {before:e} -> {after:e}");
+                assert!((before + SPEED).abs() < 1e-9 * SPEED);
+                let expected = -SPEED * f64::max(2.0 * part - 1.0, 0.0);
+                assert!((after - expected).abs() < 1e-9 * SPEED, "{after:e}");
+            }
+        }
+    }
+}

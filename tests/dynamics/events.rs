@@ -286,3 +286,65 @@ fn two_runs_are_the_same_to_the_last_bit() {
         );
     }
 }
+
+/// Between impacts the motion is not that of the start, so that the time of an impact is searched for: a
+/// node that lands is on the plate at the end of its piece, to the accuracy of that search.
+#[test]
+fn a_node_that_lands_is_on_the_plate_when_its_piece_ends() {
+    let dt = 0.02;
+    for scheme in SCHEMES {
+        let mut fall = Fall::new(1e3, 0.0, 0.03);
+        // it swings as it falls
+        for node in fall.block.nodes() {
+            let [x, y] = fall.model.mesh.coordinates[node];
+            fall.model.initial_velocity[2 * node] += 0.4 * x;
+            fall.model.initial_velocity[2 * node + 1] += 0.5 * (y - HEIGHT);
+        }
+        let (keep, summary) = fall.run(settings(scheme, ImpactTime::Event), dt, 10);
+        let at_landing = |l: &Landing| {
+            let ends = |r: &&IncrementReport| (r.time - l.time).abs() < 1e-9 * dt;
+            let report = keep.reports.iter().find(ends)?;
+            let u = &report.state.u;
+            Some(fall.model.mesh.coordinates[l.slave][1] + u[2 * l.slave + 1])
+        };
+        let gaps: Vec<f64> = landings(&keep).iter().filter_map(at_landing).collect();
+        let worst = gaps.iter().fold(0.0, |m: f64, gap| m.max(gap.abs()));
+        println!(
+            "{scheme:?}: {} gaps, worst {worst:.1e}, {} events",
+            gaps.len(),
+            summary.events
+        );
+        assert!(gaps.len() >= 2 && worst <= 1e-10 * dt * SPEED, "{worst:e}");
+    }
+}
+
+/// What counts as struck is told by the velocities of the two bodies, not by that of any other.
+#[test]
+fn a_slow_body_lands_beside_a_fast_one() {
+    let run = |scheme: Scheme, passing_speed: f64| {
+        let mut fall = Fall::new(1e3, 0.0, 0.01);
+        let passing = add_block(&mut fall.model, [0.0, 1e3], [0.5, 0.5], (1, 1), 0.0);
+        // the block again: adding another body has stopped it
+        throw(&mut fall.model, &fall.block, [0.0, -SPEED], 0.0, [0.0; 2]);
+        let up = [0.0, passing_speed];
+        throw(&mut fall.model, &passing, up, 0.0, [0.0; 2]);
+        let (keep, _) = fall.run(settings(scheme, ImpactTime::Event), 0.002, 100);
+        let landings = landings(&keep);
+        landings
+            .iter()
+            .map(|l| (l.slave, l.time))
+            .collect::<Vec<_>>()
+    };
+    for scheme in SCHEMES {
+        let (alone, beside) = (run(scheme, 0.0), run(scheme, 1e10 * SPEED));
+        println!(
+            "{scheme:?}: {} landings, {} beside",
+            alone.len(),
+            beside.len()
+        );
+        assert_eq!(alone.len(), beside.len());
+        for ((slave, time), (other, at)) in alone.iter().zip(&beside) {
+            assert!(slave == other && (time - at).abs() < 1e-9 * time);
+        }
+    }
+}

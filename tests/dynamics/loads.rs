@@ -208,3 +208,34 @@ fn both_orders_of_two_surfaces_carry_the_weight_together() {
         balance_closes(&keep.reports);
     }
 }
+
+#[test]
+fn a_ramped_support_moves_with_the_velocity_of_its_ramp() {
+    for scheme in SCHEMES {
+        let (mut model, block) = free_block();
+        let held = |to: f64| -> Vec<Support> {
+            let motion = SupportMotion::Ramp { to };
+            let along = block.nodes().map(|n| Support { dof: 2 * n, motion });
+            let across = block.nodes().map(|n| fixed(2 * n + 1));
+            along.chain(across).collect()
+        };
+        // to 0.3 within 0.6, then back to 0.1 within 0.4: the mass 2 with the velocities 0.5 and -0.5
+        model.steps = vec![
+            step(0.1, 6, settings(scheme), held(0.3)),
+            step(0.05, 8, settings(scheme), held(0.1)),
+        ];
+        let (keep, _) = run_to_end(&model);
+        for report in &keep.reports {
+            let (v, u) = match report.time {
+                t if t < 0.6 + 1e-9 => (0.5, 0.5 * t),
+                t => (-0.5, 0.6 - 0.5 * t),
+            };
+            for node in block.nodes() {
+                assert!((report.state.v[2 * node] - v).abs() < 1e-14);
+                assert!((report.state.u[2 * node] - u).abs() < 1e-14);
+            }
+            assert!((report.energy.kinetic - 0.25).abs() < 1e-14);
+        }
+        balance_closes(&keep.reports);
+    }
+}

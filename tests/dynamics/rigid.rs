@@ -2,8 +2,9 @@
 
 use std::path::Path;
 use stickslip::diagnostics::{Diagnostics, Sources};
-use stickslip::model::SurfaceKind;
-use stickslip::reader;
+use stickslip::dynamics::IncrementReport;
+use stickslip::model::{Model, SurfaceKind};
+use stickslip::{deck, reader};
 
 use crate::blocks::run_to_end;
 
@@ -33,4 +34,48 @@ fn a_square_on_a_sliding_floor() {
     }
     let landed = reports.iter().any(|report| report.contacts[0].closed > 0);
     assert!(landed);
+}
+
+/// The model of the square above its floor with other contact cards.
+fn with_contact(cards: &str) -> Model {
+    let text = include_str!("../decks/rigid_floor.inp");
+    let pair = "*CONTACT PAIR, INTERACTION=DRY\nBOT, FLOOR\n";
+    assert!(text.contains(pair));
+    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+    let text = text.replacen(pair, cards, 1);
+    let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
+    let model = reader::build(&deck, &mut d);
+    model.unwrap_or_else(|| panic!("{}", d.render(&sources, false)))
+}
+
+/// General contact holds the rigid floor away from all exterior faces, with the assigned friction, as the
+/// pair does; both together do so once.
+#[test]
+fn a_rigid_surface_takes_part_in_general_contact() {
+    let pair = "*CONTACT PAIR, INTERACTION=DRY\nBOT, FLOOR\n";
+    let general = "*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n\
+                   *CONTACT PROPERTY ASSIGNMENT\n, , DRY\n";
+    let decks = [
+        pair.to_owned(),
+        general.to_owned(),
+        format!("{pair}{general}"),
+    ];
+    let histories = decks.map(|cards| {
+        let model = with_contact(&cards);
+        let (kept, summary) = run_to_end(&model);
+        let on_floor = |r: &IncrementReport| r.contacts.iter().map(|c| c.normal).sum::<f64>();
+        let normal: Vec<f64> = kept.reports.iter().map(on_floor).collect();
+        let last = kept.reports.last().expect("reports");
+        assert!(normal.iter().any(|&n| n > 0.0) && summary.increments >= 100);
+        (normal, last.state.clone(), last.energy.friction_dissipation)
+    });
+    for (normal, state, friction) in &histories[1..] {
+        let near = |a: &[f64], b: &[f64]| {
+            let scale = a.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+            a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9 * scale)
+        };
+        assert!(near(&histories[0].0, normal) && near(&histories[0].1.u, &state.u));
+        assert!((friction - histories[0].2).abs() < 1e-9 * friction);
+    }
+    assert!(histories[0].2 > 0.0);
 }

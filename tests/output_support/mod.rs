@@ -16,6 +16,7 @@ use stickslip::dynamics::{
     ContactResultant, Energy, IncrementReport, Landing, Momentum, NodalResults, NodeStatus,
     Observer, Outcome, PassReport, RunSummary, SolverCounts, State, Timings,
 };
+use stickslip::elements::Strained;
 use stickslip::model::{
     Cell, Contact, Element, Face, Frames, Increments, Interaction, Material, Mesh, Model, Plane,
     Section, Set, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
@@ -111,6 +112,7 @@ fn contact() -> Contact {
         master: 1,
         interaction: Some(0),
         adjust: None,
+        left_out: Vec::new(),
         span: Span::default(),
     }
 }
@@ -168,6 +170,10 @@ pub fn report(k: usize) -> IncrementReport {
         momentum: Momentum {
             linear: [k as f64, -1.0],
             angular: 0.5,
+        },
+        strain: Strained {
+            element: 1,
+            strain: 0.05 * k as f64,
         },
         contacts: vec![resultant(k, 1.0), resultant(k, 2.0)],
         landings: if k == 4 { vec![landing()] } else { vec![] },

@@ -5,29 +5,9 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from rescale import Dimension, Units
-
-BASE: dict[str, Dimension] = {
-    "1": (0, 0, 0),
-    "length": (1, 0, 0),
-    "mass": (0, 1, 0),
-    "time": (0, 0, 1),
-    "force": (1, 1, -2),
-    "energy": (2, 1, -2),
-}
-
+from rescale import BASE, Dimension, Units, dimension
 
 SAME = Units()
-
-
-def dimension(text: str) -> Dimension:
-    """Exponents of length, mass and time of a `dimension` attribute: 'mass*length^2/time'."""
-    total = np.zeros(3, int)
-    for index, part in enumerate(text.split("/")):
-        for factor in part.split("*"):
-            name, _, power = factor.strip().partition("^")
-            total += np.array(BASE[name]) * int(power or 1) * (1 if index == 0 else -1)
-    return int(total[0]), int(total[1]), int(total[2])
 
 
 def datasets(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:

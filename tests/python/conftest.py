@@ -16,6 +16,12 @@ from deck import Deck  # noqa: E402
 Job = Callable[..., Path]
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Options of the tests."""
+    help_ = "rescale the decks of input/ and run them to their ends, not for a few increments"
+    parser.addoption("--full", action="store_true", help=help_)
+
+
 @pytest.fixture(scope="session")
 def job(tmp_path_factory: pytest.TempPathFactory) -> Job:
     """`job(deck, *options)` runs a deck and returns the result file; equal calls run once.

@@ -125,10 +125,3 @@ def test_rescaling_there_and_back_gives_the_same_deck() -> None:
     back = rescale(there, Units(0.25, 2.0, 0.125))
     numbers = [[card.rows for card in deck.cards] for deck in (rescale(deck, Units()), back)]
     assert numbers[0] == numbers[1]
-
-
-def test_a_card_with_unknown_dimensions_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "deck.inp"
-    path.write_text("*NODE\n1, 0., 0.\n*SPRING\n1.\n")
-    with pytest.raises(ValueError, match="SPRING"):
-        rescale(Deck.read(path), Units(length=2.0))

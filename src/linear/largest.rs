@@ -1,0 +1,31 @@
+//! The largest of some values, which no NaN gets past.
+
+/// Largest absolute value, 0 of nothing; NaN when there is one.
+pub fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
+    values
+        .into_iter()
+        .fold(0.0, |most, value| larger(most, value.abs()))
+}
+
+/// The larger of two values; NaN when one is.
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a > b || a.is_nan() { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_of_values_with_a_nan_is_none() {
+        assert_eq!(largest(&[]), 0.0);
+        assert_eq!(largest(&[1.0, -3.0, 2.0]), 3.0);
+        for at in 0..3 {
+            let mut values = [1.0, f64::NEG_INFINITY, 2.0];
+            values[at] = f64::NAN;
+            assert!(largest(&values).is_nan(), "{at}");
+        }
+        assert_eq!(larger(2.0, 1.0), 2.0);
+        assert!(larger(f64::NAN, 1.0).is_nan() && larger(1.0, f64::NAN).is_nan());
+    }
+}

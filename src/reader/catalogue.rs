@@ -1,0 +1,95 @@
+//! What the names of a deck stand for: sets, surfaces, materials, amplitudes, interactions.
+
+use crate::deck::{Card, Deck};
+use std::collections::BTreeMap;
+
+/// Keyword and parameter that define a name, and the kind of thing it is.
+const DEFINITIONS: [(&str, &str, &str); 9] = [
+    ("NODE", "NSET", "node set"),
+    ("NSET", "NSET", "node set"),
+    ("ELEMENT", "ELSET", "element set"),
+    ("ELSET", "ELSET", "element set"),
+    ("SURFACE", "NAME", "surface"),
+    ("MATERIAL", "NAME", "material"),
+    ("SURFACE INTERACTION", "NAME", "surface interaction"),
+    ("AMPLITUDE", "NAME", "amplitude"),
+    ("TIME POINTS", "NAME", "list of time points"),
+];
+
+/// Most names that a message lists.
+const LISTED: usize = 8;
+
+/// The names of a deck, as compared, with the kinds of things that bear them.
+pub(super) struct Catalogue {
+    kinds: BTreeMap<String, Vec<&'static str>>,
+}
+
+impl Catalogue {
+    /// Collects the names that the cards of a deck define.
+    pub fn new(deck: &Deck) -> Catalogue {
+        let mut kinds: BTreeMap<String, Vec<&'static str>> = BTreeMap::new();
+        for (name, kind) in deck.cards.iter().flat_map(definitions) {
+            let of_name = kinds.entry(name).or_default();
+            if !of_name.contains(&kind) {
+                of_name.push(kind);
+            }
+        }
+        Catalogue { kinds }
+    }
+
+    /// Another kind of thing than `kind` that bears this name, as compared.
+    pub fn other_kind(&self, name: &str, kind: &str) -> Option<&'static str> {
+        let kinds = self.kinds.get(name)?;
+        kinds.iter().copied().find(|other| *other != kind)
+    }
+}
+
+/// Names that a card defines, and of what kind.
+fn definitions(card: &Card) -> Option<(String, &'static str)> {
+    let defines = |&&(keyword, _, _): &&(&str, &str, &str)| keyword == card.keyword.name;
+    let (_, parameter, kind) = DEFINITIONS.iter().find(defines)?;
+    Some((card.value(parameter)?.name_key(), kind))
+}
+
+/// A kind of thing with its article.
+pub(super) fn with_article(kind: &str) -> String {
+    let article = if kind.starts_with(['a', 'e']) {
+        "an"
+    } else {
+        "a"
+    };
+    format!("{article} {kind}")
+}
+
+/// What to write where a thing of the kind `wanted` is asked for and `name` is a `found`.
+pub(super) fn way_out(wanted: &str, found: &str, name: &str) -> Option<String> {
+    match (wanted, found) {
+        ("node set", "element set") => Some(format!(
+            "*NSET, NSET=..., ELSET={name} makes a node set of its nodes"
+        )),
+        ("surface", "element set") => Some(format!(
+            "*SURFACE, NAME=... with the row `{name}` makes a surface of its free faces"
+        )),
+        ("surface", "node set") => Some(format!(
+            "*SURFACE, NAME=..., TYPE=NODE with the row `{name}` makes a surface of its nodes"
+        )),
+        _ => None,
+    }
+}
+
+/// The names that do exist, the first few of them.
+pub(super) fn list_of<'n>(kind: &str, names: impl Iterator<Item = &'n str>) -> String {
+    let names: Vec<&str> = names.collect();
+    let plural = match kind {
+        "list of time points" => "lists of time points".to_string(),
+        _ => format!("{kind}s"),
+    };
+    let shown = names.iter().take(LISTED).copied().collect::<Vec<_>>();
+    let more = names.len() - shown.len();
+    match (names.len(), more) {
+        (0, _) => format!("the deck has no {plural}"),
+        (1, _) => format!("the only {kind} is {}", shown[0]),
+        (_, 0) => format!("the {plural} are {}", shown.join(", ")),
+        _ => format!("the {plural} are {} and {more} more", shown.join(", ")),
+    }
+}

@@ -1,0 +1,296 @@
+//! What messages say beyond the fault itself: what is meant, what has no effect, what will go wrong.
+
+use super::{LINE, SHARED, SQUARE, Source, change, messages, model, rigid, shared, square, step};
+use stickslip::diagnostics::{Code, Severity};
+
+/// Messages of decks, each of which must have one, of this code.
+fn texts_of(code: Code, decks: &[Source]) -> String {
+    let texts = decks.iter().map(|deck| {
+        let (d, text) = messages(deck);
+        let codes: Vec<Code> = d.iter().map(|item| item.code).collect();
+        assert_eq!(codes, [code], "{text}");
+        text
+    });
+    texts.collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn numbers_that_are_none() {
+    insta::assert_snapshot!(texts_of(
+        Code::BadNumber,
+        &[
+            square("1000., 0.3", "1.e6 0.3"),
+            square("1000., 0.3", "\t1.e6,\t0.3  1."),
+            square("7, 1, 2, 3, 4", "7, 1, 2  3, 4"),
+            square("1000., 0.3", "1,e6"),
+            square("1000., 0.3", "1, E+6"),
+            square("1000., 0.3", "1.e 6, 0.3"),
+            square("4, 0., 1.", "1000000000, 0., 1."),
+            square("4, 0., 1.", "9223372036854775807, 0., 1."),
+            square("7, 1, 2", "1000000000, 1, 2"),
+        ],
+    ));
+}
+
+#[test]
+fn a_decimal_comma_makes_one_field_more() {
+    insta::assert_snapshot!(texts_of(
+        Code::ExtraField,
+        &[
+            square("2, 1., 0.", "2, 1,0, 0,0"),
+            square("FOOT, 1, 2", "FOOT, 1, 2, 0,5"),
+        ],
+    ));
+}
+
+#[test]
+fn a_comment_with_one_star() {
+    insta::assert_snapshot!(texts_of(
+        Code::UnknownKeyword,
+        &[
+            square("*NODE, NSET", "* my set\n*NODE, NSET"),
+            square("*NODE, NSET", "*the nodes of the square\n*NODE, NSET"),
+            square("*NODE, NSET", "*XYZZY\n*NODE, NSET"),
+        ],
+    ));
+}
+
+#[test]
+fn names_of_other_kinds() {
+    let set = "*NODE PRINT, NSET";
+    insta::assert_snapshot!(texts_of(
+        Code::UndefinedName,
+        &[
+            // an element set, a surface, a material where a node set is asked for
+            square("FOOT, 1, 2", "BODY, 1, 2"),
+            square("FOOT, 1, 2", "TOP, 1, 2"),
+            square("FOOT, 1, 2", "Rubber, 1, 2"),
+            // a node set, a surface where an element set is asked for
+            square("ELSET=BODY, MAT", "ELSET=FOOT, MAT"),
+            square("ELSET=BODY, MAT", "ELSET=TOP, MAT"),
+            // sets where a surface is asked for, and the other way round
+            step("*DSLOAD\nBODY, P, 1."),
+            step("*DSLOAD\nFOOT, P, 1."),
+            model("*SURFACE, NAME=S\nTOP"),
+            model("*NSET, NSET=N\nTOP"),
+            // names that nothing has, and a comma that is missing
+            square(&format!("{set}=FOOT"), &format!("{set}=WHEEL")),
+            square("FOOT, 1, 2", "FOOT 1, 2"),
+            step("*BOUNDARY, AMPLITUDE=A\n4, 1"),
+        ],
+    ));
+}
+
+#[test]
+fn model_cards_after_a_step() {
+    let after = |more: &str| square("*END STEP\n", &format!("*END STEP\n{more}\n"));
+    for cards in [
+        "*MATERIAL, NAME=STEEL\n*ELASTIC\n1., 0.3",
+        "*DENSITY\n1.",
+        "*HEADING\nanother",
+        "*NSET, NSET=MORE\n1",
+        "*BOUNDARY\n4, 1",
+        "*AMPLITUDE, NAME=A\n0., 0., 1., 1.",
+        "*TIME POINTS, NAME=A\n0.5",
+        "*RESTART, WRITE, FREQUENCY=0",
+        "*SURFACE INTERACTION, NAME=I",
+        "*NSET, NSET=MORE\n1\n*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.1, 1.\n*END STEP",
+    ] {
+        let (d, text) = messages(&after(cards));
+        let errors: Vec<Code> = d.iter().map(|item| item.code).collect();
+        assert_eq!(errors, [Code::WrongPlace], "{cards}:\n{text}");
+        assert!(
+            text.contains("first *STEP") || cards.starts_with("*DENSITY"),
+            "{text}"
+        );
+    }
+    // a part of the model's last block, in the step
+    let section = "*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER\n0.5\n";
+    let last = SQUARE
+        .replace(section, "")
+        .replace("*MATERIAL", &format!("{section}*MATERIAL"));
+    let last = last.replacen("*BOUNDARY\nFOOT, 1, 2\n", "", 1);
+    let (d, text) = messages(&change(&last, "*CLOAD", "*DENSITY\n2.\n*CLOAD"));
+    assert_eq!(
+        d.iter().map(|item| item.code).collect::<Vec<_>>(),
+        [Code::WrongPlace],
+        "{text}"
+    );
+}
+
+#[test]
+fn every_error_of_a_deck_has_a_place() {
+    let empty = ["", "\n\n", "** nothing\n"].map(|text| Source::Text(text.into()));
+    let bare = "*HEADING\nx\n*STEP, NLGEOM\n*DYNAMIC, DIRECT\n1., 1.\n*END STEP\n";
+    let meshes = [
+        bare.to_string(),
+        bare.replace("*STEP", "*NODE\n*STEP"),
+        bare.replace("*STEP", "*NODE\n1, 0., 0.\n*STEP"),
+        bare.replace("*STEP", "*NODE\n1, 0., 0.\n*ELEMENT, TYPE=CPS3\n*STEP"),
+        SQUARE.split("*STEP").next().unwrap_or("").to_string(),
+    ];
+    let decks = empty.into_iter().chain(meshes.map(Source::Text));
+    let texts = decks.map(|deck| {
+        let (d, text) = messages(&deck);
+        assert_eq!(d.count(Severity::Error), 1, "{text}");
+        assert!(d.iter().all(|item| item.span.is_some()), "{text}");
+        text
+    });
+    insta::assert_snapshot!(texts.collect::<Vec<_>>().join("\n"));
+}
+
+#[test]
+fn fields_without_effect() {
+    let law = |card: &str| model(&format!("*SURFACE INTERACTION, NAME=I\n{card}"));
+    insta::assert_snapshot!(texts_of(
+        Code::IgnoredParameter,
+        &[
+            law("*FRICTION\n0.3, 0.1"),
+            law("*FRICTION\n0.3, , 5."),
+            law("*FRICTION\n0.3, , , 20."),
+            law("*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD\n1.e-3, 2."),
+            law("*SURFACE BEHAVIOR\n, 0.1"),
+            model("*SURFACE INTERACTION, NAME=I\n0.5"),
+            model("*SURFACE, NAME=S, TYPE=NODE\nFOOT, 0.5"),
+            square("1000., 0.3", "1000., 0.3, 20."),
+            square("*DENSITY\n1.", "*DENSITY\n1., 20."),
+            square("0.1, 1.", "0.1, 1., 1.e-3, 0.2"),
+        ],
+    ));
+    let silent = [
+        law("*FRICTION\n0.3, , ,"),
+        model("*SURFACE INTERACTION, NAME=I\n1.,"),
+        model("*SURFACE, NAME=S, TYPE=NODE\nFOOT, 1."),
+        square("0.1, 1.", "0.1, 1., 1.e-3"),
+    ];
+    for deck in silent {
+        assert_eq!(messages(&deck).1, "");
+    }
+}
+
+#[test]
+fn times_of_histories_are_read_though_histories_hold_every_increment() {
+    for (when, code) in [
+        ("FREQUENCY=often", Code::BadNumber),
+        ("FREQUENCY=-1", Code::OutputTimes),
+        ("TIME INTERVAL=-0.1", Code::OutputTimes),
+        ("TIME POINTS=NEVER", Code::UndefinedName),
+    ] {
+        let (d, text) = messages(&step(&format!("*OUTPUT, HISTORY, {when}")));
+        let codes: Vec<Code> = d.iter().map(|item| item.code).collect();
+        assert_eq!(codes, [code], "{when}:\n{text}");
+    }
+    assert_eq!(messages(&step("*OUTPUT, HISTORY, FREQUENCY=3")).1, "");
+}
+
+#[test]
+fn increments_that_do_not_grow() {
+    let dynamic = |row: &str| square("*DYNAMIC, DIRECT\n0.1, 1.", &format!("*DYNAMIC\n{row}"));
+    insta::assert_snapshot!(texts_of(
+        Code::ConstantIncrement,
+        &[dynamic("0.1, 1., 1.e-3, 0.2"), dynamic("0.1, 1.")],
+    ));
+    for row in ["0.1, 1., 1.e-3, 0.1", "0.2, 1., , 0.1", "1., 1."] {
+        assert_eq!(messages(&dynamic(row)).1, "");
+    }
+}
+
+#[test]
+fn locking_is_told_from_nu_045_on_in_plane_strain() {
+    let deck = |kind: &str, nu: &str| Source::Text(SQUARE.replace("CPS4", kind).replace("0.3", nu));
+    for (kind, nu, locks) in [
+        ("CPE4", "0.449", false),
+        ("CPE4", "0.45", true),
+        ("CPE4", "0.499", true),
+        ("CPS4", "0.499", false),
+    ] {
+        let (d, text) = messages(&deck(kind, nu));
+        let place = d
+            .iter()
+            .find_map(|item| item.span.filter(|_| item.code == Code::Locking));
+        assert_eq!(
+            place.map(|span| (span.line, span.column)),
+            locks.then_some((16, 8)),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn magnitudes_that_cannot_be_computed_with() {
+    let sized = |side: &str| {
+        let nodes = "2, 1., 0.\n3, 1., 1.\n4, 0., 1.\n";
+        SQUARE.replace(nodes, &nodes.replace("1.", side))
+    };
+    let heavy = sized("100.").replace("1000.,", "1.e307,");
+    let decks = [
+        // the mass, the stiffness, the area, the length of a side of the element
+        change(&heavy, "*DENSITY\n1.", "*DENSITY\n5.e304"),
+        square("0.5\n", "1.e-320\n"),
+        Source::Text(sized("1.e-200")),
+        Source::Text(
+            SQUARE
+                .replace("4, 0., 1.\n", "4, 0., 1.7e308\n")
+                .replace("1, 0., 0.\n", "1, 0., -1.e308\n"),
+        ),
+    ];
+    insta::assert_snapshot!(texts_of(Code::Magnitude, &decks));
+}
+
+#[test]
+fn starts_that_are_told_before_the_run() {
+    let block = |height: &str| SHARED.replacen("11, 1., 1.1", &format!("11, 1., {height}"), 1);
+    let upside_down = rigid(
+        "START, 4., 1.\nLINE, 0., 1.\n",
+        "",
+        "*BOUNDARY\n100, 1, 2\n",
+    );
+    let far_below = rigid(
+        "START, 0., 9.\nLINE, 4., 9.\n",
+        "",
+        "*BOUNDARY\n100, 1, 2\n",
+    );
+    let decks = [
+        Source::Text(block("0.99")),
+        upside_down,
+        far_below,
+        shared("EBASE, S3", "2, S2"),
+    ];
+    let texts = decks.map(|deck| {
+        let text = messages(&deck).1;
+        let about = |part: &&str| part.contains("[D410]") || part.contains("[D414]");
+        text.split_inclusive("\n\n")
+            .filter(about)
+            .collect::<String>()
+    });
+    insta::assert_snapshot!(texts.join("\n"));
+}
+
+#[test]
+fn one_faced_order_of_two_is_enough() {
+    // the nodes of the base lie beside the block; those of the block face the base
+    let both = SHARED.replacen("SBOT, STOP", "SBOT, STOP\nSTOP, SBOT", 1);
+    let narrow = both
+        .replace("11, 1., 1.1", "11, 2.2, 1.1")
+        .replace("14, 1., 2.1", "14, 2.2, 2.1");
+    let text = messages(&Source::Text(narrow.clone())).1;
+    assert!(!text.contains("D414"), "{text}");
+    let lone = narrow.replacen("SBOT, STOP\nSTOP, SBOT", "STOP, SBOT", 1);
+    let text = messages(&Source::Text(lone)).1;
+    assert!(text.contains("no node of STOP faces SBOT"), "{text}");
+}
+
+#[test]
+fn a_reference_node_that_cannot_be_read_is_one_error() {
+    let floor = rigid(LINE, "", "*BOUNDARY\n100, 1, 2\n");
+    let Source::Text(floor) = floor else { return };
+    for (old, new) in [
+        ("100, 0., -5.", "1000000000, 0., -5."),
+        ("100, 0., -5.", "x, 0., -5."),
+    ] {
+        let named = floor.replace("REF NODE=100", "REF NODE=REF");
+        let named = named.replace("*BOUNDARY\n100,", "*BOUNDARY\nREF,");
+        let (d, text) = messages(&change(&named, old, new));
+        assert_eq!(d.count(Severity::Error), 1, "{text}");
+    }
+}
