@@ -83,7 +83,10 @@ impl Trace {
     /// The cause as it is, or that passes with ever larger forces have made numbers overflow.
     fn explain(&self, cause: Cause) -> Cause {
         let has_grown = |[first, last]: [f64; 2]| last > first || last.is_nan();
-        match cause.is_overflow() && self.unbalanced.is_some_and(has_grown) {
+        // where an element is wrecked, there are no forces to compare
+        let is_wrecked = matches!(cause, Cause::Inverted { .. }) && !self.passes.is_empty();
+        let diverged = is_wrecked || self.unbalanced.is_some_and(has_grown);
+        match cause.is_overflow() && diverged {
             true => Cause::Diverged,
             false => cause,
         }

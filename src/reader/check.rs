@@ -5,7 +5,7 @@ use super::material::Properties;
 use super::mesh::Grid;
 use super::surface::Surfaces;
 use crate::diagnostics::{Code, Diagnostic, Span};
-use crate::model::{Cell, Contact, Element, Mesh, SurfaceKind};
+use crate::model::{Contact, Element, Mesh, SurfaceKind};
 use std::collections::HashMap;
 
 /// Smallest cross product of two sides, relative to the square of the longest side.
@@ -166,48 +166,6 @@ fn range_of_thickness(
     let all: Vec<f64> = all.map(|section| section.thickness).collect();
     let low = all.iter().copied().reduce(f64::min)?;
     Some((low, all.iter().copied().fold(low, f64::max)))
-}
-
-/// Reports the first element whose mass, stiffness or wave speed is too large for a number, or with whose
-/// mass that of the model is.
-pub(super) fn magnitudes(grid: &Grid, properties: &Properties, cx: &mut Context) {
-    let mut total = 0.0;
-    let elements = grid.mesh.elements.iter().zip(&grid.element_spans);
-    for ((element, &span), section) in elements.zip(&properties.section_of) {
-        let at = |i: usize| grid.mesh.coordinates[element.cell.nodes()[i]];
-        let triangle = |[i, j, k]: [usize; 3]| {
-            let [p, q] = [j, k].map(|n| [at(n)[0] - at(i)[0], at(n)[1] - at(i)[1]]);
-            (p[0] * q[1] - p[1] * q[0]) / 2.0
-        };
-        let area = match element.cell {
-            Cell::Tri3(_) => triangle([0, 1, 2]),
-            Cell::Quad4(_) => triangle([0, 1, 2]) + triangle([0, 2, 3]),
-        };
-        let section = section.and_then(|section| properties.sections.get(section));
-        let material = section.and_then(|section| properties.materials.get(section.material));
-        // a faulty material has no density
-        let material = material.filter(|material| material.density > 0.0);
-        let (Some(section), Some(material)) = (section, material) else {
-            continue;
-        };
-        let mass = material.density * section.thickness * area;
-        total += mass;
-        let what = [
-            ("mass of", mass),
-            ("stiffness of", material.young * section.thickness),
-            ("wave speed in", (material.young / material.density).sqrt()),
-            ("mass of all elements up to", total),
-        ];
-        if let Some((what, _)) = what.iter().find(|(_, value)| *value == f64::INFINITY) {
-            let message = format!("the {what} element {} is too large", element.label);
-            let error = Diagnostic::error(Code::BadNumber, span, message);
-            cx.d.push(
-                error
-                    .help("look at the density, the modulus, the thickness and the unit of length"),
-            );
-            return;
-        }
-    }
 }
 
 /// Time in which a wave crosses the shortest element side.
