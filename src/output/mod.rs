@@ -1,10 +1,12 @@
 //! Result file, status file, log and screen.
 //!
-//! [`ResultWriter`] observes a run and writes the files of a job ([`JobFiles`]): `JOB.vtkhdf`
-//! (`result_file`: `vtkhdf`, `model`, `history`, `record`), `JOB.sta` (`status`), `JOB.log` (`log`)
-//! and the screen (`screen`, `progress`). `docs/output.md` describes them.
+//! [`ResultWriter`] observes a run and writes the files of a job ([`JobFiles`]), of which one run has
+//! the [`Claim`] at a time: `JOB.vtkhdf` (`result_file`: `vtkhdf`, `model`, `history`, `record`,
+//! `space`), `JOB.sta` (`status`), `JOB.log` (`log`) and the screen (`screen`, `progress`).
+//! `docs/output.md` describes them.
 
 mod balance;
+mod claim;
 mod clock;
 mod console;
 mod contact_history;
@@ -16,28 +18,35 @@ mod format;
 mod frames;
 mod header;
 mod history;
+mod interrupt;
 mod job;
+mod last;
 mod log;
 mod model;
 mod names;
 mod progress;
 mod record;
+mod regular;
 mod result_file;
 mod screen;
 mod series;
+mod space;
 mod status;
 mod strain;
 mod summary;
 mod vtkhdf;
 mod writer;
 
+pub use claim::Claim;
 pub use console::Verbosity;
 pub use echo::{ModelEcho, frames, solver};
-pub use error::OutputError;
+pub use error::{OutputError, reason};
 pub use frames::{DEFAULT_FRAMES, FrameSchedule};
 pub use header::{deck_line, program_lines};
+pub use interrupt::Interrupt;
 pub use job::JobFiles;
 pub use names::{NameError, check_names, contact_names};
 pub use record::{RunRecord, UNFINISHED};
+pub use regular::regular_file;
 pub use summary::{ResultSummary, SummaryError};
 pub use writer::ResultWriter;

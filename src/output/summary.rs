@@ -1,4 +1,3 @@
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -7,15 +6,17 @@ use hdf5::{FileBuilder, Group, H5Type};
 use thiserror::Error;
 
 use super::echo::{label, wrap};
+use super::error::reason;
 use super::format::{bytes, counted, general, scientific};
 use super::record::UNFINISHED;
+use super::regular::regular_file;
 use crate::linear::{larger, largest};
 
 /// Why a result file could not be read.
 #[derive(Debug, Error)]
 pub enum SummaryError {
     /// The file is not there or may not be read.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {}", path.display(), reason(source))]
     Open {
         /// The file.
         path: PathBuf,
@@ -80,10 +81,7 @@ impl ResultSummary {
             path: path.to_owned(),
             source,
         };
-        let size = fs::File::open(path)
-            .and_then(|file| file.metadata())
-            .map_err(open)?
-            .len();
+        let size = regular_file(path).map_err(open)?.len();
         let content = |source| SummaryError::Content {
             path: path.to_owned(),
             source,
@@ -149,6 +147,10 @@ impl ResultSummary {
             UNFINISHED => "still running or killed".to_owned(),
             0 => format!("finished {finished}, exit status 0"),
             1 => format!("stopped in the solve {finished}, exit status 1"),
+            129 | 130 | 143 => {
+                let status = self.exit_status;
+                format!("stopped by a signal {finished}, exit status {status}")
+            }
             status => format!("ended {finished}, exit status {status}"),
         };
         format!("started {}, {how}", self.started)
