@@ -84,12 +84,19 @@ need_venv() {
     cp "$list" "$stamp"
 }
 
-# Builds the program; sets PROGRAM to its path.
+# Builds the program, with cargo's progress on a terminal; sets PROGRAM to its path.
 need_program() {
     need_rust
     need_hdf5
-    say "building (release)"
-    (cd "$ROOT" && cargo build --release --quiet --locked "${FEATURES[@]}" </dev/null) ||
-        fail "the build failed"
     PROGRAM="${CARGO_TARGET_DIR:-$ROOT/target}/release/stickslip"
+    local quiet=(--quiet)
+    [ ! -t 2 ] || quiet=()
+    if [ -x "$PROGRAM" ]; then
+        say "building (release) what has changed"
+    else
+        say "building (release); the first time this takes about five minutes of processor time," \
+            "shared by $(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1) processors"
+    fi
+    (cd "$ROOT" && cargo build --release "${quiet[@]}" --locked "${FEATURES[@]}" </dev/null) ||
+        fail "the build failed"
 }

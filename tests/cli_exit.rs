@@ -94,6 +94,92 @@ fn info_describes_a_result_file() {
     assert!(err.contains("is not a result file"), "{err}");
 }
 
+/// A fifo has no end to wait for, and a device none to read.
+#[cfg(unix)]
+#[test]
+fn what_is_no_regular_file_is_4() {
+    let _alone = alone();
+    let folder = TempDir::new().expect("folder");
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let made = Command::new("mkfifo")
+        .args([path("fifo"), path("out.log")])
+        .ok();
+    made.expect("fifo");
+    let inputs = [path("fifo"), "/dev/null".into(), path(".")];
+    for (input, command) in inputs
+        .iter()
+        .flat_map(|i| ["run", "check", "info", "lcp"].map(|c| (i, c)))
+    {
+        let (code, out, err) = stickslip(&[command, input]);
+        assert_eq!((code, out.as_str()), (4, ""), "{command} {input}: {err}");
+        let told = err.contains("not a regular file") || err.contains("directory");
+        assert!(
+            told && err.contains(input.as_str()),
+            "{command} {input}: {err}"
+        );
+    }
+    let deck = format!("*HEADING\n*INCLUDE, INPUT={}\n", path("fifo"));
+    std::fs::write(path("deck.inp"), deck).expect("deck");
+    let (code, _, err) = stickslip(&["check", &path("deck.inp")]);
+    assert_eq!(code, 2);
+    assert!(
+        err.contains("deck.inp:2:") && err.contains("not a regular file"),
+        "{err}"
+    );
+    std::fs::copy("tests/decks/drop.inp", path("out.inp")).expect("deck");
+    let (code, _, err) = stickslip(&["run", &path("out.inp"), "-o", &path("."), "--overwrite"]);
+    assert_eq!(code, 4);
+    assert!(err.contains("out.log: it is not a regular file"), "{err}");
+    std::fs::remove_file(path("out.log")).expect("fifo");
+    for name in ["out.sta", "out.vtkhdf"] {
+        std::fs::create_dir(path(name)).expect("folder");
+        let arguments = ["run", &path("out.inp"), "-o", &path("."), "--overwrite"];
+        let (code, _, err) = stickslip(&arguments);
+        assert_eq!(code, 4);
+        assert!(
+            err.contains(name) && err.contains("not a regular file"),
+            "{err}"
+        );
+        assert!(!folder.path().join("out.log").exists());
+        std::fs::remove_dir(path(name)).expect("folder");
+    }
+}
+
+#[test]
+fn a_file_without_lines_is_an_error_at_once() {
+    let _alone = alone();
+    let folder = TempDir::new().expect("folder");
+    let path = folder
+        .path()
+        .join("deck.inp")
+        .to_string_lossy()
+        .into_owned();
+    let file = std::fs::File::create(&path).expect("deck");
+    // A terabyte of zeros that takes no room.
+    file.set_len(1 << 40).expect("sparse");
+    let (code, _, err) = stickslip(&["check", &path]);
+    assert_eq!(code, 2);
+    assert!(
+        err.contains("D121") && err.contains("deck.inp:1:1"),
+        "{err}"
+    );
+    let mut text = b"*HEADING\n*NODE, NSET=".to_vec();
+    text.resize(1 << 22, b'A');
+    std::fs::write(&path, text).expect("deck");
+    let (code, _, err) = stickslip(&["check", &path]);
+    assert_eq!(code, 2);
+    assert!(
+        err.contains("D122") && err.contains("deck.inp:2:65537"),
+        "{err}"
+    );
+    assert!(err.len() < 2000, "{}", err.len());
+    let text = format!("*HEADING\n*{}\n", "A".repeat(65_000));
+    std::fs::write(&path, text).expect("deck");
+    let (code, _, err) = stickslip(&["check", &path]);
+    assert_eq!(code, 2);
+    assert!(err.contains("D103") && err.len() < 4000, "{}", err.len());
+}
+
 #[cfg(unix)]
 #[test]
 fn a_closed_pipe_is_no_panic() {

@@ -104,6 +104,8 @@ fn faulty(code: Code) -> Source {
         LongNumber => square("1000.", "0.10000000000000000000E+04"),
         Abbreviation => square("*ELASTIC", "*ELAS"),
         NonAscii => square("NAME=TOP", "NAME=TÖP"),
+        NotText => square("RUBBER", "RUB\0BER"),
+        EndlessLine => square("one square", &"one square ".repeat(6000)),
         UnsupportedKeyword => model("*TIE, NAME=GLUE\nTOP, TOP"),
         UnsupportedParameter => model("*AMPLITUDE, NAME=A, DEFINITION=SMOOTH STEP\n0., 0., 1., 1."),
         IgnoredKeyword => step("*CONTROLS, RESET"),

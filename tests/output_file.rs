@@ -417,7 +417,8 @@ fn names_with_a_slash_are_refused_before_any_file() {
     model.node_sets[1].name = "A/B".into();
     let record = output_support::record();
     let verbosity = stickslip::output::Verbosity::Quiet;
-    let Err(error) = stickslip::output::ResultWriter::create(&model, &files, &record, verbosity)
+    let claim = stickslip::output::Claim::take(&files, false).expect("claim");
+    let Err(error) = stickslip::output::ResultWriter::create(&model, claim, &record, verbosity)
     else {
         panic!("accepted");
     };

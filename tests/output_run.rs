@@ -19,7 +19,7 @@ use blocks::{add_block, add_contact, model, step, throw};
 use hdf5::File;
 use stickslip::dynamics;
 use stickslip::model::{Frames, Model, Settings};
-use stickslip::output::{JobFiles, ResultSummary, ResultWriter, RunRecord, Verbosity};
+use stickslip::output::{Claim, JobFiles, ResultSummary, ResultWriter, RunRecord, Verbosity};
 use tempfile::TempDir;
 
 fn two_blocks() -> Model {
@@ -37,8 +37,8 @@ fn two_blocks() -> Model {
 fn solve(model: &Model, folder: &Path) -> JobFiles {
     let files = JobFiles::new("blocks.inp".as_ref(), folder);
     let record = RunRecord::default();
-    let mut writer =
-        ResultWriter::create(model, &files, &record, Verbosity::Quiet).expect("writer");
+    let claim = Claim::take(&files, true).expect("claim");
+    let mut writer = ResultWriter::create(model, claim, &record, Verbosity::Quiet).expect("writer");
     let summary = dynamics::run(model, &mut writer).expect("run");
     writer.finish(&summary).expect("finish");
     files

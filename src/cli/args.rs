@@ -14,7 +14,8 @@ use crate::output::Verbosity;
     version = VERSION,
     long_version = LONG_VERSION.as_str(),
     after_help = "Exit codes: 0 finished, 1 stopped in the solve (results so far are valid), \
-                  2 deck rejected, 3 command line, 4 file system."
+                  2 deck rejected, 3 command line, 4 file system; 129, 130, 143 stopped by the \
+                  signals HUP, INT, TERM (results so far are valid)."
 )]
 pub(super) struct Args {
     /// What to do.

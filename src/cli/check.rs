@@ -1,35 +1,28 @@
-use std::fs::File;
-use std::io::ErrorKind;
 use std::path::Path;
 
 use super::args::{CheckArgs, DeckArgs};
 use super::connect::{Loaded, Numerics};
 use super::error::CliError;
 use super::{Exit, coloured, complain, print};
-use crate::output::{ModelEcho, check_names, deck_line};
+use crate::output::{ModelEcho, check_names, deck_line, regular_file};
 
 /// Reads a deck and describes its model.
 pub(super) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exit, CliError> {
     let loaded = load(&args.deck, numerics)?;
     complain_of(&loaded.all_messages);
-    print(&[deck_line_of(&args.deck.path, &loaded, None)]);
+    print(&[deck_line_of(&args.deck.path, &loaded, None)])?;
     let Some(model) = &loaded.model else {
         return Ok(Exit::Rejected);
     };
     check_names(model)?;
-    print(&ModelEcho::new(model).lines(model));
+    print(&ModelEcho::new(model).lines(model))?;
     Ok(Exit::Finished)
 }
 
 /// Reads a deck; a deck that cannot be opened is a matter of the file system.
 pub(super) fn load(deck: &DeckArgs, numerics: &Numerics) -> Result<Loaded, CliError> {
     let path = &deck.path;
-    let readable = File::open(path).and_then(|file| file.metadata());
-    let readable = readable.and_then(|data| match data.is_dir() {
-        true => Err(ErrorKind::IsADirectory.into()),
-        false => Ok(()),
-    });
-    readable.map_err(|source| CliError::Deck {
+    regular_file(path).map_err(|source| CliError::Deck {
         path: path.clone(),
         source,
     })?;

@@ -4,27 +4,18 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use super::Exit;
-use crate::output::{NameError, OutputError, SummaryError};
+use crate::output::{NameError, OutputError, SummaryError, reason};
 
 /// Why a command did not get to its end.
 #[derive(Debug, Error)]
 pub(super) enum CliError {
     /// The deck cannot be read.
-    #[error("cannot read the deck {}: {source}", path.display())]
+    #[error("cannot read the deck {}: {}", path.display(), reason(source))]
     Deck {
         /// The deck.
         path: PathBuf,
         /// Why.
         source: io::Error,
-    },
-    /// Files of an earlier run are in the way.
-    #[error(
-        "{} exists already; --overwrite replaces the results of an earlier run",
-        list(files)
-    )]
-    Exists {
-        /// The files.
-        files: Vec<PathBuf>,
     },
     /// A name of the deck cannot stand in the result file.
     #[error(transparent)]
@@ -35,11 +26,25 @@ pub(super) enum CliError {
     /// A result cannot be written.
     #[error("cannot write the results: {0}")]
     Write(#[from] io::Error),
+    /// The same in the middle of a run.
+    #[error("cannot write the results: {source}{}", after(kept))]
+    Broken {
+        /// Why, with the file.
+        source: io::Error,
+        /// What there is to read.
+        kept: Option<String>,
+    },
+    /// The standard output cannot be written, and is no closed pipe.
+    #[error("cannot write the standard output: {}", reason(.0))]
+    Screen(io::Error),
+    /// Signals cannot be received.
+    #[error("cannot receive signals: {0}")]
+    Signals(io::Error),
     /// The result file cannot be read.
     #[error(transparent)]
     Summary(#[from] SummaryError),
     /// A complementarity problem cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {}", path.display(), reason(source))]
     Problem {
         /// Its file.
         path: PathBuf,
@@ -64,15 +69,17 @@ impl CliError {
             CliError::Threads { .. } => Exit::Usage,
             CliError::Deck { .. }
             | CliError::Problem { .. }
-            | CliError::Exists { .. }
-            | CliError::Output(OutputError::Create { .. })
+            | CliError::Output(_)
             | CliError::Write(_)
+            | CliError::Broken { .. }
+            | CliError::Screen(_)
+            | CliError::Signals(_)
             | CliError::Summary(_) => Exit::FileSystem,
         }
     }
 }
 
-fn list(files: &[PathBuf]) -> String {
-    let names: Vec<String> = files.iter().map(|f| f.display().to_string()).collect();
-    names.join(", ")
+fn after(kept: &Option<String>) -> String {
+    kept.as_ref()
+        .map_or(String::new(), |kept| format!("; {kept}"))
 }

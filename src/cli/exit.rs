@@ -14,6 +14,12 @@ pub enum Exit {
     Usage = 3,
     /// A file could not be read or written.
     FileSystem = 4,
+    /// The terminal was closed (SIGHUP); the results up to there are valid.
+    HungUp = 129,
+    /// Interrupted (SIGINT); the results up to there are valid.
+    Interrupted = 130,
+    /// Terminated (SIGTERM); the results up to there are valid.
+    Terminated = 143,
 }
 
 impl From<Exit> for ExitCode {

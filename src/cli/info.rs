@@ -5,6 +5,6 @@ use crate::output::ResultSummary;
 
 /// Describes a result file.
 pub(super) fn info(args: &InfoArgs) -> Result<Exit, CliError> {
-    print(&ResultSummary::read(&args.result)?.lines());
+    print(&ResultSummary::read(&args.result)?.lines())?;
     Ok(Exit::Finished)
 }

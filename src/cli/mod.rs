@@ -5,12 +5,15 @@ mod check;
 mod connect;
 mod error;
 mod exit;
+#[cfg(test)]
+mod files_tests;
 mod info;
 mod lcp;
 mod overrides;
 mod run;
 #[cfg(test)]
 mod run_tests;
+mod signals;
 mod version;
 
 use std::ffi::OsString;
@@ -21,6 +24,7 @@ use clap::error::ErrorKind;
 
 use args::{Args, Command};
 use connect::Numerics;
+use error::CliError;
 pub use exit::Exit;
 
 /// Runs the program with its arguments, the program's name first.
@@ -32,7 +36,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     };
     let numerics = Numerics::connected();
     let done = match &args.command {
-        Command::Run(args) => run::run(args, &typed(&arguments), &numerics),
+        Command::Run(args) => (signals::receive().map_err(CliError::Signals))
+            .and_then(|interrupt| run::run(args, &typed(&arguments), &numerics, &interrupt)),
         Command::Check(args) => check::check(args, &numerics),
         Command::Info(args) => info::info(args),
         Command::Lcp(args) => lcp::lcp(args),
@@ -45,11 +50,18 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
 
 /// Help and version are no errors.
 fn usage(error: &clap::Error) -> Exit {
-    // The screen may be a closed pipe, which is nobody's error.
-    let _ = error.print();
-    match error.kind() {
-        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => Exit::Finished,
-        _ => Exit::Usage,
+    let is_asked_for = matches!(
+        error.kind(),
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
+    );
+    let printed = error.print().and_then(|()| io::stdout().flush());
+    match (is_asked_for, on_screen(printed)) {
+        (true, Ok(())) => Exit::Finished,
+        (true, Err(error)) => {
+            complain(&format!("error: {error}"));
+            error.exit()
+        }
+        (false, _) => Exit::Usage,
     }
 }
 
@@ -70,14 +82,19 @@ fn typed(arguments: &[OsString]) -> String {
 }
 
 /// Prints to the standard output, unless that is a closed pipe.
-fn print(lines: &[String]) {
+fn print(lines: &[String]) -> Result<(), CliError> {
     let mut out = io::stdout().lock();
-    for line in lines {
-        if writeln!(out, "{line}").is_err() {
-            return;
-        }
+    let mut lines = lines.iter();
+    let printed = lines.try_for_each(|line| writeln!(out, "{line}"));
+    on_screen(printed.and_then(|()| out.flush()))
+}
+
+/// What became of printing; a closed pipe is nobody's error.
+fn on_screen(printed: io::Result<()>) -> Result<(), CliError> {
+    match printed {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(CliError::Screen(error)),
+        _ => Ok(()),
     }
-    let _ = out.flush();
 }
 
 /// Prints to the standard error, unless that is a closed pipe.

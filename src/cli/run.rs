@@ -3,15 +3,21 @@ use super::check::{complain_of, deck_line_of, load};
 use super::connect::{Loaded, Numerics};
 use super::error::CliError;
 use super::version::{COMMIT, NUMBER, PROFILE};
-use super::{Exit, overrides};
+use super::{Exit, overrides, signals};
 use crate::dynamics::{Outcome, RunError};
 use crate::model::Model;
 use crate::output::{
-    JobFiles, ModelEcho, ResultWriter, RunRecord, Verbosity, check_names, program_lines,
+    Claim, Interrupt, JobFiles, ModelEcho, ResultWriter, RunRecord, Verbosity, check_names,
+    program_lines,
 };
 
-/// Solves a deck; `command` is the command as typed.
-pub(super) fn run(args: &RunArgs, command: &str, numerics: &Numerics) -> Result<Exit, CliError> {
+/// Solves a deck; `command` is the command as typed. The run ends early when `interrupt` asks for it.
+pub(super) fn run(
+    args: &RunArgs,
+    command: &str,
+    numerics: &Numerics,
+    interrupt: &Interrupt,
+) -> Result<Exit, CliError> {
     let mut loaded = load(&args.deck, numerics)?;
     let Some(mut model) = loaded.model.take() else {
         complain_of(&loaded.messages);
@@ -21,11 +27,15 @@ pub(super) fn run(args: &RunArgs, command: &str, numerics: &Numerics) -> Result<
         complain_of(&loaded.messages);
     }
     check_names(&model)?;
+    if interrupt.signal().is_some() {
+        return Ok(signals::exit(interrupt));
+    }
     let files = JobFiles::new(&args.deck.path, &args.output);
-    refuse_existing(args, &files)?;
+    let claim = Claim::take(&files, args.overwrite)?;
     let record = record(command, &loaded, start_threads(args.threads)?);
     let notes = overrides::apply(args, &mut model);
-    let mut writer = ResultWriter::create(&model, &files, &record, args.verbosity())?;
+    let mut writer = ResultWriter::create(&model, claim, &record, args.verbosity())?;
+    writer.heed(interrupt);
     for line in header(args, &files, &loaded, &record, &model) {
         writer.line(&line)?;
     }
@@ -36,45 +46,36 @@ pub(super) fn run(args: &RunArgs, command: &str, numerics: &Numerics) -> Result<
         writer.detail(loaded.plain_messages.trim_end())?;
     }
     writer.line("")?;
-    solve(&model, &mut writer, numerics)
+    let exit = solve(&model, &mut writer, numerics, interrupt)?;
+    match writer.lost_screen() {
+        Some(error) if exit == Exit::Finished => Err(CliError::Screen(error)),
+        _ => Ok(exit),
+    }
 }
 
 /// Solves the model and completes the results.
-fn solve(model: &Model, writer: &mut ResultWriter, numerics: &Numerics) -> Result<Exit, CliError> {
-    match (numerics.solve)(model, writer) {
-        Ok(summary) => {
-            writer.finish(&summary)?;
-            Ok(match summary.outcome {
-                Outcome::Finished => Exit::Finished,
-                Outcome::Stopped(_) => Exit::Stopped,
-            })
-        }
-        Err(error) => {
-            let error = CliError::from(error);
+fn solve(
+    model: &Model,
+    writer: &mut ResultWriter,
+    numerics: &Numerics,
+    interrupt: &Interrupt,
+) -> Result<Exit, CliError> {
+    let solved = (numerics.solve)(model, writer);
+    let solved = solved.map_err(|RunError::Observer(error)| error);
+    let finished = solved.and_then(|summary| writer.finish(&summary).map(|()| summary.outcome));
+    match finished {
+        Ok(Outcome::Finished) => Ok(Exit::Finished),
+        Ok(Outcome::Stopped(_)) => Ok(Exit::Stopped),
+        Ok(Outcome::Interrupted) => Ok(signals::exit(interrupt)),
+        Err(source) => {
+            let kept = writer.kept();
+            let error = CliError::Broken { source, kept };
             // What is wrong already is told below; the files may be beyond completing.
             let _ = writer.detail(&format!("error: {error}"));
             let _ = writer.abandon(error.exit() as u8);
             Err(error)
         }
     }
-}
-
-impl From<RunError> for CliError {
-    fn from(error: RunError) -> Self {
-        match error {
-            RunError::Observer(error) => CliError::Write(error),
-        }
-    }
-}
-
-/// Stops before files of an earlier run are replaced, unless that is wanted.
-fn refuse_existing(args: &RunArgs, files: &JobFiles) -> Result<(), CliError> {
-    let existing = files.existing();
-    if args.overwrite || existing.is_empty() {
-        return Ok(());
-    }
-    let files = existing.into_iter().map(Into::into).collect();
-    Err(CliError::Exists { files })
 }
 
 /// Starts the threads of the program and gives their number.

@@ -20,7 +20,7 @@ use crate::lcp::{FrictionalLcp, LcpError};
 use crate::model::{
     Cell, Element, Frames, Increments, Material, Mesh, Model, Plane, Section, Set, Settings, Step,
 };
-use crate::output::ResultSummary;
+use crate::output::{Interrupt, ResultSummary};
 
 /// One square, one step of ten increments with a frame at its end.
 fn square() -> Model {
@@ -76,7 +76,7 @@ fn loaded(model: Option<Model>) -> Loaded {
     }
 }
 
-fn report(increment: usize) -> IncrementReport {
+pub(super) fn report(increment: usize) -> IncrementReport {
     IncrementReport {
         increment,
         step: 1,
@@ -106,7 +106,7 @@ fn report(increment: usize) -> IncrementReport {
     }
 }
 
-fn summary(outcome: Outcome, increments: usize) -> RunSummary {
+pub(super) fn summary(outcome: Outcome, increments: usize) -> RunSummary {
     RunSummary {
         outcome,
         increments,
@@ -195,7 +195,7 @@ fn to_a_full_disk(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, 
     Err(RunError::Observer(full))
 }
 
-fn numerics() -> Numerics {
+pub(super) fn numerics() -> Numerics {
     Numerics {
         load: |_, _, _| loaded(Some(square())),
         solve: to_the_end,
@@ -203,22 +203,24 @@ fn numerics() -> Numerics {
 }
 
 /// A folder with a deck in it.
-struct Bench {
+pub(super) struct Bench {
     folder: TempDir,
+    pub interrupt: Interrupt,
 }
 
 impl Bench {
-    fn new() -> Self {
+    pub fn new() -> Self {
         let folder = TempDir::new().expect("folder");
         std::fs::write(folder.path().join("job.inp"), "*HEADING\n").expect("deck");
-        Bench { folder }
+        let interrupt = Interrupt::default();
+        Bench { folder, interrupt }
     }
 
-    fn path(&self, name: &str) -> PathBuf {
+    pub fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }
 
-    fn run(&self, options: &[&str], numerics: &Numerics) -> Result<Exit, CliError> {
+    pub fn run(&self, options: &[&str], numerics: &Numerics) -> Result<Exit, CliError> {
         let deck = self.path("job.inp");
         let out = self.path("out");
         let fixed = [
@@ -231,25 +233,27 @@ impl Bench {
         let options = options.iter().map(|option| (*option).as_ref());
         let args = Args::try_parse_from(fixed.into_iter().chain(options)).expect("arguments");
         match args.command {
-            Command::Run(args) => run::run(&args, "stickslip run job.inp", numerics),
+            Command::Run(args) => {
+                run::run(&args, "stickslip run job.inp", numerics, &self.interrupt)
+            }
             other => panic!("{other:?}"),
         }
     }
 
-    fn summary(&self) -> ResultSummary {
+    pub fn summary(&self) -> ResultSummary {
         ResultSummary::read(&self.path("out/job.vtkhdf")).expect("result")
     }
 
-    fn log(&self) -> String {
+    pub fn log(&self) -> String {
         std::fs::read_to_string(self.path("out/job.log")).expect("log")
     }
 
-    fn touched(&self) -> bool {
+    pub fn touched(&self) -> bool {
         Path::exists(&self.path("out"))
     }
 }
 
-fn code(result: &Result<Exit, CliError>) -> Exit {
+pub(super) fn code(result: &Result<Exit, CliError>) -> Exit {
     match result {
         Ok(exit) => *exit,
         Err(error) => error.exit(),
@@ -303,6 +307,16 @@ fn a_stop_leaves_the_last_good_state_and_says_where() {
     let summary = bench.summary();
     assert_eq!((summary.exit_status, summary.increments), (1, 3));
     assert_eq!(summary.frames, [0.0, report(3).time]);
+    let file = hdf5::File::open(bench.path("out/job.vtkhdf")).expect("result");
+    let points = file.group("VTKHDF/PointData").expect("fields");
+    for field in points.datasets().expect("fields") {
+        assert_eq!(
+            field.shape()[0],
+            2 * 4,
+            "{}: all of both frames",
+            field.name()
+        );
+    }
     let log = bench.log();
     for text in [
         "cutback  increment 4 at 3.000e-01, dt 5.00e-02 -> 5.00e-02",
@@ -357,22 +371,6 @@ fn an_unsolved_lcp_is_kept() {
 }
 
 #[test]
-fn results_are_replaced_only_when_wanted() {
-    let bench = Bench::new();
-    std::fs::create_dir(bench.path("out")).expect("folder");
-    std::fs::write(bench.path("out/job.sta"), "old").expect("old result");
-    let exit = bench.run(&["-q"], &numerics());
-    assert_eq!(code(&exit), Exit::FileSystem);
-    assert!(exit.is_err_and(|error| error.to_string().contains("--overwrite")));
-    let kept = std::fs::read_to_string(bench.path("out/job.sta")).expect("old result");
-    assert_eq!(kept, "old");
-    let exit = bench.run(&["-q", "--overwrite"], &numerics());
-    assert_eq!(code(&exit), Exit::Finished);
-    let exit = bench.run(&["-q", "--overwrite"], &numerics());
-    assert_eq!(code(&exit), Exit::Finished);
-}
-
-#[test]
 fn a_rejected_deck_touches_no_file() {
     let bench = Bench::new();
     let load = |_: &Path, _, _| loaded(None);
@@ -406,6 +404,12 @@ fn a_full_disk_and_a_folder_that_cannot_be_made() {
     );
     assert_eq!(code(&exit), Exit::FileSystem);
     assert_eq!(bench.summary().exit_status, 4);
+    let text = exit.expect_err("a full disk").to_string();
+    let kept = "; the results up to time 0.000000e+00 are kept";
+    assert!(
+        text.starts_with("cannot write the results: ") && text.ends_with(kept),
+        "{text}"
+    );
     let bench = Bench::new();
     std::fs::write(bench.path("out"), "a file").expect("file");
     let exit = bench.run(&["-q"], &numerics());

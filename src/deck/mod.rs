@@ -6,6 +6,7 @@
 
 mod card;
 mod collect;
+mod content;
 mod dimensions;
 mod keyword;
 mod lexer;

@@ -16,7 +16,11 @@ pub(super) fn keyword(text: Text, d: &mut Diagnostics) -> Option<&'static Keywor
         report_keyword(keyword, span, d);
         return Some(keyword);
     }
-    let known = word::find(typed, keywords().map(|keyword| keyword.name));
+    let names = keywords().map(|keyword| keyword.name);
+    let known = match d.may_show(&Diagnostic::error(Code::UnknownKeyword, span, "")) {
+        true => word::find(typed, names),
+        false => word::find_known(typed, names),
+    };
     let unknown = || unknown_keyword(starred, span, known);
     let keyword = known_word(known, unknown, "*", span, d).and_then(find)?;
     if let Match::Unknown(_) = known {

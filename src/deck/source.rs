@@ -2,6 +2,7 @@
 
 use super::Text;
 use super::collect::{Collector, Deck, Inclusion, Piece};
+use super::content::Content;
 use super::lexer::{Kind, Line};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
 use std::path::{Path, PathBuf};
@@ -18,11 +19,11 @@ const LONGEST_LINE: usize = 256;
 /// Reads a deck and the files it includes.
 pub fn read(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
     let name = path.display().to_string();
-    match text_of(path) {
-        Ok(text) => {
+    match content_of(path) {
+        Ok(content) => {
             let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
             let open = vec![(identity(path), folder)];
-            collect(&name, &text, open, sources, d)
+            collect(&name, &content, open, sources, d)
         }
         Err(why) => {
             let message = format!("cannot read {name}: {why}");
@@ -40,24 +41,24 @@ pub fn read(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
 
 /// Reads a deck from text; it cannot include files.
 pub fn parse_str(name: &str, text: &str, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
-    collect(name, text, Vec::new(), sources, d)
+    collect(name, &Content::new(text), Vec::new(), sources, d)
 }
 
 fn collect(
     name: &str,
-    text: &str,
+    content: &Content,
     open: Vec<(PathBuf, PathBuf)>,
     sources: &mut Sources,
     d: &mut Diagnostics,
 ) -> Deck {
-    let file = sources.add(name, text, None);
+    let file = sources.add(name, &content.text, None);
     let mut reading = Reading {
         sources,
         d,
         collector: Collector::new(),
         open,
     };
-    reading.lines(file, without_mark(text), false);
+    reading.content(file, content, false);
     let deck = reading.collector.deck;
     if deck.cards.is_empty() && !d.has_errors() {
         let start = Span {
@@ -83,6 +84,17 @@ struct Reading<'a> {
 }
 
 impl Reading<'_> {
+    /// Reads the lines of a file, unless it is none of a deck.
+    fn content(&mut self, file: FileId, content: &Content, rows_only: bool) {
+        match content.complaint(file) {
+            Some(complaint) => {
+                self.collector.deck.incomplete = true;
+                self.d.push(complaint);
+            }
+            None => self.lines(file, without_mark(&content.text), rows_only),
+        }
+    }
+
     /// Feeds the lines of a file to the collector.
     fn lines(&mut self, file: FileId, text: &str, rows_only: bool) {
         let lines = numbered(file, text);
@@ -144,11 +156,11 @@ impl Reading<'_> {
     /// Reads an included file in the place where it is named.
     fn include(&mut self, inclusion: &Inclusion) {
         match self.open_included(inclusion) {
-            Ok((name, path, text)) => {
+            Ok((name, path, content)) => {
                 let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
-                let file = self.sources.add(&name, &text, Some(inclusion.span));
+                let file = self.sources.add(&name, &content.text, Some(inclusion.span));
                 self.open.push((identity(&path), folder));
-                self.lines(file, without_mark(&text), inclusion.rows_only);
+                self.content(file, &content, inclusion.rows_only);
                 self.open.pop();
             }
             Err((code, why)) => {
@@ -160,11 +172,11 @@ impl Reading<'_> {
         }
     }
 
-    /// Name, path and text of an included file.
+    /// Name, path and content of an included file.
     fn open_included(
         &self,
         inclusion: &Inclusion,
-    ) -> Result<(String, PathBuf, String), (Code, String)> {
+    ) -> Result<(String, PathBuf, Content), (Code, String)> {
         let path = self
             .find(&inclusion.path)
             .map_err(|why| (Code::FileUnreadable, why))?;
@@ -176,8 +188,8 @@ impl Reading<'_> {
             let why = format!("more than {DEEPEST} levels or {MOST_FILES} files");
             return Err((Code::IncludeCycle, why));
         }
-        let text = text_of(&path).map_err(|why| (Code::FileUnreadable, why))?;
-        Ok((path.display().to_string(), path, text))
+        let content = content_of(&path).map_err(|why| (Code::FileUnreadable, why))?;
+        Ok((path.display().to_string(), path, content))
     }
 
     /// A file as seen from the including file, else from the main deck.
@@ -242,17 +254,16 @@ fn pieces<'l>(line: &Line<'l>, continued: bool, d: &mut Diagnostics) -> Vec<Piec
         .collect()
 }
 
-fn text_of(path: &Path) -> Result<String, String> {
+fn content_of(path: &Path) -> Result<Content, String> {
     if path.is_dir() {
         return Err("it is a folder".to_string());
     }
-    let bytes = match std::fs::metadata(path) {
-        Ok(data) if data.is_file() => std::fs::read(path),
+    let content = match std::fs::metadata(path) {
+        Ok(data) if data.is_file() => Content::of(path),
         Ok(_) => return Err("it is not a regular file".to_string()),
         Err(error) => Err(error),
     };
-    let bytes = bytes.map_err(|error| reason(&error))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    content.map_err(|error| reason(&error))
 }
 
 fn reason(error: &std::io::Error) -> String {

@@ -16,30 +16,44 @@ pub(super) enum Match {
 
 /// Upper case without blanks: how words and unquoted names are compared.
 pub(crate) fn fold(word: &str) -> String {
+    folded(word).collect()
+}
+
+fn folded(word: &str) -> impl Iterator<Item = char> {
     let visible = word.chars().filter(|c| !c.is_whitespace());
-    visible.flat_map(char::to_uppercase).collect()
+    visible.flat_map(char::to_uppercase)
 }
 
 /// Looks a word up among known ones, blanks and case aside.
 pub(super) fn find(word: &str, known: impl Iterator<Item = &'static str> + Clone) -> Match {
-    let folded = fold(word);
-    if let Some(exact) = known.clone().find(|k| fold(k) == folded) {
+    match find_known(word, known.clone()) {
+        Match::Unknown(_) => Match::Unknown(suggestion(&fold(word), known)),
+        found => found,
+    }
+}
+
+/// The same, but of an unknown word nobody asks what is meant.
+pub(super) fn find_known(word: &str, known: impl Iterator<Item = &'static str> + Clone) -> Match {
+    let short = fold(word);
+    if let Some(exact) = known.clone().find(|k| folded(k).eq(short.chars())) {
         return Match::Exact(exact);
     }
-    let mut longer = known.clone().filter(|k| fold(k).starts_with(&folded));
+    let size = short.chars().count();
+    let begins = |k: &&str| folded(k).take(size).eq(short.chars());
+    let mut longer = known.filter(begins);
     match (longer.next(), longer.next()) {
-        (Some(only), None) if folded.chars().count() >= SHORTEST => Match::Abbreviation(only),
-        _ => Match::Unknown(suggestion(&folded, known)),
+        (Some(only), None) if size >= SHORTEST => Match::Abbreviation(only),
+        _ => Match::Unknown(None),
     }
 }
 
 /// The word that is meant; a word of which this one is the beginning counts too.
 fn suggestion(
-    folded: &str,
+    short: &str,
     known: impl Iterator<Item = &'static str> + Clone,
 ) -> Option<&'static str> {
     let pairs: Vec<(String, &'static str)> = known.map(|k| (fold(k), k)).collect();
-    let best = closest(folded, pairs.iter().map(|(f, _)| f.as_str()))?;
+    let best = closest(short, pairs.iter().map(|(f, _)| f.as_str()))?;
     pairs.iter().find(|(f, _)| f == best).map(|&(_, k)| k)
 }
 

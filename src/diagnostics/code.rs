@@ -50,6 +50,8 @@ codes! {
     LongNumber "D118" "A number is longer than other codes read."
     Abbreviation "D119" "A keyword, parameter or value is abbreviated."
     NonAscii "D120" "A character outside ASCII in a keyword or data line."
+    NotText "D121" "A file holds a NUL byte: it is not a text."
+    EndlessLine "D122" "A line is longer than the program reads."
     UnsupportedKeyword "D201" "A known keyword that cannot be honoured and would change the answer."
     UnsupportedParameter "D202" "A known parameter or value that cannot be honoured and would change the answer."
     IgnoredKeyword "D203" "A known keyword that is left out without changing the answer."

@@ -1,5 +1,11 @@
 use super::{Code, Span};
 
+/// Longest word of a message, in characters: a name has 80 at most, a path is often longer.
+const LONGEST_WORD: usize = 200;
+
+/// Longest message, in characters.
+const LONGEST_TEXT: usize = 1000;
+
 /// How serious a diagnostic is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
@@ -54,7 +60,7 @@ impl Diagnostic {
             severity,
             code,
             span,
-            message,
+            message: shortened(message),
             label: None,
             help: None,
         }
@@ -62,13 +68,13 @@ impl Diagnostic {
 
     /// The same with words beside the caret.
     pub fn label(mut self, label: impl Into<String>) -> Diagnostic {
-        self.label = Some(label.into());
+        self.label = Some(shortened(label.into()));
         self
     }
 
     /// The same with advice.
     pub fn help(mut self, help: impl Into<String>) -> Diagnostic {
-        self.help = Some(help.into());
+        self.help = Some(shortened(help.into()));
         self
     }
 
@@ -78,5 +84,41 @@ impl Diagnostic {
             Some(word) => self.label(format!("did you mean {}?", word.as_ref())),
             None => self,
         }
+    }
+}
+
+/// A message in which what is echoed from a deck is of readable length.
+fn shortened(text: String) -> String {
+    if text.len() <= LONGEST_WORD {
+        return text;
+    }
+    let words = text.split(' ').map(|word| cut(word, LONGEST_WORD));
+    cut(&words.collect::<Vec<_>>().join(" "), LONGEST_TEXT)
+}
+
+/// The beginning of a text, with three dots if it goes on.
+fn cut(text: &str, length: usize) -> String {
+    match text.char_indices().nth(length) {
+        Some((end, _)) => format!("{}...", text.get(..end).unwrap_or_default()),
+        None => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_echoed_is_cut() {
+        let message = |text: &str| {
+            let message = format!("unknown keyword *{text}, really");
+            Diagnostic::error_without_place(Code::UnknownKeyword, message).message
+        };
+        assert_eq!(message("NODE"), "unknown keyword *NODE, really");
+        let long = message(&"Ä".repeat(100_000));
+        assert!(long.starts_with("unknown keyword *ÄÄ") && long.ends_with("Ä... really"));
+        assert_eq!(long.chars().count(), 16 + LONGEST_WORD + 10);
+        let many = message(&"A ".repeat(100_000));
+        assert_eq!(many.chars().count(), LONGEST_TEXT + 3);
     }
 }

@@ -1,5 +1,6 @@
-use super::{Code, Diagnostic, Severity};
-use std::collections::HashSet;
+use super::render::SHOWN;
+use super::{Code, Diagnostic, Severity, Span};
+use std::collections::{BinaryHeap, HashSet};
 
 /// What becomes of doubtful decks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -19,6 +20,8 @@ pub struct Diagnostics {
     strictness: Strictness,
     items: Vec<Diagnostic>,
     counts: [usize; 3],
+    /// Places of the first diagnostics of each severity, as many as are shown.
+    first: [BinaryHeap<Option<Span>>; 3],
     said: HashSet<(Code, String)>,
 }
 
@@ -45,7 +48,19 @@ impl Diagnostics {
     pub fn push(&mut self, mut diagnostic: Diagnostic) {
         diagnostic.severity = self.judge(&diagnostic);
         self.counts[diagnostic.severity as usize] += 1;
+        let first = &mut self.first[diagnostic.severity as usize];
+        first.push(diagnostic.span);
+        if first.len() > SHOWN {
+            first.pop();
+        }
         self.items.push(diagnostic);
+    }
+
+    /// Whether a diagnostic would be shown if it were the last one: an advice that takes time is
+    /// made for those only. One that is not shown now will not be later.
+    pub fn may_show(&self, diagnostic: &Diagnostic) -> bool {
+        let first = &self.first[self.judge(diagnostic) as usize];
+        first.len() < SHOWN || first.peek().is_some_and(|last| diagnostic.span < *last)
     }
 
     /// Adds a diagnostic unless one with the same code and message was added this way before.
@@ -100,5 +115,34 @@ impl Diagnostics {
         let mut sorted: Vec<&Diagnostic> = self.items.iter().collect();
         sorted.sort_by_key(|item| (item.span, item.severity));
         sorted
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_may_be_shown_is_among_the_first_by_place() {
+        let at = |line| {
+            let span = Span {
+                line,
+                ..Span::default()
+            };
+            Diagnostic::error(Code::UndefinedName, span, "")
+        };
+        let mut d = Diagnostics::new();
+        for line in 0..SHOWN as u32 {
+            assert!(d.may_show(&at(100 + line)));
+            d.push(at(100 + line));
+        }
+        assert!(d.may_show(&at(118)) && !d.may_show(&at(119)) && !d.may_show(&at(500)));
+        d.push(at(3));
+        assert!(d.may_show(&at(117)) && !d.may_show(&at(118)));
+        let warning = Diagnostic {
+            severity: Severity::Warning,
+            ..at(500)
+        };
+        assert!(d.may_show(&warning));
     }
 }

@@ -6,6 +6,7 @@
 mod code;
 mod diagnostic;
 mod list;
+mod number;
 mod render;
 mod sources;
 mod span;
@@ -14,6 +15,7 @@ mod suggestion;
 pub use code::Code;
 pub use diagnostic::{Diagnostic, Severity};
 pub use list::{Diagnostics, Strictness};
+pub use number::shown;
 pub use sources::{Source, Sources};
 pub use span::{FileId, Span};
 pub use suggestion::closest;

@@ -3,7 +3,7 @@ use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet}
 use std::ops::Range;
 
 /// Most diagnostics of one severity that are shown.
-const SHOWN: usize = 20;
+pub(super) const SHOWN: usize = 20;
 
 impl Diagnostics {
     /// Text of the diagnostics by their place, at most 20 of each severity and then their count.

@@ -1,26 +1,41 @@
+/// Most typing errors in a word that is understood.
+const MOST_ERRORS: usize = 2;
+
 /// The candidate that `word` is probably meant to be: the one with the fewest typing errors, if
 /// they are few for the word's length.
 pub fn closest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let word = word.to_uppercase();
-    let allowed = (word.chars().count() / 3).min(2);
-    candidates
+    let word: Vec<char> = capitals(word).collect();
+    let allowed = (word.len() / 3).min(MOST_ERRORS);
+    let mut letters = Vec::new();
+    let mut errors = |candidate: &str| {
+        letters.clear();
+        letters.extend(capitals(candidate).take(word.len() + allowed + 1));
+        let is_near = letters.len().abs_diff(word.len()) <= allowed;
+        is_near
+            .then(|| typing_errors(&word, &letters, allowed))
+            .flatten()
+    };
+    let counted = candidates
         .into_iter()
-        .map(|candidate| (typing_errors(&word, &candidate.to_uppercase()), candidate))
-        .filter(|&(errors, _)| errors <= allowed)
+        .filter_map(|candidate| Some((errors(candidate)?, candidate)));
+    counted
         .min_by_key(|&(errors, _)| errors)
         .map(|(_, candidate)| candidate)
 }
 
-/// Insertions, deletions, replacements and exchanges of neighbours between two words.
-fn typing_errors(a: &str, b: &str) -> usize {
-    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
-    if a.len().abs_diff(b.len()) > 2 {
-        return usize::MAX;
-    }
+fn capitals(word: &str) -> impl Iterator<Item = char> {
+    word.chars().flat_map(char::to_uppercase)
+}
+
+/// Insertions, deletions, replacements and exchanges of neighbours between two words, if they are no
+/// more than allowed.
+fn typing_errors(a: &[char], b: &[char], allowed: usize) -> Option<usize> {
     let mut before_last = Vec::new();
     let mut last: Vec<usize> = (0..=b.len()).collect();
+    let mut row = Vec::new();
     for i in 0..a.len() {
-        let mut row = vec![i + 1];
+        row.clear();
+        row.push(i + 1);
         for j in 0..b.len() {
             let replace = last[j] + usize::from(a[i] != b[j]);
             let mut best = replace.min(last[j + 1] + 1).min(row[j] + 1);
@@ -29,9 +44,14 @@ fn typing_errors(a: &str, b: &str) -> usize {
             }
             row.push(best);
         }
-        before_last = std::mem::replace(&mut last, row);
+        // Errors never grow fewer from one row to the next but by an exchange, from the one before.
+        if last.iter().chain(&row).all(|&errors| errors > allowed) {
+            return None;
+        }
+        std::mem::swap(&mut before_last, &mut last);
+        std::mem::swap(&mut last, &mut row);
     }
-    last[b.len()]
+    Some(last[b.len()]).filter(|&errors| errors <= allowed)
 }
 
 #[cfg(test)]
@@ -46,5 +66,8 @@ mod tests {
         assert_eq!(closest("NEST", words), Some("NSET"));
         assert_eq!(closest("FRICTION", words), None);
         assert_eq!(closest("", words), None);
+        assert_eq!(closest("OBUNDAYR", words), Some("BOUNDARY"));
+        assert_eq!(closest("OBUNADYR", words), None);
+        assert_eq!(closest(&"BOUNDARY".repeat(1000), words), None);
     }
 }

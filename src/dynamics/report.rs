@@ -296,6 +296,8 @@ pub enum Outcome {
     Finished,
     /// An increment failed for good; the results up to it are valid.
     Stopped(Box<Failure>),
+    /// The observer wanted no more; the results up to there are valid.
+    Interrupted,
 }
 
 /// Totals of a run.
@@ -322,4 +324,9 @@ pub trait Observer {
 
     /// An increment is repeated with half its length.
     fn cutback(&mut self, cutback: &Cutback) -> io::Result<()>;
+
+    /// Whether the run is to end here; asked before every attempt at an increment.
+    fn wants_stop(&self) -> bool {
+        false
+    }
 }

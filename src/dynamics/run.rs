@@ -161,28 +161,32 @@ impl<'m> Runner<'m, '_> {
                 length,
                 dt_min,
             };
-            let failure = match step.settings.impact_time {
+            let end = match step.settings.impact_time {
                 ImpactTime::Increment => self.grid_increment(&problem, &mut effective, place, grid),
                 ImpactTime::Event => self.cut_increment(&problem, &mut effective, place, grid),
             };
-            if let Some(failure) = failure? {
-                return Ok(Outcome::Stopped(Box::new(failure)));
+            if let Some(end) = end? {
+                return Ok(end);
             }
         }
         Ok(Outcome::Finished)
     }
 
-    /// One increment of the grid, in halves, quarters ... where it does not converge.
+    /// One increment of the grid, in halves, quarters ... where it does not converge; how the run
+    /// ends, if it does.
     fn grid_increment(
         &mut self,
         problem: &StepProblem<'m>,
         effective: &mut Effective,
         place: StepPlace,
         grid: Grid,
-    ) -> Result<Option<Failure>, RunError> {
+    ) -> Result<Option<Outcome>, RunError> {
         // The next piece is number `piece` of 2^halvings.
         let (mut piece, mut halvings) = (0_u32, 0_u32);
         while piece < 1 << halvings {
+            if self.observer.wants_stop() {
+                return Ok(Some(Outcome::Interrupted));
+            }
             let interval = grid.piece(place, piece, halvings);
             self.meter.counts = SolverCounts::default();
             let attempt = Attempt {
@@ -206,7 +210,7 @@ impl<'m> Runner<'m, '_> {
                 Err(failed) => {
                     let failure = self.failure(place, interval, failed, halvings);
                     if let Some(failure) = self.cut_back(failure, grid.dt_min)? {
-                        return Ok(Some(failure));
+                        return Ok(Some(Outcome::Stopped(Box::new(failure))));
                     }
                     (piece, halvings) = (2 * piece, halvings + 1);
                 }
@@ -216,18 +220,21 @@ impl<'m> Runner<'m, '_> {
     }
 
     /// One increment of the grid, in pieces that end at impacts, or halfway where one does not
-    /// converge.
+    /// converge; how the run ends, if it does.
     fn cut_increment(
         &mut self,
         problem: &StepProblem<'m>,
         effective: &mut Effective,
         place: StepPlace,
         grid: Grid,
-    ) -> Result<Option<Failure>, RunError> {
+    ) -> Result<Option<Outcome>, RunError> {
         let (mut events, mut from, mut last) = (0, grid.from, grid.length);
         // Ends of what is left, and of its halves; the next piece goes no further than the last.
         let mut ends = vec![grid.to];
         while let Some(&to) = ends.last() {
+            if self.observer.wants_stop() {
+                return Ok(Some(Outcome::Interrupted));
+            }
             let is_whole = from == grid.from && to == grid.to;
             let rest = Interval {
                 start: place.moment(from),
@@ -275,7 +282,7 @@ impl<'m> Runner<'m, '_> {
                     let (interval, failed) = *broken;
                     let failure = self.failure(place, interval, failed, halvings);
                     if let Some(failure) = self.cut_back(failure, grid.dt_min)? {
-                        return Ok(Some(failure));
+                        return Ok(Some(Outcome::Stopped(Box::new(failure))));
                     }
                     ends.push(from + interval.dt / 2.0);
                 }

@@ -1,4 +1,4 @@
-use std::io::{self, Write};
+use std::io::{self, ErrorKind, Write};
 
 use super::log::Log;
 use super::progress::Progress;
@@ -19,6 +19,8 @@ pub enum Verbosity {
 /// The screen with its live line, and the log, which gets everything the screen does.
 pub(super) struct Console {
     screen: Option<Box<dyn Write>>,
+    /// Why the screen was given up, if it was not a closed pipe.
+    lost: Option<io::Error>,
     /// Whether there was no screen from the start.
     quiet: bool,
     progress: Progress,
@@ -31,25 +33,41 @@ impl Console {
         Console {
             quiet: screen.is_none(),
             screen,
+            lost: None,
             progress,
             log,
         }
     }
 
-    /// Prints a line. A screen that cannot be written, such as a closed pipe, is given up.
+    /// Prints a line. A screen that cannot be written, such as a closed pipe, is given up: the run
+    /// goes on without.
     pub fn line(&mut self, text: &str) -> io::Result<()> {
-        let mut failed = false;
+        let mut done = Ok(());
         if let Some(screen) = &mut self.screen {
             self.progress.suspend(|| {
-                failed = writeln!(screen, "{text}")
-                    .and_then(|()| screen.flush())
-                    .is_err();
+                done = writeln!(screen, "{text}").and_then(|()| screen.flush());
             });
         }
-        if failed {
+        if let Err(error) = done {
             self.screen = None;
+            self.lost = Some(error).filter(|error| error.kind() != ErrorKind::BrokenPipe);
         }
         self.log.line(text)
+    }
+
+    /// Why the screen was given up; a closed pipe is no reason.
+    pub fn lost(&mut self) -> Option<io::Error> {
+        self.lost.take()
+    }
+
+    /// Whether the screen was given up otherwise than as a closed pipe.
+    pub fn is_lost(&self) -> bool {
+        self.lost.is_some()
+    }
+
+    /// Begins the log with the lines so far.
+    pub fn begin_log(&mut self) -> io::Result<()> {
+        self.log.begin()
     }
 
     /// Prints a line that even a quiet run shows, on the standard error.

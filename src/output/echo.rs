@@ -1,7 +1,7 @@
 //! The model in a few lines, as the screen and `check` show it.
 
 use super::format::{counted, general, grouped, scientific};
-use super::frames::DEFAULT_FRAMES;
+use super::frames::{DEFAULT_FRAMES, are_dense};
 use crate::contact::{InitialGap, initial_gaps};
 use crate::model::{
     Cell, Contact, Element, Frames, Impact, ImpactTime, Model, Plane, Scheme, Settings,
@@ -123,6 +123,12 @@ impl ModelEcho {
         ];
         let mut lines = wrap(&format!("step {}", index + 1), &times);
         lines.extend(wrap("", &numerics));
+        if are_dense(step) {
+            lines.push(label(
+                "note",
+                "frames are asked for at shorter intervals than dt: every increment is one",
+            ));
+        }
         lines
     }
 }

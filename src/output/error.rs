@@ -1,5 +1,5 @@
-use std::io;
-use std::path::PathBuf;
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
@@ -11,19 +11,43 @@ pub enum OutputError {
     /// A name of the deck cannot stand in the result file.
     #[error(transparent)]
     Name(#[from] NameError),
+    /// Files of an earlier run are in the way.
+    #[error(
+        "{} exists already; --overwrite replaces the results of an earlier run",
+        list(files)
+    )]
+    Exists {
+        /// The files.
+        files: Vec<PathBuf>,
+    },
+    /// Another run of the job is going on.
+    #[error("{} belongs to a run that is still going on", path.display())]
+    Held {
+        /// The file that tells.
+        path: PathBuf,
+    },
+    /// A fifo, a device or a folder has the name of a file of the job.
+    #[error("cannot write {}: it is not a regular file", path.display())]
+    NotRegular {
+        /// Its path.
+        path: PathBuf,
+    },
     /// A file or folder could not be created.
-    #[error("cannot create {}: {source}", path.display())]
+    #[error("cannot create {}: {}", path.display(), reason(source))]
     Create {
         /// The file or folder.
         path: PathBuf,
         /// Why.
         source: io::Error,
     },
+    /// A file could not be written; the error names it.
+    #[error("cannot write the results: {0}")]
+    Write(#[from] io::Error),
 }
 
 impl OutputError {
     /// The result of creating `path`.
-    pub(super) fn at(path: &std::path::Path) -> impl Fn(io::Error) -> Self + '_ {
+    pub(super) fn at(path: &Path) -> impl Fn(io::Error) -> Self + '_ {
         move |source| OutputError::Create {
             path: path.to_owned(),
             source,
@@ -31,7 +55,57 @@ impl OutputError {
     }
 }
 
-/// An error of the HDF5 library as an error of input and output.
+fn list(files: &[PathBuf]) -> String {
+    let names: Vec<String> = files.iter().map(|f| f.display().to_string()).collect();
+    names.join(", ")
+}
+
+/// The same error with the file in front of its reason.
+pub(super) fn at(path: &Path) -> impl Fn(io::Error) -> io::Error + '_ {
+    move |error| {
+        let text = format!("{}: {}", path.display(), reason(&error));
+        io::Error::new(error.kind(), text)
+    }
+}
+
+/// Why, in words that do not depend on the system where it matters.
+pub fn reason(error: &io::Error) -> String {
+    match error.kind() {
+        ErrorKind::StorageFull => "no space left on device".to_owned(),
+        ErrorKind::QuotaExceeded => "the disk quota is used up".to_owned(),
+        ErrorKind::FileTooLarge => "larger than files may become here (ulimit -f)".to_owned(),
+        _ => error.to_string(),
+    }
+}
+
+/// An error of the HDF5 library as an error of input and output: that of the system, if the library
+/// tells of one.
 pub(super) fn io_error(error: hdf5::Error) -> io::Error {
-    io::Error::other(format!("result file: {error}"))
+    let stack = error.stack();
+    let frames = stack.iter().flat_map(|stack| stack.iter());
+    let number = frames.filter_map(|frame| errno(frame.desc())).next();
+    number.map_or_else(
+        || io::Error::other(format!("the HDF5 library fails: {error}")),
+        io::Error::from_raw_os_error,
+    )
+}
+
+/// The number behind `errno = ` in a message of the HDF5 library.
+fn errno(text: &str) -> Option<i32> {
+    let (_, rest) = text.split_once("errno = ")?;
+    let end = rest.find(|c: char| !c.is_ascii_digit());
+    rest.get(..end.unwrap_or(rest.len()))?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_number_of_the_system_is_found_in_a_message() {
+        let text = "file write failed: file descriptor = 3, errno = 28, error message = 'No space'";
+        assert_eq!(errno(text), Some(28));
+        assert_eq!(errno("errno = "), None);
+        assert_eq!(errno("unable to flush file"), None);
+    }
 }

@@ -7,6 +7,9 @@ pub const DEFAULT_FRAMES: usize = 100;
 /// Part of an increment by which its end may miss a frame's time: round-off only.
 const TIME_TOLERANCE: f64 = 1e-6;
 
+/// Intervals up to which frame times are counted: beyond, neighbours are the same number.
+const MOST_INTERVALS: f64 = (1_u64 << 52) as f64;
+
 /// Decides which increments write a frame.
 #[derive(Debug, Clone)]
 pub struct FrameSchedule<'a> {
@@ -72,17 +75,31 @@ fn passed(step: &Step, first: usize, end: f64) -> usize {
     }
 }
 
-/// The first k from `first` on with `time(k)` after `end`; `time` increases linearly from 0.
+/// The first k from `first` on with `time(k)` after `end`; `time` increases linearly from 0. With
+/// intervals that are nothing beside `end`, one more is done each time: every increment writes a
+/// frame.
 fn multiples(first: usize, end: f64, time: impl Fn(usize) -> f64) -> usize {
-    let interval = time(1);
-    if interval <= 0.0 {
-        return first + 1;
+    let intervals = end / time(1);
+    if !(0.0..MOST_INTERVALS).contains(&intervals) {
+        return first.saturating_add(1);
     }
-    let mut k = first.max((end / interval) as usize);
+    let mut k = first.max(intervals as usize);
     while time(k) <= end {
         k += 1;
     }
     k
+}
+
+/// Whether frames are asked for at intervals shorter than the increments of a step: each writes
+/// one.
+pub(super) fn are_dense(step: &Step) -> bool {
+    let increments = &step.increments;
+    let interval = match step.frames {
+        Frames::Count(count) => increments.period / count as f64,
+        Frames::Every(interval) => interval,
+        Frames::Default | Frames::Increments(_) | Frames::Times(_) => return false,
+    };
+    interval < increments.dt * (1.0 - TIME_TOLERANCE)
 }
 
 #[cfg(test)]
@@ -159,6 +176,38 @@ mod tests {
         assert_eq!(due(Frames::Every(0.01), 3, 1), [0, 1, 2, 3]);
         assert_eq!(due(Frames::Every(0.0), 2, 1), [0, 1, 2]);
         assert_eq!(due(Frames::Every(9.0), 4, 1), [0, 4]);
+    }
+
+    #[test]
+    fn intervals_beyond_all_measure_are_every_increment_or_none() {
+        let all: Vec<usize> = (0..=12).collect();
+        for interval in [
+            1e-300,
+            1e-21,
+            f64::MIN_POSITIVE,
+            5e-324,
+            1e-16,
+            f64::NAN,
+            -1.0,
+        ] {
+            assert_eq!(due(Frames::Every(interval), 6, 2), all, "{interval}");
+        }
+        for count in [usize::MAX, 1 << 53, 1 << 52, 1 << 40] {
+            assert_eq!(due(Frames::Count(count), 6, 2), all, "{count}");
+        }
+        assert_eq!(due(Frames::Every(f64::MAX), 6, 2), [0, 6, 12]);
+        assert_eq!(due(Frames::Every(f64::INFINITY), 6, 2), [0, 6, 12]);
+        assert_eq!(due(Frames::Increments(usize::MAX), 6, 2), [0, 6, 12]);
+        let times = vec![-1.0, 1e-300, 0.1, 1e300, f64::INFINITY];
+        assert_eq!(due(Frames::Times(times), 6, 2), [0, 1, 6, 7, 12]);
+    }
+
+    #[test]
+    fn dense_frames_are_those_that_every_increment_writes() {
+        let dense = |frames| are_dense(&model(frames, 1.0).steps[0]);
+        assert!(dense(Frames::Every(0.09)) && dense(Frames::Count(11)));
+        assert!(!dense(Frames::Every(0.1)) && !dense(Frames::Count(10)));
+        assert!(!dense(Frames::Default) && !dense(Frames::Increments(1)));
     }
 
     #[test]

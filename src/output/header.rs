@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::clock::utc_now;
 use super::echo::{label, wrap};
-use super::format::{counted, grouped};
+use super::format::counted;
 use super::record::RunRecord;
 
 /// Program, job, time, threads and the deck's heading.
@@ -41,8 +41,8 @@ pub fn deck_line(
         _ => String::new(),
     };
     let text = format!(
-        "{name}{included}, {} lines: {}, {}{log}",
-        grouped(lines),
+        "{name}{included}, {}: {}, {}{log}",
+        counted(lines, "line"),
         counted(errors, "error"),
         counted(warnings, "warning"),
     );

@@ -2,27 +2,50 @@
 
 use std::fs::File;
 use std::io::{self, LineWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::echo::wrap;
+use super::error::at;
 use super::format::scientific;
 use crate::dynamics::{Cutback, IncrementReport, PassReport};
 
 /// Writes the log.
 pub(super) struct Log {
     file: LineWriter<File>,
+    path: PathBuf,
+    /// What is to be written as soon as the log may be; nothing once it is.
+    waiting: Option<String>,
 }
 
 impl Log {
-    /// Creates the file, or empties it.
-    pub fn create(path: &Path) -> io::Result<Self> {
-        let file = LineWriter::new(File::create(path)?);
-        Ok(Log { file })
+    /// A log that keeps its lines to itself until [`Log::begin`]; till then an old text stays.
+    pub fn new(file: File, path: &Path) -> Self {
+        Log {
+            file: LineWriter::new(file),
+            path: path.to_owned(),
+            waiting: Some(String::new()),
+        }
+    }
+
+    /// Empties the file and writes what has waited.
+    pub fn begin(&mut self) -> io::Result<()> {
+        let waiting = self.waiting.take().unwrap_or_default();
+        let emptied = self.file.get_mut().set_len(0);
+        emptied
+            .and_then(|()| self.file.write_all(waiting.as_bytes()))
+            .map_err(at(&self.path))
     }
 
     /// Writes a line.
     pub fn line(&mut self, text: &str) -> io::Result<()> {
-        writeln!(self.file, "{text}")
+        match &mut self.waiting {
+            Some(waiting) => {
+                waiting.push_str(text);
+                waiting.push('\n');
+                Ok(())
+            }
+            None => writeln!(self.file, "{text}").map_err(at(&self.path)),
+        }
     }
 
     /// Writes the passes of an increment.

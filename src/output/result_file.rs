@@ -4,51 +4,79 @@ use std::path::{Path, PathBuf};
 
 use hdf5::{File, FileBuilder};
 
-use super::error::io_error;
+use super::error::{at, io_error};
 use super::history::History;
 use super::record::{Record, RunRecord};
+use super::space::Space;
 use super::vtkhdf::Fields;
 use crate::dynamics::{IncrementReport, NodalResults, RunSummary, State};
 use crate::model::Model;
 
 /// `JOB.vtkhdf` while it is being written.
 pub(super) struct ResultFile {
+    /// The name it is to have, or has.
     path: PathBuf,
     file: File,
     fields: Fields,
     history: History,
     record: Record,
+    space: Space,
+    /// Whether the library has failed: then nobody knows what the file holds.
+    is_broken: bool,
 }
 
 impl ResultFile {
-    /// Creates the file, or replaces it, with everything known before the run.
-    pub fn create(path: &Path, model: &Model, record: &RunRecord) -> io::Result<Self> {
-        Self::build(path, model, record).map_err(io_error)
+    /// Creates the file as `draft`, or replaces it, with everything known before the run; messages
+    /// name it `path`.
+    pub fn create(
+        draft: &Path,
+        path: &Path,
+        model: &Model,
+        record: &RunRecord,
+    ) -> io::Result<Self> {
+        let builder = || {
+            FileBuilder::new()
+                .with_fcpl(|properties| properties.obj_track_times(false))
+                .create(draft)
+        };
+        let file = builder().map_err(io_error).map_err(at(path))?;
+        let parts = Self::build(&file, model, record);
+        let (fields, history, record) = parts.map_err(io_error).map_err(at(path))?;
+        let mut result = ResultFile {
+            path: path.to_owned(),
+            space: Space::new(draft, &file).map_err(at(path))?,
+            fields,
+            history,
+            record,
+            file,
+            is_broken: false,
+        };
+        result.room()?;
+        Ok(result)
     }
 
-    fn build(path: &Path, model: &Model, record: &RunRecord) -> hdf5::Result<Self> {
-        let file = FileBuilder::new()
-            .with_fcpl(|properties| properties.obj_track_times(false))
-            .create(path)?;
-        super::model::write(&file, model)?;
-        let result = ResultFile {
-            path: path.to_owned(),
-            fields: Fields::create(&file, model)?,
-            history: History::create(&file, model)?,
-            record: Record::create(&file, record)?,
-            file,
-        };
-        result.file.flush()?;
-        Ok(result)
+    fn build(
+        file: &File,
+        model: &Model,
+        record: &RunRecord,
+    ) -> hdf5::Result<(Fields, History, Record)> {
+        super::model::write(file, model)?;
+        let fields = Fields::create(file, model)?;
+        let history = History::create(file, model)?;
+        let record = Record::create(file, record)?;
+        file.flush()?;
+        Ok((fields, history, record))
     }
 
     /// Appends the history row of an increment.
     pub fn history(&mut self, model: &Model, report: &IncrementReport) -> io::Result<()> {
-        self.history.write(model, report).map_err(io_error)
+        self.room()?;
+        let written = self.history.write(model, report);
+        self.checked(written)
     }
 
     /// Appends a frame and writes everything to the disk, so that the file is readable even when
-    /// the program is killed.
+    /// the program is killed. Ends with room for what comes next.
     pub fn frame(
         &mut self,
         model: &Model,
@@ -56,10 +84,13 @@ impl ResultFile {
         state: &State,
         nodal: &NodalResults,
     ) -> io::Result<()> {
-        (self.fields.write(model, time, state, nodal))
+        self.room()?;
+        let written = (self.fields.write(model, time, state, nodal))
             .and_then(|()| self.history.flush())
-            .and_then(|()| self.file.flush())
-            .map_err(io_error)
+            .and_then(|()| self.file.flush());
+        self.checked(written)?;
+        self.space.written();
+        self.room()
     }
 
     /// Completes the run record.
@@ -70,18 +101,41 @@ impl ResultFile {
         output: f64,
         total: f64,
     ) -> io::Result<()> {
-        (self.history.flush())
+        let written = (self.history.flush())
             .and_then(|()| self.record.finish(summary, exit_status, output, total))
-            .and_then(|()| self.file.flush())
-            .map_err(io_error)
+            .and_then(|()| self.file.flush());
+        self.checked(written)?;
+        self.space.release();
+        Ok(())
     }
 
     /// Marks the end of a run without summary.
     pub fn abandon(&mut self, exit_status: u8) -> io::Result<()> {
-        (self.history.flush())
+        if self.is_broken {
+            return Ok(());
+        }
+        let written = (self.history.flush())
             .and_then(|()| self.record.close(exit_status))
-            .and_then(|()| self.file.flush())
-            .map_err(io_error)
+            .and_then(|()| self.file.flush());
+        self.checked(written)?;
+        self.space.release();
+        Ok(())
+    }
+
+    /// Whether what was written is there to be read.
+    pub fn is_readable(&self) -> bool {
+        !self.is_broken
+    }
+
+    /// Makes sure that the disk takes what is written next: a file of which the library has
+    /// written a part only is lost as a whole.
+    fn room(&mut self) -> io::Result<()> {
+        self.space.ensure().map_err(at(&self.path))
+    }
+
+    fn checked(&mut self, done: hdf5::Result<()>) -> io::Result<()> {
+        self.is_broken |= done.is_err();
+        done.map_err(io_error).map_err(at(&self.path))
     }
 
     /// Frames in the file.

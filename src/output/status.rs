@@ -2,8 +2,9 @@
 
 use std::fs::File;
 use std::io::{self, LineWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use super::error::at;
 use super::format::{scientific, signed};
 use super::screen::{closed, sticking};
 use crate::dynamics::IncrementReport;
@@ -37,15 +38,17 @@ fn aligned(values: [String; 13]) -> String {
 /// Writes the status file.
 pub(super) struct StatusFile {
     file: LineWriter<File>,
+    path: PathBuf,
 }
 
 impl StatusFile {
     /// Creates the file, or empties it.
     pub fn create(path: &Path) -> io::Result<Self> {
-        let mut file = LineWriter::new(File::create(path)?);
+        let mut file = LineWriter::new(File::create(path).map_err(at(path))?);
         let names = aligned(COLUMNS.map(|(name, _)| name.to_owned()));
-        writeln!(file, "{TITLE}\n#{}", &names[1..])?;
-        Ok(StatusFile { file })
+        writeln!(file, "{TITLE}\n#{}", &names[1..]).map_err(at(path))?;
+        let path = path.to_owned();
+        Ok(StatusFile { file, path })
     }
 
     /// Writes the line of an increment that needed so many attempts; `error` is the relative
@@ -72,6 +75,6 @@ impl StatusFile {
             solver.pivots.to_string(),
             signed(error, 3),
         ];
-        writeln!(self.file, "{}", aligned(values))
+        writeln!(self.file, "{}", aligned(values)).map_err(at(&self.path))
     }
 }

@@ -1,4 +1,3 @@
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -8,8 +7,10 @@ use thiserror::Error;
 
 use super::body_times::BodyTimes;
 use super::echo::{label, wrap};
+use super::error::reason;
 use super::format::{bytes, counted, general, scientific};
 use super::record::UNFINISHED;
+use super::regular::regular_file;
 use super::warnings::{Findings, never_closed};
 use crate::linear::{larger, largest};
 
@@ -17,7 +18,7 @@ use crate::linear::{larger, largest};
 #[derive(Debug, Error)]
 pub enum SummaryError {
     /// The file is not there or may not be read.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {}", path.display(), reason(source))]
     Open {
         /// The file.
         path: PathBuf,
@@ -84,10 +85,7 @@ impl ResultSummary {
             path: path.to_owned(),
             source,
         };
-        let size = fs::File::open(path)
-            .and_then(|file| file.metadata())
-            .map_err(open)?
-            .len();
+        let size = regular_file(path).map_err(open)?.len();
         let content = |source| SummaryError::Content {
             path: path.to_owned(),
             source,
@@ -156,6 +154,10 @@ impl ResultSummary {
             UNFINISHED => "still running or killed".to_owned(),
             0 => format!("finished {finished}, exit status 0"),
             1 => format!("stopped in the solve {finished}, exit status 1"),
+            129 | 130 | 143 => {
+                let status = self.exit_status;
+                format!("stopped by a signal {finished}, exit status {status}")
+            }
             status => format!("ended {finished}, exit status {status}"),
         };
         format!("started {}, {how}", self.started)

@@ -1,16 +1,18 @@
 use std::fs;
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::balance::Balance;
+use super::claim::Claim;
 use super::console::{Console, Verbosity};
 use super::echo::wrap;
-use super::error::OutputError;
+use super::error::{OutputError, at};
 use super::failure::failure_lines;
 use super::format::{bytes, counted, general, scientific};
 use super::frames::FrameSchedule;
-use super::job::JobFiles;
+use super::interrupt::Interrupt;
+use super::last::LastState;
 use super::log::{Log, cutback_lines, increment_line};
 use super::names::check_names;
 use super::progress::Progress;
@@ -21,8 +23,7 @@ use super::status::StatusFile;
 use super::strain::{StrainWatch, warning_lines};
 use super::warnings::Watch;
 use crate::dynamics::{
-    Cause, Cutback, Failure, IncrementReport, NodalResults, Observer, Outcome, RunSummary,
-    SolverCounts, State,
+    Cause, Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts,
 };
 use crate::linear::larger;
 use crate::model::Model;
@@ -35,9 +36,9 @@ const LOGGED_GAINS: usize = 100;
 /// Writes everything a run leaves behind: result file, status file, log and screen.
 pub struct ResultWriter<'a> {
     model: &'a Model,
-    files: JobFiles,
     result: ResultFile,
-    status: StatusFile,
+    /// Created with the first frame.
+    status: Option<StatusFile>,
     console: Console,
     verbosity: Verbosity,
     table: Table,
@@ -55,71 +56,40 @@ pub struct ResultWriter<'a> {
     cone_violation: f64,
     started: Instant,
     spent: Duration,
-}
-
-/// The last good state: the final frame of a run that stops.
-#[derive(Default)]
-struct LastState {
-    time: f64,
-    state: State,
-    nodal: NodalResults,
-    /// Whether it is in the file.
-    written: bool,
-}
-
-impl LastState {
-    /// Copies the state into the memory at hand.
-    fn set(&mut self, report: &IncrementReport, written: bool) {
-        let (state, nodal) = (&report.state, &report.nodal);
-        self.time = report.time;
-        self.state.u.clone_from(&state.u);
-        self.state.v.clone_from(&state.v);
-        self.state.a.clone_from(&state.a);
-        self.nodal.reaction.clone_from(&nodal.reaction);
-        self.nodal.contact_force.clone_from(&nodal.contact_force);
-        self.nodal.gap.clone_from(&nodal.gap);
-        self.nodal.status.clone_from(&nodal.status);
-        self.nodal.pressure.clone_from(&nodal.pressure);
-        self.nodal.slip.clone_from(&nodal.slip);
-        self.written = written;
-    }
+    interrupt: Interrupt,
+    claim: Claim,
 }
 
 impl<'a> ResultWriter<'a> {
-    /// Creates the files of a job, replacing old ones, and prints to the standard output.
+    /// Begins the files of a job and prints to the standard output.
     pub fn create(
         model: &'a Model,
-        files: &JobFiles,
+        claim: Claim,
         record: &RunRecord,
         verbosity: Verbosity,
     ) -> Result<Self, OutputError> {
         let shown = verbosity != Verbosity::Quiet;
         let live = shown && io::stdout().is_terminal() && io::stderr().is_terminal();
         let screen = shown.then(|| Box::new(io::stdout()) as Box<dyn Write>);
-        Self::with_screen(model, files, record, verbosity, screen, live)
+        Self::with_screen(model, claim, record, verbosity, screen, live)
     }
 
     /// The same with a screen of choice, and a live line on the terminal or not.
     pub fn with_screen(
         model: &'a Model,
-        files: &JobFiles,
+        claim: Claim,
         record: &RunRecord,
         verbosity: Verbosity,
         screen: Option<Box<dyn Write>>,
         live: bool,
     ) -> Result<Self, OutputError> {
         check_names(model)?;
-        create_folder(&files.result)?;
-        remove_old(files)?;
-        let log = Log::create(&files.log).map_err(OutputError::at(&files.log))?;
-        let status = StatusFile::create(&files.status).map_err(OutputError::at(&files.status))?;
-        let result = ResultFile::create(&files.result, model, record)
-            .map_err(OutputError::at(&files.result))?;
+        let log = Log::new(claim.log()?, &claim.files().log);
+        let result = ResultFile::create(&claim.draft()?, &claim.files().result, model, record)?;
         Ok(ResultWriter {
             model,
-            files: files.clone(),
             result,
-            status,
+            status: None,
             console: Console::new(screen, Progress::new(model, live), log),
             verbosity,
             table: Table::new(model),
@@ -134,7 +104,39 @@ impl<'a> ResultWriter<'a> {
             cone_violation: 0.0,
             started: Instant::now(),
             spent: Duration::ZERO,
+            interrupt: Interrupt::default(),
+            claim,
         })
+    }
+
+    /// Ends the run after the increment in which `interrupt` asks for it.
+    pub fn heed(&mut self, interrupt: &Interrupt) {
+        self.interrupt = interrupt.clone();
+    }
+
+    /// What there is to read of the results after an error: up to which time.
+    pub fn kept(&self) -> Option<String> {
+        let is_kept = self.status.is_some() && self.result.is_readable();
+        is_kept.then(|| {
+            let time = scientific(self.last.frame, 6);
+            format!("the results up to time {time} are kept")
+        })
+    }
+
+    /// Why the screen was given up; a closed pipe is no reason.
+    pub fn lost_screen(&mut self) -> Option<io::Error> {
+        self.console.lost()
+    }
+
+    /// With the first frame the files of the job appear, in place of those of an earlier run.
+    fn publish(&mut self) -> io::Result<()> {
+        if self.status.is_none() {
+            let status = StatusFile::create(&self.claim.files().status)?;
+            self.console.begin_log()?;
+            self.claim.publish()?;
+            self.status = Some(status);
+        }
+        Ok(())
     }
 
     /// Prints a line on the screen and in the log.
@@ -150,12 +152,20 @@ impl<'a> ResultWriter<'a> {
     /// Ends the run: the last good state of a stopped run, the record and the closing lines.
     pub fn finish(&mut self, summary: &RunSummary) -> io::Result<()> {
         self.console.finish();
+        if summary.outcome != Outcome::Finished {
+            self.write_last_state()?;
+        }
+        self.publish()?;
         let exit_status = match &summary.outcome {
+            Outcome::Finished if self.console.is_lost() => 4,
             Outcome::Finished => 0,
             Outcome::Stopped(failure) => {
-                self.write_last_state()?;
                 self.print_failure(failure)?;
                 1
+            }
+            Outcome::Interrupted => {
+                self.print_interrupt(summary)?;
+                self.interrupt.exit_status()
             }
         };
         let (output, total) = (self.spent, self.started.elapsed());
@@ -175,9 +185,10 @@ impl<'a> ResultWriter<'a> {
         if last.written || last.state.u.is_empty() {
             return Ok(());
         }
-        last.written = true;
         self.result
-            .frame(self.model, last.time, &last.state, &last.nodal)
+            .frame(self.model, last.time, &last.state, &last.nodal)?;
+        (last.written, last.frame) = (true, last.time);
+        Ok(())
     }
 
     fn record_increment(&mut self, report: &IncrementReport) -> io::Result<()> {
@@ -198,6 +209,7 @@ impl<'a> ResultWriter<'a> {
         let due = self.schedule.is_due(report);
         if due {
             (self.result).frame(self.model, report.time, &report.state, &report.nodal)?;
+            self.publish()?;
         }
         self.last.set(report, due);
         Ok(())
@@ -206,8 +218,8 @@ impl<'a> ResultWriter<'a> {
     fn print_increment(&mut self, report: &IncrementReport) -> io::Result<()> {
         let error = self.balance.relative(report.energy.balance);
         let attempts = std::mem::take(&mut self.failed_attempts) + 1;
-        if report.increment > 0 {
-            self.status.write(report, attempts, error)?;
+        if let (Some(status), 1..) = (&mut self.status, report.increment) {
+            status.write(report, attempts, error)?;
         }
         if self.verbosity == Verbosity::Verbose {
             self.console.detail(&increment_line(report))?;
@@ -262,11 +274,27 @@ impl<'a> ResultWriter<'a> {
             self.console.alarm(&line)?;
         }
         if let Cause::Lcp(failed) = &failure.cause {
-            let path = self.files.failed_lcp(failure.increment);
-            fs::write(&path, failed.problem.to_json())?;
+            let path = self.claim.files().failed_lcp(failure.increment);
+            replace(&path, &failed.problem.to_json()).map_err(at(&path))?;
             let line = format!("lcp      {} holds the problem", path.display());
             self.console.alarm(&line)?;
         }
+        self.print_kept()
+    }
+
+    fn print_interrupt(&mut self, summary: &RunSummary) -> io::Result<()> {
+        let pieces = [
+            format!("{} asked for the end", self.interrupt.name()),
+            format!("increment {} is the last", summary.increments),
+        ];
+        for line in wrap("stopped", &pieces) {
+            self.console.alarm(&line)?;
+        }
+        self.print_kept()
+    }
+
+    /// Up to where the results are good.
+    fn print_kept(&mut self) -> io::Result<()> {
         let (name, _) = self.result.name_and_size();
         let pieces = match self.result.frames() {
             0 => vec![format!("{name} has no frame")],
@@ -338,26 +366,18 @@ impl Observer for ResultWriter<'_> {
         self.print_cutback(cutback)?;
         self.console.passes(&cutback.failure.passes)
     }
-}
 
-fn create_folder(file: &Path) -> Result<(), OutputError> {
-    match file.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => {
-            fs::create_dir_all(folder).map_err(OutputError::at(folder))
-        }
-        _ => Ok(()),
+    fn wants_stop(&self) -> bool {
+        self.interrupt.signal().is_some()
     }
 }
 
-/// Removes the files of an earlier run: one that is still going on keeps writing to its own.
-fn remove_old(files: &JobFiles) -> Result<(), OutputError> {
-    for path in files.existing() {
-        fs::remove_file(path).map_err(|source| OutputError::Create {
-            path: path.to_owned(),
-            source,
-        })?;
+/// Writes a file in place of what has its name, be it a link or a fifo.
+fn replace(path: &Path, text: &str) -> io::Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
+        _ => fs::write(path, text),
     }
-    Ok(())
 }
 
 /// What the complementarity problems took, by method.
@@ -392,7 +412,7 @@ fn timing_lines(summary: &RunSummary, output: f64, total: f64) -> Vec<String> {
     pieces.push(part("output", output));
     let done = match summary.outcome {
         Outcome::Finished => "done",
-        Outcome::Stopped(_) => "stopped",
+        Outcome::Stopped(_) | Outcome::Interrupted => "stopped",
     };
     wrap(done, &pieces)
 }

@@ -56,7 +56,11 @@ impl<'a> Context<'a> {
         }
         let message = format!("{what} {} is not defined", name.text);
         let error = Diagnostic::error(Code::UndefinedName, name.span, message);
-        let error = self.with_what_is_meant(error, what, name, known);
+        // What takes time to find is found for what is shown.
+        let error = match self.d.may_show(&error) {
+            true => self.with_what_is_meant(error, what, name, known),
+            false => error,
+        };
         self.d.push(error);
     }
 

@@ -5,7 +5,7 @@ use super::context::Context;
 use super::names::Names;
 use super::sets::Sets;
 use crate::deck::{Card, Row};
-use crate::diagnostics::{Code, Diagnostic};
+use crate::diagnostics::{Code, Diagnostic, shown};
 use crate::model::{Frames, HistorySet, TimeBase};
 
 /// Largest number of frames a deck may generate.
@@ -72,7 +72,12 @@ fn generated(row: &Row, cx: &mut Context) -> Vec<f64> {
     };
     let count = ((last - first) / step + 1e-9).floor();
     if step <= 0.0 || !(0.0..=MOST_TIMES).contains(&count) {
-        let message = format!("no times run from {first} to {last} in steps of {step}");
+        let message = format!(
+            "no times run from {} to {} in steps of {}",
+            shown(first),
+            shown(last),
+            shown(step)
+        );
         cx.error(Code::OutputTimes, row.span(), message);
         return Vec::new();
     }
@@ -269,7 +274,7 @@ fn count(card: &Card, name: &str, least: i64, cx: &mut Context) -> Option<usize>
 fn time_interval(card: &Card, cx: &mut Context) -> Option<Frames> {
     let interval = card.real("TIME INTERVAL", cx.d)?;
     if interval <= 0.0 {
-        let message = format!("TIME INTERVAL must be positive, found {interval}");
+        let message = format!("TIME INTERVAL must be positive, found {}", shown(interval));
         cx.error(Code::OutputTimes, card.span_of("TIME INTERVAL"), message);
         return None;
     }

@@ -2,7 +2,7 @@
 
 use super::context::Context;
 use crate::deck::{Card, Row};
-use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::diagnostics::{Code, Diagnostic, Span, shown};
 
 /// Largest angle of the chords that an arc is cut into.
 const CHORD: f64 = std::f64::consts::PI / 180.0;
@@ -116,11 +116,15 @@ impl Profile {
         let angle = (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1]);
         let help = "an arc of less than 180 degrees from the point before to x, y about xc, yc";
         if (r - s).abs() > ROUND_OFF * r.max(s) {
-            let message = format!("the ends of this arc are {r} and {s} away from its centre");
+            let message = format!(
+                "the ends of this arc are {} and {} away from its centre",
+                shown(r),
+                shown(s)
+            );
             return fault(row.span(), &message, help, cx);
         }
         if angle == 0.0 || angle.abs() > std::f64::consts::PI - ROUND_OFF {
-            let message = format!("this arc has {} degrees", angle.abs().to_degrees());
+            let message = format!("this arc has {} degrees", shown(angle.abs().to_degrees()));
             return fault(row.span(), &message, help, cx);
         }
         // the guard keeps round angles such as 90 degrees from getting one chord more

@@ -2,7 +2,7 @@
 
 use super::context::Context;
 use crate::deck::Card;
-use crate::diagnostics::{Code, Diagnostic};
+use crate::diagnostics::{Code, Diagnostic, shown};
 use crate::model::{Factorization, Impact, ImpactTime, LcpChoice, Scheme, Settings, SolverChoice};
 
 /// Changes settings as a card says.
@@ -52,7 +52,11 @@ fn scheme(card: &Card, before: Scheme, cx: &mut Context) -> Scheme {
     let theta1 = card.real("THETA1", cx.d).unwrap_or(old1);
     let theta2 = card.real("THETA2", cx.d).unwrap_or(old2);
     if theta1 < 0.5 || theta2 < theta1 {
-        let message = format!("SS22 is unstable with THETA1 = {theta1} and THETA2 = {theta2}");
+        let message = format!(
+            "SS22 is unstable with THETA1 = {} and THETA2 = {}",
+            shown(theta1),
+            shown(theta2)
+        );
         let span = card.span_of(if theta1 < 0.5 { "THETA1" } else { "THETA2" });
         let error = Diagnostic::error(Code::UnstableScheme, span, message);
         cx.d.push(error.help("it is stable for THETA2 >= THETA1 >= 1/2"));
@@ -63,7 +67,10 @@ fn scheme(card: &Card, before: Scheme, cx: &mut Context) -> Scheme {
 fn tolerance(card: &Card, cx: &mut Context) -> Option<f64> {
     let tolerance = card.real("TOLERANCE", cx.d)?;
     if tolerance <= 0.0 || tolerance >= 1.0 {
-        let message = format!("the tolerance must lie between 0 and 1, found {tolerance}");
+        let message = format!(
+            "the tolerance must lie between 0 and 1, found {}",
+            shown(tolerance)
+        );
         cx.error(Code::BadValue, card.span_of("TOLERANCE"), message);
         return None;
     }

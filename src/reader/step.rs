@@ -13,6 +13,9 @@ use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic};
 use crate::model::{HistorySet, Impact, Increments, Settings, Step, Support};
 
+/// Most increments of a step: at a microsecond each they would take eleven days.
+const MOST_INCREMENTS: f64 = 1e12;
+
 /// Everything the steps of a deck say.
 pub(super) struct Steps {
     /// Steps in order.
@@ -257,6 +260,18 @@ fn check_times(
         (1, "the duration must be positive")
     } else if dt > period {
         (0, "the increment is longer than the step")
+    } else if period / dt > MOST_INCREMENTS {
+        (
+            0,
+            "the increment is out of all proportion to the duration: the step has more than 1e12 \
+             of them",
+        )
+    } else if !(dt * dt).is_normal() {
+        // K* holds 2/dt² M
+        (
+            0,
+            "the square of the increment is beyond the range of numbers: use other units of time",
+        )
     } else if dt_min < 0.0 || dt_min > dt {
         (
             2,

@@ -22,7 +22,7 @@ use stickslip::model::{
     Cell, Contact, Element, Face, Frames, HistorySet, Increments, Interaction, Material, Mesh,
     Model, Plane, Section, Set, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
 };
-use stickslip::output::{JobFiles, ResultWriter, RunRecord, Verbosity};
+use stickslip::output::{Claim, JobFiles, ResultWriter, RunRecord, Verbosity};
 
 /// Increments of the made-up run.
 pub const INCREMENTS: usize = 10;
@@ -280,5 +280,6 @@ pub fn write_run(folder: &Path) -> JobFiles {
 
 /// A writer without screen.
 pub fn writer<'a>(model: &'a Model, files: &JobFiles) -> ResultWriter<'a> {
-    ResultWriter::create(model, files, &record(), Verbosity::Quiet).expect("writer")
+    let claim = Claim::take(files, true).expect("claim");
+    ResultWriter::create(model, claim, &record(), Verbosity::Quiet).expect("writer")
 }

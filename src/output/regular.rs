@@ -1,0 +1,19 @@
+use std::fs;
+use std::io;
+use std::path::Path;
+
+/// What the system says about a file that can be read; one that is no regular file is not opened,
+/// for a fifo would wait for its writer.
+///
+/// # Errors
+/// The file is not there, may not be read, or is no regular file.
+pub fn regular_file(path: &Path) -> io::Result<fs::Metadata> {
+    let data = fs::metadata(path)?;
+    if data.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    if !data.is_file() {
+        return Err(io::Error::other("it is not a regular file"));
+    }
+    fs::File::open(path)?.metadata()
+}

@@ -1,0 +1,22 @@
+"""Kills, races, signals and full disks, a few of each."""
+
+import os
+import subprocess
+import sys
+
+import program
+from conftest import ROOT
+
+
+def test_torture() -> None:
+    command = [sys.executable, str(ROOT / "scripts" / "torture.py"), "--short"]
+    environment = {**os.environ, "STICKSLIP": str(program.binary())}
+    done = subprocess.run(
+        command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    counts = [line.split()[:2] for line in done.stdout.splitlines() if " trials " in line]
+    kinds = ["kills", "races", "signals", "disks", "screens"]
+    assert [kind for kind, _ in counts] == kinds
+    assert all(int(number) >= 4 for _, number in counts)
+    assert "torture: 0 wrong" in done.stdout
