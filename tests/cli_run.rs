@@ -262,3 +262,50 @@ fn the_name_of_a_job_has_no_extension_in_capitals_either() {
     assert_eq!(bench.stickslip(&["run", "B.INP", "-q"]).0, 0);
     assert!(bench.path("B.log").exists() && bench.path("B.vtkhdf").exists());
 }
+
+/// The warnings of the log, which are those that `info` finds in the file alone.
+fn warnings(change: [&str; 2]) -> String {
+    assert!(DROP.contains(change[0]), "{}", change[0]);
+    let bench = Bench::new(&DROP.replacen(change[0], change[1], 1));
+    let (code, out, err) = bench.stickslip(&["run", "drop.inp"]);
+    assert_eq!((code, err.as_str()), (0, ""), "{out}");
+    let (_, info, _) = bench.stickslip(&["info", "drop.vtkhdf"]);
+    let found = |text: &str| -> String {
+        let lines = text.lines().skip_while(|line| !line.starts_with("warning"));
+        let lines = lines.take_while(|line| !line.starts_with("wrote"));
+        lines.collect::<Vec<_>>().join("\n")
+    };
+    assert_eq!(found(&bench.read("drop.log")), found(&info));
+    found(&out)
+}
+
+#[test]
+fn runs_are_warned_about_when_they_shall_be_looked_at_again() {
+    assert_eq!(warnings(["*HEADING", "*HEADING"]), "", "nothing is wrong");
+    for (change, words) in [
+        (
+            ["SQUARE, 2, -0.5", "SQUARE, 2, 0.5"],
+            "contact FOOT_TOP never closed",
+        ),
+        (
+            ["0.002, 0.1", "0.05, 0.1"],
+            "the normal contact forces did work",
+        ),
+        (
+            ["0.002, 0.1", "0.2, 0.4"],
+            "increments of 0.2 are longer than a wave",
+        ),
+        (
+            ["0.002, 0.1", "1e-5, 3e-4"],
+            "less than a 100th of the time a",
+        ),
+        (
+            ["0.002, 0.1", "0.002, 0.1\n*STICKSLIP, TOLERANCE=1e-2"],
+            "the energy balance is off by",
+        ),
+    ] {
+        let text = warnings(change);
+        assert!(text.contains(words), "{words}: {text}");
+        assert!(text.lines().all(|line| line.len() <= 80), "{text}");
+    }
+}

@@ -100,7 +100,7 @@ fn check(model: &Model) {
         model
             .history_sets
             .iter()
-            .all(|&set| set < model.node_sets.len())
+            .all(|asked| asked.set < model.node_sets.len())
     );
     for surface in &model.surfaces {
         assert!(surface.nodes(&model.mesh).iter().all(|&n| n < nodes));

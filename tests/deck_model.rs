@@ -59,7 +59,7 @@ fn square_reads_without_messages() {
     assert_eq!(model.sections[0].thickness, 0.5);
     assert_eq!(model.materials[0].young, 1000.0);
     assert_eq!(model.node_sets[1].name, "FOOT");
-    assert_eq!(model.history_sets, [1]);
+    assert_eq!(model.history_sets, [history(1, true)]);
     let step = &model.steps[0];
     let dofs: Vec<usize> = step.supports.iter().map(|s| s.dof).collect();
     assert_eq!(dofs, [0, 1, 2, 3]);
@@ -325,7 +325,22 @@ fn history_sets_of_both_families() {
         "",
         "*OUTPUT, HISTORY\n*NODE OUTPUT, NSET=ALL\nU\n*NODE PRINT, NSET=ALL\nV",
     );
-    assert_eq!(model.history_sets, [1, 0]);
+    assert_eq!(model.history_sets, [history(1, true), history(0, true)]);
+}
+
+fn history(set: usize, each_node: bool) -> HistorySet {
+    HistorySet { set, each_node }
+}
+
+#[test]
+fn totals_only_leaves_out_the_nodes_unless_another_card_wants_them() {
+    let asked = |text| with("", text).history_sets;
+    let only = "*NODE PRINT, NSET=ALL, TOTALS=ONLY\nRF";
+    assert_eq!(asked(only), [history(1, true), history(0, false)]);
+    let yes = "*NODE PRINT, NSET=ALL, TOTALS=YES\nRF";
+    assert_eq!(asked(yes), [history(1, true), history(0, true)]);
+    let both = format!("{only}\n*OUTPUT, HISTORY\n*NODE OUTPUT, NSET=ALL\nU");
+    assert_eq!(asked(&both), [history(1, true), history(0, true)]);
 }
 
 #[test]
@@ -510,6 +525,11 @@ fn a_rigid_surface_moves_with_its_reference_node() {
         assert_eq!(motion(2 * node + 1), Some(moved));
     }
     assert_eq!(model.initial_velocity.len(), 2 * nodes);
+    let body = RigidBody {
+        surface: model.contacts[0].master,
+        reference: nodes - 4,
+    };
+    assert_eq!(model.rigid_bodies, [body]);
 }
 
 #[test]

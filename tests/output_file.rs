@@ -14,6 +14,7 @@ const N: usize = 7;
 const E: usize = 3;
 const F: usize = 6;
 const I: usize = INCREMENTS + 1;
+const B: usize = 1;
 
 fn written() -> (TempDir, JobFiles, File) {
     let folder = TempDir::new().expect("folder");
@@ -86,8 +87,29 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
         ("/history/nodes/TIP/U", vec![I, 1, 2]),
         ("/history/nodes/TIP/V", vec![I, 1, 2]),
         ("/history/nodes/TIP/RF", vec![I, 1, 2]),
-        ("/history/contact/BOTTOM_TOP/force", vec![I, 2]),
-        ("/history/contact/BOTTOM_TOP_2/force", vec![I, 2]),
+        ("/history/nodes/ALL/labels", vec![N]),
+        ("/VTKHDF/PointData/CONTACT_PRESSURE", vec![F * N]),
+        ("/VTKHDF/PointData/SLIP", vec![F * N]),
+        ("/VTKHDF/CellData/S33", vec![F * E]),
+        ("/VTKHDF/CellData/MISES", vec![F * E]),
+        ("/VTKHDF/CellData/BODY", vec![E]),
+        ("/VTKHDF/Steps/PointDataOffsets/CONTACT_PRESSURE", vec![F]),
+        ("/VTKHDF/Steps/PointDataOffsets/SLIP", vec![F]),
+        ("/VTKHDF/Steps/CellDataOffsets/S33", vec![F]),
+        ("/VTKHDF/Steps/CellDataOffsets/MISES", vec![F]),
+        ("/VTKHDF/Steps/CellDataOffsets/BODY", vec![F]),
+        ("/model/bodies/node", vec![N]),
+        ("/model/bodies/element", vec![E]),
+        ("/model/bodies/mass", vec![B]),
+        ("/model/bodies/edge_time", vec![B]),
+        ("/model/bodies/wave_time", vec![B]),
+        ("/history/bodies/center", vec![I, B, 2]),
+        ("/history/bodies/velocity", vec![I, B, 2]),
+        ("/history/bodies/angular_velocity", vec![I, B]),
+        ("/history/bodies/kinetic", vec![I, B]),
+        ("/history/bodies/strain", vec![I, B]),
+        ("/history/bodies/contact_force", vec![I, B, 2]),
+        ("/history/bodies/contact_moment", vec![I, B]),
     ];
     let each = |names: &[&'static str], shape: Vec<usize>| -> Vec<_> {
         names.iter().map(|&name| (name, shape.clone())).collect()
@@ -95,6 +117,7 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
     shapes.extend(each(&POINT_VECTORS, vec![F * N, 3]));
     shapes.extend(each(&POINT_VECTOR_OFFSETS, vec![F]));
     shapes.extend(each(&PER_INCREMENT, vec![I]));
+    shapes.extend(each(&VECTOR_PER_INCREMENT, vec![I, 2]));
     shapes
 }
 
@@ -114,7 +137,48 @@ const POINT_VECTOR_OFFSETS: [&str; 5] = [
     "/VTKHDF/Steps/PointDataOffsets/CONTACT_FORCE",
 ];
 
-const PER_INCREMENT: [&str; 36] = [
+const VECTOR_PER_INCREMENT: [&str; 18] = [
+    "/history/contact/BOTTOM_TOP/force",
+    "/history/contact/BOTTOM_TOP/impulse",
+    "/history/contact/BOTTOM_TOP/impulse_sum",
+    "/history/contact/BOTTOM_TOP_2/force",
+    "/history/contact/BOTTOM_TOP_2/impulse",
+    "/history/contact/BOTTOM_TOP_2/impulse_sum",
+    "/history/nodes/ALL/sum/RF",
+    "/history/nodes/ALL/sum/CF",
+    "/history/nodes/ALL/sum/CONTACT_FORCE",
+    "/history/nodes/ALL/mean/U",
+    "/history/nodes/ALL/mean/V",
+    "/history/nodes/ALL/mean/A",
+    "/history/nodes/TIP/sum/RF",
+    "/history/nodes/TIP/sum/CF",
+    "/history/nodes/TIP/sum/CONTACT_FORCE",
+    "/history/nodes/TIP/mean/U",
+    "/history/nodes/TIP/mean/V",
+    "/history/nodes/TIP/mean/A",
+];
+
+const PER_INCREMENT: [&str; 56] = [
+    "/history/contact/BOTTOM_TOP/normal_work",
+    "/history/contact/BOTTOM_TOP/friction_dissipation",
+    "/history/contact/BOTTOM_TOP/normal_impulse",
+    "/history/contact/BOTTOM_TOP/tangential_impulse",
+    "/history/contact/BOTTOM_TOP/impact_normal_impulse",
+    "/history/contact/BOTTOM_TOP/impact_tangential_impulse",
+    "/history/contact/BOTTOM_TOP/normal_impulse_sum",
+    "/history/contact/BOTTOM_TOP/tangential_impulse_sum",
+    "/history/contact/BOTTOM_TOP/impact_normal_impulse_sum",
+    "/history/contact/BOTTOM_TOP/impact_tangential_impulse_sum",
+    "/history/contact/BOTTOM_TOP_2/normal_work",
+    "/history/contact/BOTTOM_TOP_2/friction_dissipation",
+    "/history/contact/BOTTOM_TOP_2/normal_impulse",
+    "/history/contact/BOTTOM_TOP_2/tangential_impulse",
+    "/history/contact/BOTTOM_TOP_2/impact_normal_impulse",
+    "/history/contact/BOTTOM_TOP_2/impact_tangential_impulse",
+    "/history/contact/BOTTOM_TOP_2/normal_impulse_sum",
+    "/history/contact/BOTTOM_TOP_2/tangential_impulse_sum",
+    "/history/contact/BOTTOM_TOP_2/impact_normal_impulse_sum",
+    "/history/contact/BOTTOM_TOP_2/impact_tangential_impulse_sum",
     "/history/time",
     "/history/strain/largest_principal",
     "/history/dt",
@@ -228,11 +292,51 @@ fn history_has_a_row_per_increment() {
         assert_eq!(second[k], report.contacts[1].normal);
         assert_eq!(tip[2 * k..2 * k + 2], report.state.v[12..14]);
     }
+    let impulses: Vec<f64> = values(&file, "history/contact/BOTTOM_TOP_2/normal_impulse_sum");
+    assert_eq!(impulses, [14.0; I]);
+    let centers: Vec<f64> = values(&file, "history/bodies/center");
+    assert_eq!(centers[2 * I - 2..], [INCREMENTS as f64, 0.5]);
     assert_eq!(values::<i64>(&file, "history/impacts/increment"), [4]);
     assert_eq!(values::<i64>(&file, "history/impacts/slave"), [70]);
     assert_eq!(values::<i64>(&file, "history/impacts/segment"), [50, 40]);
     assert_eq!(values::<i64>(&file, "history/nodes/TIP/labels"), [70]);
     assert_eq!(values::<i64>(&file, "model/element_sets/SQUARES"), [0, 1]);
+}
+
+/// Component i of node n is k + (2 n + i)/100 times a factor: 4 for RF, 10 for CF, 5 for the contact
+/// force, 1, 2 and 3 for the motion.
+#[test]
+fn sums_and_means_over_node_sets() {
+    let (_folder, _, file) = written();
+    for (name, factor, count) in [
+        ("sum/RF", 4.0, 7.0),
+        ("sum/CF", 10.0, 7.0),
+        ("sum/CONTACT_FORCE", 5.0, 7.0),
+        ("mean/U", 1.0, 1.0),
+        ("mean/V", 2.0, 1.0),
+        ("mean/A", 3.0, 1.0),
+    ] {
+        let found: Vec<f64> = values(&file, &format!("history/nodes/ALL/{name}"));
+        for k in 0..I {
+            for i in 0..2 {
+                let expected = count * factor * (k as f64 + 0.06 + i as f64 / 100.0);
+                assert!((found[2 * k + i] - expected).abs() < 1e-12 * (1.0 + expected));
+            }
+        }
+    }
+    let all = file.group("history/nodes/ALL").expect("group");
+    assert!(all.dataset("U").is_err(), "sums only");
+    let bodies: Vec<i64> = values(&file, "model/bodies/node");
+    assert_eq!(bodies, [0; N]);
+    let mass: Vec<f64> = values(&file, "model/bodies/mass");
+    assert_eq!(mass, [2.5], "three pieces of thickness 0.5 and density 2");
+    // sqrt(E/rho) = sqrt(500): edges of length 1, 3 along x
+    for (name, length) in [("edge_time", 1.0), ("wave_time", 3.0)] {
+        let time: Vec<f64> = values(&file, &format!("model/bodies/{name}"));
+        assert!((time[0] * 500.0_f64.sqrt() - length).abs() < 1e-14);
+    }
+    let pressure: Vec<f64> = values(&file, "VTKHDF/PointData/CONTACT_PRESSURE");
+    assert_eq!(pressure[F * N - 1], 2.5);
 }
 
 #[test]

@@ -93,6 +93,9 @@ pub(super) fn report(increment: usize) -> IncrementReport {
             contact_force: vec![0.0; 8],
             gap: vec![f64::NAN; 4],
             status: vec![NodeStatus::None; 4],
+            concentrated: vec![0.0; 8],
+            pressure: vec![0.0; 4],
+            slip: vec![0.0; 4],
         },
         ends_step: increment == 10,
         strain: Strained {

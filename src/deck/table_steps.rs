@@ -34,7 +34,24 @@ const POSITION: P = P::value("POSITION", "stresses are written at element centre
 const SLAVE: P = P::value("SLAVE", "all contacts are written").ignored();
 const MASTER: P = P::value("MASTER", "all contacts are written").ignored();
 const HISTORY_EVERY: P = P::value("FREQUENCY", "histories hold every increment").ignored();
-const TOTALS: P = P::value("TOTALS", "sums are always written").ignored();
+const TOTALS: P = P::choice(
+    "TOTALS",
+    &[
+        V::read("NO", "motion and reactions of every node too (default)"),
+        V::read("YES", "the same"),
+        V::read(
+            "ONLY",
+            "sums and means only, unless another card asks for all",
+        ),
+    ],
+    "sums over the set are always in the history",
+);
+const CONTACT_TOTALS: P = P::value("TOTALS", "sums are always written").ignored();
+const ENERGY_TOTALS: P = P::value(
+    "TOTALS",
+    "energies of the model and of every body are always written",
+)
+.ignored();
 const INTEGRATOR: &str = "the time integration is that of *STICKSLIP, SCHEME=";
 const OTHER_SOLVER: &str = "a number for another solver";
 const ALWAYS_WHOLE: &str = "always written for the whole model";
@@ -393,7 +410,7 @@ pub(super) static STEPS: &[Keyword] = &[
             TOTALS,
             GLOBAL,
         ],
-        "The history of a node set.",
+        "The history of a node set: sums of forces, mean motion, and every node.",
     ),
     Keyword::read(
         "EL PRINT",
@@ -403,16 +420,16 @@ pub(super) static STEPS: &[Keyword] = &[
             ALL_ELEMENTS,
             HISTORY_EVERY,
             P::value("TIME POINTS", "histories hold every increment").ignored(),
-            TOTALS,
+            ENERGY_TOTALS,
             GLOBAL,
         ],
-        "Energies of the whole model are always in the history; stresses are in the frames.",
+        "Energies of the model and of every body are always in the history; stresses are in the frames.",
     ),
     Keyword::read(
         "CONTACT PRINT",
         Scope::Step,
         Data::Rows,
-        &[SLAVE, MASTER, HISTORY_EVERY, TOTALS],
+        &[SLAVE, MASTER, HISTORY_EVERY, CONTACT_TOTALS],
         "Contact forces of each contact are always in the history.",
     ),
     Keyword::read(

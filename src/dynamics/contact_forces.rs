@@ -189,7 +189,7 @@ impl ContactForces {
     /// |Psi| <= mu Phi, Psi opposes Bt V0+
     /// ```
     ///
-    /// so that kinetic energy never grows.
+    /// so that kinetic energy never grows. Gives the velocity and the impulses.
     pub fn impulses(
         pairs: Vec<Pair>,
         v0: &[f64],
@@ -198,11 +198,11 @@ impl ContactForces {
         mass: &mut Factored,
         method: LcpMethod,
         meter: &mut Meter,
-    ) -> Result<Vec<f64>, Cause> {
+    ) -> Result<(Vec<f64>, Self), Cause> {
         let approach = |p: &Pair| p.normal_of(v0) + 2.0 / dt * p.start_gap.max(0.0);
         let mut v0p = v0.to_vec();
         if pairs.iter().all(|pair| approach(pair) >= 0.0) {
-            return Ok(v0p);
+            return Ok((v0p, ContactForces::default()));
         }
         if !mass.solver.is_factorized() {
             meter.time(|t| &mut t.factorization, || mass.factorize())?;
@@ -218,7 +218,7 @@ impl ContactForces {
         let load = dofs.restrict(&impulses.resultant(v0.len()));
         let jump = meter.time(|t| &mut t.solve, || mass.solver.solve(&load))?;
         dofs.add(&jump, &mut v0p);
-        Ok(v0p)
+        Ok((v0p, impulses))
     }
 }
 

@@ -20,6 +20,8 @@ pub(super) struct Impulses {
     changes: usize,
     /// V0+ of the last pass with the pairs it is for.
     last: Option<(Vec<PairSite>, Vec<f64>)>,
+    /// Phi, Psi of the last pass.
+    pub acting: ContactForces,
 }
 
 impl Impulses {
@@ -31,6 +33,7 @@ impl Impulses {
             touching,
             changes: 0,
             last: None,
+            acting: ContactForces::default(),
         }
     }
 
@@ -65,7 +68,9 @@ impl Impulses {
         };
         let struck: Vec<Pair> = struck.map(rows).collect();
         let (m, method) = (&mut effective.m, problem.method());
-        let v0p = ContactForces::impulses(struck, &start.v, dt, &problem.dofs, m, method, meter)?;
+        let (v0p, acting) =
+            ContactForces::impulses(struck, &start.v, dt, &problem.dofs, m, method, meter)?;
+        self.acting = acting;
         self.last = Some((sites, v0p.clone()));
         Ok(v0p)
     }

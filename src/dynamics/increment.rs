@@ -31,6 +31,8 @@ pub(super) struct Solved {
     pub forces: ContactForces,
     /// Slots and segments that touched at the start, where impacts end the pieces of an increment.
     pub touching: Vec<[usize; 2]>,
+    /// Impact impulses at the start.
+    pub impulses: ContactForces,
     /// Motion at the end.
     pub end: State,
     /// Its passes.
@@ -210,7 +212,6 @@ impl<'m> Attempt<'_, 'm> {
                 if self.hold.is_none() {
                     self.check_ways(&d, contact, &forces)?;
                 }
-                let touching = impulses.touching;
                 // a free node past a vertex may be behind the line of the segment it came from
                 let is_over = |pair: &Pair| {
                     let [s, a, b, _] = pair.at.nodes;
@@ -218,7 +219,7 @@ impl<'m> Attempt<'_, 'm> {
                 };
                 let open = left_out.into_iter();
                 let open = open.filter(|pair| pair.gap >= 0.0 || is_over(pair));
-                return self.finish(v0p, d, forces.with_open(open.collect()), touching);
+                return self.finish(v0p, d, forces.with_open(open.collect()), impulses);
             }
             pairing = Pairing {
                 sites: forces.pairs.iter().map(|pair| pair.at).collect(),
@@ -350,7 +351,7 @@ impl<'m> Attempt<'_, 'm> {
         v0p: Vec<f64>,
         d: Vec<f64>,
         forces: ContactForces,
-        touching: Vec<[usize; 2]>,
+        impulses: Impulses,
     ) -> Result<Solved, Cause> {
         let (problem, start, interval) = (self.problem, self.start, self.interval);
         let equilibrium = self.meter.time(
@@ -375,7 +376,8 @@ impl<'m> Attempt<'_, 'm> {
             v0p,
             equilibrium,
             forces,
-            touching,
+            touching: impulses.touching,
+            impulses: impulses.acting,
             end,
             passes: Vec::new(),
         })

@@ -1,7 +1,7 @@
 use super::increment::Solved;
 use super::mass::dot;
 use super::step_problem::{Equilibrium, StepProblem};
-use super::{Cause, Energy, Momentum, State};
+use super::{Cause, Energy, State};
 use crate::linear::largest;
 
 /// Energy ledger: every term is computed on its own, so that the balance shows what is wrong.
@@ -10,6 +10,8 @@ pub(super) struct Ledger {
     pub energy: Energy,
     /// Largest kinetic or strain energy of every body so far.
     pub largest: Vec<f64>,
+    /// Strain energy of every element.
+    pub strains: Vec<f64>,
     /// T + W at the start of the analysis.
     start: f64,
 }
@@ -29,8 +31,10 @@ impl Ledger {
             energy,
             largest: vec![0.0; problem.parts.bodies()],
             start: kinetic + strain,
+            ..Ledger::default()
         };
         ledger.enter_bodies(problem, start, &strains);
+        ledger.strains = strains;
         ledger
     }
 
@@ -76,9 +80,10 @@ impl Ledger {
         } = &solved.equilibrium;
         let strain = problem.body.strain_energies(&end.u);
         self.enter_bodies(problem, end, &strain);
+        self.strains = strain;
         let e = &mut self.energy;
         let strain0 = e.strain;
-        e.strain = strain.iter().sum();
+        e.strain = self.strains.iter().sum();
         e.kinetic = problem.mass.kinetic_energy(&end.v);
 
         // d.R_theta, and the supports: dt V_mid.(M A)_p + d_p.(F - R - B^T P)_p
@@ -144,18 +149,4 @@ impl Ledger {
             })
         })
     }
-}
-
-/// Linear momentum sum m v and angular momentum sum x cross m v about the origin.
-pub(super) fn momentum(problem: &StepProblem, state: &State) -> Momentum {
-    let p = problem.mass.times(&state.v);
-    let mut momentum = Momentum::default();
-    for node in 0..problem.model.mesh.node_count() {
-        let position = problem.position(&state.u, node);
-        let [px, py] = [p[2 * node], p[2 * node + 1]];
-        momentum.linear[0] += px;
-        momentum.linear[1] += py;
-        momentum.angular += position[0] * py - position[1] * px;
-    }
-    momentum
 }

@@ -65,13 +65,25 @@ impl<'m> Loads<'m> {
         r
     }
 
+    /// The part of the concentrated loads in this, `dofs` entries (force).
+    pub fn concentrated(&self, theta1: f64, start: Moment, end: Moment, dofs: usize) -> Vec<f64> {
+        let mut r = vec![0.0; dofs];
+        self.add_concentrated(1.0 - theta1, start, &mut r);
+        self.add_concentrated(theta1, end, &mut r);
+        r
+    }
+
+    fn add_concentrated(&self, weight: f64, moment: Moment, r: &mut [f64]) {
+        for load in &self.step.point_loads {
+            r[load.at.dof] += weight * moment.magnitude(self.model, load);
+        }
+    }
+
     fn add(&self, body: &Body, weight: f64, moment: Moment, u: &[f64], r: &mut [f64]) {
         if weight == 0.0 {
             return;
         }
-        for load in &self.step.point_loads {
-            r[load.at.dof] += weight * moment.magnitude(self.model, load);
-        }
+        self.add_concentrated(weight, moment, r);
         for load in &self.step.body_forces {
             // int H^T f^B dOmega, f^B uniform in the element
             let element = load.at.element;

@@ -1,6 +1,9 @@
 //! Time integration with contact and impact.
 
+mod accounts;
+mod bodies;
 mod contact_forces;
+mod contact_ledger;
 mod convergence;
 mod dofs;
 mod effective;
@@ -17,8 +20,10 @@ mod loads;
 mod mass;
 mod meter;
 mod parts;
+mod pressure;
 mod report;
 mod results;
+mod rigid;
 mod root;
 mod run;
 mod scheme;
@@ -28,7 +33,8 @@ mod touching;
 
 pub use failure::{Cause, FailedLcp, Failure, Worst};
 pub use report::{
-    ContactResultant, Cutback, Energy, IncrementReport, Landing, Momentum, NodalResults,
-    NodeStatus, Observer, Outcome, PassReport, RunSummary, SolverCounts, State, Timings,
+    BodyResult, ContactImpulse, ContactOnBody, ContactResultant, Cutback, Energy, IncrementReport,
+    Landing, Momentum, NodalResults, NodeStatus, Observer, Outcome, PassReport, RigidReaction,
+    RunSummary, SolverCounts, State, Timings,
 };
 pub use run::{RunError, run};

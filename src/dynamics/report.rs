@@ -33,14 +33,22 @@ pub enum NodeStatus {
 /// Results at nodes, apart from the motion.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NodalResults {
-    /// Support reaction, `2 N` entries (force); 0 at free dofs.
+    /// Support reaction, `2 N` entries (force); 0 at free dofs. That of a rigid surface stands at its
+    /// reference node.
     pub reaction: Vec<f64>,
+    /// Concentrated loads on the node, `2 N` entries (force).
+    pub concentrated: Vec<f64>,
     /// Contact force on the node, `2 N` entries (force).
     pub contact_force: Vec<f64>,
     /// Gap of the node to its segment, `N` entries (length); NaN without candidate.
     pub gap: Vec<f64>,
     /// Contact status, `N` entries.
     pub status: Vec<NodeStatus>,
+    /// Contact pressure, `N` entries (force/length^2); NaN at nodes that are no slave nodes.
+    pub pressure: Vec<f64>,
+    /// Way slid in contact since the start of the analysis, `N` entries (length); NaN at nodes that
+    /// are no slave nodes.
+    pub slip: Vec<f64>,
 }
 
 /// Energies; all but the first two are cumulative from the start of the analysis.
@@ -73,8 +81,60 @@ pub struct Momentum {
     pub angular: f64,
 }
 
-/// Resultants of one contact of the model.
+/// Motion, energies and contact force of a body: what elements connect.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BodyResult {
+    /// Centre of mass (length).
+    pub center: [f64; 2],
+    /// Its velocity (length/time).
+    pub velocity: [f64; 2],
+    /// Angular momentum about the centre of mass over the moment of inertia (1/time).
+    pub angular_velocity: f64,
+    /// Kinetic energy.
+    pub kinetic: f64,
+    /// Strain energy.
+    pub strain: f64,
+    /// Force of all contacts on the body (force).
+    pub contact_force: [f64; 2],
+    /// Its moment about the centre of mass (force length).
+    pub contact_moment: f64,
+}
+
+/// Reaction that holds a rigid surface.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RigidReaction {
+    /// Force.
+    pub force: [f64; 2],
+    /// Its moment about the reference node (force length).
+    pub moment: f64,
+}
+
+/// Impulses of a contact: those of its forces and of its impacts, or of its impacts alone.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ContactImpulse {
+    /// Impulse on the slave surface (force time).
+    pub vector: [f64; 2],
+    /// Sum of dt Pn + Phi (force time).
+    pub normal: f64,
+    /// Sum of dt Pt + Psi (force time).
+    pub tangential: f64,
+    /// Sum of Phi, the impact impulses (force time).
+    pub impact_normal: f64,
+    /// Sum of Psi (force time).
+    pub impact_tangential: f64,
+}
+
+/// Force of one contact on a body.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ContactOnBody {
+    /// Force.
+    pub force: [f64; 2],
+    /// Its moment about the origin (force length).
+    pub moment: f64,
+}
+
+/// Resultants of one contact of the model.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct ContactResultant {
     /// Force on the slave surface (force).
     pub force: [f64; 2],
@@ -92,6 +152,18 @@ pub struct ContactResultant {
     pub min_gap: f64,
     /// max(|Pt| - mu Pn, 0) / max(Pn); 0 without contact.
     pub cone_violation: f64,
+    /// Moment of the force about the reference node of a rigid master (force length); 0 of others.
+    pub reference_moment: f64,
+    /// Work of the normal contact forces since the start of the analysis.
+    pub normal_work: f64,
+    /// Energy dissipated by friction since the start of the analysis.
+    pub friction_dissipation: f64,
+    /// Impulses of the increment.
+    pub impulse: ContactImpulse,
+    /// Impulses since the start of the analysis.
+    pub impulse_sum: ContactImpulse,
+    /// Force on each body of a surface that touches itself; empty for two surfaces.
+    pub bodies: Vec<ContactOnBody>,
 }
 
 /// A slave node that came into contact within the increment; time and place from its second-order
@@ -175,6 +247,10 @@ pub struct IncrementReport {
     pub energy: Energy,
     /// Momentum.
     pub momentum: Momentum,
+    /// Results of every body, in the order of [`crate::model::Bodies`].
+    pub bodies: Vec<BodyResult>,
+    /// Reactions, one per rigid surface with a reference node.
+    pub rigid: Vec<RigidReaction>,
     /// Largest principal strain.
     pub strain: Strained,
     /// Resultants, one per contact of the model.

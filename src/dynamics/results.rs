@@ -3,7 +3,7 @@ use super::step_problem::{Equilibrium, Interval, StepProblem};
 use super::touching::Touching;
 use super::{ContactResultant, Landing, NodalResults, NodeStatus, State};
 use crate::contact::{
-    Crossing, Direction, Motion, Pair, RowForm, crossings, line_crossings, project,
+    ContactSurfaces, Crossing, Direction, Motion, Pair, RowForm, crossings, line_crossings, project,
 };
 use crate::lcp::ContactState;
 use crate::linear::larger;
@@ -12,7 +12,8 @@ use crate::linear::larger;
 /// impact.
 const STRUCK: f64 = 1e-9;
 
-/// Reactions, contact forces, gaps and status at the nodes.
+/// Reactions, contact forces, gaps and status at the nodes; reactions of rigid surfaces still stand at
+/// the nodes of these.
 pub(super) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResults {
     let dofs = solved.d.len();
     let contact_force = solved.forces.resultant(dofs);
@@ -31,6 +32,7 @@ pub(super) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         contact_force,
         gap: vec![f64::NAN; dofs / 2],
         status: vec![NodeStatus::None; dofs / 2],
+        ..NodalResults::default()
     };
     for (k, pair) in solved.forces.pairs.iter().enumerate() {
         let slave = pair.at.nodes[0];
@@ -58,7 +60,7 @@ pub(super) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
     };
     let mut resultants = vec![none; problem.contacts.len()];
     let mut largest_normal = vec![0.0_f64; resultants.len()];
-    let contact_of = contact_of_slots(problem);
+    let contact_of = contact_of_slots(problem.contacts);
     let forces = &solved.forces;
     for (k, pair) in forces.pairs.iter().enumerate() {
         let contact = contact_of[pair.at.slot];
@@ -88,15 +90,11 @@ pub(super) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
     resultants
 }
 
-fn contact_of_slots(problem: &StepProblem) -> Vec<usize> {
-    let of_contact = |(c, surfaces): (usize, &crate::contact::ContactSurfaces)| {
-        std::iter::repeat_n(c, surfaces.slaves.len())
-    };
-    problem
-        .contacts
-        .iter()
-        .enumerate()
-        .flat_map(of_contact)
+/// The contact that every slot belongs to.
+pub(super) fn contact_of_slots(contacts: &[ContactSurfaces]) -> Vec<usize> {
+    let numbered = contacts.iter().enumerate();
+    numbered
+        .flat_map(|(c, surfaces)| std::iter::repeat_n(c, surfaces.slaves.len()))
         .collect()
 }
 

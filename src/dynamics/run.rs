@@ -1,24 +1,24 @@
 use std::io;
 
+use super::accounts::Accounts;
 use super::dofs::DofMap;
 use super::effective::Effective;
 use super::entry::{Entered, start_failure};
 use super::events::{MOST_EVENTS, Piece, Pieces};
 use super::grid::{Grid, StepPlace, WHOLE, increments_of};
 use super::increment::{Attempt, Failed, Solved};
-use super::ledger::{Ledger, momentum};
+use super::ledger::Ledger;
 use super::loads::Loads;
 use super::mass::Mass;
 use super::meter::Meter;
 use super::parts::Parts;
-use super::results::{contact_resultants, landings, nodal_results};
+use super::results::landings;
 use super::scheme::Weights;
 use super::step_problem::{Interval, StepProblem};
 use super::supports::Supports;
 use super::touching::Touching;
 use super::{
-    ContactResultant, Cutback, Failure, IncrementReport, NodalResults, NodeStatus, Observer,
-    Outcome, RunSummary, SolverCounts, State,
+    Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State,
 };
 use crate::contact::{ContactSurfaces, Search, contact_surfaces};
 use crate::elements::Body;
@@ -60,6 +60,7 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
         },
         contact: Touching::default(),
         ledger: Ledger::default(),
+        accounts: Accounts::new(model, &mass, &contacts),
         increment: 0,
         cutbacks: 0,
         events: 0,
@@ -102,6 +103,7 @@ struct Runner<'m, 'o> {
     state: State,
     contact: Touching,
     ledger: Ledger,
+    accounts: Accounts,
     increment: usize,
     cutbacks: usize,
     events: usize,
@@ -349,6 +351,7 @@ impl<'m> Runner<'m, '_> {
         Entered { solved, ledger }: Entered,
     ) -> Result<(), RunError> {
         self.ledger = ledger;
+        let accounted = (self.accounts).enter(problem, &solved, interval, &self.ledger.strains);
         let landings = landings(problem, &self.state, &self.contact, &solved, interval);
         self.meter.counts.converged = true;
         self.totals.add(&self.meter.counts);
@@ -360,15 +363,13 @@ impl<'m> Runner<'m, '_> {
             step_time: interval.end.step,
             dt: interval.dt,
             ends_step: interval.end.step == place.period,
-            nodal: nodal_results(problem, &solved),
             energy: self.ledger.energy,
-            momentum: momentum(problem, &solved.end),
             strain: self.body.most_strained(&solved.end.u),
-            contacts: contact_resultants(problem, &solved),
             landings,
             solver: self.meter.counts,
             passes: solved.passes,
             state: solved.end,
+            ..accounted
         };
         self.contact = Touching::new(&solved.forces);
         self.observer.increment(&report)?;
@@ -393,29 +394,18 @@ impl<'m> Runner<'m, '_> {
         if let Some(failure) = start_failure(&self.state, &self.ledger, place) {
             return Ok(Some(failure));
         }
-        let (dofs, nodes) = (self.state.u.len(), self.state.u.len() / 2);
-        let none = ContactResultant {
-            min_gap: f64::NAN,
-            ..ContactResultant::default()
-        };
         let report = IncrementReport {
             step: place.number,
             time: now.total,
-            nodal: NodalResults {
-                reaction: vec![0.0; dofs],
-                contact_force: vec![0.0; dofs],
-                gap: vec![f64::NAN; nodes],
-                status: vec![NodeStatus::None; nodes],
-            },
             energy: self.ledger.energy,
-            momentum: momentum(problem, &self.state),
-            contacts: vec![none; self.contacts.len()],
             solver: SolverCounts {
                 converged: true,
                 ..SolverCounts::default()
             },
             state: self.state.clone(),
-            ..IncrementReport::default()
+            ..self
+                .accounts
+                .start(problem, &self.state, &self.ledger.strains)
         };
         self.observer.increment(&report)?;
         Ok(None)

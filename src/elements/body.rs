@@ -130,11 +130,6 @@ impl Body {
         }
     }
 
-    /// Strain energy of all elements at displacements `u` (force length).
-    pub fn strain_energy(&self, u: &[f64]) -> f64 {
-        self.strain_energies(u).iter().sum()
-    }
-
     /// Strain energy of every element at displacements `u` (force length).
     pub fn strain_energies(&self, u: &[f64]) -> Vec<f64> {
         self.solids

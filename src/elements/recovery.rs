@@ -11,8 +11,23 @@ use crate::model::{Cell, Element, Model, Plane};
 pub struct ElementMeans {
     /// Cauchy stress xx, yy, xy (force/length^2).
     pub stress: [f64; 3],
+    /// Cauchy stress zz across the thickness (force/length^2).
+    pub across: f64,
     /// Green-Lagrange strain xx, yy, xy (tensor shear).
     pub strain: [f64; 3],
+}
+
+impl ElementMeans {
+    /// Von Mises stress of the mean stresses, zz included (force/length^2):
+    ///
+    /// ```text
+    /// sqrt(((sxx - syy)^2 + (syy - szz)^2 + (szz - sxx)^2)/2 + 3 sxy^2)
+    /// ```
+    pub fn von_mises(&self) -> f64 {
+        let [xx, yy, xy] = self.stress;
+        let [a, b, c] = [xx - yy, yy - self.across, self.across - xx];
+        ((a * a + b * b + c * c) / 2.0 + 3.0 * xy * xy).sqrt()
+    }
 }
 
 /// Volume means of stress and strain of every element at displacements `u` (2 N entries).
@@ -25,6 +40,10 @@ pub fn element_means(model: &Model, u: &[f64]) -> Vec<ElementMeans> {
             contraction: match element.plane {
                 Plane::Stress => material.poisson / (1.0 - material.poisson),
                 Plane::Strain => 0.0,
+            },
+            across: match element.plane {
+                Plane::Stress => 0.0,
+                Plane::Strain => material.poisson,
             },
         };
         match element.cell {
@@ -43,31 +62,41 @@ pub fn element_means(model: &Model, u: &[f64]) -> Vec<ElementMeans> {
     model.mesh.elements.iter().map(of_element).collect()
 }
 
-/// Elasticity, and the strain across the thickness: E_zz = -contraction (E_xx + E_yy).
+/// Elasticity, and what happens across the thickness: E_zz = -contraction (E_xx + E_yy) and
+/// S_zz = across (S_xx + S_yy).
+///
+/// In plane strain S_zz = lambda (E_xx + E_yy) and S_xx + S_yy = 2 (lambda + mu) (E_xx + E_yy), so that
+/// the factor is nu = lambda/(2 (lambda + mu)).
 struct Law {
     c: Elasticity,
     contraction: f64,
+    across: f64,
 }
 
-/// Volume means of sigma = F S F^T / J and E, with J = det F sqrt(1 + 2 E_zz).
+/// Volume means of sigma = F S F^T / J and E, with J = det F sqrt(1 + 2 E_zz). Across the thickness
+/// F_zz² is 1 in plane strain, so that sigma_zz = S_zz / J; in plane stress S_zz is 0.
 fn means<const N: usize, const P: usize>(
     element: &Reference<N, P>,
     law: &Law,
     u: &SMatrix<f64, 2, N>,
 ) -> ElementMeans {
     let (mut sigma, mut strain) = (Matrix2::zeros(), Matrix2::zeros());
+    let mut across = 0.0;
     for point in &element.points {
         let h = displacement_gradient(point, u);
         let (f, e) = (Matrix2::identity() + h, green_lagrange(&h));
         let stretch = (1.0 - 2.0 * law.contraction * e.trace()).sqrt();
         let j = f.determinant() * stretch;
-        sigma += f * stress(&law.c, &e) * f.transpose() / j * point.volume;
+        let s = stress(&law.c, &e);
+        sigma += f * s * f.transpose() / j * point.volume;
+        across += law.across * s.trace() / j * point.volume;
         strain += e * point.volume;
     }
     let volume = element.volume();
     let voigt = |m: Matrix2<f64>| [m.m11 / volume, m.m22 / volume, m.m12 / volume];
     ElementMeans {
         stress: voigt(sigma),
+        across: across / volume,
         strain: voigt(strain),
     }
 }
@@ -118,6 +147,38 @@ mod tests {
         assert!((means[0].stress[0] - 1.2 * 22.0 / 0.89).abs() < 1e-12);
         assert!(means[0].stress[1].abs() < 1e-13 && means[0].stress[2].abs() < 1e-13);
         assert!((means[0].strain[0] - 0.22).abs() < 1e-15);
+    }
+
+    #[test]
+    fn stress_across_the_thickness_by_hand() {
+        // Plane strain, stretch 1.2 along x: E_xx = 0.22; E = 100, nu = 1/4: lambda = mu = 40,
+        // S = (26.4, 8.8), S_zz = 8.8, J = 1.2: sigma = (26.4 1.2, 8.8/1.2, 8.8/1.2).
+        let u = [0.0, 0.0, 0.2, 0.0, 0.2, 0.0, 0.0, 0.0];
+        let means = element_means(&square(Plane::Strain), &u)[0];
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
+        assert!(near(means.stress[0], 31.68) && near(means.stress[1], 8.8 / 1.2));
+        assert!(near(means.across, 8.8 / 1.2));
+        // the other two are alike: von Mises is their difference to the first
+        assert!(near(means.von_mises(), 31.68 - 8.8 / 1.2));
+        let means = element_means(&square(Plane::Stress), &u)[0];
+        assert_eq!(means.across, 0.0);
+        let [xx, yy, _] = means.stress;
+        assert!(near(
+            means.von_mises(),
+            (xx * xx - xx * yy + yy * yy).sqrt()
+        ));
+    }
+
+    #[test]
+    fn von_mises_of_shear_and_of_pressure() {
+        let means = |stress, across| ElementMeans {
+            stress,
+            across,
+            strain: [0.0; 3],
+        };
+        assert!((means([0.0, 0.0, 2.0], 0.0).von_mises() - 12.0_f64.sqrt()).abs() < 1e-15);
+        assert_eq!(means([-3.0, -3.0, 0.0], -3.0).von_mises(), 0.0);
+        assert_eq!(means([-3.0, -3.0, 0.0], 0.0).von_mises(), 3.0);
     }
 
     #[test]

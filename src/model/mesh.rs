@@ -1,4 +1,6 @@
-use super::Plane;
+use std::collections::HashMap;
+
+use super::{Face, Plane};
 
 /// Nodes and elements of a model.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -33,6 +35,25 @@ impl Mesh {
             }
         }
         (0..parent.len()).map(|n| root(&mut parent, n)).collect()
+    }
+
+    /// Faces that belong to one element only, in the order of the elements.
+    pub fn exterior_faces(&self) -> Vec<Face> {
+        let all = || {
+            let elements = self.elements.iter().enumerate();
+            elements.flat_map(|(element, e)| {
+                (0..e.cell.nodes().len()).map(move |side| Face { element, side })
+            })
+        };
+        let ends = |face: &Face| {
+            let [a, b] = face.nodes(self);
+            [a.min(b), a.max(b)]
+        };
+        let mut count: HashMap<[usize; 2], usize> = HashMap::new();
+        for face in all() {
+            *count.entry(ends(&face)).or_default() += 1;
+        }
+        all().filter(|face| count[&ends(face)] == 1).collect()
     }
 }
 

@@ -4,19 +4,25 @@
 //! `2 N` entries, dof `2 n + i` being direction i (0 = x, 1 = y) of node n.
 
 mod amplitude;
+mod bodies;
 mod contact;
+mod history_set;
 mod load;
 mod material;
 mod mesh;
+mod rigid_body;
 mod settings;
 mod step;
 mod surface;
 
 pub use amplitude::{Amplitude, TimeBase};
+pub use bodies::Bodies;
 pub use contact::{Adjust, Contact, Interaction};
+pub use history_set::HistorySet;
 pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
 pub use material::{Material, Plane, Section};
 pub use mesh::{Cell, Element, Mesh, Set};
+pub use rigid_body::RigidBody;
 pub use settings::{Factorization, Impact, ImpactTime, LcpChoice, Scheme, Settings, SolverChoice};
 pub use step::{Frames, Increments, Step};
 pub use surface::{ALL_EXTERIOR, Face, Surface, SurfaceKind};
@@ -48,8 +54,10 @@ pub struct Model {
     pub initial_velocity: Vec<f64>,
     /// Steps in order.
     pub steps: Vec<Step>,
-    /// Node sets (indices into `node_sets`) whose motion and reactions go to the history.
-    pub history_sets: Vec<usize>,
+    /// Node sets whose motion and reactions go to the history, each at most once.
+    pub history_sets: Vec<HistorySet>,
+    /// Rigid surfaces with their reference nodes.
+    pub rigid_bodies: Vec<RigidBody>,
 }
 
 impl Model {

@@ -15,6 +15,8 @@ pub(super) struct Balance {
     worst: f64,
     /// Work of the normal contact forces so far.
     contact_work: f64,
+    /// Its largest absolute value so far.
+    most_contact_work: f64,
     gains: Gains,
     /// Momentum at the start, when nothing outside may change it.
     start: Option<Momentum>,
@@ -69,6 +71,7 @@ impl Balance {
         }
         let work = report.energy.normal_contact_work;
         let gain = work - std::mem::replace(&mut self.contact_work, work);
+        self.most_contact_work = larger(self.most_contact_work, work.abs());
         let puts_in = gain > ROUND_OFF * self.largest;
         if puts_in {
             self.gains.count += 1;
@@ -97,6 +100,11 @@ impl Balance {
     /// The worst balance so far as a part of the largest energy.
     pub fn worst(&self) -> f64 {
         part(self.worst, self.largest)
+    }
+
+    /// The largest work of the normal contact forces so far as a part of the largest energy.
+    pub fn contact_work(&self) -> f64 {
+        part(self.most_contact_work, self.largest)
     }
 
     /// The change of a free model's linear momentum as a part of its largest value.

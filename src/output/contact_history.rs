@@ -2,13 +2,13 @@
 
 use hdf5::Group;
 
-use super::dataset::{Column, group, meaning};
+use super::dataset::{Column, Meaning, group, meaning};
 use super::names::contact_names;
 use super::series::{Scalar, Series, scalar};
-use crate::dynamics::{ContactResultant, Landing};
-use crate::model::Model;
+use crate::dynamics::{ContactImpulse, ContactResultant, Landing};
+use crate::model::{Bodies, Contact, Model};
 
-const RESULTANTS: [Scalar<ContactResultant, f64>; 5] = [
+const RESULTANTS: [Scalar<ContactResultant, f64>; 7] = [
     scalar(
         "moment",
         "moment of the force about the origin",
@@ -36,6 +36,84 @@ const RESULTANTS: [Scalar<ContactResultant, f64>; 5] = [
         "1",
         |c| c.cone_violation,
     ),
+    scalar(
+        "normal_work",
+        "work of the normal contact forces since the start",
+        "energy",
+        |c| c.normal_work,
+    ),
+    scalar(
+        "friction_dissipation",
+        "energy dissipated by friction since the start",
+        "energy",
+        |c| c.friction_dissipation,
+    ),
+];
+
+const REFERENCE_MOMENT: [Scalar<ContactResultant, f64>; 1] = [scalar(
+    "reference_moment",
+    "moment of the force about the reference node of the master",
+    "force*length",
+    |c| c.reference_moment,
+)];
+
+const IMPULSE: Meaning = meaning(
+    "impulse on the slave surface in the increment",
+    "force*time",
+);
+const IMPULSES: [Scalar<ContactImpulse, f64>; 4] = [
+    scalar(
+        "normal_impulse",
+        "sum of dt Pn + Phi in the increment",
+        "force*time",
+        |i| i.normal,
+    ),
+    scalar(
+        "tangential_impulse",
+        "sum of dt Pt + Psi in the increment",
+        "force*time",
+        |i| i.tangential,
+    ),
+    scalar(
+        "impact_normal_impulse",
+        "sum of Phi in the increment",
+        "force*time",
+        |i| i.impact_normal,
+    ),
+    scalar(
+        "impact_tangential_impulse",
+        "sum of Psi in the increment",
+        "force*time",
+        |i| i.impact_tangential,
+    ),
+];
+
+const IMPULSE_SUM: Meaning = meaning("impulse on the slave surface since the start", "force*time");
+const IMPULSE_SUMS: [Scalar<ContactImpulse, f64>; 4] = [
+    scalar(
+        "normal_impulse_sum",
+        "sum of dt Pn + Phi since the start",
+        "force*time",
+        |i| i.normal,
+    ),
+    scalar(
+        "tangential_impulse_sum",
+        "sum of dt Pt + Psi since the start",
+        "force*time",
+        |i| i.tangential,
+    ),
+    scalar(
+        "impact_normal_impulse_sum",
+        "sum of Phi since the start",
+        "force*time",
+        |i| i.impact_normal,
+    ),
+    scalar(
+        "impact_tangential_impulse_sum",
+        "sum of Psi since the start",
+        "force*time",
+        |i| i.impact_tangential,
+    ),
 ];
 
 const PAIRS: [Scalar<ContactResultant, i64>; 2] = [
@@ -50,16 +128,31 @@ pub(super) struct ContactHistory {
     force: Column<f64>,
     resultants: Series<ContactResultant, f64>,
     pairs: Series<ContactResultant, i64>,
+    impulse: ImpulseHistory,
+    impulse_sum: ImpulseHistory,
+    /// Of a rigid master.
+    reference_moment: Option<Series<ContactResultant, f64>>,
+    /// Force and moment on each body, of a surface that touches itself.
+    bodies: Option<[Column<f64>; 2]>,
 }
 
 impl ContactHistory {
-    /// Creates the datasets.
-    pub fn create(at: &Group) -> hdf5::Result<Self> {
+    fn create(at: &Group, model: &Model, contact: &Contact) -> hdf5::Result<Self> {
+        let mut rigid = model.rigid_bodies.iter();
+        let is_rigid = rigid.any(|body| body.surface == contact.master);
+        let moment = || Series::create(at, &REFERENCE_MOMENT);
         let text = meaning("contact force on the slave surface", "force");
         Ok(ContactHistory {
             force: Column::series(at, "force", &[2], text)?,
             resultants: Series::create(at, &RESULTANTS)?,
             pairs: Series::create(at, &PAIRS)?,
+            impulse: ImpulseHistory::create(at, "impulse", IMPULSE, &IMPULSES)?,
+            impulse_sum: ImpulseHistory::create(at, "impulse_sum", IMPULSE_SUM, &IMPULSE_SUMS)?,
+            reference_moment: is_rigid.then(moment).transpose()?,
+            bodies: match contact.is_self_contact() {
+                true => Some(create_bodies(at, model)?),
+                false => None,
+            },
         })
     }
 
@@ -67,21 +160,78 @@ impl ContactHistory {
     pub fn push(&mut self, resultant: &ContactResultant) -> hdf5::Result<()> {
         self.force.push(resultant.force)?;
         self.resultants.push(resultant)?;
-        self.pairs.push(resultant)
+        self.pairs.push(resultant)?;
+        self.impulse.push(&resultant.impulse)?;
+        self.impulse_sum.push(&resultant.impulse_sum)?;
+        if let Some(moment) = &mut self.reference_moment {
+            moment.push(resultant)?;
+        }
+        if let Some([force, moment]) = &mut self.bodies {
+            force.push(resultant.bodies.iter().flat_map(|body| body.force))?;
+            moment.push(resultant.bodies.iter().map(|body| body.moment))?;
+        }
+        Ok(())
     }
 
     /// Writes the buffered rows.
     pub fn flush(&mut self) -> hdf5::Result<()> {
         self.force.flush()?;
         self.resultants.flush()?;
-        self.pairs.flush()
+        self.pairs.flush()?;
+        self.impulse.flush()?;
+        self.impulse_sum.flush()?;
+        if let Some(moment) = &mut self.reference_moment {
+            moment.flush()?;
+        }
+        (self.bodies.iter_mut().flatten()).try_for_each(Column::flush)
+    }
+}
+
+fn create_bodies(at: &Group, model: &Model) -> hdf5::Result<[Column<f64>; 2]> {
+    let count = Bodies::new(&model.mesh).count;
+    let force = meaning("force of this contact on each body", "force");
+    let moment = meaning("moment of that force about the origin", "force*length");
+    Ok([
+        Column::series(at, "body_force", &[count, 2], force)?,
+        Column::series(at, "body_moment", &[count], moment)?,
+    ])
+}
+
+/// Impulses of a contact, of an increment or since the start.
+struct ImpulseHistory {
+    vector: Column<f64>,
+    scalars: Series<ContactImpulse, f64>,
+}
+
+impl ImpulseHistory {
+    fn create(
+        at: &Group,
+        name: &str,
+        vector: Meaning,
+        scalars: &[Scalar<ContactImpulse, f64>],
+    ) -> hdf5::Result<Self> {
+        Ok(ImpulseHistory {
+            vector: Column::series(at, name, &[2], vector)?,
+            scalars: Series::create(at, scalars)?,
+        })
+    }
+
+    fn push(&mut self, impulse: &ContactImpulse) -> hdf5::Result<()> {
+        self.vector.push(impulse.vector)?;
+        self.scalars.push(impulse)
+    }
+
+    fn flush(&mut self) -> hdf5::Result<()> {
+        self.vector.flush()?;
+        self.scalars.flush()
     }
 }
 
 /// One history per contact of the model.
 pub(super) fn create_contacts(at: &Group, model: &Model) -> hdf5::Result<Vec<ContactHistory>> {
-    (contact_names(model).iter())
-        .map(|name| ContactHistory::create(&group(at, name)?))
+    let names = contact_names(model);
+    (model.contacts.iter().zip(&names))
+        .map(|(contact, name)| ContactHistory::create(&group(at, name)?, model, contact))
         .collect()
 }
 

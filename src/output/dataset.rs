@@ -5,6 +5,9 @@ use ndarray::{ArrayView, IxDyn};
 /// Rows of a chunk of a dataset that grows by one row per increment.
 const CHUNK_ROWS: usize = 64;
 
+/// A frame of fewer bytes is not compressed: that would take longer than writing it.
+const LEAST_COMPRESSED: usize = 1 << 12;
+
 /// Largest chunk of such a dataset in bytes: well inside the library's chunk cache.
 const CHUNK_BYTES: usize = 1 << 18;
 
@@ -110,7 +113,8 @@ impl<T: H5Type + Copy> Column<T> {
         rows: usize,
         meaning: Meaning,
     ) -> hdf5::Result<Self> {
-        let compress = hdf5::filters::deflate_available();
+        let bytes = rows * row.iter().product::<usize>() * size_of::<T>();
+        let compress = bytes >= LEAST_COMPRESSED && hdf5::filters::deflate_available();
         Self::create(parent, name, row, rows.max(1), compress, meaning)
     }
 

@@ -9,7 +9,7 @@ use crate::model::{
 };
 
 /// Width of the screen in columns.
-const WIDTH: usize = 80;
+pub(super) const WIDTH: usize = 80;
 
 /// Numbers that describe a model.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,11 +53,9 @@ impl ModelEcho {
     }
 
     fn add(&mut self, model: &Model, element: &Element) {
-        let section = &model.sections[element.section];
-        let density = model.materials[section.material].density;
         let corners = corners(model, element);
         let (edge, speed) = (shortest_edge(&corners), wave_speed(model, element));
-        self.mass += density * section.thickness * area(&corners);
+        self.mass += element_mass(model, element);
         self.shortest_edge = self.shortest_edge.min(edge);
         self.wave_speed = self.wave_speed.max(speed);
         self.edge_time = self.edge_time.min(edge / speed);
@@ -233,7 +231,8 @@ fn prescribed(model: &Model) -> usize {
     dofs.len()
 }
 
-fn corners(model: &Model, element: &Element) -> Vec<[f64; 2]> {
+/// Reference coordinates of the nodes of an element.
+pub(super) fn corners(model: &Model, element: &Element) -> Vec<[f64; 2]> {
     let coordinates = |&node: &usize| model.mesh.coordinates[node];
     element.cell.nodes().iter().map(coordinates).collect()
 }
@@ -249,14 +248,22 @@ fn area(corners: &[[f64; 2]]) -> f64 {
     0.5 * twice
 }
 
-fn shortest_edge(corners: &[[f64; 2]]) -> f64 {
+/// Mass of an element.
+pub(super) fn element_mass(model: &Model, element: &Element) -> f64 {
+    let section = &model.sections[element.section];
+    let density = model.materials[section.material].density;
+    density * section.thickness * area(&corners(model, element))
+}
+
+/// Length of the shortest side of a polygon.
+pub(super) fn shortest_edge(corners: &[[f64; 2]]) -> f64 {
     let length = |(a, b): ([f64; 2], [f64; 2])| (b[0] - a[0]).hypot(b[1] - a[1]);
     sides(corners).map(length).fold(f64::INFINITY, f64::min)
 }
 
 /// Speed of longitudinal waves: sqrt(E / ((1 - nu^2) rho)) in plane stress,
 /// sqrt(E (1 - nu) / ((1 + nu) (1 - 2 nu) rho)) in plane strain.
-fn wave_speed(model: &Model, element: &Element) -> f64 {
+pub(super) fn wave_speed(model: &Model, element: &Element) -> f64 {
     let material = &model.materials[model.sections[element.section].material];
     let nu = material.poisson;
     let factor = match element.plane {

@@ -2,12 +2,15 @@
 
 use hdf5::Group;
 
+use super::body_history::BodyHistory;
 use super::contact_history::{ContactHistory, Impacts, create_contacts};
-use super::dataset::{Column, constant, group, meaning};
+use super::dataset::{Column, group, meaning};
+use super::node_history::{NodeHistory, create_nodes};
+use super::rigid_history::{RigidHistory, create_rigid};
 use super::series::{Scalar, Series, scalar};
 use crate::dynamics::{Energy, IncrementReport, Momentum, SolverCounts};
 use crate::elements::Strained;
-use crate::model::{Model, Set};
+use crate::model::Model;
 
 /// Writes the history.
 pub(super) struct History {
@@ -15,9 +18,11 @@ pub(super) struct History {
     step: Series<IncrementReport, i64>,
     energy: Series<Energy, f64>,
     momentum: MomentumHistory,
+    bodies: BodyHistory,
     strain: Series<Strained, f64>,
     contacts: Vec<ContactHistory>,
     impacts: Impacts,
+    rigid: Vec<RigidHistory>,
     nodes: Vec<NodeHistory>,
     solver: SolverHistory,
 }
@@ -31,9 +36,11 @@ impl History {
             step: Series::create(&at, &STEP)?,
             energy: Series::create(&group(&at, "energy")?, &ENERGY)?,
             momentum: MomentumHistory::create(&group(&at, "momentum")?)?,
+            bodies: BodyHistory::create(&group(&at, "bodies")?, model)?,
             strain: Series::create(&group(&at, "strain")?, &STRAIN)?,
             contacts: create_contacts(&group(&at, "contact")?, model)?,
             impacts: Impacts::create(&group(&at, "impacts")?)?,
+            rigid: create_rigid(&group(&at, "rigid")?, model)?,
             nodes: create_nodes(&group(&at, "nodes")?, model)?,
             solver: SolverHistory::create(&group(&at, "solver")?)?,
         })
@@ -45,12 +52,16 @@ impl History {
         self.step.push(report)?;
         self.energy.push(&report.energy)?;
         self.momentum.push(&report.momentum)?;
+        self.bodies.push(&report.bodies)?;
         self.strain.push(&report.strain)?;
         for (contact, resultant) in self.contacts.iter_mut().zip(&report.contacts) {
             contact.push(resultant)?;
         }
         for landing in &report.landings {
             self.impacts.push(model, report.increment, landing)?;
+        }
+        for (surface, reaction) in self.rigid.iter_mut().zip(&report.rigid) {
+            surface.push(model, &report.state, reaction)?;
         }
         for nodes in &mut self.nodes {
             nodes.push(report)?;
@@ -64,11 +75,13 @@ impl History {
         self.step.flush()?;
         self.energy.flush()?;
         self.momentum.flush()?;
+        self.bodies.flush()?;
         self.strain.flush()?;
         self.contacts
             .iter_mut()
             .try_for_each(ContactHistory::flush)?;
         self.impacts.flush()?;
+        self.rigid.iter_mut().try_for_each(RigidHistory::flush)?;
         self.nodes.iter_mut().try_for_each(NodeHistory::flush)?;
         self.solver.flush()
     }
@@ -166,63 +179,6 @@ impl MomentumHistory {
         self.linear.flush()?;
         self.angular.flush()
     }
-}
-
-/// `/history/nodes/<NSET>`.
-struct NodeHistory {
-    nodes: Vec<usize>,
-    displacement: Column<f64>,
-    velocity: Column<f64>,
-    reaction: Column<f64>,
-}
-
-impl NodeHistory {
-    fn create(at: &Group, model: &Model, set: &Set) -> hdf5::Result<Self> {
-        let nodes = set.members.clone();
-        let label = |&node: &usize| model.mesh.node_labels[node] as i64;
-        let labels: Vec<i64> = nodes.iter().map(label).collect();
-        let text = meaning("node numbers of the deck", "1");
-        constant(at, "labels", &[labels.len()], &labels, text)?;
-        let row = [nodes.len(), 2];
-        let column =
-            |name, text, dimension| Column::series(at, name, &row, meaning(text, dimension));
-        Ok(NodeHistory {
-            displacement: column("U", "displacement", "length")?,
-            velocity: column("V", "velocity", "length/time")?,
-            reaction: column("RF", "support reaction", "force")?,
-            nodes,
-        })
-    }
-
-    fn push(&mut self, report: &IncrementReport) -> hdf5::Result<()> {
-        self.displacement.push(pick(&self.nodes, &report.state.u))?;
-        self.velocity.push(pick(&self.nodes, &report.state.v))?;
-        self.reaction
-            .push(pick(&self.nodes, &report.nodal.reaction))
-    }
-
-    fn flush(&mut self) -> hdf5::Result<()> {
-        self.displacement.flush()?;
-        self.velocity.flush()?;
-        self.reaction.flush()
-    }
-}
-
-/// The histories of the requested sets; an empty set has none.
-fn create_nodes(at: &Group, model: &Model) -> hdf5::Result<Vec<NodeHistory>> {
-    let mut requested = model.history_sets.clone();
-    requested.sort_unstable();
-    requested.dedup();
-    (requested.iter())
-        .map(|&index| &model.node_sets[index])
-        .filter(|set| !set.members.is_empty())
-        .map(|set| NodeHistory::create(&group(at, &set.name)?, model, set))
-        .collect()
-}
-
-/// Both components of `values` at each of the `nodes`.
-fn pick<'a>(nodes: &'a [usize], values: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-    (nodes.iter()).flat_map(|&node| [values[2 * node], values[2 * node + 1]])
 }
 
 const COUNTS: [Scalar<SolverCounts, i64>; 8] = [

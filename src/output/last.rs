@@ -1,3 +1,5 @@
+//! The last good state of a run, which becomes its final frame.
+
 use crate::dynamics::{IncrementReport, NodalResults, State};
 
 /// The last good state: the final frame of a run that stops.
@@ -24,6 +26,8 @@ impl LastState {
         self.nodal.contact_force.clone_from(&nodal.contact_force);
         self.nodal.gap.clone_from(&nodal.gap);
         self.nodal.status.clone_from(&nodal.status);
+        self.nodal.pressure.clone_from(&nodal.pressure);
+        self.nodal.slip.clone_from(&nodal.slip);
         self.written = written;
         if written {
             self.frame = report.time;

@@ -6,6 +6,8 @@
 //! `docs/output.md` describes them.
 
 mod balance;
+mod body_history;
+mod body_times;
 mod claim;
 mod clock;
 mod console;
@@ -24,10 +26,12 @@ mod last;
 mod log;
 mod model;
 mod names;
+mod node_history;
 mod progress;
 mod record;
 mod regular;
 mod result_file;
+mod rigid_history;
 mod screen;
 mod series;
 mod space;
@@ -35,6 +39,7 @@ mod status;
 mod strain;
 mod summary;
 mod vtkhdf;
+mod warnings;
 mod writer;
 
 pub use claim::Claim;

@@ -19,7 +19,7 @@ pub struct NameError {
     pub name: String,
 }
 
-/// Checks the names of all sets and of the surfaces in contact.
+/// Checks the names of all sets, and of the surfaces in contact or with a reference node.
 pub fn check_names(model: &Model) -> Result<(), NameError> {
     for set in &model.node_sets {
         check("node set", &set.name)?;
@@ -30,6 +30,9 @@ pub fn check_names(model: &Model) -> Result<(), NameError> {
     for contact in &model.contacts {
         check("surface", &model.surfaces[contact.slave].name)?;
         check("surface", &model.surfaces[contact.master].name)?;
+    }
+    for body in &model.rigid_bodies {
+        check("surface", &model.surfaces[body.surface].name)?;
     }
     Ok(())
 }

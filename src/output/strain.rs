@@ -6,7 +6,7 @@ use crate::elements::Strained;
 use crate::model::Model;
 
 /// Principal strain above which a St. Venant-Kirchhoff material is no guide.
-const LARGE: f64 = 0.2;
+pub(super) const LARGE: f64 = 0.2;
 
 /// What an element that turned inside out may come from.
 pub(super) const LIMIT: [&str; 2] = [

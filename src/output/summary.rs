@@ -5,11 +5,13 @@ use hdf5::types::VarLenUnicode;
 use hdf5::{FileBuilder, Group, H5Type};
 use thiserror::Error;
 
+use super::body_times::BodyTimes;
 use super::echo::{label, wrap};
 use super::error::reason;
 use super::format::{bytes, counted, general, scientific};
 use super::record::UNFINISHED;
 use super::regular::regular_file;
+use super::warnings::{Findings, never_closed};
 use crate::linear::{larger, largest};
 
 /// Why a result file could not be read.
@@ -72,6 +74,8 @@ pub struct ResultSummary {
     pub largest_energy: f64,
     /// Largest absolute balance of the history.
     pub worst_balance: f64,
+    /// What the run shall be looked at again for, in lines of the screen.
+    pub warnings: Vec<String>,
 }
 
 impl ResultSummary {
@@ -99,6 +103,7 @@ impl ResultSummary {
         let steps: Vec<i64> = column(&history, "step")?;
         let (energies, largest_energy) = read_energies(&history.group("energy")?)?;
         let balance: Vec<f64> = column(&history, "energy/balance")?;
+        let findings = read_findings(&file, largest_energy, largest(&balance))?;
         Ok(ResultSummary {
             path: path.to_owned(),
             size,
@@ -118,6 +123,7 @@ impl ResultSummary {
             energies,
             largest_energy,
             worst_balance: largest(&balance),
+            warnings: findings.lines(),
         })
     }
 
@@ -138,6 +144,7 @@ impl ResultSummary {
         lines.extend(self.progress());
         lines.extend(self.contact_lines());
         lines.extend(self.energy_lines());
+        lines.extend(self.warnings.iter().cloned());
         lines
     }
 
@@ -188,11 +195,7 @@ impl ResultSummary {
             .map(|(name, value)| format!("{} {}", name.replace('_', " "), scientific(*value, 4)))
             .collect();
         let mut lines = wrap("energy", &pieces);
-        let part = match self.worst_balance == 0.0 {
-            true => 0.0,
-            false => self.worst_balance / self.largest_energy,
-        };
-        let part = scientific(part, 1);
+        let part = scientific(part(self.worst_balance, self.largest_energy), 1);
         lines.push(label("", &format!("balance {part} of the largest energy")));
         lines
     }
@@ -218,6 +221,51 @@ fn read_energies(at: &Group) -> hdf5::Result<(Vec<(String, f64)>, f64)> {
         energies.push((name.to_owned(), values.last().copied().unwrap_or(0.0)));
     }
     Ok((energies, scale))
+}
+
+/// What the warnings look at; datasets that older files lack are left out.
+fn read_findings(file: &Group, largest_energy: f64, balance: f64) -> hdf5::Result<Findings> {
+    let history = file.group("history")?;
+    let work: Vec<f64> = column(&history, "energy/normal_contact_work")?;
+    let times: Vec<f64> = column(&history, "time")?;
+    let increments: Vec<f64> = column(&history, "dt")?;
+    let [edge, body] = ["edge_time", "wave_time"]
+        .map(|name| column::<f64>(file, &format!("model/bodies/{name}")).unwrap_or_default());
+    let strain: Option<Vec<f64>> = column(&history, "strain/largest_principal").ok();
+    let dt = largest(&increments);
+    Ok(Findings {
+        balance: part(balance, largest_energy),
+        contact_work: part(largest(&work), largest_energy),
+        strain: strain.map(|strain| largest(&strain)),
+        open: match dt > 0.0 {
+            true => read_open(&history.group("contact")?)?,
+            false => Vec::new(),
+        },
+        dt,
+        time: times.last().copied().unwrap_or(0.0),
+        bodies: (edge.into_iter().zip(body))
+            .map(|(edge, body)| BodyTimes { edge, body })
+            .collect(),
+    })
+}
+
+/// Names of the contacts that never closed, nor were struck.
+fn read_open(at: &Group) -> hdf5::Result<Vec<String>> {
+    let has_closed = |name: &str| -> hdf5::Result<bool> {
+        let closed: Vec<i64> = column(at, &format!("{name}/closed"))?;
+        let struck = column::<f64>(at, &format!("{name}/impact_normal_impulse"));
+        let is_struck = struck.is_ok_and(|struck| struck.iter().any(|&phi| phi > 0.0));
+        Ok(is_struck || closed.iter().any(|&pairs| pairs > 0))
+    };
+    let contact = |name: String| has_closed(&name).map(|closed| (name, closed));
+    let contacts: hdf5::Result<Vec<(String, bool)>> =
+        at.member_names()?.into_iter().map(contact).collect();
+    Ok(never_closed(&contacts?))
+}
+
+/// `value / whole`, 0 of nothing.
+fn part(value: f64, whole: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value / whole }
 }
 
 fn read_contacts(at: &Group) -> hdf5::Result<Vec<(String, f64)>> {

@@ -4,27 +4,23 @@ use hdf5::types::FixedAscii;
 use hdf5::{Group, H5Type};
 
 use super::dataset::{Column, Meaning, constant, group, meaning, set_attribute};
+use super::model::number;
 use crate::dynamics::{NodalResults, State};
-use crate::elements::element_means;
-use crate::model::{Cell, Mesh, Model};
+use crate::elements::{ElementMeans, element_means};
+use crate::model::{Bodies, Cell, Mesh, Model};
 
 /// Cell types of VTK.
 const VTK_LINE: u8 = 3;
 const VTK_TRIANGLE: u8 = 5;
 const VTK_QUAD: u8 = 9;
 
-/// A field with `3` components (or one) per node or element, and where its frames start.
-struct Field<T> {
-    values: Column<T>,
-    offsets: Column<i64>,
-}
+/// A field with `3` components (or one) per node or element.
+struct Field<T>(Column<T>);
 
 impl<T: H5Type + Copy> Field<T> {
     fn push(&mut self, values: impl IntoIterator<Item = T>) -> hdf5::Result<()> {
-        self.offsets.push([self.values.rows() as i64])?;
-        self.values.push(values)?;
-        self.values.flush()?;
-        self.offsets.flush()
+        self.0.push(values)?;
+        self.0.flush()
     }
 }
 
@@ -39,6 +35,8 @@ struct Steps {
 /// Writes the field frames.
 pub(super) struct Fields {
     steps: Steps,
+    points: Offsets,
+    cells: Offsets,
     displacement: Field<f64>,
     velocity: Field<f64>,
     acceleration: Field<f64>,
@@ -46,8 +44,14 @@ pub(super) struct Fields {
     contact_force: Field<f64>,
     gap: Field<f64>,
     status: Field<u8>,
+    pressure: Field<f64>,
+    slip: Field<f64>,
     stress: Field<f64>,
+    across: Field<f64>,
+    von_mises: Field<f64>,
     strain: Field<f64>,
+    /// First row of `CellData/BODY`, which is the same in all frames.
+    body_offsets: Column<i64>,
     /// Cells after the elements: the segments of rigid surfaces.
     lines: usize,
 }
@@ -60,9 +64,10 @@ impl Fields {
         let lines = model.rigid_segments();
         write_mesh(&grid, &model.mesh, &lines)?;
         let steps = Steps::create(&grid)?;
-        let points = Place::new(&grid, &steps.group, "Point", model.mesh.node_count())?;
+        let mut points = Place::new(&grid, &steps.group, "Point", model.mesh.node_count())?;
         let cells = model.mesh.elements.len() + lines.len();
-        let cells = Place::new(&grid, &steps.group, "Cell", cells)?;
+        let mut cells = Place::new(&grid, &steps.group, "Cell", cells)?;
+        write_bodies(&cells.data, model, lines.len())?;
         Ok(Fields {
             displacement: points.field("U", &[3], meaning("displacement", "length"))?,
             velocity: points.field("V", &[3], meaning("velocity", "length/time"))?,
@@ -71,8 +76,15 @@ impl Fields {
             contact_force: points.field("CONTACT_FORCE", &[3], CONTACT_FORCE)?,
             gap: points.field("GAP", &[], GAP)?,
             status: points.field("CONTACT_STATUS", &[], STATUS)?,
+            pressure: points.field("CONTACT_PRESSURE", &[], PRESSURE)?,
+            slip: points.field("SLIP", &[], SLIP)?,
             stress: cells.field("S", &[3], STRESS)?,
+            across: cells.field("S33", &[], ACROSS)?,
+            von_mises: cells.field("MISES", &[], VON_MISES)?,
             strain: cells.field("E", &[3], STRAIN)?,
+            body_offsets: Column::series(&cells.offsets.group, "BODY", &[], OFFSETS)?,
+            points: points.offsets,
+            cells: cells.offsets,
             steps,
             lines: lines.len(),
         })
@@ -94,11 +106,21 @@ impl Fields {
         self.contact_force.push(in_space(&nodal.contact_force))?;
         self.gap.push(nodal.gap.iter().copied())?;
         self.status.push(nodal.status.iter().map(|&s| s as u8))?;
-        let of_lines = || std::iter::repeat_n(f64::NAN, 3 * self.lines);
+        self.pressure.push(nodal.pressure.iter().copied())?;
+        self.slip.push(nodal.slip.iter().copied())?;
+        let of_lines = |components| std::iter::repeat_n(f64::NAN, components * self.lines);
         let stress = means.iter().flat_map(|mean| mean.stress);
-        self.stress.push(stress.chain(of_lines()))?;
+        self.stress.push(stress.chain(of_lines(3)))?;
+        let across = means.iter().map(|mean| mean.across);
+        self.across.push(across.chain(of_lines(1)))?;
+        let von_mises = means.iter().map(ElementMeans::von_mises);
+        self.von_mises.push(von_mises.chain(of_lines(1)))?;
         let strain = means.iter().flat_map(|mean| mean.strain);
-        self.strain.push(strain.chain(of_lines()))?;
+        self.strain.push(strain.chain(of_lines(3)))?;
+        self.body_offsets.push([0])?;
+        self.body_offsets.flush()?;
+        self.points.push()?;
+        self.cells.push()?;
         self.steps.push(time)
     }
 
@@ -117,6 +139,20 @@ const STATUS: Meaning = meaning(
     "contact status as slave: 0 none, 1 open, 2 stick, 3 slip",
     "1",
 );
+const PRESSURE: Meaning = meaning(
+    "contact pressure at slave nodes, NaN at others",
+    "force/length^2",
+);
+const SLIP: Meaning = meaning(
+    "way slid in contact since the start at slave nodes, NaN at others",
+    "length",
+);
+const ACROSS: Meaning = meaning(
+    "Cauchy stress across the thickness, mean over the element",
+    "force/length^2",
+);
+const VON_MISES: Meaning = meaning("von Mises stress of S and S33", "force/length^2");
+const BODY: Meaning = meaning("body of the cell, -1 for rigid segments", "1");
 const STRESS: Meaning = meaning(
     "Cauchy stress xx yy xy, mean over the element",
     "force/length^2",
@@ -167,30 +203,65 @@ impl Steps {
 /// Where fields of one kind go: `PointData` or `CellData`.
 struct Place {
     data: Group,
-    offsets: Group,
+    offsets: Offsets,
     /// Rows of a frame.
     rows: usize,
+}
+
+/// First rows of the frames: the same for all fields of one kind, one dataset under their names.
+struct Offsets {
+    group: Group,
+    /// The first name, and the dataset.
+    column: Option<(String, Column<i64>)>,
+    /// Rows of a frame.
+    rows: usize,
+}
+
+impl Offsets {
+    /// Gives the dataset the name of a further field.
+    fn add(&mut self, name: &str) -> hdf5::Result<()> {
+        match &self.column {
+            Some((first, _)) => self.group.link_hard(first, name),
+            None => {
+                let column = Column::series(&self.group, name, &[], OFFSETS)?;
+                self.column = Some((name.to_owned(), column));
+                Ok(())
+            }
+        }
+    }
+
+    /// Appends a frame.
+    fn push(&mut self) -> hdf5::Result<()> {
+        let rows = self.rows;
+        self.column.iter_mut().try_for_each(|(_, column)| {
+            column.push([(column.rows() * rows) as i64])?;
+            column.flush()
+        })
+    }
 }
 
 impl Place {
     fn new(grid: &Group, steps: &Group, kind: &str, rows: usize) -> hdf5::Result<Self> {
         Ok(Place {
             data: group(grid, &format!("{kind}Data"))?,
-            offsets: group(steps, &format!("{kind}DataOffsets"))?,
+            offsets: Offsets {
+                group: group(steps, &format!("{kind}DataOffsets"))?,
+                column: None,
+                rows,
+            },
             rows,
         })
     }
 
     fn field<T: H5Type + Copy>(
-        &self,
+        &mut self,
         name: &str,
         row: &[usize],
         text: Meaning,
     ) -> hdf5::Result<Field<T>> {
-        Ok(Field {
-            values: Column::frames(&self.data, name, row, self.rows, text)?,
-            offsets: Column::series(&self.offsets, name, &[], OFFSETS)?,
-        })
+        self.offsets.add(name)?;
+        let column = Column::frames(&self.data, name, row, self.rows, text)?;
+        Ok(Field(column))
     }
 }
 
@@ -241,6 +312,16 @@ fn write_mesh(grid: &Group, mesh: &Mesh, lines: &[[usize; 2]]) -> hdf5::Result<(
     let mut types = types(mesh);
     types.resize(cells, VTK_LINE);
     constant(grid, "Types", &[cells], &types, text)
+}
+
+/// The body of every cell, `lines` rigid segments being the last.
+fn write_bodies(at: &Group, model: &Model, lines: usize) -> hdf5::Result<()> {
+    let of_element = Bodies::new(&model.mesh).of_element;
+    let elements = of_element.into_iter().map(|body| number(Some(body)));
+    let cells: Vec<i64> = elements
+        .chain(std::iter::repeat_n(number(None), lines))
+        .collect();
+    constant(at, "BODY", &[cells.len()], &cells, BODY)
 }
 
 /// Node indices of all elements, one element after the other.

@@ -21,6 +21,7 @@ use super::result_file::ResultFile;
 use super::screen::{Table, row};
 use super::status::StatusFile;
 use super::strain::{StrainWatch, warning_lines};
+use super::warnings::Watch;
 use crate::dynamics::{
     Cause, Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts,
 };
@@ -43,6 +44,7 @@ pub struct ResultWriter<'a> {
     table: Table,
     schedule: FrameSchedule<'a>,
     balance: Balance,
+    watch: Watch,
     strain: StrainWatch,
     last: LastState,
     /// Failed attempts since the last increment.
@@ -93,6 +95,7 @@ impl<'a> ResultWriter<'a> {
             table: Table::new(model),
             schedule: FrameSchedule::new(model),
             balance: Balance::new(model),
+            watch: Watch::default(),
             strain: StrainWatch::default(),
             last: LastState::default(),
             failed_attempts: 0,
@@ -192,6 +195,7 @@ impl<'a> ResultWriter<'a> {
         if let Some(gain) = self.balance.add(report) {
             self.print_gain(report.increment, gain)?;
         }
+        self.watch.add(report);
         if let Some(strained) = self.strain.add(report) {
             for line in warning_lines(strained, report, self.model) {
                 self.console.line(&line)?;
@@ -337,6 +341,9 @@ impl<'a> ResultWriter<'a> {
             for line in lcp_lines(&summary.solver) {
                 self.console.line(&line)?;
             }
+        }
+        for line in self.watch.findings(self.model, &self.balance).lines() {
+            self.console.line(&line)?;
         }
         let (name, size) = self.result.name_and_size();
         let frames = counted(self.result.frames(), "frame");

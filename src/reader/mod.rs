@@ -89,6 +89,7 @@ fn read(cx: &mut Context) -> Model {
         initial_velocity,
         steps: steps.all,
         history_sets: steps.history,
+        rigid_bodies: rigid::bodies(&obstacles),
     }
 }
 

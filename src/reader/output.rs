@@ -6,7 +6,7 @@ use super::names::Names;
 use super::sets::Sets;
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic, shown};
-use crate::model::{Frames, TimeBase};
+use crate::model::{Frames, HistorySet, TimeBase};
 
 /// Largest number of frames a deck may generate.
 const MOST_TIMES: f64 = 1e6;
@@ -94,7 +94,7 @@ pub(super) struct Requests {
     /// Time points that follow the total time: they are cut out anew for every step.
     total_times: Option<Vec<f64>>,
     /// Node sets of the history.
-    pub history: Vec<usize>,
+    pub history: Vec<HistorySet>,
 }
 
 impl Requests {
@@ -170,10 +170,13 @@ impl Requests {
             }
             return;
         };
-        if let Some(index) = sets.node_names.find(name, cx)
-            && !self.history.contains(&index)
-        {
-            self.history.push(index);
+        let each_node = card.choice("TOTALS") != Some("ONLY");
+        let Some(set) = sets.node_names.find(name, cx) else {
+            return;
+        };
+        match self.history.iter_mut().find(|known| known.set == set) {
+            Some(known) => known.each_node |= each_node,
+            None => self.history.push(HistorySet { set, each_node }),
         }
     }
 

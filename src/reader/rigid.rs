@@ -7,11 +7,13 @@ use super::sets::Sets;
 use super::surface::{self, Surfaces};
 use crate::deck::{Card, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
-use crate::model::{Support, SurfaceKind};
+use crate::model::{RigidBody, Support, SurfaceKind};
 use std::collections::BTreeMap;
 
 /// A rigid surface and the node that it moves with.
 pub(super) struct Obstacle {
+    /// Index of the surface.
+    surface: usize,
     /// Name of the surface.
     name: String,
     /// Its nodes.
@@ -77,6 +79,7 @@ fn obstacle(
     Some((
         index,
         Obstacle {
+            surface: index,
             name: surface.name.clone(),
             nodes: surface.nodes(&grid.mesh),
             reference,
@@ -99,6 +102,15 @@ fn reference_node(field: Text, grid: &Grid, sets: &Sets, cx: &mut Context) -> Op
             None
         }
     }
+}
+
+/// The rigid surfaces with their reference nodes, as the model holds them.
+pub(super) fn bodies(obstacles: &[Obstacle]) -> Vec<RigidBody> {
+    let body = |obstacle: &Obstacle| RigidBody {
+        surface: obstacle.surface,
+        reference: obstacle.reference,
+    };
+    obstacles.iter().map(body).collect()
 }
 
 /// Adds the supports of the nodes of rigid surfaces to those of a step: they move as their

@@ -11,7 +11,7 @@ use super::surface::Surfaces;
 use super::{rigid, settings};
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic};
-use crate::model::{Impact, Increments, Settings, Step, Support};
+use crate::model::{HistorySet, Impact, Increments, Settings, Step, Support};
 
 /// Most increments of a step: at a microsecond each they would take eleven days.
 const MOST_INCREMENTS: f64 = 1e12;
@@ -21,7 +21,7 @@ pub(super) struct Steps {
     /// Steps in order.
     pub all: Vec<Step>,
     /// Node sets of the history.
-    pub history: Vec<usize>,
+    pub history: Vec<HistorySet>,
     /// Supports of the first step.
     pub at_start: Vec<Support>,
 }

@@ -15,7 +15,7 @@ const GRAVITY: f64 = 10.0;
 
 /// A flat block of mass 2 lying on a long, fixed base; gravity along `direction`, growing over 0.2:
 /// applied at once it would let the block ring and its contact force vanish now and then.
-fn block_on_base(friction: f64, direction: [f64; 2], scheme: Scheme) -> (Model, Block) {
+pub fn block_on_base(friction: f64, direction: [f64; 2], scheme: Scheme) -> (Model, Block) {
     let mut model = model(1e5, 0.0, 1.0);
     let base = add_block(&mut model, [-1.0, -1.0], [8.0, 1.0], (8, 1), 0.0);
     let block = add_block(&mut model, [0.0, 0.0], [4.0, 0.5], (8, 1), 0.0);

@@ -1,5 +1,6 @@
 //! The solver as a library: problems with known answers.
 
+mod accounts;
 mod blocks;
 mod collapse;
 mod elastic_bar;

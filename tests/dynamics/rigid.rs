@@ -29,11 +29,40 @@ fn a_square_on_a_sliding_floor() {
             let height = model.mesh.coordinates[node][1] + u[2 * node + 1];
             assert!(height > -1e-9, "node {node} at {t}");
         }
+        check_reaction(&model, report, &floor);
         let largest = report.energy.kinetic + report.energy.strain + 1.0;
         assert!(report.energy.balance.abs() < 1e-10 * largest);
     }
     let landed = reports.iter().any(|report| report.contacts[0].closed > 0);
     assert!(landed);
+}
+
+/// The reaction stands at the reference node, and nowhere else: against the contact forces on the
+/// floor, with their moment about that node; the slave nodes tell the same.
+fn check_reaction(model: &Model, report: &IncrementReport, floor: &[usize]) {
+    let reference = model.rigid_bodies[0].reference;
+    let (nodal, reaction) = (&report.nodal, &report.rigid[0]);
+    let arm = |node: usize| {
+        let [x, c] = [node, reference].map(|node| model.mesh.coordinates[node]);
+        [x[0] - c[0], x[1] - c[1]]
+    };
+    let (mut force, mut moment) = ([0.0; 2], 0.0);
+    for &node in floor {
+        assert_eq!(nodal.reaction[2 * node..2 * node + 2], [0.0; 2]);
+        let [fx, fy] = [2 * node, 2 * node + 1].map(|p| -nodal.contact_force[p]);
+        let [x, y] = arm(node);
+        force = [force[0] + fx, force[1] + fy];
+        moment += x * fy - y * fx;
+    }
+    let contact = &report.contacts[0];
+    let scale = 1e-12 * (1.0 + contact.normal.abs());
+    assert_eq!(reaction.force, force);
+    assert_eq!(nodal.reaction[2 * reference..2 * reference + 2], force);
+    for (reaction, force) in reaction.force.iter().zip(contact.force) {
+        assert!((reaction - force).abs() < scale);
+    }
+    assert!((reaction.moment - moment).abs() < 10.0 * scale);
+    assert!((reaction.moment - contact.reference_moment).abs() < 10.0 * scale);
 }
 
 /// The model of the square above its floor with other contact cards.

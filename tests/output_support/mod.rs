@@ -13,13 +13,14 @@ use std::path::Path;
 
 use stickslip::diagnostics::Span;
 use stickslip::dynamics::{
-    ContactResultant, Energy, IncrementReport, Landing, Momentum, NodalResults, NodeStatus,
-    Observer, Outcome, PassReport, RunSummary, SolverCounts, State, Timings,
+    BodyResult, ContactImpulse, ContactResultant, Energy, IncrementReport, Landing, Momentum,
+    NodalResults, NodeStatus, Observer, Outcome, PassReport, RunSummary, SolverCounts, State,
+    Timings,
 };
 use stickslip::elements::Strained;
 use stickslip::model::{
-    Cell, Contact, Element, Face, Frames, Increments, Interaction, Material, Mesh, Model, Plane,
-    Section, Set, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
+    Cell, Contact, Element, Face, Frames, HistorySet, Increments, Interaction, Material, Mesh,
+    Model, Plane, Section, Set, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
 };
 use stickslip::output::{Claim, JobFiles, ResultWriter, RunRecord, Verbosity};
 
@@ -60,7 +61,8 @@ pub fn model() -> Model {
         amplitudes: vec![],
         initial_velocity: vec![0.0; 14],
         steps: vec![step()],
-        history_sets: vec![1, 2, 1],
+        history_sets: vec![asked(1, true), asked(2, true), asked(0, false)],
+        rigid_bodies: vec![],
     }
 }
 
@@ -95,6 +97,10 @@ fn set(name: &str, members: impl IntoIterator<Item = usize>) -> Set {
         name: name.into(),
         members: members.into_iter().collect(),
     }
+}
+
+fn asked(set: usize, each_node: bool) -> HistorySet {
+    HistorySet { set, each_node }
 }
 
 fn surface(name: &str, kind: SurfaceKind) -> Surface {
@@ -176,6 +182,12 @@ pub fn report(k: usize) -> IncrementReport {
             strain: 0.05 * k as f64,
         },
         contacts: vec![resultant(k, 1.0), resultant(k, 2.0)],
+        rigid: vec![],
+        bodies: vec![BodyResult {
+            center: [k as f64, 0.5],
+            kinetic: 3.0,
+            ..BodyResult::default()
+        }],
         landings: if k == 4 { vec![landing()] } else { vec![] },
         solver: SolverCounts {
             passes: 2,
@@ -196,9 +208,12 @@ fn nodal(k: usize, reaction: Vec<f64>, contact_force: Vec<f64>) -> NodalResults 
     status[0] = NodeStatus::Slip;
     NodalResults {
         reaction,
+        concentrated: contact_force.iter().map(|f| 2.0 * f).collect(),
         contact_force,
         gap,
         status,
+        pressure: vec![0.25 * k as f64; 7],
+        slip: vec![0.5 * k as f64; 7],
     }
 }
 
@@ -209,6 +224,10 @@ fn resultant(k: usize, factor: f64) -> ContactResultant {
         closed: k,
         sticking: k / 2,
         min_gap: f64::NAN,
+        impulse_sum: ContactImpulse {
+            normal: 7.0 * factor,
+            ..ContactImpulse::default()
+        },
         ..ContactResultant::default()
     }
 }

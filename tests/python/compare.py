@@ -63,7 +63,8 @@ def largest_deviations(first: Path, second: Path, units: Units = SAME) -> dict[s
     """Largest difference of each history from `first` in the other units.
 
     It is relative to the largest value among all histories of the same dimension, so that a force
-    or an energy that vanishes but for round-off does not count. Pure numbers (residuals, cone
+    or an energy that vanishes but for round-off does not count; that of a turn is at least the largest
+    velocity over the largest length, as bodies may not turn at all. Pure numbers (residuals, cone
     violation) and the list of impacts are left out.
     """
     errors: dict[str, tuple[Dimension, float]] = {}
@@ -80,4 +81,7 @@ def largest_deviations(first: Path, second: Path, units: Units = SAME) -> dict[s
             errors[name] = unit, float(error)
             largest = float(np.nanmax(np.abs(expected), initial=0.0))
             scales[unit] = max(scales.get(unit, 0.0), largest)
+    speed, length = scales[dimension("length/time")], scales[dimension("length")]
+    rate = dimension("1/time")
+    scales[rate] = max(scales.get(rate, 0.0), speed / length)
     return {name: error / (scales[unit] or 1.0) for name, (unit, error) in errors.items()}

@@ -1,13 +1,15 @@
 """The result file holds what docs/output.md promises, for both examples."""
 
+import re
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 from compare import datasets, dimension
-from conftest import Job
-from decks import BLOCK, CANTILEVERS, shortened
+from conftest import ROOT, Job
+from deck import Deck
+from decks import BLOCK, CANTILEVERS, SHAPES, parse, shortened
 from results import ENERGIES, Results
 
 FRAMES = 5
@@ -34,8 +36,15 @@ POINT_DATA = {
     "CONTACT_FORCE": ("f8", (3,), "force"),
     "GAP": ("f8", (), "length"),
     "CONTACT_STATUS": ("u1", (), "1"),
+    "CONTACT_PRESSURE": ("f8", (), "force/length^2"),
+    "SLIP": ("f8", (), "length"),
 }
-CELL_DATA = {"S": ("f8", (3,), "force/length^2"), "E": ("f8", (3,), "1")}
+CELL_DATA = {
+    "S": ("f8", (3,), "force/length^2"),
+    "S33": ("f8", (), "force/length^2"),
+    "MISES": ("f8", (), "force/length^2"),
+    "E": ("f8", (3,), "1"),
+}
 CONTACT = {
     "force": (2,),
     "moment": (),
@@ -45,7 +54,29 @@ CONTACT = {
     "sticking": (),
     "min_gap": (),
     "cone_violation": (),
+    "normal_work": (),
+    "friction_dissipation": (),
+    "impulse": (2,),
+    "normal_impulse": (),
+    "tangential_impulse": (),
+    "impact_normal_impulse": (),
+    "impact_tangential_impulse": (),
+    "impulse_sum": (2,),
+    "normal_impulse_sum": (),
+    "tangential_impulse_sum": (),
+    "impact_normal_impulse_sum": (),
+    "impact_tangential_impulse_sum": (),
 }
+BODIES = {
+    "center": (2,),
+    "velocity": (2,),
+    "angular_velocity": (),
+    "kinetic": (),
+    "strain": (),
+    "contact_force": (2,),
+    "contact_moment": (),
+}
+SUMS = ("sum/RF", "sum/CF", "sum/CONTACT_FORCE", "mean/U", "mean/V", "mean/A")
 SOLVER = (
     "passes lcps lcp_size pivots active_set_iterations gauss_seidel_sweeps lemke_calls "
     "factorizations residual converged"
@@ -131,6 +162,74 @@ def test_histories_have_one_row_per_increment(example: tuple) -> None:
             nodes = history["nodes"][name]
             for field in ("U", "V", "RF"):
                 assert nodes[field].shape == (rows, nodes["labels"].shape[0], 2)
+            for field in SUMS:
+                assert nodes[field].shape == (rows, 2)
+            assert np.allclose(nodes["sum/RF"][:], nodes["RF"][:].sum(axis=1), atol=0.0)
+            assert np.allclose(nodes["mean/U"][:], nodes["U"][:].mean(axis=1), atol=0.0)
+        bodies = file["model/bodies/mass"].shape
+        for name, shape in BODIES.items():
+            assert history["bodies"][name].shape == (rows, *bodies, *shape), name
+        for energy in ("kinetic", "strain"):
+            total = history["energy"][energy][:]
+            assert np.allclose(history["bodies"][energy][:].sum(axis=1), total, atol=1e-30)
+
+
+RIGID = ROOT / "tests" / "decks" / "rigid_floor.inp"
+GENERAL = SHAPES / "one.inp"
+
+
+def documented() -> list[re.Pattern[str]]:
+    """Paths of all datasets in the tables of docs/output.md, `<NAME>` and `*` being any name."""
+    patterns, folder = [], ""
+    text = (ROOT / "docs" / "output.md").read_text()
+    for line in text.splitlines():
+        if heading := re.match(r"### /(\w+)", line):
+            folder = heading[1]
+        if folder and line.startswith("| `"):
+            names = re.findall(r"`([^`]+)`", line.split(" | ")[0])
+            full = [re.sub(r"^\.\.\.", names[0].rpartition("/")[0], name) for name in names]
+            patterns += [re.sub(r"<\w+>(_<\w+>)?|\*", "[^/]+", f"{folder}/{name}") for name in full]
+    return [re.compile(pattern) for pattern in patterns]
+
+
+@pytest.mark.parametrize("deck", [RIGID, GENERAL, CANTILEVERS / "B_mu04.inp"], ids=lambda d: d.stem)
+def test_the_documents_name_every_dataset(deck: Path, job: Job) -> None:
+    patterns = documented()
+    with h5py.File(job(shortened(deck, 20), "--frames", "2")) as file:
+        names = [name for name, _ in datasets(file)]
+    missing = [name for name in names if not any(p.fullmatch(name) for p in patterns)]
+    assert not missing
+
+
+def test_a_rigid_surface_reacts_at_its_reference_node(job: Job) -> None:
+    with h5py.File(job(Deck.read(RIGID), "--frames", "2")) as file:
+        floor, contact = file["history/rigid/FLOOR"], file["history/contact/BOT_FLOOR"]
+        force = contact["force"][:]
+        assert np.abs(force).max() > 1.0
+        scale = np.abs(force).max()
+        assert np.allclose(floor["force"][:], force, rtol=0.0, atol=1e-12 * scale)
+        moment = contact["reference_moment"][:]
+        assert np.allclose(floor["moment"][:], moment, rtol=0.0, atol=1e-11 * scale)
+        assert np.allclose(floor["V"][:], [0.5, 0.0], rtol=0.0, atol=1e-15)
+        label = int(floor["node"][0])
+        index = int(np.flatnonzero(file["model/node_labels"][:] == label)[0])
+        nodes = file["model/node_labels"].size
+        reaction = file["VTKHDF/PointData/RF"][-nodes:, :2]
+        assert np.array_equal(reaction[index], floor["force"][-1])
+        assert np.count_nonzero(reaction.any(axis=1)) <= 1, "nothing is counted twice"
+        path = floor["position"][:] - floor["U"][:]
+        assert np.allclose(path, [0.0, -1.0], rtol=0.0, atol=1e-15)
+
+
+def test_totals_only_leaves_sums_and_means(tmp_path: Path, job: Job) -> None:
+    text = RIGID.read_text().replace(
+        "*END STEP", "*NODE PRINT, NSET=REF, TOTALS=ONLY\nRF\n*END STEP"
+    )
+    with h5py.File(job(parse(text, tmp_path), "--frames", "2")) as file:
+        reference = file["history/nodes/REF"]
+        assert set(reference) == {"labels", "sum", "mean"}
+        force = file["history/rigid/FLOOR/force"][:]
+        assert np.array_equal(reference["sum/RF"][:], force)
 
 
 def test_run_record(example: tuple) -> None:

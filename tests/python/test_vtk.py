@@ -28,6 +28,13 @@ def test_reader_sees_all_frames(job: Job) -> None:
             assert np.array_equal(grid.point_data["GAP"], gap, equal_nan=True)
             for name in ("S", "E"):
                 assert np.array_equal(grid.cell_data[name], results.cell_field(name, frame))
+            cells = results.file["model/bodies/element"][:]
+            assert set(cells) == {0, 1}
+            assert np.array_equal(grid.cell_data["BODY"], cells)
+            rows = slice(frame * grid.n_cells, (frame + 1) * grid.n_cells)
+            for name in ("S33", "MISES"):
+                stored = results.file[f"VTKHDF/CellData/{name}"][rows]
+                assert np.array_equal(grid.cell_data[name], stored)
 
 
 def test_rigid_surfaces_are_lines(job: Job) -> None:
@@ -36,6 +43,7 @@ def test_rigid_surfaces_are_lines(job: Job) -> None:
         assert (len(results.cells), results.rigid.shape) == (1, (91, 2))
         grid = pyvista.read(path)
         assert grid.n_cells == 92
+        assert np.array_equal(grid.cell_data["BODY"], [0] + 91 * [-1])
         assert set(grid.celltypes) == {pyvista.CellType.LINE, pyvista.CellType.QUAD}
         floor = results.point_field("U", 2)[results.rigid.ravel()]
         assert np.allclose(floor, [0.5, 0.0], rtol=0.0, atol=1e-15)

@@ -1,0 +1,8 @@
+/// A rigid surface and the node that it moves with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RigidBody {
+    /// Index of the rigid surface.
+    pub surface: usize,
+    /// Reference node (index).
+    pub reference: usize,
+}

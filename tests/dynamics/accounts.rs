@@ -1,0 +1,244 @@
+//! Accounts of bodies and contacts against the ledger, the momenta and closed forms.
+
+use stickslip::dynamics::{ContactOnBody, IncrementReport, NodeStatus};
+use stickslip::model::{Bodies, Contact, Model, Scheme, SurfaceKind};
+
+use crate::blocks::{fixed, run_to_end};
+use crate::friction::block_on_base;
+use crate::invariants::oblique_impact;
+
+const SS22: Scheme = Scheme::Ss22 {
+    theta1: 0.5,
+    theta2: 0.5,
+};
+
+/// `a` and `b` agree to round-off of `scale`.
+fn near(a: f64, b: f64, scale: f64) {
+    assert!((a - b).abs() <= 1e-12 * scale, "{a:e} is not {b:e}");
+}
+
+fn cross(x: [f64; 2], f: [f64; 2]) -> f64 {
+    x[0] * f[1] - x[1] * f[0]
+}
+
+/// Largest of kinetic and strain energy.
+fn energy(reports: &[IncrementReport]) -> f64 {
+    let energies = reports.iter().map(|r| r.energy.kinetic + r.energy.strain);
+    energies.fold(0.0, f64::max)
+}
+
+/// Masses of the beams of [`oblique_impact`].
+const MASSES: [f64; 2] = [3.2, 2.4];
+
+#[test]
+fn bodies_start_as_they_are_thrown() {
+    let model = oblique_impact(0.3, Scheme::EnergyMomentum);
+    let mut first = model.clone();
+    first.steps[0].increments.period = first.steps[0].increments.dt;
+    let (kept, _) = run_to_end(&first);
+    let [lower, upper] = [&kept.reports[0].bodies[0], &kept.reports[0].bodies[1]];
+    near(lower.center[0], 2.0, 1.0);
+    near(lower.center[1], 0.4, 1.0);
+    near(lower.velocity[0], 0.3, 1.0);
+    near(lower.velocity[1], 0.5, 1.0);
+    near(lower.angular_velocity, 0.05, 1.0);
+    // its corner at (0.7, 1), 3 x 0.8, turned by 0.1; thrown about (2.2, 1.5)
+    let (sin, cos) = 0.1_f64.sin_cos();
+    let center = [0.7 + 1.5 * cos - 0.4 * sin, 1.0 + 1.5 * sin + 0.4 * cos];
+    for (value, expected) in upper.center.iter().zip(center) {
+        near(*value, expected, 1.0);
+    }
+    near(upper.angular_velocity, -0.2, 1.0);
+    near(upper.velocity[0], -0.8 + 0.2 * (center[1] - 1.5), 1.0);
+    near(upper.velocity[1], -1.5 - 0.2 * (center[0] - 2.2), 1.0);
+}
+
+#[test]
+fn bodies_and_contacts_add_up_to_the_ledger() {
+    for scheme in [Scheme::EnergyMomentum, SS22] {
+        let (kept, _) = run_to_end(&oblique_impact(0.3, scheme));
+        let scale = energy(&kept.reports);
+        for report in &kept.reports {
+            let sum = |f: fn(&stickslip::dynamics::BodyResult) -> f64| -> f64 {
+                report.bodies.iter().map(f).sum()
+            };
+            near(sum(|b| b.kinetic), report.energy.kinetic, scale);
+            near(sum(|b| b.strain), report.energy.strain, scale);
+            for i in 0..2 {
+                let momenta = report.bodies.iter().zip(MASSES);
+                let momentum: f64 = momenta.map(|(body, mass)| mass * body.velocity[i]).sum();
+                near(momentum, report.momentum.linear[i], 10.0);
+            }
+            let contact = &report.contacts[0];
+            near(
+                contact.normal_work,
+                report.energy.normal_contact_work,
+                scale,
+            );
+            let dissipation = report.energy.friction_dissipation;
+            near(contact.friction_dissipation, dissipation, scale);
+        }
+        let last = kept.reports.last().expect("reports");
+        assert!(last.energy.friction_dissipation > 1e-3 * scale);
+        assert!(last.energy.normal_contact_work.abs() > 1e-4 * scale);
+    }
+}
+
+/// What the contact has given to the upper beam since the start is its change of momentum, linear and
+/// about its centre.
+#[test]
+fn impulses_are_the_change_of_momentum() {
+    let (kept, _) = run_to_end(&oblique_impact(0.3, Scheme::EnergyMomentum));
+    let start = kept.reports[0].bodies[1];
+    let (mut vector, mut normal, mut impacts, mut forces) = ([0.0; 2], 0.0, 0.0, 0.0);
+    for report in &kept.reports {
+        let (body, contact) = (&report.bodies[1], &report.contacts[0]);
+        let impulse = contact.impulse;
+        for (i, sum) in vector.iter_mut().enumerate() {
+            let change = MASSES[1] * (body.velocity[i] - start.velocity[i]);
+            near(contact.impulse_sum.vector[i], change, 100.0);
+            near(body.contact_force[i], contact.force[i], 1e3);
+            *sum += impulse.vector[i];
+            near(*sum, contact.impulse_sum.vector[i], 10.0);
+        }
+        normal += impulse.normal;
+        impacts += impulse.impact_normal;
+        forces += report.dt * contact.normal;
+        near(normal, contact.impulse_sum.normal, 10.0);
+        near(impacts + forces, normal, 10.0);
+        assert!(impulse.tangential.abs() <= 0.3 * impulse.normal * (1.0 + 1e-9) + 1e-12);
+    }
+    assert!(impacts > 0.01 * normal && forces > 0.01 * normal);
+}
+
+/// The beams of [`oblique_impact`] in general contact.
+fn all_exterior() -> Model {
+    let mut model = oblique_impact(0.3, Scheme::EnergyMomentum);
+    let faces = model.mesh.exterior_faces();
+    model.surfaces[0].kind = SurfaceKind::Faces(faces);
+    model.contacts = vec![Contact {
+        slave: 0,
+        master: 0,
+        ..model.contacts[0].clone()
+    }];
+    model.steps[0].increments.period = 100.0 * model.steps[0].increments.dt;
+    model
+}
+
+#[test]
+fn general_contact_has_a_resultant_for_every_body_and_they_cancel() {
+    let (kept, _) = run_to_end(&all_exterior());
+    let on_bodies = |r: &IncrementReport| r.contacts[0].bodies.clone();
+    let size = |body: &ContactOnBody| body.force[0].hypot(body.force[1]);
+    let all = kept.reports.iter().flat_map(on_bodies);
+    let scale = all.map(|body| size(&body)).fold(0.0, f64::max);
+    assert!(scale > 0.0);
+    for report in &kept.reports {
+        let [lower, upper] = report.contacts[0].bodies[..] else {
+            panic!("two bodies")
+        };
+        for i in 0..2 {
+            near(lower.force[i], -upper.force[i], scale);
+            near(report.bodies[0].contact_force[i], lower.force[i], scale);
+        }
+        near(lower.moment, -upper.moment, 10.0 * scale);
+    }
+    // the momentum that the upper beam gains in an increment without impact
+    let pair = kept.reports.windows(2).find(|pair| {
+        let impulse = pair[1].contacts[0].impulse;
+        impulse.normal > 0.0 && impulse.impact_normal == 0.0
+    });
+    let [before, after] = pair.expect("an increment with contact") else {
+        unreachable!("windows of two")
+    };
+    let change = after.bodies[1].velocity[1] - before.bodies[1].velocity[1];
+    let force = after.contacts[0].bodies[1].force[1];
+    near(MASSES[1] * change, after.dt * force, 1.0);
+    // and its angular momentum: about the centre of mass, x cross m v taken away
+    let spin = |report: &IncrementReport| {
+        let momenta = report.bodies.iter().zip(MASSES);
+        let orbits = momenta.map(|(b, mass)| mass * cross(b.center, b.velocity));
+        report.momentum.angular - orbits.sum::<f64>()
+    };
+    let moments = after.bodies.iter().map(|body| body.contact_moment);
+    near(
+        spin(after) - spin(before),
+        after.dt * moments.sum::<f64>(),
+        10.0,
+    );
+}
+
+/// A block slides without friction on its base, pressed on by its weight, grown to 10 x 0.5 per
+/// length.
+#[test]
+fn pressure_is_uniform_below_a_flat_block_and_slip_is_the_way() {
+    let slave_sides: [&[usize]; 2] = [&[0], &[0, 1, 2, 3]];
+    for sides in slave_sides {
+        let (mut model, block) = block_on_base(0.0, [0.1, -1.0], Scheme::EnergyMomentum);
+        model.sections[0].thickness = 0.5;
+        let faces = sides.iter().flat_map(|&side| block.faces(side)).collect();
+        model.surfaces[0].kind = SurfaceKind::Faces(faces);
+        check_pressure_and_slip(&model, sides.len() > 1);
+    }
+    // a surface of nodes takes the exterior faces of the block
+    let (mut model, block) = block_on_base(0.0, [0.1, -1.0], Scheme::EnergyMomentum);
+    let nodes = (0..=block.nx).map(|i| block.node(i, 0)).collect();
+    model.surfaces[0].kind = SurfaceKind::Nodes(nodes);
+    check_pressure_and_slip(&model, false);
+}
+
+fn check_pressure_and_slip(model: &Model, all_nodes: bool) {
+    let (kept, _) = run_to_end(model);
+    let bottom = |node: usize| model.mesh.coordinates[node][1] == 0.0 && node > 17;
+    let nodes = model.mesh.node_count();
+    let mut slid = vec![0.0; nodes];
+    for pair in kept.reports.windows(2) {
+        let (before, after) = (&pair[0], &pair[1]);
+        let nodal = &after.nodal;
+        for (node, slid) in slid.iter_mut().enumerate() {
+            if nodal.status[node] >= NodeStatus::Stick {
+                *slid += (after.state.u[2 * node] - before.state.u[2 * node]).abs();
+            }
+            if bottom(node) {
+                near(nodal.slip[node], *slid, 1.0);
+                // all of the block lies on its bottom
+                let thickness = model.sections[0].thickness;
+                let mean = after.contacts[0].normal / (4.0 * thickness);
+                assert!((nodal.pressure[node] - mean).abs() < 1e-7 * 5.0);
+            } else {
+                assert!(all_nodes || nodal.slip[node].is_nan());
+                assert_eq!(nodal.slip[node].is_nan(), nodal.pressure[node].is_nan());
+                assert!(nodal.pressure[node].is_nan() || nodal.pressure[node] == 0.0);
+            }
+        }
+    }
+    let last = kept.reports.last().expect("reports");
+    let node = (0..nodes).find(|&node| bottom(node)).expect("a node");
+    assert!((last.nodal.pressure[node] - 5.0).abs() < 0.25, "the weight");
+    assert!(last.nodal.slip[node] > 0.1, "{}", last.nodal.slip[node]);
+}
+
+/// A concentrated load is told as it acts in the increment: at its middle.
+#[test]
+fn concentrated_loads_are_those_of_the_increment() {
+    use stickslip::model::{Load, PointLoad, Variation};
+    let (mut model, block) = block_on_base(0.3, [0.0, -1.0], Scheme::EnergyMomentum);
+    let dof = 2 * block.node(3, 1) + 1;
+    let period = model.steps[0].increments.period;
+    model.steps[0].point_loads = vec![Load {
+        at: PointLoad { dof },
+        magnitude: -4.0,
+        variation: Variation::Ramp { from: 0.0 },
+    }];
+    let held = 2 * block.node(3, 1);
+    model.steps[0].supports.push(fixed(held));
+    model.steps[0].increments.dt = period / 20.0;
+    let (kept, _) = run_to_end(&model);
+    for (k, report) in kept.reports.iter().enumerate().skip(1) {
+        let load = &report.nodal.concentrated;
+        near(load[dof], -4.0 * (k as f64 - 0.5) / 20.0, 1.0);
+        assert_eq!(load.iter().filter(|&&f| f != 0.0).count(), 1);
+    }
+    assert!(kept.reports[0].nodal.concentrated.iter().all(|&f| f == 0.0));
+    assert_eq!(Bodies::new(&model.mesh).count, kept.reports[0].bodies.len());
+}
