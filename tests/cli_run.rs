@@ -231,6 +231,38 @@ fn threads_do_not_change_the_results() {
     }
 }
 
+#[test]
+fn frames_at_no_interval_are_all_increments() {
+    let asked = [
+        "*OUTPUT, FIELD, FREQUENCY=10",
+        "*OUTPUT, FIELD, TIME INTERVAL=1e-300",
+    ];
+    let bench = Bench::new(&DROP.replace(asked[0], asked[1]));
+    for (options, output) in [
+        (&[][..], "a"),
+        (&["--every", "1e-21"], "b"),
+        (&["--frames", "18446744073709551615"], "c"),
+    ] {
+        let arguments = [&["run", "drop.inp", "-o", output], options].concat();
+        let (code, out, err) = bench.stickslip(&arguments);
+        assert_eq!((code, err.as_str()), (0, ""));
+        assert!(
+            out.contains("note     frames are asked for at shorter"),
+            "{out}"
+        );
+        let result = bench.summary(&format!("{output}/drop.vtkhdf"));
+        assert_eq!(result.frames.len(), 51);
+    }
+}
+
+#[test]
+fn the_name_of_a_job_has_no_extension_in_capitals_either() {
+    let bench = Bench::new(DROP);
+    fs::rename(bench.path("drop.inp"), bench.path("B.INP")).expect("renamed");
+    assert_eq!(bench.stickslip(&["run", "B.INP", "-q"]).0, 0);
+    assert!(bench.path("B.log").exists() && bench.path("B.vtkhdf").exists());
+}
+
 /// The warnings of the log, which are those that `info` finds in the file alone.
 fn warnings(change: [&str; 2]) -> String {
     assert!(DROP.contains(change[0]), "{}", change[0]);
@@ -276,36 +308,4 @@ fn runs_are_warned_about_when_they_shall_be_looked_at_again() {
         assert!(text.contains(words), "{words}: {text}");
         assert!(text.lines().all(|line| line.len() <= 80), "{text}");
     }
-}
-
-#[test]
-fn frames_at_no_interval_are_all_increments() {
-    let asked = [
-        "*OUTPUT, FIELD, FREQUENCY=10",
-        "*OUTPUT, FIELD, TIME INTERVAL=1e-300",
-    ];
-    let bench = Bench::new(&DROP.replace(asked[0], asked[1]));
-    for (options, output) in [
-        (&[][..], "a"),
-        (&["--every", "1e-21"], "b"),
-        (&["--frames", "18446744073709551615"], "c"),
-    ] {
-        let arguments = [&["run", "drop.inp", "-o", output], options].concat();
-        let (code, out, err) = bench.stickslip(&arguments);
-        assert_eq!((code, err.as_str()), (0, ""));
-        assert!(
-            out.contains("note     frames are asked for at shorter"),
-            "{out}"
-        );
-        let result = bench.summary(&format!("{output}/drop.vtkhdf"));
-        assert_eq!(result.frames.len(), 51);
-    }
-}
-
-#[test]
-fn the_name_of_a_job_has_no_extension_in_capitals_either() {
-    let bench = Bench::new(DROP);
-    fs::rename(bench.path("drop.inp"), bench.path("B.INP")).expect("renamed");
-    assert_eq!(bench.stickslip(&["run", "B.INP", "-q"]).0, 0);
-    assert!(bench.path("B.log").exists() && bench.path("B.vtkhdf").exists());
 }

@@ -1,3 +1,5 @@
+//! The last good state of a run, which becomes its final frame.
+
 use crate::dynamics::{IncrementReport, NodalResults, State};
 
 /// The last good state: the final frame of a run that stops.
