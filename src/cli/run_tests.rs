@@ -307,6 +307,16 @@ fn a_stop_leaves_the_last_good_state_and_says_where() {
     let summary = bench.summary();
     assert_eq!((summary.exit_status, summary.increments), (1, 3));
     assert_eq!(summary.frames, [0.0, report(3).time]);
+    let file = hdf5::File::open(bench.path("out/job.vtkhdf")).expect("result");
+    let points = file.group("VTKHDF/PointData").expect("fields");
+    for field in points.datasets().expect("fields") {
+        assert_eq!(
+            field.shape()[0],
+            2 * 4,
+            "{}: all of both frames",
+            field.name()
+        );
+    }
     let log = bench.log();
     for text in [
         "cutback  increment 4 at 3.000e-01, dt 5.00e-02 -> 5.00e-02",

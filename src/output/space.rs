@@ -90,10 +90,15 @@ impl Space {
 }
 
 /// Bytes by which the datasets of a group that grow may do so: `chunks` of each series, a chunk of
-/// each field.
+/// each field. A dataset with several names counts once.
 fn growth(group: &Group, chunks: u64) -> hdf5::Result<u64> {
-    let mut bytes = 0;
+    let (mut bytes, mut seen) = (0, Vec::new());
     for dataset in group.datasets()? {
+        let token = dataset.loc_info()?.token;
+        if seen.contains(&token) {
+            continue;
+        }
+        seen.push(token);
         if let Some(chunk) = dataset.chunk() {
             let values: usize = chunk.iter().product();
             bytes += chunks * (values * dataset.dtype()?.size()) as u64 + INDEX;

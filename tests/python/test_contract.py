@@ -175,7 +175,7 @@ def test_histories_have_one_row_per_increment(example: tuple) -> None:
 
 
 RIGID = ROOT / "tests" / "decks" / "rigid_floor.inp"
-GENERAL = SHAPES / "one.inp"
+GENERAL = SHAPES / "shapes_one.inp"
 
 
 def documented() -> list[re.Pattern[str]]:
