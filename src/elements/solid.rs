@@ -1,3 +1,6 @@
+//! Internal force, tangent, mass and strain energy of a total-Lagrangian solid element with any
+//! number of nodes and integration points. Section 2 of docs/theory.md (paper eq. 12).
+
 use nalgebra::{SMatrix, Vector3};
 
 use super::kinematics::{displacement_gradient, green_lagrange, smaller};
