@@ -1,3 +1,5 @@
+//! The exit codes listed in docs/output.md, section "Exit codes".
+
 use std::process::ExitCode;
 
 /// Exit codes of the program: a contract with scripts.

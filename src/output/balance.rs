@@ -1,3 +1,6 @@
+//! Running checks of conservation: energy balance (docs/theory.md, section 9), energy put in by
+//! contact (section 7), and linear momentum of a model without supports and loads.
+
 use crate::dynamics::{Energy, IncrementReport, Momentum};
 use crate::linear::larger;
 use crate::model::Model;

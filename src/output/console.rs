@@ -1,3 +1,6 @@
+//! Screen and log together: each printed line goes to both, and losing the screen does not end the
+//! run.
+
 use std::io::{self, ErrorKind, Write};
 
 use super::log::Log;

@@ -1,3 +1,5 @@
+//! A finished or running job as read back from its result file: the content of `info`.
+
 use std::io;
 use std::path::{Path, PathBuf};
 
