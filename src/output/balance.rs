@@ -117,7 +117,7 @@ impl Balance {
 }
 
 /// `value / whole`, 0 of nothing.
-fn part(value: f64, whole: f64) -> f64 {
+pub(super) fn part(value: f64, whole: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value / whole }
 }
 
