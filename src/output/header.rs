@@ -48,3 +48,15 @@ pub fn deck_line(
     );
     label("deck", &text)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_line_is_no_lines() {
+        let line = |lines, errors| deck_line(Path::new("a/b.inp"), 1, lines, errors, 0, None);
+        assert!(line(1, 1).ends_with("b.inp + 1 include, 1 line: 1 error, 0 warnings"));
+        assert!(line(2, 0).ends_with("b.inp + 1 include, 2 lines: 0 errors, 0 warnings"));
+    }
+}

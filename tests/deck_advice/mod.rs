@@ -294,3 +294,30 @@ fn a_reference_node_that_cannot_be_read_is_one_error() {
         assert_eq!(d.count(Severity::Error), 1, "{text}");
     }
 }
+
+#[test]
+fn increments_out_of_all_proportion() {
+    let text = texts_of(
+        Code::BadIncrement,
+        &[
+            square("0.1, 1.", "1e-300, 1."),
+            square("0.1, 1.", "9e-13, 1."),
+            square("0.1, 1.", "1e-200, 1e-199"),
+        ],
+    );
+    let faults: Vec<&str> = text
+        .lines()
+        .filter(|line| line.starts_with("error"))
+        .collect();
+    assert_eq!(faults.len(), 3, "{text}");
+    assert!(
+        faults[..2]
+            .iter()
+            .all(|fault| fault.contains("out of all proportion")),
+        "{text}"
+    );
+    assert!(faults[2].contains("beyond the range of numbers"), "{text}");
+    assert!(text.contains("deck.inp:25:1"), "{text}");
+    let (d, text) = messages(&square("0.1, 1.", "1e-12, 1."));
+    assert!(!d.has_errors(), "{text}");
+}
