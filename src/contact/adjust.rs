@@ -148,3 +148,37 @@ fn note(model: &Model, contact: &Contact, moved: &Adjusted) -> Diagnostic {
     );
     Diagnostic::note(Code::Adjusted, contact.span, message)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Cell, Plane};
+
+    /// Whether moving the upper corners of a slightly sheared square spoils it, in a unit of length.
+    fn is_spoiled_by(upper: [[f64; 2]; 2], unit: f64) -> bool {
+        let square = [[0.0, 0.0], [1.0, 0.03], [1.02, 1.01], [0.01, 0.98]];
+        let moved = [square[0], square[1], upper[0], upper[1]];
+        let [before, after] = [square, moved].map(|x| x.map(|p| p.map(|x| unit * x)));
+        let element = Element {
+            label: 1,
+            cell: Cell::Quad4([0, 1, 2, 3]),
+            plane: Plane::Stress,
+            section: 0,
+        };
+        is_spoiled(&element, &before, &after)
+    }
+
+    #[test]
+    fn elements_of_any_size_are_spoiled_by_the_same_moves() {
+        let (right, left) = ([1.02, 1.01], [0.01, 0.98]);
+        for unit in [1e-6, 1e-2, 1.0, 1e3] {
+            let is_spoiled_by = |right, left| is_spoiled_by([right, left], unit);
+            assert!(!is_spoiled_by([1.02, 1.02], left), "a small move, {unit:e}");
+            assert!(!is_spoiled_by([0.7, 0.7], left), "convex, {unit:e}");
+            assert!(is_spoiled_by([0.5, 0.5], left), "not convex, {unit:e}");
+            assert!(is_spoiled_by(right, [0.6, 0.4]), "not convex, {unit:e}");
+            assert!(!is_spoiled_by([1.02, 0.6], [0.01, 0.6]), "low, {unit:e}");
+            assert!(is_spoiled_by([1.02, 0.4], [0.01, 0.4]), "flat, {unit:e}");
+        }
+    }
+}
