@@ -107,3 +107,41 @@ fn touches(p: &Projection) -> bool {
     (-ENDS..=1.0 + ENDS).contains(&p.xi)
         && (-PENETRATING * p.length..=TOUCHING * p.length).contains(&p.gap)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether a node that touches a segment is held by another, which it is in front of, turned from
+    /// the first by an angle.
+    fn is_held(direction: f64, turn: f64) -> bool {
+        let normal = |angle: f64| [angle.cos(), angle.sin()];
+        let hold = Hold {
+            touching: vec![([3, 7], normal(direction))],
+            joined: Vec::new(),
+        };
+        let [x, y] = normal(direction + turn);
+        let start = Projection {
+            xi: -0.5,
+            gap: 0.01,
+            length: 1.0,
+            tangent: [-y, x],
+            normal: [x, y],
+        };
+        assert!(!hold.holds(2, &start), "a node that touches nothing");
+        hold.holds(3, &start)
+    }
+
+    #[test]
+    fn a_node_slides_round_a_bend_but_runs_against_a_wall() {
+        for i in 0..16 {
+            let direction = 0.3 + f64::from(i) * std::f64::consts::FRAC_PI_8;
+            for turn in [-0.01, 0.0, 0.01] {
+                assert!(is_held(direction, turn), "{direction} {turn}");
+            }
+            for turn in [-1.5, -0.1, -0.02, 0.02, 0.1, 1.5] {
+                assert!(!is_held(direction, turn), "{direction} {turn}");
+            }
+        }
+    }
+}
