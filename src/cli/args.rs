@@ -1,3 +1,6 @@
+//! Subcommands and options of the command line (parsed by clap), and their translation into
+//! settings of the other layers.
+
 use std::path::PathBuf;
 
 use clap::{ArgAction, Args as ClapArgs, Parser, Subcommand, ValueEnum};

@@ -1,3 +1,5 @@
+//! The subcommand `check`, and the reading of a deck that it shares with `run`.
+
 use std::path::Path;
 
 use super::args::{CheckArgs, DeckArgs};

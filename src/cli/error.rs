@@ -1,3 +1,5 @@
+//! Errors of the commands, with their messages and exit codes.
+
 use std::io;
 use std::path::PathBuf;
 

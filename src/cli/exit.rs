@@ -1,3 +1,5 @@
+//! The exit codes listed in docs/output.md, section "Exit codes".
+
 use std::process::ExitCode;
 
 /// Exit codes of the program: a contract with scripts.
@@ -10,9 +12,9 @@ pub enum Exit {
     Stopped = 1,
     /// The deck was rejected; no result file was touched.
     Rejected = 2,
-    /// The command line is wrong.
+    /// The command line is wrong, or asks for threads that cannot be started.
     Usage = 3,
-    /// A file could not be read or written.
+    /// A file or the screen could not be read or written, results exist already, or another run has the job.
     FileSystem = 4,
     /// The terminal was closed (SIGHUP); the results up to there are valid.
     HungUp = 129,

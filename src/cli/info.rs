@@ -1,3 +1,5 @@
+//! The subcommand `info`.
+
 use super::args::InfoArgs;
 use super::error::CliError;
 use super::{Exit, print};

@@ -1,3 +1,5 @@
+//! The subcommand `lcp`, by the methods of docs/theory.md, section 8.
+
 use std::fs;
 
 use super::args::LcpArgs;

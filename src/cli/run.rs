@@ -1,3 +1,5 @@
+//! The subcommand `run`: from the deck to the finished result files, whichever way the run ends.
+
 use super::args::RunArgs;
 use super::check::{complain_of, deck_line_of, load};
 use super::connect::{Loaded, Numerics};

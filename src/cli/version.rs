@@ -1,3 +1,6 @@
+//! Identity of the build: version, commit, profile and libraries, recorded by `build.rs`, and the
+//! licences of the libraries.
+
 use std::sync::LazyLock;
 
 /// Version of the program.

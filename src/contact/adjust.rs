@@ -1,3 +1,6 @@
+//! Adjustment of the mesh before the start: strain-free moves of slave nodes onto the master
+//! surface (`ADJUST=` of `*CONTACT PAIR`), with a check of the elements that change shape.
+
 use super::initial::gaps;
 use super::{InitialGap, contact_surfaces};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};

@@ -1,3 +1,6 @@
+//! Bounding circles and their binary hierarchies, for overlaps and nearest neighbours: the
+//! territories of Zhong & Nilsson (1989). Section 10 of docs/theory.md, Territories.
+
 /// Members of the groups that are not split further.
 const GROUP: usize = 8;
 /// Growth that covers the round-off of distances.

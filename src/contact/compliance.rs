@@ -1,3 +1,6 @@
+//! Compliance at the contacts: the entries of an inverse W that the Delassus operator Q = B W B^T
+//! needs, W being K*^-1 in a pass and M^-1 for impulses. Sections 5 and 6 of docs/theory.md.
+
 use nalgebra::DMatrix;
 
 use super::Pair;

@@ -1,3 +1,7 @@
+//! Times at which a moving node meets a moving segment: zeros of the cross product of their
+//! relative positions, a quartic for second-order motion. Section 10 of docs/theory.md, Crossing
+//! (paper eq. 50 without its frozen normal).
+
 use super::quartic::{Quartic, Zero, Zeros};
 
 /// Round-off of a cross product, relative to the products of the sizes that make it.

@@ -1,3 +1,5 @@
+//! Projection of a node on a segment: gap, foot and local frame. Section 3 of docs/theory.md.
+
 /// Place of a point relative to a segment from a to b, the body lying on the left of the way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Projection {

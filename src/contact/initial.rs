@@ -1,3 +1,6 @@
+//! Initial gaps of a contact by closest-point projection of the slave nodes in the reference
+//! configuration, with branch and bound over the bounding circles of the segments.
+
 use super::circles::{Circle, CircleTree};
 use super::{ContactSurfaces, Projection, contact_surfaces, project};
 use crate::model::Model;

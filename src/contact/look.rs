@@ -1,3 +1,7 @@
+//! Kinematics of a slave node relative to nearby segments, at the start of the increment and at
+//! the iterate: the tests by which its contact targets are selected. Section 10 of docs/theory.md,
+//! Sites.
+
 use super::ContactSurfaces;
 use super::crossing::{Crossing, Direction, Motion, crossings};
 use super::geometry::{Projection, project};

@@ -1,3 +1,6 @@
+//! Contact constraints: gap, slip and rows of Bn and Bt, of the end configuration (section 3 of
+//! docs/theory.md) or as discrete gradients (section 7).
+
 use super::geometry::{position, project};
 use super::sites::Site;
 

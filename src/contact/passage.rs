@@ -1,3 +1,6 @@
+//! Tunnelling check of a converged increment: slave nodes that pass into or through a body on
+//! their straight paths from U0 to U1. Section 10 of docs/theory.md, Passage.
+
 use super::crossing::{Crossing, Direction, Motion, crossings};
 use super::geometry::{Projection, position, project};
 use super::{ContactSurfaces, Search};

@@ -1,3 +1,5 @@
+//! Tests of the tunnelling check: a node at a thin plate, a concave corner, a sinking roof.
+
 use super::{ContactSurfaces, Passage, Search, Touch, find_passage};
 
 /// A plate from (0, 0) to (8, 0.5) with segments of length 1 along and 0.5 across, its body on

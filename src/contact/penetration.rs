@@ -1,3 +1,6 @@
+//! Check of the initial configuration: penetrated nodes, overlapping bodies and surfaces that do
+//! not face each other, reported as diagnostics at the contact in the deck.
+
 use super::{InitialGap, initial_gaps, project};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
 use crate::model::{ALL_EXTERIOR, Contact, Model, SurfaceKind};

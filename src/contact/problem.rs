@@ -1,3 +1,6 @@
+//! Delassus operator Q = B W B^T of a set of pairs, and the frictional complementarity problem it
+//! forms. Section 5 of docs/theory.md (paper eqs 36 to 47).
+
 use nalgebra::{DMatrix, DVector};
 
 use super::{Compliance, Pair};

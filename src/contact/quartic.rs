@@ -1,3 +1,6 @@
+//! Zeros of a quartic polynomial on [0, 1]: bisection between extrema, which the zeros of the
+//! higher derivatives separate. Section 10 of docs/theory.md, Crossing.
+
 /// Halvings that leave an interval of [0, 1] no longer than its round-off.
 const HALVINGS: usize = 60;
 

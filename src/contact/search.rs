@@ -1,3 +1,6 @@
+//! Pairing: the contact targets of all slave nodes at an iterate, from the candidates of the
+//! search and the pairs of the pass before. Section 10 of docs/theory.md, Sites.
+
 use super::geometry::position;
 use super::look::Look;
 use super::sites::Site;

@@ -1,3 +1,6 @@
+//! Selection of contact targets: the segments and convex corners that constrain a slave node, with
+//! rules for convex and concave corners and for thin bodies. Section 10 of docs/theory.md, Sites.
+
 use super::geometry::project;
 use super::look::{Look, NEAR, TOUCHING};
 use super::vertex::{Vertex, common_normal};

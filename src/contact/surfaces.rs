@@ -1,3 +1,5 @@
+//! Contact surfaces as slave nodes and oriented master segments, with their adjacency and corners.
+
 use std::collections::HashMap;
 use std::sync::Arc;
 

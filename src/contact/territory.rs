@@ -1,3 +1,6 @@
+//! Candidate search between slave nodes and segments, after Zhong & Nilsson (1989), with lists
+//! that stay valid over many increments. Section 10 of docs/theory.md, Territories.
+
 use super::circles::{Circle, CircleTree};
 use super::geometry::position;
 use super::sites::ROUND_OFF;

@@ -1,3 +1,6 @@
+//! Node-to-node contact: the common normal of a slave node and a convex corner, from the
+//! intersection of their normal cones. Section 10 of docs/theory.md, Node against node.
+
 /// Angle by which two normal cones may miss each other and still have a normal in common.
 const MISSED: f64 = 0.1;
 

@@ -1,3 +1,6 @@
+//! Cards with their parameters and data lines, and typed access to both; a wrong or missing value
+//! is reported with its place.
+
 use super::lexer::{Line, span_in};
 use super::{Keyword, Text};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, FileId, Span};

@@ -1,3 +1,6 @@
+//! Types of the keyword table: keywords, parameters and values with what the program does with
+//! each, and look-up by name.
+
 use super::{table_model, table_others, table_steps, word};
 use std::collections::HashMap;
 use std::sync::LazyLock;

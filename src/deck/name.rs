@@ -1,3 +1,5 @@
+//! User-defined names (of sets, surfaces, materials, ...) and the rule by which they are compared.
+
 use super::word;
 
 /// A name in a deck: shown as typed, compared without case unless it was quoted.

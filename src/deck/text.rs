@@ -1,3 +1,6 @@
+//! Fields and parameter values with their place, read as numbers or names; reports what is neither,
+//! and what Abaqus or CalculiX would read differently.
+
 use super::number::{self, NotANumber};
 use super::{Name, word};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span};

@@ -1,3 +1,6 @@
+//! Matching of keywords, parameters and words: case and blanks aside, a unique beginning of at
+//! least four letters suffices, and a likely typing error gets a suggestion.
+
 use crate::diagnostics::closest;
 
 /// Shortest abbreviation that is understood.

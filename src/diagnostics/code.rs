@@ -1,3 +1,6 @@
+//! The table of diagnostic codes: identifiers and meanings, grouped by the part of the deck they
+//! concern.
+
 macro_rules! codes {
     ($($name:ident $id:literal $meaning:literal)*) => {
         /// What a diagnostic is about.

@@ -1,3 +1,6 @@
+//! A single diagnostic: severity, code, place, message, label and help; overlong echoes of the deck
+//! are cut.
+
 use super::{Code, Span};
 
 /// Longest word of a message, in characters: a name has 80 at most, a path is often longer.

@@ -1,3 +1,5 @@
+//! The collection of diagnostics of one deck: counts by severity, strictness, order by place.
+
 use super::render::SHOWN;
 use super::{Code, Diagnostic, Severity, Span};
 use std::collections::{BinaryHeap, HashSet};

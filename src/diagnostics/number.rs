@@ -1,3 +1,5 @@
+//! Floating-point numbers in messages.
+
 /// Magnitudes that are written with all their digits.
 const PLAIN: std::ops::Range<f64> = 1e-6..1e16;
 

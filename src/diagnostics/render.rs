@@ -1,3 +1,6 @@
+//! Diagnostics as text: message, source line with caret, chain of includes and advice, laid out by
+//! annotate-snippets in the style of rustc.
+
 use super::{Diagnostic, Diagnostics, Severity, Sources, Span};
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 use std::ops::Range;

@@ -1,3 +1,5 @@
+//! Texts of the main deck and its included files: access by line, and the chain of includes.
+
 use super::{FileId, Span};
 
 /// One file of a deck.

@@ -1,3 +1,5 @@
+//! Places in the files of a deck.
+
 /// Index of a file among the sources of a deck.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct FileId(pub u32);

@@ -1,3 +1,7 @@
+//! Suggestions for misspelt words: the candidate at the smallest edit distance, with exchanges of
+//! neighbouring letters counted as one error (optimal string alignment, a restricted
+//! Damerau-Levenshtein distance).
+
 /// Most typing errors in a word that is understood.
 const MOST_ERRORS: usize = 2;
 

@@ -1,3 +1,7 @@
+//! Results of a converged increment besides its energies: momentum, motion of the bodies,
+//! resultants of the contacts, nodal quantities and reactions of rigid surfaces. Section 9 of
+//! docs/theory.md.
+
 use super::bodies::{BodyMasses, Moving, momentum};
 use super::contact_ledger::ContactLedger;
 use super::increment::Solved;

@@ -1,3 +1,6 @@
+//! Contact forces of a pass and impact impulses, each the solution of a frictional complementarity
+//! problem. Sections 5 and 6 of docs/theory.md (paper eqs 30 and 36 to 47).
+
 use super::dofs::DofMap;
 use super::effective::Factored;
 use super::meter::Meter;

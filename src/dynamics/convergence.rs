@@ -1,3 +1,6 @@
+//! Convergence criterion of the passes: relative residual and correction with local scales and a
+//! round-off floor. Section 4 of docs/theory.md, Convergence.
+
 use super::contact_forces::ContactForces;
 use super::parts::Parts;
 use super::{PassReport, Worst};

@@ -1,3 +1,5 @@
+//! Numbering of the unknowns of a step, and the maps between them and all degrees of freedom.
+
 use crate::elements::Body;
 use crate::model::Step;
 

@@ -1,3 +1,6 @@
+//! System matrices of a step with their factors and compliances at the contacts: the effective
+//! stiffness K* of the passes and the mass of the impulses. Sections 4 and 6 of docs/theory.md.
+
 use super::dofs::DofMap;
 use super::mass::unknown_mass;
 use super::parts::Parts;

@@ -1,3 +1,6 @@
+//! Event-driven integration of impacts: subincrements [t, t + tau] that end at the next impact,
+//! its time being the solution of T(tau) = tau. Section 6 of docs/theory.md, Impacts as events.
+
 use super::State;
 use super::effective::Effective;
 use super::hold::Hold;

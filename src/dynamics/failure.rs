@@ -1,3 +1,6 @@
+//! Failed increments: cause, worst node and data of the attempt, for the report of a cutback or a
+//! stop.
+
 use std::fmt;
 
 use super::PassReport;

@@ -1,3 +1,6 @@
+//! Energy check of contact in the energy-momentum scheme: positive normal work at corners that
+//! turn concave under a sliding node. Section 7 of docs/theory.md.
+
 use super::increment::{Failed, Solved};
 use super::ledger::Ledger;
 use super::step_problem::StepProblem;

@@ -1,3 +1,5 @@
+//! Nominal time increments of a step and their bisection. Section 4 of docs/theory.md, Cutback.
+
 use super::loads::Moment;
 use super::step_problem::Interval;
 

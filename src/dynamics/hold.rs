@@ -1,3 +1,6 @@
+//! Active constraints of a subincrement in event-driven integration. Section 6 of docs/theory.md,
+//! Impacts as events, items 1 and 4.
+
 use super::step_problem::StepProblem;
 use super::touching::Touching;
 use crate::contact::{PENETRATING, Pair, Projection, Search, TOUCHING};

@@ -1,3 +1,6 @@
+//! Velocity jump at the start of an increment: the set of pairs that take impact impulses,
+//! iterated along with the passes. Section 6 of docs/theory.md (paper eq. 30).
+
 use super::contact_forces::ContactForces;
 use super::effective::Effective;
 use super::meter::Meter;

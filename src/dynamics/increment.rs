@@ -1,3 +1,6 @@
+//! Solution of one increment: predictor and corrector passes with contact forces, impulses and the
+//! checks after convergence. Sections 4 to 6 of docs/theory.md (paper eqs 27, 29 and 36 to 49).
+
 use super::contact_forces::ContactForces;
 use super::convergence::{Errors, Lengths, Scales, largest_forces};
 use super::effective::Effective;

@@ -1,3 +1,5 @@
+//! Energy balance of a run, accumulated increment by increment. Section 9 of docs/theory.md.
+
 use super::increment::Solved;
 use super::mass::dot;
 use super::step_problem::{Equilibrium, StepProblem};

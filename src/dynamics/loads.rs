@@ -1,3 +1,6 @@
+//! External loads at a time point and their consistent nodal forces: concentrated loads, body
+//! forces, tractions and follower pressures. Section 4 of docs/theory.md (R_theta).
+
 use crate::elements::Body;
 use crate::model::{Load, Model, Pressure, Step, TimeBase, Variation};
 

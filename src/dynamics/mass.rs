@@ -1,3 +1,6 @@
+//! Global mass matrices over the nodes and over the unknowns, and kinetic energies. Section 2 of
+//! docs/theory.md.
+
 use super::dofs::DofMap;
 use super::parts::Parts;
 use crate::elements::Body;

@@ -1,3 +1,5 @@
+//! Wall-clock times of the phases and counters of the solvers.
+
 use std::time::{Duration, Instant};
 
 use super::{SolverCounts, Timings};

@@ -1,3 +1,5 @@
+//! Results of an increment and totals of a run, as the output receives them through `Observer`.
+
 use std::io;
 use std::time::Duration;
 

@@ -1,3 +1,7 @@
+//! Postprocessing of a converged increment: nodal quantities, resultants of the contacts and
+//! landings, the latter by paper eq. 50 with the exact crossing (section 10 of docs/theory.md,
+//! Crossing).
+
 use super::increment::Solved;
 use super::step_problem::{Equilibrium, Interval, StepProblem};
 use super::touching::Touching;

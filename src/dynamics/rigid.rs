@@ -1,3 +1,5 @@
+//! Resultant reactions of rigid surfaces at their reference nodes. Section 9 of docs/theory.md.
+
 use super::RigidReaction;
 use super::step_problem::StepProblem;
 use crate::model::{Model, RigidBody};

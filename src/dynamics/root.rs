@@ -1,3 +1,6 @@
+//! Time of an impact: the root of T(tau) - tau by the secant method, safeguarded by bisection.
+//! Section 6 of docs/theory.md, Impacts as events, item 3.
+
 use super::increment::Solved;
 
 /// Reduction of the error by a trial from which on the time is bracketed by halving.

@@ -1,3 +1,6 @@
+//! Time stepping of a run: steps, increments, cutbacks by bisection and subincrements between
+//! impacts. Section 4 of docs/theory.md, Cutback, and section 6, Impacts as events.
+
 use std::io;
 
 use super::accounts::Accounts;

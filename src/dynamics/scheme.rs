@@ -1,3 +1,6 @@
+//! Weights and configurations of the time integration schemes: SS22 of Zienkiewicz, Wood & Hine
+//! (1984) and the energy-momentum form of Simo & Tarnow (1992). Section 4 of docs/theory.md.
+
 use crate::contact::RowForm;
 use crate::elements::{Body, Inverted};
 use crate::model::Scheme;

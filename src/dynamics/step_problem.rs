@@ -1,3 +1,6 @@
+//! Equation of motion of a step (paper eq. 21), evaluated at an iterate: loads, internal and
+//! inertia forces, and contact pairs. Sections 3 and 4 of docs/theory.md.
+
 use super::dofs::DofMap;
 use super::effective::Effective;
 use super::loads::{Loads, Moment};

@@ -1,3 +1,6 @@
+//! Prescribed displacements and velocities of a step, by ramps and amplitudes. Section 4 of
+//! docs/theory.md.
+
 use super::loads::Moment;
 use crate::model::{Model, Step, SupportMotion};
 

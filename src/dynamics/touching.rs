@@ -1,3 +1,6 @@
+//! Closed contact pairs with their states and forces: the warm start of the next pass or
+//! increment.
+
 use super::contact_forces::ContactForces;
 use crate::contact::PairSite;
 use crate::lcp::ContactState;

@@ -1,3 +1,6 @@
+//! Element quantities of all bodies of a model: internal force, tangents, masses, strain energies
+//! and strains, by parallel sweeps. Section 2 of docs/theory.md.
+
 use nalgebra::SMatrix;
 use rayon::prelude::*;
 

@@ -1,3 +1,6 @@
+//! Deformation and stress at an integration point: finite-strain kinematics (section 2 of
+//! docs/theory.md) at one configuration or in the energy-momentum form (section 4).
+
 use nalgebra::{Matrix2, SMatrix};
 
 use super::voigt::stress;

@@ -1,3 +1,5 @@
+//! The bilinear isoparametric quadrilateral Q4, fully integrated. Section 2 of docs/theory.md.
+
 use nalgebra::{Matrix2, SMatrix, SVector};
 
 use super::{Point, Reference};

@@ -1,3 +1,6 @@
+//! Stress recovery: Cauchy stress and Green-Lagrange strain averaged over each element, and the
+//! von Mises stress of these averages. Section 2 of docs/theory.md.
+
 use nalgebra::{Matrix2, SMatrix};
 
 use super::body::gather;

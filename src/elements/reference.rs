@@ -1,3 +1,6 @@
+//! Quadrature data of the elements, computed once (total-Lagrangian form). Section 2 of
+//! docs/theory.md.
+
 use nalgebra::{SMatrix, SVector};
 
 /// One integration point in the reference configuration.

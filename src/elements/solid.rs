@@ -1,3 +1,6 @@
+//! Internal force, tangent, mass and strain energy of a total-Lagrangian solid element with any
+//! number of nodes and integration points. Section 2 of docs/theory.md (paper eq. 12).
+
 use nalgebra::{SMatrix, Vector3};
 
 use super::kinematics::{displacement_gradient, green_lagrange, smaller};
@@ -68,8 +71,9 @@ pub fn internal_force<const N: usize, const P: usize>(
 
 /// Tangent K = int B_L^T C B_L + B_NL^T S B_NL dOmega (paper eq. 12), D x D (force/length).
 ///
-/// In the energy-momentum form B_L is that of the mid configuration and S the mean stress: the
-/// symmetric part of the exact tangent, up to the factor theta2 = 1/2.
+/// In the energy-momentum form B_L is that of the mid configuration on both sides and S the mean
+/// stress: a symmetric approximation of the exact tangent, which has B_L of the end on the right; up to
+/// the factor theta2 = 1/2.
 pub fn tangent<const N: usize, const P: usize, const D: usize>(
     element: &Reference<N, P>,
     c: &Elasticity,

@@ -1,3 +1,5 @@
+//! The constant-strain triangle T3, its mass in closed form. Section 2 of docs/theory.md.
+
 use nalgebra::{SMatrix, SVector};
 
 use super::{Point, Reference};

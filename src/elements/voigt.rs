@@ -1,3 +1,6 @@
+//! The St. Venant-Kirchhoff law in Voigt notation, for plane stress and plane strain. Section 2 of
+//! docs/theory.md.
+
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
 use crate::model::{Material, Plane};

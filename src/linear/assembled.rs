@@ -1,3 +1,5 @@
+//! Assembly of element matrices into compressed sparse columns, through positions computed once.
+
 use sprs::{CsMat, CsMatView};
 
 /// Marks an element dof that is not an unknown.

@@ -1,3 +1,7 @@
+//! Direct solves with an a posteriori check: the residual relative to |b| + |A| |x|, by one
+//! product with the matrix for all right-hand sides together; parts of the inverse by their row
+//! sums.
+
 use sprs::CsMatView;
 
 use super::{Assembled, LinearError, LinearSolver, larger, largest};

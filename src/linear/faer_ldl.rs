@@ -1,3 +1,6 @@
+//! Binding of faer's sparse Cholesky module: symbolic analysis once, numeric factors, their pivots
+//! and parts of the inverse.
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
 use faer::sparse::SparseColMatRef;

@@ -1,3 +1,5 @@
+//! Fill-reducing ordering: approximate minimum degree (Amestoy, Davis & Duff 1996) by faer.
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;

@@ -1,3 +1,6 @@
+//! Selected entries of the inverse from supernodal LDL^T factors: multifrontal forward
+//! substitution along the paths of the elimination tree. Section 5 of docs/theory.md.
+
 use std::collections::BTreeMap;
 
 use faer::linalg::matmul::matmul;

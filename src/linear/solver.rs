@@ -1,3 +1,5 @@
+//! Interface of the direct solvers, their errors, and the choice between them.
+
 use sprs::CsMatView;
 
 use super::{FaerLdl, SprsLdl};

@@ -1,3 +1,6 @@
+//! Binding of the sprs-ldl library, a simplicial factorisation independent of faer's; parts of the
+//! inverse come from unit right-hand sides.
+
 use sprs::{CsMatView, PermOwned, SymmetryCheck};
 use sprs_ldl::{LdlNumeric, LdlSymbolic};
 

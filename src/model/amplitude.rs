@@ -1,3 +1,6 @@
+//! Amplitudes: tabulated functions of time with their value and rate. The rate is the velocity of a
+//! prescribed displacement (docs/theory.md, section 4).
+
 /// Time that an amplitude is a function of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TimeBase {

@@ -1,3 +1,6 @@
+//! Contact pairs and their interactions: hard contact with Coulomb friction (docs/theory.md,
+//! section 3).
+
 use crate::diagnostics::Span;
 
 /// Contact law between two surfaces: hard normal contact and Coulomb friction.

@@ -1,3 +1,5 @@
+//! Node sets requested for the history output, group `/history/nodes` of the result file.
+
 /// A node set in the history: sums and means over the set are always there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct HistorySet {

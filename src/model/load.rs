@@ -1,3 +1,6 @@
+//! Loads and prescribed displacements of a step, with their variation in time (docs/theory.md,
+//! section 4).
+
 use super::Face;
 
 /// How a load's magnitude follows time within its step.

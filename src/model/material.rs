@@ -1,3 +1,6 @@
+//! Elastic constants, density, thickness, and plane stress or plane strain (docs/theory.md,
+//! sections 1 and 2).
+
 /// St. Venant-Kirchhoff material: second Piola-Kirchhoff stress linear in the Green-Lagrange strain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {

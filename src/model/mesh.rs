@@ -1,3 +1,6 @@
+//! The mesh: nodes, elements with their sides, and sets; connected bodies (union-find over the
+//! nodes of the elements) and exterior faces.
+
 use std::collections::HashMap;
 
 use super::{Face, Plane};

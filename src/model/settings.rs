@@ -1,3 +1,6 @@
+//! Solver settings of a step: time integration and convergence (docs/theory.md, section 4), impacts
+//! (section 6), complementarity solver (section 8), sparse factorisation.
+
 /// Settings of `*STICKSLIP` for one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {

@@ -1,3 +1,6 @@
+//! Steps: time increments, prescribed displacements, loads, solver settings and times of field
+//! output.
+
 use super::{BodyForce, Load, PointLoad, Pressure, Settings, Support, Traction};
 
 /// One dynamic step: everything that acts in it, whether named in it or carried on from before.

@@ -1,3 +1,6 @@
+//! Contact surfaces: element faces, nodes or rigid segments. Segments run from a to b with the body
+//! on the left, as in docs/theory.md, section 3.
+
 use super::Mesh;
 
 /// Name of the surface of general contact: all faces that belong to one element only.

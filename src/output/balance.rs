@@ -1,3 +1,6 @@
+//! Running checks of conservation: energy balance (docs/theory.md, section 9), energy put in by
+//! contact (section 7), and linear momentum of a model without supports and loads.
+
 use crate::dynamics::{Energy, IncrementReport, Momentum};
 use crate::linear::larger;
 use crate::model::Model;
@@ -114,7 +117,7 @@ impl Balance {
 }
 
 /// `value / whole`, 0 of nothing.
-fn part(value: f64, whole: f64) -> f64 {
+pub(super) fn part(value: f64, whole: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value / whole }
 }
 

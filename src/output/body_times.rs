@@ -1,3 +1,6 @@
+//! Transit times of longitudinal waves through the bodies, group `/model/bodies` of the result
+//! file.
+
 use super::echo::{corners, shortest_edge, wave_speed};
 use crate::model::{Bodies, Model};
 

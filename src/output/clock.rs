@@ -1,3 +1,6 @@
+//! Wall-clock time in UTC, as ISO 8601 text. The calendar is computed from the number of days by
+//! Hinnant's algorithm (`civil_from_days`, "chrono-compatible low-level date algorithms").
+
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// The time now as `2026-05-01T10:12:33Z`.

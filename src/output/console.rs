@@ -1,3 +1,6 @@
+//! Screen and log together: each printed line goes to both, and losing the screen does not end the
+//! run.
+
 use std::io::{self, ErrorKind, Write};
 
 use super::log::Log;
@@ -7,7 +10,7 @@ use crate::dynamics::{IncrementReport, PassReport};
 /// How much is printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Verbosity {
-    /// Nothing on the screen.
+    /// Nothing on the standard output; errors and the account of a stop go to the standard error.
     Quiet,
     /// The header and a table of 20 to 50 lines.
     #[default]

@@ -1,3 +1,6 @@
+//! Building blocks of the result file: HDF5 groups, attributes, constant datasets, and datasets
+//! that grow along their first axis.
+
 use hdf5::types::VarLenUnicode;
 use hdf5::{Dataset, Extent, Extents, Group, H5Type, Hyperslab, Location, SliceOrIndex};
 use ndarray::{ArrayView, IxDyn};
@@ -8,7 +11,8 @@ const CHUNK_ROWS: usize = 64;
 /// A frame of fewer bytes is not compressed: that would take longer than writing it.
 const LEAST_COMPRESSED: usize = 1 << 12;
 
-/// Largest chunk of such a dataset in bytes: well inside the library's chunk cache.
+/// Largest chunk in bytes of a dataset that grows by one row per increment: well inside the
+/// library's chunk cache.
 const CHUNK_BYTES: usize = 1 << 18;
 
 /// What a dataset holds: its attributes `description` and `dimension`.

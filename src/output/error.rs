@@ -1,3 +1,6 @@
+//! Errors in writing the files of a job, and the system's error behind a failure of the HDF5
+//! library.
+
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 

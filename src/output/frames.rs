@@ -1,3 +1,5 @@
+//! The schedule of field output (docs/output.md, "/VTKHDF: the frames").
+
 use crate::dynamics::IncrementReport;
 use crate::model::{Frames, Model, Step};
 

@@ -1,3 +1,5 @@
+//! The flag that carries a signal from the thread that receives it into the run.
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI32, Ordering};
 

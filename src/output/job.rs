@@ -1,3 +1,5 @@
+//! Names of the files of a job, derived from the name of its deck.
+
 use std::path::{Path, PathBuf};
 
 /// The files of a job.

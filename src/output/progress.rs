@@ -1,3 +1,5 @@
+//! The progress bar on a terminal: part of the total time that the run has covered.
+
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::format::scientific;

@@ -1,3 +1,5 @@
+//! The check that a file to be read is a regular file.
+
 use std::fs;
 use std::io;
 use std::path::Path;

@@ -1,3 +1,6 @@
+//! The result file as a whole: all groups of `JOB.vtkhdf`, with disk space secured before each
+//! history row and frame, and a flush after each frame.
+
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};

@@ -1,3 +1,6 @@
+//! Scalar time histories: tables of name, meaning and value, each entry a growing dataset of the
+//! result file.
+
 use hdf5::{Group, H5Type};
 
 use super::dataset::{Column, Meaning, meaning};

@@ -1,3 +1,5 @@
+//! A finished or running job as read back from its result file: the content of `info`.
+
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -5,6 +7,7 @@ use hdf5::types::VarLenUnicode;
 use hdf5::{FileBuilder, Group, H5Type};
 use thiserror::Error;
 
+use super::balance::part;
 use super::body_times::BodyTimes;
 use super::echo::{label, wrap};
 use super::error::reason;
@@ -261,11 +264,6 @@ fn read_open(at: &Group) -> hdf5::Result<Vec<String>> {
     let contacts: hdf5::Result<Vec<(String, bool)>> =
         at.member_names()?.into_iter().map(contact).collect();
     Ok(never_closed(&contacts?))
-}
-
-/// `value / whole`, 0 of nothing.
-fn part(value: f64, whole: f64) -> f64 {
-    if value == 0.0 { 0.0 } else { value / whole }
 }
 
 fn read_contacts(at: &Group) -> hdf5::Result<Vec<(String, f64)>> {

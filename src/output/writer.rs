@@ -1,3 +1,6 @@
+//! The observer of a run: passes each increment on to result file, status file, log and screen, and
+//! closes them at the end.
+
 use std::fs;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::Path;

@@ -1,3 +1,6 @@
+//! The state shared by all functions of the reader: deck and diagnostics; undefined names with a
+//! suggestion of what was meant.
+
 use super::catalogue::{Catalogue, list_of, way_out, with_article};
 use crate::deck::{Card, Deck, Text};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Span, closest};

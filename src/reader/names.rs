@@ -1,3 +1,6 @@
+//! Symbol tables of the reader: user-defined names, and node and element numbers, resolved to
+//! indices. What an already reported error left undefined is not reported again.
+
 use super::context::Context;
 use crate::deck::{Card, Name, Text};
 use crate::diagnostics::{Code, Span};
