@@ -147,4 +147,29 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn what_touches_is_told_by_parts_of_the_length_of_the_segment() {
+        for length in [1e-4, 1e-2, 1.0, 1e2, 1e4] {
+            let at = |part: f64| Projection {
+                xi: 0.5,
+                gap: part * length,
+                length,
+                tangent: [-1.0, 0.0],
+                normal: [0.0, 1.0],
+            };
+            for (part, is_touched) in [(5e-10, true), (2e-9, false), (-1e-3, true), (-3e-3, false)]
+            {
+                assert_eq!(touches(&at(part)), is_touched, "{part:e} {length:e}");
+            }
+            // a wall that a node was not in front of stops it as any other segment that it touches
+            let hold = Hold {
+                touching: vec![([3, 7], [1.0, 0.0])],
+                joined: Vec::new(),
+            };
+            for (part, is_held) in [(-0.1, true), (5e-10, true), (2e-9, false)] {
+                assert_eq!(hold.holds(3, &at(part)), is_held, "{part:e} {length:e}");
+            }
+        }
+    }
 }
