@@ -294,3 +294,12 @@ fn a_reference_node_that_cannot_be_read_is_one_error() {
         assert_eq!(d.count(Severity::Error), 1, "{text}");
     }
 }
+
+/// Where a deck has no elements at all, that is what it lacks, not each one that a set names.
+#[test]
+fn a_deck_without_elements_is_not_told_of_each_of_them() {
+    let block = "*ELEMENT, TYPE=CPS4, ELSET=BODY\n7, 1, 2, 3, 4\n";
+    let (d, text) = messages(&square(block, "*ELSET, ELSET=BODY\n7, 8\n"));
+    let codes: Vec<Code> = d.iter().map(|item| item.code).collect();
+    assert_eq!(codes, [Code::EmptyMesh], "{text}");
+}
