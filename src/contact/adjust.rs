@@ -151,3 +151,80 @@ fn note(model: &Model, contact: &Contact, moved: &Adjusted) -> Diagnostic {
     );
     Diagnostic::note(Code::Adjusted, contact.span, message)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnostics::Span;
+    use crate::model::{Cell, Face, Plane, Surface, SurfaceKind};
+
+    /// Whether moving the upper corners of a slightly sheared square spoils it, in a unit of length.
+    fn is_spoiled_by(upper: [[f64; 2]; 2], unit: f64) -> bool {
+        let square = [[0.0, 0.0], [1.0, 0.03], [1.02, 1.01], [0.01, 0.98]];
+        let moved = [square[0], square[1], upper[0], upper[1]];
+        let [before, after] = [square, moved].map(|x| x.map(|p| p.map(|x| unit * x)));
+        let element = Element {
+            label: 1,
+            cell: Cell::Quad4([0, 1, 2, 3]),
+            plane: Plane::Stress,
+            section: 0,
+        };
+        is_spoiled(&element, &before, &after)
+    }
+
+    #[test]
+    fn elements_of_any_size_are_spoiled_by_the_same_moves() {
+        let (right, left) = ([1.02, 1.01], [0.01, 0.98]);
+        for unit in [1e-6, 1e-2, 1.0, 1e3] {
+            let is_spoiled_by = |right, left| is_spoiled_by([right, left], unit);
+            assert!(!is_spoiled_by([1.02, 1.02], left), "a small move, {unit:e}");
+            assert!(!is_spoiled_by([0.7, 0.7], left), "convex, {unit:e}");
+            assert!(is_spoiled_by([0.5, 0.5], left), "not convex, {unit:e}");
+            assert!(is_spoiled_by(right, [0.6, 0.4]), "not convex, {unit:e}");
+            assert!(!is_spoiled_by([1.02, 0.6], [0.01, 0.6]), "low, {unit:e}");
+            assert!(is_spoiled_by([1.02, 0.4], [0.01, 0.4]), "flat, {unit:e}");
+        }
+    }
+
+    /// Number of nodes that are moved of a square that lies above another, the gap being a part of the
+    /// length of an edge.
+    fn moved_from(part: f64, edge: f64) -> usize {
+        let mut model = Model::default();
+        for (first, height) in [(0, 0.0), (4, 1.0 + part)] {
+            let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+            let above = corners.map(|[x, y]| [edge * x, edge * (y + height)]);
+            model.mesh.coordinates.extend(above);
+            model.mesh.elements.push(Element {
+                label: 1,
+                cell: Cell::Quad4([0, 1, 2, 3].map(|i| first + i)),
+                plane: Plane::Stress,
+                section: 0,
+            });
+        }
+        for (name, element, side) in [("UPPER", 1, 0), ("LOWER", 0, 2)] {
+            model.surfaces.push(Surface {
+                name: name.into(),
+                kind: SurfaceKind::Faces(vec![Face { element, side }]),
+            });
+        }
+        model.contacts.push(Contact {
+            slave: 0,
+            master: 1,
+            interaction: None,
+            adjust: Some(Adjust::Within(0.1 * edge)),
+            left_out: Vec::new(),
+            span: Span::default(),
+        });
+        adjust(&mut model).iter().map(|moved| moved.count).sum()
+    }
+
+    #[test]
+    fn nodes_that_are_on_the_surface_but_for_round_off_stay() {
+        for edge in [1e-4, 1e-2, 1.0, 1e2, 1e4] {
+            assert_eq!(moved_from(2e-10, edge), 0, "{edge:e}");
+            assert_eq!(moved_from(5e-9, edge), 2, "{edge:e}");
+            assert_eq!(moved_from(-5e-9, edge), 2, "{edge:e}");
+            assert_eq!(moved_from(0.2, edge), 0, "too far, {edge:e}");
+        }
+    }
+}

@@ -83,9 +83,7 @@ impl CircleTree {
         let last_level = count.div_ceil(GROUP).next_power_of_two();
         self.groups
             .resize(2 * last_level, (Circle::default(), [0, 0]));
-        if count > 0 {
-            self.split(1, 0, count);
-        }
+        self.split(1, 0, count);
     }
 
     fn split(&mut self, group: usize, from: usize, to: usize) {
@@ -225,5 +223,23 @@ mod tests {
             });
             prop_assert_eq!(nearest, expected);
         }
+    }
+
+    #[test]
+    fn all_of_the_nearest_members_are_visited() {
+        // in two groups, at exactly the same distance
+        let at = |x: f64| Circle {
+            centre: [x, 0.0],
+            radius: 0.0,
+        };
+        let members = [at(-1.0); GROUP].into_iter().chain([at(1.0); GROUP]);
+        let all: Vec<Circle> = members.collect();
+        let mut visited = Vec::new();
+        CircleTree::new(all.clone()).visit_near([0.0, 0.0], |i| {
+            visited.push(i);
+            all[i].distance([0.0, 0.0])
+        });
+        visited.sort_unstable();
+        assert_eq!(visited, (0..2 * GROUP).collect::<Vec<_>>());
     }
 }

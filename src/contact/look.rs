@@ -157,3 +157,28 @@ impl Look<'_> {
         project(at[self.surfaces.slaves[self.slave]], at[a], at[b])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn how_deep_a_node_still_touches_is_a_part_of_the_length_of_the_segment() {
+        let surfaces = ContactSurfaces::new(vec![2], &[], vec![[0, 1]], 0.0);
+        let was_in_front = |length: f64, depth: f64| {
+            // the body lies below, on the left of the way from right to left
+            let x = [[length, 0.0], [0.0, 0.0], [0.5 * length, -depth * length]];
+            let look = Look {
+                surfaces: &surfaces,
+                start: &x,
+                now: &x,
+                slave: 0,
+            };
+            look.was_in_front(0)
+        };
+        for length in [1e-4, 1e-2, 1.0, 1e2, 1e4] {
+            assert!(was_in_front(length, 0.5 * TOUCHING), "{length:e}");
+            assert!(!was_in_front(length, 2.0 * TOUCHING), "{length:e}");
+        }
+    }
+}

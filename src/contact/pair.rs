@@ -195,6 +195,7 @@ fn nodal(a: [f64; 2], e: [f64; 2]) -> [f64; 6] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::Vertex;
 
     const X: [[f64; 2]; 3] = [[0.7, 0.4], [2.0, 0.1], [-0.5, -0.2]];
     const U0: [f64; 6] = [0.1, -0.05, 0.02, 0.07, -0.03, 0.01];
@@ -267,5 +268,48 @@ mod tests {
         // The tangents agree at the slave node; on the segment they differ by the gap.
         assert!((p.tangent[0] - q.tangent[0]).abs() < 1e-15);
         assert!((p.tangent[1] - q.tangent[1]).abs() < 1e-15);
+    }
+
+    /// Corner of a roof, displaced, on which the node 0 has come to lie.
+    const ROOF: [[f64; 2]; 4] = [[0.3, 1.1], [2.0, 0.1], [0.3, 1.1], [-0.8, 0.9]];
+
+    fn pair_at_vertex(form: RowForm, u: &[f64]) -> Pair {
+        let mut at = SITE;
+        at.nodes = [0, 1, 2, 3];
+        at.site.vertex = Some(Vertex {
+            next: 1,
+            weight: 0.3,
+        });
+        Pair::new(at, form, &ROOF, &[0.0; 8], u)
+    }
+
+    #[test]
+    fn at_a_vertex_the_end_rows_are_the_derivative_of_the_gap() {
+        let p = pair_at_vertex(RowForm::End, &[0.0; 8]);
+        assert!(p.gap.abs() < 1e-15);
+        for k in 0..8 {
+            let moved = |by: f64| {
+                let mut u = [0.0; 8];
+                u[k] = by;
+                pair_at_vertex(RowForm::End, &u).gap
+            };
+            let quotient = (moved(1e-6) - moved(-1e-6)) / 2e-6;
+            assert!((p.normal[k] - quotient).abs() < 1e-9, "{k}");
+        }
+    }
+
+    #[test]
+    fn at_a_vertex_the_forces_on_both_bodies_are_opposite() {
+        let u = [0.1, -0.05, 0.02, 0.07, -0.03, 0.01, 0.04, -0.02];
+        for form in [RowForm::End, RowForm::DiscreteGradient] {
+            let p = pair_at_vertex(form, &u);
+            for row in [p.normal, p.tangent] {
+                assert!(row[0].hypot(row[1]) > 0.5);
+                for i in 0..2 {
+                    let sum = row[i] + row[2 + i] + row[4 + i] + row[6 + i];
+                    assert!(sum.abs() < 1e-15, "{form:?} {sum:e}");
+                }
+            }
+        }
     }
 }

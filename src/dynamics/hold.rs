@@ -110,3 +110,66 @@ fn touches(p: &Projection) -> bool {
     (-ENDS..=1.0 + ENDS).contains(&p.xi)
         && (-PENETRATING * p.length..=TOUCHING * p.length).contains(&p.gap)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether a node that touches a segment is held by another, which it is in front of, turned from
+    /// the first by an angle.
+    fn is_held(direction: f64, turn: f64) -> bool {
+        let normal = |angle: f64| [angle.cos(), angle.sin()];
+        let hold = Hold {
+            touching: vec![([3, 7], normal(direction))],
+            joined: Vec::new(),
+        };
+        let [x, y] = normal(direction + turn);
+        let start = Projection {
+            xi: -0.5,
+            gap: 0.01,
+            length: 1.0,
+            tangent: [-y, x],
+            normal: [x, y],
+        };
+        assert!(!hold.holds(2, &start), "a node that touches nothing");
+        hold.holds(3, &start)
+    }
+
+    #[test]
+    fn a_node_slides_round_a_bend_but_runs_against_a_wall() {
+        for i in 0..16 {
+            let direction = 0.3 + f64::from(i) * std::f64::consts::FRAC_PI_8;
+            for turn in [-0.01, 0.0, 0.01] {
+                assert!(is_held(direction, turn), "{direction} {turn}");
+            }
+            for turn in [-1.5, -0.1, -0.02, 0.02, 0.1, 1.5] {
+                assert!(!is_held(direction, turn), "{direction} {turn}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_touches_is_told_by_parts_of_the_length_of_the_segment() {
+        for length in [1e-4, 1e-2, 1.0, 1e2, 1e4] {
+            let at = |part: f64| Projection {
+                xi: 0.5,
+                gap: part * length,
+                length,
+                tangent: [-1.0, 0.0],
+                normal: [0.0, 1.0],
+            };
+            for (part, is_touched) in [(5e-10, true), (2e-9, false), (-1e-3, true), (-3e-3, false)]
+            {
+                assert_eq!(touches(&at(part)), is_touched, "{part:e} {length:e}");
+            }
+            // a wall that a node was not in front of stops it as any other segment that it touches
+            let hold = Hold {
+                touching: vec![([3, 7], [1.0, 0.0])],
+                joined: Vec::new(),
+            };
+            for (part, is_held) in [(-0.1, true), (5e-10, true), (2e-9, false)] {
+                assert_eq!(hold.holds(3, &at(part)), is_held, "{part:e} {length:e}");
+            }
+        }
+    }
+}

@@ -63,3 +63,39 @@ impl From<LcpChoice> for LcpMethod {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn totals_are_sums_but_for_the_largest_problem_and_the_largest_residual() {
+        let increment = |k: usize| SolverCounts {
+            passes: 2 * k,
+            lcps: 3 * k,
+            lcp_size: 4 * k,
+            pivots: 5 * k,
+            active_set_iterations: 6 * k,
+            gauss_seidel_sweeps: 7 * k,
+            lemke_calls: 8 * k,
+            factorizations: 9 * k,
+            residual: k as f64,
+            converged: true,
+        };
+        let mut totals = SolverCounts {
+            converged: true,
+            ..SolverCounts::default()
+        };
+        for k in [2, 5, 3] {
+            totals.add(&increment(k));
+        }
+        let expected = SolverCounts {
+            lcp_size: 4 * 5,
+            residual: 5.0,
+            ..increment(2 + 5 + 3)
+        };
+        assert_eq!(totals, expected);
+        totals.add(&SolverCounts::default());
+        assert!(!totals.converged, "one that has not converged");
+    }
+}

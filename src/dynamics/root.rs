@@ -82,4 +82,24 @@ mod tests {
         assert!(trials(jump, 1.0, 1.0, 0.4).is_some(), "bracketed");
         assert_eq!(trials(|_| 1.0, 1.0, 0.5, 1.0), Some(1), "no impact");
     }
+
+    #[test]
+    fn secants_that_hardly_come_nearer_give_way_to_halving() {
+        // a piece that ends after the impact at 0.4 tells of one only a little before its end
+        let met = |tau: f64| {
+            if tau < 0.4 {
+                1.0
+            } else {
+                tau - 0.02 * (1.0 + tau)
+            }
+        };
+        for rest in [1.0, 1e-6, 1e6] {
+            let (mut search, mut tau) = (Root::new(rest), rest);
+            for _ in 0..12 {
+                tau = search.next(tau, rest * met(tau / rest), Solved::default());
+            }
+            let before = search.before.map_or(0.0, |(tau, _)| tau / rest);
+            assert!(before <= 0.4 && 0.4 - before < 1e-2, "{before}, {rest:e}");
+        }
+    }
 }

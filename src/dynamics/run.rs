@@ -399,7 +399,6 @@ impl<'m> Runner<'m, '_> {
         }
         let report = IncrementReport {
             step: place.number,
-            time: now.total,
             energy: self.ledger.energy,
             solver: SolverCounts {
                 converged: true,

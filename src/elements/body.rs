@@ -289,3 +289,51 @@ fn configuration<const N: usize>(
         Some(start) => Configuration::Between(gather(nodes, start), gather(nodes, u)),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Element, Material, Plane, Section};
+
+    #[test]
+    fn the_tangent_product_is_the_change_of_the_internal_force() {
+        let mut model = Model::default();
+        model.materials.push(Material {
+            name: "M".into(),
+            young: 100.0,
+            poisson: 0.3,
+            density: 1.0,
+        });
+        model.sections.push(Section {
+            material: 0,
+            thickness: 2.0,
+        });
+        let mesh = &mut model.mesh;
+        mesh.coordinates = vec![[0.0, 0.0], [1.0, 0.1], [1.2, 1.1], [-0.1, 0.9], [0.6, 1.8]];
+        for cell in [Cell::Quad4([0, 1, 2, 3]), Cell::Tri3([3, 2, 4])] {
+            mesh.elements.push(Element {
+                label: 1,
+                cell,
+                plane: Plane::Strain,
+                section: 0,
+            });
+        }
+        let body = Body::new(&model);
+        let wave = |scale: f64, k: f64| -> Vec<f64> {
+            (0..10).map(|i| scale * (k * f64::from(i)).sin()).collect()
+        };
+        let (u, v) = (wave(0.1, 1.3), wave(1.0, 2.1));
+        let force = |t: f64| {
+            let moved: Vec<f64> = u.iter().zip(&v).map(|(u, v)| u + t * v).collect();
+            body.internal_force(None, &moved)
+                .expect("no element inverted")
+        };
+        let (ahead, behind) = (force(1e-5), force(-1e-5));
+        let product = body.tangent_product(None, &u, &v);
+        let largest = product.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
+        for (i, p) in product.iter().enumerate() {
+            let quotient = (ahead[i] - behind[i]) / 2e-5;
+            assert!((p - quotient).abs() < 1e-8 * largest, "{i}: {p} {quotient}");
+        }
+    }
+}

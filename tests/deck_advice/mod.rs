@@ -321,3 +321,12 @@ fn increments_out_of_all_proportion() {
     let (d, text) = messages(&square("0.1, 1.", "1e-12, 1."));
     assert!(!d.has_errors(), "{text}");
 }
+
+/// Where a deck has no elements at all, that is what it lacks, not each one that a set names.
+#[test]
+fn a_deck_without_elements_is_not_told_of_each_of_them() {
+    let block = "*ELEMENT, TYPE=CPS4, ELSET=BODY\n7, 1, 2, 3, 4\n";
+    let (d, text) = messages(&square(block, "*ELSET, ELSET=BODY\n7, 8\n"));
+    let codes: Vec<Code> = d.iter().map(|item| item.code).collect();
+    assert_eq!(codes, [Code::EmptyMesh], "{text}");
+}

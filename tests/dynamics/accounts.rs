@@ -1,9 +1,9 @@
 //! Accounts of bodies and contacts against the ledger, the momenta and closed forms.
 
-use stickslip::dynamics::{ContactOnBody, IncrementReport, NodeStatus};
-use stickslip::model::{Bodies, Contact, Model, Scheme, SurfaceKind};
+use stickslip::dynamics::{ContactOnBody, IncrementReport, NodeStatus, SolverCounts};
+use stickslip::model::{Bodies, Contact, LcpChoice, Model, Scheme, Settings, SurfaceKind};
 
-use crate::blocks::{fixed, run_to_end};
+use crate::blocks::{add_block, add_contact, fixed, model, run_to_end, step, throw};
 use crate::friction::block_on_base;
 use crate::invariants::oblique_impact;
 
@@ -241,4 +241,54 @@ fn concentrated_loads_are_those_of_the_increment() {
     }
     assert!(kept.reports[0].nodal.concentrated.iter().all(|&f| f == 0.0));
     assert_eq!(Bodies::new(&model.mesh).count, kept.reports[0].bodies.len());
+}
+
+/// Totals of a run are the sums over its increments, and the largest of problems and residuals.
+#[test]
+fn the_work_of_a_run_is_that_of_its_increments() {
+    for lcp in [LcpChoice::Hybrid, LcpChoice::Lemke] {
+        let mut model = oblique_impact(0.3, SS22);
+        model.steps[0].settings.lcp = lcp;
+        let (kept, summary) = run_to_end(&model);
+        let total = summary.solver;
+        let all = || kept.reports.iter().map(|report| report.solver);
+        let sum = |f: fn(SolverCounts) -> usize| all().map(f).sum::<usize>();
+        assert!(total.converged && all().all(|counts| counts.converged));
+        assert_eq!(total.passes, sum(|s| s.passes));
+        assert_eq!(total.lcps, sum(|s| s.lcps));
+        assert_eq!(total.pivots, sum(|s| s.pivots));
+        assert_eq!(
+            total.active_set_iterations,
+            sum(|s| s.active_set_iterations)
+        );
+        assert_eq!(total.gauss_seidel_sweeps, sum(|s| s.gauss_seidel_sweeps));
+        assert_eq!(total.lemke_calls, sum(|s| s.lemke_calls));
+        assert_eq!(total.factorizations, sum(|s| s.factorizations));
+        assert_eq!(Some(total.lcp_size), all().map(|s| s.lcp_size).max());
+        let residual = all().map(|s| s.residual).fold(0.0, f64::max);
+        assert_eq!(total.residual, residual);
+    }
+}
+
+/// Without a node near the other surface there is no smallest gap, at the start or later; it is that of
+/// the nearest node as soon as one is near.
+#[test]
+fn the_smallest_gap_is_that_of_the_nearest_node_or_unknown() {
+    let mut model = model(1e3, 0.3, 1.0);
+    let plate = add_block(&mut model, [0.0, 0.0], [2.0, 0.5], (2, 1), 0.0);
+    let near = add_block(&mut model, [0.5, 0.7], [1.0, 0.5], (2, 1), 0.0);
+    let far = add_block(&mut model, [0.5, 50.0], [1.0, 0.5], (2, 1), 0.0);
+    throw(&mut model, &near, [0.0, -0.1], 0.0, [0.0; 2]);
+    for block in [near, far] {
+        add_contact(&mut model, block.faces(0), plate.faces(2), 0.0);
+    }
+    model.steps = vec![step(0.1, 10, Settings::default(), Vec::new())];
+    let (kept, _) = run_to_end(&model);
+    for report in &kept.reports {
+        let [near, far] = [0, 1].map(|i| report.contacts[i].min_gap);
+        let expected = 0.2 - 0.1 * report.time;
+        assert!(far.is_nan() && (near.is_nan() || (near - expected).abs() < 1e-12));
+    }
+    assert!(kept.reports[0].contacts[0].min_gap.is_nan());
+    assert!(kept.reports[10].contacts[0].min_gap > 0.0);
 }

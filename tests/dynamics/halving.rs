@@ -1,0 +1,81 @@
+//! Increments that do not converge are halved, and no further than they must be.
+//!
+//! ```text
+//!        | | |  pushed down by its upper face
+//!     +--+-+-+--+
+//!     |         |  a column of Q4, its foot held
+//!     +---------+
+//! ```
+
+use crate::blocks::{Block, add_block, fixed, model, run_to_end, step};
+use stickslip::dynamics::{Cause, Cutback};
+use stickslip::model::{
+    Amplitude, Factorization, Model, Settings, Support, SupportMotion, TimeBase,
+};
+
+/// A block elsewhere, and a column of 1 x `ny` Q4 whose top goes down by `way` times an amplitude.
+fn pushed(ny: usize, way: f64, points: &[(f64, f64)]) -> (Model, Block) {
+    let mut model = model(1e3, 0.3, 1e-6);
+    add_block(&mut model, [9.0, 0.0], [1.0, 1.0], (1, 1), 0.0);
+    let height = ny as f64;
+    let column = add_block(&mut model, [0.0, 0.0], [1.0, height], (1, ny), 0.0);
+    model.amplitudes.push(Amplitude {
+        name: "A".into(),
+        time: TimeBase::Step,
+        points: points.to_vec(),
+    });
+    let motion = SupportMotion::Amplitude {
+        value: -way,
+        amplitude: 0,
+    };
+    let ends = |j: usize| [column.node(0, j), column.node(1, j)];
+    let mut supports: Vec<Support> = ends(0)
+        .into_iter()
+        .flat_map(|n| [2 * n, 2 * n + 1])
+        .map(fixed)
+        .collect();
+    supports.extend(ends(ny).map(|n| fixed(2 * n)));
+    supports.extend(ends(ny).map(|n| Support {
+        dof: 2 * n + 1,
+        motion,
+    }));
+    model.steps = vec![step(1.0, 2, Settings::default(), supports)];
+    (model, column)
+}
+
+/// A piece is half as long as one that failed at its start, or as long as its place in the increment
+/// allows: what is hard at the start costs no short pieces later.
+#[test]
+fn after_halved_pieces_come_longer_ones_again() {
+    let (mut model, _) = pushed(2, 0.4, &[(0.0, 0.0), (0.5, 1.0), (2.0, 1.0)]);
+    model.steps[0].settings.max_passes = 8;
+    let (keep, summary) = run_to_end(&model);
+    let pieces = keep.reports[1..].iter().map(|r| (r.time - r.dt, r.dt));
+    let pieces: Vec<(f64, f64)> = pieces.collect();
+    println!("{pieces:?}");
+    let shortest = pieces.iter().map(|piece| piece.1).fold(1.0, f64::min);
+    assert!(shortest < 0.2 && summary.cutbacks == keep.cutbacks.len());
+    assert_eq!(pieces[pieces.len() - 2..], [(0.5, 0.5), (1.0, 1.0)]);
+    for &(start, dt) in &pieces {
+        let failed = |c: &Cutback| (c.failure.time, c.failure.dt) == (start, 2.0 * dt);
+        let fits = start % (2.0 * dt) == 0.0 && dt < 1.0;
+        assert_eq!(keep.cutbacks.iter().any(failed), fits, "{dt} at {start}");
+    }
+}
+
+#[test]
+fn a_column_that_buckles_is_indefinite_at_one_of_its_nodes() {
+    let (mut model, column) = pushed(10, 1.0, &[(0.0, 0.0), (2.0, 1.0)]);
+    model.steps[0].settings.factorization = Factorization::EveryPass;
+    let (keep, _) = run_to_end(&model);
+    let inner = column.node(0, 1)..column.node(0, 10);
+    let node_of = |c: &Cutback| match c.failure.cause {
+        Cause::Indefinite { node } => Some(node),
+        _ => None,
+    };
+    let nodes: Vec<usize> = keep.cutbacks.iter().filter_map(node_of).collect();
+    assert!(
+        !nodes.is_empty() && nodes.iter().all(|node| inner.contains(node)),
+        "{nodes:?}"
+    );
+}
