@@ -271,10 +271,10 @@ fn a_run_to_the_end() {
     let log = bench.log();
     assert!(log.contains("warning: this is a test"), "{log}");
     assert!(log.contains("done     in"), "{log}");
-    let warned = "warning  principal strain 0.21 in element 8 in increment 7\n";
+    let warned = "warning  principal strain 0.210 in element 8 in increment 7\n";
     assert_eq!(log.matches("principal strain").count(), 1, "{log}");
     assert!(log.contains(warned), "{log}");
-    let most = "strain   largest principal 3.0e-01 in element 8 in increment 10\n";
+    let most = "strain   largest principal 3.00e-01 in element 8 in increment 10\n";
     assert!(log.contains(most), "{log}");
     let paths = ["wrote", "warning"];
     let mut lines = log

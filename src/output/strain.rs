@@ -37,7 +37,7 @@ impl StrainWatch {
 
     /// The largest of the run.
     pub fn line(&self, model: &Model) -> String {
-        let strain = scientific(self.most.strain, 1);
+        let strain = scientific(self.most.strain, 2);
         match self.increment {
             0 => format!("strain   largest principal {strain}"),
             increment => format!(
@@ -56,7 +56,7 @@ pub(super) fn warning_lines(
 ) -> [String; 4] {
     [
         format!(
-            "warning  principal strain {strain:.2} in element {} in increment {}",
+            "warning  principal strain {strain:.3} in element {} in increment {}",
             model.mesh.elements[element].label, report.increment
         ),
         "         above 0.2 a St. Venant-Kirchhoff material is too stiff in tension and".to_owned(),

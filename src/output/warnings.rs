@@ -81,7 +81,7 @@ impl Findings {
         Some(format!(
             "the largest principal strain is {}, above {}, where a St. Venant-Kirchhoff material is \
              too stiff in tension and too soft in compression: trust no forces there, or lower the loads",
-            general(strain, 2),
+            general(strain, 4),
             general(LARGE, 1),
         ))
     }
