@@ -310,14 +310,20 @@ fn a_lenient_reader_takes_reduced_elements_as_full_ones() {
 }
 
 #[test]
-fn a_missing_increment_comes_with_a_guide() {
-    let (_, d) = square("*DYNAMIC, DIRECT\n0.1, 1.", "*DYNAMIC, EXPLICIT\n, 1.");
-    assert_eq!(codes(&d), [Code::IgnoredParameter, Code::MissingField]);
-    let help = d.iter().filter_map(|item| item.help.as_deref()).last();
-    assert_eq!(
-        help,
-        Some("a wave crosses the shortest element side in 3.16e-2")
-    );
+fn a_missing_increment_comes_with_a_guide_wherever_the_mesh_lies() {
+    let (old, new) = ("*DYNAMIC, DIRECT\n0.1, 1.", "*DYNAMIC, EXPLICIT\n, 1.");
+    let nodes = "1, 0., 0.\n2, 1., 0.\n3, 1., 1.\n4, 0., 1.\n";
+    let moved = "1, 5., -3.\n2, 6., -3.\n3, 6., -2.\n4, 5., -2.\n";
+    for text in [SQUARE.to_owned(), SQUARE.replace(nodes, moved)] {
+        let (_, d) = build(&text.replace(old, new));
+        assert_eq!(codes(&d), [Code::IgnoredParameter, Code::MissingField]);
+        let help = d.iter().filter_map(|item| item.help.as_deref()).last();
+        assert_eq!(
+            help,
+            Some("a wave crosses the shortest element side in 3.16e-2")
+        );
+    }
+    assert!(SQUARE.contains(nodes));
 }
 
 #[test]
