@@ -118,3 +118,30 @@ pub(super) fn first_states(scaled: &Scaled) -> Vec<ContactState> {
     let open = vec![ContactState::Open; scaled.contacts];
     next_states(scaled, &open, &vec![0.0; scaled.size()], &scaled.b)
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::lcp::FrictionalLcp;
+
+    #[test]
+    fn beyond_the_cone_a_sticking_contact_slides_on_either_side() {
+        let problem = FrictionalLcp {
+            q: DMatrix::identity(2, 2),
+            gap: vec![-1.0].into(),
+            slip: vec![2.0].into(),
+            mu: vec![0.5].into(),
+        };
+        let scaled = Scaled::new(&problem).expect("finite");
+        let next = |pt: f64| {
+            let p = [1.0, pt];
+            next_state(&scaled, ContactState::Stick, 0, &p, &[0.0; 2], 1e-12)
+        };
+        assert_eq!(next(0.5), ContactState::Stick);
+        assert_eq!(next(-0.5), ContactState::Stick);
+        assert_eq!(next(0.6), ContactState::SlipMinus);
+        assert_eq!(next(-0.6), ContactState::SlipPlus);
+    }
+}

@@ -166,3 +166,35 @@ impl PivotMatrix for FrictionalMatrix<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::lcp::FrictionalLcp;
+
+    /// Three contacts, the second without friction, the third slipping backwards.
+    #[test]
+    fn entries_are_those_of_the_product() {
+        let factor = DMatrix::from_fn(6, 6, |i, j| ((7 * i + 3 * j) % 5) as f64 - 1.5);
+        let problem = FrictionalLcp {
+            q: &factor * factor.transpose(),
+            gap: vec![-1.0, -0.5, -2.0].into(),
+            slip: vec![0.25, 0.5, -0.75].into(),
+            mu: vec![0.5, 0.0, 0.25].into(),
+        };
+        let scaled = Scaled::new(&problem).expect("finite");
+        let signs = vec![1.0, -1.0];
+        let matrix = FrictionalMatrix {
+            scaled: &scaled,
+            signs,
+        };
+        for j in 0..matrix.size() {
+            let mut column = vec![0.0; matrix.size()];
+            matrix.add_product(&[(j, 1.0)], &mut column);
+            let entries: Vec<f64> = (0..matrix.size()).map(|i| matrix.entry(i, j)).collect();
+            assert_eq!(entries, column, "column {j}");
+        }
+    }
+}
