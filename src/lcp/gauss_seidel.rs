@@ -86,3 +86,34 @@ fn closed_or_open(state: ContactState, pn: f64, pt: f64) -> (ContactState, f64, 
         (ContactState::Open, 0.0, 0.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::lcp::FrictionalLcp;
+
+    /// Contacts that do not know of each other: one is open, one slides, one sticks.
+    #[test]
+    fn contacts_alone_are_solved_in_one_sweep() {
+        let problem = FrictionalLcp {
+            q: DMatrix::identity(6, 6),
+            gap: vec![0.5, -1.0, -1.0].into(),
+            slip: vec![2.0, 2.0, -0.25].into(),
+            mu: vec![0.5; 3].into(),
+        };
+        let scaled = Scaled::new(&problem).expect("finite");
+        let mut p = vec![0.0; 6];
+        let states = gauss_seidel(&scaled, &mut p, 1, &mut Counters::default());
+        assert_eq!(
+            states,
+            [
+                ContactState::Open,
+                ContactState::SlipPlus,
+                ContactState::Stick
+            ]
+        );
+        assert_eq!(p, [0.0, 1.0, 1.0, 0.0, -0.5, 0.25]);
+    }
+}
