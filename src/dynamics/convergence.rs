@@ -129,7 +129,8 @@ impl<'a> Scales<'a> {
         })
     }
 
-    /// The node with the largest relative residual; `residual` over the unknowns, whose dofs are given.
+    /// The node with the largest relative residual, if there is any; `residual` over the unknowns, whose
+    /// dofs are given.
     pub fn worst(
         &self,
         residual: &[f64],
@@ -143,7 +144,7 @@ impl<'a> Scales<'a> {
         let larger = |a: &usize, b: &usize| at(*a).total_cmp(&at(*b));
         let unknown = (0..residual.len()).max_by(larger)?;
         let node = dof_of[unknown] / 2;
-        Some(Worst {
+        (at(unknown) != 0.0).then(|| Worst {
             node,
             position: position(node),
             quantity: "force residual",
