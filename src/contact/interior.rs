@@ -48,8 +48,8 @@ impl Interior {
         node: usize,
         at: impl Fn(usize) -> [f64; 2],
     ) -> bool {
-        let line = self.line(segment, node, HALF, at);
-        line.is_none_or(|line| line.stays && !self.has_node(&line, node))
+        self.line(segment, node, HALF, at)
+            .is_none_or(|line| self.is_foreign(&line, node))
     }
 
     /// The same at any depth: the body takes the node in by some segment, not surely by this one.
@@ -59,8 +59,8 @@ impl Interior {
         node: usize,
         at: impl Fn(usize) -> [f64; 2],
     ) -> bool {
-        let line = self.line(segment, node, 1.0, at);
-        line.is_none_or(|line| line.stays && !self.has_node(&line, node))
+        self.line(segment, node, 1.0, at)
+            .is_none_or(|line| self.is_foreign(&line, node))
     }
 
     /// Whether a node behind the line of a segment is part of the body there: it lies on another side
@@ -131,6 +131,11 @@ impl Interior {
             }
         }
         (start <= end).then_some([start, end])
+    }
+
+    /// Whether a line stays in the body, and the node is no part of the elements on it.
+    fn is_foreign(&self, line: &Line, node: usize) -> bool {
+        line.stays && !self.has_node(line, node)
     }
 
     fn has_node(&self, line: &Line, node: usize) -> bool {

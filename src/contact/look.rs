@@ -71,26 +71,16 @@ impl Look<'_> {
     pub(super) fn was_pushed_in(&self, segment: usize) -> bool {
         let p = self.start(segment);
         let is_shallow = p.gap >= -PENETRATING * p.length && (-NEAR..=1.0 + NEAR).contains(&p.xi);
-        let ContactSurfaces {
-            interior,
-            segments,
-            slaves,
-            ..
-        } = self.surfaces;
-        let start = |node: usize| self.start[node];
-        is_shallow && interior.takes_in(segments[segment], slaves[self.slave], start)
+        let (surfaces, start) = (self.surfaces, |node: usize| self.start[node]);
+        let node = surfaces.slaves[self.slave];
+        is_shallow && (surfaces.interior).takes_in(surfaces.segments[segment], node, start)
     }
 
     /// Whether the node was part of the body behind the segment: on the far side of a thin body.
     pub(super) fn was_far_side(&self, segment: usize) -> bool {
-        let ContactSurfaces {
-            interior,
-            segments,
-            slaves,
-            ..
-        } = self.surfaces;
-        let start = |node: usize| self.start[node];
-        interior.joins(segments[segment], slaves[self.slave], start)
+        let (surfaces, start) = (self.surfaces, |node: usize| self.start[node]);
+        let node = surfaces.slaves[self.slave];
+        (surfaces.interior).joins(surfaces.segments[segment], node, start)
     }
 
     /// Whether the node is an end of the segment.
