@@ -18,6 +18,7 @@ use crate::dynamics::{
 };
 use crate::elements::Strained;
 use crate::lcp::{FrictionalLcp, LcpError};
+use crate::materials::Law;
 use crate::model::{
     Cell, Element, Frames, Increments, Material, Mesh, Model, Plane, Section, Set, Settings, Step,
 };
@@ -38,8 +39,7 @@ fn square() -> Model {
         },
         materials: vec![Material {
             name: "M".into(),
-            young: 1.0,
-            poisson: 0.0,
+            law: Law::elastic(1.0, 0.0),
             density: 1.0,
         }],
         sections: vec![Section {

@@ -294,6 +294,7 @@ fn configuration<const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::materials::Law;
     use crate::model::{Element, Material, Plane, Section};
 
     #[test]
@@ -301,8 +302,7 @@ mod tests {
         let mut model = Model::default();
         model.materials.push(Material {
             name: "M".into(),
-            young: 100.0,
-            poisson: 0.3,
+            law: Law::elastic(100.0, 0.3),
             density: 1.0,
         });
         model.sections.push(Section {

@@ -42,12 +42,15 @@ pub fn element_means(model: &Model, u: &[f64]) -> Vec<ElementMeans> {
         let law = Law {
             c: elasticity(material, element.plane),
             contraction: match element.plane {
-                Plane::Stress => material.poisson / (1.0 - material.poisson),
+                Plane::Stress => {
+                    material.law.small_strain().poisson
+                        / (1.0 - material.law.small_strain().poisson)
+                }
                 Plane::Strain => 0.0,
             },
             across: match element.plane {
                 Plane::Stress => 0.0,
-                Plane::Strain => material.poisson,
+                Plane::Strain => material.law.small_strain().poisson,
             },
         };
         match element.cell {
@@ -108,6 +111,7 @@ fn means<const N: usize, const P: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::materials::Law;
     use crate::model::{Material, Mesh, Section};
 
     /// A unit square of E = 100, nu = 0.25.
@@ -122,8 +126,7 @@ mod tests {
         }];
         let material = Material {
             name: "M".into(),
-            young: 100.0,
-            poisson: 0.25,
+            law: Law::elastic(100.0, 0.25),
             density: 1.0,
         };
         Model {

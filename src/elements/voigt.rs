@@ -21,7 +21,8 @@ pub type Elasticity = Matrix3<f64>;
 ///                                 [ 0     0     (1-2 nu)/2 ]
 /// ```
 pub fn elasticity(material: &Material, plane: Plane) -> Elasticity {
-    let (e, nu) = (material.young, material.poisson);
+    let moduli = material.law.small_strain();
+    let (e, nu) = (moduli.young, moduli.poisson);
     match plane {
         Plane::Stress => {
             let c = e / (1.0 - nu * nu);
@@ -54,12 +55,12 @@ pub fn stress(c: &Elasticity, strain: &Matrix2<f64>) -> Matrix2<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::materials::Law;
 
     fn material(young: f64, poisson: f64) -> Material {
         Material {
             name: "M".into(),
-            young,
-            poisson,
+            law: Law::elastic(young, poisson),
             density: 1.0,
         }
     }

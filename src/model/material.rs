@@ -1,26 +1,16 @@
-//! Elastic constants, density, thickness, and plane stress or plane strain (docs/theory.md,
-//! sections 1 and 2).
+//! Material and thickness of the elements (docs/theory.md, sections 1 and 2).
 
-/// St. Venant-Kirchhoff material: second Piola-Kirchhoff stress linear in the Green-Lagrange strain.
+use crate::materials::Law;
+
+/// A material: its law with the constants of the deck, and its density.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// Name in the deck.
     pub name: String,
-    /// Young's modulus E (force/length^2).
-    pub young: f64,
-    /// Poisson's ratio nu.
-    pub poisson: f64,
+    /// Law of the stress.
+    pub law: Law,
     /// Density rho of the reference configuration (mass/length^3).
     pub density: f64,
-}
-
-/// Kinematic assumption across the thickness.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Plane {
-    /// No stress across the thickness (CPS elements).
-    Stress,
-    /// No strain across the thickness (CPE elements).
-    Strain,
 }
 
 /// Material and thickness of a group of elements.

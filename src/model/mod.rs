@@ -15,12 +15,13 @@ mod settings;
 mod step;
 mod surface;
 
+pub use crate::materials::Plane;
 pub use amplitude::{Amplitude, TimeBase};
 pub use bodies::Bodies;
 pub use contact::{Adjust, Contact, Interaction};
 pub use history_set::HistorySet;
 pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
-pub use material::{Material, Plane, Section};
+pub use material::{Material, Section};
 pub use mesh::{Cell, Element, Mesh, Set};
 pub use rigid_body::RigidBody;
 pub use settings::{Factorization, Impact, ImpactTime, LcpChoice, Scheme, Settings, SolverChoice};

@@ -86,7 +86,7 @@ pub(super) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &m
     }
     for (material, &span) in properties.materials.iter().zip(&properties.material_spans) {
         // c = sqrt(E / rho)
-        let speed = (material.young / material.density).sqrt();
+        let speed = (material.law.small_strain().young / material.density).sqrt();
         if material.density > 0.0 && !speed.is_normal() {
             let what = format!("the wave speed sqrt(E/rho) of material {}", material.name);
             unusable(&what, speed, span, cx);
@@ -102,7 +102,7 @@ pub(super) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &m
         };
         let area = area(element, &mesh_index.mesh);
         let mass = material.density * section.thickness * area;
-        let stiffness = material.young * section.thickness;
+        let stiffness = material.law.small_strain().young * section.thickness;
         total += mass;
         let magnitudes = [
             ("area of", area),
@@ -177,7 +177,7 @@ pub(super) fn crossing_time(mesh: &Mesh, properties: &Properties) -> Option<f64>
     let speeds = properties
         .materials
         .iter()
-        .map(|m| (m.young / m.density).sqrt());
+        .map(|m| (m.law.small_strain().young / m.density).sqrt());
     let fastest = speeds.filter(|s| s.is_finite()).reduce(f64::max)?;
     let sides = mesh.elements.iter().flat_map(|element| {
         let count = element.cell.nodes().len();

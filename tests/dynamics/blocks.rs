@@ -4,6 +4,7 @@ use std::io;
 
 use stickslip::diagnostics::Span;
 use stickslip::dynamics::{Cutback, IncrementReport, Observer, Outcome, RunSummary, run};
+use stickslip::materials::Law;
 use stickslip::model::{
     Cell, Contact, Element, Face, Frames, Increments, Interaction, Material, Model, Plane, Section,
     Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
@@ -53,8 +54,7 @@ pub fn model(young: f64, poisson: f64, density: f64) -> Model {
     Model {
         materials: vec![Material {
             name: "M".into(),
-            young,
-            poisson,
+            law: Law::elastic(young, poisson),
             density,
         }],
         sections: vec![Section {

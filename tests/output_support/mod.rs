@@ -18,6 +18,7 @@ use stickslip::dynamics::{
     Timings,
 };
 use stickslip::elements::Strained;
+use stickslip::materials::Law;
 use stickslip::model::{
     Cell, Contact, Element, Face, Frames, HistorySet, Increments, Interaction, Material, Mesh,
     Model, Plane, Section, Set, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
@@ -45,8 +46,7 @@ pub fn model() -> Model {
         ],
         materials: vec![Material {
             name: "M".into(),
-            young: 1000.0,
-            poisson: 0.0,
+            law: Law::elastic(1000.0, 0.0),
             density: 2.0,
         }],
         sections: vec![Section {

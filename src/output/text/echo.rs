@@ -265,12 +265,13 @@ pub(crate) fn shortest_edge(corners: &[[f64; 2]]) -> f64 {
 /// sqrt(E (1 - nu) / ((1 + nu) (1 - 2 nu) rho)) in plane strain.
 pub(crate) fn wave_speed(model: &Model, element: &Element) -> f64 {
     let material = &model.materials[model.sections[element.section].material];
-    let nu = material.poisson;
+    let moduli = material.law.small_strain();
+    let nu = moduli.poisson;
     let factor = match element.plane {
         Plane::Stress => 1.0 / (1.0 - nu * nu),
         Plane::Strain => (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
     };
-    (material.young * factor / material.density).sqrt()
+    (moduli.young * factor / material.density).sqrt()
 }
 
 /// One line with its label in front.
