@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use super::kinematics::Configuration;
 use super::reference::Reference;
 use super::solid::{internal_force, largest_strain, mass, strain_energy, tangent};
-use super::voigt::{Elasticity, elasticity};
 use crate::elements::{quad4, tri3};
+use crate::materials::PlaneLaw;
 use crate::model::{Cell, Model};
 
 /// Elements below which a sweep over them is not worth a second thread.
@@ -39,10 +39,10 @@ enum Geometry {
     Quad4([usize; 4], Reference<4, 4>),
 }
 
-/// An element with its elasticity and density.
+/// An element with its material and density.
 struct Solid {
     geometry: Geometry,
-    c: Elasticity,
+    law: PlaneLaw,
     density: f64,
     thickness: f64,
 }
@@ -75,10 +75,10 @@ impl Elements {
                     Geometry::Quad4(n, quad4(&SMatrix::from_fn(|i, a| x[n[a]][i]), t))
                 }
             };
-            let c = elasticity(material, element.plane);
+            let law = material.law.in_plane(element.plane);
             Solid {
                 geometry,
-                c,
+                law,
                 density: material.density,
                 thickness: t,
             }
@@ -140,8 +140,8 @@ impl Elements {
             .par_iter()
             .with_min_len(PARALLEL_CHUNK)
             .map(|solid| match &solid.geometry {
-                Geometry::Tri3(n, r) => strain_energy(r, &solid.c, &gather(n, u)),
-                Geometry::Quad4(n, r) => strain_energy(r, &solid.c, &gather(n, u)),
+                Geometry::Tri3(n, r) => strain_energy(r, &solid.law, &gather(n, u)),
+                Geometry::Quad4(n, r) => strain_energy(r, &solid.law, &gather(n, u)),
             })
             .collect()
     }
@@ -246,12 +246,12 @@ impl Solid {
         let mut result = [0.0; 8];
         let determinant = match &self.geometry {
             Geometry::Tri3(n, r) => {
-                let (f, det) = internal_force(r, &self.c, &configuration(n, start, u));
+                let (f, det) = internal_force(r, &self.law, &configuration(n, start, u));
                 result[..6].copy_from_slice(f.as_slice());
                 det
             }
             Geometry::Quad4(n, r) => {
-                let (f, det) = internal_force(r, &self.c, &configuration(n, start, u));
+                let (f, det) = internal_force(r, &self.law, &configuration(n, start, u));
                 result.copy_from_slice(f.as_slice());
                 det
             }
@@ -263,11 +263,11 @@ impl Solid {
         let mut result = [0.0; 64];
         match &self.geometry {
             Geometry::Tri3(n, r) => {
-                let k = tangent::<3, 1, 6>(r, &self.c, &configuration(n, start, u));
+                let k = tangent::<3, 1, 6, _>(r, &self.law, &configuration(n, start, u));
                 result[..36].copy_from_slice(k.as_slice());
             }
             Geometry::Quad4(n, r) => {
-                let k = tangent::<4, 4, 8>(r, &self.c, &configuration(n, start, u));
+                let k = tangent::<4, 4, 8, _>(r, &self.law, &configuration(n, start, u));
                 result.copy_from_slice(k.as_slice());
             }
         }

@@ -1,60 +1,83 @@
 //! Deformation and stress at an integration point: finite-strain kinematics (section 2 of
 //! docs/theory.md) at one configuration or in the energy-momentum form (section 4).
 
-use nalgebra::{Matrix2, SMatrix};
+use nalgebra::{Matrix2, Matrix3, SMatrix};
 
 use super::reference::Point;
-use super::voigt::{Elasticity, stress};
+use crate::materials::ConstitutiveLaw;
 
 /// The configuration in which internal force and tangent are evaluated; displacements of the
 /// element's nodes are 2 x N (length).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Configuration<const N: usize> {
-    /// Displacements u: F(u), S = C E(u).
+    /// Displacements u: F(u), S(E(u)).
     At(SMatrix<f64, 2, N>),
     /// Energy-momentum form between start u0 and end u1: F at the mid configuration (u0 + u1)/2 and
-    /// the mean stress, eq. (4.8) (Simo & Tarnow 1992).
+    /// the energy-momentum stress, eq. (4.8).
     Between(SMatrix<f64, 2, N>, SMatrix<f64, 2, N>),
 }
 
-/// Deformation and stress at an integration point.
+/// Strain, or strains, at which stress and tangent of an integration point are evaluated.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PointState {
+pub enum Strains {
+    /// One strain.
+    At(Matrix2<f64>),
+    /// Strains at the start and at the end.
+    Between(Matrix2<f64>, Matrix2<f64>),
+}
+
+/// Deformation at an integration point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Deformation {
     /// Deformation gradient F.
     pub f: Matrix2<f64>,
-    /// Second Piola-Kirchhoff stress S (force/length^2).
-    pub s: Matrix2<f64>,
+    /// Green-Lagrange strains.
+    pub strains: Strains,
     /// Smallest determinant of F met: of the configuration, and of the end in the energy-momentum
     /// form.
     pub determinant: f64,
 }
 
+impl Deformation {
+    /// Second Piola-Kirchhoff stress S (force/length^2).
+    pub fn stress<L: ConstitutiveLaw>(&self, law: &L) -> Matrix2<f64> {
+        match &self.strains {
+            Strains::At(e) => law.stress(e, &[]),
+            Strains::Between(e0, e1) => law.mean_stress(e0, e1, &[]),
+        }
+    }
+
+    /// Tangent C in Voigt order (force/length^2).
+    pub fn tangent<L: ConstitutiveLaw>(&self, law: &L) -> Matrix3<f64> {
+        match &self.strains {
+            Strains::At(e) => law.tangent(e, &[]),
+            Strains::Between(e0, e1) => law.mean_tangent(e0, e1, &[]),
+        }
+    }
+}
+
 impl<const N: usize> Configuration<N> {
-    /// Deformation gradient and stress at a point.
-    pub fn state(&self, point: &Point<N>, c: &Elasticity) -> PointState {
+    /// Deformation at a point.
+    pub fn deformation(&self, point: &Point<N>) -> Deformation {
         match self {
             Configuration::At(u) => {
                 // F = I + H, eq. (2.1)
                 let h = displacement_gradient(point, u);
                 let f = Matrix2::identity() + h;
-                PointState {
+                Deformation {
                     f,
-                    s: stress(c, &green_lagrange(&h)),
+                    strains: Strains::At(green_lagrange(&h)),
                     determinant: f.determinant(),
                 }
             }
             Configuration::Between(u0, u1) => {
-                let (h0, h1) = (
-                    displacement_gradient(point, u0),
-                    displacement_gradient(point, u1),
-                );
+                let h0 = displacement_gradient(point, u0);
+                let h1 = displacement_gradient(point, u1);
                 let f = Matrix2::identity() + (h0 + h1) / 2.0;
-                // S_m = (S(U0) + S(U1))/2 = C (E(U0) + E(U1))/2, eq. (4.8)
-                let e = (green_lagrange(&h0) + green_lagrange(&h1)) / 2.0;
                 let end = (Matrix2::identity() + h1).determinant();
-                PointState {
+                Deformation {
                     f,
-                    s: stress(c, &e),
+                    strains: Strains::Between(green_lagrange(&h0), green_lagrange(&h1)),
                     determinant: smaller(f.determinant(), end),
                 }
             }

@@ -10,13 +10,11 @@ mod recovery;
 mod reference;
 mod solid;
 mod tri3;
-mod voigt;
 
 pub use body::{Elements, Inverted, Strained};
-pub use kinematics::{Configuration, PointState};
+pub use kinematics::{Configuration, Deformation, Strains};
 pub use quad4::quad4;
 pub use recovery::{ElementMeans, element_means};
 pub use reference::{Point, Reference};
 pub use solid::{internal_force, largest_strain, mass, strain_energy, tangent};
 pub use tri3::tri3;
-pub use voigt::{Elasticity, elasticity};

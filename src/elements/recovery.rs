@@ -6,9 +6,9 @@ use nalgebra::{Matrix2, SMatrix};
 use super::body::gather;
 use super::kinematics::{displacement_gradient, green_lagrange};
 use super::reference::Reference;
-use super::voigt::{Elasticity, elasticity, stress};
 use crate::elements::{quad4, tri3};
-use crate::model::{Cell, Element, Model, Plane};
+use crate::materials::{Across, ConstitutiveLaw, PlaneLaw};
+use crate::model::{Cell, Element, Model};
 
 /// Stress and strain of one element, averaged over its volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,20 +39,7 @@ pub fn element_means(model: &Model, u: &[f64]) -> Vec<ElementMeans> {
     let x = &model.mesh.coordinates;
     let of_element = |element: &Element| {
         let material = &model.materials[model.sections[element.section].material];
-        let law = Law {
-            c: elasticity(material, element.plane),
-            contraction: match element.plane {
-                Plane::Stress => {
-                    material.law.small_strain().poisson
-                        / (1.0 - material.law.small_strain().poisson)
-                }
-                Plane::Strain => 0.0,
-            },
-            across: match element.plane {
-                Plane::Stress => 0.0,
-                Plane::Strain => material.law.small_strain().poisson,
-            },
-        };
+        let law = material.law.in_plane(element.plane);
         match element.cell {
             Cell::Tri3(n) => means(
                 &tri3(&SMatrix::from_fn(|i, a| x[n[a]][i]), 1.0),
@@ -69,22 +56,10 @@ pub fn element_means(model: &Model, u: &[f64]) -> Vec<ElementMeans> {
     model.mesh.elements.iter().map(of_element).collect()
 }
 
-/// Elasticity, and what happens across the thickness: E_zz = -contraction (E_xx + E_yy) and
-/// S_zz = across (S_xx + S_yy).
-///
-/// In plane strain S_zz = lambda (E_xx + E_yy) and S_xx + S_yy = 2 (lambda + mu) (E_xx + E_yy), so that
-/// the factor is nu = lambda/(2 (lambda + mu)).
-struct Law {
-    c: Elasticity,
-    contraction: f64,
-    across: f64,
-}
-
-/// Volume means of sigma = F S F^T/J, eq. (2.8), and E, with J = det F sqrt(1 + 2 E_zz). Across the thickness
-/// F_zz² is 1 in plane strain, so that sigma_zz = S_zz / J; in plane stress S_zz is 0.
+/// Volume means of sigma = F S F^T/J, eq. (2.8), and E, with J = det F F_zz; sigma_zz = F_zz² S_zz/J.
 fn means<const N: usize, const P: usize>(
     element: &Reference<N, P>,
-    law: &Law,
+    law: &PlaneLaw,
     u: &SMatrix<f64, 2, N>,
 ) -> ElementMeans {
     let (mut sigma, mut strain) = (Matrix2::zeros(), Matrix2::zeros());
@@ -92,11 +67,11 @@ fn means<const N: usize, const P: usize>(
     for point in &element.points {
         let h = displacement_gradient(point, u);
         let (f, e) = (Matrix2::identity() + h, green_lagrange(&h));
-        let stretch = (1.0 - 2.0 * law.contraction * e.trace()).sqrt();
+        let Across { stretch, stress } = law.across(&e, &[]);
         let j = f.determinant() * stretch;
-        let s = stress(&law.c, &e);
+        let s = law.stress(&e, &[]);
         sigma += f * s * f.transpose() / j * point.volume;
-        across += law.across * s.trace() / j * point.volume;
+        across += stretch * stretch * stress / j * point.volume;
         strain += e * point.volume;
     }
     let volume = element.volume();
@@ -112,7 +87,7 @@ fn means<const N: usize, const P: usize>(
 mod tests {
     use super::*;
     use crate::materials::Law;
-    use crate::model::{Material, Mesh, Section};
+    use crate::model::{Material, Mesh, Plane, Section};
 
     /// A unit square of E = 100, nu = 0.25.
     fn square(plane: Plane) -> Model {

@@ -1,4 +1,4 @@
-//! What an element asks of a material at one integration point. Sections 2 and 7 of docs/theory.md.
+//! What an element asks of a material at one integration point. Sections 2 and 4 of docs/theory.md.
 
 use nalgebra::{Matrix2, Matrix3};
 
@@ -31,16 +31,17 @@ pub trait ConstitutiveLaw {
     /// difference of two energies, which keeps no digits where E1 is near E0.
     fn energy_change(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> f64;
 
-    /// Second Piola-Kirchhoff stress S = dW/dE (force/length^2).
+    /// Second Piola-Kirchhoff stress S = dW/dE, eq. (2.3) (force/length^2).
     fn stress(&self, e: &Matrix2<f64>, z: &[f64]) -> Matrix2<f64>;
 
-    /// Tangent C = dS/dE in Voigt order (force/length^2).
+    /// Tangent C = dS/dE, eq. (2.3), in Voigt order (force/length^2).
     fn tangent(&self, e: &Matrix2<f64>, z: &[f64]) -> Matrix3<f64>;
 
     /// Stretch and stress across the thickness.
     fn across(&self, e: &Matrix2<f64>, z: &[f64]) -> Across;
 
-    /// Energy-momentum stress between two strains: S:(E1 - E0) = W(E1, z) - W(E0, z).
+    /// Energy-momentum stress between two strains: S:(E1 - E0) = W(E1, z) - W(E0, z),
+    /// eq. (4.8).
     fn mean_stress(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix2<f64> {
         energy_momentum::stress(self, e0, e1, z)
     }

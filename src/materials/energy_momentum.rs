@@ -1,5 +1,5 @@
 //! Energy-momentum stress of any stored energy: the discrete gradient of Gonzalez (Comput. Methods
-//! Appl. Mech. Engrg. 190, 2000) in the Green-Lagrange strain. Section 7 of docs/theory.md.
+//! Appl. Mech. Engrg. 190, 2000) in the Green-Lagrange strain. Section 4 of docs/theory.md.
 //!
 //! # Derivation
 //!
@@ -28,7 +28,7 @@ const NO_CHANGE: f64 = f64::EPSILON;
 /// would carry a round-off of about eps/|dE|.
 const NO_CHANGE_OF_TANGENT: f64 = 1.5e-8;
 
-/// S = S(E_m) + f/(dE:dE) dE (force/length^2).
+/// S = S(E_m) + f/(dE:dE) dE, eq. (4.8) (force/length^2).
 pub(super) fn stress<L: ConstitutiveLaw + ?Sized>(
     law: &L,
     e0: &Matrix2<f64>,
@@ -45,7 +45,8 @@ pub(super) fn stress<L: ConstitutiveLaw + ?Sized>(
     s + de * (f / squared)
 }
 
-/// Symmetric part of 2 dS/dE1, with n = dE, g = S(E1) - S(E_m) - C(E_m):n/2 = df/dE1 (force/length^2):
+/// Symmetric part of 2 dS/dE1, with n = dE, g = S(E1) - S(E_m) - C(E_m):n/2 = df/dE1 (force/length^2),
+/// of eq. (4.8):
 ///
 /// ```text
 /// C(E_m) + 2 f/(n:n) (I - 2 n n/(n:n)) + (n g + g n)/(n:n)

@@ -6,7 +6,7 @@ use nalgebra::{Matrix2, Matrix3};
 use super::{Across, ConstitutiveLaw, NeoHooke, PlaneSaintVenantKirchhoff, SaintVenantKirchhoff};
 
 /// Kinematic assumption across the thickness.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Plane {
     /// No stress across the thickness (CPS elements).
     Stress,

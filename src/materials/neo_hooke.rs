@@ -15,7 +15,7 @@ use super::{Across, ConstitutiveLaw, SmallStrainModuli};
 /// stress   S = 2 C10 J^(-2/3) (I - I1/3 C^-1) + p J C^-1,     p = 2 (J - 1)/D1
 /// tangent  C = 4 C10/3 J^(-2/3) [ I1 C^-1 o C^-1 + I1/3 C^-1 x C^-1 - I x C^-1 - C^-1 x I ]
 ///              + (p + 2 J/D1) J C^-1 x C^-1 - 2 p J C^-1 o C^-1
-/// domain   J > 0; W grows without bound for J -> 0 at a given shape only through Ibar1
+/// domain   J > 0; the pressure stays below 2/D1 in compression
 /// moduli   mu = 2 C10,  K = 2/D1
 /// ```
 ///
@@ -91,6 +91,7 @@ impl NeoHooke {
 }
 
 impl ConstitutiveLaw for NeoHooke {
+    /// W = C10 (Ibar1 - 3) + (J - 1)²/D1, eqs (2.10) and (2.12)
     fn stored_energy(&self, e: &Matrix2<f64>, _z: &[f64]) -> f64 {
         let v = Dilatation::new(e);
         self.c10 * v.distortion() / v.a + v.grown * v.grown / self.d1
@@ -115,6 +116,7 @@ impl ConstitutiveLaw for NeoHooke {
         self.c10 * shape + dj * (v1.grown + v0.grown) / self.d1
     }
 
+    /// S = 2 C10 J^(-2/3) (I - I1/3 C^-1) + p J C^-1, eqs (2.11) and (2.12)
     fn stress(&self, e: &Matrix2<f64>, _z: &[f64]) -> Matrix2<f64> {
         let v = Dilatation::new(e);
         let cof = cofactor(e) * 2.0; // cof C = I + 2 cof E
