@@ -1,10 +1,11 @@
 //! Results of an increment and totals of a run, as the output receives them through `Observer`.
 
 use std::io;
+use std::sync::Arc;
 use std::time::Duration;
 
 use super::failure::Failure;
-use crate::elements::Strained;
+use crate::elements::{ElementResult, Strained};
 
 /// Motion at one time; `2 N` entries each.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -245,6 +246,8 @@ pub struct IncrementReport {
     pub state: State,
     /// Results at nodes.
     pub nodal: NodalResults,
+    /// Strain energy, mean stress and mean strain of every element.
+    pub elements: Arc<[ElementResult]>,
     /// Energy ledger.
     pub energy: Energy,
     /// Momentum.
