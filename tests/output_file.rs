@@ -189,6 +189,7 @@ const PER_INCREMENT: [&str; 56] = [
     "/history/energy/normal_contact_work",
     "/history/energy/friction_dissipation",
     "/history/energy/impact_loss",
+    "/history/energy/material_dissipation",
     "/history/energy/numerical_dissipation",
     "/history/energy/balance",
     "/history/contact/BOTTOM_TOP/moment",

@@ -20,7 +20,7 @@ use crate::elements::Strained;
 use crate::lcp::{FrictionalLcp, LcpError};
 use crate::materials::Law;
 use crate::model::{
-    Cell, Element, Frames, Increments, Material, Mesh, Model, Plane, Section, Set, Settings, Step,
+    Element, ElementType, Frames, Increments, Material, Mesh, Model, Section, Set, Settings, Step,
 };
 use crate::output::{Interrupt, ResultSummary};
 
@@ -32,8 +32,8 @@ fn square() -> Model {
             coordinates: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
             elements: vec![Element {
                 label: 8,
-                cell: Cell::Quad4([0, 1, 2, 3]),
-                plane: Plane::Stress,
+                element_type: ElementType::CPS4,
+                nodes: vec![0, 1, 2, 3],
                 section: 0,
             }],
         },
@@ -88,6 +88,7 @@ pub(super) fn report(increment: usize) -> IncrementReport {
             u: vec![1.0; 8],
             v: vec![0.0; 8],
             a: vec![0.0; 8],
+            internal: vec![],
         },
         nodal: NodalResults {
             reaction: vec![0.0; 8],

@@ -7,12 +7,14 @@
 //! matrices; tangents act on strains in Voigt order (E_xx, E_yy, 2 E_xy). A [`Law`] has the constants
 //! of the deck, a [`PlaneLaw`] is the same reduced to the plane of the elements.
 
+mod committed;
 mod constitutive_law;
 mod energy_momentum;
 mod law;
 mod neo_hooke;
 mod saint_venant_kirchhoff;
 
+pub use committed::Committed;
 pub use constitutive_law::{Across, ConstitutiveLaw};
 pub use law::{Law, Plane, PlaneLaw, SmallStrainModuli};
 pub use neo_hooke::NeoHooke;

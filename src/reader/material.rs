@@ -363,7 +363,7 @@ impl Properties {
         for (element, (&span, section)) in mesh_index.mesh.elements.iter().zip(places) {
             let section = section.and_then(|s| self.sections.get(s));
             let material = section.and_then(|s| self.materials.get(s.material));
-            if let (Plane::Stress, Some(material)) = (element.plane, material)
+            if let (Plane::Stress, Some(material)) = (element.element_type.plane, material)
                 && !material.law.has_plane_stress()
             {
                 let message = format!(
@@ -384,7 +384,7 @@ impl Properties {
         for (element, section) in mesh_index.mesh.elements.iter().zip(&self.section_of) {
             let section = section.and_then(|s| self.sections.get(s));
             let locks = section.and_then(|s| locks.get_mut(s.material));
-            if let (Plane::Strain, Some(locks)) = (element.plane, locks) {
+            if let (Plane::Strain, Some(locks)) = (element.element_type.plane, locks) {
                 *locks = true;
             }
         }

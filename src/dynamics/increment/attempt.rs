@@ -11,6 +11,7 @@ use crate::dynamics::results::{Cause, PassReport, State, Worst};
 use crate::dynamics::step::{
     EffectiveStiffness, Equilibrium, Interval, Meter, StepProblem, check_finite, difference, sum,
 };
+use crate::elements::Updated;
 use crate::linear::{LinearError, larger, largest};
 use crate::model::Factorization;
 
@@ -38,6 +39,8 @@ pub(crate) struct Solved {
     pub impulses: ContactForces,
     /// Motion at the end.
     pub end: State,
+    /// Energy that the materials have dissipated.
+    pub material_dissipation: f64,
     /// Its passes.
     pub passes: Vec<PassReport>,
 }
@@ -280,8 +283,8 @@ impl<'m> Attempt<'_, 'm> {
         let StepProblem {
             weights, elements, ..
         } = self.problem;
-        let (start, u) = weights.configuration(&self.start.u, u, u_theta);
-        let product = || elements.tangent_product(start, u, prescribed);
+        let motion = weights.motion(self.start, u, u_theta);
+        let product = || elements.tangent_product(motion, prescribed);
         let mut force = self.meter.time(|t| &mut t.assembly, product);
         force.iter_mut().for_each(|f| *f *= weights.theta2);
         force
@@ -302,10 +305,10 @@ impl<'m> Attempt<'_, 'm> {
         if effective.fits(dt, near) && !every && !worn {
             return Ok(());
         }
-        let configuration = weights.configuration(&self.start.u, u, u_theta);
+        let motion = weights.motion(self.start, u, u_theta);
         self.meter.time(
             |t| &mut t.assembly,
-            || effective.assemble(problem, dt, configuration),
+            || effective.assemble(problem, dt, motion),
         );
         self.meter.counts.factorizations += 1;
         let factorized = self
@@ -373,10 +376,15 @@ impl<'m> Attempt<'_, 'm> {
         for (dof, u1, v1) in problem.supports.motion(interval.end) {
             (u[dof], v[dof]) = (u1, v1);
         }
+        let Updated {
+            variables: internal,
+            dissipated,
+        } = problem.elements.update(&u, &start.internal);
         let end = State {
             u,
             v,
             a: equilibrium.acceleration.clone(),
+            internal,
         };
         end.check_finite()?;
         Ok(Solved {
@@ -387,6 +395,7 @@ impl<'m> Attempt<'_, 'm> {
             touching: impulses.touching,
             impulses: impulses.acting,
             end,
+            material_dissipation: dissipated,
             passes: Vec::new(),
         })
     }

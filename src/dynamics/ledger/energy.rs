@@ -1,8 +1,11 @@
 //! Energy balance of a run, accumulated increment by increment. Section 9 of docs/theory.md.
 
+use std::sync::Arc;
+
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{Cause, Energy, State};
 use crate::dynamics::step::{Equilibrium, StepProblem, dot};
+use crate::elements::ElementResult;
 use crate::linear::largest;
 
 /// Energy ledger: every term is computed on its own, so that the balance shows what is wrong.
@@ -11,8 +14,8 @@ pub(crate) struct Ledger {
     pub energy: Energy,
     /// Largest kinetic or strain energy of every body so far.
     pub largest: Vec<f64>,
-    /// Strain energy of every element.
-    pub strains: Vec<f64>,
+    /// Strain energy, stress and strain of every element.
+    pub elements: Arc<[ElementResult]>,
     /// T + W at the start of the analysis.
     start: f64,
 }
@@ -21,8 +24,8 @@ impl Ledger {
     /// Opens the ledger at the start of the analysis.
     pub fn new(problem: &StepProblem, start: &State) -> Self {
         let kinetic = problem.mass.kinetic_energy(&start.v);
-        let strains = problem.elements.strain_energies(&start.u);
-        let strain = strains.iter().sum();
+        let elements = problem.elements.evaluate(&start.u, &start.internal);
+        let strain = elements.iter().map(|element| element.energy).sum();
         let energy = Energy {
             kinetic,
             strain,
@@ -34,21 +37,21 @@ impl Ledger {
             start: kinetic + strain,
             ..Ledger::default()
         };
-        ledger.enter_bodies(problem, start, &strains);
-        ledger.strains = strains;
+        ledger.enter_bodies(problem, start, &elements);
+        ledger.elements = elements.into();
         ledger
     }
 
     /// Takes in the kinetic energy of every body in a state, and the strain energy of every element.
-    fn enter_bodies(&mut self, problem: &StepProblem, state: &State, strain: &[f64]) {
+    fn enter_bodies(&mut self, problem: &StepProblem, state: &State, elements: &[ElementResult]) {
         let parts = problem.parts;
         let kinetic = problem.mass.kinetic_energies(&state.v, parts);
         let mut strains = vec![0.0; parts.bodies()];
-        for (element, energy) in strain.iter().enumerate() {
+        for (element, result) in elements.iter().enumerate() {
             let [node, ..] = problem.elements.nodes(element) else {
                 continue;
             };
-            strains[parts.of_nodes()[*node]] += energy;
+            strains[parts.of_nodes()[*node]] += result.energy;
         }
         for (most, (kinetic, strain)) in self.largest.iter_mut().zip(kinetic.iter().zip(strains)) {
             *most = largest(&[*most, *kinetic, strain]);
@@ -79,12 +82,12 @@ impl Ledger {
             inertia,
             ..
         } = &solved.equilibrium;
-        let strain = problem.elements.strain_energies(&end.u);
-        self.enter_bodies(problem, end, &strain);
-        self.strains = strain;
+        let elements = problem.elements.evaluate(&end.u, &end.internal);
+        self.enter_bodies(problem, end, &elements);
+        self.elements = elements.into();
         let e = &mut self.energy;
         let strain0 = e.strain;
-        e.strain = self.strains.iter().sum();
+        e.strain = self.elements.iter().map(|element| element.energy).sum();
         e.kinetic = problem.mass.kinetic_energy(&end.v);
 
         // d.R_theta, and at supports dt V_mid,p (M A)_p + d_p (F - R - B^T P)_p, eq. (9.1)
@@ -105,13 +108,16 @@ impl Ledger {
             let kinetic = |v| problem.mass.kinetic_energy(v);
             e.impact_loss += kinetic(&start.v) - kinetic(v0p);
         }
-        // d.F_theta - (W1 - W0), eq. (9.5)
-        e.numerical_dissipation += dot(d, internal) - (e.strain - strain0);
+        // D, and d.F_theta - (W1 - W0) - D, eq. (9.5)
+        let dissipated = solved.material_dissipation;
+        e.material_dissipation += dissipated;
+        e.numerical_dissipation += dot(d, internal) - (e.strain - strain0) - dissipated;
 
         // T + W less what they were at the start and every term above, eq. (9.6)
         e.balance = e.kinetic + e.strain - self.start - e.external_work - e.normal_contact_work
             + e.friction_dissipation
             + e.impact_loss
+            + e.material_dissipation
             + e.numerical_dissipation;
         self.check(end)?;
         Ok(self)
@@ -134,6 +140,11 @@ impl Ledger {
             ),
             ("the friction dissipation", e.friction_dissipation, &state.v),
             ("the impact loss", e.impact_loss, &state.v),
+            (
+                "the dissipation of the materials",
+                e.material_dissipation,
+                &state.u,
+            ),
             (
                 "the numerical dissipation",
                 e.numerical_dissipation,

@@ -1,12 +1,13 @@
 //! Results of an increment and totals of a run, as the output receives them through `Observer`.
 
 use std::io;
+use std::sync::Arc;
 use std::time::Duration;
 
 use super::failure::Failure;
-use crate::elements::Strained;
+use crate::elements::{ElementResult, Strained};
 
-/// Motion at one time; `2 N` entries each.
+/// Motion at one time, `2 N` entries each, and what the materials remember.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct State {
     /// Displacement (length).
@@ -15,6 +16,9 @@ pub struct State {
     pub v: Vec<f64>,
     /// Acceleration (length/time^2).
     pub a: Vec<f64>,
+    /// Internal variables of the materials at all integration points, element by element: accepted or
+    /// dropped with the rest of the state.
+    pub internal: Vec<f64>,
 }
 
 /// Contact status of a node as slave; a node that is slave of several pairs shows the highest.
@@ -68,6 +72,8 @@ pub struct Energy {
     pub friction_dissipation: f64,
     /// Kinetic energy taken by the impact impulses.
     pub impact_loss: f64,
+    /// Energy dissipated by the materials.
+    pub material_dissipation: f64,
     /// Energy dissipated by the integration scheme.
     pub numerical_dissipation: f64,
     /// What is left of the balance: only the unconverged residual.
@@ -245,6 +251,8 @@ pub struct IncrementReport {
     pub state: State,
     /// Results at nodes.
     pub nodal: NodalResults,
+    /// Strain energy, mean stress and mean strain of every element.
+    pub elements: Arc<[ElementResult]>,
     /// Energy ledger.
     pub energy: Energy,
     /// Momentum.

@@ -14,7 +14,7 @@ use crate::dynamics::results::{
 use crate::dynamics::step::{
     DofMap, EffectiveStiffness, Interval, Loads, Mass, Meter, Parts, StepProblem, Supports, Weights,
 };
-use crate::elements::Elements;
+use crate::elements::{Elements, most_strained};
 use crate::model::{ImpactTime, Increments, Model, Step};
 
 /// Halvings of an increment before the run stops.
@@ -50,6 +50,7 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
             u: vec![0.0; model.mesh.dof_count()],
             v: model.initial_velocity.clone(),
             a: vec![0.0; model.mesh.dof_count()],
+            internal: elements.initial_variables(),
         },
         contact: ClosedPairs::default(),
         ledger: Ledger::default(),
@@ -349,7 +350,7 @@ impl<'m> Runner<'m, '_> {
         Accepted { solved, ledger }: Accepted,
     ) -> Result<(), RunError> {
         self.ledger = ledger;
-        let accounted = (self.accounts).enter(problem, &solved, interval, &self.ledger.strains);
+        let accounted = (self.accounts).enter(problem, &solved, interval, &self.ledger.elements);
         let landings = landings(problem, &self.state, &self.contact, &solved, interval);
         self.meter.counts.converged = true;
         self.totals.add(&self.meter.counts);
@@ -362,7 +363,8 @@ impl<'m> Runner<'m, '_> {
             dt: interval.dt,
             ends_step: interval.end.step == place.period,
             energy: self.ledger.energy,
-            strain: self.elements.most_strained(&solved.end.u),
+            strain: most_strained(&self.ledger.elements),
+            elements: self.ledger.elements.clone(),
             landings,
             solver: self.meter.counts,
             passes: solved.passes,
@@ -400,9 +402,10 @@ impl<'m> Runner<'m, '_> {
                 ..SolverCounts::default()
             },
             state: self.state.clone(),
+            elements: self.ledger.elements.clone(),
             ..self
                 .accounts
-                .start(problem, &self.state, &self.ledger.strains)
+                .start(problem, &self.state, &self.ledger.elements)
         };
         self.observer.increment(&report)?;
         Ok(None)

@@ -26,7 +26,7 @@ impl Parts {
     pub fn new(model: &Model) -> Self {
         let mut sections = vec![Vec::new(); model.mesh.node_count()];
         for element in &model.mesh.elements {
-            for &node in element.cell.nodes() {
+            for &node in &element.nodes {
                 if let Err(at) = sections[node].binary_search(&element.section) {
                     sections[node].insert(at, element.section);
                 }

@@ -13,7 +13,7 @@ use crate::contact::{
     ContactSurfaces, Pair, Pairing, Projection, Search, find_targets, position, project,
 };
 use crate::dynamics::results::{Cause, State};
-use crate::elements::Elements;
+use crate::elements::{Elements, Motion};
 use crate::lcp::LcpMethod;
 use crate::model::{Model, Settings};
 
@@ -135,7 +135,7 @@ impl StepProblem<'_> {
         let u_theta = self.weights.displacement(&start.u, d, v0p, dt);
         let internal = self
             .weights
-            .internal_force(self.elements, &start.u, &u, &u_theta)?;
+            .internal_force(self.elements, start, &u, &u_theta)?;
         let load = self
             .loads
             .weighted(self.elements, self.weights.theta1, t0, t1, &u_theta);
@@ -168,7 +168,12 @@ impl StepProblem<'_> {
     ) -> Vec<f64> {
         let mut a = vec![0.0; start.u.len()];
         let load = self.loads.weighted(self.elements, 1.0, now, now, &start.u);
-        let Ok(internal) = self.elements.internal_force(None, &start.u) else {
+        let motion = Motion {
+            start: None,
+            end: &start.u,
+            committed: &start.internal,
+        };
+        let Ok(internal) = self.elements.internal_force(motion) else {
             return a;
         };
         let r = difference(&load, &internal);

@@ -5,14 +5,12 @@ use hdf5::{Group, H5Type};
 
 use super::dataset::{Column, Meaning, constant, group, meaning, set_attribute};
 use super::model::number;
-use crate::dynamics::{NodalResults, State};
-use crate::elements::{ElementMeans, element_means};
-use crate::model::{Bodies, Cell, Mesh, Model};
+use crate::elements::ElementResult;
+use crate::model::{Bodies, Mesh, Model};
+use crate::output::frame::Frame;
 
-/// Cell types of VTK.
+/// Cell type of VTK of a rigid segment.
 const VTK_LINE: u8 = 3;
-const VTK_TRIANGLE: u8 = 5;
-const VTK_QUAD: u8 = 9;
 
 /// A field with `3` components (or one) per node or element.
 struct Field<T>(Column<T>);
@@ -91,14 +89,13 @@ impl Fields {
     }
 
     /// Appends a frame.
-    pub fn write(
-        &mut self,
-        model: &Model,
-        time: f64,
-        state: &State,
-        nodal: &NodalResults,
-    ) -> hdf5::Result<()> {
-        let means = element_means(model, &state.u);
+    pub fn write(&mut self, frame: &Frame) -> hdf5::Result<()> {
+        let Frame {
+            time,
+            state,
+            nodal,
+            elements,
+        } = frame;
         self.displacement.push(in_space(&state.u))?;
         self.velocity.push(in_space(&state.v))?;
         self.acceleration.push(in_space(&state.a))?;
@@ -109,19 +106,19 @@ impl Fields {
         self.pressure.push(nodal.pressure.iter().copied())?;
         self.slip.push(nodal.slip.iter().copied())?;
         let of_lines = |components| std::iter::repeat_n(f64::NAN, components * self.lines);
-        let stress = means.iter().flat_map(|mean| mean.stress);
+        let stress = elements.iter().flat_map(|element| element.stress);
         self.stress.push(stress.chain(of_lines(3)))?;
-        let across = means.iter().map(|mean| mean.across);
+        let across = elements.iter().map(|element| element.across);
         self.across.push(across.chain(of_lines(1)))?;
-        let von_mises = means.iter().map(ElementMeans::von_mises);
+        let von_mises = elements.iter().map(ElementResult::von_mises);
         self.von_mises.push(von_mises.chain(of_lines(1)))?;
-        let strain = means.iter().flat_map(|mean| mean.strain);
+        let strain = elements.iter().flat_map(|element| element.strain);
         self.strain.push(strain.chain(of_lines(3)))?;
         self.body_offsets.push([0])?;
         self.body_offsets.flush()?;
         self.points.push()?;
         self.cells.push()?;
-        self.steps.push(time)
+        self.steps.push(*time)
     }
 
     /// Frames written.
@@ -327,17 +324,14 @@ fn write_bodies(at: &Group, model: &Model, lines: usize) -> hdf5::Result<()> {
 /// Node indices of all elements, one element after the other.
 pub(crate) fn connectivity(mesh: &Mesh) -> Vec<i64> {
     (mesh.elements.iter())
-        .flat_map(|element| element.cell.nodes())
+        .flat_map(|element| &element.nodes)
         .map(|&node| node as i64)
         .collect()
 }
 
 /// Start of each element and of each line in the connectivity, and its end.
 fn offsets(mesh: &Mesh, lines: usize) -> Vec<i64> {
-    let elements = mesh
-        .elements
-        .iter()
-        .map(|element| element.cell.nodes().len());
+    let elements = mesh.elements.iter().map(|element| element.nodes.len());
     let mut offsets = vec![0];
     let mut end = 0;
     for nodes in elements.chain(std::iter::repeat_n(2, lines)) {
@@ -349,10 +343,7 @@ fn offsets(mesh: &Mesh, lines: usize) -> Vec<i64> {
 
 fn types(mesh: &Mesh) -> Vec<u8> {
     (mesh.elements.iter())
-        .map(|element| match element.cell {
-            Cell::Tri3(_) => VTK_TRIANGLE,
-            Cell::Quad4(_) => VTK_QUAD,
-        })
+        .map(|element| element.element_type.topology().vtk_cell)
         .collect()
 }
 
