@@ -1,0 +1,355 @@
+//! Times at which a moving node meets a moving segment: zeros of the cross product of their
+//! relative positions, a quartic for second-order motion. Section 10 of docs/theory.md, Crossing
+//! (paper eq. 50 without its frozen normal).
+
+use super::quartic::{Quartic, Zero, Zeros};
+use crate::contact::tolerances::{CROSS_ROUND_OFF, CROSSING_BEYOND_ENDS};
+
+/// Motion of a node: x + v t + a t^2/2.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Motion {
+    /// Position x at t = 0.
+    pub position: [f64; 2],
+    /// Velocity v at t = 0.
+    pub velocity: [f64; 2],
+    /// Acceleration a.
+    pub acceleration: [f64; 2],
+}
+
+impl Motion {
+    /// The straight way from one position to another within a time of 1.
+    pub fn straight(from: [f64; 2], to: [f64; 2]) -> Self {
+        Motion {
+            position: from,
+            velocity: [to[0] - from[0], to[1] - from[1]],
+            acceleration: [0.0; 2],
+        }
+    }
+
+    /// Position at a time.
+    pub fn at(&self, t: f64) -> [f64; 2] {
+        [0, 1].map(|i| self.position[i] + (self.velocity[i] + self.acceleration[i] * t / 2.0) * t)
+    }
+
+    /// Velocity at a time.
+    pub fn velocity_at(&self, t: f64) -> [f64; 2] {
+        [0, 1].map(|i| self.velocity[i] + self.acceleration[i] * t)
+    }
+}
+
+/// How a node goes through the line of a segment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// From outside the body to its inside.
+    Entering,
+    /// From inside the body to its outside.
+    Leaving,
+    /// It meets the line without going through: it grazes it, ends on it, or moves along it.
+    Touching,
+}
+
+/// A node meets the line of a segment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossing {
+    /// Time.
+    pub time: f64,
+    /// Place on the segment, 0 at a and 1 at b.
+    pub xi: f64,
+    /// Sense.
+    pub direction: Direction,
+}
+
+/// All times within [0, dt] at which the node s meets the segment from a to b, increasing.
+///
+/// ```text
+/// (x_s - x_a) x (x_b - x_a) = 0,   0 <= xi <= 1
+/// ```
+///
+/// With second-order motion this is a polynomial of degree 4 in time; it has the sign of the gap. A
+/// node that moves along the line of the segment meets it once, when it comes to lie on it.
+pub fn crossings(nodes: &[Motion; 3], dt: f64) -> Vec<Crossing> {
+    let mut found = line_crossings(nodes, dt);
+    found.retain_mut(|crossing| {
+        let is_on = (-CROSSING_BEYOND_ENDS..=1.0 + CROSSING_BEYOND_ENDS).contains(&crossing.xi);
+        crossing.xi = crossing.xi.clamp(0.0, 1.0);
+        is_on
+    });
+    found
+}
+
+/// The same for the line of the segment, which goes on beyond its ends.
+pub fn line_crossings(nodes: &[Motion; 3], dt: f64) -> Vec<Crossing> {
+    let relative = Relative::new(nodes, dt);
+    match relative.cross().zeros() {
+        Zeros::At(zeros) => {
+            let crossing = |zero: Zero| {
+                relative.place(zero.t).map(|xi| Crossing {
+                    time: zero.t * dt,
+                    xi,
+                    direction: direction(zero),
+                })
+            };
+            zeros.into_iter().filter_map(crossing).collect()
+        }
+        Zeros::Everywhere => relative.along(dt).into_iter().collect(),
+    }
+}
+
+fn direction(zero: Zero) -> Direction {
+    match (zero.before, zero.after) {
+        (0 | 1, -1) => Direction::Entering,
+        (0 | -1, 1) => Direction::Leaving,
+        _ => Direction::Touching,
+    }
+}
+
+/// Motion of the node and of the end b relative to the end a; coefficients of t/dt.
+struct Relative {
+    /// x_s - x_a
+    r: [[f64; 2]; 3],
+    /// x_b - x_a
+    e: [[f64; 2]; 3],
+}
+
+impl Relative {
+    fn new([s, a, b]: &[Motion; 3], dt: f64) -> Self {
+        let coefficients = |p: &Motion| {
+            let part = |of: fn(&Motion) -> [f64; 2], factor: f64| {
+                let (p, a) = (of(p), of(a));
+                [(p[0] - a[0]) * factor, (p[1] - a[1]) * factor]
+            };
+            [
+                part(|m| m.position, 1.0),
+                part(|m| m.velocity, dt),
+                part(|m| m.acceleration, dt * dt / 2.0),
+            ]
+        };
+        Relative {
+            r: coefficients(s),
+            e: coefficients(b),
+        }
+    }
+
+    /// r x e
+    fn cross(&self) -> Quartic {
+        self.product(|r, e| r[0] * e[1] - r[1] * e[0])
+    }
+
+    /// A product of r and e that is linear in both.
+    fn product(&self, of: fn([f64; 2], [f64; 2]) -> f64) -> Quartic {
+        let mut c = [0.0; 5];
+        for (i, r) in self.r.iter().enumerate() {
+            for (j, e) in self.e.iter().enumerate() {
+                c[i + j] += of(*r, *e);
+            }
+        }
+        Quartic {
+            c,
+            tolerance: CROSS_ROUND_OFF * size(&self.r) * size(&self.e),
+        }
+    }
+
+    /// xi = r.e/e.e, if the segment has a length or the node is where its ends are.
+    fn place(&self, t: f64) -> Option<f64> {
+        let [r, e] =
+            [&self.r, &self.e].map(|c| [0, 1].map(|i| c[0][i] + (c[1][i] + c[2][i] * t) * t));
+        let scale = CROSS_ROUND_OFF * (size(&self.r) + size(&self.e));
+        let (along, square) = (dot(r, e), dot(e, e));
+        if square > scale * scale {
+            Some(along / square)
+        } else {
+            (dot(r, r) <= scale * scale).then_some(0.0)
+        }
+    }
+
+    /// A node that is in the line of the segment at all times: when it is first on the segment.
+    fn along(&self, dt: f64) -> Option<Crossing> {
+        // r.e = 0 at the end a, (r - e).e = 0 at b, r.(dr/dt) = 0 where r may vanish
+        let to_b = Relative {
+            r: [0, 1, 2].map(|k| [0, 1].map(|i| self.r[k][i] - self.e[k][i])),
+            e: self.e,
+        };
+        let rate = Relative {
+            r: self.r,
+            e: [self.r[1], self.r[2].map(|r| 2.0 * r), [0.0; 2]],
+        };
+        let mut times = vec![0.0];
+        for relative in [self, &to_b, &rate] {
+            if let Zeros::At(zeros) = relative.product(dot).zeros() {
+                times.extend(zeros.iter().map(|zero| zero.t));
+            }
+        }
+        times.sort_by(f64::total_cmp);
+        let on = |t: f64| {
+            let xi = self.place(t)?;
+            (-CROSSING_BEYOND_ENDS..=1.0 + CROSSING_BEYOND_ENDS)
+                .contains(&xi)
+                .then_some(Crossing {
+                    time: t * dt,
+                    xi,
+                    direction: Direction::Touching,
+                })
+        };
+        times.into_iter().find_map(on)
+    }
+}
+
+/// Bound of all values of a vector polynomial on [0, 1].
+fn size(c: &[[f64; 2]; 3]) -> f64 {
+    c.iter().flatten().map(|c| c.abs()).sum()
+}
+
+fn dot(p: [f64; 2], q: [f64; 2]) -> f64 {
+    p[0] * q[0] + p[1] * q[1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A segment at rest from (1, 0) to (-1, 0): the body below it.
+    const A: [f64; 2] = [1.0, 0.0];
+    const B: [f64; 2] = [-1.0, 0.0];
+
+    fn still(position: [f64; 2]) -> Motion {
+        Motion {
+            position,
+            ..Motion::default()
+        }
+    }
+
+    fn node(position: [f64; 2], velocity: [f64; 2], acceleration: [f64; 2]) -> [Motion; 3] {
+        let s = Motion {
+            position,
+            velocity,
+            acceleration,
+        };
+        [s, still(A), still(B)]
+    }
+
+    fn times(nodes: &[Motion; 3], dt: f64) -> Vec<(f64, Direction)> {
+        let found = crossings(nodes, dt);
+        found.iter().map(|c| (c.time, c.direction)).collect()
+    }
+
+    #[test]
+    fn straight_motion_enters_and_leaves() {
+        use Direction::{Entering, Leaving};
+        let down = node([0.5, 1.0], [0.0, -2.0], [0.0; 2]);
+        assert_eq!(
+            crossings(&down, 4.0),
+            [Crossing {
+                time: 0.5,
+                xi: 0.25,
+                direction: Entering
+            }]
+        );
+        let up = node([0.0, -1.0], [0.0, 1.0], [0.0; 2]);
+        assert_eq!(times(&up, 4.0), [(1.0, Leaving)]);
+        assert!(times(&up, 0.9).is_empty(), "too early");
+        assert!(times(&node([1.5, 1.0], [0.0, -2.0], [0.0; 2]), 4.0).is_empty());
+        assert_eq!(
+            line_crossings(&node([1.5, 1.0], [0.0, -2.0], [0.0; 2]), 4.0).len(),
+            1
+        );
+    }
+
+    #[test]
+    fn a_thrown_node_has_both_roots_or_grazes() {
+        use Direction::{Entering, Leaving, Touching};
+        // y = 1 - 3 t + 2 t²
+        let found = times(&node([0.0, 1.0], [0.0, -3.0], [0.0, 4.0]), 2.0);
+        assert_eq!(found.len(), 2);
+        assert!((found[0].0 - 0.5).abs() < 1e-15 && found[0].1 == Entering);
+        assert!((found[1].0 - 1.0).abs() < 1e-15 && found[1].1 == Leaving);
+        // y = (1 - t)²
+        let found = times(&node([0.0, 1.0], [0.0, -2.0], [0.0, 2.0]), 3.0);
+        assert_eq!(found.len(), 1);
+        assert!((found[0].0 - 1.0).abs() < 1e-7 && found[0].1 == Touching);
+    }
+
+    #[test]
+    fn ends_belong_to_the_segment() {
+        for (x, xi) in [(1.0, 0.0), (-1.0, 1.0)] {
+            let found = crossings(&node([x, 1.0], [0.0, -1.0], [0.0; 2]), 2.0);
+            assert_eq!((found.len(), found[0].xi), (1, xi));
+        }
+        let outside = node([1.0 + 1e-8, 1.0], [0.0, -1.0], [0.0; 2]);
+        assert!(crossings(&outside, 2.0).is_empty());
+    }
+
+    #[test]
+    fn start_and_end_of_the_time_belong_to_it() {
+        use Direction::{Entering, Leaving, Touching};
+        assert_eq!(
+            times(&node([0.0; 2], [0.0, -1.0], [0.0; 2]), 1.0),
+            [(0.0, Entering)]
+        );
+        assert_eq!(
+            times(&node([0.0; 2], [0.0, 1.0], [0.0; 2]), 1.0),
+            [(0.0, Leaving)]
+        );
+        assert_eq!(
+            times(&node([0.0, 1.0], [0.0, -1.0], [0.0; 2]), 1.0),
+            [(1.0, Touching)]
+        );
+    }
+
+    #[test]
+    fn a_node_in_the_line_of_the_segment_meets_its_end() {
+        use Direction::Touching;
+        let inwards = node([3.0, 0.0], [-1.0, 0.0], [0.0; 2]);
+        assert_eq!(times(&inwards, 9.0).len(), 1);
+        let [(time, direction)] = times(&inwards, 9.0)[..] else {
+            panic!("one")
+        };
+        assert!((time - 2.0).abs() < 1e-14 && direction == Touching);
+        assert!(times(&node([3.0, 0.0], [1.0, 0.0], [0.0; 2]), 9.0).is_empty());
+        assert_eq!(
+            times(&node([0.5, 0.0], [0.0; 2], [0.0; 2]), 9.0),
+            [(0.0, Touching)]
+        );
+        let parallel = node([3.0, 0.1], [-1.0, 0.0], [0.0; 2]);
+        assert!(times(&parallel, 9.0).is_empty());
+    }
+
+    #[test]
+    fn a_segment_without_length_is_met_as_a_point() {
+        let point = still([0.0, 0.0]);
+        let meets = |velocity: [f64; 2]| {
+            let s = Motion {
+                position: [2.0, 2.0],
+                velocity,
+                acceleration: [0.0; 2],
+            };
+            crossings(&[s, point, point], 4.0)
+        };
+        assert!(meets([-1.0, -0.9]).is_empty());
+        let found = meets([-1.0, -1.0]);
+        assert!(found.len() == 1 && (found[0].time - 2.0).abs() < 1e-13);
+    }
+
+    #[test]
+    fn a_segment_that_turns_inside_out_is_not_met_from_afar() {
+        // b goes through a at t = 1, the node stays beside
+        let b = Motion {
+            position: [-1.0, 0.0],
+            velocity: [1.0, 0.0],
+            acceleration: [0.0; 2],
+        };
+        assert!(crossings(&[still([0.5, 0.7]), still([0.0; 2]), b], 2.0).is_empty());
+    }
+
+    #[test]
+    fn both_sides_may_move() {
+        // plate and node fly along together; the node falls on it
+        let fly = |position: [f64; 2], down: f64| Motion {
+            position,
+            velocity: [1e3, -down],
+            acceleration: [7.0, 0.0],
+        };
+        let nodes = [fly([0.0, 1.0], 1.0), fly(A, 0.0), fly(B, 0.0)];
+        let found = crossings(&nodes, 2.0);
+        assert!((found[0].time - 1.0).abs() < 1e-12 && (found[0].xi - 0.5).abs() < 1e-12);
+    }
+}
