@@ -106,8 +106,8 @@ impl Compliance {
         entries
     }
 
-    /// Rows of a pair times the inverse times the rows of another: (B_p T) W (B_q T)^T, normal
-    /// before tangential.
+    /// Block (B_p T) W (B_q T)^T of Q = B T W T^T B^T, eq. (5.1), of two pairs: normal before
+    /// tangential.
     pub(super) fn between(&self, p: &[UnknownEntry], q: &[UnknownEntry]) -> [[f64; 2]; 2] {
         let mut product = [[0.0; 2]; 2];
         for of_q in q {
