@@ -65,7 +65,7 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
         shares
     }
 
-    /// Consistent mass per direction, rho int h_a h_b dOmega, N x N column by column (mass).
+    /// Consistent mass per direction, int rho h_a h_b dOmega, eq. (2.7), N x N column by column (mass).
     pub(super) fn mass(&self, density: f64) -> Vec<f64> {
         (self.reference.mass * density).as_slice().to_vec()
     }

@@ -45,7 +45,7 @@ pub fn elasticity(material: &Material, plane: Plane) -> Elasticity {
     }
 }
 
-/// Second Piola-Kirchhoff stress S = C : E as a symmetric matrix (force/length^2).
+/// Second Piola-Kirchhoff stress S = C E, eq. (2.3), as a symmetric matrix (force/length^2).
 pub fn stress(c: &Elasticity, strain: &Matrix2<f64>) -> Matrix2<f64> {
     let s = c * Vector3::new(strain.m11, strain.m22, 2.0 * strain.m12);
     Matrix2::new(s.x, s.z, s.z, s.y)
@@ -88,7 +88,7 @@ impl PlaneMaterial {
         }
     }
 
-    /// Strain energy per reference volume, W = E : C : E / 2 (force/length^2).
+    /// Strain energy per reference volume, W = E : C : E/2, eq. (2.4) (force/length^2).
     pub fn energy(&self, strain: &Matrix2<f64>) -> f64 {
         self.stress(strain).dot(strain) / 2.0
     }
@@ -98,7 +98,8 @@ impl PlaneMaterial {
         stress(&self.c, strain)
     }
 
-    /// Stress with S : (E1 - E0) = W(E1) - W(E0): of a quadratic energy that of the mean strain.
+    /// Stress with S : (E1 - E0) = W(E1) - W(E0): of a quadratic energy the mean stress,
+    /// S_m = (S(U0) + S(U1))/2 = C (E(U0) + E(U1))/2, eq. (4.8).
     pub fn stress_between(&self, start: &Matrix2<f64>, end: &Matrix2<f64>) -> Matrix2<f64> {
         self.stress(&((start + end) / 2.0))
     }

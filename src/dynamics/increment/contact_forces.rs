@@ -5,7 +5,7 @@ use super::closed_pairs::ClosedPairs;
 use crate::contact::tolerances::SETTLED_OVERLAP;
 use crate::contact::{Pair, add_contact_forces, frictional_lcp};
 use crate::dynamics::results::{Cause, FailedLcp};
-use crate::dynamics::step::{DofMap, FactoredMatrix, Meter};
+use crate::dynamics::step::{FactoredMatrix, Meter, Unknowns};
 use crate::lcp::{ContactState, FrictionalLcp, LcpMethod, solve_frictional};
 
 /// Part of the compliance of a pair that holds its force near that of the pass before.
@@ -48,7 +48,7 @@ impl ContactForces {
         self
     }
 
-    /// Bn^T Pn + Bt^T Pt over all dofs.
+    /// Contact force Bn^T Pn + Bt^T Pt of eq. (3.1), over all dofs.
     pub fn resultant(&self, dofs: usize) -> Vec<f64> {
         let mut force = vec![0.0; dofs];
         for (k, pair) in self.pairs.iter().enumerate() {
@@ -130,7 +130,7 @@ impl ContactForces {
         pairs: Vec<Pair>,
         (warm, settled): (&ClosedPairs, bool),
         y: &[f64],
-        dofs: &DofMap,
+        unknowns: &Unknowns,
         matrix: &mut FactoredMatrix,
         method: LcpMethod,
         meter: &mut Meter,
@@ -162,6 +162,7 @@ impl ContactForces {
             entered = false;
             let chosen: Vec<usize> = (0..inside.len()).filter(|&k| inside[k]).collect();
             let at = |k: &usize| &forces.pairs[*k];
+            // g + Bn y and Dt + Bt y, eq. (5.2)
             let constants = (
                 chosen.iter().map(|k| gap_after(at(k), y)).collect(),
                 chosen
@@ -173,15 +174,15 @@ impl ContactForces {
             let last = || chosen.iter().map(|k| warm.force(&at(k).target)).collect();
             let warm = (states, settled.then(last));
             forces.solve(&chosen, constants, warm, matrix, method, meter)?;
-            let load = dofs.restrict(&forces.resultant(y.len()));
+            let load = unknowns.restrict(&forces.resultant(y.len()));
             let correction = meter.time(|t| &mut t.solve, || matrix.solver.solve(&load))?;
             du.copy_from_slice(y);
-            dofs.add(&correction, &mut du);
+            unknowns.add(&correction, &mut du);
         }
     }
 
     /// Impact impulses Phi, Psi of pairs at the start of an increment and the velocity after them,
-    /// V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi) (paper eq. 30), posed as
+    /// V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1) (paper eq. 30), posed as eq. (6.2):
     ///
     /// ```text
     /// 0 <= Phi  complementary to  Bn V0+ + (2/dt) max(g0, 0) >= 0
@@ -193,7 +194,7 @@ impl ContactForces {
         pairs: Vec<Pair>,
         v0: &[f64],
         dt: f64,
-        dofs: &DofMap,
+        unknowns: &Unknowns,
         mass: &mut FactoredMatrix,
         method: LcpMethod,
         meter: &mut Meter,
@@ -206,6 +207,7 @@ impl ContactForces {
         if !mass.solver.is_factorized() {
             meter.time(|t| &mut t.factorization, || mass.factorize())?;
         }
+        // Bn V0 + (2/dt) max(g0, 0) and Bt V0, eq. (6.2)
         let constants = (
             pairs.iter().map(approach).collect(),
             pairs.iter().map(|pair| pair.tangent_of(v0)).collect(),
@@ -214,16 +216,16 @@ impl ContactForces {
         let states = vec![ContactState::Stick; pairs.len()];
         let mut impulses = ContactForces::open(pairs);
         impulses.solve(&chosen, constants, (states, None), mass, method, meter)?;
-        let load = dofs.restrict(&impulses.resultant(v0.len()));
+        let load = unknowns.restrict(&impulses.resultant(v0.len()));
         let jump = meter.time(|t| &mut t.solve, || mass.solver.solve(&load))?;
-        dofs.add(&jump, &mut v0p);
+        unknowns.add(&jump, &mut v0p);
         Ok((v0p, impulses))
     }
 }
 
-/// Adds eps Q_kk (P_k - P_k^0) to what a problem makes zero or positive, P^0 being the forces of the
-/// pass before: where several pairs can carry the same force, the solution near that of the pass
-/// before is the one. When the passes come to rest, the term vanishes.
+/// Equal-force rule, eq. (5.3): adds eps Q_kk (P_k - P_k^0) to gaps and slips, P^0 being the forces of
+/// the pass before. Where several pairs can carry the same force, the solution near that of the pass
+/// before is taken; the term vanishes as the passes converge.
 fn add_proximal_term(problem: &mut FrictionalLcp, forces: &[[f64; 2]]) {
     let n = forces.len();
     for (k, [pn, pt]) in forces.iter().enumerate() {

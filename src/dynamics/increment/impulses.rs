@@ -38,7 +38,7 @@ impl Impulses {
         }
     }
 
-    /// Velocity V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi) for the pairs of the iterate.
+    /// Velocity V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1), for the pairs of the iterate.
     pub fn velocity(
         &mut self,
         problem: &StepProblem,
@@ -70,7 +70,7 @@ impl Impulses {
         let struck: Vec<Pair> = struck.map(rows).collect();
         let (m, method) = (&mut effective.m, problem.method());
         let (v0p, acting) =
-            ContactForces::impulses(struck, &start.v, dt, &problem.dofs, m, method, meter)?;
+            ContactForces::impulses(struck, &start.v, dt, &problem.unknowns, m, method, meter)?;
         self.acting = acting;
         self.last = Some((targets, v0p.clone()));
         Ok(v0p)
