@@ -260,21 +260,14 @@ mod tests {
             (0..10).map(|i| scale * (k * f64::from(i)).sin()).collect()
         };
         let (u, v) = (wave(0.1, 1.3), wave(1.0, 2.1));
-        fn at(end: &[f64]) -> Motion<'_> {
-            Motion {
-                start: None,
-                end,
-                committed: &[],
-            }
-        }
         let force = |t: f64| {
             let moved: Vec<f64> = u.iter().zip(&v).map(|(u, v)| u + t * v).collect();
             elements
-                .internal_force(at(&moved))
+                .internal_force(Motion::at(&moved, &[]))
                 .expect("no element inverted")
         };
         let (ahead, behind) = (force(1e-5), force(-1e-5));
-        let product = elements.tangent_product(at(&u), &v);
+        let product = elements.tangent_product(Motion::at(&u, &[]), &v);
         let largest = product.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
         for (i, p) in product.iter().enumerate() {
             let quotient = (ahead[i] - behind[i]) / 2e-5;

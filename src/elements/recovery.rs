@@ -54,7 +54,7 @@ pub(super) struct PointResult {
 }
 
 impl PointResult {
-    /// sigma = F S F^T / J with J = det F F_zz, and sigma_zz = F_zz S_zz F_zz / J.
+    /// sigma = F S F^T/J, eq. (2.8), with J = det F F_zz, and sigma_zz = F_zz S_zz F_zz / J.
     pub fn new(state: &PointState, material: &Committed, point: usize) -> Self {
         let (f, e) = (state.f(), state.strains.end());
         let Across { stretch, stress } = material.across(point, e);

@@ -41,6 +41,17 @@ pub struct Motion<'a> {
     pub committed: &'a [f64],
 }
 
+impl<'a> Motion<'a> {
+    /// Displacements at which forces are those of the displacements.
+    pub fn at(end: &'a [f64], committed: &'a [f64]) -> Self {
+        Motion {
+            start: None,
+            end,
+            committed,
+        }
+    }
+}
+
 impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P, D, F> {
     /// An element between nodes at the coordinates `x`, with the integration points that `reference`
     /// makes of the corners (column a for node a) and the thickness `t`.
@@ -74,7 +85,7 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
         shares
     }
 
-    /// Consistent mass per direction, rho int h_a h_b dOmega, N x N column by column (mass).
+    /// Consistent mass per direction, int rho h_a h_b dOmega, eq. (2.7), N x N column by column (mass).
     pub(super) fn mass(&self, density: f64) -> Vec<f64> {
         (self.reference.mass * density).as_slice().to_vec()
     }

@@ -7,6 +7,7 @@ mod amplitude;
 mod bodies;
 mod contact;
 mod element_type;
+mod equation;
 mod history_set;
 mod load;
 mod material;
@@ -21,6 +22,7 @@ pub use amplitude::{Amplitude, TimeBase};
 pub use bodies::Bodies;
 pub use contact::{Adjust, Contact, Interaction};
 pub use element_type::{ElementType, Formulation, Shape, Topology};
+pub use equation::Equation;
 pub use history_set::HistorySet;
 pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
 pub use material::{Material, Section};
@@ -53,6 +55,8 @@ pub struct Model {
     pub contacts: Vec<Contact>,
     /// Amplitude curves.
     pub amplitudes: Vec<Amplitude>,
+    /// Equations between displacements, sorted by the dof that they eliminate, each at most once.
+    pub equations: Vec<Equation>,
     /// Initial velocity, `2 N` entries (length/time).
     pub initial_velocity: Vec<f64>,
     /// Steps in order.

@@ -63,6 +63,7 @@ pub fn model() -> Model {
         steps: vec![step()],
         history_sets: vec![asked(1, true), asked(2, true), asked(0, false)],
         rigid_bodies: vec![],
+        equations: vec![],
     }
 }
 

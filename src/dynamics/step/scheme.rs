@@ -65,14 +65,12 @@ impl Weights {
 
     /// The motion at which internal force and tangent are evaluated.
     pub fn motion<'a>(&self, start: &'a State, u1: &'a [f64], u_theta: &'a [f64]) -> Motion<'a> {
-        let (from, end) = match self.energy_momentum {
-            true => (Some(start.u.as_slice()), u1),
-            false => (None, u_theta),
-        };
-        Motion {
-            start: from,
-            end,
-            committed: &start.internal,
+        match self.energy_momentum {
+            true => Motion {
+                start: Some(&start.u),
+                ..Motion::at(u1, &start.internal)
+            },
+            false => Motion::at(u_theta, &start.internal),
         }
     }
 }
