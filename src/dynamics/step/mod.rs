@@ -9,13 +9,13 @@ mod parts;
 mod scheme;
 mod step_problem;
 mod supports;
+mod workspace;
 
 pub(crate) use dofs::DofMap;
-pub(crate) use effective_stiffness::{EffectiveStiffness, FactoredMatrix};
 pub(crate) use loads::{Loads, TimePoint};
 pub(crate) use mass::{Mass, dot};
-pub(crate) use meter::Meter;
 pub(crate) use parts::Parts;
 pub(crate) use scheme::Weights;
 pub(crate) use step_problem::{Equilibrium, Interval, StepProblem, check_finite, difference, sum};
 pub(crate) use supports::Supports;
+pub(crate) use workspace::{System, Workspace};
