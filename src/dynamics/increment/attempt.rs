@@ -43,7 +43,7 @@ pub(crate) struct Solved {
 }
 
 impl Solved {
-    /// A = (2/dt²)(d - dt V0+) of an increment of length `dt`, at the supports too.
+    /// A = (2/dt²) (d - dt V0+), eq. (4.1), of an increment of length `dt`, at the supports too.
     pub fn mean_acceleration(&self, dt: f64) -> Vec<f64> {
         let both = self.d.iter().zip(&self.v0p);
         both.map(|(d, v0p)| 2.0 / (dt * dt) * (d - dt * v0p))
@@ -138,10 +138,10 @@ impl<'m> Attempt<'_, 'm> {
                 None => [pairs, Vec::new()],
             };
 
-            // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi) for the pairs in contact
+            // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi) for the pairs in contact, eq. (6.1)
             let v0p = impulses.velocity(problem, self.workspace, &pairs, self.start, dt)?;
 
-            // r = R_theta - F(U_theta) - M A,  A = (2/dt²)(d - dt V0+)
+            // r = R_theta - F(U_theta) - M A, eq. (4.5)
             let iterate =
                 (self.workspace).equilibrium(problem, self.start, [&v0p, &d], self.interval)?;
             let mut r = iterate.out_of_balance();
@@ -155,7 +155,8 @@ impl<'m> Attempt<'_, 'm> {
             let free = problem.dofs.restrict(&r);
             problem.dofs.add(&self.workspace.k().solve(&free)?, &mut y);
 
-            // Pn, Pt of the complementarity problem; dU = y + K*^-1 (Bn^T Pn + Bt^T Pt)
+            // Pn, Pt of the complementarity problem, eq. (5.2);
+            // dU = y + K*^-1 (Bn^T Pn + Bt^T Pt), eq. (4.7)
             let pivots = self.workspace.meter.counts.pivots;
             let method = problem.method();
             let (forces, du) = ContactForces::of_pass(
@@ -168,7 +169,7 @@ impl<'m> Attempt<'_, 'm> {
             )?;
             let pivots = self.workspace.meter.counts.pivots - pivots;
 
-            // residual with the contact forces of this pass
+            // residual r + Bn^T Pn + Bt^T Pt with the contact forces of this pass, eq. (4.7)
             let contact_force = forces.resultant(d.len());
             r = problem.dofs.restrict(&sum(&r, &contact_force));
             let forces_of = [
@@ -330,7 +331,7 @@ impl<'m> Attempt<'_, 'm> {
     ) -> Result<Solved, Cause> {
         let (problem, start, interval) = (self.problem, self.start, self.interval);
         let equilibrium = (self.workspace).equilibrium(problem, start, [&v0p, &d], interval)?;
-        // V1 = (2/dt) d - V0+; at supports from the amplitude
+        // V1 = (2/dt) d - V0+, eq. (4.2); at supports from the amplitude
         let rate = 2.0 / interval.dt;
         let mut v: Vec<f64> = d.iter().zip(&v0p).map(|(d, v0p)| rate * d - v0p).collect();
         let mut u = sum(&start.u, &d);
