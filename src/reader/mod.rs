@@ -75,6 +75,7 @@ fn read(cx: &mut Context) -> Model {
         interactions,
         contacts,
         amplitudes: amplitudes.all,
+        equations: Vec::new(),
         initial_velocity,
         steps: steps.all,
         history_sets: steps.history,

@@ -59,6 +59,7 @@ pub fn model() -> Model {
         }],
         contacts: vec![contact(), contact()],
         amplitudes: vec![],
+        equations: vec![],
         initial_velocity: vec![0.0; 14],
         steps: vec![step()],
         history_sets: vec![asked(1, true), asked(2, true), asked(0, false)],

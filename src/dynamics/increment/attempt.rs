@@ -121,7 +121,7 @@ impl<'m> Attempt<'_, 'm> {
 
         // k = 0: from U0; the supports move by their prescribed increment in the predictor
         let mut d = vec![0.0; u0.len()];
-        let mut prescribed = problem.support_increment(u0, self.interval);
+        let mut prescribed = problem.unknowns.prescribed_increment(u0, self.interval.end);
         let mut state = contact.clone();
         let touching = self.active.map_or(Vec::new(), ActiveConstraints::keys);
         let mut impulses = Impulses::new(contact, touching);
@@ -145,15 +145,17 @@ impl<'m> Attempt<'_, 'm> {
             let iterate =
                 (self.workspace).equilibrium(problem, self.start, [&v0p, &d], self.interval)?;
             let mut r = iterate.out_of_balance();
-            trace.balance(largest(&problem.dofs.restrict(&r)));
+            trace.balance(largest(&problem.unknowns.restrict(&r)));
 
             // y = K*^-1 r; in the predictor the supports move by d_p, with the force -theta2 K d_p
             self.refresh(pass, &u, &iterate.u_theta)?;
             let mut y = std::mem::replace(&mut prescribed, vec![0.0; d.len()]);
             let support_force = self.support_force(&y, &u, &iterate.u_theta);
             r = difference(&r, &support_force);
-            let free = problem.dofs.restrict(&r);
-            problem.dofs.add(&self.workspace.k().solve(&free)?, &mut y);
+            let free = problem.unknowns.restrict(&r);
+            problem
+                .unknowns
+                .add(&self.workspace.k().solve(&free)?, &mut y);
 
             // Pn, Pt of the complementarity problem, eq. (5.2);
             // dU = y + K*^-1 (Bn^T Pn + Bt^T Pt), eq. (4.7)
@@ -163,7 +165,7 @@ impl<'m> Attempt<'_, 'm> {
                 pairs,
                 (&state, pairing.settled),
                 &y,
-                &problem.dofs,
+                &problem.unknowns,
                 self.workspace.k(),
                 method,
             )?;
@@ -171,7 +173,7 @@ impl<'m> Attempt<'_, 'm> {
 
             // residual r + Bn^T Pn + Bt^T Pt with the contact forces of this pass, eq. (4.7)
             let contact_force = forces.resultant(d.len());
-            r = problem.dofs.restrict(&sum(&r, &contact_force));
+            r = problem.unknowns.restrict(&sum(&r, &contact_force));
             let forces_of = [
                 ("the load", &iterate.load),
                 ("the internal force", &iterate.internal),
@@ -181,13 +183,16 @@ impl<'m> Attempt<'_, 'm> {
                 ("the displacement correction", &du),
             ];
             check_finite(&forces_of)?;
-            let force = forces_of[..5].iter().map(|(_, force)| force.as_slice());
-            let force = largest_forces(problem.parts, force);
+            let force = forces_of[..5].iter();
+            let force: Vec<_> = force
+                .map(|(_, force)| problem.unknowns.magnitudes(force))
+                .collect();
+            let force = largest_forces(problem.parts, force.iter().map(|force| force.as_ref()));
             let scales = self.scales(force, &u, [&d, &du], &forces);
-            let errors = Errors::new(problem.parts, &r, &problem.dofs.dof, &du);
+            let errors = Errors::new(problem.parts, &r, &problem.unknowns.dof, &du);
             let report = scales.report(&errors, &forces, pivots);
             let position = |node| problem.position(&u, node);
-            trace.worst = scales.worst(&r, &problem.dofs.dof, position);
+            trace.worst = scales.worst(&r, &problem.unknowns.dof, position);
             trace.passes.push(report);
             self.workspace.meter.count_pass(report.residual);
 
@@ -248,7 +253,7 @@ impl<'m> Attempt<'_, 'm> {
             Err(Cause::Crossed {
                 slave,
                 segment,
-                prescribed: !self.problem.dofs.moves(&[slave, a, b]),
+                prescribed: !self.problem.unknowns.moves(&[slave, a, b]),
             })
         })
     }
@@ -267,7 +272,7 @@ impl<'m> Attempt<'_, 'm> {
         let StepProblem {
             settings,
             weights,
-            dofs,
+            unknowns,
             ..
         } = self.problem;
         let (workspace, dt) = (&mut *self.workspace, self.interval.dt);
@@ -281,7 +286,7 @@ impl<'m> Attempt<'_, 'm> {
         let factorized = workspace.factorize(self.problem, dt, configuration);
         factorized.map_err(|error| match error {
             LinearError::NotPositiveDefinite { unknown, .. } => Cause::Indefinite {
-                node: dofs.dof[unknown] / 2,
+                node: unknowns.dof[unknown] / 2,
             },
             other => other.into(),
         })
@@ -331,13 +336,11 @@ impl<'m> Attempt<'_, 'm> {
     ) -> Result<Solved, Cause> {
         let (problem, start, interval) = (self.problem, self.start, self.interval);
         let equilibrium = (self.workspace).equilibrium(problem, start, [&v0p, &d], interval)?;
-        // V1 = (2/dt) d - V0+, eq. (4.2); at supports from the amplitude
+        // V1 = (2/dt) d - V0+, eq. (4.2); of what is prescribed from the amplitude
         let rate = 2.0 / interval.dt;
         let mut v: Vec<f64> = d.iter().zip(&v0p).map(|(d, v0p)| rate * d - v0p).collect();
         let mut u = sum(&start.u, &d);
-        for (dof, u1, v1) in problem.supports.motion(interval.end) {
-            (u[dof], v[dof]) = (u1, v1);
-        }
+        problem.unknowns.prescribe(interval.end, &mut u, &mut v);
         let end = State {
             u,
             v,

@@ -5,7 +5,7 @@ use super::closed_pairs::ClosedPairs;
 use crate::contact::tolerances::SETTLED_OVERLAP;
 use crate::contact::{Pair, add_contact_forces};
 use crate::dynamics::results::{Cause, FailedLcp};
-use crate::dynamics::step::{DofMap, System};
+use crate::dynamics::step::{System, Unknowns};
 use crate::lcp::{ContactState, FrictionalLcp, LcpMethod};
 
 /// Part of the compliance of a pair that holds its force near that of the pass before.
@@ -121,7 +121,7 @@ impl ContactForces {
         pairs: Vec<Pair>,
         (warm, settled): (&ClosedPairs, bool),
         y: &[f64],
-        dofs: &DofMap,
+        unknowns: &Unknowns,
         mut system: System,
         method: LcpMethod,
     ) -> Result<(Self, Vec<f64>), Cause> {
@@ -164,10 +164,10 @@ impl ContactForces {
             let last = || chosen.iter().map(|k| warm.force(&at(k).target)).collect();
             let warm = (states, settled.then(last));
             forces.solve(&chosen, constants, warm, &mut system, method)?;
-            let load = dofs.restrict(&forces.resultant(y.len()));
+            let load = unknowns.restrict(&forces.resultant(y.len()));
             let correction = system.solve(&load)?;
             du.copy_from_slice(y);
-            dofs.add(&correction, &mut du);
+            unknowns.add(&correction, &mut du);
         }
     }
 
@@ -184,7 +184,7 @@ impl ContactForces {
         pairs: Vec<Pair>,
         v0: &[f64],
         dt: f64,
-        dofs: &DofMap,
+        unknowns: &Unknowns,
         mut mass: System,
         method: LcpMethod,
     ) -> Result<(Vec<f64>, Self), Cause> {
@@ -205,9 +205,9 @@ impl ContactForces {
         let states = vec![ContactState::Stick; pairs.len()];
         let mut impulses = ContactForces::open(pairs);
         impulses.solve(&chosen, constants, (states, None), &mut mass, method)?;
-        let load = dofs.restrict(&impulses.resultant(v0.len()));
+        let load = unknowns.restrict(&impulses.resultant(v0.len()));
         let jump = mass.solve(&load)?;
-        dofs.add(&jump, &mut v0p);
+        unknowns.add(&jump, &mut v0p);
         Ok((v0p, impulses))
     }
 }

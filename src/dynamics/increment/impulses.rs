@@ -69,7 +69,7 @@ impl Impulses {
         let struck: Vec<Pair> = struck.map(rows).collect();
         let (m, method) = (workspace.m(), problem.method());
         let (v0p, acting) =
-            ContactForces::impulses(struck, &start.v, dt, &problem.dofs, m, method)?;
+            ContactForces::impulses(struck, &start.v, dt, &problem.unknowns, m, method)?;
         self.acting = acting;
         self.last = Some((targets, v0p.clone()));
         Ok(v0p)

@@ -12,7 +12,7 @@ use crate::dynamics::results::{
     Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State, Timings,
 };
 use crate::dynamics::step::{
-    DofMap, Interval, Loads, Mass, Parts, StepProblem, Supports, Weights, Workspace,
+    Interval, Loads, Mass, Parts, StepProblem, Unknowns, Weights, Workspace,
 };
 use crate::elements::Elements;
 use crate::model::{ImpactTime, Increments, Model, Step};
@@ -118,9 +118,8 @@ impl<'m> Runner<'m, '_> {
             contacts: self.contacts,
             settings: step.settings,
             weights: Weights::new(step.settings.scheme),
-            dofs: DofMap::new(self.elements, step, self.model.mesh.dof_count()),
+            unknowns: Unknowns::new(self.model, self.elements, step, &self.state.u),
             loads: Loads::new(self.model, step),
-            supports: Supports::new(self.model, step, &self.state.u),
         };
         let mut workspace = Workspace::new(&problem);
         if number == 1
@@ -383,7 +382,7 @@ impl<'m> Runner<'m, '_> {
         Ok(())
     }
 
-    /// Completes the start state (velocity of the supports, acceleration) and reports it, or gives
+    /// Completes the start state (velocity of supports and equations, acceleration) and reports it, or gives
     /// the failure when it is not finite.
     fn report_start(
         &mut self,
@@ -392,9 +391,7 @@ impl<'m> Runner<'m, '_> {
         place: StepPlace,
     ) -> Result<Option<Failure>, RunError> {
         let now = place.time_point(0.0);
-        for (dof, _, v) in problem.supports.motion(now) {
-            self.state.v[dof] = v;
-        }
+        problem.unknowns.prescribe_velocity(now, &mut self.state.v);
         self.state.a = problem.start_acceleration(workspace.m(), &self.state, now);
         self.ledger = Ledger::new(problem, &self.state);
         if let Some(failure) = start_failure(&self.state, &self.ledger, place) {

@@ -1,6 +1,5 @@
 //! What stays the same over a step: unknowns, loads, supports, mass, scheme, effective stiffness.
 
-mod dofs;
 mod effective_stiffness;
 mod loads;
 mod mass;
@@ -9,13 +8,13 @@ mod parts;
 mod scheme;
 mod step_problem;
 mod supports;
+mod unknowns;
 mod workspace;
 
-pub(crate) use dofs::DofMap;
 pub(crate) use loads::{Loads, TimePoint};
 pub(crate) use mass::{Mass, dot};
 pub(crate) use parts::Parts;
 pub(crate) use scheme::Weights;
 pub(crate) use step_problem::{Equilibrium, Interval, StepProblem, check_finite, difference, sum};
-pub(crate) use supports::Supports;
+pub(crate) use unknowns::Unknowns;
 pub(crate) use workspace::{System, Workspace};

@@ -32,14 +32,13 @@ impl<'m> Workspace<'m> {
         let StepProblem {
             model,
             elements,
-            parts,
             contacts,
             settings,
-            dofs,
+            unknowns,
             ..
         } = problem;
         Workspace {
-            stiffness: EffectiveStiffness::new(elements, dofs, parts, settings.solver),
+            stiffness: EffectiveStiffness::new(elements, unknowns, settings.solver),
             search: Search::new(contacts, &model.mesh.coordinates),
             meter: Meter::default(),
         }
