@@ -9,8 +9,8 @@
 //! # Layers
 //!
 //! A module imports only from modules before it in this list:
-//! `diagnostics`, `deck`, `model`, `reader`, `elements`, `linear`, `lcp`, `contact`, `dynamics`,
-//! `output`, `cli`.
+//! `diagnostics`, `deck`, `model`, `reader`, `elements`, `linear`, `lcp`, `contact`, `prepare`,
+//! `dynamics`, `output`, `cli`. The rooms of a layer (its sub-folders) import one way as well.
 //!
 //! # Vocabulary
 //!
@@ -47,4 +47,5 @@ pub mod lcp;
 pub mod linear;
 pub mod model;
 pub mod output;
+pub mod prepare;
 pub mod reader;

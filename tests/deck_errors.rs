@@ -3,8 +3,8 @@
 mod deck_advice;
 
 use std::path::Path;
-use stickslip::contact::{adjust, report_adjusted, report_penetrations};
 use stickslip::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Sources};
+use stickslip::prepare::{adjust, report_adjusted, report_penetrations};
 use stickslip::{deck, reader};
 
 const SQUARE: &str = include_str!("decks/square.inp");

@@ -1,10 +1,11 @@
 //! Valid decks and the model they describe.
 
 use std::path::Path;
-use stickslip::contact::{adjust as adjust_nodes, contact_surfaces};
+use stickslip::contact::contact_surfaces;
 use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::model::*;
 use stickslip::output::contact_names;
+use stickslip::prepare::adjust as adjust_nodes;
 use stickslip::{deck, reader};
 
 /// The model of a deck, which must have no errors, and the text of its warnings.

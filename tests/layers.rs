@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The layers, lowest first.
-const LAYERS: [&str; 11] = [
+const LAYERS: [&str; 12] = [
     "diagnostics",
     "deck",
     "model",
@@ -13,6 +13,7 @@ const LAYERS: [&str; 11] = [
     "linear",
     "lcp",
     "contact",
+    "prepare",
     "dynamics",
     "output",
     "cli",

@@ -5,7 +5,8 @@ use std::path::Path;
 use super::args::{CheckArgs, DeckArgs};
 use super::connect::{Loaded, Numerics};
 use super::error::CliError;
-use super::{Exit, coloured, complain, print};
+use super::exit::Exit;
+use crate::cli::{coloured, complain, print};
 use crate::output::{ModelEcho, check_names, deck_line, regular_file};
 
 /// Reads a deck and describes its model.

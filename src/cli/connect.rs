@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use crate::contact::{adjust, report_adjusted, report_penetrations};
 use crate::diagnostics::{Code, Diagnostics, Severity, Sources, Strictness};
-use crate::dynamics::{self, Observer, RunError, RunSummary};
+use crate::dynamics::{Observer, RunError, RunSummary};
 use crate::model::Model;
-use crate::reader;
+use crate::prepare::{adjust, report_adjusted, report_penetrations};
+use crate::{dynamics, reader};
 
 /// A deck as read.
 #[derive(Debug, Clone, Default)]

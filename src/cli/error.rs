@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::Exit;
+use super::exit::Exit;
 use crate::output::{NameError, OutputError, SummaryError, reason};
 
 /// Why a command did not get to its end.

@@ -1,10 +1,9 @@
 //! `run` with a made-up solver: who has the files of a job, and what is left of them.
 
-use std::cell;
-use std::io;
+use std::{cell, io};
 
-use super::Exit;
 use super::connect::Numerics;
+use super::exit::Exit;
 use super::run_tests::{Bench, code, numerics, report, summary};
 use crate::dynamics::{Observer, Outcome, RunError, RunSummary};
 use crate::model::Model;

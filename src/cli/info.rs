@@ -2,7 +2,8 @@
 
 use super::args::InfoArgs;
 use super::error::CliError;
-use super::{Exit, print};
+use super::exit::Exit;
+use crate::cli::print;
 use crate::output::ResultSummary;
 
 /// Describes a result file.

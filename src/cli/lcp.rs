@@ -4,7 +4,8 @@ use std::fs;
 
 use super::args::LcpArgs;
 use super::error::CliError;
-use super::{Exit, print};
+use super::exit::Exit;
+use crate::cli::print;
 use crate::lcp::solve_json;
 use crate::output::regular_file;
 

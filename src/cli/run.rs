@@ -4,8 +4,9 @@ use super::args::RunArgs;
 use super::check::{complain_of, deck_line_of, load};
 use super::connect::{Loaded, Numerics};
 use super::error::CliError;
+use super::exit::Exit;
 use super::version::{COMMIT, NUMBER, PROFILE};
-use super::{Exit, overrides, signals};
+use crate::cli::{overrides, signals};
 use crate::dynamics::{Outcome, RunError};
 use crate::model::Model;
 use crate::output::{

@@ -10,7 +10,8 @@ use tempfile::TempDir;
 use super::args::{Args, Command};
 use super::connect::{Loaded, Numerics};
 use super::error::CliError;
-use super::{Exit, run};
+use super::exit::Exit;
+use crate::cli::run;
 use crate::dynamics::{
     Cause, Cutback, FailedLcp, Failure, IncrementReport, NodalResults, NodeStatus, Observer,
     Outcome, PassReport, RunError, RunSummary, SolverCounts, State, Timings, Worst,

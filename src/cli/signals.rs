@@ -3,18 +3,17 @@
 //! The first one is passed on: the run ends after the increment it is at, with its results
 //! complete. A second one ends the program at once.
 
-use std::fs;
-use std::io;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use std::thread;
 use std::time::{Duration, Instant};
+use std::{fs, io, thread};
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::iterator::Signals;
 use signal_hook::{flag, low_level};
 
-use super::{Exit, complain};
+use super::exit::Exit;
+use crate::cli::complain;
 use crate::output::Interrupt;
 
 /// Signals within this time of the first are the same request: a process and its group are often

@@ -1,41 +1,17 @@
 //! Node-to-segment contact: pairs, their rows and their complementarity problem.
 
-mod adjust;
-mod circles;
-mod compliance;
+mod constraints;
 mod crossing;
 mod geometry;
-mod initial;
-mod interior;
-mod look;
-mod pair;
-mod passage;
-#[cfg(test)]
-mod passage_tests;
-mod penetration;
-mod problem;
-mod quartic;
 mod search;
-mod sites;
-mod surfaces;
-mod territory;
-mod vertex;
-
-pub use adjust::{Adjusted, adjust, report_adjusted};
-pub use compliance::Compliance;
-pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
+mod targets;
+pub use constraints::{Compliance, Pair, RowForm, add_contact_forces, frictional_lcp};
+pub use crossing::{
+    Crossing, Direction, Motion, Passage, Touch, crossings, find_passage, line_crossings,
+};
 pub(crate) use geometry::position;
-pub use geometry::{Projection, project};
-pub use initial::{InitialGap, initial_gaps};
-pub use interior::Interior;
-pub use look::Look;
-pub(crate) use look::{PENETRATING, TOUCHING};
-pub use pair::{Pair, PairSite, RowForm};
-pub use passage::{Passage, Touch, find_passage};
-pub use penetration::report_penetrations;
-pub use problem::{add_contact_forces, frictional_lcp};
-pub use search::{Candidate, Pairing, all_segments, find_pairs};
-pub use sites::Site;
-pub use surfaces::{ContactSurfaces, contact_surfaces};
-pub use territory::{Search, Territory};
-pub use vertex::{Vertex, common_normal};
+pub use geometry::{ContactSurfaces, Interior, Projection, contact_surfaces, project};
+pub use search::{Candidate, Search, Territory, all_segments};
+pub(crate) use search::{Circle, CircleTree};
+pub use targets::{Look, PairSite, Pairing, Site, Vertex, common_normal, find_pairs};
+pub(crate) use targets::{PENETRATING, TOUCHING};

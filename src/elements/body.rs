@@ -4,10 +4,11 @@
 use nalgebra::SMatrix;
 use rayon::prelude::*;
 
-use super::{
-    Configuration, Elasticity, Reference, elasticity, internal_force, largest_strain, mass, quad4,
-    strain_energy, tangent, tri3,
-};
+use super::kinematics::Configuration;
+use super::reference::Reference;
+use super::solid::{internal_force, largest_strain, mass, strain_energy, tangent};
+use super::voigt::{Elasticity, elasticity};
+use crate::elements::{quad4, tri3};
 use crate::model::{Cell, Model};
 
 /// Elements below which a sweep over them is not worth a second thread.

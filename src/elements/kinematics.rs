@@ -3,8 +3,8 @@
 
 use nalgebra::{Matrix2, SMatrix};
 
-use super::voigt::stress;
-use super::{Elasticity, Point};
+use super::reference::Point;
+use super::voigt::{Elasticity, stress};
 
 /// The configuration in which internal force and tangent are evaluated; displacements of the
 /// element's nodes are 2 x N (length).

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, SMatrix, SVector};
 
-use super::{Point, Reference};
+use super::reference::{Point, Reference};
 
 /// Natural coordinates of the nodes.
 ///

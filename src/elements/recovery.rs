@@ -5,8 +5,9 @@ use nalgebra::{Matrix2, SMatrix};
 
 use super::body::gather;
 use super::kinematics::{displacement_gradient, green_lagrange};
-use super::voigt::stress;
-use super::{Elasticity, Reference, elasticity, quad4, tri3};
+use super::reference::Reference;
+use super::voigt::{Elasticity, elasticity, stress};
+use crate::elements::{quad4, tri3};
 use crate::model::{Cell, Element, Model, Plane};
 
 /// Stress and strain of one element, averaged over its volume.

@@ -3,9 +3,11 @@
 
 use nalgebra::{SMatrix, Vector3};
 
-use super::kinematics::{displacement_gradient, green_lagrange, smaller};
-use super::voigt::stress;
-use super::{Configuration, Elasticity, PointState, Reference};
+use super::kinematics::{
+    Configuration, PointState, displacement_gradient, green_lagrange, smaller,
+};
+use super::reference::Reference;
+use super::voigt::{Elasticity, stress};
 
 /// Consistent mass per direction, rho int h_a h_b dOmega (mass).
 pub fn mass<const N: usize, const P: usize>(

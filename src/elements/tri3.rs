@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::{Point, Reference};
+use super::reference::{Point, Reference};
 
 /// Three-node triangle with one integration point and thickness `t`.
 ///

@@ -11,29 +11,12 @@
 //! All methods work on a problem scaled by powers of two, so that the answer of a problem whose
 //! lengths or forces are multiplied by powers of two is the same to the last bit.
 
-mod active_set;
-mod basis;
-mod dense;
 mod exchange;
-mod factors;
-mod frictional;
-mod frictional_lemke;
-mod gauss_seidel;
-mod hybrid;
-mod lemke;
-mod pivoting;
-mod problem;
-mod ratio;
-mod reduced;
-mod residual;
-mod scaled;
-mod scaling;
-mod state;
+mod pivots;
+mod problems;
+mod warm_start;
 
 pub use exchange::{JsonAnswer, solve_json};
-pub use frictional::FrictionalLcp;
-pub use hybrid::{FrictionalSolution, LcpMethod, Method, solve_frictional};
-pub use lemke::{LemkeSettings, covering_vector, lemke};
-pub use problem::{Lcp, LcpError, LcpSolution};
-pub use residual::residual;
-pub use state::{ContactState, Counters};
+pub use pivots::{LemkeSettings, covering_vector, lemke};
+pub use problems::{ContactState, Counters, FrictionalLcp, Lcp, LcpError, LcpSolution, residual};
+pub use warm_start::{FrictionalSolution, LcpMethod, Method, solve_frictional};

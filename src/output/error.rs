@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::names::NameError;
+use super::file::NameError;
 
 /// Why the files of a job could not be created.
 #[derive(Debug, Error)]

@@ -1,17 +1,14 @@
 //! The result file as a whole: all groups of `JOB.vtkhdf`, with disk space secured before each
 //! history row and frame, and a flush after each frame.
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use hdf5::{File, FileBuilder};
 
 use super::error::{at, io_error};
+use super::file::{Fields, Record, RunRecord, Space};
 use super::history::History;
-use super::record::{Record, RunRecord};
-use super::space::Space;
-use super::vtkhdf::Fields;
 use crate::dynamics::{IncrementReport, NodalResults, RunSummary, State};
 use crate::model::Model;
 
@@ -63,7 +60,7 @@ impl ResultFile {
         model: &Model,
         record: &RunRecord,
     ) -> hdf5::Result<(Fields, History, Record)> {
-        super::model::write(file, model)?;
+        super::file::model::write(file, model)?;
         let fields = Fields::create(file, model)?;
         let history = History::create(file, model)?;
         let record = Record::create(file, record)?;

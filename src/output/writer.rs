@@ -6,25 +6,17 @@ use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use super::balance::Balance;
-use super::claim::Claim;
-use super::console::{Console, Verbosity};
-use super::echo::wrap;
 use super::error::{OutputError, at};
-use super::failure::failure_lines;
-use super::format::{bytes, counted, general, scientific};
+use super::file::{Claim, RunRecord, check_names, phases};
 use super::frames::FrameSchedule;
 use super::interrupt::Interrupt;
 use super::last::LastState;
-use super::log::{Log, cutback_lines, increment_line};
-use super::names::check_names;
-use super::progress::Progress;
-use super::record::{RunRecord, phases};
 use super::result_file::ResultFile;
-use super::screen::{Table, row};
-use super::status::StatusFile;
-use super::strain::{StrainWatch, warning_lines};
-use super::warnings::Watch;
+use super::summary::{Balance, Watch};
+use super::text::{
+    Console, Log, Progress, StatusFile, StrainWatch, Table, Verbosity, bytes, counted,
+    cutback_lines, failure_lines, general, increment_line, row, scientific, warning_lines, wrap,
+};
 use crate::dynamics::{
     Cause, Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts,
 };

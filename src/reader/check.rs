@@ -2,8 +2,7 @@
 
 use super::context::Context;
 use super::material::Properties;
-use super::mesh::Grid;
-use super::surface::Surfaces;
+use super::mesh::{Grid, Surfaces};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Contact, Element, Mesh, SurfaceKind};
 use std::collections::HashMap;

@@ -1,10 +1,8 @@
 //! `*MATERIAL` with its constants, and `*SOLID SECTION`.
 
 use super::context::Context;
-use super::mesh::Grid;
+use super::mesh::{Block, Grid, Outline, Sets};
 use super::names::Names;
-use super::outline::{Block, Outline};
-use super::sets::Sets;
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Material, Plane, Section};

@@ -4,35 +4,24 @@
 //! the order of a deck never matters; an error in a card spoils the names it defines, so that they
 //! are not reported as undefined where they are used.
 
-mod amplitude;
-mod carried;
 mod catalogue;
 mod check;
 mod contact;
 mod context;
-mod element_type;
-mod general_contact;
-mod loads;
 mod material;
 mod mesh;
-mod motion;
 mod names;
-mod outline;
-mod output;
-mod profile;
-mod rigid;
-mod sets;
-mod settings;
-mod step;
-mod surface;
+mod steps;
 
 use crate::deck::{self, Card, Deck};
 use crate::diagnostics::{Diagnostics, Sources};
 use crate::model::{Element, Mesh, Model};
+use contact::{pairs, rigid_surface};
 use context::Context;
-use motion::Targets;
-use outline::Outline;
+use mesh::{Outline, nodes_elements, sets, surface};
 use std::path::Path;
+use steps::boundary::Targets;
+use steps::{amplitude, boundary, step};
 
 /// Reads a deck file into a model; `None` if there are errors.
 pub fn read_model(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Option<Model> {
@@ -55,15 +44,15 @@ pub fn build(deck: &Deck, d: &mut Diagnostics) -> Option<Model> {
 /// Reads everything; what has an error is missing in the result.
 fn read(cx: &mut Context) -> Model {
     let outline = Outline::new(cx);
-    let mut grid = mesh::read(&outline, cx);
+    let mut grid = nodes_elements::read(&outline, cx);
     check::mesh(&grid, cx);
     let sets = sets::read(&outline, &grid, cx);
     let mut surfaces = surface::read(&outline, &grid, &sets, cx);
     grid.add_points(&surfaces.rigid_points);
-    let obstacles = rigid::read(&outline, &grid, &sets, &surfaces, cx);
+    let obstacles = rigid_surface::read(&outline, &grid, &sets, &surfaces, cx);
     let properties = material::read(&outline, &grid, &sets, cx);
     check::magnitudes(&grid, &properties, cx);
-    let (interactions, contacts) = contact::read(&outline, &grid, &sets, &mut surfaces, cx);
+    let (interactions, contacts) = pairs::read(&outline, &grid, &sets, &mut surfaces, cx);
     check::thickness(&contacts, &surfaces, &properties, cx);
     let amplitudes = amplitude::read(cx);
     let targets = Targets {
@@ -74,7 +63,7 @@ fn read(cx: &mut Context) -> Model {
     };
     let guide = check::crossing_time(&grid.mesh, &properties);
     let steps = step::read(&outline, targets, &surfaces, guide, cx);
-    let initial_velocity = motion::initial_velocity(&outline, targets, &steps.at_start, cx);
+    let initial_velocity = boundary::initial_velocity(&outline, targets, &steps.at_start, cx);
     Model {
         title: title(&outline),
         mesh: with_sections(grid.mesh, &properties.section_of),
@@ -89,7 +78,7 @@ fn read(cx: &mut Context) -> Model {
         initial_velocity,
         steps: steps.all,
         history_sets: steps.history,
-        rigid_bodies: rigid::bodies(&obstacles),
+        rigid_bodies: rigid_surface::bodies(&obstacles),
     }
 }
 

@@ -5,11 +5,11 @@
 //!  |=====|=====|=====|=====|       a foil of 4 elements, ends fixed
 //! ```
 
-use stickslip::contact::initial_gaps;
 use stickslip::diagnostics::Span;
 use stickslip::model::{
     BodyForce, Cell, Contact, Face, Load, Model, Settings, Surface, SurfaceKind, Variation,
 };
+use stickslip::prepare::initial_gaps;
 
 use crate::blocks::{Block, add_block, fixed, model, run_to_end, step, throw};
 

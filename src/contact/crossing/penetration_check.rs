@@ -1,0 +1,274 @@
+//! Tunnelling check of a converged increment: slave nodes that pass into or through a body on
+//! their straight paths from U0 to U1. Section 10 of docs/theory.md, Passage.
+
+use super::segment_crossing::{Crossing, Direction, Motion, crossings};
+use crate::contact::geometry::{ContactSurfaces, Projection, position, project};
+use crate::contact::search::Search;
+use crate::linear::largest;
+
+/// Depth (in segment lengths) that is round-off.
+const ROUND_OFF: f64 = 1e-9;
+/// Depth (in segment lengths) to which a free node may cut a corner on its way. The halves of an
+/// increment need not hit upon a node inside when it is less.
+const CLIP: f64 = 0.01;
+/// Distance (in segment lengths) from the end of a segment that is no distance.
+const VERTEX: f64 = 1e-6;
+
+/// Contact of a slave node in an increment.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Touch {
+    /// Whether it carried a force before.
+    pub before: bool,
+    /// Segments at which it carries forces at the end.
+    pub now: Vec<usize>,
+}
+
+/// A slave node that went into a body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Passage {
+    /// Slave node.
+    pub slave: usize,
+    /// Ends of the segment it went through.
+    pub segment: [usize; 2],
+}
+
+/// A slave node that goes into a body on the straight way from the displacements `u0` to `u1`, if
+/// there is one; the search covers the way, `touch` holds the contact of every slot, `unsolved` what the
+/// tolerance of the increment leaves of the way of every node (length): a depth that does not count.
+///
+/// To go in is allowed for nodes that are held by the segment or come out again in contact: a node
+/// that slides round a corner cuts it, for its way is straight.
+pub fn find_passage(
+    search: &Search,
+    u0: &[f64],
+    u1: &[f64],
+    touch: &[Touch],
+    unsolved: &[f64],
+) -> Option<Passage> {
+    let x = search.coordinates();
+    let mut slot = 0;
+    let mut events = Vec::new();
+    for territory in search.territories() {
+        let contact = territory.surfaces();
+        for (k, &slave) in contact.slaves.iter().enumerate() {
+            let way = Way {
+                contact,
+                x,
+                u: [u0, u1],
+                slave,
+                touch: &touch[slot],
+                unsolved,
+            };
+            slot += 1;
+            events.clear();
+            for candidate in territory.candidates(k) {
+                let found = crossings(&way.motions(candidate.segment), 1.0);
+                events.extend(found.into_iter().map(|c| (candidate.segment, c)));
+            }
+            let ends_inside = || way.ends_inside(territory.candidates(k).map(|c| c.segment));
+            if let Some(segment) = way.passage(&mut events).or_else(ends_inside) {
+                let segment = contact.segments[segment];
+                return Some(Passage { slave, segment });
+            }
+        }
+    }
+    None
+}
+
+/// The way of one slave node.
+struct Way<'a> {
+    contact: &'a ContactSurfaces,
+    x: &'a [[f64; 2]],
+    u: [&'a [f64]; 2],
+    slave: usize,
+    touch: &'a Touch,
+    unsolved: &'a [f64],
+}
+
+impl Way<'_> {
+    fn motions(&self, segment: usize) -> [Motion; 3] {
+        let [a, b] = self.contact.segments[segment];
+        [self.slave, a, b].map(|node| {
+            let [from, to] = self.u.map(|u| position(self.x, u, node));
+            Motion::straight(from, to)
+        })
+    }
+
+    /// Place relative to a segment at a part of the way.
+    fn place(&self, segment: usize, part: f64) -> Projection {
+        let [s, a, b] = self.motions(segment).map(|m| m.at(part));
+        project(s, a, b)
+    }
+
+    /// The segment through which the node goes in without a reason.
+    fn passage(&self, events: &mut [(usize, Crossing)]) -> Option<usize> {
+        events.sort_by(|(_, c), (_, d)| c.time.total_cmp(&d.time));
+        for (n, (segment, entering)) in events.iter().enumerate() {
+            if entering.direction != Direction::Entering {
+                continue;
+            }
+            let later = events[n..].iter();
+            let leaving = later
+                .clone()
+                .find(|(_, c)| c.direction == Direction::Leaving);
+            let is_harmless = match leaving {
+                Some((exit, leaving)) => {
+                    self.may_leave((*segment, entering.time), (*exit, leaving.time))
+                }
+                None => self.may_stay(*segment, entering.xi),
+            };
+            if !is_harmless {
+                return Some(*segment);
+            }
+        }
+        None
+    }
+
+    /// The segment that the node is behind at the end, nearest to it of all and not held by it, although
+    /// the node was outside at the start: it came round a vertex that has become a hollow.
+    fn ends_inside(&self, segments: impl Iterator<Item = usize> + Clone) -> Option<usize> {
+        let is_own = |i: &usize| self.contact.segments[*i].contains(&self.slave);
+        let others = segments.filter(|i| !is_own(i));
+        let is_behind = |&i: &usize| {
+            let p = self.place(i, 1.0);
+            (0.0..=1.0).contains(&p.xi)
+                && p.gap < 0.0
+                && !self.is_round_off(i, -p.gap, p.length)
+                && -p.gap <= 2.0 * self.length_of_way(i)
+                && !self.is_far_side(i)
+        };
+        let depth = |i: usize| -self.place(i, 1.0).gap;
+        let nearest = |i: &usize, j: &usize| depth(*i).total_cmp(&depth(*j));
+        let i = others.clone().filter(is_behind).min_by(nearest)?;
+        let is_nearest = others.clone().all(|j| self.distance(j) >= depth(i));
+        let was_outside = |j: usize| {
+            let p = self.place(j, 0.0);
+            self.is_round_off(j, -p.gap, p.length) && self.are_near(i, j)
+        };
+        let is_held = self.touch.now.contains(&i);
+        (is_nearest && !is_held && others.clone().any(was_outside)).then_some(i)
+    }
+
+    /// Whether the node is part of the body behind a segment at the end.
+    fn is_far_side(&self, i: usize) -> bool {
+        let at = |node: usize| position(self.x, self.u[1], node);
+        let ContactSurfaces {
+            interior, segments, ..
+        } = self.contact;
+        interior.joins(segments[i], self.slave, at)
+    }
+
+    /// Distance from a segment at the end.
+    fn distance(&self, i: usize) -> f64 {
+        let p = self.place(i, 1.0);
+        let beyond = (p.xi - p.xi.clamp(0.0, 1.0)) * p.length;
+        beyond.hypot(p.gap)
+    }
+
+    /// Whether a node that enters through one segment may leave through another.
+    fn may_leave(&self, (i, entered): (usize, f64), (j, left): (usize, f64)) -> bool {
+        let middle = entered + (left - entered) / 2.0;
+        let (p, q) = (self.place(i, middle), self.place(j, middle));
+        let depth = (-p.gap).min(-q.gap);
+        let slides = || {
+            let is_held = |k| self.are_near(i, k);
+            self.touch.before || self.touch.now.iter().copied().any(is_held)
+        };
+        self.is_round_off(i, depth, p.length)
+            || (self.are_near(i, j) && (depth <= CLIP * p.length || slides()))
+    }
+
+    /// Whether a node that enters through a segment and does not leave is not inside for that.
+    fn may_stay(&self, i: usize, xi: f64) -> bool {
+        let p = self.place(i, 1.0);
+        if self.is_round_off(i, -p.gap, p.length)
+            || self.touch.now.contains(&i)
+            || self.is_beside(i, xi, &p)
+        {
+            return true;
+        }
+        let is_on = |j: usize| (0.0..=1.0).contains(&self.place(j, 1.0).xi);
+        let mut held = self.touch.now.iter();
+        held.any(|&j| is_on(j) && self.are_near(i, j))
+            || (self.touch.before && self.has_slid_off(i, &p))
+    }
+
+    /// Whether a depth behind segment `i`, whose length is given, does not count.
+    fn is_round_off(&self, i: usize, depth: f64, length: f64) -> bool {
+        let [a, b] = self.contact.segments[i];
+        let unsolved = [self.slave, a, b].map(|node| self.unsolved[node]);
+        depth <= largest(&unsolved) + ROUND_OFF * length
+    }
+
+    /// Whether the node has met a segment at its very end and is outside the vertex there: behind its
+    /// line, but before that of the neighbour.
+    fn is_beside(&self, i: usize, xi: f64, p: &Projection) -> bool {
+        let is_end_b = xi > 0.5;
+        if xi.min(1.0 - xi) > VERTEX {
+            return false;
+        }
+        let neighbour = if is_end_b {
+            self.contact.next[i]
+        } else {
+            self.contact.previous[i]
+        };
+        let Some(j) = neighbour else {
+            return !(0.0..=1.0).contains(&p.xi);
+        };
+        let q = self.place(j, 1.0);
+        let is_convex = if is_end_b {
+            turns_left(p, &q)
+        } else {
+            turns_left(&q, p)
+        };
+        is_convex && self.is_round_off(j, -q.gap, q.length)
+    }
+
+    /// Whether the node has slid off the end of a surface that is not closed.
+    fn has_slid_off(&self, i: usize, p: &Projection) -> bool {
+        let next = |k: usize| self.contact.next[k];
+        let previous = |k: usize| self.contact.previous[k];
+        (p.xi > 1.0 && self.walk(i, &next, None)) || (p.xi < 0.0 && self.walk(i, &previous, None))
+    }
+
+    /// Whether two segments follow each other, or do so with others between them that are not longer
+    /// than twice the node's way: the other side of a thin body is far in this sense.
+    fn are_near(&self, i: usize, j: usize) -> bool {
+        let step = |k: usize| self.contact.next[k];
+        i == j || self.walk(i, &step, Some(j)) || self.walk(j, &step, Some(i))
+    }
+
+    /// How far the node goes relative to the start of a segment.
+    fn length_of_way(&self, segment: usize) -> f64 {
+        let [start, end] = [0.0, 1.0].map(|part| {
+            let [s, a, _] = self.motions(segment).map(|m| m.at(part));
+            [s[0] - a[0], s[1] - a[1]]
+        });
+        (end[0] - start[0]).hypot(end[1] - start[1])
+    }
+
+    /// Whether steps from a segment lead to another, or to the end of the surface, over segments that
+    /// are not longer than twice the node's way.
+    fn walk(&self, from: usize, step: &dyn Fn(usize) -> Option<usize>, to: Option<usize>) -> bool {
+        let way = self.length_of_way(from);
+        let (mut segment, mut between) = (from, 0.0);
+        loop {
+            let following = step(segment);
+            match following {
+                _ if following == to => return true,
+                Some(k) if k != from => segment = k,
+                _ => return false,
+            }
+            between += self.place(segment, 1.0).length;
+            if between > 2.0 * way {
+                return false;
+            }
+        }
+    }
+}
+
+/// Whether the way along one segment turns left into another: round a convex vertex.
+fn turns_left(first: &Projection, second: &Projection) -> bool {
+    let [e, f] = [first.tangent, second.tangent];
+    e[0] * f[1] - e[1] * f[0] > 0.0
+}

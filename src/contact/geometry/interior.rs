@@ -1,0 +1,257 @@
+//! The inside of the bodies: whether a straight line from a segment stays in the elements behind it.
+//!
+//! The line walks from element to element through their common sides, so that the far side of a thin
+//! body is told from a node that another part has pressed in, however thin the body is.
+
+use std::collections::HashMap;
+
+use super::projection::project;
+use crate::model::{Cell, Mesh};
+
+/// How far outside an element (in its side lengths) a line still touches it.
+const ROUND_OFF: f64 = 1e-9;
+/// How far a line follows behind a node, in depths of the node: it lies in the nearer half.
+const HALF: f64 = 2.0;
+
+/// The elements of a mesh with what lies on the left of each of their sides.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Interior {
+    elements: Vec<Cell>,
+    /// Element on the left of the way along a side [a, b].
+    left: HashMap<[usize; 2], usize>,
+}
+
+/// A line and the elements that it goes through.
+struct Line {
+    elements: Vec<usize>,
+    /// Whether it stays in them up to its end.
+    stays: bool,
+}
+
+impl Interior {
+    /// The inside of the bodies of a mesh.
+    pub fn new(mesh: &Mesh) -> Self {
+        let elements: Vec<Cell> = mesh.elements.iter().map(|element| element.cell).collect();
+        let mut left = HashMap::with_capacity(4 * elements.len());
+        for (i, cell) in elements.iter().enumerate() {
+            left.extend(sides(cell).map(|side| (side, i)));
+        }
+        Interior { elements, left }
+    }
+
+    /// Whether a node that is behind the line of a segment, at the positions `at`, lies in the body
+    /// there without being part of it, nearer to the segment than to the other side of the body.
+    /// A segment without an element has all behind it.
+    pub fn takes_in(
+        &self,
+        segment: [usize; 2],
+        node: usize,
+        at: impl Fn(usize) -> [f64; 2],
+    ) -> bool {
+        self.line(segment, node, HALF, at)
+            .is_none_or(|line| self.is_foreign(&line, node))
+    }
+
+    /// The same at any depth: the body takes the node in by some segment, not surely by this one.
+    pub fn contains(
+        &self,
+        segment: [usize; 2],
+        node: usize,
+        at: impl Fn(usize) -> [f64; 2],
+    ) -> bool {
+        self.line(segment, node, 1.0, at)
+            .is_none_or(|line| self.is_foreign(&line, node))
+    }
+
+    /// Whether a node behind the line of a segment is part of the body there: it lies on another side
+    /// of it.
+    pub fn joins(&self, segment: [usize; 2], node: usize, at: impl Fn(usize) -> [f64; 2]) -> bool {
+        let line = self.line(segment, node, 1.0, at);
+        line.is_some_and(|line| line.stays && self.has_node(&line, node))
+    }
+
+    /// The line from the foot of a node on a segment, at `depths` its depth; none without an element.
+    fn line(
+        &self,
+        segment: [usize; 2],
+        node: usize,
+        depths: f64,
+        at: impl Fn(usize) -> [f64; 2],
+    ) -> Option<Line> {
+        let first = *self.left.get(&segment)?;
+        let ([a, b], s) = (segment.map(&at), at(node));
+        let p = project(s, a, b);
+        let xi = p.xi.clamp(0.0, 1.0);
+        let from = [0, 1].map(|i| a[i] + xi * (b[i] - a[i]));
+        let to = [0, 1].map(|i| s[i] + (depths - 1.0) * p.gap * p.normal[i]);
+        let mut line = Line {
+            elements: Vec::new(),
+            stays: false,
+        };
+        let mut parts = vec![(first, self.part(first, from, to, &at)?)];
+        while let Some((element, [_, end])) = parts.pop() {
+            line.elements.push(element);
+            line.stays |= end >= 1.0;
+            for [p, q] in sides(&self.elements[element]) {
+                if let Some(&next) = self.left.get(&[q, p])
+                    && !line.elements.contains(&next)
+                    && parts.iter().all(|(listed, _)| *listed != next)
+                    && let Some(part) = self.part(next, from, to, &at)
+                    && part[0] <= end + ROUND_OFF
+                {
+                    parts.push((next, part));
+                }
+            }
+        }
+        Some(line)
+    }
+
+    /// The part of the line within an element, between 0 and 1.
+    fn part(
+        &self,
+        element: usize,
+        from: [f64; 2],
+        to: [f64; 2],
+        at: impl Fn(usize) -> [f64; 2],
+    ) -> Option<[f64; 2]> {
+        let [mut start, mut end] = [0.0_f64, 1.0_f64];
+        for side in sides(&self.elements[element]) {
+            let side = project(from, at(side[0]), at(side[1]));
+            // distances outside the side at both ends of the line
+            let along = (to[0] - from[0]) * side.normal[0] + (to[1] - from[1]) * side.normal[1];
+            let (outside, most) = (side.gap, ROUND_OFF * side.length);
+            if outside > most && outside + along > most {
+                return None;
+            }
+            let meets = (most - outside) / along;
+            if outside > most {
+                start = start.max(meets);
+            } else if outside + along > most {
+                end = end.min(meets);
+            }
+        }
+        (start <= end).then_some([start, end])
+    }
+
+    /// Whether a line stays in the body, and the node is no part of the elements on it.
+    fn is_foreign(&self, line: &Line, node: usize) -> bool {
+        line.stays && !self.has_node(line, node)
+    }
+
+    fn has_node(&self, line: &Line, node: usize) -> bool {
+        let has = |&element: &usize| self.elements[element].nodes().contains(&node);
+        line.elements.iter().any(has)
+    }
+}
+
+/// The sides [a, b] of an element, the element on their left.
+fn sides(cell: &Cell) -> impl Iterator<Item = [usize; 2]> + '_ {
+    (0..cell.nodes().len()).map(|side| cell.side(side))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Element, Plane};
+
+    /// A strip of two layers, one element each in its half, of the length 1 and the thickness `t`,
+    /// as triangles or not; its nodes are 0 to 8, row by row. Node 9 is anywhere.
+    fn strip(t: f64, triangles: bool) -> Mesh {
+        let mut mesh = Mesh::default();
+        for j in 0..3 {
+            mesh.coordinates
+                .extend((0..3).map(|i| [f64::from(i) / 2.0, t * f64::from(j) / 2.0]));
+        }
+        mesh.coordinates.push([0.0, 0.0]);
+        let mut add = |cell| {
+            mesh.elements.push(Element {
+                label: 1,
+                cell,
+                plane: Plane::Stress,
+                section: 0,
+            });
+        };
+        for k in [0, 1, 3, 4] {
+            let [a, b, c, d] = [k, k + 1, k + 4, k + 3];
+            if triangles {
+                add(Cell::Tri3([a, b, c]));
+                add(Cell::Tri3([a, c, d]));
+            } else {
+                add(Cell::Quad4([a, b, c, d]));
+            }
+        }
+        mesh
+    }
+
+    #[test]
+    fn the_far_side_of_a_strip_is_part_of_it_however_thin() {
+        for t in [1.0, 1e-2, 1e-3, 1e-5] {
+            for triangles in [false, true] {
+                let mesh = strip(t, triangles);
+                let inside = Interior::new(&mesh);
+                let at = |n: usize| mesh.coordinates[n];
+                for node in [3, 5, 6, 7, 8] {
+                    for segment in [[0, 1], [1, 2]] {
+                        let beyond = !(-1e-6..=1.0 + 1e-6)
+                            .contains(&project(at(node), at(segment[0]), at(segment[1])).xi);
+                        assert!(
+                            beyond || inside.joins(segment, node, at),
+                            "{t} {triangles} {node} {segment:?}"
+                        );
+                        assert!(beyond || !inside.contains(segment, node, at));
+                        assert!(!inside.takes_in(segment, node, at), "{t} {node}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_node_of_another_part_is_taken_in_by_the_nearer_side() {
+        let t = 1e-3;
+        for triangles in [false, true] {
+            let mut mesh = strip(t, triangles);
+            let mut place = |depth: f64| {
+                mesh.coordinates[9] = [0.3, t * depth];
+                let inside = Interior::new(&mesh);
+                let at = |n: usize| mesh.coordinates[n];
+                assert!(!inside.joins([0, 1], 9, at));
+                let takes = inside.takes_in([0, 1], 9, at);
+                (takes, inside.contains([0, 1], 9, at))
+            };
+            assert_eq!(place(0.1), (true, true));
+            assert_eq!(place(0.45), (true, true));
+            assert_eq!(place(0.6), (false, true));
+            assert_eq!(place(1.0 + 1e-6), (false, false), "beyond the far side");
+        }
+    }
+
+    #[test]
+    fn a_line_that_leaves_the_body_does_not_come_back() {
+        // an arm above the strip, joined to it nowhere
+        let mut mesh = strip(0.1, false);
+        let first = mesh.coordinates.len();
+        for y in [0.2, 0.3] {
+            mesh.coordinates.extend([[0.0, y], [1.0, y]]);
+        }
+        mesh.elements.push(Element {
+            label: 1,
+            cell: Cell::Quad4([first, first + 1, first + 3, first + 2]),
+            plane: Plane::Stress,
+            section: 0,
+        });
+        mesh.coordinates[9] = [0.3, 0.25];
+        let inside = Interior::new(&mesh);
+        let at = |n: usize| mesh.coordinates[n];
+        assert!(!inside.contains([0, 1], 9, at) && !inside.joins([0, 1], first, at));
+        assert!(inside.contains([first, first + 1], 9, at));
+    }
+
+    #[test]
+    fn all_is_behind_a_segment_without_an_element() {
+        let at = |n: usize| [[1.0, 0.0], [-1.0, 0.0], [0.0, -0.5]][n];
+        let inside = Interior::default();
+        assert!(inside.takes_in([0, 1], 2, at) && inside.contains([0, 1], 2, at));
+        assert!(!inside.joins([0, 1], 2, at));
+    }
+}

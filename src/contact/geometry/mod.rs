@@ -1,0 +1,10 @@
+//! Surfaces as nodes and segments, projection of a point on a segment, and the inside of the bodies.
+
+mod interior;
+mod projection;
+mod surfaces;
+
+pub use interior::Interior;
+pub(crate) use projection::position;
+pub use projection::{Projection, project};
+pub use surfaces::{ContactSurfaces, contact_surfaces};

@@ -1,0 +1,109 @@
+//! Contact surfaces as slave nodes and oriented master segments, with their adjacency and corners.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::interior::Interior;
+use super::projection::project;
+use crate::model::{Contact, Model};
+
+/// Cosine of the turn at a corner.
+const CORNER: f64 = 0.5;
+
+/// The two sides of a contact of the model, as nodes and segments.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactSurfaces {
+    /// Slave nodes.
+    pub slaves: Vec<usize>,
+    /// For every slave node the nodes before and after it on its own surface, where it has both.
+    pub beside: Vec<Option<[usize; 2]>>,
+    /// Master segments [a, b], the body on the left of the way from a to b.
+    pub segments: Vec<[usize; 2]>,
+    /// For every segment the one that starts where it ends, if any.
+    pub next: Vec<Option<usize>>,
+    /// For every segment the one that ends where it starts, if any.
+    pub previous: Vec<Option<usize>>,
+    /// For every segment whether the body has a corner at its end b from the start: an angle below
+    /// 120 degrees. Where both legs of any other vertex lie on each other, a hollow has closed.
+    pub corners: Vec<bool>,
+    /// Coefficient of friction mu.
+    pub friction: f64,
+    /// The inside of the bodies; without elements all is inside behind a segment.
+    pub interior: Arc<Interior>,
+}
+
+impl ContactSurfaces {
+    /// Slave nodes, which lie on the segments `own` (none if the slave side is nodes only), against
+    /// master segments.
+    pub fn new(
+        slaves: Vec<usize>,
+        own: &[[usize; 2]],
+        segments: Vec<[usize; 2]>,
+        friction: f64,
+    ) -> Self {
+        // node at the other end of the segment that starts or ends at a node
+        let following: HashMap<usize, usize> = own.iter().map(|&[a, b]| (a, b)).collect();
+        let preceding: HashMap<usize, usize> = own.iter().map(|&[a, b]| (b, a)).collect();
+        let beside = |slave: &usize| Some([*preceding.get(slave)?, *following.get(slave)?]);
+        // segment that starts or ends at a node
+        let numbered = || segments.iter().enumerate();
+        let starting: HashMap<usize, usize> = numbered().map(|(i, &[a, _])| (a, i)).collect();
+        let ending: HashMap<usize, usize> = numbered().map(|(i, &[_, b])| (b, i)).collect();
+        let at = |of: &HashMap<usize, usize>, node: usize| of.get(&node).copied();
+        ContactSurfaces {
+            beside: slaves.iter().map(beside).collect(),
+            next: segments.iter().map(|&[_, b]| at(&starting, b)).collect(),
+            previous: segments.iter().map(|&[a, _]| at(&ending, a)).collect(),
+            corners: vec![false; segments.len()],
+            slaves,
+            segments,
+            friction,
+            interior: Arc::default(),
+        }
+    }
+
+    /// With the inside of the bodies behind the segments.
+    pub fn with_interior(mut self, interior: Arc<Interior>) -> Self {
+        self.interior = interior;
+        self
+    }
+
+    /// With the corners that the surfaces have at the positions `x`.
+    pub fn with_corners(mut self, x: &[[f64; 2]]) -> Self {
+        let tangent = |i: usize| {
+            let [a, b] = self.segments[i].map(|node| x[node]);
+            project(a, a, b).tangent
+        };
+        let is_corner = |i: usize| {
+            self.next[i].is_some_and(|j| {
+                let (e, f) = (tangent(i), tangent(j));
+                let [sin, cos] = [e[0] * f[1] - e[1] * f[0], e[0] * f[0] + e[1] * f[1]];
+                sin > 0.0 && cos < CORNER
+            })
+        };
+        self.corners = (0..self.segments.len()).map(is_corner).collect();
+        self
+    }
+}
+
+/// The contacts of a model.
+pub fn contact_surfaces(model: &Model) -> Vec<ContactSurfaces> {
+    if model.contacts.is_empty() {
+        return Vec::new();
+    }
+    let interior = Arc::new(Interior::new(&model.mesh));
+    let of_contact = |contact: &Contact| {
+        let [slave, master] = [contact.slave, contact.master].map(|i| &model.surfaces[i]);
+        let mut slaves = slave.nodes(&model.mesh);
+        slaves.retain(|node| contact.left_out.binary_search(node).is_err());
+        ContactSurfaces::new(
+            slaves,
+            &slave.segments(&model.mesh),
+            master.segments(&model.mesh),
+            model.friction(contact),
+        )
+        .with_corners(&model.mesh.coordinates)
+        .with_interior(Arc::clone(&interior))
+    };
+    model.contacts.iter().map(of_contact).collect()
+}

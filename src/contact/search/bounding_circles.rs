@@ -1,0 +1,245 @@
+//! Bounding circles and their binary hierarchies, for overlaps and nearest neighbours: the
+//! territories of Zhong & Nilsson (1989). Section 10 of docs/theory.md, Territories.
+
+/// Members of the groups that are not split further.
+const GROUP: usize = 8;
+/// Growth that covers the round-off of distances.
+const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
+
+/// A territory: all points within `radius` of `centre`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Circle {
+    /// Centre.
+    pub centre: [f64; 2],
+    /// Radius (length).
+    pub radius: f64,
+}
+
+impl Circle {
+    /// Whether the two have a point in common: |c1 - c2| <= r1 + r2.
+    fn overlaps(&self, other: &Circle) -> bool {
+        let [x, y] = [0, 1].map(|i| self.centre[i] - other.centre[i]);
+        let reach = (self.radius + other.radius) * (1.0 + ROUND_OFF);
+        x * x + y * y <= reach * reach
+    }
+
+    /// Distance of a point from the circle, negative inside (length); never too large.
+    fn distance(&self, [x, y]: [f64; 2]) -> f64 {
+        let [dx, dy] = [x - self.centre[0], y - self.centre[1]];
+        (dx * dx + dy * dy).sqrt() * (1.0 - ROUND_OFF) - self.radius
+    }
+
+    /// A circle about the middle of some circles that holds them all.
+    fn around(circles: impl Iterator<Item = Circle> + Clone) -> Circle {
+        let extent = |i: usize| {
+            let bounds = |(low, high): (f64, f64), c: Circle| {
+                let [below, above] = [c.centre[i] - c.radius, c.centre[i] + c.radius];
+                (low.min(below), high.max(above))
+            };
+            circles
+                .clone()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), bounds)
+        };
+        let centre = [0, 1].map(|i| {
+            let (low, high) = extent(i);
+            low + (high - low) / 2.0
+        });
+        let farthest = |radius: f64, c: Circle| {
+            let [x, y] = [0, 1].map(|i| c.centre[i] - centre[i]);
+            radius.max((x * x + y * y).sqrt() + c.radius)
+        };
+        Circle {
+            centre,
+            radius: circles.fold(0.0, farthest) * (1.0 + ROUND_OFF),
+        }
+    }
+}
+
+/// A hierarchy of circles: all members, halves of them, quarters ... down to small groups.
+///
+/// Halves are split at the median of the centres along their longer extent, ties by index, so that
+/// the hierarchy depends on nothing but the circles.
+#[derive(Debug, Default)]
+pub(crate) struct CircleTree {
+    /// The members with their indices; every group is a range of it.
+    members: Vec<(Circle, u32)>,
+    /// Circle and range of group 1, the whole, and of the halves 2k and 2k + 1 of every group k.
+    groups: Vec<(Circle, [usize; 2])>,
+}
+
+impl CircleTree {
+    /// The hierarchy of some circles.
+    pub fn new(members: impl IntoIterator<Item = Circle>) -> Self {
+        let mut tree = CircleTree::default();
+        tree.rebuild(members);
+        tree
+    }
+
+    /// The hierarchy of other circles, in the same memory.
+    pub fn rebuild(&mut self, members: impl IntoIterator<Item = Circle>) {
+        self.members.clear();
+        self.members.extend(members.into_iter().zip(0..));
+        let count = self.members.len();
+        let last_level = count.div_ceil(GROUP).next_power_of_two();
+        self.groups
+            .resize(2 * last_level, (Circle::default(), [0, 0]));
+        self.split(1, 0, count);
+    }
+
+    fn split(&mut self, group: usize, from: usize, to: usize) {
+        let is_smallest = self.is_smallest(group);
+        let range = &mut self.members[from..to];
+        let circle = Circle::around(range.iter().map(|(circle, _)| *circle));
+        self.groups[group] = (circle, [from, to]);
+        if is_smallest {
+            return;
+        }
+        let spread = |axis: usize| {
+            let centres = range.iter().map(|(circle, _)| circle.centre[axis]);
+            let (low, high) = centres.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), c| {
+                (l.min(c), h.max(c))
+            });
+            high - low
+        };
+        let axis = usize::from(spread(1) > spread(0));
+        let middle = from + (to - from) / 2;
+        range.select_nth_unstable_by(middle - from, |(c, i), (d, j)| {
+            let along = c.centre[axis].total_cmp(&d.centre[axis]);
+            along.then(i.cmp(j))
+        });
+        self.split(2 * group, from, middle);
+        self.split(2 * group + 1, middle, to);
+    }
+
+    fn is_smallest(&self, group: usize) -> bool {
+        2 * group >= self.groups.len()
+    }
+
+    fn members_of(&self, group: usize) -> &[(Circle, u32)] {
+        let [from, to] = self.groups[group].1;
+        &self.members[from..to]
+    }
+
+    /// Visits members in about the order of their distance from a point, until all others are
+    /// further away than the limit (length) that the last visit gave.
+    pub fn visit_near(&self, point: [f64; 2], mut visit: impl FnMut(usize) -> f64) {
+        if self.members.is_empty() {
+            return;
+        }
+        let distance = |group: usize| self.groups[group].0.distance(point);
+        let mut limit = f64::INFINITY;
+        let mut open = vec![1];
+        while let Some(group) = open.pop() {
+            if distance(group) > limit {
+                continue;
+            }
+            if self.is_smallest(group) {
+                for (circle, i) in self.members_of(group) {
+                    if circle.distance(point) <= limit {
+                        limit = visit(*i as usize);
+                    }
+                }
+            } else {
+                let halves = [2 * group, 2 * group + 1];
+                let nearer_first = distance(halves[0]) <= distance(halves[1]);
+                // the last one is looked into first
+                open.extend(if nearer_first {
+                    [halves[1], halves[0]]
+                } else {
+                    halves
+                });
+            }
+        }
+    }
+
+    /// Appends all overlapping pairs of a member of this hierarchy and one of the other; two groups
+    /// are looked into only when their circles overlap.
+    pub fn overlaps(&self, other: &CircleTree, found: &mut Vec<[u32; 2]>) {
+        if self.members.is_empty() || other.members.is_empty() {
+            return;
+        }
+        let mut open = vec![[1, 1]];
+        while let Some([k, l]) = open.pop() {
+            let (circle, other_circle) = (&self.groups[k].0, &other.groups[l].0);
+            if !circle.overlaps(other_circle) {
+                continue;
+            }
+            match (self.is_smallest(k), other.is_smallest(l)) {
+                (true, true) => {
+                    for (circle, i) in self.members_of(k) {
+                        let near = other.members_of(l).iter();
+                        let near = near.filter(|(c, _)| circle.overlaps(c));
+                        found.extend(near.map(|(_, j)| [*i, *j]));
+                    }
+                }
+                (true, false) => open.extend([[k, 2 * l], [k, 2 * l + 1]]),
+                (false, true) => open.extend([[2 * k, l], [2 * k + 1, l]]),
+                // the larger of the two is split
+                (false, false) if circle.radius >= other_circle.radius => {
+                    open.extend([[2 * k, l], [2 * k + 1, l]]);
+                }
+                (false, false) => open.extend([[k, 2 * l], [k, 2 * l + 1]]),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn circles(most: usize) -> impl Strategy<Value = Vec<Circle>> {
+        let circle = ((-10.0..10.0), (-10.0..10.0), 0.0..1.5).prop_map(|(x, y, radius)| Circle {
+            centre: [x, y],
+            radius,
+        });
+        prop::collection::vec(circle, 0..most)
+    }
+
+    proptest! {
+        #[test]
+        fn the_hierarchy_finds_all_overlaps(a in circles(60), b in circles(200)) {
+            let mut expected = Vec::new();
+            for (i, p) in a.iter().enumerate() {
+                let near = (0..b.len()).filter(|&j| p.overlaps(&b[j]));
+                expected.extend(near.map(|j| [i as u32, j as u32]));
+            }
+            let mut found = Vec::new();
+            CircleTree::new(a).overlaps(&CircleTree::new(b), &mut found);
+            found.sort_unstable();
+            prop_assert_eq!(found, expected);
+        }
+
+        #[test]
+        fn the_nearest_member_is_visited(all in circles(60), x in -12.0..12.0, y in -12.0..12.0) {
+            let distance = |i: usize| all[i].distance([x, y]);
+            let expected = (0..all.len()).map(distance).fold(f64::INFINITY, f64::min);
+            let mut nearest = f64::INFINITY;
+            CircleTree::new(all.clone()).visit_near([x, y], |i| {
+                nearest = nearest.min(distance(i));
+                nearest
+            });
+            prop_assert_eq!(nearest, expected);
+        }
+    }
+
+    #[test]
+    fn all_of_the_nearest_members_are_visited() {
+        // in two groups, at exactly the same distance
+        let at = |x: f64| Circle {
+            centre: [x, 0.0],
+            radius: 0.0,
+        };
+        let members = [at(-1.0); GROUP].into_iter().chain([at(1.0); GROUP]);
+        let all: Vec<Circle> = members.collect();
+        let mut visited = Vec::new();
+        CircleTree::new(all.clone()).visit_near([0.0, 0.0], |i| {
+            visited.push(i);
+            all[i].distance([0.0, 0.0])
+        });
+        visited.sort_unstable();
+        assert_eq!(visited, (0..2 * GROUP).collect::<Vec<_>>());
+    }
+}

@@ -1,0 +1,297 @@
+//! Candidate search between slave nodes and segments, after Zhong & Nilsson (1989), with lists
+//! that stay valid over many increments. Section 10 of docs/theory.md, Territories.
+
+use super::bounding_circles::{Circle, CircleTree};
+use crate::contact::geometry::{ContactSurfaces, position};
+use crate::contact::targets::ROUND_OFF;
+
+/// Distance up to which a node at rest may pair (in mean segment lengths of its contact).
+const REACH: f64 = 2.0;
+/// Margin of an entity at rest (in mean segment lengths): how far it may go before lists are worn.
+const SKIN: f64 = 0.5;
+/// Margin of a moving entity beyond it (in ways per increment).
+const WAYS: f64 = 2.0;
+
+/// A segment that a slave node may pair with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate {
+    /// Index of the segment in its contact.
+    pub segment: usize,
+    /// Distance up to which it pairs (length).
+    pub reach: f64,
+}
+
+/// All segments of a contact, at any distance: the search without territories.
+pub fn all_segments(surfaces: &ContactSurfaces) -> impl Iterator<Item = Candidate> + Clone {
+    (0..surfaces.segments.len()).map(|segment| Candidate {
+        segment,
+        reach: f64::INFINITY,
+    })
+}
+
+/// Contact search with hierarchies of circular territories.
+///
+/// Each slave node and each segment has a circle, grown by a margin, each contact two hierarchies of
+/// such circles. The lists of candidates they give hold until an entity has gone further than its
+/// margin, be it for many increments.
+pub struct Search<'m> {
+    x: &'m [[f64; 2]],
+    territories: Vec<Territory<'m>>,
+    searches: usize,
+}
+
+impl<'m> Search<'m> {
+    /// A search among some contacts of nodes with the reference coordinates `x`.
+    pub fn new(contacts: &'m [ContactSurfaces], x: &'m [[f64; 2]]) -> Self {
+        Search {
+            x,
+            territories: contacts.iter().map(|c| Territory::new(c, x)).collect(),
+            searches: 0,
+        }
+    }
+
+    /// Starts an increment of length `dt` with the velocities `v`: nodes pair farther by the way
+    /// dt |v| that they and the segments may go in it.
+    pub fn start(&mut self, v: &[f64], dt: f64) {
+        for territory in &mut self.territories {
+            for side in [&mut territory.slaves, &mut territory.segments] {
+                side.set_way(|node| dt * length([v[2 * node], v[2 * node + 1]]));
+            }
+        }
+    }
+
+    /// Searches anew where the lists do not hold for the displacements `u`.
+    pub fn cover(&mut self, u: &[f64]) {
+        let x = self.x;
+        for territory in &mut self.territories {
+            if !territory.covers(|node| position(x, u, node)) {
+                territory.search(|node| position(x, u, node));
+                self.searches += 1;
+            }
+        }
+    }
+
+    /// Searches anew where the lists do not hold on all of the straight way from `u0` to `u1`.
+    pub fn cover_way(&mut self, u0: &[f64], u1: &[f64]) {
+        let x = self.x;
+        for territory in &mut self.territories {
+            let [at_start, at_end] = [u0, u1].map(|u| move |node| position(x, u, node));
+            if !territory.reaches(at_start) || !territory.reaches(at_end) {
+                territory.lengthen_ways(at_start, at_end);
+                territory.search(|node| {
+                    let (p, q) = (at_start(node), at_end(node));
+                    [0, 1].map(|i| p[i] + (q[i] - p[i]) / 2.0)
+                });
+                self.searches += 1;
+            }
+        }
+    }
+
+    /// The contacts with their candidates.
+    pub fn territories(&self) -> &[Territory<'m>] {
+        &self.territories
+    }
+
+    /// Number of slots: of slave nodes of all contacts.
+    pub fn slots(&self) -> usize {
+        self.territories
+            .iter()
+            .map(|t| t.contact.slaves.len())
+            .sum()
+    }
+
+    /// Reference coordinates of the nodes.
+    pub fn coordinates(&self) -> &'m [[f64; 2]] {
+        self.x
+    }
+
+    /// Number of searches so far, of every contact on its own.
+    pub fn searches(&self) -> usize {
+        self.searches
+    }
+}
+
+/// The candidates of one contact.
+pub struct Territory<'m> {
+    contact: &'m ContactSurfaces,
+    /// Distance up to which a node at rest pairs with a segment at rest (length).
+    reach: f64,
+    /// Margin of an entity at rest (length).
+    skin: f64,
+    slaves: Side,
+    segments: Side,
+    /// Segments of all slaves, one after the other, increasing for each.
+    candidates: Vec<u32>,
+    /// Where the list of each slave starts, and the end of the last.
+    starts: Vec<usize>,
+    /// The same as pairs, in the order in which they are found.
+    found: Vec<[u32; 2]>,
+}
+
+impl<'m> Territory<'m> {
+    fn new(contact: &'m ContactSurfaces, x: &[[f64; 2]]) -> Self {
+        let lengths = || {
+            let segments = contact.segments.iter();
+            segments.map(|&[a, b]| distance(x[a], x[b]))
+        };
+        let mean = lengths().sum::<f64>() / contact.segments.len().max(1) as f64;
+        Territory {
+            contact,
+            reach: REACH * mean,
+            skin: SKIN * mean,
+            slaves: Side::new(contact.slaves.iter().map(|&s| [s, s]).collect()),
+            segments: Side::new(contact.segments.clone()),
+            candidates: Vec::new(),
+            starts: Vec::new(),
+            found: Vec::new(),
+        }
+    }
+
+    /// The surfaces.
+    pub fn surfaces(&self) -> &'m ContactSurfaces {
+        self.contact
+    }
+
+    /// Candidates of the slave node number `k` of the contact, with increasing segments.
+    pub fn candidates(&self, k: usize) -> impl Iterator<Item = Candidate> + Clone {
+        let list = &self.candidates[self.starts[k]..self.starts[k + 1]];
+        list.iter().map(move |&i| Candidate {
+            segment: i as usize,
+            reach: self.reach(k, i as usize),
+        })
+    }
+
+    /// Distance up to which the slave node number `k` pairs with a segment (length).
+    pub fn reach(&self, k: usize, segment: usize) -> f64 {
+        self.reach + self.slaves.way[k] + self.segments.way[segment]
+    }
+
+    /// Whether the lists hold at the given positions for the ways of the increment: no entity is
+    /// further from its place at the search than its margin less its way.
+    fn covers(&self, at: impl Fn(usize) -> [f64; 2]) -> bool {
+        self.slaves.is_within(&at, true) && self.segments.is_within(&at, true)
+    }
+
+    /// Whether the lists have all that may touch at the given positions.
+    fn reaches(&self, at: impl Fn(usize) -> [f64; 2]) -> bool {
+        self.slaves.is_within(&at, false) && self.segments.is_within(&at, false)
+    }
+
+    fn lengthen_ways(&mut self, from: impl Fn(usize) -> [f64; 2], to: impl Fn(usize) -> [f64; 2]) {
+        for side in [&mut self.slaves, &mut self.segments] {
+            side.lengthen_way(|node| distance(from(node), to(node)));
+        }
+    }
+
+    /// Lists the segments that each slave node may come near before an entity leaves its margin.
+    fn search(&mut self, at: impl Fn(usize) -> [f64; 2]) {
+        self.slaves.draw(&at, self.skin, 0.0);
+        self.segments.draw(&at, self.skin, self.reach);
+        let Self {
+            contact,
+            candidates,
+            starts,
+            found,
+            ..
+        } = self;
+        found.clear();
+        self.slaves.circles.overlaps(&self.segments.circles, found);
+        found.retain(|&[k, i]| !contact.segments[i as usize].contains(&contact.slaves[k as usize]));
+
+        starts.clear();
+        starts.resize(contact.slaves.len() + 1, 0);
+        for [k, _] in &*found {
+            starts[*k as usize + 1] += 1;
+        }
+        for k in 0..contact.slaves.len() {
+            starts[k + 1] += starts[k];
+        }
+        let mut next = starts.clone();
+        candidates.resize(found.len(), 0);
+        for [k, i] in found {
+            let place = &mut next[*k as usize];
+            candidates[*place] = *i;
+            *place += 1;
+        }
+        for list in starts.windows(2) {
+            candidates[list[0]..list[1]].sort_unstable();
+        }
+    }
+}
+
+/// The entities of one side of a contact, each between two nodes (a slave node between itself).
+struct Side {
+    ends: Vec<[usize; 2]>,
+    /// How far each may go in the increment (length).
+    way: Vec<f64>,
+    /// Positions of the ends at the last search; empty before the first.
+    reference: Vec<[[f64; 2]; 2]>,
+    /// How far the ends may go from there (length).
+    margin: Vec<f64>,
+    /// Their territories at the last search.
+    circles: CircleTree,
+}
+
+impl Side {
+    fn new(ends: Vec<[usize; 2]>) -> Self {
+        Side {
+            way: vec![0.0; ends.len()],
+            reference: Vec::new(),
+            margin: Vec::new(),
+            circles: CircleTree::default(),
+            ends,
+        }
+    }
+
+    fn set_way(&mut self, way: impl Fn(usize) -> f64) {
+        for (own, [a, b]) in self.way.iter_mut().zip(&self.ends) {
+            *own = way(*a).max(way(*b));
+        }
+    }
+
+    fn lengthen_way(&mut self, way: impl Fn(usize) -> f64) {
+        for (own, [a, b]) in self.way.iter_mut().zip(&self.ends) {
+            *own = own.max(way(*a)).max(way(*b));
+        }
+    }
+
+    /// Whether the ends are within the margins, less the ways if these are still to be gone.
+    fn is_within(&self, at: impl Fn(usize) -> [f64; 2], with_way: bool) -> bool {
+        self.reference.len() == self.ends.len()
+            && (0..self.ends.len()).all(|i| {
+                let left = self.margin[i] - if with_way { self.way[i] } else { 0.0 };
+                let is_near = |k: usize| {
+                    let (p, q) = (self.reference[i][k], at(self.ends[i][k]));
+                    let [x, y] = [q[0] - p[0], q[1] - p[1]];
+                    x * x + y * y <= left * left
+                };
+                left >= 0.0 && is_near(0) && is_near(1)
+            })
+    }
+
+    /// Takes the positions as the reference; circles about the entities, grown by their margins and
+    /// by `more`.
+    fn draw(&mut self, at: impl Fn(usize) -> [f64; 2], skin: f64, more: f64) {
+        self.reference.clear();
+        self.reference
+            .extend(self.ends.iter().map(|ends| ends.map(&at)));
+        self.margin.clear();
+        self.margin
+            .extend(self.way.iter().map(|way| skin + WAYS * way));
+        let circle = |([a, b], margin): (&[[f64; 2]; 2], &f64)| Circle {
+            centre: [0, 1].map(|i| a[i] + (b[i] - a[i]) / 2.0),
+            // a node pairs a little beyond the ends as well
+            radius: (distance(*a, *b) / 2.0 + margin + more) * (1.0 + 4.0 * ROUND_OFF),
+        };
+        self.circles
+            .rebuild(self.reference.iter().zip(&self.margin).map(circle));
+    }
+}
+
+fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
+    length([q[0] - p[0], q[1] - p[1]])
+}
+
+fn length([x, y]: [f64; 2]) -> f64 {
+    (x * x + y * y).sqrt()
+}

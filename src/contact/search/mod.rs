@@ -1,0 +1,7 @@
+//! Candidate segments of every slave node, by hierarchies of bounding circles.
+
+mod bounding_circles;
+mod candidate_search;
+
+pub(crate) use bounding_circles::{Circle, CircleTree};
+pub use candidate_search::{Candidate, Search, Territory, all_segments};

@@ -1,0 +1,173 @@
+//! Kinematics of a slave node relative to nearby segments, at the start of the increment and at
+//! the iterate: the tests by which its contact targets are selected. Section 10 of docs/theory.md,
+//! Sites.
+
+use crate::contact::crossing::{Crossing, Direction, Motion, crossings};
+use crate::contact::geometry::{ContactSurfaces, Projection, project};
+
+/// Gap at the start of an increment (in segment lengths) that is no penetration.
+pub(crate) const TOUCHING: f64 = 1e-9;
+/// Penetration of a mesh at the start of the analysis (in segment lengths) that is pushed out.
+pub(crate) const PENETRATING: f64 = 2e-3;
+/// How near the end of a segment the other side of a hollow is taken into account (in its lengths),
+/// besides the way of the node.
+pub(crate) const NEAR: f64 = 0.1;
+/// Sine of the angle between the legs of a vertex below which a hollow may have closed.
+const CLOSED: f64 = 0.3;
+/// Sine of the angle by which the surface of a node may lean to a segment that it faces.
+const FACING: f64 = 0.5;
+
+/// A slave node between the start of an increment and an iterate, and where it is relative to the
+/// segments around it.
+#[derive(Clone, Copy)]
+pub struct Look<'a> {
+    /// Surfaces of the contact.
+    pub surfaces: &'a ContactSurfaces,
+    /// Positions of all nodes at the start (length).
+    pub start: &'a [[f64; 2]],
+    /// Positions of all nodes in the iterate (length).
+    pub now: &'a [[f64; 2]],
+    /// Number of the slave node in the contact.
+    pub slave: usize,
+}
+
+impl Look<'_> {
+    /// Whether the straight way of the node goes into the body through the segment.
+    pub(crate) fn enters(&self, segment: usize) -> bool {
+        let [a, b] = self.surfaces.segments[segment];
+        let motions = [self.surfaces.slaves[self.slave], a, b]
+            .map(|node| Motion::straight(self.start[node], self.now[node]));
+        let is_entering = |c: &Crossing| c.direction == Direction::Entering;
+        crossings(&motions, 1.0).iter().any(is_entering)
+    }
+
+    /// Whether the node is so far in front of a segment that it does not matter what is beside it.
+    pub(crate) fn is_far(&self, segment: usize) -> bool {
+        let p = self.place(segment);
+        p.gap > p.length && p.gap > 2.0 * self.way(segment)
+    }
+
+    /// Whether the node's own surface lies in front of the line of a segment through the node, if the
+    /// node has a surface.
+    pub(crate) fn is_opposite(&self, segment: usize) -> Option<bool> {
+        let node = self.surfaces.slaves[self.slave];
+        let normal = self.place(segment).normal;
+        let is_in_front = |&beside: &usize| {
+            let r = [0, 1].map(|i| self.now[beside][i] - self.now[node][i]);
+            r[0] * normal[0] + r[1] * normal[1] >= -FACING * r[0].hypot(r[1])
+        };
+        let beside = self.surfaces.beside[self.slave]?;
+        Some(beside.iter().all(is_in_front))
+    }
+
+    /// Whether the node was in front of the line of a segment at the start.
+    pub(crate) fn was_in_front(&self, segment: usize) -> bool {
+        let p = self.start(segment);
+        p.gap >= -TOUCHING * p.length
+    }
+
+    /// Whether the node started a little inside, as a mesh may have it.
+    pub(crate) fn was_pushed_in(&self, segment: usize) -> bool {
+        let p = self.start(segment);
+        let is_shallow = p.gap >= -PENETRATING * p.length && (-NEAR..=1.0 + NEAR).contains(&p.xi);
+        let (surfaces, start) = (self.surfaces, |node: usize| self.start[node]);
+        let node = surfaces.slaves[self.slave];
+        is_shallow && (surfaces.interior).takes_in(surfaces.segments[segment], node, start)
+    }
+
+    /// Whether the node was part of the body behind the segment: on the far side of a thin body.
+    pub(crate) fn was_far_side(&self, segment: usize) -> bool {
+        let (surfaces, start) = (self.surfaces, |node: usize| self.start[node]);
+        let node = surfaces.slaves[self.slave];
+        (surfaces.interior).joins(surfaces.segments[segment], node, start)
+    }
+
+    /// Whether the node is an end of the segment.
+    pub(crate) fn is_own(&self, segment: usize) -> bool {
+        let node = self.surfaces.slaves[self.slave];
+        self.surfaces.segments[segment].contains(&node)
+    }
+
+    /// Distance from the end of a segment within which the other side of a hollow is taken into
+    /// account.
+    pub(crate) fn near(&self, segment: usize) -> f64 {
+        NEAR * self.place(segment).length + 2.0 * self.way(segment)
+    }
+
+    /// How far the node has gone relative to a segment since the start.
+    pub(crate) fn way(&self, segment: usize) -> f64 {
+        let [a, b] = self.surfaces.segments[segment];
+        let xi = self.place(segment).xi.clamp(0.0, 1.0);
+        let node = self.surfaces.slaves[self.slave];
+        let d = |n: usize, i: usize| self.now[n][i] - self.start[n][i];
+        let relative = |i: usize| d(node, i) - (1.0 - xi) * d(a, i) - xi * d(b, i);
+        (relative(0).powi(2) + relative(1).powi(2)).sqrt()
+    }
+
+    /// Sine of the turn to the left from one segment to the next: positive at a convex vertex; 1 or
+    /// -1 beyond a right angle.
+    pub(crate) fn turn(&self, i: usize, j: usize) -> f64 {
+        let [e, f] = [i, j].map(|i| {
+            let [a, b] = self.surfaces.segments[i].map(|n| self.now[n]);
+            project(a, a, b).tangent
+        });
+        let [sin, cos] = [e[0] * f[1] - e[1] * f[0], e[0] * f[0] + e[1] * f[1]];
+        if cos >= 0.0 {
+            sin
+        } else if sin.abs() > CLOSED {
+            sin.signum()
+        } else if self.surfaces.corners[i] {
+            1.0
+        } else {
+            -1.0
+        }
+    }
+
+    /// The foot xi of the node on a segment in the iterate.
+    pub(crate) fn along(&self, segment: usize) -> f64 {
+        let [a, b] = self.surfaces.segments[segment].map(|n| self.now[n]);
+        let s = self.now[self.surfaces.slaves[self.slave]];
+        let (r, e) = ([s[0] - a[0], s[1] - a[1]], [b[0] - a[0], b[1] - a[1]]);
+        (r[0] * e[0] + r[1] * e[1]) / (e[0] * e[0] + e[1] * e[1])
+    }
+
+    /// Place of the node relative to a segment in the iterate.
+    pub(crate) fn place(&self, segment: usize) -> Projection {
+        self.place_at(self.now, segment)
+    }
+
+    /// The same at the start.
+    pub(crate) fn start(&self, segment: usize) -> Projection {
+        self.place_at(self.start, segment)
+    }
+
+    fn place_at(&self, at: &[[f64; 2]], segment: usize) -> Projection {
+        let [a, b] = self.surfaces.segments[segment];
+        project(at[self.surfaces.slaves[self.slave]], at[a], at[b])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn how_deep_a_node_still_touches_is_a_part_of_the_length_of_the_segment() {
+        let surfaces = ContactSurfaces::new(vec![2], &[], vec![[0, 1]], 0.0);
+        let was_in_front = |length: f64, depth: f64| {
+            // the body lies below, on the left of the way from right to left
+            let x = [[length, 0.0], [0.0, 0.0], [0.5 * length, -depth * length]];
+            let look = Look {
+                surfaces: &surfaces,
+                start: &x,
+                now: &x,
+                slave: 0,
+            };
+            look.was_in_front(0)
+        };
+        for length in [1e-4, 1e-2, 1.0, 1e2, 1e4] {
+            assert!(was_in_front(length, 0.5 * TOUCHING), "{length:e}");
+            assert!(!was_in_front(length, 2.0 * TOUCHING), "{length:e}");
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! Cards from lines.
+
+use super::card::{Card, Row};
+use crate::deck::cards::resolve;
+use crate::deck::keywords::{Data, Keyword, Scope, Status};
+use crate::deck::lines::{Line, Text, assignment};
+use crate::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Span};
+use std::collections::HashSet;
+
+/// All cards of a deck.
+#[derive(Debug, Clone, Default)]
+pub struct Deck {
+    /// Cards whose keyword is known, in order, included files in their place.
+    pub cards: Vec<Card>,
+    /// Whether something that is not read, and reported, could define anything: a missing file.
+    pub incomplete: bool,
+    /// Whether a card is left out because of a reported error: something may be missing.
+    pub dropped: bool,
+    /// Names, as compared, that left out cards may have defined.
+    pub suspects: HashSet<String>,
+}
+
+impl Deck {
+    /// Whether it is an assembly deck, which is reported.
+    pub fn has_assembly(&self) -> bool {
+        let refused = |card: &Card| card.keyword.status == Status::Refused;
+        let mut cards = self.cards.iter().filter(|card| refused(card));
+        cards.any(|card| card.keyword.scope == Scope::Assembly)
+    }
+}
+
+/// A file that a keyword line asks for.
+pub(crate) struct Inclusion {
+    /// Path as typed.
+    pub path: String,
+    /// Place of the path.
+    pub span: Span,
+    /// Whether it may hold data lines only.
+    pub rows_only: bool,
+}
+
+/// A piece of a keyword line between commas.
+pub(crate) struct Piece<'a> {
+    /// Its text and place.
+    pub text: Text<'a>,
+    /// Whether it stands on a continuation line.
+    pub continued: bool,
+}
+
+/// What happens to data lines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Rows {
+    /// No keyword yet.
+    Stray,
+    /// They belong to the last card.
+    Keep,
+    /// They are left out.
+    Skip,
+    /// The last card takes none.
+    Refuse,
+}
+
+/// Collects the lines of a deck into cards.
+pub(crate) struct Collector {
+    /// The cards so far.
+    pub deck: Deck,
+    rows: Rows,
+}
+
+impl Collector {
+    /// No cards yet.
+    pub fn new() -> Collector {
+        Collector {
+            deck: Deck::default(),
+            rows: Rows::Stray,
+        }
+    }
+
+    /// Adds a data line to the last card.
+    pub fn data(&mut self, line: &Line, d: &mut Diagnostics) {
+        let text_only = self
+            .deck
+            .cards
+            .last()
+            .is_some_and(|c| c.keyword.data == Data::Text);
+        match self.rows {
+            Rows::Skip => {}
+            Rows::Keep if text_only => self.keep(Row::new(line, Vec::new())),
+            Rows::Keep => self.keep(Row::new(line, line.fields(d))),
+            Rows::Stray => self.refuse(line, "a data line before the first keyword".into(), d),
+            Rows::Refuse => {
+                let title = self.deck.cards.last().map(Card::title).unwrap_or_default();
+                self.refuse(line, format!("{title} takes no data lines"), d);
+            }
+        }
+    }
+
+    /// Whether the next data line is free text or left out.
+    pub fn in_free_text(&self) -> bool {
+        let text = self
+            .deck
+            .cards
+            .last()
+            .is_some_and(|c| c.keyword.data == Data::Text);
+        self.rows == Rows::Skip || (self.rows == Rows::Keep && text)
+    }
+
+    fn keep(&mut self, row: Row) {
+        if let Some(card) = self.deck.cards.last_mut() {
+            card.rows.push(row);
+        }
+    }
+
+    fn refuse(&mut self, line: &Line, message: String, d: &mut Diagnostics) {
+        d.push(Diagnostic::error(
+            Code::StrayData,
+            line.visible_span(),
+            message,
+        ));
+        self.rows = Rows::Skip;
+    }
+
+    /// Adds a keyword line; returns the file it asks for.
+    pub fn keyword(&mut self, pieces: &[Piece], d: &mut Diagnostics) -> Option<Inclusion> {
+        let (first, rest) = pieces.split_first()?;
+        let Some(keyword) = resolve::keyword(first.text, d) else {
+            if !d.is_lenient() {
+                self.drop_card(rest);
+            }
+            self.rows = Rows::Skip;
+            return None;
+        };
+        if keyword.status != Status::Read {
+            if keyword.status == Status::Refused {
+                self.drop_card(rest);
+            }
+            self.start(keyword, first.text.span, Rows::Skip);
+            return None;
+        }
+        if keyword.name == "INCLUDE" {
+            return self.inclusion(keyword, first, rest, d);
+        }
+        let rows = match keyword.data {
+            Data::None => Rows::Refuse,
+            Data::Rows | Data::Required | Data::Text => Rows::Keep,
+        };
+        self.start(keyword, first.text.span, rows);
+        self.parameters(rest, d);
+        self.input()
+    }
+
+    fn start(&mut self, keyword: &'static Keyword, span: Span, rows: Rows) {
+        self.rows = rows;
+        self.deck.cards.push(Card {
+            keyword,
+            span,
+            faulty: false,
+            rows: Vec::new(),
+            params: Vec::new(),
+        });
+    }
+
+    /// `*INCLUDE` is no card of its own: the lines of its file belong to the card before it.
+    fn inclusion(
+        &mut self,
+        keyword: &'static Keyword,
+        first: &Piece,
+        rest: &[Piece],
+        d: &mut Diagnostics,
+    ) -> Option<Inclusion> {
+        let rows = self.rows;
+        self.start(keyword, first.text.span, rows);
+        self.parameters(rest, d);
+        let card = self.deck.cards.pop()?;
+        let path = card.required("INPUT", d);
+        self.deck.incomplete |= path.is_none();
+        path.map(|path| inclusion(path, false))
+    }
+
+    /// The file that the last card takes its data lines from.
+    fn input(&self) -> Option<Inclusion> {
+        let path = self.deck.cards.last()?.value("INPUT")?;
+        Some(inclusion(path, true))
+    }
+
+    /// A card is left out because of a reported error.
+    fn drop_card(&mut self, pieces: &[Piece]) {
+        self.deck.dropped = true;
+        self.suspect(pieces);
+    }
+
+    /// Names that are left out because of a reported error.
+    fn suspect(&mut self, pieces: &[Piece]) {
+        for piece in pieces {
+            if let Some((value, _)) = assignment(piece.text.text).value {
+                let text = Text {
+                    text: value,
+                    span: piece.text.span,
+                };
+                self.deck.suspects.insert(text.name_key());
+            }
+        }
+    }
+
+    fn parameters(&mut self, pieces: &[Piece], d: &mut Diagnostics) {
+        for piece in pieces.iter().filter(|piece| !piece.text.is_empty()) {
+            let Some(card) = self.deck.cards.last_mut() else {
+                return;
+            };
+            let errors = d.count(Severity::Error);
+            let param = resolve::parameter(card, piece, d);
+            let faulty = d.count(Severity::Error) > errors;
+            card.faulty |= faulty;
+            match param {
+                Some(param) => card.params.push(param),
+                None if faulty => self.suspect(std::slice::from_ref(piece)),
+                None => {}
+            }
+        }
+    }
+}
+
+fn inclusion(path: Text, rows_only: bool) -> Inclusion {
+    Inclusion {
+        path: path.text.trim_matches('"').to_string(),
+        span: path.span,
+        rows_only,
+    }
+}

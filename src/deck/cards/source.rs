@@ -1,0 +1,283 @@
+//! Files of a deck: reading them, finding included ones, and cutting them into logical lines.
+
+use super::collect::{Collector, Deck, Inclusion, Piece};
+use crate::deck::lines::{Content, Kind, Line, Text};
+use crate::diagnostics::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
+use std::path::{Path, PathBuf};
+
+/// Deepest nesting of included files.
+const DEEPEST: usize = 20;
+
+/// Most files of one deck.
+const MOST_FILES: usize = 1000;
+
+/// Longest line that other codes read.
+const LONGEST_LINE: usize = 256;
+
+/// Reads a deck and the files it includes.
+pub fn read(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
+    let name = path.display().to_string();
+    match content_of(path) {
+        Ok(content) => {
+            let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
+            let open = vec![(identity(path), folder)];
+            collect(&name, &content, open, sources, d)
+        }
+        Err(why) => {
+            let message = format!("cannot read {name}: {why}");
+            d.push(Diagnostic::error_without_place(
+                Code::FileUnreadable,
+                message,
+            ));
+            Deck {
+                incomplete: true,
+                ..Deck::default()
+            }
+        }
+    }
+}
+
+/// Reads a deck from text; it cannot include files.
+pub fn parse_str(name: &str, text: &str, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
+    collect(name, &Content::new(text), Vec::new(), sources, d)
+}
+
+fn collect(
+    name: &str,
+    content: &Content,
+    open: Vec<(PathBuf, PathBuf)>,
+    sources: &mut Sources,
+    d: &mut Diagnostics,
+) -> Deck {
+    let file = sources.add(name, &content.text, None);
+    let mut reading = Reading {
+        sources,
+        d,
+        collector: Collector::new(),
+        open,
+    };
+    reading.content(file, content, false);
+    let deck = reading.collector.deck;
+    if deck.cards.is_empty() && !d.has_errors() {
+        let start = Span {
+            file,
+            line: 1,
+            column: 1,
+            length: 1,
+        };
+        let message = format!("{name} holds no keyword");
+        let error = Diagnostic::error(Code::EmptyDeck, start, message);
+        d.push(error.help("a keyword line begins with one star, such as *NODE"));
+    }
+    deck
+}
+
+/// A deck being read.
+struct Reading<'a> {
+    sources: &'a mut Sources,
+    d: &'a mut Diagnostics,
+    collector: Collector,
+    /// The files being read, outermost first: what identifies each, and its folder.
+    open: Vec<(PathBuf, PathBuf)>,
+}
+
+impl Reading<'_> {
+    /// Reads the lines of a file, unless it is none of a deck.
+    fn content(&mut self, file: FileId, content: &Content, rows_only: bool) {
+        match content.complaint(file) {
+            Some(complaint) => {
+                self.collector.deck.incomplete = true;
+                self.d.push(complaint);
+            }
+            None => self.lines(file, without_mark(&content.text), rows_only),
+        }
+    }
+
+    /// Feeds the lines of a file to the collector.
+    fn lines(&mut self, file: FileId, text: &str, rows_only: bool) {
+        let lines = numbered(file, text);
+        let mut rest = lines.as_slice();
+        while let Some((line, after)) = rest.split_first() {
+            rest = after;
+            match line.kind() {
+                Kind::Blank | Kind::Comment => {}
+                Kind::Data => {
+                    self.remark_on_form(line);
+                    self.collector.data(line, self.d);
+                }
+                Kind::Keyword if rows_only => return self.keyword_among_rows(line),
+                Kind::Keyword => rest = self.keyword(line, after),
+            }
+        }
+    }
+
+    /// A keyword line with its continuation lines; returns the lines after them.
+    fn keyword<'l>(&mut self, line: &Line<'l>, after: &'l [Line<'l>]) -> &'l [Line<'l>] {
+        let (more, after) = continuation(line, after);
+        let mut pieces = pieces(line, false, self.d);
+        self.remark_on_form(line);
+        for line in &more {
+            self.remark_on_form(line);
+            pieces.extend(self::pieces(line, true, self.d));
+        }
+        if let Some(inclusion) = self.collector.keyword(&pieces, self.d) {
+            self.include(&inclusion);
+        }
+        after
+    }
+
+    fn keyword_among_rows(&mut self, line: &Line) {
+        let message = "a keyword in a file that holds data lines only";
+        let help = "use *INCLUDE to read a file with keywords";
+        let span = line.visible_span();
+        self.d
+            .push(Diagnostic::error(Code::WrongPlace, span, message).help(help));
+    }
+
+    fn remark_on_form(&mut self, line: &Line) {
+        if line.text.chars().count() > LONGEST_LINE {
+            let message = "a line of more than 256 characters";
+            self.d.push_once(
+                Diagnostic::warning(Code::LongLine, line.span(0, 1), message)
+                    .help("all of it is read here; Abaqus will refuse it"),
+            );
+        }
+        let strange = line.text.char_indices().find(|(_, c)| !c.is_ascii());
+        if let (false, Some((at, c))) = (self.collector.in_free_text(), strange) {
+            let span = line.span(at, at + c.len_utf8());
+            let message = "a character outside ASCII, which other codes may not read";
+            self.d
+                .push_once(Diagnostic::warning(Code::NonAscii, span, message));
+        }
+    }
+
+    /// Reads an included file in the place where it is named.
+    fn include(&mut self, inclusion: &Inclusion) {
+        match self.open_included(inclusion) {
+            Ok((name, path, content)) => {
+                let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
+                let file = self.sources.add(&name, &content.text, Some(inclusion.span));
+                self.open.push((identity(&path), folder));
+                self.content(file, &content, inclusion.rows_only);
+                self.open.pop();
+            }
+            Err((code, why)) => {
+                self.collector.deck.incomplete = true;
+                let message = format!("cannot include `{}`: {why}", inclusion.path);
+                self.d
+                    .push(Diagnostic::error(code, inclusion.span, message));
+            }
+        }
+    }
+
+    /// Name, path and content of an included file.
+    fn open_included(
+        &self,
+        inclusion: &Inclusion,
+    ) -> Result<(String, PathBuf, Content), (Code, String)> {
+        let path = self
+            .find(&inclusion.path)
+            .map_err(|why| (Code::FileUnreadable, why))?;
+        let identity = identity(&path);
+        if self.open.iter().any(|(open, _)| *open == identity) {
+            return Err((Code::IncludeCycle, "the file includes itself".to_string()));
+        }
+        if self.open.len() > DEEPEST || self.sources.files().len() > MOST_FILES {
+            let why = format!("more than {DEEPEST} levels or {MOST_FILES} files");
+            return Err((Code::IncludeCycle, why));
+        }
+        let content = content_of(&path).map_err(|why| (Code::FileUnreadable, why))?;
+        Ok((path.display().to_string(), path, content))
+    }
+
+    /// A file as seen from the including file, else from the main deck.
+    fn find(&self, path: &str) -> Result<PathBuf, String> {
+        let (Some(first), Some(last)) = (self.open.first(), self.open.last()) else {
+            return Err("this deck was not read from a file".to_string());
+        };
+        let near = last.1.join(path);
+        let far = first.1.join(path);
+        match (near.exists(), far.exists()) {
+            (true, _) => Ok(near),
+            (false, true) => Ok(far),
+            (false, false) => Err(format!("no such file ({})", near.display())),
+        }
+    }
+}
+
+/// The lines of a text; LF and CRLF end them.
+fn numbered(file: FileId, text: &str) -> Vec<Line<'_>> {
+    let bare = |line: &str| line.len() - usize::from(line.ends_with('\r'));
+    let lines = text.split('\n').zip(1..);
+    lines
+        .map(|(line, number)| Line {
+            file,
+            number,
+            text: line.get(..bare(line)).unwrap_or(line),
+        })
+        .collect()
+}
+
+/// The data lines that continue a keyword line ending with a comma, and the lines after them.
+fn continuation<'l>(first: &Line<'l>, after: &'l [Line<'l>]) -> (Vec<Line<'l>>, &'l [Line<'l>]) {
+    let mut more = Vec::new();
+    let mut rest = after;
+    let mut open = first.ends_with_comma();
+    while open {
+        let silent = |line: &&Line| matches!(line.kind(), Kind::Blank | Kind::Comment);
+        let skipped = rest.iter().take_while(silent).count();
+        match rest.get(skipped) {
+            Some(line) if line.kind() == Kind::Data => {
+                open = line.ends_with_comma();
+                more.push(*line);
+                rest = rest.get(skipped + 1..).unwrap_or(&[]);
+            }
+            _ => open = false,
+        }
+    }
+    (more, rest)
+}
+
+/// The pieces of a keyword line between commas.
+fn pieces<'l>(line: &Line<'l>, continued: bool, d: &mut Diagnostics) -> Vec<Piece<'l>> {
+    let fields = line.fields(d).into_iter();
+    fields
+        .map(|(start, end)| Piece {
+            text: Text {
+                text: line.text.get(start as usize..end as usize).unwrap_or(""),
+                span: line.span(start as usize, end as usize),
+            },
+            continued,
+        })
+        .collect()
+}
+
+fn content_of(path: &Path) -> Result<Content, String> {
+    if path.is_dir() {
+        return Err("it is a folder".to_string());
+    }
+    let content = match std::fs::metadata(path) {
+        Ok(data) if data.is_file() => Content::of(path),
+        Ok(_) => return Err("it is not a regular file".to_string()),
+        Err(error) => Err(error),
+    };
+    content.map_err(|error| reason(&error))
+}
+
+fn reason(error: &std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => "no such file".to_string(),
+        std::io::ErrorKind::PermissionDenied => "permission denied".to_string(),
+        _ => error.to_string(),
+    }
+}
+
+/// What two paths of one file have in common.
+fn identity(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
+}
+
+/// The text after a byte order mark.
+fn without_mark(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
+}

@@ -1,0 +1,114 @@
+//! The keyword reference, generated from the table the reader uses.
+
+use super::keyword::{Data, Keyword, Parameter, Scope, Status, Takes, keywords};
+use crate::deck::keywords::dimensions;
+use std::fmt::Write;
+
+/// Markdown text of the keyword reference.
+pub fn keyword_reference() -> String {
+    let mut text = String::from(HEAD);
+    text.push_str("## Keywords that are read\n");
+    for keyword in keywords().filter(|k| k.status == Status::Read) {
+        push_keyword(&mut text, keyword);
+    }
+    let others = [
+        (Status::Ignored, "Keywords that are accepted silently"),
+        (Status::Warned, "Keywords that are left out with a warning"),
+        (Status::Refused, "Keywords that stop with an error"),
+    ];
+    for (status, title) in others {
+        push_list(&mut text, status, title);
+    }
+    text
+}
+
+const HEAD: &str = "\
+# Keywords
+
+Generated from the table that the reader uses (`src/deck/table_*.rs`); do not edit by hand.
+
+A deck is a text file. A keyword line begins with `*`, a comment line with `**`; data lines follow
+their keyword, with fields between commas. Case and blanks in keywords, parameters and names do not
+matter; a name in quotation marks keeps both. A keyword line that ends with a comma continues on the
+next line. Empty lines are skipped, an empty field has its default. Units are up to the user: any
+consistent set gives the same answer, and `scripts/rescale.py` writes a deck in another one. A file holds
+text, ASCII or UTF-8, without NUL bytes, and no line of more than 65536 bytes (Abaqus reads 256): anything
+else is an error at once.
+
+Keywords, parameters and values not listed here are errors. A unique beginning of at least four
+letters is understood, with a warning. Fields beyond those described are errors. Keywords of the model
+stand before the first step, those under another one directly below it. Node and element numbers run
+from 1 to 999 999 999, the largest that Abaqus reads. Numbers have a decimal point.
+
+A wave speed, or an element's area, stiffness or mass, that overflows or vanishes in floating-point
+numbers is an error.
+
+";
+
+fn push_keyword(text: &mut String, keyword: &Keyword) {
+    let place = match keyword.scope {
+        Scope::Model if keyword.name == "STEP" => "after the keywords of the model".to_string(),
+        Scope::Model => "before the first step".to_string(),
+        Scope::Step => "in a step".to_string(),
+        Scope::Anywhere => "before the first step or in a step".to_string(),
+        Scope::Block(name) => format!("under `*{name}`"),
+        Scope::Assembly => "in assembly decks".to_string(),
+    };
+    let data = match keyword.data {
+        Data::None => "no data lines",
+        Data::Rows => "data lines",
+        Data::Required => "at least one data line",
+        Data::Text => "free text",
+    };
+    let _ = write!(
+        text,
+        "\n### `*{}`\n\n{}\n",
+        keyword.name,
+        plain(keyword.text)
+    );
+    let _ = write!(text, "\nStands {place}; {data}.\n");
+    if let Some(words) = dimensions::in_words(keyword) {
+        let _ = write!(text, "\nDimensions: {words}.\n");
+    }
+    if !keyword.parameters.is_empty() {
+        text.push_str("\n| parameter | | meaning |\n|---|---|---|\n");
+    }
+    for parameter in keyword.parameters {
+        push_parameter(text, parameter);
+    }
+}
+
+fn push_parameter(text: &mut String, parameter: &Parameter) {
+    let form = match parameter.takes {
+        Takes::Nothing => parameter.name.to_string(),
+        Takes::Value | Takes::Choice(_) => format!("{}=", parameter.name),
+        Takes::Optional | Takes::OptionalChoice(_) => format!("{}[=]", parameter.name),
+    };
+    let (status, meaning) = (word(parameter.status), plain(parameter.text));
+    let _ = writeln!(text, "| `{form}` | {status} | {meaning} |");
+    for value in parameter.values() {
+        let (status, name, meaning) = (word(value.status), value.name, plain(value.text));
+        let _ = writeln!(text, "| &nbsp;&nbsp;`{name}` | {status} | {meaning} |");
+    }
+}
+
+fn push_list(text: &mut String, status: Status, title: &str) {
+    let _ = write!(text, "\n## {title}\n\n| keyword | |\n|---|---|\n");
+    for keyword in keywords().filter(|k| k.status == status) {
+        let _ = writeln!(text, "| `*{}` | {} |", keyword.name, plain(keyword.text));
+    }
+}
+
+/// A sentence with its stars kept from being taken as markup.
+fn plain(sentence: &str) -> String {
+    sentence.replace('*', "\\*")
+}
+
+fn word(status: Status) -> &'static str {
+    match status {
+        Status::Read => "read",
+        Status::Ignored => "silent",
+        Status::Warned => "warning",
+        Status::Refused => "error",
+    }
+}

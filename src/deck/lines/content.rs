@@ -1,0 +1,144 @@
+//! Text of a file, up to the first thing that no deck has.
+
+use crate::diagnostics::{Code, Diagnostic, FileId, Span};
+use std::fs::File;
+use std::io::{self, BufRead, BufReader};
+use std::path::Path;
+
+/// Longest line, in bytes.
+pub(crate) const LONGEST_LINE: usize = 1 << 16;
+
+/// What no deck has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Fault {
+    /// A NUL byte.
+    Nul,
+    /// A line that does not end.
+    Endless,
+}
+
+/// Text of a file.
+pub(crate) struct Content {
+    /// The text, up to the fault if there is one.
+    pub text: String,
+    fault: Option<Fault>,
+}
+
+impl Content {
+    /// Reads a regular file; stops at the first fault, however long the file is.
+    pub fn of(path: &Path) -> io::Result<Content> {
+        Content::read(BufReader::with_capacity(LONGEST_LINE, File::open(path)?))
+    }
+
+    /// Reads to the end or to the first fault.
+    fn read(mut input: impl BufRead) -> io::Result<Content> {
+        let (mut bytes, mut fault, mut length) = (Vec::new(), None, 0);
+        while fault.is_none() {
+            let more = input.fill_buf()?;
+            if more.is_empty() {
+                break;
+            }
+            let used = sound(more, &mut length);
+            fault = more.get(used).map(|&byte| match byte {
+                0 => Fault::Nul,
+                _ => Fault::Endless,
+            });
+            bytes.extend_from_slice(more.get(..used).unwrap_or_default());
+            let used = more.len();
+            input.consume(used);
+        }
+        let text = String::from_utf8(bytes)
+            .unwrap_or_else(|bytes| String::from_utf8_lossy(bytes.as_bytes()).into_owned());
+        Ok(Content { text, fault })
+    }
+
+    /// A text from elsewhere.
+    pub fn new(text: &str) -> Content {
+        // Bytes in memory are always read.
+        Content::read(text.as_bytes()).unwrap_or(Content {
+            text: String::new(),
+            fault: None,
+        })
+    }
+
+    /// What is wrong where the text ends.
+    pub fn complaint(&self, file: FileId) -> Option<Diagnostic> {
+        let last = self.text.rsplit('\n').next().unwrap_or_default();
+        let line = 1 + self.text.bytes().filter(|&byte| byte == b'\n').count();
+        let span = Span {
+            file,
+            line: line as u32,
+            column: last.chars().count() as u32 + 1,
+            length: 1,
+        };
+        let error = |code, message: String| Diagnostic::error(code, span, message);
+        Some(match self.fault? {
+            Fault::Nul => error(Code::NotText, "a NUL byte: this is not a text".to_string())
+                .help("a deck is plain text, in ASCII or UTF-8"),
+            Fault::Endless => {
+                let message = format!("a line of more than {LONGEST_LINE} bytes");
+                error(Code::EndlessLine, message).help("lists may run over any number of lines")
+            }
+        })
+    }
+}
+
+/// Number of bytes before the first fault; `length` is that of the line so far.
+fn sound(bytes: &[u8], length: &mut usize) -> usize {
+    for (at, &byte) in bytes.iter().enumerate() {
+        match byte {
+            0 => return at,
+            b'\n' => *length = 0,
+            _ if *length == LONGEST_LINE => return at,
+            _ => *length += 1,
+        }
+    }
+    bytes.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An input without end.
+    struct Endless(&'static [u8]);
+
+    impl io::Read for Endless {
+        fn read(&mut self, _: &mut [u8]) -> io::Result<usize> {
+            Ok(0)
+        }
+    }
+
+    impl BufRead for Endless {
+        fn fill_buf(&mut self) -> io::Result<&[u8]> {
+            Ok(self.0)
+        }
+
+        fn consume(&mut self, _: usize) {}
+    }
+
+    fn place(content: &Content) -> (u32, u32, Code) {
+        let error = content.complaint(FileId(0)).expect("a fault");
+        let span = error.span.expect("a place");
+        (span.line, span.column, error.code)
+    }
+
+    #[test]
+    fn reading_ends_at_the_first_fault() {
+        let zeros = Content::read(Endless(b"*NODE\n1, \0\0")).expect("read");
+        assert_eq!(zeros.text, "*NODE\n1, ");
+        assert_eq!(place(&zeros), (2, 4, Code::NotText));
+        let line = Content::read(Endless(b"*NODE, NSET=AAAA")).expect("read");
+        assert_eq!(line.text.len(), LONGEST_LINE);
+        let column = LONGEST_LINE as u32 + 1;
+        assert_eq!(place(&line), (1, column, Code::EndlessLine));
+    }
+
+    #[test]
+    fn lines_up_to_the_limit_are_sound() {
+        let text = format!("{}\n{}", "a".repeat(LONGEST_LINE), "b".repeat(LONGEST_LINE));
+        let content = Content::new(&text);
+        assert!(content.text == text && content.complaint(FileId(0)).is_none());
+        assert!(Content::new("").complaint(FileId(0)).is_none());
+    }
+}

@@ -1,0 +1,14 @@
+//! Files as logical lines, fields, numbers and names.
+
+mod content;
+mod lexer;
+mod name;
+mod number;
+mod text;
+pub(crate) mod word;
+
+pub(crate) use content::Content;
+pub(crate) use lexer::{Kind, Line, assignment, span_in};
+pub use name::Name;
+pub use text::Text;
+pub(crate) use word::Match;

@@ -1,0 +1,144 @@
+//! Numbers of a deck, parsed from whole fields.
+
+use nom::branch::alt;
+use nom::bytes::complete::take_while1;
+use nom::character::complete::{digit0, digit1, one_of};
+use nom::combinator::{opt, recognize};
+use nom::{IResult, Parser};
+use nom_locate::LocatedSpan;
+
+type Input<'a> = LocatedSpan<&'a str>;
+
+/// A real number and how it was written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Real {
+    /// Its value.
+    pub value: f64,
+    /// Whether its exponent lacks the letter, as in `1.5-5`.
+    pub letterless: bool,
+}
+
+/// Why a field is not a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum NotANumber {
+    /// This character does not belong.
+    Unexpected(char),
+    /// The field ends too early.
+    Incomplete,
+    /// It is an exponent with no number before it.
+    BareExponent,
+    /// The value is too large to be stored.
+    TooLarge,
+}
+
+/// `[+-]digits`
+pub(crate) fn integer(text: &str) -> Result<i64, NotANumber> {
+    let mut number = recognize((opt(one_of("+-")), digit1));
+    let parsed: IResult<Input, Input> = number.parse(Input::new(text));
+    let digits = whole(text, parsed)?;
+    digits.parse().map_err(|_| NotANumber::TooLarge)
+}
+
+/// `[+-]digits[.digits][(E|D)[+-]digits]`, `.5`, `1.`, and `1.5-5` for `1.5E-5`
+pub(crate) fn real(text: &str) -> Result<Real, NotANumber> {
+    let parsed = (mantissa, opt(exponent)).parse(Input::new(text));
+    let (mantissa, exponent) = whole(text, parsed).map_err(|why| match is_exponent(text) {
+        true => NotANumber::BareExponent,
+        false => why,
+    })?;
+    let (digits, letterless) = exponent.unwrap_or((Input::new("0"), false));
+    let standard = format!("{mantissa}e{digits}");
+    match standard.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(Real { value, letterless }),
+        _ => Err(NotANumber::TooLarge),
+    }
+}
+
+fn mantissa(input: Input) -> IResult<Input, Input> {
+    let dot = || one_of(".");
+    let digits = alt((
+        recognize((digit1, opt((dot(), digit0)))),
+        recognize((dot(), digit1)),
+    ));
+    recognize((opt(one_of("+-")), digits)).parse(input)
+}
+
+/// Sign and digits of the exponent, and whether its letter is missing.
+fn exponent(input: Input) -> IResult<Input, (Input, bool)> {
+    let signed = recognize((opt(one_of("+-")), digit1));
+    let lettered = (one_of("EeDd"), signed).map(|(_, digits)| (digits, false));
+    let letterless = recognize((one_of("+-"), digit1)).map(|digits| (digits, true));
+    alt((lettered, letterless)).parse(input)
+}
+
+/// `(E|D)[+-]digits`, what a decimal comma leaves of `1,E6`
+fn is_exponent(text: &str) -> bool {
+    let lettered = text.starts_with(|c: char| c.is_ascii_alphabetic());
+    let parsed = exponent(Input::new(text));
+    lettered && parsed.is_ok_and(|(rest, _)| rest.fragment().is_empty())
+}
+
+/// What was parsed, if it is the whole of `text`.
+fn whole<'a, T>(text: &'a str, parsed: IResult<Input<'a>, T>) -> Result<T, NotANumber> {
+    match parsed {
+        Ok((rest, value)) if rest.fragment().is_empty() => Ok(value),
+        Ok((rest, _)) => Err(unexpected(text, rest.location_offset())),
+        Err(nom::Err::Error(error) | nom::Err::Failure(error)) => {
+            Err(unexpected(text, error.input.location_offset()))
+        }
+        Err(nom::Err::Incomplete(_)) => Err(NotANumber::Incomplete),
+    }
+}
+
+/// The first character from `offset` on that no number has there.
+fn unexpected(text: &str, offset: usize) -> NotANumber {
+    let rest = text.get(offset..).unwrap_or("");
+    let begun = take_while1::<_, _, nom::error::Error<&str>>(|c: char| "+-.eEdD".contains(c));
+    let mut beginning = opt(begun);
+    let after = beginning.parse(rest).map_or(rest, |(after, _)| after);
+    match after.chars().next().or_else(|| rest.chars().nth(1)) {
+        Some(character) => NotANumber::Unexpected(character),
+        None => NotANumber::Incomplete,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn integers() {
+        assert_eq!(integer("-12"), Ok(-12));
+        assert_eq!(integer("+7"), Ok(7));
+        assert_eq!(integer("1."), Err(NotANumber::Incomplete));
+        assert_eq!(integer("1x"), Err(NotANumber::Unexpected('x')));
+        assert_eq!(integer("99999999999999999999"), Err(NotANumber::TooLarge));
+    }
+
+    #[test]
+    fn reals() {
+        let value = |text| real(text).map(|r| r.value);
+        assert_eq!(value("1.5D-5"), Ok(1.5e-5));
+        assert_eq!(value("+.5e+3"), Ok(500.0));
+        assert_eq!(value("7"), Ok(7.0));
+        assert_eq!(value("-1."), Ok(-1.0));
+        assert_eq!(value("0.10000000000000000000E+04"), Ok(1000.0));
+        let fortran = Real {
+            value: 1.5e-5,
+            letterless: true,
+        };
+        assert_eq!(real("1.5-5"), Ok(fortran));
+    }
+
+    #[test]
+    fn not_reals() {
+        for text in [
+            "nan", "inf", "0x1p3", "1_000", "1.2.3", "e5", "1e", "", "-", ".", "1e999",
+        ] {
+            assert!(real(text).is_err(), "{text}");
+        }
+        assert_eq!(real("e5"), Err(NotANumber::BareExponent));
+        assert_eq!(real("E"), Err(NotANumber::Incomplete));
+        assert_eq!(real("e5x"), Err(NotANumber::Unexpected('5')));
+    }
+}

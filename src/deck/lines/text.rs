@@ -1,0 +1,167 @@
+//! Fields and parameter values with their place, read as numbers or names; reports what is neither,
+//! and what Abaqus or CalculiX would read differently.
+
+use super::name::Name;
+use super::number::NotANumber;
+use crate::deck::lines::{number, word};
+use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span};
+
+/// Longest name other codes read.
+const LONGEST_NAME: usize = 80;
+
+/// Longest number other codes read.
+const LONGEST_NUMBER: usize = 20;
+
+/// A field or a parameter's value: its text and its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Text<'a> {
+    /// As typed, without blanks around it.
+    pub text: &'a str,
+    /// Where it stands.
+    pub span: Span,
+}
+
+impl<'a> Text<'a> {
+    /// Whether nothing was typed.
+    pub fn is_empty(&self) -> bool {
+        self.text.is_empty()
+    }
+
+    /// The integer it says; reports anything else.
+    pub fn integer(&self, d: &mut Diagnostics) -> Option<i64> {
+        let parsed = number::integer(self.text);
+        parsed
+            .map_err(|why| d.push(self.not_a("an integer", why)))
+            .ok()
+    }
+
+    /// The integer it says, if it is one; reports nothing.
+    pub fn as_integer(&self) -> Option<i64> {
+        number::integer(self.text).ok()
+    }
+
+    /// The real number it says, if it is one; reports nothing.
+    pub fn as_real(&self) -> Option<f64> {
+        number::real(self.text).ok().map(|real| real.value)
+    }
+
+    /// The real number it says; reports anything else.
+    pub fn real(&self, d: &mut Diagnostics) -> Option<f64> {
+        match number::real(self.text) {
+            Err(why) => {
+                d.push(self.not_a("a number", why));
+                None
+            }
+            Ok(real) => {
+                self.remark_on_form(real.letterless, d);
+                Some(real.value)
+            }
+        }
+    }
+
+    fn remark_on_form(&self, letterless: bool, d: &mut Diagnostics) {
+        if letterless {
+            let message = "an exponent without its letter E";
+            d.push_once(
+                Diagnostic::warning(Code::FortranNumber, self.span, message)
+                    .label("read as a power of ten"),
+            );
+        }
+        if self.text.len() > LONGEST_NUMBER {
+            let message = "a number of more than 20 characters";
+            d.push_once(
+                Diagnostic::note(Code::LongNumber, self.span, message)
+                    .help("all of it is read here; CalculiX reads the first 20 characters only"),
+            );
+        }
+    }
+
+    fn not_a(&self, wanted: &str, why: NotANumber) -> Diagnostic {
+        let message = match self.is_empty() {
+            true => format!("expected {wanted}, found nothing"),
+            false => format!("expected {wanted}, found `{}`", self.text),
+        };
+        if let Some(gap) = self.gap_between_numbers() {
+            let diagnostic = Diagnostic::error(Code::BadNumber, gap, message);
+            return diagnostic.label("is a comma missing here?");
+        }
+        let diagnostic = Diagnostic::error(Code::BadNumber, self.span, message);
+        match why {
+            NotANumber::Unexpected(c) if c.is_whitespace() => {
+                diagnostic.label("a blank inside a number")
+            }
+            NotANumber::Unexpected(c) => diagnostic.label(format!("`{c}` does not belong here")),
+            NotANumber::Incomplete => diagnostic,
+            NotANumber::BareExponent => diagnostic
+                .label("an exponent without its number")
+                .help("a comma ends a field: a number has a decimal point, not a decimal comma"),
+            NotANumber::TooLarge => diagnostic.label("too large"),
+        }
+    }
+
+    /// Place of the first blanks, if nothing but numbers stand between the blanks.
+    fn gap_between_numbers(&self) -> Option<Span> {
+        let start = self.text.find(char::is_whitespace)?;
+        let (before, after) = self.text.split_at(start);
+        let blanks = after.chars().take_while(|c| c.is_whitespace()).count();
+        let mut parts = self.text.split_whitespace();
+        let numbers = parts.all(|part| number::real(part).is_ok());
+        numbers.then(|| Span {
+            column: self.span.column + before.chars().count() as u32,
+            length: blanks as u32,
+            ..self.span
+        })
+    }
+
+    /// Whether it is digits only: a number without point, sign or exponent.
+    pub(crate) fn is_digits(&self) -> bool {
+        !self.is_empty() && self.text.bytes().all(|byte| byte.is_ascii_digit())
+    }
+
+    /// The name it says; reports names that cannot be.
+    pub fn name(&self, d: &mut Diagnostics) -> Option<Name> {
+        let fault = match self.quoted_content() {
+            Some(content) if fits(content) => return Some(Name::quoted(content)),
+            Some(_) => Some("a name has 1 to 80 characters".to_string()),
+            // An open quotation mark is reported already.
+            None if self.text.matches('"').count() % 2 == 1 => return None,
+            None => self.fault_of_plain_name(),
+        };
+        match fault {
+            None => Some(Name::plain(self.text)),
+            Some(fault) => {
+                let message = format!("`{}` cannot be a name", self.text);
+                d.push(Diagnostic::error(Code::BadName, self.span, message).label(fault));
+                None
+            }
+        }
+    }
+
+    /// How the name it says is compared, whether or not it can be one.
+    pub fn name_key(&self) -> String {
+        let quoted = self.quoted_content();
+        quoted.map_or_else(|| word::fold(self.text), str::to_string)
+    }
+
+    fn quoted_content(&self) -> Option<&'a str> {
+        self.text.strip_prefix('"')?.strip_suffix('"')
+    }
+
+    fn fault_of_plain_name(&self) -> Option<String> {
+        let allowed = |c: &char| c.is_alphanumeric() || " \t_-.+/()".contains(*c);
+        if !fits(self.text) {
+            Some("a name has 1 to 80 characters".to_string())
+        } else if self.as_integer().is_some() {
+            Some("a number, not a name".to_string())
+        } else {
+            let stranger = self.text.chars().find(|c| !allowed(c))?;
+            Some(format!(
+                "`{stranger}` needs quotation marks around the name"
+            ))
+        }
+    }
+}
+
+fn fits(name: &str) -> bool {
+    (1..=LONGEST_NAME).contains(&name.chars().count())
+}

@@ -1,0 +1,305 @@
+//! Event-driven integration of impacts: subincrements [t, t + tau] that end at the next impact,
+//! its time being the solution of T(tau) = tau. Section 6 of docs/theory.md, Impacts as events.
+
+use super::impact_time::Root;
+use crate::contact::{Crossing, Direction, Projection, Search, crossings};
+use crate::dynamics::increment::{Attempt, Failed, Hold, Solved, Touching};
+use crate::dynamics::ledger::motion;
+use crate::dynamics::results::State;
+use crate::dynamics::step::{Effective, Interval, Meter, Moment, StepProblem};
+
+/// Impacts within an increment of the grid, after which nodes land within what is left of it.
+pub(crate) const MOST_EVENTS: usize = 50;
+/// Part of an increment of the grid within which impacts are taken together; no piece is shorter.
+const GROUP: f64 = 1e-3;
+/// Accuracy of the time of an impact, in increments of the grid.
+const ACCURACY: f64 = 1e-10;
+/// Gap (in segment lengths) that is none at an impact.
+const MET: f64 = 1e-12;
+/// How far beyond a piece (in its lengths) its motion tells of impacts.
+const FAR: f64 = 2.0;
+/// Attempts to find the time of an impact.
+const TRIALS: usize = 12;
+
+/// A piece of an increment that ends at the next impact, or at the end of the increment.
+pub(crate) struct Piece {
+    pub interval: Interval,
+    pub solved: Solved,
+    /// Whether an impact ends it.
+    pub is_cut: bool,
+}
+
+/// A piece that failed, with its times.
+pub(crate) type Broken = Box<(Interval, Failed)>;
+
+/// Solves the next piece of an increment.
+pub(crate) struct Pieces<'a, 'm> {
+    pub problem: &'a StepProblem<'m>,
+    pub effective: &'a mut Effective,
+    pub search: &'a mut Search<'m>,
+    pub start: &'a State,
+    /// The pairs that carried forces up to the start.
+    pub contact: &'a Touching,
+    pub meter: &'a mut Meter,
+    /// What is left of the increment.
+    pub rest: Interval,
+    /// Length of an increment of the grid.
+    pub grid: f64,
+    /// Length of the last piece.
+    pub last: f64,
+}
+
+/// A node goes into a body.
+#[derive(Clone, Copy)]
+struct Entry {
+    /// Time since the start of the piece.
+    time: f64,
+    slot: usize,
+    segment: usize,
+    nodes: [usize; 3],
+}
+
+/// Second-order motion of all nodes from the start of a piece.
+struct Flight<'a> {
+    v: &'a [f64],
+    a: &'a [f64],
+    /// End of the piece, if it is the motion of one.
+    end: f64,
+    /// How long it is followed.
+    duration: f64,
+}
+
+impl Flight<'_> {
+    /// U0 + t V + t²/2 A at the end.
+    fn displacement(&self, u0: &[f64]) -> Vec<f64> {
+        let t = self.duration;
+        let at = |i: usize| u0[i] + t * (self.v[i] + t / 2.0 * self.a[i]);
+        (0..u0.len()).map(at).collect()
+    }
+
+    /// Whether the ways of the nodes are long enough for them to meet.
+    fn may_meet(&self, start: &Projection, [s, a, b]: [usize; 3]) -> bool {
+        let way = |node: usize| {
+            let size = |x: &[f64]| x[2 * node].hypot(x[2 * node + 1]);
+            self.duration * (size(self.v) + self.duration / 2.0 * size(self.a))
+        };
+        start.gap.abs() <= way(s) + way(a).max(way(b))
+    }
+
+    /// When the node s goes in through the segment from a to b. One that comes out again before the
+    /// end of the piece has not gone in: between its ends the motion of a piece is an estimate.
+    fn entry(&self, problem: &StepProblem, u0: &[f64], nodes: [usize; 3]) -> Option<f64> {
+        let motions = nodes.map(|node| motion(problem, u0, self.v, self.a, node));
+        let found = crossings(&motions, self.duration);
+        let stays = |&(k, crossing): &(usize, &Crossing)| {
+            let is_out = |c: &Crossing| c.direction == Direction::Leaving && c.time < self.end;
+            crossing.direction == Direction::Entering && !found[k..].iter().any(is_out)
+        };
+        found
+            .iter()
+            .enumerate()
+            .find(stays)
+            .map(|(_, crossing)| crossing.time)
+    }
+}
+
+impl<'m> Pieces<'_, 'm> {
+    /// The piece up to the earliest impact of a pair that does not touch at the start.
+    ///
+    /// Its length tau is predicted from the second-order motion of the start (paper eq. 50), with
+    /// the exact condition of meeting. The motion of the converged piece,
+    ///
+    /// ```text
+    /// U(t) = U0 + t V0+ + t²/2 A,   A = (2/tau²)(d - tau V0+),
+    /// ```
+    ///
+    /// then tells when the pairs that stay out meet: at T(tau). The piece ends at the impact when
+    /// T(tau) = tau, which secants find; without elastic forces T does not depend on tau.
+    pub fn next(&mut self) -> Result<Piece, Broken> {
+        let (rest, group) = (self.rest.dt, GROUP * self.grid);
+        self.search.start(&self.start.v, rest);
+        self.search.cover(&self.start.u);
+        let mut hold = Hold::new(self.problem, self.search, &self.start.u, self.contact);
+        let mut tau = self.predicted(&mut hold);
+        let mut root = Root::new(rest);
+        for _ in 0..TRIALS {
+            let solved = self.attempt(tau, Some(&hold))?;
+            let a = solved.mean_acceleration(tau);
+            let flight = Flight {
+                v: &solved.v0p,
+                a: &a,
+                end: tau,
+                duration: rest.min(FAR * tau),
+            };
+            let entry = self.first_entry(&hold, flight);
+            let met = match entry {
+                None => rest,
+                Some(entry) if entry.time < group => {
+                    self.join_at_start(&mut hold, entry);
+                    root = Root::new(rest);
+                    continue;
+                }
+                Some(entry) if entry.time > rest - group => {
+                    if tau == rest {
+                        // it lands within the piece, at its very end
+                        hold.join(entry.slot);
+                        root = Root::new(rest);
+                        continue;
+                    }
+                    rest
+                }
+                Some(entry) => {
+                    let gap = self.problem.place(&solved.end.u, entry.nodes);
+                    if gap.gap.abs() <= MET * gap.length {
+                        tau
+                    } else {
+                        entry.time
+                    }
+                }
+            };
+            if (met - tau).abs() <= ACCURACY * self.grid {
+                return self.accept(tau, solved);
+            }
+            tau = root.next(tau, met, solved);
+        }
+        match root.before {
+            // not as far as the impact
+            Some((tau, solved)) if tau >= group => self.accept(tau, solved),
+            _ => self.rest(),
+        }
+    }
+
+    /// All that is left of the increment; nodes land within it.
+    pub fn rest(&mut self) -> Result<Piece, Broken> {
+        let solved = self.attempt(self.rest.dt, None)?;
+        Ok(Piece {
+            interval: self.rest,
+            solved,
+            is_cut: false,
+        })
+    }
+
+    /// Length of the piece by the motion of the start.
+    fn predicted(&mut self, hold: &mut Hold) -> f64 {
+        let (rest, group) = (self.rest.dt, GROUP * self.grid);
+        let start = self.start;
+        loop {
+            let flight = Flight {
+                v: &start.v,
+                a: &start.a,
+                end: 0.0,
+                duration: rest.min(FAR * self.last),
+            };
+            match self.first_entry(hold, flight) {
+                Some(entry) if entry.time < group => self.join_at_start(hold, entry),
+                Some(entry) if entry.time <= rest - group => return entry.time,
+                _ => return rest,
+            }
+        }
+    }
+
+    fn join_at_start(&self, hold: &mut Hold, entry: Entry) {
+        let p = self.problem.place(&self.start.u, entry.nodes);
+        hold.join_at_start(entry.slot, entry.segment, p.normal);
+    }
+
+    /// The first entry of a node into a body that does not hold it.
+    fn first_entry(&mut self, hold: &Hold, flight: Flight) -> Option<Entry> {
+        let (problem, u0) = (self.problem, &self.start.u);
+        let search = &mut *self.search;
+        let find = || {
+            search.cover_way(u0, &flight.displacement(u0));
+            let mut first: Option<Entry> = None;
+            let mut slot = 0;
+            for territory in search.territories() {
+                let surfaces = territory.surfaces();
+                for (k, &s) in surfaces.slaves.iter().enumerate() {
+                    for candidate in territory.candidates(k) {
+                        let segment = candidate.segment;
+                        let [a, b] = surfaces.segments[segment];
+                        let nodes = [s, a, b];
+                        let p = problem.place(u0, nodes);
+                        let is_free = flight.may_meet(&p, nodes)
+                            && s != a
+                            && s != b
+                            && problem.dofs.moves(&nodes)
+                            && !hold.holds(slot, &p);
+                        if is_free
+                            && let Some(time) = flight.entry(problem, u0, nodes)
+                            && first.is_none_or(|first| time < first.time)
+                        {
+                            first = Some(Entry {
+                                time,
+                                slot,
+                                segment,
+                                nodes,
+                            });
+                        }
+                    }
+                    slot += 1;
+                }
+            }
+            first
+        };
+        self.meter.time(|t| &mut t.contact, find)
+    }
+
+    fn attempt(&mut self, tau: f64, hold: Option<&Hold>) -> Result<Solved, Broken> {
+        let (interval, contact) = (self.interval(tau), self.contact);
+        let attempt = self.attempt_at(interval, hold);
+        attempt
+            .solve(contact)
+            .map_err(|failed| Box::new((interval, failed)))
+    }
+
+    /// Takes a converged piece, if no node has gone into a body otherwise than by an impact.
+    fn accept(&mut self, tau: f64, solved: Solved) -> Result<Piece, Broken> {
+        let (interval, contact) = (self.interval(tau), self.contact);
+        let mut attempt = self.attempt_at(interval, None);
+        match attempt.check_ways(&solved.d, contact, &solved.forces) {
+            Ok(()) => Ok(Piece {
+                interval,
+                solved,
+                is_cut: tau < self.rest.dt,
+            }),
+            Err(cause) => {
+                let failed = Failed {
+                    cause,
+                    worst: None,
+                    passes: solved.passes,
+                };
+                Err(Box::new((interval, failed)))
+            }
+        }
+    }
+
+    fn attempt_at<'b>(&'b mut self, interval: Interval, hold: Option<&'b Hold>) -> Attempt<'b, 'm> {
+        Attempt {
+            problem: self.problem,
+            effective: self.effective,
+            search: self.search,
+            start: self.start,
+            interval,
+            meter: self.meter,
+            hold,
+        }
+    }
+
+    /// The first part, of length `tau`, of what is left; all of it when that is its length.
+    fn interval(&self, tau: f64) -> Interval {
+        let Interval { start, end, dt } = self.rest;
+        let end = match tau == dt {
+            true => end,
+            false => Moment {
+                step: start.step + tau,
+                total: start.total + tau,
+                ..start
+            },
+        };
+        Interval {
+            start,
+            end,
+            dt: tau,
+        }
+    }
+}

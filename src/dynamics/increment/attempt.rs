@@ -1,0 +1,388 @@
+//! Solution of one increment: predictor and corrector passes with contact forces, impulses and the
+//! checks after convergence. Sections 4 to 6 of docs/theory.md (paper eqs 27, 29 and 36 to 49).
+
+use super::active_constraints::Hold;
+use super::closed_pairs::Touching;
+use super::contact_forces::ContactForces;
+use super::convergence::{Errors, Lengths, Scales, largest_forces};
+use super::impulses::Impulses;
+use crate::contact::{Pair, Pairing, Passage, Search, Touch, find_passage};
+use crate::dynamics::results::{Cause, PassReport, State, Worst};
+use crate::dynamics::step::{
+    Effective, Equilibrium, Interval, Meter, StepProblem, check_finite, difference, sum,
+};
+use crate::linear::{LinearError, larger, largest};
+use crate::model::Factorization;
+
+/// Passes that one factorisation serves within an increment.
+const KEPT_PASSES: usize = 8;
+/// Relative difference of lengths between which pieces of an increment share the factors of K*.
+const NEAR: f64 = 1e-3;
+/// Passes after which the pairs keep their segments.
+const SEARCHING_PASSES: usize = 4;
+
+/// A converged increment.
+#[derive(Default)]
+pub(crate) struct Solved {
+    /// Displacement increment d = U1 - U0.
+    pub d: Vec<f64>,
+    /// Velocity V0+ after the impulses.
+    pub v0p: Vec<f64>,
+    /// Forces in equilibrium.
+    pub equilibrium: Equilibrium,
+    /// Contact forces.
+    pub forces: ContactForces,
+    /// Slots and segments that touched at the start, where impacts end the pieces of an increment.
+    pub touching: Vec<[usize; 2]>,
+    /// Impact impulses at the start.
+    pub impulses: ContactForces,
+    /// Motion at the end.
+    pub end: State,
+    /// Its passes.
+    pub passes: Vec<PassReport>,
+}
+
+impl Solved {
+    /// A = (2/dt²)(d - dt V0+) of an increment of length `dt`, at the supports too.
+    pub fn mean_acceleration(&self, dt: f64) -> Vec<f64> {
+        let both = self.d.iter().zip(&self.v0p);
+        both.map(|(d, v0p)| 2.0 / (dt * dt) * (d - dt * v0p))
+            .collect()
+    }
+}
+
+/// Why an attempt failed, and how far it came.
+pub(crate) struct Failed {
+    pub cause: Cause,
+    pub worst: Option<Worst>,
+    pub passes: Vec<PassReport>,
+}
+
+/// An attempt at one increment.
+pub(crate) struct Attempt<'a, 'm> {
+    pub problem: &'a StepProblem<'m>,
+    pub effective: &'a mut Effective,
+    pub search: &'a mut Search<'m>,
+    pub start: &'a State,
+    pub interval: Interval,
+    pub meter: &'a mut Meter,
+    /// The pairs that are constraints; without it all, and nodes land within the increment.
+    pub hold: Option<&'a Hold>,
+}
+
+/// What an attempt leaves behind even when it fails.
+#[derive(Default)]
+struct Trace {
+    passes: Vec<PassReport>,
+    worst: Option<Worst>,
+    /// Largest force that the passes were to balance, of the first pass and of the last.
+    unbalanced: Option<[f64; 2]>,
+}
+
+impl Trace {
+    fn balance(&mut self, force: f64) {
+        let [first, _] = self.unbalanced.unwrap_or([force; 2]);
+        self.unbalanced = Some([first, force]);
+    }
+
+    /// The cause as it is, or that passes with ever larger forces have made numbers overflow.
+    fn explain(&self, cause: Cause) -> Cause {
+        let has_grown = |[first, last]: [f64; 2]| last > first || last.is_nan();
+        // where an element is wrecked, there are no forces to compare
+        let is_wrecked = matches!(cause, Cause::Inverted { .. }) && !self.passes.is_empty();
+        let diverged = is_wrecked || self.unbalanced.is_some_and(has_grown);
+        match cause.is_overflow() && diverged {
+            true => Cause::Diverged,
+            false => cause,
+        }
+    }
+}
+
+impl<'m> Attempt<'_, 'm> {
+    /// Solves the increment; `contact` holds the states of the last one, per slot.
+    pub fn solve(mut self, contact: &Touching) -> Result<Solved, Failed> {
+        let mut trace = Trace::default();
+        let solved = self.passes(contact, &mut trace);
+        match solved {
+            Ok(solved) => Ok(Solved {
+                passes: trace.passes,
+                ..solved
+            }),
+            Err(cause) => Err(Failed {
+                cause: trace.explain(cause),
+                worst: trace.worst,
+                passes: trace.passes,
+            }),
+        }
+    }
+
+    /// Predictor and correctors, which share one form (paper eqs 27, 29 and 36 to 49).
+    fn passes(&mut self, contact: &Touching, trace: &mut Trace) -> Result<Solved, Cause> {
+        let problem = self.problem;
+        let (u0, dt) = (&self.start.u, self.interval.dt);
+
+        // k = 0: from U0; the supports move by their prescribed increment in the predictor
+        let mut d = vec![0.0; u0.len()];
+        let mut prescribed = problem.support_increment(u0, self.interval);
+        let mut state = contact.clone();
+        let touching = self.hold.map_or(Vec::new(), Hold::keys);
+        let mut impulses = Impulses::new(contact, touching);
+        let mut pairing = Pairing::default();
+        self.search.start(&self.start.v, dt);
+
+        for pass in 0..problem.settings.max_passes {
+            // contact geometry of the iterate U^k
+            let u = sum(u0, &d);
+            problem.check_segments(&u)?;
+            let search = &mut *self.search;
+            self.meter.time(|t| &mut t.search, || search.cover(&u));
+            let pairs = self.meter.time(
+                |t| &mut t.contact,
+                || problem.pairs(search, u0, &u, &pairing),
+            );
+            let [pairs, left_out] = match self.hold {
+                Some(hold) => hold.split(problem, u0, pairs),
+                None => [pairs, Vec::new()],
+            };
+
+            // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi) for the pairs in contact
+            let (effective, meter) = (&mut *self.effective, &mut *self.meter);
+            let v0p = impulses.velocity(problem, effective, &pairs, self.start, dt, meter)?;
+
+            // r = R_theta - F(U_theta) - M A,  A = (2/dt²)(d - dt V0+)
+            let iterate = self.meter.time(
+                |t| &mut t.assembly,
+                || problem.equilibrium(self.start, &v0p, &d, self.interval),
+            )?;
+            let mut r = iterate.out_of_balance();
+            trace.balance(largest(&problem.dofs.restrict(&r)));
+
+            // y = K*^-1 r; in the predictor the supports move by d_p, with the force -theta2 K d_p
+            self.refresh(pass, &u, &iterate.u_theta)?;
+            let mut y = std::mem::replace(&mut prescribed, vec![0.0; d.len()]);
+            let support_force = self.support_force(&y, &u, &iterate.u_theta);
+            r = difference(&r, &support_force);
+            let free = problem.dofs.restrict(&r);
+            let k = &mut self.effective.k;
+            let solution = self
+                .meter
+                .time(|t| &mut t.solve, || k.solver.solve(&free))?;
+            problem.dofs.add(&solution, &mut y);
+
+            // Pn, Pt of the complementarity problem; dU = y + K*^-1 (Bn^T Pn + Bt^T Pt)
+            let pivots = self.meter.counts.pivots;
+            let method = problem.method();
+            let (forces, du) = ContactForces::of_pass(
+                pairs,
+                (&state, pairing.settled),
+                &y,
+                &problem.dofs,
+                k,
+                method,
+                self.meter,
+            )?;
+            let pivots = self.meter.counts.pivots - pivots;
+
+            // residual with the contact forces of this pass
+            let contact_force = forces.resultant(d.len());
+            r = problem.dofs.restrict(&sum(&r, &contact_force));
+            let forces_of = [
+                ("the load", &iterate.load),
+                ("the internal force", &iterate.internal),
+                ("the inertia force", &iterate.inertia),
+                ("the contact force", &contact_force),
+                ("the force of the supports", &support_force),
+                ("the displacement correction", &du),
+            ];
+            check_finite(&forces_of)?;
+            let force = forces_of[..5].iter().map(|(_, force)| force.as_slice());
+            let force = largest_forces(problem.parts, force);
+            let scales = self.scales(force, &u, [&d, &du], &forces);
+            let errors = Errors::new(problem.parts, &r, &problem.dofs.dof, &du);
+            let report = scales.report(&errors, &forces, pivots);
+            let position = |node| problem.position(&u, node);
+            trace.worst = scales.worst(&r, &problem.dofs.dof, position);
+            trace.passes.push(report);
+            self.meter.counts.passes += 1;
+            self.meter.counts.residual = report.residual;
+
+            // U^{k+1} = U^k + dU
+            d = sum(&d, &du);
+            state = Touching::new(&forces);
+            let rest = impulses.rest(problem, &state);
+            if rest && scales.converged(&errors) {
+                trace.worst = None;
+                if self.hold.is_none() {
+                    self.check_ways(&d, contact, &forces)?;
+                }
+                // a free node past a vertex may be behind the line of the segment it came from
+                let is_over = |pair: &Pair| {
+                    let [s, a, b, _] = pair.at.nodes;
+                    (0.0..=1.0).contains(&problem.place(&u, [s, a, b]).xi)
+                };
+                let open = left_out.into_iter();
+                let open = open.filter(|pair| pair.gap >= 0.0 || is_over(pair));
+                return self.finish(v0p, d, forces.with_open(open.collect()), impulses);
+            }
+            pairing = Pairing {
+                sites: forces.pairs.iter().map(|pair| pair.at).collect(),
+                settled: pass + 1 >= SEARCHING_PASSES,
+            };
+        }
+        Err(Cause::NotConverged)
+    }
+
+    /// No node may have gone into a body on its way from U0 to U0 + d.
+    pub fn check_ways(
+        &mut self,
+        d: &[f64],
+        contact: &Touching,
+        forces: &ContactForces,
+    ) -> Result<(), Cause> {
+        let mut touch = vec![Touch::default(); self.search.slots()];
+        for (slot, touch) in touch.iter_mut().enumerate() {
+            touch.before = contact.holds(slot);
+        }
+        for (k, pair) in forces.pairs.iter().enumerate() {
+            if forces.is_closed(k) {
+                touch[pair.at.slot].now.extend(pair.at.site.segments());
+            }
+        }
+        let (u0, u1) = (&self.start.u, sum(&self.start.u, d));
+        let search = &mut *self.search;
+        self.meter
+            .time(|t| &mut t.search, || search.cover_way(u0, &u1));
+        let StepProblem {
+            parts, settings, ..
+        } = self.problem;
+        let ways = parts.largest_of_bodies(d);
+        let unsolved = |&body: &usize| settings.tolerance * ways[body];
+        let unsolved: Vec<f64> = parts.of_nodes().iter().map(unsolved).collect();
+        let passage = self.meter.time(
+            |t| &mut t.contact,
+            || find_passage(search, u0, &u1, &touch, &unsolved),
+        );
+        passage.map_or(Ok(()), |Passage { slave, segment }| {
+            let [a, b] = segment;
+            Err(Cause::Crossed {
+                slave,
+                segment,
+                prescribed: !self.problem.dofs.moves(&[slave, a, b]),
+            })
+        })
+    }
+
+    /// theta2 K d_p, the force of the supports' motion in the predictor.
+    fn support_force(&mut self, prescribed: &[f64], u: &[f64], u_theta: &[f64]) -> Vec<f64> {
+        let StepProblem { weights, body, .. } = self.problem;
+        let (start, u) = weights.configuration(&self.start.u, u, u_theta);
+        let product = || body.tangent_product(start, u, prescribed);
+        let mut force = self.meter.time(|t| &mut t.assembly, product);
+        force.iter_mut().for_each(|f| *f *= weights.theta2);
+        force
+    }
+
+    /// Factorises K* anew when the rules say so.
+    fn refresh(&mut self, pass: usize, u: &[f64], u_theta: &[f64]) -> Result<(), Cause> {
+        let StepProblem {
+            settings,
+            weights,
+            dofs,
+            ..
+        } = self.problem;
+        let (problem, effective, dt) = (self.problem, &mut *self.effective, self.interval.dt);
+        let every = settings.factorization == Factorization::EveryPass;
+        let worn = pass > 0 && pass.is_multiple_of(KEPT_PASSES);
+        let near = self.hold.map_or(0.0, |_| NEAR);
+        if effective.fits(dt, near) && !every && !worn {
+            return Ok(());
+        }
+        let configuration = weights.configuration(&self.start.u, u, u_theta);
+        self.meter.time(
+            |t| &mut t.assembly,
+            || effective.assemble(problem, dt, configuration),
+        );
+        self.meter.counts.factorizations += 1;
+        let factorized = self
+            .meter
+            .time(|t| &mut t.factorization, || effective.k.factorize());
+        factorized.map_err(|error| match error {
+            LinearError::NotPositiveDefinite { unknown, .. } => Cause::Indefinite {
+                node: dofs.dof[unknown] / 2,
+            },
+            other => other.into(),
+        })
+    }
+
+    /// What a pass with the given forces of all parts and the increments `d` and `du` is measured
+    /// against.
+    fn scales(
+        &self,
+        force: Vec<f64>,
+        u: &[f64],
+        [d, du]: [&[f64]; 2],
+        contact: &ContactForces,
+    ) -> Scales<'m> {
+        let StepProblem {
+            parts, settings, ..
+        } = self.problem;
+        let closed = (0..contact.pairs.len()).filter(|&k| contact.is_closed(k));
+        let mut positions = vec![0.0; u.len()];
+        for k in closed {
+            let nodes = contact.pairs[k].at.nodes;
+            let of_nodes = nodes.map(|node| largest(&self.problem.position(u, node)));
+            for node in nodes {
+                positions[2 * node] = larger(positions[2 * node], largest(&of_nodes));
+            }
+        }
+        let [d, du] = [d, du].map(|d| parts.largest_of_bodies(d));
+        let lengths = Lengths {
+            displacement: parts.largest_of_bodies(u),
+            increment: d.into_iter().zip(du).map(|(d, du)| larger(d, du)).collect(),
+            position: parts.largest_of_bodies(&positions),
+        };
+        let diagonals = (
+            self.effective.stiffness.as_slice(),
+            self.effective.inertia.as_slice(),
+        );
+        Scales::new(parts, force, diagonals, lengths, settings.tolerance)
+    }
+
+    /// Motion and forces at the end of a converged increment.
+    fn finish(
+        &mut self,
+        v0p: Vec<f64>,
+        d: Vec<f64>,
+        forces: ContactForces,
+        impulses: Impulses,
+    ) -> Result<Solved, Cause> {
+        let (problem, start, interval) = (self.problem, self.start, self.interval);
+        let equilibrium = self.meter.time(
+            |t| &mut t.assembly,
+            || problem.equilibrium(start, &v0p, &d, interval),
+        )?;
+        // V1 = (2/dt) d - V0+; at supports from the amplitude
+        let rate = 2.0 / interval.dt;
+        let mut v: Vec<f64> = d.iter().zip(&v0p).map(|(d, v0p)| rate * d - v0p).collect();
+        let mut u = sum(&start.u, &d);
+        for (dof, u1, v1) in problem.supports.motion(interval.end) {
+            (u[dof], v[dof]) = (u1, v1);
+        }
+        let end = State {
+            u,
+            v,
+            a: equilibrium.acceleration.clone(),
+        };
+        end.check_finite()?;
+        Ok(Solved {
+            d,
+            v0p,
+            equilibrium,
+            forces,
+            touching: impulses.touching,
+            impulses: impulses.acting,
+            end,
+            passes: Vec::new(),
+        })
+    }
+}

@@ -1,0 +1,174 @@
+//! Convergence criterion of the passes: relative residual and correction with local scales and a
+//! round-off floor. Section 4 of docs/theory.md, Convergence.
+
+use super::contact_forces::ContactForces;
+use crate::dynamics::results::{PassReport, Worst};
+use crate::dynamics::step::Parts;
+use crate::linear::{larger, largest};
+
+/// Round-off of a sum of some terms, in units of its largest term.
+const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+
+/// What residual and correction of a pass are measured against: computed scales, so that the
+/// answer does not depend on the system of units, of every part and body its own, so that a light one
+/// is solved beside a heavy one.
+pub(crate) struct Scales<'a> {
+    parts: &'a Parts,
+    /// Largest of the forces in equilibrium, of every part.
+    force: Vec<f64>,
+    /// Round-off of the residual, of every part.
+    noise: Vec<f64>,
+    /// Largest displacement increment of every body.
+    increment: Vec<f64>,
+    /// Round-off of the displacements of every body.
+    resolution: Vec<f64>,
+    tolerance: f64,
+}
+
+/// Lengths of every body.
+pub(crate) struct Lengths {
+    /// Largest displacement U.
+    pub displacement: Vec<f64>,
+    /// Largest displacement increment d.
+    pub increment: Vec<f64>,
+    /// Largest coordinate of a pair in contact.
+    pub position: Vec<f64>,
+}
+
+/// Residual of every part and correction of every body in a pass (force; length).
+pub(crate) struct Errors {
+    residual: Vec<f64>,
+    correction: Vec<f64>,
+}
+
+impl Errors {
+    /// `residual` over the unknowns, whose dofs are given, `du` over all dofs.
+    pub fn new(parts: &Parts, residual: &[f64], dof_of: &[usize], du: &[f64]) -> Self {
+        let mut all = vec![0.0; du.len()];
+        for (&dof, value) in dof_of.iter().zip(residual) {
+            all[dof] = *value;
+        }
+        Errors {
+            residual: parts.largest(&all),
+            correction: parts.largest_of_bodies(du),
+        }
+    }
+}
+
+impl<'a> Scales<'a> {
+    /// `force`: largest force in equilibrium of every part; `stiffness`, `inertia`: largest diagonal
+    /// entries of theta2 K and (2/dt²) M of every part.
+    ///
+    /// A force from displacements U carries the round-off of K U, the inertia force that of
+    /// (2/dt²) M d, and a force that closes a gap between positions x that of K* x: a residual is
+    /// not measured finer than that. Displacements that close a gap carry the round-off of x.
+    pub fn new(
+        parts: &'a Parts,
+        force: Vec<f64>,
+        (stiffness, inertia): (&[f64], &[f64]),
+        lengths: Lengths,
+        tolerance: f64,
+    ) -> Self {
+        let Lengths {
+            displacement,
+            increment,
+            position,
+        } = lengths;
+        let noise = |(part, &body): (usize, &usize)| {
+            ROUND_OFF
+                * (stiffness[part] * larger(displacement[body], position[body])
+                    + inertia[part] * larger(increment[body], position[body]))
+        };
+        let bodies = displacement.iter().zip(&position);
+        Scales {
+            parts,
+            force,
+            noise: parts.of_parts().iter().enumerate().map(noise).collect(),
+            resolution: bodies.map(|(u, x)| ROUND_OFF * larger(*u, *x)).collect(),
+            increment,
+            tolerance,
+        }
+    }
+
+    /// Largest relative residual and correction of a pass.
+    pub fn report(&self, errors: &Errors, forces: &ContactForces, pivots: usize) -> PassReport {
+        let (active, stick) = forces.count();
+        let residuals = (0..self.force.len()).map(|part| self.residual(errors, part));
+        let corrections = (0..self.increment.len()).map(|body| {
+            self.relative(
+                errors.correction[body],
+                self.increment[body],
+                self.resolution[body],
+            )
+        });
+        PassReport {
+            residual: residuals.fold(0.0, larger),
+            correction: corrections.fold(0.0, larger),
+            active,
+            stick,
+            lcp_size: forces.problem_size,
+            pivots,
+        }
+    }
+
+    /// Whether residual and correction of every part and body are below the tolerance, or round-off.
+    /// A residual that is all round-off says the same of the correction that follows from it.
+    pub fn converged(&self, errors: &Errors) -> bool {
+        let mut is_noise = vec![true; self.increment.len()];
+        for (part, &body) in self.parts.of_parts().iter().enumerate() {
+            let residual = errors.residual[part];
+            let most = larger(self.tolerance * self.force[part], self.noise[part]);
+            if residual.is_nan() || residual > most || most == f64::INFINITY {
+                return false;
+            }
+            is_noise[body] &= residual <= self.noise[part];
+        }
+        (0..self.increment.len()).all(|body| {
+            let most = larger(self.tolerance * self.increment[body], self.resolution[body]);
+            is_noise[body] || errors.correction[body] <= most
+        })
+    }
+
+    /// The node with the largest relative residual, if there is any; `residual` over the unknowns, whose
+    /// dofs are given.
+    pub fn worst(
+        &self,
+        residual: &[f64],
+        dof_of: &[usize],
+        position: impl Fn(usize) -> [f64; 2],
+    ) -> Option<Worst> {
+        let at = |unknown: usize| {
+            let part = self.parts.part(dof_of[unknown]);
+            self.relative(residual[unknown].abs(), self.force[part], self.noise[part])
+        };
+        let larger = |a: &usize, b: &usize| at(*a).total_cmp(&at(*b));
+        let unknown = (0..residual.len()).max_by(larger)?;
+        let node = dof_of[unknown] / 2;
+        (at(unknown) != 0.0).then(|| Worst {
+            node,
+            position: position(node),
+            quantity: "force residual",
+            value: at(unknown),
+        })
+    }
+
+    fn residual(&self, errors: &Errors, part: usize) -> f64 {
+        self.relative(errors.residual[part], self.force[part], self.noise[part])
+    }
+
+    /// `value` in units of its scale, or of the round-off over the tolerance where that is larger.
+    fn relative(&self, value: f64, scale: f64, floor: f64) -> f64 {
+        let scale = larger(scale, floor / self.tolerance);
+        if scale == 0.0 { value } else { value / scale }
+    }
+}
+
+/// Largest of some forces (over all dofs) in every part.
+pub(crate) fn largest_forces<'a>(
+    parts: &Parts,
+    forces: impl Iterator<Item = &'a [f64]>,
+) -> Vec<f64> {
+    let each: Vec<Vec<f64>> = forces.map(|force| parts.largest(force)).collect();
+    let of_part = |part: usize| largest(each.iter().map(|force| &force[part]));
+    (0..parts.of_parts().len()).map(of_part).collect()
+}

@@ -1,0 +1,13 @@
+//! One increment: passes, contact forces, impulses, convergence.
+
+mod active_constraints;
+mod attempt;
+mod closed_pairs;
+mod contact_forces;
+mod convergence;
+mod impulses;
+
+pub(crate) use active_constraints::Hold;
+pub(crate) use attempt::{Attempt, Failed, Solved};
+pub(crate) use closed_pairs::Touching;
+pub(crate) use contact_forces::ContactForces;

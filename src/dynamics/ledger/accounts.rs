@@ -1,0 +1,104 @@
+//! Results of a converged increment besides its energies: momentum, motion of the bodies,
+//! resultants of the contacts, nodal quantities and reactions of rigid surfaces. Section 9 of
+//! docs/theory.md.
+
+use super::bodies::{BodyMasses, Moving, momentum};
+use super::contact_ledger::ContactLedger;
+use super::nodal_results::{contact_resultants, nodal_results};
+use super::pressure::SlaveFaces;
+use super::rigid_surfaces::RigidSurfaces;
+use crate::contact::ContactSurfaces;
+use crate::dynamics::increment::Solved;
+use crate::dynamics::results::{
+    ContactOnBody, ContactResultant, IncrementReport, NodalResults, NodeStatus, RigidReaction,
+    State,
+};
+use crate::dynamics::step::{Interval, Mass, StepProblem};
+use crate::model::{Contact, Model};
+
+/// What a run keeps account of beside the energy ledger: bodies, rigid surfaces and contacts.
+pub(crate) struct Accounts {
+    bodies: BodyMasses,
+    rigid: RigidSurfaces,
+    faces: SlaveFaces,
+    contacts: ContactLedger,
+}
+
+impl Accounts {
+    /// Accounts at the start of a run.
+    pub fn new(model: &Model, mass: &Mass, contacts: &[ContactSurfaces]) -> Self {
+        let faces = SlaveFaces::new(model);
+        Accounts {
+            bodies: BodyMasses::new(model, mass),
+            rigid: RigidSurfaces::new(model),
+            contacts: ContactLedger::new(model, contacts, faces.start.clone()),
+            faces,
+        }
+    }
+
+    /// Motion of the start with the strain energies of the elements, without forces.
+    pub fn start(&self, problem: &StepProblem, state: &State, strain: &[f64]) -> IncrementReport {
+        let (dofs, nodes) = (state.u.len(), state.u.len() / 2);
+        let of_contact = |contact: &Contact| ContactResultant {
+            min_gap: f64::NAN,
+            bodies: match contact.is_self_contact() {
+                true => vec![ContactOnBody::default(); self.bodies.bodies.count],
+                false => Vec::new(),
+            },
+            ..ContactResultant::default()
+        };
+        IncrementReport {
+            nodal: NodalResults {
+                reaction: vec![0.0; dofs],
+                concentrated: vec![0.0; dofs],
+                contact_force: vec![0.0; dofs],
+                gap: vec![f64::NAN; nodes],
+                status: vec![NodeStatus::None; nodes],
+                pressure: self.faces.start.clone(),
+                slip: self.contacts.slip.clone(),
+            },
+            contacts: problem.model.contacts.iter().map(of_contact).collect(),
+            rigid: vec![RigidReaction::default(); self.rigid.count()],
+            ..self.moving(problem, state, strain)
+        }
+    }
+
+    /// Enters a converged increment: results at nodes, of contacts, bodies and rigid surfaces.
+    pub fn enter(
+        &mut self,
+        problem: &StepProblem,
+        solved: &Solved,
+        interval: Interval,
+        strain: &[f64],
+    ) -> IncrementReport {
+        let mut report = self.moving(problem, &solved.end, strain);
+        let u = &solved.equilibrium.u_theta;
+        let mut contacts = contact_resultants(problem, solved);
+        let bodies = &self.bodies.bodies;
+        (self.contacts).enter(problem, bodies, solved, interval.dt, &mut contacts);
+        let mut nodal = nodal_results(problem, solved);
+        let (theta1, Interval { start, end, .. }) = (problem.weights.theta1, interval);
+        nodal.concentrated = problem.loads.concentrated(theta1, start, end, u.len());
+        nodal.pressure = self.faces.pressure(problem, u, &solved.forces);
+        nodal.slip.clone_from(&self.contacts.slip);
+        report.rigid = self.rigid.collect(problem, u, &mut nodal.reaction);
+        (self.bodies).add_contact(problem, u, &nodal.contact_force, &mut report.bodies);
+        IncrementReport {
+            nodal,
+            contacts,
+            ..report
+        }
+    }
+
+    /// Momentum and motion of the bodies.
+    fn moving(&self, problem: &StepProblem, state: &State, strain: &[f64]) -> IncrementReport {
+        let p = &problem.mass.times(&state.v);
+        let State { u, v, .. } = state;
+        let moving = Moving { u, v, p, strain };
+        IncrementReport {
+            momentum: momentum(problem, u, p),
+            bodies: self.bodies.results(problem, &moving),
+            ..IncrementReport::default()
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! Motion and energies of every body, section 9 of docs/theory.md.
+
+use crate::dynamics::results::{BodyResult, Momentum};
+use crate::dynamics::step::{Mass, StepProblem};
+use crate::model::{Bodies, Model};
+
+/// What does not change about the bodies of a model.
+pub(crate) struct BodyMasses {
+    pub bodies: Bodies,
+    /// Mass of every body.
+    mass: Vec<f64>,
+    /// Row sums of the consistent mass matrix, `N` entries: int rho h_a dOmega.
+    share: Vec<f64>,
+}
+
+/// Displacement and velocity, the momentum p = M V of the nodes, and the strain energies of the elements.
+pub(crate) struct Moving<'a> {
+    pub u: &'a [f64],
+    pub v: &'a [f64],
+    pub p: &'a [f64],
+    pub strain: &'a [f64],
+}
+
+impl BodyMasses {
+    /// Masses of the bodies of a model.
+    pub fn new(model: &Model, mass: &Mass) -> Self {
+        let bodies = Bodies::new(&model.mesh);
+        let ones = mass.times(&vec![1.0; model.mesh.dof_count()]);
+        let share: Vec<f64> = ones.iter().step_by(2).copied().collect();
+        let mut of_body = vec![0.0; bodies.count];
+        for (share, body) in share.iter().zip(&bodies.of_node) {
+            if let Some(body) = *body {
+                of_body[body] += share;
+            }
+        }
+        BodyMasses {
+            bodies,
+            mass: of_body,
+            share,
+        }
+    }
+
+    /// Motion and energies of every body, without contact forces.
+    ///
+    /// ```text
+    /// x_c = sum_a m_a x_a / m,  v_c = sum_a p_a / m,  r_a = x_a - x_c
+    /// H = sum_a r_a x p_a,  I = sum_ab r_a M_ab r_b,  omega = H / I
+    /// ```
+    ///
+    /// p = M v with the consistent mass, m_a its row sums, positions of the current configuration.
+    pub fn results(&self, problem: &StepProblem, moving: &Moving) -> Vec<BodyResult> {
+        let Moving { u, v, p, strain } = *moving;
+        let centers = self.centers(problem, u);
+        let mut results: Vec<BodyResult> = (centers.iter())
+            .map(|&center| BodyResult {
+                center,
+                ..BodyResult::default()
+            })
+            .collect();
+        let mut arms = vec![0.0; u.len()];
+        for (node, body) in self.nodes() {
+            let (x, c) = (problem.position(u, node), centers[body]);
+            let (i, j) = (2 * node, 2 * node + 1);
+            (arms[i], arms[j]) = (x[0] - c[0], x[1] - c[1]);
+            let result = &mut results[body];
+            result.velocity[0] += p[i];
+            result.velocity[1] += p[j];
+            result.angular_velocity += arms[i] * p[j] - arms[j] * p[i];
+            result.kinetic += (v[i] * p[i] + v[j] * p[j]) / 2.0;
+        }
+        let inertia = self.moments_of_inertia(problem, &arms);
+        for (body, result) in results.iter_mut().enumerate() {
+            result.velocity = result.velocity.map(|p| p / self.mass[body]);
+            result.angular_velocity /= inertia[body];
+        }
+        for (&body, energy) in self.bodies.of_element.iter().zip(strain) {
+            results[body].strain += energy;
+        }
+        results
+    }
+
+    /// Enters the contact forces on the nodes (2 N entries), which act in the configuration of
+    /// displacements `u`; moments are about the centres of mass.
+    pub fn add_contact(
+        &self,
+        problem: &StepProblem,
+        u: &[f64],
+        force: &[f64],
+        results: &mut [BodyResult],
+    ) {
+        let centers = self.centers(problem, u);
+        for (node, body) in self.nodes() {
+            let (x, c) = (problem.position(u, node), centers[body]);
+            let [fx, fy] = [force[2 * node], force[2 * node + 1]];
+            let result = &mut results[body];
+            result.contact_force[0] += fx;
+            result.contact_force[1] += fy;
+            result.contact_moment += (x[0] - c[0]) * fy - (x[1] - c[1]) * fx;
+        }
+    }
+
+    /// Nodes of bodies, with their bodies.
+    fn nodes(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let numbered = self.bodies.of_node.iter().enumerate();
+        numbered.filter_map(|(node, body)| Some((node, (*body)?)))
+    }
+
+    /// Centres of mass.
+    fn centers(&self, problem: &StepProblem, u: &[f64]) -> Vec<[f64; 2]> {
+        let mut centers = vec![[0.0; 2]; self.bodies.count];
+        for (node, body) in self.nodes() {
+            let x = problem.position(u, node);
+            for i in 0..2 {
+                centers[body][i] += self.share[node] * x[i];
+            }
+        }
+        for (center, mass) in centers.iter_mut().zip(&self.mass) {
+            *center = center.map(|sum| sum / mass);
+        }
+        centers
+    }
+
+    /// Moments of inertia about the centres of mass, from the arms of the nodes (2 N entries).
+    fn moments_of_inertia(&self, problem: &StepProblem, arms: &[f64]) -> Vec<f64> {
+        let weighted = problem.mass.times(arms);
+        let mut inertia = vec![0.0; self.bodies.count];
+        for (node, body) in self.nodes() {
+            let (i, j) = (2 * node, 2 * node + 1);
+            inertia[body] += arms[i] * weighted[i] + arms[j] * weighted[j];
+        }
+        inertia
+    }
+}
+
+/// Linear momentum sum p and angular momentum sum x cross p about the origin of all bodies, p = M V.
+pub(crate) fn momentum(problem: &StepProblem, u: &[f64], p: &[f64]) -> Momentum {
+    let mut momentum = Momentum::default();
+    for node in 0..problem.model.mesh.node_count() {
+        let position = problem.position(u, node);
+        let [px, py] = [p[2 * node], p[2 * node + 1]];
+        momentum.linear[0] += px;
+        momentum.linear[1] += py;
+        momentum.angular += position[0] * py - position[1] * px;
+    }
+    momentum
+}

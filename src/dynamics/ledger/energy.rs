@@ -1,0 +1,153 @@
+//! Energy balance of a run, accumulated increment by increment. Section 9 of docs/theory.md.
+
+use crate::dynamics::increment::Solved;
+use crate::dynamics::results::{Cause, Energy, State};
+use crate::dynamics::step::{Equilibrium, StepProblem, dot};
+use crate::linear::largest;
+
+/// Energy ledger: every term is computed on its own, so that the balance shows what is wrong.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Ledger {
+    pub energy: Energy,
+    /// Largest kinetic or strain energy of every body so far.
+    pub largest: Vec<f64>,
+    /// Strain energy of every element.
+    pub strains: Vec<f64>,
+    /// T + W at the start of the analysis.
+    start: f64,
+}
+
+impl Ledger {
+    /// Opens the ledger at the start of the analysis.
+    pub fn new(problem: &StepProblem, start: &State) -> Self {
+        let kinetic = problem.mass.kinetic_energy(&start.v);
+        let strains = problem.body.strain_energies(&start.u);
+        let strain = strains.iter().sum();
+        let energy = Energy {
+            kinetic,
+            strain,
+            ..Energy::default()
+        };
+        let mut ledger = Ledger {
+            energy,
+            largest: vec![0.0; problem.parts.bodies()],
+            start: kinetic + strain,
+            ..Ledger::default()
+        };
+        ledger.enter_bodies(problem, start, &strains);
+        ledger.strains = strains;
+        ledger
+    }
+
+    /// Takes in the kinetic energy of every body in a state, and the strain energy of every element.
+    fn enter_bodies(&mut self, problem: &StepProblem, state: &State, strain: &[f64]) {
+        let parts = problem.parts;
+        let kinetic = problem.mass.kinetic_energies(&state.v, parts);
+        let mut strains = vec![0.0; parts.bodies()];
+        for (element, energy) in strain.iter().enumerate() {
+            let [node, ..] = problem.body.nodes(element) else {
+                continue;
+            };
+            strains[parts.of_nodes()[*node]] += energy;
+        }
+        for (most, (kinetic, strain)) in self.largest.iter_mut().zip(kinetic.iter().zip(strains)) {
+            *most = largest(&[*most, *kinetic, strain]);
+        }
+    }
+
+    /// The ledger with a converged increment that started from `start`.
+    ///
+    /// # Errors
+    /// An energy that is not finite.
+    pub fn with(
+        mut self,
+        problem: &StepProblem,
+        start: &State,
+        solved: &Solved,
+        dt: f64,
+    ) -> Result<Self, Cause> {
+        let Solved {
+            d,
+            v0p,
+            end,
+            forces,
+            ..
+        } = solved;
+        let Equilibrium {
+            load,
+            internal,
+            inertia,
+            ..
+        } = &solved.equilibrium;
+        let strain = problem.body.strain_energies(&end.u);
+        self.enter_bodies(problem, end, &strain);
+        self.strains = strain;
+        let e = &mut self.energy;
+        let strain0 = e.strain;
+        e.strain = self.strains.iter().sum();
+        e.kinetic = problem.mass.kinetic_energy(&end.v);
+
+        // d.R_theta, and the supports: dt V_mid.(M A)_p + d_p.(F - R - B^T P)_p
+        e.external_work += dot(d, load);
+        let contact = forces.resultant(d.len());
+        for p in problem.supports.dofs() {
+            let v_mid = (v0p[p] + end.v[p]) / 2.0;
+            e.external_work +=
+                dt * v_mid * inertia[p] + d[p] * (internal[p] - load[p] - contact[p]);
+        }
+        // Pn.(Bn d) and -Pt.(Bt d)
+        for (k, pair) in forces.pairs.iter().enumerate() {
+            e.normal_contact_work += forces.normal[k] * pair.normal_of(d);
+            e.friction_dissipation -= forces.tangential[k] * pair.tangent_of(d);
+        }
+        // T(V0) - T(V0+)
+        if v0p != &start.v {
+            let kinetic = |v| problem.mass.kinetic_energy(v);
+            e.impact_loss += kinetic(&start.v) - kinetic(v0p);
+        }
+        // d.F_theta - (W1 - W0)
+        e.numerical_dissipation += dot(d, internal) - (e.strain - strain0);
+
+        e.balance = e.kinetic + e.strain - self.start - e.external_work - e.normal_contact_work
+            + e.friction_dissipation
+            + e.impact_loss
+            + e.numerical_dissipation;
+        self.check(end)?;
+        Ok(self)
+    }
+
+    /// All energies must be finite.
+    ///
+    /// # Errors
+    /// [`Cause::NotFinite`] with the node that moves most in `state`, or is the fastest.
+    pub fn check(&self, state: &State) -> Result<(), Cause> {
+        let e = &self.energy;
+        let energies = [
+            ("the strain energy", e.strain, &state.u),
+            ("the kinetic energy", e.kinetic, &state.v),
+            ("the external work", e.external_work, &state.v),
+            (
+                "the work of the contact forces",
+                e.normal_contact_work,
+                &state.v,
+            ),
+            ("the friction dissipation", e.friction_dissipation, &state.v),
+            ("the impact loss", e.impact_loss, &state.v),
+            (
+                "the numerical dissipation",
+                e.numerical_dissipation,
+                &state.u,
+            ),
+            ("the energy balance", e.balance, &state.v),
+        ];
+        let wrong = energies.iter().find(|(_, energy, _)| !energy.is_finite());
+        wrong.map_or(Ok(()), |&(what, _, motion)| {
+            let larger = |i: &usize, j: &usize| motion[*i].abs().total_cmp(&motion[*j].abs());
+            let dof = (0..motion.len()).max_by(larger).unwrap_or(0);
+            Err(Cause::NotFinite {
+                what,
+                node: dof / 2,
+            })
+        })
+    }
+}

@@ -1,0 +1,63 @@
+//! Energy check of contact in the energy-momentum scheme: positive normal work at corners that
+//! turn concave under a sliding node. Section 7 of docs/theory.md.
+
+use super::energy::Ledger;
+use crate::contact::{Pair, TOUCHING};
+use crate::dynamics::increment::{Failed, Solved};
+use crate::dynamics::results::{Cause, State};
+use crate::dynamics::step::StepProblem;
+
+/// Energy that a pair may put in, as a part of the largest energy of its bodies.
+const NEGLIGIBLE: f64 = 1e-10;
+
+/// Takes a converged increment from `start`, unless contact puts energy in that counts beside the
+/// largest energy that the bodies in contact have had so far.
+///
+/// # Errors
+/// The increment counts as failed, with [`Cause::GainedEnergy`]: in its halves a node passes a vertex
+/// before or after the vertex turns hollow.
+pub(crate) fn check_gain(
+    problem: &StepProblem,
+    start: &State,
+    ledger: &Ledger,
+    solved: Solved,
+) -> Result<Solved, Failed> {
+    let part = gain(problem, start, ledger, &solved);
+    if part <= NEGLIGIBLE {
+        return Ok(solved);
+    }
+    Err(Failed {
+        cause: Cause::GainedEnergy { part },
+        worst: None,
+        passes: solved.passes,
+    })
+}
+
+/// The energy that contact puts in because nodes slide on to segments that they were behind, as a part of
+/// the largest energy of the bodies of each pair, summed.
+///
+/// With energy-momentum rows a pair does the work Pn (g1 - g0). It is positive where a node slides over
+/// a convex vertex on to a segment with g0 < 0, and that segment holds it because the vertex turns
+/// hollow in the same increment. Nodes that start inside, as a mesh may have them, do not count.
+fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) -> f64 {
+    if !problem.weights.energy_momentum {
+        return 0.0;
+    }
+    let Solved { d, forces, .. } = solved;
+    let pairs = forces.pairs.iter().zip(&forces.normal);
+    let works = pairs.map(|(pair, normal)| {
+        let [slave, a, b, _] = pair.at.nodes;
+        let p = problem.place(&start.u, [slave, a, b]);
+        let was_beyond = !(0.0..=1.0).contains(&p.xi) && p.gap < -TOUCHING * p.length;
+        // Pn.(Bn d)
+        let work = if was_beyond {
+            normal * pair.normal_of(d)
+        } else {
+            0.0
+        };
+        (pair, work)
+    });
+    let largest = |pair: &Pair| problem.parts.most(&ledger.largest, pair.at.nodes);
+    let parts = works.filter(|&(_, work)| work > 0.0);
+    parts.map(|(pair, work)| work / largest(pair)).sum()
+}

@@ -1,0 +1,166 @@
+//! Failed increments: cause, worst node and data of the attempt, for the report of a cutback or a
+//! stop.
+
+use std::fmt;
+
+use super::increment_report::PassReport;
+use crate::elements::Inverted;
+use crate::lcp::{FrictionalLcp, LcpError};
+use crate::linear::LinearError;
+
+/// Why an increment failed.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Cause {
+    /// The passes did not converge.
+    NotConverged,
+    /// The determinant of an element's deformation gradient is not positive.
+    Inverted {
+        /// Element (index).
+        element: usize,
+        /// Determinant.
+        determinant: f64,
+    },
+    /// A segment has no length left.
+    Collapsed {
+        /// Its ends (indices).
+        segment: [usize; 2],
+    },
+    /// The effective matrix is not positive definite.
+    Indefinite {
+        /// Node (index) whose pivot is not positive.
+        node: usize,
+    },
+    /// The factorisation or a solve with it failed.
+    LinearSolver(LinearError),
+    /// The passes went away from any solution until numbers were not finite.
+    Diverged,
+    /// A node has gone into a body through a segment.
+    Crossed {
+        /// Slave node (index).
+        slave: usize,
+        /// Ends (indices) of the segment.
+        segment: [usize; 2],
+        /// Whether the motion of all three is prescribed.
+        prescribed: bool,
+    },
+    /// Contact would put energy in.
+    GainedEnergy {
+        /// As a part of the largest energy.
+        part: f64,
+    },
+    /// A complementarity problem was not solved.
+    Lcp(Box<FailedLcp>),
+    /// A quantity is not finite.
+    NotFinite {
+        /// Which.
+        what: &'static str,
+        /// Node (index) where it is not, or that moves most.
+        node: usize,
+    },
+}
+
+/// A complementarity problem without solution, of a pass or of the impulses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FailedLcp {
+    /// Why it was not solved.
+    pub error: LcpError,
+    /// The problem.
+    pub problem: FrictionalLcp,
+    /// Nodes (indices) of its pairs: slave, segment ends a and b.
+    pub pairs: Vec<[usize; 3]>,
+}
+
+/// The node with the largest residual or correction of a failed increment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Worst {
+    /// Node (index).
+    pub node: usize,
+    /// Its current position (length).
+    pub position: [f64; 2],
+    /// Which quantity is worst there.
+    pub quantity: &'static str,
+    /// Its value relative to the tolerance's scale.
+    pub value: f64,
+}
+
+/// A failed attempt at an increment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Failure {
+    /// Number of the increment over all steps.
+    pub increment: usize,
+    /// Number of the step, from 1.
+    pub step: usize,
+    /// Time at the start of the increment.
+    pub time: f64,
+    /// Length of the attempt.
+    pub dt: f64,
+    /// Why.
+    pub cause: Cause,
+    /// Where it is worst, when there is such a place.
+    pub worst: Option<Worst>,
+    /// Passes of the attempt.
+    pub passes: Vec<PassReport>,
+    /// How many times the increment had been halved.
+    pub halvings: u32,
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Cause::NotConverged => write!(f, "the passes did not converge"),
+            Cause::Inverted { determinant, .. } => {
+                write!(
+                    f,
+                    "an element turned inside out (det F = {determinant:.3e})"
+                )
+            }
+            Cause::Collapsed { .. } => write!(f, "a segment shrank to a point"),
+            Cause::Indefinite { .. } => write!(f, "the effective matrix is not positive definite"),
+            Cause::Crossed { .. } => write!(f, "a node went through a segment"),
+            Cause::GainedEnergy { part } => {
+                write!(f, "contact would put energy in ({part:.1e} of the largest)")
+            }
+            Cause::LinearSolver(error) => write!(f, "the linear solver failed: {error}"),
+            Cause::Diverged => write!(f, "the passes diverged"),
+            Cause::Lcp(failed) => match &failed.error {
+                LcpError::Ray { .. } => {
+                    write!(f, "contacts exclude each other (an LCP ended on a ray)")
+                }
+                error => write!(f, "a complementarity problem was not solved: {error}"),
+            },
+            Cause::NotFinite { what, .. } => write!(f, "{what} is not finite"),
+        }
+    }
+}
+
+impl From<LinearError> for Cause {
+    fn from(error: LinearError) -> Self {
+        Cause::LinearSolver(error)
+    }
+}
+
+impl Cause {
+    /// Whether it says only that a number has become too large.
+    pub(crate) fn is_overflow(&self) -> bool {
+        match self {
+            Cause::LinearSolver(LinearError::NotFinite(_)) | Cause::NotFinite { .. } => true,
+            Cause::Inverted { determinant, .. } => !determinant.is_finite(),
+            Cause::Lcp(failed) => failed.error == LcpError::NotFinite,
+            _ => false,
+        }
+    }
+}
+
+impl From<Inverted> for Cause {
+    fn from(
+        Inverted {
+            element,
+            determinant,
+        }: Inverted,
+    ) -> Self {
+        Cause::Inverted {
+            element,
+            determinant,
+        }
+    }
+}

@@ -1,0 +1,405 @@
+//! Time stepping of a run: steps, increments, cutbacks by bisection and subincrements between
+//! impacts. Section 4 of docs/theory.md, Cutback, and section 6, Impacts as events.
+
+use std::io;
+
+use super::nominal_increment::{Grid, StepPlace, WHOLE, increments_of};
+use crate::contact::{ContactSurfaces, Search, contact_surfaces};
+use crate::dynamics::events::{MOST_EVENTS, Piece, Pieces};
+use crate::dynamics::increment::{Attempt, Failed, Solved, Touching};
+use crate::dynamics::ledger::{Accounts, Entered, Ledger, landings, start_failure};
+use crate::dynamics::results::{
+    Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State,
+};
+use crate::dynamics::step::{
+    DofMap, Effective, Interval, Loads, Mass, Meter, Parts, StepProblem, Supports, Weights,
+};
+use crate::elements::Body;
+use crate::model::{ImpactTime, Increments, Model, Step};
+
+/// Halvings of an increment before the run stops.
+const HALVINGS: u32 = 10;
+/// Halvings of an increment because of the energy that contact puts in.
+const GAIN_HALVINGS: u32 = 5;
+
+/// Why a run could not go on, apart from a failed increment.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The observer could not take the results.
+    #[error(transparent)]
+    Observer(#[from] io::Error),
+}
+
+/// Runs all steps of a model; the observer receives the start and every increment.
+///
+/// # Errors
+/// The observer's. A failed increment is no error but an [`Outcome`].
+pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+    let body = Body::new(model);
+    let mass = Mass::new(&body, model.mesh.node_count());
+    let parts = Parts::new(model);
+    let contacts = contact_surfaces(model);
+    let mut runner = Runner {
+        model,
+        body: &body,
+        mass: &mass,
+        parts: &parts,
+        contacts: &contacts,
+        search: Search::new(&contacts, &model.mesh.coordinates),
+        state: State {
+            u: vec![0.0; model.mesh.dof_count()],
+            v: model.initial_velocity.clone(),
+            a: vec![0.0; model.mesh.dof_count()],
+        },
+        contact: Touching::default(),
+        ledger: Ledger::default(),
+        accounts: Accounts::new(model, &mass, &contacts),
+        increment: 0,
+        cutbacks: 0,
+        events: 0,
+        meter: Meter::default(),
+        totals: SolverCounts {
+            converged: true,
+            ..SolverCounts::default()
+        },
+        observer,
+    };
+    let mut outcome = Outcome::Finished;
+    let mut start = 0.0;
+    for (number, step) in model.steps.iter().enumerate() {
+        match runner.step(number + 1, step, start)? {
+            Outcome::Finished => start += step.increments.period,
+            stopped => {
+                outcome = stopped;
+                break;
+            }
+        }
+    }
+    Ok(RunSummary {
+        outcome,
+        increments: runner.increment,
+        cutbacks: runner.cutbacks,
+        events: runner.events,
+        solver: runner.totals,
+        timings: runner.meter.timings,
+    })
+}
+
+/// State of a run.
+struct Runner<'m, 'o> {
+    model: &'m Model,
+    body: &'m Body,
+    mass: &'m Mass,
+    parts: &'m Parts,
+    contacts: &'m [ContactSurfaces],
+    search: Search<'m>,
+    state: State,
+    contact: Touching,
+    ledger: Ledger,
+    accounts: Accounts,
+    increment: usize,
+    cutbacks: usize,
+    events: usize,
+    meter: Meter,
+    totals: SolverCounts,
+    observer: &'o mut dyn Observer,
+}
+
+impl<'m> Runner<'m, '_> {
+    fn step(&mut self, number: usize, step: &'m Step, start: f64) -> Result<Outcome, RunError> {
+        let Increments {
+            dt, period, dt_min, ..
+        } = step.increments;
+        let place = StepPlace {
+            number,
+            start,
+            period,
+        };
+        let problem = StepProblem {
+            model: self.model,
+            body: self.body,
+            mass: self.mass,
+            parts: self.parts,
+            contacts: self.contacts,
+            settings: step.settings,
+            weights: Weights::new(step.settings.scheme),
+            dofs: DofMap::new(self.body, step, self.model.mesh.dof_count()),
+            loads: Loads::new(self.model, step),
+            supports: Supports::new(self.model, step, &self.state.u),
+        };
+        let choice = step.settings.solver;
+        let mut effective = Effective::new(self.body, &problem.dofs, self.parts, choice);
+        if number == 1
+            && let Some(failure) = self.report_start(&problem, &mut effective, place)?
+        {
+            return Ok(Outcome::Stopped(Box::new(failure)));
+        }
+        let count = increments_of(period, dt);
+        for i in 0..count {
+            let from = dt * i as f64;
+            let to = if i + 1 == count {
+                period
+            } else {
+                dt * (i + 1) as f64
+            };
+            // The nominal length keeps the factors valid; only a last, shorter one differs.
+            let length = if to - from < dt * (1.0 - WHOLE) {
+                to - from
+            } else {
+                dt
+            };
+            let grid = Grid {
+                from,
+                to,
+                length,
+                dt_min,
+            };
+            let end = match step.settings.impact_time {
+                ImpactTime::Increment => self.grid_increment(&problem, &mut effective, place, grid),
+                ImpactTime::Event => self.cut_increment(&problem, &mut effective, place, grid),
+            };
+            if let Some(end) = end? {
+                return Ok(end);
+            }
+        }
+        Ok(Outcome::Finished)
+    }
+
+    /// One increment of the grid, in halves, quarters ... where it does not converge; how the run
+    /// ends, if it does.
+    fn grid_increment(
+        &mut self,
+        problem: &StepProblem<'m>,
+        effective: &mut Effective,
+        place: StepPlace,
+        grid: Grid,
+    ) -> Result<Option<Outcome>, RunError> {
+        // The next piece is number `piece` of 2^halvings.
+        let (mut piece, mut halvings) = (0_u32, 0_u32);
+        while piece < 1 << halvings {
+            if self.observer.wants_stop() {
+                return Ok(Some(Outcome::Interrupted));
+            }
+            let interval = grid.piece(place, piece, halvings);
+            self.meter.counts = SolverCounts::default();
+            let attempt = Attempt {
+                problem,
+                effective,
+                search: &mut self.search,
+                start: &self.state,
+                interval,
+                meter: &mut self.meter,
+                hold: None,
+            };
+            let solved = attempt.solve(&self.contact);
+            match solved.and_then(|s| self.checked(problem, s, interval.dt, halvings, grid)) {
+                Ok(entered) => {
+                    self.accept(problem, place, interval, entered)?;
+                    piece += 1;
+                    while halvings > 0 && piece % 2 == 0 {
+                        (piece, halvings) = (piece / 2, halvings - 1);
+                    }
+                }
+                Err(failed) => {
+                    let failure = self.failure(place, interval, failed, halvings);
+                    if let Some(failure) = self.cut_back(failure, grid.dt_min)? {
+                        return Ok(Some(Outcome::Stopped(Box::new(failure))));
+                    }
+                    (piece, halvings) = (2 * piece, halvings + 1);
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// One increment of the grid, in pieces that end at impacts, or halfway where one does not
+    /// converge; how the run ends, if it does.
+    fn cut_increment(
+        &mut self,
+        problem: &StepProblem<'m>,
+        effective: &mut Effective,
+        place: StepPlace,
+        grid: Grid,
+    ) -> Result<Option<Outcome>, RunError> {
+        let (mut events, mut from, mut last) = (0, grid.from, grid.length);
+        // Ends of what is left, and of its halves; the next piece goes no further than the last.
+        let mut ends = vec![grid.to];
+        while let Some(&to) = ends.last() {
+            if self.observer.wants_stop() {
+                return Ok(Some(Outcome::Interrupted));
+            }
+            let is_whole = from == grid.from && to == grid.to;
+            let rest = Interval {
+                start: place.moment(from),
+                end: place.moment(to),
+                dt: if is_whole { grid.length } else { to - from },
+            };
+            self.meter.counts = SolverCounts::default();
+            let mut pieces = Pieces {
+                problem,
+                effective,
+                search: &mut self.search,
+                start: &self.state,
+                contact: &self.contact,
+                meter: &mut self.meter,
+                rest,
+                grid: grid.length,
+                last,
+            };
+            let next = match events < MOST_EVENTS {
+                true => pieces.next(),
+                false => pieces.rest(),
+            };
+            let halvings = ends.len() as u32 - 1;
+            let checked = next.and_then(|piece| {
+                let Piece {
+                    interval,
+                    solved,
+                    is_cut,
+                } = piece;
+                let checked = self.checked(problem, solved, interval.dt, halvings, grid);
+                let entered = checked.map_err(|failed| Box::new((interval, failed)))?;
+                Ok((interval, entered, is_cut))
+            });
+            match checked {
+                Ok((interval, entered, is_cut)) => {
+                    self.accept(problem, place, interval, entered)?;
+                    (from, last) = (interval.end.step, interval.dt);
+                    if is_cut {
+                        (events, self.events) = (events + 1, self.events + 1);
+                    } else {
+                        ends.pop();
+                    }
+                }
+                Err(broken) => {
+                    let (interval, failed) = *broken;
+                    let failure = self.failure(place, interval, failed, halvings);
+                    if let Some(failure) = self.cut_back(failure, grid.dt_min)? {
+                        return Ok(Some(Outcome::Stopped(Box::new(failure))));
+                    }
+                    ends.push(from + interval.dt / 2.0);
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// A converged increment with its energies, which must be finite; one into which contact puts
+    /// energy is halved, a few times.
+    fn checked(
+        &self,
+        problem: &StepProblem,
+        solved: Solved,
+        dt: f64,
+        halvings: u32,
+        grid: Grid,
+    ) -> Result<Entered, Failed> {
+        let may_be_halved = halvings < GAIN_HALVINGS && dt / 2.0 >= grid.dt_min;
+        let before = (&self.state, &self.ledger);
+        Entered::new(problem, before, solved, dt, may_be_halved)
+    }
+
+    fn failure(
+        &self,
+        place: StepPlace,
+        interval: Interval,
+        failed: Failed,
+        halvings: u32,
+    ) -> Failure {
+        let Failed {
+            cause,
+            worst,
+            passes,
+        } = failed;
+        Failure {
+            increment: self.increment + 1,
+            step: place.number,
+            time: interval.start.total,
+            dt: interval.dt,
+            cause,
+            worst,
+            passes,
+            halvings,
+        }
+    }
+
+    /// Reports a failed attempt that is to be repeated with half its length; gives it back if it
+    /// may not be halved any more.
+    fn cut_back(&mut self, failure: Failure, dt_min: f64) -> Result<Option<Failure>, RunError> {
+        let next_dt = failure.dt / 2.0;
+        if failure.halvings == HALVINGS || next_dt < dt_min {
+            return Ok(Some(failure));
+        }
+        self.cutbacks += 1;
+        self.observer.cutback(&Cutback { failure, next_dt })?;
+        Ok(None)
+    }
+
+    /// Takes over a converged increment and reports it.
+    fn accept(
+        &mut self,
+        problem: &StepProblem,
+        place: StepPlace,
+        interval: Interval,
+        Entered { solved, ledger }: Entered,
+    ) -> Result<(), RunError> {
+        self.ledger = ledger;
+        let accounted = (self.accounts).enter(problem, &solved, interval, &self.ledger.strains);
+        let landings = landings(problem, &self.state, &self.contact, &solved, interval);
+        self.meter.counts.converged = true;
+        self.totals.add(&self.meter.counts);
+        self.increment += 1;
+        let report = IncrementReport {
+            increment: self.increment,
+            step: place.number,
+            time: interval.end.total,
+            step_time: interval.end.step,
+            dt: interval.dt,
+            ends_step: interval.end.step == place.period,
+            energy: self.ledger.energy,
+            strain: self.body.most_strained(&solved.end.u),
+            landings,
+            solver: self.meter.counts,
+            passes: solved.passes,
+            state: solved.end,
+            ..accounted
+        };
+        self.contact = Touching::new(&solved.forces);
+        self.observer.increment(&report)?;
+        self.state = report.state;
+        Ok(())
+    }
+
+    /// Completes the start state (velocity of the supports, acceleration) and reports it, or gives
+    /// the failure when it is not finite.
+    fn report_start(
+        &mut self,
+        problem: &StepProblem,
+        effective: &mut Effective,
+        place: StepPlace,
+    ) -> Result<Option<Failure>, RunError> {
+        let now = place.moment(0.0);
+        for (dof, _, v) in problem.supports.motion(now) {
+            self.state.v[dof] = v;
+        }
+        self.state.a = problem.start_acceleration(effective, &self.state, now);
+        self.ledger = Ledger::new(problem, &self.state);
+        if let Some(failure) = start_failure(&self.state, &self.ledger, place) {
+            return Ok(Some(failure));
+        }
+        let report = IncrementReport {
+            step: place.number,
+            energy: self.ledger.energy,
+            solver: SolverCounts {
+                converged: true,
+                ..SolverCounts::default()
+            },
+            state: self.state.clone(),
+            ..self
+                .accounts
+                .start(problem, &self.state, &self.ledger.strains)
+        };
+        self.observer.increment(&report)?;
+        Ok(None)
+    }
+}

@@ -1,0 +1,101 @@
+//! System matrices of a step with their factors and compliances at the contacts: the effective
+//! stiffness K* of the passes and the mass of the impulses. Sections 4 and 6 of docs/theory.md.
+
+use super::dofs::DofMap;
+use super::mass::unknown_mass;
+use super::parts::Parts;
+use super::step_problem::StepProblem;
+use crate::contact::{Compliance, Pair};
+use crate::elements::Body;
+use crate::linear::{Assembled, CheckedSolver, LinearError, linear_solver};
+use crate::model::SolverChoice;
+
+/// A symmetric matrix over the unknowns, factorised, with its compliance at the contacts.
+pub(crate) struct Factored {
+    pub solver: CheckedSolver,
+    pub compliance: Compliance,
+}
+
+impl Factored {
+    pub fn new(choice: SolverChoice, matrix: Assembled, compliance: Compliance) -> Self {
+        Factored {
+            solver: CheckedSolver::new(linear_solver(choice), matrix),
+            compliance,
+        }
+    }
+
+    /// Factorises the matrix anew.
+    pub fn factorize(&mut self) -> Result<(), LinearError> {
+        self.compliance.clear();
+        self.solver.factorize()
+    }
+
+    /// Solves for the columns of the compliance that `pairs` need.
+    pub fn prepare(&mut self, pairs: &[Pair]) -> Result<(), LinearError> {
+        self.compliance.prepare(pairs, &mut self.solver)
+    }
+}
+
+/// The effective matrix K* = theta2 K + (2/dt²) M, kept until it is assembled anew, and the mass
+/// matrix, both over the unknowns of a step.
+pub(crate) struct Effective {
+    /// K*.
+    pub k: Factored,
+    /// M, factorised when an impulse first needs it.
+    pub m: Factored,
+    /// Increment that K* belongs to.
+    dt: f64,
+    /// Largest diagonal entry of theta2 K in every part (force/length).
+    pub stiffness: Vec<f64>,
+    /// Largest diagonal entry of (2/dt²) M in every part (force/length).
+    pub inertia: Vec<f64>,
+}
+
+impl Effective {
+    /// Both matrices for the unknowns of a step.
+    pub fn new(body: &Body, dofs: &DofMap, parts: &Parts, choice: SolverChoice) -> Self {
+        let mass = unknown_mass(body, dofs);
+        let compliance = || Compliance::new(dofs.unknown.clone(), parts.of_nodes().to_vec());
+        Effective {
+            k: Factored::new(choice, mass.zeros(), compliance()),
+            m: Factored::new(choice, mass, compliance()),
+            dt: f64::NAN,
+            stiffness: Vec::new(),
+            inertia: Vec::new(),
+        }
+    }
+
+    /// Whether K* is factorised for increments of length `dt`, or of one that differs from it by no
+    /// more than the part `near`.
+    pub fn fits(&self, dt: f64, near: f64) -> bool {
+        self.k.solver.is_factorized() && (self.dt - dt).abs() <= near * dt
+    }
+
+    /// Assembles K* in the given configuration, to be factorised next.
+    pub fn assemble(
+        &mut self,
+        problem: &StepProblem,
+        dt: f64,
+        (start, u): (Option<&[f64]>, &[f64]),
+    ) {
+        let StepProblem {
+            body,
+            weights,
+            dofs,
+            parts,
+            ..
+        } = problem;
+        let mass = self.m.solver.matrix();
+        let k = self.k.solver.matrix_mut();
+        k.clear();
+        body.for_each_tangent(start, u, |element, tangent| {
+            k.add(element, tangent, weights.theta2)
+        });
+        self.stiffness = parts.largest_diagonal(k, &dofs.dof);
+        let c = 2.0 / (dt * dt);
+        let inertia = parts.largest_diagonal(mass, &dofs.dof);
+        self.inertia = inertia.into_iter().map(|m| c * m).collect();
+        k.add_matrix(mass, c);
+        self.dt = dt;
+    }
+}

@@ -1,0 +1,101 @@
+//! Wall-clock times of the phases and counters of the solvers.
+
+use std::time::{Duration, Instant};
+
+use crate::dynamics::results::{SolverCounts, Timings};
+use crate::lcp::{Counters, LcpMethod};
+use crate::linear::larger;
+use crate::model::LcpChoice;
+
+/// Time and work spent, per phase.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Meter {
+    pub timings: Timings,
+    pub counts: SolverCounts,
+}
+
+impl Meter {
+    /// Runs `work` and adds its time to a phase.
+    pub fn time<T>(
+        &mut self,
+        phase: fn(&mut Timings) -> &mut Duration,
+        work: impl FnOnce() -> T,
+    ) -> T {
+        let started = Instant::now();
+        let result = work();
+        *phase(&mut self.timings) += started.elapsed();
+        result
+    }
+
+    /// Counts a complementarity problem of `size` pairs.
+    pub fn count_lcp(&mut self, size: usize, work: Counters) {
+        let counts = &mut self.counts;
+        counts.lcps += 1;
+        counts.lcp_size = counts.lcp_size.max(size);
+        counts.pivots += work.pivots;
+        counts.active_set_iterations += work.active_set_iterations;
+        counts.gauss_seidel_sweeps += work.gauss_seidel_sweeps;
+        counts.lemke_calls += work.lemke_calls;
+    }
+}
+
+impl SolverCounts {
+    /// Adds the counts of one increment to the totals of a run.
+    pub(crate) fn add(&mut self, other: &SolverCounts) {
+        self.passes += other.passes;
+        self.lcps += other.lcps;
+        self.lcp_size = self.lcp_size.max(other.lcp_size);
+        self.pivots += other.pivots;
+        self.active_set_iterations += other.active_set_iterations;
+        self.gauss_seidel_sweeps += other.gauss_seidel_sweeps;
+        self.lemke_calls += other.lemke_calls;
+        self.factorizations += other.factorizations;
+        self.residual = larger(self.residual, other.residual);
+        self.converged = self.converged && other.converged;
+    }
+}
+
+impl From<LcpChoice> for LcpMethod {
+    fn from(choice: LcpChoice) -> Self {
+        match choice {
+            LcpChoice::Hybrid => LcpMethod::Hybrid,
+            LcpChoice::Lemke => LcpMethod::Lemke,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn totals_are_sums_but_for_the_largest_problem_and_the_largest_residual() {
+        let increment = |k: usize| SolverCounts {
+            passes: 2 * k,
+            lcps: 3 * k,
+            lcp_size: 4 * k,
+            pivots: 5 * k,
+            active_set_iterations: 6 * k,
+            gauss_seidel_sweeps: 7 * k,
+            lemke_calls: 8 * k,
+            factorizations: 9 * k,
+            residual: k as f64,
+            converged: true,
+        };
+        let mut totals = SolverCounts {
+            converged: true,
+            ..SolverCounts::default()
+        };
+        for k in [2, 5, 3] {
+            totals.add(&increment(k));
+        }
+        let expected = SolverCounts {
+            lcp_size: 4 * 5,
+            residual: 5.0,
+            ..increment(2 + 5 + 3)
+        };
+        assert_eq!(totals, expected);
+        totals.add(&SolverCounts::default());
+        assert!(!totals.converged, "one that has not converged");
+    }
+}

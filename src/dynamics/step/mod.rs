@@ -1,0 +1,21 @@
+//! What stays the same over a step: unknowns, loads, supports, mass, scheme, effective stiffness.
+
+mod dofs;
+mod effective_stiffness;
+mod loads;
+mod mass;
+mod meter;
+mod parts;
+mod scheme;
+mod step_problem;
+mod supports;
+
+pub(crate) use dofs::DofMap;
+pub(crate) use effective_stiffness::{Effective, Factored};
+pub(crate) use loads::{Loads, Moment};
+pub(crate) use mass::{Mass, dot};
+pub(crate) use meter::Meter;
+pub(crate) use parts::Parts;
+pub(crate) use scheme::Weights;
+pub(crate) use step_problem::{Equilibrium, Interval, StepProblem, check_finite, difference, sum};
+pub(crate) use supports::Supports;

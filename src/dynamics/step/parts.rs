@@ -1,0 +1,110 @@
+//! What convergence is measured against apart: bodies, and parts of bodies with one kind of section
+//! (docs/theory.md, convergence).
+
+use std::collections::HashMap;
+
+use crate::linear::{Assembled, larger, largest};
+use crate::model::Model;
+
+/// The bodies of a model and their parts, both numbered from 0.
+///
+/// A body is what elements connect. Nodes of a body are in one part when the elements around them
+/// have the same sections: beside a stiff or heavy part of its body a light one is solved to its own
+/// scale, as a light body is beside a heavy one.
+pub(crate) struct Parts {
+    /// Body of every node.
+    body: Vec<usize>,
+    /// Part of every node.
+    part: Vec<usize>,
+    /// Body of every part.
+    body_of: Vec<usize>,
+    bodies: usize,
+}
+
+impl Parts {
+    /// Bodies and parts of a model.
+    pub fn new(model: &Model) -> Self {
+        let mut sections = vec![Vec::new(); model.mesh.node_count()];
+        for element in &model.mesh.elements {
+            for &node in element.cell.nodes() {
+                if let Err(at) = sections[node].binary_search(&element.section) {
+                    sections[node].insert(at, element.section);
+                }
+            }
+        }
+        let (mut bodies, mut parts) = (HashMap::new(), HashMap::new());
+        let (mut body, mut part, mut body_of) = (Vec::new(), Vec::new(), Vec::new());
+        for (first, sections) in model.mesh.bodies().into_iter().zip(sections) {
+            let count = bodies.len();
+            let number = *bodies.entry(first).or_insert(count);
+            body.push(number);
+            let count = parts.len();
+            let at = *parts.entry((number, sections)).or_insert(count);
+            part.push(at);
+            if at == count {
+                body_of.push(number);
+            }
+        }
+        Parts {
+            body,
+            part,
+            body_of,
+            bodies: bodies.len(),
+        }
+    }
+
+    /// Number of bodies.
+    pub fn bodies(&self) -> usize {
+        self.bodies
+    }
+
+    /// Body of every node.
+    pub fn of_nodes(&self) -> &[usize] {
+        &self.body
+    }
+
+    /// Body of every part.
+    pub fn of_parts(&self) -> &[usize] {
+        &self.body_of
+    }
+
+    /// Part of a dof.
+    pub fn part(&self, dof: usize) -> usize {
+        self.part[dof / 2]
+    }
+
+    /// Largest absolute value of every part; `values` over all dofs.
+    pub fn largest(&self, values: &[f64]) -> Vec<f64> {
+        largest_of(&self.part, self.body_of.len(), values)
+    }
+
+    /// Largest absolute value of every body; `values` over all dofs.
+    pub fn largest_of_bodies(&self, values: &[f64]) -> Vec<f64> {
+        largest_of(&self.body, self.bodies, values)
+    }
+
+    /// Largest diagonal entry of every part; the matrix is over unknowns, whose dofs are given.
+    pub fn largest_diagonal(&self, matrix: &Assembled, dof_of: &[usize]) -> Vec<f64> {
+        let mut most = vec![0.0; self.body_of.len()];
+        for (&dof, entry) in dof_of.iter().zip(matrix.diagonal()) {
+            let most = &mut most[self.part(dof)];
+            *most = larger(*most, entry);
+        }
+        most
+    }
+
+    /// The largest of the values of the bodies that some nodes belong to.
+    pub fn most(&self, of_bodies: &[f64], nodes: [usize; 4]) -> f64 {
+        largest(&nodes.map(|node| of_bodies[self.body[node]]))
+    }
+}
+
+/// Largest absolute value of every group; `group` of the nodes, `values` over all dofs.
+fn largest_of(group: &[usize], count: usize, values: &[f64]) -> Vec<f64> {
+    let mut most = vec![0.0; count];
+    for (dof, value) in values.iter().enumerate() {
+        let most = &mut most[group[dof / 2]];
+        *most = larger(*most, value.abs());
+    }
+    most
+}

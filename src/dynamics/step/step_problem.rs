@@ -1,0 +1,225 @@
+//! Equation of motion of a step (paper eq. 21), evaluated at an iterate: loads, internal and
+//! inertia forces, and contact pairs. Sections 3 and 4 of docs/theory.md.
+
+use super::dofs::DofMap;
+use super::effective_stiffness::Effective;
+use super::loads::{Loads, Moment};
+use super::mass::Mass;
+use super::parts::Parts;
+use super::scheme::Weights;
+use super::supports::Supports;
+use crate::contact::{
+    ContactSurfaces, Pair, Pairing, Projection, Search, find_pairs, position, project,
+};
+use crate::dynamics::results::{Cause, State};
+use crate::elements::Body;
+use crate::lcp::LcpMethod;
+use crate::model::{Model, Settings};
+
+/// Part of its length in the reference configuration below which a segment counts as a point.
+const COLLAPSED: f64 = 1e-9;
+
+/// What stays the same over a step.
+pub(crate) struct StepProblem<'m> {
+    pub model: &'m Model,
+    pub body: &'m Body,
+    pub mass: &'m Mass,
+    pub parts: &'m Parts,
+    pub contacts: &'m [ContactSurfaces],
+    pub settings: Settings,
+    pub weights: Weights,
+    pub dofs: DofMap,
+    pub loads: Loads<'m>,
+    pub supports: Supports<'m>,
+}
+
+/// Times of an increment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Interval {
+    pub start: Moment,
+    pub end: Moment,
+    pub dt: f64,
+}
+
+/// Load, internal force and inertia of an iterate.
+#[derive(Default)]
+pub(crate) struct Equilibrium {
+    /// Displacement U_theta.
+    pub u_theta: Vec<f64>,
+    /// Load R_theta.
+    pub load: Vec<f64>,
+    /// Internal force F_theta.
+    pub internal: Vec<f64>,
+    /// Acceleration A.
+    pub acceleration: Vec<f64>,
+    /// Inertia force M A.
+    pub inertia: Vec<f64>,
+}
+
+impl Equilibrium {
+    /// R_theta - F_theta - M A.
+    pub fn out_of_balance(&self) -> Vec<f64> {
+        difference(&difference(&self.load, &self.internal), &self.inertia)
+    }
+}
+
+impl StepProblem<'_> {
+    /// Solver of the complementarity problems.
+    pub fn method(&self) -> LcpMethod {
+        self.settings.lcp.into()
+    }
+
+    /// Current position of a node.
+    pub fn position(&self, u: &[f64], node: usize) -> [f64; 2] {
+        position(&self.model.mesh.coordinates, u, node)
+    }
+
+    /// Place of a node relative to a segment: of slave, a and b.
+    pub fn place(&self, u: &[f64], nodes: [usize; 3]) -> Projection {
+        let [s, a, b] = nodes.map(|node| self.position(u, node));
+        project(s, a, b)
+    }
+
+    /// Displacement increment of the supports; zero at all other dofs.
+    pub fn support_increment(&self, u0: &[f64], interval: Interval) -> Vec<f64> {
+        let mut d = vec![0.0; u0.len()];
+        for (dof, u, _) in self.supports.motion(interval.end) {
+            d[dof] = u - u0[dof];
+        }
+        d
+    }
+
+    /// Every segment must have a length to have a normal.
+    ///
+    /// # Errors
+    /// [`Cause::Collapsed`] with the first one that has next to none of its own left.
+    pub fn check_segments(&self, u: &[f64]) -> Result<(), Cause> {
+        let x = &self.model.mesh.coordinates;
+        let length = |[p, q]: [[f64; 2]; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
+        let has_collapsed = |segment: &&[usize; 2]| {
+            let now = length(segment.map(|node| self.position(u, node)));
+            let least = COLLAPSED * length(segment.map(|node| x[node]));
+            now.is_nan() || now <= least
+        };
+        let mut segments = self.contacts.iter().flat_map(|contact| &contact.segments);
+        match segments.find(has_collapsed) {
+            Some(&segment) => Err(Cause::Collapsed { segment }),
+            None => Ok(()),
+        }
+    }
+
+    /// Pairs between `u0` and the iterate `u`, which the search covers, `before` being those of the
+    /// last pass; obstacles have none among themselves.
+    pub fn pairs(&self, search: &Search, u0: &[f64], u: &[f64], before: &Pairing) -> Vec<Pair> {
+        let x = &self.model.mesh.coordinates;
+        let form = self.weights.row_form();
+        find_pairs(search, u0, u, before)
+            .into_iter()
+            .filter(|at| self.dofs.moves(&at.nodes))
+            .map(|at| Pair::new(at, form, x, u0, u))
+            .collect()
+    }
+
+    /// Load, internal force and inertia of the iterate U0 + d.
+    pub fn equilibrium(
+        &self,
+        start: &State,
+        v0p: &[f64],
+        d: &[f64],
+        interval: Interval,
+    ) -> Result<Equilibrium, Cause> {
+        let Interval {
+            start: t0,
+            end: t1,
+            dt,
+        } = interval;
+        let u = sum(&start.u, d);
+        let u_theta = self.weights.displacement(&start.u, d, v0p, dt);
+        let internal = self
+            .weights
+            .internal_force(self.body, &start.u, &u, &u_theta)?;
+        let load = self
+            .loads
+            .weighted(self.body, self.weights.theta1, t0, t1, &u_theta);
+        // A = (2/dt²)(d - dt V0+); at supports (V1 - V0)/dt
+        let c = 2.0 / (dt * dt);
+        let mut acceleration: Vec<f64> = d
+            .iter()
+            .zip(v0p)
+            .map(|(d, v0p)| c * (d - dt * v0p))
+            .collect();
+        for (dof, _, v1) in self.supports.motion(t1) {
+            acceleration[dof] = (v1 - start.v[dof]) / dt;
+        }
+        let inertia = self.mass.times(&acceleration);
+        Ok(Equilibrium {
+            u_theta,
+            load,
+            internal,
+            acceleration,
+            inertia,
+        })
+    }
+
+    /// Acceleration at the start of the analysis, M A = R - F, the supports being at rest.
+    pub fn start_acceleration(
+        &self,
+        effective: &mut Effective,
+        start: &State,
+        now: Moment,
+    ) -> Vec<f64> {
+        let mut a = vec![0.0; start.u.len()];
+        let load = self.loads.weighted(self.body, 1.0, now, now, &start.u);
+        let Ok(internal) = self.body.internal_force(None, &start.u) else {
+            return a;
+        };
+        let r = difference(&load, &internal);
+        let m = &mut effective.m;
+        let solved = m
+            .factorize()
+            .and_then(|()| m.solver.solve(&self.dofs.restrict(&r)));
+        // Without it only the estimate of the first landings would be less good.
+        if let Ok(acceleration) = solved {
+            self.dofs.add(&acceleration, &mut a);
+        }
+        a
+    }
+}
+
+/// All values of some quantities, each over all dofs, must be finite.
+///
+/// # Errors
+/// [`Cause::NotFinite`] with the first quantity and node that is not.
+pub(crate) fn check_finite(quantities: &[(&'static str, &Vec<f64>)]) -> Result<(), Cause> {
+    for &(what, values) in quantities {
+        if let Some(dof) = values.iter().position(|value| !value.is_finite()) {
+            let node = dof / 2;
+            return Err(Cause::NotFinite { what, node });
+        }
+    }
+    Ok(())
+}
+
+impl State {
+    /// Displacement, velocity and acceleration must be finite.
+    ///
+    /// # Errors
+    /// [`Cause::NotFinite`].
+    pub(crate) fn check_finite(&self) -> Result<(), Cause> {
+        check_finite(&[
+            ("the displacement", &self.u),
+            ("the velocity", &self.v),
+            ("the acceleration", &self.a),
+        ])
+    }
+}
+
+/// a + b
+pub(crate) fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a + b).collect()
+}
+
+/// a - b
+pub(crate) fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}

@@ -1,0 +1,13 @@
+//! Lemke's method on a revised basis.
+
+mod basis;
+mod factors;
+mod frictional_lemke;
+mod lemke;
+mod pivoting;
+mod ratio;
+
+pub(crate) use factors::Factors;
+pub(crate) use frictional_lemke::lemke_forces;
+pub use lemke::{LemkeSettings, covering_vector, lemke};
+pub(crate) use ratio::perturbation;

@@ -1,0 +1,49 @@
+//! Vector kernels of the inner loops.
+
+/// Sum of a_i b_i over the shorter length, in eight interleaved partial sums (which the compiler
+/// turns into vector instructions).
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let length = a.len().min(b.len());
+    let (a, b) = (&a[..length], &b[..length]);
+    let mut sums = [0.0; 8];
+    let (mut chunks_a, mut chunks_b) = (a.chunks_exact(8), b.chunks_exact(8));
+    for (x, y) in (&mut chunks_a).zip(&mut chunks_b) {
+        for (sum, (x, y)) in sums.iter_mut().zip(x.iter().zip(y)) {
+            *sum += x * y;
+        }
+    }
+    let rest = chunks_a.remainder().iter().zip(chunks_b.remainder());
+    sums.iter().sum::<f64>() + rest.map(|(x, y)| x * y).sum::<f64>()
+}
+
+/// y += a x.
+pub(crate) fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
+    if a != 0.0 {
+        y.iter_mut().zip(x).for_each(|(y, x)| *y += a * x);
+    }
+}
+
+/// Largest absolute value, 0 of nothing.
+pub(crate) fn max_abs(values: &[f64]) -> f64 {
+    values
+        .iter()
+        .fold(0.0, |largest: f64, v| largest.max(v.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kernels_match_their_definitions() {
+        let a: Vec<f64> = (0..19).map(f64::from).collect();
+        let b: Vec<f64> = (0..19).map(|i| f64::from(i) - 9.0).collect();
+        let sum: f64 = a.iter().zip(&b).map(|(x, y)| x * y).sum();
+        assert_eq!(dot(&a, &b), sum);
+        let mut y = b.clone();
+        axpy(2.0, &a, &mut y);
+        assert_eq!(y[18], 9.0 + 36.0);
+        assert_eq!(max_abs(&b), 9.0);
+        assert_eq!(max_abs(&[]), 0.0);
+    }
+}

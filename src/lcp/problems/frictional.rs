@@ -1,0 +1,190 @@
+//! The frictional problem in Delassus form.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::dense::axpy;
+use super::general::{Lcp, LcpError, expect_finite, expect_non_negative, expect_size};
+
+/// Coulomb friction of n coupled contacts. Find Pn, Pt with
+///
+/// ```text
+/// g  = Qnn Pn + Qnt Pt + gap     g >= 0,  Pn >= 0,  g Pn = 0
+/// Dt = Qtn Pn + Qtt Pt + slip    |Pt| <= mu Pn,  Dt = 0 while |Pt| < mu Pn,
+///                                Dt opposes Pt where |Pt| = mu Pn
+/// ```
+///
+/// Q is symmetric (compliance, length/force) and at least positive semidefinite.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrictionalLcp {
+    /// Q (2n x 2n): n normal, then n tangential rows and columns.
+    pub q: DMatrix<f64>,
+    /// Gaps without contact forces (length n), positive when open.
+    pub gap: DVector<f64>,
+    /// Slips without contact forces (length n).
+    pub slip: DVector<f64>,
+    /// Friction coefficients (length n), zero or positive.
+    pub mu: DVector<f64>,
+}
+
+impl FrictionalLcp {
+    /// Number of contacts.
+    pub fn len(&self) -> usize {
+        self.gap.len()
+    }
+
+    /// Whether there are no contacts.
+    pub fn is_empty(&self) -> bool {
+        self.gap.is_empty()
+    }
+
+    /// Refuses wrong sizes, negative mu and numbers that are not finite.
+    pub fn check(&self) -> Result<(), LcpError> {
+        let n = self.len();
+        expect_size("rows of Q", 2 * n, self.q.nrows())?;
+        expect_size("columns of Q", 2 * n, self.q.ncols())?;
+        expect_size("slip", n, self.slip.len())?;
+        expect_size("mu", n, self.mu.len())?;
+        for values in [self.q.as_slice(), self.gap.as_slice(), self.slip.as_slice()] {
+            expect_finite(values)?;
+        }
+        expect_finite(self.mu.as_slice())?;
+        expect_non_negative("mu", self.mu.as_slice())
+    }
+
+    /// Gaps and slips under the forces (pn, pt).
+    pub fn motion(&self, pn: &DVector<f64>, pt: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
+        let n = self.len();
+        let mut motion: Vec<f64> = self.gap.iter().chain(&self.slip).copied().collect();
+        for (force, column) in pn
+            .iter()
+            .chain(pt)
+            .zip(self.q.as_slice().chunks_exact((2 * n).max(1)))
+        {
+            axpy(*force, column, &mut motion);
+        }
+        (
+            DVector::from_column_slice(&motion[..n]),
+            DVector::from_column_slice(&motion[n..]),
+        )
+    }
+
+    /// The general problem with three unknowns per contact, z = (Pn, T+, Dt-), w = (g, Dt+, T-),
+    /// where Pt = T+ - T-, mu Pn = T+ + T-, Dt = Dt+ - Dt-:
+    ///
+    /// ```text
+    /// M = [ Qnn - Qnt mu   2 Qnt   0 ]      q = [ gap  ]
+    ///     [ Qtn - Qtt mu   2 Qtt   I ]          [ slip ]
+    ///     [ mu             -I      0 ]          [ 0    ]
+    /// ```
+    pub fn to_lcp(&self) -> Lcp {
+        let n = self.len();
+        let mut m = DMatrix::zeros(3 * n, 3 * n);
+        for j in 0..n {
+            for i in 0..2 * n {
+                m[(i, j)] = self.q[(i, j)] - self.q[(i, n + j)] * self.mu[j];
+                m[(i, n + j)] = 2.0 * self.q[(i, n + j)];
+            }
+            m[(n + j, 2 * n + j)] = 1.0;
+            m[(2 * n + j, j)] = self.mu[j];
+            m[(2 * n + j, n + j)] = -1.0;
+        }
+        let q = self.gap.iter().chain(&self.slip).copied();
+        let q = DVector::from_iterator(3 * n, q.chain(std::iter::repeat_n(0.0, n)));
+        Lcp { m, q }
+    }
+
+    /// The problem whose general form is `lcp` with friction coefficients `mu`; None when `lcp`
+    /// does not have the blocks of [`to_lcp`](Self::to_lcp) to 1e-9 of its largest entry of Q.
+    pub fn from_lcp(lcp: &Lcp, mu: &DVector<f64>) -> Option<Self> {
+        let n = mu.len();
+        if lcp.check().is_err() || lcp.q.len() != 3 * n {
+            return None;
+        }
+        // Qnt and Qtt from the second block column, Qnn from the first, Qtn by symmetry
+        let half = |i: usize, j: usize| 0.5 * lcp.m[(i, n + j)];
+        let normal = |i: usize, j: usize| lcp.m[(i, j)] + half(i, j) * mu[j];
+        let q = DMatrix::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
+            (true, true) => 0.5 * (normal(i, j) + normal(j, i)),
+            (false, true) => half(j, i - n),
+            (_, false) => half(i, j - n),
+        });
+        let slip = lcp.q.rows(n, n).into_owned();
+        let problem = Self {
+            q,
+            gap: lcp.q.rows(0, n).into_owned(),
+            slip,
+            mu: mu.clone(),
+        };
+        let same = problem.to_lcp();
+        let size = problem.q.amax() * (1.0 + mu.amax());
+        let friction_rows = same.m.rows(2 * n, n) == lcp.m.rows(2 * n, n);
+        let others = (same.m.rows(0, 2 * n) - lcp.m.rows(0, 2 * n)).amax() <= 1e-9 * size;
+        (friction_rows && others && same.q == lcp.q).then_some(problem)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn problem() -> FrictionalLcp {
+        let a = DMatrix::from_fn(4, 4, |i, j| 1.0 / (1.0 + i as f64 + 2.0 * j as f64));
+        FrictionalLcp {
+            q: &a * a.transpose() + DMatrix::identity(4, 4),
+            gap: DVector::from_row_slice(&[-1.0, 0.5]),
+            slip: DVector::from_row_slice(&[0.25, -0.5]),
+            mu: DVector::from_row_slice(&[0.3, 0.0]),
+        }
+    }
+
+    #[test]
+    fn general_form_and_back() {
+        let p = problem();
+        let back = FrictionalLcp::from_lcp(&p.to_lcp(), &p.mu).unwrap();
+        assert!((&back.q - &p.q).amax() < 1e-15);
+        assert_eq!((back.gap, back.slip), (p.gap.clone(), p.slip.clone()));
+        let mut other = p.to_lcp();
+        other.m[(0, 5)] = 1.0;
+        assert!(FrictionalLcp::from_lcp(&other, &p.mu).is_none());
+        assert!(FrictionalLcp::from_lcp(&p.to_lcp(), &DVector::zeros(1)).is_none());
+    }
+
+    #[test]
+    fn general_form_states_the_same_motion() {
+        // z = (Pn, T+, Dt-) with Pt = 2 T+ - mu Pn gives w = (g, Dt + Dt-, mu Pn - T+).
+        let p = problem();
+        let (pn, t) = (
+            DVector::from_row_slice(&[2.0, 1.0]),
+            DVector::from_row_slice(&[0.4, 0.0]),
+        );
+        let pt = 2.0 * &t - p.mu.component_mul(&pn);
+        let (gap, slip) = p.motion(&pn, &pt);
+        let z = DVector::from_iterator(6, pn.iter().chain(&t).copied().chain([0.0, 0.0]));
+        let w = p.to_lcp().w(&z);
+        assert!((w.rows(0, 2) - gap).amax() < 1e-14 && (w.rows(2, 2) - slip).amax() < 1e-14);
+        assert_eq!(w[4], p.mu[0] * pn[0] - t[0]);
+    }
+
+    #[test]
+    fn frictional_problem_captures_errors() {
+        let mut p = problem();
+        p.mu[1] = -0.5;
+        assert!(matches!(
+            p.check(),
+            Err(LcpError::Range {
+                what: "mu",
+                index: 1,
+                ..
+            })
+        ));
+        let mut p = problem();
+        p.slip = DVector::zeros(3);
+        assert!(matches!(
+            p.check(),
+            Err(LcpError::Size { what: "slip", .. })
+        ));
+        let mut p = problem();
+        p.gap[0] = f64::INFINITY;
+        assert_eq!(p.check(), Err(LcpError::NotFinite));
+    }
+}

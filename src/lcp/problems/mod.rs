@@ -1,0 +1,19 @@
+//! The complementarity problems, general and frictional, their scaling and residuals.
+
+mod dense;
+mod frictional;
+mod general;
+mod residual;
+mod scaled;
+mod scaling;
+mod state;
+
+pub(crate) use dense::{axpy, dot, max_abs};
+pub use frictional::FrictionalLcp;
+pub use general::{Lcp, LcpError, LcpSolution};
+pub(crate) use general::{expect_finite, expect_non_negative, expect_size};
+pub use residual::residual;
+pub(crate) use residual::{TOLERANCE, frictional_residual};
+pub(crate) use scaled::Scaled;
+pub(crate) use scaling::{Equilibration, power_of_two};
+pub use state::{ContactState, Counters};

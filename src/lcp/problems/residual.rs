@@ -1,0 +1,167 @@
+//! The check of a solution: recomputed from the data, independent of every method.
+
+use nalgebra::DVector;
+
+use super::dense::max_abs;
+use super::frictional::FrictionalLcp;
+use super::general::Lcp;
+use super::scaling::Equilibration;
+
+/// Largest residual of a point that counts as a solution.
+pub(crate) const TOLERANCE: f64 = 1e-9;
+
+/// Part of the terms |M_ij z_j| that enters the scale of a residual. Evaluating w rounds by about
+/// 1e-16 of the largest term, so that 1e-9 of the scale is never below what arithmetic can do.
+pub(crate) const ROUNDING: f64 = 1e-6;
+
+/// Residual of z, zero for a solution, infinite when a number is not finite or a size is wrong.
+///
+/// r = max_i |z_i - max(0, z_i - w_i)| / s,  w = M z + q,  s = max |q| + 1e-6 max |M| |z|,
+/// after rows and columns of M are scaled to entries near 1 (which makes the residual independent
+/// of the units of z and w).
+pub fn residual(lcp: &Lcp, z: &DVector<f64>) -> f64 {
+    if lcp.check().is_err() || z.len() != lcp.q.len() {
+        return f64::INFINITY;
+    }
+    let Equilibration { rows, columns } = Equilibration::of(&lcp.m);
+    let w = lcp.w(z);
+    let terms = lcp.m.abs() * z.abs();
+    let (mut error, mut scale) = (0.0_f64, 0.0_f64);
+    for i in 0..z.len() {
+        let (z_i, w_i) = (z[i] / columns[i], w[i] * rows[i]);
+        error = worse(error, smaller(z_i, w_i));
+        scale = scale.max(rows[i] * lcp.q[i].abs() + ROUNDING * rows[i] * terms[i]);
+    }
+    relative(error, scale)
+}
+
+/// Residual of the forces (pn, pt) of a frictional problem, zero for a solution.
+///
+/// r = max over contacts of |min(Pn, g)|, |min(T+, Dt+)|, |min(T-, Dt-)| with
+/// T+- = (mu Pn +- Pt)/2 and Dt+- the positive and negative part of the slip; lengths in units of
+/// the deepest penetration plus 1e-6 of the terms of Q P, forces in that unit over mean diag Qnn.
+pub(crate) fn frictional_residual(problem: &FrictionalLcp, pn: &[f64], pt: &[f64]) -> f64 {
+    let n = problem.gap.len();
+    let (mut motion, mut terms) = (vec![0.0; 2 * n], vec![0.0; 2 * n]);
+    for (k, force) in pn
+        .iter()
+        .chain(pt)
+        .enumerate()
+        .filter(|(_, force)| **force != 0.0)
+    {
+        for ((v, t), q) in motion.iter_mut().zip(&mut terms).zip(&problem.q.column(k)) {
+            *v += q * force;
+            *t += (q * force).abs();
+        }
+    }
+    let length = problem.gap.iter().fold(0.0_f64, |l, g| l.max(-g)) + ROUNDING * max_abs(&terms);
+
+    let mean = (0..n).map(|i| problem.q[(i, i)]).sum::<f64>() / n as f64;
+    let compliance = if mean > 0.0 && mean.is_finite() {
+        mean
+    } else {
+        1.0
+    };
+    let mut error = 0.0_f64;
+    for i in 0..n {
+        let gap = motion[i] + problem.gap[i];
+        let slip = motion[n + i] + problem.slip[i];
+        let limit = problem.mu[i] * pn[i];
+        error = worse(error, smaller(compliance * pn[i], gap));
+        error = worse(
+            error,
+            smaller(compliance * 0.5 * (limit + pt[i]), part(slip)),
+        );
+        error = worse(
+            error,
+            smaller(compliance * 0.5 * (limit - pt[i]), part(-slip)),
+        );
+    }
+    relative(error, length)
+}
+
+/// The larger of `error` and |value|; infinite when the value is not a number.
+fn worse(error: f64, value: f64) -> f64 {
+    if value.is_nan() {
+        f64::INFINITY
+    } else {
+        error.max(value.abs())
+    }
+}
+
+/// The smaller of two numbers, NaN if either is.
+fn smaller(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a < b { a } else { b }
+}
+
+/// The positive part, NaN of NaN.
+fn part(slip: f64) -> f64 {
+    if slip < 0.0 { 0.0 } else { slip }
+}
+
+/// error / scale, never NaN: no error is 0 at any scale; a scale that overflows proves nothing.
+fn relative(error: f64, scale: f64) -> f64 {
+    if error == 0.0 {
+        0.0
+    } else if scale > 0.0 && scale.is_finite() {
+        error / scale
+    } else {
+        f64::INFINITY
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+
+    #[test]
+    fn residual_is_zero_only_for_solutions() {
+        let lcp = Lcp {
+            m: DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 2.0]),
+            q: DVector::from_row_slice(&[-1.0, -1.0]),
+        };
+        let third = 1.0 / 3.0;
+        assert!(residual(&lcp, &DVector::from_element(2, third)) < 1e-15);
+        assert!(residual(&lcp, &DVector::from_row_slice(&[0.5, 0.0])) > 0.1);
+        assert!(residual(&lcp, &DVector::zeros(2)) > 0.1);
+        assert_eq!(residual(&lcp, &DVector::zeros(3)), f64::INFINITY);
+        assert_eq!(
+            residual(&lcp, &DVector::from_element(2, f64::NAN)),
+            f64::INFINITY
+        );
+    }
+
+    #[test]
+    fn frictional_residual_sees_each_condition() {
+        let problem = FrictionalLcp {
+            q: DMatrix::identity(2, 2),
+            gap: DVector::from_element(1, -1.0),
+            slip: DVector::from_element(1, 2.0),
+            mu: DVector::from_element(1, 0.5),
+        };
+        // Sliding: Pn = 1, Pt = -mu Pn, slip 1.5 > 0.
+        assert_eq!(frictional_residual(&problem, &[1.0], &[-0.5]), 0.0);
+        assert!(
+            frictional_residual(&problem, &[1.0], &[0.5]) > 0.1,
+            "friction drives the slip"
+        );
+        assert!(
+            frictional_residual(&problem, &[1.0], &[0.0]) > 0.1,
+            "below the limit yet slides"
+        );
+        assert!(
+            frictional_residual(&problem, &[1.0], &[-0.7]) > 0.05,
+            "above the limit"
+        );
+        assert!(
+            frictional_residual(&problem, &[0.5], &[-0.25]) > 0.1,
+            "penetrates"
+        );
+        assert!(
+            frictional_residual(&problem, &[2.0], &[-1.0]) > 0.1,
+            "pushes at a distance"
+        );
+    }
+}

@@ -1,0 +1,145 @@
+//! Primal-dual active set on the contact states: Newton's method on the contact law.
+
+use crate::lcp::problems::{ContactState, Counters, Scaled, max_abs};
+use crate::lcp::warm_start::reduced;
+
+/// Solves allowed in one call.
+const ITERATIONS: usize = 25;
+
+/// A condition violated by less than this, relative to the largest force, does not change a state:
+/// degenerate contacts would otherwise change for ever by round-off.
+const TOLERANCE: f64 = 1e-12;
+
+/// Result of a call.
+pub(crate) enum Outcome {
+    /// The states and their forces satisfy every condition.
+    Converged(Vec<ContactState>, Vec<f64>),
+    /// The states repeat or have no forces; the last forces found.
+    Failed(Vec<f64>),
+}
+
+/// Solves for the forces of the states, changes the states that the forces and the motion
+/// contradict, and so on until none changes. A state that repeats means failure.
+pub(crate) fn active_set(
+    scaled: &Scaled,
+    mut states: Vec<ContactState>,
+    counters: &mut Counters,
+) -> Outcome {
+    let mut visited: Vec<Vec<ContactState>> = Vec::new();
+    let mut last = vec![0.0; scaled.size()];
+    while visited.len() < ITERATIONS {
+        counters.active_set_iterations += 1;
+        let Some((p, v)) = reduced::forces(scaled, &states) else {
+            break;
+        };
+        let next = next_states(scaled, &states, &p, &v);
+        if next == states {
+            return Outcome::Converged(states, p);
+        }
+        last = p;
+        visited.push(std::mem::replace(&mut states, next));
+        if visited.contains(&states) {
+            break;
+        }
+    }
+    Outcome::Failed(last)
+}
+
+/// The states that forces p of `states` and their motion v ask for.
+fn next_states(
+    scaled: &Scaled,
+    states: &[ContactState],
+    p: &[f64],
+    v: &[f64],
+) -> Vec<ContactState> {
+    let tolerance = TOLERANCE * max_abs(p).max(1.0);
+    (0..scaled.contacts)
+        .map(|i| next_state(scaled, states[i], i, p, v, tolerance))
+        .collect()
+}
+
+/// The next state of contact i.
+fn next_state(
+    scaled: &Scaled,
+    state: ContactState,
+    i: usize,
+    p: &[f64],
+    v: &[f64],
+    tolerance: f64,
+) -> ContactState {
+    use ContactState::{Open, SlipMinus, SlipPlus, Stick};
+    let keeps = if state == Open {
+        v[i] >= -tolerance
+    } else {
+        p[i] >= -tolerance
+    };
+    let Some(t) = scaled.tangents[i] else {
+        return if (state == Open) == keeps {
+            Open
+        } else {
+            SlipPlus
+        };
+    };
+    let limit = scaled.mu[i] * p[i];
+    match (state, keeps) {
+        (Open, true) => Open,
+        (Open, false) => landing(scaled, i, t, v),
+        (_, false) => Open,
+        (Stick, _) if p[t] > limit + tolerance => SlipMinus,
+        (Stick, _) if p[t] < -limit - tolerance => SlipPlus,
+        (SlipPlus | SlipMinus, _) if state.slip_sign() * v[t] < -tolerance => {
+            // The force that stops the slip comes on top of the friction that drove it.
+            if v[t].abs() / scaled.q[(t, t)] <= 2.0 * limit {
+                Stick
+            } else {
+                ContactState::sliding(v[t])
+            }
+        }
+        _ => state,
+    }
+}
+
+/// State of contact i that closes with motion v: it sticks when the force that would stop its slip
+/// is within the limit of the force that would stop its penetration.
+fn landing(scaled: &Scaled, i: usize, t: usize, v: &[f64]) -> ContactState {
+    let normal = -v[i] / scaled.q[(i, i)];
+    let tangential = -v[t] / scaled.q[(t, t)];
+    if tangential.abs() <= scaled.mu[i] * normal {
+        ContactState::Stick
+    } else {
+        ContactState::sliding(v[t])
+    }
+}
+
+/// States to begin with when none are known: what the motion without forces asks for.
+pub(crate) fn first_states(scaled: &Scaled) -> Vec<ContactState> {
+    let open = vec![ContactState::Open; scaled.contacts];
+    next_states(scaled, &open, &vec![0.0; scaled.size()], &scaled.b)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::lcp::problems::FrictionalLcp;
+
+    #[test]
+    fn beyond_the_cone_a_sticking_contact_slides_on_either_side() {
+        let problem = FrictionalLcp {
+            q: DMatrix::identity(2, 2),
+            gap: vec![-1.0].into(),
+            slip: vec![2.0].into(),
+            mu: vec![0.5].into(),
+        };
+        let scaled = Scaled::new(&problem).expect("finite");
+        let next = |pt: f64| {
+            let p = [1.0, pt];
+            next_state(&scaled, ContactState::Stick, 0, &p, &[0.0; 2], 1e-12)
+        };
+        assert_eq!(next(0.5), ContactState::Stick);
+        assert_eq!(next(-0.5), ContactState::Stick);
+        assert_eq!(next(0.6), ContactState::SlipMinus);
+        assert_eq!(next(-0.6), ContactState::SlipPlus);
+    }
+}

@@ -1,0 +1,117 @@
+//! Non-smooth Gauss-Seidel: each contact in turn is solved exactly with all others held.
+
+use crate::lcp::problems::{ContactState, Counters, Scaled, axpy};
+
+/// A sweep that changes no force by more than this part of the largest ends the iteration.
+const TOLERANCE: f64 = 1e-13;
+
+/// At most `sweeps` sweeps from forces `p`, which they improve; returns the states they arrive at.
+pub(crate) fn gauss_seidel(
+    scaled: &Scaled,
+    p: &mut [f64],
+    sweeps: usize,
+    counters: &mut Counters,
+) -> Vec<ContactState> {
+    let mut states = vec![ContactState::Open; scaled.contacts];
+    let mut v = scaled.motion(p);
+    for _ in 0..sweeps {
+        counters.gauss_seidel_sweeps += 1;
+        let (mut change, mut largest) = (0.0_f64, 0.0_f64);
+        for (i, state) in states.iter_mut().enumerate() {
+            let (new, pn, pt) = local(scaled, i, p, &v);
+            *state = new;
+            change = change.max(update(scaled, i, pn, p, &mut v));
+            if let Some(t) = scaled.tangents[i] {
+                change = change.max(update(scaled, t, pt, p, &mut v));
+            }
+            largest = largest.max(pn);
+        }
+        if change <= TOLERANCE * largest {
+            break;
+        }
+    }
+    states
+}
+
+/// Sets force k and adds its effect to the motion; returns the size of the change.
+fn update(scaled: &Scaled, k: usize, force: f64, p: &mut [f64], v: &mut [f64]) -> f64 {
+    let change = force - p[k];
+    axpy(change, scaled.column(k), v);
+    p[k] = force;
+    change.abs()
+}
+
+/// State and forces of contact i alone, from its 2 x 2 block of Q and the motion b that the other
+/// contacts leave: g = a Pn + c Pt + b_n, Dt = c Pn + e Pt + b_t.
+fn local(scaled: &Scaled, i: usize, p: &[f64], v: &[f64]) -> (ContactState, f64, f64) {
+    let a = scaled.q[(i, i)];
+    let Some(t) = scaled.tangents[i] else {
+        let pn = -(v[i] - a * p[i]) / a;
+        return closed_or_open(ContactState::SlipPlus, pn, 0.0);
+    };
+    let (c, e, mu) = (scaled.q[(i, t)], scaled.q[(t, t)], scaled.mu[i]);
+    let b_n = v[i] - a * p[i] - c * p[t];
+    let b_t = v[t] - c * p[i] - e * p[t];
+    if b_n >= 0.0 {
+        return (ContactState::Open, 0.0, 0.0);
+    }
+    let determinant = a * e - c * c;
+    let (pn, pt) = (
+        (c * b_t - e * b_n) / determinant,
+        (c * b_n - a * b_t) / determinant,
+    );
+    if pn >= 0.0 && pt.abs() <= mu * pn {
+        return (ContactState::Stick, pn, pt);
+    }
+    // Pt = -s mu Pn and g = 0; the side whose slip has the sign s, if any.
+    for (state, s) in [
+        (ContactState::SlipPlus, 1.0),
+        (ContactState::SlipMinus, -1.0),
+    ] {
+        let pn = -b_n / (a - s * mu * c);
+        if pn >= 0.0 && s * ((c - s * mu * e) * pn + b_t) >= 0.0 {
+            return closed_or_open(state, pn, -s * mu * pn);
+        }
+    }
+    closed_or_open(ContactState::sliding(pt), -b_n / a, 0.0)
+}
+
+/// No force unless pn is positive and finite.
+fn closed_or_open(state: ContactState, pn: f64, pt: f64) -> (ContactState, f64, f64) {
+    if pn > 0.0 && pn.is_finite() {
+        (state, pn, pt)
+    } else {
+        (ContactState::Open, 0.0, 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::lcp::problems::FrictionalLcp;
+
+    /// Contacts that do not know of each other: one is open, one slides, one sticks.
+    #[test]
+    fn contacts_alone_are_solved_in_one_sweep() {
+        let problem = FrictionalLcp {
+            q: DMatrix::identity(6, 6),
+            gap: vec![0.5, -1.0, -1.0].into(),
+            slip: vec![2.0, 2.0, -0.25].into(),
+            mu: vec![0.5; 3].into(),
+        };
+        let scaled = Scaled::new(&problem).expect("finite");
+        let mut p = vec![0.0; 6];
+        let states = gauss_seidel(&scaled, &mut p, 1, &mut Counters::default());
+        assert_eq!(
+            states,
+            [
+                ContactState::Open,
+                ContactState::SlipPlus,
+                ContactState::Stick
+            ]
+        );
+        assert_eq!(p, [0.0, 1.0, 1.0, 0.0, -0.5, 0.25]);
+    }
+}

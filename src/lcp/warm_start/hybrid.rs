@@ -1,0 +1,256 @@
+//! Solving a frictional problem: which method when, and the check after each.
+
+use nalgebra::DVector;
+
+use super::active_set::{Outcome, active_set, first_states};
+use super::gauss_seidel::gauss_seidel;
+use crate::lcp::pivots::{LemkeSettings, lemke_forces, perturbation};
+use crate::lcp::problems::{
+    ContactState, Counters, FrictionalLcp, LcpError, Scaled, TOLERANCE, expect_size,
+    frictional_residual,
+};
+use crate::lcp::warm_start::reduced;
+
+/// Gauss-Seidel sweeps between two calls of the active set.
+const SWEEPS: [usize; 3] = [10, 40, 160];
+
+/// Paths of Lemke's method that are tried.
+const PATHS: usize = 4;
+
+/// The method a caller asks for.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum LcpMethod {
+    /// Warm active set, Gauss-Seidel sweeps, Lemke: the first that succeeds.
+    #[default]
+    Hybrid,
+    /// Lemke's method from the start.
+    Lemke,
+}
+
+/// The method that produced a solution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// No contact penetrates: no forces.
+    Trivial,
+    /// Active set on the contact states.
+    ActiveSet,
+    /// Lemke's method.
+    Lemke,
+}
+
+/// Solution of a [`FrictionalLcp`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrictionalSolution {
+    /// Normal forces, zero where open.
+    pub pn: DVector<f64>,
+    /// Tangential forces, exactly -+mu Pn where sliding.
+    pub pt: DVector<f64>,
+    /// Gaps under these forces.
+    pub gap: DVector<f64>,
+    /// Slips under these forces.
+    pub slip: DVector<f64>,
+    /// States of the contacts.
+    pub state: Vec<ContactState>,
+    /// Scaled residual of the contact conditions.
+    pub residual: f64,
+    /// The method that found the states.
+    pub method: Method,
+    /// Work done, by all methods tried.
+    pub counters: Counters,
+}
+
+/// Solves a frictional problem, from the states of a similar one when `warm` is given.
+pub fn solve_frictional(
+    problem: &FrictionalLcp,
+    warm: Option<&[ContactState]>,
+    method: LcpMethod,
+) -> Result<FrictionalSolution, LcpError> {
+    problem.check()?;
+    if let Some(states) = warm {
+        expect_size("warm states", problem.len(), states.len())?;
+    }
+    let mut counters = Counters::default();
+    if problem.gap.iter().all(|g| *g >= 0.0) {
+        let states = vec![ContactState::Open; problem.len()];
+        let none = vec![0.0; problem.len()];
+        return Ok(finish(
+            problem,
+            &states,
+            (none.clone(), none),
+            Method::Trivial,
+            counters,
+        ));
+    }
+    let scaled = Scaled::new(problem)?;
+    if method == LcpMethod::Hybrid
+        && let Some(solution) = iterate(problem, &scaled, warm, &mut counters)
+    {
+        return Ok(solution);
+    }
+    lemke(problem, &scaled, &mut counters)
+}
+
+/// The active set from the warm states, and again from the states that more and more Gauss-Seidel
+/// sweeps lead to, which break its cycles.
+fn iterate(
+    problem: &FrictionalLcp,
+    scaled: &Scaled,
+    warm: Option<&[ContactState]>,
+    counters: &mut Counters,
+) -> Option<FrictionalSolution> {
+    let mut states = warm.map_or_else(|| first_states(scaled), |warm| known(scaled, warm));
+    let mut rounds = SWEEPS.into_iter();
+    loop {
+        let mut p = match active_set(scaled, states, counters) {
+            Outcome::Converged(states, p) => {
+                let forces = scaled.forces(&admissible(scaled, &states, p.clone()));
+                let solution = finish(problem, &states, forces, Method::ActiveSet, *counters);
+                if solution.residual <= TOLERANCE {
+                    return Some(solution);
+                }
+                p
+            }
+            Outcome::Failed(p) => p,
+        };
+        project(scaled, &mut p);
+        states = gauss_seidel(scaled, &mut p, rounds.next()?, counters);
+    }
+}
+
+/// Warm states, in which frictionless contacts have one closed state only.
+fn known(scaled: &Scaled, warm: &[ContactState]) -> Vec<ContactState> {
+    let state = |(state, tangent): (&ContactState, &Option<usize>)| match tangent {
+        None if state.is_closed() => ContactState::SlipPlus,
+        _ => *state,
+    };
+    warm.iter().zip(&scaled.tangents).map(state).collect()
+}
+
+/// Brings forces into the friction cone.
+fn project(scaled: &Scaled, p: &mut [f64]) {
+    for i in 0..scaled.contacts {
+        p[i] = p[i].max(0.0);
+        if let Some(t) = scaled.tangents[i] {
+            p[t] = p[t].max(-scaled.mu[i] * p[i]).min(scaled.mu[i] * p[i]);
+        }
+    }
+}
+
+/// Lemke's method, along up to [`PATHS`] paths with different covering vectors: where round-off
+/// ends one path on a ray, another goes through. The error is that of the first path.
+fn lemke(
+    problem: &FrictionalLcp,
+    scaled: &Scaled,
+    counters: &mut Counters,
+) -> Result<FrictionalSolution, LcpError> {
+    let first = follow(problem, scaled, &vec![1.0; scaled.contacts], counters);
+    if first.is_ok() {
+        return first;
+    }
+    let mut covering = perturbation(scaled.contacts);
+    for _ in 1..PATHS {
+        let other = follow(problem, scaled, &covering, counters);
+        if other.is_ok() {
+            return other;
+        }
+        covering.rotate_left(1);
+        covering.iter_mut().for_each(|d| *d *= *d);
+    }
+    first
+}
+
+/// One path of Lemke's method. The forces of its states are then solved for directly, which is
+/// more accurate than what the exchanges leave, with the states corrected that ties within the
+/// tolerance have left wrong; redundant contacts may need the forces of the path itself.
+fn follow(
+    problem: &FrictionalLcp,
+    scaled: &Scaled,
+    covering: &[f64],
+    counters: &mut Counters,
+) -> Result<FrictionalSolution, LcpError> {
+    counters.lemke_calls += 1;
+    let found = lemke_forces(scaled, covering, &LemkeSettings::default());
+    counters.pivots += match &found {
+        Ok(found) => found.pivots,
+        Err(LcpError::Ray { pivots, .. } | LcpError::PivotLimit { pivots }) => *pivots,
+        Err(_) => 0,
+    };
+    let found = found?;
+    let corrected = match active_set(scaled, found.states.clone(), &mut Counters::default()) {
+        Outcome::Converged(states, p) => Some((states, p)),
+        Outcome::Failed(_) => None,
+    };
+    let direct = || reduced::forces(scaled, &found.states).map(|(p, _)| (found.states.clone(), p));
+    let candidates = corrected
+        .into_iter()
+        .chain(std::iter::once_with(direct).flatten());
+    let own = (found.states.clone(), found.p);
+    accept(candidates.chain([own]).map(|(states, p)| {
+        let forces = scaled.forces(&admissible(scaled, &states, p));
+        finish(problem, &states, forces, Method::Lemke, *counters)
+    }))
+}
+
+/// The first solution whose residual is small enough.
+fn accept(
+    solutions: impl Iterator<Item = FrictionalSolution>,
+) -> Result<FrictionalSolution, LcpError> {
+    let mut smallest = f64::INFINITY;
+    for solution in solutions {
+        if solution.residual <= TOLERANCE {
+            return Ok(solution);
+        }
+        smallest = smallest.min(solution.residual);
+    }
+    Err(LcpError::Residual {
+        value: smallest,
+        tolerance: TOLERANCE,
+    })
+}
+
+/// Forces without the round-off that leaves the friction cone: Pn >= 0, |Pt| <= mu Pn.
+fn admissible(scaled: &Scaled, states: &[ContactState], mut p: Vec<f64>) -> Vec<f64> {
+    for i in 0..scaled.contacts {
+        p[i] = if states[i].is_closed() {
+            p[i].max(0.0)
+        } else {
+            0.0
+        };
+        if let Some(t) = scaled.tangents[i] {
+            let limit = scaled.mu[i] * p[i];
+            p[t] = match states[i].slip_sign() {
+                0.0 => p[t].max(-limit).min(limit),
+                sign => -sign * limit,
+            };
+        }
+    }
+    p
+}
+
+/// The solution with motion and residual recomputed from the problem.
+fn finish(
+    problem: &FrictionalLcp,
+    states: &[ContactState],
+    (pn, pt): (Vec<f64>, Vec<f64>),
+    method: Method,
+    counters: Counters,
+) -> FrictionalSolution {
+    let residual = frictional_residual(problem, &pn, &pt);
+    let (pn, pt) = (DVector::from_vec(pn), DVector::from_vec(pt));
+    let (gap, slip) = problem.motion(&pn, &pt);
+    // Without friction the side of the slip is not part of the solution: read it off.
+    let state = (0..problem.len()).map(|i| match states[i] {
+        closed if closed.is_closed() && problem.mu[i] == 0.0 => ContactState::sliding(slip[i]),
+        other => other,
+    });
+    FrictionalSolution {
+        state: state.collect(),
+        pn,
+        pt,
+        gap,
+        slip,
+        residual,
+        method,
+        counters,
+    }
+}

@@ -1,0 +1,8 @@
+//! Solvers that start from the states of the last problem.
+
+mod active_set;
+mod gauss_seidel;
+mod hybrid;
+mod reduced;
+
+pub use hybrid::{FrictionalSolution, LcpMethod, Method, solve_frictional};

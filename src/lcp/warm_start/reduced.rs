@@ -1,0 +1,111 @@
+//! The forces of given contact states: a linear system, solved directly.
+
+use crate::lcp::pivots::Factors;
+use crate::lcp::problems::{ContactState, Scaled, max_abs};
+
+/// Shift of the diagonal, relative to its entries, that makes a singular system solvable.
+const SHIFT: f64 = 1e-10;
+
+/// Corrections by the residual: the first makes the gaps exact to round-off, more are needed only
+/// by the shifted system.
+const CORRECTIONS: usize = 6;
+
+/// Solves for the forces p of the given states, and their motion v = Q p + b:
+/// gap = 0 where closed, slip = 0 where sticking, Pt = -+mu Pn where sliding, no force where open.
+/// None when there is no finite answer. Where redundant contacts leave the forces undetermined the
+/// load is shared.
+pub(crate) fn forces(scaled: &Scaled, states: &[ContactState]) -> Option<(Vec<f64>, Vec<f64>)> {
+    let unknowns = unknowns(scaled, states);
+    if unknowns.is_empty() {
+        return Some((vec![0.0; scaled.size()], scaled.b.clone()));
+    }
+    let matrix = || matrix(scaled, states, &unknowns);
+    let size = unknowns.len();
+    let symmetric = scaled.owners.iter().all(|i| states[*i].slip_sign() == 0.0);
+    let regular = if symmetric {
+        Factors::cholesky(matrix(), size)
+    } else {
+        Factors::lu(matrix(), size)
+    };
+    let factors = regular.or_else(|| Factors::lu(shifted(matrix(), size), size))?;
+    let (p, v) = refine(scaled, states, &unknowns, &factors);
+    p.iter().all(|v| v.is_finite()).then_some((p, v))
+}
+
+/// Positions in p of the unknowns, which are also the rows that must vanish.
+fn unknowns(scaled: &Scaled, states: &[ContactState]) -> Vec<usize> {
+    let closed = (0..scaled.contacts).filter(|i| states[*i].is_closed());
+    let tangents = scaled.owners.iter().zip(scaled.contacts..);
+    let stick = tangents
+        .filter(|(i, _)| states[**i] == ContactState::Stick)
+        .map(|(_, k)| k);
+    closed.chain(stick).collect()
+}
+
+/// The matrix of the system by columns: Q on the unknowns; the column of a sliding Pn is
+/// Q e_n - slip sign mu Q e_t.
+fn matrix(scaled: &Scaled, states: &[ContactState], unknowns: &[usize]) -> Vec<f64> {
+    let mut values = Vec::with_capacity(unknowns.len() * unknowns.len());
+    for k in unknowns {
+        let column = scaled.column(*k);
+        match sliding(scaled, states, *k) {
+            None => values.extend(unknowns.iter().map(|r| column[*r])),
+            Some((t, factor)) => {
+                let tangent = scaled.column(t);
+                values.extend(unknowns.iter().map(|r| column[*r] + factor * tangent[*r]));
+            }
+        }
+    }
+    values
+}
+
+/// For an unknown k that is the Pn of a sliding contact: the position t of its Pt and the factor in
+/// Pt = factor Pn.
+fn sliding(scaled: &Scaled, states: &[ContactState], k: usize) -> Option<(usize, f64)> {
+    if k >= scaled.contacts || states[k].slip_sign() == 0.0 {
+        return None;
+    }
+    scaled.tangents[k].map(|t| (t, -states[k].slip_sign() * scaled.mu[k]))
+}
+
+/// The matrix with its diagonal increased a little.
+fn shifted(mut matrix: Vec<f64>, size: usize) -> Vec<f64> {
+    let largest = (0..size).fold(0.0_f64, |l, i| l.max(matrix[i + i * size].abs()));
+    (0..size).for_each(|i| matrix[i + i * size] += SHIFT * largest);
+    matrix
+}
+
+/// p and v from the factors, corrected by the residual of the unfactored system as long as that
+/// shrinks.
+fn refine(
+    scaled: &Scaled,
+    states: &[ContactState],
+    unknowns: &[usize],
+    factors: &Factors,
+) -> (Vec<f64>, Vec<f64>) {
+    let mut p = vec![0.0; scaled.size()];
+    let mut best = (p.clone(), scaled.b.clone());
+    let mut smallest = f64::INFINITY;
+    for _ in 0..=CORRECTIONS {
+        let v = scaled.motion(&p);
+        let mut residual: Vec<f64> = unknowns.iter().map(|k| -v[*k]).collect();
+        let error = max_abs(&residual);
+        if error >= smallest {
+            break;
+        }
+        let stagnates = error > 0.1 * smallest;
+        best = (p.clone(), v);
+        smallest = error;
+        if stagnates {
+            break;
+        }
+        factors.solve(&mut residual);
+        for (k, correction) in unknowns.iter().zip(&residual) {
+            p[*k] += correction;
+            if let Some((t, factor)) = sliding(scaled, states, *k) {
+                p[t] = factor * p[*k];
+            }
+        }
+    }
+    best
+}

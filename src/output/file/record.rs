@@ -1,0 +1,93 @@
+//! Group `/run`: what ran, when and how it ended.
+
+use hdf5::Group;
+use sha2::{Digest, Sha256};
+
+use super::clock::utc_now;
+use super::dataset::{group, set_attribute, text_attribute};
+use crate::dynamics::{RunSummary, Timings};
+
+/// Value of `exit_status` until the run ends.
+pub const UNFINISHED: i64 = -1;
+
+/// What the command line and the deck say about a run.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct RunRecord {
+    /// Version of the program.
+    pub version: String,
+    /// Commit it was built from.
+    pub commit: String,
+    /// Full text of the deck, includes in place.
+    pub deck: String,
+    /// The command as typed.
+    pub command: String,
+    /// Number of threads.
+    pub threads: usize,
+}
+
+/// Writes the run record.
+pub(crate) struct Record {
+    at: Group,
+}
+
+impl Record {
+    /// Creates the group with everything known at the start.
+    pub fn create(root: &Group, record: &RunRecord) -> hdf5::Result<Self> {
+        let at = group(root, "run")?;
+        let text = |name, value: &str| text_attribute(&at, name, value);
+        text("program", "stickslip")?;
+        text("version", &record.version)?;
+        text("commit", &record.commit)?;
+        text("deck", &record.deck)?;
+        text("deck_sha256", &sha256(&record.deck))?;
+        text("command", &record.command)?;
+        text("started", &utc_now())?;
+        text("finished", "")?;
+        set_attribute(&at, "exit_status", UNFINISHED)?;
+        set_attribute(&at, "threads", record.threads as i64)?;
+        Ok(Record { at })
+    }
+
+    /// Completes the record.
+    pub fn finish(
+        &self,
+        summary: &RunSummary,
+        exit_status: u8,
+        output: f64,
+        total: f64,
+    ) -> hdf5::Result<()> {
+        for (name, seconds) in phases(&summary.timings) {
+            set_attribute(&self.at, &format!("seconds_{name}"), seconds)?;
+        }
+        set_attribute(&self.at, "seconds_output", output)?;
+        set_attribute(&self.at, "seconds_total", total)?;
+        set_attribute(&self.at, "increments", summary.increments as i64)?;
+        set_attribute(&self.at, "cutbacks", summary.cutbacks as i64)?;
+        set_attribute(&self.at, "events", summary.events as i64)?;
+        self.close(exit_status)
+    }
+
+    /// Marks the end of the run.
+    pub fn close(&self, exit_status: u8) -> hdf5::Result<()> {
+        text_attribute(&self.at, "finished", &utc_now())?;
+        set_attribute(&self.at, "exit_status", i64::from(exit_status))
+    }
+}
+
+/// Phases of a run with their wall-clock seconds.
+pub(crate) fn phases(timings: &Timings) -> [(&'static str, f64); 6] {
+    [
+        ("assembly", timings.assembly.as_secs_f64()),
+        ("factorization", timings.factorization.as_secs_f64()),
+        ("solve", timings.solve.as_secs_f64()),
+        ("search", timings.search.as_secs_f64()),
+        ("contact", timings.contact.as_secs_f64()),
+        ("lcp", timings.lcp.as_secs_f64()),
+    ]
+}
+
+fn sha256(text: &str) -> String {
+    (Sha256::digest(text.as_bytes()).iter())
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
+}

@@ -1,0 +1,362 @@
+//! Group `/VTKHDF`: the field frames, as a temporal unstructured grid with a fixed mesh.
+
+use hdf5::types::FixedAscii;
+use hdf5::{Group, H5Type};
+
+use super::dataset::{Column, Meaning, constant, group, meaning, set_attribute};
+use super::model::number;
+use crate::dynamics::{NodalResults, State};
+use crate::elements::{ElementMeans, element_means};
+use crate::model::{Bodies, Cell, Mesh, Model};
+
+/// Cell types of VTK.
+const VTK_LINE: u8 = 3;
+const VTK_TRIANGLE: u8 = 5;
+const VTK_QUAD: u8 = 9;
+
+/// A field with `3` components (or one) per node or element.
+struct Field<T>(Column<T>);
+
+impl<T: H5Type + Copy> Field<T> {
+    fn push(&mut self, values: impl IntoIterator<Item = T>) -> hdf5::Result<()> {
+        self.0.push(values)?;
+        self.0.flush()
+    }
+}
+
+/// The steps of the grid: their times and where their geometry starts (always at 0).
+struct Steps {
+    group: Group,
+    values: Column<f64>,
+    parts: Column<i64>,
+    zeros: Vec<Column<i64>>,
+}
+
+/// Writes the field frames.
+pub(crate) struct Fields {
+    steps: Steps,
+    points: Offsets,
+    cells: Offsets,
+    displacement: Field<f64>,
+    velocity: Field<f64>,
+    acceleration: Field<f64>,
+    reaction: Field<f64>,
+    contact_force: Field<f64>,
+    gap: Field<f64>,
+    status: Field<u8>,
+    pressure: Field<f64>,
+    slip: Field<f64>,
+    stress: Field<f64>,
+    across: Field<f64>,
+    von_mises: Field<f64>,
+    strain: Field<f64>,
+    /// First row of `CellData/BODY`, which is the same in all frames.
+    body_offsets: Column<i64>,
+    /// Cells after the elements: the segments of rigid surfaces.
+    lines: usize,
+}
+
+impl Fields {
+    /// Creates the group with the reference mesh and no frame.
+    pub fn create(root: &Group, model: &Model) -> hdf5::Result<Self> {
+        let grid = group(root, "VTKHDF")?;
+        write_type(&grid)?;
+        let lines = model.rigid_segments();
+        write_mesh(&grid, &model.mesh, &lines)?;
+        let steps = Steps::create(&grid)?;
+        let mut points = Place::new(&grid, &steps.group, "Point", model.mesh.node_count())?;
+        let cells = model.mesh.elements.len() + lines.len();
+        let mut cells = Place::new(&grid, &steps.group, "Cell", cells)?;
+        write_bodies(&cells.data, model, lines.len())?;
+        Ok(Fields {
+            displacement: points.field("U", &[3], meaning("displacement", "length"))?,
+            velocity: points.field("V", &[3], meaning("velocity", "length/time"))?,
+            acceleration: points.field("A", &[3], meaning("acceleration", "length/time^2"))?,
+            reaction: points.field("RF", &[3], meaning("support reaction", "force"))?,
+            contact_force: points.field("CONTACT_FORCE", &[3], CONTACT_FORCE)?,
+            gap: points.field("GAP", &[], GAP)?,
+            status: points.field("CONTACT_STATUS", &[], STATUS)?,
+            pressure: points.field("CONTACT_PRESSURE", &[], PRESSURE)?,
+            slip: points.field("SLIP", &[], SLIP)?,
+            stress: cells.field("S", &[3], STRESS)?,
+            across: cells.field("S33", &[], ACROSS)?,
+            von_mises: cells.field("MISES", &[], VON_MISES)?,
+            strain: cells.field("E", &[3], STRAIN)?,
+            body_offsets: Column::series(&cells.offsets.group, "BODY", &[], OFFSETS)?,
+            points: points.offsets,
+            cells: cells.offsets,
+            steps,
+            lines: lines.len(),
+        })
+    }
+
+    /// Appends a frame.
+    pub fn write(
+        &mut self,
+        model: &Model,
+        time: f64,
+        state: &State,
+        nodal: &NodalResults,
+    ) -> hdf5::Result<()> {
+        let means = element_means(model, &state.u);
+        self.displacement.push(in_space(&state.u))?;
+        self.velocity.push(in_space(&state.v))?;
+        self.acceleration.push(in_space(&state.a))?;
+        self.reaction.push(in_space(&nodal.reaction))?;
+        self.contact_force.push(in_space(&nodal.contact_force))?;
+        self.gap.push(nodal.gap.iter().copied())?;
+        self.status.push(nodal.status.iter().map(|&s| s as u8))?;
+        self.pressure.push(nodal.pressure.iter().copied())?;
+        self.slip.push(nodal.slip.iter().copied())?;
+        let of_lines = |components| std::iter::repeat_n(f64::NAN, components * self.lines);
+        let stress = means.iter().flat_map(|mean| mean.stress);
+        self.stress.push(stress.chain(of_lines(3)))?;
+        let across = means.iter().map(|mean| mean.across);
+        self.across.push(across.chain(of_lines(1)))?;
+        let von_mises = means.iter().map(ElementMeans::von_mises);
+        self.von_mises.push(von_mises.chain(of_lines(1)))?;
+        let strain = means.iter().flat_map(|mean| mean.strain);
+        self.strain.push(strain.chain(of_lines(3)))?;
+        self.body_offsets.push([0])?;
+        self.body_offsets.flush()?;
+        self.points.push()?;
+        self.cells.push()?;
+        self.steps.push(time)
+    }
+
+    /// Frames written.
+    pub fn count(&self) -> usize {
+        self.steps.values.rows()
+    }
+}
+
+const CONTACT_FORCE: Meaning = meaning("contact force on the node", "force");
+const GAP: Meaning = meaning(
+    "gap of the slave node to its segment, NaN without candidate",
+    "length",
+);
+const STATUS: Meaning = meaning(
+    "contact status as slave: 0 none, 1 open, 2 stick, 3 slip",
+    "1",
+);
+const PRESSURE: Meaning = meaning(
+    "contact pressure at slave nodes, NaN at others",
+    "force/length^2",
+);
+const SLIP: Meaning = meaning(
+    "way slid in contact since the start at slave nodes, NaN at others",
+    "length",
+);
+const ACROSS: Meaning = meaning(
+    "Cauchy stress across the thickness, mean over the element",
+    "force/length^2",
+);
+const VON_MISES: Meaning = meaning("von Mises stress of S and S33", "force/length^2");
+const BODY: Meaning = meaning("body of the cell, -1 for rigid segments", "1");
+const STRESS: Meaning = meaning(
+    "Cauchy stress xx yy xy, mean over the element",
+    "force/length^2",
+);
+const STRAIN: Meaning = meaning(
+    "Green-Lagrange strain xx yy xy (xy: tensor component), mean over the element",
+    "1",
+);
+
+impl Steps {
+    fn create(grid: &Group) -> hdf5::Result<Self> {
+        let steps = group(grid, "Steps")?;
+        set_attribute(&steps, "NSteps", 0i64)?;
+        let column = |name, row: &[usize], text| {
+            Column::<i64>::series(&steps, name, row, meaning(text, "1"))
+        };
+        Ok(Steps {
+            values: Column::series(&steps, "Values", &[], meaning("time of the frame", "time"))?,
+            parts: column("NumberOfParts", &[], "grids of the frame")?,
+            zeros: vec![
+                column("PartOffsets", &[], "first grid of the frame")?,
+                column("PointOffsets", &[], "first node of the frame's grid")?,
+                column("CellOffsets", &[1], "first cell of the frame's grid")?,
+                column(
+                    "ConnectivityIdOffsets",
+                    &[1],
+                    "first entry of the frame's connectivity",
+                )?,
+            ],
+            group: steps,
+        })
+    }
+
+    /// Appends a frame; the number of steps is written last.
+    fn push(&mut self, time: f64) -> hdf5::Result<()> {
+        for column in &mut self.zeros {
+            column.push([0])?;
+            column.flush()?;
+        }
+        self.parts.push([1])?;
+        self.parts.flush()?;
+        self.values.push([time])?;
+        self.values.flush()?;
+        set_attribute(&self.group, "NSteps", self.values.rows() as i64)
+    }
+}
+
+/// Where fields of one kind go: `PointData` or `CellData`.
+struct Place {
+    data: Group,
+    offsets: Offsets,
+    /// Rows of a frame.
+    rows: usize,
+}
+
+/// First rows of the frames: the same for all fields of one kind, one dataset under their names.
+struct Offsets {
+    group: Group,
+    /// The first name, and the dataset.
+    column: Option<(String, Column<i64>)>,
+    /// Rows of a frame.
+    rows: usize,
+}
+
+impl Offsets {
+    /// Gives the dataset the name of a further field.
+    fn add(&mut self, name: &str) -> hdf5::Result<()> {
+        match &self.column {
+            Some((first, _)) => self.group.link_hard(first, name),
+            None => {
+                let column = Column::series(&self.group, name, &[], OFFSETS)?;
+                self.column = Some((name.to_owned(), column));
+                Ok(())
+            }
+        }
+    }
+
+    /// Appends a frame.
+    fn push(&mut self) -> hdf5::Result<()> {
+        let rows = self.rows;
+        self.column.iter_mut().try_for_each(|(_, column)| {
+            column.push([(column.rows() * rows) as i64])?;
+            column.flush()
+        })
+    }
+}
+
+impl Place {
+    fn new(grid: &Group, steps: &Group, kind: &str, rows: usize) -> hdf5::Result<Self> {
+        Ok(Place {
+            data: group(grid, &format!("{kind}Data"))?,
+            offsets: Offsets {
+                group: group(steps, &format!("{kind}DataOffsets"))?,
+                column: None,
+                rows,
+            },
+            rows,
+        })
+    }
+
+    fn field<T: H5Type + Copy>(
+        &mut self,
+        name: &str,
+        row: &[usize],
+        text: Meaning,
+    ) -> hdf5::Result<Field<T>> {
+        self.offsets.add(name)?;
+        let column = Column::frames(&self.data, name, row, self.rows, text)?;
+        Ok(Field(column))
+    }
+}
+
+const OFFSETS: Meaning = meaning("first row of the frame", "1");
+
+/// Attributes by which readers know the group.
+fn write_type(grid: &Group) -> hdf5::Result<()> {
+    let version = grid.new_attr::<i64>().shape([2]).create("Version")?;
+    version.write_raw(&[2i64, 3])?;
+    let name = FixedAscii::<16>::from_ascii("UnstructuredGrid")
+        .map_err(|error| hdf5::Error::from(error.to_string()))?;
+    set_attribute(grid, "Type", name)
+}
+
+/// The reference mesh, and lines between its nodes.
+fn write_mesh(grid: &Group, mesh: &Mesh, lines: &[[usize; 2]]) -> hdf5::Result<()> {
+    let (nodes, cells) = (mesh.node_count(), mesh.elements.len() + lines.len());
+    let mut connectivity = connectivity(mesh);
+    connectivity.extend(lines.as_flattened().iter().map(|&node| node as i64));
+    let count =
+        |name, value: usize, text| constant(grid, name, &[1], &[value as i64], meaning(text, "1"));
+    count("NumberOfPoints", nodes, "number of nodes N")?;
+    count(
+        "NumberOfCells",
+        cells,
+        "number of elements and rigid segments",
+    )?;
+    count(
+        "NumberOfConnectivityIds",
+        connectivity.len(),
+        "length of the connectivity",
+    )?;
+    let points: Vec<f64> = (mesh.coordinates.iter())
+        .flat_map(|x| [x[0], x[1], 0.0])
+        .collect();
+    let text = meaning("reference coordinates", "length");
+    constant(grid, "Points", &[nodes, 3], &points, text)?;
+    let shape = [connectivity.len()];
+    let text = meaning("node indices of all cells, one cell after the other", "1");
+    constant(grid, "Connectivity", &shape, &connectivity, text)?;
+    let text = meaning("where each cell's nodes start in the connectivity", "1");
+    let offsets = offsets(mesh, lines.len());
+    constant(grid, "Offsets", &[cells + 1], &offsets, text)?;
+    let text = meaning(
+        "cell type: 3 rigid segment, 5 triangle, 9 quadrilateral",
+        "1",
+    );
+    let mut types = types(mesh);
+    types.resize(cells, VTK_LINE);
+    constant(grid, "Types", &[cells], &types, text)
+}
+
+/// The body of every cell, `lines` rigid segments being the last.
+fn write_bodies(at: &Group, model: &Model, lines: usize) -> hdf5::Result<()> {
+    let of_element = Bodies::new(&model.mesh).of_element;
+    let elements = of_element.into_iter().map(|body| number(Some(body)));
+    let cells: Vec<i64> = elements
+        .chain(std::iter::repeat_n(number(None), lines))
+        .collect();
+    constant(at, "BODY", &[cells.len()], &cells, BODY)
+}
+
+/// Node indices of all elements, one element after the other.
+pub(crate) fn connectivity(mesh: &Mesh) -> Vec<i64> {
+    (mesh.elements.iter())
+        .flat_map(|element| element.cell.nodes())
+        .map(|&node| node as i64)
+        .collect()
+}
+
+/// Start of each element and of each line in the connectivity, and its end.
+fn offsets(mesh: &Mesh, lines: usize) -> Vec<i64> {
+    let elements = mesh
+        .elements
+        .iter()
+        .map(|element| element.cell.nodes().len());
+    let mut offsets = vec![0];
+    let mut end = 0;
+    for nodes in elements.chain(std::iter::repeat_n(2, lines)) {
+        end += nodes as i64;
+        offsets.push(end);
+    }
+    offsets
+}
+
+fn types(mesh: &Mesh) -> Vec<u8> {
+    (mesh.elements.iter())
+        .map(|element| match element.cell {
+            Cell::Tri3(_) => VTK_TRIANGLE,
+            Cell::Quad4(_) => VTK_QUAD,
+        })
+        .collect()
+}
+
+/// The vectors of a plane field with a zero third component.
+fn in_space(plane: &[f64]) -> impl Iterator<Item = f64> {
+    plane.chunks_exact(2).flat_map(|v| [v[0], v[1], 0.0])
+}

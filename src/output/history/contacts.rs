@@ -1,0 +1,289 @@
+//! Groups `/history/contact` and `/history/impacts`.
+
+use hdf5::Group;
+
+use crate::dynamics::{ContactImpulse, ContactResultant, Landing};
+use crate::model::{Bodies, Contact, Model};
+use crate::output::file::{Column, Meaning, Scalar, Series, contact_names, group, meaning, scalar};
+
+const RESULTANTS: [Scalar<ContactResultant, f64>; 7] = [
+    scalar(
+        "moment",
+        "moment of the force about the origin",
+        "force*length",
+        |c| c.moment,
+    ),
+    scalar("normal", "sum of the normal forces Pn", "force", |c| {
+        c.normal
+    }),
+    scalar(
+        "tangential",
+        "sum of the tangential forces Pt",
+        "force",
+        |c| c.tangential,
+    ),
+    scalar(
+        "min_gap",
+        "smallest gap of the candidate pairs, NaN without",
+        "length",
+        |c| c.min_gap,
+    ),
+    scalar(
+        "cone_violation",
+        "max(|Pt| - mu Pn, 0) / max(Pn)",
+        "1",
+        |c| c.cone_violation,
+    ),
+    scalar(
+        "normal_work",
+        "work of the normal contact forces since the start",
+        "energy",
+        |c| c.normal_work,
+    ),
+    scalar(
+        "friction_dissipation",
+        "energy dissipated by friction since the start",
+        "energy",
+        |c| c.friction_dissipation,
+    ),
+];
+
+const REFERENCE_MOMENT: [Scalar<ContactResultant, f64>; 1] = [scalar(
+    "reference_moment",
+    "moment of the force about the reference node of the master",
+    "force*length",
+    |c| c.reference_moment,
+)];
+
+const IMPULSE: Meaning = meaning(
+    "impulse on the slave surface in the increment",
+    "force*time",
+);
+const IMPULSES: [Scalar<ContactImpulse, f64>; 4] = [
+    scalar(
+        "normal_impulse",
+        "sum of dt Pn + Phi in the increment",
+        "force*time",
+        |i| i.normal,
+    ),
+    scalar(
+        "tangential_impulse",
+        "sum of dt Pt + Psi in the increment",
+        "force*time",
+        |i| i.tangential,
+    ),
+    scalar(
+        "impact_normal_impulse",
+        "sum of Phi in the increment",
+        "force*time",
+        |i| i.impact_normal,
+    ),
+    scalar(
+        "impact_tangential_impulse",
+        "sum of Psi in the increment",
+        "force*time",
+        |i| i.impact_tangential,
+    ),
+];
+
+const IMPULSE_SUM: Meaning = meaning("impulse on the slave surface since the start", "force*time");
+const IMPULSE_SUMS: [Scalar<ContactImpulse, f64>; 4] = [
+    scalar(
+        "normal_impulse_sum",
+        "sum of dt Pn + Phi since the start",
+        "force*time",
+        |i| i.normal,
+    ),
+    scalar(
+        "tangential_impulse_sum",
+        "sum of dt Pt + Psi since the start",
+        "force*time",
+        |i| i.tangential,
+    ),
+    scalar(
+        "impact_normal_impulse_sum",
+        "sum of Phi since the start",
+        "force*time",
+        |i| i.impact_normal,
+    ),
+    scalar(
+        "impact_tangential_impulse_sum",
+        "sum of Psi since the start",
+        "force*time",
+        |i| i.impact_tangential,
+    ),
+];
+
+const PAIRS: [Scalar<ContactResultant, i64>; 2] = [
+    scalar("closed", "pairs with Pn > 0", "1", |c| c.closed as i64),
+    scalar("sticking", "closed pairs that do not slip", "1", |c| {
+        c.sticking as i64
+    }),
+];
+
+/// `/history/contact/<SLAVE>_<MASTER>`.
+pub(crate) struct ContactHistory {
+    force: Column<f64>,
+    resultants: Series<ContactResultant, f64>,
+    pairs: Series<ContactResultant, i64>,
+    impulse: ImpulseHistory,
+    impulse_sum: ImpulseHistory,
+    /// Of a rigid master.
+    reference_moment: Option<Series<ContactResultant, f64>>,
+    /// Force and moment on each body, of a surface that touches itself.
+    bodies: Option<[Column<f64>; 2]>,
+}
+
+impl ContactHistory {
+    fn create(at: &Group, model: &Model, contact: &Contact) -> hdf5::Result<Self> {
+        let mut rigid = model.rigid_bodies.iter();
+        let is_rigid = rigid.any(|body| body.surface == contact.master);
+        let moment = || Series::create(at, &REFERENCE_MOMENT);
+        let text = meaning("contact force on the slave surface", "force");
+        Ok(ContactHistory {
+            force: Column::series(at, "force", &[2], text)?,
+            resultants: Series::create(at, &RESULTANTS)?,
+            pairs: Series::create(at, &PAIRS)?,
+            impulse: ImpulseHistory::create(at, "impulse", IMPULSE, &IMPULSES)?,
+            impulse_sum: ImpulseHistory::create(at, "impulse_sum", IMPULSE_SUM, &IMPULSE_SUMS)?,
+            reference_moment: is_rigid.then(moment).transpose()?,
+            bodies: match contact.is_self_contact() {
+                true => Some(create_bodies(at, model)?),
+                false => None,
+            },
+        })
+    }
+
+    /// Appends a row.
+    pub fn push(&mut self, resultant: &ContactResultant) -> hdf5::Result<()> {
+        self.force.push(resultant.force)?;
+        self.resultants.push(resultant)?;
+        self.pairs.push(resultant)?;
+        self.impulse.push(&resultant.impulse)?;
+        self.impulse_sum.push(&resultant.impulse_sum)?;
+        if let Some(moment) = &mut self.reference_moment {
+            moment.push(resultant)?;
+        }
+        if let Some([force, moment]) = &mut self.bodies {
+            force.push(resultant.bodies.iter().flat_map(|body| body.force))?;
+            moment.push(resultant.bodies.iter().map(|body| body.moment))?;
+        }
+        Ok(())
+    }
+
+    /// Writes the buffered rows.
+    pub fn flush(&mut self) -> hdf5::Result<()> {
+        self.force.flush()?;
+        self.resultants.flush()?;
+        self.pairs.flush()?;
+        self.impulse.flush()?;
+        self.impulse_sum.flush()?;
+        if let Some(moment) = &mut self.reference_moment {
+            moment.flush()?;
+        }
+        (self.bodies.iter_mut().flatten()).try_for_each(Column::flush)
+    }
+}
+
+fn create_bodies(at: &Group, model: &Model) -> hdf5::Result<[Column<f64>; 2]> {
+    let count = Bodies::new(&model.mesh).count;
+    let force = meaning("force of this contact on each body", "force");
+    let moment = meaning("moment of that force about the origin", "force*length");
+    Ok([
+        Column::series(at, "body_force", &[count, 2], force)?,
+        Column::series(at, "body_moment", &[count], moment)?,
+    ])
+}
+
+/// Impulses of a contact, of an increment or since the start.
+struct ImpulseHistory {
+    vector: Column<f64>,
+    scalars: Series<ContactImpulse, f64>,
+}
+
+impl ImpulseHistory {
+    fn create(
+        at: &Group,
+        name: &str,
+        vector: Meaning,
+        scalars: &[Scalar<ContactImpulse, f64>],
+    ) -> hdf5::Result<Self> {
+        Ok(ImpulseHistory {
+            vector: Column::series(at, name, &[2], vector)?,
+            scalars: Series::create(at, scalars)?,
+        })
+    }
+
+    fn push(&mut self, impulse: &ContactImpulse) -> hdf5::Result<()> {
+        self.vector.push(impulse.vector)?;
+        self.scalars.push(impulse)
+    }
+
+    fn flush(&mut self) -> hdf5::Result<()> {
+        self.vector.flush()?;
+        self.scalars.flush()
+    }
+}
+
+/// One history per contact of the model.
+pub(crate) fn create_contacts(at: &Group, model: &Model) -> hdf5::Result<Vec<ContactHistory>> {
+    let names = contact_names(model);
+    (model.contacts.iter().zip(&names))
+        .map(|(contact, name)| ContactHistory::create(&group(at, name)?, model, contact))
+        .collect()
+}
+
+const LANDINGS: [Scalar<Landing, f64>; 3] = [
+    scalar("time", "time of the landing", "time", |l| l.time),
+    scalar(
+        "xi",
+        "place on the segment: 0 at its first node, 1 at its second",
+        "1",
+        |l| l.xi,
+    ),
+    scalar(
+        "approach_speed",
+        "-dg/dt just before the landing",
+        "length/time",
+        |l| l.approach_speed,
+    ),
+];
+
+/// `/history/impacts`: one row per landing.
+pub(crate) struct Impacts {
+    landings: Series<Landing, f64>,
+    increment: Column<i64>,
+    slave: Column<i64>,
+    segment: Column<i64>,
+}
+
+impl Impacts {
+    /// Creates the datasets.
+    pub fn create(at: &Group) -> hdf5::Result<Self> {
+        let column =
+            |name, row: &[usize], text| Column::<i64>::series(at, name, row, meaning(text, "1"));
+        Ok(Impacts {
+            landings: Series::create(at, &LANDINGS)?,
+            increment: column("increment", &[], "increment of the landing")?,
+            slave: column("slave", &[], "node number of the slave node")?,
+            segment: column("segment", &[2], "node numbers of the segment's ends")?,
+        })
+    }
+
+    /// Appends a row.
+    pub fn push(&mut self, model: &Model, increment: usize, landing: &Landing) -> hdf5::Result<()> {
+        let label = |node: usize| model.mesh.node_labels[node] as i64;
+        self.landings.push(landing)?;
+        self.increment.push([increment as i64])?;
+        self.slave.push([label(landing.slave)])?;
+        self.segment.push(landing.segment.map(label))
+    }
+
+    /// Writes the buffered rows.
+    pub fn flush(&mut self) -> hdf5::Result<()> {
+        self.landings.flush()?;
+        self.increment.flush()?;
+        self.slave.flush()?;
+        self.segment.flush()
+    }
+}

@@ -1,0 +1,263 @@
+//! Group `/history`: one row per increment, row 0 being the start.
+
+use hdf5::Group;
+
+use super::bodies::BodyHistory;
+use super::contacts::{ContactHistory, Impacts, create_contacts};
+use super::nodes::{NodeHistory, create_nodes};
+use super::rigid_surfaces::{RigidHistory, create_rigid};
+use crate::dynamics::{Energy, IncrementReport, Momentum, SolverCounts};
+use crate::elements::Strained;
+use crate::model::Model;
+use crate::output::file::{Column, Scalar, Series, group, meaning, scalar};
+
+/// Writes the history.
+pub(crate) struct History {
+    times: Series<IncrementReport, f64>,
+    step: Series<IncrementReport, i64>,
+    energy: Series<Energy, f64>,
+    momentum: MomentumHistory,
+    bodies: BodyHistory,
+    strain: Series<Strained, f64>,
+    contacts: Vec<ContactHistory>,
+    impacts: Impacts,
+    rigid: Vec<RigidHistory>,
+    nodes: Vec<NodeHistory>,
+    solver: SolverHistory,
+}
+
+impl History {
+    /// Creates the group without rows.
+    pub fn create(root: &Group, model: &Model) -> hdf5::Result<Self> {
+        let at = group(root, "history")?;
+        Ok(History {
+            times: Series::create(&at, &TIMES)?,
+            step: Series::create(&at, &STEP)?,
+            energy: Series::create(&group(&at, "energy")?, &ENERGY)?,
+            momentum: MomentumHistory::create(&group(&at, "momentum")?)?,
+            bodies: BodyHistory::create(&group(&at, "bodies")?, model)?,
+            strain: Series::create(&group(&at, "strain")?, &STRAIN)?,
+            contacts: create_contacts(&group(&at, "contact")?, model)?,
+            impacts: Impacts::create(&group(&at, "impacts")?)?,
+            rigid: create_rigid(&group(&at, "rigid")?, model)?,
+            nodes: create_nodes(&group(&at, "nodes")?, model)?,
+            solver: SolverHistory::create(&group(&at, "solver")?)?,
+        })
+    }
+
+    /// Appends the row of an increment.
+    pub fn write(&mut self, model: &Model, report: &IncrementReport) -> hdf5::Result<()> {
+        self.times.push(report)?;
+        self.step.push(report)?;
+        self.energy.push(&report.energy)?;
+        self.momentum.push(&report.momentum)?;
+        self.bodies.push(&report.bodies)?;
+        self.strain.push(&report.strain)?;
+        for (contact, resultant) in self.contacts.iter_mut().zip(&report.contacts) {
+            contact.push(resultant)?;
+        }
+        for landing in &report.landings {
+            self.impacts.push(model, report.increment, landing)?;
+        }
+        for (surface, reaction) in self.rigid.iter_mut().zip(&report.rigid) {
+            surface.push(model, &report.state, reaction)?;
+        }
+        for nodes in &mut self.nodes {
+            nodes.push(report)?;
+        }
+        self.solver.push(&report.solver)
+    }
+
+    /// Writes the buffered rows.
+    pub fn flush(&mut self) -> hdf5::Result<()> {
+        self.times.flush()?;
+        self.step.flush()?;
+        self.energy.flush()?;
+        self.momentum.flush()?;
+        self.bodies.flush()?;
+        self.strain.flush()?;
+        self.contacts
+            .iter_mut()
+            .try_for_each(ContactHistory::flush)?;
+        self.impacts.flush()?;
+        self.rigid.iter_mut().try_for_each(RigidHistory::flush)?;
+        self.nodes.iter_mut().try_for_each(NodeHistory::flush)?;
+        self.solver.flush()
+    }
+}
+
+const TIMES: [Scalar<IncrementReport, f64>; 2] = [
+    scalar("time", "time at the end of the increment", "time", |r| {
+        r.time
+    }),
+    scalar("dt", "length of the increment", "time", |r| r.dt),
+];
+
+const STEP: [Scalar<IncrementReport, i64>; 1] =
+    [scalar("step", "number of the step, from 1", "1", |r| {
+        r.step as i64
+    })];
+
+const ENERGY: [Scalar<Energy, f64>; 8] = [
+    scalar("kinetic", "kinetic energy", "energy", |e| e.kinetic),
+    scalar("strain", "strain energy", "energy", |e| e.strain),
+    scalar(
+        "external_work",
+        "work of the loads and of the supports' prescribed motion since the start",
+        "energy",
+        |e| e.external_work,
+    ),
+    scalar(
+        "normal_contact_work",
+        "work of the normal contact forces since the start",
+        "energy",
+        |e| e.normal_contact_work,
+    ),
+    scalar(
+        "friction_dissipation",
+        "energy dissipated by friction since the start",
+        "energy",
+        |e| e.friction_dissipation,
+    ),
+    scalar(
+        "impact_loss",
+        "kinetic energy taken by the impact impulses since the start",
+        "energy",
+        |e| e.impact_loss,
+    ),
+    scalar(
+        "numerical_dissipation",
+        "energy dissipated by the integration scheme since the start",
+        "energy",
+        |e| e.numerical_dissipation,
+    ),
+    scalar(
+        "balance",
+        "what is left of the energy balance: only the unconverged residual",
+        "energy",
+        |e| e.balance,
+    ),
+];
+
+const STRAIN: [Scalar<Strained, f64>; 1] = [scalar(
+    "largest_principal",
+    "largest absolute principal value of the Green-Lagrange strain in the plane, of all integration \
+     points",
+    "1",
+    |s| s.strain,
+)];
+
+const ANGULAR: [Scalar<Momentum, f64>; 1] = [scalar(
+    "angular",
+    "angular momentum about the origin",
+    "mass*length^2/time",
+    |m| m.angular,
+)];
+
+/// `/history/momentum`.
+struct MomentumHistory {
+    linear: Column<f64>,
+    angular: Series<Momentum, f64>,
+}
+
+impl MomentumHistory {
+    fn create(at: &Group) -> hdf5::Result<Self> {
+        let text = meaning("linear momentum", "mass*length/time");
+        Ok(MomentumHistory {
+            linear: Column::series(at, "linear", &[2], text)?,
+            angular: Series::create(at, &ANGULAR)?,
+        })
+    }
+
+    fn push(&mut self, momentum: &Momentum) -> hdf5::Result<()> {
+        self.linear.push(momentum.linear)?;
+        self.angular.push(momentum)
+    }
+
+    fn flush(&mut self) -> hdf5::Result<()> {
+        self.linear.flush()?;
+        self.angular.flush()
+    }
+}
+
+const COUNTS: [Scalar<SolverCounts, i64>; 8] = [
+    scalar("passes", "predictor and corrector passes", "1", |s| {
+        s.passes as i64
+    }),
+    scalar("lcps", "complementarity problems solved", "1", |s| {
+        s.lcps as i64
+    }),
+    scalar(
+        "lcp_size",
+        "largest number of pairs in one of them",
+        "1",
+        |s| s.lcp_size as i64,
+    ),
+    scalar("pivots", "pivots of Lemke's method", "1", |s| {
+        s.pivots as i64
+    }),
+    scalar(
+        "active_set_iterations",
+        "iterations of the active-set method",
+        "1",
+        |s| s.active_set_iterations as i64,
+    ),
+    scalar(
+        "gauss_seidel_sweeps",
+        "sweeps of the Gauss-Seidel method",
+        "1",
+        |s| s.gauss_seidel_sweeps as i64,
+    ),
+    scalar("lemke_calls", "calls of Lemke's method", "1", |s| {
+        s.lemke_calls as i64
+    }),
+    scalar(
+        "factorizations",
+        "factorisations of the effective matrix",
+        "1",
+        |s| s.factorizations as i64,
+    ),
+];
+
+const RESIDUAL: [Scalar<SolverCounts, f64>; 1] = [scalar(
+    "residual",
+    "relative force residual of the last pass",
+    "1",
+    |s| s.residual,
+)];
+
+const CONVERGED: [Scalar<SolverCounts, u8>; 1] = [scalar(
+    "converged",
+    "1 when the increment converged, else 0",
+    "1",
+    |s| s.converged.into(),
+)];
+
+/// `/history/solver`.
+struct SolverHistory {
+    counts: Series<SolverCounts, i64>,
+    residual: Series<SolverCounts, f64>,
+    converged: Series<SolverCounts, u8>,
+}
+
+impl SolverHistory {
+    fn create(at: &Group) -> hdf5::Result<Self> {
+        Ok(SolverHistory {
+            counts: Series::create(at, &COUNTS)?,
+            residual: Series::create(at, &RESIDUAL)?,
+            converged: Series::create(at, &CONVERGED)?,
+        })
+    }
+
+    fn push(&mut self, counts: &SolverCounts) -> hdf5::Result<()> {
+        self.counts.push(counts)?;
+        self.residual.push(counts)?;
+        self.converged.push(counts)
+    }
+
+    fn flush(&mut self) -> hdf5::Result<()> {
+        self.counts.flush()?;
+        self.residual.flush()?;
+        self.converged.flush()
+    }
+}

@@ -1,0 +1,9 @@
+//! Histories: one row per increment.
+
+mod bodies;
+mod contacts;
+mod histories;
+mod nodes;
+mod rigid_surfaces;
+
+pub(crate) use histories::History;

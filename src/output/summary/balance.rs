@@ -1,0 +1,144 @@
+//! Running checks of conservation: energy balance (docs/theory.md, section 9), energy put in by
+//! contact (section 7), and linear momentum of a model without supports and loads.
+
+use crate::dynamics::{Energy, IncrementReport, Momentum};
+use crate::linear::larger;
+use crate::model::Model;
+
+/// Work of the normal contact forces in an increment (as a part of the largest energy) that is
+/// round-off.
+const ROUND_OFF: f64 = 1e-12;
+
+/// Follows the energy balance, the energy that contact puts in and, of a free model, the momentum.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Balance {
+    /// Largest energy or external work so far.
+    largest: f64,
+    /// Largest absolute balance so far.
+    worst: f64,
+    /// Work of the normal contact forces so far.
+    contact_work: f64,
+    /// Its largest absolute value so far.
+    most_contact_work: f64,
+    gains: Gains,
+    /// Momentum at the start, when nothing outside may change it.
+    start: Option<Momentum>,
+    /// Largest linear momentum so far.
+    momentum: f64,
+    /// Largest change of the linear momentum so far.
+    drift: f64,
+    free: bool,
+}
+
+/// Increments in which the normal contact forces did positive work: with energy-momentum contact
+/// those that a pair enters with a negative gap.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Gains {
+    /// Their number.
+    pub count: usize,
+    /// The energy put in.
+    pub energy: f64,
+}
+
+impl Balance {
+    /// The balance of a model's run.
+    pub fn new(model: &Model) -> Self {
+        let free = model.steps.iter().all(|step| {
+            step.supports.is_empty()
+                && step.point_loads.is_empty()
+                && step.body_forces.is_empty()
+                && step.pressures.is_empty()
+                && step.tractions.is_empty()
+        });
+        Balance {
+            free,
+            ..Balance::default()
+        }
+    }
+
+    /// Takes an increment in; the energy that contact put in, if it did.
+    pub fn add(&mut self, report: &IncrementReport) -> Option<f64> {
+        let Energy {
+            kinetic,
+            strain,
+            external_work,
+            balance,
+            ..
+        } = report.energy;
+        for energy in [kinetic, strain, external_work] {
+            self.largest = larger(self.largest, energy.abs());
+        }
+        self.worst = larger(self.worst, balance.abs());
+        if self.free {
+            self.add_momentum(report.momentum);
+        }
+        let work = report.energy.normal_contact_work;
+        let gain = work - std::mem::replace(&mut self.contact_work, work);
+        self.most_contact_work = larger(self.most_contact_work, work.abs());
+        let puts_in = gain > ROUND_OFF * self.largest;
+        if puts_in {
+            self.gains.count += 1;
+            self.gains.energy += gain;
+        }
+        puts_in.then_some(gain)
+    }
+
+    /// The increments in which contact put energy in.
+    pub fn gains(&self) -> Gains {
+        self.gains
+    }
+
+    fn add_momentum(&mut self, momentum: Momentum) {
+        let [x, y] = momentum.linear;
+        let [x0, y0] = self.start.get_or_insert(momentum).linear;
+        self.momentum = larger(self.momentum, x.hypot(y));
+        self.drift = larger(self.drift, (x - x0).hypot(y - y0));
+    }
+
+    /// `balance` as a part of the largest energy so far.
+    pub fn relative(&self, balance: f64) -> f64 {
+        part(balance, self.largest)
+    }
+
+    /// The worst balance so far as a part of the largest energy.
+    pub fn worst(&self) -> f64 {
+        part(self.worst, self.largest)
+    }
+
+    /// The largest work of the normal contact forces so far as a part of the largest energy.
+    pub fn contact_work(&self) -> f64 {
+        part(self.most_contact_work, self.largest)
+    }
+
+    /// The change of a free model's linear momentum as a part of its largest value.
+    pub fn momentum_drift(&self) -> Option<f64> {
+        self.free.then(|| part(self.drift, self.momentum))
+    }
+}
+
+/// `value / whole`, 0 of nothing.
+pub(crate) fn part(value: f64, whole: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value / whole }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_balance_that_is_no_number_is_the_worst() {
+        let report = |balance| IncrementReport {
+            energy: Energy {
+                kinetic: 1.0,
+                balance,
+                ..Energy::default()
+            },
+            ..IncrementReport::default()
+        };
+        let mut balance = Balance::default();
+        for value in [1e-3, f64::NAN, 1e-9] {
+            balance.add(&report(value));
+        }
+        assert!(balance.worst().is_nan());
+    }
+}

@@ -1,0 +1,281 @@
+//! A finished or running job as read back from its result file: the content of `info`.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use hdf5::types::VarLenUnicode;
+use hdf5::{FileBuilder, Group, H5Type};
+use thiserror::Error;
+
+use super::balance::part;
+use super::warnings::{Findings, never_closed};
+use crate::linear::{larger, largest};
+use crate::output::error::reason;
+use crate::output::file::{BodyTimes, UNFINISHED, regular_file};
+use crate::output::text::{bytes, counted, general, label, scientific, wrap};
+
+/// Why a result file could not be read.
+#[derive(Debug, Error)]
+pub enum SummaryError {
+    /// The file is not there or may not be read.
+    #[error("cannot read {}: {}", path.display(), reason(source))]
+    Open {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// The file is no result file of this program, or not complete.
+    #[error("{} is not a result file of stickslip: {source}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: hdf5::Error,
+    },
+}
+
+/// What stands in a result file, in numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResultSummary {
+    /// The file.
+    pub path: PathBuf,
+    /// Its size in bytes.
+    pub size: u64,
+    /// Version and commit of the program that wrote it.
+    pub version: String,
+    /// The command that started it.
+    pub command: String,
+    /// When the run started.
+    pub started: String,
+    /// When it ended; empty when it did not.
+    pub finished: String,
+    /// Exit status, -1 when the run did not end.
+    pub exit_status: i64,
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Number of elements.
+    pub elements: usize,
+    /// Names of the contacts with the largest normal force of each.
+    pub contacts: Vec<(String, f64)>,
+    /// Number of landings.
+    pub landings: usize,
+    /// Number of steps begun.
+    pub steps: i64,
+    /// Number of increments.
+    pub increments: usize,
+    /// Last time of the history.
+    pub time: f64,
+    /// Times of the frames.
+    pub frames: Vec<f64>,
+    /// Last value of each energy.
+    pub energies: Vec<(String, f64)>,
+    /// Largest energy or external work of the history.
+    pub largest_energy: f64,
+    /// Largest absolute balance of the history.
+    pub worst_balance: f64,
+    /// What the run shall be looked at again for, in lines of the screen.
+    pub warnings: Vec<String>,
+}
+
+impl ResultSummary {
+    /// Reads a result file.
+    pub fn read(path: &Path) -> Result<Self, SummaryError> {
+        let open = |source| SummaryError::Open {
+            path: path.to_owned(),
+            source,
+        };
+        let size = regular_file(path).map_err(open)?.len();
+        let content = |source| SummaryError::Content {
+            path: path.to_owned(),
+            source,
+        };
+        Self::read_file(path, size).map_err(content)
+    }
+
+    fn read_file(path: &Path, size: u64) -> hdf5::Result<Self> {
+        // Without a lock, so that a run can be looked at while it writes.
+        let file = FileBuilder::new()
+            .with_fapl(|properties| properties.file_locking(false))
+            .open(path)?;
+        let (run, history) = (file.group("run")?, file.group("history")?);
+        let times: Vec<f64> = column(&history, "time")?;
+        let steps: Vec<i64> = column(&history, "step")?;
+        let (energies, largest_energy) = read_energies(&history.group("energy")?)?;
+        let balance: Vec<f64> = column(&history, "energy/balance")?;
+        let findings = read_findings(&file, largest_energy, largest(&balance))?;
+        Ok(ResultSummary {
+            path: path.to_owned(),
+            size,
+            version: format!("{} ({})", text(&run, "version")?, text(&run, "commit")?),
+            command: text(&run, "command")?,
+            started: text(&run, "started")?,
+            finished: text(&run, "finished")?,
+            exit_status: run.attr("exit_status")?.read_scalar()?,
+            nodes: file.dataset("model/node_labels")?.size(),
+            elements: file.dataset("model/element_labels")?.size(),
+            contacts: read_contacts(&history.group("contact")?)?,
+            landings: history.dataset("impacts/time")?.size(),
+            steps: steps.iter().copied().max().unwrap_or(0),
+            increments: times.len().saturating_sub(1),
+            time: times.last().copied().unwrap_or(0.0),
+            frames: column(&file, "VTKHDF/Steps/Values")?,
+            energies,
+            largest_energy,
+            worst_balance: largest(&balance),
+            warnings: findings.lines(),
+        })
+    }
+
+    /// The summary as text.
+    pub fn lines(&self) -> Vec<String> {
+        let name = self.path.display();
+        let mut lines = vec![
+            label("file", &format!("{name} ({})", bytes(self.size))),
+            label("program", &format!("stickslip {}", self.version)),
+            label("command", &self.command),
+        ];
+        lines.push(label("run", &self.end()));
+        let model = [
+            counted(self.nodes, "node"),
+            counted(self.elements, "element"),
+        ];
+        lines.extend(wrap("model", &model));
+        lines.extend(self.progress());
+        lines.extend(self.contact_lines());
+        lines.extend(self.energy_lines());
+        lines.extend(self.warnings.iter().cloned());
+        lines
+    }
+
+    fn end(&self) -> String {
+        let finished = &self.finished;
+        let how = match self.exit_status {
+            UNFINISHED => "still running or killed".to_owned(),
+            0 => format!("finished {finished}, exit status 0"),
+            1 => format!("stopped in the solve {finished}, exit status 1"),
+            129 | 130 | 143 => {
+                let status = self.exit_status;
+                format!("stopped by a signal {finished}, exit status {status}")
+            }
+            status => format!("ended {finished}, exit status {status}"),
+        };
+        format!("started {}, {how}", self.started)
+    }
+
+    fn progress(&self) -> Vec<String> {
+        let ends = match (self.frames.first(), self.frames.last()) {
+            (Some(first), Some(last)) => {
+                format!(" from {} to {}", general(*first, 4), general(*last, 4))
+            }
+            _ => String::new(),
+        };
+        let pieces = [
+            counted(self.steps.unsigned_abs() as usize, "step"),
+            counted(self.increments, "increment"),
+            format!("time {}", general(self.time, 6)),
+            format!("{}{ends}", counted(self.frames.len(), "frame")),
+        ];
+        wrap("results", &pieces)
+    }
+
+    fn contact_lines(&self) -> Vec<String> {
+        let mut lines: Vec<String> = (self.contacts.iter())
+            .map(|(name, normal)| format!("{name}, largest normal force {}", general(*normal, 4)))
+            .map(|text| label("contact", &text))
+            .collect();
+        if !lines.is_empty() {
+            lines.push(label("", &counted(self.landings, "landing")));
+        }
+        lines
+    }
+
+    fn energy_lines(&self) -> Vec<String> {
+        let pieces: Vec<String> = (self.energies.iter())
+            .map(|(name, value)| format!("{} {}", name.replace('_', " "), scientific(*value, 4)))
+            .collect();
+        let mut lines = wrap("energy", &pieces);
+        let part = scientific(part(self.worst_balance, self.largest_energy), 1);
+        lines.push(label("", &format!("balance {part} of the largest energy")));
+        lines
+    }
+}
+
+/// Last value of each energy, and the largest that counts as the balance's scale.
+fn read_energies(at: &Group) -> hdf5::Result<(Vec<(String, f64)>, f64)> {
+    let mut energies = vec![];
+    let mut scale: f64 = 0.0;
+    for name in [
+        "kinetic",
+        "strain",
+        "external_work",
+        "normal_contact_work",
+        "friction_dissipation",
+        "impact_loss",
+        "numerical_dissipation",
+    ] {
+        let values: Vec<f64> = column(at, name)?;
+        if energies.len() < 3 {
+            scale = larger(scale, largest(&values));
+        }
+        energies.push((name.to_owned(), values.last().copied().unwrap_or(0.0)));
+    }
+    Ok((energies, scale))
+}
+
+/// What the warnings look at; datasets that older files lack are left out.
+fn read_findings(file: &Group, largest_energy: f64, balance: f64) -> hdf5::Result<Findings> {
+    let history = file.group("history")?;
+    let work: Vec<f64> = column(&history, "energy/normal_contact_work")?;
+    let times: Vec<f64> = column(&history, "time")?;
+    let increments: Vec<f64> = column(&history, "dt")?;
+    let [edge, body] = ["edge_time", "wave_time"]
+        .map(|name| column::<f64>(file, &format!("model/bodies/{name}")).unwrap_or_default());
+    let strain: Option<Vec<f64>> = column(&history, "strain/largest_principal").ok();
+    let dt = largest(&increments);
+    Ok(Findings {
+        balance: part(balance, largest_energy),
+        contact_work: part(largest(&work), largest_energy),
+        strain: strain.map(|strain| largest(&strain)),
+        open: match dt > 0.0 {
+            true => read_open(&history.group("contact")?)?,
+            false => Vec::new(),
+        },
+        dt,
+        time: times.last().copied().unwrap_or(0.0),
+        bodies: (edge.into_iter().zip(body))
+            .map(|(edge, body)| BodyTimes { edge, body })
+            .collect(),
+    })
+}
+
+/// Names of the contacts that never closed, nor were struck.
+fn read_open(at: &Group) -> hdf5::Result<Vec<String>> {
+    let has_closed = |name: &str| -> hdf5::Result<bool> {
+        let closed: Vec<i64> = column(at, &format!("{name}/closed"))?;
+        let struck = column::<f64>(at, &format!("{name}/impact_normal_impulse"));
+        let is_struck = struck.is_ok_and(|struck| struck.iter().any(|&phi| phi > 0.0));
+        Ok(is_struck || closed.iter().any(|&pairs| pairs > 0))
+    };
+    let contact = |name: String| has_closed(&name).map(|closed| (name, closed));
+    let contacts: hdf5::Result<Vec<(String, bool)>> =
+        at.member_names()?.into_iter().map(contact).collect();
+    Ok(never_closed(&contacts?))
+}
+
+fn read_contacts(at: &Group) -> hdf5::Result<Vec<(String, f64)>> {
+    let read = |name: String| {
+        let normal: Vec<f64> = column(at, &format!("{name}/normal"))?;
+        Ok((name, largest(&normal)))
+    };
+    at.member_names()?.into_iter().map(read).collect()
+}
+
+fn column<T: H5Type>(at: &Group, name: &str) -> hdf5::Result<Vec<T>> {
+    at.dataset(name)?.read_raw()
+}
+
+fn text(at: &Group, name: &str) -> hdf5::Result<String> {
+    let value: VarLenUnicode = at.attr(name)?.read_scalar()?;
+    Ok(value.as_str().to_owned())
+}

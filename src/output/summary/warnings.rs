@@ -1,0 +1,293 @@
+//! What a run shall be looked at again for: told at its end, and by `info` from the result file.
+
+use super::balance::Balance;
+use crate::dynamics::IncrementReport;
+use crate::linear::larger;
+use crate::model::{ALL_EXTERIOR, Bodies, Model};
+use crate::output::file::{BodyTimes, body_times, contact_names};
+use crate::output::text::{LARGE, WIDTH, general, label, scientific};
+
+/// Energy balance, as a part of the largest energy, that converged passes leave.
+const BALANCE: f64 = 1e-8;
+/// Work of the normal contact forces, as a part of the largest energy, that counts.
+const CONTACT_WORK: f64 = 0.01;
+/// Increments, in the time that a wave takes along the shortest edge, that are more than a mesh can show.
+const MANY: f64 = 100.0;
+/// Increments in the longest period that show its motion well.
+const ENOUGH: f64 = 20.0;
+
+/// What is looked at, of a whole run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Findings {
+    /// Largest energy balance as a part of the largest energy.
+    pub balance: f64,
+    /// Largest work of the normal contact forces as a part of the largest energy.
+    pub contact_work: f64,
+    /// Largest principal strain, where it is known.
+    pub strain: Option<f64>,
+    /// Names of the contacts that never closed, sorted.
+    pub open: Vec<String>,
+    /// Length of the longest increment; 0 without any.
+    pub dt: f64,
+    /// Last time.
+    pub time: f64,
+    /// Times of waves in the bodies, where they are known.
+    pub bodies: Vec<BodyTimes>,
+}
+
+impl Findings {
+    /// The warnings, each a sentence that says what to do, in lines of the screen.
+    pub fn lines(&self) -> Vec<String> {
+        let texts = [
+            self.balance_text(),
+            self.contact_work_text(),
+            self.strain_text(),
+        ];
+        let increments = [self.long_text(), self.short_text()];
+        let open = self.open.iter().map(|name| self.open_text(name));
+        let all = texts.into_iter().chain(increments).flatten().chain(open);
+        all.flat_map(|text| sentence(&text)).collect()
+    }
+
+    fn balance_text(&self) -> Option<String> {
+        let is_small = self.balance <= BALANCE;
+        (!is_small).then(|| {
+            format!(
+                "the energy balance is off by {} of the largest energy, above {}: lower the \
+                 TOLERANCE of *STICKSLIP or the increment",
+                scientific(self.balance, 1),
+                scientific(BALANCE, 0),
+            )
+        })
+    }
+
+    fn contact_work_text(&self) -> Option<String> {
+        let is_small = self.contact_work <= CONTACT_WORK;
+        (!is_small).then(|| {
+            format!(
+                "the normal contact forces did work of {} of the largest energy, above {}, as where \
+                 nodes land within increments: choose IMPACT TIME=EVENT or smaller increments",
+                scientific(self.contact_work, 1),
+                general(CONTACT_WORK, 1),
+            )
+        })
+    }
+
+    fn strain_text(&self) -> Option<String> {
+        let strain = self.strain.filter(|&strain| strain > LARGE)?;
+        Some(format!(
+            "the largest principal strain is {}, above {}, where a St. Venant-Kirchhoff material is \
+             too stiff in tension and too soft in compression: trust no forces there, or lower the loads",
+            general(strain, 4),
+            general(LARGE, 1),
+        ))
+    }
+
+    /// An increment longer than the longest period 2 L/c of longitudinal vibration: the motion of no
+    /// body relative to itself is resolved.
+    fn long_text(&self) -> Option<String> {
+        let longest = self.bodies.iter().map(|times| 2.0 * times.body);
+        let period = longest.reduce(f64::max)?;
+        (self.dt > period).then(|| {
+            format!(
+                "increments of {} are longer than a wave takes to and fro through the slowest body \
+                 ({}), so that no vibration is resolved: choose about {} if it matters",
+                general(self.dt, 2),
+                general(period, 2),
+                general(period / ENOUGH, 1),
+            )
+        })
+    }
+
+    /// An increment in which a wave goes far less than the shortest edge: errors of the mesh rule.
+    fn short_text(&self) -> Option<String> {
+        let shortest = self.bodies.iter().map(|times| times.edge);
+        let edge = shortest.reduce(f64::min)?;
+        (self.dt > 0.0 && self.dt * MANY < edge).then(|| {
+            format!(
+                "even the longest increment ({}) is less than a {}th of the time a wave takes along \
+                 the shortest edge ({}), which makes nothing more accurate: choose up to {}",
+                general(self.dt, 2),
+                general(MANY, 1),
+                general(edge, 2),
+                general(edge, 1),
+            )
+        })
+    }
+
+    fn open_text(&self, name: &str) -> String {
+        format!(
+            "contact {name} never closed up to time {}: if its surfaces should have met, see that \
+             the faces of each look at the other",
+            general(self.time, 4),
+        )
+    }
+}
+
+/// Follows a run.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Watch {
+    /// Whether each contact has closed, or been struck.
+    closed: Vec<bool>,
+    dt: f64,
+    time: f64,
+}
+
+impl Watch {
+    /// Takes an increment in.
+    pub fn add(&mut self, report: &IncrementReport) {
+        self.closed.resize(report.contacts.len(), false);
+        for (closed, contact) in self.closed.iter_mut().zip(&report.contacts) {
+            *closed |= contact.closed > 0 || contact.impulse.impact_normal > 0.0;
+        }
+        self.dt = larger(self.dt, report.dt);
+        self.time = report.time;
+    }
+
+    /// What was found up to the end; large strains are told at their increment.
+    pub fn findings(&self, model: &Model, balance: &Balance) -> Findings {
+        let closed = self.closed.iter().copied();
+        let contacts: Vec<(String, bool)> = contact_names(model).into_iter().zip(closed).collect();
+        Findings {
+            balance: balance.worst(),
+            contact_work: balance.contact_work(),
+            strain: None,
+            open: match self.dt > 0.0 {
+                true => never_closed(&contacts),
+                false => Vec::new(),
+            },
+            dt: self.dt,
+            time: self.time,
+            bodies: body_times(model, &Bodies::new(&model.mesh)),
+        }
+    }
+}
+
+/// Names of the contacts that never closed, sorted, from the names of all and whether they did. Where
+/// the same surfaces meet the other way round, nodes of one of them may carry it all; in general contact
+/// it is enough that something has met something.
+pub(crate) fn never_closed(contacts: &[(String, bool)]) -> Vec<String> {
+    let has_closed = |wanted: &str| {
+        contacts
+            .iter()
+            .any(|(name, closed)| *closed && name == wanted)
+    };
+    let other_way_round = |name: &str| {
+        let mut cuts = name.match_indices('_');
+        cuts.any(|(i, _)| has_closed(&format!("{}_{}", &name[i + 1..], &name[..i])))
+    };
+    let is_general = |name: &str| name.starts_with(ALL_EXTERIOR);
+    let mut general = contacts.iter().filter(|(name, _)| is_general(name));
+    let has_met = general.any(|(_, closed)| *closed);
+    let is_met = |name: &str| other_way_round(name) || (has_met && is_general(name));
+    let open = contacts
+        .iter()
+        .filter(|(_, closed)| !closed)
+        .map(|(name, _)| name);
+    let mut open: Vec<String> = open.filter(|name| !is_met(name)).cloned().collect();
+    open.sort();
+    open
+}
+
+/// The words of a warning in as many lines as they need.
+fn sentence(text: &str) -> Vec<String> {
+    let mut lines = vec![];
+    let mut line = label("warning", "");
+    let mut is_empty = true;
+    for word in text.split(' ') {
+        if !is_empty && line.len() + 1 + word.len() > WIDTH {
+            lines.push(std::mem::replace(&mut line, label("", "")));
+            is_empty = true;
+        }
+        if !is_empty {
+            line.push(' ');
+        }
+        line.push_str(word);
+        is_empty = false;
+    }
+    lines.push(line);
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A run that nothing is wrong with: 20 increments for the way to and fro in the slowest body.
+    fn sound() -> Findings {
+        Findings {
+            balance: 1e-10,
+            contact_work: 0.001,
+            strain: Some(0.1),
+            open: vec![],
+            dt: 0.1,
+            time: 1.0,
+            bodies: vec![
+                BodyTimes {
+                    edge: 0.05,
+                    body: 0.2,
+                },
+                BodyTimes {
+                    edge: 0.1,
+                    body: 1.0,
+                },
+            ],
+        }
+    }
+
+    fn text(findings: &Findings) -> String {
+        let lines = findings.lines();
+        assert!(lines.iter().all(|line| line.len() <= WIDTH), "{lines:?}");
+        let words: Vec<&str> = lines
+            .iter()
+            .flat_map(|line| line.split_whitespace())
+            .collect();
+        words.join(" ")
+    }
+
+    #[test]
+    fn a_sound_run_is_not_warned_about() {
+        assert_eq!(text(&sound()), "");
+        let old = Findings {
+            strain: None,
+            bodies: vec![],
+            ..sound()
+        };
+        assert_eq!(text(&old), "", "of a file without these datasets");
+    }
+
+    #[test]
+    fn a_contact_that_closed_the_other_way_round_has_met() {
+        let contacts = |closed: [bool; 3]| -> Vec<(String, bool)> {
+            let names = ["UP_X_LOW", "LOW_UP_X", "A_B"].map(str::to_owned);
+            names.into_iter().zip(closed).collect()
+        };
+        assert_eq!(never_closed(&contacts([false, true, true])), [""; 0]);
+        assert_eq!(never_closed(&contacts([false, true, false])), ["A_B"]);
+        let general = [("ALL_EXTERIOR", false), ("ALL_EXTERIOR_FLOOR", true)];
+        let general = general.map(|(name, closed)| (name.to_owned(), closed));
+        assert_eq!(never_closed(&general), [""; 0]);
+        assert_eq!(
+            never_closed(&contacts([false; 3])),
+            ["A_B", "LOW_UP_X", "UP_X_LOW"]
+        );
+    }
+
+    #[test]
+    fn each_warning_stands_alone() {
+        let warns = |change: fn(&mut Findings), words: &str| {
+            let mut findings = sound();
+            change(&mut findings);
+            let text = text(&findings);
+            assert!(text.contains(words), "{text}");
+            assert_eq!(text.matches("warning").count(), 1, "{text}");
+        };
+        warns(|f| f.balance = 2e-8, "off by 2.0e-08 of the largest");
+        warns(|f| f.balance = f64::NAN, "off by nan");
+        warns(|f| f.contact_work = 0.45, "4.5e-01 of the largest energy");
+        warns(|f| f.strain = Some(0.35), "strain is 0.35, above 0.2");
+        warns(|f| f.dt = 2.1, "(2), so that no vibration");
+        warns(|f| f.dt = 4e-4, "longest increment (0.0004) is less");
+        warns(|f| f.open = vec!["A_B".into()], "contact A_B never closed");
+    }
+}

@@ -1,0 +1,299 @@
+//! The model in a few lines, as the screen and `check` show it.
+
+use super::format::{counted, general, grouped, scientific};
+use crate::model::{
+    Cell, Contact, Element, Frames, Impact, ImpactTime, Model, Plane, Scheme, Settings,
+    SolverChoice, Step, SurfaceKind,
+};
+use crate::output::frames::{DEFAULT_FRAMES, are_dense};
+use crate::prepare::{InitialGap, initial_gaps};
+
+/// Width of the screen in columns.
+pub(crate) const WIDTH: usize = 80;
+
+/// Numbers that describe a model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelEcho {
+    /// Mass of all bodies.
+    pub mass: f64,
+    /// Smallest coordinates (length).
+    pub lower: [f64; 2],
+    /// Largest coordinates (length).
+    pub upper: [f64; 2],
+    /// Shortest element edge (length).
+    pub shortest_edge: f64,
+    /// Largest speed of longitudinal waves (length/time).
+    pub wave_speed: f64,
+    /// Shortest time a wave takes along an element's shortest edge: a guide for the increment.
+    pub edge_time: f64,
+    /// Number of dofs prescribed in any step.
+    pub prescribed: usize,
+}
+
+impl ModelEcho {
+    /// Measures a model.
+    pub fn new(model: &Model) -> Self {
+        let mut echo = ModelEcho {
+            mass: 0.0,
+            lower: [f64::INFINITY; 2],
+            upper: [f64::NEG_INFINITY; 2],
+            shortest_edge: f64::INFINITY,
+            wave_speed: 0.0,
+            edge_time: f64::INFINITY,
+            prescribed: prescribed(model),
+        };
+        for x in &model.mesh.coordinates {
+            echo.lower = [echo.lower[0].min(x[0]), echo.lower[1].min(x[1])];
+            echo.upper = [echo.upper[0].max(x[0]), echo.upper[1].max(x[1])];
+        }
+        for element in &model.mesh.elements {
+            echo.add(model, element);
+        }
+        echo
+    }
+
+    fn add(&mut self, model: &Model, element: &Element) {
+        let corners = corners(model, element);
+        let (edge, speed) = (shortest_edge(&corners), wave_speed(model, element));
+        self.mass += element_mass(model, element);
+        self.shortest_edge = self.shortest_edge.min(edge);
+        self.wave_speed = self.wave_speed.max(speed);
+        self.edge_time = self.edge_time.min(edge / speed);
+    }
+
+    /// The lines of the echo.
+    pub fn lines(&self, model: &Model) -> Vec<String> {
+        let mut lines = self.model_lines(model);
+        if model.contacts.is_empty() {
+            lines.push(label("contact", "none"));
+        }
+        for (contact, gaps) in model.contacts.iter().zip(initial_gaps(model)) {
+            lines.extend(contact_lines(model, contact, &gaps));
+        }
+        for (i, step) in model.steps.iter().enumerate() {
+            lines.extend(self.step_lines(i, step));
+        }
+        lines
+    }
+
+    fn model_lines(&self, model: &Model) -> Vec<String> {
+        let mesh = &model.mesh;
+        let range = |i: usize| {
+            let [lower, upper] = [self.lower[i], self.upper[i]].map(|x| general(x, 4));
+            format!("[{lower},{upper}]")
+        };
+        let kinds = kinds(&mesh.elements);
+        let size = [
+            counted(mesh.node_count(), "node"),
+            format!("{} ({kinds})", counted(mesh.elements.len(), "element")),
+            format!(
+                "{} dofs, {} fixed",
+                grouped(mesh.dof_count()),
+                grouped(self.prescribed)
+            ),
+            format!("mass {}", general(self.mass, 4)),
+        ];
+        let shape = [
+            format!("extents {} x {}", range(0), range(1)),
+            format!("shortest edge {}", general(self.shortest_edge, 3)),
+            format!("wave speed {}", general(self.wave_speed, 3)),
+        ];
+        let mut lines = wrap("model", &size);
+        lines.extend(wrap("", &shape));
+        lines
+    }
+
+    fn step_lines(&self, index: usize, step: &Step) -> Vec<String> {
+        let increments = &step.increments;
+        let fixed = if increments.direct { " fixed" } else { "" };
+        let name = step.name.as_deref().unwrap_or_default();
+        let times = [
+            format!("{name} 0 .. {}", general(increments.period, 4))
+                .trim_start()
+                .to_owned(),
+            format!("dt {}{fixed}", general(increments.dt, 4)),
+            format!("edge/wave speed {}", general(self.edge_time, 2)),
+            frames(&step.frames),
+        ];
+        let settings = &step.settings;
+        let numerics = [
+            scheme(settings.scheme),
+            impact(settings).to_owned(),
+            format!("solver {}", solver(settings.solver)),
+        ];
+        let mut lines = wrap(&format!("step {}", index + 1), &times);
+        lines.extend(wrap("", &numerics));
+        if are_dense(step) {
+            lines.push(label(
+                "note",
+                "frames are asked for at shorter intervals than dt: every increment is one",
+            ));
+        }
+        lines
+    }
+}
+
+/// Name of a linear solver as typed on the command line.
+pub fn solver(choice: SolverChoice) -> &'static str {
+    match choice {
+        SolverChoice::Faer => "faer",
+        SolverChoice::Sprs => "sprs",
+    }
+}
+
+/// When frames are written, as text.
+pub fn frames(frames: &Frames) -> String {
+    match frames {
+        Frames::Default => format!("output {}", counted(DEFAULT_FRAMES, "frame")),
+        Frames::Count(count) => format!("output {}", counted(*count, "frame")),
+        Frames::Every(interval) => format!("output every {}", general(*interval, 4)),
+        Frames::Increments(count) => format!("output every {}", counted(*count, "increment")),
+        Frames::Times(times) => format!("output at {}", counted(times.len(), "time")),
+    }
+}
+
+fn scheme(scheme: Scheme) -> String {
+    match scheme {
+        Scheme::EnergyMomentum => "scheme energy-momentum".into(),
+        Scheme::Ss22 { theta1, theta2 } => format!(
+            "scheme SS22 theta1 {} theta2 {}",
+            general(theta1, 4),
+            general(theta2, 4)
+        ),
+    }
+}
+
+fn impact(settings: &Settings) -> &'static str {
+    match (settings.impact, settings.impact_time) {
+        (Impact::None, _) => "no impact impulses",
+        (Impact::Impulse, ImpactTime::Increment) => "impact impulses",
+        (Impact::Impulse, ImpactTime::Event) => "impact impulses at the times of impacts",
+    }
+}
+
+fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<String> {
+    let (slave, master) = (
+        &model.surfaces[contact.slave],
+        &model.surfaces[contact.master],
+    );
+    let edge = match master.kind {
+        SurfaceKind::Rigid(_) => "rigid edge",
+        SurfaceKind::Faces(_) | SurfaceKind::Nodes(_) => "edge",
+    };
+    let nodes = counted(slave.nodes(&model.mesh).len(), "node");
+    let edges = counted(master.segments(&model.mesh).len(), edge);
+    let sides = match contact.is_self_contact() {
+        true => format!("{} ({nodes}, {edges}) with itself", slave.name),
+        false => format!("{} ({nodes}) -> {} ({edges})", slave.name, master.name),
+    };
+    let pieces = [
+        sides,
+        format!("mu {}", general(model.friction(contact), 4)),
+        smallest_gap(gaps),
+    ];
+    wrap("contact", &pieces)
+}
+
+/// The smallest gap at the start.
+fn smallest_gap(gaps: &[InitialGap]) -> String {
+    match gaps.iter().map(|gap| gap.gap).reduce(f64::min) {
+        Some(gap) => format!("smallest gap {}", scientific(gap, 1)),
+        None => "no node faces its master".into(),
+    }
+}
+
+/// Names of the element types in the mesh.
+fn kinds(elements: &[Element]) -> String {
+    let names = ["CPE3", "CPE4", "CPS3", "CPS4"];
+    let present = names.into_iter().filter(|name| {
+        elements
+            .iter()
+            .any(|element| element_kind(element) == *name)
+    });
+    present.collect::<Vec<_>>().join(" ")
+}
+
+fn element_kind(element: &Element) -> &'static str {
+    match (element.cell, element.plane) {
+        (Cell::Tri3(_), Plane::Strain) => "CPE3",
+        (Cell::Quad4(_), Plane::Strain) => "CPE4",
+        (Cell::Tri3(_), Plane::Stress) => "CPS3",
+        (Cell::Quad4(_), Plane::Stress) => "CPS4",
+    }
+}
+
+/// Number of dofs prescribed in any step.
+fn prescribed(model: &Model) -> usize {
+    let supports = model.steps.iter().flat_map(|step| &step.supports);
+    let mut dofs: Vec<usize> = supports.map(|support| support.dof).collect();
+    dofs.sort_unstable();
+    dofs.dedup();
+    dofs.len()
+}
+
+/// Reference coordinates of the nodes of an element.
+pub(crate) fn corners(model: &Model, element: &Element) -> Vec<[f64; 2]> {
+    let coordinates = |&node: &usize| model.mesh.coordinates[node];
+    element.cell.nodes().iter().map(coordinates).collect()
+}
+
+/// Ends of the sides of a polygon.
+fn sides(corners: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
+    let next = corners.iter().cycle().skip(1);
+    corners.iter().zip(next).map(|(a, b)| (*a, *b))
+}
+
+fn area(corners: &[[f64; 2]]) -> f64 {
+    let twice: f64 = sides(corners).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum();
+    0.5 * twice
+}
+
+/// Mass of an element.
+pub(crate) fn element_mass(model: &Model, element: &Element) -> f64 {
+    let section = &model.sections[element.section];
+    let density = model.materials[section.material].density;
+    density * section.thickness * area(&corners(model, element))
+}
+
+/// Length of the shortest side of a polygon.
+pub(crate) fn shortest_edge(corners: &[[f64; 2]]) -> f64 {
+    let length = |(a, b): ([f64; 2], [f64; 2])| (b[0] - a[0]).hypot(b[1] - a[1]);
+    sides(corners).map(length).fold(f64::INFINITY, f64::min)
+}
+
+/// Speed of longitudinal waves: sqrt(E / ((1 - nu^2) rho)) in plane stress,
+/// sqrt(E (1 - nu) / ((1 + nu) (1 - 2 nu) rho)) in plane strain.
+pub(crate) fn wave_speed(model: &Model, element: &Element) -> f64 {
+    let material = &model.materials[model.sections[element.section].material];
+    let nu = material.poisson;
+    let factor = match element.plane {
+        Plane::Stress => 1.0 / (1.0 - nu * nu),
+        Plane::Strain => (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+    };
+    (material.young * factor / material.density).sqrt()
+}
+
+/// One line with its label in front.
+pub(crate) fn label(label: &str, text: &str) -> String {
+    format!("{label:<9}{text}")
+}
+
+/// The pieces three blanks apart, in as many lines as they need.
+pub(crate) fn wrap(first: &str, pieces: &[String]) -> Vec<String> {
+    let mut lines = vec![];
+    let mut line = label(first, "");
+    let mut empty = true;
+    for piece in pieces {
+        if !empty && line.len() + 3 + piece.len() > WIDTH {
+            lines.push(std::mem::replace(&mut line, label("", "")));
+            empty = true;
+        }
+        if !empty {
+            line.push_str("   ");
+        }
+        line.push_str(piece);
+        empty = false;
+    }
+    lines.push(line);
+    lines
+}

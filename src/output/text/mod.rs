@@ -1,0 +1,23 @@
+//! Text for people: log, status file, screen, numbers.
+
+mod console;
+mod echo;
+mod failure;
+mod format;
+mod log;
+mod progress;
+mod screen;
+mod status;
+mod strain;
+
+pub(crate) use console::Console;
+pub use console::Verbosity;
+pub use echo::{ModelEcho, frames, solver};
+pub(crate) use echo::{WIDTH, corners, element_mass, label, shortest_edge, wave_speed, wrap};
+pub(crate) use failure::failure_lines;
+pub(crate) use format::{bytes, counted, general, scientific};
+pub(crate) use log::{Log, cutback_lines, increment_line};
+pub(crate) use progress::Progress;
+pub(crate) use screen::{Table, row};
+pub(crate) use status::StatusFile;
+pub(crate) use strain::{LARGE, StrainWatch, warning_lines};

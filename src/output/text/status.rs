@@ -1,0 +1,80 @@
+//! `JOB.sta`: one line per increment in fixed columns.
+
+use std::fs::File;
+use std::io::{self, LineWriter, Write};
+use std::path::{Path, PathBuf};
+
+use super::format::{scientific, signed};
+use super::screen::{closed, sticking};
+use crate::dynamics::IncrementReport;
+use crate::output::error::at;
+
+const TITLE: &str = "# stickslip status file, format 1";
+
+/// Names of the columns with their widths.
+const COLUMNS: [(&str, usize); 13] = [
+    ("step", 7),
+    ("inc", 11),
+    ("att", 5),
+    ("pass", 5),
+    ("active", 8),
+    ("stick", 8),
+    ("time", 18),
+    ("step_time", 18),
+    ("dt", 18),
+    ("residual", 10),
+    ("lcp", 8),
+    ("pivots", 8),
+    ("energy_error", 13),
+];
+
+/// Values right-aligned in their columns.
+fn aligned(values: [String; 13]) -> String {
+    (COLUMNS.iter().zip(values))
+        .map(|(&(_, width), value)| format!("{value:>width$}"))
+        .collect()
+}
+
+/// Writes the status file.
+pub(crate) struct StatusFile {
+    file: LineWriter<File>,
+    path: PathBuf,
+}
+
+impl StatusFile {
+    /// Creates the file, or empties it.
+    pub fn create(path: &Path) -> io::Result<Self> {
+        let mut file = LineWriter::new(File::create(path).map_err(at(path))?);
+        let names = aligned(COLUMNS.map(|(name, _)| name.to_owned()));
+        writeln!(file, "{TITLE}\n#{}", &names[1..]).map_err(at(path))?;
+        let path = path.to_owned();
+        Ok(StatusFile { file, path })
+    }
+
+    /// Writes the line of an increment that needed so many attempts; `error` is the relative
+    /// energy balance.
+    pub fn write(
+        &mut self,
+        report: &IncrementReport,
+        attempts: usize,
+        error: f64,
+    ) -> io::Result<()> {
+        let solver = &report.solver;
+        let values = [
+            report.step.to_string(),
+            report.increment.to_string(),
+            attempts.to_string(),
+            solver.passes.to_string(),
+            closed(report).to_string(),
+            sticking(report).to_string(),
+            scientific(report.time, 10),
+            scientific(report.step_time, 10),
+            scientific(report.dt, 10),
+            scientific(solver.residual, 2),
+            solver.lcp_size.to_string(),
+            solver.pivots.to_string(),
+            signed(error, 3),
+        ];
+        writeln!(self.file, "{}", aligned(values)).map_err(at(&self.path))
+    }
+}

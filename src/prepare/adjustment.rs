@@ -1,0 +1,230 @@
+//! Adjustment of the mesh before the start: strain-free moves of slave nodes onto the master
+//! surface (`ADJUST=` of `*CONTACT PAIR`), with a check of the elements that change shape.
+
+use super::initial_gaps::{InitialGap, gaps};
+use crate::contact::contact_surfaces;
+use crate::diagnostics::{Code, Diagnostic, Diagnostics};
+use crate::model::{Adjust, Contact, Element, Model};
+
+/// Gap (in edge lengths) of a node that is on the surface up to round-off.
+const ROUND_OFF: f64 = 1e-9;
+/// Clearance (in edge lengths) up to which the nodes of a set are moved.
+const REACH: f64 = 1.0;
+/// Smallest ratio of an element's area to that before.
+const SMALLEST_AREA: f64 = 0.5;
+
+/// What was moved for a contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Adjusted {
+    /// Index of the contact.
+    pub contact: usize,
+    /// Number of nodes moved.
+    pub count: usize,
+    /// The node moved most (index).
+    pub node: usize,
+    /// How far it was moved (length).
+    pub largest: f64,
+    /// An element that the moves turned inside out or flattened, if any.
+    pub spoiled: Option<usize>,
+}
+
+/// Moves slave nodes onto the master surfaces as the contacts of a model ask for, one contact after
+/// the other: the reference coordinates change, so that nothing is strained.
+pub fn adjust(model: &mut Model) -> Vec<Adjusted> {
+    if model
+        .contacts
+        .iter()
+        .all(|contact| contact.adjust.is_none())
+    {
+        return Vec::new();
+    }
+    let bodies = model.mesh.bodies();
+    let mut adjusted = Vec::new();
+    for (i, surfaces) in contact_surfaces(model).iter().enumerate() {
+        let Some(wanted) = model.contacts[i].adjust else {
+            continue;
+        };
+        let mut moved = gaps(surfaces, &model.mesh.coordinates, &bodies);
+        moved.retain(|gap| gap.gap.abs() > ROUND_OFF * gap.edge && is_meant(model, wanted, gap));
+        adjusted.extend(move_nodes(model, i, &moved));
+    }
+    adjusted
+}
+
+/// Whether a node is to be moved.
+fn is_meant(model: &Model, wanted: Adjust, gap: &InitialGap) -> bool {
+    match wanted {
+        Adjust::Within(clearance) => gap.gap <= clearance,
+        Adjust::Nodes(set) => {
+            let members = &model.node_sets[set].members;
+            members.binary_search(&gap.slave).is_ok() && gap.gap <= REACH * gap.edge
+        }
+    }
+}
+
+/// Moves nodes to their feet on the master surface.
+fn move_nodes(model: &mut Model, contact: usize, moved: &[InitialGap]) -> Option<Adjusted> {
+    let before = model.mesh.coordinates.clone();
+    let mut largest: Option<(f64, usize)> = None;
+    for gap in moved {
+        let [a, b] = gap.segment.map(|node| before[node]);
+        let xi = gap.xi.clamp(0.0, 1.0);
+        let foot = [0, 1].map(|i| a[i] + xi * (b[i] - a[i]));
+        let old = before[gap.slave];
+        let way = (foot[0] - old[0]).hypot(foot[1] - old[1]);
+        model.mesh.coordinates[gap.slave] = foot;
+        if largest.is_none_or(|(most, _)| way > most) {
+            largest = Some((way, gap.slave));
+        }
+    }
+    let (largest, node) = largest?;
+    let after = &model.mesh.coordinates;
+    let is_spoiled = |element: &Element| is_spoiled(element, &before, after);
+    Some(Adjusted {
+        contact,
+        count: moved.len(),
+        node,
+        largest,
+        spoiled: model.mesh.elements.iter().position(is_spoiled),
+    })
+}
+
+/// Whether an element that was convex is no more, or lost half its area.
+fn is_spoiled(element: &Element, before: &[[f64; 2]], after: &[[f64; 2]]) -> bool {
+    let nodes = element.cell.nodes();
+    if nodes.iter().all(|&n| before[n] == after[n]) {
+        return false;
+    }
+    let count = nodes.len();
+    let corner = |i: usize| {
+        let [p, q, r] = [i, i + 1, i + 2].map(|k| after[nodes[k % count]]);
+        (q[0] - p[0]) * (r[1] - q[1]) - (q[1] - p[1]) * (r[0] - q[0])
+    };
+    let small = area(nodes, after) < SMALLEST_AREA * area(nodes, before);
+    small || (0..count).any(|i| corner(i) <= 0.0)
+}
+
+/// Area of a polygon.
+fn area(nodes: &[usize], x: &[[f64; 2]]) -> f64 {
+    let origin = x[nodes[0]];
+    let at = |n: usize| [x[n][0] - origin[0], x[n][1] - origin[1]];
+    let sides = nodes.windows(2).map(|pair| {
+        let [p, q] = [at(pair[0]), at(pair[1])];
+        p[0] * q[1] - p[1] * q[0]
+    });
+    sides.sum::<f64>() / 2.0
+}
+
+/// Reports what was moved; an element that was spoiled is an error.
+pub fn report_adjusted(model: &Model, adjusted: &[Adjusted], d: &mut Diagnostics) {
+    for moved in adjusted {
+        let contact = &model.contacts[moved.contact];
+        d.push(match moved.spoiled {
+            None => note(model, contact, moved),
+            Some(element) => {
+                let label = model.mesh.elements[element].label;
+                let slave = &model.surfaces[contact.slave].name;
+                let message = format!(
+                    "moving the nodes of {slave} onto the master spoils the shape of element {label}"
+                );
+                Diagnostic::error(Code::Adjusted, contact.span, message)
+                    .help("mend the mesh or adjust fewer nodes")
+            }
+        });
+    }
+}
+
+fn note(model: &Model, contact: &Contact, moved: &Adjusted) -> Diagnostic {
+    let message = format!(
+        "{} {} of {} moved onto {}, node {} by {:.3e}{}",
+        moved.count,
+        if moved.count == 1 { "node" } else { "nodes" },
+        model.surfaces[contact.slave].name,
+        model.surfaces[contact.master].name,
+        model.mesh.node_labels[moved.node],
+        moved.largest,
+        if moved.count == 1 {
+            ""
+        } else {
+            ", the largest move"
+        },
+    );
+    Diagnostic::note(Code::Adjusted, contact.span, message)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnostics::Span;
+    use crate::model::{Cell, Face, Plane, Surface, SurfaceKind};
+
+    /// Whether moving the upper corners of a slightly sheared square spoils it, in a unit of length.
+    fn is_spoiled_by(upper: [[f64; 2]; 2], unit: f64) -> bool {
+        let square = [[0.0, 0.0], [1.0, 0.03], [1.02, 1.01], [0.01, 0.98]];
+        let moved = [square[0], square[1], upper[0], upper[1]];
+        let [before, after] = [square, moved].map(|x| x.map(|p| p.map(|x| unit * x)));
+        let element = Element {
+            label: 1,
+            cell: Cell::Quad4([0, 1, 2, 3]),
+            plane: Plane::Stress,
+            section: 0,
+        };
+        is_spoiled(&element, &before, &after)
+    }
+
+    #[test]
+    fn elements_of_any_size_are_spoiled_by_the_same_moves() {
+        let (right, left) = ([1.02, 1.01], [0.01, 0.98]);
+        for unit in [1e-6, 1e-2, 1.0, 1e3] {
+            let is_spoiled_by = |right, left| is_spoiled_by([right, left], unit);
+            assert!(!is_spoiled_by([1.02, 1.02], left), "a small move, {unit:e}");
+            assert!(!is_spoiled_by([0.7, 0.7], left), "convex, {unit:e}");
+            assert!(is_spoiled_by([0.5, 0.5], left), "not convex, {unit:e}");
+            assert!(is_spoiled_by(right, [0.6, 0.4]), "not convex, {unit:e}");
+            assert!(!is_spoiled_by([1.02, 0.6], [0.01, 0.6]), "low, {unit:e}");
+            assert!(is_spoiled_by([1.02, 0.4], [0.01, 0.4]), "flat, {unit:e}");
+        }
+    }
+
+    /// Number of nodes that are moved of a square that lies above another, the gap being a part of the
+    /// length of an edge.
+    fn moved_from(part: f64, edge: f64) -> usize {
+        let mut model = Model::default();
+        for (first, height) in [(0, 0.0), (4, 1.0 + part)] {
+            let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+            let above = corners.map(|[x, y]| [edge * x, edge * (y + height)]);
+            model.mesh.coordinates.extend(above);
+            model.mesh.elements.push(Element {
+                label: 1,
+                cell: Cell::Quad4([0, 1, 2, 3].map(|i| first + i)),
+                plane: Plane::Stress,
+                section: 0,
+            });
+        }
+        for (name, element, side) in [("UPPER", 1, 0), ("LOWER", 0, 2)] {
+            model.surfaces.push(Surface {
+                name: name.into(),
+                kind: SurfaceKind::Faces(vec![Face { element, side }]),
+            });
+        }
+        model.contacts.push(Contact {
+            slave: 0,
+            master: 1,
+            interaction: None,
+            adjust: Some(Adjust::Within(0.1 * edge)),
+            left_out: Vec::new(),
+            span: Span::default(),
+        });
+        adjust(&mut model).iter().map(|moved| moved.count).sum()
+    }
+
+    #[test]
+    fn nodes_that_are_on_the_surface_but_for_round_off_stay() {
+        for edge in [1e-4, 1e-2, 1.0, 1e2, 1e4] {
+            assert_eq!(moved_from(2e-10, edge), 0, "{edge:e}");
+            assert_eq!(moved_from(5e-9, edge), 2, "{edge:e}");
+            assert_eq!(moved_from(-5e-9, edge), 2, "{edge:e}");
+            assert_eq!(moved_from(0.2, edge), 0, "too far, {edge:e}");
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! Initial gaps of a contact by closest-point projection of the slave nodes in the reference
+//! configuration, with branch and bound over the bounding circles of the segments.
+
+use crate::contact::{Circle, CircleTree, ContactSurfaces, Projection, contact_surfaces, project};
+use crate::model::Model;
+
+/// How far beyond its ends a segment still takes a projection (in its lengths).
+const ROUND_OFF: f64 = 1e-6;
+
+/// Gap of a slave node to the segment it faces in the reference configuration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InitialGap {
+    /// Slave node (index).
+    pub slave: usize,
+    /// Nodes [a, b] of the segment.
+    pub segment: [usize; 2],
+    /// Foot of the perpendicular, 0 at a and 1 at b.
+    pub xi: f64,
+    /// Gap (length), negative when the node is inside the body.
+    pub gap: f64,
+    /// Length of the segment.
+    pub edge: f64,
+}
+
+/// Gaps of the slave nodes of each contact of a model in the reference configuration; nodes that
+/// face no segment are left out.
+pub fn initial_gaps(model: &Model) -> Vec<Vec<InitialGap>> {
+    let bodies = model.mesh.bodies();
+    let of_contact = |contact: &ContactSurfaces| gaps(contact, &model.mesh.coordinates, &bodies);
+    contact_surfaces(model).iter().map(of_contact).collect()
+}
+
+/// Gaps of the slave nodes of a contact at the positions `x`.
+pub(crate) fn gaps(contact: &ContactSurfaces, x: &[[f64; 2]], bodies: &[usize]) -> Vec<InitialGap> {
+    let circles = contact.segments.iter().map(|&[a, b]| circle(x[a], x[b]));
+    let start = Start {
+        contact,
+        x,
+        bodies,
+        tree: CircleTree::new(circles),
+    };
+    let slaves = contact.slaves.iter();
+    slaves.filter_map(|&slave| start.gap(slave)).collect()
+}
+
+/// Circle about all points whose projection a segment takes at no distance.
+fn circle(a: [f64; 2], b: [f64; 2]) -> Circle {
+    Circle {
+        centre: [0, 1].map(|i| a[i] + (b[i] - a[i]) / 2.0),
+        radius: (b[0] - a[0]).hypot(b[1] - a[1]) * (0.5 + 2.0 * ROUND_OFF),
+    }
+}
+
+/// One contact in the reference configuration.
+struct Start<'m> {
+    contact: &'m ContactSurfaces,
+    x: &'m [[f64; 2]],
+    bodies: &'m [usize],
+    /// Circles about the segments.
+    tree: CircleTree,
+}
+
+impl Start<'_> {
+    /// Gap to the closest segment that the node projects into, or in whose wedge with the next
+    /// segment it lies.
+    fn gap(&self, slave: usize) -> Option<InitialGap> {
+        let mut closest: Option<(f64, usize)> = None;
+        self.tree.visit_near(self.x[slave], |i| {
+            let found = [self.over(slave, i), self.in_wedge(slave, i)];
+            for (distance, segment) in found.into_iter().flatten() {
+                let is_closer = |(d, other)| distance < d || (distance == d && segment < other);
+                if closest.is_none_or(is_closer) {
+                    closest = Some((distance, segment));
+                }
+            }
+            closest.map_or(f64::INFINITY, |(distance, _)| distance)
+        });
+        let segment = closest?.1;
+        let p = self.project(slave, segment);
+        Some(InitialGap {
+            slave,
+            segment: self.contact.segments[segment],
+            xi: p.xi,
+            gap: p.gap,
+            edge: p.length,
+        })
+    }
+
+    fn project(&self, slave: usize, segment: usize) -> Projection {
+        let [a, b] = self.contact.segments[segment];
+        project(self.x[slave], self.x[a], self.x[b])
+    }
+
+    /// Distance from a segment that the node projects into.
+    fn over(&self, slave: usize, i: usize) -> Option<(f64, usize)> {
+        let p = self.faced(slave, i)?;
+        let is_over = (-ROUND_OFF..=1.0 + ROUND_OFF).contains(&p.xi);
+        is_over.then_some((p.gap.abs(), i))
+    }
+
+    /// Distance from the end of segment `i` where the node lies between the normals of `i` and the
+    /// next; of the two the one with the larger gap outside a convex vertex and with the smaller
+    /// gap inside a concave one.
+    fn in_wedge(&self, slave: usize, i: usize) -> Option<(f64, usize)> {
+        let j = self.contact.next[i]?;
+        let (p, q) = (self.faced(slave, i)?, self.faced(slave, j)?);
+        let is_between = p.xi > 1.0 && q.xi < 0.0;
+        let outside = p.gap.max(q.gap) > 0.0;
+        let segment = if (p.gap >= q.gap) == outside { i } else { j };
+        let distance = ((p.xi - 1.0) * p.length).hypot(p.gap);
+        is_between.then_some((distance, segment))
+    }
+
+    /// Place of a node relative to a segment that it may face: not its own, not deeper below than
+    /// the segment is long, and not the back of another side of its own body.
+    fn faced(&self, slave: usize, i: usize) -> Option<Projection> {
+        let [a, b] = self.contact.segments[i];
+        let p = self.project(slave, i);
+        let may_face = ![a, b].contains(&slave) && p.gap >= -p.length;
+        let is_own_body = self.bodies[a] == self.bodies[slave];
+        let is_back = || {
+            let interior = &self.contact.interior;
+            is_own_body && p.gap < 0.0 && !interior.contains([a, b], slave, |node| self.x[node])
+        };
+        (may_face && !is_back()).then_some(p)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::contact::Interior;
+    use crate::model::{Cell, Element, Mesh, Plane};
+
+    /// Gap of a node at `s` to the roof over the nodes 1, 2, 3 at heights 0, `top`, 0, whose body
+    /// is `body`.
+    fn gap(top: f64, s: [f64; 2], body: usize) -> Option<f64> {
+        let contact = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]], 0.0);
+        let x = [s, [2.0, 0.0], [0.0, top], [-2.0, 0.0]];
+        let found = gaps(&contact, &x, &[0, body, body, body]);
+        found.first().map(|found| found.gap)
+    }
+
+    #[test]
+    fn the_closest_segment_that_the_node_projects_into() {
+        assert_eq!(gap(0.0, [1.0, 0.5], 1), Some(0.5));
+        assert_eq!(gap(0.0, [-1.0, -0.5], 1), Some(-0.5));
+        assert_eq!(gap(0.0, [3.0, 0.5], 1), None);
+        assert_eq!(gap(0.0, [1.0, -2.5], 1), None, "too deep");
+        assert!(gap(1.0, [0.01, 1.5], 1).is_some_and(|g| g > 0.0));
+        assert!(gap(-1.0, [0.01, -1.1], 1).is_some_and(|g| g < 0.0));
+    }
+
+    /// Gap of a node at `s` to the top of a plate of two elements and the thickness `t`, as a node of
+    /// the same body that is none of theirs, and that of a node below on the plate itself.
+    fn own_gaps(t: f64, s: [f64; 2]) -> [Option<f64>; 2] {
+        let x = [[2.0, 0.0], [0.0, 0.0], [-2.0, 0.0]];
+        let below = x.map(|[x, y]| [x, y - t]);
+        let coordinates: Vec<[f64; 2]> = [&[s], &x[..], &below].concat();
+        let plane = Plane::Stress;
+        let element = |nodes| Element {
+            label: 1,
+            cell: Cell::Quad4(nodes),
+            plane,
+            section: 0,
+        };
+        let mesh = Mesh {
+            elements: [[1, 2, 5, 4], [2, 3, 6, 5]].map(element).into(),
+            ..Mesh::default()
+        };
+        let contact = ContactSurfaces::new(vec![0, 5], &[], vec![[1, 2], [2, 3]], 0.0)
+            .with_interior(Arc::new(Interior::new(&mesh)));
+        let found = gaps(&contact, &coordinates, &[0; 7]);
+        let of = |slave| found.iter().find(|g| g.slave == slave).map(|g| g.gap);
+        [of(0), of(5)]
+    }
+
+    #[test]
+    fn the_back_of_the_own_body_is_no_contact() {
+        for t in [1.0, 1e-2, 1e-4] {
+            assert_eq!(own_gaps(t, [1.0, 0.5]), [Some(0.5), None]);
+            assert_eq!(own_gaps(t, [1.0, -t / 8.0]), [Some(-t / 8.0), None]);
+            assert_eq!(own_gaps(t, [1.0, -1.5 * t]), [None, None]);
+        }
+    }
+
+    #[test]
+    fn the_tree_finds_what_all_segments_give() {
+        let at = |i: usize| {
+            let t = 0.7 * i as f64;
+            [t.cos() * (1.0 + 0.1 * t), (1.3 * t).sin() * 2.0]
+        };
+        let x: Vec<[f64; 2]> = (0..60).map(at).collect();
+        let segments = (20..59).map(|i| [i, i + 1]).collect();
+        let contact = ContactSurfaces::new((0..60).collect(), &[], segments, 0.0);
+        let bodies: Vec<usize> = (0..60).map(|i| usize::from(i > 30)).collect();
+        let start = Start {
+            contact: &contact,
+            x: &x,
+            bodies: &bodies,
+            tree: CircleTree::new([]),
+        };
+        let expected = |slave: usize| {
+            let all = (0..39).flat_map(|i| [start.over(slave, i), start.in_wedge(slave, i)]);
+            let closest = all
+                .flatten()
+                .min_by(|a, b| a.partial_cmp(b).expect("finite"));
+            closest.map(|(_, i)| (slave, contact.segments[i]))
+        };
+        let expected: Vec<(usize, [usize; 2])> = (0..60).filter_map(expected).collect();
+        let found = gaps(&contact, &x, &bodies);
+        let found: Vec<(usize, [usize; 2])> = found.iter().map(|g| (g.slave, g.segment)).collect();
+        assert_eq!(found, expected);
+    }
+}

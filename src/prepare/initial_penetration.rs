@@ -1,0 +1,158 @@
+//! Check of the initial configuration: penetrated nodes, overlapping bodies and surfaces that do
+//! not face each other, reported as diagnostics at the contact in the deck.
+
+use super::initial_gaps::{InitialGap, initial_gaps};
+use crate::contact::project;
+use crate::diagnostics::{Code, Diagnostic, Diagnostics};
+use crate::model::{ALL_EXTERIOR, Contact, Model, SurfaceKind};
+use std::collections::{HashMap, HashSet};
+
+/// Penetration (in edge lengths) that is a fault of the mesh rather than of its digits.
+const FAULT: f64 = 1e-3;
+/// Penetration (in edge lengths) that is round-off of the coordinates.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Reports slave nodes that start inside the master body: deep ones as errors, shallow ones, which
+/// the first increment pushes out, as warnings. Bodies that lie on the same side of a common face
+/// are errors too: all gaps are zero there, and contact would never close. A pair of which no node
+/// faces the other surface is a warning.
+pub fn report_penetrations(model: &Model, d: &mut Diagnostics) {
+    let all_gaps = initial_gaps(model);
+    report_nothing_faced(model, &all_gaps, d);
+    for (contact, gaps) in model.contacts.iter().zip(all_gaps) {
+        if let Some(face) = common_face(model, contact, &gaps) {
+            d.push(overlap(model, contact, face));
+        }
+        let depth = |gap: &InitialGap| -gap.gap / gap.edge;
+        let inside: Vec<InitialGap> = gaps
+            .into_iter()
+            .filter(|gap| depth(gap) > ROUND_OFF)
+            .collect();
+        let deepest = inside.iter().max_by(|a, b| depth(a).total_cmp(&depth(b)));
+        if let Some(deepest) = deepest {
+            d.push(diagnostic(model, contact, deepest, inside.len()));
+        }
+    }
+}
+
+/// Warns about pairs without a node that faces the master, in both orders if both are given.
+fn report_nothing_faced(model: &Model, gaps: &[Vec<InitialGap>], d: &mut Diagnostics) {
+    let faced: HashSet<[usize; 2]> = model
+        .contacts
+        .iter()
+        .zip(gaps)
+        .filter(|(_, gaps)| !gaps.is_empty())
+        .flat_map(|(c, _)| [[c.slave, c.master], [c.master, c.slave]])
+        .collect();
+    for contact in &model.contacts {
+        if !is_pair(model, contact) || faced.contains(&[contact.slave, contact.master]) {
+            continue;
+        }
+        let [slave, master] = [contact.slave, contact.master].map(|s| &model.surfaces[s]);
+        let message = format!(
+            "no node of {} faces {} at the start",
+            slave.name, master.name
+        );
+        let help = match master.kind {
+            SurfaceKind::Rigid(_) => {
+                "they may meet later; if not, its points are listed in the wrong order: the outside \
+                 of a rigid surface is on the left of the way from START"
+            }
+            _ => {
+                "they may meet later; if not, these are the wrong faces: a face looks out of its body"
+            }
+        };
+        let warning = Diagnostic::warning(Code::NothingFaced, contact.span, message);
+        d.push(warning.help(help));
+    }
+}
+
+/// A slave face that lies on a master face and looks the same way.
+fn common_face(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Option<[usize; 2]> {
+    let x = &model.mesh.coordinates;
+    let touching: HashMap<usize, [usize; 2]> = gaps
+        .iter()
+        .filter(|gap| gap.gap.abs() <= ROUND_OFF * gap.edge)
+        .map(|gap| (gap.slave, gap.segment))
+        .collect();
+    let coincides = |&[a, b]: &[usize; 2]| {
+        let own = project(x[a], x[a], x[b]);
+        let middle = [0, 1].map(|i| x[a][i] + (x[b][i] - x[a][i]) / 2.0);
+        let faced = [a, b].into_iter().filter_map(|node| touching.get(&node));
+        faced.map(|&[p, q]| project(middle, x[p], x[q])).any(|at| {
+            let alike = at.normal[0] * own.normal[0] + at.normal[1] * own.normal[1];
+            let is_on = at.gap.abs() <= ROUND_OFF * at.length && (0.0..=1.0).contains(&at.xi);
+            is_on && alike > 0.0
+        })
+    };
+    let slave = &model.surfaces[contact.slave];
+    slave.segments(&model.mesh).into_iter().find(coincides)
+}
+
+fn overlap(model: &Model, contact: &Contact, face: [usize; 2]) -> Diagnostic {
+    let [a, b] = face.map(|node| model.mesh.node_labels[node]);
+    let message = format!(
+        "the face of {} between the nodes {a} and {b} lies in the boundary of {} and looks the \
+         same way: the bodies overlap",
+        model.surfaces[contact.slave].name,
+        opposite(model, contact)
+    );
+    let help = match model.surfaces[contact.master].kind {
+        SurfaceKind::Rigid(_) => {
+            "the outside of a rigid surface is on the left of the way from START: list its points \
+             in the other order"
+        }
+        _ => "move the bodies apart, or name faces that look at each other",
+    };
+    Diagnostic::error(Code::InitialPenetration, contact.span, message).help(help)
+}
+
+fn diagnostic(model: &Model, contact: &Contact, deepest: &InitialGap, count: usize) -> Diagnostic {
+    let message = format!(
+        "{count} {} of {} inside {} at the start; deepest: node {} by {:.3e} \
+         ({:.1e} of the edge length)",
+        if count == 1 { "node" } else { "nodes" },
+        model.surfaces[contact.slave].name,
+        opposite(model, contact),
+        model.mesh.node_labels[deepest.slave],
+        -deepest.gap,
+        -deepest.gap / deepest.edge,
+    );
+    let code = Code::InitialPenetration;
+    if -deepest.gap > FAULT * deepest.edge {
+        Diagnostic::error(code, contact.span, message).help(remedy(model, contact))
+    } else {
+        Diagnostic::warning(code, contact.span, message).help("the first increment pushes them out")
+    }
+}
+
+/// What to do about nodes that are deep inside a body.
+fn remedy(model: &Model, contact: &Contact) -> String {
+    let apart = "move the bodies apart: pushing the nodes out would add energy";
+    let adjust = "ADJUST= on *CONTACT PAIR moves the nodes onto the master before the start, free \
+                  of strain";
+    let apart = match is_pair(model, contact) {
+        true => format!("{apart}; {adjust}"),
+        false => apart.to_string(),
+    };
+    match model.surfaces[contact.master].kind {
+        SurfaceKind::Rigid(_) => format!(
+            "if the rigid surface is the wrong way round, list its points in the other order: its \
+             outside is on the left of the way from START; else {apart}"
+        ),
+        _ => apart,
+    }
+}
+
+/// Whether a contact is that of two surfaces that the deck pairs.
+fn is_pair(model: &Model, contact: &Contact) -> bool {
+    !contact.is_self_contact() && model.surfaces[contact.slave].name != ALL_EXTERIOR
+}
+
+/// What the slave surface is in contact with.
+fn opposite(model: &Model, contact: &Contact) -> String {
+    match contact.is_self_contact() {
+        true => "another body".into(),
+        false => format!("the body of {}", model.surfaces[contact.master].name),
+    }
+}

@@ -1,0 +1,7 @@
+//! Contact pairs, general contact and rigid surfaces.
+
+mod general_contact;
+pub(crate) mod pairs;
+pub(crate) mod rigid_surface;
+
+pub(crate) use rigid_surface::Obstacle;

@@ -1,0 +1,217 @@
+//! `*SURFACE INTERACTION` with its laws, `*CONTACT PAIR`, and general contact.
+
+use crate::deck::{Card, Row};
+use crate::diagnostics::{Code, Diagnostic};
+use crate::model::{Adjust, Contact, Interaction, SurfaceKind};
+use crate::reader::contact::general_contact;
+use crate::reader::context::Context;
+use crate::reader::mesh::{Block, Found, Grid, Outline, Sets, Surfaces, surface};
+use crate::reader::names::Names;
+use std::collections::HashSet;
+
+/// Reads interactions and contacts.
+pub(crate) fn read(
+    outline: &Outline,
+    grid: &Grid,
+    sets: &Sets,
+    surfaces: &mut Surfaces,
+    cx: &mut Context,
+) -> (Vec<Interaction>, Vec<Contact>) {
+    let mut names = Names::new("surface interaction");
+    let mut interactions = Vec::new();
+    for block in outline.blocks("SURFACE INTERACTION") {
+        let Some(name) = names.new_name(block.head, cx) else {
+            continue;
+        };
+        if let Some(friction) = friction(block, cx) {
+            interactions.push(Interaction {
+                name: name.typed.clone(),
+                friction,
+            });
+            names.define(name);
+        } else {
+            names.spoil(&name);
+        }
+    }
+    let mut contacts = Vec::new();
+    for card in outline.model_cards("CONTACT PAIR") {
+        let name = card.required("INTERACTION", cx.d);
+        let interaction = name.and_then(|name| names.find(name, cx));
+        let adjust = adjust(card, sets, cx);
+        for row in &card.rows {
+            let contact = contact(row, interaction, surfaces, cx);
+            report_adjusted_self_contact(contact.as_ref(), card, cx);
+            contacts.extend(contact.map(|contact| Contact { adjust, ..contact }));
+        }
+    }
+    report_repeated(&contacts, cx);
+    let general = general_contact::read(outline, grid, (surfaces, &contacts), &names, cx);
+    if !general.is_empty() {
+        general_contact::report_pairs(&contacts, surfaces, cx);
+    }
+    contacts.extend(general);
+    (interactions, contacts)
+}
+
+/// A clearance or a node set.
+fn adjust(card: &Card, sets: &Sets, cx: &mut Context) -> Option<Adjust> {
+    let value = card.value("ADJUST")?;
+    match value.as_real() {
+        None => sets.node_names.find(value, cx).map(Adjust::Nodes),
+        Some(clearance) if clearance >= 0.0 => Some(Adjust::Within(clearance)),
+        Some(_) => {
+            let message = format!("the clearance must not be negative, found {}", value.text);
+            cx.error(Code::BadValue, value.span, message);
+            None
+        }
+    }
+}
+
+fn report_adjusted_self_contact(contact: Option<&Contact>, card: &Card, cx: &mut Context) {
+    if card.has("ADJUST") && contact.is_some_and(Contact::is_self_contact) {
+        let message = "the nodes of a surface that touches itself cannot be moved onto it";
+        cx.error(Code::SurfaceUse, card.span_of("ADJUST"), message);
+    }
+}
+
+/// The same slave and master twice would count each contact force twice.
+fn report_repeated(contacts: &[Contact], cx: &mut Context) {
+    let mut seen = HashSet::new();
+    for contact in contacts {
+        if !seen.insert((contact.slave, contact.master)) {
+            let message = "this slave and this master are paired already";
+            cx.error(Code::SurfaceUse, contact.span, message);
+        }
+    }
+}
+
+/// Coefficient of friction of an interaction; `None` after a reported error.
+fn friction(block: &Block, cx: &mut Context) -> Option<f64> {
+    let behaviors = block.parts_of("SURFACE BEHAVIOR");
+    cx.only_once(&behaviors);
+    behaviors
+        .iter()
+        .for_each(|card| warn_of_behavior_data(card, cx));
+    out_of_plane_thickness(block.head, cx);
+    let cards = block.parts_of("FRICTION");
+    cx.only_once(&cards);
+    match cards.first() {
+        None => Some(0.0),
+        Some(card) if card.faulty => None,
+        Some(card) => coefficient(card, cx),
+    }
+}
+
+/// Warns about numbers of a law that is exact; LINEAR is warned about as a whole.
+fn warn_of_behavior_data(card: &Card, cx: &mut Context) {
+    if let (Some(row), None | Some("HARD")) =
+        (card.rows.first(), card.choice("PRESSURE-OVERCLOSURE"))
+    {
+        let message = "this data line has no effect";
+        let warning = Diagnostic::warning(Code::IgnoredParameter, row.span(), message);
+        cx.d.push_once(warning.help("contact is enforced exactly: it needs no numbers"));
+    }
+}
+
+/// `[thickness]` under `*SURFACE INTERACTION`; 1 is the default of other codes.
+fn out_of_plane_thickness(head: &Card, cx: &mut Context) {
+    let Some(row) = head.rows.first() else { return };
+    row.at_most(1, cx.d);
+    let thickness = row.real_or(0, 1.0, cx.d);
+    if thickness.is_some_and(|thickness| thickness != 1.0) {
+        let help = "the bodies touch over the thickness of their sections";
+        row.without_effect(0, "this thickness has no effect", help, cx.d);
+    }
+    if let Some(extra) = head.rows.get(1) {
+        let message = "*SURFACE INTERACTION takes one data line at most";
+        cx.error(Code::StrayData, extra.span(), message);
+    }
+}
+
+/// `mu[, ...]`
+fn coefficient(card: &Card, cx: &mut Context) -> Option<f64> {
+    let Some(row) = card.rows.first() else {
+        cx.error(
+            Code::MissingData,
+            card.span,
+            "*FRICTION needs the coefficient of friction",
+        );
+        return None;
+    };
+    if let Some(second) = card.rows.get(1) {
+        let message = "friction that depends on slip rate, pressure or temperature cannot be used";
+        cx.error(Code::UnsupportedParameter, second.span(), message);
+    }
+    let field = row.required(0, "the coefficient of friction", cx.d)?;
+    let friction = field.real(cx.d)?;
+    if friction < 0.0 {
+        let message = format!(
+            "the coefficient of friction must not be negative, found {}",
+            field.text
+        );
+        cx.error(Code::FrictionRange, field.span, message);
+        return None;
+    }
+    let message = "only the coefficient of friction is read here";
+    let help = "sticking is exact: it needs no stick slope or slip rate";
+    row.without_effect(1, message, help, cx.d);
+    Some(friction)
+}
+
+/// `slave, master`; one surface touches itself.
+fn contact(
+    row: &Row,
+    interaction: Option<usize>,
+    surfaces: &Surfaces,
+    cx: &mut Context,
+) -> Option<Contact> {
+    row.at_most(2, cx.d);
+    let slave = row.required(0, "the slave surface", cx.d);
+    let slave = slave.and_then(|field| surface::find(surfaces, field, cx));
+    let master = match row.get(1) {
+        Some(field) => surface::find(surfaces, field, cx),
+        None => slave,
+    };
+    let (slave, master) = (slave?, master?);
+    check_use(row, slave, master, cx)?;
+    Some(Contact {
+        slave: slave.0,
+        master: master.0,
+        interaction: Some(interaction?),
+        adjust: None,
+        left_out: Vec::new(),
+        span: row.span(),
+    })
+}
+
+/// Reports surfaces that cannot be slave or master.
+fn check_use(row: &Row, slave: Found, master: Found, cx: &mut Context) -> Option<()> {
+    let once = row.get(1).is_none();
+    let name = &master.1.name;
+    let is_of_nodes = matches!(master.1.kind, SurfaceKind::Nodes(_));
+    let (message, help) = if once && is_of_nodes {
+        (
+            format!("surface {name} is made of nodes and cannot touch itself"),
+            "self-contact needs element faces",
+        )
+    } else if !once && slave.0 == master.0 {
+        (
+            format!("surface {name} is slave and master at once"),
+            "for self-contact write its name once",
+        )
+    } else if let SurfaceKind::Rigid(_) = slave.1.kind {
+        (
+            format!("the rigid surface {} cannot be slave", slave.1.name),
+            "a rigid surface is a master: write the other surface first",
+        )
+    } else if is_of_nodes {
+        (
+            format!("the master surface {name} is made of nodes"),
+            "a master is made of element faces; the slave may be made of nodes",
+        )
+    } else {
+        return Some(());
+    };
+    cx.d.push(Diagnostic::error(Code::SurfaceUse, master.2, message).help(help));
+    None
+}

@@ -1,0 +1,145 @@
+//! `*RIGID BODY`: rigid surfaces move with their reference nodes.
+
+use crate::deck::{Card, Text};
+use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::model::{RigidBody, Support, SurfaceKind};
+use crate::reader::context::Context;
+use crate::reader::mesh::{Grid, Outline, Sets, Surfaces, surface};
+use std::collections::BTreeMap;
+
+/// A rigid surface and the node that it moves with.
+pub(crate) struct Obstacle {
+    /// Index of the surface.
+    surface: usize,
+    /// Name of the surface.
+    name: String,
+    /// Its nodes.
+    nodes: Vec<usize>,
+    /// Reference node.
+    reference: usize,
+    /// Number of the reference node in the deck.
+    label: u64,
+    /// Place of `*RIGID BODY`.
+    span: Span,
+}
+
+/// Reads the reference nodes of all rigid surfaces.
+pub(crate) fn read(
+    outline: &Outline,
+    grid: &Grid,
+    sets: &Sets,
+    surfaces: &Surfaces,
+    cx: &mut Context,
+) -> Vec<Obstacle> {
+    let mut obstacles = BTreeMap::new();
+    let mut incomplete = cx.may_lack_cards();
+    for card in outline.model_cards("RIGID BODY") {
+        let Some((index, obstacle)) = obstacle(card, grid, sets, surfaces, cx) else {
+            incomplete = true;
+            continue;
+        };
+        if obstacles.contains_key(&index) {
+            let message = format!("surface {} has a reference node already", obstacle.name);
+            cx.error(Code::RigidSurface, card.span, message);
+        }
+        obstacles.insert(index, obstacle);
+    }
+    let lone = |(index, _): &&(usize, Span)| !obstacles.contains_key(index);
+    for &(index, span) in surfaces.rigid.iter().filter(lone) {
+        if let Some(surface) = surfaces.all.get(index).filter(|_| !incomplete) {
+            let message = format!("the rigid surface {} has no reference node", surface.name);
+            let error = Diagnostic::error(Code::RigidSurface, span, message);
+            cx.d.push(error.help("add *RIGID BODY, ANALYTICAL SURFACE=, REF NODE="));
+        }
+    }
+    obstacles.into_values().collect()
+}
+
+fn obstacle(
+    card: &Card,
+    grid: &Grid,
+    sets: &Sets,
+    surfaces: &Surfaces,
+    cx: &mut Context,
+) -> Option<(usize, Obstacle)> {
+    let reference = card.required("REF NODE", cx.d);
+    let reference = reference.and_then(|field| reference_node(field, grid, sets, cx));
+    let field = card.required("ANALYTICAL SURFACE", cx.d)?;
+    let (index, surface, span) = surface::find(surfaces, field, cx)?;
+    let SurfaceKind::Rigid(_) = surface.kind else {
+        let message = format!("surface {} is no rigid surface", surface.name);
+        let error = Diagnostic::error(Code::RigidSurface, span, message);
+        cx.d.push(error.help("define it with *SURFACE, TYPE=SEGMENTS"));
+        return None;
+    };
+    let reference = reference?;
+    Some((
+        index,
+        Obstacle {
+            surface: index,
+            name: surface.name.clone(),
+            nodes: surface.nodes(&grid.mesh),
+            reference,
+            label: grid.mesh.node_labels.get(reference).copied()?,
+            span: card.span,
+        },
+    ))
+}
+
+/// The node, or the one node of the set, that a field says.
+fn reference_node(field: Text, grid: &Grid, sets: &Sets, cx: &mut Context) -> Option<usize> {
+    let errors = cx.errors();
+    match sets.nodes_of(field, grid, cx)[..] {
+        [node] => Some(node),
+        _ if cx.errors() > errors || cx.may_lack_cards() || grid.nodes.incomplete => None,
+        ref nodes => {
+            let message = format!("{} holds {} nodes", field.text, nodes.len());
+            let error = Diagnostic::error(Code::RigidSurface, field.span, message);
+            cx.d.push(error.help("a rigid surface moves with one node"));
+            None
+        }
+    }
+}
+
+/// The rigid surfaces with their reference nodes, as the model holds them.
+pub(crate) fn bodies(obstacles: &[Obstacle]) -> Vec<RigidBody> {
+    let body = |obstacle: &Obstacle| RigidBody {
+        surface: obstacle.surface,
+        reference: obstacle.reference,
+    };
+    obstacles.iter().map(body).collect()
+}
+
+/// Adds the supports of the nodes of rigid surfaces to those of a step: they move as their
+/// reference nodes.
+pub(crate) fn follow(
+    obstacles: &[Obstacle],
+    step: usize,
+    supports: &mut Vec<Support>,
+    cx: &mut Context,
+) {
+    for obstacle in obstacles {
+        for direction in 0..2 {
+            let dof = 2 * obstacle.reference + direction;
+            match supports.iter().find(|support| support.dof == dof) {
+                Some(&Support { motion, .. }) => {
+                    let dofs = obstacle.nodes.iter().map(|node| 2 * node + direction);
+                    supports.extend(dofs.map(|dof| Support { dof, motion }));
+                }
+                None => report_free(obstacle, direction, step, cx),
+            }
+        }
+    }
+    supports.sort_by_key(|support| support.dof);
+}
+
+fn report_free(obstacle: &Obstacle, direction: usize, step: usize, cx: &mut Context) {
+    let message = format!(
+        "the reference node {} of {} is free in direction {} in step {step}",
+        obstacle.label,
+        obstacle.name,
+        direction + 1
+    );
+    let error = Diagnostic::error(Code::RigidSurface, obstacle.span, message);
+    cx.d.push(error.help("prescribe its directions 1 and 2 with *BOUNDARY"));
+}

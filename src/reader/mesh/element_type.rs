@@ -1,0 +1,60 @@
+//! Element types.
+
+use crate::deck::Text;
+use crate::diagnostics::{Code, Diagnostic, closest};
+use crate::model::Plane;
+use crate::reader::context::Context;
+
+/// Number of corners and plane of an element type.
+pub(crate) fn read(name: Text, cx: &mut Context) -> Option<(usize, Plane)> {
+    let folded = name.name_key();
+    match folded.as_str() {
+        "CPS3" => Some((3, Plane::Stress)),
+        "CPE3" => Some((3, Plane::Strain)),
+        "CPS4" => Some((4, Plane::Stress)),
+        "CPE4" => Some((4, Plane::Strain)),
+        _ => unusable(name, &folded, cx),
+    }
+}
+
+/// Reports a type; a lenient reader takes elements with one integration point as full ones.
+fn unusable(name: Text, folded: &str, cx: &mut Context) -> Option<(usize, Plane)> {
+    let plane = match folded {
+        "CPS4R" => Some(Plane::Stress),
+        "CPE4R" => Some(Plane::Strain),
+        _ => None,
+    };
+    if let Some(plane) = plane.filter(|_| cx.d.is_lenient()) {
+        let message = format!("{} is integrated with 2 x 2 points", name.text);
+        cx.d.push_once(Diagnostic::warning(Code::ElementType, name.span, message));
+        return Some((4, plane));
+    }
+    let message = format!("element type {} cannot be used", name.text);
+    let error = Diagnostic::error(Code::ElementType, name.span, message);
+    let meant = closest(folded, ["CPS3", "CPE3", "CPS4", "CPE4"]);
+    cx.d.push(match reason(folded) {
+        Some(reason) => error.help(reason),
+        None => error.suggest(meant).help("use CPS3, CPE3, CPS4 or CPE4"),
+    });
+    None
+}
+
+/// Why a type that other codes know cannot be used.
+fn reason(folded: &str) -> Option<&'static str> {
+    let starts = |prefixes: &[&str]| prefixes.iter().any(|prefix| folded.starts_with(prefix));
+    if starts(&["CPE4R", "CPS4R"]) && folded.len() == 5 {
+        Some("elements with one integration point are not supported: write CPE4 or CPS4")
+    } else if starts(&["CPE4", "CPS4", "CPE3", "CPS3"]) && folded.len() > 4 {
+        Some("write CPE3, CPS3, CPE4 or CPS4: other formulations are not supported")
+    } else if starts(&["CPE6", "CPS6", "CPE8", "CPS8"]) {
+        Some("quadratic elements are not supported: split them into linear ones")
+    } else if starts(&["CAX"]) {
+        Some("axisymmetric elements are not supported")
+    } else if starts(&["T2D", "T3D", "B2", "B3", "R2D"]) {
+        Some("line elements are not supported: name boundaries with *SURFACE")
+    } else if starts(&["C3D", "S3", "S4", "S6", "S8", "M3D", "R3D"]) {
+        Some("the program is plane: use CPS3, CPE3, CPS4 or CPE4")
+    } else {
+        None
+    }
+}

@@ -1,0 +1,13 @@
+//! Nodes, elements, sets and surfaces.
+
+mod element_type;
+pub(crate) mod nodes_elements;
+mod outline;
+mod profile;
+pub(crate) mod sets;
+pub(crate) mod surface;
+
+pub(crate) use nodes_elements::Grid;
+pub(crate) use outline::{Block, Outline, StepCards};
+pub(crate) use sets::Sets;
+pub(crate) use surface::{Found, Sides, Surfaces, corners};

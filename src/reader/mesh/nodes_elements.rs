@@ -1,0 +1,407 @@
+//! `*NODE` and `*ELEMENT`.
+
+use super::outline::Outline;
+use crate::deck::{Card, Name, Row, Text};
+use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::model::{Cell, Element, Mesh, Plane};
+use crate::reader::context::Context;
+use crate::reader::mesh::element_type;
+use crate::reader::names::{Labelled, Labels};
+use std::collections::HashMap;
+
+/// The mesh and what the deck calls its parts.
+pub(crate) struct Grid {
+    /// Nodes that belong to elements, and elements. Sections are not yet known.
+    pub mesh: Mesh,
+    /// Node numbers.
+    pub nodes: Labels,
+    /// Element numbers.
+    pub elements: Labels,
+    /// Places of the elements.
+    pub element_spans: Vec<Span>,
+    /// Node sets named on `*NODE`.
+    pub node_groups: Vec<Group>,
+    /// Element sets named on `*ELEMENT`.
+    pub element_groups: Vec<Group>,
+}
+
+/// A set named where its members are defined.
+pub(crate) struct Group {
+    /// Its name.
+    pub name: Name,
+    /// Where it is named.
+    pub span: Span,
+    /// Numbers of its members.
+    pub labels: Vec<u64>,
+}
+
+struct RawNode {
+    label: u64,
+    at: [f64; 3],
+    span: Span,
+}
+
+struct RawElement {
+    label: u64,
+    nodes: Vec<u64>,
+    plane: Plane,
+    span: Span,
+}
+
+/// Reads nodes and elements; leaves out nodes without element that are no reference nodes.
+pub(crate) fn read(outline: &Outline, cx: &mut Context) -> Grid {
+    let errors = cx.errors();
+    let mut reading = Reading {
+        nodes_incomplete: outline.blocks("NODE").next().is_none(),
+        elements_incomplete: outline.blocks("ELEMENT").next().is_none(),
+        ..Reading::default()
+    };
+    for card in outline.model_cards("NODE") {
+        reading.node_card(card, cx);
+    }
+    for card in outline.model_cards("ELEMENT") {
+        reading.element_card(card, cx);
+    }
+    if cx.errors() == errors && !cx.may_lack_cards() {
+        reading.report_empty(outline, cx);
+    }
+    reading.report_not_planar(cx);
+    let references = reading.reference_labels(outline);
+    reading.grid(&references, cx)
+}
+
+#[derive(Default)]
+struct Reading {
+    nodes: Vec<RawNode>,
+    node_index: HashMap<u64, Option<usize>>,
+    elements: Vec<RawElement>,
+    element_index: HashMap<u64, Span>,
+    node_groups: Vec<Group>,
+    element_groups: Vec<Group>,
+    nodes_incomplete: bool,
+    elements_incomplete: bool,
+}
+
+impl Reading {
+    fn node_card(&mut self, card: &Card, cx: &mut Context) {
+        let mut labels = Vec::new();
+        for row in &card.rows {
+            row.at_most(4, cx.d);
+            let numbers = Labels::new("node", Code::UndefinedNode);
+            let field = row.required(0, "the node number", cx.d);
+            match field.and_then(|field| numbers.number(field, cx)) {
+                Some(label) => {
+                    labels.push(label);
+                    self.node(label, row, cx);
+                }
+                None => self.nodes_incomplete = true,
+            }
+        }
+        self.node_groups.extend(group(card, "NSET", labels, cx));
+    }
+
+    fn node(&mut self, label: u64, row: &Row, cx: &mut Context) {
+        let coordinate = |i: usize, cx: &mut Context| row.real_or(i, 0.0, cx.d);
+        let at = [1, 2, 3].map(|i| coordinate(i, cx));
+        let [Some(x), Some(y), Some(z)] = at else {
+            self.node_index.entry(label).or_insert(None);
+            return;
+        };
+        let next = self.nodes.len();
+        let known = *self.node_index.entry(label).or_insert(Some(next));
+        match known.and_then(|index| self.nodes.get(index)) {
+            Some(first) if first.at != [x, y, z] => {
+                let message = format!(
+                    "node {label} has other coordinates on line {}",
+                    first.span.line
+                );
+                cx.error(Code::RepeatedNode, row.span(), message);
+            }
+            None if known.is_some() => self.nodes.push(RawNode {
+                label,
+                at: [x, y, z],
+                span: row.span(),
+            }),
+            _ => {}
+        }
+    }
+
+    fn element_card(&mut self, card: &Card, cx: &mut Context) {
+        let kind = card
+            .required("TYPE", cx.d)
+            .and_then(|name| element_type::read(name, cx));
+        let Some((corners, plane)) = kind else {
+            self.elements_incomplete = true;
+            self.element_groups
+                .extend(group(card, "ELSET", Vec::new(), cx));
+            return;
+        };
+        let mut labels = Vec::new();
+        for rows in element_rows(&card.rows, corners + 1) {
+            match self.element(rows, corners, plane, cx) {
+                Some(label) => labels.push(label),
+                None => self.elements_incomplete = true,
+            }
+        }
+        self.element_groups.extend(group(card, "ELSET", labels, cx));
+    }
+
+    /// Reads one element; returns its number.
+    fn element(
+        &mut self,
+        rows: &[Row],
+        corners: usize,
+        plane: Plane,
+        cx: &mut Context,
+    ) -> Option<u64> {
+        let span = rows.first()?.span();
+        let numbers = Labels::new("element", Code::UndefinedElement);
+        let fields: Vec<Text> = rows.iter().flat_map(Row::fields).collect();
+        let (first, rest) = fields.split_first()?;
+        let label = numbers.number(*first, cx)?;
+        if rest.len() < corners && rest.iter().all(|field| field.integer(cx.d).is_some()) {
+            let found = rest.len();
+            let message = format!("element {label} needs {corners} nodes, found {found}");
+            cx.error(Code::MissingField, span, message);
+            return None;
+        }
+        if let Some(extra) = rest.get(corners) {
+            let message = format!("element {label} has {corners} nodes, this is one more");
+            cx.error(Code::ExtraField, extra.span, message);
+        }
+        let nodes = self.element_nodes(label, rest.get(..corners)?, cx)?;
+        if let Some(earlier) = self.element_index.insert(label, span) {
+            let message = format!("element {label} is defined on line {} too", earlier.line);
+            cx.error(Code::RepeatedElement, first.span, message);
+            return Some(label);
+        }
+        self.elements.push(RawElement {
+            label,
+            nodes,
+            plane,
+            span,
+        });
+        Some(label)
+    }
+
+    /// Numbers of an element's nodes, which must exist and differ.
+    fn element_nodes(&self, label: u64, fields: &[Text], cx: &mut Context) -> Option<Vec<u64>> {
+        let mut nodes: Vec<u64> = Vec::new();
+        let mut good = true;
+        for field in fields {
+            let numbers = Labels::new("node", Code::UndefinedNode);
+            let Some(node) = numbers.number(*field, cx) else {
+                good = false;
+                continue;
+            };
+            if nodes.contains(&node) {
+                let message = format!("element {label} has node {node} twice");
+                cx.error(Code::BadShape, field.span, message);
+                good = false;
+            }
+            if !matches!(self.node_index.get(&node), Some(Some(_))) {
+                good = false;
+                self.undefined_node(node, field.span, cx);
+            }
+            nodes.push(node);
+        }
+        good.then_some(nodes)
+    }
+
+    fn undefined_node(&self, node: u64, span: Span, cx: &mut Context) {
+        let known = self.node_index.contains_key(&node);
+        if !known && !self.nodes_incomplete && !cx.deck.incomplete {
+            let message = format!("node {node} is not defined");
+            cx.error(Code::UndefinedNode, span, message);
+        }
+    }
+
+    /// A mesh without nodes or elements is reported at their card, or else where it should stand:
+    /// elements after the last nodes, nodes at the first keyword of the deck.
+    fn report_empty(&self, outline: &Outline, cx: &mut Context) {
+        let (keyword, before) = match (self.nodes.is_empty(), self.elements.is_empty()) {
+            (true, _) => ("NODE", None),
+            (false, true) => ("ELEMENT", outline.model_cards("NODE").pop()),
+            (false, false) => return,
+        };
+        let card = outline.model_cards(keyword).first().copied();
+        if let Some(card) = card.or(before).or(cx.deck.cards.first()) {
+            let message = format!("the deck has no {}s", keyword.to_lowercase());
+            let error = Diagnostic::error(Code::EmptyMesh, card.span, message);
+            cx.d.push(error.help(format!("give them with *{keyword}")));
+        }
+    }
+
+    /// All nodes must have the same z, to a small fraction of the model's size.
+    fn report_not_planar(&self, cx: &mut Context) {
+        let range = |i: usize| {
+            let values = self.nodes.iter().map(|node| node.at[i]);
+            let low = values.clone().fold(f64::INFINITY, f64::min);
+            (low, values.fold(f64::NEG_INFINITY, f64::max))
+        };
+        let [x, y, z] = [0, 1, 2].map(range);
+        let size = (x.1 - x.0).max(y.1 - y.0);
+        let Some(first) = self.nodes.first() else {
+            return;
+        };
+        if z.1 - z.0 > 1e-9 * size {
+            let off = self.nodes.iter().find(|node| node.at[2] != first.at[2]);
+            let message = format!("the mesh is not plane: z runs from {} to {}", z.0, z.1);
+            cx.error(Code::NotPlanar, off.unwrap_or(first).span, message);
+        }
+    }
+
+    /// Numbers that may be those of reference nodes, which need no element.
+    fn reference_labels(&self, outline: &Outline) -> Vec<u64> {
+        let mut labels = Vec::new();
+        for card in outline.model_cards("RIGID BODY") {
+            let Some(named) = card.value("REF NODE") else {
+                continue;
+            };
+            let label = named.as_integer();
+            labels.extend(label.and_then(|label| u64::try_from(label).ok()));
+            let groups = self.node_groups.iter();
+            let meant = groups.filter(|group| group.name.key == named.name_key());
+            labels.extend(meant.flat_map(|group| &group.labels));
+            let sets = outline.model_cards("NSET");
+            let is_meant = |set: &&&Card| {
+                let name = set.value("NSET");
+                name.is_some_and(|name| name.name_key() == named.name_key())
+            };
+            for set in sets.iter().filter(is_meant) {
+                let count = if set.has("GENERATE") { 2 } else { usize::MAX };
+                let numbers = set.rows.iter().flat_map(|row| row.fields().take(count));
+                let numbers = numbers.filter_map(|field| field.as_integer());
+                labels.extend(numbers.filter_map(|label| u64::try_from(label).ok()));
+            }
+        }
+        labels
+    }
+
+    fn grid(self, references: &[u64], cx: &mut Context) -> Grid {
+        let mut used = vec![false; self.nodes.len()];
+        let index_of = |label: &u64| self.node_index.get(label).copied().flatten();
+        for index in self
+            .elements
+            .iter()
+            .flat_map(|e| &e.nodes)
+            .chain(references)
+            .filter_map(index_of)
+        {
+            used[index] = true;
+        }
+        self.report_unused(&used, cx);
+        let mut grid = Grid {
+            mesh: Mesh::default(),
+            nodes: Labels::new("node", Code::UndefinedNode),
+            elements: Labels::new("element", Code::UndefinedElement),
+            element_spans: Vec::new(),
+            node_groups: self.node_groups,
+            element_groups: self.element_groups,
+        };
+        grid.nodes.incomplete = self.nodes_incomplete;
+        grid.elements.incomplete = self.elements_incomplete;
+        for &label in self.node_index.keys() {
+            grid.nodes.insert(label, Labelled::LeftOut);
+        }
+        for (node, used) in self.nodes.iter().zip(used) {
+            if used {
+                grid.add_node(node);
+            }
+        }
+        for element in &self.elements {
+            grid.add_element(element);
+        }
+        grid
+    }
+
+    /// Warns about nodes of no element.
+    fn report_unused(&self, used: &[bool], cx: &mut Context) {
+        let unused = || self.nodes.iter().zip(used).filter(|(_, used)| !**used);
+        let Some((first, _)) = unused().next() else {
+            return;
+        };
+        if self.elements_incomplete || self.elements.is_empty() || cx.deck.incomplete {
+            return;
+        }
+        let message = match unused().count() {
+            1 => format!("node {} belongs to no element", first.label),
+            n => format!(
+                "{n} nodes belong to no element, the first is node {}",
+                first.label
+            ),
+        };
+        let warning = Diagnostic::warning(Code::UnusedNode, first.span, message);
+        cx.d.push(warning.help("left out, together with what the deck says about them"));
+    }
+}
+
+impl Grid {
+    /// Adds nodes without element at these points; their numbers follow the largest one.
+    pub fn add_points(&mut self, points: &[[f64; 2]]) {
+        let largest = self.mesh.node_labels.iter().max().copied().unwrap_or(0);
+        let labels = (1..).map(|i| largest.saturating_add(i));
+        self.mesh.node_labels.extend(labels.take(points.len()));
+        self.mesh.coordinates.extend(points);
+    }
+
+    fn add_node(&mut self, node: &RawNode) {
+        let [x, y, _] = node.at;
+        self.nodes
+            .insert(node.label, Labelled::Index(self.mesh.node_count()));
+        self.mesh.node_labels.push(node.label);
+        self.mesh.coordinates.push([x, y]);
+    }
+
+    fn add_element(&mut self, element: &RawElement) {
+        let index = |label: &u64| match self.nodes.get(*label) {
+            Some(Labelled::Index(index)) => Some(index),
+            _ => None,
+        };
+        let nodes: Option<Vec<usize>> = element.nodes.iter().map(index).collect();
+        let cell = match nodes.as_deref() {
+            Some(&[a, b, c]) => Cell::Tri3([a, b, c]),
+            Some(&[a, b, c, d]) => Cell::Quad4([a, b, c, d]),
+            _ => return,
+        };
+        let next = self.mesh.elements.len();
+        self.elements.insert(element.label, Labelled::Index(next));
+        self.element_spans.push(element.span);
+        self.mesh.elements.push(Element {
+            label: element.label,
+            cell,
+            plane: element.plane,
+            section: 0,
+        });
+    }
+}
+
+/// The set that a card names.
+fn group(card: &Card, parameter: &str, labels: Vec<u64>, cx: &mut Context) -> Option<Group> {
+    let text = card.value(parameter)?;
+    Some(Group {
+        name: text.name(cx.d)?,
+        span: text.span,
+        labels,
+    })
+}
+
+/// Rows of one element each: an element goes on until it has `count` fields, unless the next row
+/// would give it too many.
+fn element_rows(rows: &[Row], count: usize) -> Vec<&[Row]> {
+    let mut elements = Vec::new();
+    let mut rest = rows;
+    while !rest.is_empty() {
+        let mut fields = 0;
+        let fits = |row: &&Row| {
+            let before = fields;
+            fields += row.fields().count();
+            before == 0 || (before < count && fields <= count)
+        };
+        let taken = rest.iter().take_while(fits).count().max(1);
+        let (element, after) = rest.split_at(taken);
+        elements.push(element);
+        rest = after;
+    }
+    elements
+}

@@ -1,0 +1,280 @@
+//! `*NSET` and `*ELSET`.
+
+use super::nodes_elements::{Grid, Group};
+use super::outline::Outline;
+use crate::deck::{Card, Row, Text};
+use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::model::Set;
+use crate::reader::context::Context;
+use crate::reader::names::{Labelled, Labels, Names};
+use std::collections::BTreeSet;
+
+/// All node sets and element sets.
+pub(crate) struct Sets {
+    /// Names of the node sets.
+    pub node_names: Names,
+    /// Node sets in the order of their names.
+    pub nodes: Vec<Set>,
+    /// Names of the element sets.
+    pub element_names: Names,
+    /// Element sets in the order of their names.
+    pub elements: Vec<Set>,
+}
+
+impl Sets {
+    /// The node, or the nodes of the set, that a field says.
+    pub fn nodes_of(&self, field: Text, grid: &Grid, cx: &mut Context) -> Vec<usize> {
+        match field.as_integer() {
+            Some(_) => grid.nodes.find(field, cx).into_iter().collect(),
+            None => members(&self.nodes, self.node_names.find(field, cx)),
+        }
+    }
+
+    /// The element, or the elements of the set, that a field says.
+    pub fn elements_of(&self, field: Text, grid: &Grid, cx: &mut Context) -> Vec<usize> {
+        match field.as_integer() {
+            Some(_) => grid.elements.find(field, cx).into_iter().collect(),
+            None => members(&self.elements, self.element_names.find(field, cx)),
+        }
+    }
+}
+
+fn members(sets: &[Set], index: Option<usize>) -> Vec<usize> {
+    let set = index.and_then(|index| sets.get(index));
+    set.map(|set| set.members.clone()).unwrap_or_default()
+}
+
+/// Reads all sets; a set may list sets that are defined later.
+pub(crate) fn read(outline: &Outline, grid: &Grid, cx: &mut Context) -> Sets {
+    let mut elements = Family::new("element set", &grid.elements);
+    elements.add_groups(&grid.element_groups);
+    elements.define(&outline.model_cards("ELSET"), "ELSET", cx);
+    elements.fill(cx);
+    let element_names = elements.names;
+    let element_sets = resolve(&element_names, elements.drafts, cx);
+
+    let mut nodes = Family::new("node set", &grid.nodes);
+    nodes.add_groups(&grid.node_groups);
+    nodes.define(&outline.model_cards("NSET"), "NSET", cx);
+    nodes.fill(cx);
+    let mut sets = Sets {
+        node_names: nodes.names,
+        nodes: Vec::new(),
+        element_names,
+        elements: element_sets,
+    };
+    let mut drafts = nodes.drafts;
+    for (index, source) in nodes.from_elements {
+        let found = sets.element_names.find(source, cx);
+        if let (Some(draft), Some(set)) = (drafts.get_mut(index), found) {
+            let members = sets.elements.get(set).map_or(&[][..], |set| &set.members);
+            let cells = members.iter().filter_map(|&e| grid.mesh.elements.get(e));
+            draft
+                .members
+                .extend(cells.flat_map(|element| element.cell.nodes()));
+        }
+    }
+    sets.nodes = resolve(&sets.node_names, drafts, cx);
+    sets
+}
+
+/// A set before the sets it lists are known.
+struct Draft {
+    span: Span,
+    members: BTreeSet<usize>,
+    children: Vec<usize>,
+}
+
+/// Node sets or element sets being read.
+struct Family<'a> {
+    names: Names,
+    labels: &'a Labels,
+    drafts: Vec<Draft>,
+    cards: Vec<(usize, &'a Card)>,
+    from_elements: Vec<(usize, Text<'a>)>,
+}
+
+impl<'a> Family<'a> {
+    fn new(what: &'static str, labels: &'a Labels) -> Family<'a> {
+        Family {
+            names: Names::new(what),
+            labels,
+            drafts: Vec::new(),
+            cards: Vec::new(),
+            from_elements: Vec::new(),
+        }
+    }
+
+    fn open(&mut self, name: crate::deck::Name, span: Span) -> usize {
+        let index = self.names.define(name);
+        if index == self.drafts.len() {
+            self.drafts.push(Draft {
+                span,
+                members: BTreeSet::new(),
+                children: Vec::new(),
+            });
+        }
+        index
+    }
+
+    fn add_groups(&mut self, groups: &[Group]) {
+        for group in groups {
+            let index = self.open(group.name.clone(), group.span);
+            let found = group
+                .labels
+                .iter()
+                .filter_map(|&label| self.labels.get(label));
+            let members: Vec<usize> = found.filter_map(Labelled::index).collect();
+            self.extend(index, members);
+        }
+    }
+
+    fn extend(&mut self, index: usize, members: impl IntoIterator<Item = usize>) {
+        if let Some(draft) = self.drafts.get_mut(index) {
+            draft.members.extend(members);
+        }
+    }
+
+    /// Registers the names of all cards.
+    fn define(&mut self, cards: &[&'a Card], parameter: &str, cx: &mut Context) {
+        for card in cards {
+            let text = card.required(parameter, cx.d);
+            match text.and_then(|text| text.name(cx.d).map(|name| (name, text.span))) {
+                Some((name, span)) => {
+                    let index = self.open(name, span);
+                    self.cards.push((index, card));
+                }
+                None => self.names.spoil_unknown(),
+            }
+        }
+    }
+
+    /// Reads the rows of all cards.
+    fn fill(&mut self, cx: &mut Context) {
+        for (index, card) in std::mem::take(&mut self.cards) {
+            let generate = card.has("GENERATE");
+            if card.keyword.name == "NSET"
+                && let Some(source) = card.value("ELSET")
+            {
+                self.from_elements.push((index, source));
+            }
+            for row in &card.rows {
+                match generate {
+                    true => self.range(index, row, cx),
+                    false => self.list(index, row, cx),
+                }
+            }
+        }
+    }
+
+    fn list(&mut self, index: usize, row: &'a Row, cx: &mut Context) {
+        for field in row.fields().filter(|field| !field.is_empty()) {
+            if field.as_integer().is_some() {
+                let member = self.labels.find(field, cx);
+                self.extend(index, member);
+            } else if let Some(child) = self.names.find(field, cx)
+                && let Some(draft) = self.drafts.get_mut(index)
+            {
+                draft.children.push(child);
+            }
+        }
+    }
+
+    /// `first, last[, increment]`
+    fn range(&mut self, index: usize, row: &Row, cx: &mut Context) {
+        row.at_most(3, cx.d);
+        let first = row.required(0, "the first number", cx.d);
+        let first = first.and_then(|field| self.labels.number(field, cx));
+        let last = row.required(1, "the last number", cx.d);
+        let last = last.and_then(|field| self.labels.number(field, cx));
+        let step = match row.get(2) {
+            Some(field) => self.labels.number(field, cx),
+            None => Some(1),
+        };
+        if let (Some(first), Some(last), Some(step)) = (first, last, step) {
+            self.check_range(first, last, step, row, cx);
+            let members = self.in_range(first, last, step, row, cx);
+            self.extend(index, members);
+        }
+    }
+
+    fn check_range(&self, first: u64, last: u64, step: u64, row: &Row, cx: &mut Context) {
+        if last < first {
+            let message = format!("the range from {first} to {last} runs backwards");
+            cx.error(Code::BadRange, row.span(), message);
+        } else if !(last - first).is_multiple_of(step) {
+            let message = format!("steps of {step} from {first} do not meet {last}");
+            let end = last - (last - first) % step;
+            let warning = Diagnostic::warning(Code::BadRange, row.span(), message);
+            cx.d.push(warning.help(format!("the range ends at {end}")));
+        }
+    }
+
+    /// Members of a range; reports the first number that does not exist.
+    fn in_range(
+        &self,
+        first: u64,
+        last: u64,
+        step: u64,
+        row: &Row,
+        cx: &mut Context,
+    ) -> Vec<usize> {
+        let in_step = |label: u64| (label - first).is_multiple_of(step);
+        let found = self
+            .labels
+            .between(first, last)
+            .filter(|&(label, _)| in_step(label));
+        let mut wanted = Some(first);
+        let mut members = Vec::new();
+        let mut missing = None;
+        for (label, labelled) in found {
+            if wanted != Some(label) && missing.is_none() {
+                missing = wanted;
+            }
+            wanted = label.checked_add(step);
+            members.extend(labelled.index());
+        }
+        let missing = missing.or(wanted.filter(|&label| label <= last));
+        if let Some(label) = missing {
+            self.labels.undefined(label, row.span(), cx);
+        }
+        members
+    }
+}
+
+/// Adds to each set the members of the sets it lists, innermost first.
+fn resolve(names: &Names, mut drafts: Vec<Draft>, cx: &mut Context) -> Vec<Set> {
+    let mut parents: Vec<Vec<usize>> = vec![Vec::new(); drafts.len()];
+    let mut open: Vec<usize> = drafts.iter().map(|draft| draft.children.len()).collect();
+    for (index, draft) in drafts.iter().enumerate() {
+        for &child in &draft.children {
+            parents[child].push(index);
+        }
+    }
+    let mut ready: Vec<usize> = (0..drafts.len()).filter(|&i| open[i] == 0).collect();
+    while let Some(child) = ready.pop() {
+        let members = drafts[child].members.clone();
+        for &parent in &parents[child] {
+            drafts[parent].members.extend(&members);
+            open[parent] -= 1;
+            if open[parent] == 0 {
+                ready.push(parent);
+            }
+        }
+    }
+    for (draft, _) in drafts.iter().zip(&open).filter(|(_, open)| **open > 0) {
+        cx.error(Code::SetCycle, draft.span, "this set contains itself");
+    }
+    for draft in drafts.iter().filter(|draft| draft.members.is_empty()) {
+        if !cx.d.has_errors() && !cx.deck.incomplete {
+            cx.warning(Code::EmptySurface, draft.span, "this set has no members");
+        }
+    }
+    let named = names.typed().zip(drafts);
+    named
+        .map(|(name, draft)| Set {
+            name: name.to_string(),
+            members: draft.members.into_iter().collect(),
+        })
+        .collect()
+}

@@ -1,0 +1,301 @@
+//! `*BOUNDARY` and `*INITIAL CONDITIONS`.
+
+use super::amplitude::Amplitudes;
+use crate::deck::{Card, Row, Text};
+use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::model::{Amplitude, Support, SupportMotion, TimeBase};
+use crate::reader::contact::Obstacle;
+use crate::reader::context::Context;
+use crate::reader::mesh::{Grid, Outline, Sets};
+use std::collections::BTreeMap;
+
+/// What supports and loads refer to.
+#[derive(Clone, Copy)]
+pub(crate) struct Targets<'a> {
+    /// Mesh.
+    pub grid: &'a Grid,
+    /// Sets.
+    pub sets: &'a Sets,
+    /// Amplitudes.
+    pub amplitudes: &'a Amplitudes,
+    /// Rigid surfaces.
+    pub obstacles: &'a [Obstacle],
+}
+
+/// A direction that the deck may name.
+pub(crate) enum Direction {
+    /// 0 = x, 1 = y.
+    Plane(usize),
+    /// A displacement or rotation out of the plane.
+    OutOfPlane,
+}
+
+/// Prescribed dofs, as they are carried from step to step.
+#[derive(Default)]
+pub(crate) struct Supports {
+    held: BTreeMap<usize, Held>,
+}
+
+#[derive(Clone, Copy)]
+struct Held {
+    motion: SupportMotion,
+    /// Step that last named it; 0 for model data.
+    step: usize,
+}
+
+impl Supports {
+    /// Supports of the current step.
+    pub fn list(&self) -> Vec<Support> {
+        let held = self.held.iter();
+        held.map(|(&dof, held)| Support {
+            dof,
+            motion: held.motion,
+        })
+        .collect()
+    }
+
+    /// Removes all.
+    pub fn clear(&mut self) {
+        self.held.clear();
+    }
+
+    /// A step ends: what follows its time stays where it is.
+    pub fn end_step(&mut self, period: f64, amplitudes: &[Amplitude]) {
+        for held in self.held.values_mut() {
+            if let SupportMotion::Amplitude { value, amplitude } = held.motion
+                && let Some(curve) = amplitudes.get(amplitude)
+                && curve.time == TimeBase::Step
+            {
+                let to = value * curve.at(period);
+                held.motion = SupportMotion::Ramp { to };
+            }
+        }
+    }
+
+    /// Reads a card of step `step`; 0 for model data.
+    pub fn card(&mut self, card: &Card, step: usize, targets: Targets, cx: &mut Context) {
+        let Ok(amplitude) = targets.amplitudes.of(card, cx) else {
+            return;
+        };
+        for row in &card.rows {
+            self.row(row, amplitude, step, targets, cx);
+        }
+    }
+
+    /// `node or set, first[, last[, value]]` or `set, name`
+    fn row(
+        &mut self,
+        row: &Row,
+        amplitude: Option<usize>,
+        step: usize,
+        targets: Targets,
+        cx: &mut Context,
+    ) {
+        row.at_most(4, cx.d);
+        let target = row.required(0, "a node or node set", cx.d);
+        let nodes = target.map(|field| targets.sets.nodes_of(field, targets.grid, cx));
+        let Some(prescribed) = prescribed(row, cx) else {
+            return;
+        };
+        if step == 0 && prescribed.value != 0.0 {
+            let message = "a displacement other than zero can be prescribed in a step only";
+            cx.error(Code::ValueOutsideStep, prescribed.span, message);
+            return;
+        }
+        let value = prescribed.value;
+        let motion = match amplitude {
+            Some(amplitude) => SupportMotion::Amplitude { value, amplitude },
+            None => SupportMotion::Ramp { to: value },
+        };
+        if amplitude.is_none() && value != 0.0 {
+            let message = "a displacement without amplitude grows linearly over the step";
+            cx.d.push_once(Diagnostic::note(
+                Code::RampedSupport,
+                prescribed.span,
+                message,
+            ));
+        }
+        for node in nodes.unwrap_or_default() {
+            for &direction in &prescribed.directions {
+                self.hold(2 * node + direction, motion, step, row.span(), cx);
+            }
+        }
+    }
+
+    fn hold(
+        &mut self,
+        dof: usize,
+        motion: SupportMotion,
+        step: usize,
+        span: Span,
+        cx: &mut Context,
+    ) {
+        let earlier = self.held.insert(dof, Held { motion, step });
+        if earlier.is_some_and(|held| held.step == step && held.motion != motion) {
+            let message = "another displacement is prescribed here than before in this step";
+            let warning = Diagnostic::warning(Code::ConflictingSupport, span, message);
+            cx.d.push(warning.help("the later one holds"));
+        }
+    }
+}
+
+/// Directions and value of a row of `*BOUNDARY`.
+struct Prescribed {
+    directions: Vec<usize>,
+    value: f64,
+    span: Span,
+}
+
+fn prescribed(row: &Row, cx: &mut Context) -> Option<Prescribed> {
+    let first = row.required(1, "the first direction", cx.d)?;
+    if first.as_integer().is_none()
+        && let Some(directions) = named_directions(first)
+    {
+        row.at_most(2, cx.d);
+        return Some(Prescribed {
+            directions,
+            value: 0.0,
+            span: first.span,
+        });
+    }
+    let last = row.get(2).unwrap_or(first);
+    let (low, high) = (dof_number(first, cx)?, dof_number(last, cx)?);
+    let value = row.real_or(3, 0.0, cx.d)?;
+    let span = row.get(3).map_or(row.span(), |field| field.span);
+    if high < low {
+        let message = format!("directions run from {low} to {high}");
+        cx.error(Code::BadDof, last.span, message);
+        return None;
+    }
+    if high > 2 && value != 0.0 {
+        let message = "only directions 1 and 2 can move";
+        cx.error(Code::BadDof, last.span, message);
+        return None;
+    }
+    Some(Prescribed {
+        directions: (low..=high.min(2)).map(|dof| dof - 1).collect(),
+        value,
+        span,
+    })
+}
+
+/// Directions that a named condition fixes.
+fn named_directions(name: Text) -> Option<Vec<usize>> {
+    match name.name_key().as_str() {
+        "XSYMM" => Some(vec![0]),
+        "YSYMM" => Some(vec![1]),
+        "ZSYMM" => Some(vec![]),
+        "PINNED" | "ENCASTRE" => Some(vec![0, 1]),
+        _ => None,
+    }
+}
+
+/// A direction number, 1 to 6.
+fn dof_number(field: Text, cx: &mut Context) -> Option<usize> {
+    let number = field.integer(cx.d)?;
+    if (1..=6).contains(&number) {
+        return usize::try_from(number).ok();
+    }
+    let message = format!("plane elements have no degree of freedom {number}");
+    let error = Diagnostic::error(Code::BadDof, field.span, message);
+    cx.d.push(error.help("1 is x, 2 is y; 3 to 6 are accepted with the value zero"));
+    None
+}
+
+/// The direction that a field says, in the plane or not.
+pub(crate) fn direction(field: Text, cx: &mut Context) -> Option<Direction> {
+    Some(match dof_number(field, cx)? {
+        number @ 1..=2 => Direction::Plane(number - 1),
+        _ => Direction::OutOfPlane,
+    })
+}
+
+/// The direction of a row whose value acts there; out of the plane it must be zero.
+pub(crate) fn row_direction(row: &Row, value: f64, cx: &mut Context) -> Option<usize> {
+    let field = row.required(1, "the direction", cx.d)?;
+    match direction(field, cx)? {
+        Direction::Plane(direction) => Some(direction),
+        Direction::OutOfPlane if value == 0.0 => None,
+        Direction::OutOfPlane => {
+            cx.error(
+                Code::BadDof,
+                field.span,
+                "only directions 1 and 2 lie in the plane",
+            );
+            None
+        }
+    }
+}
+
+/// Reads initial velocities, `2 N` entries; `supports` hold at the start.
+pub(crate) fn initial_velocity(
+    outline: &Outline,
+    targets: Targets,
+    supports: &[Support],
+    cx: &mut Context,
+) -> Vec<f64> {
+    let mut velocity = vec![0.0; targets.grid.mesh.dof_count()];
+    let mut places = BTreeMap::new();
+    for card in outline.model_cards("INITIAL CONDITIONS") {
+        card.required("TYPE", cx.d);
+        if card.choice("TYPE") != Some("VELOCITY") {
+            continue;
+        }
+        for row in &card.rows {
+            for (dof, value) in velocity_row(row, targets, cx) {
+                if let Some(entry) = velocity.get_mut(dof) {
+                    *entry = value;
+                    places.insert(dof, row.span());
+                }
+            }
+        }
+    }
+    report_supported(&velocity, &places, supports, targets.grid, cx);
+    velocity
+}
+
+/// `node or set, direction, velocity`
+fn velocity_row(row: &Row, targets: Targets, cx: &mut Context) -> Vec<(usize, f64)> {
+    row.at_most(3, cx.d);
+    let target = row.required(0, "a node or node set", cx.d);
+    let nodes = target.map(|field| targets.sets.nodes_of(field, targets.grid, cx));
+    let value = row.real(2, "the velocity", cx.d);
+    let direction = row_direction(row, value.unwrap_or(0.0), cx);
+    match (nodes, direction, value) {
+        (Some(nodes), Some(direction), Some(value)) => nodes
+            .into_iter()
+            .map(|node| (2 * node + direction, value))
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// A support moves as prescribed from the start: it has no initial velocity of its own.
+fn report_supported(
+    velocity: &[f64],
+    places: &BTreeMap<usize, Span>,
+    supports: &[Support],
+    grid: &Grid,
+    cx: &mut Context,
+) {
+    let mut rows: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
+    for dof in supports.iter().map(|support| support.dof) {
+        if let (Some(&value), Some(&span)) = (velocity.get(dof), places.get(&dof))
+            && value != 0.0
+        {
+            rows.entry(span).or_default().push(dof);
+        }
+    }
+    for (span, dofs) in rows {
+        let Some(first) = dofs.first() else { continue };
+        let label = grid.mesh.node_labels.get(first / 2).copied().unwrap_or(0);
+        let message = format!(
+            "{} degrees of freedom with this velocity are prescribed, the first is node {label} \
+             direction {}",
+            dofs.len(),
+            first % 2 + 1
+        );
+        let error = Diagnostic::error(Code::VelocityOnSupport, span, message);
+        cx.d.push(error.help("give the velocity to free nodes only"));
+    }
+}

@@ -1,0 +1,152 @@
+//! Loads as they are carried from step to step.
+
+use crate::deck::Card;
+use crate::diagnostics::{Code, Diagnostic};
+use crate::model::{Amplitude, Load, TimeBase, Variation};
+use crate::reader::context::Context;
+use std::collections::BTreeMap;
+
+/// How a load without amplitude reaches its magnitude, and the step it is given in.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Moment {
+    /// Number of the step, from 1; 0 is model data.
+    pub step: usize,
+    /// Whether loads without amplitude grow linearly (`*STEP, AMPLITUDE=RAMP`).
+    pub ramp: bool,
+}
+
+/// Whether a step keeps what earlier steps gave; the first card of its kind decides.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Operation {
+    step: usize,
+    new: bool,
+}
+
+impl Operation {
+    /// Takes note of a card; says whether everything given before is removed now.
+    pub fn starts_anew(&mut self, card: &Card, step: usize, cx: &mut Context) -> bool {
+        let typed = card.choice("OP");
+        let new = typed == Some("NEW");
+        if self.step == step {
+            if typed.is_some() && new != self.new {
+                let message = format!("OP of the first {} in this step holds", card.title());
+                let span = card.span_of("OP");
+                cx.d.push(Diagnostic::warning(Code::MixedOperation, span, message));
+            }
+            return false;
+        }
+        *self = Operation { step, new };
+        new
+    }
+}
+
+/// Loads of one kind by what tells them apart.
+pub(crate) struct Carried<K, T> {
+    parts: BTreeMap<K, Vec<Part<T>>>,
+}
+
+#[derive(Clone, Copy)]
+struct Part<T> {
+    load: Load<T>,
+    /// Step that named it.
+    step: usize,
+    /// Magnitude at the end of the step before.
+    end: f64,
+}
+
+impl<K, T> Default for Carried<K, T> {
+    fn default() -> Self {
+        Carried {
+            parts: BTreeMap::new(),
+        }
+    }
+}
+
+impl<K: Ord + Copy, T: Copy + PartialEq> Carried<K, T> {
+    /// All loads of the current step.
+    pub fn list(&self) -> Vec<Load<T>> {
+        self.parts
+            .values()
+            .flatten()
+            .map(|part| part.load)
+            .collect()
+    }
+
+    /// Removes all loads; where loads ramp they fade out over the step.
+    pub fn clear(&mut self, moment: Moment) {
+        if !moment.ramp {
+            self.parts.clear();
+        }
+        for part in self.parts.values_mut().flatten() {
+            part.fade();
+        }
+    }
+
+    /// Adds a load; it replaces those of earlier steps under the same key.
+    pub fn add(&mut self, key: K, at: T, magnitude: f64, amplitude: Option<usize>, moment: Moment) {
+        let parts = self.parts.entry(key).or_default();
+        let mut from = 0.0;
+        if moment.ramp && amplitude.is_none() {
+            for part in parts.iter_mut().filter(|part| part.step < moment.step) {
+                match part.load.at == at {
+                    true => from += part.end,
+                    false => part.fade(),
+                }
+            }
+            parts.retain(|part| part.step == moment.step || part.load.at != at);
+        } else {
+            parts.retain(|part| part.step == moment.step);
+        }
+        let variation = match amplitude {
+            Some(index) => Variation::Amplitude(index),
+            None if moment.ramp => Variation::Ramp { from },
+            None => Variation::Constant,
+        };
+        let load = Load {
+            at,
+            magnitude,
+            variation,
+        };
+        parts.push(Part {
+            load,
+            step: moment.step,
+            end: 0.0,
+        });
+    }
+
+    /// A step ends: loads stay at what they have reached, unless they follow the total time.
+    pub fn end_step(&mut self, period: f64, total: f64, amplitudes: &[Amplitude]) {
+        for part in self.parts.values_mut().flatten() {
+            part.end_step(period, total, amplitudes);
+        }
+        self.parts.retain(|_, parts| {
+            parts.retain(|part| part.load.magnitude != 0.0);
+            !parts.is_empty()
+        });
+    }
+}
+
+impl<T> Part<T> {
+    fn fade(&mut self) {
+        self.load.magnitude = 0.0;
+        self.load.variation = Variation::Ramp { from: self.end };
+    }
+
+    fn end_step(&mut self, period: f64, total: f64, amplitudes: &[Amplitude]) {
+        let load = &mut self.load;
+        let curve = match load.variation {
+            Variation::Amplitude(index) => amplitudes.get(index),
+            Variation::Constant | Variation::Ramp { .. } => None,
+        };
+        match curve {
+            Some(curve) if curve.time == TimeBase::Total => {
+                self.end = load.magnitude * curve.at(total);
+                return;
+            }
+            Some(curve) => load.magnitude *= curve.at(period),
+            None => {}
+        }
+        load.variation = Variation::Constant;
+        self.end = load.magnitude;
+    }
+}

@@ -1,0 +1,9 @@
+//! Steps with their loads, boundary conditions, amplitudes and output requests.
+
+pub(crate) mod amplitude;
+pub(crate) mod boundary;
+mod load_history;
+mod loads;
+mod output_requests;
+mod settings;
+pub(crate) mod step;

@@ -1,0 +1,311 @@
+//! `*STEP` and `*DYNAMIC`; what is carried from step to step.
+
+use super::amplitude::Amplitudes;
+use super::boundary::{Supports, Targets};
+use super::load_history::{Moment, Operation};
+use super::loads::Loads;
+use super::output_requests::{Requests, restart, time_points};
+use crate::deck::{Card, Row};
+use crate::diagnostics::{Code, Diagnostic};
+use crate::model::{HistorySet, Impact, Increments, Settings, Step, Support};
+use crate::reader::contact::rigid_surface;
+use crate::reader::context::Context;
+use crate::reader::mesh::{Outline, StepCards, Surfaces};
+use crate::reader::steps::settings;
+
+/// Most increments of a step: at a microsecond each they would take eleven days.
+const MOST_INCREMENTS: f64 = 1e12;
+
+/// Everything the steps of a deck say.
+pub(crate) struct Steps {
+    /// Steps in order.
+    pub all: Vec<Step>,
+    /// Node sets of the history.
+    pub history: Vec<HistorySet>,
+    /// Supports of the first step.
+    pub at_start: Vec<Support>,
+}
+
+/// Reads all steps; `guide` is a sensible increment, if one is known.
+pub(crate) fn read(
+    outline: &Outline,
+    targets: Targets,
+    surfaces: &Surfaces,
+    guide: Option<f64>,
+    cx: &mut Context,
+) -> Steps {
+    let mut reading = Reading {
+        targets,
+        surfaces,
+        guide,
+        settings: Settings::default(),
+        supports: Supports::default(),
+        support_operation: Operation::default(),
+        loads: Loads::default(),
+        requests: Requests::new(time_points(cx)),
+        nonlinear: false,
+        start: 0.0,
+    };
+    for card in outline.model_cards("BOUNDARY") {
+        if card.choice("OP") == Some("NEW") {
+            reading.supports.clear();
+        }
+        reading.supports.card(card, 0, targets, cx);
+    }
+    for card in outline.model_cards("RESTART") {
+        restart(card, cx);
+    }
+    let mut steps = Vec::new();
+    let mut at_start = None;
+    for (index, cards) in outline.steps.iter().enumerate() {
+        steps.extend(reading.step(index + 1, cards, &mut at_start, cx));
+    }
+    Steps {
+        all: steps,
+        history: reading.requests.history,
+        at_start: at_start.unwrap_or_default(),
+    }
+}
+
+/// The state of a deck between its steps.
+struct Reading<'a> {
+    targets: Targets<'a>,
+    surfaces: &'a Surfaces,
+    guide: Option<f64>,
+    settings: Settings,
+    supports: Supports,
+    support_operation: Operation,
+    loads: Loads,
+    requests: Requests,
+    nonlinear: bool,
+    start: f64,
+}
+
+impl Reading<'_> {
+    fn step(
+        &mut self,
+        number: usize,
+        cards: &StepCards,
+        at_start: &mut Option<Vec<Support>>,
+        cx: &mut Context,
+    ) -> Option<Step> {
+        self.check_nonlinear(cards.head, cx);
+        let moment = Moment {
+            step: number,
+            ramp: cards.head.choice("AMPLITUDE") == Some("RAMP"),
+        };
+        let increments = self.procedure(cards, cx);
+        self.own_settings(cards, cx);
+        self.conditions(cards, moment, cx);
+        self.requests.cards(&cards.cards, self.targets.sets, cx);
+        let mut supports = self.supports.list();
+        rigid_surface::follow(self.targets.obstacles, number, &mut supports, cx);
+        at_start.get_or_insert_with(|| supports.clone());
+        let name = cards.head.value("NAME").and_then(|name| name.name(cx.d));
+        let period = increments.map_or(0.0, |increments| increments.period);
+        let step = increments.map(|increments| Step {
+            supports,
+            ..self.build(name.map(|n| n.typed), increments)
+        });
+        self.end(period);
+        step
+    }
+
+    fn build(&self, name: Option<String>, increments: Increments) -> Step {
+        let mut step = Step {
+            name,
+            increments,
+            settings: self.settings,
+            supports: Vec::new(),
+            point_loads: Vec::new(),
+            body_forces: Vec::new(),
+            pressures: Vec::new(),
+            tractions: Vec::new(),
+            frames: self.requests.frames(self.start, increments.period),
+        };
+        self.loads.fill(&mut step);
+        step
+    }
+
+    fn end(&mut self, period: f64) {
+        self.start += period;
+        let Amplitudes { all, .. } = self.targets.amplitudes;
+        self.supports.end_step(period, all);
+        self.loads.end_step(period, self.start, all);
+    }
+
+    fn check_nonlinear(&mut self, head: &Card, cx: &mut Context) {
+        let said_no = head.choice("NLGEOM") == Some("NO");
+        self.nonlinear |= head.has("NLGEOM") && !said_no;
+        if !self.nonlinear && !said_no {
+            let message = "this step runs with NLGEOM: displacements are large in any case";
+            cx.d.push_once(Diagnostic::warning(Code::NonlinearStep, head.span, message));
+        }
+    }
+
+    /// The one procedure of a step.
+    fn procedure(&mut self, cards: &StepCards, cx: &mut Context) -> Option<Increments> {
+        let found = named(cards, "DYNAMIC");
+        cx.only_once(&found);
+        let Some(card) = found.first() else {
+            if !cx.may_lack_cards() {
+                let message = "this step has no procedure";
+                let error = Diagnostic::error(Code::StepStructure, cards.head.span, message);
+                cx.d.push(error.help("add *DYNAMIC with the increment and the duration"));
+            }
+            return None;
+        };
+        match card.choice("IMPACT") {
+            Some("NO") => self.settings.impact = Impact::None,
+            Some(_) => self.settings.impact = Impact::Impulse,
+            None => {}
+        }
+        increments(card, self.guide, cx)
+    }
+
+    fn own_settings(&mut self, cards: &StepCards, cx: &mut Context) {
+        let found = named(cards, "STICKSLIP");
+        cx.only_once(&found);
+        for card in found {
+            settings::apply(card, &mut self.settings, cx);
+        }
+    }
+
+    fn conditions(&mut self, cards: &StepCards, moment: Moment, cx: &mut Context) {
+        for card in &cards.cards {
+            match card.keyword.name {
+                "BOUNDARY" => {
+                    if self.support_operation.starts_anew(card, moment.step, cx) {
+                        self.supports.clear();
+                    }
+                    self.supports.card(card, moment.step, self.targets, cx);
+                }
+                "CLOAD" | "DLOAD" | "DSLOAD" => {
+                    self.loads
+                        .card(card, moment, self.targets, self.surfaces, cx);
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+fn named<'a>(cards: &StepCards<'a>, keyword: &str) -> Vec<&'a Card> {
+    let all = cards.cards.iter().copied();
+    all.filter(|card| card.keyword.name == keyword).collect()
+}
+
+/// `dt, T[, smallest dt[, largest dt]]`
+fn increments(card: &Card, guide: Option<f64>, cx: &mut Context) -> Option<Increments> {
+    let direct = card.has("DIRECT") && card.choice("DIRECT") != Some("NO");
+    let Some(row) = card.rows.first() else {
+        let message = "*DYNAMIC needs a data line: the increment and the duration";
+        cx.error(Code::MissingData, card.span, message);
+        return None;
+    };
+    row.at_most(4, cx.d);
+    if let Some(extra) = card.rows.get(1) {
+        cx.error(Code::StrayData, extra.span(), "*DYNAMIC has one data line");
+    }
+    let first = first_increment(row, guide, cx);
+    let period = row.real(1, "the duration of the step", cx.d);
+    let dt_min = row.real_or(2, 0.0, cx.d);
+    let dt_max = row.real_or(3, f64::INFINITY, cx.d);
+    let (first, period, dt_min, dt_max) = (first?, period?, dt_min?, dt_max?);
+    let dt = if direct { first } else { first.min(dt_max) };
+    check_times(row, dt, period, dt_min, dt_max, cx)?;
+    if direct {
+        let help = "with DIRECT increments keep their size but for cutbacks";
+        row.without_effect(3, "this largest increment has no effect", help, cx.d);
+        note_short_end(row, dt, period, cx);
+    } else if dt < dt_max.min(period) {
+        warn_that_increments_stay(row, cx);
+    }
+    Some(Increments {
+        dt,
+        period,
+        dt_min,
+        direct,
+    })
+}
+
+fn first_increment(row: &Row, guide: Option<f64>, cx: &mut Context) -> Option<f64> {
+    match row.get(0) {
+        Some(field) => field.real(cx.d),
+        None => {
+            let message = "give the time increment in the first field";
+            let error = Diagnostic::error(Code::MissingField, row.span(), message);
+            cx.d.push(match guide {
+                Some(dt) => error.help(format!(
+                    "a wave crosses the shortest element side in {dt:.2e}"
+                )),
+                None => error,
+            });
+            None
+        }
+    }
+}
+
+fn check_times(
+    row: &Row,
+    dt: f64,
+    period: f64,
+    dt_min: f64,
+    dt_max: f64,
+    cx: &mut Context,
+) -> Option<()> {
+    let (field, fault) = if dt <= 0.0 {
+        (0, "the increment must be positive")
+    } else if period <= 0.0 {
+        (1, "the duration must be positive")
+    } else if dt > period {
+        (0, "the increment is longer than the step")
+    } else if period / dt > MOST_INCREMENTS {
+        (
+            0,
+            "the increment is out of all proportion to the duration: the step has more than 1e12 \
+             of them",
+        )
+    } else if !(dt * dt).is_normal() {
+        // K* holds 2/dt² M
+        (
+            0,
+            "the square of the increment is beyond the range of numbers: use other units of time",
+        )
+    } else if dt_min < 0.0 || dt_min > dt {
+        (
+            2,
+            "the smallest increment must lie between 0 and the increment",
+        )
+    } else if dt_max <= 0.0 {
+        (3, "the largest increment must be positive")
+    } else {
+        return Some(());
+    };
+    let span = row.get(field).map_or(row.span(), |field| field.span);
+    cx.error(Code::BadIncrement, span, fault);
+    None
+}
+
+/// Other codes let increments grow where they converge easily.
+fn warn_that_increments_stay(row: &Row, cx: &mut Context) {
+    let [first, largest] = [0, 3].map(|i| row.get(i));
+    let span = largest.or(first).map_or(row.span(), |field| field.span);
+    let message = "increments do not grow: none is longer than the first";
+    let warning = Diagnostic::warning(Code::ConstantIncrement, span, message);
+    let warning = match largest {
+        Some(_) => warning.label("bounds the first increment only"),
+        None => warning,
+    };
+    cx.d.push_once(warning.help("give the increment that suits the whole step in the first field"));
+}
+
+/// Notes that the duration is no multiple of the increment.
+fn note_short_end(row: &Row, dt: f64, period: f64, cx: &mut Context) {
+    let count = period / dt;
+    if (count - count.round()).abs() > 1e-6 * count.clamp(1.0, 1e5) {
+        let span = row.get(1).map_or(row.span(), |field| field.span);
+        let message = "the duration is no multiple of the increment: the last one is shorter";
+        cx.d.push(Diagnostic::note(Code::ShortIncrement, span, message));
+    }
+}
