@@ -20,7 +20,11 @@ const TABLE_LINES: usize = 600;
 const MOST_FILES: usize = 12;
 
 /// Structs that may have more fields: plain records of results, each with the reason.
-const RESULT_RECORDS: [(&str, &str); 2] = [
+const RESULT_RECORDS: [(&str, &str); 3] = [
+    (
+        "ContactResultant",
+        "the figures of one contact in one increment, as the history holds them",
+    ),
     (
         "IncrementReport",
         "what is known of an accepted increment, one figure per field",
@@ -192,11 +196,16 @@ fn is_table(path: &str) -> bool {
         .is_some_and(|name| name.starts_with("table_"))
 }
 
+/// Lines of a file outside of tests.
+fn line_count(source: &Source) -> usize {
+    source.text.lines().count() - source.test_lines
+}
+
 fn long_files(sources: &[Source]) -> Vec<String> {
     let (tables, others): (Vec<_>, Vec<_>) = sources
         .iter()
         .filter(|source| !source.is_test)
-        .map(|source| (source.lines, &*source.path, ""))
+        .map(|source| (line_count(source), &*source.path, ""))
         .partition(|(_, path, _)| is_table(path));
     let mut long = larger(FILE_LINES, others.into_iter());
     long.extend(larger(TABLE_LINES, tables.into_iter()));
@@ -210,7 +219,9 @@ fn full_folders(sources: &[Source]) -> Vec<String> {
         let (folder, name) = source.path.rsplit_once('/').expect("a file in a folder");
         *counts.entry(folder).or_default() += usize::from(name != "mod.rs");
     }
-    let counts = counts.into_iter().map(|(folder, count)| (count, folder, ""));
+    let counts = counts
+        .into_iter()
+        .map(|(folder, count)| (count, folder, ""));
     larger(MOST_FILES, counts)
 }
 
@@ -305,7 +316,9 @@ fn no_folder_is_full() {
 #[test]
 fn every_file_opens_with_what_it_holds() {
     let sources = read_sources();
-    let without = sources.iter().filter(|source| !source.has_header);
+    let without = sources
+        .iter()
+        .filter(|source| !source.text.starts_with("//!"));
     let without: Vec<String> = without.map(|source| format!("{}:1", source.path)).collect();
     assert_none("files that do not open with `//!`", &without);
 }
@@ -352,12 +365,13 @@ fn tests_are_not_measured() {
     let survey = Survey::new(&sources);
     let names: Vec<_> = survey.functions.iter().map(|f| &*f.name).collect();
     assert_eq!(names, ["kept_too", "kept"]);
-    assert_eq!(sources[2].lines, text.lines().count() - 3 - 4);
+    assert_eq!(line_count(&sources[2]), text.lines().count() - 3 - 4);
 }
 
 #[test]
 fn a_record_is_plain_without_private_fields_and_handles() {
-    let plain = |fields: &str| survey_of(&format!("struct S<'a> {{ {fields} }}")).structs[0].is_plain;
+    let plain =
+        |fields: &str| survey_of(&format!("struct S<'a> {{ {fields} }}")).structs[0].is_plain;
     assert!(plain("pub a: &'a [f64], pub(crate) b: Vec<f64>"));
     assert!(!plain("pub a: f64, b: f64"));
     assert!(!plain("pub a: &'a mut f64"));

@@ -6,14 +6,14 @@ use std::path::Path;
 use syn::spanned::Spanned;
 use syn::{Attribute, ImplItem, Item, Meta};
 
-/// A source file without its tests.
+/// A source file.
 pub struct Source {
     /// Path from the root of the package, with `/`.
     pub path: String,
-    /// Does the file open with `//!`?
-    pub has_header: bool,
-    /// Number of lines outside of tests.
-    pub lines: usize,
+    /// The whole text, tests included.
+    pub text: String,
+    /// Number of lines of the text that are items for tests.
+    pub test_lines: usize,
     /// Items outside of tests.
     pub items: Vec<Item>,
     /// Is the whole file a module of tests?
@@ -66,11 +66,10 @@ fn parse(path: &str, text: &str, test_modules: &mut Vec<String>) -> Source {
             test_modules.push(format!("{}{name}/", children_folder(path)));
         }
     }
-    let test_lines: usize = removed.iter().map(Removed::lines).sum();
     Source {
         path: path.to_owned(),
-        has_header: text.starts_with("//!"),
-        lines: text.lines().count() - test_lines,
+        text: text.to_owned(),
+        test_lines: removed.iter().map(Removed::lines).sum(),
         items,
         is_test: false,
     }
@@ -159,7 +158,9 @@ fn attributes(item: &Item) -> &[Attribute] {
 fn is_for_tests(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| {
         attribute.path().is_ident("cfg")
-            && attribute.parse_args::<Meta>().is_ok_and(|meta| asks_test(&meta))
+            && attribute
+                .parse_args::<Meta>()
+                .is_ok_and(|meta| asks_test(&meta))
     })
 }
 
