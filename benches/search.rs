@@ -12,7 +12,9 @@ use std::time::Duration;
 
 use contact_support::{DISC, lattice};
 use criterion::{BenchmarkId, Criterion, Throughput};
-use stickslip::contact::{Look, Pairing, Search, Touch, all_segments, find_pairs, find_passage};
+use stickslip::contact::{
+    NodeContact, Pairing, Search, SlaveNode, all_segments, find_penetration, find_targets,
+};
 
 /// Segments searched in one go: in many small scenes, or few large ones. Only so do caches and branch
 /// predictors not learn the small ones by heart.
@@ -64,31 +66,31 @@ fn main() {
         group.bench_function(BenchmarkId::new("pairs", n), |bencher| {
             bencher.iter(|| {
                 search.cover(black_box(&u));
-                find_pairs(&search, &u, &u, &before).len()
+                find_targets(&search, &u, &u, &before).len()
             });
         });
         let moved: Vec<f64> = (0..u.len()).map(|i| 1e-3 * (i as f64).sin()).collect();
-        let touch = vec![Touch::default(); x.len()];
+        let touch = vec![NodeContact::default(); x.len()];
         let unsolved = vec![0.0; x.len()];
         group.bench_function(BenchmarkId::new("ways", n), |bencher| {
             bencher.iter(|| {
                 search.cover_way(&u, &moved);
-                find_passage(&search, &u, black_box(&moved), &touch, &unsolved)
+                find_penetration(&search, &u, black_box(&moved), &touch, &unsolved)
             });
         });
         if n <= 1_000 {
             group.bench_function(BenchmarkId::new("all_segments", n), |bencher| {
                 let [surfaces] = &contacts;
-                let sites = |slave: usize| {
-                    let look = Look {
+                let targets = |slave: usize| {
+                    let node = SlaveNode {
                         surfaces,
                         start: &x,
                         now: black_box(&x),
                         slave,
                     };
-                    look.sites(all_segments(surfaces)).len()
+                    node.targets(all_segments(surfaces)).len()
                 };
-                bencher.iter(|| (0..surfaces.slaves.len()).map(sites).sum::<usize>());
+                bencher.iter(|| (0..surfaces.slaves.len()).map(targets).sum::<usize>());
             });
         }
     }

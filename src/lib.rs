@@ -22,8 +22,12 @@
 //! | slave, master | the node side and the segment side of a contact pair |
 //! | segment | an edge of the master surface from node a to node b, the body on its left |
 //! | candidate | a segment that the search lists for a slave node |
-//! | site | what a slave node may not go through: a segment, or the vertex between two |
-//! | pair | one slave node with one site; a CONTACT PAIR of the deck is a *contact* |
+//! | contact target | what a slave node may not go through: a segment, or the convex corner between two |
+//! | corner | a node between two segments of a surface: convex, or concave |
+//! | slave index | number of a slave node among those of all contacts |
+//! | pair | one slave node with one contact target; a CONTACT PAIR of the deck is a *contact* |
+//! | closed pair | a pair that carries a force |
+//! | territory | circle about an entity that it does not leave while lists of candidates hold |
 //! | gap g | distance of the slave node from its segment, positive when open |
 //! | normal e_n | unit vector out of the master body; tangent e_t points from a to b |
 //! | slip Dt | tangential motion of the slave node relative to its segment within the increment |
@@ -31,7 +35,8 @@
 //! | Phi, Psi | normal and tangential impact impulse of a pair |
 //! | internal force F | nodal forces of the stresses; R external load, M mass, K tangent |
 //! | K* | effective matrix theta2 K + 2/dt^2 M; Q = B K*^-1 B^T its Delassus matrix |
-//! | event | an impact at which an increment is cut (`IMPACT TIME=EVENT`) |
+//! | event | an impact that ends a subincrement (`IMPACT TIME=EVENT`) |
+//! | nominal increment | an increment of the step's fixed grid; cutbacks and events divide it |
 //! | d | displacement increment U1 - U0 |
 //! | suffix 0, 1 | start and end of the increment; V0+ is V0 after the impulses |
 

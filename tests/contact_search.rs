@@ -4,7 +4,7 @@ mod contact_support;
 
 use contact_support::{Body, lattice, scene};
 use proptest::prelude::*;
-use stickslip::contact::{Candidate, ContactSurfaces, Look, Search, project};
+use stickslip::contact::{Candidate, ContactSurfaces, Search, SlaveNode, project};
 
 fn bodies() -> impl Strategy<Value = Vec<Body>> {
     let body = (
@@ -36,7 +36,7 @@ fn distance(s: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     (s[0] - foot[0]).hypot(s[1] - foot[1])
 }
 
-/// Every slave node finds the same sites among its candidates as among all segments.
+/// Every slave node finds the same targets among its candidates as among all segments.
 fn finds_all(search: &Search, surfaces: &ContactSurfaces, x: &[[f64; 2]], [u0, u]: [&[f64]; 2]) {
     let territory = &search.territories()[0];
     let positions = |u: &[f64]| -> Vec<[f64; 2]> {
@@ -49,15 +49,15 @@ fn finds_all(search: &Search, surfaces: &ContactSurfaces, x: &[[f64; 2]], [u0, u
             segment,
             reach: territory.reach(slave, segment),
         });
-        let look = Look {
+        let node = SlaveNode {
             surfaces,
             start: &start,
             now: &now,
             slave,
         };
         assert_eq!(
-            look.sites(territory.candidates(slave)),
-            look.sites(all),
+            node.targets(territory.candidates(slave)),
+            node.targets(all),
             "slave {slave}"
         );
     }

@@ -1,6 +1,6 @@
-//! Which segments and vertices hold a slave node.
+//! Which segments and corners hold a slave node.
 
-use stickslip::contact::{ContactSurfaces, Look, Site, all_segments};
+use stickslip::contact::{ContactSurfaces, ContactTarget, SlaveNode, all_segments};
 
 /// A closed or open chain of master segments over `points`, the body on the left of the way.
 fn chain(points: &[[f64; 2]], closed: bool) -> Vec<[usize; 2]> {
@@ -9,8 +9,13 @@ fn chain(points: &[[f64; 2]], closed: bool) -> Vec<[usize; 2]> {
     (0..last).map(|i| [i, (i + 1) % count]).collect()
 }
 
-/// Sites of a node that goes from `from` to `to` beside chains of points at rest.
-fn sites_beside(chains: &[&[[f64; 2]]], closed: bool, from: [f64; 2], to: [f64; 2]) -> Vec<Site> {
+/// Targets of a node that goes from `from` to `to` beside chains of points at rest.
+fn sites_beside(
+    chains: &[&[[f64; 2]]],
+    closed: bool,
+    from: [f64; 2],
+    to: [f64; 2],
+) -> Vec<ContactTarget> {
     let mut x = Vec::new();
     let mut segments = Vec::new();
     for points in chains {
@@ -26,23 +31,27 @@ fn sites_beside(chains: &[&[[f64; 2]]], closed: bool, from: [f64; 2], to: [f64; 
     sites_of(&surfaces, &start, &now)
 }
 
-/// Sites of the only slave node of surfaces between two sets of positions.
-fn sites_of(surfaces: &ContactSurfaces, start: &[[f64; 2]], now: &[[f64; 2]]) -> Vec<Site> {
-    let look = Look {
+/// Targets of the only slave node of surfaces between two sets of positions.
+fn sites_of(
+    surfaces: &ContactSurfaces,
+    start: &[[f64; 2]],
+    now: &[[f64; 2]],
+) -> Vec<ContactTarget> {
+    let node = SlaveNode {
         surfaces,
         start,
         now,
         slave: 0,
     };
-    look.sites(all_segments(surfaces))
+    node.targets(all_segments(surfaces))
 }
 
-fn segments(sites: &[Site]) -> Vec<usize> {
-    assert!(sites.iter().all(|site| site.vertex.is_none()));
-    sites.iter().map(|site| site.segment).collect()
+fn segments(targets: &[ContactTarget]) -> Vec<usize> {
+    assert!(targets.iter().all(|target| target.corner.is_none()));
+    targets.iter().map(|target| target.segment).collect()
 }
 
-/// Sites beside a square from (0, 0) to (1, 1): bottom 0, right 1, top 2, left 3.
+/// Targets beside a square from (0, 0) to (1, 1): bottom 0, right 1, top 2, left 3.
 fn beside_square(from: [f64; 2], to: [f64; 2]) -> Vec<usize> {
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     segments(&sites_beside(&[&square], true, from, to))
@@ -67,16 +76,20 @@ fn a_node_is_held_by_the_face_that_it_came_to() {
 #[test]
 fn the_other_sides_of_a_body_do_not_hold() {
     let plate = [[0.0, 0.0], [4.0, 0.0], [4.0, 0.1], [0.0, 0.1]];
-    let beside = |from, to| segments(&sites_beside(&[&plate], true, from, to));
-    assert_eq!(beside([2.0, 0.2], [2.0, 0.03]), [2], "nearer to the bottom");
-    assert_eq!(beside([2.0, -0.1], [2.0, 0.09]), [0]);
+    let near_plate = |from, to| segments(&sites_beside(&[&plate], true, from, to));
     assert_eq!(
-        beside([2.0, 0.05], [2.0, 0.06]),
+        near_plate([2.0, 0.2], [2.0, 0.03]),
+        [2],
+        "nearer to the bottom"
+    );
+    assert_eq!(near_plate([2.0, -0.1], [2.0, 0.09]), [0]);
+    assert_eq!(
+        near_plate([2.0, 0.05], [2.0, 0.06]),
         [0; 0],
         "inside from the start"
     );
     assert_eq!(
-        beside([2.0, 9.0], [2.0, -9.0]),
+        near_plate([2.0, 9.0], [2.0, -9.0]),
         [2],
         "through and far beyond"
     );
@@ -87,7 +100,7 @@ fn a_node_that_slides_round_a_convex_vertex_keeps_its_segment() {
     let slides = beside_square([0.9, 1.0], [1.05, 0.95]);
     assert_eq!(slides, [2], "it was behind the right side at the start");
     let falls = beside_square([1.05, 1.0], [1.05, 0.9]);
-    assert_eq!(falls, [1], "past the vertex it may fall along the side");
+    assert_eq!(falls, [1], "past the corner it may fall along the side");
     assert_eq!(
         beside_square([1.2, 1.3], [1.02, 1.04]),
         [2],
@@ -121,12 +134,16 @@ fn a_corner_that_slides_over_a_corner_is_held_by_the_face_that_its_surface_lies_
 fn both_sides_of_a_hollow_hold() {
     // a valley over (2, 1), (0, 0), (-2, 1)
     let valley = [[2.0, 1.0], [0.0, 0.0], [-2.0, 1.0]];
-    let beside = |from, to| segments(&sites_beside(&[&valley], false, from, to));
-    assert_eq!(beside([0.0, 0.5], [0.0, 0.1]), [0, 1]);
-    assert_eq!(beside([0.0, 0.5], [0.0, -0.2]), [0, 1]);
-    assert_eq!(beside([0.4, 0.2], [0.1, 0.05]), [0, 1], "near its ground");
-    assert_eq!(beside([1.5, 0.76], [1.5, 0.75]), [0], "far from it");
-    assert_eq!(beside([0.4, 0.2], [-0.2, -0.1]), [0, 1], "beyond it");
+    let near_plate = |from, to| segments(&sites_beside(&[&valley], false, from, to));
+    assert_eq!(near_plate([0.0, 0.5], [0.0, 0.1]), [0, 1]);
+    assert_eq!(near_plate([0.0, 0.5], [0.0, -0.2]), [0, 1]);
+    assert_eq!(
+        near_plate([0.4, 0.2], [0.1, 0.05]),
+        [0, 1],
+        "near its ground"
+    );
+    assert_eq!(near_plate([1.5, 0.76], [1.5, 0.75]), [0], "far from it");
+    assert_eq!(near_plate([0.4, 0.2], [-0.2, -0.1]), [0, 1], "beyond it");
 }
 
 #[test]
@@ -138,12 +155,12 @@ fn nothing_holds_a_node_far_behind_a_hollow() {
         segments(&sites_beside(&[&arm], false, across, across)),
         [0; 0]
     );
-    // a hollow that has closed, but for round-off to either side: it is no sharp corner
+    // a concave corner that has closed, but for round-off to either side: it is no sharp corner
     for x in [1e-16, -1e-16] {
         let closed = [[x, 1.0], [0.0, 0.0], [-x, 1.0]];
         let below = [1e-6, -2.0];
-        let sites = sites_beside(&[&closed], false, below, below);
-        assert_eq!(segments(&sites), [0; 0], "{x}");
+        let targets = sites_beside(&[&closed], false, below, below);
+        assert_eq!(segments(&targets), [0; 0], "{x}");
     }
 }
 
@@ -152,11 +169,16 @@ fn a_sharp_corner_is_no_closed_hollow() {
     let tip = [[-0.01, -1.0], [0.0, 0.0], [0.01, -1.0]].map(|[x, y]: [f64; 2]| [-x, y]);
     let mut x = tip.to_vec();
     x.push([1e-3, 0.5]);
-    let surfaces = ContactSurfaces::new(vec![3], &[], vec![[0, 1], [1, 2]], 0.0).with_corners(&x);
+    let surfaces =
+        ContactSurfaces::new(vec![3], &[], vec![[0, 1], [1, 2]], 0.0).with_sharp_corners(&x);
     let mut now = x.clone();
     now[3] = [1e-3, 0.1];
-    let sites = sites_of(&surfaces, &x, &now);
-    assert_eq!(sites.len(), 1, "one side of the tip, or the tip: {sites:?}");
+    let targets = sites_of(&surfaces, &x, &now);
+    assert_eq!(
+        targets.len(),
+        1,
+        "one side of the tip, or the tip: {targets:?}"
+    );
 }
 
 #[test]
@@ -164,7 +186,7 @@ fn several_bodies_hold_a_node_at_once() {
     let floor = [[4.0, 0.0], [-4.0, 0.0]];
     let wall = [[0.5, -4.0], [0.5, 4.0]];
     let wall_to_the_left: Vec<[f64; 2]> = wall.iter().rev().copied().collect();
-    let sites = |wall: &[[f64; 2]]| {
+    let targets = |wall: &[[f64; 2]]| {
         segments(&sites_beside(
             &[&floor, wall],
             false,
@@ -172,8 +194,8 @@ fn several_bodies_hold_a_node_at_once() {
             [0.4, 0.1],
         ))
     };
-    assert_eq!(sites(&wall_to_the_left), [0, 1]);
-    assert_eq!(sites(&wall), [0], "the back of a wall does not hold");
+    assert_eq!(targets(&wall_to_the_left), [0, 1]);
+    assert_eq!(targets(&wall), [0], "the back of a wall does not hold");
 }
 
 #[test]
@@ -182,9 +204,9 @@ fn a_mesh_that_starts_a_little_inside_is_held() {
     assert_eq!(beside_square([0.5, 0.9], [0.5, 0.9]), [0; 0], "deep inside");
 }
 
-/// Sites of the lowest node of a triangle that comes down from `from` to `to`, with the slopes of
+/// Targets of the lowest node of a triangle that comes down from `from` to `to`, with the slopes of
 /// its two sides, on the tip of a roof at (0, 0) with slopes of 45 degrees.
-fn tip_to_tip(from: [f64; 2], to: [f64; 2], sides: [[f64; 2]; 2]) -> Vec<Site> {
+fn tip_to_tip(from: [f64; 2], to: [f64; 2], sides: [[f64; 2]; 2]) -> Vec<ContactTarget> {
     let mut start = vec![[1.0, -1.0], [0.0, 0.0], [-1.0, -1.0], from];
     start.extend(sides.map(|side| [from[0] + side[0], from[1] + side[1]]));
     let mut now = start.clone();
@@ -201,9 +223,9 @@ fn tip_to_tip(from: [f64; 2], to: [f64; 2], sides: [[f64; 2]; 2]) -> Vec<Site> {
 fn tips_meet_as_node_against_node() {
     let corner = [[-1.0, 1.0], [1.0, 1.0]];
     for aside in [0.0, 1e-6, -1e-6] {
-        let sites = tip_to_tip([aside, 0.1], [aside, -0.01], corner);
-        let weight = sites[0].vertex.map(|vertex| vertex.weight);
-        assert_eq!(sites.len(), 1);
+        let targets = tip_to_tip([aside, 0.1], [aside, -0.01], corner);
+        let weight = targets[0].corner.map(|corner| corner.weight);
+        assert_eq!(targets.len(), 1);
         assert!((weight.unwrap_or(f64::NAN) - 0.5).abs() < 1e-12, "{aside}");
     }
     let aside = tip_to_tip([1e-3, 0.1], [1e-3, -0.01], corner);
@@ -214,6 +236,6 @@ fn tips_meet_as_node_against_node() {
 fn flush_tips_meet_with_the_normal_of_their_faces() {
     // a corner whose left side lies flush on the right slope
     let flush = [[-0.1, 1.0], [1.0, -1.0]];
-    let sites = tip_to_tip([0.0, 0.0], [0.0, -0.01], flush);
-    assert_eq!(segments(&sites), [0]);
+    let targets = tip_to_tip([0.0, 0.0], [0.0, -0.01], flush);
+    assert_eq!(segments(&targets), [0]);
 }

@@ -51,7 +51,7 @@ struct Solid {
 ///
 /// Sweeps over the elements run in parallel; their results are added up in the order of the
 /// elements, so that they do not depend on the number of threads.
-pub struct Body {
+pub struct Elements {
     solids: Vec<Solid>,
     dofs: usize,
 }
@@ -61,7 +61,7 @@ type ElementVector = [f64; 8];
 /// Square matrix of one element, column by column; 36 or 64 entries are used.
 type ElementMatrix = [f64; 64];
 
-impl Body {
+impl Elements {
     /// Elements of a model.
     pub fn new(model: &Model) -> Self {
         let x = &model.mesh.coordinates;
@@ -83,7 +83,7 @@ impl Body {
                 thickness: t,
             }
         });
-        Body {
+        Elements {
             solids: solids.collect(),
             dofs: model.mesh.dof_count(),
         }
@@ -319,18 +319,19 @@ mod tests {
                 section: 0,
             });
         }
-        let body = Body::new(&model);
+        let elements = Elements::new(&model);
         let wave = |scale: f64, k: f64| -> Vec<f64> {
             (0..10).map(|i| scale * (k * f64::from(i)).sin()).collect()
         };
         let (u, v) = (wave(0.1, 1.3), wave(1.0, 2.1));
         let force = |t: f64| {
             let moved: Vec<f64> = u.iter().zip(&v).map(|(u, v)| u + t * v).collect();
-            body.internal_force(None, &moved)
+            elements
+                .internal_force(None, &moved)
                 .expect("no element inverted")
         };
         let (ahead, behind) = (force(1e-5), force(-1e-5));
-        let product = body.tangent_product(None, &u, &v);
+        let product = elements.tangent_product(None, &u, &v);
         let largest = product.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
         for (i, p) in product.iter().enumerate() {
             let quotient = (ahead[i] - behind[i]) / 2e-5;

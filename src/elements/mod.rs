@@ -12,7 +12,7 @@ mod solid;
 mod tri3;
 mod voigt;
 
-pub use body::{Body, Inverted, Strained};
+pub use body::{Elements, Inverted, Strained};
 pub use kinematics::{Configuration, PointState};
 pub use quad4::quad4;
 pub use recovery::{ElementMeans, element_means};

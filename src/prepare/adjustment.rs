@@ -3,13 +3,10 @@
 
 use super::initial_gaps::{InitialGap, gaps};
 use crate::contact::contact_surfaces;
+use crate::contact::tolerances::{ADJUSTMENT_REACH, COORDINATE_ROUND_OFF};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
 use crate::model::{Adjust, Contact, Element, Model};
 
-/// Gap (in edge lengths) of a node that is on the surface up to round-off.
-const ROUND_OFF: f64 = 1e-9;
-/// Clearance (in edge lengths) up to which the nodes of a set are moved.
-const REACH: f64 = 1.0;
 /// Smallest ratio of an element's area to that before.
 const SMALLEST_AREA: f64 = 0.5;
 
@@ -45,7 +42,9 @@ pub fn adjust(model: &mut Model) -> Vec<Adjusted> {
             continue;
         };
         let mut moved = gaps(surfaces, &model.mesh.coordinates, &bodies);
-        moved.retain(|gap| gap.gap.abs() > ROUND_OFF * gap.edge && is_meant(model, wanted, gap));
+        moved.retain(|gap| {
+            gap.gap.abs() > COORDINATE_ROUND_OFF * gap.edge && is_meant(model, wanted, gap)
+        });
         adjusted.extend(move_nodes(model, i, &moved));
     }
     adjusted
@@ -57,7 +56,7 @@ fn is_meant(model: &Model, wanted: Adjust, gap: &InitialGap) -> bool {
         Adjust::Within(clearance) => gap.gap <= clearance,
         Adjust::Nodes(set) => {
             let members = &model.node_sets[set].members;
-            members.binary_search(&gap.slave).is_ok() && gap.gap <= REACH * gap.edge
+            members.binary_search(&gap.slave).is_ok() && gap.gap <= ADJUSTMENT_REACH * gap.edge
         }
     }
 }

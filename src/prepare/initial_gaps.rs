@@ -1,11 +1,9 @@
 //! Initial gaps of a contact by closest-point projection of the slave nodes in the reference
 //! configuration, with branch and bound over the bounding circles of the segments.
 
+use crate::contact::tolerances::PROJECTION_BEYOND_ENDS;
 use crate::contact::{Circle, CircleTree, ContactSurfaces, Projection, contact_surfaces, project};
 use crate::model::Model;
-
-/// How far beyond its ends a segment still takes a projection (in its lengths).
-const ROUND_OFF: f64 = 1e-6;
 
 /// Gap of a slave node to the segment it faces in the reference configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,7 +45,7 @@ pub(crate) fn gaps(contact: &ContactSurfaces, x: &[[f64; 2]], bodies: &[usize]) 
 fn circle(a: [f64; 2], b: [f64; 2]) -> Circle {
     Circle {
         centre: [0, 1].map(|i| a[i] + (b[i] - a[i]) / 2.0),
-        radius: (b[0] - a[0]).hypot(b[1] - a[1]) * (0.5 + 2.0 * ROUND_OFF),
+        radius: (b[0] - a[0]).hypot(b[1] - a[1]) * (0.5 + 2.0 * PROJECTION_BEYOND_ENDS),
     }
 }
 
@@ -94,12 +92,12 @@ impl Start<'_> {
     /// Distance from a segment that the node projects into.
     fn over(&self, slave: usize, i: usize) -> Option<(f64, usize)> {
         let p = self.faced(slave, i)?;
-        let is_over = (-ROUND_OFF..=1.0 + ROUND_OFF).contains(&p.xi);
+        let is_over = (-PROJECTION_BEYOND_ENDS..=1.0 + PROJECTION_BEYOND_ENDS).contains(&p.xi);
         is_over.then_some((p.gap.abs(), i))
     }
 
     /// Distance from the end of segment `i` where the node lies between the normals of `i` and the
-    /// next; of the two the one with the larger gap outside a convex vertex and with the smaller
+    /// next; of the two the one with the larger gap outside a convex corner and with the smaller
     /// gap inside a concave one.
     fn in_wedge(&self, slave: usize, i: usize) -> Option<(f64, usize)> {
         let j = self.contact.next[i]?;

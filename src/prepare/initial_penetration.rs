@@ -3,14 +3,10 @@
 
 use super::initial_gaps::{InitialGap, initial_gaps};
 use crate::contact::project;
+use crate::contact::tolerances::{COORDINATE_ROUND_OFF, PENETRATION_FAULT};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
 use crate::model::{ALL_EXTERIOR, Contact, Model, SurfaceKind};
 use std::collections::{HashMap, HashSet};
-
-/// Penetration (in edge lengths) that is a fault of the mesh rather than of its digits.
-const FAULT: f64 = 1e-3;
-/// Penetration (in edge lengths) that is round-off of the coordinates.
-const ROUND_OFF: f64 = 1e-9;
 
 /// Reports slave nodes that start inside the master body: deep ones as errors, shallow ones, which
 /// the first increment pushes out, as warnings. Bodies that lie on the same side of a common face
@@ -26,7 +22,7 @@ pub fn report_penetrations(model: &Model, d: &mut Diagnostics) {
         let depth = |gap: &InitialGap| -gap.gap / gap.edge;
         let inside: Vec<InitialGap> = gaps
             .into_iter()
-            .filter(|gap| depth(gap) > ROUND_OFF)
+            .filter(|gap| depth(gap) > COORDINATE_ROUND_OFF)
             .collect();
         let deepest = inside.iter().max_by(|a, b| depth(a).total_cmp(&depth(b)));
         if let Some(deepest) = deepest {
@@ -72,7 +68,7 @@ fn common_face(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Option<
     let x = &model.mesh.coordinates;
     let touching: HashMap<usize, [usize; 2]> = gaps
         .iter()
-        .filter(|gap| gap.gap.abs() <= ROUND_OFF * gap.edge)
+        .filter(|gap| gap.gap.abs() <= COORDINATE_ROUND_OFF * gap.edge)
         .map(|gap| (gap.slave, gap.segment))
         .collect();
     let coincides = |&[a, b]: &[usize; 2]| {
@@ -81,7 +77,8 @@ fn common_face(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Option<
         let faced = [a, b].into_iter().filter_map(|node| touching.get(&node));
         faced.map(|&[p, q]| project(middle, x[p], x[q])).any(|at| {
             let alike = at.normal[0] * own.normal[0] + at.normal[1] * own.normal[1];
-            let is_on = at.gap.abs() <= ROUND_OFF * at.length && (0.0..=1.0).contains(&at.xi);
+            let is_on =
+                at.gap.abs() <= COORDINATE_ROUND_OFF * at.length && (0.0..=1.0).contains(&at.xi);
             is_on && alike > 0.0
         })
     };
@@ -119,7 +116,7 @@ fn diagnostic(model: &Model, contact: &Contact, deepest: &InitialGap, count: usi
         -deepest.gap / deepest.edge,
     );
     let code = Code::InitialPenetration;
-    if -deepest.gap > FAULT * deepest.edge {
+    if -deepest.gap > PENETRATION_FAULT * deepest.edge {
         Diagnostic::error(code, contact.span, message).help(remedy(model, contact))
     } else {
         Diagnostic::warning(code, contact.span, message).help("the first increment pushes them out")

@@ -2,7 +2,7 @@
 
 use super::context::Context;
 use super::material::Properties;
-use super::mesh::{Grid, Surfaces};
+use super::mesh::{MeshIndex, Surfaces};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Contact, Element, Mesh, SurfaceKind};
 use std::collections::HashMap;
@@ -11,10 +11,15 @@ use std::collections::HashMap;
 const FLAT: f64 = 1e-10;
 
 /// Reports elements that are clockwise, degenerate, not convex or there twice.
-pub(super) fn mesh(grid: &Grid, cx: &mut Context) {
+pub(super) fn mesh(mesh_index: &MeshIndex, cx: &mut Context) {
     let mut known: HashMap<Vec<usize>, u64> = HashMap::new();
-    for (element, &span) in grid.mesh.elements.iter().zip(&grid.element_spans) {
-        shape(element, &grid.mesh, span, cx);
+    for (element, &span) in mesh_index
+        .mesh
+        .elements
+        .iter()
+        .zip(&mesh_index.element_spans)
+    {
+        shape(element, &mesh_index.mesh, span, cx);
         let mut nodes = element.cell.nodes().to_vec();
         nodes.sort_unstable();
         if let Some(first) = known.insert(nodes, element.label) {
@@ -75,7 +80,7 @@ fn shape(element: &Element, mesh: &Mesh, span: Span, cx: &mut Context) {
 
 /// Reports materials and elements whose wave speed, area, stiffness or mass overflows or vanishes:
 /// nothing can be computed with them.
-pub(super) fn magnitudes(grid: &Grid, properties: &Properties, cx: &mut Context) {
+pub(super) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &mut Context) {
     if cx.d.has_errors() {
         return;
     }
@@ -88,14 +93,14 @@ pub(super) fn magnitudes(grid: &Grid, properties: &Properties, cx: &mut Context)
         }
     }
     let mut total = 0.0;
-    let places = grid.element_spans.iter().zip(&properties.section_of);
-    for (element, (&span, section)) in grid.mesh.elements.iter().zip(places) {
+    let places = mesh_index.element_spans.iter().zip(&properties.section_of);
+    for (element, (&span, section)) in mesh_index.mesh.elements.iter().zip(places) {
         let section = section.and_then(|s| properties.sections.get(s));
         let material = section.and_then(|s| properties.materials.get(s.material));
         let (Some(section), Some(material)) = (section, material) else {
             continue;
         };
-        let area = area(element, &grid.mesh);
+        let area = area(element, &mesh_index.mesh);
         let mass = material.density * section.thickness * area;
         let stiffness = material.young * section.thickness;
         total += mass;

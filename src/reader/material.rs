@@ -1,7 +1,7 @@
 //! `*MATERIAL` with its constants, and `*SOLID SECTION`.
 
 use super::context::Context;
-use super::mesh::{Block, Grid, Outline, Sets};
+use super::mesh::{Block, MeshIndex, Outline, Sets};
 use super::names::Names;
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic, Span};
@@ -51,7 +51,12 @@ impl<T> Constant<T> {
 }
 
 /// Reads materials and sections.
-pub(super) fn read(outline: &Outline, grid: &Grid, sets: &Sets, cx: &mut Context) -> Properties {
+pub(super) fn read(
+    outline: &Outline,
+    mesh_index: &MeshIndex,
+    sets: &Sets,
+    cx: &mut Context,
+) -> Properties {
     let mut names = Names::new("material");
     let mut drafts = Vec::new();
     for block in outline.blocks("MATERIAL") {
@@ -63,7 +68,7 @@ pub(super) fn read(outline: &Outline, grid: &Grid, sets: &Sets, cx: &mut Context
     let mut properties = Properties {
         materials: Vec::new(),
         sections: Vec::new(),
-        section_of: vec![None; grid.mesh.elements.len()],
+        section_of: vec![None; mesh_index.mesh.elements.len()],
         material_spans: drafts.iter().map(|draft| draft.span).collect(),
     };
     let poisson_spans: Vec<Span> = drafts.iter().map(|draft| draft.poisson_span).collect();
@@ -74,15 +79,15 @@ pub(super) fn read(outline: &Outline, grid: &Grid, sets: &Sets, cx: &mut Context
         if let Some(used) = section.as_ref().and_then(|s| used.get_mut(s.material)) {
             *used = true;
         }
-        complete &= properties.assign(section, card, grid, sets, cx);
+        complete &= properties.assign(section, card, mesh_index, sets, cx);
     }
-    properties.report_without_section(complete, grid, cx);
+    properties.report_without_section(complete, mesh_index, cx);
     report_incomplete(&drafts, &used, cx);
     properties.materials = drafts
         .into_iter()
         .map(|draft| material(draft, cx))
         .collect();
-    properties.report_locking(grid, &poisson_spans, cx);
+    properties.report_locking(mesh_index, &poisson_spans, cx);
     properties
 }
 
@@ -244,7 +249,7 @@ impl Properties {
         &mut self,
         section: Option<Section>,
         card: &Card,
-        grid: &Grid,
+        mesh_index: &MeshIndex,
         sets: &Sets,
         cx: &mut Context,
     ) -> bool {
@@ -265,7 +270,7 @@ impl Properties {
                 None => {}
             }
         }
-        if let Some(element) = taken.first().and_then(|&e| grid.mesh.elements.get(e)) {
+        if let Some(element) = taken.first().and_then(|&e| mesh_index.mesh.elements.get(e)) {
             let message = match taken.len() {
                 1 => format!("element {} has a section already", element.label),
                 n => format!(
@@ -279,7 +284,7 @@ impl Properties {
     }
 
     /// Reports elements without section, unless a section could not be read.
-    fn report_without_section(&self, complete: bool, grid: &Grid, cx: &mut Context) {
+    fn report_without_section(&self, complete: bool, mesh_index: &MeshIndex, cx: &mut Context) {
         let bare = || {
             self.section_of
                 .iter()
@@ -290,8 +295,8 @@ impl Properties {
         let Some((first, _)) = bare().next().filter(|_| is_cause) else {
             return;
         };
-        let element = grid.mesh.elements.get(first);
-        let span = grid.element_spans.get(first);
+        let element = mesh_index.mesh.elements.get(first);
+        let span = mesh_index.element_spans.get(first);
         if let (Some(element), Some(&span), false) = (element, span, cx.may_lack_cards()) {
             let message = match bare().count() {
                 1 => format!("element {} has no section", element.label),
@@ -307,9 +312,9 @@ impl Properties {
 
     /// Warns about nearly incompressible materials in plane strain, at their Poisson's ratios; in
     /// plane stress the thickness gives way and nothing locks.
-    fn report_locking(&self, grid: &Grid, poisson_spans: &[Span], cx: &mut Context) {
+    fn report_locking(&self, mesh_index: &MeshIndex, poisson_spans: &[Span], cx: &mut Context) {
         let mut locks = vec![false; self.materials.len()];
-        for (element, section) in grid.mesh.elements.iter().zip(&self.section_of) {
+        for (element, section) in mesh_index.mesh.elements.iter().zip(&self.section_of) {
             let section = section.and_then(|s| self.sections.get(s));
             let locks = section.and_then(|s| locks.get_mut(s.material));
             if let (Plane::Strain, Some(locks)) = (element.plane, locks) {

@@ -44,29 +44,29 @@ pub fn build(deck: &Deck, d: &mut Diagnostics) -> Option<Model> {
 /// Reads everything; what has an error is missing in the result.
 fn read(cx: &mut Context) -> Model {
     let outline = Outline::new(cx);
-    let mut grid = nodes_elements::read(&outline, cx);
-    check::mesh(&grid, cx);
-    let sets = sets::read(&outline, &grid, cx);
-    let mut surfaces = surface::read(&outline, &grid, &sets, cx);
-    grid.add_points(&surfaces.rigid_points);
-    let obstacles = rigid_surface::read(&outline, &grid, &sets, &surfaces, cx);
-    let properties = material::read(&outline, &grid, &sets, cx);
-    check::magnitudes(&grid, &properties, cx);
-    let (interactions, contacts) = pairs::read(&outline, &grid, &sets, &mut surfaces, cx);
+    let mut mesh_index = nodes_elements::read(&outline, cx);
+    check::mesh(&mesh_index, cx);
+    let sets = sets::read(&outline, &mesh_index, cx);
+    let mut surfaces = surface::read(&outline, &mesh_index, &sets, cx);
+    mesh_index.add_points(&surfaces.rigid_points);
+    let rigid_surfaces = rigid_surface::read(&outline, &mesh_index, &sets, &surfaces, cx);
+    let properties = material::read(&outline, &mesh_index, &sets, cx);
+    check::magnitudes(&mesh_index, &properties, cx);
+    let (interactions, contacts) = pairs::read(&outline, &mesh_index, &sets, &mut surfaces, cx);
     check::thickness(&contacts, &surfaces, &properties, cx);
     let amplitudes = amplitude::read(cx);
     let targets = Targets {
-        grid: &grid,
+        mesh_index: &mesh_index,
         sets: &sets,
         amplitudes: &amplitudes,
-        obstacles: &obstacles,
+        rigid_surfaces: &rigid_surfaces,
     };
-    let guide = check::crossing_time(&grid.mesh, &properties);
+    let guide = check::crossing_time(&mesh_index.mesh, &properties);
     let steps = step::read(&outline, targets, &surfaces, guide, cx);
     let initial_velocity = boundary::initial_velocity(&outline, targets, &steps.at_start, cx);
     Model {
         title: title(&outline),
-        mesh: with_sections(grid.mesh, &properties.section_of),
+        mesh: with_sections(mesh_index.mesh, &properties.section_of),
         node_sets: sets.nodes,
         element_sets: sets.elements,
         surfaces: surfaces.all,
@@ -78,7 +78,7 @@ fn read(cx: &mut Context) -> Model {
         initial_velocity,
         steps: steps.all,
         history_sets: steps.history,
-        rigid_bodies: rigid_surface::bodies(&obstacles),
+        rigid_bodies: rigid_surface::bodies(&rigid_surfaces),
     }
 }
 

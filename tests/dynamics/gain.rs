@@ -1,4 +1,4 @@
-//! Contact puts no energy in where a node slides over a vertex that turns hollow.
+//! Contact puts no energy in where a node slides over a corner that turns concave.
 //!
 //! ```text
 //!          /\

@@ -1,7 +1,7 @@
 //! Patch test: a distorted patch whose boundary is displaced affinely deforms affinely.
 
 use nalgebra::{DMatrix, DVector};
-use stickslip::elements::{Body, element_means};
+use stickslip::elements::{Elements, element_means};
 use stickslip::model::{Cell, Element, Model, Plane};
 
 use crate::blocks::model;
@@ -60,7 +60,7 @@ fn affine(model: &Model) -> Vec<f64> {
 }
 
 /// Static displacements of the inner nodes 4 to 7 for given boundary displacements, by Newton.
-fn solve_inner(body: &Body, mut u: Vec<f64>) -> Vec<f64> {
+fn solve_inner(body: &Elements, mut u: Vec<f64>) -> Vec<f64> {
     let inner = 8..16;
     for _ in 0..12 {
         let mut k = DMatrix::zeros(u.len(), u.len());
@@ -93,7 +93,7 @@ fn solve_inner(body: &Body, mut u: Vec<f64>) -> Vec<f64> {
 fn an_affine_boundary_deforms_a_distorted_patch_affinely() {
     for triangles in [false, true] {
         let model = patch(triangles);
-        let body = Body::new(&model);
+        let body = Elements::new(&model);
         let exact = affine(&model);
         let mut start = exact.clone();
         start[8..].fill(0.0);
@@ -118,7 +118,7 @@ fn an_affine_boundary_deforms_a_distorted_patch_affinely() {
 #[test]
 fn the_mass_adds_up_to_that_of_the_patch() {
     for triangles in [false, true] {
-        let body = Body::new(&patch(triangles));
+        let body = Elements::new(&patch(triangles));
         let total: f64 = (0..body.len())
             .map(|e| body.mass(e).iter().sum::<f64>())
             .sum();

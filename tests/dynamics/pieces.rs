@@ -58,15 +58,15 @@ fn slide(
 ) -> (Keep, RunSummary) {
     let mut model = model(1e4, 0.2, 1.0);
     let plate = add_block(&mut model, [0.0, 0.0], [2.0, 0.5], (2, 1), 0.0);
-    let vertex = plate.node(1, 1);
-    model.mesh.coordinates[vertex][1] -= bend / 2.0;
+    let corner = plate.node(1, 1);
+    model.mesh.coordinates[corner][1] -= bend / 2.0;
     let start = [0.95, 0.5 - 0.95 * bend / 2.0 - depth];
     let block = add_block(&mut model, start, [0.5, 0.5], (1, 1), FRAC_PI_4);
     throw(&mut model, &block, velocity, 0.0, [0.0; 2]);
     let lower = [block.faces(3), block.faces(0)].concat();
     add_contact(&mut model, lower, plate.faces(2), 0.0);
     let dofs = plate.nodes().flat_map(|n| [2 * n, 2 * n + 1]);
-    let support = |dof: usize| match dof == 2 * vertex + 1 {
+    let support = |dof: usize| match dof == 2 * corner + 1 {
         true => Support {
             dof,
             motion: SupportMotion::Ramp {

@@ -77,7 +77,7 @@ impl Compliance {
     /// tangential.
     pub(crate) fn between(&self, p: &Pair, q: &Pair) -> [[f64; 2]; 2] {
         let mut product = [[0.0; 2]; 2];
-        let bodies = |pair: &Pair| pair.at.nodes.map(|node| self.bodies[node]);
+        let bodies = |pair: &Pair| pair.target.nodes.map(|node| self.bodies[node]);
         let (of_p, of_q) = (bodies(p), bodies(q));
         if !of_p.iter().any(|body| of_q.contains(body)) {
             return product;

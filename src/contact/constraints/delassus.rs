@@ -37,7 +37,7 @@ pub fn frictional_lcp(
         q,
         gap: DVector::from_vec(normal),
         slip: DVector::from_vec(tangential),
-        mu: DVector::from_iterator(n, pairs.iter().map(|pair| pair.at.friction)),
+        mu: DVector::from_iterator(n, pairs.iter().map(|pair| pair.target.friction)),
     }
 }
 

@@ -2,7 +2,7 @@
 //! docs/theory.md) or as discrete gradients (section 7).
 
 use crate::contact::geometry::{position, project};
-use crate::contact::targets::PairSite;
+use crate::contact::targets::PairTarget;
 
 /// How the rows Bn and Bt of a pair are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,12 +14,12 @@ pub enum RowForm {
     DiscreteGradient,
 }
 
-/// A slave node with its master segment or vertex, linearised at the current iterate.
+/// A slave node with its master segment or corner, linearised at the current iterate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
     /// Its place.
-    pub at: PairSite,
-    /// Length of the segment, at a vertex that before it.
+    pub target: PairTarget,
+    /// Length of the segment, at a corner that before it.
     pub length: f64,
     /// Gap g of the iterate (length).
     pub gap: f64,
@@ -34,9 +34,9 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// The pair `at` between the displacements `u0` of the start and `u` of the iterate.
-    pub fn new(at: PairSite, form: RowForm, x: &[[f64; 2]], u0: &[f64], u: &[f64]) -> Self {
-        let [s, a, b, c] = at.nodes;
+    /// The pair at `target` between the displacements `u0` of the start and `u` of the iterate.
+    pub fn new(target: PairTarget, form: RowForm, x: &[[f64; 2]], u0: &[f64], u: &[f64]) -> Self {
+        let [s, a, b, c] = target.nodes;
         let face = |nodes: [usize; 3]| {
             let end = nodes.map(|n| position(x, u, n));
             let (normal, tangent) = match form {
@@ -49,26 +49,26 @@ impl Pair {
         };
         let (p, normal, tangent) = face([s, a, b]);
         let length = p.length;
-        let (gap, normal, tangent) = match at.site.vertex {
+        let (gap, normal, tangent) = match target.target.corner {
             None => (p.gap, wide(normal), wide(tangent)),
             // g, Bn, Bt of both segments with their weights, so that the normal has the length 1
-            Some(vertex) => {
+            Some(corner) => {
                 let (q, next_normal, next_tangent) = face([s, b, c]);
-                let n = [0, 1].map(|i| vertex.blend(p.normal[i], q.normal[i]));
+                let n = [0, 1].map(|i| corner.blend(p.normal[i], q.normal[i]));
                 let size = n[0].hypot(n[1]);
                 let blend = |row: [f64; 6], next: [f64; 6]| {
                     let (row, next) = (wide(row), beyond(next));
-                    std::array::from_fn(|k| vertex.blend(row[k], next[k]) / size)
+                    std::array::from_fn(|k| corner.blend(row[k], next[k]) / size)
                 };
                 (
-                    vertex.blend(p.gap, q.gap) / size,
+                    corner.blend(p.gap, q.gap) / size,
                     blend(normal, next_normal),
                     blend(tangent, next_tangent),
                 )
             }
         };
         let mut pair = Pair {
-            at,
+            target,
             length,
             gap,
             start_gap: gap,
@@ -84,7 +84,7 @@ impl Pair {
 
     /// Dofs of s, a, b and c.
     pub fn dofs(&self) -> [usize; 8] {
-        std::array::from_fn(|k| 2 * self.at.nodes[k / 2] + k % 2)
+        std::array::from_fn(|k| 2 * self.target.nodes[k / 2] + k % 2)
     }
 
     /// Bn v for a vector over all dofs.
@@ -174,18 +174,18 @@ fn nodal(a: [f64; 2], e: [f64; 2]) -> [f64; 6] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::targets::Site;
-    use crate::contact::targets::Vertex;
+    use crate::contact::targets::ContactTarget;
+    use crate::contact::targets::Corner;
 
     const X: [[f64; 2]; 3] = [[0.7, 0.4], [2.0, 0.1], [-0.5, -0.2]];
     const U0: [f64; 6] = [0.1, -0.05, 0.02, 0.07, -0.03, 0.01];
     const U1: [f64; 6] = [-0.4, -0.35, 0.3, 0.2, 0.25, -0.3];
 
-    const SITE: PairSite = PairSite {
-        slot: 0,
-        site: Site {
+    const SITE: PairTarget = PairTarget {
+        slave_index: 0,
+        target: ContactTarget {
             segment: 0,
-            vertex: None,
+            corner: None,
         },
         nodes: [0, 1, 2, 2],
         friction: 0.3,
@@ -256,7 +256,7 @@ mod tests {
     fn pair_at_vertex(form: RowForm, u: &[f64]) -> Pair {
         let mut at = SITE;
         at.nodes = [0, 1, 2, 3];
-        at.site.vertex = Some(Vertex {
+        at.target.corner = Some(Corner {
             next: 1,
             weight: 0.3,
         });

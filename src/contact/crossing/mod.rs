@@ -6,5 +6,5 @@ mod penetration_check_tests;
 mod quartic;
 mod segment_crossing;
 
-pub use penetration_check::{Passage, Touch, find_passage};
+pub use penetration_check::{NodeContact, Penetration, find_penetration};
 pub use segment_crossing::{Crossing, Direction, Motion, crossings, line_crossings};

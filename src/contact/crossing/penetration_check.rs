@@ -1,22 +1,15 @@
 //! Tunnelling check of a converged increment: slave nodes that pass into or through a body on
-//! their straight paths from U0 to U1. Section 10 of docs/theory.md, Passage.
+//! their straight paths from U0 to U1. Section 10 of docs/theory.md, Penetration.
 
 use super::segment_crossing::{Crossing, Direction, Motion, crossings};
 use crate::contact::geometry::{ContactSurfaces, Projection, position, project};
 use crate::contact::search::Search;
+use crate::contact::tolerances::{CORNER_CLIP_DEPTH, DEPTH_ROUND_OFF, SEGMENT_END};
 use crate::linear::largest;
-
-/// Depth (in segment lengths) that is round-off.
-const ROUND_OFF: f64 = 1e-9;
-/// Depth (in segment lengths) to which a free node may cut a corner on its way. The halves of an
-/// increment need not hit upon a node inside when it is less.
-const CLIP: f64 = 0.01;
-/// Distance (in segment lengths) from the end of a segment that is no distance.
-const VERTEX: f64 = 1e-6;
 
 /// Contact of a slave node in an increment.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Touch {
+pub struct NodeContact {
     /// Whether it carried a force before.
     pub before: bool,
     /// Segments at which it carries forces at the end.
@@ -25,7 +18,7 @@ pub struct Touch {
 
 /// A slave node that went into a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Passage {
+pub struct Penetration {
     /// Slave node.
     pub slave: usize,
     /// Ends of the segment it went through.
@@ -33,33 +26,33 @@ pub struct Passage {
 }
 
 /// A slave node that goes into a body on the straight way from the displacements `u0` to `u1`, if
-/// there is one; the search covers the way, `touch` holds the contact of every slot, `unsolved` what the
+/// there is one; the search covers the way, `touch` holds the contact of every slave_index, `unsolved` what the
 /// tolerance of the increment leaves of the way of every node (length): a depth that does not count.
 ///
 /// To go in is allowed for nodes that are held by the segment or come out again in contact: a node
 /// that slides round a corner cuts it, for its way is straight.
-pub fn find_passage(
+pub fn find_penetration(
     search: &Search,
     u0: &[f64],
     u1: &[f64],
-    touch: &[Touch],
+    touch: &[NodeContact],
     unsolved: &[f64],
-) -> Option<Passage> {
+) -> Option<Penetration> {
     let x = search.coordinates();
-    let mut slot = 0;
+    let mut slave_index = 0;
     let mut events = Vec::new();
     for territory in search.territories() {
         let contact = territory.surfaces();
         for (k, &slave) in contact.slaves.iter().enumerate() {
-            let way = Way {
+            let way = NodePath {
                 contact,
                 x,
                 u: [u0, u1],
                 slave,
-                touch: &touch[slot],
+                touch: &touch[slave_index],
                 unsolved,
             };
-            slot += 1;
+            slave_index += 1;
             events.clear();
             for candidate in territory.candidates(k) {
                 let found = crossings(&way.motions(candidate.segment), 1.0);
@@ -68,7 +61,7 @@ pub fn find_passage(
             let ends_inside = || way.ends_inside(territory.candidates(k).map(|c| c.segment));
             if let Some(segment) = way.passage(&mut events).or_else(ends_inside) {
                 let segment = contact.segments[segment];
-                return Some(Passage { slave, segment });
+                return Some(Penetration { slave, segment });
             }
         }
     }
@@ -76,16 +69,16 @@ pub fn find_passage(
 }
 
 /// The way of one slave node.
-struct Way<'a> {
+struct NodePath<'a> {
     contact: &'a ContactSurfaces,
     x: &'a [[f64; 2]],
     u: [&'a [f64]; 2],
     slave: usize,
-    touch: &'a Touch,
+    touch: &'a NodeContact,
     unsolved: &'a [f64],
 }
 
-impl Way<'_> {
+impl NodePath<'_> {
     fn motions(&self, segment: usize) -> [Motion; 3] {
         let [a, b] = self.contact.segments[segment];
         [self.slave, a, b].map(|node| {
@@ -125,7 +118,7 @@ impl Way<'_> {
     }
 
     /// The segment that the node is behind at the end, nearest to it of all and not held by it, although
-    /// the node was outside at the start: it came round a vertex that has become a hollow.
+    /// the node was outside at the start: it came round a corner that has become a concave corner.
     fn ends_inside(&self, segments: impl Iterator<Item = usize> + Clone) -> Option<usize> {
         let is_own = |i: &usize| self.contact.segments[*i].contains(&self.slave);
         let others = segments.filter(|i| !is_own(i));
@@ -175,7 +168,7 @@ impl Way<'_> {
             self.touch.before || self.touch.now.iter().copied().any(is_held)
         };
         self.is_round_off(i, depth, p.length)
-            || (self.are_near(i, j) && (depth <= CLIP * p.length || slides()))
+            || (self.are_near(i, j) && (depth <= CORNER_CLIP_DEPTH * p.length || slides()))
     }
 
     /// Whether a node that enters through a segment and does not leave is not inside for that.
@@ -197,14 +190,14 @@ impl Way<'_> {
     fn is_round_off(&self, i: usize, depth: f64, length: f64) -> bool {
         let [a, b] = self.contact.segments[i];
         let unsolved = [self.slave, a, b].map(|node| self.unsolved[node]);
-        depth <= largest(&unsolved) + ROUND_OFF * length
+        depth <= largest(&unsolved) + DEPTH_ROUND_OFF * length
     }
 
-    /// Whether the node has met a segment at its very end and is outside the vertex there: behind its
+    /// Whether the node has met a segment at its very end and is outside the corner there: behind its
     /// line, but before that of the neighbour.
     fn is_beside(&self, i: usize, xi: f64, p: &Projection) -> bool {
         let is_end_b = xi > 0.5;
-        if xi.min(1.0 - xi) > VERTEX {
+        if xi.min(1.0 - xi) > SEGMENT_END {
             return false;
         }
         let neighbour = if is_end_b {
@@ -267,7 +260,7 @@ impl Way<'_> {
     }
 }
 
-/// Whether the way along one segment turns left into another: round a convex vertex.
+/// Whether the way along one segment turns left into another: round a convex corner.
 fn turns_left(first: &Projection, second: &Projection) -> bool {
     let [e, f] = [first.tangent, second.tangent];
     e[0] * f[1] - e[1] * f[0] > 0.0

@@ -1,6 +1,6 @@
 //! Tests of the tunnelling check: a node at a thin plate, a concave corner, a sinking roof.
 
-use super::penetration_check::{Passage, Touch, find_passage};
+use super::penetration_check::{NodeContact, Penetration, find_penetration};
 use crate::contact::geometry::ContactSurfaces;
 use crate::contact::search::Search;
 
@@ -16,7 +16,7 @@ fn plate(closed: bool) -> (ContactSurfaces, Vec<[f64; 2]>) {
     (surfaces, x)
 }
 
-fn passes_of(closed: bool, from: [f64; 2], to: [f64; 2], touch: Touch) -> Option<[usize; 2]> {
+fn passes_of(closed: bool, from: [f64; 2], to: [f64; 2], touch: NodeContact) -> Option<[usize; 2]> {
     let (surfaces, mut x) = plate(closed);
     x[0] = from;
     let u0 = vec![0.0; 2 * x.len()];
@@ -25,14 +25,15 @@ fn passes_of(closed: bool, from: [f64; 2], to: [f64; 2], touch: Touch) -> Option
     let contacts = [surfaces];
     let mut search = Search::new(&contacts, &x);
     search.cover_way(&u0, &u1);
-    find_passage(&search, &u0, &u1, &[touch], &vec![0.0; x.len()]).map(|passage| passage.segment)
+    find_penetration(&search, &u0, &u1, &[touch], &vec![0.0; x.len()])
+        .map(|passage| passage.segment)
 }
 
-fn passes(from: [f64; 2], to: [f64; 2], touch: Touch) -> Option<[usize; 2]> {
+fn passes(from: [f64; 2], to: [f64; 2], touch: NodeContact) -> Option<[usize; 2]> {
     passes_of(true, from, to, touch)
 }
 
-const FREE: Touch = Touch {
+const FREE: NodeContact = NodeContact {
     before: false,
     now: Vec::new(),
 };
@@ -40,9 +41,9 @@ const FREE: Touch = Touch {
 const TOP: [usize; 2] = [13, 14];
 const BOTTOM: [usize; 2] = [5, 6];
 
-fn held(before: bool, now: usize) -> Touch {
+fn held(before: bool, now: usize) -> NodeContact {
     let now = vec![now];
-    Touch { before, now }
+    NodeContact { before, now }
 }
 
 #[test]
@@ -72,7 +73,7 @@ fn what_other_bodies_leave_unsolved_is_no_excuse() {
     let passage = |fast: usize| {
         let mut unsolved = vec![0.0; x.len()];
         unsolved[fast] = 0.2;
-        find_passage(&search, &u0, &u1, &[FREE], &unsolved).map(|passage| passage.segment)
+        find_penetration(&search, &u0, &u1, &[FREE], &unsolved).map(|passage| passage.segment)
     };
     // 0.1 deep: a node far away, those of the segment, the node itself
     assert_eq!(passage(1), Some(TOP));
@@ -103,7 +104,7 @@ fn corners_may_be_cut_in_contact() {
     assert_eq!(passes(on_top, on_side, held(true, 8)), None, "slides round");
     assert_eq!(passes(on_side, on_top, held(true, 9)), None);
     let beyond = [8.1, 0.3];
-    let leaves = Touch {
+    let leaves = NodeContact {
         before: true,
         now: Vec::new(),
     };
@@ -119,17 +120,17 @@ fn corners_may_be_cut_in_contact() {
 
 #[test]
 fn a_node_on_a_vertex_may_go_anywhere_outside() {
-    let vertex = [8.0, 0.5 - 1e-16];
-    assert_eq!(passes(vertex, [8.1, 0.4], FREE), None);
-    assert_eq!(passes(vertex, [7.9, 0.6], FREE), None);
-    assert_eq!(passes(vertex, [8.3, 0.6], FREE), None);
-    assert!(passes(vertex, [7.9, 0.3], FREE).is_some());
+    let corner = [8.0, 0.5 - 1e-16];
+    assert_eq!(passes(corner, [8.1, 0.4], FREE), None);
+    assert_eq!(passes(corner, [7.9, 0.6], FREE), None);
+    assert_eq!(passes(corner, [8.3, 0.6], FREE), None);
+    assert!(passes(corner, [7.9, 0.3], FREE).is_some());
 }
 
 #[test]
 fn a_node_may_slide_off_the_end_of_an_open_surface() {
     // Without the left side the top ends at (0, 0.5).
-    let slides = Touch {
+    let slides = NodeContact {
         before: true,
         now: Vec::new(),
     };
@@ -157,9 +158,9 @@ fn a_hollow_corner_holds_a_node_with_both_sides() {
         let contacts = [surfaces.clone()];
         let mut search = Search::new(&contacts, &x);
         search.cover_way(&u0, &u1);
-        find_passage(&search, &u0, &u1, &[held(true, 0)], &[0.0; 4])
+        find_penetration(&search, &u0, &u1, &[held(true, 0)], &[0.0; 4])
     };
-    let through = Passage {
+    let through = Penetration {
         slave: 0,
         segment: [2, 3],
     };
@@ -170,7 +171,7 @@ fn a_hollow_corner_holds_a_node_with_both_sides() {
 
 #[test]
 fn a_node_may_not_end_inside_a_vertex_that_has_become_a_hollow() {
-    // The node touches the roof beside its top, which sinks to a hollow; it ends on the line of the
+    // The node touches the roof beside its top, which sinks to a concave corner; it ends on the line of the
     // first side, behind the second.
     let x = [[0.05, -0.05], [1.0, -1.0], [0.0, 0.0], [-1.0, -0.9]];
     let surfaces = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]], 0.0);
@@ -184,17 +185,17 @@ fn a_node_may_not_end_inside_a_vertex_that_has_become_a_hollow() {
             .flat_map(|(e, x)| [e[0] - x[0], e[1] - x[1]])
             .collect()
     };
-    let touch = [Touch {
+    let touch = [NodeContact {
         before: true,
         now: Vec::new(),
     }];
     let u1 = move_to(end);
     search.cover_way(&u0, &u1);
-    let passage = find_passage(&search, &u0, &u1, &touch, &[0.0; 4]);
+    let passage = find_penetration(&search, &u0, &u1, &touch, &[0.0; 4]);
     assert_eq!(passage.map(|p| p.segment), Some([2, 3]));
-    // in the hollow
+    // in the concave corner
     let above = [[-0.2, -0.2], end[1], end[2], end[3]];
     let u1 = move_to(above);
     search.cover_way(&u0, &u1);
-    assert_eq!(find_passage(&search, &u0, &u1, &touch, &[0.0; 4]), None);
+    assert_eq!(find_penetration(&search, &u0, &u1, &touch, &[0.0; 4]), None);
 }

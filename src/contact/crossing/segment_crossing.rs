@@ -3,11 +3,7 @@
 //! (paper eq. 50 without its frozen normal).
 
 use super::quartic::{Quartic, Zero, Zeros};
-
-/// Round-off of a cross product, relative to the products of the sizes that make it.
-const CROSS: f64 = 32.0 * f64::EPSILON;
-/// How far beyond the ends of a segment (in its lengths) a node still meets it.
-const ENDS: f64 = 1e-9;
+use crate::contact::tolerances::{CROSS_ROUND_OFF, CROSSING_BEYOND_ENDS};
 
 /// Motion of a node: x + v t + a t^2/2.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -74,7 +70,7 @@ pub struct Crossing {
 pub fn crossings(nodes: &[Motion; 3], dt: f64) -> Vec<Crossing> {
     let mut found = line_crossings(nodes, dt);
     found.retain_mut(|crossing| {
-        let is_on = (-ENDS..=1.0 + ENDS).contains(&crossing.xi);
+        let is_on = (-CROSSING_BEYOND_ENDS..=1.0 + CROSSING_BEYOND_ENDS).contains(&crossing.xi);
         crossing.xi = crossing.xi.clamp(0.0, 1.0);
         is_on
     });
@@ -149,7 +145,7 @@ impl Relative {
         }
         Quartic {
             c,
-            tolerance: CROSS * size(&self.r) * size(&self.e),
+            tolerance: CROSS_ROUND_OFF * size(&self.r) * size(&self.e),
         }
     }
 
@@ -157,7 +153,7 @@ impl Relative {
     fn place(&self, t: f64) -> Option<f64> {
         let [r, e] =
             [&self.r, &self.e].map(|c| [0, 1].map(|i| c[0][i] + (c[1][i] + c[2][i] * t) * t));
-        let scale = CROSS * (size(&self.r) + size(&self.e));
+        let scale = CROSS_ROUND_OFF * (size(&self.r) + size(&self.e));
         let (along, square) = (dot(r, e), dot(e, e));
         if square > scale * scale {
             Some(along / square)
@@ -186,11 +182,13 @@ impl Relative {
         times.sort_by(f64::total_cmp);
         let on = |t: f64| {
             let xi = self.place(t)?;
-            (-ENDS..=1.0 + ENDS).contains(&xi).then_some(Crossing {
-                time: t * dt,
-                xi,
-                direction: Direction::Touching,
-            })
+            (-CROSSING_BEYOND_ENDS..=1.0 + CROSSING_BEYOND_ENDS)
+                .contains(&xi)
+                .then_some(Crossing {
+                    time: t * dt,
+                    xi,
+                    direction: Direction::Touching,
+                })
         };
         times.into_iter().find_map(on)
     }

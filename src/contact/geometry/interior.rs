@@ -3,15 +3,11 @@
 //! The line walks from element to element through their common sides, so that the far side of a thin
 //! body is told from a node that another part has pressed in, however thin the body is.
 
+use crate::contact::tolerances::{INSIDE_ROUND_OFF, NEARER_HALF};
 use std::collections::HashMap;
 
 use super::projection::project;
 use crate::model::{Cell, Mesh};
-
-/// How far outside an element (in its side lengths) a line still touches it.
-const ROUND_OFF: f64 = 1e-9;
-/// How far a line follows behind a node, in depths of the node: it lies in the nearer half.
-const HALF: f64 = 2.0;
 
 /// The elements of a mesh with what lies on the left of each of their sides.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -48,7 +44,7 @@ impl Interior {
         node: usize,
         at: impl Fn(usize) -> [f64; 2],
     ) -> bool {
-        self.line(segment, node, HALF, at)
+        self.line(segment, node, NEARER_HALF, at)
             .is_none_or(|line| self.is_foreign(&line, node))
     }
 
@@ -97,7 +93,7 @@ impl Interior {
                     && !line.elements.contains(&next)
                     && parts.iter().all(|(listed, _)| *listed != next)
                     && let Some(part) = self.part(next, from, to, &at)
-                    && part[0] <= end + ROUND_OFF
+                    && part[0] <= end + INSIDE_ROUND_OFF
                 {
                     parts.push((next, part));
                 }
@@ -119,7 +115,7 @@ impl Interior {
             let side = project(from, at(side[0]), at(side[1]));
             // distances outside the side at both ends of the line
             let along = (to[0] - from[0]) * side.normal[0] + (to[1] - from[1]) * side.normal[1];
-            let (outside, most) = (side.gap, ROUND_OFF * side.length);
+            let (outside, most) = (side.gap, INSIDE_ROUND_OFF * side.length);
             if outside > most && outside + along > most {
                 return None;
             }

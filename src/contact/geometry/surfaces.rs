@@ -1,5 +1,6 @@
-//! Contact surfaces as slave nodes and oriented master segments, with their adjacency and corners.
+//! Contact surfaces as slave nodes and oriented master segments, with their adjacency and sharp_corners.
 
+use crate::contact::tolerances::SHARP_TURN_COSINE;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -7,16 +8,13 @@ use super::interior::Interior;
 use super::projection::project;
 use crate::model::{Contact, Model};
 
-/// Cosine of the turn at a corner.
-const CORNER: f64 = 0.5;
-
 /// The two sides of a contact of the model, as nodes and segments.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactSurfaces {
     /// Slave nodes.
     pub slaves: Vec<usize>,
     /// For every slave node the nodes before and after it on its own surface, where it has both.
-    pub beside: Vec<Option<[usize; 2]>>,
+    pub adjacent: Vec<Option<[usize; 2]>>,
     /// Master segments [a, b], the body on the left of the way from a to b.
     pub segments: Vec<[usize; 2]>,
     /// For every segment the one that starts where it ends, if any.
@@ -24,8 +22,8 @@ pub struct ContactSurfaces {
     /// For every segment the one that ends where it starts, if any.
     pub previous: Vec<Option<usize>>,
     /// For every segment whether the body has a corner at its end b from the start: an angle below
-    /// 120 degrees. Where both legs of any other vertex lie on each other, a hollow has closed.
-    pub corners: Vec<bool>,
+    /// 120 degrees. Where both legs of any other corner lie on each other, a concave corner has closed.
+    pub sharp_corners: Vec<bool>,
     /// Coefficient of friction mu.
     pub friction: f64,
     /// The inside of the bodies; without elements all is inside behind a segment.
@@ -51,10 +49,10 @@ impl ContactSurfaces {
         let ending: HashMap<usize, usize> = numbered().map(|(i, &[_, b])| (b, i)).collect();
         let at = |of: &HashMap<usize, usize>, node: usize| of.get(&node).copied();
         ContactSurfaces {
-            beside: slaves.iter().map(beside).collect(),
+            adjacent: slaves.iter().map(beside).collect(),
             next: segments.iter().map(|&[_, b]| at(&starting, b)).collect(),
             previous: segments.iter().map(|&[a, _]| at(&ending, a)).collect(),
-            corners: vec![false; segments.len()],
+            sharp_corners: vec![false; segments.len()],
             slaves,
             segments,
             friction,
@@ -68,20 +66,20 @@ impl ContactSurfaces {
         self
     }
 
-    /// With the corners that the surfaces have at the positions `x`.
-    pub fn with_corners(mut self, x: &[[f64; 2]]) -> Self {
+    /// With the sharp_corners that the surfaces have at the positions `x`.
+    pub fn with_sharp_corners(mut self, x: &[[f64; 2]]) -> Self {
         let tangent = |i: usize| {
             let [a, b] = self.segments[i].map(|node| x[node]);
             project(a, a, b).tangent
         };
-        let is_corner = |i: usize| {
+        let is_sharp = |i: usize| {
             self.next[i].is_some_and(|j| {
                 let (e, f) = (tangent(i), tangent(j));
                 let [sin, cos] = [e[0] * f[1] - e[1] * f[0], e[0] * f[0] + e[1] * f[1]];
-                sin > 0.0 && cos < CORNER
+                sin > 0.0 && cos < SHARP_TURN_COSINE
             })
         };
-        self.corners = (0..self.segments.len()).map(is_corner).collect();
+        self.sharp_corners = (0..self.segments.len()).map(is_sharp).collect();
         self
     }
 }
@@ -102,7 +100,7 @@ pub fn contact_surfaces(model: &Model) -> Vec<ContactSurfaces> {
             master.segments(&model.mesh),
             model.friction(contact),
         )
-        .with_corners(&model.mesh.coordinates)
+        .with_sharp_corners(&model.mesh.coordinates)
         .with_interior(Arc::clone(&interior))
     };
     model.contacts.iter().map(of_contact).collect()

@@ -3,14 +3,9 @@
 
 use super::bounding_circles::{Circle, CircleTree};
 use crate::contact::geometry::{ContactSurfaces, position};
-use crate::contact::targets::ROUND_OFF;
-
-/// Distance up to which a node at rest may pair (in mean segment lengths of its contact).
-const REACH: f64 = 2.0;
-/// Margin of an entity at rest (in mean segment lengths): how far it may go before lists are worn.
-const SKIN: f64 = 0.5;
-/// Margin of a moving entity beyond it (in ways per increment).
-const WAYS: f64 = 2.0;
+use crate::contact::tolerances::{
+    PAIRING_REACH, PROJECTION_BEYOND_ENDS, SEARCH_MARGIN, SEARCH_MARGIN_PER_MOTION,
+};
 
 /// A segment that a slave node may pair with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,8 +87,8 @@ impl<'m> Search<'m> {
         &self.territories
     }
 
-    /// Number of slots: of slave nodes of all contacts.
-    pub fn slots(&self) -> usize {
+    /// Number of slave_count: of slave nodes of all contacts.
+    pub fn slave_count(&self) -> usize {
         self.territories
             .iter()
             .map(|t| t.contact.slaves.len())
@@ -137,8 +132,8 @@ impl<'m> Territory<'m> {
         let mean = lengths().sum::<f64>() / contact.segments.len().max(1) as f64;
         Territory {
             contact,
-            reach: REACH * mean,
-            skin: SKIN * mean,
+            reach: PAIRING_REACH * mean,
+            skin: SEARCH_MARGIN * mean,
             slaves: Side::new(contact.slaves.iter().map(|&s| [s, s]).collect()),
             segments: Side::new(contact.segments.clone()),
             candidates: Vec::new(),
@@ -276,12 +271,15 @@ impl Side {
         self.reference
             .extend(self.ends.iter().map(|ends| ends.map(&at)));
         self.margin.clear();
-        self.margin
-            .extend(self.way.iter().map(|way| skin + WAYS * way));
+        self.margin.extend(
+            self.way
+                .iter()
+                .map(|way| skin + SEARCH_MARGIN_PER_MOTION * way),
+        );
         let circle = |([a, b], margin): (&[[f64; 2]; 2], &f64)| Circle {
             centre: [0, 1].map(|i| a[i] + (b[i] - a[i]) / 2.0),
             // a node pairs a little beyond the ends as well
-            radius: (distance(*a, *b) / 2.0 + margin + more) * (1.0 + 4.0 * ROUND_OFF),
+            radius: (distance(*a, *b) / 2.0 + margin + more) * (1.0 + 4.0 * PROJECTION_BEYOND_ENDS),
         };
         self.circles
             .rebuild(self.reference.iter().zip(&self.margin).map(circle));

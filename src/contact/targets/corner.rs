@@ -1,20 +1,19 @@
 //! Node-to-node contact: the common normal of a slave node and a convex corner, from the
 //! intersection of their normal cones. Section 10 of docs/theory.md, Node against node.
 
-/// Angle by which two normal cones may miss each other and still have a normal in common.
-const MISSED: f64 = 0.1;
+use crate::contact::tolerances::CONE_MISS;
 
-/// A convex vertex that a slave node meets: between a segment and the next.
+/// A convex corner that a slave node meets: between a segment and the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Vertex {
-    /// The segment behind the vertex.
+pub struct Corner {
+    /// The segment behind the corner.
     pub next: usize,
-    /// Weight of its normal, between 0 and 1; that of the segment before the vertex is 1 - weight.
+    /// Weight of its normal, between 0 and 1; that of the segment before the corner is 1 - weight.
     pub weight: f64,
 }
 
-impl Vertex {
-    /// The sum of two quantities with the weights of the vertex.
+impl Corner {
+    /// The sum of two quantities with the weights of the corner.
     pub fn blend(&self, before: f64, behind: f64) -> f64 {
         (1.0 - self.weight) * before + self.weight * behind
     }
@@ -22,11 +21,11 @@ impl Vertex {
 
 /// Weight of the second normal in the normal of node against node.
 ///
-/// `normals` are those of the segments before and behind a convex vertex, `own` those before and
-/// behind the slave node on its own surface. A normal that separates the two vertices lies in the
+/// `normals` are those of the segments before and behind a convex corner, `own` those before and
+/// behind the slave node on its own surface. A normal that separates the two corners lies in the
 /// cone between `normals` and in the cone between the opposites of `own`; it is the middle of what
 /// these have in common, if anything: flush blocks meet with the normal of their faces, corners
-/// with that of the bisectors. A vertex that is not convex has none.
+/// with that of the bisectors. A corner that is not convex has none.
 pub fn common_normal(normals: [[f64; 2]; 2], own: [[f64; 2]; 2]) -> Option<f64> {
     let [n, m] = normals;
     let angle =
@@ -39,11 +38,11 @@ pub fn common_normal(normals: [[f64; 2]; 2], own: [[f64; 2]; 2]) -> Option<f64> 
     }
     let from = angle(n, opposite[0]);
     let to = from + angle(opposite[0], opposite[1]);
-    if to < from - MISSED {
-        return None; // the slave node is in a hollow
+    if to < from - CONE_MISS {
+        return None; // the slave node is in a concave corner
     }
     let (low, high) = (from.max(0.0), to.min(width));
-    if low > high + MISSED {
+    if low > high + CONE_MISS {
         return None;
     }
     let middle = ((low + high) / 2.0).clamp(0.0, width);
@@ -90,7 +89,11 @@ mod tests {
     #[test]
     fn corners_that_cannot_separate_have_none() {
         assert_eq!(common_normal([RIGHT, UP], [RIGHT, UP]), None);
-        assert_eq!(common_normal([RIGHT, UP], [DOWN, LEFT]), None, "a hollow");
+        assert_eq!(
+            common_normal([RIGHT, UP], [DOWN, LEFT]),
+            None,
+            "a concave corner"
+        );
         assert_eq!(common_normal([UP, RIGHT], [LEFT, DOWN]), None, "not convex");
         let nowhere = [f64::NAN; 2];
         assert_eq!(common_normal([RIGHT, nowhere], [LEFT, DOWN]), None);

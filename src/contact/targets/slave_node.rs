@@ -1,26 +1,17 @@
 //! Kinematics of a slave node relative to nearby segments, at the start of the increment and at
 //! the iterate: the tests by which its contact targets are selected. Section 10 of docs/theory.md,
-//! Sites.
+//! Targets.
 
 use crate::contact::crossing::{Crossing, Direction, Motion, crossings};
 use crate::contact::geometry::{ContactSurfaces, Projection, project};
-
-/// Gap at the start of an increment (in segment lengths) that is no penetration.
-pub(crate) const TOUCHING: f64 = 1e-9;
-/// Penetration of a mesh at the start of the analysis (in segment lengths) that is pushed out.
-pub(crate) const PENETRATING: f64 = 2e-3;
-/// How near the end of a segment the other side of a hollow is taken into account (in its lengths),
-/// besides the way of the node.
-pub(crate) const NEAR: f64 = 0.1;
-/// Sine of the angle between the legs of a vertex below which a hollow may have closed.
-const CLOSED: f64 = 0.3;
-/// Sine of the angle by which the surface of a node may lean to a segment that it faces.
-const FACING: f64 = 0.5;
+use crate::contact::tolerances::{
+    CLOSED_GAP, CORNER_ZONE, FACING_SINE, FOLDED_CORNER_SINE, INITIAL_DEPTH,
+};
 
 /// A slave node between the start of an increment and an iterate, and where it is relative to the
 /// segments around it.
 #[derive(Clone, Copy)]
-pub struct Look<'a> {
+pub struct SlaveNode<'a> {
     /// Surfaces of the contact.
     pub surfaces: &'a ContactSurfaces,
     /// Positions of all nodes at the start (length).
@@ -31,7 +22,7 @@ pub struct Look<'a> {
     pub slave: usize,
 }
 
-impl Look<'_> {
+impl SlaveNode<'_> {
     /// Whether the straight way of the node goes into the body through the segment.
     pub(crate) fn enters(&self, segment: usize) -> bool {
         let [a, b] = self.surfaces.segments[segment];
@@ -43,33 +34,34 @@ impl Look<'_> {
 
     /// Whether the node is so far in front of a segment that it does not matter what is beside it.
     pub(crate) fn is_far(&self, segment: usize) -> bool {
-        let p = self.place(segment);
-        p.gap > p.length && p.gap > 2.0 * self.way(segment)
+        let p = self.project(segment);
+        p.gap > p.length && p.gap > 2.0 * self.relative_displacement(segment)
     }
 
     /// Whether the node's own surface lies in front of the line of a segment through the node, if the
     /// node has a surface.
     pub(crate) fn is_opposite(&self, segment: usize) -> Option<bool> {
         let node = self.surfaces.slaves[self.slave];
-        let normal = self.place(segment).normal;
-        let is_in_front = |&beside: &usize| {
-            let r = [0, 1].map(|i| self.now[beside][i] - self.now[node][i]);
-            r[0] * normal[0] + r[1] * normal[1] >= -FACING * r[0].hypot(r[1])
+        let normal = self.project(segment).normal;
+        let is_in_front = |&adjacent: &usize| {
+            let r = [0, 1].map(|i| self.now[adjacent][i] - self.now[node][i]);
+            r[0] * normal[0] + r[1] * normal[1] >= -FACING_SINE * r[0].hypot(r[1])
         };
-        let beside = self.surfaces.beside[self.slave]?;
-        Some(beside.iter().all(is_in_front))
+        let adjacent = self.surfaces.adjacent[self.slave]?;
+        Some(adjacent.iter().all(is_in_front))
     }
 
     /// Whether the node was in front of the line of a segment at the start.
     pub(crate) fn was_in_front(&self, segment: usize) -> bool {
-        let p = self.start(segment);
-        p.gap >= -TOUCHING * p.length
+        let p = self.project_at_start(segment);
+        p.gap >= -CLOSED_GAP * p.length
     }
 
     /// Whether the node started a little inside, as a mesh may have it.
     pub(crate) fn was_pushed_in(&self, segment: usize) -> bool {
-        let p = self.start(segment);
-        let is_shallow = p.gap >= -PENETRATING * p.length && (-NEAR..=1.0 + NEAR).contains(&p.xi);
+        let p = self.project_at_start(segment);
+        let is_shallow = p.gap >= -INITIAL_DEPTH * p.length
+            && (-CORNER_ZONE..=1.0 + CORNER_ZONE).contains(&p.xi);
         let (surfaces, start) = (self.surfaces, |node: usize| self.start[node]);
         let node = surfaces.slaves[self.slave];
         is_shallow && (surfaces.interior).takes_in(surfaces.segments[segment], node, start)
@@ -88,25 +80,25 @@ impl Look<'_> {
         self.surfaces.segments[segment].contains(&node)
     }
 
-    /// Distance from the end of a segment within which the other side of a hollow is taken into
+    /// Distance from the end of a segment within which the other side of a concave corner is taken into
     /// account.
-    pub(crate) fn near(&self, segment: usize) -> f64 {
-        NEAR * self.place(segment).length + 2.0 * self.way(segment)
+    pub(crate) fn corner_reach(&self, segment: usize) -> f64 {
+        CORNER_ZONE * self.project(segment).length + 2.0 * self.relative_displacement(segment)
     }
 
     /// How far the node has gone relative to a segment since the start.
-    pub(crate) fn way(&self, segment: usize) -> f64 {
+    pub(crate) fn relative_displacement(&self, segment: usize) -> f64 {
         let [a, b] = self.surfaces.segments[segment];
-        let xi = self.place(segment).xi.clamp(0.0, 1.0);
+        let xi = self.project(segment).xi.clamp(0.0, 1.0);
         let node = self.surfaces.slaves[self.slave];
         let d = |n: usize, i: usize| self.now[n][i] - self.start[n][i];
         let relative = |i: usize| d(node, i) - (1.0 - xi) * d(a, i) - xi * d(b, i);
         (relative(0).powi(2) + relative(1).powi(2)).sqrt()
     }
 
-    /// Sine of the turn to the left from one segment to the next: positive at a convex vertex; 1 or
+    /// Sine of the turn to the left from one segment to the next: positive at a convex corner; 1 or
     /// -1 beyond a right angle.
-    pub(crate) fn turn(&self, i: usize, j: usize) -> f64 {
+    pub(crate) fn corner_sine(&self, i: usize, j: usize) -> f64 {
         let [e, f] = [i, j].map(|i| {
             let [a, b] = self.surfaces.segments[i].map(|n| self.now[n]);
             project(a, a, b).tangent
@@ -114,9 +106,9 @@ impl Look<'_> {
         let [sin, cos] = [e[0] * f[1] - e[1] * f[0], e[0] * f[0] + e[1] * f[1]];
         if cos >= 0.0 {
             sin
-        } else if sin.abs() > CLOSED {
+        } else if sin.abs() > FOLDED_CORNER_SINE {
             sin.signum()
-        } else if self.surfaces.corners[i] {
+        } else if self.surfaces.sharp_corners[i] {
             1.0
         } else {
             -1.0
@@ -124,7 +116,7 @@ impl Look<'_> {
     }
 
     /// The foot xi of the node on a segment in the iterate.
-    pub(crate) fn along(&self, segment: usize) -> f64 {
+    pub(crate) fn xi(&self, segment: usize) -> f64 {
         let [a, b] = self.surfaces.segments[segment].map(|n| self.now[n]);
         let s = self.now[self.surfaces.slaves[self.slave]];
         let (r, e) = ([s[0] - a[0], s[1] - a[1]], [b[0] - a[0], b[1] - a[1]]);
@@ -132,16 +124,16 @@ impl Look<'_> {
     }
 
     /// Place of the node relative to a segment in the iterate.
-    pub(crate) fn place(&self, segment: usize) -> Projection {
-        self.place_at(self.now, segment)
+    pub(crate) fn project(&self, segment: usize) -> Projection {
+        self.project_at(self.now, segment)
     }
 
     /// The same at the start.
-    pub(crate) fn start(&self, segment: usize) -> Projection {
-        self.place_at(self.start, segment)
+    pub(crate) fn project_at_start(&self, segment: usize) -> Projection {
+        self.project_at(self.start, segment)
     }
 
-    fn place_at(&self, at: &[[f64; 2]], segment: usize) -> Projection {
+    fn project_at(&self, at: &[[f64; 2]], segment: usize) -> Projection {
         let [a, b] = self.surfaces.segments[segment];
         project(at[self.surfaces.slaves[self.slave]], at[a], at[b])
     }
@@ -157,17 +149,17 @@ mod tests {
         let was_in_front = |length: f64, depth: f64| {
             // the body lies below, on the left of the way from right to left
             let x = [[length, 0.0], [0.0, 0.0], [0.5 * length, -depth * length]];
-            let look = Look {
+            let node = SlaveNode {
                 surfaces: &surfaces,
                 start: &x,
                 now: &x,
                 slave: 0,
             };
-            look.was_in_front(0)
+            node.was_in_front(0)
         };
         for length in [1e-4, 1e-2, 1.0, 1e2, 1e4] {
-            assert!(was_in_front(length, 0.5 * TOUCHING), "{length:e}");
-            assert!(!was_in_front(length, 2.0 * TOUCHING), "{length:e}");
+            assert!(was_in_front(length, 0.5 * CLOSED_GAP), "{length:e}");
+            assert!(!was_in_front(length, 2.0 * CLOSED_GAP), "{length:e}");
         }
     }
 }

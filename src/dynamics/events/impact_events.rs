@@ -1,28 +1,27 @@
 //! Event-driven integration of impacts: subincrements [t, t + tau] that end at the next impact,
 //! its time being the solution of T(tau) = tau. Section 6 of docs/theory.md, Impacts as events.
 
-use super::impact_time::Root;
+use super::impact_time::ImpactTime;
+use crate::contact::tolerances::IMPACT_GAP;
 use crate::contact::{Crossing, Direction, Projection, Search, crossings};
-use crate::dynamics::increment::{Attempt, Failed, Hold, Solved, Touching};
+use crate::dynamics::increment::{ActiveConstraints, Attempt, ClosedPairs, Failed, Solved};
 use crate::dynamics::ledger::motion;
 use crate::dynamics::results::State;
-use crate::dynamics::step::{Effective, Interval, Meter, Moment, StepProblem};
+use crate::dynamics::step::{EffectiveStiffness, Interval, Meter, StepProblem, TimePoint};
 
-/// Impacts within an increment of the grid, after which nodes land within what is left of it.
+/// Impacts within an increment of the nominal, after which nodes land within what is left of it.
 pub(crate) const MOST_EVENTS: usize = 50;
-/// Part of an increment of the grid within which impacts are taken together; no piece is shorter.
-const GROUP: f64 = 1e-3;
-/// Accuracy of the time of an impact, in increments of the grid.
+/// Part of a nominal increment within which impacts are taken together; no piece is shorter.
+const IMPACT_GROUPING_TIME: f64 = 1e-3;
+/// Accuracy of the time of an impact, in increments of the nominal.
 const ACCURACY: f64 = 1e-10;
-/// Gap (in segment lengths) that is none at an impact.
-const MET: f64 = 1e-12;
 /// How far beyond a piece (in its lengths) its motion tells of impacts.
-const FAR: f64 = 2.0;
+const MOTION_HORIZON: f64 = 2.0;
 /// Attempts to find the time of an impact.
 const TRIALS: usize = 12;
 
 /// A piece of an increment that ends at the next impact, or at the end of the increment.
-pub(crate) struct Piece {
+pub(crate) struct Subincrement {
     pub interval: Interval,
     pub solved: Solved,
     /// Whether an impact ends it.
@@ -30,37 +29,37 @@ pub(crate) struct Piece {
 }
 
 /// A piece that failed, with its times.
-pub(crate) type Broken = Box<(Interval, Failed)>;
+pub(crate) type FailedSubincrement = Box<(Interval, Failed)>;
 
 /// Solves the next piece of an increment.
-pub(crate) struct Pieces<'a, 'm> {
+pub(crate) struct Subincrements<'a, 'm> {
     pub problem: &'a StepProblem<'m>,
-    pub effective: &'a mut Effective,
+    pub effective: &'a mut EffectiveStiffness,
     pub search: &'a mut Search<'m>,
     pub start: &'a State,
     /// The pairs that carried forces up to the start.
-    pub contact: &'a Touching,
+    pub contact: &'a ClosedPairs,
     pub meter: &'a mut Meter,
     /// What is left of the increment.
     pub rest: Interval,
-    /// Length of an increment of the grid.
-    pub grid: f64,
+    /// Length of an increment of the nominal.
+    pub nominal: f64,
     /// Length of the last piece.
     pub last: f64,
 }
 
 /// A node goes into a body.
 #[derive(Clone, Copy)]
-struct Entry {
+struct PredictedImpact {
     /// Time since the start of the piece.
     time: f64,
-    slot: usize,
+    slave_index: usize,
     segment: usize,
     nodes: [usize; 3],
 }
 
 /// Second-order motion of all nodes from the start of a piece.
-struct Flight<'a> {
+struct FreeMotion<'a> {
     v: &'a [f64],
     a: &'a [f64],
     /// End of the piece, if it is the motion of one.
@@ -69,7 +68,7 @@ struct Flight<'a> {
     duration: f64,
 }
 
-impl Flight<'_> {
+impl FreeMotion<'_> {
     /// U0 + t V + t²/2 A at the end.
     fn displacement(&self, u0: &[f64]) -> Vec<f64> {
         let t = self.duration;
@@ -103,7 +102,7 @@ impl Flight<'_> {
     }
 }
 
-impl<'m> Pieces<'_, 'm> {
+impl<'m> Subincrements<'_, 'm> {
     /// The piece up to the earliest impact of a pair that does not touch at the start.
     ///
     /// Its length tau is predicted from the second-order motion of the start (paper eq. 50), with
@@ -115,49 +114,50 @@ impl<'m> Pieces<'_, 'm> {
     ///
     /// then tells when the pairs that stay out meet: at T(tau). The piece ends at the impact when
     /// T(tau) = tau, which secants find; without elastic forces T does not depend on tau.
-    pub fn next(&mut self) -> Result<Piece, Broken> {
-        let (rest, group) = (self.rest.dt, GROUP * self.grid);
+    pub fn next(&mut self) -> Result<Subincrement, FailedSubincrement> {
+        let (rest, group) = (self.rest.dt, IMPACT_GROUPING_TIME * self.nominal);
         self.search.start(&self.start.v, rest);
         self.search.cover(&self.start.u);
-        let mut hold = Hold::new(self.problem, self.search, &self.start.u, self.contact);
-        let mut tau = self.predicted(&mut hold);
-        let mut root = Root::new(rest);
+        let mut active =
+            ActiveConstraints::new(self.problem, self.search, &self.start.u, self.contact);
+        let mut tau = self.predicted(&mut active);
+        let mut root = ImpactTime::new(rest);
         for _ in 0..TRIALS {
-            let solved = self.attempt(tau, Some(&hold))?;
+            let solved = self.attempt(tau, Some(&active))?;
             let a = solved.mean_acceleration(tau);
-            let flight = Flight {
+            let motion = FreeMotion {
                 v: &solved.v0p,
                 a: &a,
                 end: tau,
-                duration: rest.min(FAR * tau),
+                duration: rest.min(MOTION_HORIZON * tau),
             };
-            let entry = self.first_entry(&hold, flight);
+            let entry = self.first_entry(&active, motion);
             let met = match entry {
                 None => rest,
                 Some(entry) if entry.time < group => {
-                    self.join_at_start(&mut hold, entry);
-                    root = Root::new(rest);
+                    self.join_at_start(&mut active, entry);
+                    root = ImpactTime::new(rest);
                     continue;
                 }
                 Some(entry) if entry.time > rest - group => {
                     if tau == rest {
                         // it lands within the piece, at its very end
-                        hold.join(entry.slot);
-                        root = Root::new(rest);
+                        active.join(entry.slave_index);
+                        root = ImpactTime::new(rest);
                         continue;
                     }
                     rest
                 }
                 Some(entry) => {
                     let gap = self.problem.place(&solved.end.u, entry.nodes);
-                    if gap.gap.abs() <= MET * gap.length {
+                    if gap.gap.abs() <= IMPACT_GAP * gap.length {
                         tau
                     } else {
                         entry.time
                     }
                 }
             };
-            if (met - tau).abs() <= ACCURACY * self.grid {
+            if (met - tau).abs() <= ACCURACY * self.nominal {
                 return self.accept(tau, solved);
             }
             tau = root.next(tau, met, solved);
@@ -170,9 +170,9 @@ impl<'m> Pieces<'_, 'm> {
     }
 
     /// All that is left of the increment; nodes land within it.
-    pub fn rest(&mut self) -> Result<Piece, Broken> {
+    pub fn rest(&mut self) -> Result<Subincrement, FailedSubincrement> {
         let solved = self.attempt(self.rest.dt, None)?;
-        Ok(Piece {
+        Ok(Subincrement {
             interval: self.rest,
             solved,
             is_cut: false,
@@ -180,37 +180,41 @@ impl<'m> Pieces<'_, 'm> {
     }
 
     /// Length of the piece by the motion of the start.
-    fn predicted(&mut self, hold: &mut Hold) -> f64 {
-        let (rest, group) = (self.rest.dt, GROUP * self.grid);
+    fn predicted(&mut self, active: &mut ActiveConstraints) -> f64 {
+        let (rest, group) = (self.rest.dt, IMPACT_GROUPING_TIME * self.nominal);
         let start = self.start;
         loop {
-            let flight = Flight {
+            let motion = FreeMotion {
                 v: &start.v,
                 a: &start.a,
                 end: 0.0,
-                duration: rest.min(FAR * self.last),
+                duration: rest.min(MOTION_HORIZON * self.last),
             };
-            match self.first_entry(hold, flight) {
-                Some(entry) if entry.time < group => self.join_at_start(hold, entry),
+            match self.first_entry(active, motion) {
+                Some(entry) if entry.time < group => self.join_at_start(active, entry),
                 Some(entry) if entry.time <= rest - group => return entry.time,
                 _ => return rest,
             }
         }
     }
 
-    fn join_at_start(&self, hold: &mut Hold, entry: Entry) {
+    fn join_at_start(&self, active: &mut ActiveConstraints, entry: PredictedImpact) {
         let p = self.problem.place(&self.start.u, entry.nodes);
-        hold.join_at_start(entry.slot, entry.segment, p.normal);
+        active.join_at_start(entry.slave_index, entry.segment, p.normal);
     }
 
-    /// The first entry of a node into a body that does not hold it.
-    fn first_entry(&mut self, hold: &Hold, flight: Flight) -> Option<Entry> {
+    /// The first entry of a node into a body that does not active it.
+    fn first_entry(
+        &mut self,
+        active: &ActiveConstraints,
+        motion: FreeMotion,
+    ) -> Option<PredictedImpact> {
         let (problem, u0) = (self.problem, &self.start.u);
         let search = &mut *self.search;
         let find = || {
-            search.cover_way(u0, &flight.displacement(u0));
-            let mut first: Option<Entry> = None;
-            let mut slot = 0;
+            search.cover_way(u0, &motion.displacement(u0));
+            let mut first: Option<PredictedImpact> = None;
+            let mut slave_index = 0;
             for territory in search.territories() {
                 let surfaces = territory.surfaces();
                 for (k, &s) in surfaces.slaves.iter().enumerate() {
@@ -219,24 +223,24 @@ impl<'m> Pieces<'_, 'm> {
                         let [a, b] = surfaces.segments[segment];
                         let nodes = [s, a, b];
                         let p = problem.place(u0, nodes);
-                        let is_free = flight.may_meet(&p, nodes)
+                        let is_free = motion.may_meet(&p, nodes)
                             && s != a
                             && s != b
                             && problem.dofs.moves(&nodes)
-                            && !hold.holds(slot, &p);
+                            && !active.holds(slave_index, &p);
                         if is_free
-                            && let Some(time) = flight.entry(problem, u0, nodes)
+                            && let Some(time) = motion.entry(problem, u0, nodes)
                             && first.is_none_or(|first| time < first.time)
                         {
-                            first = Some(Entry {
+                            first = Some(PredictedImpact {
                                 time,
-                                slot,
+                                slave_index,
                                 segment,
                                 nodes,
                             });
                         }
                     }
-                    slot += 1;
+                    slave_index += 1;
                 }
             }
             first
@@ -244,20 +248,24 @@ impl<'m> Pieces<'_, 'm> {
         self.meter.time(|t| &mut t.contact, find)
     }
 
-    fn attempt(&mut self, tau: f64, hold: Option<&Hold>) -> Result<Solved, Broken> {
+    fn attempt(
+        &mut self,
+        tau: f64,
+        active: Option<&ActiveConstraints>,
+    ) -> Result<Solved, FailedSubincrement> {
         let (interval, contact) = (self.interval(tau), self.contact);
-        let attempt = self.attempt_at(interval, hold);
+        let attempt = self.attempt_at(interval, active);
         attempt
             .solve(contact)
             .map_err(|failed| Box::new((interval, failed)))
     }
 
     /// Takes a converged piece, if no node has gone into a body otherwise than by an impact.
-    fn accept(&mut self, tau: f64, solved: Solved) -> Result<Piece, Broken> {
+    fn accept(&mut self, tau: f64, solved: Solved) -> Result<Subincrement, FailedSubincrement> {
         let (interval, contact) = (self.interval(tau), self.contact);
         let mut attempt = self.attempt_at(interval, None);
         match attempt.check_ways(&solved.d, contact, &solved.forces) {
-            Ok(()) => Ok(Piece {
+            Ok(()) => Ok(Subincrement {
                 interval,
                 solved,
                 is_cut: tau < self.rest.dt,
@@ -273,7 +281,11 @@ impl<'m> Pieces<'_, 'm> {
         }
     }
 
-    fn attempt_at<'b>(&'b mut self, interval: Interval, hold: Option<&'b Hold>) -> Attempt<'b, 'm> {
+    fn attempt_at<'b>(
+        &'b mut self,
+        interval: Interval,
+        active: Option<&'b ActiveConstraints>,
+    ) -> Attempt<'b, 'm> {
         Attempt {
             problem: self.problem,
             effective: self.effective,
@@ -281,7 +293,7 @@ impl<'m> Pieces<'_, 'm> {
             start: self.start,
             interval,
             meter: self.meter,
-            hold,
+            active,
         }
     }
 
@@ -290,7 +302,7 @@ impl<'m> Pieces<'_, 'm> {
         let Interval { start, end, dt } = self.rest;
         let end = match tau == dt {
             true => end,
-            false => Moment {
+            false => TimePoint {
                 step: start.step + tau,
                 total: start.total + tau,
                 ..start

@@ -7,7 +7,7 @@ use crate::dynamics::increment::Solved;
 const SLOW: f64 = 0.5;
 
 /// Looks for the length of a piece that ends at the impact.
-pub(crate) struct Root {
+pub(crate) struct ImpactTime {
     /// What is left of the increment.
     rest: f64,
     /// The longest piece tried that ends before an impact.
@@ -18,10 +18,10 @@ pub(crate) struct Root {
     last: Option<(f64, f64)>,
 }
 
-impl Root {
+impl ImpactTime {
     /// Starts with what is left of the increment.
     pub fn new(rest: f64) -> Self {
-        Root {
+        ImpactTime {
             rest,
             before: None,
             after: None,
@@ -64,7 +64,7 @@ mod tests {
 
     /// Number of trials until the root of met(tau) = tau is found, or none.
     fn trials(met: impl Fn(f64) -> f64, rest: f64, first: f64, root: f64) -> Option<usize> {
-        let (mut search, mut tau) = (Root::new(rest), first);
+        let (mut search, mut tau) = (ImpactTime::new(rest), first);
         (0..60).find(|_| {
             let is_found = (tau - root).abs() < 1e-12;
             tau = search.next(tau, met(tau), Solved::default());
@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn the_time_of_an_impact_is_found() {
-        assert_eq!(trials(|_| 0.3, 1.0, 1.0, 0.3), Some(1), "free flight");
+        assert_eq!(trials(|_| 0.3, 1.0, 1.0, 0.3), Some(1), "free motion");
         let elastic = |tau: f64| 0.3 + 0.2 * (tau - 0.3) + 0.1 * (tau - 0.3) * (tau - 0.3);
         assert!(trials(elastic, 1.0, 0.35, 0.3).unwrap() < 12);
         // the piece as a whole seems free, its first part does not
@@ -94,7 +94,7 @@ mod tests {
             }
         };
         for rest in [1.0, 1e-6, 1e6] {
-            let (mut search, mut tau) = (Root::new(rest), rest);
+            let (mut search, mut tau) = (ImpactTime::new(rest), rest);
             for _ in 0..12 {
                 tau = search.next(tau, rest * met(tau / rest), Solved::default());
             }

@@ -1,15 +1,15 @@
 //! Solution of one increment: predictor and corrector passes with contact forces, impulses and the
 //! checks after convergence. Sections 4 to 6 of docs/theory.md (paper eqs 27, 29 and 36 to 49).
 
-use super::active_constraints::Hold;
-use super::closed_pairs::Touching;
+use super::active_constraints::ActiveConstraints;
+use super::closed_pairs::ClosedPairs;
 use super::contact_forces::ContactForces;
 use super::convergence::{Errors, Lengths, Scales, largest_forces};
 use super::impulses::Impulses;
-use crate::contact::{Pair, Pairing, Passage, Search, Touch, find_passage};
+use crate::contact::{NodeContact, Pair, Pairing, Penetration, Search, find_penetration};
 use crate::dynamics::results::{Cause, PassReport, State, Worst};
 use crate::dynamics::step::{
-    Effective, Equilibrium, Interval, Meter, StepProblem, check_finite, difference, sum,
+    EffectiveStiffness, Equilibrium, Interval, Meter, StepProblem, check_finite, difference, sum,
 };
 use crate::linear::{LinearError, larger, largest};
 use crate::model::Factorization;
@@ -17,7 +17,7 @@ use crate::model::Factorization;
 /// Passes that one factorisation serves within an increment.
 const KEPT_PASSES: usize = 8;
 /// Relative difference of lengths between which pieces of an increment share the factors of K*.
-const NEAR: f64 = 1e-3;
+const SAME_LENGTH: f64 = 1e-3;
 /// Passes after which the pairs keep their segments.
 const SEARCHING_PASSES: usize = 4;
 
@@ -61,13 +61,13 @@ pub(crate) struct Failed {
 /// An attempt at one increment.
 pub(crate) struct Attempt<'a, 'm> {
     pub problem: &'a StepProblem<'m>,
-    pub effective: &'a mut Effective,
+    pub effective: &'a mut EffectiveStiffness,
     pub search: &'a mut Search<'m>,
     pub start: &'a State,
     pub interval: Interval,
     pub meter: &'a mut Meter,
     /// The pairs that are constraints; without it all, and nodes land within the increment.
-    pub hold: Option<&'a Hold>,
+    pub active: Option<&'a ActiveConstraints>,
 }
 
 /// What an attempt leaves behind even when it fails.
@@ -99,8 +99,8 @@ impl Trace {
 }
 
 impl<'m> Attempt<'_, 'm> {
-    /// Solves the increment; `contact` holds the states of the last one, per slot.
-    pub fn solve(mut self, contact: &Touching) -> Result<Solved, Failed> {
+    /// Solves the increment; `contact` holds the states of the last one, per slave_index.
+    pub fn solve(mut self, contact: &ClosedPairs) -> Result<Solved, Failed> {
         let mut trace = Trace::default();
         let solved = self.passes(contact, &mut trace);
         match solved {
@@ -117,7 +117,7 @@ impl<'m> Attempt<'_, 'm> {
     }
 
     /// Predictor and correctors, which share one form (paper eqs 27, 29 and 36 to 49).
-    fn passes(&mut self, contact: &Touching, trace: &mut Trace) -> Result<Solved, Cause> {
+    fn passes(&mut self, contact: &ClosedPairs, trace: &mut Trace) -> Result<Solved, Cause> {
         let problem = self.problem;
         let (u0, dt) = (&self.start.u, self.interval.dt);
 
@@ -125,7 +125,7 @@ impl<'m> Attempt<'_, 'm> {
         let mut d = vec![0.0; u0.len()];
         let mut prescribed = problem.support_increment(u0, self.interval);
         let mut state = contact.clone();
-        let touching = self.hold.map_or(Vec::new(), Hold::keys);
+        let touching = self.active.map_or(Vec::new(), ActiveConstraints::keys);
         let mut impulses = Impulses::new(contact, touching);
         let mut pairing = Pairing::default();
         self.search.start(&self.start.v, dt);
@@ -140,8 +140,8 @@ impl<'m> Attempt<'_, 'm> {
                 |t| &mut t.contact,
                 || problem.pairs(search, u0, &u, &pairing),
             );
-            let [pairs, left_out] = match self.hold {
-                Some(hold) => hold.split(problem, u0, pairs),
+            let [pairs, left_out] = match self.active {
+                Some(active) => active.split(problem, u0, pairs),
                 None => [pairs, Vec::new()],
             };
 
@@ -208,16 +208,16 @@ impl<'m> Attempt<'_, 'm> {
 
             // U^{k+1} = U^k + dU
             d = sum(&d, &du);
-            state = Touching::new(&forces);
+            state = ClosedPairs::new(&forces);
             let rest = impulses.rest(problem, &state);
             if rest && scales.converged(&errors) {
                 trace.worst = None;
-                if self.hold.is_none() {
+                if self.active.is_none() {
                     self.check_ways(&d, contact, &forces)?;
                 }
-                // a free node past a vertex may be behind the line of the segment it came from
+                // a free node past a corner may be behind the line of the segment it came from
                 let is_over = |pair: &Pair| {
-                    let [s, a, b, _] = pair.at.nodes;
+                    let [s, a, b, _] = pair.target.nodes;
                     (0.0..=1.0).contains(&problem.place(&u, [s, a, b]).xi)
                 };
                 let open = left_out.into_iter();
@@ -225,7 +225,7 @@ impl<'m> Attempt<'_, 'm> {
                 return self.finish(v0p, d, forces.with_open(open.collect()), impulses);
             }
             pairing = Pairing {
-                sites: forces.pairs.iter().map(|pair| pair.at).collect(),
+                targets: forces.pairs.iter().map(|pair| pair.target).collect(),
                 settled: pass + 1 >= SEARCHING_PASSES,
             };
         }
@@ -236,16 +236,18 @@ impl<'m> Attempt<'_, 'm> {
     pub fn check_ways(
         &mut self,
         d: &[f64],
-        contact: &Touching,
+        contact: &ClosedPairs,
         forces: &ContactForces,
     ) -> Result<(), Cause> {
-        let mut touch = vec![Touch::default(); self.search.slots()];
-        for (slot, touch) in touch.iter_mut().enumerate() {
-            touch.before = contact.holds(slot);
+        let mut touch = vec![NodeContact::default(); self.search.slave_count()];
+        for (slave_index, touch) in touch.iter_mut().enumerate() {
+            touch.before = contact.holds(slave_index);
         }
         for (k, pair) in forces.pairs.iter().enumerate() {
             if forces.is_closed(k) {
-                touch[pair.at.slot].now.extend(pair.at.site.segments());
+                touch[pair.target.slave_index]
+                    .now
+                    .extend(pair.target.target.segments());
             }
         }
         let (u0, u1) = (&self.start.u, sum(&self.start.u, d));
@@ -260,9 +262,9 @@ impl<'m> Attempt<'_, 'm> {
         let unsolved: Vec<f64> = parts.of_nodes().iter().map(unsolved).collect();
         let passage = self.meter.time(
             |t| &mut t.contact,
-            || find_passage(search, u0, &u1, &touch, &unsolved),
+            || find_penetration(search, u0, &u1, &touch, &unsolved),
         );
-        passage.map_or(Ok(()), |Passage { slave, segment }| {
+        passage.map_or(Ok(()), |Penetration { slave, segment }| {
             let [a, b] = segment;
             Err(Cause::Crossed {
                 slave,
@@ -274,9 +276,11 @@ impl<'m> Attempt<'_, 'm> {
 
     /// theta2 K d_p, the force of the supports' motion in the predictor.
     fn support_force(&mut self, prescribed: &[f64], u: &[f64], u_theta: &[f64]) -> Vec<f64> {
-        let StepProblem { weights, body, .. } = self.problem;
+        let StepProblem {
+            weights, elements, ..
+        } = self.problem;
         let (start, u) = weights.configuration(&self.start.u, u, u_theta);
-        let product = || body.tangent_product(start, u, prescribed);
+        let product = || elements.tangent_product(start, u, prescribed);
         let mut force = self.meter.time(|t| &mut t.assembly, product);
         force.iter_mut().for_each(|f| *f *= weights.theta2);
         force
@@ -293,7 +297,7 @@ impl<'m> Attempt<'_, 'm> {
         let (problem, effective, dt) = (self.problem, &mut *self.effective, self.interval.dt);
         let every = settings.factorization == Factorization::EveryPass;
         let worn = pass > 0 && pass.is_multiple_of(KEPT_PASSES);
-        let near = self.hold.map_or(0.0, |_| NEAR);
+        let near = self.active.map_or(0.0, |_| SAME_LENGTH);
         if effective.fits(dt, near) && !every && !worn {
             return Ok(());
         }
@@ -329,7 +333,7 @@ impl<'m> Attempt<'_, 'm> {
         let closed = (0..contact.pairs.len()).filter(|&k| contact.is_closed(k));
         let mut positions = vec![0.0; u.len()];
         for k in closed {
-            let nodes = contact.pairs[k].at.nodes;
+            let nodes = contact.pairs[k].target.nodes;
             let of_nodes = nodes.map(|node| largest(&self.problem.position(u, node)));
             for node in nodes {
                 positions[2 * node] = larger(positions[2 * node], largest(&of_nodes));

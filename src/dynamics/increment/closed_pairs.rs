@@ -2,16 +2,16 @@
 //! increment.
 
 use super::contact_forces::ContactForces;
-use crate::contact::PairSite;
+use crate::contact::PairTarget;
 use crate::lcp::ContactState;
 
-/// The pairs that carry forces, increasing by slot and segment.
+/// The pairs that carry forces, increasing by slave_index and segment.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Touching(Vec<Touch>);
+pub(crate) struct ClosedPairs(Vec<ClosedPair>);
 
 /// A pair that carries a force.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Touch {
+struct ClosedPair {
     /// Slot and segment.
     key: [usize; 2],
     state: ContactState,
@@ -19,14 +19,14 @@ struct Touch {
     force: [f64; 2],
 }
 
-impl Touching {
+impl ClosedPairs {
     /// The pairs in contact.
     pub fn new(forces: &ContactForces) -> Self {
         let closed = (0..forces.pairs.len()).filter(|&k| forces.is_closed(k));
-        Touching(
+        ClosedPairs(
             closed
-                .map(|k| Touch {
-                    key: forces.pairs[k].at.key(),
+                .map(|k| ClosedPair {
+                    key: forces.pairs[k].target.key(),
                     state: forces.state[k],
                     force: [forces.normal[k], forces.tangential[k]],
                 })
@@ -36,40 +36,40 @@ impl Touching {
 
     /// Slots and segments of the pairs.
     pub fn keys(&self) -> Vec<[usize; 2]> {
-        self.0.iter().map(|touch| touch.key).collect()
+        self.0.iter().map(|pair| pair.key).collect()
     }
 
-    /// Whether a pair of the slot carries a force.
-    pub fn holds(&self, slot: usize) -> bool {
-        !self.of_slot(slot).is_empty()
+    /// Whether a pair of the slave_index carries a force.
+    pub fn holds(&self, slave_index: usize) -> bool {
+        !self.of_slave(slave_index).is_empty()
     }
 
     /// Whether this very pair carries a force.
-    pub fn closes(&self, at: &PairSite) -> bool {
+    pub fn closes(&self, at: &PairTarget) -> bool {
         self.find(at).is_some()
     }
 
     /// Normal and tangential force of this very pair.
-    pub fn force(&self, at: &PairSite) -> [f64; 2] {
-        self.find(at).map_or([0.0; 2], |touch| touch.force)
+    pub fn force(&self, at: &PairTarget) -> [f64; 2] {
+        self.find(at).map_or([0.0; 2], |pair| pair.force)
     }
 
     /// State of a pair; a node that has come to another segment keeps the one it had.
-    pub fn state(&self, at: &PairSite) -> ContactState {
+    pub fn state(&self, at: &PairTarget) -> ContactState {
         self.find(at)
-            .or(self.of_slot(at.slot).first())
-            .map_or(ContactState::Open, |touch| touch.state)
+            .or(self.of_slave(at.slave_index).first())
+            .map_or(ContactState::Open, |pair| pair.state)
     }
 
-    fn find(&self, at: &PairSite) -> Option<&Touch> {
-        self.of_slot(at.slot)
+    fn find(&self, at: &PairTarget) -> Option<&ClosedPair> {
+        self.of_slave(at.slave_index)
             .iter()
-            .find(|touch| touch.key == at.key())
+            .find(|pair| pair.key == at.key())
     }
 
-    fn of_slot(&self, slot: usize) -> &[Touch] {
-        let from = self.0.partition_point(|touch| touch.key[0] < slot);
-        let to = self.0.partition_point(|touch| touch.key[0] <= slot);
+    fn of_slave(&self, slave_index: usize) -> &[ClosedPair] {
+        let from = self.0.partition_point(|pair| pair.key[0] < slave_index);
+        let to = self.0.partition_point(|pair| pair.key[0] <= slave_index);
         &self.0[from..to]
     }
 }

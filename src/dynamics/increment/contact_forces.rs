@@ -1,17 +1,15 @@
 //! Contact forces of a pass and impact impulses, each the solution of a frictional complementarity
 //! problem. Sections 5 and 6 of docs/theory.md (paper eqs 30 and 36 to 47).
 
-use super::closed_pairs::Touching;
+use super::closed_pairs::ClosedPairs;
+use crate::contact::tolerances::SETTLED_OVERLAP;
 use crate::contact::{Pair, add_contact_forces, frictional_lcp};
 use crate::dynamics::results::{Cause, FailedLcp};
-use crate::dynamics::step::{DofMap, Factored, Meter};
+use crate::dynamics::step::{DofMap, FactoredMatrix, Meter};
 use crate::lcp::{ContactState, FrictionalLcp, LcpMethod, solve_frictional};
 
-/// Overlap (in segment lengths) that is none once the passes have settled.
-const ROUND_OFF: f64 = 1e-10;
-
 /// Part of the compliance of a pair that holds its force near that of the pass before.
-const HELD: f64 = 1e-5;
+const PROXIMAL_WEIGHT: f64 = 1e-5;
 
 /// Pairs with their contact forces (or impulses).
 #[derive(Debug, Clone, Default)]
@@ -84,7 +82,7 @@ impl ContactForces {
         chosen: &[usize],
         constants: (Vec<f64>, Vec<f64>),
         (warm, nearest): (Vec<ContactState>, Option<Vec<[f64; 2]>>),
-        matrix: &mut Factored,
+        matrix: &mut FactoredMatrix,
         method: LcpMethod,
         meter: &mut Meter,
     ) -> Result<(), Cause> {
@@ -95,7 +93,7 @@ impl ContactForces {
             || frictional_lcp(&pairs, &matrix.compliance, constants.0, constants.1),
         );
         if let Some(forces) = nearest {
-            hold_near(&mut problem, &forces);
+            add_proximal_term(&mut problem, &forces);
         }
         let solution = meter.time(
             |t| &mut t.lcp,
@@ -103,7 +101,7 @@ impl ContactForces {
         );
         let solution = solution.map_err(|error| {
             let nodes = |[s, a, b, _]: [usize; 4]| [s, a, b];
-            let pairs = pairs.iter().map(|pair| nodes(pair.at.nodes)).collect();
+            let pairs = pairs.iter().map(|pair| nodes(pair.target.nodes)).collect();
             Cause::Lcp(Box::new(FailedLcp {
                 error,
                 problem,
@@ -130,19 +128,19 @@ impl ContactForces {
     /// it must not go to and fro between them.
     pub fn of_pass(
         pairs: Vec<Pair>,
-        (warm, settled): (&Touching, bool),
+        (warm, settled): (&ClosedPairs, bool),
         y: &[f64],
         dofs: &DofMap,
-        matrix: &mut Factored,
+        matrix: &mut FactoredMatrix,
         method: LcpMethod,
         meter: &mut Meter,
     ) -> Result<(Self, Vec<f64>), Cause> {
         let mut forces = ContactForces::open(pairs);
         let gap_after = |pair: &Pair, du: &[f64]| pair.gap + pair.normal_of(du);
-        let closed_before = |pair: &Pair| warm.closes(&pair.at);
+        let closed_before = |pair: &Pair| warm.closes(&pair.target);
         let overlap = |pair: &Pair| {
             if settled {
-                ROUND_OFF * pair.length
+                SETTLED_OVERLAP * pair.length
             } else {
                 0.0
             }
@@ -171,8 +169,8 @@ impl ContactForces {
                     .map(|k| at(k).slip + at(k).tangent_of(y))
                     .collect(),
             );
-            let states = chosen.iter().map(|k| warm.state(&at(k).at)).collect();
-            let last = || chosen.iter().map(|k| warm.force(&at(k).at)).collect();
+            let states = chosen.iter().map(|k| warm.state(&at(k).target)).collect();
+            let last = || chosen.iter().map(|k| warm.force(&at(k).target)).collect();
             let warm = (states, settled.then(last));
             forces.solve(&chosen, constants, warm, matrix, method, meter)?;
             let load = dofs.restrict(&forces.resultant(y.len()));
@@ -196,7 +194,7 @@ impl ContactForces {
         v0: &[f64],
         dt: f64,
         dofs: &DofMap,
-        mass: &mut Factored,
+        mass: &mut FactoredMatrix,
         method: LcpMethod,
         meter: &mut Meter,
     ) -> Result<(Vec<f64>, Self), Cause> {
@@ -226,10 +224,10 @@ impl ContactForces {
 /// Adds eps Q_kk (P_k - P_k^0) to what a problem makes zero or positive, P^0 being the forces of the
 /// pass before: where several pairs can carry the same force, the solution near that of the pass
 /// before is the one. When the passes come to rest, the term vanishes.
-fn hold_near(problem: &mut FrictionalLcp, forces: &[[f64; 2]]) {
+fn add_proximal_term(problem: &mut FrictionalLcp, forces: &[[f64; 2]]) {
     let n = forces.len();
     for (k, [pn, pt]) in forces.iter().enumerate() {
-        let [normal, tangential] = [k, k + n].map(|i| HELD * problem.q[(i, i)]);
+        let [normal, tangential] = [k, k + n].map(|i| PROXIMAL_WEIGHT * problem.q[(i, i)]);
         problem.q[(k, k)] += normal;
         problem.q[(k + n, k + n)] += tangential;
         problem.gap[k] -= normal * pn;

@@ -1,11 +1,11 @@
 //! Velocity jump at the start of an increment: the set of pairs that take impact impulses,
 //! iterated along with the passes. Section 6 of docs/theory.md (paper eq. 30).
 
-use super::closed_pairs::Touching;
+use super::closed_pairs::ClosedPairs;
 use super::contact_forces::ContactForces;
-use crate::contact::{Pair, PairSite};
+use crate::contact::{Pair, PairTarget};
 use crate::dynamics::results::{Cause, State};
-use crate::dynamics::step::{Effective, Meter, StepProblem};
+use crate::dynamics::step::{EffectiveStiffness, Meter, StepProblem};
 use crate::model::Impact;
 
 /// Changes of the set of pairs with impulses after which it is kept.
@@ -20,7 +20,7 @@ pub(crate) struct Impulses {
     pub touching: Vec<[usize; 2]>,
     changes: usize,
     /// V0+ of the last pass with the pairs it is for.
-    last: Option<(Vec<PairSite>, Vec<f64>)>,
+    last: Option<(Vec<PairTarget>, Vec<f64>)>,
     /// Phi, Psi of the last pass.
     pub acting: ContactForces,
 }
@@ -28,7 +28,7 @@ pub(crate) struct Impulses {
 impl Impulses {
     /// Starts with the pairs that were closed in the last increment; those of `touching` have
     /// impulses in any case.
-    pub fn new(contact: &Touching, touching: Vec<[usize; 2]>) -> Self {
+    pub fn new(contact: &ClosedPairs, touching: Vec<[usize; 2]>) -> Self {
         Impulses {
             keys: contact.keys(),
             touching,
@@ -42,7 +42,7 @@ impl Impulses {
     pub fn velocity(
         &mut self,
         problem: &StepProblem,
-        effective: &mut Effective,
+        effective: &mut EffectiveStiffness,
         pairs: &[Pair],
         start: &State,
         dt: f64,
@@ -51,12 +51,12 @@ impl Impulses {
         if problem.settings.impact == Impact::None {
             return Ok(start.v.clone());
         }
-        let struck = pairs.iter().filter(|pair| self.strikes(&pair.at));
-        let sites: Vec<PairSite> = struck.clone().map(|pair| pair.at).collect();
+        let struck = pairs.iter().filter(|pair| self.strikes(&pair.target));
+        let targets: Vec<PairTarget> = struck.clone().map(|pair| pair.target).collect();
         let at_start = problem.weights.impulses_at_start();
         if let Some((last, v0p)) = &self.last
             && at_start
-            && *last == sites
+            && *last == targets
         {
             // rows of the start do not change with the iterate
             return Ok(v0p.clone());
@@ -64,7 +64,7 @@ impl Impulses {
         let (x, u0) = (&problem.model.mesh.coordinates, &start.u);
         let form = problem.weights.row_form();
         let rows = |pair: &Pair| match at_start {
-            true => Pair::new(pair.at, form, x, u0, u0),
+            true => Pair::new(pair.target, form, x, u0, u0),
             false => *pair,
         };
         let struck: Vec<Pair> = struck.map(rows).collect();
@@ -72,13 +72,13 @@ impl Impulses {
         let (v0p, acting) =
             ContactForces::impulses(struck, &start.v, dt, &problem.dofs, m, method, meter)?;
         self.acting = acting;
-        self.last = Some((sites, v0p.clone()));
+        self.last = Some((targets, v0p.clone()));
         Ok(v0p)
     }
 
     /// Takes over the pairs in contact after a pass; whether they are the same as before. After
     /// some changes the set is kept: impulses of any set take energy, never give it.
-    pub fn rest(&mut self, problem: &StepProblem, contact: &Touching) -> bool {
+    pub fn rest(&mut self, problem: &StepProblem, contact: &ClosedPairs) -> bool {
         let keys = contact.keys();
         let others = |keys: &[[usize; 2]]| -> Vec<[usize; 2]> {
             let touches = |key: &[usize; 2]| self.touching.binary_search(key).is_ok();
@@ -94,9 +94,9 @@ impl Impulses {
         rest
     }
 
-    fn strikes(&self, at: &PairSite) -> bool {
-        let mut segments = at.site.segments();
+    fn strikes(&self, at: &PairTarget) -> bool {
+        let mut segments = at.target.segments();
         self.keys.binary_search(&at.key()).is_ok()
-            || segments.any(|i| self.touching.binary_search(&[at.slot, i]).is_ok())
+            || segments.any(|i| self.touching.binary_search(&[at.slave_index, i]).is_ok())
     }
 }

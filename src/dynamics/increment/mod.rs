@@ -7,7 +7,7 @@ mod contact_forces;
 mod convergence;
 mod impulses;
 
-pub(crate) use active_constraints::Hold;
+pub(crate) use active_constraints::ActiveConstraints;
 pub(crate) use attempt::{Attempt, Failed, Solved};
-pub(crate) use closed_pairs::Touching;
+pub(crate) use closed_pairs::ClosedPairs;
 pub(crate) use contact_forces::ContactForces;

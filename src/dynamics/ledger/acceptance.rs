@@ -1,19 +1,19 @@
 //! What a converged increment must pass before it is accepted (docs/theory.md, cutback).
 
 use super::energy::Ledger;
-use super::energy_check::check_gain;
+use super::energy_check::check_energy_gain;
 use crate::dynamics::increment::{Failed, Solved};
 use crate::dynamics::results::{Failure, State};
 use crate::dynamics::run::StepPlace;
 use crate::dynamics::step::StepProblem;
 
 /// A converged increment and the ledger with it.
-pub(crate) struct Entered {
+pub(crate) struct Accepted {
     pub solved: Solved,
     pub ledger: Ledger,
 }
 
-impl Entered {
+impl Accepted {
     /// A converged increment of length `dt` from `start`, with its energies.
     ///
     /// # Errors
@@ -29,10 +29,10 @@ impl Entered {
         match ledger.clone().with(problem, start, &solved, dt) {
             Ok(after) => {
                 let solved = match may_be_halved {
-                    true => check_gain(problem, start, ledger, solved)?,
+                    true => check_energy_gain(problem, start, ledger, solved)?,
                     false => solved,
                 };
-                Ok(Entered {
+                Ok(Accepted {
                     solved,
                     ledger: after,
                 })

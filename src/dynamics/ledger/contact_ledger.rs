@@ -20,7 +20,7 @@ pub(crate) struct ContactLedger {
     contacts: Vec<Sums>,
     /// `N` entries; NaN at nodes that are no slave nodes.
     pub slip: Vec<f64>,
-    /// Contact of every slot.
+    /// Contact of every slave_index.
     contact_of: Vec<usize>,
     /// Reference node of every contact whose master is a rigid surface.
     reference: Vec<Option<usize>>,
@@ -64,7 +64,7 @@ impl ContactLedger {
             if !forces.is_closed(k) {
                 continue;
             }
-            let contact = self.contact_of[pair.at.slot];
+            let contact = self.contact_of[pair.target.slave_index];
             let (pn, pt) = (forces.normal[k], forces.tangential[k]);
             // Pn.(Bn d) and -Pt.(Bt d)
             let sums = &mut self.contacts[contact];
@@ -78,7 +78,7 @@ impl ContactLedger {
         }
         let impacts = &solved.impulses;
         for (k, pair) in impacts.pairs.iter().enumerate() {
-            let impulse = &mut resultants[self.contact_of[pair.at.slot]].impulse;
+            let impulse = &mut resultants[self.contact_of[pair.target.slave_index]].impulse;
             let [phi, psi] = [impacts.normal[k], impacts.tangential[k]];
             impulse.add(pair, [phi, psi]);
             impulse.impact_normal += phi;
@@ -105,7 +105,7 @@ impl ContactLedger {
         let mut ways = vec![0.0_f64; self.slip.len()];
         for (k, pair) in forces.pairs.iter().enumerate() {
             if forces.is_closed(k) {
-                let way = &mut ways[pair.at.nodes[0]];
+                let way = &mut ways[pair.target.nodes[0]];
                 *way = way.max(pair.tangent_of(&solved.d).abs());
             }
         }
@@ -145,7 +145,7 @@ fn add_to_bodies(
     (pair, pn, pt): (&Pair, f64, f64),
     results: &mut [ContactOnBody],
 ) {
-    for (k, &node) in pair.at.nodes.iter().enumerate() {
+    for (k, &node) in pair.target.nodes.iter().enumerate() {
         let Some(body) = bodies.of_node[node] else {
             continue;
         };

@@ -21,7 +21,7 @@ impl Ledger {
     /// Opens the ledger at the start of the analysis.
     pub fn new(problem: &StepProblem, start: &State) -> Self {
         let kinetic = problem.mass.kinetic_energy(&start.v);
-        let strains = problem.body.strain_energies(&start.u);
+        let strains = problem.elements.strain_energies(&start.u);
         let strain = strains.iter().sum();
         let energy = Energy {
             kinetic,
@@ -45,7 +45,7 @@ impl Ledger {
         let kinetic = problem.mass.kinetic_energies(&state.v, parts);
         let mut strains = vec![0.0; parts.bodies()];
         for (element, energy) in strain.iter().enumerate() {
-            let [node, ..] = problem.body.nodes(element) else {
+            let [node, ..] = problem.elements.nodes(element) else {
                 continue;
             };
             strains[parts.of_nodes()[*node]] += energy;
@@ -79,7 +79,7 @@ impl Ledger {
             inertia,
             ..
         } = &solved.equilibrium;
-        let strain = problem.body.strain_energies(&end.u);
+        let strain = problem.elements.strain_energies(&end.u);
         self.enter_bodies(problem, end, &strain);
         self.strains = strain;
         let e = &mut self.energy;

@@ -2,7 +2,8 @@
 //! turn concave under a sliding node. Section 7 of docs/theory.md.
 
 use super::energy::Ledger;
-use crate::contact::{Pair, TOUCHING};
+use crate::contact::Pair;
+use crate::contact::tolerances::CLOSED_GAP;
 use crate::dynamics::increment::{Failed, Solved};
 use crate::dynamics::results::{Cause, State};
 use crate::dynamics::step::StepProblem;
@@ -14,9 +15,9 @@ const NEGLIGIBLE: f64 = 1e-10;
 /// largest energy that the bodies in contact have had so far.
 ///
 /// # Errors
-/// The increment counts as failed, with [`Cause::GainedEnergy`]: in its halves a node passes a vertex
-/// before or after the vertex turns hollow.
-pub(crate) fn check_gain(
+/// The increment counts as failed, with [`Cause::GainedEnergy`]: in its halves a node passes a corner
+/// before or after the corner turns concave.
+pub(crate) fn check_energy_gain(
     problem: &StepProblem,
     start: &State,
     ledger: &Ledger,
@@ -37,8 +38,8 @@ pub(crate) fn check_gain(
 /// the largest energy of the bodies of each pair, summed.
 ///
 /// With energy-momentum rows a pair does the work Pn (g1 - g0). It is positive where a node slides over
-/// a convex vertex on to a segment with g0 < 0, and that segment holds it because the vertex turns
-/// hollow in the same increment. Nodes that start inside, as a mesh may have them, do not count.
+/// a convex corner on to a segment with g0 < 0, and that segment holds it because the corner turns
+/// concave corner in the same increment. Nodes that start inside, as a mesh may have them, do not count.
 fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) -> f64 {
     if !problem.weights.energy_momentum {
         return 0.0;
@@ -46,9 +47,9 @@ fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) 
     let Solved { d, forces, .. } = solved;
     let pairs = forces.pairs.iter().zip(&forces.normal);
     let works = pairs.map(|(pair, normal)| {
-        let [slave, a, b, _] = pair.at.nodes;
+        let [slave, a, b, _] = pair.target.nodes;
         let p = problem.place(&start.u, [slave, a, b]);
-        let was_beyond = !(0.0..=1.0).contains(&p.xi) && p.gap < -TOUCHING * p.length;
+        let was_beyond = !(0.0..=1.0).contains(&p.xi) && p.gap < -CLOSED_GAP * p.length;
         // Pn.(Bn d)
         let work = if was_beyond {
             normal * pair.normal_of(d)
@@ -57,7 +58,7 @@ fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) 
         };
         (pair, work)
     });
-    let largest = |pair: &Pair| problem.parts.most(&ledger.largest, pair.at.nodes);
+    let largest = |pair: &Pair| problem.parts.most(&ledger.largest, pair.target.nodes);
     let parts = works.filter(|&(_, work)| work > 0.0);
     parts.map(|(pair, work)| work / largest(pair)).sum()
 }

@@ -10,7 +10,7 @@ mod nodal_results;
 mod pressure;
 mod rigid_surfaces;
 
-pub(crate) use acceptance::{Entered, start_failure};
+pub(crate) use acceptance::{Accepted, start_failure};
 pub(crate) use accounts::Accounts;
 pub(crate) use energy::Ledger;
 pub(crate) use nodal_results::{landings, motion};

@@ -5,7 +5,7 @@
 use crate::contact::{
     ContactSurfaces, Crossing, Direction, Motion, Pair, RowForm, crossings, line_crossings, project,
 };
-use crate::dynamics::increment::{Solved, Touching};
+use crate::dynamics::increment::{ClosedPairs, Solved};
 use crate::dynamics::results::{ContactResultant, Landing, NodalResults, NodeStatus, State};
 use crate::dynamics::step::{Equilibrium, Interval, StepProblem};
 use crate::lcp::ContactState;
@@ -38,7 +38,7 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         ..NodalResults::default()
     };
     for (k, pair) in solved.forces.pairs.iter().enumerate() {
-        let slave = pair.at.nodes[0];
+        let slave = pair.target.nodes[0];
         results.gap[slave] = results.gap[slave].min(end_gap(problem, solved, pair));
         let status = match (solved.forces.is_closed(k), solved.forces.state[k]) {
             (false, _) => NodeStatus::Open,
@@ -52,7 +52,14 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
 
 fn end_gap(problem: &StepProblem, solved: &Solved, pair: &Pair) -> f64 {
     let u = &solved.end.u;
-    Pair::new(pair.at, RowForm::End, &problem.model.mesh.coordinates, u, u).gap
+    Pair::new(
+        pair.target,
+        RowForm::End,
+        &problem.model.mesh.coordinates,
+        u,
+        u,
+    )
+    .gap
 }
 
 /// Resultants of every contact; moments about the origin, forces acting at U_theta.
@@ -66,7 +73,7 @@ pub(crate) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
     let contact_of = contact_of_slots(problem.contacts);
     let forces = &solved.forces;
     for (k, pair) in forces.pairs.iter().enumerate() {
-        let contact = contact_of[pair.at.slot];
+        let contact = contact_of[pair.target.slave_index];
         let r = &mut resultants[contact];
         r.min_gap = r.min_gap.min(end_gap(problem, solved, pair));
         if !forces.is_closed(k) {
@@ -74,7 +81,7 @@ pub(crate) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
         }
         let (pn, pt) = (forces.normal[k], forces.tangential[k]);
         let f = [0, 1].map(|i| pair.normal[i] * pn + pair.tangent[i] * pt);
-        let x = problem.position(&solved.equilibrium.u_theta, pair.at.nodes[0]);
+        let x = problem.position(&solved.equilibrium.u_theta, pair.target.nodes[0]);
         r.force[0] += f[0];
         r.force[1] += f[1];
         r.moment += x[0] * f[1] - x[1] * f[0];
@@ -82,7 +89,7 @@ pub(crate) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
         r.tangential += pt;
         r.closed += 1;
         r.sticking += usize::from(forces.state[k] == ContactState::Stick);
-        r.cone_violation = larger(r.cone_violation, pt.abs() - pair.at.friction * pn);
+        r.cone_violation = larger(r.cone_violation, pt.abs() - pair.target.friction * pn);
         largest_normal[contact] = larger(largest_normal[contact], pn);
     }
     for (r, largest) in resultants.iter_mut().zip(largest_normal) {
@@ -93,7 +100,7 @@ pub(crate) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
     resultants
 }
 
-/// The contact that every slot belongs to.
+/// The contact that every slave_index belongs to.
 pub(crate) fn contact_of_slots(contacts: &[ContactSurfaces]) -> Vec<usize> {
     let numbered = contacts.iter().enumerate();
     numbered
@@ -106,7 +113,7 @@ pub(crate) fn contact_of_slots(contacts: &[ContactSurfaces]) -> Vec<usize> {
 pub(crate) fn landings(
     problem: &StepProblem,
     start: &State,
-    before: &Touching,
+    before: &ClosedPairs,
     solved: &Solved,
     interval: Interval,
 ) -> Vec<Landing> {
@@ -114,16 +121,16 @@ pub(crate) fn landings(
     let fastest = problem.parts.largest_of_bodies(&start.v);
     let landing = |k: usize| {
         let pair = &forces.pairs[k];
-        let least = STRUCK * problem.parts.most(&fastest, pair.at.nodes);
-        let touched = solved.touching.binary_search(&pair.at.key()).is_ok();
+        let least = STRUCK * problem.parts.most(&fastest, pair.target.nodes);
+        let touched = solved.touching.binary_search(&pair.target.key()).is_ok();
         let is_struck = || {
             let x = &problem.model.mesh.coordinates;
-            let rows = Pair::new(pair.at, RowForm::End, x, &start.u, &start.u);
+            let rows = Pair::new(pair.target, RowForm::End, x, &start.u, &start.u);
             let [before, after] = [&start.v, &solved.v0p].map(|v| rows.normal_of(v));
             before < -least && after > before + least
         };
-        let lands =
-            !before.holds(pair.at.slot) && (forces.is_closed(k) || (touched && is_struck()));
+        let lands = !before.holds(pair.target.slave_index)
+            && (forces.is_closed(k) || (touched && is_struck()));
         lands.then(|| landing(problem, start, pair, interval, touched))
     };
     (0..forces.pairs.len()).filter_map(landing).collect()
@@ -136,7 +143,7 @@ fn landing(
     interval: Interval,
     touched: bool,
 ) -> Landing {
-    let [s, a, b, _] = pair.at.nodes;
+    let [s, a, b, _] = pair.target.nodes;
     let motions = [s, a, b].map(|node| motion(problem, &start.u, &start.v, &start.a, node));
     let tau = match impact_time(&motions, interval.dt) {
         // it touches and does not meet again
@@ -150,8 +157,8 @@ fn landing(
     let relative = |i: usize| s[i] - (1.0 - p.xi) * a[i] - p.xi * b[i];
     Landing {
         time: interval.start.total + tau,
-        slave: pair.at.nodes[0],
-        segment: [pair.at.nodes[1], pair.at.nodes[2]],
+        slave: pair.target.nodes[0],
+        segment: [pair.target.nodes[1], pair.target.nodes[2]],
         xi: p.xi,
         approach_speed: -(p.normal[0] * relative(0) + p.normal[1] * relative(1)),
     }

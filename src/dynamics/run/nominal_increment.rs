@@ -1,6 +1,6 @@
 //! Nominal time increments of a step and their bisection. Section 4 of docs/theory.md, Cutback.
 
-use crate::dynamics::step::{Interval, Moment};
+use crate::dynamics::step::{Interval, TimePoint};
 
 /// A step's duration counts as a multiple of its increment within this relative difference.
 pub(crate) const WHOLE: f64 = 1e-6;
@@ -16,8 +16,8 @@ pub(crate) struct StepPlace {
 
 impl StepPlace {
     /// A moment of the step.
-    pub fn moment(&self, step: f64) -> Moment {
-        Moment {
+    pub fn time_point(&self, step: f64) -> TimePoint {
+        TimePoint {
             step,
             total: self.start + step,
             period: self.period,
@@ -25,17 +25,17 @@ impl StepPlace {
     }
 }
 
-/// One increment of the grid of a step, in step time.
+/// One nominal increment of a step, in step time.
 #[derive(Clone, Copy)]
-pub(crate) struct Grid {
+pub(crate) struct NominalIncrement {
     pub from: f64,
     pub to: f64,
     pub length: f64,
     pub dt_min: f64,
 }
 
-impl Grid {
-    /// Piece number `piece` of 2^halvings.
+impl NominalIncrement {
+    /// Subincrement number `piece` of 2^halvings.
     pub fn piece(&self, place: StepPlace, piece: u32, halvings: u32) -> Interval {
         let parts = f64::from(1_u32 << halvings);
         let at = |k: u32| match k {
@@ -44,8 +44,8 @@ impl Grid {
             k => self.from + self.length * (f64::from(k) / parts),
         };
         Interval {
-            start: place.moment(at(piece)),
-            end: place.moment(at(piece + 1)),
+            start: place.time_point(at(piece)),
+            end: place.time_point(at(piece + 1)),
             dt: self.length / parts,
         }
     }
@@ -82,13 +82,13 @@ mod tests {
             start: 2.0,
             period: 1.0,
         };
-        let grid = Grid {
+        let nominal = NominalIncrement {
             from: 0.3,
             to: 0.4,
             length: 0.1,
             dt_min: 0.0,
         };
-        let pieces: Vec<Interval> = (0..4).map(|k| grid.piece(place, k, 2)).collect();
+        let pieces: Vec<Interval> = (0..4).map(|k| nominal.piece(place, k, 2)).collect();
         assert_eq!((pieces[0].start.step, pieces[3].end.step), (0.3, 0.4));
         for pair in pieces.windows(2) {
             assert_eq!(pair[0].end, pair[1].start);

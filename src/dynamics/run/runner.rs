@@ -3,18 +3,18 @@
 
 use std::io;
 
-use super::nominal_increment::{Grid, StepPlace, WHOLE, increments_of};
+use super::nominal_increment::{NominalIncrement, StepPlace, WHOLE, increments_of};
 use crate::contact::{ContactSurfaces, Search, contact_surfaces};
-use crate::dynamics::events::{MOST_EVENTS, Piece, Pieces};
-use crate::dynamics::increment::{Attempt, Failed, Solved, Touching};
-use crate::dynamics::ledger::{Accounts, Entered, Ledger, landings, start_failure};
+use crate::dynamics::events::{MOST_EVENTS, Subincrement, Subincrements};
+use crate::dynamics::increment::{Attempt, ClosedPairs, Failed, Solved};
+use crate::dynamics::ledger::{Accepted, Accounts, Ledger, landings, start_failure};
 use crate::dynamics::results::{
     Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State,
 };
 use crate::dynamics::step::{
-    DofMap, Effective, Interval, Loads, Mass, Meter, Parts, StepProblem, Supports, Weights,
+    DofMap, EffectiveStiffness, Interval, Loads, Mass, Meter, Parts, StepProblem, Supports, Weights,
 };
-use crate::elements::Body;
+use crate::elements::Elements;
 use crate::model::{ImpactTime, Increments, Model, Step};
 
 /// Halvings of an increment before the run stops.
@@ -35,13 +35,13 @@ pub enum RunError {
 /// # Errors
 /// The observer's. A failed increment is no error but an [`Outcome`].
 pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
-    let body = Body::new(model);
-    let mass = Mass::new(&body, model.mesh.node_count());
+    let elements = Elements::new(model);
+    let mass = Mass::new(&elements, model.mesh.node_count());
     let parts = Parts::new(model);
     let contacts = contact_surfaces(model);
     let mut runner = Runner {
         model,
-        body: &body,
+        elements: &elements,
         mass: &mass,
         parts: &parts,
         contacts: &contacts,
@@ -51,7 +51,7 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
             v: model.initial_velocity.clone(),
             a: vec![0.0; model.mesh.dof_count()],
         },
-        contact: Touching::default(),
+        contact: ClosedPairs::default(),
         ledger: Ledger::default(),
         accounts: Accounts::new(model, &mass, &contacts),
         increment: 0,
@@ -88,13 +88,13 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
 /// State of a run.
 struct Runner<'m, 'o> {
     model: &'m Model,
-    body: &'m Body,
+    elements: &'m Elements,
     mass: &'m Mass,
     parts: &'m Parts,
     contacts: &'m [ContactSurfaces],
     search: Search<'m>,
     state: State,
-    contact: Touching,
+    contact: ClosedPairs,
     ledger: Ledger,
     accounts: Accounts,
     increment: usize,
@@ -117,18 +117,19 @@ impl<'m> Runner<'m, '_> {
         };
         let problem = StepProblem {
             model: self.model,
-            body: self.body,
+            elements: self.elements,
             mass: self.mass,
             parts: self.parts,
             contacts: self.contacts,
             settings: step.settings,
             weights: Weights::new(step.settings.scheme),
-            dofs: DofMap::new(self.body, step, self.model.mesh.dof_count()),
+            dofs: DofMap::new(self.elements, step, self.model.mesh.dof_count()),
             loads: Loads::new(self.model, step),
             supports: Supports::new(self.model, step, &self.state.u),
         };
         let choice = step.settings.solver;
-        let mut effective = Effective::new(self.body, &problem.dofs, self.parts, choice);
+        let mut effective =
+            EffectiveStiffness::new(self.elements, &problem.dofs, self.parts, choice);
         if number == 1
             && let Some(failure) = self.report_start(&problem, &mut effective, place)?
         {
@@ -148,15 +149,19 @@ impl<'m> Runner<'m, '_> {
             } else {
                 dt
             };
-            let grid = Grid {
+            let nominal = NominalIncrement {
                 from,
                 to,
                 length,
                 dt_min,
             };
             let end = match step.settings.impact_time {
-                ImpactTime::Increment => self.grid_increment(&problem, &mut effective, place, grid),
-                ImpactTime::Event => self.cut_increment(&problem, &mut effective, place, grid),
+                ImpactTime::Increment => {
+                    self.increment_in_halves(&problem, &mut effective, place, nominal)
+                }
+                ImpactTime::Event => {
+                    self.increment_with_impacts(&problem, &mut effective, place, nominal)
+                }
             };
             if let Some(end) = end? {
                 return Ok(end);
@@ -165,14 +170,14 @@ impl<'m> Runner<'m, '_> {
         Ok(Outcome::Finished)
     }
 
-    /// One increment of the grid, in halves, quarters ... where it does not converge; how the run
+    /// One increment of the nominal, in halves, quarters ... where it does not converge; how the run
     /// ends, if it does.
-    fn grid_increment(
+    fn increment_in_halves(
         &mut self,
         problem: &StepProblem<'m>,
-        effective: &mut Effective,
+        effective: &mut EffectiveStiffness,
         place: StepPlace,
-        grid: Grid,
+        nominal: NominalIncrement,
     ) -> Result<Option<Outcome>, RunError> {
         // The next piece is number `piece` of 2^halvings.
         let (mut piece, mut halvings) = (0_u32, 0_u32);
@@ -180,7 +185,7 @@ impl<'m> Runner<'m, '_> {
             if self.observer.wants_stop() {
                 return Ok(Some(Outcome::Interrupted));
             }
-            let interval = grid.piece(place, piece, halvings);
+            let interval = nominal.piece(place, piece, halvings);
             self.meter.counts = SolverCounts::default();
             let attempt = Attempt {
                 problem,
@@ -189,10 +194,10 @@ impl<'m> Runner<'m, '_> {
                 start: &self.state,
                 interval,
                 meter: &mut self.meter,
-                hold: None,
+                active: None,
             };
             let solved = attempt.solve(&self.contact);
-            match solved.and_then(|s| self.checked(problem, s, interval.dt, halvings, grid)) {
+            match solved.and_then(|s| self.checked(problem, s, interval.dt, halvings, nominal)) {
                 Ok(entered) => {
                     self.accept(problem, place, interval, entered)?;
                     piece += 1;
@@ -202,7 +207,7 @@ impl<'m> Runner<'m, '_> {
                 }
                 Err(failed) => {
                     let failure = self.failure(place, interval, failed, halvings);
-                    if let Some(failure) = self.cut_back(failure, grid.dt_min)? {
+                    if let Some(failure) = self.cut_back(failure, nominal.dt_min)? {
                         return Ok(Some(Outcome::Stopped(Box::new(failure))));
                     }
                     (piece, halvings) = (2 * piece, halvings + 1);
@@ -212,30 +217,30 @@ impl<'m> Runner<'m, '_> {
         Ok(None)
     }
 
-    /// One increment of the grid, in pieces that end at impacts, or halfway where one does not
+    /// One increment of the nominal, in pieces that end at impacts, or halfway where one does not
     /// converge; how the run ends, if it does.
-    fn cut_increment(
+    fn increment_with_impacts(
         &mut self,
         problem: &StepProblem<'m>,
-        effective: &mut Effective,
+        effective: &mut EffectiveStiffness,
         place: StepPlace,
-        grid: Grid,
+        nominal: NominalIncrement,
     ) -> Result<Option<Outcome>, RunError> {
-        let (mut events, mut from, mut last) = (0, grid.from, grid.length);
+        let (mut events, mut from, mut last) = (0, nominal.from, nominal.length);
         // Ends of what is left, and of its halves; the next piece goes no further than the last.
-        let mut ends = vec![grid.to];
+        let mut ends = vec![nominal.to];
         while let Some(&to) = ends.last() {
             if self.observer.wants_stop() {
                 return Ok(Some(Outcome::Interrupted));
             }
-            let is_whole = from == grid.from && to == grid.to;
+            let is_whole = from == nominal.from && to == nominal.to;
             let rest = Interval {
-                start: place.moment(from),
-                end: place.moment(to),
-                dt: if is_whole { grid.length } else { to - from },
+                start: place.time_point(from),
+                end: place.time_point(to),
+                dt: if is_whole { nominal.length } else { to - from },
             };
             self.meter.counts = SolverCounts::default();
-            let mut pieces = Pieces {
+            let mut pieces = Subincrements {
                 problem,
                 effective,
                 search: &mut self.search,
@@ -243,7 +248,7 @@ impl<'m> Runner<'m, '_> {
                 contact: &self.contact,
                 meter: &mut self.meter,
                 rest,
-                grid: grid.length,
+                nominal: nominal.length,
                 last,
             };
             let next = match events < MOST_EVENTS {
@@ -252,12 +257,12 @@ impl<'m> Runner<'m, '_> {
             };
             let halvings = ends.len() as u32 - 1;
             let checked = next.and_then(|piece| {
-                let Piece {
+                let Subincrement {
                     interval,
                     solved,
                     is_cut,
                 } = piece;
-                let checked = self.checked(problem, solved, interval.dt, halvings, grid);
+                let checked = self.checked(problem, solved, interval.dt, halvings, nominal);
                 let entered = checked.map_err(|failed| Box::new((interval, failed)))?;
                 Ok((interval, entered, is_cut))
             });
@@ -274,7 +279,7 @@ impl<'m> Runner<'m, '_> {
                 Err(broken) => {
                     let (interval, failed) = *broken;
                     let failure = self.failure(place, interval, failed, halvings);
-                    if let Some(failure) = self.cut_back(failure, grid.dt_min)? {
+                    if let Some(failure) = self.cut_back(failure, nominal.dt_min)? {
                         return Ok(Some(Outcome::Stopped(Box::new(failure))));
                     }
                     ends.push(from + interval.dt / 2.0);
@@ -292,11 +297,11 @@ impl<'m> Runner<'m, '_> {
         solved: Solved,
         dt: f64,
         halvings: u32,
-        grid: Grid,
-    ) -> Result<Entered, Failed> {
-        let may_be_halved = halvings < GAIN_HALVINGS && dt / 2.0 >= grid.dt_min;
+        nominal: NominalIncrement,
+    ) -> Result<Accepted, Failed> {
+        let may_be_halved = halvings < GAIN_HALVINGS && dt / 2.0 >= nominal.dt_min;
         let before = (&self.state, &self.ledger);
-        Entered::new(problem, before, solved, dt, may_be_halved)
+        Accepted::new(problem, before, solved, dt, may_be_halved)
     }
 
     fn failure(
@@ -341,7 +346,7 @@ impl<'m> Runner<'m, '_> {
         problem: &StepProblem,
         place: StepPlace,
         interval: Interval,
-        Entered { solved, ledger }: Entered,
+        Accepted { solved, ledger }: Accepted,
     ) -> Result<(), RunError> {
         self.ledger = ledger;
         let accounted = (self.accounts).enter(problem, &solved, interval, &self.ledger.strains);
@@ -357,14 +362,14 @@ impl<'m> Runner<'m, '_> {
             dt: interval.dt,
             ends_step: interval.end.step == place.period,
             energy: self.ledger.energy,
-            strain: self.body.most_strained(&solved.end.u),
+            strain: self.elements.most_strained(&solved.end.u),
             landings,
             solver: self.meter.counts,
             passes: solved.passes,
             state: solved.end,
             ..accounted
         };
-        self.contact = Touching::new(&solved.forces);
+        self.contact = ClosedPairs::new(&solved.forces);
         self.observer.increment(&report)?;
         self.state = report.state;
         Ok(())
@@ -375,10 +380,10 @@ impl<'m> Runner<'m, '_> {
     fn report_start(
         &mut self,
         problem: &StepProblem,
-        effective: &mut Effective,
+        effective: &mut EffectiveStiffness,
         place: StepPlace,
     ) -> Result<Option<Failure>, RunError> {
-        let now = place.moment(0.0);
+        let now = place.time_point(0.0);
         for (dof, _, v) in problem.supports.motion(now) {
             self.state.v[dof] = v;
         }

@@ -1,6 +1,6 @@
 //! Numbering of the unknowns of a step, and the maps between them and all degrees of freedom.
 
-use crate::elements::Body;
+use crate::elements::Elements;
 use crate::model::Step;
 
 /// Which dofs are unknowns: those of nodes with elements that no support prescribes.
@@ -14,10 +14,10 @@ pub(crate) struct DofMap {
 
 impl DofMap {
     /// Unknowns of a step.
-    pub fn new(body: &Body, step: &Step, dofs: usize) -> Self {
+    pub fn new(elements: &Elements, step: &Step, dofs: usize) -> Self {
         let mut free = vec![false; dofs];
-        for element in 0..body.len() {
-            for &node in body.nodes(element) {
+        for element in 0..elements.len() {
+            for &node in elements.nodes(element) {
                 free[2 * node] = true;
                 free[2 * node + 1] = true;
             }
@@ -41,10 +41,10 @@ impl DofMap {
     }
 
     /// Unknowns of every element, in the order of its dofs.
-    pub fn element_unknowns(&self, body: &Body) -> Vec<Vec<Option<usize>>> {
+    pub fn element_unknowns(&self, elements: &Elements) -> Vec<Vec<Option<usize>>> {
         let of_node = |&node: &usize| [self.unknown[2 * node], self.unknown[2 * node + 1]];
-        (0..body.len())
-            .map(|e| body.nodes(e).iter().flat_map(of_node).collect())
+        (0..elements.len())
+            .map(|e| elements.nodes(e).iter().flat_map(of_node).collect())
             .collect()
     }
 

@@ -6,19 +6,19 @@ use super::mass::unknown_mass;
 use super::parts::Parts;
 use super::step_problem::StepProblem;
 use crate::contact::{Compliance, Pair};
-use crate::elements::Body;
+use crate::elements::Elements;
 use crate::linear::{Assembled, CheckedSolver, LinearError, linear_solver};
 use crate::model::SolverChoice;
 
 /// A symmetric matrix over the unknowns, factorised, with its compliance at the contacts.
-pub(crate) struct Factored {
+pub(crate) struct FactoredMatrix {
     pub solver: CheckedSolver,
     pub compliance: Compliance,
 }
 
-impl Factored {
+impl FactoredMatrix {
     pub fn new(choice: SolverChoice, matrix: Assembled, compliance: Compliance) -> Self {
-        Factored {
+        FactoredMatrix {
             solver: CheckedSolver::new(linear_solver(choice), matrix),
             compliance,
         }
@@ -38,11 +38,11 @@ impl Factored {
 
 /// The effective matrix K* = theta2 K + (2/dt²) M, kept until it is assembled anew, and the mass
 /// matrix, both over the unknowns of a step.
-pub(crate) struct Effective {
+pub(crate) struct EffectiveStiffness {
     /// K*.
-    pub k: Factored,
+    pub k: FactoredMatrix,
     /// M, factorised when an impulse first needs it.
-    pub m: Factored,
+    pub m: FactoredMatrix,
     /// Increment that K* belongs to.
     dt: f64,
     /// Largest diagonal entry of theta2 K in every part (force/length).
@@ -51,14 +51,14 @@ pub(crate) struct Effective {
     pub inertia: Vec<f64>,
 }
 
-impl Effective {
+impl EffectiveStiffness {
     /// Both matrices for the unknowns of a step.
-    pub fn new(body: &Body, dofs: &DofMap, parts: &Parts, choice: SolverChoice) -> Self {
-        let mass = unknown_mass(body, dofs);
+    pub fn new(elements: &Elements, dofs: &DofMap, parts: &Parts, choice: SolverChoice) -> Self {
+        let mass = unknown_mass(elements, dofs);
         let compliance = || Compliance::new(dofs.unknown.clone(), parts.of_nodes().to_vec());
-        Effective {
-            k: Factored::new(choice, mass.zeros(), compliance()),
-            m: Factored::new(choice, mass, compliance()),
+        EffectiveStiffness {
+            k: FactoredMatrix::new(choice, mass.zeros(), compliance()),
+            m: FactoredMatrix::new(choice, mass, compliance()),
             dt: f64::NAN,
             stiffness: Vec::new(),
             inertia: Vec::new(),
@@ -79,7 +79,7 @@ impl Effective {
         (start, u): (Option<&[f64]>, &[f64]),
     ) {
         let StepProblem {
-            body,
+            elements,
             weights,
             dofs,
             parts,
@@ -88,7 +88,7 @@ impl Effective {
         let mass = self.m.solver.matrix();
         let k = self.k.solver.matrix_mut();
         k.clear();
-        body.for_each_tangent(start, u, |element, tangent| {
+        elements.for_each_tangent(start, u, |element, tangent| {
             k.add(element, tangent, weights.theta2)
         });
         self.stiffness = parts.largest_diagonal(k, &dofs.dof);

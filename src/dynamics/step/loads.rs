@@ -1,18 +1,18 @@
 //! External loads at a time point and their consistent nodal forces: concentrated loads, body
 //! forces, tractions and follower pressures. Section 4 of docs/theory.md (R_theta).
 
-use crate::elements::Body;
+use crate::elements::Elements;
 use crate::model::{Load, Model, Pressure, Step, TimeBase, Variation};
 
 /// Times of a moment: since the start of the step and of the analysis, and the step's duration.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Moment {
+pub(crate) struct TimePoint {
     pub step: f64,
     pub total: f64,
     pub period: f64,
 }
 
-impl Moment {
+impl TimePoint {
     /// Value of an amplitude.
     pub fn amplitude(&self, model: &Model, index: usize) -> f64 {
         let amplitude = &model.amplitudes[index];
@@ -56,33 +56,39 @@ impl<'m> Loads<'m> {
     /// configuration of displacements `u` (2 N entries, force).
     pub fn weighted(
         &self,
-        body: &Body,
+        elements: &Elements,
         theta1: f64,
-        start: Moment,
-        end: Moment,
+        start: TimePoint,
+        end: TimePoint,
         u: &[f64],
     ) -> Vec<f64> {
         let mut r = vec![0.0; u.len()];
-        self.add(body, 1.0 - theta1, start, u, &mut r);
-        self.add(body, theta1, end, u, &mut r);
+        self.add(elements, 1.0 - theta1, start, u, &mut r);
+        self.add(elements, theta1, end, u, &mut r);
         r
     }
 
     /// The part of the concentrated loads in this, `dofs` entries (force).
-    pub fn concentrated(&self, theta1: f64, start: Moment, end: Moment, dofs: usize) -> Vec<f64> {
+    pub fn concentrated(
+        &self,
+        theta1: f64,
+        start: TimePoint,
+        end: TimePoint,
+        dofs: usize,
+    ) -> Vec<f64> {
         let mut r = vec![0.0; dofs];
         self.add_concentrated(1.0 - theta1, start, &mut r);
         self.add_concentrated(theta1, end, &mut r);
         r
     }
 
-    fn add_concentrated(&self, weight: f64, moment: Moment, r: &mut [f64]) {
+    fn add_concentrated(&self, weight: f64, moment: TimePoint, r: &mut [f64]) {
         for load in &self.step.point_loads {
             r[load.at.dof] += weight * moment.magnitude(self.model, load);
         }
     }
 
-    fn add(&self, body: &Body, weight: f64, moment: Moment, u: &[f64], r: &mut [f64]) {
+    fn add(&self, elements: &Elements, weight: f64, moment: TimePoint, u: &[f64], r: &mut [f64]) {
         if weight == 0.0 {
             return;
         }
@@ -91,13 +97,13 @@ impl<'m> Loads<'m> {
             // int H^T f^B dOmega, f^B uniform in the element
             let element = load.at.element;
             let density = if load.at.per_mass {
-                body.density(element)
+                elements.density(element)
             } else {
                 1.0
             };
             let f = weight * density * moment.magnitude(self.model, load);
-            let volumes = body.nodal_volumes(element);
-            for (&node, volume) in body.nodes(element).iter().zip(volumes) {
+            let volumes = elements.nodal_volumes(element);
+            for (&node, volume) in elements.nodes(element).iter().zip(volumes) {
                 r[2 * node] += f * volume * load.at.direction[0];
                 r[2 * node + 1] += f * volume * load.at.direction[1];
             }
@@ -107,7 +113,7 @@ impl<'m> Loads<'m> {
             let [a, b] = load.at.face.nodes(&self.model.mesh);
             let x = &self.model.mesh.coordinates;
             let length = (x[b][0] - x[a][0]).hypot(x[b][1] - x[a][1]);
-            let area = length * body.thickness(load.at.face.element);
+            let area = length * elements.thickness(load.at.face.element);
             let f = weight * moment.magnitude(self.model, load) * area / 2.0;
             for node in [a, b] {
                 r[2 * node] += f * load.at.direction[0];
@@ -116,7 +122,7 @@ impl<'m> Loads<'m> {
         }
         for load in &self.step.pressures {
             self.add_pressure(
-                body,
+                elements,
                 load,
                 weight * moment.magnitude(self.model, load),
                 u,
@@ -126,12 +132,19 @@ impl<'m> Loads<'m> {
     }
 
     /// Pressure p on the current face: -p t n dl, n the outward normal, half to each end.
-    fn add_pressure(&self, body: &Body, load: &Load<Pressure>, p: f64, u: &[f64], r: &mut [f64]) {
+    fn add_pressure(
+        &self,
+        elements: &Elements,
+        load: &Load<Pressure>,
+        p: f64,
+        u: &[f64],
+        r: &mut [f64],
+    ) {
         let [a, b] = load.at.face.nodes(&self.model.mesh);
         let x = &self.model.mesh.coordinates;
         let e = [0, 1].map(|i| x[b][i] + u[2 * b + i] - x[a][i] - u[2 * a + i]);
         // n dl = (e_y, -e_x): on the right of the way from a to b
-        let half = p * body.thickness(load.at.face.element) / 2.0;
+        let half = p * elements.thickness(load.at.face.element) / 2.0;
         for node in [a, b] {
             r[2 * node] -= half * e[1];
             r[2 * node + 1] += half * e[0];

@@ -3,7 +3,7 @@
 
 use super::dofs::DofMap;
 use super::parts::Parts;
-use crate::elements::Body;
+use crate::elements::Elements;
 use crate::linear::Assembled;
 
 /// Consistent mass matrix M, the same for both directions: stored over the nodes.
@@ -13,13 +13,13 @@ pub(crate) struct Mass {
 
 impl Mass {
     /// Mass of all elements of a model with `nodes` nodes.
-    pub fn new(body: &Body, nodes: usize) -> Self {
-        let elements: Vec<Vec<Option<usize>>> = (0..body.len())
-            .map(|e| body.nodes(e).iter().map(|&n| Some(n)).collect())
+    pub fn new(elements: &Elements, nodes: usize) -> Self {
+        let nodes_of_elements: Vec<Vec<Option<usize>>> = (0..elements.len())
+            .map(|e| elements.nodes(e).iter().map(|&n| Some(n)).collect())
             .collect();
-        let mut nodal = Assembled::new(nodes, &elements);
-        for element in 0..body.len() {
-            nodal.add(element, &body.mass(element), 1.0);
+        let mut nodal = Assembled::new(nodes, &nodes_of_elements);
+        for element in 0..elements.len() {
+            nodal.add(element, &elements.mass(element), 1.0);
         }
         Mass { nodal }
     }
@@ -59,10 +59,10 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Mass matrix over the unknowns of a step.
-pub(crate) fn unknown_mass(body: &Body, dofs: &DofMap) -> Assembled {
-    let mut mass = Assembled::new(dofs.dof.len(), &dofs.element_unknowns(body));
-    for element in 0..body.len() {
-        let (m, n) = (body.mass(element), body.nodes(element).len());
+pub(crate) fn unknown_mass(elements: &Elements, dofs: &DofMap) -> Assembled {
+    let mut mass = Assembled::new(dofs.dof.len(), &dofs.element_unknowns(elements));
+    for element in 0..elements.len() {
+        let (m, n) = (elements.mass(element), elements.nodes(element).len());
         let d = 2 * n;
         let mut both = vec![0.0; d * d];
         for a in 0..n {

@@ -11,8 +11,8 @@ mod step_problem;
 mod supports;
 
 pub(crate) use dofs::DofMap;
-pub(crate) use effective_stiffness::{Effective, Factored};
-pub(crate) use loads::{Loads, Moment};
+pub(crate) use effective_stiffness::{EffectiveStiffness, FactoredMatrix};
+pub(crate) use loads::{Loads, TimePoint};
 pub(crate) use mass::{Mass, dot};
 pub(crate) use meter::Meter;
 pub(crate) use parts::Parts;

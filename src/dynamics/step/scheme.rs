@@ -2,7 +2,7 @@
 //! (1984) and the energy-momentum form of Simo & Tarnow (1992). Section 4 of docs/theory.md.
 
 use crate::contact::RowForm;
-use crate::elements::{Body, Inverted};
+use crate::elements::{Elements, Inverted};
 use crate::model::Scheme;
 
 /// The single-step scheme SS22 with its weights, or the energy-momentum form of its mid-point rule.
@@ -54,13 +54,13 @@ impl Weights {
     /// Internal force F(U_theta), in the energy-momentum form that between U0 and U1.
     pub fn internal_force(
         &self,
-        body: &Body,
+        elements: &Elements,
         u0: &[f64],
         u1: &[f64],
         u_theta: &[f64],
     ) -> Result<Vec<f64>, Inverted> {
         let (start, u) = self.configuration(u0, u1, u_theta);
-        body.internal_force(start, u)
+        elements.internal_force(start, u)
     }
 
     /// The configuration of internal force and tangent, as the elements take it.

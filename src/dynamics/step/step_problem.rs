@@ -2,27 +2,25 @@
 //! inertia forces, and contact pairs. Sections 3 and 4 of docs/theory.md.
 
 use super::dofs::DofMap;
-use super::effective_stiffness::Effective;
-use super::loads::{Loads, Moment};
+use super::effective_stiffness::EffectiveStiffness;
+use super::loads::{Loads, TimePoint};
 use super::mass::Mass;
 use super::parts::Parts;
 use super::scheme::Weights;
 use super::supports::Supports;
+use crate::contact::tolerances::COLLAPSED_LENGTH;
 use crate::contact::{
-    ContactSurfaces, Pair, Pairing, Projection, Search, find_pairs, position, project,
+    ContactSurfaces, Pair, Pairing, Projection, Search, find_targets, position, project,
 };
 use crate::dynamics::results::{Cause, State};
-use crate::elements::Body;
+use crate::elements::Elements;
 use crate::lcp::LcpMethod;
 use crate::model::{Model, Settings};
-
-/// Part of its length in the reference configuration below which a segment counts as a point.
-const COLLAPSED: f64 = 1e-9;
 
 /// What stays the same over a step.
 pub(crate) struct StepProblem<'m> {
     pub model: &'m Model,
-    pub body: &'m Body,
+    pub elements: &'m Elements,
     pub mass: &'m Mass,
     pub parts: &'m Parts,
     pub contacts: &'m [ContactSurfaces],
@@ -36,8 +34,8 @@ pub(crate) struct StepProblem<'m> {
 /// Times of an increment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Interval {
-    pub start: Moment,
-    pub end: Moment,
+    pub start: TimePoint,
+    pub end: TimePoint,
     pub dt: f64,
 }
 
@@ -98,7 +96,7 @@ impl StepProblem<'_> {
         let length = |[p, q]: [[f64; 2]; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
         let has_collapsed = |segment: &&[usize; 2]| {
             let now = length(segment.map(|node| self.position(u, node)));
-            let least = COLLAPSED * length(segment.map(|node| x[node]));
+            let least = COLLAPSED_LENGTH * length(segment.map(|node| x[node]));
             now.is_nan() || now <= least
         };
         let mut segments = self.contacts.iter().flat_map(|contact| &contact.segments);
@@ -113,7 +111,7 @@ impl StepProblem<'_> {
     pub fn pairs(&self, search: &Search, u0: &[f64], u: &[f64], before: &Pairing) -> Vec<Pair> {
         let x = &self.model.mesh.coordinates;
         let form = self.weights.row_form();
-        find_pairs(search, u0, u, before)
+        find_targets(search, u0, u, before)
             .into_iter()
             .filter(|at| self.dofs.moves(&at.nodes))
             .map(|at| Pair::new(at, form, x, u0, u))
@@ -137,10 +135,10 @@ impl StepProblem<'_> {
         let u_theta = self.weights.displacement(&start.u, d, v0p, dt);
         let internal = self
             .weights
-            .internal_force(self.body, &start.u, &u, &u_theta)?;
+            .internal_force(self.elements, &start.u, &u, &u_theta)?;
         let load = self
             .loads
-            .weighted(self.body, self.weights.theta1, t0, t1, &u_theta);
+            .weighted(self.elements, self.weights.theta1, t0, t1, &u_theta);
         // A = (2/dt²)(d - dt V0+); at supports (V1 - V0)/dt
         let c = 2.0 / (dt * dt);
         let mut acceleration: Vec<f64> = d
@@ -164,13 +162,13 @@ impl StepProblem<'_> {
     /// Acceleration at the start of the analysis, M A = R - F, the supports being at rest.
     pub fn start_acceleration(
         &self,
-        effective: &mut Effective,
+        effective: &mut EffectiveStiffness,
         start: &State,
-        now: Moment,
+        now: TimePoint,
     ) -> Vec<f64> {
         let mut a = vec![0.0; start.u.len()];
-        let load = self.loads.weighted(self.body, 1.0, now, now, &start.u);
-        let Ok(internal) = self.body.internal_force(None, &start.u) else {
+        let load = self.loads.weighted(self.elements, 1.0, now, now, &start.u);
+        let Ok(internal) = self.elements.internal_force(None, &start.u) else {
             return a;
         };
         let r = difference(&load, &internal);

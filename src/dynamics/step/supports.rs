@@ -1,7 +1,7 @@
 //! Prescribed displacements and velocities of a step, by ramps and amplitudes. Section 4 of
 //! docs/theory.md.
 
-use super::loads::Moment;
+use super::loads::TimePoint;
 use crate::model::{Model, Step, SupportMotion};
 
 /// Prescribed motion of the supports of one step.
@@ -25,7 +25,7 @@ impl<'m> Supports<'m> {
     }
 
     /// Dof, displacement and velocity of every support: from the amplitude and its derivative.
-    pub fn motion(&self, at: Moment) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
+    pub fn motion(&self, at: TimePoint) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
         self.step
             .supports
             .iter()

@@ -4,7 +4,7 @@ use crate::deck::{Card, Name, Row};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{ALL_EXTERIOR, Contact, Face, Mesh, Surface, SurfaceKind};
 use crate::reader::context::Context;
-use crate::reader::mesh::{Block, Grid, Outline, Sides, Surfaces};
+use crate::reader::mesh::{Block, MeshIndex, Outline, Sides, Surfaces};
 use crate::reader::names::Names;
 use std::collections::HashMap;
 
@@ -12,15 +12,15 @@ use std::collections::HashMap;
 /// surface, which a pair of the deck may hold already for some nodes.
 pub(crate) fn read(
     outline: &Outline,
-    grid: &Grid,
+    mesh_index: &MeshIndex,
     (surfaces, pairs): (&mut Surfaces, &[Contact]),
     interactions: &Names,
     cx: &mut Context,
 ) -> Vec<Contact> {
     let mut all = Vec::new();
-    if let Some(general) = general(outline, grid, surfaces, interactions, cx) {
+    if let Some(general) = general(outline, mesh_index, surfaces, interactions, cx) {
         for &(master, _) in &surfaces.rigid {
-            let left_out = paired(master, pairs, surfaces, grid);
+            let left_out = paired(master, pairs, surfaces, mesh_index);
             all.push(Contact {
                 master,
                 left_out,
@@ -33,10 +33,17 @@ pub(crate) fn read(
 }
 
 /// Nodes that pairs of the deck hold away from a rigid surface, increasing.
-fn paired(rigid: usize, pairs: &[Contact], surfaces: &Surfaces, grid: &Grid) -> Vec<usize> {
+fn paired(
+    rigid: usize,
+    pairs: &[Contact],
+    surfaces: &Surfaces,
+    mesh_index: &MeshIndex,
+) -> Vec<usize> {
     let pairs = pairs.iter().filter(|pair| pair.master == rigid);
     let slaves = pairs.filter_map(|pair| surfaces.all.get(pair.slave));
-    let mut nodes: Vec<usize> = slaves.flat_map(|slave| slave.nodes(&grid.mesh)).collect();
+    let mut nodes: Vec<usize> = slaves
+        .flat_map(|slave| slave.nodes(&mesh_index.mesh))
+        .collect();
     nodes.sort_unstable();
     nodes.dedup();
     nodes
@@ -45,7 +52,7 @@ fn paired(rigid: usize, pairs: &[Contact], surfaces: &Surfaces, grid: &Grid) -> 
 /// The contact of all exterior faces with each other.
 fn general(
     outline: &Outline,
-    grid: &Grid,
+    mesh_index: &MeshIndex,
     surfaces: &mut Surfaces,
     interactions: &Names,
     cx: &mut Context,
@@ -66,7 +73,7 @@ fn general(
     let surface = surfaces.all.len();
     surfaces.all.push(Surface {
         name: ALL_EXTERIOR.to_string(),
-        kind: SurfaceKind::Faces(exterior(&grid.mesh)),
+        kind: SurfaceKind::Faces(exterior(&mesh_index.mesh)),
     });
     Some(Contact {
         slave: surface,

@@ -4,4 +4,4 @@ mod general_contact;
 pub(crate) mod pairs;
 pub(crate) mod rigid_surface;
 
-pub(crate) use rigid_surface::Obstacle;
+pub(crate) use rigid_surface::RigidSurface;

@@ -5,14 +5,14 @@ use crate::diagnostics::{Code, Diagnostic};
 use crate::model::{Adjust, Contact, Interaction, SurfaceKind};
 use crate::reader::contact::general_contact;
 use crate::reader::context::Context;
-use crate::reader::mesh::{Block, Found, Grid, Outline, Sets, Surfaces, surface};
+use crate::reader::mesh::{Block, Found, MeshIndex, Outline, Sets, Surfaces, surface};
 use crate::reader::names::Names;
 use std::collections::HashSet;
 
 /// Reads interactions and contacts.
 pub(crate) fn read(
     outline: &Outline,
-    grid: &Grid,
+    mesh_index: &MeshIndex,
     sets: &Sets,
     surfaces: &mut Surfaces,
     cx: &mut Context,
@@ -45,7 +45,7 @@ pub(crate) fn read(
         }
     }
     report_repeated(&contacts, cx);
-    let general = general_contact::read(outline, grid, (surfaces, &contacts), &names, cx);
+    let general = general_contact::read(outline, mesh_index, (surfaces, &contacts), &names, cx);
     if !general.is_empty() {
         general_contact::report_pairs(&contacts, surfaces, cx);
     }

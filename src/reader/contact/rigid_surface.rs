@@ -4,11 +4,11 @@ use crate::deck::{Card, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{RigidBody, Support, SurfaceKind};
 use crate::reader::context::Context;
-use crate::reader::mesh::{Grid, Outline, Sets, Surfaces, surface};
+use crate::reader::mesh::{MeshIndex, Outline, Sets, Surfaces, surface};
 use std::collections::BTreeMap;
 
 /// A rigid surface and the node that it moves with.
-pub(crate) struct Obstacle {
+pub(crate) struct RigidSurface {
     /// Index of the surface.
     surface: usize,
     /// Name of the surface.
@@ -26,25 +26,25 @@ pub(crate) struct Obstacle {
 /// Reads the reference nodes of all rigid surfaces.
 pub(crate) fn read(
     outline: &Outline,
-    grid: &Grid,
+    mesh_index: &MeshIndex,
     sets: &Sets,
     surfaces: &Surfaces,
     cx: &mut Context,
-) -> Vec<Obstacle> {
-    let mut obstacles = BTreeMap::new();
+) -> Vec<RigidSurface> {
+    let mut rigid_surfaces = BTreeMap::new();
     let mut incomplete = cx.may_lack_cards();
     for card in outline.model_cards("RIGID BODY") {
-        let Some((index, obstacle)) = obstacle(card, grid, sets, surfaces, cx) else {
+        let Some((index, rigid)) = rigid(card, mesh_index, sets, surfaces, cx) else {
             incomplete = true;
             continue;
         };
-        if obstacles.contains_key(&index) {
-            let message = format!("surface {} has a reference node already", obstacle.name);
+        if rigid_surfaces.contains_key(&index) {
+            let message = format!("surface {} has a reference node already", rigid.name);
             cx.error(Code::RigidSurface, card.span, message);
         }
-        obstacles.insert(index, obstacle);
+        rigid_surfaces.insert(index, rigid);
     }
-    let lone = |(index, _): &&(usize, Span)| !obstacles.contains_key(index);
+    let lone = |(index, _): &&(usize, Span)| !rigid_surfaces.contains_key(index);
     for &(index, span) in surfaces.rigid.iter().filter(lone) {
         if let Some(surface) = surfaces.all.get(index).filter(|_| !incomplete) {
             let message = format!("the rigid surface {} has no reference node", surface.name);
@@ -52,18 +52,18 @@ pub(crate) fn read(
             cx.d.push(error.help("add *RIGID BODY, ANALYTICAL SURFACE=, REF NODE="));
         }
     }
-    obstacles.into_values().collect()
+    rigid_surfaces.into_values().collect()
 }
 
-fn obstacle(
+fn rigid(
     card: &Card,
-    grid: &Grid,
+    mesh_index: &MeshIndex,
     sets: &Sets,
     surfaces: &Surfaces,
     cx: &mut Context,
-) -> Option<(usize, Obstacle)> {
+) -> Option<(usize, RigidSurface)> {
     let reference = card.required("REF NODE", cx.d);
-    let reference = reference.and_then(|field| reference_node(field, grid, sets, cx));
+    let reference = reference.and_then(|field| reference_node(field, mesh_index, sets, cx));
     let field = card.required("ANALYTICAL SURFACE", cx.d)?;
     let (index, surface, span) = surface::find(surfaces, field, cx)?;
     let SurfaceKind::Rigid(_) = surface.kind else {
@@ -75,23 +75,28 @@ fn obstacle(
     let reference = reference?;
     Some((
         index,
-        Obstacle {
+        RigidSurface {
             surface: index,
             name: surface.name.clone(),
-            nodes: surface.nodes(&grid.mesh),
+            nodes: surface.nodes(&mesh_index.mesh),
             reference,
-            label: grid.mesh.node_labels.get(reference).copied()?,
+            label: mesh_index.mesh.node_labels.get(reference).copied()?,
             span: card.span,
         },
     ))
 }
 
 /// The node, or the one node of the set, that a field says.
-fn reference_node(field: Text, grid: &Grid, sets: &Sets, cx: &mut Context) -> Option<usize> {
+fn reference_node(
+    field: Text,
+    mesh_index: &MeshIndex,
+    sets: &Sets,
+    cx: &mut Context,
+) -> Option<usize> {
     let errors = cx.errors();
-    match sets.nodes_of(field, grid, cx)[..] {
+    match sets.nodes_of(field, mesh_index, cx)[..] {
         [node] => Some(node),
-        _ if cx.errors() > errors || cx.may_lack_cards() || grid.nodes.incomplete => None,
+        _ if cx.errors() > errors || cx.may_lack_cards() || mesh_index.nodes.incomplete => None,
         ref nodes => {
             let message = format!("{} holds {} nodes", field.text, nodes.len());
             let error = Diagnostic::error(Code::RigidSurface, field.span, message);
@@ -102,44 +107,44 @@ fn reference_node(field: Text, grid: &Grid, sets: &Sets, cx: &mut Context) -> Op
 }
 
 /// The rigid surfaces with their reference nodes, as the model holds them.
-pub(crate) fn bodies(obstacles: &[Obstacle]) -> Vec<RigidBody> {
-    let body = |obstacle: &Obstacle| RigidBody {
-        surface: obstacle.surface,
-        reference: obstacle.reference,
+pub(crate) fn bodies(rigid_surfaces: &[RigidSurface]) -> Vec<RigidBody> {
+    let body = |rigid: &RigidSurface| RigidBody {
+        surface: rigid.surface,
+        reference: rigid.reference,
     };
-    obstacles.iter().map(body).collect()
+    rigid_surfaces.iter().map(body).collect()
 }
 
 /// Adds the supports of the nodes of rigid surfaces to those of a step: they move as their
 /// reference nodes.
 pub(crate) fn follow(
-    obstacles: &[Obstacle],
+    rigid_surfaces: &[RigidSurface],
     step: usize,
     supports: &mut Vec<Support>,
     cx: &mut Context,
 ) {
-    for obstacle in obstacles {
+    for rigid in rigid_surfaces {
         for direction in 0..2 {
-            let dof = 2 * obstacle.reference + direction;
+            let dof = 2 * rigid.reference + direction;
             match supports.iter().find(|support| support.dof == dof) {
                 Some(&Support { motion, .. }) => {
-                    let dofs = obstacle.nodes.iter().map(|node| 2 * node + direction);
+                    let dofs = rigid.nodes.iter().map(|node| 2 * node + direction);
                     supports.extend(dofs.map(|dof| Support { dof, motion }));
                 }
-                None => report_free(obstacle, direction, step, cx),
+                None => report_free(rigid, direction, step, cx),
             }
         }
     }
     supports.sort_by_key(|support| support.dof);
 }
 
-fn report_free(obstacle: &Obstacle, direction: usize, step: usize, cx: &mut Context) {
+fn report_free(rigid: &RigidSurface, direction: usize, step: usize, cx: &mut Context) {
     let message = format!(
         "the reference node {} of {} is free in direction {} in step {step}",
-        obstacle.label,
-        obstacle.name,
+        rigid.label,
+        rigid.name,
         direction + 1
     );
-    let error = Diagnostic::error(Code::RigidSurface, obstacle.span, message);
+    let error = Diagnostic::error(Code::RigidSurface, rigid.span, message);
     cx.d.push(error.help("prescribe its directions 1 and 2 with *BOUNDARY"));
 }

@@ -7,7 +7,7 @@ mod profile;
 pub(crate) mod sets;
 pub(crate) mod surface;
 
-pub(crate) use nodes_elements::Grid;
+pub(crate) use nodes_elements::MeshIndex;
 pub(crate) use outline::{Block, Outline, StepCards};
 pub(crate) use sets::Sets;
 pub(crate) use surface::{Found, Sides, Surfaces, corners};

@@ -10,7 +10,7 @@ use crate::reader::names::{Labelled, Labels};
 use std::collections::HashMap;
 
 /// The mesh and what the deck calls its parts.
-pub(crate) struct Grid {
+pub(crate) struct MeshIndex {
     /// Nodes that belong to elements, and elements. Sections are not yet known.
     pub mesh: Mesh,
     /// Node numbers.
@@ -49,7 +49,7 @@ struct RawElement {
 }
 
 /// Reads nodes and elements; leaves out nodes without element that are no reference nodes.
-pub(crate) fn read(outline: &Outline, cx: &mut Context) -> Grid {
+pub(crate) fn read(outline: &Outline, cx: &mut Context) -> MeshIndex {
     let errors = cx.errors();
     let mut reading = Reading {
         nodes_incomplete: outline.blocks("NODE").next().is_none(),
@@ -67,7 +67,7 @@ pub(crate) fn read(outline: &Outline, cx: &mut Context) -> Grid {
     }
     reading.report_not_planar(cx);
     let references = reading.reference_labels(outline);
-    reading.grid(&references, cx)
+    reading.mesh_index(&references, cx)
 }
 
 #[derive(Default)]
@@ -278,7 +278,7 @@ impl Reading {
         labels
     }
 
-    fn grid(self, references: &[u64], cx: &mut Context) -> Grid {
+    fn mesh_index(self, references: &[u64], cx: &mut Context) -> MeshIndex {
         let mut used = vec![false; self.nodes.len()];
         let index_of = |label: &u64| self.node_index.get(label).copied().flatten();
         for index in self
@@ -291,7 +291,7 @@ impl Reading {
             used[index] = true;
         }
         self.report_unused(&used, cx);
-        let mut grid = Grid {
+        let mut mesh_index = MeshIndex {
             mesh: Mesh::default(),
             nodes: Labels::new("node", Code::UndefinedNode),
             elements: Labels::new("element", Code::UndefinedElement),
@@ -299,20 +299,20 @@ impl Reading {
             node_groups: self.node_groups,
             element_groups: self.element_groups,
         };
-        grid.nodes.incomplete = self.nodes_incomplete;
-        grid.elements.incomplete = self.elements_incomplete;
+        mesh_index.nodes.incomplete = self.nodes_incomplete;
+        mesh_index.elements.incomplete = self.elements_incomplete;
         for &label in self.node_index.keys() {
-            grid.nodes.insert(label, Labelled::LeftOut);
+            mesh_index.nodes.insert(label, Labelled::LeftOut);
         }
         for (node, used) in self.nodes.iter().zip(used) {
             if used {
-                grid.add_node(node);
+                mesh_index.add_node(node);
             }
         }
         for element in &self.elements {
-            grid.add_element(element);
+            mesh_index.add_element(element);
         }
-        grid
+        mesh_index
     }
 
     /// Warns about nodes of no element.
@@ -336,7 +336,7 @@ impl Reading {
     }
 }
 
-impl Grid {
+impl MeshIndex {
     /// Adds nodes without element at these points; their numbers follow the largest one.
     pub fn add_points(&mut self, points: &[[f64; 2]]) {
         let largest = self.mesh.node_labels.iter().max().copied().unwrap_or(0);

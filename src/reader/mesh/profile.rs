@@ -10,7 +10,7 @@ const CHORD: f64 = std::f64::consts::PI / 180.0;
 /// degrees, relative and in radians.
 const ROUND_OFF: f64 = 1e-4;
 
-/// A rigid profile: points and the way between them, the obstacle on the right of the way.
+/// A rigid profile: points and the way between them, the rigid on the right of the way.
 #[derive(Default)]
 pub(crate) struct Profile {
     /// Points in the order of the rows.
@@ -43,7 +43,7 @@ impl Profile {
         profile
     }
 
-    /// Segments between nodes of which the first point is number `first`: the obstacle lies on the
+    /// Segments between nodes of which the first point is number `first`: the rigid lies on the
     /// left of the way from a to b, so that their way is that of the rows from the end on.
     pub fn segments(&self, first: usize) -> Vec<[usize; 2]> {
         let ways = self.ways.iter().rev();

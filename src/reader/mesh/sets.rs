@@ -1,6 +1,6 @@
 //! `*NSET` and `*ELSET`.
 
-use super::nodes_elements::{Grid, Group};
+use super::nodes_elements::{Group, MeshIndex};
 use super::outline::Outline;
 use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
@@ -23,17 +23,17 @@ pub(crate) struct Sets {
 
 impl Sets {
     /// The node, or the nodes of the set, that a field says.
-    pub fn nodes_of(&self, field: Text, grid: &Grid, cx: &mut Context) -> Vec<usize> {
+    pub fn nodes_of(&self, field: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<usize> {
         match field.as_integer() {
-            Some(_) => grid.nodes.find(field, cx).into_iter().collect(),
+            Some(_) => mesh_index.nodes.find(field, cx).into_iter().collect(),
             None => members(&self.nodes, self.node_names.find(field, cx)),
         }
     }
 
     /// The element, or the elements of the set, that a field says.
-    pub fn elements_of(&self, field: Text, grid: &Grid, cx: &mut Context) -> Vec<usize> {
+    pub fn elements_of(&self, field: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<usize> {
         match field.as_integer() {
-            Some(_) => grid.elements.find(field, cx).into_iter().collect(),
+            Some(_) => mesh_index.elements.find(field, cx).into_iter().collect(),
             None => members(&self.elements, self.element_names.find(field, cx)),
         }
     }
@@ -45,16 +45,16 @@ fn members(sets: &[Set], index: Option<usize>) -> Vec<usize> {
 }
 
 /// Reads all sets; a set may list sets that are defined later.
-pub(crate) fn read(outline: &Outline, grid: &Grid, cx: &mut Context) -> Sets {
-    let mut elements = Family::new("element set", &grid.elements);
-    elements.add_groups(&grid.element_groups);
+pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) -> Sets {
+    let mut elements = Family::new("element set", &mesh_index.elements);
+    elements.add_groups(&mesh_index.element_groups);
     elements.define(&outline.model_cards("ELSET"), "ELSET", cx);
     elements.fill(cx);
     let element_names = elements.names;
     let element_sets = resolve(&element_names, elements.drafts, cx);
 
-    let mut nodes = Family::new("node set", &grid.nodes);
-    nodes.add_groups(&grid.node_groups);
+    let mut nodes = Family::new("node set", &mesh_index.nodes);
+    nodes.add_groups(&mesh_index.node_groups);
     nodes.define(&outline.model_cards("NSET"), "NSET", cx);
     nodes.fill(cx);
     let mut sets = Sets {
@@ -68,7 +68,9 @@ pub(crate) fn read(outline: &Outline, grid: &Grid, cx: &mut Context) -> Sets {
         let found = sets.element_names.find(source, cx);
         if let (Some(draft), Some(set)) = (drafts.get_mut(index), found) {
             let members = sets.elements.get(set).map_or(&[][..], |set| &set.members);
-            let cells = members.iter().filter_map(|&e| grid.mesh.elements.get(e));
+            let cells = members
+                .iter()
+                .filter_map(|&e| mesh_index.mesh.elements.get(e));
             draft
                 .members
                 .extend(cells.flat_map(|element| element.cell.nodes()));

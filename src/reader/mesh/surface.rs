@@ -1,6 +1,6 @@
 //! `*SURFACE`.
 
-use super::nodes_elements::Grid;
+use super::nodes_elements::MeshIndex;
 use super::outline::Outline;
 use super::profile::Profile;
 use super::sets::Sets;
@@ -24,28 +24,33 @@ pub(crate) struct Surfaces {
 }
 
 /// Reads all surfaces.
-pub(crate) fn read(outline: &Outline, grid: &Grid, sets: &Sets, cx: &mut Context) -> Surfaces {
+pub(crate) fn read(
+    outline: &Outline,
+    mesh_index: &MeshIndex,
+    sets: &Sets,
+    cx: &mut Context,
+) -> Surfaces {
     let mut surfaces = Surfaces {
         names: Names::new("surface"),
         all: Vec::new(),
         rigid: Vec::new(),
         rigid_points: Vec::new(),
     };
-    let sides = Sides::new(&grid.mesh);
+    let sides = Sides::new(&mesh_index.mesh);
     for card in outline.model_cards("SURFACE") {
         let Some(name) = surfaces.names.new_name(card, cx) else {
             continue;
         };
         let errors = cx.errors();
         let kind = match card.choice("TYPE") {
-            Some("NODE") => SurfaceKind::Nodes(nodes(card, grid, sets, cx)),
+            Some("NODE") => SurfaceKind::Nodes(nodes(card, mesh_index, sets, cx)),
             Some("SEGMENTS") => {
-                let first = grid.mesh.node_count() + surfaces.rigid_points.len();
+                let first = mesh_index.mesh.node_count() + surfaces.rigid_points.len();
                 let profile = Profile::read(card, cx);
                 surfaces.rigid_points.extend(&profile.points);
                 SurfaceKind::Rigid(profile.segments(first))
             }
-            _ => SurfaceKind::Faces(faces(card, grid, sets, &sides, cx)),
+            _ => SurfaceKind::Faces(faces(card, mesh_index, sets, &sides, cx)),
         };
         if card.faulty || cx.errors() > errors {
             surfaces.names.spoil(&name);
@@ -80,7 +85,7 @@ fn report_empty(kind: &SurfaceKind, card: &Card, cx: &mut Context) {
 }
 
 /// `node or node set[, area]`
-fn nodes(card: &Card, grid: &Grid, sets: &Sets, cx: &mut Context) -> Vec<usize> {
+fn nodes(card: &Card, mesh_index: &MeshIndex, sets: &Sets, cx: &mut Context) -> Vec<usize> {
     let mut nodes = Vec::new();
     let mut seen = HashSet::new();
     for row in &card.rows {
@@ -93,14 +98,20 @@ fn nodes(card: &Card, grid: &Grid, sets: &Sets, cx: &mut Context) -> Vec<usize> 
             let help = "contact forces of nodes need no area";
             row.without_effect(1, "this area has no effect", help, cx.d);
         }
-        let found = sets.nodes_of(field, grid, cx);
+        let found = sets.nodes_of(field, mesh_index, cx);
         nodes.extend(found.into_iter().filter(|&node| seen.insert(node)));
     }
     nodes
 }
 
 /// `element or element set[, face]`
-fn faces(card: &Card, grid: &Grid, sets: &Sets, sides: &Sides, cx: &mut Context) -> Vec<Face> {
+fn faces(
+    card: &Card,
+    mesh_index: &MeshIndex,
+    sets: &Sets,
+    sides: &Sides,
+    cx: &mut Context,
+) -> Vec<Face> {
     let mut faces = Vec::new();
     let mut seen = BTreeSet::new();
     for row in &card.rows {
@@ -108,12 +119,12 @@ fn faces(card: &Card, grid: &Grid, sets: &Sets, sides: &Sides, cx: &mut Context)
         let Some(field) = row.required(0, "an element or element set", cx.d) else {
             continue;
         };
-        let elements = sets.elements_of(field, grid, cx);
+        let elements = sets.elements_of(field, mesh_index, cx);
         let found = match row.get(1) {
-            Some(face) => named_faces(&elements, face, grid, cx),
-            None => sides.free_faces(&elements, &grid.mesh),
+            Some(face) => named_faces(&elements, face, mesh_index, cx),
+            None => sides.free_faces(&elements, &mesh_index.mesh),
         };
-        sides.report_interior(&found, row, &grid.mesh, cx);
+        sides.report_interior(&found, row, &mesh_index.mesh, cx);
         let before = faces.len();
         faces.extend(found.iter().copied().filter(|&face| seen.insert(face)));
         if faces.len() - before < found.len() {
@@ -125,23 +136,28 @@ fn faces(card: &Card, grid: &Grid, sets: &Sets, sides: &Sides, cx: &mut Context)
 }
 
 /// Side `face` of each element.
-fn named_faces(elements: &[usize], face: Text, grid: &Grid, cx: &mut Context) -> Vec<Face> {
+fn named_faces(
+    elements: &[usize],
+    face: Text,
+    mesh_index: &MeshIndex,
+    cx: &mut Context,
+) -> Vec<Face> {
     let Some(side) = side_number(face, cx) else {
         return Vec::new();
     };
     let mut faces = Vec::new();
     for &element in elements {
-        match side < corners(&grid.mesh, element) {
+        match side < corners(&mesh_index.mesh, element) {
             true => faces.push(Face { element, side }),
-            false => return no_such_face(element, face, grid, cx),
+            false => return no_such_face(element, face, mesh_index, cx),
         }
     }
     faces
 }
 
-fn no_such_face(element: usize, face: Text, grid: &Grid, cx: &mut Context) -> Vec<Face> {
-    let label = grid.mesh.elements.get(element).map_or(0, |e| e.label);
-    let sides = corners(&grid.mesh, element);
+fn no_such_face(element: usize, face: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<Face> {
+    let label = mesh_index.mesh.elements.get(element).map_or(0, |e| e.label);
+    let sides = corners(&mesh_index.mesh, element);
     let message = format!(
         "element {label} has faces S1 to S{sides}, not {}",
         face.text

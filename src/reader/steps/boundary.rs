@@ -4,22 +4,22 @@ use super::amplitude::Amplitudes;
 use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Amplitude, Support, SupportMotion, TimeBase};
-use crate::reader::contact::Obstacle;
+use crate::reader::contact::RigidSurface;
 use crate::reader::context::Context;
-use crate::reader::mesh::{Grid, Outline, Sets};
+use crate::reader::mesh::{MeshIndex, Outline, Sets};
 use std::collections::BTreeMap;
 
 /// What supports and loads refer to.
 #[derive(Clone, Copy)]
 pub(crate) struct Targets<'a> {
     /// Mesh.
-    pub grid: &'a Grid,
+    pub mesh_index: &'a MeshIndex,
     /// Sets.
     pub sets: &'a Sets,
     /// Amplitudes.
     pub amplitudes: &'a Amplitudes,
     /// Rigid surfaces.
-    pub obstacles: &'a [Obstacle],
+    pub rigid_surfaces: &'a [RigidSurface],
 }
 
 /// A direction that the deck may name.
@@ -93,7 +93,7 @@ impl Supports {
     ) {
         row.at_most(4, cx.d);
         let target = row.required(0, "a node or node set", cx.d);
-        let nodes = target.map(|field| targets.sets.nodes_of(field, targets.grid, cx));
+        let nodes = target.map(|field| targets.sets.nodes_of(field, targets.mesh_index, cx));
         let Some(prescribed) = prescribed(row, cx) else {
             return;
         };
@@ -234,7 +234,7 @@ pub(crate) fn initial_velocity(
     supports: &[Support],
     cx: &mut Context,
 ) -> Vec<f64> {
-    let mut velocity = vec![0.0; targets.grid.mesh.dof_count()];
+    let mut velocity = vec![0.0; targets.mesh_index.mesh.dof_count()];
     let mut places = BTreeMap::new();
     for card in outline.model_cards("INITIAL CONDITIONS") {
         card.required("TYPE", cx.d);
@@ -250,7 +250,7 @@ pub(crate) fn initial_velocity(
             }
         }
     }
-    report_supported(&velocity, &places, supports, targets.grid, cx);
+    report_supported(&velocity, &places, supports, targets.mesh_index, cx);
     velocity
 }
 
@@ -258,7 +258,7 @@ pub(crate) fn initial_velocity(
 fn velocity_row(row: &Row, targets: Targets, cx: &mut Context) -> Vec<(usize, f64)> {
     row.at_most(3, cx.d);
     let target = row.required(0, "a node or node set", cx.d);
-    let nodes = target.map(|field| targets.sets.nodes_of(field, targets.grid, cx));
+    let nodes = target.map(|field| targets.sets.nodes_of(field, targets.mesh_index, cx));
     let value = row.real(2, "the velocity", cx.d);
     let direction = row_direction(row, value.unwrap_or(0.0), cx);
     match (nodes, direction, value) {
@@ -275,7 +275,7 @@ fn report_supported(
     velocity: &[f64],
     places: &BTreeMap<usize, Span>,
     supports: &[Support],
-    grid: &Grid,
+    mesh_index: &MeshIndex,
     cx: &mut Context,
 ) {
     let mut rows: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
@@ -288,7 +288,12 @@ fn report_supported(
     }
     for (span, dofs) in rows {
         let Some(first) = dofs.first() else { continue };
-        let label = grid.mesh.node_labels.get(first / 2).copied().unwrap_or(0);
+        let label = mesh_index
+            .mesh
+            .node_labels
+            .get(first / 2)
+            .copied()
+            .unwrap_or(0);
         let message = format!(
             "{} degrees of freedom with this velocity are prescribed, the first is node {label} \
              direction {}",

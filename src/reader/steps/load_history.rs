@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 /// How a load without amplitude reaches its magnitude, and the step it is given in.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Moment {
+pub(crate) struct StepContext {
     /// Number of the step, from 1; 0 is model data.
     pub step: usize,
     /// Whether loads without amplitude grow linearly (`*STEP, AMPLITUDE=RAMP`).
@@ -73,8 +73,8 @@ impl<K: Ord + Copy, T: Copy + PartialEq> Carried<K, T> {
     }
 
     /// Removes all loads; where loads ramp they fade out over the step.
-    pub fn clear(&mut self, moment: Moment) {
-        if !moment.ramp {
+    pub fn clear(&mut self, context: StepContext) {
+        if !context.ramp {
             self.parts.clear();
         }
         for part in self.parts.values_mut().flatten() {
@@ -83,23 +83,30 @@ impl<K: Ord + Copy, T: Copy + PartialEq> Carried<K, T> {
     }
 
     /// Adds a load; it replaces those of earlier steps under the same key.
-    pub fn add(&mut self, key: K, at: T, magnitude: f64, amplitude: Option<usize>, moment: Moment) {
+    pub fn add(
+        &mut self,
+        key: K,
+        at: T,
+        magnitude: f64,
+        amplitude: Option<usize>,
+        context: StepContext,
+    ) {
         let parts = self.parts.entry(key).or_default();
         let mut from = 0.0;
-        if moment.ramp && amplitude.is_none() {
-            for part in parts.iter_mut().filter(|part| part.step < moment.step) {
+        if context.ramp && amplitude.is_none() {
+            for part in parts.iter_mut().filter(|part| part.step < context.step) {
                 match part.load.at == at {
                     true => from += part.end,
                     false => part.fade(),
                 }
             }
-            parts.retain(|part| part.step == moment.step || part.load.at != at);
+            parts.retain(|part| part.step == context.step || part.load.at != at);
         } else {
-            parts.retain(|part| part.step == moment.step);
+            parts.retain(|part| part.step == context.step);
         }
         let variation = match amplitude {
             Some(index) => Variation::Amplitude(index),
-            None if moment.ramp => Variation::Ramp { from },
+            None if context.ramp => Variation::Ramp { from },
             None => Variation::Constant,
         };
         let load = Load {
@@ -109,7 +116,7 @@ impl<K: Ord + Copy, T: Copy + PartialEq> Carried<K, T> {
         };
         parts.push(Part {
             load,
-            step: moment.step,
+            step: context.step,
             end: 0.0,
         });
     }

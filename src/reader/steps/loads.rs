@@ -1,7 +1,7 @@
 //! `*CLOAD`, `*DLOAD` and `*DSLOAD`.
 
 use super::boundary::{Targets, row_direction};
-use super::load_history::{Carried, Moment, Operation};
+use super::load_history::{Carried, Operation, StepContext};
 use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Amplitude, BodyForce, Face, PointLoad, Pressure, Step, SurfaceKind, Traction};
@@ -34,7 +34,7 @@ enum Body {
 struct Source<'a> {
     card: &'a Card,
     amplitude: Option<usize>,
-    moment: Moment,
+    context: StepContext,
     targets: Targets<'a>,
     surfaces: &'a Surfaces,
 }
@@ -44,19 +44,19 @@ impl Loads {
     pub fn card(
         &mut self,
         card: &Card,
-        moment: Moment,
+        context: StepContext,
         targets: Targets,
         surfaces: &Surfaces,
         cx: &mut Context,
     ) {
-        self.operation(card, moment, cx);
+        self.operation(card, context, cx);
         let Ok(amplitude) = targets.amplitudes.of(card, cx) else {
             return;
         };
         let source = Source {
             card,
             amplitude,
-            moment,
+            context,
             targets,
             surfaces,
         };
@@ -69,24 +69,24 @@ impl Loads {
         }
     }
 
-    fn operation(&mut self, card: &Card, moment: Moment, cx: &mut Context) {
+    fn operation(&mut self, card: &Card, context: StepContext, cx: &mut Context) {
         let operation = match card.keyword.name {
             "CLOAD" => &mut self.point_operation,
             "DLOAD" => &mut self.element_operation,
             _ => &mut self.surface_operation,
         };
-        if !operation.starts_anew(card, moment.step, cx) {
+        if !operation.starts_anew(card, context.step, cx) {
             return;
         }
         match card.keyword.name {
-            "CLOAD" => self.points.clear(moment),
+            "CLOAD" => self.points.clear(context),
             "DLOAD" => {
-                self.bodies.clear(moment);
-                self.pressures.clear(moment);
+                self.bodies.clear(context);
+                self.pressures.clear(context);
             }
             _ => {
-                self.surface_pressures.clear(moment);
-                self.tractions.clear(moment);
+                self.surface_pressures.clear(context);
+                self.tractions.clear(context);
             }
         }
     }
@@ -94,9 +94,11 @@ impl Loads {
     /// `node or set, direction, force`
     fn point_row(&mut self, row: &Row, source: Source, cx: &mut Context) -> Option<()> {
         row.at_most(3, cx.d);
-        let Targets { grid, sets, .. } = source.targets;
+        let Targets {
+            mesh_index, sets, ..
+        } = source.targets;
         let target = row.required(0, "a node or node set", cx.d);
-        let nodes = target.map(|field| sets.nodes_of(field, grid, cx));
+        let nodes = target.map(|field| sets.nodes_of(field, mesh_index, cx));
         let force = row.real(2, "the force", cx.d);
         let direction = row_direction(row, force.unwrap_or(0.0), cx);
         let (direction, force) = (direction?, force?);
@@ -104,17 +106,19 @@ impl Loads {
             let dof = 2 * node + direction;
             let at = PointLoad { dof };
             self.points
-                .add(dof, at, force, source.amplitude, source.moment);
+                .add(dof, at, force, source.amplitude, source.context);
         }
         Some(())
     }
 
     /// `element or set, kind, magnitude[, dx, dy[, dz]]`; no set is all elements
     fn element_row(&mut self, row: &Row, source: Source, cx: &mut Context) -> Option<()> {
-        let Targets { grid, sets, .. } = source.targets;
+        let Targets {
+            mesh_index, sets, ..
+        } = source.targets;
         let elements = match row.get(0) {
-            Some(field) => sets.elements_of(field, grid, cx),
-            None => (0..grid.mesh.elements.len()).collect(),
+            Some(field) => sets.elements_of(field, mesh_index, cx),
+            None => (0..mesh_index.mesh.elements.len()).collect(),
         };
         let kind = row.required(1, "the kind of load", cx.d)?;
         let key = kind.name_key();
@@ -157,7 +161,7 @@ impl Loads {
                 at,
                 magnitude,
                 source.amplitude,
-                source.moment,
+                source.context,
             );
         }
         Some(())
@@ -173,7 +177,7 @@ impl Loads {
     ) -> Option<()> {
         row.at_most(3, cx.d);
         let magnitude = row.real(2, "the pressure", cx.d)?;
-        let mesh = &source.targets.grid.mesh;
+        let mesh = &source.targets.mesh_index.mesh;
         if let Some(&bad) = elements.iter().find(|&&e| side >= corners(mesh, e)) {
             let label = mesh.elements.get(bad).map_or(0, |e| e.label);
             let message = format!("element {label} has no face {}", side + 1);
@@ -184,7 +188,7 @@ impl Loads {
             let face = Face { element, side };
             let at = Pressure { face };
             self.pressures
-                .add(face, at, magnitude, source.amplitude, source.moment);
+                .add(face, at, magnitude, source.amplitude, source.context);
         }
         Some(())
     }
@@ -223,16 +227,16 @@ impl Loads {
         magnitude: f64,
         source: Source,
     ) {
-        let (amplitude, moment, face) = (source.amplitude, source.moment, key.1);
+        let (amplitude, context, face) = (source.amplitude, source.context, key.1);
         match direction {
             None => {
                 let at = Pressure { face };
                 self.surface_pressures
-                    .add(key, at, magnitude, amplitude, moment);
+                    .add(key, at, magnitude, amplitude, context);
             }
             Some(direction) => {
                 let at = Traction { face, direction };
-                self.tractions.add(key, at, magnitude, amplitude, moment);
+                self.tractions.add(key, at, magnitude, amplitude, context);
             }
         }
     }

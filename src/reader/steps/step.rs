@@ -2,7 +2,7 @@
 
 use super::amplitude::Amplitudes;
 use super::boundary::{Supports, Targets};
-use super::load_history::{Moment, Operation};
+use super::load_history::{Operation, StepContext};
 use super::loads::Loads;
 use super::output_requests::{Requests, restart, time_points};
 use crate::deck::{Card, Row};
@@ -90,16 +90,16 @@ impl Reading<'_> {
         cx: &mut Context,
     ) -> Option<Step> {
         self.check_nonlinear(cards.head, cx);
-        let moment = Moment {
+        let context = StepContext {
             step: number,
             ramp: cards.head.choice("AMPLITUDE") == Some("RAMP"),
         };
         let increments = self.procedure(cards, cx);
         self.own_settings(cards, cx);
-        self.conditions(cards, moment, cx);
+        self.conditions(cards, context, cx);
         self.requests.cards(&cards.cards, self.targets.sets, cx);
         let mut supports = self.supports.list();
-        rigid_surface::follow(self.targets.obstacles, number, &mut supports, cx);
+        rigid_surface::follow(self.targets.rigid_surfaces, number, &mut supports, cx);
         at_start.get_or_insert_with(|| supports.clone());
         let name = cards.head.value("NAME").and_then(|name| name.name(cx.d));
         let period = increments.map_or(0.0, |increments| increments.period);
@@ -171,18 +171,18 @@ impl Reading<'_> {
         }
     }
 
-    fn conditions(&mut self, cards: &StepCards, moment: Moment, cx: &mut Context) {
+    fn conditions(&mut self, cards: &StepCards, context: StepContext, cx: &mut Context) {
         for card in &cards.cards {
             match card.keyword.name {
                 "BOUNDARY" => {
-                    if self.support_operation.starts_anew(card, moment.step, cx) {
+                    if self.support_operation.starts_anew(card, context.step, cx) {
                         self.supports.clear();
                     }
-                    self.supports.card(card, moment.step, self.targets, cx);
+                    self.supports.card(card, context.step, self.targets, cx);
                 }
                 "CLOAD" | "DLOAD" | "DSLOAD" => {
                     self.loads
-                        .card(card, moment, self.targets, self.surfaces, cx);
+                        .card(card, context, self.targets, self.surfaces, cx);
                 }
                 _ => {}
             }
