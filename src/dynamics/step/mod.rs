@@ -7,6 +7,7 @@ mod mass;
 mod meter;
 mod parts;
 mod scheme;
+mod step_place;
 mod step_problem;
 mod supports;
 
@@ -17,5 +18,6 @@ pub(crate) use mass::{Mass, dot};
 pub(crate) use meter::Meter;
 pub(crate) use parts::Parts;
 pub(crate) use scheme::Weights;
+pub(crate) use step_place::StepPlace;
 pub(crate) use step_problem::{Equilibrium, Interval, StepProblem, check_finite, difference, sum};
 pub(crate) use supports::Supports;
