@@ -12,6 +12,11 @@
 //! `diagnostics`, `deck`, `model`, `reader`, `elements`, `linear`, `lcp`, `contact`, `prepare`,
 //! `dynamics`, `output`, `cli`. The rooms of a layer (its sub-folders) import one way as well.
 //!
+//! # Equations
+//!
+//! A formula stands above the code that evaluates it. `eq. (3.2)` is an equation of docs/theory.md,
+//! `paper eq. 21` one of Sung & Kwak. A test reads both sides.
+//!
 //! # Vocabulary
 //!
 //! | word | meaning |

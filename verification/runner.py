@@ -10,9 +10,10 @@ import sys
 import tomllib
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 
@@ -51,6 +52,29 @@ class Case:
     """Also run with --quick."""
     group: str = ""
     """What the case is for."""
+
+    @property
+    def changes_deck(self) -> bool:
+        """Whether the case runs anything but the deck as it stands."""
+        plain = Case(self.name, self.deck, frames=self.frames, every=self.every)
+        return replace(self, quick=False, group="") != plain
+
+    def changed_deck(self, decks: Path, made: Path) -> Deck:
+        """The deck of a folder with the changes; a refined one is generated in `made`."""
+        changes: dict[str, float] = {"refine": self.refine} if self.refine > 1 else {}
+        changes |= {"flight": self.flight} if self.flight > 0.0 else {}
+        if changes:
+            load(decks / "generate.py").write(made, **changes)
+        deck = Deck.read((made if changes else decks) / self.deck)
+        if self.scheme == "default":
+            deck.set_settings()
+        if self.impact_time != "deck":
+            deck.set_settings(IMPACT_TIME=self.impact_time)
+        if self.divide != 1.0 or self.until is not None:
+            dt = deck.dt / self.divide
+            period = deck.period if self.until is None else self.until
+            deck.set_increments(dt, round(period / dt))
+        return deck
 
 
 @dataclass(frozen=True)
@@ -120,30 +144,13 @@ class Verification:
             options += ["--frames", str(case.frames)]
         if case.every is not None:
             options += ["--every", repr(case.every)]
-        deck = self._deck(case).write(output / f"{case.name}.inp")
+        changed = case.changed_deck(self.decks, self.output / "decks" / case.name)
+        deck = changed.write(output / f"{case.name}.inp")
         try:
             return program.run(deck, output, *options), 0
         except program.RunFailed as failure:
             print(failure)
             return path if failure.code == program.STOPPED else None, failure.code
-
-    def _deck(self, case: Case) -> Deck:
-        decks = self.decks
-        changes: dict[str, float] = {"refine": case.refine} if case.refine > 1 else {}
-        changes |= {"flight": case.flight} if case.flight > 0.0 else {}
-        if changes:
-            decks = self.output / "decks" / case.name
-            load(self.decks / "generate.py").write(decks, **changes)
-        deck = Deck.read(decks / case.deck)
-        if case.scheme == "default":
-            deck.set_settings()
-        if case.impact_time != "deck":
-            deck.set_settings(IMPACT_TIME=case.impact_time)
-        if case.divide != 1.0 or case.until is not None:
-            dt = deck.dt / case.divide
-            period = deck.period if case.until is None else case.until
-            deck.set_increments(dt, round(period / dt))
-        return deck
 
     def group(self, name: str) -> Iterator[tuple[Case, Results]]:
         """The cases of a group with their results."""
@@ -210,23 +217,32 @@ def markdown(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return "".join("| " + " | ".join(line) + " |\n" for line in escaped)
 
 
-def start(folder: Path, decks: Path) -> Verification:
+def read(folder: Path) -> dict[str, Any]:
+    """What the folder's `cases.toml` says."""
+    return tomllib.loads((folder / "cases.toml").read_text())
+
+
+def cases_of(data: dict[str, Any]) -> list[Case]:
+    """The cases, with what their groups have in common."""
+    shared = data.get("defaults", {})
+    return [Case(**shared.get(entry.get("group"), {}) | entry) for entry in data["case"]]
+
+
+def start(folder: Path) -> Verification:
     """Reads the command line and the folder's cases, runs them."""
     parser = argparse.ArgumentParser(description=f"Verification {folder.name}")
     parser.add_argument("--quick", action="store_true", help="only the short cases")
     parser.add_argument("--reuse", action="store_true", help="keep results that exist")
     arguments = parser.parse_args()
-    data = tomllib.loads((folder / "cases.toml").read_text())
+    data = read(folder)
     common = tomllib.loads((HERE / "limits.toml").read_text())
     limits = [Limit(**entry) for entry in common["limit"] + data.get("limit", [])]
-    shared = data.get("defaults", {})
-    cases = [Case(**shared.get(entry.get("group"), {}) | entry) for entry in data["case"]]
     verification = Verification(
         folder,
-        decks,
+        ROOT / data["decks"],
         ROOT / "results" / "verification" / ("quick" if arguments.quick else "") / folder.name,
         data["title"],
-        [case for case in cases if case.quick or not arguments.quick],
+        [case for case in cases_of(data) if case.quick or not arguments.quick],
         {limit.quantity: limit for limit in limits},
         arguments.reuse,
     )

@@ -13,7 +13,7 @@ pub enum Configuration<const N: usize> {
     /// Displacements u: F(u), S = C E(u).
     At(SMatrix<f64, 2, N>),
     /// Energy-momentum form between start u0 and end u1: F at the mid configuration (u0 + u1)/2 and
-    /// the mean stress (S(u0) + S(u1))/2 (Simo & Tarnow 1992).
+    /// the mean stress, eq. (4.8) (Simo & Tarnow 1992).
     Between(SMatrix<f64, 2, N>, SMatrix<f64, 2, N>),
 }
 
@@ -34,6 +34,7 @@ impl<const N: usize> Configuration<N> {
     pub fn state(&self, point: &Point<N>, c: &Elasticity) -> PointState {
         match self {
             Configuration::At(u) => {
+                // F = I + H, eq. (2.1)
                 let h = displacement_gradient(point, u);
                 let f = Matrix2::identity() + h;
                 PointState {
@@ -48,6 +49,7 @@ impl<const N: usize> Configuration<N> {
                     displacement_gradient(point, u1),
                 );
                 let f = Matrix2::identity() + (h0 + h1) / 2.0;
+                // S_m = (S(U0) + S(U1))/2 = C (E(U0) + E(U1))/2, eq. (4.8)
                 let e = (green_lagrange(&h0) + green_lagrange(&h1)) / 2.0;
                 let end = (Matrix2::identity() + h1).determinant();
                 PointState {
@@ -65,7 +67,7 @@ pub(super) fn smaller(a: f64, b: f64) -> f64 {
     if a < b || a.is_nan() { a } else { b }
 }
 
-/// Displacement gradient H = du/dX.
+/// Displacement gradient H = du/dX, eq. (2.1).
 pub fn displacement_gradient<const N: usize>(
     point: &Point<N>,
     u: &SMatrix<f64, 2, N>,
@@ -73,7 +75,8 @@ pub fn displacement_gradient<const N: usize>(
     u * point.gradient
 }
 
-/// Green-Lagrange strain E = (H + H^T + H^T H)/2, from H so that small strains keep their digits.
+/// Green-Lagrange strain E = (H + H^T + H^T H)/2, eq. (2.2), from H so that small strains keep their
+/// digits.
 pub fn green_lagrange(h: &Matrix2<f64>) -> Matrix2<f64> {
     (h + h.transpose() + h.transpose() * h) / 2.0
 }

@@ -77,7 +77,7 @@ struct Law {
     across: f64,
 }
 
-/// Volume means of sigma = F S F^T / J and E, with J = det F sqrt(1 + 2 E_zz). Across the thickness
+/// Volume means of sigma = F S F^T/J, eq. (2.8), and E, with J = det F sqrt(1 + 2 E_zz). Across the thickness
 /// F_zz² is 1 in plane strain, so that sigma_zz = S_zz / J; in plane stress S_zz is 0.
 fn means<const N: usize, const P: usize>(
     element: &Reference<N, P>,

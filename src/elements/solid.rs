@@ -9,7 +9,7 @@ use super::kinematics::{
 use super::reference::Reference;
 use super::voigt::{Elasticity, stress};
 
-/// Consistent mass per direction, rho int h_a h_b dOmega (mass).
+/// Consistent mass per direction, int rho h_a h_b dOmega (mass), eq. (2.7).
 pub fn mass<const N: usize, const P: usize>(
     element: &Reference<N, P>,
     density: f64,
@@ -17,7 +17,7 @@ pub fn mass<const N: usize, const P: usize>(
     element.mass * density
 }
 
-/// Strain energy W = int E : C : E / 2 dOmega at displacements `u` (force length).
+/// Strain energy W = int E : C : E/2 dOmega, eq. (2.4), at displacements `u` (force length).
 pub fn strain_energy<const N: usize, const P: usize>(
     element: &Reference<N, P>,
     c: &Elasticity,
@@ -49,7 +49,7 @@ pub fn largest_strain<const N: usize, const P: usize>(
     largest
 }
 
-/// Internal force F = int B_L^T S dOmega (paper eq. 12), 2 x N (force), with the smallest
+/// Internal force F = int B_L^T S dOmega, eq. (2.5) (paper eq. 12), 2 x N (force), with the smallest
 /// determinant of the deformation gradient.
 pub fn internal_force<const N: usize, const P: usize>(
     element: &Reference<N, P>,
@@ -71,7 +71,7 @@ pub fn internal_force<const N: usize, const P: usize>(
     (force, determinant)
 }
 
-/// Tangent K = int B_L^T C B_L + B_NL^T S B_NL dOmega (paper eq. 12), D x D (force/length).
+/// Tangent K = int B_L^T C B_L + B_NL^T S B_NL dOmega, eq. (2.6) (paper eq. 12), D x D (force/length).
 ///
 /// In the energy-momentum form B_L is that of the mid configuration on both sides and S the mean
 /// stress: a symmetric approximation of the exact tangent, which has B_L of the end on the right; up to

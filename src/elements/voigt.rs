@@ -45,7 +45,7 @@ pub fn elasticity(material: &Material, plane: Plane) -> Elasticity {
     }
 }
 
-/// Second Piola-Kirchhoff stress S = C : E as a symmetric matrix (force/length^2).
+/// Second Piola-Kirchhoff stress S = C E, eq. (2.3), as a symmetric matrix (force/length^2).
 pub fn stress(c: &Elasticity, strain: &Matrix2<f64>) -> Matrix2<f64> {
     let s = c * Vector3::new(strain.m11, strain.m22, 2.0 * strain.m12);
     Matrix2::new(s.x, s.z, s.z, s.y)

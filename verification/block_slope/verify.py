@@ -247,7 +247,7 @@ def draw_rebound(verification: runner.Verification) -> None:
 
 def main() -> int:
     """Runs, checks, draws, reports."""
-    verification = runner.start(HERE, DECKS)
+    verification = runner.start(HERE)
     check_main(verification)
     tabulate_energy(verification)
     tabulate_rebound(verification)

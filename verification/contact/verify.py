@@ -4,7 +4,6 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-DECKS = HERE.parents[1] / "input"
 sys.path.insert(0, str(HERE.parent))
 
 import runner  # noqa: E402  (first: it finds the modules of scripts/)
@@ -191,7 +190,7 @@ def draw_motion(verification: runner.Verification) -> None:
 
 def main() -> int:
     """Runs, checks, draws, reports."""
-    verification = runner.start(HERE, DECKS)
+    verification = runner.start(HERE)
     cases = verification.cases
     rows = [check(verification, case, verification.results[case.name]) for case in cases]
     verification.table(

@@ -89,7 +89,7 @@ def draw(verification: runner.Verification) -> None:
 
 def main() -> int:
     """Runs, checks, draws, reports."""
-    verification = runner.start(HERE, HERE)
+    verification = runner.start(HERE)
     rows = []
     for case in verification.cases:
         results = verification.results[case.name]

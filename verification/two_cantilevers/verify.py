@@ -134,7 +134,7 @@ def tabulate(verification: runner.Verification) -> None:
 
 def main() -> int:
     """Runs, checks, draws, reports."""
-    verification = runner.start(HERE, DECKS)
+    verification = runner.start(HERE)
     for case in verification.cases:
         verification.check_run(case.name, 0.5 / case.refine)
     tabulate(verification)

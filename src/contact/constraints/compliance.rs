@@ -73,8 +73,7 @@ impl Compliance {
         Ok(())
     }
 
-    /// Rows of a pair times the inverse times the rows of another: B_p W B_q^T, normal before
-    /// tangential.
+    /// Block B_p W B_q^T of Q = B W B^T, eq. (5.1), of two pairs: normal before tangential.
     pub(crate) fn between(&self, p: &Pair, q: &Pair) -> [[f64; 2]; 2] {
         let mut product = [[0.0; 2]; 2];
         let bodies = |pair: &Pair| pair.target.nodes.map(|node| self.bodies[node]);

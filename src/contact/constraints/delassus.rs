@@ -7,7 +7,7 @@ use super::compliance::Compliance;
 use super::pair::Pair;
 use crate::lcp::FrictionalLcp;
 
-/// The complementarity problem of some pairs: Q = B W B^T with the compliance W, and the given
+/// The complementarity problem of some pairs: Q = B W B^T, eq. (5.1), with the compliance W, and the given
 /// constant terms, normal and tangential, of every pair.
 ///
 /// Every pair must have been prepared in the compliance.

@@ -25,7 +25,7 @@ pub struct Pair {
     pub gap: f64,
     /// Gap of the start in the sense of the rows, g - Bn d (length).
     pub start_gap: f64,
-    /// Slip Dt = Bt d accumulated since the start of the increment (length).
+    /// Slip Dt = Bt d since the start of the increment (length), eq. (3.5).
     pub slip: f64,
     /// Row of Bn at the dofs of s, a, b and c.
     pub normal: [f64; 8],
@@ -51,7 +51,7 @@ impl Pair {
         let length = p.length;
         let (gap, normal, tangent) = match target.target.corner {
             None => (p.gap, wide(normal), wide(tangent)),
-            // g, Bn, Bt of both segments with their weights, so that the normal has the length 1
+            // g = ((1 - w) g_i + w g_j)/|(1 - w) n_i + w n_j|, Bn and Bt likewise, eq. (10.3)
             Some(corner) => {
                 let (q, next_normal, next_tangent) = face([s, b, c]);
                 let n = [0, 1].map(|i| corner.blend(p.normal[i], q.normal[i]));
@@ -76,6 +76,7 @@ impl Pair {
             normal,
             tangent,
         };
+        // g0 = g - Bn d; Dt = Bt d, eq. (3.5)
         let d = pair.dofs().map(|dof| u[dof] - u0[dof]);
         pair.start_gap = gap - dot(&normal, &d);
         pair.slip = dot(&tangent, &d);
@@ -112,7 +113,8 @@ fn beyond([sx, sy, bx, by, cx, cy]: [f64; 6]) -> [f64; 8] {
     [sx, sy, 0.0, 0.0, bx, by, cx, cy]
 }
 
-/// Rows of the end configuration: e_n at s, -(1 - xi) e_n at a, -xi e_n at b; the same with e_t.
+/// Rows of the end configuration, eq. (3.4): e_n at s, -(1 - xi) e_n at a, -xi e_n at b; the same with
+/// e_t.
 fn end_rows([s, a, b]: [[f64; 2]; 3]) -> ([f64; 6], [f64; 6]) {
     let p = project(s, a, b);
     let weights = [1.0, -(1.0 - p.xi), -p.xi];
@@ -123,8 +125,8 @@ fn end_rows([s, a, b]: [[f64; 2]; 3]) -> ([f64; 6], [f64; 6]) {
 /// Discrete gradients between the positions `start` and `end` of s, a and b.
 ///
 /// With a = x_s - x_a, e = x_b - x_a the gap g = pi2/sqrt(pi3) and the projection xi = pi1/pi3 are
-/// functions of pi1 = a.e, pi2 = a x e, pi3 = e.e, quadratic in the positions: their gradients at
-/// the mid configuration are exact difference quotients.
+/// functions of pi1 = a.e, pi2 = a x e, pi3 = e.e, eq. (7.1), quadratic in the positions: their
+/// gradients at the mid configuration are exact difference quotients.
 fn discrete_gradient_rows(start: [[f64; 2]; 3], end: [[f64; 2]; 3]) -> ([f64; 6], [f64; 6]) {
     let arms = |[s, a, b]: [[f64; 2]; 3]| ([s[0] - a[0], s[1] - a[1]], [b[0] - a[0], b[1] - a[1]]);
     let ((a0, e0), (a1, e1)) = (arms(start), arms(end));
@@ -139,8 +141,8 @@ fn discrete_gradient_rows(start: [[f64; 2]; 3], end: [[f64; 2]; 3]) -> ([f64; 6]
     let (pi2_a, pi2_e) = ([e[1], -e[0]], [-a[1], a[0]]);
     let pi3_e = [2.0 * e[0], 2.0 * e[1]];
 
-    // F_n = alpha grad pi2 + beta grad pi3, alpha = (1/l0 + 1/l1)/2,
-    // beta = (pi2_0 + pi2_1)/2 (1/l1 - 1/l0)/(l1² - l0²), the quotient being -1/(l0 l1 (l0 + l1))
+    // Bn = alpha grad pi2 + beta grad pi3, alpha = (1/l0 + 1/l1)/2,
+    // beta = -(pi2_0 + pi2_1)/2 / (l0 l1 (l0 + l1)), eq. (7.2)
     let alpha = (1.0 / l0 + 1.0 / l1) / 2.0;
     let beta = -(cross(a0, e0) + cross(a1, e1)) / 2.0 / (l0 * l1 * (l0 + l1));
     let normal = nodal(
@@ -151,8 +153,8 @@ fn discrete_gradient_rows(start: [[f64; 2]; 3], end: [[f64; 2]; 3]) -> ([f64; 6]
         ],
     );
 
-    // F_t = L [(1/l0² + 1/l1²)/2 grad pi1 + (pi1_0 + pi1_1)/2 (1/l1² - 1/l0²)/(l1² - l0²) grad pi3],
-    // the quotient being -1/(l0² l1²), L = (l0 + l1)/2
+    // Bt = gamma grad pi1 + delta grad pi3, gamma = L (1/l0² + 1/l1²)/2,
+    // delta = -L (pi1_0 + pi1_1)/2 / (l0² l1²), L = (l0 + l1)/2, eq. (7.3)
     let length = (l0 + l1) / 2.0;
     let gamma = length * (1.0 / (l0 * l0) + 1.0 / (l1 * l1)) / 2.0;
     let delta = -length * (dot(a0, e0) + dot(a1, e1)) / 2.0 / (l0 * l0 * l1 * l1);

@@ -62,7 +62,7 @@ pub struct Crossing {
 /// All times within [0, dt] at which the node s meets the segment from a to b, increasing.
 ///
 /// ```text
-/// (x_s - x_a) x (x_b - x_a) = 0,   0 <= xi <= 1
+/// r x e = 0,   0 <= xi = r.e/e.e <= 1,   r = x_s - x_a, e = x_b - x_a    eq. (10.5)
 /// ```
 ///
 /// With second-order motion this is a polynomial of degree 4 in time; it has the sign of the gap. A
@@ -130,7 +130,7 @@ impl Relative {
         }
     }
 
-    /// r x e
+    /// r x e, eq. (10.5)
     fn cross(&self) -> Quartic {
         self.product(|r, e| r[0] * e[1] - r[1] * e[0])
     }

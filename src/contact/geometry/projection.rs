@@ -18,8 +18,8 @@ pub struct Projection {
 /// Projects the point `s` on the segment from `a` to `b`.
 ///
 /// ```text
-/// e_t = (x_b - x_a)/|x_b - x_a|   e_n = (e_t,y, -e_t,x)
-/// xi = (x_s - x_a).e_t/|x_b - x_a|   g = (x_s - x_a).e_n
+/// e_t = (x_b - x_a)/l,  e_n = (e_t,y, -e_t,x),  l = |x_b - x_a|    eq. (3.2)
+/// xi = r.e_t/l,  g = r.e_n,  r = x_s - x_a                         eq. (3.3)
 /// ```
 pub fn project(s: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Projection {
     let e = [b[0] - a[0], b[1] - a[1]];

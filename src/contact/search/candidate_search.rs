@@ -87,7 +87,7 @@ impl<'m> Search<'m> {
         &self.territories
     }
 
-    /// Number of slave_count: of slave nodes of all contacts.
+    /// Number of slave nodes of all contacts.
     pub fn slave_count(&self) -> usize {
         self.territories
             .iter()
@@ -271,11 +271,13 @@ impl Side {
         self.reference
             .extend(self.ends.iter().map(|ends| ends.map(&at)));
         self.margin.clear();
+        // m = l/2 + 2 w, eq. (10.2)
         self.margin.extend(
             self.way
                 .iter()
                 .map(|way| skin + SEARCH_MARGIN_PER_MOTION * way),
         );
+        // length/2 + m (+ R of a segment), eq. (10.1)
         let circle = |([a, b], margin): (&[[f64; 2]; 2], &f64)| Circle {
             centre: [0, 1].map(|i| a[i] + (b[i] - a[i]) / 2.0),
             // a node pairs a little beyond the ends as well

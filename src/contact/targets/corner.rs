@@ -46,6 +46,7 @@ pub fn common_normal(normals: [[f64; 2]; 2], own: [[f64; 2]; 2]) -> Option<f64> 
         return None;
     }
     let middle = ((low + high) / 2.0).clamp(0.0, width);
+    // w = sin psi/(sin(phi - psi) + sin psi), eq. (10.4)
     let (first, second) = ((width - middle).sin(), middle.sin());
     Some(second / (first + second))
 }

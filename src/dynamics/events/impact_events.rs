@@ -109,7 +109,7 @@ impl<'m> Subincrements<'_, 'm> {
     /// the exact condition of meeting. The motion of the converged piece,
     ///
     /// ```text
-    /// U(t) = U0 + t V0+ + t²/2 A,   A = (2/tau²)(d - tau V0+),
+    /// U(t) = U0 + t V0+ + t²/2 A,   A = (2/tau²) (d - tau V0+),   eq. (6.3)
     /// ```
     ///
     /// then tells when the pairs that stay out meet: at T(tau). The piece ends at the impact when
@@ -157,6 +157,7 @@ impl<'m> Subincrements<'_, 'm> {
                     }
                 }
             };
+            // T(tau) = tau, eq. (6.4)
             if (met - tau).abs() <= ACCURACY * self.nominal {
                 return self.accept(tau, solved);
             }

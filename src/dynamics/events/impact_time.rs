@@ -1,4 +1,4 @@
-//! Time of an impact: the root of T(tau) - tau by the secant method, safeguarded by bisection.
+//! Time of an impact: the root of T(tau) - tau, eq. (6.4), by the secant method, safeguarded by bisection.
 //! Section 6 of docs/theory.md, Impacts as events, item 3.
 
 use crate::dynamics::increment::Solved;

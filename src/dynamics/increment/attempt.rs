@@ -43,7 +43,7 @@ pub(crate) struct Solved {
 }
 
 impl Solved {
-    /// A = (2/dt²)(d - dt V0+) of an increment of length `dt`, at the supports too.
+    /// A = (2/dt²) (d - dt V0+), eq. (4.1), of an increment of length `dt`, at the supports too.
     pub fn mean_acceleration(&self, dt: f64) -> Vec<f64> {
         let both = self.d.iter().zip(&self.v0p);
         both.map(|(d, v0p)| 2.0 / (dt * dt) * (d - dt * v0p))
@@ -145,11 +145,11 @@ impl<'m> Attempt<'_, 'm> {
                 None => [pairs, Vec::new()],
             };
 
-            // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi) for the pairs in contact
+            // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi) for the pairs in contact, eq. (6.1)
             let (effective, meter) = (&mut *self.effective, &mut *self.meter);
             let v0p = impulses.velocity(problem, effective, &pairs, self.start, dt, meter)?;
 
-            // r = R_theta - F(U_theta) - M A,  A = (2/dt²)(d - dt V0+)
+            // r = R_theta - F(U_theta) - M A, eq. (4.5)
             let iterate = self.meter.time(
                 |t| &mut t.assembly,
                 || problem.equilibrium(self.start, &v0p, &d, self.interval),
@@ -169,7 +169,8 @@ impl<'m> Attempt<'_, 'm> {
                 .time(|t| &mut t.solve, || k.solver.solve(&free))?;
             problem.dofs.add(&solution, &mut y);
 
-            // Pn, Pt of the complementarity problem; dU = y + K*^-1 (Bn^T Pn + Bt^T Pt)
+            // Pn, Pt of the complementarity problem, eq. (5.2);
+            // dU = y + K*^-1 (Bn^T Pn + Bt^T Pt), eq. (4.7)
             let pivots = self.meter.counts.pivots;
             let method = problem.method();
             let (forces, du) = ContactForces::of_pass(
@@ -183,7 +184,7 @@ impl<'m> Attempt<'_, 'm> {
             )?;
             let pivots = self.meter.counts.pivots - pivots;
 
-            // residual with the contact forces of this pass
+            // residual r + Bn^T Pn + Bt^T Pt with the contact forces of this pass, eq. (4.7)
             let contact_force = forces.resultant(d.len());
             r = problem.dofs.restrict(&sum(&r, &contact_force));
             let forces_of = [
@@ -365,7 +366,7 @@ impl<'m> Attempt<'_, 'm> {
             |t| &mut t.assembly,
             || problem.equilibrium(start, &v0p, &d, interval),
         )?;
-        // V1 = (2/dt) d - V0+; at supports from the amplitude
+        // V1 = (2/dt) d - V0+, eq. (4.2); at supports from the amplitude
         let rate = 2.0 / interval.dt;
         let mut v: Vec<f64> = d.iter().zip(&v0p).map(|(d, v0p)| rate * d - v0p).collect();
         let mut u = sum(&start.u, &d);

@@ -48,7 +48,7 @@ impl ContactForces {
         self
     }
 
-    /// Bn^T Pn + Bt^T Pt over all dofs.
+    /// Contact force Bn^T Pn + Bt^T Pt of eq. (3.1), over all dofs.
     pub fn resultant(&self, dofs: usize) -> Vec<f64> {
         let mut force = vec![0.0; dofs];
         for (k, pair) in self.pairs.iter().enumerate() {
@@ -162,6 +162,7 @@ impl ContactForces {
             entered = false;
             let chosen: Vec<usize> = (0..inside.len()).filter(|&k| inside[k]).collect();
             let at = |k: &usize| &forces.pairs[*k];
+            // g + Bn y and Dt + Bt y, eq. (5.2)
             let constants = (
                 chosen.iter().map(|k| gap_after(at(k), y)).collect(),
                 chosen
@@ -181,7 +182,7 @@ impl ContactForces {
     }
 
     /// Impact impulses Phi, Psi of pairs at the start of an increment and the velocity after them,
-    /// V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi) (paper eq. 30), posed as
+    /// V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1) (paper eq. 30), posed as eq. (6.2):
     ///
     /// ```text
     /// 0 <= Phi  complementary to  Bn V0+ + (2/dt) max(g0, 0) >= 0
@@ -206,6 +207,7 @@ impl ContactForces {
         if !mass.solver.is_factorized() {
             meter.time(|t| &mut t.factorization, || mass.factorize())?;
         }
+        // Bn V0 + (2/dt) max(g0, 0) and Bt V0, eq. (6.2)
         let constants = (
             pairs.iter().map(approach).collect(),
             pairs.iter().map(|pair| pair.tangent_of(v0)).collect(),
@@ -221,9 +223,9 @@ impl ContactForces {
     }
 }
 
-/// Adds eps Q_kk (P_k - P_k^0) to what a problem makes zero or positive, P^0 being the forces of the
-/// pass before: where several pairs can carry the same force, the solution near that of the pass
-/// before is the one. When the passes come to rest, the term vanishes.
+/// Equal-force rule, eq. (5.3): adds eps Q_kk (P_k - P_k^0) to gaps and slips, P^0 being the forces of
+/// the pass before. Where several pairs can carry the same force, the solution near that of the pass
+/// before is taken; the term vanishes as the passes converge.
 fn add_proximal_term(problem: &mut FrictionalLcp, forces: &[[f64; 2]]) {
     let n = forces.len();
     for (k, [pn, pt]) in forces.iter().enumerate() {

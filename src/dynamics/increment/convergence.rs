@@ -74,11 +74,13 @@ impl<'a> Scales<'a> {
             increment,
             position,
         } = lengths;
+        // 4 eps (max K_ii |U| + max (2/dt²) M_ii |d|), eq. (4.10)
         let noise = |(part, &body): (usize, &usize)| {
             ROUND_OFF
                 * (stiffness[part] * larger(displacement[body], position[body])
                     + inertia[part] * larger(increment[body], position[body]))
         };
+        // 4 eps |U|, eq. (4.11)
         let bodies = displacement.iter().zip(&position);
         Scales {
             parts,

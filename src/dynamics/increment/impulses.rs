@@ -38,7 +38,7 @@ impl Impulses {
         }
     }
 
-    /// Velocity V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi) for the pairs of the iterate.
+    /// Velocity V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1), for the pairs of the iterate.
     pub fn velocity(
         &mut self,
         problem: &StepProblem,

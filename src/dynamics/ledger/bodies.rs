@@ -44,7 +44,7 @@ impl BodyMasses {
     ///
     /// ```text
     /// x_c = sum_a m_a x_a / m,  v_c = sum_a p_a / m,  r_a = x_a - x_c
-    /// H = sum_a r_a x p_a,  I = sum_ab r_a M_ab r_b,  omega = H / I
+    /// H = sum_a r_a x p_a,  I = sum_ab r_a.M_ab r_b,  omega = H / I     eq. (9.7)
     /// ```
     ///
     /// p = M v with the consistent mass, m_a its row sums, positions of the current configuration.

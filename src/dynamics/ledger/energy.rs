@@ -87,7 +87,7 @@ impl Ledger {
         e.strain = self.strains.iter().sum();
         e.kinetic = problem.mass.kinetic_energy(&end.v);
 
-        // d.R_theta, and the supports: dt V_mid.(M A)_p + d_p.(F - R - B^T P)_p
+        // d.R_theta, and at supports dt V_mid,p (M A)_p + d_p (F - R - B^T P)_p, eq. (9.1)
         e.external_work += dot(d, load);
         let contact = forces.resultant(d.len());
         for p in problem.supports.dofs() {
@@ -95,19 +95,20 @@ impl Ledger {
             e.external_work +=
                 dt * v_mid * inertia[p] + d[p] * (internal[p] - load[p] - contact[p]);
         }
-        // Pn.(Bn d) and -Pt.(Bt d)
+        // Pn.(Bn d), eq. (9.2), and -Pt.(Bt d), eq. (9.3)
         for (k, pair) in forces.pairs.iter().enumerate() {
             e.normal_contact_work += forces.normal[k] * pair.normal_of(d);
             e.friction_dissipation -= forces.tangential[k] * pair.tangent_of(d);
         }
-        // T(V0) - T(V0+)
+        // T(V0) - T(V0+), eq. (9.4)
         if v0p != &start.v {
             let kinetic = |v| problem.mass.kinetic_energy(v);
             e.impact_loss += kinetic(&start.v) - kinetic(v0p);
         }
-        // d.F_theta - (W1 - W0)
+        // d.F_theta - (W1 - W0), eq. (9.5)
         e.numerical_dissipation += dot(d, internal) - (e.strain - strain0);
 
+        // T + W less what they were at the start and every term above, eq. (9.6)
         e.balance = e.kinetic + e.strain - self.start - e.external_work - e.normal_contact_work
             + e.friction_dissipation
             + e.impact_loss

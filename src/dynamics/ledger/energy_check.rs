@@ -39,7 +39,7 @@ pub(crate) fn check_energy_gain(
 ///
 /// With energy-momentum rows a pair does the work Pn (g1 - g0). It is positive where a node slides over
 /// a convex corner on to a segment with g0 < 0, and that segment holds it because the corner turns
-/// concave corner in the same increment. Nodes that start inside, as a mesh may have them, do not count.
+/// concave in the same increment. Nodes that start inside, as a mesh may have them, do not count.
 fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) -> f64 {
     if !problem.weights.energy_momentum {
         return 0.0;
@@ -50,7 +50,7 @@ fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) 
         let [slave, a, b, _] = pair.target.nodes;
         let p = problem.place(&start.u, [slave, a, b]);
         let was_beyond = !(0.0..=1.0).contains(&p.xi) && p.gap < -CLOSED_GAP * p.length;
-        // Pn.(Bn d)
+        // Pn (Bn d) of a pair that was behind, beyond the ends, eq. (7.4)
         let work = if was_beyond {
             normal * pair.normal_of(d)
         } else {

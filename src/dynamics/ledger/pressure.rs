@@ -58,7 +58,7 @@ impl SlaveFaces {
     /// displacements `u`; NaN without area, and at nodes that are no slave nodes.
     ///
     /// ```text
-    /// N = sum Bn^T Pn,  A = sum over the faces max(-n.N/|N|, 0) t l/2
+    /// N = sum Bn^T Pn,  A = sum over the faces max(-n.N/|N|, 0) t l/2,  p = |N|/A    eq. (9.8)
     /// ```
     ///
     /// The sum of N runs over all pairs of the node; n, l and t are outward normal, current length and

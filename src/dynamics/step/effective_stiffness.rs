@@ -36,7 +36,7 @@ impl FactoredMatrix {
     }
 }
 
-/// The effective matrix K* = theta2 K + (2/dt²) M, kept until it is assembled anew, and the mass
+/// The effective matrix K* = theta2 K + (2/dt²) M, eq. (4.6), kept until it is assembled anew, and the mass
 /// matrix, both over the unknowns of a step.
 pub(crate) struct EffectiveStiffness {
     /// K*.
@@ -85,6 +85,7 @@ impl EffectiveStiffness {
             parts,
             ..
         } = problem;
+        // K* = theta2 K + (2/dt²) M, eq. (4.6)
         let mass = self.m.solver.matrix();
         let k = self.k.solver.matrix_mut();
         k.clear();

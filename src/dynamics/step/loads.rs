@@ -52,7 +52,7 @@ impl<'m> Loads<'m> {
         Loads { model, step }
     }
 
-    /// External load R_theta = (1 - theta1) R(t0) + theta1 R(t1), follower pressures in the
+    /// External load R_theta = (1 - theta1) R(t0) + theta1 R(t1), eq. (4.4), follower pressures in the
     /// configuration of displacements `u` (2 N entries, force).
     pub fn weighted(
         &self,
@@ -94,7 +94,7 @@ impl<'m> Loads<'m> {
         }
         self.add_concentrated(weight, moment, r);
         for load in &self.step.body_forces {
-            // int H^T f^B dOmega, f^B uniform in the element
+            // int N^T f^B dOmega, f^B uniform in the element
             let element = load.at.element;
             let density = if load.at.per_mass {
                 elements.density(element)
@@ -109,7 +109,7 @@ impl<'m> Loads<'m> {
             }
         }
         for load in &self.step.tractions {
-            // int H^T f^S dGamma over the reference face, half to each end
+            // int N^T f^S dGamma over the reference face, half to each end
             let [a, b] = load.at.face.nodes(&self.model.mesh);
             let x = &self.model.mesh.coordinates;
             let length = (x[b][0] - x[a][0]).hypot(x[b][1] - x[a][1]);

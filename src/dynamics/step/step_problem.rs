@@ -1,4 +1,4 @@
-//! Equation of motion of a step (paper eq. 21), evaluated at an iterate: loads, internal and
+//! Equation of motion of a step, eq. (3.1) (paper eq. 21), evaluated at an iterate: loads, internal and
 //! inertia forces, and contact pairs. Sections 3 and 4 of docs/theory.md.
 
 use super::dofs::DofMap;
@@ -55,7 +55,7 @@ pub(crate) struct Equilibrium {
 }
 
 impl Equilibrium {
-    /// R_theta - F_theta - M A.
+    /// r = R_theta - F(U_theta) - M A, eq. (4.5).
     pub fn out_of_balance(&self) -> Vec<f64> {
         difference(&difference(&self.load, &self.internal), &self.inertia)
     }
@@ -139,7 +139,7 @@ impl StepProblem<'_> {
         let load = self
             .loads
             .weighted(self.elements, self.weights.theta1, t0, t1, &u_theta);
-        // A = (2/dt²)(d - dt V0+); at supports (V1 - V0)/dt
+        // A = (2/dt²) (d - dt V0+), eq. (4.1); at supports (V1 - V0)/dt, eq. (4.9)
         let c = 2.0 / (dt * dt);
         let mut acceleration: Vec<f64> = d
             .iter()

@@ -177,7 +177,7 @@ impl<'a, M: PivotMatrix> Basis<'a, M> {
                 terms.push((*column, *value));
             }
         }
-        // w = b + M_alpha y + d y0
+        // w = b + M_alpha y + d y0, eq. (8.5)
         self.matrix.add_product(&terms, &mut values.w);
         axpy(values.z[size], self.d, &mut values.w);
         let mut residual = vec![0.0; size];

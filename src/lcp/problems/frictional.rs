@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::dense::axpy;
 use super::general::{Lcp, LcpError, expect_finite, expect_non_negative, expect_size};
 
-/// Coulomb friction of n coupled contacts. Find Pn, Pt with
+/// Coulomb friction of n coupled contacts, eq. (8.2) with the law of eq. (3.6). Find Pn, Pt with
 ///
 /// ```text
 /// g  = Qnn Pn + Qnt Pt + gap     g >= 0,  Pn >= 0,  g Pn = 0
@@ -69,7 +69,7 @@ impl FrictionalLcp {
     }
 
     /// The general problem with three unknowns per contact, z = (Pn, T+, Dt-), w = (g, Dt+, T-),
-    /// where Pt = T+ - T-, mu Pn = T+ + T-, Dt = Dt+ - Dt-:
+    /// where Pt = T+ - T-, mu Pn = T+ + T-, Dt = Dt+ - Dt-, eq. (8.3):
     ///
     /// ```text
     /// M = [ Qnn - Qnt mu   2 Qnt   0 ]      q = [ gap  ]

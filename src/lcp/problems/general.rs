@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-/// Find z >= 0 with w = M z + q >= 0 and z.w = 0.
+/// Find z >= 0 with w = M z + q >= 0 and z.w = 0, eq. (8.1).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lcp {
     /// Square matrix M.

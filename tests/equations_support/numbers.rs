@@ -1,0 +1,152 @@
+//! Numbers of equations: where they stand in the theory and where they are cited.
+
+use std::fmt;
+
+/// Number (section.equation) of an equation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Number {
+    section: usize,
+    equation: usize,
+}
+
+impl Number {
+    /// The number in "3.2".
+    pub fn parse(text: &str) -> Option<Self> {
+        let (section, equation) = text.split_once('.')?;
+        let is_number = |s: &str| !s.is_empty() && s.bytes().all(|b| b.is_ascii_digit());
+        (is_number(section) && is_number(equation)).then_some(())?;
+        Some(Number {
+            section: section.parse().ok()?,
+            equation: equation.parse().ok()?,
+        })
+    }
+}
+
+impl fmt::Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "({}.{})", self.section, self.equation)
+    }
+}
+
+/// The equations of the theory with their lines: numbers at the right end of indented lines.
+pub fn equations(theory: &str) -> Vec<(usize, Number)> {
+    let number = |line: &str| {
+        let (formula, rest) = line.strip_prefix("    ")?.rsplit_once("  (")?;
+        (!formula.trim().is_empty()).then_some(())?;
+        Number::parse(rest.strip_suffix(')')?)
+    };
+    let lines = theory.lines().enumerate();
+    lines
+        .filter_map(|(k, line)| Some((k + 1, number(line)?)))
+        .collect()
+}
+
+/// Numbers that are not those of their section, or not larger than the ones before.
+pub fn misnumbered(theory: &str) -> Vec<String> {
+    let headings: Vec<(usize, usize)> = (theory.lines().enumerate())
+        .filter_map(|(k, line)| {
+            let (number, _) = line.strip_prefix("## ")?.split_once('.')?;
+            Some((k + 1, number.parse().ok()?))
+        })
+        .collect();
+    let mut offences = Vec::new();
+    let mut last = None;
+    for (line, number) in equations(theory) {
+        let section = headings.iter().rfind(|(heading, _)| *heading < line);
+        let section = section.map(|(_, section)| *section);
+        if section != Some(number.section) {
+            offences.push(format!(
+                "line {line}: {number} stands in section {section:?}"
+            ));
+        }
+        if last.is_some_and(|last| last >= number) {
+            offences.push(format!("line {line}: {number} does not increase"));
+        }
+        last = Some(number);
+    }
+    offences
+}
+
+/// Citations `eq. (3.2)` in comments of a source text, with their lines; in the place of a number
+/// citations in another form, such as `eqs (3.2)`.
+pub fn citations(source: &str) -> Vec<(usize, Result<Number, String>)> {
+    let mut found = Vec::new();
+    for (k, line) in source.lines().enumerate() {
+        let Some((_, comment)) = line.split_once("//") else {
+            continue;
+        };
+        for (before, number) in numbers(comment) {
+            let word = before.trim_end().rsplit([' ', '(']).next().unwrap_or("");
+            if before.ends_with("eq. ") {
+                found.push((k + 1, Ok(number)));
+            } else if ["eq", "eq.", "eqs", "eqs.", "equation"].contains(&word) {
+                found.push((k + 1, Err(format!("{word} {number}"))));
+            }
+        }
+    }
+    found
+}
+
+/// Numbers of equations in the running text of a document, with their lines.
+pub fn references(document: &str) -> Vec<(usize, Result<Number, String>)> {
+    let own = equations(document);
+    let lines = document.lines().enumerate();
+    let text = lines.filter(|(k, _)| !own.iter().any(|(line, _)| *line == k + 1));
+    text.flat_map(|(k, line)| numbers(line).map(move |(_, number)| (k + 1, Ok(number))))
+        .collect()
+}
+
+/// All "(3.2)" of a line with the text before them.
+fn numbers(line: &str) -> impl Iterator<Item = (&str, Number)> {
+    line.match_indices('(').filter_map(|(at, _)| {
+        let (number, _) = line[at + 1..].split_once(')')?;
+        Some((&line[..at], Number::parse(number)?))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn number(section: usize, equation: usize) -> Number {
+        Number { section, equation }
+    }
+
+    #[test]
+    fn equations_stand_at_the_right_end_of_indented_lines() {
+        let theory =
+            "see (3.1)  (3.2)\n    a = b   (3.2)\n    f(3.1) = c\n       d  (10.11)\n      (3.3)\n";
+        let found = [(2, number(3, 2)), (4, number(10, 11))];
+        assert_eq!(equations(theory), found);
+        assert_eq!(references(theory)[0], (1, Ok(number(3, 1))));
+    }
+
+    #[test]
+    fn wrong_numbers_are_found() {
+        let theory = |numbers: [&str; 3]| {
+            let [a, b, c] = numbers.map(|n| format!("    f  ({n})\n"));
+            format!("## 2. A\n{a}{b}## 3. B\n{c}")
+        };
+        assert!(misnumbered(&theory(["2.1", "2.3", "3.1"])).is_empty());
+        for wrong in [
+            ["2.1", "2.1", "3.1"],
+            ["2.2", "2.1", "3.1"],
+            ["2.1", "2.2", "2.3"],
+            ["2.1", "3.1", "3.2"],
+        ] {
+            assert_eq!(misnumbered(&theory(wrong)).len(), 1, "{wrong:?}");
+        }
+    }
+
+    #[test]
+    fn citations_have_one_form_and_stand_in_comments() {
+        let source = "/// a, eq. (3.2) and eq. (3.4)\nf(3.1); // eq. (3.5)\nf(eq. (3.9));\n// paper eq. 12, a (1.5)\n";
+        let found = [(1, 3, 2), (1, 3, 4), (2, 3, 5)];
+        let found = found.map(|(line, section, equation)| (line, Ok(number(section, equation))));
+        assert_eq!(citations(source), found);
+        for wrong in ["eqs (3.2)", "eq (3.2)", "(eqs. (3.2))", "equation (3.2)"] {
+            let found = citations(&format!("// {wrong}"));
+            assert!(matches!(found[..], [(1, Err(_))]), "{wrong}: {found:?}");
+        }
+    }
+}
