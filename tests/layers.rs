@@ -32,7 +32,7 @@ const LAYERS: [&str; 12] = [
 
 /// Folders in which some files name each other's items, as a type and its tables do; in all others
 /// the files import one way.
-const MUTUAL: [&str; 11] = [
+const MUTUAL: [&str; 10] = [
     "cli",
     "deck/cards",
     "deck/keywords",
@@ -43,7 +43,6 @@ const MUTUAL: [&str; 11] = [
     "lcp/pivots",
     "linear",
     "model",
-    "output/file",
 ];
 
 /// Names of the layers that a source text names after `crate::`, comments and tests included.
