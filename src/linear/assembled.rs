@@ -1,12 +1,15 @@
-//! Assembly of element matrices into compressed sparse columns, through positions computed once.
+//! Assembly of element matrices into compressed sparse columns, K = sum T_e^T K_e T_e, through
+//! positions computed once. Section 4 of docs/theory.md.
 
 use sprs::{CsMat, CsMatView};
 
-/// Marks an element dof that is not an unknown.
-const NOT_AN_UNKNOWN: usize = usize::MAX;
+use super::Transformation;
 
-/// A symmetric sparse matrix assembled from element matrices. Both triangles are stored by columns;
-/// the pattern is built once and refilled in place.
+/// Marks an entry of an element matrix that does not go to one place as it is.
+const NO_SLOT: usize = usize::MAX;
+
+/// A symmetric sparse matrix over unknowns, assembled from element matrices over dofs. Both
+/// triangles are stored by columns; the pattern is built once and refilled in place.
 #[derive(Debug, Clone)]
 pub struct Assembled {
     matrix: CsMat<f64>,
@@ -14,16 +17,32 @@ pub struct Assembled {
     slots: Vec<usize>,
     /// Start of each element in `slots`.
     starts: Vec<usize>,
+    /// Terms of the entries whose dofs follow others, element by element.
+    couplings: Vec<Coupling>,
+    /// Start of each element in `couplings`.
+    coupling_starts: Vec<usize>,
+}
+
+/// A term of T_e^T K_e T_e where a row of T is not one of the identity.
+#[derive(Debug, Clone, Copy)]
+struct Coupling {
+    /// Entry of the element matrix.
+    entry: usize,
+    /// Its position in the values.
+    slot: usize,
+    /// Product of the two coefficients.
+    coefficient: f64,
 }
 
 impl Assembled {
-    /// Zero matrix of size `n` with the pattern of elements whose unknowns are given: `None` for an
-    /// element dof that is not an unknown.
-    pub fn new(n: usize, elements: &[Vec<Option<usize>>]) -> Self {
+    /// Zero matrix over the unknowns of `map` with the pattern of elements whose dofs are given.
+    pub fn new(map: &Transformation, elements: &[Vec<usize>]) -> Self {
+        let n = map.unknowns();
         let mut entries: Vec<(usize, usize)> = (0..n).map(|i| (i, i)).collect();
-        for unknowns in elements {
-            for &column in unknowns.iter().flatten() {
-                entries.extend(unknowns.iter().flatten().map(|&row| (column, row)));
+        for dofs in elements {
+            let unknowns = || dofs.iter().flat_map(|&dof| map.row(dof)).map(|term| term.0);
+            for column in unknowns() {
+                entries.extend(unknowns().map(|row| (column, row)));
             }
         }
         entries.sort_unstable();
@@ -36,14 +55,52 @@ impl Assembled {
             starts_of_columns[column + 1] += starts_of_columns[column];
         }
         let rows: Vec<usize> = entries.iter().map(|&(_, row)| row).collect();
-        let (slots, starts) = element_slots(elements, &starts_of_columns, &rows);
         let values = vec![0.0; rows.len()];
-        let matrix = CsMat::new_csc((n, n), starts_of_columns, rows, values);
-        Assembled {
-            matrix,
-            slots,
-            starts,
+        let mut assembled = Assembled {
+            matrix: CsMat::new_csc((n, n), starts_of_columns, rows, values),
+            slots: Vec::new(),
+            starts: vec![0],
+            couplings: Vec::new(),
+            coupling_starts: vec![0],
+        };
+        for dofs in elements {
+            assembled.place(map, dofs);
         }
+        assembled
+    }
+
+    /// Finds the positions of the entries of an element matrix over the given dofs.
+    fn place(&mut self, map: &Transformation, dofs: &[usize]) {
+        let pairs = dofs
+            .iter()
+            .flat_map(|column| dofs.iter().map(move |row| (row, column)));
+        for (entry, (&row, &column)) in pairs.enumerate() {
+            let slot = match (map.row(row), map.row(column)) {
+                (&[(row, 1.0)], &[(column, 1.0)]) => self.position(row, column),
+                (rows, columns) => {
+                    for &(column, c) in columns {
+                        for &(row, r) in rows {
+                            let (slot, coefficient) = (self.position(row, column), r * c);
+                            self.couplings.push(Coupling {
+                                entry,
+                                slot,
+                                coefficient,
+                            });
+                        }
+                    }
+                    NO_SLOT
+                }
+            };
+            self.slots.push(slot);
+        }
+        self.starts.push(self.slots.len());
+        self.coupling_starts.push(self.couplings.len());
+    }
+
+    /// Position in the values of an entry of the pattern.
+    fn position(&self, row: usize, column: usize) -> usize {
+        let range = self.matrix.indptr().outer_inds_sz(column);
+        range.start + self.matrix.indices()[range].partition_point(|r| *r < row)
     }
 
     /// Sets all values to zero.
@@ -54,12 +111,16 @@ impl Assembled {
     /// Adds `factor` times the matrix `k` (column by column) of an element.
     pub fn add(&mut self, element: usize, k: &[f64], factor: f64) {
         let slots = &self.slots[self.starts[element]..self.starts[element + 1]];
-        debug_assert_eq!(slots.len(), k.len(), "element matrix fits its unknowns");
+        debug_assert_eq!(slots.len(), k.len(), "element matrix fits its dofs");
         let values = self.matrix.data_mut();
         for (&slot, &value) in slots.iter().zip(k) {
-            if slot != NOT_AN_UNKNOWN {
+            if slot != NO_SLOT {
                 values[slot] += factor * value;
             }
+        }
+        let couplings = self.coupling_starts[element]..self.coupling_starts[element + 1];
+        for coupling in &self.couplings[couplings] {
+            values[coupling.slot] += coupling.coefficient * factor * k[coupling.entry];
         }
     }
 
@@ -91,52 +152,113 @@ impl Assembled {
     pub fn diagonal(&self) -> impl Iterator<Item = f64> {
         (0..self.size()).map(|i| self.matrix.get(i, i).copied().unwrap_or(0.0))
     }
-}
 
-/// Positions of the entries of all element matrices in the values of the sparse matrix.
-fn element_slots(
-    elements: &[Vec<Option<usize>>],
-    starts_of_columns: &[usize],
-    rows: &[usize],
-) -> (Vec<usize>, Vec<usize>) {
-    let mut slots = Vec::new();
-    let mut starts = vec![0];
-    for unknowns in elements {
-        for column in unknowns {
-            slots.extend(unknowns.iter().map(|row| match (row, column) {
-                (Some(row), Some(column)) => {
-                    let range = starts_of_columns[*column]..starts_of_columns[*column + 1];
-                    range.start + rows[range].partition_point(|r| r < row)
+    /// Connected group of every unknown, numbered from 0: what no entry of the matrix connects has
+    /// no part in each other's inverse.
+    pub fn groups(&self) -> Vec<usize> {
+        let n = self.size();
+        let (mut group, mut count) = (vec![usize::MAX; n], 0);
+        for first in 0..n {
+            if group[first] != usize::MAX {
+                continue;
+            }
+            let mut reached = vec![first];
+            group[first] = count;
+            while let Some(unknown) = reached.pop() {
+                let column = self.matrix.indptr().outer_inds_sz(unknown);
+                for &next in &self.matrix.indices()[column] {
+                    if group[next] == usize::MAX {
+                        group[next] = count;
+                        reached.push(next);
+                    }
                 }
-                _ => NOT_AN_UNKNOWN,
-            }));
+            }
+            count += 1;
         }
-        starts.push(slots.len());
+        group
     }
-    (slots, starts)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn elements_add_up_and_refill() {
-        let elements = vec![vec![Some(0), None, Some(1)], vec![Some(1), Some(2), None]];
-        let mut a = Assembled::new(3, &elements);
+    /// Elements of three dofs each, the second dof of the first and the third of the second held.
+    fn two_elements(map: &Transformation) -> Assembled {
+        let mut a = Assembled::new(map, &[vec![0, 1, 2], vec![2, 3, 4]]);
         let k: Vec<f64> = (0..9).map(f64::from).collect();
         for _ in 0..2 {
             a.clear();
             a.add(0, &k, 1.0);
             a.add(1, &k, 10.0);
         }
+        a
+    }
+
+    fn assert_entries<const N: usize>(a: &Assembled, expected: [[f64; N]; N]) {
         let dense = a.matrix().to_dense();
-        let expected = [[0.0, 6.0, 0.0], [2.0, 8.0, 30.0], [0.0, 10.0, 40.0]];
         for (i, row) in expected.iter().enumerate() {
             for (j, value) in row.iter().enumerate() {
                 assert_eq!(dense[[i, j]], *value, "({i}, {j})");
             }
         }
+    }
+
+    #[test]
+    fn elements_add_up_and_refill() {
+        let free = |unknown| vec![(unknown, 1.0)];
+        let rows = [free(0), vec![], free(1), free(2), vec![]];
+        let a = two_elements(&Transformation::new(3, rows));
+        assert_entries(&a, [[0.0, 6.0, 0.0], [2.0, 8.0, 30.0], [0.0, 10.0, 40.0]]);
         assert_eq!(a.diagonal().collect::<Vec<_>>(), [0.0, 8.0, 40.0]);
+        assert_eq!(a.groups(), [0, 0, 0]);
+    }
+
+    #[test]
+    fn a_dof_that_follows_others_adds_to_their_rows_and_columns() {
+        // u = T q: u1 = 2 q0, u4 = q2 - 3 q0
+        let free = |unknown| vec![(unknown, 1.0)];
+        let rows = [
+            free(0),
+            vec![(0, 2.0)],
+            free(1),
+            free(2),
+            vec![(2, 1.0), (0, -3.0)],
+        ];
+        let dense = [
+            [1.0, 0.0, 0.0],
+            [2.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+            [-3.0, 0.0, 1.0],
+        ];
+        let k = |element: usize, i: usize, j: usize| {
+            let at = 2 * element;
+            match i >= at && j >= at && i < at + 3 && j < at + 3 {
+                true => [1.0, 10.0][element] * (3 * (j - at) + i - at) as f64,
+                false => 0.0,
+            }
+        };
+        let mut expected = [[0.0; 3]; 3];
+        for (p, row) in expected.iter_mut().enumerate() {
+            for (q, sum) in row.iter_mut().enumerate() {
+                for (i, ti) in dense.iter().enumerate() {
+                    for (j, tj) in dense.iter().enumerate() {
+                        *sum += ti[p] * (k(0, i, j) + k(1, i, j)) * tj[q];
+                    }
+                }
+            }
+        }
+        assert_entries(&two_elements(&Transformation::new(3, rows)), expected);
+    }
+
+    #[test]
+    fn groups_are_what_elements_and_equations_connect() {
+        let elements = [vec![0, 1], vec![2, 3]];
+        let apart = Assembled::new(&Transformation::identity(4), &elements);
+        assert_eq!(apart.groups(), [0, 0, 1, 1]);
+        let rows = [0, 1, 0, 2].map(|unknown| vec![(unknown, 1.0)]);
+        let tied = Assembled::new(&Transformation::new(3, rows), &elements);
+        assert_eq!(tied.groups(), [0, 0, 0]);
     }
 }

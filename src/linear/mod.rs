@@ -8,6 +8,7 @@ mod ordering;
 mod partial_inverse;
 mod solver;
 mod sprs_ldl;
+mod transformation;
 
 pub use assembled::Assembled;
 pub use checked::CheckedSolver;
@@ -15,3 +16,4 @@ pub use faer_ldl::FaerLdl;
 pub use largest::{larger, largest};
 pub use solver::{LinearError, LinearSolver, linear_solver};
 pub use sprs_ldl::SprsLdl;
+pub use transformation::Transformation;

@@ -6,6 +6,7 @@
 mod amplitude;
 mod bodies;
 mod contact;
+mod equation;
 mod load;
 mod material;
 mod mesh;
@@ -18,6 +19,7 @@ mod surface;
 pub use amplitude::{Amplitude, TimeBase};
 pub use bodies::Bodies;
 pub use contact::{Adjust, Contact, Interaction};
+pub use equation::Equation;
 pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
 pub use material::{Material, Plane, Section};
 pub use mesh::{Cell, Element, Mesh, Set};
@@ -46,6 +48,8 @@ pub struct Model {
     pub contacts: Vec<Contact>,
     /// Amplitude curves.
     pub amplitudes: Vec<Amplitude>,
+    /// Equations between displacements, sorted by the dof that they eliminate, each at most once.
+    pub equations: Vec<Equation>,
     /// Initial velocity, `2 N` entries (length/time).
     pub initial_velocity: Vec<f64>,
     /// Steps in order.

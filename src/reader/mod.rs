@@ -77,6 +77,7 @@ fn read(cx: &mut Context) -> Model {
         sections: properties.sections,
         contacts,
         amplitudes: amplitudes.all,
+        equations: Vec::new(),
         initial_velocity,
         steps: steps.all,
         rigid_bodies: rigid_surface::bodies(&rigid_surfaces),

@@ -59,6 +59,7 @@ pub fn model() -> Model {
         }],
         contacts: vec![contact(), contact()],
         amplitudes: vec![],
+        equations: vec![],
         initial_velocity: vec![0.0; 14],
         steps: vec![step()],
         rigid_bodies: vec![],

@@ -1,10 +1,11 @@
-//! Compliance at the contacts: the entries of an inverse W that the Delassus operator Q = B W B^T
-//! needs, W being K*^-1 in a pass and M^-1 for impulses. Sections 5 and 6 of docs/theory.md.
+//! Compliance at the contacts: the entries of an inverse W that the Delassus operator
+//! Q = B T W T^T B^T needs, W being K*^-1 in a pass and M^-1 for impulses. Sections 5 and 6 of
+//! docs/theory.md.
 
 use nalgebra::DMatrix;
 
 use super::pair::Pair;
-use crate::linear::{CheckedSolver, LinearError};
+use crate::linear::{CheckedSolver, LinearError, Transformation};
 
 /// The inverse of a factorised matrix at the unknowns that pairs act on.
 ///
@@ -12,26 +13,36 @@ use crate::linear::{CheckedSolver, LinearError};
 /// matrix for any normals costs no further solves.
 #[derive(Debug)]
 pub struct Compliance {
-    /// Unknown of every dof; `None` at supports.
-    unknown: Vec<Option<usize>>,
-    /// Body of every node: the inverse is zero between bodies.
-    bodies: Vec<usize>,
-    /// Row of the inverse of every dof, where it has been computed.
+    /// T: what unknowns the dofs depend on.
+    map: Transformation,
+    /// Connected group of every unknown: the inverse is zero between groups.
+    groups: Vec<usize>,
+    /// Row of the inverse of every unknown, where it has been computed.
     place: Vec<Option<usize>>,
-    /// Dofs of the rows.
-    dofs: Vec<usize>,
+    /// Unknowns of the rows.
+    unknowns: Vec<usize>,
     inverse: DMatrix<f64>,
 }
 
+/// The rows of a pair at one unknown: entries of Bn T and Bt T.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct UnknownEntry {
+    place: usize,
+    group: usize,
+    normal: f64,
+    tangent: f64,
+}
+
 impl Compliance {
-    /// Compliance for the given unknowns of all dofs (`None` at supports) and bodies of all nodes.
-    pub fn new(unknown: Vec<Option<usize>>, bodies: Vec<usize>) -> Self {
-        let place = vec![None; unknown.len()];
+    /// Compliance for the unknowns that all dofs depend on, and the connected groups of the
+    /// unknowns.
+    pub fn new(map: Transformation, groups: Vec<usize>) -> Self {
+        let place = vec![None; map.unknowns()];
         Compliance {
-            unknown,
-            bodies,
+            map,
+            groups,
             place,
-            dofs: Vec::new(),
+            unknowns: Vec::new(),
             inverse: DMatrix::zeros(0, 0),
         }
     }
@@ -39,11 +50,11 @@ impl Compliance {
     /// Forgets the inverse: the matrix has changed.
     pub fn clear(&mut self) {
         self.place.fill(None);
-        self.dofs.clear();
+        self.unknowns.clear();
         self.inverse = DMatrix::zeros(0, 0);
     }
 
-    /// Computes the inverse at the dofs of `pairs` too, if some are missing.
+    /// Computes the inverse at the unknowns of `pairs` too, if some are missing.
     ///
     /// # Errors
     /// What the solver says.
@@ -52,54 +63,67 @@ impl Compliance {
         pairs: &[Pair],
         solver: &mut CheckedSolver,
     ) -> Result<(), LinearError> {
-        let missing = |dof: &usize| self.unknown[*dof].is_some() && self.place[*dof].is_none();
-        let missing: Vec<usize> = pairs.iter().flat_map(Pair::dofs).filter(missing).collect();
+        let terms = pairs
+            .iter()
+            .flat_map(Pair::dofs)
+            .flat_map(|dof| self.map.row(dof));
+        let missing = |unknown: &usize| self.place[*unknown].is_none();
+        let missing: Vec<usize> = terms.map(|term| term.0).filter(missing).collect();
         if missing.is_empty() {
             return Ok(());
         }
-        self.dofs.extend(missing);
-        self.dofs.sort_unstable();
-        self.dofs.dedup();
-        let unknowns: Vec<usize> = self
-            .dofs
-            .iter()
-            .filter_map(|&dof| self.unknown[dof])
-            .collect();
-        let inverse = solver.inverse_at(&unknowns)?;
-        self.inverse = DMatrix::from_vec(unknowns.len(), unknowns.len(), inverse);
-        for (place, &dof) in self.dofs.iter().enumerate() {
-            self.place[dof] = Some(place);
+        self.unknowns.extend(missing);
+        self.unknowns.sort_unstable();
+        self.unknowns.dedup();
+        let inverse = solver.inverse_at(&self.unknowns)?;
+        let size = self.unknowns.len();
+        self.inverse = DMatrix::from_vec(size, size, inverse);
+        for (place, &unknown) in self.unknowns.iter().enumerate() {
+            self.place[unknown] = Some(place);
         }
         Ok(())
     }
 
-    /// Block B_p W B_q^T of Q = B W B^T, eq. (5.1), of two pairs: normal before tangential.
-    pub(crate) fn between(&self, p: &Pair, q: &Pair) -> [[f64; 2]; 2] {
-        let mut product = [[0.0; 2]; 2];
-        let bodies = |pair: &Pair| pair.target.nodes.map(|node| self.bodies[node]);
-        let (of_p, of_q) = (bodies(p), bodies(q));
-        if !of_p.iter().any(|body| of_q.contains(body)) {
-            return product;
-        }
-        let places = |pair: &Pair| pair.dofs().map(|dof| self.place[dof]);
-        let (rows, columns) = (places(p), places(q));
-        for (k, &column) in columns.iter().enumerate() {
-            let Some(column) = column else { continue };
-            let is_zero = q.normal[k] == 0.0 && q.tangent[k] == 0.0;
-            if is_zero || !of_p.contains(&of_q[k / 2]) {
+    /// Entries of Bn T and Bt T of a pair that are not both zero; the pair must have been prepared.
+    pub(super) fn entries(&self, pair: &Pair) -> Vec<UnknownEntry> {
+        let mut entries = Vec::with_capacity(8);
+        for (k, dof) in pair.dofs().into_iter().enumerate() {
+            let [normal, tangent] = [pair.normal[k], pair.tangent[k]];
+            if normal == 0.0 && tangent == 0.0 {
                 continue;
             }
-            let column = self.inverse.column(column);
-            let mut sum = [0.0; 2];
-            for (l, &row) in rows.iter().enumerate() {
-                if let Some(row) = row {
-                    sum[0] += p.normal[l] * column[row];
-                    sum[1] += p.tangent[l] * column[row];
+            for &(unknown, c) in self.map.row(dof) {
+                if let Some(place) = self.place[unknown] {
+                    entries.push(UnknownEntry {
+                        place,
+                        group: self.groups[unknown],
+                        normal: c * normal,
+                        tangent: c * tangent,
+                    });
                 }
             }
+        }
+        entries
+    }
+
+    /// Block (B_p T) W (B_q T)^T of Q = B T W T^T B^T, eq. (5.1), of two pairs: normal before
+    /// tangential.
+    pub(super) fn between(&self, p: &[UnknownEntry], q: &[UnknownEntry]) -> [[f64; 2]; 2] {
+        let mut product = [[0.0; 2]; 2];
+        for of_q in q {
+            if !p.iter().any(|of_p| of_p.group == of_q.group) {
+                continue;
+            }
+            let column = self.inverse.column(of_q.place);
+            let mut sum = [0.0; 2];
+            for of_p in p {
+                let w = column[of_p.place];
+                sum[0] += of_p.normal * w;
+                sum[1] += of_p.tangent * w;
+            }
             for (product, sum) in product.iter_mut().zip(sum) {
-                product[0] += sum * q.normal[k];
-                product[1] += sum * q.tangent[k];
+                product[0] += sum * of_q.normal;
+                product[1] += sum * of_q.tangent;
             }
         }
         product

@@ -18,10 +18,11 @@ pub fn frictional_lcp(
     tangential: Vec<f64>,
 ) -> FrictionalLcp {
     let n = pairs.len();
+    let rows: Vec<_> = pairs.iter().map(|pair| compliance.entries(pair)).collect();
     let mut q = DMatrix::zeros(2 * n, 2 * n);
     for k in 0..n {
         for l in k..n {
-            let product = compliance.between(&pairs[k], &pairs[l]);
+            let product = compliance.between(&rows[k], &rows[l]);
             for (i, row) in product.into_iter().enumerate() {
                 for (j, value) in row.into_iter().enumerate() {
                     q[(k + i * n, l + j * n)] = value;

@@ -227,7 +227,7 @@ impl<'m> Subincrements<'_, 'm> {
                         let is_free = motion.may_meet(&p, nodes)
                             && s != a
                             && s != b
-                            && problem.dofs.moves(&nodes)
+                            && problem.unknowns.moves(&nodes)
                             && !active.holds(slave_index, &p);
                         if is_free
                             && let Some(time) = motion.entry(problem, u0, nodes)

@@ -123,7 +123,7 @@ impl<'m> Attempt<'_, 'm> {
 
         // k = 0: from U0; the supports move by their prescribed increment in the predictor
         let mut d = vec![0.0; u0.len()];
-        let mut prescribed = problem.support_increment(u0, self.interval);
+        let mut prescribed = problem.unknowns.prescribed_increment(u0, self.interval.end);
         let mut state = contact.clone();
         let touching = self.active.map_or(Vec::new(), ActiveConstraints::keys);
         let mut impulses = Impulses::new(contact, touching);
@@ -155,19 +155,19 @@ impl<'m> Attempt<'_, 'm> {
                 || problem.equilibrium(self.start, &v0p, &d, self.interval),
             )?;
             let mut r = iterate.out_of_balance();
-            trace.balance(largest(&problem.dofs.restrict(&r)));
+            trace.balance(largest(&problem.unknowns.restrict(&r)));
 
             // y = K*^-1 r; in the predictor the supports move by d_p, with the force -theta2 K d_p
             self.refresh(pass, &u, &iterate.u_theta)?;
             let mut y = std::mem::replace(&mut prescribed, vec![0.0; d.len()]);
             let support_force = self.support_force(&y, &u, &iterate.u_theta);
             r = difference(&r, &support_force);
-            let free = problem.dofs.restrict(&r);
+            let free = problem.unknowns.restrict(&r);
             let k = &mut self.effective.k;
             let solution = self
                 .meter
                 .time(|t| &mut t.solve, || k.solver.solve(&free))?;
-            problem.dofs.add(&solution, &mut y);
+            problem.unknowns.add(&solution, &mut y);
 
             // Pn, Pt of the complementarity problem, eq. (5.2);
             // dU = y + K*^-1 (Bn^T Pn + Bt^T Pt), eq. (4.7)
@@ -177,7 +177,7 @@ impl<'m> Attempt<'_, 'm> {
                 pairs,
                 (&state, pairing.settled),
                 &y,
-                &problem.dofs,
+                &problem.unknowns,
                 k,
                 method,
                 self.meter,
@@ -186,7 +186,7 @@ impl<'m> Attempt<'_, 'm> {
 
             // residual r + Bn^T Pn + Bt^T Pt with the contact forces of this pass, eq. (4.7)
             let contact_force = forces.resultant(d.len());
-            r = problem.dofs.restrict(&sum(&r, &contact_force));
+            r = problem.unknowns.restrict(&sum(&r, &contact_force));
             let forces_of = [
                 ("the load", &iterate.load),
                 ("the internal force", &iterate.internal),
@@ -196,13 +196,16 @@ impl<'m> Attempt<'_, 'm> {
                 ("the displacement correction", &du),
             ];
             check_finite(&forces_of)?;
-            let force = forces_of[..5].iter().map(|(_, force)| force.as_slice());
-            let force = largest_forces(problem.parts, force);
+            let force = forces_of[..5].iter();
+            let force: Vec<_> = force
+                .map(|(_, force)| problem.unknowns.magnitudes(force))
+                .collect();
+            let force = largest_forces(problem.parts, force.iter().map(|force| force.as_ref()));
             let scales = self.scales(force, &u, [&d, &du], &forces);
-            let errors = Errors::new(problem.parts, &r, &problem.dofs.dof, &du);
+            let errors = Errors::new(problem.parts, &r, &problem.unknowns.dof, &du);
             let report = scales.report(&errors, &forces, pivots);
             let position = |node| problem.position(&u, node);
-            trace.worst = scales.worst(&r, &problem.dofs.dof, position);
+            trace.worst = scales.worst(&r, &problem.unknowns.dof, position);
             trace.passes.push(report);
             self.meter.counts.passes += 1;
             self.meter.counts.residual = report.residual;
@@ -270,7 +273,7 @@ impl<'m> Attempt<'_, 'm> {
             Err(Cause::Crossed {
                 slave,
                 segment,
-                prescribed: !self.problem.dofs.moves(&[slave, a, b]),
+                prescribed: !self.problem.unknowns.moves(&[slave, a, b]),
             })
         })
     }
@@ -292,7 +295,7 @@ impl<'m> Attempt<'_, 'm> {
         let StepProblem {
             settings,
             weights,
-            dofs,
+            unknowns,
             ..
         } = self.problem;
         let (problem, effective, dt) = (self.problem, &mut *self.effective, self.interval.dt);
@@ -313,7 +316,7 @@ impl<'m> Attempt<'_, 'm> {
             .time(|t| &mut t.factorization, || effective.k.factorize());
         factorized.map_err(|error| match error {
             LinearError::NotPositiveDefinite { unknown, .. } => Cause::Indefinite {
-                node: dofs.dof[unknown] / 2,
+                node: unknowns.dof[unknown] / 2,
             },
             other => other.into(),
         })
@@ -366,13 +369,11 @@ impl<'m> Attempt<'_, 'm> {
             |t| &mut t.assembly,
             || problem.equilibrium(start, &v0p, &d, interval),
         )?;
-        // V1 = (2/dt) d - V0+, eq. (4.2); at supports from the amplitude
+        // V1 = (2/dt) d - V0+, eq. (4.2); of what is prescribed from the amplitude
         let rate = 2.0 / interval.dt;
         let mut v: Vec<f64> = d.iter().zip(&v0p).map(|(d, v0p)| rate * d - v0p).collect();
         let mut u = sum(&start.u, &d);
-        for (dof, u1, v1) in problem.supports.motion(interval.end) {
-            (u[dof], v[dof]) = (u1, v1);
-        }
+        problem.unknowns.prescribe(interval.end, &mut u, &mut v);
         let end = State {
             u,
             v,

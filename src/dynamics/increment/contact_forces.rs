@@ -5,7 +5,7 @@ use super::closed_pairs::ClosedPairs;
 use crate::contact::tolerances::SETTLED_OVERLAP;
 use crate::contact::{Pair, add_contact_forces, frictional_lcp};
 use crate::dynamics::results::{Cause, FailedLcp};
-use crate::dynamics::step::{DofMap, FactoredMatrix, Meter};
+use crate::dynamics::step::{FactoredMatrix, Meter, Unknowns};
 use crate::lcp::{ContactState, FrictionalLcp, LcpMethod, solve_frictional};
 
 /// Part of the compliance of a pair that holds its force near that of the pass before.
@@ -130,7 +130,7 @@ impl ContactForces {
         pairs: Vec<Pair>,
         (warm, settled): (&ClosedPairs, bool),
         y: &[f64],
-        dofs: &DofMap,
+        unknowns: &Unknowns,
         matrix: &mut FactoredMatrix,
         method: LcpMethod,
         meter: &mut Meter,
@@ -174,10 +174,10 @@ impl ContactForces {
             let last = || chosen.iter().map(|k| warm.force(&at(k).target)).collect();
             let warm = (states, settled.then(last));
             forces.solve(&chosen, constants, warm, matrix, method, meter)?;
-            let load = dofs.restrict(&forces.resultant(y.len()));
+            let load = unknowns.restrict(&forces.resultant(y.len()));
             let correction = meter.time(|t| &mut t.solve, || matrix.solver.solve(&load))?;
             du.copy_from_slice(y);
-            dofs.add(&correction, &mut du);
+            unknowns.add(&correction, &mut du);
         }
     }
 
@@ -194,7 +194,7 @@ impl ContactForces {
         pairs: Vec<Pair>,
         v0: &[f64],
         dt: f64,
-        dofs: &DofMap,
+        unknowns: &Unknowns,
         mass: &mut FactoredMatrix,
         method: LcpMethod,
         meter: &mut Meter,
@@ -216,9 +216,9 @@ impl ContactForces {
         let states = vec![ContactState::Stick; pairs.len()];
         let mut impulses = ContactForces::open(pairs);
         impulses.solve(&chosen, constants, (states, None), mass, method, meter)?;
-        let load = dofs.restrict(&impulses.resultant(v0.len()));
+        let load = unknowns.restrict(&impulses.resultant(v0.len()));
         let jump = meter.time(|t| &mut t.solve, || mass.solver.solve(&load))?;
-        dofs.add(&jump, &mut v0p);
+        unknowns.add(&jump, &mut v0p);
         Ok((v0p, impulses))
     }
 }

@@ -70,7 +70,7 @@ impl Impulses {
         let struck: Vec<Pair> = struck.map(rows).collect();
         let (m, method) = (&mut effective.m, problem.method());
         let (v0p, acting) =
-            ContactForces::impulses(struck, &start.v, dt, &problem.dofs, m, method, meter)?;
+            ContactForces::impulses(struck, &start.v, dt, &problem.unknowns, m, method, meter)?;
         self.acting = acting;
         self.last = Some((targets, v0p.clone()));
         Ok(v0p)

@@ -87,10 +87,13 @@ impl Ledger {
         e.strain = self.strains.iter().sum();
         e.kinetic = problem.mass.kinetic_energy(&end.v);
 
-        // d.R_theta, and at supports dt V_mid,p (M A)_p + d_p (F - R - B^T P)_p, eq. (9.1)
+        // d.R_theta, and at supports dt V_mid,p (M A)_p + d_p (F - R - B^T P)_p, eq. (9.1), with
+        // what equations pass on to them
         e.external_work += dot(d, load);
-        let contact = forces.resultant(d.len());
-        for p in problem.supports.dofs() {
+        let contact = &forces.resultant(d.len());
+        let [load, internal, inertia, contact] =
+            [load, internal, inertia, contact].map(|force| problem.unknowns.passed_on(force));
+        for p in problem.unknowns.prescribed() {
             let v_mid = (v0p[p] + end.v[p]) / 2.0;
             e.external_work +=
                 dt * v_mid * inertia[p] + d[p] * (internal[p] - load[p] - contact[p]);
@@ -106,7 +109,7 @@ impl Ledger {
             e.impact_loss += kinetic(&start.v) - kinetic(v0p);
         }
         // d.F_theta - (W1 - W0), eq. (9.5)
-        e.numerical_dissipation += dot(d, internal) - (e.strain - strain0);
+        e.numerical_dissipation += dot(d, &solved.equilibrium.internal) - (e.strain - strain0);
 
         // T + W less what they were at the start and every term above, eq. (9.6)
         e.balance = e.kinetic + e.strain - self.start - e.external_work - e.normal_contact_work

@@ -27,7 +27,7 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         ..
     } = &solved.equilibrium;
     let mut reaction = vec![0.0; dofs];
-    for p in problem.supports.dofs() {
+    for &p in problem.unknowns.constrained() {
         reaction[p] = inertia[p] + internal[p] - load[p] - contact_force[p];
     }
     let mut results = NodalResults {

@@ -12,8 +12,8 @@ use crate::dynamics::results::{
     Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State,
 };
 use crate::dynamics::step::{
-    DofMap, EffectiveStiffness, Interval, Loads, Mass, Meter, Parts, StepPlace, StepProblem,
-    Supports, Weights,
+    EffectiveStiffness, Interval, Loads, Mass, Meter, Parts, StepPlace, StepProblem, Unknowns,
+    Weights,
 };
 use crate::elements::Elements;
 use crate::model::{ImpactTime, Increments, Model, Step};
@@ -124,13 +124,11 @@ impl<'m> Runner<'m, '_> {
             contacts: self.contacts,
             settings: step.settings,
             weights: Weights::new(step.settings.scheme),
-            dofs: DofMap::new(self.elements, step, self.model.mesh.dof_count()),
+            unknowns: Unknowns::new(self.model, self.elements, step, &self.state.u),
             loads: Loads::new(self.model, step),
-            supports: Supports::new(self.model, step, &self.state.u),
         };
         let choice = step.settings.solver;
-        let mut effective =
-            EffectiveStiffness::new(self.elements, &problem.dofs, self.parts, choice);
+        let mut effective = EffectiveStiffness::new(self.elements, &problem.unknowns, choice);
         if number == 1
             && let Some(failure) = self.report_start(&problem, &mut effective, place)?
         {
@@ -376,7 +374,7 @@ impl<'m> Runner<'m, '_> {
         Ok(())
     }
 
-    /// Completes the start state (velocity of the supports, acceleration) and reports it, or gives
+    /// Completes the start state (velocity of supports and equations, acceleration) and reports it, or gives
     /// the failure when it is not finite.
     fn report_start(
         &mut self,
@@ -385,9 +383,7 @@ impl<'m> Runner<'m, '_> {
         place: StepPlace,
     ) -> Result<Option<Failure>, RunError> {
         let now = place.time_point(0.0);
-        for (dof, _, v) in problem.supports.motion(now) {
-            self.state.v[dof] = v;
-        }
+        problem.unknowns.prescribe_velocity(now, &mut self.state.v);
         self.state.a = problem.start_acceleration(effective, &self.state, now);
         self.ledger = Ledger::new(problem, &self.state);
         if let Some(failure) = start_failure(&self.state, &self.ledger, place) {

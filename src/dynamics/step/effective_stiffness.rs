@@ -1,10 +1,9 @@
 //! System matrices of a step with their factors and compliances at the contacts: the effective
 //! stiffness K* of the passes and the mass of the impulses. Sections 4 and 6 of docs/theory.md.
 
-use super::dofs::DofMap;
 use super::mass::unknown_mass;
-use super::parts::Parts;
 use super::step_problem::StepProblem;
+use super::unknowns::Unknowns;
 use crate::contact::{Compliance, Pair};
 use crate::elements::Elements;
 use crate::linear::{Assembled, CheckedSolver, LinearError, linear_solver};
@@ -36,8 +35,8 @@ impl FactoredMatrix {
     }
 }
 
-/// The effective matrix K* = theta2 K + (2/dt²) M, eq. (4.6), kept until it is assembled anew, and the mass
-/// matrix, both over the unknowns of a step.
+/// The effective matrix K* = theta2 K + (2/dt²) M, eq. (4.6), kept until it is assembled anew, and the
+/// mass matrix, both over the unknowns of a step: T^T K* T and T^T M T.
 pub(crate) struct EffectiveStiffness {
     /// K*.
     pub k: FactoredMatrix,
@@ -53,9 +52,10 @@ pub(crate) struct EffectiveStiffness {
 
 impl EffectiveStiffness {
     /// Both matrices for the unknowns of a step.
-    pub fn new(elements: &Elements, dofs: &DofMap, parts: &Parts, choice: SolverChoice) -> Self {
-        let mass = unknown_mass(elements, dofs);
-        let compliance = || Compliance::new(dofs.unknown.clone(), parts.of_nodes().to_vec());
+    pub fn new(elements: &Elements, unknowns: &Unknowns, choice: SolverChoice) -> Self {
+        let mass = unknown_mass(elements, unknowns);
+        let groups = mass.groups();
+        let compliance = || Compliance::new(unknowns.map.clone(), groups.clone());
         EffectiveStiffness {
             k: FactoredMatrix::new(choice, mass.zeros(), compliance()),
             m: FactoredMatrix::new(choice, mass, compliance()),
@@ -81,7 +81,7 @@ impl EffectiveStiffness {
         let StepProblem {
             elements,
             weights,
-            dofs,
+            unknowns,
             parts,
             ..
         } = problem;
@@ -92,9 +92,9 @@ impl EffectiveStiffness {
         elements.for_each_tangent(start, u, |element, tangent| {
             k.add(element, tangent, weights.theta2)
         });
-        self.stiffness = parts.largest_diagonal(k, &dofs.dof);
+        self.stiffness = parts.largest_diagonal(k, &unknowns.dof);
         let c = 2.0 / (dt * dt);
-        let inertia = parts.largest_diagonal(mass, &dofs.dof);
+        let inertia = parts.largest_diagonal(mass, &unknowns.dof);
         self.inertia = inertia.into_iter().map(|m| c * m).collect();
         k.add_matrix(mass, c);
         self.dt = dt;

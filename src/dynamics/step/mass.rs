@@ -1,10 +1,10 @@
 //! Global mass matrices over the nodes and over the unknowns, and kinetic energies. Section 2 of
 //! docs/theory.md.
 
-use super::dofs::DofMap;
 use super::parts::Parts;
+use super::unknowns::Unknowns;
 use crate::elements::Elements;
-use crate::linear::Assembled;
+use crate::linear::{Assembled, Transformation};
 
 /// Consistent mass matrix M, the same for both directions: stored over the nodes.
 pub(crate) struct Mass {
@@ -14,10 +14,10 @@ pub(crate) struct Mass {
 impl Mass {
     /// Mass of all elements of a model with `nodes` nodes.
     pub fn new(elements: &Elements, nodes: usize) -> Self {
-        let nodes_of_elements: Vec<Vec<Option<usize>>> = (0..elements.len())
-            .map(|e| elements.nodes(e).iter().map(|&n| Some(n)).collect())
+        let nodes_of_elements: Vec<Vec<usize>> = (0..elements.len())
+            .map(|e| elements.nodes(e).to_vec())
             .collect();
-        let mut nodal = Assembled::new(nodes, &nodes_of_elements);
+        let mut nodal = Assembled::new(&Transformation::identity(nodes), &nodes_of_elements);
         for element in 0..elements.len() {
             nodal.add(element, &elements.mass(element), 1.0);
         }
@@ -58,9 +58,13 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Mass matrix over the unknowns of a step.
-pub(crate) fn unknown_mass(elements: &Elements, dofs: &DofMap) -> Assembled {
-    let mut mass = Assembled::new(dofs.dof.len(), &dofs.element_unknowns(elements));
+/// Mass matrix T^T M T over the unknowns of a step.
+pub(crate) fn unknown_mass(elements: &Elements, unknowns: &Unknowns) -> Assembled {
+    let of_node = |&node: &usize| [2 * node, 2 * node + 1];
+    let dofs_of_elements: Vec<Vec<usize>> = (0..elements.len())
+        .map(|e| elements.nodes(e).iter().flat_map(of_node).collect())
+        .collect();
+    let mut mass = Assembled::new(&unknowns.map, &dofs_of_elements);
     for element in 0..elements.len() {
         let (m, n) = (elements.mass(element), elements.nodes(element).len());
         let d = 2 * n;

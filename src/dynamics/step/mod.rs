@@ -1,6 +1,5 @@
 //! What stays the same over a step: unknowns, loads, supports, mass, scheme, effective stiffness.
 
-mod dofs;
 mod effective_stiffness;
 mod loads;
 mod mass;
@@ -10,8 +9,8 @@ mod scheme;
 mod step_place;
 mod step_problem;
 mod supports;
+mod unknowns;
 
-pub(crate) use dofs::DofMap;
 pub(crate) use effective_stiffness::{EffectiveStiffness, FactoredMatrix};
 pub(crate) use loads::{Loads, TimePoint};
 pub(crate) use mass::{Mass, dot};
@@ -20,4 +19,4 @@ pub(crate) use parts::Parts;
 pub(crate) use scheme::Weights;
 pub(crate) use step_place::StepPlace;
 pub(crate) use step_problem::{Equilibrium, Interval, StepProblem, check_finite, difference, sum};
-pub(crate) use supports::Supports;
+pub(crate) use unknowns::Unknowns;

@@ -4,13 +4,14 @@
 use std::collections::HashMap;
 
 use crate::linear::{Assembled, larger, largest};
-use crate::model::Model;
+use crate::model::{Equation, Model};
 
 /// The bodies of a model and their parts, both numbered from 0.
 ///
-/// A body is what elements connect. Nodes of a body are in one part when the elements around them
-/// have the same sections: beside a stiff or heavy part of its body a light one is solved to its own
-/// scale, as a light body is beside a heavy one.
+/// A body is what elements and equations connect. Nodes of a body are in one part when the elements
+/// around them, and around the nodes of their equations, have the same sections: beside a stiff or
+/// heavy part of its body a light one is solved to its own scale, as a light body is beside a heavy
+/// one.
 pub(crate) struct Parts {
     /// Body of every node.
     body: Vec<usize>,
@@ -24,17 +25,11 @@ pub(crate) struct Parts {
 impl Parts {
     /// Bodies and parts of a model.
     pub fn new(model: &Model) -> Self {
-        let mut sections = vec![Vec::new(); model.mesh.node_count()];
-        for element in &model.mesh.elements {
-            for &node in element.cell.nodes() {
-                if let Err(at) = sections[node].binary_search(&element.section) {
-                    sections[node].insert(at, element.section);
-                }
-            }
-        }
+        let sections = sections(model);
         let (mut bodies, mut parts) = (HashMap::new(), HashMap::new());
         let (mut body, mut part, mut body_of) = (Vec::new(), Vec::new(), Vec::new());
-        for (first, sections) in model.mesh.bodies().into_iter().zip(sections) {
+        let connected = united(model.mesh.bodies(), &model.equations);
+        for (first, sections) in connected.into_iter().zip(sections) {
             let count = bodies.len();
             let number = *bodies.entry(first).or_insert(count);
             body.push(number);
@@ -97,6 +92,41 @@ impl Parts {
     pub fn most(&self, of_bodies: &[f64], nodes: [usize; 4]) -> f64 {
         largest(&nodes.map(|node| of_bodies[self.body[node]]))
     }
+}
+
+/// Sections of the elements around every node and the nodes of its equations, increasing.
+fn sections(model: &Model) -> Vec<Vec<usize>> {
+    let nodes = model.mesh.node_count();
+    let cluster = united((0..nodes).collect(), &model.equations);
+    let mut sections = vec![Vec::new(); nodes];
+    for element in &model.mesh.elements {
+        for &node in element.cell.nodes() {
+            let sections: &mut Vec<usize> = &mut sections[cluster[node]];
+            if let Err(at) = sections.binary_search(&element.section) {
+                sections.insert(at, element.section);
+            }
+        }
+    }
+    let of_node = |&first: &usize| sections[first].clone();
+    cluster.iter().map(of_node).collect()
+}
+
+/// First node of the group of every node, groups being united by equations; `first` nodes of the
+/// groups without them, each that of its own group.
+fn united(mut first: Vec<usize>, equations: &[Equation]) -> Vec<usize> {
+    let own = |first: &[usize], mut node: usize| {
+        while first[node] != node {
+            node = first[node];
+        }
+        node
+    };
+    for equation in equations {
+        for &(dof, _) in &equation.terms {
+            let [a, b] = [equation.dof / 2, dof / 2].map(|node| own(&first, node));
+            first[a.max(b)] = a.min(b);
+        }
+    }
+    (0..first.len()).map(|node| own(&first, node)).collect()
 }
 
 /// Largest absolute value of every group; `group` of the nodes, `values` over all dofs.

@@ -1,13 +1,12 @@
 //! Equation of motion of a step, eq. (3.1) (paper eq. 21), evaluated at an iterate: loads, internal and
 //! inertia forces, and contact pairs. Sections 3 and 4 of docs/theory.md.
 
-use super::dofs::DofMap;
 use super::effective_stiffness::EffectiveStiffness;
 use super::loads::{Loads, TimePoint};
 use super::mass::Mass;
 use super::parts::Parts;
 use super::scheme::Weights;
-use super::supports::Supports;
+use super::unknowns::Unknowns;
 use crate::contact::tolerances::COLLAPSED_LENGTH;
 use crate::contact::{
     ContactSurfaces, Pair, Pairing, Projection, Search, find_targets, position, project,
@@ -26,9 +25,8 @@ pub(crate) struct StepProblem<'m> {
     pub contacts: &'m [ContactSurfaces],
     pub settings: Settings,
     pub weights: Weights,
-    pub dofs: DofMap,
+    pub unknowns: Unknowns<'m>,
     pub loads: Loads<'m>,
-    pub supports: Supports<'m>,
 }
 
 /// Times of an increment.
@@ -78,15 +76,6 @@ impl StepProblem<'_> {
         project(s, a, b)
     }
 
-    /// Displacement increment of the supports; zero at all other dofs.
-    pub fn support_increment(&self, u0: &[f64], interval: Interval) -> Vec<f64> {
-        let mut d = vec![0.0; u0.len()];
-        for (dof, u, _) in self.supports.motion(interval.end) {
-            d[dof] = u - u0[dof];
-        }
-        d
-    }
-
     /// Every segment must have a length to have a normal.
     ///
     /// # Errors
@@ -113,7 +102,7 @@ impl StepProblem<'_> {
         let form = self.weights.row_form();
         find_targets(search, u0, u, before)
             .into_iter()
-            .filter(|at| self.dofs.moves(&at.nodes))
+            .filter(|at| self.unknowns.moves(&at.nodes))
             .map(|at| Pair::new(at, form, x, u0, u))
             .collect()
     }
@@ -146,9 +135,8 @@ impl StepProblem<'_> {
             .zip(v0p)
             .map(|(d, v0p)| c * (d - dt * v0p))
             .collect();
-        for (dof, _, v1) in self.supports.motion(t1) {
-            acceleration[dof] = (v1 - start.v[dof]) / dt;
-        }
+        self.unknowns
+            .prescribe_acceleration(t1, &start.v, dt, &mut acceleration);
         let inertia = self.mass.times(&acceleration);
         Ok(Equilibrium {
             u_theta,
@@ -175,10 +163,10 @@ impl StepProblem<'_> {
         let m = &mut effective.m;
         let solved = m
             .factorize()
-            .and_then(|()| m.solver.solve(&self.dofs.restrict(&r)));
+            .and_then(|()| m.solver.solve(&self.unknowns.restrict(&r)));
         // Without it only the estimate of the first landings would be less good.
         if let Ok(acceleration) = solved {
-            self.dofs.add(&acceleration, &mut a);
+            self.unknowns.add(&acceleration, &mut a);
         }
         a
     }

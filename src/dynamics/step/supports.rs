@@ -5,7 +5,7 @@ use super::loads::TimePoint;
 use crate::model::{Model, Step, SupportMotion};
 
 /// Prescribed motion of the supports of one step.
-pub(crate) struct Supports<'m> {
+pub(super) struct Supports<'m> {
     model: &'m Model,
     step: &'m Step,
     /// Displacement of every support at the start of the step.

@@ -1,0 +1,177 @@
+//! Unknowns q of a step and the displacements that follow from them, u = T q + g(t): free dofs,
+//! supports, and dofs that follow others by equations. Section 3 of docs/theory.md.
+
+use std::borrow::Cow;
+
+use super::loads::TimePoint;
+use super::supports::Supports;
+use crate::elements::Elements;
+use crate::linear::Transformation;
+use crate::model::{Equation, Model, Step};
+
+/// The unknowns of a step: the displacements of the free dofs.
+///
+/// A free dof has a row of the identity in T, a support an empty one and its prescribed motion in
+/// g, and a dof of an equation the sum of the rows, and of the g, that it follows.
+pub(crate) struct Unknowns<'m> {
+    /// T.
+    pub map: Transformation,
+    /// Dof of every unknown.
+    pub dof: Vec<usize>,
+    supports: Supports<'m>,
+    equations: &'m [Equation],
+    /// Supports and dofs of equations: where forces of constraints act; increasing.
+    constrained: Vec<usize>,
+}
+
+impl<'m> Unknowns<'m> {
+    /// Unknowns of a step that starts at the displacements `u`.
+    pub fn new(model: &'m Model, elements: &Elements, step: &'m Step, u: &[f64]) -> Self {
+        let equations = model.equations.as_slice();
+        let free = free_dofs(elements, equations, step, u.len());
+        let dof: Vec<usize> = (0..u.len()).filter(|&dof| free[dof]).collect();
+        let of_supports = step.supports.iter().map(|support| support.dof);
+        let mut constrained: Vec<usize> = of_supports
+            .chain(equations.iter().flat_map(Equation::dofs))
+            .collect();
+        constrained.sort_unstable();
+        constrained.dedup();
+        Unknowns {
+            map: transformation(&dof, equations, u.len()),
+            dof,
+            supports: Supports::new(model, step, u),
+            equations,
+            constrained,
+        }
+    }
+
+    /// Whether one of the nodes depends on an unknown.
+    pub fn moves(&self, nodes: &[usize]) -> bool {
+        let mut dofs = nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]);
+        dofs.any(|dof| !self.map.row(dof).is_empty())
+    }
+
+    /// T^T v: the share of every unknown in forces on all dofs.
+    pub fn restrict(&self, v: &[f64]) -> Vec<f64> {
+        self.map.restrict(v)
+    }
+
+    /// Adds T q to a vector over all dofs.
+    pub fn add(&self, q: &[f64], v: &mut [f64]) {
+        self.map.add(q, v);
+    }
+
+    /// Prescribed dofs.
+    pub fn prescribed(&self) -> impl Iterator<Item = usize> + '_ {
+        self.supports.dofs()
+    }
+
+    /// Supports and dofs of equations, increasing: where forces of constraints act.
+    pub fn constrained(&self) -> &[usize] {
+        &self.constrained
+    }
+
+    /// Displacement increment g(t) - u0 of what is prescribed; zero at free dofs.
+    pub fn prescribed_increment(&self, u0: &[f64], end: TimePoint) -> Vec<f64> {
+        let mut d = vec![0.0; u0.len()];
+        for (dof, u, _) in self.supports.motion(end) {
+            d[dof] = u - u0[dof];
+        }
+        self.follow(&mut d);
+        d
+    }
+
+    /// Gives supports their displacement and velocity, and the dofs of equations those that follow.
+    pub fn prescribe(&self, at: TimePoint, u: &mut [f64], v: &mut [f64]) {
+        for (dof, u1, v1) in self.supports.motion(at) {
+            (u[dof], v[dof]) = (u1, v1);
+        }
+        self.follow(u);
+        self.follow(v);
+    }
+
+    /// Gives supports their velocity, and the dofs of equations the one that follows.
+    pub fn prescribe_velocity(&self, at: TimePoint, v: &mut [f64]) {
+        for (dof, _, v1) in self.supports.motion(at) {
+            v[dof] = v1;
+        }
+        self.follow(v);
+    }
+
+    /// Gives supports the acceleration (V1 - V0)/dt, and the dofs of equations the one that follows.
+    pub fn prescribe_acceleration(&self, at: TimePoint, v0: &[f64], dt: f64, a: &mut [f64]) {
+        for (dof, _, v1) in self.supports.motion(at) {
+            a[dof] = (v1 - v0[dof]) / dt;
+        }
+        self.follow(a);
+    }
+
+    /// Makes a vector of displacements, velocities or accelerations satisfy the equations.
+    fn follow(&self, v: &mut [f64]) {
+        for equation in self.equations {
+            v[equation.dof] = equation.terms.iter().map(|&(dof, c)| c * v[dof]).sum();
+        }
+    }
+
+    /// Forces on all dofs with those on the dofs of equations passed on to the dofs that they follow,
+    /// free or prescribed. What it leaves on a free dof is T^T v.
+    pub fn passed_on<'v>(&self, v: &'v [f64]) -> Cow<'v, [f64]> {
+        self.pass_on(v, |force| force)
+    }
+
+    /// The largest that forces on all dofs can be once they are passed on, whatever their signs.
+    pub fn magnitudes<'v>(&self, v: &'v [f64]) -> Cow<'v, [f64]> {
+        self.pass_on(v, f64::abs)
+    }
+
+    fn pass_on<'v>(&self, v: &'v [f64], part: fn(f64) -> f64) -> Cow<'v, [f64]> {
+        if self.equations.is_empty() {
+            return Cow::Borrowed(v);
+        }
+        let mut all: Vec<f64> = v.iter().map(|&force| part(force)).collect();
+        for Equation { dof, terms } in self.equations {
+            for &(to, c) in terms {
+                all[to] += part(c * v[*dof]);
+            }
+        }
+        Cow::Owned(all)
+    }
+}
+
+/// Which dofs are free: those of nodes with elements, or that a dof with elements follows, but for
+/// supports and dofs that follow others.
+fn free_dofs(elements: &Elements, equations: &[Equation], step: &Step, dofs: usize) -> Vec<bool> {
+    let mut free = vec![false; dofs];
+    for element in 0..elements.len() {
+        for &node in elements.nodes(element) {
+            (free[2 * node], free[2 * node + 1]) = (true, true);
+        }
+    }
+    let has_element = free.clone();
+    for equation in equations.iter().filter(|e| has_element[e.dof]) {
+        for &(dof, _) in &equation.terms {
+            free[dof] = true;
+        }
+    }
+    let follow = equations.iter().map(|equation| equation.dof);
+    for dof in follow.chain(step.supports.iter().map(|support| support.dof)) {
+        free[dof] = false;
+    }
+    free
+}
+
+/// T for unknowns with the given dofs.
+fn transformation(dof_of: &[usize], equations: &[Equation], dofs: usize) -> Transformation {
+    let mut rows = vec![Vec::new(); dofs];
+    for (unknown, &dof) in dof_of.iter().enumerate() {
+        rows[dof] = vec![(unknown, 1.0)];
+    }
+    for Equation { dof, terms } in equations {
+        let free = terms.iter().filter_map(|&(to, c)| {
+            let &(unknown, _) = rows[to].first()?;
+            Some((unknown, c))
+        });
+        rows[*dof] = free.collect();
+    }
+    Transformation::new(dof_of.len(), rows)
+}

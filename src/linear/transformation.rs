@@ -1,0 +1,107 @@
+//! Linear map T from unknowns q to degrees of freedom u, sparse by rows. Section 3 of
+//! docs/theory.md (u = T q + g).
+
+/// The matrix T of u = T q + g: every dof is a sum of terms c q_k.
+///
+/// A free dof has a row of the identity, a prescribed one an empty row, one that follows others by
+/// an equation a row with their coefficients.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Transformation {
+    unknowns: usize,
+    /// Start of each row in `terms`.
+    starts: Vec<usize>,
+    /// Unknown and coefficient of every term, row by row.
+    terms: Vec<(usize, f64)>,
+}
+
+impl Transformation {
+    /// The map with the given rows (unknown, coefficient) of all dofs.
+    pub fn new(unknowns: usize, rows: impl IntoIterator<Item = Vec<(usize, f64)>>) -> Self {
+        let (mut starts, mut terms) = (vec![0], Vec::new());
+        for row in rows {
+            terms.extend(row);
+            starts.push(terms.len());
+        }
+        Transformation {
+            unknowns,
+            starts,
+            terms,
+        }
+    }
+
+    /// The identity of size `n`.
+    pub fn identity(n: usize) -> Self {
+        Transformation::new(n, (0..n).map(|i| vec![(i, 1.0)]))
+    }
+
+    /// Number of unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.unknowns
+    }
+
+    /// Terms (unknown, coefficient) of a dof.
+    pub fn row(&self, dof: usize) -> &[(usize, f64)] {
+        &self.terms[self.starts[dof]..self.starts[dof + 1]]
+    }
+
+    /// Terms of all dofs.
+    pub fn rows(&self) -> impl Iterator<Item = &[(usize, f64)]> {
+        let starts = self.starts.windows(2);
+        starts.map(|ends| &self.terms[ends[0]..ends[1]])
+    }
+
+    /// T^T v over the unknowns for a vector v over all dofs.
+    pub fn restrict(&self, v: &[f64]) -> Vec<f64> {
+        // -0.0 is what adds nothing, not even the sign of a zero.
+        let mut restricted = vec![-0.0; self.unknowns];
+        for (row, value) in self.rows().zip(v) {
+            for &(unknown, c) in row {
+                restricted[unknown] += c * value;
+            }
+        }
+        restricted
+    }
+
+    /// Adds T q to a vector v over all dofs.
+    pub fn add(&self, q: &[f64], v: &mut [f64]) {
+        for (row, value) in self.rows().zip(v) {
+            for &(unknown, c) in row {
+                *value += c * q[unknown];
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn rows(unknowns: usize) -> impl Strategy<Value = Vec<Vec<(usize, f64)>>> {
+        let term = (0..unknowns, -9.0..9.0_f64);
+        proptest::collection::vec(proptest::collection::vec(term, 0..4), 1..30)
+    }
+
+    proptest! {
+        /// v.(T q) = (T^T v).q
+        #[test]
+        fn restriction_is_the_adjoint_of_expansion(rows in rows(7), seed in 1_u32..1000) {
+            let value = |i: usize| ((i * 37 + seed as usize) % 19) as f64 - 9.0;
+            let v: Vec<f64> = (0..rows.len()).map(value).collect();
+            let q: Vec<f64> = (0..7).map(|k| value(100 + k)).collect();
+            let t = Transformation::new(7, rows);
+            let mut u = vec![0.0; v.len()];
+            t.add(&q, &mut u);
+            let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+            prop_assert!((dot(&v, &u) - dot(&t.restrict(&v), &q)).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn rows_of_the_identity_change_no_bit() {
+        let t = Transformation::identity(3);
+        let v = [-0.0, 0.1, f64::MIN_POSITIVE];
+        let bits = |v: &[f64]| -> Vec<u64> { v.iter().map(|v| v.to_bits()).collect() };
+        assert_eq!(bits(&t.restrict(&v)), bits(&v));
+    }
+}
