@@ -3,7 +3,7 @@
 
 use std::io;
 
-use super::nominal_increment::{NominalIncrement, StepPlace, WHOLE, increments_of};
+use super::nominal_increment::{NominalIncrement, WHOLE, increments_of};
 use crate::contact::{ContactSurfaces, contact_surfaces};
 use crate::dynamics::events::{MOST_EVENTS, Subincrement, Subincrements};
 use crate::dynamics::increment::{Attempt, ClosedPairs, Failed, Solved};
@@ -12,7 +12,7 @@ use crate::dynamics::results::{
     Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State, Timings,
 };
 use crate::dynamics::step::{
-    Interval, Loads, Mass, Parts, StepProblem, Unknowns, Weights, Workspace,
+    Interval, Loads, Mass, Parts, StepPlace, StepProblem, Unknowns, Weights, Workspace,
 };
 use crate::elements::Elements;
 use crate::model::{ImpactTime, Increments, Model, Step};
