@@ -26,8 +26,8 @@ impl Formulation for Displacement {
     /// K = int B_L^T C B_L + B_NL^T S B_NL dOmega, eq. (2.6) (paper eq. 12).
     ///
     /// In the energy-momentum form B_L is that of the mid configuration on both sides, S the
-    /// energy-momentum stress and C the symmetric part of its own tangent: a symmetric approximation of the exact tangent, which has B_L of the end on the right; up to
-    /// the factor theta2 = 1/2.
+    /// energy-momentum stress and C the symmetric part of its own tangent: a symmetric approximation of
+    /// the exact tangent, which has B_L of the end on the right; up to the factor theta2 = 1/2.
     fn tangent<const N: usize, const P: usize, const D: usize>(
         element: &Reference<N, P>,
         material: &Committed,

@@ -21,7 +21,7 @@ pub(super) fn smaller(a: f64, b: f64) -> f64 {
     if a < b || a.is_nan() { a } else { b }
 }
 
-/// Displacement gradient H = du/dX.
+/// Displacement gradient H = du/dX, eq. (2.1).
 pub fn displacement_gradient<const N: usize>(
     point: &Point<N>,
     u: &SMatrix<f64, 2, N>,
@@ -29,7 +29,8 @@ pub fn displacement_gradient<const N: usize>(
     u * point.gradient
 }
 
-/// Green-Lagrange strain E = (H + H^T + H^T H)/2, from H so that small strains keep their digits.
+/// Green-Lagrange strain E = (H + H^T + H^T H)/2, eq. (2.2), from H so that small strains keep their
+/// digits.
 pub fn green_lagrange(h: &Matrix2<f64>) -> Matrix2<f64> {
     (h + h.transpose() + h.transpose() * h) / 2.0
 }
