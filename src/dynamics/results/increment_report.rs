@@ -1,11 +1,12 @@
 //! Results of an increment, as the output receives them through [`Observer`].
 
 use std::io;
+use std::sync::Arc;
 
 use super::contact_results::{ContactResultant, Landing};
 use super::failure::Failure;
 use super::pass_report::PassReport;
-use crate::elements::Strained;
+use crate::elements::{ElementResult, Strained};
 
 /// Motion at one time; `2 N` entries each.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -156,6 +157,8 @@ pub struct IncrementReport {
     pub state: State,
     /// Results at nodes.
     pub nodal: NodalResults,
+    /// Strain energy, mean stress and mean strain of every element.
+    pub elements: Arc<[ElementResult]>,
     /// Energy ledger.
     pub energy: Energy,
     /// Momentum.
