@@ -9,8 +9,9 @@
 //! # Layers
 //!
 //! A module imports only from modules before it in this list:
-//! `diagnostics`, `deck`, `materials`, `model`, `reader`, `elements`, `linear`, `lcp`, `contact`,
-//! `prepare`, `dynamics`, `output`, `cli`. The rooms of a layer (its sub-folders) import one way as well.
+//! `vectors`, `diagnostics`, `deck`, `materials`, `model`, `reader`, `elements`, `linear`, `lcp`,
+//! `contact`, `prepare`, `dynamics`, `output`, `cli`. The rooms of a layer (its sub-folders) import one
+//! way as well.
 //!
 //! # Equations
 //!
@@ -60,3 +61,4 @@ pub mod model;
 pub mod output;
 pub mod prepare;
 pub mod reader;
+pub mod vectors;

@@ -91,7 +91,7 @@ impl NeoHooke {
 }
 
 impl ConstitutiveLaw for NeoHooke {
-    /// W = C10 (Ibar1 - 3) + (J - 1)²/D1, eq. (2.10), by eq. (2.12)
+    /// W = C10 (Ibar1 - 3) + (J - 1)²/D1, eq. (2.14), by eq. (2.16)
     fn stored_energy(&self, e: &Matrix2<f64>, _z: &[f64]) -> f64 {
         let v = Dilatation::new(e);
         self.c10 * v.distortion() / v.a + v.grown * v.grown / self.d1
@@ -116,7 +116,7 @@ impl ConstitutiveLaw for NeoHooke {
         self.c10 * shape + dj * (v1.grown + v0.grown) / self.d1
     }
 
-    /// S = 2 C10 J^(-2/3) (I - I1/3 C^-1) + p J C^-1, eq. (2.11), by eq. (2.12)
+    /// S = 2 C10 J^(-2/3) (I - I1/3 C^-1) + p J C^-1, eq. (2.15), by eq. (2.16)
     fn stress(&self, e: &Matrix2<f64>, _z: &[f64]) -> Matrix2<f64> {
         let v = Dilatation::new(e);
         let cof = cofactor(e) * 2.0; // cof C = I + 2 cof E

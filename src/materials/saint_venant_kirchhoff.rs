@@ -87,7 +87,7 @@ impl SaintVenantKirchhoff {
 }
 
 impl ConstitutiveLaw for PlaneSaintVenantKirchhoff {
-    /// W = E:C:E/2 = S:E/2, eq. (2.9)
+    /// W = E:C:E/2 = S:E/2, eq. (2.13)
     fn stored_energy(&self, e: &Matrix2<f64>, z: &[f64]) -> f64 {
         self.stress(e, z).dot(e) / 2.0
     }
@@ -97,7 +97,7 @@ impl ConstitutiveLaw for PlaneSaintVenantKirchhoff {
         self.mean_stress(e0, e1, z).dot(&(e1 - e0))
     }
 
-    /// S = lambda tr(E) I + 2 mu E = C:E, eq. (2.9)
+    /// S = lambda tr(E) I + 2 mu E = C:E, eq. (2.13)
     fn stress(&self, e: &Matrix2<f64>, _z: &[f64]) -> Matrix2<f64> {
         let s = self.c * Vector3::new(e.m11, e.m22, 2.0 * e.m12);
         Matrix2::new(s.x, s.z, s.z, s.y)
