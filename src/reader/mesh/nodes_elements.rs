@@ -251,13 +251,10 @@ impl Reading {
         }
     }
 
-    /// Numbers that may be those of reference nodes, which need no element.
+    /// Numbers that may be those of reference nodes or of nodes of equations, which need no element.
     fn reference_labels(&self, outline: &Outline) -> Vec<u64> {
         let mut labels = Vec::new();
-        for card in outline.model_cards("RIGID BODY") {
-            let Some(named) = card.value("REF NODE") else {
-                continue;
-            };
+        for named in referenced(outline) {
             let label = named.as_integer();
             labels.extend(label.and_then(|label| u64::try_from(label).ok()));
             let groups = self.node_groups.iter();
@@ -404,4 +401,17 @@ fn element_rows(rows: &[Row], count: usize) -> Vec<&[Row]> {
         rest = after;
     }
     elements
+}
+
+/// Nodes and sets of reference nodes, and those of the terms of equations.
+fn referenced<'a>(outline: &Outline<'a>) -> Vec<Text<'a>> {
+    let bodies = outline.model_cards("RIGID BODY").into_iter();
+    let equations = outline.model_cards("EQUATION").into_iter();
+    // a line of one field is the number of terms
+    let rows = equations.flat_map(|card| &card.rows);
+    let terms = rows.filter(|row| row.get(1).is_some());
+    bodies
+        .filter_map(|card| card.value("REF NODE"))
+        .chain(terms.flat_map(|row| row.fields().step_by(3)))
+        .collect()
 }
