@@ -95,12 +95,13 @@ fn check(model: &Model) {
         assert!(section.thickness > 0.0 && material.young > 0.0 && material.density > 0.0);
     }
     let whole = |sets: &[Set], count| sets.iter().all(|s| s.members.iter().all(|&m| m < count));
-    assert!(whole(&model.node_sets, nodes) && whole(&model.element_sets, elements));
+    assert!(whole(&model.sets.nodes, nodes) && whole(&model.sets.elements, elements));
     assert!(
         model
-            .history_sets
+            .sets
+            .history
             .iter()
-            .all(|asked| asked.set < model.node_sets.len())
+            .all(|asked| asked.set < model.sets.nodes.len())
     );
     for surface in &model.surfaces {
         assert!(surface.nodes(&model.mesh).iter().all(|&n| n < nodes));
@@ -112,7 +113,7 @@ fn check(model: &Model) {
                 .is_empty()
         );
         assert!(!model.surfaces[contact.slave].nodes(&model.mesh).is_empty());
-        assert!(model.friction(contact) >= 0.0);
+        assert!(contact.interaction.friction >= 0.0);
     }
     for amplitude in &model.amplitudes {
         assert!(!amplitude.points.is_empty());

@@ -59,8 +59,8 @@ fn square_reads_without_messages() {
     assert_eq!(model.mesh.elements[0].plane, Plane::Stress);
     assert_eq!(model.sections[0].thickness, 0.5);
     assert_eq!(model.materials[0].young, 1000.0);
-    assert_eq!(model.node_sets[1].name, "FOOT");
-    assert_eq!(model.history_sets, [history(1, true)]);
+    assert_eq!(model.sets.nodes[1].name, "FOOT");
+    assert_eq!(model.sets.history, [history(1, true)]);
     let step = &model.steps[0];
     let dofs: Vec<usize> = step.supports.iter().map(|s| s.dof).collect();
     assert_eq!(dofs, [0, 1, 2, 3]);
@@ -96,14 +96,14 @@ fn one_surface_on_a_pair_touches_itself() {
 fn general_contact_is_that_of_all_exterior_faces() {
     let general = "*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n";
     let model = contacts(general);
-    assert_eq!(model.friction(&model.contacts[0]), 0.0);
+    assert_eq!(model.contacts[0].interaction.friction, 0.0);
     let assigned = format!("{general}*CONTACT PROPERTY ASSIGNMENT\n ,  , DRY\n");
     let model = contacts(&assigned);
     let [contact] = &model.contacts[..] else {
         panic!("{:?}", model.contacts);
     };
     assert!(contact.is_self_contact());
-    assert_eq!(model.friction(contact), 0.3);
+    assert_eq!(contact.interaction.friction, 0.3);
     assert_eq!(contact_names(&model), [ALL_EXTERIOR]);
     let labels = |[a, b]: [usize; 2]| [a, b].map(|node| model.mesh.node_labels[node]);
     let surface = &model.surfaces[contact.slave];
@@ -326,7 +326,7 @@ fn history_sets_of_both_families() {
         "",
         "*OUTPUT, HISTORY\n*NODE OUTPUT, NSET=ALL\nU\n*NODE PRINT, NSET=ALL\nV",
     );
-    assert_eq!(model.history_sets, [history(1, true), history(0, true)]);
+    assert_eq!(model.sets.history, [history(1, true), history(0, true)]);
 }
 
 fn history(set: usize, each_node: bool) -> HistorySet {
@@ -335,7 +335,7 @@ fn history(set: usize, each_node: bool) -> HistorySet {
 
 #[test]
 fn totals_only_leaves_out_the_nodes_unless_another_card_wants_them() {
-    let asked = |text| with("", text).history_sets;
+    let asked = |text| with("", text).sets.history;
     let only = "*NODE PRINT, NSET=ALL, TOTALS=ONLY\nRF";
     assert_eq!(asked(only), [history(1, true), history(0, false)]);
     let yes = "*NODE PRINT, NSET=ALL, TOTALS=YES\nRF";
@@ -397,7 +397,7 @@ fn unused_nodes_are_left_out() {
     let (model, messages) = square("4, 0., 1.", "4, 0., 1.\n3000, 5., 5.");
     assert!(messages.contains("D310"), "{messages}");
     assert_eq!(model.mesh.node_count(), 4);
-    assert_eq!(model.node_sets[0].members, [0, 1, 2, 3]);
+    assert_eq!(model.sets.nodes[0].members, [0, 1, 2, 3]);
 }
 
 #[test]
@@ -407,7 +407,7 @@ fn sets_in_sets_in_any_order() {
         "",
     );
     let members = |name: &str| {
-        let found = model.node_sets.iter().find(|set| set.name == name);
+        let found = model.sets.nodes.iter().find(|set| set.name == name);
         found.map(|set| set.members.clone()).unwrap_or_default()
     };
     assert_eq!(members("OUTER"), [0, 1, 3]);
@@ -552,7 +552,7 @@ fn rigid_surfaces_take_part_in_general_contact() {
     let contact = &with_pair.contacts[2];
     assert_eq!(labels(&contact.left_out), [11, 12]);
     assert!(with_pair.contacts[1].left_out.is_empty());
-    assert_eq!(with_pair.friction(contact), 0.3);
+    assert_eq!(contact.interaction.friction, 0.3);
     let slaves = &contact_surfaces(&with_pair)[2].slaves;
     assert_eq!(labels(slaves), [1, 2, 3, 6, 5, 4, 13, 14]);
 }

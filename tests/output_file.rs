@@ -414,7 +414,7 @@ fn names_with_a_slash_are_refused_before_any_file() {
     let folder = TempDir::new().expect("folder");
     let files = JobFiles::new("x.inp".as_ref(), folder.path());
     let mut model = model();
-    model.node_sets[1].name = "A/B".into();
+    model.sets.nodes[1].name = "A/B".into();
     let record = output_support::record();
     let verbosity = stickslip::output::Verbosity::Quiet;
     let claim = stickslip::output::Claim::take(&files, false).expect("claim");

@@ -381,7 +381,7 @@ fn a_rejected_deck_touches_no_file() {
     let load = |_: &Path, _, _| {
         let name = "A/B".into();
         let mut model = square();
-        model.element_sets = vec![Set {
+        model.sets.elements = vec![Set {
             name,
             members: vec![0],
         }];

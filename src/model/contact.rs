@@ -4,10 +4,8 @@
 use crate::diagnostics::Span;
 
 /// Contact law between two surfaces: hard normal contact and Coulomb friction.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Interaction {
-    /// Name in the deck.
-    pub name: String,
     /// Coefficient of friction mu >= 0.
     pub friction: f64,
 }
@@ -20,8 +18,8 @@ pub struct Contact {
     pub slave: usize,
     /// Index of the master surface (made of faces or rigid).
     pub master: usize,
-    /// Index of the interaction; `None` is hard contact without friction.
-    pub interaction: Option<usize>,
+    /// The contact law.
+    pub interaction: Interaction,
     /// Slave nodes that are moved onto the master surface before the start.
     pub adjust: Option<Adjust>,
     /// Slave nodes that take no part (indices, increasing).

@@ -7,11 +7,11 @@ mod amplitude;
 mod bodies;
 mod contact;
 mod equation;
-mod history_set;
 mod load;
 mod material;
 mod mesh;
 mod rigid_body;
+mod sets;
 mod settings;
 mod step;
 mod surface;
@@ -20,11 +20,11 @@ pub use amplitude::{Amplitude, TimeBase};
 pub use bodies::Bodies;
 pub use contact::{Adjust, Contact, Interaction};
 pub use equation::Equation;
-pub use history_set::HistorySet;
 pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
 pub use material::{Material, Plane, Section};
 pub use mesh::{Cell, Element, Mesh, Set};
 pub use rigid_body::RigidBody;
+pub use sets::{HistorySet, NamedSets};
 pub use settings::{Factorization, Impact, ImpactTime, LcpChoice, Scheme, Settings, SolverChoice};
 pub use step::{Frames, Increments, Step};
 pub use surface::{ALL_EXTERIOR, Face, Surface, SurfaceKind};
@@ -36,18 +36,14 @@ pub struct Model {
     pub title: String,
     /// Nodes and elements.
     pub mesh: Mesh,
-    /// Named node sets; members sorted, without duplicates.
-    pub node_sets: Vec<Set>,
-    /// Named element sets; members sorted, without duplicates.
-    pub element_sets: Vec<Set>,
+    /// Named sets of nodes and elements, and those of the history.
+    pub sets: NamedSets,
     /// Named surfaces.
     pub surfaces: Vec<Surface>,
     /// Materials.
     pub materials: Vec<Material>,
     /// Sections: material and thickness of elements.
     pub sections: Vec<Section>,
-    /// Contact interactions (friction laws).
-    pub interactions: Vec<Interaction>,
     /// Contacts: one per data line of `*CONTACT PAIR`, then general contact.
     pub contacts: Vec<Contact>,
     /// Amplitude curves.
@@ -58,8 +54,6 @@ pub struct Model {
     pub initial_velocity: Vec<f64>,
     /// Steps in order.
     pub steps: Vec<Step>,
-    /// Node sets whose motion and reactions go to the history, each at most once.
-    pub history_sets: Vec<HistorySet>,
     /// Rigid surfaces with their reference nodes.
     pub rigid_bodies: Vec<RigidBody>,
 }
@@ -72,11 +66,5 @@ impl Model {
             SurfaceKind::Faces(_) | SurfaceKind::Nodes(_) => &[],
         });
         segments.flatten().copied().collect()
-    }
-
-    /// Coefficient of friction mu of a contact.
-    pub fn friction(&self, contact: &Contact) -> f64 {
-        let interaction = contact.interaction.map(|index| &self.interactions[index]);
-        interaction.map_or(0.0, |interaction| interaction.friction)
     }
 }

@@ -6,8 +6,6 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::file::NameError;
-
 /// Why the files of a job could not be created.
 #[derive(Debug, Error)]
 pub enum OutputError {
@@ -46,6 +44,19 @@ pub enum OutputError {
     /// A file could not be written; the error names it.
     #[error("cannot write the results: {0}")]
     Write(#[from] io::Error),
+}
+
+/// A name that cannot stand in the result file.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error(
+    "the {what} name '{name}' cannot stand in the result file: a name there may not be empty, '.', \
+     nor hold a '/' or a NUL; rename it in the deck"
+)]
+pub struct NameError {
+    /// What has the name, such as "node set".
+    pub what: &'static str,
+    /// The name.
+    pub name: String,
 }
 
 impl OutputError {

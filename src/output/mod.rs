@@ -17,8 +17,8 @@ mod summary;
 mod text;
 mod writer;
 
-pub use error::{OutputError, reason};
-pub use file::{Claim, NameError, RunRecord, UNFINISHED, check_names, contact_names, regular_file};
+pub use error::{NameError, OutputError, reason};
+pub use file::{Claim, RunRecord, UNFINISHED, check_names, contact_names, regular_file};
 pub use frames::{DEFAULT_FRAMES, FrameSchedule};
 pub use interrupt::Interrupt;
 pub use job::JobFiles;

@@ -2,31 +2,28 @@
 //! closes them at the end.
 
 use std::fs;
-use std::io::{self, ErrorKind, IsTerminal, Write};
+use std::io::{self, ErrorKind};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::error::{OutputError, at};
-use super::file::{Claim, RunRecord, check_names, phases};
+use super::file::{Claim, RunRecord, check_names};
 use super::frames::FrameSchedule;
 use super::interrupt::Interrupt;
 use super::last::LastState;
 use super::result_file::ResultFile;
-use super::summary::{Balance, Watch};
+use super::summary::{Monitor, Remarks, lcp_lines, timing_lines};
 use super::text::{
-    Console, Log, Progress, StatusFile, StrainWatch, Table, Verbosity, bytes, counted,
-    cutback_lines, failure_lines, general, increment_line, row, scientific, warning_lines, wrap,
+    Console, Log, StatusFile, Verbosity, bytes, counted, cutback_lines, failure_lines, scientific,
+    warning_lines, wrap,
 };
-use crate::dynamics::{
-    Cause, Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts,
-};
-use crate::linear::larger;
+use crate::dynamics::{Cause, Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary};
 use crate::model::Model;
 
 /// Cutbacks that the screen shows.
 const SCREEN_CUTBACKS: usize = 20;
 /// Increments with energy from contact that the log shows.
-const LOGGED_GAINS: usize = 100;
+const LOGGED_CONTACT_ENERGIES: usize = 100;
 
 /// Writes everything a run leaves behind: result file, status file, log and screen.
 pub struct ResultWriter<'a> {
@@ -35,21 +32,11 @@ pub struct ResultWriter<'a> {
     /// Created with the first frame.
     status: Option<StatusFile>,
     console: Console,
-    verbosity: Verbosity,
-    table: Table,
     schedule: FrameSchedule<'a>,
-    balance: Balance,
-    watch: Watch,
-    strain: StrainWatch,
+    monitor: Monitor,
     last: LastState,
-    /// Failed attempts since the last increment.
-    failed_attempts: usize,
-    /// Failed attempts of the run.
-    cutbacks: usize,
-    landings: usize,
-    /// Largest violation of Coulomb's cone.
-    cone_violation: f64,
     started: Instant,
+    /// Time spent on output.
     spent: Duration,
     interrupt: Interrupt,
     claim: Claim,
@@ -63,21 +50,6 @@ impl<'a> ResultWriter<'a> {
         record: &RunRecord,
         verbosity: Verbosity,
     ) -> Result<Self, OutputError> {
-        let shown = verbosity != Verbosity::Quiet;
-        let live = shown && io::stdout().is_terminal() && io::stderr().is_terminal();
-        let screen = shown.then(|| Box::new(io::stdout()) as Box<dyn Write>);
-        Self::with_screen(model, claim, record, verbosity, screen, live)
-    }
-
-    /// The same with a screen of choice, and a live line on the terminal or not.
-    pub fn with_screen(
-        model: &'a Model,
-        claim: Claim,
-        record: &RunRecord,
-        verbosity: Verbosity,
-        screen: Option<Box<dyn Write>>,
-        live: bool,
-    ) -> Result<Self, OutputError> {
         check_names(model)?;
         let log = Log::new(claim.log()?, &claim.files().log);
         let result = ResultFile::create(&claim.draft()?, &claim.files().result, model, record)?;
@@ -85,18 +57,10 @@ impl<'a> ResultWriter<'a> {
             model,
             result,
             status: None,
-            console: Console::new(screen, Progress::new(model, live), log),
-            verbosity,
-            table: Table::new(model),
+            console: Console::new(model, verbosity, log),
             schedule: FrameSchedule::new(model),
-            balance: Balance::new(model),
-            watch: Watch::default(),
-            strain: StrainWatch::default(),
+            monitor: Monitor::new(model),
             last: LastState::default(),
-            failed_attempts: 0,
-            cutbacks: 0,
-            landings: 0,
-            cone_violation: 0.0,
             started: Instant::now(),
             spent: Duration::ZERO,
             interrupt: Interrupt::default(),
@@ -187,19 +151,8 @@ impl<'a> ResultWriter<'a> {
     }
 
     fn record_increment(&mut self, report: &IncrementReport) -> io::Result<()> {
-        if let Some(gain) = self.balance.add(report) {
-            self.print_gain(report.increment, gain)?;
-        }
-        self.watch.add(report);
-        if let Some(strained) = self.strain.add(report) {
-            for line in warning_lines(strained, report, self.model) {
-                self.console.line(&line)?;
-            }
-        }
-        self.landings += report.landings.len();
-        for contact in &report.contacts {
-            self.cone_violation = larger(self.cone_violation, contact.cone_violation);
-        }
+        let remarks = self.monitor.add(report);
+        self.print_remarks(report, &remarks)?;
         self.result.history(self.model, report)?;
         let due = self.schedule.is_due(report);
         if due {
@@ -211,37 +164,40 @@ impl<'a> ResultWriter<'a> {
     }
 
     fn print_increment(&mut self, report: &IncrementReport) -> io::Result<()> {
-        let error = self.balance.relative(report.energy.balance);
-        let attempts = std::mem::take(&mut self.failed_attempts) + 1;
+        let error = self.monitor.balance.relative(report.energy.balance);
+        let attempts = self.monitor.take_attempts();
         if let (Some(status), 1..) = (&mut self.status, report.increment) {
             status.write(report, attempts, error)?;
         }
-        if self.verbosity == Verbosity::Verbose {
-            self.console.detail(&increment_line(report))?;
-            self.console.passes(&report.passes)?;
+        self.console.increment(report, error)
+    }
+
+    fn print_remarks(&mut self, report: &IncrementReport, remarks: &Remarks) -> io::Result<()> {
+        if let Some(energy) = remarks.contact_energy {
+            self.print_contact_energy(report.increment, energy)?;
         }
-        if self.table.shows(report) {
-            if let Some(header) = self.table.header() {
-                self.console.line(header)?;
+        match remarks.strained {
+            Some(strained) => {
+                let lines = warning_lines(strained, report, self.model);
+                self.console.lines(lines)
             }
-            self.console.line(&row(report, error))?;
+            None => Ok(()),
         }
-        self.console.progress(report);
-        Ok(())
     }
 
     /// The energy that contact put in goes to the log, increment by increment up to a number.
-    fn print_gain(&mut self, increment: usize, gain: f64) -> io::Result<()> {
-        let count = self.balance.gains().count;
-        if count > LOGGED_GAINS {
+    fn print_contact_energy(&mut self, increment: usize, energy: f64) -> io::Result<()> {
+        let balance = &self.monitor.balance;
+        let count = balance.contact_energy().count;
+        if count > LOGGED_CONTACT_ENERGIES {
             return Ok(());
         }
-        let (energy, part) = (scientific(gain, 2), self.balance.relative(gain));
-        let part = scientific(part, 1);
+        let part = scientific(balance.relative(energy), 1);
+        let energy = scientific(energy, 2);
         self.console.detail(&format!(
             "contact  put energy in in increment {increment}: {energy}, {part} of the largest"
         ))?;
-        if count == LOGGED_GAINS {
+        if count == LOGGED_CONTACT_ENERGIES {
             self.console
                 .detail("         further such increments are counted only")?;
         }
@@ -250,14 +206,14 @@ impl<'a> ResultWriter<'a> {
 
     /// All cutbacks go to the log, the first ones to the screen too.
     fn print_cutback(&mut self, cutback: &Cutback) -> io::Result<()> {
-        self.cutbacks += 1;
+        let count = self.monitor.add_cutback();
         for line in cutback_lines(cutback) {
-            match self.cutbacks <= SCREEN_CUTBACKS {
+            match count <= SCREEN_CUTBACKS {
                 true => self.console.line(&line)?,
                 false => self.console.detail(&line)?,
             }
         }
-        if self.cutbacks == SCREEN_CUTBACKS {
+        if count == SCREEN_CUTBACKS {
             self.console
                 .line("         further cutbacks stand in the log only")?;
         }
@@ -265,9 +221,7 @@ impl<'a> ResultWriter<'a> {
     }
 
     fn print_failure(&mut self, failure: &Failure) -> io::Result<()> {
-        for line in failure_lines(failure, self.model, &self.last.state.u) {
-            self.console.alarm(&line)?;
-        }
+        self.alarm(failure_lines(failure, self.model, &self.last.state.u))?;
         if let Cause::Lcp(failed) = &failure.cause {
             let path = self.claim.files().failed_lcp(failure.increment);
             replace(&path, &failed.problem.to_json()).map_err(at(&path))?;
@@ -282,9 +236,7 @@ impl<'a> ResultWriter<'a> {
             format!("{} asked for the end", self.interrupt.name()),
             format!("increment {} is the last", summary.increments),
         ];
-        for line in wrap("stopped", &pieces) {
-            self.console.alarm(&line)?;
-        }
+        self.alarm(wrap("stopped", &pieces))?;
         self.print_kept()
     }
 
@@ -298,48 +250,18 @@ impl<'a> ResultWriter<'a> {
                 format!("time {}", scientific(self.last.time, 6)),
             ],
         };
-        for line in wrap("results", &pieces) {
-            self.console.alarm(&line)?;
-        }
-        Ok(())
+        self.alarm(wrap("results", &pieces))
+    }
+
+    fn alarm(&mut self, lines: Vec<String>) -> io::Result<()> {
+        (lines.iter()).try_for_each(|line| self.console.alarm(line))
     }
 
     fn print_totals(&mut self, summary: &RunSummary, output: f64, total: f64) -> io::Result<()> {
-        for line in timing_lines(summary, output, total) {
-            self.console.line(&line)?;
-        }
-        let mut balance = format!(
-            "energy balance {} of the largest energy",
-            scientific(self.balance.worst(), 1)
-        );
-        if let Some(drift) = self.balance.momentum_drift() {
-            balance.push_str(&format!("; momentum {}", scientific(drift, 1)));
-        }
-        self.console.line(&balance)?;
-        self.console.line(&self.strain.line(self.model))?;
-        if !self.model.contacts.is_empty() {
-            self.console.line(&format!(
-                "contact  {}; largest violation of Coulomb's cone {}",
-                counted(self.landings, "landing"),
-                scientific(self.cone_violation, 1),
-            ))?;
-        }
-        let gains = self.balance.gains();
-        if gains.count > 0 {
-            let part = scientific(self.balance.relative(gains.energy), 1);
-            self.console.line(&format!(
-                "         contact put energy in in {}: {part} of the largest in all",
-                counted(gains.count, "increment")
-            ))?;
-        }
-        if summary.solver.lcps > 0 {
-            for line in lcp_lines(&summary.solver) {
-                self.console.line(&line)?;
-            }
-        }
-        for line in self.watch.findings(self.model, &self.balance).lines() {
-            self.console.line(&line)?;
-        }
+        self.console.lines(timing_lines(summary, output, total))?;
+        self.console.lines(self.monitor.lines(self.model))?;
+        self.console.lines(lcp_lines(&summary.solver))?;
+        self.console.lines(self.monitor.warnings(self.model))?;
         let (name, size) = self.result.name_and_size();
         let frames = counted(self.result.frames(), "frame");
         let line = format!("wrote {name} ({frames}, {})", bytes(size));
@@ -357,7 +279,6 @@ impl Observer for ResultWriter<'_> {
     }
 
     fn cutback(&mut self, cutback: &Cutback) -> io::Result<()> {
-        self.failed_attempts += 1;
         self.print_cutback(cutback)?;
         self.console.passes(&cutback.failure.passes)
     }
@@ -373,41 +294,4 @@ fn replace(path: &Path, text: &str) -> io::Result<()> {
         Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
         _ => fs::write(path, text),
     }
-}
-
-/// What the complementarity problems took, by method.
-fn lcp_lines(solver: &SolverCounts) -> Vec<String> {
-    let problems = counted(solver.lcps, "problem");
-    let pieces = [
-        format!("{problems}, at most {}", counted(solver.lcp_size, "pair")),
-        counted(solver.active_set_iterations, "active-set iteration"),
-        counted(solver.gauss_seidel_sweeps, "sweep"),
-        counted(solver.lemke_calls, "Lemke solve"),
-    ];
-    wrap("LCP", &pieces)
-}
-
-/// Time of the run and the parts of its phases.
-fn timing_lines(summary: &RunSummary, output: f64, total: f64) -> Vec<String> {
-    let part = |name: &str, seconds: f64| {
-        let percent = 100.0 * seconds / total.max(f64::MIN_POSITIVE);
-        format!("{name} {percent:.0} %")
-    };
-    let mut pieces = vec![format!(
-        "in {} s: {}, {}",
-        general(total, 3),
-        counted(summary.increments, "increment"),
-        counted(summary.cutbacks, "cutback")
-    )];
-    if summary.events > 0 {
-        pieces.push(format!("{} cut at impacts", summary.events));
-    }
-    let phases = phases(&summary.timings);
-    pieces.extend(phases.iter().map(|&(name, seconds)| part(name, seconds)));
-    pieces.push(part("output", output));
-    let done = match summary.outcome {
-        Outcome::Finished => "done",
-        Outcome::Stopped(_) | Outcome::Interrupted => "stopped",
-    };
-    wrap(done, &pieces)
 }

@@ -55,7 +55,7 @@ fn is_meant(model: &Model, wanted: Adjust, gap: &InitialGap) -> bool {
     match wanted {
         Adjust::Within(clearance) => gap.gap <= clearance,
         Adjust::Nodes(set) => {
-            let members = &model.node_sets[set].members;
+            let members = &model.sets.nodes[set].members;
             members.binary_search(&gap.slave).is_ok() && gap.gap <= ADJUSTMENT_REACH * gap.edge
         }
     }
@@ -155,7 +155,7 @@ fn note(model: &Model, contact: &Contact, moved: &Adjusted) -> Diagnostic {
 mod tests {
     use super::*;
     use crate::diagnostics::Span;
-    use crate::model::{Cell, Face, Plane, Surface, SurfaceKind};
+    use crate::model::{Cell, Face, Interaction, Plane, Surface, SurfaceKind};
 
     /// Whether moving the upper corners of a slightly sheared square spoils it, in a unit of length.
     fn is_spoiled_by(upper: [[f64; 2]; 2], unit: f64) -> bool {
@@ -209,7 +209,7 @@ mod tests {
         model.contacts.push(Contact {
             slave: 0,
             master: 1,
-            interaction: None,
+            interaction: Interaction::default(),
             adjust: Some(Adjust::Within(0.1 * edge)),
             left_out: Vec::new(),
             span: Span::default(),

@@ -15,7 +15,7 @@ mod steps;
 
 use crate::deck::{self, Card, Deck};
 use crate::diagnostics::{Diagnostics, Sources};
-use crate::model::{Element, Mesh, Model};
+use crate::model::{Element, Mesh, Model, NamedSets};
 use contact::{pairs, rigid_surface};
 use context::Context;
 use mesh::{Outline, nodes_elements, sets, surface};
@@ -52,7 +52,7 @@ fn read(cx: &mut Context) -> Model {
     let rigid_surfaces = rigid_surface::read(&outline, &mesh_index, &sets, &surfaces, cx);
     let properties = material::read(&outline, &mesh_index, &sets, cx);
     check::magnitudes(&mesh_index, &properties, cx);
-    let (interactions, contacts) = pairs::read(&outline, &mesh_index, &sets, &mut surfaces, cx);
+    let contacts = pairs::read(&outline, &mesh_index, &sets, &mut surfaces, cx);
     check::thickness(&contacts, &surfaces, &properties, cx);
     let amplitudes = amplitude::read(cx);
     let targets = Targets {
@@ -69,12 +69,14 @@ fn read(cx: &mut Context) -> Model {
     Model {
         title: title(&outline),
         mesh: with_sections(mesh_index.mesh, &properties.section_of),
-        node_sets: sets.nodes,
-        element_sets: sets.elements,
+        sets: NamedSets {
+            nodes: sets.nodes,
+            elements: sets.elements,
+            history: steps.history,
+        },
         surfaces: surfaces.all,
         materials: properties.materials,
         sections: properties.sections,
-        interactions,
         contacts,
         amplitudes: amplitudes.all,
         equations: equations
@@ -83,7 +85,6 @@ fn read(cx: &mut Context) -> Model {
             .collect(),
         initial_velocity,
         steps: steps.all,
-        history_sets: steps.history,
         rigid_bodies: rigid_surface::bodies(&rigid_surfaces),
     }
 }

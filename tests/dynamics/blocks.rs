@@ -134,16 +134,11 @@ pub fn add_contact(model: &mut Model, slave: Vec<Face>, master: Vec<Face>, frict
             kind: SurfaceKind::Faces(faces),
         });
     }
-    let interaction = model.interactions.len();
-    model.interactions.push(Interaction {
-        name: format!("I{interaction}"),
-        friction,
-    });
     let master = model.surfaces.len() - 1;
     model.contacts.push(Contact {
         slave: master - 1,
         master,
-        interaction: Some(interaction),
+        interaction: Interaction { friction },
         adjust: None,
         left_out: Vec::new(),
         span: Span::default(),

@@ -7,7 +7,8 @@
 
 use stickslip::diagnostics::Span;
 use stickslip::model::{
-    BodyForce, Cell, Contact, Face, Load, Model, Settings, Surface, SurfaceKind, Variation,
+    BodyForce, Cell, Contact, Face, Interaction, Load, Model, Settings, Surface, SurfaceKind,
+    Variation,
 };
 use stickslip::prepare::initial_gaps;
 
@@ -41,7 +42,7 @@ fn foils(ratio: f64, layers: usize, triangles: bool, lifts: &[f64]) -> (Model, V
     model.contacts.push(Contact {
         slave: 0,
         master: 0,
-        interaction: None,
+        interaction: Interaction::default(),
         adjust: None,
         left_out: Vec::new(),
         span: Span::default(),

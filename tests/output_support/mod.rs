@@ -20,7 +20,8 @@ use stickslip::dynamics::{
 use stickslip::elements::Strained;
 use stickslip::model::{
     Cell, Contact, Element, Face, Frames, HistorySet, Increments, Interaction, Material, Mesh,
-    Model, Plane, Section, Set, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
+    Model, NamedSets, Plane, Section, Set, Settings, Step, Support, SupportMotion, Surface,
+    SurfaceKind,
 };
 use stickslip::output::{Claim, JobFiles, ResultWriter, RunRecord, Verbosity};
 
@@ -37,8 +38,11 @@ pub fn model() -> Model {
     Model {
         title: "two squares and a triangle".into(),
         mesh: mesh(),
-        node_sets: vec![set("ALL", 0..7), set("TIP", [6]), set("NOTHING", [])],
-        element_sets: vec![set("SQUARES", 0..2)],
+        sets: NamedSets {
+            nodes: vec![set("ALL", 0..7), set("TIP", [6]), set("NOTHING", [])],
+            elements: vec![set("SQUARES", 0..2)],
+            history: vec![asked(1, true), asked(2, true), asked(0, false)],
+        },
         surfaces: vec![
             surface("BOTTOM", SurfaceKind::Nodes(vec![0, 1, 2, 6])),
             surface("TOP", SurfaceKind::Faces(vec![face(0, 2), face(1, 2)])),
@@ -53,16 +57,11 @@ pub fn model() -> Model {
             material: 0,
             thickness: 0.5,
         }],
-        interactions: vec![Interaction {
-            name: "I".into(),
-            friction: 0.3,
-        }],
         contacts: vec![contact(), contact()],
         amplitudes: vec![],
         equations: vec![],
         initial_velocity: vec![0.0; 14],
         steps: vec![step()],
-        history_sets: vec![asked(1, true), asked(2, true), asked(0, false)],
         rigid_bodies: vec![],
     }
 }
@@ -117,7 +116,7 @@ fn contact() -> Contact {
     Contact {
         slave: 0,
         master: 1,
-        interaction: Some(0),
+        interaction: Interaction { friction: 0.3 },
         adjust: None,
         left_out: Vec::new(),
         span: Span::default(),

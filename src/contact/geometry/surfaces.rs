@@ -98,7 +98,7 @@ pub fn contact_surfaces(model: &Model) -> Vec<ContactSurfaces> {
             slaves,
             &slave.segments(&model.mesh),
             master.segments(&model.mesh),
-            model.friction(contact),
+            contact.interaction.friction,
         )
         .with_sharp_corners(&model.mesh.coordinates)
         .with_interior(Arc::clone(&interior))

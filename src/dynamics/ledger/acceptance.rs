@@ -4,8 +4,7 @@ use super::energy::Ledger;
 use super::energy_check::check_energy_gain;
 use crate::dynamics::increment::{Failed, Solved};
 use crate::dynamics::results::{Failure, State};
-use crate::dynamics::run::StepPlace;
-use crate::dynamics::step::StepProblem;
+use crate::dynamics::step::{StepPlace, StepProblem};
 
 /// A converged increment and the ledger with it.
 pub(crate) struct Accepted {

@@ -65,7 +65,7 @@ impl ContactLedger {
                 continue;
             }
             let contact = self.contact_of[pair.target.slave_index];
-            let (pn, pt) = (forces.normal[k], forces.tangential[k]);
+            let [pn, pt] = [forces.normal[k], forces.tangential[k]];
             // Pn.(Bn d) and -Pt.(Bt d)
             let sums = &mut self.contacts[contact];
             sums.normal_work += pn * pair.normal_of(&solved.d);
@@ -73,7 +73,8 @@ impl ContactLedger {
             let result = &mut resultants[contact];
             result.impulse.add(pair, [dt * pn, dt * pt]);
             if !result.bodies.is_empty() {
-                add_to_bodies(problem, bodies, u, (pair, pn, pt), &mut result.bodies);
+                let position = |node| problem.position(u, node);
+                add_to_bodies(bodies, position, pair, [pn, pt], &mut result.bodies);
             }
         }
         let impacts = &solved.impulses;
@@ -137,19 +138,20 @@ impl ContactImpulse {
     }
 }
 
-/// Adds the forces of a pair to those on the bodies of its nodes; moments about the origin.
+/// Adds the forces [Pn, Pt] of a pair to those on the bodies of its nodes; moments about the origin
+/// with the nodes at their `position`.
 fn add_to_bodies(
-    problem: &StepProblem,
     bodies: &Bodies,
-    u: &[f64],
-    (pair, pn, pt): (&Pair, f64, f64),
+    position: impl Fn(usize) -> [f64; 2],
+    pair: &Pair,
+    [pn, pt]: [f64; 2],
     results: &mut [ContactOnBody],
 ) {
     for (k, &node) in pair.target.nodes.iter().enumerate() {
         let Some(body) = bodies.of_node[node] else {
             continue;
         };
-        let x = problem.position(u, node);
+        let x = position(node);
         let [fx, fy] = [2 * k, 2 * k + 1].map(|i| pair.normal[i] * pn + pair.tangent[i] * pt);
         let result = &mut results[body];
         result.force[0] += fx;

@@ -140,7 +140,7 @@ pub struct ContactOnBody {
 pub struct ContactResultant {
     /// Force on the slave surface (force).
     pub force: [f64; 2],
-    /// TimePoint of that force about the origin (force length).
+    /// Moment of that force about the origin (force length).
     pub moment: f64,
     /// Sum of Pn (force).
     pub normal: f64,
@@ -154,7 +154,7 @@ pub struct ContactResultant {
     pub min_gap: f64,
     /// max(|Pt| - mu Pn, 0) / max(Pn); 0 without contact.
     pub cone_violation: f64,
-    /// TimePoint of the force about the reference node of a rigid master (force length); 0 of others.
+    /// Moment of the force about the reference node of a rigid master (force length); 0 of others.
     pub reference_moment: f64,
     /// Work of the normal contact forces since the start of the analysis.
     pub normal_work: f64,

@@ -3,5 +3,4 @@
 mod nominal_increment;
 mod runner;
 
-pub(crate) use nominal_increment::StepPlace;
 pub use runner::{RunError, run};

@@ -1,29 +1,9 @@
 //! Nominal time increments of a step and their bisection. Section 4 of docs/theory.md, Cutback.
 
-use crate::dynamics::step::{Interval, TimePoint};
+use crate::dynamics::step::{Interval, StepPlace};
 
 /// A step's duration counts as a multiple of its increment within this relative difference.
 pub(crate) const WHOLE: f64 = 1e-6;
-
-/// Place of a step in the run.
-#[derive(Clone, Copy)]
-pub(crate) struct StepPlace {
-    pub number: usize,
-    /// Time of the analysis at which it starts.
-    pub start: f64,
-    pub period: f64,
-}
-
-impl StepPlace {
-    /// A moment of the step.
-    pub fn time_point(&self, step: f64) -> TimePoint {
-        TimePoint {
-            step,
-            total: self.start + step,
-            period: self.period,
-        }
-    }
-}
 
 /// One nominal increment of a step, in step time.
 #[derive(Clone, Copy)]

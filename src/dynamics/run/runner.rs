@@ -3,7 +3,7 @@
 
 use std::io;
 
-use super::nominal_increment::{NominalIncrement, StepPlace, WHOLE, increments_of};
+use super::nominal_increment::{NominalIncrement, WHOLE, increments_of};
 use crate::contact::{ContactSurfaces, Search, contact_surfaces};
 use crate::dynamics::events::{MOST_EVENTS, Subincrement, Subincrements};
 use crate::dynamics::increment::{Attempt, ClosedPairs, Failed, Solved};
@@ -12,7 +12,8 @@ use crate::dynamics::results::{
     Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State,
 };
 use crate::dynamics::step::{
-    EffectiveStiffness, Interval, Loads, Mass, Meter, Parts, StepProblem, Unknowns, Weights,
+    EffectiveStiffness, Interval, Loads, Mass, Meter, Parts, StepPlace, StepProblem, Unknowns,
+    Weights,
 };
 use crate::elements::Elements;
 use crate::model::{ImpactTime, Increments, Model, Step};

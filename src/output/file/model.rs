@@ -4,7 +4,7 @@ use hdf5::Group;
 
 use super::body_times::body_times;
 use super::dataset::{Meaning, constant, group, meaning};
-use super::vtkhdf::connectivity;
+use super::mesh::{connectivity, number};
 use crate::model::{Bodies, Model, Set};
 use crate::output::text::element_mass;
 
@@ -40,8 +40,8 @@ pub(crate) fn write(root: &Group, model: &Model) -> hdf5::Result<()> {
     constant(&at, "element_labels", &[labels.len()], &labels, text)?;
     let nodes = connectivity(mesh);
     constant(&at, "connectivity", &[nodes.len()], &nodes, CONNECTIVITY)?;
-    write_sets(&group(&at, "node_sets")?, &model.node_sets)?;
-    write_sets(&group(&at, "element_sets")?, &model.element_sets)?;
+    write_sets(&group(&at, "node_sets")?, &model.sets.nodes)?;
+    write_sets(&group(&at, "element_sets")?, &model.sets.elements)?;
     write_bodies(&group(&at, "bodies")?, model)
 }
 
@@ -69,11 +69,6 @@ fn write_bodies(at: &Group, model: &Model) -> hdf5::Result<()> {
     each("edge_time", &edge, text, "time")?;
     let text = "time a longitudinal wave takes along the longer side of the bounding box";
     each("wave_time", &body, text, "time")
-}
-
-/// Number of a body, -1 for none.
-pub(crate) fn number(body: Option<usize>) -> i64 {
-    body.map_or(-1, |body| body as i64)
 }
 
 fn write_sets(at: &Group, sets: &[Set]) -> hdf5::Result<()> {

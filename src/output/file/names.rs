@@ -2,29 +2,15 @@
 
 use std::collections::HashSet;
 
-use thiserror::Error;
-
 use crate::model::{ALL_EXTERIOR, Contact, Model};
-
-/// A name that cannot stand in the result file.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error(
-    "the {what} name '{name}' cannot stand in the result file: a name there may not be empty, '.', \
-     nor hold a '/' or a NUL; rename it in the deck"
-)]
-pub struct NameError {
-    /// What has the name, such as "node set".
-    pub what: &'static str,
-    /// The name.
-    pub name: String,
-}
+use crate::output::error::NameError;
 
 /// Checks the names of all sets, and of the surfaces in contact or with a reference node.
 pub fn check_names(model: &Model) -> Result<(), NameError> {
-    for set in &model.node_sets {
+    for set in &model.sets.nodes {
         check("node set", &set.name)?;
     }
-    for set in &model.element_sets {
+    for set in &model.sets.elements {
         check("element set", &set.name)?;
     }
     for contact in &model.contacts {

@@ -3,16 +3,11 @@
 use hdf5::types::FixedAscii;
 use hdf5::{Group, H5Type};
 
-use super::dataset::{Column, Meaning, constant, group, meaning, set_attribute};
-use super::model::number;
+use super::dataset::{Column, Meaning, group, meaning, set_attribute};
+use super::mesh::{write_bodies, write_mesh};
 use crate::dynamics::{NodalResults, State};
 use crate::elements::{ElementMeans, element_means};
-use crate::model::{Bodies, Cell, Mesh, Model};
-
-/// Cell types of VTK.
-const VTK_LINE: u8 = 3;
-const VTK_TRIANGLE: u8 = 5;
-const VTK_QUAD: u8 = 9;
+use crate::model::Model;
 
 /// A field with `3` components (or one) per node or element.
 struct Field<T>(Column<T>);
@@ -35,8 +30,13 @@ struct Steps {
 /// Writes the field frames.
 pub(crate) struct Fields {
     steps: Steps,
-    points: Offsets,
-    cells: Offsets,
+    points: PointFields,
+    cells: CellFields,
+}
+
+/// Fields of the nodes, group `PointData`.
+struct PointFields {
+    offsets: Offsets,
     displacement: Field<f64>,
     velocity: Field<f64>,
     acceleration: Field<f64>,
@@ -46,13 +46,18 @@ pub(crate) struct Fields {
     status: Field<u8>,
     pressure: Field<f64>,
     slip: Field<f64>,
+}
+
+/// Fields of the cells, group `CellData`: elements, then the segments of rigid surfaces.
+struct CellFields {
+    offsets: Offsets,
     stress: Field<f64>,
     across: Field<f64>,
     von_mises: Field<f64>,
     strain: Field<f64>,
-    /// First row of `CellData/BODY`, which is the same in all frames.
+    /// First row of `BODY`, which is the same in all frames.
     body_offsets: Column<i64>,
-    /// Cells after the elements: the segments of rigid surfaces.
+    /// Number of segments of rigid surfaces.
     lines: usize,
 }
 
@@ -64,29 +69,14 @@ impl Fields {
         let lines = model.rigid_segments();
         write_mesh(&grid, &model.mesh, &lines)?;
         let steps = Steps::create(&grid)?;
-        let mut points = Place::new(&grid, &steps.group, "Point", model.mesh.node_count())?;
+        let points = Place::new(&grid, &steps.group, "Point", model.mesh.node_count())?;
         let cells = model.mesh.elements.len() + lines.len();
-        let mut cells = Place::new(&grid, &steps.group, "Cell", cells)?;
+        let cells = Place::new(&grid, &steps.group, "Cell", cells)?;
         write_bodies(&cells.data, model, lines.len())?;
         Ok(Fields {
-            displacement: points.field("U", &[3], meaning("displacement", "length"))?,
-            velocity: points.field("V", &[3], meaning("velocity", "length/time"))?,
-            acceleration: points.field("A", &[3], meaning("acceleration", "length/time^2"))?,
-            reaction: points.field("RF", &[3], meaning("support reaction", "force"))?,
-            contact_force: points.field("CONTACT_FORCE", &[3], CONTACT_FORCE)?,
-            gap: points.field("GAP", &[], GAP)?,
-            status: points.field("CONTACT_STATUS", &[], STATUS)?,
-            pressure: points.field("CONTACT_PRESSURE", &[], PRESSURE)?,
-            slip: points.field("SLIP", &[], SLIP)?,
-            stress: cells.field("S", &[3], STRESS)?,
-            across: cells.field("S33", &[], ACROSS)?,
-            von_mises: cells.field("MISES", &[], VON_MISES)?,
-            strain: cells.field("E", &[3], STRAIN)?,
-            body_offsets: Column::series(&cells.offsets.group, "BODY", &[], OFFSETS)?,
-            points: points.offsets,
-            cells: cells.offsets,
             steps,
-            lines: lines.len(),
+            points: PointFields::create(points)?,
+            cells: CellFields::create(cells, lines.len())?,
         })
     }
 
@@ -98,7 +88,34 @@ impl Fields {
         state: &State,
         nodal: &NodalResults,
     ) -> hdf5::Result<()> {
-        let means = element_means(model, &state.u);
+        self.points.write(state, nodal)?;
+        self.cells.write(&element_means(model, &state.u))?;
+        self.steps.push(time)
+    }
+
+    /// Frames written.
+    pub fn count(&self) -> usize {
+        self.steps.values.rows()
+    }
+}
+
+impl PointFields {
+    fn create(mut at: Place) -> hdf5::Result<Self> {
+        Ok(PointFields {
+            displacement: at.field("U", &[3], meaning("displacement", "length"))?,
+            velocity: at.field("V", &[3], meaning("velocity", "length/time"))?,
+            acceleration: at.field("A", &[3], meaning("acceleration", "length/time^2"))?,
+            reaction: at.field("RF", &[3], meaning("support reaction", "force"))?,
+            contact_force: at.field("CONTACT_FORCE", &[3], CONTACT_FORCE)?,
+            gap: at.field("GAP", &[], GAP)?,
+            status: at.field("CONTACT_STATUS", &[], STATUS)?,
+            pressure: at.field("CONTACT_PRESSURE", &[], PRESSURE)?,
+            slip: at.field("SLIP", &[], SLIP)?,
+            offsets: at.offsets,
+        })
+    }
+
+    fn write(&mut self, state: &State, nodal: &NodalResults) -> hdf5::Result<()> {
         self.displacement.push(in_space(&state.u))?;
         self.velocity.push(in_space(&state.v))?;
         self.acceleration.push(in_space(&state.a))?;
@@ -108,6 +125,25 @@ impl Fields {
         self.status.push(nodal.status.iter().map(|&s| s as u8))?;
         self.pressure.push(nodal.pressure.iter().copied())?;
         self.slip.push(nodal.slip.iter().copied())?;
+        self.offsets.push()
+    }
+}
+
+impl CellFields {
+    fn create(mut at: Place, lines: usize) -> hdf5::Result<Self> {
+        Ok(CellFields {
+            stress: at.field("S", &[3], STRESS)?,
+            across: at.field("S33", &[], ACROSS)?,
+            von_mises: at.field("MISES", &[], VON_MISES)?,
+            strain: at.field("E", &[3], STRAIN)?,
+            body_offsets: Column::series(&at.offsets.group, "BODY", &[], OFFSETS)?,
+            offsets: at.offsets,
+            lines,
+        })
+    }
+
+    /// Appends a frame; rigid segments have NaN for stress and strain.
+    fn write(&mut self, means: &[ElementMeans]) -> hdf5::Result<()> {
         let of_lines = |components| std::iter::repeat_n(f64::NAN, components * self.lines);
         let stress = means.iter().flat_map(|mean| mean.stress);
         self.stress.push(stress.chain(of_lines(3)))?;
@@ -119,14 +155,7 @@ impl Fields {
         self.strain.push(strain.chain(of_lines(3)))?;
         self.body_offsets.push([0])?;
         self.body_offsets.flush()?;
-        self.points.push()?;
-        self.cells.push()?;
-        self.steps.push(time)
-    }
-
-    /// Frames written.
-    pub fn count(&self) -> usize {
-        self.steps.values.rows()
+        self.offsets.push()
     }
 }
 
@@ -152,7 +181,6 @@ const ACROSS: Meaning = meaning(
     "force/length^2",
 );
 const VON_MISES: Meaning = meaning("von Mises stress of S and S33", "force/length^2");
-const BODY: Meaning = meaning("body of the cell, -1 for rigid segments", "1");
 const STRESS: Meaning = meaning(
     "Cauchy stress xx yy xy, mean over the element",
     "force/length^2",
@@ -274,86 +302,6 @@ fn write_type(grid: &Group) -> hdf5::Result<()> {
     let name = FixedAscii::<16>::from_ascii("UnstructuredGrid")
         .map_err(|error| hdf5::Error::from(error.to_string()))?;
     set_attribute(grid, "Type", name)
-}
-
-/// The reference mesh, and lines between its nodes.
-fn write_mesh(grid: &Group, mesh: &Mesh, lines: &[[usize; 2]]) -> hdf5::Result<()> {
-    let (nodes, cells) = (mesh.node_count(), mesh.elements.len() + lines.len());
-    let mut connectivity = connectivity(mesh);
-    connectivity.extend(lines.as_flattened().iter().map(|&node| node as i64));
-    let count =
-        |name, value: usize, text| constant(grid, name, &[1], &[value as i64], meaning(text, "1"));
-    count("NumberOfPoints", nodes, "number of nodes N")?;
-    count(
-        "NumberOfCells",
-        cells,
-        "number of elements and rigid segments",
-    )?;
-    count(
-        "NumberOfConnectivityIds",
-        connectivity.len(),
-        "length of the connectivity",
-    )?;
-    let points: Vec<f64> = (mesh.coordinates.iter())
-        .flat_map(|x| [x[0], x[1], 0.0])
-        .collect();
-    let text = meaning("reference coordinates", "length");
-    constant(grid, "Points", &[nodes, 3], &points, text)?;
-    let shape = [connectivity.len()];
-    let text = meaning("node indices of all cells, one cell after the other", "1");
-    constant(grid, "Connectivity", &shape, &connectivity, text)?;
-    let text = meaning("where each cell's nodes start in the connectivity", "1");
-    let offsets = offsets(mesh, lines.len());
-    constant(grid, "Offsets", &[cells + 1], &offsets, text)?;
-    let text = meaning(
-        "cell type: 3 rigid segment, 5 triangle, 9 quadrilateral",
-        "1",
-    );
-    let mut types = types(mesh);
-    types.resize(cells, VTK_LINE);
-    constant(grid, "Types", &[cells], &types, text)
-}
-
-/// The body of every cell, `lines` rigid segments being the last.
-fn write_bodies(at: &Group, model: &Model, lines: usize) -> hdf5::Result<()> {
-    let of_element = Bodies::new(&model.mesh).of_element;
-    let elements = of_element.into_iter().map(|body| number(Some(body)));
-    let cells: Vec<i64> = elements
-        .chain(std::iter::repeat_n(number(None), lines))
-        .collect();
-    constant(at, "BODY", &[cells.len()], &cells, BODY)
-}
-
-/// Node indices of all elements, one element after the other.
-pub(crate) fn connectivity(mesh: &Mesh) -> Vec<i64> {
-    (mesh.elements.iter())
-        .flat_map(|element| element.cell.nodes())
-        .map(|&node| node as i64)
-        .collect()
-}
-
-/// Start of each element and of each line in the connectivity, and its end.
-fn offsets(mesh: &Mesh, lines: usize) -> Vec<i64> {
-    let elements = mesh
-        .elements
-        .iter()
-        .map(|element| element.cell.nodes().len());
-    let mut offsets = vec![0];
-    let mut end = 0;
-    for nodes in elements.chain(std::iter::repeat_n(2, lines)) {
-        end += nodes as i64;
-        offsets.push(end);
-    }
-    offsets
-}
-
-fn types(mesh: &Mesh) -> Vec<u8> {
-    (mesh.elements.iter())
-        .map(|element| match element.cell {
-            Cell::Tri3(_) => VTK_TRIANGLE,
-            Cell::Quad4(_) => VTK_QUAD,
-        })
-        .collect()
 }
 
 /// The vectors of a plane field with a zero third component.

@@ -49,7 +49,7 @@ pub(crate) struct NodeHistory {
 
 impl NodeHistory {
     fn create(at: &Group, model: &Model, asked: &HistorySet) -> hdf5::Result<Self> {
-        let nodes = model.node_sets[asked.set].members.clone();
+        let nodes = model.sets.nodes[asked.set].members.clone();
         let label = |&node: &usize| model.mesh.node_labels[node] as i64;
         let labels: Vec<i64> = nodes.iter().map(label).collect();
         let text = meaning("node numbers of the deck", "1");
@@ -97,10 +97,10 @@ fn columns(at: &Group, row: &[usize], shown: &[Shown]) -> hdf5::Result<Vec<(Colu
 
 /// The histories of the requested sets; an empty set has none.
 pub(crate) fn create_nodes(at: &Group, model: &Model) -> hdf5::Result<Vec<NodeHistory>> {
-    let mut requested: Vec<&HistorySet> = model.history_sets.iter().collect();
+    let mut requested: Vec<&HistorySet> = model.sets.history.iter().collect();
     requested.sort_unstable_by_key(|asked| asked.set);
     (requested.iter())
-        .map(|asked| (asked, &model.node_sets[asked.set]))
+        .map(|asked| (asked, &model.sets.nodes[asked.set]))
         .filter(|(_, set)| !set.members.is_empty())
         .map(|(asked, set)| NodeHistory::create(&group(at, &set.name)?, model, asked))
         .collect()

@@ -5,9 +5,11 @@ use crate::dynamics::{Energy, IncrementReport, Momentum};
 use crate::linear::larger;
 use crate::model::{Equation, Model};
 
-/// Part of a whole that is round-off: of the largest energy, the work of the normal contact forces in
-/// an increment.
-const ROUND_OFF: f64 = 1e-12;
+/// Work of the normal contact forces in an increment, as a part of the largest energy, up to which
+/// it is round-off.
+const CONTACT_WORK_ROUND_OFF: f64 = 1e-12;
+/// Sum of the coefficients of an equation, as a part of their sizes, that is round-off.
+const SUM_ROUND_OFF: f64 = 1e-12;
 
 /// Follows the energy balance, the energy that contact puts in and, of a free model, the momentum.
 #[derive(Debug, Clone, Default)]
@@ -20,7 +22,7 @@ pub(crate) struct Balance {
     contact_work: f64,
     /// Its largest absolute value so far.
     most_contact_work: f64,
-    gains: Gains,
+    contact_energy: ContactEnergy,
     /// Momentum at the start, when nothing outside may change it.
     start: Option<Momentum>,
     /// Largest linear momentum so far.
@@ -33,7 +35,7 @@ pub(crate) struct Balance {
 /// Increments in which the normal contact forces did positive work: with energy-momentum contact
 /// those that a pair enters with a negative gap.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Gains {
+pub(crate) struct ContactEnergy {
     /// Their number.
     pub count: usize,
     /// The energy put in.
@@ -57,7 +59,7 @@ impl Balance {
         }
     }
 
-    /// Takes an increment in; the energy that contact put in, if it did.
+    /// Takes an increment in; returns the energy that contact put in, if it did.
     pub fn add(&mut self, report: &IncrementReport) -> Option<f64> {
         let Energy {
             kinetic,
@@ -74,19 +76,19 @@ impl Balance {
             self.add_momentum(report.momentum);
         }
         let work = report.energy.normal_contact_work;
-        let gain = work - std::mem::replace(&mut self.contact_work, work);
+        let added = work - std::mem::replace(&mut self.contact_work, work);
         self.most_contact_work = larger(self.most_contact_work, work.abs());
-        let puts_in = gain > ROUND_OFF * self.largest;
+        let puts_in = added > CONTACT_WORK_ROUND_OFF * self.largest;
         if puts_in {
-            self.gains.count += 1;
-            self.gains.energy += gain;
+            self.contact_energy.count += 1;
+            self.contact_energy.energy += added;
         }
-        puts_in.then_some(gain)
+        puts_in.then_some(added)
     }
 
     /// The increments in which contact put energy in.
-    pub fn gains(&self) -> Gains {
-        self.gains
+    pub fn contact_energy(&self) -> ContactEnergy {
+        self.contact_energy
     }
 
     fn add_momentum(&mut self, momentum: Momentum) {
@@ -127,10 +129,11 @@ fn keeps_momentum(equation: &Equation) -> bool {
         let [sum, size] = &mut sums[dof % 2];
         (*sum, *size) = (*sum + c, *size + f64::abs(c));
     }
-    sums.iter().all(|[sum, size]| sum.abs() <= ROUND_OFF * size)
+    sums.iter()
+        .all(|[sum, size]| sum.abs() <= SUM_ROUND_OFF * size)
 }
 
-/// `value / whole`, 0 of nothing.
+/// `value / whole`; 0 where `value` is 0, whatever the whole.
 pub(crate) fn part(value: f64, whole: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value / whole }
 }

@@ -2,10 +2,12 @@
 
 mod balance;
 mod header;
+mod monitor;
 mod run_summary;
+mod totals;
 mod warnings;
 
-pub(crate) use balance::Balance;
 pub use header::{deck_line, program_lines};
+pub(crate) use monitor::{Monitor, Remarks};
 pub use run_summary::{ResultSummary, SummaryError};
-pub(crate) use warnings::Watch;
+pub(crate) use totals::{lcp_lines, timing_lines};

@@ -1,11 +1,13 @@
-//! Screen and log together: each printed line goes to both, and losing the screen does not end the
-//! run.
+//! Screen and log together: each printed line goes to both, and a run goes on when its screen is
+//! lost.
 
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, ErrorKind, IsTerminal, Write};
 
-use super::log::Log;
+use super::log::{Log, increment_line};
 use super::progress::Progress;
+use super::screen::{Table, row};
 use crate::dynamics::{IncrementReport, PassReport};
+use crate::model::Model;
 
 /// How much is printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -24,22 +26,48 @@ pub(crate) struct Console {
     screen: Option<Box<dyn Write>>,
     /// Why the screen was given up, if it was not a closed pipe.
     lost: Option<io::Error>,
-    /// Whether there was no screen from the start.
-    quiet: bool,
+    verbosity: Verbosity,
+    table: Table,
     progress: Progress,
     log: Log,
 }
 
 impl Console {
-    /// Prints to `screen`, if any, and to the log.
-    pub fn new(screen: Option<Box<dyn Write>>, progress: Progress, log: Log) -> Self {
+    /// Prints to the standard output, unless the run is quiet, and to the log; the live line is on
+    /// a terminal only.
+    pub fn new(model: &Model, verbosity: Verbosity, log: Log) -> Self {
+        let shown = verbosity != Verbosity::Quiet;
+        let live = shown && io::stdout().is_terminal() && io::stderr().is_terminal();
         Console {
-            quiet: screen.is_none(),
-            screen,
+            screen: shown.then(|| Box::new(io::stdout()) as Box<dyn Write>),
             lost: None,
-            progress,
+            verbosity,
+            table: Table::new(model),
+            progress: Progress::new(model, live),
             log,
         }
+    }
+
+    /// Prints an accepted increment: its line in the table where one is due, and its passes in the
+    /// log of a verbose run; `error` is the relative energy balance.
+    pub fn increment(&mut self, report: &IncrementReport, error: f64) -> io::Result<()> {
+        if self.verbosity == Verbosity::Verbose {
+            self.detail(&increment_line(report))?;
+            self.passes(&report.passes)?;
+        }
+        if self.table.shows(report) {
+            if let Some(header) = self.table.header() {
+                self.line(header)?;
+            }
+            self.line(&row(report, error))?;
+        }
+        self.progress.show(report);
+        Ok(())
+    }
+
+    /// Prints several lines.
+    pub fn lines(&mut self, lines: impl IntoIterator<Item = String>) -> io::Result<()> {
+        lines.into_iter().try_for_each(|line| self.line(&line))
     }
 
     /// Prints a line. A screen that cannot be written, such as a closed pipe, is given up: the run
@@ -75,7 +103,7 @@ impl Console {
 
     /// Prints a line that even a quiet run shows, on the standard error.
     pub fn alarm(&mut self, text: &str) -> io::Result<()> {
-        if self.quiet {
+        if self.verbosity == Verbosity::Quiet {
             // A closed pipe is no reason to stop.
             let _ = writeln!(io::stderr(), "{text}");
         }
@@ -90,11 +118,6 @@ impl Console {
     /// Writes the passes of an increment to the log.
     pub fn passes(&mut self, passes: &[PassReport]) -> io::Result<()> {
         self.log.passes(passes)
-    }
-
-    /// Moves the live line on.
-    pub fn progress(&self, report: &IncrementReport) {
-        self.progress.show(report);
     }
 
     /// Removes the live line.

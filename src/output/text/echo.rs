@@ -1,15 +1,13 @@
 //! The model in a few lines, as the screen and `check` show it.
 
 use super::format::{counted, general, grouped, scientific};
+use super::layout::{label, wrap};
 use crate::model::{
     Cell, Contact, Element, Frames, Impact, ImpactTime, Model, Plane, Scheme, Settings,
     SolverChoice, Step, SurfaceKind,
 };
 use crate::output::frames::{DEFAULT_FRAMES, are_dense};
 use crate::prepare::{InitialGap, initial_gaps};
-
-/// Width of the screen in columns.
-pub(crate) const WIDTH: usize = 80;
 
 /// Numbers that describe a model.
 #[derive(Debug, Clone, PartialEq)]
@@ -192,7 +190,7 @@ fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<S
     };
     let pieces = [
         sides,
-        format!("mu {}", general(model.friction(contact), 4)),
+        format!("mu {}", general(contact.interaction.friction, 4)),
         smallest_gap(gaps),
     ];
     wrap("contact", &pieces)
@@ -275,29 +273,4 @@ pub(crate) fn wave_speed(model: &Model, element: &Element) -> f64 {
         Plane::Strain => (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
     };
     (material.young * factor / material.density).sqrt()
-}
-
-/// One line with its label in front.
-pub(crate) fn label(label: &str, text: &str) -> String {
-    format!("{label:<9}{text}")
-}
-
-/// The pieces three blanks apart, in as many lines as they need.
-pub(crate) fn wrap(first: &str, pieces: &[String]) -> Vec<String> {
-    let mut lines = vec![];
-    let mut line = label(first, "");
-    let mut empty = true;
-    for piece in pieces {
-        if !empty && line.len() + 3 + piece.len() > WIDTH {
-            lines.push(std::mem::replace(&mut line, label("", "")));
-            empty = true;
-        }
-        if !empty {
-            line.push_str("   ");
-        }
-        line.push_str(piece);
-        empty = false;
-    }
-    lines.push(line);
-    lines
 }

@@ -1,7 +1,7 @@
 //! The text about a run that stopped.
 
-use super::echo::wrap;
 use super::format::{counted, scientific};
+use super::layout::wrap;
 use super::log::pass_table;
 use super::strain::LIMIT;
 use crate::dynamics::{Cause, FailedLcp, Failure, Worst};

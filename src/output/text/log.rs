@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::{self, LineWriter, Write};
 use std::path::{Path, PathBuf};
 
-use super::echo::wrap;
 use super::format::scientific;
+use super::layout::wrap;
 use crate::dynamics::{Cutback, IncrementReport, PassReport};
 use crate::output::error::at;
 

@@ -1,11 +1,11 @@
 //! `*CONTACT`: every exterior face against every other and against the rigid surfaces.
 
+use super::pairs::Interactions;
 use crate::deck::{Card, Name, Row};
 use crate::diagnostics::{Code, Diagnostic, Span};
-use crate::model::{ALL_EXTERIOR, Contact, Face, Mesh, Surface, SurfaceKind};
+use crate::model::{ALL_EXTERIOR, Contact, Face, Interaction, Mesh, Surface, SurfaceKind};
 use crate::reader::context::Context;
 use crate::reader::mesh::{Block, MeshIndex, Outline, Sides, Surfaces};
-use crate::reader::names::Names;
 use std::collections::HashMap;
 
 /// Reads general contact and adds its surface: its contact with itself and one with every rigid
@@ -14,7 +14,7 @@ pub(crate) fn read(
     outline: &Outline,
     mesh_index: &MeshIndex,
     (surfaces, pairs): (&mut Surfaces, &[Contact]),
-    interactions: &Names,
+    interactions: &Interactions,
     cx: &mut Context,
 ) -> Vec<Contact> {
     let mut all = Vec::new();
@@ -54,7 +54,7 @@ fn general(
     outline: &Outline,
     mesh_index: &MeshIndex,
     surfaces: &mut Surfaces,
-    interactions: &Names,
+    interactions: &Interactions,
     cx: &mut Context,
 ) -> Option<Contact> {
     let blocks: Vec<&Block> = outline.blocks("CONTACT").collect();
@@ -119,18 +119,22 @@ fn inclusions(block: &Block, cx: &mut Context) -> Option<Span> {
 }
 
 /// The interaction of all surfaces, the last one assigned; an error is reported.
-fn assignment(block: &Block, interactions: &Names, cx: &mut Context) -> Result<Option<usize>, ()> {
-    let mut assigned = Ok(None);
+fn assignment(
+    block: &Block,
+    interactions: &Interactions,
+    cx: &mut Context,
+) -> Result<Interaction, ()> {
+    let mut assigned = Ok(Interaction::default());
     for card in block.parts_of("CONTACT PROPERTY ASSIGNMENT") {
         for row in &card.rows {
-            assigned = assigned_in(row, interactions, cx).map(Some).ok_or(());
+            assigned = assigned_in(row, interactions, cx).ok_or(());
         }
     }
     assigned
 }
 
 /// `, , interaction`
-fn assigned_in(row: &Row, interactions: &Names, cx: &mut Context) -> Option<usize> {
+fn assigned_in(row: &Row, interactions: &Interactions, cx: &mut Context) -> Option<Interaction> {
     row.at_most(3, cx.d);
     let mut named = (0..2).filter_map(|i| row.get(i));
     if let Some(field) = named.find(|field| field.name_key() != "ALLEXTERIOR") {

@@ -1,6 +1,6 @@
 //! `*SURFACE INTERACTION` with its laws, `*CONTACT PAIR`, and general contact.
 
-use crate::deck::{Card, Row};
+use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic};
 use crate::model::{Adjust, Contact, Interaction, SurfaceKind};
 use crate::reader::contact::general_contact;
@@ -9,34 +9,19 @@ use crate::reader::mesh::{Block, Found, MeshIndex, Outline, Sets, Surfaces, surf
 use crate::reader::names::Names;
 use std::collections::HashSet;
 
-/// Reads interactions and contacts.
+/// Reads the contacts with their interactions.
 pub(crate) fn read(
     outline: &Outline,
     mesh_index: &MeshIndex,
     sets: &Sets,
     surfaces: &mut Surfaces,
     cx: &mut Context,
-) -> (Vec<Interaction>, Vec<Contact>) {
-    let mut names = Names::new("surface interaction");
-    let mut interactions = Vec::new();
-    for block in outline.blocks("SURFACE INTERACTION") {
-        let Some(name) = names.new_name(block.head, cx) else {
-            continue;
-        };
-        if let Some(friction) = friction(block, cx) {
-            interactions.push(Interaction {
-                name: name.typed.clone(),
-                friction,
-            });
-            names.define(name);
-        } else {
-            names.spoil(&name);
-        }
-    }
+) -> Vec<Contact> {
+    let interactions = Interactions::read(outline, cx);
     let mut contacts = Vec::new();
     for card in outline.model_cards("CONTACT PAIR") {
         let name = card.required("INTERACTION", cx.d);
-        let interaction = name.and_then(|name| names.find(name, cx));
+        let interaction = name.and_then(|name| interactions.find(name, cx));
         let adjust = adjust(card, sets, cx);
         for row in &card.rows {
             let contact = contact(row, interaction, surfaces, cx);
@@ -45,12 +30,50 @@ pub(crate) fn read(
         }
     }
     report_repeated(&contacts, cx);
-    let general = general_contact::read(outline, mesh_index, (surfaces, &contacts), &names, cx);
+    let general = general_contact::read(
+        outline,
+        mesh_index,
+        (surfaces, &contacts),
+        &interactions,
+        cx,
+    );
     if !general.is_empty() {
         general_contact::report_pairs(&contacts, surfaces, cx);
     }
     contacts.extend(general);
-    (interactions, contacts)
+    contacts
+}
+
+/// The interactions of the deck by their names.
+pub(crate) struct Interactions {
+    names: Names,
+    /// In the order of their names.
+    all: Vec<Interaction>,
+}
+
+impl Interactions {
+    fn read(outline: &Outline, cx: &mut Context) -> Self {
+        let mut names = Names::new("surface interaction");
+        let mut all = Vec::new();
+        for block in outline.blocks("SURFACE INTERACTION") {
+            let Some(name) = names.new_name(block.head, cx) else {
+                continue;
+            };
+            if let Some(friction) = friction(block, cx) {
+                all.push(Interaction { friction });
+                names.define(name);
+            } else {
+                names.spoil(&name);
+            }
+        }
+        Interactions { names, all }
+    }
+
+    /// The interaction that `name` says; reports an undefined one.
+    pub fn find(&self, name: Text, cx: &mut Context) -> Option<Interaction> {
+        let index = self.names.find(name, cx)?;
+        self.all.get(index).copied()
+    }
 }
 
 /// A clearance or a node set.
@@ -161,7 +184,7 @@ fn coefficient(card: &Card, cx: &mut Context) -> Option<f64> {
 /// `slave, master`; one surface touches itself.
 fn contact(
     row: &Row,
-    interaction: Option<usize>,
+    interaction: Option<Interaction>,
     surfaces: &Surfaces,
     cx: &mut Context,
 ) -> Option<Contact> {
@@ -177,7 +200,7 @@ fn contact(
     Some(Contact {
         slave: slave.0,
         master: master.0,
-        interaction: Some(interaction?),
+        interaction: interaction?,
         adjust: None,
         left_out: Vec::new(),
         span: row.span(),

@@ -1,0 +1,108 @@
+//! What is followed over a run from increment to increment: conservation, strains, contacts and
+//! counts, and the closing lines that report them.
+
+use super::balance::Balance;
+use super::warnings::Watch;
+use crate::dynamics::IncrementReport;
+use crate::elements::Strained;
+use crate::linear::larger;
+use crate::model::Model;
+use crate::output::text::{StrainWatch, counted, scientific};
+
+/// Follows a run.
+pub(crate) struct Monitor {
+    /// Energy balance, energy from contact, momentum.
+    pub balance: Balance,
+    watch: Watch,
+    strain: StrainWatch,
+    /// Failed attempts since the last increment.
+    failed_attempts: usize,
+    cutbacks: usize,
+    landings: usize,
+    /// Largest violation of Coulomb's cone.
+    cone_violation: f64,
+}
+
+/// What an increment is reported for besides its line in the table.
+pub(crate) struct Remarks {
+    /// Energy that contact put in.
+    pub contact_energy: Option<f64>,
+    /// The most strained element, the first time it is beyond the range of its material.
+    pub strained: Option<Strained>,
+}
+
+impl Monitor {
+    /// Follows a run of `model`.
+    pub fn new(model: &Model) -> Self {
+        Monitor {
+            balance: Balance::new(model),
+            watch: Watch::default(),
+            strain: StrainWatch::default(),
+            failed_attempts: 0,
+            cutbacks: 0,
+            landings: 0,
+            cone_violation: 0.0,
+        }
+    }
+
+    /// Takes an accepted increment in.
+    pub fn add(&mut self, report: &IncrementReport) -> Remarks {
+        let contact_energy = self.balance.add(report);
+        self.watch.add(report);
+        self.landings += report.landings.len();
+        for contact in &report.contacts {
+            self.cone_violation = larger(self.cone_violation, contact.cone_violation);
+        }
+        Remarks {
+            contact_energy,
+            strained: self.strain.add(report),
+        }
+    }
+
+    /// Counts a cutback; returns their number so far.
+    pub fn add_cutback(&mut self) -> usize {
+        self.failed_attempts += 1;
+        self.cutbacks += 1;
+        self.cutbacks
+    }
+
+    /// Attempts that the increment just accepted took, the failed ones included.
+    pub fn take_attempts(&mut self) -> usize {
+        std::mem::take(&mut self.failed_attempts) + 1
+    }
+
+    /// The closing lines: conservation, largest strain, contact.
+    pub fn lines(&self, model: &Model) -> Vec<String> {
+        let mut lines = vec![self.balance_line(), self.strain.line(model)];
+        if !model.contacts.is_empty() {
+            lines.push(format!(
+                "contact  {}; largest violation of Coulomb's cone {}",
+                counted(self.landings, "landing"),
+                scientific(self.cone_violation, 1),
+            ));
+        }
+        let added = self.balance.contact_energy();
+        if added.count > 0 {
+            let part = scientific(self.balance.relative(added.energy), 1);
+            lines.push(format!(
+                "         contact put energy in in {}: {part} of the largest in all",
+                counted(added.count, "increment")
+            ));
+        }
+        lines
+    }
+
+    fn balance_line(&self) -> String {
+        let worst = scientific(self.balance.worst(), 1);
+        let mut line = format!("energy balance {worst} of the largest energy");
+        if let Some(drift) = self.balance.momentum_drift() {
+            line.push_str(&format!("; momentum {}", scientific(drift, 1)));
+        }
+        line
+    }
+
+    /// The warnings at the end of the run.
+    pub fn warnings(&self, model: &Model) -> Vec<String> {
+        self.watch.findings(model, &self.balance).lines()
+    }
+}
