@@ -1,6 +1,6 @@
 //! Linear constraint equations between displacements. Section 3 of docs/theory.md.
 
-/// A dof that follows others at all times: u_dof = sum c_k u_k.
+/// A dof that follows others at all times: u_dof = sum c_k u_k, eq. (3.8).
 ///
 /// A term is never a dof that follows others itself, nor one without a motion of its own unless it
 /// is prescribed or belongs to the equation of a node with elements.

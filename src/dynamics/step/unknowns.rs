@@ -12,7 +12,7 @@ use crate::elements::Elements;
 use crate::linear::Transformation;
 use crate::model::{Equation, Model, Step};
 
-/// The unknowns of a step: the displacements of the free dofs.
+/// The unknowns q of a step, U = T q + g(t), eq. (3.7): the displacements of the free dofs.
 ///
 /// A free dof has a row of the identity in T, a support an empty one and its prescribed motion in
 /// g, and a dof of an equation the sum of the rows, and of the g, that it follows.
@@ -124,7 +124,7 @@ impl<'m> Unknowns<'m> {
         self.follow(a);
     }
 
-    /// Makes a vector of displacements, velocities or accelerations satisfy the equations.
+    /// Makes a vector of displacements, velocities or accelerations satisfy the equations, eq. (3.8).
     fn follow(&self, v: &mut [f64]) {
         for equation in self.equations {
             v[equation.dof] = equation.terms.iter().map(|&(dof, c)| c * v[dof]).sum();
