@@ -3,11 +3,11 @@
 
 use super::impact_time::ImpactTime;
 use crate::contact::tolerances::IMPACT_GAP;
-use crate::contact::{Crossing, Direction, Projection, Search, crossings};
+use crate::contact::{Crossing, Direction, Projection, crossings};
 use crate::dynamics::increment::{ActiveConstraints, Attempt, ClosedPairs, Failed, Solved};
 use crate::dynamics::ledger::motion;
 use crate::dynamics::results::State;
-use crate::dynamics::step::{EffectiveStiffness, Interval, Meter, StepProblem, TimePoint};
+use crate::dynamics::step::{Interval, StepProblem, TimePoint, Workspace};
 
 /// Impacts within an increment of the nominal, after which nodes land within what is left of it.
 pub(crate) const MOST_EVENTS: usize = 50;
@@ -34,12 +34,10 @@ pub(crate) type FailedSubincrement = Box<(Interval, Failed)>;
 /// Solves the next piece of an increment.
 pub(crate) struct Subincrements<'a, 'm> {
     pub problem: &'a StepProblem<'m>,
-    pub effective: &'a mut EffectiveStiffness,
-    pub search: &'a mut Search<'m>,
+    pub workspace: &'a mut Workspace<'m>,
     pub start: &'a State,
     /// The pairs that carried forces up to the start.
     pub contact: &'a ClosedPairs,
-    pub meter: &'a mut Meter,
     /// What is left of the increment.
     pub rest: Interval,
     /// Length of an increment of the nominal.
@@ -116,10 +114,10 @@ impl<'m> Subincrements<'_, 'm> {
     /// T(tau) = tau, which secants find; without elastic forces T does not depend on tau.
     pub fn next(&mut self) -> Result<Subincrement, FailedSubincrement> {
         let (rest, group) = (self.rest.dt, IMPACT_GROUPING_TIME * self.nominal);
-        self.search.start(&self.start.v, rest);
-        self.search.cover(&self.start.u);
-        let mut active =
-            ActiveConstraints::new(self.problem, self.search, &self.start.u, self.contact);
+        let search = &mut self.workspace.search;
+        search.start(&self.start.v, rest);
+        search.cover(&self.start.u);
+        let mut active = ActiveConstraints::new(self.problem, search, &self.start.u, self.contact);
         let mut tau = self.predicted(&mut active);
         let mut root = ImpactTime::new(rest);
         for _ in 0..TRIALS {
@@ -211,7 +209,7 @@ impl<'m> Subincrements<'_, 'm> {
         motion: FreeMotion,
     ) -> Option<PredictedImpact> {
         let (problem, u0) = (self.problem, &self.start.u);
-        let search = &mut *self.search;
+        let Workspace { search, meter, .. } = &mut *self.workspace;
         let find = || {
             search.cover_way(u0, &motion.displacement(u0));
             let mut first: Option<PredictedImpact> = None;
@@ -246,7 +244,7 @@ impl<'m> Subincrements<'_, 'm> {
             }
             first
         };
-        self.meter.time(|t| &mut t.contact, find)
+        meter.time(|t| &mut t.contact, find)
     }
 
     fn attempt(
@@ -289,11 +287,9 @@ impl<'m> Subincrements<'_, 'm> {
     ) -> Attempt<'b, 'm> {
         Attempt {
             problem: self.problem,
-            effective: self.effective,
-            search: self.search,
+            workspace: self.workspace,
             start: self.start,
             interval,
-            meter: self.meter,
             active,
         }
     }

@@ -6,10 +6,10 @@ use super::closed_pairs::ClosedPairs;
 use super::contact_forces::ContactForces;
 use super::convergence::{Errors, Lengths, Scales, largest_forces};
 use super::impulses::Impulses;
-use crate::contact::{NodeContact, Pair, Pairing, Penetration, Search, find_penetration};
+use crate::contact::{NodeContact, Pair, Pairing, Penetration};
 use crate::dynamics::results::{Cause, PassReport, State, Worst};
 use crate::dynamics::step::{
-    EffectiveStiffness, Equilibrium, Interval, Meter, StepProblem, check_finite, difference, sum,
+    Equilibrium, Interval, StepProblem, Workspace, check_finite, difference, sum,
 };
 use crate::linear::{LinearError, larger, largest};
 use crate::model::Factorization;
@@ -61,11 +61,9 @@ pub(crate) struct Failed {
 /// An attempt at one increment.
 pub(crate) struct Attempt<'a, 'm> {
     pub problem: &'a StepProblem<'m>,
-    pub effective: &'a mut EffectiveStiffness,
-    pub search: &'a mut Search<'m>,
+    pub workspace: &'a mut Workspace<'m>,
     pub start: &'a State,
     pub interval: Interval,
-    pub meter: &'a mut Meter,
     /// The pairs that are constraints; without it all, and nodes land within the increment.
     pub active: Option<&'a ActiveConstraints>,
 }
@@ -128,32 +126,24 @@ impl<'m> Attempt<'_, 'm> {
         let touching = self.active.map_or(Vec::new(), ActiveConstraints::keys);
         let mut impulses = Impulses::new(contact, touching);
         let mut pairing = Pairing::default();
-        self.search.start(&self.start.v, dt);
+        self.workspace.search.start(&self.start.v, dt);
 
         for pass in 0..problem.settings.max_passes {
             // contact geometry of the iterate U^k
             let u = sum(u0, &d);
             problem.check_segments(&u)?;
-            let search = &mut *self.search;
-            self.meter.time(|t| &mut t.search, || search.cover(&u));
-            let pairs = self.meter.time(
-                |t| &mut t.contact,
-                || problem.pairs(search, u0, &u, &pairing),
-            );
+            let pairs = self.workspace.pairs(problem, u0, &u, &pairing);
             let [pairs, left_out] = match self.active {
                 Some(active) => active.split(problem, u0, pairs),
                 None => [pairs, Vec::new()],
             };
 
             // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi) for the pairs in contact, eq. (6.1)
-            let (effective, meter) = (&mut *self.effective, &mut *self.meter);
-            let v0p = impulses.velocity(problem, effective, &pairs, self.start, dt, meter)?;
+            let v0p = impulses.velocity(problem, self.workspace, &pairs, self.start, dt)?;
 
             // r = R_theta - F(U_theta) - M A, eq. (4.5)
-            let iterate = self.meter.time(
-                |t| &mut t.assembly,
-                || problem.equilibrium(self.start, &v0p, &d, self.interval),
-            )?;
+            let iterate =
+                (self.workspace).equilibrium(problem, self.start, [&v0p, &d], self.interval)?;
             let mut r = iterate.out_of_balance();
             trace.balance(largest(&problem.unknowns.restrict(&r)));
 
@@ -163,26 +153,23 @@ impl<'m> Attempt<'_, 'm> {
             let support_force = self.support_force(&y, &u, &iterate.u_theta);
             r = difference(&r, &support_force);
             let free = problem.unknowns.restrict(&r);
-            let k = &mut self.effective.k;
-            let solution = self
-                .meter
-                .time(|t| &mut t.solve, || k.solver.solve(&free))?;
-            problem.unknowns.add(&solution, &mut y);
+            problem
+                .unknowns
+                .add(&self.workspace.k().solve(&free)?, &mut y);
 
             // Pn, Pt of the complementarity problem, eq. (5.2);
             // dU = y + K*^-1 (Bn^T Pn + Bt^T Pt), eq. (4.7)
-            let pivots = self.meter.counts.pivots;
+            let pivots = self.workspace.meter.counts.pivots;
             let method = problem.method();
             let (forces, du) = ContactForces::of_pass(
                 pairs,
                 (&state, pairing.settled),
                 &y,
                 &problem.unknowns,
-                k,
+                self.workspace.k(),
                 method,
-                self.meter,
             )?;
-            let pivots = self.meter.counts.pivots - pivots;
+            let pivots = self.workspace.meter.counts.pivots - pivots;
 
             // residual r + Bn^T Pn + Bt^T Pt with the contact forces of this pass, eq. (4.7)
             let contact_force = forces.resultant(d.len());
@@ -207,8 +194,7 @@ impl<'m> Attempt<'_, 'm> {
             let position = |node| problem.position(&u, node);
             trace.worst = scales.worst(&r, &problem.unknowns.dof, position);
             trace.passes.push(report);
-            self.meter.counts.passes += 1;
-            self.meter.counts.residual = report.residual;
+            self.workspace.meter.count_pass(report.residual);
 
             // U^{k+1} = U^k + dU
             d = sum(&d, &du);
@@ -243,7 +229,7 @@ impl<'m> Attempt<'_, 'm> {
         contact: &ClosedPairs,
         forces: &ContactForces,
     ) -> Result<(), Cause> {
-        let mut touch = vec![NodeContact::default(); self.search.slave_count()];
+        let mut touch = vec![NodeContact::default(); self.workspace.search.slave_count()];
         for (slave_index, touch) in touch.iter_mut().enumerate() {
             touch.before = contact.holds(slave_index);
         }
@@ -255,19 +241,13 @@ impl<'m> Attempt<'_, 'm> {
             }
         }
         let (u0, u1) = (&self.start.u, sum(&self.start.u, d));
-        let search = &mut *self.search;
-        self.meter
-            .time(|t| &mut t.search, || search.cover_way(u0, &u1));
         let StepProblem {
             parts, settings, ..
         } = self.problem;
         let ways = parts.largest_of_bodies(d);
         let unsolved = |&body: &usize| settings.tolerance * ways[body];
         let unsolved: Vec<f64> = parts.of_nodes().iter().map(unsolved).collect();
-        let passage = self.meter.time(
-            |t| &mut t.contact,
-            || find_penetration(search, u0, &u1, &touch, &unsolved),
-        );
+        let passage = (self.workspace).find_penetration([u0, &u1], &touch, &unsolved);
         passage.map_or(Ok(()), |Penetration { slave, segment }| {
             let [a, b] = segment;
             Err(Cause::Crossed {
@@ -280,12 +260,9 @@ impl<'m> Attempt<'_, 'm> {
 
     /// theta2 K d_p, the force of the supports' motion in the predictor.
     fn support_force(&mut self, prescribed: &[f64], u: &[f64], u_theta: &[f64]) -> Vec<f64> {
-        let StepProblem {
-            weights, elements, ..
-        } = self.problem;
-        let (start, u) = weights.configuration(&self.start.u, u, u_theta);
-        let product = || elements.tangent_product(start, u, prescribed);
-        let mut force = self.meter.time(|t| &mut t.assembly, product);
+        let weights = &self.problem.weights;
+        let configuration = weights.configuration(&self.start.u, u, u_theta);
+        let mut force = (self.workspace).tangent_product(self.problem, configuration, prescribed);
         force.iter_mut().for_each(|f| *f *= weights.theta2);
         force
     }
@@ -298,22 +275,15 @@ impl<'m> Attempt<'_, 'm> {
             unknowns,
             ..
         } = self.problem;
-        let (problem, effective, dt) = (self.problem, &mut *self.effective, self.interval.dt);
+        let (workspace, dt) = (&mut *self.workspace, self.interval.dt);
         let every = settings.factorization == Factorization::EveryPass;
         let worn = pass > 0 && pass.is_multiple_of(KEPT_PASSES);
         let near = self.active.map_or(0.0, |_| SAME_LENGTH);
-        if effective.fits(dt, near) && !every && !worn {
+        if workspace.stiffness.fits(dt, near) && !every && !worn {
             return Ok(());
         }
         let configuration = weights.configuration(&self.start.u, u, u_theta);
-        self.meter.time(
-            |t| &mut t.assembly,
-            || effective.assemble(problem, dt, configuration),
-        );
-        self.meter.counts.factorizations += 1;
-        let factorized = self
-            .meter
-            .time(|t| &mut t.factorization, || effective.k.factorize());
+        let factorized = workspace.factorize(self.problem, dt, configuration);
         factorized.map_err(|error| match error {
             LinearError::NotPositiveDefinite { unknown, .. } => Cause::Indefinite {
                 node: unknowns.dof[unknown] / 2,
@@ -350,8 +320,8 @@ impl<'m> Attempt<'_, 'm> {
             position: parts.largest_of_bodies(&positions),
         };
         let diagonals = (
-            self.effective.stiffness.as_slice(),
-            self.effective.inertia.as_slice(),
+            self.workspace.stiffness.stiffness.as_slice(),
+            self.workspace.stiffness.inertia.as_slice(),
         );
         Scales::new(parts, force, diagonals, lengths, settings.tolerance)
     }
@@ -365,10 +335,7 @@ impl<'m> Attempt<'_, 'm> {
         impulses: Impulses,
     ) -> Result<Solved, Cause> {
         let (problem, start, interval) = (self.problem, self.start, self.interval);
-        let equilibrium = self.meter.time(
-            |t| &mut t.assembly,
-            || problem.equilibrium(start, &v0p, &d, interval),
-        )?;
+        let equilibrium = (self.workspace).equilibrium(problem, start, [&v0p, &d], interval)?;
         // V1 = (2/dt) d - V0+, eq. (4.2); of what is prescribed from the amplitude
         let rate = 2.0 / interval.dt;
         let mut v: Vec<f64> = d.iter().zip(&v0p).map(|(d, v0p)| rate * d - v0p).collect();

@@ -3,10 +3,10 @@
 
 use super::closed_pairs::ClosedPairs;
 use crate::contact::tolerances::SETTLED_OVERLAP;
-use crate::contact::{Pair, add_contact_forces, frictional_lcp};
+use crate::contact::{Pair, add_contact_forces};
 use crate::dynamics::results::{Cause, FailedLcp};
-use crate::dynamics::step::{FactoredMatrix, Meter, Unknowns};
-use crate::lcp::{ContactState, FrictionalLcp, LcpMethod, solve_frictional};
+use crate::dynamics::step::{System, Unknowns};
+use crate::lcp::{ContactState, FrictionalLcp, LcpMethod};
 
 /// Part of the compliance of a pair that holds its force near that of the pass before.
 const PROXIMAL_WEIGHT: f64 = 1e-5;
@@ -82,23 +82,15 @@ impl ContactForces {
         chosen: &[usize],
         constants: (Vec<f64>, Vec<f64>),
         (warm, nearest): (Vec<ContactState>, Option<Vec<[f64; 2]>>),
-        matrix: &mut FactoredMatrix,
+        system: &mut System,
         method: LcpMethod,
-        meter: &mut Meter,
     ) -> Result<(), Cause> {
         let pairs: Vec<Pair> = chosen.iter().map(|&k| self.pairs[k]).collect();
-        meter.time(|t| &mut t.solve, || matrix.prepare(&pairs))?;
-        let mut problem = meter.time(
-            |t| &mut t.contact,
-            || frictional_lcp(&pairs, &matrix.compliance, constants.0, constants.1),
-        );
+        let mut problem = system.frictional_lcp(&pairs, constants.0, constants.1)?;
         if let Some(forces) = nearest {
             add_proximal_term(&mut problem, &forces);
         }
-        let solution = meter.time(
-            |t| &mut t.lcp,
-            || solve_frictional(&problem, Some(&warm), method),
-        );
+        let solution = system.solve_lcp(&problem, &warm, method);
         let solution = solution.map_err(|error| {
             let nodes = |[s, a, b, _]: [usize; 4]| [s, a, b];
             let pairs = pairs.iter().map(|pair| nodes(pair.target.nodes)).collect();
@@ -108,7 +100,6 @@ impl ContactForces {
                 pairs,
             }))
         })?;
-        meter.count_lcp(pairs.len(), solution.counters);
         self.problem_size = pairs.len();
         for (i, &k) in chosen.iter().enumerate() {
             self.normal[k] = solution.pn[i];
@@ -131,9 +122,8 @@ impl ContactForces {
         (warm, settled): (&ClosedPairs, bool),
         y: &[f64],
         unknowns: &Unknowns,
-        matrix: &mut FactoredMatrix,
+        mut system: System,
         method: LcpMethod,
-        meter: &mut Meter,
     ) -> Result<(Self, Vec<f64>), Cause> {
         let mut forces = ContactForces::open(pairs);
         let gap_after = |pair: &Pair, du: &[f64]| pair.gap + pair.normal_of(du);
@@ -173,9 +163,9 @@ impl ContactForces {
             let states = chosen.iter().map(|k| warm.state(&at(k).target)).collect();
             let last = || chosen.iter().map(|k| warm.force(&at(k).target)).collect();
             let warm = (states, settled.then(last));
-            forces.solve(&chosen, constants, warm, matrix, method, meter)?;
+            forces.solve(&chosen, constants, warm, &mut system, method)?;
             let load = unknowns.restrict(&forces.resultant(y.len()));
-            let correction = meter.time(|t| &mut t.solve, || matrix.solver.solve(&load))?;
+            let correction = system.solve(&load)?;
             du.copy_from_slice(y);
             unknowns.add(&correction, &mut du);
         }
@@ -195,17 +185,16 @@ impl ContactForces {
         v0: &[f64],
         dt: f64,
         unknowns: &Unknowns,
-        mass: &mut FactoredMatrix,
+        mut mass: System,
         method: LcpMethod,
-        meter: &mut Meter,
     ) -> Result<(Vec<f64>, Self), Cause> {
         let approach = |p: &Pair| p.normal_of(v0) + 2.0 / dt * p.start_gap.max(0.0);
         let mut v0p = v0.to_vec();
         if pairs.iter().all(|pair| approach(pair) >= 0.0) {
             return Ok((v0p, ContactForces::default()));
         }
-        if !mass.solver.is_factorized() {
-            meter.time(|t| &mut t.factorization, || mass.factorize())?;
+        if !mass.is_factorized() {
+            mass.factorize()?;
         }
         // Bn V0 + (2/dt) max(g0, 0) and Bt V0, eq. (6.2)
         let constants = (
@@ -215,9 +204,9 @@ impl ContactForces {
         let chosen: Vec<usize> = (0..pairs.len()).collect();
         let states = vec![ContactState::Stick; pairs.len()];
         let mut impulses = ContactForces::open(pairs);
-        impulses.solve(&chosen, constants, (states, None), mass, method, meter)?;
+        impulses.solve(&chosen, constants, (states, None), &mut mass, method)?;
         let load = unknowns.restrict(&impulses.resultant(v0.len()));
-        let jump = meter.time(|t| &mut t.solve, || mass.solver.solve(&load))?;
+        let jump = mass.solve(&load)?;
         unknowns.add(&jump, &mut v0p);
         Ok((v0p, impulses))
     }

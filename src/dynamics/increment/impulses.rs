@@ -5,7 +5,7 @@ use super::closed_pairs::ClosedPairs;
 use super::contact_forces::ContactForces;
 use crate::contact::{Pair, PairTarget};
 use crate::dynamics::results::{Cause, State};
-use crate::dynamics::step::{EffectiveStiffness, Meter, StepProblem};
+use crate::dynamics::step::{StepProblem, Workspace};
 use crate::model::Impact;
 
 /// Changes of the set of pairs with impulses after which it is kept.
@@ -42,11 +42,10 @@ impl Impulses {
     pub fn velocity(
         &mut self,
         problem: &StepProblem,
-        effective: &mut EffectiveStiffness,
+        workspace: &mut Workspace,
         pairs: &[Pair],
         start: &State,
         dt: f64,
-        meter: &mut Meter,
     ) -> Result<Vec<f64>, Cause> {
         if problem.settings.impact == Impact::None {
             return Ok(start.v.clone());
@@ -68,9 +67,9 @@ impl Impulses {
             false => *pair,
         };
         let struck: Vec<Pair> = struck.map(rows).collect();
-        let (m, method) = (&mut effective.m, problem.method());
+        let (m, method) = (workspace.m(), problem.method());
         let (v0p, acting) =
-            ContactForces::impulses(struck, &start.v, dt, &problem.unknowns, m, method, meter)?;
+            ContactForces::impulses(struck, &start.v, dt, &problem.unknowns, m, method)?;
         self.acting = acting;
         self.last = Some((targets, v0p.clone()));
         Ok(v0p)

@@ -4,16 +4,15 @@
 use std::io;
 
 use super::nominal_increment::{NominalIncrement, WHOLE, increments_of};
-use crate::contact::{ContactSurfaces, Search, contact_surfaces};
+use crate::contact::{ContactSurfaces, contact_surfaces};
 use crate::dynamics::events::{MOST_EVENTS, Subincrement, Subincrements};
 use crate::dynamics::increment::{Attempt, ClosedPairs, Failed, Solved};
 use crate::dynamics::ledger::{Accepted, Accounts, Ledger, landings, start_failure};
 use crate::dynamics::results::{
-    Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State,
+    Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State, Timings,
 };
 use crate::dynamics::step::{
-    EffectiveStiffness, Interval, Loads, Mass, Meter, Parts, StepPlace, StepProblem, Unknowns,
-    Weights,
+    Interval, Loads, Mass, Parts, StepPlace, StepProblem, Unknowns, Weights, Workspace,
 };
 use crate::elements::Elements;
 use crate::model::{ImpactTime, Increments, Model, Step};
@@ -46,7 +45,6 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
         mass: &mass,
         parts: &parts,
         contacts: &contacts,
-        search: Search::new(&contacts, &model.mesh.coordinates),
         state: State {
             u: vec![0.0; model.mesh.dof_count()],
             v: model.initial_velocity.clone(),
@@ -58,7 +56,7 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
         increment: 0,
         cutbacks: 0,
         events: 0,
-        meter: Meter::default(),
+        timings: Timings::default(),
         totals: SolverCounts {
             converged: true,
             ..SolverCounts::default()
@@ -82,7 +80,7 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
         cutbacks: runner.cutbacks,
         events: runner.events,
         solver: runner.totals,
-        timings: runner.meter.timings,
+        timings: runner.timings,
     })
 }
 
@@ -93,7 +91,6 @@ struct Runner<'m, 'o> {
     mass: &'m Mass,
     parts: &'m Parts,
     contacts: &'m [ContactSurfaces],
-    search: Search<'m>,
     state: State,
     contact: ClosedPairs,
     ledger: Ledger,
@@ -101,20 +98,17 @@ struct Runner<'m, 'o> {
     increment: usize,
     cutbacks: usize,
     events: usize,
-    meter: Meter,
+    timings: Timings,
     totals: SolverCounts,
     observer: &'o mut dyn Observer,
 }
 
 impl<'m> Runner<'m, '_> {
     fn step(&mut self, number: usize, step: &'m Step, start: f64) -> Result<Outcome, RunError> {
-        let Increments {
-            dt, period, dt_min, ..
-        } = step.increments;
         let place = StepPlace {
             number,
             start,
-            period,
+            period: step.increments.period,
         };
         let problem = StepProblem {
             model: self.model,
@@ -127,13 +121,27 @@ impl<'m> Runner<'m, '_> {
             unknowns: Unknowns::new(self.model, self.elements, step, &self.state.u),
             loads: Loads::new(self.model, step),
         };
-        let choice = step.settings.solver;
-        let mut effective = EffectiveStiffness::new(self.elements, &problem.unknowns, choice);
+        let mut workspace = Workspace::new(&problem);
         if number == 1
-            && let Some(failure) = self.report_start(&problem, &mut effective, place)?
+            && let Some(failure) = self.report_start(&problem, &mut workspace, place)?
         {
             return Ok(Outcome::Stopped(Box::new(failure)));
         }
+        let outcome = self.increments(&problem, &mut workspace, place, step.increments);
+        self.timings.add(&workspace.meter.timings);
+        outcome
+    }
+
+    /// The increments of a step.
+    fn increments(
+        &mut self,
+        problem: &StepProblem<'m>,
+        workspace: &mut Workspace<'m>,
+        place: StepPlace,
+        Increments {
+            dt, period, dt_min, ..
+        }: Increments,
+    ) -> Result<Outcome, RunError> {
         let count = increments_of(period, dt);
         for i in 0..count {
             let from = dt * i as f64;
@@ -154,12 +162,12 @@ impl<'m> Runner<'m, '_> {
                 length,
                 dt_min,
             };
-            let end = match step.settings.impact_time {
+            let end = match problem.settings.impact_time {
                 ImpactTime::Increment => {
-                    self.increment_in_halves(&problem, &mut effective, place, nominal)
+                    self.increment_in_halves(problem, workspace, place, nominal)
                 }
                 ImpactTime::Event => {
-                    self.increment_with_impacts(&problem, &mut effective, place, nominal)
+                    self.increment_with_impacts(problem, workspace, place, nominal)
                 }
             };
             if let Some(end) = end? {
@@ -174,7 +182,7 @@ impl<'m> Runner<'m, '_> {
     fn increment_in_halves(
         &mut self,
         problem: &StepProblem<'m>,
-        effective: &mut EffectiveStiffness,
+        workspace: &mut Workspace<'m>,
         place: StepPlace,
         nominal: NominalIncrement,
     ) -> Result<Option<Outcome>, RunError> {
@@ -185,20 +193,18 @@ impl<'m> Runner<'m, '_> {
                 return Ok(Some(Outcome::Interrupted));
             }
             let interval = nominal.piece(place, piece, halvings);
-            self.meter.counts = SolverCounts::default();
+            workspace.meter.counts = SolverCounts::default();
             let attempt = Attempt {
                 problem,
-                effective,
-                search: &mut self.search,
+                workspace,
                 start: &self.state,
                 interval,
-                meter: &mut self.meter,
                 active: None,
             };
             let solved = attempt.solve(&self.contact);
             match solved.and_then(|s| self.checked(problem, s, interval.dt, halvings, nominal)) {
                 Ok(entered) => {
-                    self.accept(problem, place, interval, entered)?;
+                    self.accept(problem, place, interval, entered, workspace.meter.counts)?;
                     piece += 1;
                     while halvings > 0 && piece % 2 == 0 {
                         (piece, halvings) = (piece / 2, halvings - 1);
@@ -221,7 +227,7 @@ impl<'m> Runner<'m, '_> {
     fn increment_with_impacts(
         &mut self,
         problem: &StepProblem<'m>,
-        effective: &mut EffectiveStiffness,
+        workspace: &mut Workspace<'m>,
         place: StepPlace,
         nominal: NominalIncrement,
     ) -> Result<Option<Outcome>, RunError> {
@@ -238,14 +244,12 @@ impl<'m> Runner<'m, '_> {
                 end: place.time_point(to),
                 dt: if is_whole { nominal.length } else { to - from },
             };
-            self.meter.counts = SolverCounts::default();
+            workspace.meter.counts = SolverCounts::default();
             let mut pieces = Subincrements {
                 problem,
-                effective,
-                search: &mut self.search,
+                workspace,
                 start: &self.state,
                 contact: &self.contact,
-                meter: &mut self.meter,
                 rest,
                 nominal: nominal.length,
                 last,
@@ -267,7 +271,7 @@ impl<'m> Runner<'m, '_> {
             });
             match checked {
                 Ok((interval, entered, is_cut)) => {
-                    self.accept(problem, place, interval, entered)?;
+                    self.accept(problem, place, interval, entered, workspace.meter.counts)?;
                     (from, last) = (interval.end.step, interval.dt);
                     if is_cut {
                         (events, self.events) = (events + 1, self.events + 1);
@@ -346,12 +350,16 @@ impl<'m> Runner<'m, '_> {
         place: StepPlace,
         interval: Interval,
         Accepted { solved, ledger }: Accepted,
+        solver: SolverCounts,
     ) -> Result<(), RunError> {
         self.ledger = ledger;
         let accounted = (self.accounts).enter(problem, &solved, interval, &self.ledger.strains);
         let landings = landings(problem, &self.state, &self.contact, &solved, interval);
-        self.meter.counts.converged = true;
-        self.totals.add(&self.meter.counts);
+        let solver = SolverCounts {
+            converged: true,
+            ..solver
+        };
+        self.totals.add(&solver);
         self.increment += 1;
         let report = IncrementReport {
             increment: self.increment,
@@ -363,7 +371,7 @@ impl<'m> Runner<'m, '_> {
             energy: self.ledger.energy,
             strain: self.elements.most_strained(&solved.end.u),
             landings,
-            solver: self.meter.counts,
+            solver,
             passes: solved.passes,
             state: solved.end,
             ..accounted
@@ -379,12 +387,12 @@ impl<'m> Runner<'m, '_> {
     fn report_start(
         &mut self,
         problem: &StepProblem,
-        effective: &mut EffectiveStiffness,
+        workspace: &mut Workspace<'m>,
         place: StepPlace,
     ) -> Result<Option<Failure>, RunError> {
         let now = place.time_point(0.0);
         problem.unknowns.prescribe_velocity(now, &mut self.state.v);
-        self.state.a = problem.start_acceleration(effective, &self.state, now);
+        self.state.a = problem.start_acceleration(workspace.m(), &self.state, now);
         self.ledger = Ledger::new(problem, &self.state);
         if let Some(failure) = start_failure(&self.state, &self.ledger, place) {
             return Ok(Some(failure));

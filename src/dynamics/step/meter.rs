@@ -27,6 +27,12 @@ impl Meter {
         result
     }
 
+    /// Counts a pass with its residual.
+    pub fn count_pass(&mut self, residual: f64) {
+        self.counts.passes += 1;
+        self.counts.residual = residual;
+    }
+
     /// Counts a complementarity problem of `size` pairs.
     pub fn count_lcp(&mut self, size: usize, work: Counters) {
         let counts = &mut self.counts;
@@ -36,6 +42,18 @@ impl Meter {
         counts.active_set_iterations += work.active_set_iterations;
         counts.gauss_seidel_sweeps += work.gauss_seidel_sweeps;
         counts.lemke_calls += work.lemke_calls;
+    }
+}
+
+impl Timings {
+    /// Adds the times of a step to those of a run.
+    pub(crate) fn add(&mut self, other: &Timings) {
+        self.assembly += other.assembly;
+        self.factorization += other.factorization;
+        self.solve += other.solve;
+        self.search += other.search;
+        self.contact += other.contact;
+        self.lcp += other.lcp;
     }
 }
 

@@ -10,13 +10,13 @@ mod step_place;
 mod step_problem;
 mod supports;
 mod unknowns;
+mod workspace;
 
-pub(crate) use effective_stiffness::{EffectiveStiffness, FactoredMatrix};
 pub(crate) use loads::{Loads, TimePoint};
 pub(crate) use mass::{Mass, dot};
-pub(crate) use meter::Meter;
 pub(crate) use parts::Parts;
 pub(crate) use scheme::Weights;
 pub(crate) use step_place::StepPlace;
 pub(crate) use step_problem::{Equilibrium, Interval, StepProblem, check_finite, difference, sum};
 pub(crate) use unknowns::Unknowns;
+pub(crate) use workspace::{System, Workspace};

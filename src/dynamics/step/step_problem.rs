@@ -1,12 +1,12 @@
 //! Equation of motion of a step, eq. (3.1) (paper eq. 21), evaluated at an iterate: loads, internal and
 //! inertia forces, and contact pairs. Sections 3 and 4 of docs/theory.md.
 
-use super::effective_stiffness::EffectiveStiffness;
 use super::loads::{Loads, TimePoint};
 use super::mass::Mass;
 use super::parts::Parts;
 use super::scheme::Weights;
 use super::unknowns::Unknowns;
+use super::workspace::System;
 use crate::contact::tolerances::COLLAPSED_LENGTH;
 use crate::contact::{
     ContactSurfaces, Pair, Pairing, Projection, Search, find_targets, position, project,
@@ -149,22 +149,16 @@ impl StepProblem<'_> {
     }
 
     /// Acceleration at the start of the analysis, M A = R - F, the supports being at rest.
-    pub fn start_acceleration(
-        &self,
-        effective: &mut EffectiveStiffness,
-        start: &State,
-        now: TimePoint,
-    ) -> Vec<f64> {
+    pub fn start_acceleration(&self, mut mass: System, start: &State, now: TimePoint) -> Vec<f64> {
         let mut a = vec![0.0; start.u.len()];
         let load = self.loads.weighted(self.elements, 1.0, now, now, &start.u);
         let Ok(internal) = self.elements.internal_force(None, &start.u) else {
             return a;
         };
         let r = difference(&load, &internal);
-        let m = &mut effective.m;
-        let solved = m
+        let solved = mass
             .factorize()
-            .and_then(|()| m.solver.solve(&self.unknowns.restrict(&r)));
+            .and_then(|()| mass.solve(&self.unknowns.restrict(&r)));
         // Without it only the estimate of the first landings would be less good.
         if let Ok(acceleration) = solved {
             self.unknowns.add(&acceleration, &mut a);

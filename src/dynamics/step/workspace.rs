@@ -1,0 +1,177 @@
+//! What the increments of a step work with: effective stiffness with its factors, contact search,
+//! times and counts. Each operation measures itself. Section 4 of docs/theory.md.
+
+use super::effective_stiffness::{EffectiveStiffness, FactoredMatrix};
+use super::meter::Meter;
+use super::step_problem::{Equilibrium, Interval, StepProblem};
+use crate::contact::{
+    Compliance, NodeContact, Pair, Pairing, Penetration, Search, find_penetration, frictional_lcp,
+};
+use crate::dynamics::results::{Cause, State};
+use crate::lcp::{
+    ContactState, FrictionalLcp, FrictionalSolution, LcpError, LcpMethod, solve_frictional,
+};
+use crate::linear::LinearError;
+
+/// Matrices, contact search and meter of a step.
+pub(crate) struct Workspace<'m> {
+    pub stiffness: EffectiveStiffness,
+    pub search: Search<'m>,
+    pub meter: Meter,
+}
+
+/// K* or M of a step with the meter of the work that is done with it.
+pub(crate) struct System<'a> {
+    matrix: &'a mut FactoredMatrix,
+    meter: &'a mut Meter,
+}
+
+impl<'m> Workspace<'m> {
+    /// The workspace of a step, without factors and without lists of candidates.
+    pub fn new(problem: &StepProblem<'m>) -> Self {
+        let StepProblem {
+            model,
+            elements,
+            contacts,
+            settings,
+            unknowns,
+            ..
+        } = problem;
+        Workspace {
+            stiffness: EffectiveStiffness::new(elements, unknowns, settings.solver),
+            search: Search::new(contacts, &model.mesh.coordinates),
+            meter: Meter::default(),
+        }
+    }
+
+    /// The effective stiffness K*.
+    pub fn k(&mut self) -> System<'_> {
+        System {
+            matrix: &mut self.stiffness.k,
+            meter: &mut self.meter,
+        }
+    }
+
+    /// The mass M.
+    pub fn m(&mut self) -> System<'_> {
+        System {
+            matrix: &mut self.stiffness.m,
+            meter: &mut self.meter,
+        }
+    }
+
+    /// Assembles and factorises K* for increments of length `dt` in the given configuration.
+    pub fn factorize(
+        &mut self,
+        problem: &StepProblem,
+        dt: f64,
+        configuration: (Option<&[f64]>, &[f64]),
+    ) -> Result<(), LinearError> {
+        let Workspace {
+            stiffness, meter, ..
+        } = self;
+        meter.time(
+            |t| &mut t.assembly,
+            || stiffness.assemble(problem, dt, configuration),
+        );
+        meter.counts.factorizations += 1;
+        self.k().factorize()
+    }
+
+    /// Load, internal force and inertia of the iterate U0 + d.
+    pub fn equilibrium(
+        &mut self,
+        problem: &StepProblem,
+        start: &State,
+        [v0p, d]: [&[f64]; 2],
+        interval: Interval,
+    ) -> Result<Equilibrium, Cause> {
+        let evaluate = || problem.equilibrium(start, v0p, d, interval);
+        self.meter.time(|t| &mut t.assembly, evaluate)
+    }
+
+    /// K x in the given configuration, K being the tangent.
+    pub fn tangent_product(
+        &mut self,
+        problem: &StepProblem,
+        (start, u): (Option<&[f64]>, &[f64]),
+        x: &[f64],
+    ) -> Vec<f64> {
+        let product = || problem.elements.tangent_product(start, u, x);
+        self.meter.time(|t| &mut t.assembly, product)
+    }
+
+    /// Pairs between `u0` and the iterate `u`, `before` being those of the last pass.
+    pub fn pairs(
+        &mut self,
+        problem: &StepProblem,
+        u0: &[f64],
+        u: &[f64],
+        before: &Pairing,
+    ) -> Vec<Pair> {
+        let Workspace { search, meter, .. } = self;
+        meter.time(|t| &mut t.search, || search.cover(u));
+        meter.time(|t| &mut t.contact, || problem.pairs(search, u0, u, before))
+    }
+
+    /// A node that has gone into a body between `u0` and `u1`, as [`find_penetration`] says.
+    pub fn find_penetration(
+        &mut self,
+        [u0, u1]: [&[f64]; 2],
+        touch: &[NodeContact],
+        unsolved: &[f64],
+    ) -> Option<Penetration> {
+        let Workspace { search, meter, .. } = self;
+        meter.time(|t| &mut t.search, || search.cover_way(u0, u1));
+        meter.time(
+            |t| &mut t.contact,
+            || find_penetration(search, u0, u1, touch, unsolved),
+        )
+    }
+}
+
+impl System<'_> {
+    /// Whether there are factors of the matrix as it is.
+    pub fn is_factorized(&self) -> bool {
+        self.matrix.solver.is_factorized()
+    }
+
+    /// Factorises the matrix.
+    pub fn factorize(&mut self) -> Result<(), LinearError> {
+        let Self { matrix, meter } = self;
+        meter.time(|t| &mut t.factorization, || matrix.factorize())
+    }
+
+    /// The solution for the right-hand side `b`, over the unknowns.
+    pub fn solve(&mut self, b: &[f64]) -> Result<Vec<f64>, LinearError> {
+        let Self { matrix, meter } = self;
+        meter.time(|t| &mut t.solve, || matrix.solver.solve(b))
+    }
+
+    /// The complementarity problem of some pairs with the given gaps and slips without forces.
+    pub fn frictional_lcp(
+        &mut self,
+        pairs: &[Pair],
+        gap: Vec<f64>,
+        slip: Vec<f64>,
+    ) -> Result<FrictionalLcp, LinearError> {
+        let Self { matrix, meter } = self;
+        meter.time(|t| &mut t.solve, || matrix.prepare(pairs))?;
+        let compliance: &Compliance = &matrix.compliance;
+        let pose = || frictional_lcp(pairs, compliance, gap, slip);
+        Ok(meter.time(|t| &mut t.contact, pose))
+    }
+
+    /// Solves a complementarity problem, from the states `warm` on.
+    pub fn solve_lcp(
+        &mut self,
+        problem: &FrictionalLcp,
+        warm: &[ContactState],
+        method: LcpMethod,
+    ) -> Result<FrictionalSolution, LcpError> {
+        let solve = || solve_frictional(problem, Some(warm), method);
+        let solution = self.meter.time(|t| &mut t.lcp, solve)?;
+        self.meter.count_lcp(warm.len(), solution.counters);
+        Ok(solution)
+    }
+}
