@@ -1,11 +1,14 @@
 //! Equations between displacements: tied meshes, sliders, levers, control nodes and prescribed terms,
 //! with contact on both bodies.
 
+use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::dynamics::IncrementReport;
 use stickslip::model::{
     Amplitude, Equation, Load, Model, PointLoad, Scheme, Settings, Support, SupportMotion,
     TimeBase, Variation,
 };
+
+use stickslip::{deck, reader};
 
 use crate::blocks::{Block, add_block, add_contact, fixed, model, run_to_end, step, throw};
 
@@ -374,5 +377,89 @@ fn random_equations_do_no_work() {
         }
         let (keep, _) = run_to_end(&model);
         assert_exact(&model, &keep.reports);
+    }
+}
+
+/// Two squares on a base, as one mesh or tied by `*EQUATION`; the upper square is thrown sideways.
+fn text(tied: bool) -> String {
+    let [upper, nodes, tie] = match tied {
+        false => ["5, 6, 7, 8", "", ""],
+        true => [
+            "15, 16, 7, 8",
+            "15, 0., 1.1\n16, 1., 1.1\n",
+            "*NSET, NSET=UPPER\n16, 15\n*NSET, NSET=LOWER\n5, 6\n*EQUATION\n\
+             2\nUPPER, 1, 2., LOWER, 1, -2.\n2\nUPPER, 2, 1., LOWER, 2, -1.\n",
+        ],
+    };
+    format!(
+        "*NODE\n1, -2., 0.\n2, 4., 0.\n3, 0., 0.1\n4, 1., 0.1\n5, 0., 1.1\n6, 1., 1.1\n7, 1., 2.1\n\
+         8, 0., 2.1\n9, -2., -1.\n10, 4., -1.\n{nodes}*ELEMENT, TYPE=CPS4, ELSET=BASE\n1, 9, 10, 2, 1\n\
+         *ELEMENT, TYPE=CPS4, ELSET=BODY\n2, 3, 4, 6, 5\n3, {upper}\n*SURFACE, NAME=FLOOR\nBASE, S3\n\
+         *SURFACE, NAME=SOLE\n2, S1\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n*DENSITY\n1.\n\
+         *SOLID SECTION, ELSET=BASE, MATERIAL=M\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n\
+         *SURFACE INTERACTION, NAME=DRY\n*FRICTION\n0.3\n*CONTACT PAIR, INTERACTION=DRY\nSOLE, FLOOR\n\
+         *BOUNDARY\n1, 1, 2\n2, 1, 2\n9, 1, 2\n10, 1, 2\n{tie}*INITIAL CONDITIONS, TYPE=VELOCITY\n\
+         7, 1, 1.\n8, 1, 1.\n3, 2, -2.\n4, 2, -2.\n5, 2, -2.\n6, 2, -2.\n7, 2, -2.\n8, 2, -2.\n\
+         *STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.005, 0.2\n*END STEP\n"
+    )
+}
+
+#[test]
+fn a_deck_ties_sets_of_nodes() {
+    let run_with = |tied: bool| {
+        let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+        let deck = deck::parse_str("deck.inp", &text(tied), &mut sources, &mut d);
+        let model = reader::build(&deck, &mut d);
+        let model = model.unwrap_or_else(|| panic!("{}", d.render(&sources, false)));
+        assert_eq!(model.equations.len(), if tied { 4 } else { 0 });
+        let (keep, _) = run_to_end(&model);
+        assert_exact(&model, &keep.reports);
+        keep.reports
+    };
+    let [one, tied] = [false, true].map(run_with);
+    assert!(one.iter().any(|r| r.contacts[0].closed == 2));
+    let scale = largest(&one, |r| size(&r.state.u));
+    for (one, tied) in one.iter().zip(&tied) {
+        let u = one.state.u.iter().zip(&tied.state.u);
+        let difference: Vec<f64> = u.map(|(p, q)| p - q).collect();
+        assert!(size(&difference) <= 1e-9 * scale, "{:e}", size(&difference));
+    }
+}
+
+/// All exterior faces may touch each other: those of a tied interface carry no contact force.
+#[test]
+fn tied_faces_do_not_touch() {
+    for scheme in SCHEMES {
+        let mut model = model(2000.0, 0.3, 1.0);
+        let below = add_block(&mut model, [0.0, 0.0], [2.0, 1.0], (4, 2), 0.0);
+        let above = add_block(&mut model, [0.0, 1.0], [2.0, 1.0], (3, 2), 0.0);
+        stir(&mut model, &below);
+        stir(&mut model, &above);
+        // the nodes of the upper side lie between those of the lower one
+        for k in 0..=3 {
+            let place = 4.0 * f64::from(k) / 3.0;
+            let from = (place.floor() as usize).min(3);
+            let xi = place - from as f64;
+            for i in 0..2 {
+                let [a, b] = [from, from + 1].map(|n| 2 * below.node(n, 2) + i);
+                follow(
+                    &mut model,
+                    2 * above.node(k as usize, 0) + i,
+                    vec![(a, 1.0 - xi), (b, xi)],
+                );
+            }
+        }
+        add_contact(&mut model, above.faces(0), below.faces(2), 0.3);
+        model.steps = vec![step(0.005, 30, settings(scheme), Vec::new())];
+        let (keep, _) = run_to_end(&model);
+        assert_exact(&model, &keep.reports);
+        assert!(keep.reports.iter().all(|r| r.contacts[0].normal == 0.0));
+        // nothing outside pushes
+        let momentum = |r: &IncrementReport| r.momentum.linear;
+        let (first, last) = (
+            momentum(&keep.reports[0]),
+            momentum(keep.reports.last().unwrap()),
+        );
+        assert!((0..2).all(|i| (last[i] - first[i]).abs() < 1e-11 * size(&first)));
     }
 }

@@ -70,7 +70,10 @@ pub(crate) static MODEL: &[Keyword] = &[
             P::value("ELSET", "element set whose nodes are taken"),
             INPUT,
             P::flag("INTERNAL", CAE).ignored(),
-            P::flag("UNSORTED", "sets have no order").ignored(),
+            P::flag(
+                "UNSORTED",
+                "sets have no order: *EQUATION refuses an unsorted one",
+            ),
             P::value("INSTANCE", "assembly decks are not read yet").refused(),
         ],
         "A node set: nodes and node sets, whole or as ranges.",

@@ -129,11 +129,7 @@ fn nodes(field: Text, targets: Targets, cx: &mut Context) -> Option<Vec<usize>> 
     let mut nodes = targets.sets.nodes_of(field, targets.mesh_index, cx);
     let labels = &targets.mesh_index.mesh.node_labels;
     nodes.sort_by_key(|&node| labels.get(node));
-    let is_unsorted = |card: &Card| {
-        let name = card.value("NSET").map(|name| name.name_key());
-        card.keyword.name == "NSET" && card.has("UNSORTED") && name == Some(field.name_key())
-    };
-    if nodes.len() > 1 && cx.deck.cards.iter().any(is_unsorted) {
+    if nodes.len() > 1 && targets.sets.unsorted.contains(&field.name_key()) {
         let message = format!("the set {} is UNSORTED: its order is not kept", field.text);
         let error = Diagnostic::error(Code::BadEquation, field.span, message);
         cx.d.push(error.help("number its nodes in their order, or write an equation for each"));
