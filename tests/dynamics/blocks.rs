@@ -5,7 +5,7 @@ use std::io;
 use stickslip::diagnostics::Span;
 use stickslip::dynamics::{Cutback, IncrementReport, Observer, Outcome, RunSummary, run};
 use stickslip::model::{
-    Cell, Contact, Element, Face, Frames, Increments, Interaction, Material, Model, Plane, Section,
+    Contact, Element, ElementType, Face, Frames, Increments, Interaction, Material, Model, Section,
     Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
 };
 
@@ -103,11 +103,10 @@ pub fn add_block(
                 block.node(i, j + 1),
             ];
             let label = mesh.elements.len() as u64 + 1;
-            let (plane, cell) = (Plane::Stress, Cell::Quad4(nodes));
             mesh.elements.push(Element {
                 label,
-                cell,
-                plane,
+                element_type: ElementType::CPS4,
+                nodes: nodes.to_vec(),
                 section: 0,
             });
         }

@@ -14,7 +14,7 @@ use crate::dynamics::results::{
 use crate::dynamics::step::{
     Interval, Loads, Mass, Parts, StepPlace, StepProblem, Unknowns, Weights, Workspace,
 };
-use crate::elements::Elements;
+use crate::elements::{Elements, most_strained};
 use crate::model::{ImpactTime, Increments, Model, Step};
 
 /// Halvings of an increment before the run stops.
@@ -353,7 +353,7 @@ impl<'m> Runner<'m, '_> {
         solver: SolverCounts,
     ) -> Result<(), RunError> {
         self.ledger = ledger;
-        let accounted = (self.accounts).enter(problem, &solved, interval, &self.ledger.strains);
+        let accounted = (self.accounts).enter(problem, &solved, interval, &self.ledger.elements);
         let landings = landings(problem, &self.state, &self.contact, &solved, interval);
         let solver = SolverCounts {
             converged: true,
@@ -369,7 +369,8 @@ impl<'m> Runner<'m, '_> {
             dt: interval.dt,
             ends_step: interval.end.step == place.period,
             energy: self.ledger.energy,
-            strain: self.elements.most_strained(&solved.end.u),
+            strain: most_strained(&self.ledger.elements),
+            elements: self.ledger.elements.clone(),
             landings,
             solver,
             passes: solved.passes,
@@ -405,9 +406,10 @@ impl<'m> Runner<'m, '_> {
                 ..SolverCounts::default()
             },
             state: self.state.clone(),
+            elements: self.ledger.elements.clone(),
             ..self
                 .accounts
-                .start(problem, &self.state, &self.ledger.strains)
+                .start(problem, &self.state, &self.ledger.elements)
         };
         self.observer.increment(&report)?;
         Ok(None)
