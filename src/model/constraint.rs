@@ -1,4 +1,5 @@
-//! Linear constraint equations between displacements. Section 3 of docs/theory.md.
+//! Constraints between displacements: linear equations (section 3 of docs/theory.md, Unknowns), and
+//! rigid surfaces that move with a reference node (section 9, Rigid surfaces).
 
 /// A dof that follows others at all times: u_dof = sum c_k u_k, eq. (3.8).
 ///
@@ -17,4 +18,13 @@ impl Equation {
     pub fn dofs(&self) -> impl Iterator<Item = usize> + '_ {
         std::iter::once(self.dof).chain(self.terms.iter().map(|&(dof, _)| dof))
     }
+}
+
+/// A rigid surface and the node that it moves with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RigidBody {
+    /// Index of the rigid surface.
+    pub surface: usize,
+    /// Reference node (index).
+    pub reference: usize,
 }
