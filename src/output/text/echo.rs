@@ -99,6 +99,10 @@ impl ModelEcho {
         ];
         let mut lines = wrap("model", &size);
         lines.extend(wrap("", &shape));
+        if !model.equations.is_empty() {
+            let count = counted(model.equations.len(), "equation");
+            lines.push(label("", &format!("{count} between displacements")));
+        }
         lines
     }
 
