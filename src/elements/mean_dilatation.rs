@@ -3,10 +3,10 @@
 //! the whole element, and the stored energy is that of the modified deformation gradient
 //!
 //! ```text
-//! Fbar = (theta/J)^(1/2) F,  det Fbar = theta                                     eq. (2.9)
+//! Fbar = (theta/J)^(1/2) F,  det Fbar = theta
 //! ```
 //!
-//! The exponent is that of plane strain (de Souza Neto et al. 1996): F_zz stays 1, so that the material
+//! eq. (2.9). The exponent is that of plane strain (de Souza Neto et al. 1996): F_zz stays 1, so that the material
 //! keeps its plane strain law. Section 2 of docs/theory.md.
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector3};

@@ -79,7 +79,7 @@ impl PointResult {
 }
 
 impl ElementResult {
-    /// Energy and volume means of integration points with their weights (length^3).
+    /// Energy int W dOmega, eq. (2.4), and volume means of integration points with their weights (length^3).
     pub(super) fn of_points(points: impl Iterator<Item = (PointResult, f64)>) -> Self {
         let (mut sigma, mut strain) = (Matrix2::zeros(), Matrix2::zeros());
         let (mut energy, mut across, mut volume, mut principal) = (0.0, 0.0, 0.0, 0.0);

@@ -67,6 +67,7 @@ impl<'a, L: ConstitutiveLaw> Committed<'a, L> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::materials::energy_momentum;
 
     /// Elastic with W = G/2 (E - Z):(E - Z) at a plastic strain Z = (Z_xx, Z_yy, Z_xy); at the end of an
     /// increment Z follows until the elastic strain is within the yield surface |E - Z| <= Y.
@@ -98,6 +99,14 @@ mod tests {
 
         fn tangent(&self, _e: &Matrix2<f64>, _z: &[f64]) -> Matrix3<f64> {
             Matrix3::from_diagonal(&nalgebra::Vector3::new(self.g, self.g, self.g / 2.0))
+        }
+
+        fn mean_stress(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix2<f64> {
+            energy_momentum::stress(self, e0, e1, z)
+        }
+
+        fn mean_tangent(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix3<f64> {
+            energy_momentum::tangent(self, e0, e1, z)
         }
 
         fn across(&self, _e: &Matrix2<f64>, _z: &[f64]) -> Across {

@@ -2,8 +2,6 @@
 
 use nalgebra::{Matrix2, Matrix3};
 
-use super::energy_momentum;
-
 /// What happens across the thickness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Across {
@@ -41,15 +39,11 @@ pub trait ConstitutiveLaw {
     fn across(&self, e: &Matrix2<f64>, z: &[f64]) -> Across;
 
     /// Energy-momentum stress between two strains: S:(E1 - E0) = W(E1, z) - W(E0, z),
-    /// eq. (4.8).
-    fn mean_stress(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix2<f64> {
-        energy_momentum::stress(self, e0, e1, z)
-    }
+    /// eq. (4.8): [`super::energy_momentum::stress`] has it for any energy.
+    fn mean_stress(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix2<f64>;
 
     /// Symmetric part of 2 dS/dE1 of [`Self::mean_stress`], in Voigt order (force/length^2).
-    fn mean_tangent(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix3<f64> {
-        energy_momentum::tangent(self, e0, e1, z)
-    }
+    fn mean_tangent(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix3<f64>;
 
     /// Writes the internal variables at strain `e` to `updated` and returns the energy dissipated on
     /// the way from `z` to them (force/length^2, >= 0): W(E, z) - W(E, updated).

@@ -29,7 +29,7 @@ const NO_CHANGE: f64 = f64::EPSILON;
 const NO_CHANGE_OF_TANGENT: f64 = 1.5e-8;
 
 /// S = S(E_m) + f/(dE:dE) dE, eq. (4.8) (force/length^2).
-pub(super) fn stress<L: ConstitutiveLaw + ?Sized>(
+pub fn stress<L: ConstitutiveLaw>(
     law: &L,
     e0: &Matrix2<f64>,
     e1: &Matrix2<f64>,
@@ -51,7 +51,7 @@ pub(super) fn stress<L: ConstitutiveLaw + ?Sized>(
 /// ```text
 /// C(E_m) + 2 f/(n:n) (I - 2 n n/(n:n)) + (n g + g n)/(n:n)
 /// ```
-pub(super) fn tangent<L: ConstitutiveLaw + ?Sized>(
+pub fn tangent<L: ConstitutiveLaw>(
     law: &L,
     e0: &Matrix2<f64>,
     e1: &Matrix2<f64>,

@@ -3,25 +3,10 @@
 
 use nalgebra::{Matrix2, Matrix3};
 
-use super::{Across, ConstitutiveLaw, NeoHooke, PlaneSaintVenantKirchhoff, SaintVenantKirchhoff};
-
-/// Kinematic assumption across the thickness.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Plane {
-    /// No stress across the thickness (CPS elements).
-    Stress,
-    /// No strain across the thickness (CPE elements).
-    Strain,
-}
-
-/// Moduli of the linear elastic material that a law is near its reference state.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SmallStrainModuli {
-    /// Young's modulus E (force/length^2).
-    pub young: f64,
-    /// Poisson's ratio nu.
-    pub poisson: f64,
-}
+use super::{
+    Across, ConstitutiveLaw, NeoHooke, Plane, PlaneSaintVenantKirchhoff, SaintVenantKirchhoff,
+    SmallStrainModuli,
+};
 
 /// Law of a material with the constants of the deck.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,6 +29,11 @@ impl Law {
             Law::SaintVenantKirchhoff(law) => law.small_strain(),
             Law::NeoHooke(law) => law.small_strain(),
         }
+    }
+
+    /// Whether the law is no guide at strains that are not small against 1.
+    pub fn is_for_small_strains(&self) -> bool {
+        matches!(self, Law::SaintVenantKirchhoff(_))
     }
 
     /// Whether the law can be used in plane stress.

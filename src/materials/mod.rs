@@ -9,13 +9,15 @@
 
 mod committed;
 mod constitutive_law;
-mod energy_momentum;
+pub mod energy_momentum;
 mod law;
 mod neo_hooke;
+mod plane;
 mod saint_venant_kirchhoff;
 
 pub use committed::Committed;
 pub use constitutive_law::{Across, ConstitutiveLaw};
-pub use law::{Law, Plane, PlaneLaw, SmallStrainModuli};
+pub use law::{Law, PlaneLaw};
 pub use neo_hooke::NeoHooke;
+pub use plane::{Plane, SmallStrainModuli};
 pub use saint_venant_kirchhoff::{PlaneSaintVenantKirchhoff, SaintVenantKirchhoff};

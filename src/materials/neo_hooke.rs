@@ -4,7 +4,7 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
-use super::{Across, ConstitutiveLaw, SmallStrainModuli};
+use super::{Across, ConstitutiveLaw, SmallStrainModuli, energy_momentum};
 
 /// Neo-Hookean material in plane strain, `*HYPERELASTIC, NEO HOOKE`.
 ///
@@ -159,6 +159,14 @@ impl ConstitutiveLaw for NeoHooke {
             stretch: 1.0,
             stress: self.pressure(&v) * v.j - 2.0 * self.c10 / v.a * v.t / 3.0,
         }
+    }
+
+    fn mean_stress(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix2<f64> {
+        energy_momentum::stress(self, e0, e1, z)
+    }
+
+    fn mean_tangent(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix3<f64> {
+        energy_momentum::tangent(self, e0, e1, z)
     }
 }
 

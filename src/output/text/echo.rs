@@ -207,10 +207,15 @@ fn smallest_gap(gaps: &[InitialGap]) -> String {
 
 /// Names of the element types in the mesh.
 fn kinds(elements: &[Element]) -> String {
-    let is_present = |name: &&str| elements.iter().any(|e| e.element_type.name() == *name);
-    let names = ElementType::NAMED.map(ElementType::name).into_iter();
-    let present = names.filter(is_present);
-    present.collect::<Vec<_>>().join(" ")
+    let mut types: Vec<ElementType> = Vec::new();
+    for element in elements {
+        if !types.contains(&element.element_type) {
+            types.push(element.element_type);
+        }
+    }
+    let mut names: Vec<String> = types.iter().map(ElementType::to_string).collect();
+    names.sort();
+    names.join(" ")
 }
 
 /// Number of dofs prescribed in any step.
