@@ -4,7 +4,7 @@
 use std::io;
 
 use super::nominal_increment::{NominalIncrement, WHOLE, increments_of};
-use crate::contact::{ContactSurfaces, contact_surfaces};
+use crate::contact::ContactSurfaces;
 use crate::dynamics::events::{MOST_EVENTS, Subincrement, Subincrements};
 use crate::dynamics::increment::{Attempt, ClosedPairs, Failed, Solved};
 use crate::dynamics::ledger::{Accepted, Accounts, Ledger, landings, start_failure};
@@ -16,6 +16,7 @@ use crate::dynamics::step::{
 };
 use crate::elements::Elements;
 use crate::model::{ImpactTime, Increments, Model, Step};
+use crate::prepare::PreparedModel;
 
 /// Halvings of an increment before the run stops.
 const HALVINGS: u32 = 10;
@@ -34,17 +35,18 @@ pub enum RunError {
 ///
 /// # Errors
 /// The observer's. A failed increment is no error but an [`Outcome`].
-pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+pub fn run(prepared: &PreparedModel, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+    let model = prepared.model();
     let elements = Elements::new(model);
     let mass = Mass::new(&elements, model.mesh.node_count());
     let parts = Parts::new(model);
-    let contacts = contact_surfaces(model);
+    let contacts = prepared.contact_surfaces();
     let mut runner = Runner {
         model,
         elements: &elements,
         mass: &mass,
         parts: &parts,
-        contacts: &contacts,
+        contacts,
         state: State {
             u: vec![0.0; model.mesh.dof_count()],
             v: model.initial_velocity.clone(),
@@ -52,7 +54,7 @@ pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, Run
         },
         contact: ClosedPairs::default(),
         ledger: Ledger::default(),
-        accounts: Accounts::new(model, &mass, &contacts),
+        accounts: Accounts::new(model, &mass, contacts),
         increment: 0,
         cutbacks: 0,
         events: 0,
