@@ -19,7 +19,8 @@ use crate::dynamics::{
 use crate::elements::Strained;
 use crate::lcp::{FrictionalLcp, LcpError};
 use crate::model::{
-    Cell, Element, Frames, Increments, Material, Mesh, Model, Plane, Section, Set, Settings, Step,
+    Cell, Element, Frames, Increments, Material, Mesh, Model, Plane, Procedure, Section, Set,
+    Settings, Step,
 };
 use crate::output::{Interrupt, ResultSummary};
 use crate::prepare::PreparedModel;
@@ -49,6 +50,7 @@ fn square() -> Model {
         }],
         steps: vec![Step {
             name: None,
+            procedure: Procedure::Dynamic,
             increments: Increments {
                 dt: 0.1,
                 period: 1.0,

@@ -7,8 +7,8 @@ use stickslip::dynamics::{
     self, Cutback, IncrementReport, Observer, Outcome, RunError, RunSummary,
 };
 use stickslip::model::{
-    Cell, Contact, Element, Face, Frames, Increments, Interaction, Material, Model, Plane, Section,
-    Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
+    Cell, Contact, Element, Face, Frames, Increments, Interaction, Material, Model, Plane,
+    Procedure, Section, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
 };
 use stickslip::prepare::PreparedModel;
 
@@ -161,6 +161,7 @@ pub fn step(dt: f64, count: usize, settings: Settings, mut supports: Vec<Support
     supports.sort_by_key(|support| support.dof);
     Step {
         name: None,
+        procedure: Procedure::Dynamic,
         increments: Increments {
             dt,
             period: dt * count as f64,

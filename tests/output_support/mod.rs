@@ -20,8 +20,8 @@ use stickslip::dynamics::{
 use stickslip::elements::Strained;
 use stickslip::model::{
     Cell, Contact, Element, Face, Frames, HistorySet, Increments, Interaction, Material, Mesh,
-    Model, NamedSets, Plane, Section, Set, Settings, Step, Support, SupportMotion, Surface,
-    SurfaceKind,
+    Model, NamedSets, Plane, Procedure, Section, Set, Settings, Step, Support, SupportMotion,
+    Surface, SurfaceKind,
 };
 use stickslip::output::{Claim, JobFiles, ResultWriter, RunRecord, Verbosity};
 
@@ -127,6 +127,7 @@ fn step() -> Step {
     let to = SupportMotion::Ramp { to: 0.0 };
     Step {
         name: None,
+        procedure: Procedure::Dynamic,
         increments: Increments {
             dt: 0.1,
             period: 1.0,

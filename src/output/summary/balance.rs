@@ -5,10 +5,6 @@ use crate::dynamics::{Energy, IncrementReport, Momentum};
 use crate::linear::larger;
 use crate::model::Model;
 
-/// Work of the normal contact forces in an increment, as a part of the largest energy, up to which
-/// it is round-off.
-const CONTACT_WORK_ROUND_OFF: f64 = 1e-12;
-
 /// Follows the energy balance, the energy that contact puts in and, of a free model, the momentum.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Balance {
@@ -16,9 +12,7 @@ pub(crate) struct Balance {
     largest: f64,
     /// Largest absolute balance so far.
     worst: f64,
-    /// Work of the normal contact forces so far.
-    contact_work: f64,
-    /// Its largest absolute value so far.
+    /// Largest absolute work of the normal contact forces so far.
     most_contact_work: f64,
     contact_energy: ContactEnergy,
     /// Momentum at the start, when nothing outside may change it.
@@ -73,14 +67,12 @@ impl Balance {
             self.add_momentum(report.momentum);
         }
         let work = report.energy.normal_contact_work;
-        let added = work - std::mem::replace(&mut self.contact_work, work);
         self.most_contact_work = larger(self.most_contact_work, work.abs());
-        let puts_in = added > CONTACT_WORK_ROUND_OFF * self.largest;
-        if puts_in {
+        if let Some(added) = report.contact_energy {
             self.contact_energy.count += 1;
             self.contact_energy.energy += added;
         }
-        puts_in.then_some(added)
+        report.contact_energy
     }
 
     /// The increments in which contact put energy in.
