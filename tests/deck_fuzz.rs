@@ -89,7 +89,7 @@ fn check(model: &Model) {
     assert_eq!(model.mesh.node_labels.len(), nodes);
     assert_eq!(model.initial_velocity.len(), 2 * nodes);
     for element in &model.mesh.elements {
-        assert!(element.cell.nodes().iter().all(|&n| n < nodes));
+        assert!(element.nodes.iter().all(|&n| n < nodes));
         let section = &model.sections[element.section];
         let material = &model.materials[section.material];
         assert!(section.thickness > 0.0 && material.young > 0.0 && material.density > 0.0);

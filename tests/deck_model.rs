@@ -56,7 +56,7 @@ fn square_reads_without_messages() {
     assert_eq!(model.title, "one square");
     assert_eq!(model.mesh.node_labels, [1, 2, 3, 4]);
     assert_eq!(model.mesh.elements[0].label, 7);
-    assert_eq!(model.mesh.elements[0].plane, Plane::Stress);
+    assert_eq!(model.mesh.elements[0].element_type, ElementType::CPS4);
     assert_eq!(model.sections[0].thickness, 0.5);
     assert_eq!(model.materials[0].young, 1000.0);
     assert_eq!(model.sets.nodes[1].name, "FOOT");

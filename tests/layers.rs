@@ -32,18 +32,7 @@ const LAYERS: [&str; 12] = [
 
 /// Folders in which some files name each other's items, as a type and its tables do; in all others
 /// the files import one way.
-const MUTUAL: [&str; 10] = [
-    "cli",
-    "deck/cards",
-    "deck/keywords",
-    "diagnostics",
-    "dynamics/increment",
-    "dynamics/results",
-    "dynamics/step",
-    "lcp/pivots",
-    "linear",
-    "model",
-];
+const MUTUAL: [&str; 3] = ["dynamics/increment", "dynamics/step", "model"];
 
 /// Names of the layers that a source text names after `crate::`, comments and tests included.
 fn imports_of(text: &str) -> impl Iterator<Item = &str> {

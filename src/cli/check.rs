@@ -6,7 +6,7 @@ use super::args::{CheckArgs, DeckArgs};
 use super::connect::{Loaded, Numerics};
 use super::error::CliError;
 use super::exit::Exit;
-use crate::cli::{coloured, complain, print};
+use super::terminal::{coloured, complain, print};
 use crate::output::{ModelEcho, check_names, deck_line, regular_file};
 
 /// Reads a deck and describes its model.

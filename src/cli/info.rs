@@ -3,7 +3,7 @@
 use super::args::InfoArgs;
 use super::error::CliError;
 use super::exit::Exit;
-use crate::cli::print;
+use super::terminal::print;
 use crate::output::ResultSummary;
 
 /// Describes a result file.

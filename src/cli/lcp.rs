@@ -5,7 +5,7 @@ use std::fs;
 use super::args::LcpArgs;
 use super::error::CliError;
 use super::exit::Exit;
-use crate::cli::print;
+use super::terminal::print;
 use crate::lcp::solve_json;
 use crate::output::regular_file;
 

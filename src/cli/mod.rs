@@ -14,10 +14,11 @@ mod run;
 #[cfg(test)]
 mod run_tests;
 mod signals;
+mod terminal;
 mod version;
 
 use std::ffi::OsString;
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 
 use clap::Parser;
 use clap::error::ErrorKind;
@@ -26,6 +27,7 @@ use args::{Args, Command};
 use connect::Numerics;
 use error::CliError;
 pub use exit::Exit;
+use terminal::{complain, on_screen};
 
 /// Runs the program with its arguments, the program's name first.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
@@ -79,30 +81,4 @@ fn typed(arguments: &[OsString]) -> String {
         .chain(rest)
         .collect();
     words.join(" ")
-}
-
-/// Prints to the standard output, unless that is a closed pipe.
-fn print(lines: &[String]) -> Result<(), CliError> {
-    let mut out = io::stdout().lock();
-    let mut lines = lines.iter();
-    let printed = lines.try_for_each(|line| writeln!(out, "{line}"));
-    on_screen(printed.and_then(|()| out.flush()))
-}
-
-/// What became of printing; a closed pipe is nobody's error.
-fn on_screen(printed: io::Result<()>) -> Result<(), CliError> {
-    match printed {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(CliError::Screen(error)),
-        _ => Ok(()),
-    }
-}
-
-/// Prints to the standard error, unless that is a closed pipe.
-fn complain(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{}", text.trim_end());
-}
-
-/// Whether messages on the standard error are coloured.
-fn coloured() -> bool {
-    io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }

@@ -19,7 +19,7 @@ use crate::dynamics::{
 use crate::elements::Strained;
 use crate::lcp::{FrictionalLcp, LcpError};
 use crate::model::{
-    Cell, Element, Frames, Increments, Material, Mesh, Model, Plane, Procedure, Section, Set,
+    Element, ElementType, Frames, Increments, Material, Mesh, Model, Procedure, Section, Set,
     Settings, Step,
 };
 use crate::output::{Interrupt, ResultSummary};
@@ -33,8 +33,8 @@ fn square() -> Model {
             coordinates: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
             elements: vec![Element {
                 label: 8,
-                cell: Cell::Quad4([0, 1, 2, 3]),
-                plane: Plane::Stress,
+                element_type: ElementType::CPS4,
+                nodes: vec![0, 1, 2, 3],
                 section: 0,
             }],
         },

@@ -13,7 +13,7 @@ use signal_hook::iterator::Signals;
 use signal_hook::{flag, low_level};
 
 use super::exit::Exit;
-use crate::cli::complain;
+use super::terminal::complain;
 use crate::output::Interrupt;
 
 /// Signals within this time of the first are the same request: a process and its group are often

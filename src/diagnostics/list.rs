@@ -1,8 +1,10 @@
 //! The collection of diagnostics of one deck: counts by severity, strictness, order by place.
 
-use super::render::SHOWN;
 use super::{Code, Diagnostic, Severity, Span};
 use std::collections::{BinaryHeap, HashSet};
+
+/// Most diagnostics of one severity that are shown.
+pub(super) const SHOWN: usize = 20;
 
 /// What becomes of doubtful decks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

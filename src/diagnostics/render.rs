@@ -1,12 +1,10 @@
 //! Diagnostics as text: message, source line with caret, chain of includes and advice, laid out by
 //! annotate-snippets in the style of rustc.
 
-use super::{Diagnostic, Diagnostics, Severity, Sources, Span};
+use super::list::{Diagnostics, SHOWN};
+use super::{Diagnostic, Severity, Sources, Span};
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 use std::ops::Range;
-
-/// Most diagnostics of one severity that are shown.
-pub(super) const SHOWN: usize = 20;
 
 impl Diagnostics {
     /// Text of the diagnostics by their place, at most 20 of each severity and then their count.

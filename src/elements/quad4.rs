@@ -2,7 +2,12 @@
 
 use nalgebra::{Matrix2, SMatrix, SVector};
 
-use super::reference::{Point, Reference};
+use super::displacement::Displacement;
+use super::integration_point::{Point, Reference};
+use super::solid::Solid;
+
+/// Q4 in the displacement formulation (CPE4, CPS4).
+pub type Quad4 = Solid<4, 4, 8, Displacement>;
 
 /// Natural coordinates of the nodes.
 ///
@@ -17,7 +22,7 @@ const NODES: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]
 /// Four-node quadrilateral with 2 x 2 Gauss points and thickness `t`.
 ///
 /// `x`: reference coordinates, column a for node a (length), counter-clockwise.
-pub fn quad4(x: &SMatrix<f64, 2, 4>, t: f64) -> Reference<4, 4> {
+pub fn reference(x: &SMatrix<f64, 2, 4>, t: f64) -> Reference<4, 4> {
     let gauss = 1.0 / 3.0_f64.sqrt();
     let points = NODES.map(|[r, s]| point(x, t, r * gauss, s * gauss));
     // m_ab = int h_a h_b dOmega; exact at 2 x 2 points, det(dX/dr) being linear.
@@ -64,7 +69,7 @@ mod tests {
     #[test]
     fn gradients_reproduce_a_linear_field() {
         let x = distorted();
-        for p in quad4(&x, 1.0).points {
+        for p in reference(&x, 1.0).points {
             // sum_a X_a dh_a/dX = I, sum_a dh_a/dX = 0
             let identity: Matrix2<f64> = x * p.gradient;
             assert!((identity - Matrix2::identity()).norm() < 1e-14);
@@ -82,7 +87,7 @@ mod tests {
                 (p[0] * q[1] - q[0] * p[1]) / 2.0
             })
             .sum();
-        let element = quad4(&x, 0.25);
+        let element = reference(&x, 0.25);
         assert!((element.volume() - 0.25 * area).abs() < 1e-15);
         assert!((element.mass.sum() - 0.25 * area).abs() < 1e-15);
         assert!((element.nodal_volume().sum() - 0.25 * area).abs() < 1e-15);

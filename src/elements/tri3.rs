@@ -2,12 +2,17 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::reference::{Point, Reference};
+use super::displacement::Displacement;
+use super::integration_point::{Point, Reference};
+use super::solid::Solid;
+
+/// T3 in the displacement formulation (CPE3, CPS3).
+pub type Tri3 = Solid<3, 1, 6, Displacement>;
 
 /// Three-node triangle with one integration point and thickness `t`.
 ///
 /// `x`: reference coordinates, column a for node a (length), counter-clockwise.
-pub fn tri3(x: &SMatrix<f64, 2, 3>, t: f64) -> Reference<3, 1> {
+pub fn reference(x: &SMatrix<f64, 2, 3>, t: f64) -> Reference<3, 1> {
     // dh_a/dX = (Y_b - Y_c, X_c - X_b) / 2A for (a, b, c) in cyclic order
     let double_area = (x[(0, 1)] - x[(0, 0)]) * (x[(1, 2)] - x[(1, 0)])
         - (x[(0, 2)] - x[(0, 0)]) * (x[(1, 1)] - x[(1, 0)]);
@@ -42,7 +47,7 @@ mod tests {
     #[test]
     fn linear_field_volume_and_mass() {
         let x = SMatrix::from_columns(&[[0.1, 0.0], [2.0, 0.3], [0.7, 1.9]].map(|p| p.into()));
-        let element = tri3(&x, 2.0);
+        let element = reference(&x, 2.0);
         let identity: Matrix2<f64> = x * element.points[0].gradient;
         assert!((identity - Matrix2::identity()).norm() < 1e-14);
         let volume = 1.9 * 1.9 - 0.6 * 0.3;

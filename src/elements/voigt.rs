@@ -51,6 +51,74 @@ pub fn stress(c: &Elasticity, strain: &Matrix2<f64>) -> Matrix2<f64> {
     Matrix2::new(s.x, s.z, s.z, s.y)
 }
 
+/// A material under the assumption that its element makes across the thickness: strain energy,
+/// stress and tangent as functions of the Green-Lagrange strain E in the plane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlaneMaterial {
+    c: Elasticity,
+    /// E_zz = -contraction (E_xx + E_yy).
+    contraction: f64,
+    /// S_zz = across (S_xx + S_yy).
+    across: f64,
+}
+
+/// What happens across the thickness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Thickness {
+    /// Stretch F_zz.
+    pub stretch: f64,
+    /// Second Piola-Kirchhoff stress S_zz (force/length^2).
+    pub stress: f64,
+}
+
+impl PlaneMaterial {
+    /// A material in plane stress or plane strain.
+    ///
+    /// In plane strain S_zz = lambda (E_xx + E_yy) and S_xx + S_yy = 2 (lambda + mu) (E_xx + E_yy),
+    /// so that S_zz = nu (S_xx + S_yy), nu = lambda/(2 (lambda + mu)).
+    pub fn new(material: &Material, plane: Plane) -> Self {
+        let (contraction, across) = match plane {
+            Plane::Stress => (material.poisson / (1.0 - material.poisson), 0.0),
+            Plane::Strain => (0.0, material.poisson),
+        };
+        PlaneMaterial {
+            c: elasticity(material, plane),
+            contraction,
+            across,
+        }
+    }
+
+    /// Strain energy per reference volume, W = E : C : E/2, eq. (2.4) (force/length^2).
+    pub fn energy(&self, strain: &Matrix2<f64>) -> f64 {
+        self.stress(strain).dot(strain) / 2.0
+    }
+
+    /// Second Piola-Kirchhoff stress S = dW/dE (force/length^2).
+    pub fn stress(&self, strain: &Matrix2<f64>) -> Matrix2<f64> {
+        stress(&self.c, strain)
+    }
+
+    /// Stress with S : (E1 - E0) = W(E1) - W(E0): of a quadratic energy the mean stress,
+    /// S_m = (S(U0) + S(U1))/2 = C (E(U0) + E(U1))/2, eq. (4.8).
+    pub fn stress_between(&self, start: &Matrix2<f64>, end: &Matrix2<f64>) -> Matrix2<f64> {
+        self.stress(&((start + end) / 2.0))
+    }
+
+    /// Tangent dS/dE, in Voigt order xx, yy, xy with engineering shear (force/length^2).
+    pub fn tangent(&self, _strain: &Matrix2<f64>) -> Elasticity {
+        self.c
+    }
+
+    /// Stretch and stress across the thickness. Plane strain: F_zz = 1; plane stress: S_zz = 0 and
+    /// F_zz^2 = 1 + 2 E_zz.
+    pub fn thickness(&self, strain: &Matrix2<f64>) -> Thickness {
+        Thickness {
+            stretch: (1.0 - 2.0 * self.contraction * strain.trace()).sqrt(),
+            stress: self.across * self.stress(strain).trace(),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,6 +2,7 @@
 
 mod assembled;
 mod checked;
+mod choice;
 mod faer_ldl;
 mod largest;
 mod ordering;
@@ -12,8 +13,9 @@ mod transformation;
 
 pub use assembled::Assembled;
 pub use checked::CheckedSolver;
+pub use choice::linear_solver;
 pub use faer_ldl::FaerLdl;
 pub use largest::{larger, largest};
-pub use solver::{LinearError, LinearSolver, linear_solver};
+pub use solver::{LinearError, LinearSolver};
 pub use sprs_ldl::SprsLdl;
 pub use transformation::Transformation;

@@ -1,9 +1,6 @@
-//! Interface of the direct solvers, their errors, and the choice between them.
+//! Interface of the direct solvers, and their errors.
 
 use sprs::CsMatView;
-
-use super::{FaerLdl, SprsLdl};
-use crate::model::SolverChoice;
 
 /// Why a factorisation or a solve failed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -58,14 +55,6 @@ pub trait LinearSolver: Send {
             inverse.extend(unknowns.iter().map(|&row| x[row]));
         }
         inverse
-    }
-}
-
-/// The solver of the deck's choice.
-pub fn linear_solver(choice: SolverChoice) -> Box<dyn LinearSolver> {
-    match choice {
-        SolverChoice::Faer => Box::new(FaerLdl::default()),
-        SolverChoice::Sprs => Box::new(SprsLdl::default()),
     }
 }
 

@@ -19,7 +19,7 @@ impl Bodies {
         let first = mesh.bodies();
         let mut number = vec![None; mesh.node_count()];
         for element in &mesh.elements {
-            number[first[element.cell.nodes()[0]]] = Some(0);
+            number[first[element.nodes[0]]] = Some(0);
         }
         let mut count = 0;
         for number in number.iter_mut().flatten() {
@@ -28,7 +28,7 @@ impl Bodies {
         }
         let of_node: Vec<Option<usize>> = first.iter().map(|&node| number[node]).collect();
         let of_element = (mesh.elements.iter())
-            .filter_map(|element| of_node[element.cell.nodes()[0]])
+            .filter_map(|element| of_node[element.nodes[0]])
             .collect();
         Bodies {
             count,
@@ -41,14 +41,14 @@ impl Bodies {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Cell, Element, Plane};
+    use crate::model::{Element, ElementType};
 
     #[test]
     fn bodies_are_numbered_by_their_first_nodes() {
-        let element = |nodes| Element {
+        let element = |nodes: [usize; 3]| Element {
             label: 1,
-            cell: Cell::Tri3(nodes),
-            plane: Plane::Stress,
+            element_type: ElementType::CPS3,
+            nodes: nodes.to_vec(),
             section: 0,
         };
         let mesh = Mesh {

@@ -15,7 +15,7 @@ pub struct Material {
 }
 
 /// Kinematic assumption across the thickness.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Plane {
     /// No stress across the thickness (CPS elements).
     Stress,

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use super::{Face, Plane};
+use super::{ElementType, Face};
 
 /// Nodes and elements of a model.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -31,8 +31,7 @@ impl Mesh {
     pub fn bodies(&self) -> Vec<usize> {
         let mut parent: Vec<usize> = (0..self.node_count()).collect();
         for element in &self.elements {
-            let nodes = element.cell.nodes();
-            for pair in nodes.windows(2) {
+            for pair in element.nodes.windows(2) {
                 let [p, q] = [root(&mut parent, pair[0]), root(&mut parent, pair[1])];
                 parent[p.max(q)] = p.min(q);
             }
@@ -45,7 +44,7 @@ impl Mesh {
         let all = || {
             let elements = self.elements.iter().enumerate();
             elements.flat_map(|(element, e)| {
-                (0..e.cell.nodes().len()).map(move |side| Face { element, side })
+                (0..e.sides().len()).map(move |side| Face { element, side })
             })
         };
         let ends = |face: &Face| {
@@ -73,43 +72,24 @@ fn root(parent: &mut [usize], mut node: usize) -> usize {
 pub struct Element {
     /// Element number of the deck.
     pub label: u64,
-    /// Shape and nodes.
-    pub cell: Cell,
-    /// Plane stress or plane strain.
-    pub plane: Plane,
+    /// Shape, formulation, and plane stress or plane strain.
+    pub element_type: ElementType,
+    /// Node indices, counter-clockwise; as many as the type has.
+    pub nodes: Vec<usize>,
     /// Index into `Model::sections`.
     pub section: usize,
 }
 
-/// Shape of an element with its node indices in counter-clockwise order.
-///
-/// ```text
-///   3 ---- 2        2
-///   |      |        | \        side i runs from node i to the next node;
-///   |      |        |  \       the body lies on its left
-///   0 ---- 1        0 -- 1
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Cell {
-    /// Three-node triangle.
-    Tri3([usize; 3]),
-    /// Four-node quadrilateral.
-    Quad4([usize; 4]),
-}
-
-impl Cell {
-    /// Node indices, counter-clockwise.
-    pub fn nodes(&self) -> &[usize] {
-        match self {
-            Cell::Tri3(nodes) => nodes,
-            Cell::Quad4(nodes) => nodes,
-        }
+impl Element {
+    /// Nodes of every side, from a to b with the body on the left; side 0 is S1/P1.
+    pub fn sides(&self) -> impl ExactSizeIterator<Item = [usize; 2]> + '_ {
+        let sides = self.element_type.topology().sides.iter();
+        sides.map(|side| side.map(|local| self.nodes[local]))
     }
 
-    /// Nodes of side `side` (0-based: side 0 is S1/P1), from a to b with the body on the left.
+    /// Nodes of side `side`, 0-based.
     pub fn side(&self, side: usize) -> [usize; 2] {
-        let nodes = self.nodes();
-        [nodes[side], nodes[(side + 1) % nodes.len()]]
+        self.element_type.topology().sides[side].map(|local| self.nodes[local])
     }
 }
 

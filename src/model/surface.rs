@@ -39,7 +39,7 @@ pub struct Face {
 impl Face {
     /// Node indices [a, b]; the body lies on the left of the way from a to b.
     pub fn nodes(&self, mesh: &Mesh) -> [usize; 2] {
-        mesh.elements[self.element].cell.side(self.side)
+        mesh.elements[self.element].side(self.side)
     }
 }
 

@@ -7,11 +7,11 @@
 
 mod error;
 mod file;
+mod frame;
 mod frames;
 mod history;
 mod interrupt;
 mod job;
-mod last;
 mod result_file;
 mod summary;
 mod text;

@@ -8,8 +8,9 @@ use hdf5::{File, FileBuilder};
 
 use super::error::{at, io_error};
 use super::file::{Fields, Record, RunRecord, Space};
+use super::frame::Frame;
 use super::history::History;
-use crate::dynamics::{IncrementReport, NodalResults, RunSummary, State};
+use crate::dynamics::{IncrementReport, RunSummary};
 use crate::model::Model;
 
 /// `JOB.vtkhdf` while it is being written.
@@ -77,15 +78,9 @@ impl ResultFile {
 
     /// Appends a frame and writes everything to the disk, so that the file is readable even when
     /// the program is killed. Ends with room for what comes next.
-    pub fn frame(
-        &mut self,
-        model: &Model,
-        time: f64,
-        state: &State,
-        nodal: &NodalResults,
-    ) -> io::Result<()> {
+    pub fn frame(&mut self, frame: &Frame) -> io::Result<()> {
         self.room()?;
-        let written = (self.fields.write(model, time, state, nodal))
+        let written = (self.fields.write(frame))
             .and_then(|()| self.history.flush())
             .and_then(|()| self.file.flush());
         self.checked(written)?;

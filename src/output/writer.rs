@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 
 use super::error::{OutputError, at};
 use super::file::{Claim, RunRecord, check_names};
+use super::frame::LastState;
 use super::frames::FrameSchedule;
 use super::interrupt::Interrupt;
-use super::last::LastState;
 use super::result_file::ResultFile;
 use super::summary::{Monitor, Remarks, lcp_lines, timing_lines};
 use super::text::{
@@ -77,7 +77,7 @@ impl<'a> ResultWriter<'a> {
     pub fn kept(&self) -> Option<String> {
         let is_kept = self.status.is_some() && self.result.is_readable();
         is_kept.then(|| {
-            let time = scientific(self.last.frame, 6);
+            let time = scientific(self.last.written_time, 6);
             format!("the results up to time {time} are kept")
         })
     }
@@ -141,12 +141,11 @@ impl<'a> ResultWriter<'a> {
 
     fn write_last_state(&mut self) -> io::Result<()> {
         let last = &mut self.last;
-        if last.written || last.state.u.is_empty() {
+        if last.is_written || last.frame.state.u.is_empty() {
             return Ok(());
         }
-        self.result
-            .frame(self.model, last.time, &last.state, &last.nodal)?;
-        (last.written, last.frame) = (true, last.time);
+        self.result.frame(&last.frame)?;
+        last.set_written();
         Ok(())
     }
 
@@ -154,12 +153,12 @@ impl<'a> ResultWriter<'a> {
         let remarks = self.monitor.add(report);
         self.print_remarks(report, &remarks)?;
         self.result.history(self.model, report)?;
-        let due = self.schedule.is_due(report);
-        if due {
-            (self.result).frame(self.model, report.time, &report.state, &report.nodal)?;
+        self.last.set(report);
+        if self.schedule.is_due(report) {
+            self.result.frame(&self.last.frame)?;
             self.publish()?;
+            self.last.set_written();
         }
-        self.last.set(report, due);
         Ok(())
     }
 
@@ -221,7 +220,7 @@ impl<'a> ResultWriter<'a> {
     }
 
     fn print_failure(&mut self, failure: &Failure) -> io::Result<()> {
-        self.alarm(failure_lines(failure, self.model, &self.last.state.u))?;
+        self.alarm(failure_lines(failure, self.model, &self.last.frame.state.u))?;
         if let Cause::Lcp(failed) = &failure.cause {
             let path = self.claim.files().failed_lcp(failure.increment);
             replace(&path, &failed.problem.to_json()).map_err(at(&path))?;
@@ -247,7 +246,7 @@ impl<'a> ResultWriter<'a> {
             0 => vec![format!("{name} has no frame")],
             _ => vec![
                 format!("{name} is valid up to its last frame"),
-                format!("time {}", scientific(self.last.time, 6)),
+                format!("time {}", scientific(self.last.frame.time, 6)),
             ],
         };
         self.alarm(wrap("results", &pieces))

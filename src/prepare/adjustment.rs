@@ -90,7 +90,7 @@ fn move_nodes(model: &mut Model, contact: usize, moved: &[InitialGap]) -> Option
 
 /// Whether an element that was convex is no more, or lost half its area.
 fn is_spoiled(element: &Element, before: &[[f64; 2]], after: &[[f64; 2]]) -> bool {
-    let nodes = element.cell.nodes();
+    let nodes = &element.nodes;
     if nodes.iter().all(|&n| before[n] == after[n]) {
         return false;
     }
@@ -156,7 +156,7 @@ mod tests {
     use super::*;
     use crate::contact::contact_surfaces;
     use crate::diagnostics::Span;
-    use crate::model::{Cell, Face, Interaction, Plane, Surface, SurfaceKind};
+    use crate::model::{ElementType, Face, Interaction, Surface, SurfaceKind};
 
     /// Whether moving the upper corners of a slightly sheared square spoils it, in a unit of length.
     fn is_spoiled_by(upper: [[f64; 2]; 2], unit: f64) -> bool {
@@ -165,8 +165,8 @@ mod tests {
         let [before, after] = [square, moved].map(|x| x.map(|p| p.map(|x| unit * x)));
         let element = Element {
             label: 1,
-            cell: Cell::Quad4([0, 1, 2, 3]),
-            plane: Plane::Stress,
+            element_type: ElementType::CPS4,
+            nodes: vec![0, 1, 2, 3],
             section: 0,
         };
         is_spoiled(&element, &before, &after)
@@ -196,8 +196,8 @@ mod tests {
             model.mesh.coordinates.extend(above);
             model.mesh.elements.push(Element {
                 label: 1,
-                cell: Cell::Quad4([0, 1, 2, 3].map(|i| first + i)),
-                plane: Plane::Stress,
+                element_type: ElementType::CPS4,
+                nodes: (first..first + 4).collect(),
                 section: 0,
             });
         }

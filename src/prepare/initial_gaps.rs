@@ -122,7 +122,7 @@ mod tests {
 
     use super::*;
     use crate::contact::Interior;
-    use crate::model::{Cell, Element, Mesh, Plane};
+    use crate::model::{Element, ElementType, Mesh};
 
     /// Gap of a node at `s` to the roof over the nodes 1, 2, 3 at heights 0, `top`, 0, whose body
     /// is `body`.
@@ -149,11 +149,10 @@ mod tests {
         let x = [[2.0, 0.0], [0.0, 0.0], [-2.0, 0.0]];
         let below = x.map(|[x, y]| [x, y - t]);
         let coordinates: Vec<[f64; 2]> = [&[s], &x[..], &below].concat();
-        let plane = Plane::Stress;
-        let element = |nodes| Element {
+        let element = |nodes: [usize; 4]| Element {
             label: 1,
-            cell: Cell::Quad4(nodes),
-            plane,
+            element_type: ElementType::CPS4,
+            nodes: nodes.to_vec(),
             section: 0,
         };
         let mesh = Mesh {

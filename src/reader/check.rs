@@ -20,7 +20,7 @@ pub(super) fn mesh(mesh_index: &MeshIndex, cx: &mut Context) {
         .zip(&mesh_index.element_spans)
     {
         shape(element, &mesh_index.mesh, span, cx);
-        let mut nodes = element.cell.nodes().to_vec();
+        let mut nodes = element.nodes.clone();
         nodes.sort_unstable();
         if let Some(first) = known.insert(nodes, element.label) {
             let message = format!("element {} has the nodes of element {first}", element.label);
@@ -30,12 +30,7 @@ pub(super) fn mesh(mesh_index: &MeshIndex, cx: &mut Context) {
 }
 
 fn shape(element: &Element, mesh: &Mesh, span: Span, cx: &mut Context) {
-    let at: Vec<[f64; 2]> = element
-        .cell
-        .nodes()
-        .iter()
-        .map(|&n| mesh.coordinates[n])
-        .collect();
+    let at: Vec<[f64; 2]> = element.nodes.iter().map(|&n| mesh.coordinates[n]).collect();
     let count = at.len();
     let side = |i: usize| {
         let (a, b) = (at[i % count], at[(i + 1) % count]);
@@ -126,7 +121,7 @@ fn unusable(what: &str, value: f64, span: Span, cx: &mut Context) {
 /// Area of an element.
 fn area(element: &Element, mesh: &Mesh) -> f64 {
     let at = |&node: &usize| mesh.coordinates[node];
-    let corners: Vec<[f64; 2]> = element.cell.nodes().iter().map(at).collect();
+    let corners: Vec<[f64; 2]> = element.nodes.iter().map(at).collect();
     let from_first = |p: &[f64; 2]| [p[0] - corners[0][0], p[1] - corners[0][1]];
     let triangles = corners.windows(2).map(|side| {
         let [p, q] = [from_first(&side[0]), from_first(&side[1])];
@@ -179,10 +174,7 @@ pub(super) fn crossing_time(mesh: &Mesh, properties: &Properties) -> Option<f64>
         .iter()
         .map(|m| (m.young / m.density).sqrt());
     let fastest = speeds.filter(|s| s.is_finite()).reduce(f64::max)?;
-    let sides = mesh.elements.iter().flat_map(|element| {
-        let count = element.cell.nodes().len();
-        (0..count).map(|side| element.cell.side(side))
-    });
+    let sides = mesh.elements.iter().flat_map(Element::sides);
     let length = |[a, b]: [usize; 2]| {
         let (a, b) = (mesh.coordinates[a], mesh.coordinates[b]);
         (b[0] - a[0]).hypot(b[1] - a[1])

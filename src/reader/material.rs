@@ -317,7 +317,7 @@ impl Properties {
         for (element, section) in mesh_index.mesh.elements.iter().zip(&self.section_of) {
             let section = section.and_then(|s| self.sections.get(s));
             let locks = section.and_then(|s| locks.get_mut(s.material));
-            if let (Plane::Strain, Some(locks)) = (element.plane, locks) {
+            if let (Plane::Strain, Some(locks)) = (element.element_type.plane, locks) {
                 *locks = true;
             }
         }

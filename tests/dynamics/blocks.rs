@@ -7,7 +7,7 @@ use stickslip::dynamics::{
     self, Cutback, IncrementReport, Observer, Outcome, RunError, RunSummary,
 };
 use stickslip::model::{
-    Cell, Contact, Element, Face, Frames, Increments, Interaction, Material, Model, Plane,
+    Contact, Element, ElementType, Face, Frames, Increments, Interaction, Material, Model,
     Procedure, Section, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
 };
 use stickslip::prepare::PreparedModel;
@@ -106,11 +106,10 @@ pub fn add_block(
                 block.node(i, j + 1),
             ];
             let label = mesh.elements.len() as u64 + 1;
-            let (plane, cell) = (Plane::Stress, Cell::Quad4(nodes));
             mesh.elements.push(Element {
                 label,
-                cell,
-                plane,
+                element_type: ElementType::CPS4,
+                nodes: nodes.to_vec(),
                 section: 0,
             });
         }

@@ -7,8 +7,8 @@
 
 use stickslip::diagnostics::Span;
 use stickslip::model::{
-    BodyForce, Cell, Contact, Face, Interaction, Load, Model, Settings, Surface, SurfaceKind,
-    Variation,
+    BodyForce, Contact, ElementType, Face, Interaction, Load, Model, Settings, Surface,
+    SurfaceKind, Variation,
 };
 use stickslip::prepare::PreparedModel;
 
@@ -54,14 +54,15 @@ fn foils(ratio: f64, layers: usize, triangles: bool, lifts: &[f64]) -> (Model, V
 fn split(model: &mut Model, faces: &[Face]) -> Vec<Face> {
     let elements = std::mem::take(&mut model.mesh.elements);
     for element in &elements {
-        let &[a, b, c, d] = element.cell.nodes() else {
+        let &[a, b, c, d] = element.nodes.as_slice() else {
             panic!("a quadrilateral");
         };
         for nodes in [[a, b, c], [a, c, d]] {
-            let (label, cell) = (model.mesh.elements.len() as u64 + 1, Cell::Tri3(nodes));
+            let label = model.mesh.elements.len() as u64 + 1;
             model.mesh.elements.push(stickslip::model::Element {
                 label,
-                cell,
+                element_type: ElementType::CPS3,
+                nodes: nodes.to_vec(),
                 ..element.clone()
             });
         }

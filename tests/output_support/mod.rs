@@ -17,10 +17,10 @@ use stickslip::dynamics::{
     NodalResults, NodeStatus, Observer, Outcome, PassReport, RunSummary, SolverCounts, State,
     Timings,
 };
-use stickslip::elements::Strained;
+use stickslip::elements::{ElementResult, Strained};
 use stickslip::model::{
-    Cell, Contact, Element, Face, Frames, HistorySet, Increments, Interaction, Material, Mesh,
-    Model, NamedSets, Plane, Procedure, Section, Set, Settings, Step, Support, SupportMotion,
+    Contact, Element, ElementType, Face, Frames, HistorySet, Increments, Interaction, Material,
+    Mesh, Model, NamedSets, Procedure, Section, Set, Settings, Step, Support, SupportMotion,
     Surface, SurfaceKind,
 };
 use stickslip::output::{Claim, JobFiles, ResultWriter, RunRecord, Verbosity};
@@ -67,10 +67,10 @@ pub fn model() -> Model {
 }
 
 fn mesh() -> Mesh {
-    let element = |label, cell| Element {
+    let element = |label, element_type, nodes: &[usize]| Element {
         label,
-        cell,
-        plane: Plane::Strain,
+        element_type,
+        nodes: nodes.to_vec(),
         section: 0,
     };
     Mesh {
@@ -85,9 +85,9 @@ fn mesh() -> Mesh {
             [3.0, 0.0],
         ],
         elements: vec![
-            element(1, Cell::Quad4([0, 1, 4, 3])),
-            element(2, Cell::Quad4([1, 2, 5, 4])),
-            element(3, Cell::Tri3([2, 6, 5])),
+            element(1, ElementType::CPE4, &[0, 1, 4, 3]),
+            element(2, ElementType::CPE4, &[1, 2, 5, 4]),
+            element(3, ElementType::CPE3, &[2, 6, 5]),
         ],
     }
 }
@@ -168,6 +168,8 @@ pub fn report(k: usize) -> IncrementReport {
             a: ramp(3.0),
         },
         nodal: nodal(k, ramp(4.0), ramp(5.0)),
+        elements: vec![ElementResult::default(); 3].into(),
+        contact_energy: None,
         energy: Energy {
             kinetic: cosine * cosine,
             strain: sine * sine,

@@ -7,12 +7,13 @@ use crate::contact::tolerances::{INSIDE_ROUND_OFF, NEARER_HALF};
 use std::collections::HashMap;
 
 use super::projection::project;
-use crate::model::{Cell, Mesh};
+use crate::model::Mesh;
 
 /// The elements of a mesh with what lies on the left of each of their sides.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Interior {
-    elements: Vec<Cell>,
+    /// Sides [a, b] of every element, the element on their left.
+    sides: Vec<Box<[[usize; 2]]>>,
     /// Element on the left of the way along a side [a, b].
     left: HashMap<[usize; 2], usize>,
 }
@@ -27,12 +28,14 @@ struct Line {
 impl Interior {
     /// The inside of the bodies of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
-        let elements: Vec<Cell> = mesh.elements.iter().map(|element| element.cell).collect();
-        let mut left = HashMap::with_capacity(4 * elements.len());
-        for (i, cell) in elements.iter().enumerate() {
-            left.extend(sides(cell).map(|side| (side, i)));
+        let sides: Vec<Box<[[usize; 2]]>> = (mesh.elements.iter())
+            .map(|element| element.sides().collect())
+            .collect();
+        let mut left = HashMap::with_capacity(4 * sides.len());
+        for (i, sides) in sides.iter().enumerate() {
+            left.extend(sides.iter().map(|&side| (side, i)));
         }
-        Interior { elements, left }
+        Interior { sides, left }
     }
 
     /// Whether a node that is behind the line of a segment, at the positions `at`, lies in the body
@@ -88,7 +91,7 @@ impl Interior {
         while let Some((element, [_, end])) = parts.pop() {
             line.elements.push(element);
             line.stays |= end >= 1.0;
-            for [p, q] in sides(&self.elements[element]) {
+            for &[p, q] in &self.sides[element] {
                 if let Some(&next) = self.left.get(&[q, p])
                     && !line.elements.contains(&next)
                     && parts.iter().all(|(listed, _)| *listed != next)
@@ -111,7 +114,7 @@ impl Interior {
         at: impl Fn(usize) -> [f64; 2],
     ) -> Option<[f64; 2]> {
         let [mut start, mut end] = [0.0_f64, 1.0_f64];
-        for side in sides(&self.elements[element]) {
+        for side in &self.sides[element] {
             let side = project(from, at(side[0]), at(side[1]));
             // distances outside the side at both ends of the line
             let along = (to[0] - from[0]) * side.normal[0] + (to[1] - from[1]) * side.normal[1];
@@ -135,20 +138,15 @@ impl Interior {
     }
 
     fn has_node(&self, line: &Line, node: usize) -> bool {
-        let has = |&element: &usize| self.elements[element].nodes().contains(&node);
+        let has = |&element: &usize| self.sides[element].iter().any(|&[a, _]| a == node);
         line.elements.iter().any(has)
     }
-}
-
-/// The sides [a, b] of an element, the element on their left.
-fn sides(cell: &Cell) -> impl Iterator<Item = [usize; 2]> + '_ {
-    (0..cell.nodes().len()).map(|side| cell.side(side))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Element, Plane};
+    use crate::model::{Element, ElementType};
 
     /// A strip of two layers, one element each in its half, of the length 1 and the thickness `t`,
     /// as triangles or not; its nodes are 0 to 8, row by row. Node 9 is anywhere.
@@ -159,21 +157,21 @@ mod tests {
                 .extend((0..3).map(|i| [f64::from(i) / 2.0, t * f64::from(j) / 2.0]));
         }
         mesh.coordinates.push([0.0, 0.0]);
-        let mut add = |cell| {
+        let mut add = |element_type, nodes: &[usize]| {
             mesh.elements.push(Element {
                 label: 1,
-                cell,
-                plane: Plane::Stress,
+                element_type,
+                nodes: nodes.to_vec(),
                 section: 0,
             });
         };
         for k in [0, 1, 3, 4] {
             let [a, b, c, d] = [k, k + 1, k + 4, k + 3];
             if triangles {
-                add(Cell::Tri3([a, b, c]));
-                add(Cell::Tri3([a, c, d]));
+                add(ElementType::CPS3, &[a, b, c]);
+                add(ElementType::CPS3, &[a, c, d]);
             } else {
-                add(Cell::Quad4([a, b, c, d]));
+                add(ElementType::CPS4, &[a, b, c, d]);
             }
         }
         mesh
@@ -232,8 +230,8 @@ mod tests {
         }
         mesh.elements.push(Element {
             label: 1,
-            cell: Cell::Quad4([first, first + 1, first + 3, first + 2]),
-            plane: Plane::Stress,
+            element_type: ElementType::CPS4,
+            nodes: vec![first, first + 1, first + 3, first + 2],
             section: 0,
         });
         mesh.coordinates[9] = [0.3, 0.25];

@@ -1,7 +1,7 @@
 //! Cards from lines.
 
 use super::card::{Card, Row};
-use crate::deck::cards::resolve;
+use super::resolve::{self, Piece};
 use crate::deck::keywords::{Data, Keyword, Scope, Status};
 use crate::deck::lines::{Line, Text, assignment};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Span};
@@ -37,14 +37,6 @@ pub(crate) struct Inclusion {
     pub span: Span,
     /// Whether it may hold data lines only.
     pub rows_only: bool,
-}
-
-/// A piece of a keyword line between commas.
-pub(crate) struct Piece<'a> {
-    /// Its text and place.
-    pub text: Text<'a>,
-    /// Whether it stands on a continuation line.
-    pub continued: bool,
 }
 
 /// What happens to data lines.

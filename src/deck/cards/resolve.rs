@@ -1,11 +1,18 @@
 //! Keywords, parameters and their words, looked up in the table; what is not read is reported here.
 
 use super::card::{Card, Param};
-use super::collect::Piece;
 use crate::deck::keywords::{Keyword, Parameter, Scope, Status, Takes, Value, find, keywords};
 use crate::deck::lines::{Match, Text, assignment, word};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span};
 use std::cell::Cell;
+
+/// A piece of a keyword line between commas.
+pub(crate) struct Piece<'a> {
+    /// Its text and place.
+    pub text: Text<'a>,
+    /// Whether it stands on a continuation line.
+    pub continued: bool,
+}
 
 /// The keyword that is typed with its star, or the one that is meant; reports what is not read.
 pub(crate) fn keyword(text: Text, d: &mut Diagnostics) -> Option<&'static Keyword> {

@@ -1,6 +1,7 @@
 //! Files of a deck: reading them, finding included ones, and cutting them into logical lines.
 
-use super::collect::{Collector, Deck, Inclusion, Piece};
+use super::collect::{Collector, Deck, Inclusion};
+use super::resolve::Piece;
 use crate::deck::lines::{Content, Kind, Line, Text};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
 use std::path::{Path, PathBuf};

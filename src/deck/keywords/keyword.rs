@@ -1,10 +1,7 @@
 //! Types of the keyword table: keywords, parameters and values with what the program does with
-//! each, and look-up by name.
+//! each.
 
-use crate::deck::keywords::{table_model, table_others, table_steps};
 use crate::deck::lines::word;
-use std::collections::HashMap;
-use std::sync::LazyLock;
 
 /// What the program does with a keyword, a parameter or a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -101,19 +98,6 @@ pub struct Keyword {
     pub parameters: &'static [Parameter],
     /// One sentence.
     pub text: &'static str,
-}
-
-/// All known keywords: those read first, then the others.
-pub fn keywords() -> impl Iterator<Item = &'static Keyword> + Clone {
-    let read = table_model::MODEL.iter().chain(table_steps::STEPS);
-    read.chain(table_others::OTHERS)
-}
-
-/// The keyword with this name, blanks and case aside.
-pub(crate) fn find(name: &str) -> Option<&'static Keyword> {
-    static INDEX: LazyLock<HashMap<String, &'static Keyword>> =
-        LazyLock::new(|| keywords().map(|k| (word::fold(k.name), k)).collect());
-    INDEX.get(&word::fold(name)).copied()
 }
 
 impl Keyword {

@@ -1,7 +1,8 @@
 //! The keyword reference, generated from the table the reader uses.
 
-use super::keyword::{Data, Keyword, Parameter, Scope, Status, Takes, keywords};
-use crate::deck::keywords::dimensions;
+use super::dimension_reference::in_words;
+use super::keyword::{Data, Keyword, Parameter, Scope, Status, Takes};
+use super::table::keywords;
 use std::fmt::Write;
 
 /// Markdown text of the keyword reference.
@@ -25,7 +26,7 @@ pub fn keyword_reference() -> String {
 const HEAD: &str = "\
 # Keywords
 
-Generated from the table that the reader uses (`src/deck/table_*.rs`); do not edit by hand.
+Generated from the table that the reader uses (`src/deck/keywords/table_*.rs`); do not edit by hand.
 
 A deck is a text file. A keyword line begins with `*`, a comment line with `**`; data lines follow
 their keyword, with fields between commas. Case and blanks in keywords, parameters and names do not
@@ -67,7 +68,7 @@ fn push_keyword(text: &mut String, keyword: &Keyword) {
         plain(keyword.text)
     );
     let _ = write!(text, "\nStands {place}; {data}.\n");
-    if let Some(words) = dimensions::in_words(keyword) {
+    if let Some(words) = in_words(keyword) {
         let _ = write!(text, "\nDimensions: {words}.\n");
     }
     if !keyword.parameters.is_empty() {

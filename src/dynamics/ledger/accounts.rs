@@ -14,6 +14,7 @@ use crate::dynamics::results::{
     State,
 };
 use crate::dynamics::step::{Interval, Mass, StepProblem};
+use crate::elements::ElementResult;
 use crate::model::{Contact, Model};
 
 /// What a run keeps account of beside the energy ledger: bodies, rigid surfaces and contacts.
@@ -36,8 +37,13 @@ impl Accounts {
         }
     }
 
-    /// Motion of the start with the strain energies of the elements, without forces.
-    pub fn start(&self, problem: &StepProblem, state: &State, strain: &[f64]) -> IncrementReport {
+    /// Motion of the start with the energies of the elements, without forces.
+    pub fn start(
+        &self,
+        problem: &StepProblem,
+        state: &State,
+        elements: &[ElementResult],
+    ) -> IncrementReport {
         let (dofs, nodes) = (state.u.len(), state.u.len() / 2);
         let of_contact = |contact: &Contact| ContactResultant {
             min_gap: f64::NAN,
@@ -59,7 +65,7 @@ impl Accounts {
             },
             contacts: problem.model.contacts.iter().map(of_contact).collect(),
             rigid: vec![RigidReaction::default(); self.rigid.count()],
-            ..self.moving(problem, state, strain)
+            ..self.moving(problem, state, elements)
         }
     }
 
@@ -69,9 +75,9 @@ impl Accounts {
         problem: &StepProblem,
         solved: &Solved,
         interval: Interval,
-        strain: &[f64],
+        elements: &[ElementResult],
     ) -> IncrementReport {
-        let mut report = self.moving(problem, &solved.end, strain);
+        let mut report = self.moving(problem, &solved.end, elements);
         let u = &solved.equilibrium.u_theta;
         let mut contacts = contact_resultants(problem, solved);
         let bodies = &self.bodies.bodies;
@@ -91,10 +97,15 @@ impl Accounts {
     }
 
     /// Momentum and motion of the bodies.
-    fn moving(&self, problem: &StepProblem, state: &State, strain: &[f64]) -> IncrementReport {
+    fn moving(
+        &self,
+        problem: &StepProblem,
+        state: &State,
+        elements: &[ElementResult],
+    ) -> IncrementReport {
         let p = &problem.mass.times(&state.v);
         let State { u, v, .. } = state;
-        let moving = Moving { u, v, p, strain };
+        let moving = Moving { u, v, p, elements };
         IncrementReport {
             momentum: momentum(problem, u, p),
             bodies: self.bodies.results(problem, &moving),

@@ -2,6 +2,7 @@
 
 use crate::dynamics::results::{BodyResult, Momentum};
 use crate::dynamics::step::{Mass, StepProblem};
+use crate::elements::ElementResult;
 use crate::model::{Bodies, Model};
 
 /// What does not change about the bodies of a model.
@@ -13,12 +14,12 @@ pub(crate) struct BodyMasses {
     share: Vec<f64>,
 }
 
-/// Displacement and velocity, the momentum p = M V of the nodes, and the strain energies of the elements.
+/// Displacement and velocity, the momentum p = M V of the nodes, and the results of the elements.
 pub(crate) struct Moving<'a> {
     pub u: &'a [f64],
     pub v: &'a [f64],
     pub p: &'a [f64],
-    pub strain: &'a [f64],
+    pub elements: &'a [ElementResult],
 }
 
 impl BodyMasses {
@@ -49,7 +50,7 @@ impl BodyMasses {
     ///
     /// p = M v with the consistent mass, m_a its row sums, positions of the current configuration.
     pub fn results(&self, problem: &StepProblem, moving: &Moving) -> Vec<BodyResult> {
-        let Moving { u, v, p, strain } = *moving;
+        let Moving { u, v, p, elements } = *moving;
         let centers = self.centers(problem, u);
         let mut results: Vec<BodyResult> = (centers.iter())
             .map(|&center| BodyResult {
@@ -73,8 +74,8 @@ impl BodyMasses {
             result.velocity = result.velocity.map(|p| p / self.mass[body]);
             result.angular_velocity /= inertia[body];
         }
-        for (&body, energy) in self.bodies.of_element.iter().zip(strain) {
-            results[body].strain += energy;
+        for (&body, element) in self.bodies.of_element.iter().zip(elements) {
+            results[body].strain += element.energy;
         }
         results
     }

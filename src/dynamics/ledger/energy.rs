@@ -1,8 +1,11 @@
 //! Energy balance of a run, accumulated increment by increment. Section 9 of docs/theory.md.
 
+use std::sync::Arc;
+
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{Cause, Energy, State};
 use crate::dynamics::step::{Equilibrium, StepProblem, dot};
+use crate::elements::ElementResult;
 use crate::linear::{larger, largest};
 
 /// Normal work of contact in an increment up to which it is round-off, as a part of the largest energy
@@ -15,8 +18,8 @@ pub(crate) struct Ledger {
     pub energy: Energy,
     /// Largest kinetic or strain energy of every body so far.
     pub largest: Vec<f64>,
-    /// Strain energy of every element.
-    pub strains: Vec<f64>,
+    /// Strain energy, stress and strain of every element.
+    pub elements: Arc<[ElementResult]>,
     /// Energy that contact put in in the last increment, if it did.
     pub contact_energy: Option<f64>,
     /// Largest kinetic or strain energy or external work so far.
@@ -29,8 +32,8 @@ impl Ledger {
     /// Opens the ledger at the start of the analysis.
     pub fn new(problem: &StepProblem, start: &State) -> Self {
         let kinetic = problem.mass.kinetic_energy(&start.v);
-        let strains = problem.elements.strain_energies(&start.u);
-        let strain = strains.iter().sum();
+        let elements = problem.elements.evaluate(&start.u);
+        let strain = elements.iter().map(|element| element.energy).sum();
         let energy = Energy {
             kinetic,
             strain,
@@ -43,21 +46,21 @@ impl Ledger {
             start: kinetic + strain,
             ..Ledger::default()
         };
-        ledger.enter_bodies(problem, start, &strains);
-        ledger.strains = strains;
+        ledger.enter_bodies(problem, start, &elements);
+        ledger.elements = elements.into();
         ledger
     }
 
     /// Takes in the kinetic energy of every body in a state, and the strain energy of every element.
-    fn enter_bodies(&mut self, problem: &StepProblem, state: &State, strain: &[f64]) {
+    fn enter_bodies(&mut self, problem: &StepProblem, state: &State, elements: &[ElementResult]) {
         let parts = problem.parts;
         let kinetic = problem.mass.kinetic_energies(&state.v, parts);
         let mut strains = vec![0.0; parts.bodies()];
-        for (element, energy) in strain.iter().enumerate() {
+        for (element, result) in elements.iter().enumerate() {
             let [node, ..] = problem.elements.nodes(element) else {
                 continue;
             };
-            strains[parts.of_nodes()[*node]] += energy;
+            strains[parts.of_nodes()[*node]] += result.energy;
         }
         for (most, (kinetic, strain)) in self.largest.iter_mut().zip(kinetic.iter().zip(strains)) {
             *most = largest(&[*most, *kinetic, strain]);
@@ -88,12 +91,12 @@ impl Ledger {
             inertia,
             ..
         } = &solved.equilibrium;
-        let strain = problem.elements.strain_energies(&end.u);
-        self.enter_bodies(problem, end, &strain);
-        self.strains = strain;
+        let elements = problem.elements.evaluate(&end.u);
+        self.enter_bodies(problem, end, &elements);
+        self.elements = elements.into();
         let e = &mut self.energy;
         let (strain0, contact_work0) = (e.strain, e.normal_contact_work);
-        e.strain = self.strains.iter().sum();
+        e.strain = self.elements.iter().map(|element| element.energy).sum();
         e.kinetic = problem.mass.kinetic_energy(&end.v);
 
         // d.R_theta, and at supports dt V_mid,p (M A)_p + d_p (F - R - B^T P)_p, eq. (9.1), with

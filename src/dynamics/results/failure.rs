@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use super::increment_report::PassReport;
+use super::pass_report::PassReport;
 use crate::elements::Inverted;
 use crate::lcp::{FrictionalLcp, LcpError};
 use crate::linear::LinearError;

@@ -1,10 +1,12 @@
-//! Results of an increment and totals of a run, as the output receives them through `Observer`.
+//! Results of an increment, as the output receives them through [`Observer`].
 
 use std::io;
-use std::time::Duration;
+use std::sync::Arc;
 
+use super::contact_results::{ContactResultant, Landing};
 use super::failure::Failure;
-use crate::elements::Strained;
+use super::pass_report::PassReport;
+use crate::elements::{ElementResult, Strained};
 
 /// Motion at one time; `2 N` entries each.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -111,79 +113,6 @@ pub struct RigidReaction {
     pub moment: f64,
 }
 
-/// Impulses of a contact: those of its forces and of its impacts, or of its impacts alone.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct ContactImpulse {
-    /// Impulse on the slave surface (force time).
-    pub vector: [f64; 2],
-    /// Sum of dt Pn + Phi (force time).
-    pub normal: f64,
-    /// Sum of dt Pt + Psi (force time).
-    pub tangential: f64,
-    /// Sum of Phi, the impact impulses (force time).
-    pub impact_normal: f64,
-    /// Sum of Psi (force time).
-    pub impact_tangential: f64,
-}
-
-/// Force of one contact on a body.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct ContactOnBody {
-    /// Force.
-    pub force: [f64; 2],
-    /// Its moment about the origin (force length).
-    pub moment: f64,
-}
-
-/// Resultants of one contact of the model.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct ContactResultant {
-    /// Force on the slave surface (force).
-    pub force: [f64; 2],
-    /// Moment of that force about the origin (force length).
-    pub moment: f64,
-    /// Sum of Pn (force).
-    pub normal: f64,
-    /// Sum of Pt (force).
-    pub tangential: f64,
-    /// Pairs with Pn > 0.
-    pub closed: usize,
-    /// Closed pairs that do not slip.
-    pub sticking: usize,
-    /// Smallest gap over the candidate pairs (length); NaN without candidates.
-    pub min_gap: f64,
-    /// max(|Pt| - mu Pn, 0) / max(Pn); 0 without contact.
-    pub cone_violation: f64,
-    /// Moment of the force about the reference node of a rigid master (force length); 0 of others.
-    pub reference_moment: f64,
-    /// Work of the normal contact forces since the start of the analysis.
-    pub normal_work: f64,
-    /// Energy dissipated by friction since the start of the analysis.
-    pub friction_dissipation: f64,
-    /// Impulses of the increment.
-    pub impulse: ContactImpulse,
-    /// Impulses since the start of the analysis.
-    pub impulse_sum: ContactImpulse,
-    /// Force on each body of a surface that touches itself; empty for two surfaces.
-    pub bodies: Vec<ContactOnBody>,
-}
-
-/// A slave node that came into contact within the increment; time and place from its second-order
-/// motion.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Landing {
-    /// Time of the landing.
-    pub time: f64,
-    /// Slave node (index).
-    pub slave: usize,
-    /// Nodes a and b of the segment (indices).
-    pub segment: [usize; 2],
-    /// Place on the segment, 0 at a, 1 at b.
-    pub xi: f64,
-    /// Approach speed -dg/dt just before (length/time).
-    pub approach_speed: f64,
-}
-
 /// What the solver did in an increment, or in a whole run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SolverCounts {
@@ -209,23 +138,6 @@ pub struct SolverCounts {
     pub converged: bool,
 }
 
-/// One pass of an increment.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct PassReport {
-    /// Relative force residual with the contact forces of this pass.
-    pub residual: f64,
-    /// Relative displacement correction.
-    pub correction: f64,
-    /// Pairs with Pn > 0.
-    pub active: usize,
-    /// Active pairs that stick.
-    pub stick: usize,
-    /// Pairs in the complementarity problem.
-    pub lcp_size: usize,
-    /// Pivots of Lemke's method.
-    pub pivots: usize,
-}
-
 /// Everything about one finished increment; number 0 is the start.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct IncrementReport {
@@ -245,6 +157,8 @@ pub struct IncrementReport {
     pub state: State,
     /// Results at nodes.
     pub nodal: NodalResults,
+    /// Strain energy, mean stress and mean strain of every element.
+    pub elements: Arc<[ElementResult]>,
     /// Energy ledger.
     pub energy: Energy,
     /// Energy that contact put in, if its normal work was positive beyond round-off.
@@ -274,51 +188,6 @@ pub struct Cutback {
     pub failure: Failure,
     /// Length of the next attempt.
     pub next_dt: f64,
-}
-
-/// Wall-clock time per phase.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Timings {
-    /// Internal force, tangent and loads.
-    pub assembly: Duration,
-    /// Factorisations.
-    pub factorization: Duration,
-    /// Solves with the factors, those for the Delassus matrices included.
-    pub solve: Duration,
-    /// Contact search: territories and their candidates.
-    pub search: Duration,
-    /// Pairs among the candidates, their rows and complementarity problems, check of the ways.
-    pub contact: Duration,
-    /// Complementarity problems.
-    pub lcp: Duration,
-}
-
-/// How a run ended.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Outcome {
-    /// All steps are done.
-    Finished,
-    /// An increment failed for good; the results up to it are valid.
-    Stopped(Box<Failure>),
-    /// The observer wanted no more; the results up to there are valid.
-    Interrupted,
-}
-
-/// Totals of a run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RunSummary {
-    /// How it ended.
-    pub outcome: Outcome,
-    /// Number of increments done.
-    pub increments: usize,
-    /// Number of cutbacks.
-    pub cutbacks: usize,
-    /// Number of increments that an impact ended (`IMPACT TIME=EVENT`).
-    pub events: usize,
-    /// Counters summed over the increments (`lcp_size` and `residual`: the largest).
-    pub solver: SolverCounts,
-    /// Time per phase.
-    pub timings: Timings,
 }
 
 /// Receives the results of a run as it goes. The numerics neither print nor open files.

@@ -1,11 +1,16 @@
-//! What a run reports: increments, energies, failures. Plain data.
+//! What a run reports, as plain data: increments, passes, contacts, energies, failures, totals.
 
+mod contact_results;
 mod failure;
 mod increment_report;
+mod pass_report;
+mod run_summary;
 
+pub use contact_results::{ContactImpulse, ContactOnBody, ContactResultant, Landing};
 pub use failure::{Cause, FailedLcp, Failure, Worst};
 pub use increment_report::{
-    BodyResult, ContactImpulse, ContactOnBody, ContactResultant, Cutback, Energy, IncrementReport,
-    Landing, Momentum, NodalResults, NodeStatus, Observer, Outcome, PassReport, RigidReaction,
-    RunSummary, SolverCounts, State, Timings,
+    BodyResult, Cutback, Energy, IncrementReport, Momentum, NodalResults, NodeStatus, Observer,
+    RigidReaction, SolverCounts, State,
 };
+pub use pass_report::PassReport;
+pub use run_summary::{Outcome, RunSummary, Timings};

@@ -15,6 +15,7 @@ use crate::dynamics::results::{
     Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State, Timings,
 };
 use crate::dynamics::step::{Discretization, StepPlace, StepProblem, Workspace};
+use crate::elements::most_strained;
 use crate::model::{ImpactTime, Procedure, Step};
 use crate::prepare::PreparedModel;
 
@@ -226,7 +227,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             solved,
             is_cut,
         } = subincrement;
-        let accounted = (self.accounts).enter(problem, &solved, interval, &ledger.strains);
+        let accounted = (self.accounts).enter(problem, &solved, interval, &ledger.elements);
         let solver = SolverCounts {
             converged: true,
             ..workspace.meter.counts
@@ -243,7 +244,8 @@ impl<'m, 'o> Runner<'m, 'o> {
             ends_step: interval.end.step == place.period,
             energy: ledger.energy,
             contact_energy: ledger.contact_energy,
-            strain: problem.elements.most_strained(&solved.end.u),
+            strain: most_strained(&ledger.elements),
+            elements: ledger.elements.clone(),
             landings: landings(problem, &self.state, &self.contact, &solved, interval),
             solver,
             passes: solved.passes,
@@ -272,13 +274,14 @@ impl<'m, 'o> Runner<'m, 'o> {
         if let Some(failure) = start_failure(&self.state, &self.ledger, place) {
             return Ok(Some(failure));
         }
-        let (state, strains) = (&self.state, &self.ledger.strains);
+        let (state, elements) = (&self.state, &self.ledger.elements);
         let report = IncrementReport {
             step: place.number,
             energy: self.ledger.energy,
             solver: SolverCounts::at_start(),
             state: state.clone(),
-            ..self.accounts.start(problem, state, strains)
+            elements: elements.clone(),
+            ..self.accounts.start(problem, state, elements)
         };
         self.observer.increment(&report)?;
         Ok(None)

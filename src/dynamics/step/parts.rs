@@ -100,7 +100,7 @@ fn sections(model: &Model) -> Vec<Vec<usize>> {
     let cluster = united((0..nodes).collect(), &model.equations);
     let mut sections = vec![Vec::new(); nodes];
     for element in &model.mesh.elements {
-        for &node in element.cell.nodes() {
+        for &node in &element.nodes {
             let sections: &mut Vec<usize> = &mut sections[cluster[node]];
             if let Err(at) = sections.binary_search(&element.section) {
                 sections.insert(at, element.section);

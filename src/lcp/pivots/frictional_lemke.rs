@@ -1,8 +1,8 @@
 //! Lemke's method on the frictional problem, by its structure.
 
 use super::basis::PivotMatrix;
-use super::lemke::LemkeSettings;
 use super::pivoting::follow_path;
+use super::settings::LemkeSettings;
 use crate::lcp::problems::{ContactState, LcpError, Scaled, axpy};
 
 /// What Lemke's method found.

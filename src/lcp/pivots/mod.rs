@@ -6,8 +6,10 @@ mod frictional_lemke;
 mod lemke;
 mod pivoting;
 mod ratio;
+mod settings;
 
 pub(crate) use factors::Factors;
 pub(crate) use frictional_lemke::lemke_forces;
-pub use lemke::{LemkeSettings, covering_vector, lemke};
+pub use lemke::{covering_vector, lemke};
 pub(crate) use ratio::perturbation;
+pub use settings::LemkeSettings;

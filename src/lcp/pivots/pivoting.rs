@@ -1,8 +1,8 @@
 //! The path of Lemke's method.
 
 use super::basis::{Basis, PivotMatrix, Values, Variable};
-use super::lemke::LemkeSettings;
 use super::ratio::{Candidates, perturbation};
+use super::settings::LemkeSettings;
 use crate::lcp::problems::LcpError;
 
 /// Exchanges between two checks of the accumulated round-off.

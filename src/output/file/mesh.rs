@@ -3,14 +3,12 @@
 use hdf5::Group;
 
 use super::dataset::{Meaning, constant, meaning};
-use crate::model::{Bodies, Cell, Mesh, Model};
+use crate::model::{Bodies, Mesh, Model};
 
 const BODY: Meaning = meaning("body of the cell, -1 for rigid segments", "1");
 
-/// Cell types of VTK.
+/// Cell type of VTK of a rigid segment.
 const VTK_LINE: u8 = 3;
-const VTK_TRIANGLE: u8 = 5;
-const VTK_QUAD: u8 = 9;
 
 /// The reference mesh, and lines between its nodes.
 pub(crate) fn write_mesh(grid: &Group, mesh: &Mesh, lines: &[[usize; 2]]) -> hdf5::Result<()> {
@@ -63,17 +61,14 @@ pub(crate) fn write_bodies(at: &Group, model: &Model, lines: usize) -> hdf5::Res
 /// Node indices of all elements, one element after the other.
 pub(crate) fn connectivity(mesh: &Mesh) -> Vec<i64> {
     (mesh.elements.iter())
-        .flat_map(|element| element.cell.nodes())
+        .flat_map(|element| &element.nodes)
         .map(|&node| node as i64)
         .collect()
 }
 
 /// Start of each element and of each line in the connectivity, and its end.
 fn offsets(mesh: &Mesh, lines: usize) -> Vec<i64> {
-    let elements = mesh
-        .elements
-        .iter()
-        .map(|element| element.cell.nodes().len());
+    let elements = mesh.elements.iter().map(|element| element.nodes.len());
     let mut offsets = vec![0];
     let mut end = 0;
     for nodes in elements.chain(std::iter::repeat_n(2, lines)) {
@@ -85,10 +80,7 @@ fn offsets(mesh: &Mesh, lines: usize) -> Vec<i64> {
 
 fn types(mesh: &Mesh) -> Vec<u8> {
     (mesh.elements.iter())
-        .map(|element| match element.cell {
-            Cell::Tri3(_) => VTK_TRIANGLE,
-            Cell::Quad4(_) => VTK_QUAD,
-        })
+        .map(|element| element.element_type.topology().vtk_cell)
         .collect()
 }
 

@@ -6,8 +6,9 @@ use hdf5::{Group, H5Type};
 use super::dataset::{Column, Meaning, group, meaning, set_attribute};
 use super::mesh::{write_bodies, write_mesh};
 use crate::dynamics::{NodalResults, State};
-use crate::elements::{ElementMeans, element_means};
+use crate::elements::ElementResult;
 use crate::model::Model;
+use crate::output::frame::Frame;
 
 /// A field with `3` components (or one) per node or element.
 struct Field<T>(Column<T>);
@@ -81,16 +82,10 @@ impl Fields {
     }
 
     /// Appends a frame.
-    pub fn write(
-        &mut self,
-        model: &Model,
-        time: f64,
-        state: &State,
-        nodal: &NodalResults,
-    ) -> hdf5::Result<()> {
-        self.points.write(state, nodal)?;
-        self.cells.write(&element_means(model, &state.u))?;
-        self.steps.push(time)
+    pub fn write(&mut self, frame: &Frame) -> hdf5::Result<()> {
+        self.points.write(&frame.state, &frame.nodal)?;
+        self.cells.write(&frame.elements)?;
+        self.steps.push(frame.time)
     }
 
     /// Frames written.
@@ -143,15 +138,15 @@ impl CellFields {
     }
 
     /// Appends a frame; rigid segments have NaN for stress and strain.
-    fn write(&mut self, means: &[ElementMeans]) -> hdf5::Result<()> {
+    fn write(&mut self, elements: &[ElementResult]) -> hdf5::Result<()> {
         let of_lines = |components| std::iter::repeat_n(f64::NAN, components * self.lines);
-        let stress = means.iter().flat_map(|mean| mean.stress);
+        let stress = elements.iter().flat_map(|element| element.stress);
         self.stress.push(stress.chain(of_lines(3)))?;
-        let across = means.iter().map(|mean| mean.across);
+        let across = elements.iter().map(|element| element.across);
         self.across.push(across.chain(of_lines(1)))?;
-        let von_mises = means.iter().map(ElementMeans::von_mises);
+        let von_mises = elements.iter().map(ElementResult::von_mises);
         self.von_mises.push(von_mises.chain(of_lines(1)))?;
-        let strain = means.iter().flat_map(|mean| mean.strain);
+        let strain = elements.iter().flat_map(|element| element.strain);
         self.strain.push(strain.chain(of_lines(3)))?;
         self.body_offsets.push([0])?;
         self.body_offsets.flush()?;

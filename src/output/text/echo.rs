@@ -3,7 +3,7 @@
 use super::format::{counted, general, grouped, scientific};
 use super::layout::{label, wrap};
 use crate::model::{
-    Cell, Contact, Element, Frames, Impact, ImpactTime, Model, Plane, Scheme, Settings,
+    Contact, Element, ElementType, Frames, Impact, ImpactTime, Model, Plane, Scheme, Settings,
     SolverChoice, Step, SurfaceKind,
 };
 use crate::output::frames::{DEFAULT_FRAMES, are_dense};
@@ -203,22 +203,10 @@ fn smallest_gap(gaps: &[InitialGap]) -> String {
 
 /// Names of the element types in the mesh.
 fn kinds(elements: &[Element]) -> String {
-    let names = ["CPE3", "CPE4", "CPS3", "CPS4"];
-    let present = names.into_iter().filter(|name| {
-        elements
-            .iter()
-            .any(|element| element_kind(element) == *name)
-    });
+    let is_present = |name: &&str| elements.iter().any(|e| e.element_type.name() == *name);
+    let names = ElementType::NAMED.map(ElementType::name).into_iter();
+    let present = names.filter(is_present);
     present.collect::<Vec<_>>().join(" ")
-}
-
-fn element_kind(element: &Element) -> &'static str {
-    match (element.cell, element.plane) {
-        (Cell::Tri3(_), Plane::Strain) => "CPE3",
-        (Cell::Quad4(_), Plane::Strain) => "CPE4",
-        (Cell::Tri3(_), Plane::Stress) => "CPS3",
-        (Cell::Quad4(_), Plane::Stress) => "CPS4",
-    }
 }
 
 /// Number of dofs prescribed in any step.
@@ -233,7 +221,7 @@ fn prescribed(model: &Model) -> usize {
 /// Reference coordinates of the nodes of an element.
 pub(crate) fn corners(model: &Model, element: &Element) -> Vec<[f64; 2]> {
     let coordinates = |&node: &usize| model.mesh.coordinates[node];
-    element.cell.nodes().iter().map(coordinates).collect()
+    element.nodes.iter().map(coordinates).collect()
 }
 
 /// Ends of the sides of a polygon.
@@ -265,7 +253,7 @@ pub(crate) fn shortest_edge(corners: &[[f64; 2]]) -> f64 {
 pub(crate) fn wave_speed(model: &Model, element: &Element) -> f64 {
     let material = &model.materials[model.sections[element.section].material];
     let nu = material.poisson;
-    let factor = match element.plane {
+    let factor = match element.element_type.plane {
         Plane::Stress => 1.0 / (1.0 - nu * nu),
         Plane::Strain => (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
     };

@@ -127,7 +127,7 @@ fn position(model: &Model, node: usize, u: &[f64]) -> [f64; 2] {
 
 /// Mean of the current positions of an element's nodes.
 fn centre(model: &Model, element: usize, u: &[f64]) -> [f64; 2] {
-    let nodes = model.mesh.elements[element].cell.nodes();
+    let nodes = &model.mesh.elements[element].nodes;
     let mut sum = [0.0; 2];
     for &node in nodes {
         let x = position(model, node, u);

@@ -1,6 +1,6 @@
 //! `*CONTACT`: every exterior face against every other and against the rigid surfaces.
 
-use super::pairs::Interactions;
+use super::interactions::Interactions;
 use crate::deck::{Card, Name, Row};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{ALL_EXTERIOR, Contact, Face, Interaction, Mesh, Surface, SurfaceKind};

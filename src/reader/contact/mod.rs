@@ -1,6 +1,7 @@
 //! Contact pairs, general contact and rigid surfaces.
 
 mod general_contact;
+mod interactions;
 pub(crate) mod pairs;
 pub(crate) mod rigid_surface;
 

@@ -1,12 +1,12 @@
-//! `*SURFACE INTERACTION` with its laws, `*CONTACT PAIR`, and general contact.
+//! `*CONTACT PAIR`; joins the pairs and general contact.
 
-use crate::deck::{Card, Row, Text};
+use super::general_contact;
+use super::interactions::Interactions;
+use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic};
 use crate::model::{Adjust, Contact, Interaction, SurfaceKind};
-use crate::reader::contact::general_contact;
 use crate::reader::context::Context;
-use crate::reader::mesh::{Block, Found, MeshIndex, Outline, Sets, Surfaces, surface};
-use crate::reader::names::Names;
+use crate::reader::mesh::{Found, MeshIndex, Outline, Sets, Surfaces, surface};
 use std::collections::HashSet;
 
 /// Reads the contacts with their interactions.
@@ -44,38 +44,6 @@ pub(crate) fn read(
     contacts
 }
 
-/// The interactions of the deck by their names.
-pub(crate) struct Interactions {
-    names: Names,
-    /// In the order of their names.
-    all: Vec<Interaction>,
-}
-
-impl Interactions {
-    fn read(outline: &Outline, cx: &mut Context) -> Self {
-        let mut names = Names::new("surface interaction");
-        let mut all = Vec::new();
-        for block in outline.blocks("SURFACE INTERACTION") {
-            let Some(name) = names.new_name(block.head, cx) else {
-                continue;
-            };
-            if let Some(friction) = friction(block, cx) {
-                all.push(Interaction { friction });
-                names.define(name);
-            } else {
-                names.spoil(&name);
-            }
-        }
-        Interactions { names, all }
-    }
-
-    /// The interaction that `name` says; reports an undefined one.
-    pub fn find(&self, name: Text, cx: &mut Context) -> Option<Interaction> {
-        let index = self.names.find(name, cx)?;
-        self.all.get(index).copied()
-    }
-}
-
 /// A clearance or a node set.
 fn adjust(card: &Card, sets: &Sets, cx: &mut Context) -> Option<Adjust> {
     let value = card.value("ADJUST")?;
@@ -106,79 +74,6 @@ fn report_repeated(contacts: &[Contact], cx: &mut Context) {
             cx.error(Code::SurfaceUse, contact.span, message);
         }
     }
-}
-
-/// Coefficient of friction of an interaction; `None` after a reported error.
-fn friction(block: &Block, cx: &mut Context) -> Option<f64> {
-    let behaviors = block.parts_of("SURFACE BEHAVIOR");
-    cx.only_once(&behaviors);
-    behaviors
-        .iter()
-        .for_each(|card| warn_of_behavior_data(card, cx));
-    out_of_plane_thickness(block.head, cx);
-    let cards = block.parts_of("FRICTION");
-    cx.only_once(&cards);
-    match cards.first() {
-        None => Some(0.0),
-        Some(card) if card.faulty => None,
-        Some(card) => coefficient(card, cx),
-    }
-}
-
-/// Warns about numbers of a law that is exact; LINEAR is warned about as a whole.
-fn warn_of_behavior_data(card: &Card, cx: &mut Context) {
-    if let (Some(row), None | Some("HARD")) =
-        (card.rows.first(), card.choice("PRESSURE-OVERCLOSURE"))
-    {
-        let message = "this data line has no effect";
-        let warning = Diagnostic::warning(Code::IgnoredParameter, row.span(), message);
-        cx.d.push_once(warning.help("contact is enforced exactly: it needs no numbers"));
-    }
-}
-
-/// `[thickness]` under `*SURFACE INTERACTION`; 1 is the default of other codes.
-fn out_of_plane_thickness(head: &Card, cx: &mut Context) {
-    let Some(row) = head.rows.first() else { return };
-    row.at_most(1, cx.d);
-    let thickness = row.real_or(0, 1.0, cx.d);
-    if thickness.is_some_and(|thickness| thickness != 1.0) {
-        let help = "the bodies touch over the thickness of their sections";
-        row.without_effect(0, "this thickness has no effect", help, cx.d);
-    }
-    if let Some(extra) = head.rows.get(1) {
-        let message = "*SURFACE INTERACTION takes one data line at most";
-        cx.error(Code::StrayData, extra.span(), message);
-    }
-}
-
-/// `mu[, ...]`
-fn coefficient(card: &Card, cx: &mut Context) -> Option<f64> {
-    let Some(row) = card.rows.first() else {
-        cx.error(
-            Code::MissingData,
-            card.span,
-            "*FRICTION needs the coefficient of friction",
-        );
-        return None;
-    };
-    if let Some(second) = card.rows.get(1) {
-        let message = "friction that depends on slip rate, pressure or temperature cannot be used";
-        cx.error(Code::UnsupportedParameter, second.span(), message);
-    }
-    let field = row.required(0, "the coefficient of friction", cx.d)?;
-    let friction = field.real(cx.d)?;
-    if friction < 0.0 {
-        let message = format!(
-            "the coefficient of friction must not be negative, found {}",
-            field.text
-        );
-        cx.error(Code::FrictionRange, field.span, message);
-        return None;
-    }
-    let message = "only the coefficient of friction is read here";
-    let help = "sticking is exact: it needs no stick slope or slip rate";
-    row.without_effect(1, message, help, cx.d);
-    Some(friction)
 }
 
 /// `slave, master`; one surface touches itself.

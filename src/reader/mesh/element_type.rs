@@ -2,32 +2,22 @@
 
 use crate::deck::Text;
 use crate::diagnostics::{Code, Diagnostic, closest};
-use crate::model::Plane;
+use crate::model::ElementType;
 use crate::reader::context::Context;
 
-/// Number of corners and plane of an element type.
-pub(crate) fn read(name: Text, cx: &mut Context) -> Option<(usize, Plane)> {
+/// The element type with this name.
+pub(crate) fn read(name: Text, cx: &mut Context) -> Option<ElementType> {
     let folded = name.name_key();
-    match folded.as_str() {
-        "CPS3" => Some((3, Plane::Stress)),
-        "CPE3" => Some((3, Plane::Strain)),
-        "CPS4" => Some((4, Plane::Stress)),
-        "CPE4" => Some((4, Plane::Strain)),
-        _ => unusable(name, &folded, cx),
-    }
+    ElementType::from_name(&folded).or_else(|| unusable(name, &folded, cx))
 }
 
 /// Reports a type; a lenient reader takes elements with one integration point as full ones.
-fn unusable(name: Text, folded: &str, cx: &mut Context) -> Option<(usize, Plane)> {
-    let plane = match folded {
-        "CPS4R" => Some(Plane::Stress),
-        "CPE4R" => Some(Plane::Strain),
-        _ => None,
-    };
-    if let Some(plane) = plane.filter(|_| cx.d.is_lenient()) {
+fn unusable(name: Text, folded: &str, cx: &mut Context) -> Option<ElementType> {
+    let full = folded.strip_suffix('R').and_then(ElementType::from_name);
+    if let Some(full) = full.filter(|full| full.topology().nodes == 4 && cx.d.is_lenient()) {
         let message = format!("{} is integrated with 2 x 2 points", name.text);
         cx.d.push_once(Diagnostic::warning(Code::ElementType, name.span, message));
-        return Some((4, plane));
+        return Some(full);
     }
     let message = format!("element type {} cannot be used", name.text);
     let error = Diagnostic::error(Code::ElementType, name.span, message);

@@ -10,4 +10,4 @@ pub(crate) mod surface;
 pub(crate) use nodes_elements::MeshIndex;
 pub(crate) use outline::{Block, Outline, StepCards};
 pub(crate) use sets::Sets;
-pub(crate) use surface::{Found, Sides, Surfaces, corners};
+pub(crate) use surface::{Found, Sides, Surfaces, side_count};

@@ -3,7 +3,7 @@
 use super::outline::Outline;
 use crate::deck::{Card, Name, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
-use crate::model::{Cell, Element, Mesh, Plane};
+use crate::model::{Element, ElementType, Mesh};
 use crate::reader::context::Context;
 use crate::reader::mesh::element_type;
 use crate::reader::names::{Labelled, Labels};
@@ -44,7 +44,7 @@ struct RawNode {
 struct RawElement {
     label: u64,
     nodes: Vec<u64>,
-    plane: Plane,
+    element_type: ElementType,
     span: Span,
 }
 
@@ -130,15 +130,15 @@ impl Reading {
         let kind = card
             .required("TYPE", cx.d)
             .and_then(|name| element_type::read(name, cx));
-        let Some((corners, plane)) = kind else {
+        let Some(element_type) = kind else {
             self.elements_incomplete = true;
             self.element_groups
                 .extend(group(card, "ELSET", Vec::new(), cx));
             return;
         };
         let mut labels = Vec::new();
-        for rows in element_rows(&card.rows, corners + 1) {
-            match self.element(rows, corners, plane, cx) {
+        for rows in element_rows(&card.rows, element_type.topology().nodes + 1) {
+            match self.element(rows, element_type, cx) {
                 Some(label) => labels.push(label),
                 None => self.elements_incomplete = true,
             }
@@ -150,10 +150,10 @@ impl Reading {
     fn element(
         &mut self,
         rows: &[Row],
-        corners: usize,
-        plane: Plane,
+        element_type: ElementType,
         cx: &mut Context,
     ) -> Option<u64> {
+        let corners = element_type.topology().nodes;
         let span = rows.first()?.span();
         let numbers = Labels::new("element", Code::UndefinedElement);
         let fields: Vec<Text> = rows.iter().flat_map(Row::fields).collect();
@@ -178,7 +178,7 @@ impl Reading {
         self.elements.push(RawElement {
             label,
             nodes,
-            plane,
+            element_type,
             span,
         });
         Some(label)
@@ -359,18 +359,14 @@ impl MeshIndex {
             _ => None,
         };
         let nodes: Option<Vec<usize>> = element.nodes.iter().map(index).collect();
-        let cell = match nodes.as_deref() {
-            Some(&[a, b, c]) => Cell::Tri3([a, b, c]),
-            Some(&[a, b, c, d]) => Cell::Quad4([a, b, c, d]),
-            _ => return,
-        };
+        let Some(nodes) = nodes else { return };
         let next = self.mesh.elements.len();
         self.elements.insert(element.label, Labelled::Index(next));
         self.element_spans.push(element.span);
         self.mesh.elements.push(Element {
             label: element.label,
-            cell,
-            plane: element.plane,
+            element_type: element.element_type,
+            nodes,
             section: 0,
         });
     }

@@ -73,7 +73,7 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
                 .filter_map(|&e| mesh_index.mesh.elements.get(e));
             draft
                 .members
-                .extend(cells.flat_map(|element| element.cell.nodes()));
+                .extend(cells.flat_map(|element| &element.nodes));
         }
     }
     sets.nodes = resolve(&sets.node_names, drafts, cx);

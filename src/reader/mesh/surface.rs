@@ -147,7 +147,7 @@ fn named_faces(
     };
     let mut faces = Vec::new();
     for &element in elements {
-        match side < corners(&mesh_index.mesh, element) {
+        match side < side_count(&mesh_index.mesh, element) {
             true => faces.push(Face { element, side }),
             false => return no_such_face(element, face, mesh_index, cx),
         }
@@ -157,7 +157,7 @@ fn named_faces(
 
 fn no_such_face(element: usize, face: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<Face> {
     let label = mesh_index.mesh.elements.get(element).map_or(0, |e| e.label);
-    let sides = corners(&mesh_index.mesh, element);
+    let sides = side_count(&mesh_index.mesh, element);
     let message = format!(
         "element {label} has faces S1 to S{sides}, not {}",
         face.text
@@ -184,11 +184,9 @@ fn side_number(face: Text, cx: &mut Context) -> Option<usize> {
     }
 }
 
-/// Number of corners of an element.
-pub(crate) fn corners(mesh: &Mesh, element: usize) -> usize {
-    mesh.elements
-        .get(element)
-        .map_or(0, |e| e.cell.nodes().len())
+/// Number of sides of an element.
+pub(crate) fn side_count(mesh: &Mesh, element: usize) -> usize {
+    mesh.elements.get(element).map_or(0, |e| e.sides().len())
 }
 
 /// How many elements share each side.
@@ -198,8 +196,8 @@ impl Sides {
     /// Counts the sides of a mesh.
     pub fn new(mesh: &Mesh) -> Sides {
         let mut counts = HashMap::new();
-        for (element, cell) in mesh.elements.iter().enumerate() {
-            for side in 0..cell.cell.nodes().len() {
+        for (element, e) in mesh.elements.iter().enumerate() {
+            for side in 0..e.sides().len() {
                 *counts.entry(key(mesh, Face { element, side })).or_insert(0) += 1;
             }
         }
@@ -213,8 +211,9 @@ impl Sides {
 
     /// Sides that no other element shares, of these elements in order.
     pub fn free_faces(&self, elements: &[usize], mesh: &Mesh) -> Vec<Face> {
-        let sides =
-            |&element: &usize| (0..corners(mesh, element)).map(move |side| Face { element, side });
+        let sides = |&element: &usize| {
+            (0..side_count(mesh, element)).map(move |side| Face { element, side })
+        };
         let all = elements.iter().flat_map(sides);
         all.filter(|&face| !self.is_interior(face, mesh)).collect()
     }

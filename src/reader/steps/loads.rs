@@ -6,7 +6,7 @@ use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Amplitude, BodyForce, Face, PointLoad, Pressure, Step, SurfaceKind, Traction};
 use crate::reader::context::Context;
-use crate::reader::mesh::{Surfaces, corners, surface};
+use crate::reader::mesh::{Surfaces, side_count, surface};
 
 /// All loads, as they are carried from step to step.
 #[derive(Default)]
@@ -178,7 +178,7 @@ impl Loads {
         row.at_most(3, cx.d);
         let magnitude = row.real(2, "the pressure", cx.d)?;
         let mesh = &source.targets.mesh_index.mesh;
-        if let Some(&bad) = elements.iter().find(|&&e| side >= corners(mesh, e)) {
+        if let Some(&bad) = elements.iter().find(|&&e| side >= side_count(mesh, e)) {
             let label = mesh.elements.get(bad).map_or(0, |e| e.label);
             let message = format!("element {label} has no face {}", side + 1);
             cx.error(Code::NoSuchFace, row.span(), message);

@@ -1,0 +1,31 @@
+//! Standard output and standard error: closed pipes, colours.
+
+use std::io::{self, IsTerminal, Write};
+
+use super::error::CliError;
+
+/// Prints to the standard output, unless that is a closed pipe.
+pub(super) fn print(lines: &[String]) -> Result<(), CliError> {
+    let mut out = io::stdout().lock();
+    let mut lines = lines.iter();
+    let printed = lines.try_for_each(|line| writeln!(out, "{line}"));
+    on_screen(printed.and_then(|()| out.flush()))
+}
+
+/// What became of printing; a closed pipe is nobody's error.
+pub(super) fn on_screen(printed: io::Result<()>) -> Result<(), CliError> {
+    match printed {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(CliError::Screen(error)),
+        _ => Ok(()),
+    }
+}
+
+/// Prints to the standard error, unless that is a closed pipe.
+pub(super) fn complain(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{}", text.trim_end());
+}
+
+/// Whether messages on the standard error are coloured.
+pub(super) fn coloured() -> bool {
+    io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}

@@ -1,0 +1,74 @@
+//! The element types behind one enum: each variant is one file with its quadrature and mass.
+//! Section 2 of docs/theory.md.
+
+use super::quad4::{self, Quad4};
+use super::recovery::ElementResult;
+use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion};
+use super::tri3::{self, Tri3};
+use super::voigt::PlaneMaterial;
+use crate::model::Shape;
+
+/// An element of any type.
+#[allow(clippy::large_enum_variant)] // most elements are quadrilaterals: kept in one piece for speed
+pub(super) enum AnyElement {
+    /// T3, displacement formulation.
+    Tri3(Tri3),
+    /// Q4, displacement formulation.
+    Quad4(Quad4),
+}
+
+/// Evaluates an expression for the element in an [`AnyElement`], whatever its type.
+macro_rules! with_element {
+    ($any:expr, $element:ident => $value:expr) => {
+        match $any {
+            AnyElement::Tri3($element) => $value,
+            AnyElement::Quad4($element) => $value,
+        }
+    };
+}
+
+impl AnyElement {
+    /// The element of the model between nodes at the coordinates `x`, of thickness `t`.
+    pub fn new(element: &crate::model::Element, x: &[[f64; 2]], t: f64) -> Self {
+        let nodes = &element.nodes;
+        match element.element_type.shape {
+            Shape::Tri3 => Self::Tri3(Tri3::new(first(nodes), x, t, tri3::reference)),
+            Shape::Quad4 => Self::Quad4(Quad4::new(first(nodes), x, t, quad4::reference)),
+        }
+    }
+
+    /// Node indices, counter-clockwise.
+    pub fn nodes(&self) -> &[usize] {
+        with_element!(self, element => element.nodes())
+    }
+
+    /// Share of each node in a uniform force per volume (length^3).
+    pub fn nodal_volumes(&self) -> [f64; MAX_NODES] {
+        with_element!(self, element => element.nodal_volumes())
+    }
+
+    /// Consistent mass per direction, n x n column by column (mass).
+    pub fn mass(&self, density: f64) -> Vec<f64> {
+        with_element!(self, element => element.mass(density))
+    }
+
+    /// Internal force with the smallest determinant of the deformation gradient.
+    pub fn force(&self, material: &PlaneMaterial, motion: Motion) -> (ElementVector, f64) {
+        with_element!(self, element => element.force(material, motion))
+    }
+
+    /// Tangent.
+    pub fn tangent(&self, material: &PlaneMaterial, motion: Motion) -> ElementMatrix {
+        with_element!(self, element => element.tangent(material, motion))
+    }
+
+    /// Strain energy, stress and strain at displacements `u`.
+    pub fn evaluate(&self, material: &PlaneMaterial, u: &[f64]) -> ElementResult {
+        with_element!(self, element => element.evaluate(material, u))
+    }
+}
+
+/// The nodes of an element as an array; a model's element has as many as its type.
+fn first<const N: usize>(nodes: &[usize]) -> [usize; N] {
+    std::array::from_fn(|a| nodes[a])
+}

@@ -1,0 +1,233 @@
+//! Element quantities of all bodies of a model: internal force, tangents, masses, strain energies
+//! and strains, by parallel sweeps. Section 2 of docs/theory.md.
+
+use rayon::prelude::*;
+
+use super::element::AnyElement;
+use super::recovery::ElementResult;
+use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion};
+use super::voigt::PlaneMaterial;
+use crate::model::Model;
+
+/// Elements below which a sweep over them is not worth a second thread.
+const PARALLEL_CHUNK: usize = 1024;
+
+/// An element whose deformation gradient has a determinant that is not positive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inverted {
+    /// Element (index).
+    pub element: usize,
+    /// Determinant.
+    pub determinant: f64,
+}
+
+/// An element with its material, density and thickness.
+struct Part {
+    element: AnyElement,
+    material: PlaneMaterial,
+    density: f64,
+    thickness: f64,
+}
+
+/// All elements of a model, ready for integration. Displacements are vectors of 2 N entries.
+///
+/// Sweeps over the elements run in parallel; their results are added up in the order of the
+/// elements, so that they do not depend on the number of threads.
+pub struct Elements {
+    parts: Vec<Part>,
+    dofs: usize,
+}
+
+impl Elements {
+    /// Elements of a model.
+    pub fn new(model: &Model) -> Self {
+        let x = &model.mesh.coordinates;
+        let parts = model.mesh.elements.iter().map(|element| {
+            let section = &model.sections[element.section];
+            let material = &model.materials[section.material];
+            Part {
+                element: AnyElement::new(element, x, section.thickness),
+                material: PlaneMaterial::new(material, element.element_type.plane),
+                density: material.density,
+                thickness: section.thickness,
+            }
+        });
+        Elements {
+            parts: parts.collect(),
+            dofs: model.mesh.dof_count(),
+        }
+    }
+
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// Whether there are no elements.
+    pub fn is_empty(&self) -> bool {
+        self.parts.is_empty()
+    }
+
+    /// Node indices of an element.
+    pub fn nodes(&self, element: usize) -> &[usize] {
+        self.parts[element].element.nodes()
+    }
+
+    /// Density of an element (mass/length^3).
+    pub fn density(&self, element: usize) -> f64 {
+        self.parts[element].density
+    }
+
+    /// Thickness of an element (length).
+    pub fn thickness(&self, element: usize) -> f64 {
+        self.parts[element].thickness
+    }
+
+    /// Share of each node of an element in a uniform force per volume (length^3); entries beyond its
+    /// nodes are 0.
+    pub fn nodal_volumes(&self, element: usize) -> [f64; MAX_NODES] {
+        self.parts[element].element.nodal_volumes()
+    }
+
+    /// Consistent mass of an element per direction, n x n column by column (mass).
+    pub fn mass(&self, element: usize) -> Vec<f64> {
+        let part = &self.parts[element];
+        part.element.mass(part.density)
+    }
+
+    /// Strain energy, mean stress and mean strain of every element at displacements `u`.
+    pub fn evaluate(&self, u: &[f64]) -> Vec<ElementResult> {
+        self.parts
+            .par_iter()
+            .with_min_len(PARALLEL_CHUNK)
+            .map(|part| part.element.evaluate(&part.material, u))
+            .collect()
+    }
+
+    /// Internal force F(u), or its energy-momentum form between `start` and `u`, 2 N entries.
+    ///
+    /// # Errors
+    /// The first element that is turned inside out.
+    pub fn internal_force(&self, start: Option<&[f64]>, u: &[f64]) -> Result<Vec<f64>, Inverted> {
+        let motion = Motion { start, end: u };
+        let forces: Vec<(ElementVector, f64)> = self
+            .parts
+            .par_iter()
+            .with_min_len(PARALLEL_CHUNK)
+            .map(|part| part.element.force(&part.material, motion))
+            .collect();
+        let mut total = vec![0.0; self.dofs];
+        for (element, (force, determinant)) in forces.iter().enumerate() {
+            if determinant.is_nan() || *determinant <= 0.0 {
+                return Err(Inverted {
+                    element,
+                    determinant: *determinant,
+                });
+            }
+            for (a, &node) in self.parts[element].element.nodes().iter().enumerate() {
+                total[2 * node] += force[2 * a];
+                total[2 * node + 1] += force[2 * a + 1];
+            }
+        }
+        Ok(total)
+    }
+
+    /// Calls `add(element, k)` with the tangent of every element in order, k being D x D column by
+    /// column, in the configuration of [`Self::internal_force`].
+    pub fn for_each_tangent(
+        &self,
+        start: Option<&[f64]>,
+        u: &[f64],
+        mut add: impl FnMut(usize, &[f64]),
+    ) {
+        let motion = Motion { start, end: u };
+        for (chunk, parts) in self.parts.chunks(2 * PARALLEL_CHUNK).enumerate() {
+            let tangents: Vec<ElementMatrix> = parts
+                .par_iter()
+                .with_min_len(PARALLEL_CHUNK)
+                .map(|part| part.element.tangent(&part.material, motion))
+                .collect();
+            for (i, k) in tangents.iter().enumerate() {
+                let d = 2 * parts[i].element.nodes().len();
+                add(chunk * 2 * PARALLEL_CHUNK + i, &k[..d * d]);
+            }
+        }
+    }
+
+    /// K v with the tangent in the configuration of [`Self::internal_force`], 2 N entries. Elements
+    /// at whose nodes `v` is zero cost nothing.
+    pub fn tangent_product(&self, start: Option<&[f64]>, u: &[f64], v: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; self.dofs];
+        let motion = Motion { start, end: u };
+        for part in &self.parts {
+            let nodes = part.element.nodes();
+            let dofs = || nodes.iter().flat_map(|n| [2 * n, 2 * n + 1]);
+            if dofs().all(|dof| v[dof] == 0.0) {
+                continue;
+            }
+            let (k, d) = (
+                part.element.tangent(&part.material, motion),
+                2 * nodes.len(),
+            );
+            for (j, column) in dofs().enumerate() {
+                for (i, row) in dofs().enumerate() {
+                    product[row] += k[j * d + i] * v[column];
+                }
+            }
+        }
+        product
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Element, ElementType, Material, Section};
+
+    #[test]
+    fn the_tangent_product_is_the_change_of_the_internal_force() {
+        let mut model = Model::default();
+        model.materials.push(Material {
+            name: "M".into(),
+            young: 100.0,
+            poisson: 0.3,
+            density: 1.0,
+        });
+        model.sections.push(Section {
+            material: 0,
+            thickness: 2.0,
+        });
+        let mesh = &mut model.mesh;
+        mesh.coordinates = vec![[0.0, 0.0], [1.0, 0.1], [1.2, 1.1], [-0.1, 0.9], [0.6, 1.8]];
+        let elements = [
+            (ElementType::CPE4, vec![0, 1, 2, 3]),
+            (ElementType::CPE3, vec![3, 2, 4]),
+        ];
+        for (element_type, nodes) in elements {
+            mesh.elements.push(Element {
+                label: 1,
+                element_type,
+                nodes,
+                section: 0,
+            });
+        }
+        let elements = Elements::new(&model);
+        let wave = |scale: f64, k: f64| -> Vec<f64> {
+            (0..10).map(|i| scale * (k * f64::from(i)).sin()).collect()
+        };
+        let (u, v) = (wave(0.1, 1.3), wave(1.0, 2.1));
+        let force = |t: f64| {
+            let moved: Vec<f64> = u.iter().zip(&v).map(|(u, v)| u + t * v).collect();
+            elements
+                .internal_force(None, &moved)
+                .expect("no element inverted")
+        };
+        let (ahead, behind) = (force(1e-5), force(-1e-5));
+        let product = elements.tangent_product(None, &u, &v);
+        let largest = product.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
+        for (i, p) in product.iter().enumerate() {
+            let quotient = (ahead[i] - behind[i]) / 2e-5;
+            assert!((p - quotient).abs() < 1e-8 * largest, "{i}: {p} {quotient}");
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! What the formulations of an element have in common: internal force, strain-displacement matrix,
+//! geometric stiffness, and the evaluation of stress, strain and energy. Section 2 of
+//! docs/theory.md (paper eq. 12).
+
+use nalgebra::{SMatrix, Vector3};
+
+use super::integration_point::{Point, PointState, Reference};
+use super::kinematics::{Configuration, smaller};
+use super::recovery::{ElementResult, PointResult};
+use super::voigt::PlaneMaterial;
+
+/// How strains and stresses at the integration points follow from the displacements of an element.
+/// Chosen at compile time: a sweep has no dispatch within an element.
+pub trait Formulation {
+    /// Deformation and stress at every integration point: the one evaluation of the material, from
+    /// which force, tangent and output follow.
+    fn states<const N: usize, const P: usize>(
+        element: &Reference<N, P>,
+        material: &PlaneMaterial,
+        configuration: &Configuration<N>,
+    ) -> [PointState; P];
+
+    /// Tangent K = dF/du, D x D (force/length); symmetric.
+    fn tangent<const N: usize, const P: usize, const D: usize>(
+        element: &Reference<N, P>,
+        material: &PlaneMaterial,
+        configuration: &Configuration<N>,
+    ) -> SMatrix<f64, D, D>;
+}
+
+/// Internal force F = int B_L^T S dOmega, eq. (2.5) (paper eq. 12), 2 x N (force), with the smallest
+/// determinant of the deformation gradient.
+pub fn internal_force<F: Formulation, const N: usize, const P: usize>(
+    element: &Reference<N, P>,
+    material: &PlaneMaterial,
+    configuration: &Configuration<N>,
+) -> (SMatrix<f64, 2, N>, f64) {
+    let mut force = SMatrix::<f64, 2, N>::zeros();
+    let mut determinant = f64::INFINITY;
+    let states = F::states(element, material, configuration);
+    for (point, state) in element.points.iter().zip(&states) {
+        // B_L^T S of node a is F S dh_a/dX: the first Piola-Kirchhoff stress times the gradient.
+        force += state.f() * state.s * point.gradient.transpose() * point.volume;
+        determinant = smaller(determinant, state.determinant);
+    }
+    (force, determinant)
+}
+
+/// Strain energy, stress and strain of an element at displacements `u`.
+pub fn evaluate<F: Formulation, const N: usize, const P: usize>(
+    element: &Reference<N, P>,
+    material: &PlaneMaterial,
+    u: &SMatrix<f64, 2, N>,
+) -> ElementResult {
+    let states = F::states(element, material, &Configuration::At(*u));
+    let weighted = element.points.iter().zip(&states);
+    ElementResult::of_points(weighted.map(|(point, state)| {
+        let result = PointResult::new(state, material);
+        (result, point.volume)
+    }))
+}
+
+/// B_L: delta E (xx, yy, 2 xy) per nodal displacement (1/length).
+pub(super) fn strain_displacement<const N: usize, const D: usize>(
+    point: &Point<N>,
+    f: &nalgebra::Matrix2<f64>,
+) -> SMatrix<f64, 3, D> {
+    SMatrix::<f64, 3, D>::from_columns(&std::array::from_fn::<_, D, _>(|j| {
+        let (a, i) = (j / 2, j % 2);
+        let (gx, gy) = (point.gradient[(a, 0)], point.gradient[(a, 1)]);
+        Vector3::new(
+            f[(i, 0)] * gx,
+            f[(i, 1)] * gy,
+            f[(i, 0)] * gy + f[(i, 1)] * gx,
+        )
+    }))
+}
+
+/// Adds int B_NL^T S B_NL dOmega of a point: dh_a/dX . S dh_b/dX in both directions.
+pub(super) fn add_geometric<const N: usize, const D: usize>(
+    k: &mut SMatrix<f64, D, D>,
+    point: &Point<N>,
+    s: &nalgebra::Matrix2<f64>,
+) {
+    let geometric = point.gradient * s * point.gradient.transpose() * point.volume;
+    for a in 0..N {
+        for b in 0..N {
+            k[(2 * a, 2 * b)] += geometric[(a, b)];
+            k[(2 * a + 1, 2 * b + 1)] += geometric[(a, b)];
+        }
+    }
+}

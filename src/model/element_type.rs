@@ -1,0 +1,147 @@
+//! Element types of a deck: shape, formulation and assumption across the thickness, with the nodes,
+//! sides and cell of each shape. Section 2 of docs/theory.md; the mechanics of each type stands in
+//! its own file of `elements`.
+
+use super::Plane;
+
+/// Type of an element, as named in the deck.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ElementType {
+    /// Shape and interpolation.
+    pub shape: Shape,
+    /// How strains follow from the displacements.
+    pub formulation: Formulation,
+    /// Plane stress or plane strain.
+    pub plane: Plane,
+}
+
+/// Shape and interpolation of an element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Shape {
+    /// Three-node triangle with linear displacements.
+    Tri3,
+    /// Four-node quadrilateral with bilinear displacements.
+    Quad4,
+}
+
+/// How the strains of an element follow from its displacements.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Formulation {
+    /// Strains of the displacements at every integration point.
+    Displacement,
+    /// Volume strain of the whole element at every integration point.
+    MeanDilatation,
+}
+
+/// Nodes and sides of a shape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Topology {
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Sides as pairs of local nodes from a to b, the element on the left: side 0 is S1/P1. Each is
+    /// one contact segment.
+    pub sides: &'static [[usize; 2]],
+    /// Cell type of VTK.
+    pub vtk_cell: u8,
+}
+
+/// ```text
+///   2
+///   | \
+///   |  \
+///   0 -- 1
+/// ```
+static TRI3: Topology = Topology {
+    nodes: 3,
+    sides: &[[0, 1], [1, 2], [2, 0]],
+    vtk_cell: 5,
+};
+
+/// ```text
+///   3 ---- 2
+///   |      |
+///   |      |
+///   0 ---- 1
+/// ```
+static QUAD4: Topology = Topology {
+    nodes: 4,
+    sides: &[[0, 1], [1, 2], [2, 3], [3, 0]],
+    vtk_cell: 9,
+};
+
+impl Shape {
+    /// Nodes, counter-clockwise, and sides.
+    pub fn topology(self) -> &'static Topology {
+        match self {
+            Shape::Tri3 => &TRI3,
+            Shape::Quad4 => &QUAD4,
+        }
+    }
+}
+
+impl ElementType {
+    /// Triangle in plane strain.
+    pub const CPE3: Self = Self::standard(Shape::Tri3, Plane::Strain);
+    /// Triangle in plane stress.
+    pub const CPS3: Self = Self::standard(Shape::Tri3, Plane::Stress);
+    /// Quadrilateral in plane strain.
+    pub const CPE4: Self = Self::standard(Shape::Quad4, Plane::Strain);
+    /// Quadrilateral in plane stress.
+    pub const CPS4: Self = Self::standard(Shape::Quad4, Plane::Stress);
+
+    /// All types that a deck may name, in the order of their names.
+    pub const NAMED: [Self; 4] = [Self::CPE3, Self::CPE4, Self::CPS3, Self::CPS4];
+
+    const fn standard(shape: Shape, plane: Plane) -> Self {
+        ElementType {
+            shape,
+            formulation: Formulation::Displacement,
+            plane,
+        }
+    }
+
+    /// The type with this name in upper case, in the displacement formulation.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::NAMED.into_iter().find(|known| known.name() == name)
+    }
+
+    /// Name in the deck; the formulation is an option of the section and no part of it.
+    pub fn name(self) -> &'static str {
+        match (self.shape, self.plane) {
+            (Shape::Tri3, Plane::Strain) => "CPE3",
+            (Shape::Quad4, Plane::Strain) => "CPE4",
+            (Shape::Tri3, Plane::Stress) => "CPS3",
+            (Shape::Quad4, Plane::Stress) => "CPS4",
+        }
+    }
+
+    /// Nodes, counter-clockwise, and sides.
+    pub fn topology(self) -> &'static Topology {
+        self.shape.topology()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_type_is_found_by_its_name() {
+        for element_type in ElementType::NAMED {
+            let found = ElementType::from_name(element_type.name());
+            assert_eq!(found, Some(element_type));
+        }
+        assert_eq!(ElementType::from_name("CPE4R"), None);
+    }
+
+    #[test]
+    fn sides_go_round_the_element_once() {
+        for element_type in ElementType::NAMED {
+            let Topology { nodes, sides, .. } = *element_type.topology();
+            assert_eq!(sides.len(), nodes);
+            for (i, &[a, b]) in sides.iter().enumerate() {
+                assert_eq!([a, b], [i, (i + 1) % nodes]);
+            }
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! What a field frame holds, and the last good state of a run, which becomes its final frame.
+
+use std::sync::Arc;
+
+use crate::dynamics::{IncrementReport, NodalResults, State};
+use crate::elements::ElementResult;
+
+/// Contents of a field frame.
+#[derive(Default)]
+pub(crate) struct Frame {
+    pub time: f64,
+    pub state: State,
+    pub nodal: NodalResults,
+    /// Mean stress and mean strain of every element.
+    pub elements: Arc<[ElementResult]>,
+}
+
+impl Frame {
+    /// Copies the results of an increment into the memory at hand.
+    fn set(&mut self, report: &IncrementReport) {
+        let (state, nodal) = (&report.state, &report.nodal);
+        self.time = report.time;
+        self.state.u.clone_from(&state.u);
+        self.state.v.clone_from(&state.v);
+        self.state.a.clone_from(&state.a);
+        self.nodal.reaction.clone_from(&nodal.reaction);
+        self.nodal.contact_force.clone_from(&nodal.contact_force);
+        self.nodal.gap.clone_from(&nodal.gap);
+        self.nodal.status.clone_from(&nodal.status);
+        self.nodal.pressure.clone_from(&nodal.pressure);
+        self.nodal.slip.clone_from(&nodal.slip);
+        self.elements.clone_from(&report.elements);
+    }
+}
+
+/// The last good state: the final frame of a run that stops.
+#[derive(Default)]
+pub(super) struct LastState {
+    pub frame: Frame,
+    /// Whether it is in the file.
+    pub is_written: bool,
+    /// Time of the last frame in the file.
+    pub written_time: f64,
+}
+
+impl LastState {
+    /// Takes in the end of an increment, which is not yet in the file.
+    pub fn set(&mut self, report: &IncrementReport) {
+        self.frame.set(report);
+        self.is_written = false;
+    }
+
+    /// Notes that the state is in the file.
+    pub fn set_written(&mut self) {
+        (self.is_written, self.written_time) = (true, self.frame.time);
+    }
+}
