@@ -9,7 +9,7 @@
 //! # Layers
 //!
 //! A module imports only from modules before it in this list:
-//! `diagnostics`, `deck`, `model`, `reader`, `elements`, `linear`, `lcp`, `contact`, `prepare`,
+//! `vectors`, `diagnostics`, `deck`, `model`, `reader`, `elements`, `linear`, `lcp`, `contact`, `prepare`,
 //! `dynamics`, `output`, `cli`. The rooms of a layer (its sub-folders) import one way as well.
 //!
 //! # Equations
@@ -59,3 +59,4 @@ pub mod model;
 pub mod output;
 pub mod prepare;
 pub mod reader;
+pub mod vectors;

@@ -161,6 +161,7 @@ fn faulty(code: Code) -> Source {
         MixedOperation => step("*CLOAD, OP=NEW\n4, 2, 1."),
         ConflictingSupport => step("*BOUNDARY\n4, 1\n*BOUNDARY\n4, 1, 1, 0.1"),
         IgnoredVariable => square("U, RF", "U, PEEQ"),
+        BadEquation => model("*EQUATION\n2\n4, 1, 0., 3, 1, -1."),
         ConstantIncrement => square("*DYNAMIC, DIRECT\n0.1, 1.", "*DYNAMIC\n0.1, 1., 1.e-3, 0.2"),
     }
 }

@@ -15,7 +15,8 @@ use sources::{parse_sources, read_sources};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The layers, lowest first.
-const LAYERS: [&str; 12] = [
+const LAYERS: [&str; 13] = [
+    "vectors",
     "diagnostics",
     "deck",
     "model",

@@ -5,13 +5,12 @@
 
 mod amplitude;
 mod bodies;
+mod constraint;
 mod contact;
 mod element_type;
-mod equation;
 mod load;
 mod material;
 mod mesh;
-mod rigid_body;
 mod sets;
 mod settings;
 mod step;
@@ -19,13 +18,12 @@ mod surface;
 
 pub use amplitude::{Amplitude, TimeBase};
 pub use bodies::Bodies;
+pub use constraint::{Equation, RigidBody};
 pub use contact::{Adjust, Contact, Interaction};
 pub use element_type::{ElementType, Formulation, Shape, Topology};
-pub use equation::Equation;
 pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
 pub use material::{Material, Plane, Section};
 pub use mesh::{Element, Mesh, Set};
-pub use rigid_body::RigidBody;
 pub use sets::{HistorySet, NamedSets};
 pub use settings::{Factorization, Impact, ImpactTime, LcpChoice, Scheme, Settings, SolverChoice};
 pub use step::{Frames, Increments, Procedure, Step};

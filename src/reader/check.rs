@@ -5,6 +5,7 @@ use super::material::Properties;
 use super::mesh::{MeshIndex, Surfaces};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Contact, Element, Mesh, SurfaceKind};
+use crate::vectors::{cross, difference};
 use std::collections::HashMap;
 
 /// Smallest cross product of two sides, relative to the square of the longest side.
@@ -122,11 +123,10 @@ fn unusable(what: &str, value: f64, span: Span, cx: &mut Context) {
 fn area(element: &Element, mesh: &Mesh) -> f64 {
     let at = |&node: &usize| mesh.coordinates[node];
     let corners: Vec<[f64; 2]> = element.nodes.iter().map(at).collect();
-    let from_first = |p: &[f64; 2]| [p[0] - corners[0][0], p[1] - corners[0][1]];
-    let triangles = corners.windows(2).map(|side| {
-        let [p, q] = [from_first(&side[0]), from_first(&side[1])];
-        p[0] * q[1] - p[1] * q[0]
-    });
+    let from_first = |p: [f64; 2]| difference(corners[0], p);
+    let triangles = corners
+        .windows(2)
+        .map(|side| cross(from_first(side[0]), from_first(side[1])));
     triangles.sum::<f64>() / 2.0
 }
 

@@ -6,6 +6,7 @@ use crate::contact::geometry::{ContactSurfaces, Projection, position, project};
 use crate::contact::search::Search;
 use crate::contact::tolerances::{CORNER_CLIP_DEPTH, DEPTH_ROUND_OFF, SEGMENT_END};
 use crate::linear::largest;
+use crate::vectors::{cross, difference};
 
 /// Contact of a slave node in an increment.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -235,7 +236,7 @@ impl NodePath<'_> {
     fn length_of_way(&self, segment: usize) -> f64 {
         let [start, end] = [0.0, 1.0].map(|part| {
             let [s, a, _] = self.motions(segment).map(|m| m.at(part));
-            [s[0] - a[0], s[1] - a[1]]
+            difference(a, s)
         });
         (end[0] - start[0]).hypot(end[1] - start[1])
     }
@@ -262,6 +263,5 @@ impl NodePath<'_> {
 
 /// Whether the way along one segment turns left into another: round a convex corner.
 fn turns_left(first: &Projection, second: &Projection) -> bool {
-    let [e, f] = [first.tangent, second.tangent];
-    e[0] * f[1] - e[1] * f[0] > 0.0
+    cross(first.tangent, second.tangent) > 0.0
 }

@@ -4,6 +4,7 @@
 
 use super::quartic::{Quartic, Zero, Zeros};
 use crate::contact::tolerances::{CROSS_ROUND_OFF, CROSSING_BEYOND_ENDS};
+use crate::vectors::{cross, difference, dot};
 
 /// Motion of a node: x + v t + a t^2/2.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -21,7 +22,7 @@ impl Motion {
     pub fn straight(from: [f64; 2], to: [f64; 2]) -> Self {
         Motion {
             position: from,
-            velocity: [to[0] - from[0], to[1] - from[1]],
+            velocity: difference(from, to),
             acceleration: [0.0; 2],
         }
     }
@@ -132,7 +133,7 @@ impl Relative {
 
     /// r x e, eq. (10.5)
     fn cross(&self) -> Quartic {
-        self.product(|r, e| r[0] * e[1] - r[1] * e[0])
+        self.product(cross)
     }
 
     /// A product of r and e that is linear in both.
@@ -197,10 +198,6 @@ impl Relative {
 /// Bound of all values of a vector polynomial on [0, 1].
 fn size(c: &[[f64; 2]; 3]) -> f64 {
     c.iter().flatten().map(|c| c.abs()).sum()
-}
-
-fn dot(p: [f64; 2], q: [f64; 2]) -> f64 {
-    p[0] * q[0] + p[1] * q[1]
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use std::collections::HashMap;
 
 use super::projection::project;
 use crate::model::Mesh;
+use crate::vectors::{difference, dot};
 
 /// The elements of a mesh with what lies on the left of each of their sides.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -117,7 +118,7 @@ impl Interior {
         for side in &self.sides[element] {
             let side = project(from, at(side[0]), at(side[1]));
             // distances outside the side at both ends of the line
-            let along = (to[0] - from[0]) * side.normal[0] + (to[1] - from[1]) * side.normal[1];
+            let along = dot(difference(from, to), side.normal);
             let (outside, most) = (side.gap, INSIDE_ROUND_OFF * side.length);
             if outside > most && outside + along > most {
                 return None;

@@ -1,5 +1,7 @@
 //! Projection of a node on a segment: gap, foot and local frame. Section 3 of docs/theory.md.
 
+use crate::vectors::{difference, dot, length};
+
 /// Place of a point relative to a segment from a to b, the body lying on the left of the way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Projection {
@@ -22,14 +24,14 @@ pub struct Projection {
 /// xi = r.e_t/l,  g = r.e_n,  r = x_s - x_a                         eq. (3.3)
 /// ```
 pub fn project(s: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Projection {
-    let e = [b[0] - a[0], b[1] - a[1]];
-    let length = (e[0] * e[0] + e[1] * e[1]).sqrt();
+    let e = difference(a, b);
+    let length = length(e);
     let tangent = [e[0] / length, e[1] / length];
     let normal = [tangent[1], -tangent[0]];
-    let r = [s[0] - a[0], s[1] - a[1]];
+    let r = difference(a, s);
     Projection {
-        xi: (r[0] * tangent[0] + r[1] * tangent[1]) / length,
-        gap: r[0] * normal[0] + r[1] * normal[1],
+        xi: dot(r, tangent) / length,
+        gap: dot(r, normal),
         length,
         tangent,
         normal,

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::interior::Interior;
 use super::projection::project;
 use crate::model::{Contact, Model};
+use crate::vectors::{cross, dot};
 
 /// The two sides of a contact of the model, as nodes and segments.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,8 +76,7 @@ impl ContactSurfaces {
         let is_sharp = |i: usize| {
             self.next[i].is_some_and(|j| {
                 let (e, f) = (tangent(i), tangent(j));
-                let [sin, cos] = [e[0] * f[1] - e[1] * f[0], e[0] * f[0] + e[1] * f[1]];
-                sin > 0.0 && cos < SHARP_TURN_COSINE
+                cross(e, f) > 0.0 && dot(e, f) < SHARP_TURN_COSINE
             })
         };
         self.sharp_corners = (0..self.segments.len()).map(is_sharp).collect();

@@ -1,10 +1,12 @@
 //! Bounding circles and their binary hierarchies, for overlaps and nearest neighbours: the
 //! territories of Zhong & Nilsson (1989). Section 10 of docs/theory.md, Territories.
 
+use crate::vectors::{difference, dot, length};
+
 /// Members of the groups that are not split further.
 const GROUP: usize = 8;
-/// Growth that covers the round-off of distances.
-const ROUND_OFF: f64 = 8.0 * f64::EPSILON;
+/// Growth of a distance, as a part of it, that covers its round-off.
+const DISTANCE_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 
 /// A territory: all points within `radius` of `centre`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -18,15 +20,14 @@ pub(crate) struct Circle {
 impl Circle {
     /// Whether the two have a point in common: |c1 - c2| <= r1 + r2.
     fn overlaps(&self, other: &Circle) -> bool {
-        let [x, y] = [0, 1].map(|i| self.centre[i] - other.centre[i]);
-        let reach = (self.radius + other.radius) * (1.0 + ROUND_OFF);
-        x * x + y * y <= reach * reach
+        let d = difference(other.centre, self.centre);
+        let reach = (self.radius + other.radius) * (1.0 + DISTANCE_ROUND_OFF);
+        dot(d, d) <= reach * reach
     }
 
     /// Distance of a point from the circle, negative inside (length); never too large.
-    fn distance(&self, [x, y]: [f64; 2]) -> f64 {
-        let [dx, dy] = [x - self.centre[0], y - self.centre[1]];
-        (dx * dx + dy * dy).sqrt() * (1.0 - ROUND_OFF) - self.radius
+    fn distance(&self, point: [f64; 2]) -> f64 {
+        length(difference(self.centre, point)) * (1.0 - DISTANCE_ROUND_OFF) - self.radius
     }
 
     /// A circle about the middle of some circles that holds them all.
@@ -44,13 +45,11 @@ impl Circle {
             let (low, high) = extent(i);
             low + (high - low) / 2.0
         });
-        let farthest = |radius: f64, c: Circle| {
-            let [x, y] = [0, 1].map(|i| c.centre[i] - centre[i]);
-            radius.max((x * x + y * y).sqrt() + c.radius)
-        };
+        let farthest =
+            |radius: f64, c: Circle| radius.max(length(difference(centre, c.centre)) + c.radius);
         Circle {
             centre,
-            radius: circles.fold(0.0, farthest) * (1.0 + ROUND_OFF),
+            radius: circles.fold(0.0, farthest) * (1.0 + DISTANCE_ROUND_OFF),
         }
     }
 }

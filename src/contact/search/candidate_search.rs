@@ -6,6 +6,7 @@ use crate::contact::geometry::{ContactSurfaces, position};
 use crate::contact::tolerances::{
     PAIRING_REACH, PROJECTION_BEYOND_ENDS, SEARCH_MARGIN, SEARCH_MARGIN_PER_MOTION,
 };
+use crate::vectors::{difference, dot, length};
 
 /// A segment that a slave node may pair with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -257,8 +258,8 @@ impl Side {
                 let left = self.margin[i] - if with_way { self.way[i] } else { 0.0 };
                 let is_near = |k: usize| {
                     let (p, q) = (self.reference[i][k], at(self.ends[i][k]));
-                    let [x, y] = [q[0] - p[0], q[1] - p[1]];
-                    x * x + y * y <= left * left
+                    let d = difference(p, q);
+                    dot(d, d) <= left * left
                 };
                 left >= 0.0 && is_near(0) && is_near(1)
             })
@@ -289,9 +290,5 @@ impl Side {
 }
 
 fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
-    length([q[0] - p[0], q[1] - p[1]])
-}
-
-fn length([x, y]: [f64; 2]) -> f64 {
-    (x * x + y * y).sqrt()
+    length(difference(p, q))
 }

@@ -2,6 +2,7 @@
 //! intersection of their normal cones. Section 10 of docs/theory.md, Node against node.
 
 use crate::contact::tolerances::CONE_MISS;
+use crate::vectors::angle;
 
 /// A convex corner that a slave node meets: between a segment and the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,8 +29,6 @@ impl Corner {
 /// with that of the bisectors. A corner that is not convex has none.
 pub fn common_normal(normals: [[f64; 2]; 2], own: [[f64; 2]; 2]) -> Option<f64> {
     let [n, m] = normals;
-    let angle =
-        |p: [f64; 2], q: [f64; 2]| (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1]);
     let opposite = own.map(|n| [-n[0], -n[1]]);
     // angles from the first normal
     let width = angle(n, m);

@@ -7,6 +7,7 @@ use crate::contact::geometry::{ContactSurfaces, Projection, project};
 use crate::contact::tolerances::{
     CLOSED_GAP, CORNER_ZONE, FACING_SINE, FOLDED_CORNER_SINE, INITIAL_DEPTH,
 };
+use crate::vectors::{cross, difference, dot};
 
 /// A slave node between the start of an increment and an iterate, and where it is relative to the
 /// segments around it.
@@ -44,8 +45,8 @@ impl SlaveNode<'_> {
         let node = self.surfaces.slaves[self.slave];
         let normal = self.project(segment).normal;
         let is_in_front = |&adjacent: &usize| {
-            let r = [0, 1].map(|i| self.now[adjacent][i] - self.now[node][i]);
-            r[0] * normal[0] + r[1] * normal[1] >= -FACING_SINE * r[0].hypot(r[1])
+            let r = difference(self.now[node], self.now[adjacent]);
+            dot(r, normal) >= -FACING_SINE * r[0].hypot(r[1])
         };
         let adjacent = self.surfaces.adjacent[self.slave]?;
         Some(adjacent.iter().all(is_in_front))
@@ -103,7 +104,7 @@ impl SlaveNode<'_> {
             let [a, b] = self.surfaces.segments[i].map(|n| self.now[n]);
             project(a, a, b).tangent
         });
-        let [sin, cos] = [e[0] * f[1] - e[1] * f[0], e[0] * f[0] + e[1] * f[1]];
+        let [sin, cos] = [cross(e, f), dot(e, f)];
         if cos >= 0.0 {
             sin
         } else if sin.abs() > FOLDED_CORNER_SINE {
@@ -119,8 +120,8 @@ impl SlaveNode<'_> {
     pub(crate) fn xi(&self, segment: usize) -> f64 {
         let [a, b] = self.surfaces.segments[segment].map(|n| self.now[n]);
         let s = self.now[self.surfaces.slaves[self.slave]];
-        let (r, e) = ([s[0] - a[0], s[1] - a[1]], [b[0] - a[0], b[1] - a[1]]);
-        (r[0] * e[0] + r[1] * e[1]) / (e[0] * e[0] + e[1] * e[1])
+        let [r, e] = [difference(a, s), difference(a, b)];
+        dot(r, e) / dot(e, e)
     }
 
     /// Place of the node relative to a segment in the iterate.

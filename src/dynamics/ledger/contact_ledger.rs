@@ -6,6 +6,7 @@ use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{ContactImpulse, ContactOnBody, ContactResultant};
 use crate::dynamics::step::StepProblem;
 use crate::model::{Bodies, Model};
+use crate::vectors::cross;
 
 /// Sums over the run of one contact.
 #[derive(Clone, Copy, Default)]
@@ -93,8 +94,7 @@ impl ContactLedger {
             result.friction_dissipation = sums.friction_dissipation;
             if let Some(node) = self.reference[c] {
                 let x = problem.position(u, node);
-                let [fx, fy] = result.force;
-                result.reference_moment = result.moment - (x[0] * fy - x[1] * fx);
+                result.reference_moment = result.moment - cross(x, result.force);
             }
         }
     }
@@ -156,6 +156,6 @@ fn add_to_bodies(
         let result = &mut results[body];
         result.force[0] += fx;
         result.force[1] += fy;
-        result.moment += x[0] * fy - x[1] * fx;
+        result.moment += cross(x, [fx, fy]);
     }
 }

@@ -10,6 +10,7 @@ use crate::dynamics::results::{ContactResultant, Landing, NodalResults, NodeStat
 use crate::dynamics::step::{Equilibrium, Interval, StepProblem};
 use crate::lcp::ContactState;
 use crate::linear::larger;
+use crate::vectors::cross;
 
 /// Change of velocity, relative to the largest velocity of the two bodies, from which an impulse is an
 /// impact.
@@ -84,7 +85,7 @@ pub(crate) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
         let x = problem.position(&solved.equilibrium.u_theta, pair.target.nodes[0]);
         r.force[0] += f[0];
         r.force[1] += f[1];
-        r.moment += x[0] * f[1] - x[1] * f[0];
+        r.moment += cross(x, f);
         r.normal += pn;
         r.tangential += pt;
         r.closed += 1;

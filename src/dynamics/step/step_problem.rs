@@ -129,6 +129,7 @@ impl StepProblem<'_> {
             .into_iter()
             .filter(|at| self.unknowns.moves(&at.nodes))
             .map(|at| Pair::new(at, form, x, u0, u))
+            .filter(|pair| self.unknowns.opens(pair))
             .collect()
     }
 

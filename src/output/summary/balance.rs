@@ -1,9 +1,12 @@
 //! Running checks of conservation: energy balance (docs/theory.md, section 9), energy put in by
-//! contact (section 7), and linear momentum of a model without supports and loads.
+//! contact (section 7), and linear momentum of a model on which nothing acts from outside.
 
 use crate::dynamics::{Energy, IncrementReport, Momentum};
 use crate::linear::larger;
-use crate::model::Model;
+use crate::model::{Equation, Model};
+
+/// Sum of the coefficients of an equation, as a part of their sizes, that is round-off.
+const SUM_ROUND_OFF: f64 = 1e-12;
 
 /// Follows the energy balance, the energy that contact puts in and, of a free model, the momentum.
 #[derive(Debug, Clone, Default)]
@@ -37,13 +40,14 @@ pub(crate) struct ContactEnergy {
 impl Balance {
     /// The balance of a model's run.
     pub fn new(model: &Model) -> Self {
-        let free = model.steps.iter().all(|step| {
-            step.supports.is_empty()
-                && step.point_loads.is_empty()
-                && step.body_forces.is_empty()
-                && step.pressures.is_empty()
-                && step.tractions.is_empty()
-        });
+        let free = model.equations.iter().all(keeps_momentum)
+            && model.steps.iter().all(|step| {
+                step.supports.is_empty()
+                    && step.point_loads.is_empty()
+                    && step.body_forces.is_empty()
+                    && step.pressures.is_empty()
+                    && step.tractions.is_empty()
+            });
         Balance {
             free,
             ..Balance::default()
@@ -106,6 +110,20 @@ impl Balance {
     pub fn momentum_drift(&self) -> Option<f64> {
         self.free.then(|| part(self.drift, self.momentum))
     }
+}
+
+/// Whether the forces of an equation have no resultant: the sum of its coefficients is zero for each
+/// direction.
+fn keeps_momentum(equation: &Equation) -> bool {
+    let own = [(equation.dof, -1.0)];
+    let terms = own.iter().chain(&equation.terms);
+    let mut sums = [[0.0; 2]; 2];
+    for &(dof, c) in terms {
+        let [sum, size] = &mut sums[dof % 2];
+        (*sum, *size) = (*sum + c, *size + f64::abs(c));
+    }
+    sums.iter()
+        .all(|[sum, size]| sum.abs() <= SUM_ROUND_OFF * size)
 }
 
 /// `value / whole`; 0 where `value` is 0, whatever the whole.

@@ -8,6 +8,7 @@ use crate::model::{
 };
 use crate::output::frames::{DEFAULT_FRAMES, are_dense};
 use crate::prepare::{InitialGap, PreparedModel};
+use crate::vectors::cross;
 
 /// Numbers that describe a model.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,6 +100,10 @@ impl ModelEcho {
         ];
         let mut lines = wrap("model", &size);
         lines.extend(wrap("", &shape));
+        if !model.equations.is_empty() {
+            let count = counted(model.equations.len(), "equation");
+            lines.push(label("", &format!("{count} between displacements")));
+        }
         lines
     }
 
@@ -231,7 +236,7 @@ fn sides(corners: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
 }
 
 fn area(corners: &[[f64; 2]]) -> f64 {
-    let twice: f64 = sides(corners).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum();
+    let twice: f64 = sides(corners).map(|(a, b)| cross(a, b)).sum();
     0.5 * twice
 }
 

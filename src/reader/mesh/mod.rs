@@ -4,6 +4,7 @@ mod element_type;
 pub(crate) mod nodes_elements;
 mod outline;
 mod profile;
+mod references;
 pub(crate) mod sets;
 pub(crate) mod surface;
 

@@ -3,12 +3,13 @@
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic, Span, shown};
 use crate::reader::context::Context;
+use crate::vectors::{angle, difference};
 
 /// Largest angle of the chords that an arc is cut into.
 const CHORD: f64 = std::f64::consts::PI / 180.0;
 /// Largest difference of an arc's radii at its ends, and smallest distance of its angle from 180
 /// degrees, relative and in radians.
-const ROUND_OFF: f64 = 1e-4;
+const ARC_ROUND_OFF: f64 = 1e-4;
 
 /// A rigid profile: points and the way between them, the rigid on the right of the way.
 #[derive(Default)]
@@ -111,11 +112,11 @@ impl Profile {
     /// Equal chords of at most [`CHORD`] on the shorter arc about a centre.
     fn arc(&mut self, to: [f64; 2], centre: [f64; 2], row: &Row, cx: &mut Context) -> Option<()> {
         let from = *self.points.get(self.end)?;
-        let [p, q] = [from, to].map(|x| [x[0] - centre[0], x[1] - centre[1]]);
+        let [p, q] = [from, to].map(|x| difference(centre, x));
         let [r, s] = [p, q].map(|[x, y]| x.hypot(y));
-        let angle = (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1]);
+        let angle = angle(p, q);
         let help = "an arc of less than 180 degrees from the point before to x, y about xc, yc";
-        if (r - s).abs() > ROUND_OFF * r.max(s) {
+        if (r - s).abs() > ARC_ROUND_OFF * r.max(s) {
             let message = format!(
                 "the ends of this arc are {} and {} away from its centre",
                 shown(r),
@@ -123,7 +124,7 @@ impl Profile {
             );
             return fault(row.span(), &message, help, cx);
         }
-        if angle == 0.0 || angle.abs() > std::f64::consts::PI - ROUND_OFF {
+        if angle == 0.0 || angle.abs() > std::f64::consts::PI - ARC_ROUND_OFF {
             let message = format!("this arc has {} degrees", shown(angle.abs().to_degrees()));
             return fault(row.span(), &message, help, cx);
         }
