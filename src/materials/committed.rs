@@ -141,8 +141,7 @@ mod tests {
     fn attempt(start: &State, strains: [Matrix2<f64>; 2]) -> Option<(State, f64, f64)> {
         let material = Committed::new(&LAW, &start.committed);
         let (mut work, mut dissipated, mut committed) = (0.0, 0.0, [0.0; 6]);
-        for p in 0..2 {
-            let (e0, e1) = (&start.strains[p], &strains[p]);
+        for (p, (e0, e1)) in start.strains.iter().zip(&strains).enumerate() {
             work += material.mean_stress(p, [e0, e1]).dot(&(e1 - e0));
             dissipated += material.update(p, e1, &mut committed);
         }

@@ -1,6 +1,6 @@
 //! Neo-Hookean bodies at large strains: energy and momenta in free flight and in contact.
 
-use crate::blocks::{Keep, add_block, add_contact, model, run_to_end, step, throw};
+use crate::blocks::{Keep, add_block, add_contact, model, run, run_to_end, step, throw};
 use stickslip::dynamics::IncrementReport;
 use stickslip::materials::{Law, NeoHooke};
 use stickslip::model::{ElementType, Model, Scheme, Settings};
@@ -124,7 +124,7 @@ fn a_block_crushed_in_one_increment_is_cut_back_or_inverted() {
     make_plane_strain(&mut model);
     model.steps = vec![step(0.1, 1, Settings::default(), Vec::new())];
     let mut keep = Keep::default();
-    stickslip::dynamics::run(&model, &mut keep).expect("the observer never fails");
+    run(&model, &mut keep).expect("the observer never fails");
     let causes: Vec<String> = keep.cutbacks.iter().map(|c| format!("{:?}", c)).collect();
     assert!(
         causes.iter().any(|cause| cause.contains("Inverted")),
