@@ -1,6 +1,6 @@
 //! Material and thickness of the elements (docs/theory.md, sections 1 and 2).
 
-use crate::materials::Law;
+use crate::materials::{Law, Plane, SmallStrainModuli};
 
 /// A material: its law with the constants of the deck, and its density.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,6 +11,19 @@ pub struct Material {
     pub law: Law,
     /// Density rho of the reference configuration (mass/length^3).
     pub density: f64,
+}
+
+impl Material {
+    /// Speed of longitudinal waves (length/time): sqrt(E/((1 - nu^2) rho)) in plane stress,
+    /// sqrt(E (1 - nu)/((1 + nu) (1 - 2 nu) rho)) in plane strain.
+    pub fn wave_speed(&self, plane: Plane) -> f64 {
+        let SmallStrainModuli { young, poisson: nu } = self.law.small_strain();
+        let factor = match plane {
+            Plane::Stress => 1.0 / (1.0 - nu * nu),
+            Plane::Strain => (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+        };
+        (young * factor / self.density).sqrt()
+    }
 }
 
 /// Material and thickness of a group of elements.

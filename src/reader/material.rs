@@ -264,10 +264,10 @@ fn material(draft: Draft, cx: &mut Context) -> Material {
 
 /// Notes a wave speed that hints at mixed units.
 fn hint_at_units(material: &Material, span: Span, cx: &mut Context) {
-    let speed = (material.law.small_strain().young / material.density).sqrt();
+    let speed = material.wave_speed(Plane::Strain);
     if speed.is_finite() && speed > 0.0 && !(10.0..=1e8).contains(&speed) {
         let name = &material.name;
-        let message = format!("the waves in material {name} run at sqrt(E/rho) = {speed:.3e}");
+        let message = format!("the waves in material {name} run at {speed:.3e}");
         let note = Diagnostic::note(Code::UnitsHint, span, message);
         cx.d.push(note.help("most materials lie between 10 and 1e8 in common units"));
     }
