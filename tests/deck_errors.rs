@@ -4,7 +4,7 @@ mod deck_advice;
 
 use std::path::Path;
 use stickslip::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Sources};
-use stickslip::prepare::{adjust, report_adjusted, report_penetrations};
+use stickslip::prepare::prepare;
 use stickslip::{deck, reader};
 
 const SQUARE: &str = include_str!("decks/square.inp");
@@ -26,14 +26,11 @@ fn messages(source: &Source) -> (Diagnostics, String) {
         Source::Text(text) => deck::parse_str("deck.inp", text, &mut sources, &mut d),
         Source::File(path) => deck::read(Path::new(path), &mut sources, &mut d),
     };
-    let mut model = reader::build(&deck, &mut d);
+    let model = reader::build(&deck, &mut d);
     assert_eq!(model.is_some(), !d.has_errors());
-    if let Some(model) = &mut model {
-        let adjusted = adjust(model);
-        report_adjusted(model, &adjusted, &mut d);
-        if !d.has_errors() {
-            report_penetrations(model, &mut d);
-        }
+    if let Some(model) = model {
+        let prepared = prepare(model, &mut d);
+        assert_eq!(prepared.is_some(), !d.has_errors());
     }
     let text = d.render(&sources, false);
     (d, text)

@@ -5,7 +5,7 @@ use stickslip::contact::contact_surfaces;
 use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::model::*;
 use stickslip::output::contact_names;
-use stickslip::prepare::adjust as adjust_nodes;
+use stickslip::prepare::PreparedModel;
 use stickslip::{deck, reader};
 
 /// The model of a deck, which must have no errors, and the text of its warnings.
@@ -462,8 +462,8 @@ fn adjusted(adjust: &str) -> ([f64; 2], usize) {
             &PAIR.replace("TYPE", &format!("ADJUST={adjust}, TYPE")),
             1,
         );
-    let mut model = read(&deck).0;
-    let moved = adjust_nodes(&mut model);
+    let prepared = PreparedModel::new(read(&deck).0);
+    let (model, moved) = (prepared.model(), prepared.adjusted());
     let height = |label: u64| {
         let found = model.mesh.node_labels.iter().position(|&l| l == label);
         model.mesh.coordinates[found.expect("node")][1]

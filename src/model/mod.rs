@@ -26,7 +26,7 @@ pub use material::{Material, Plane, Section};
 pub use mesh::{Element, Mesh, Set};
 pub use sets::{HistorySet, NamedSets};
 pub use settings::{Factorization, Impact, ImpactTime, LcpChoice, Scheme, Settings, SolverChoice};
-pub use step::{Frames, Increments, Step};
+pub use step::{Frames, Increments, Procedure, Step};
 pub use surface::{ALL_EXTERIOR, Face, Surface, SurfaceKind};
 
 /// A whole problem: what a deck says, checked and with all names resolved to indices.

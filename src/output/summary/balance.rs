@@ -5,9 +5,6 @@ use crate::dynamics::{Energy, IncrementReport, Momentum};
 use crate::linear::larger;
 use crate::model::{Equation, Model};
 
-/// Work of the normal contact forces in an increment, as a part of the largest energy, up to which
-/// it is round-off.
-const CONTACT_WORK_ROUND_OFF: f64 = 1e-12;
 /// Sum of the coefficients of an equation, as a part of their sizes, that is round-off.
 const SUM_ROUND_OFF: f64 = 1e-12;
 
@@ -18,9 +15,7 @@ pub(crate) struct Balance {
     largest: f64,
     /// Largest absolute balance so far.
     worst: f64,
-    /// Work of the normal contact forces so far.
-    contact_work: f64,
-    /// Its largest absolute value so far.
+    /// Largest absolute work of the normal contact forces so far.
     most_contact_work: f64,
     contact_energy: ContactEnergy,
     /// Momentum at the start, when nothing outside may change it.
@@ -76,14 +71,12 @@ impl Balance {
             self.add_momentum(report.momentum);
         }
         let work = report.energy.normal_contact_work;
-        let added = work - std::mem::replace(&mut self.contact_work, work);
         self.most_contact_work = larger(self.most_contact_work, work.abs());
-        let puts_in = added > CONTACT_WORK_ROUND_OFF * self.largest;
-        if puts_in {
+        if let Some(added) = report.contact_energy {
             self.contact_energy.count += 1;
             self.contact_energy.energy += added;
         }
-        puts_in.then_some(added)
+        report.contact_energy
     }
 
     /// The increments in which contact put energy in.
