@@ -1,16 +1,16 @@
 //! **stickslip**: large-displacement dynamics of plane deformable bodies with exact contact and
 //! Coulomb friction.
 //!
-//! A keyword deck is read ([`deck`], [`reader`]) into a [`model`]; its bodies are integrated in time
-//! ([`dynamics`]) with total-Lagrangian elements ([`elements`]), node-to-segment [`contact`] posed
-//! as a linear complementarity problem ([`lcp`]) at every pass, and sparse factorisations
+//! A keyword deck is read ([`deck`], [`reader`]) into a [`model`]; its bodies are integrated in
+//! time ([`dynamics`]) with total-Lagrangian elements ([`elements`]), node-to-segment [`contact`]
+//! posed as a linear complementarity problem ([`lcp`]) at every pass, and sparse factorisations
 //! ([`linear`]); [`output`] observes the run and writes the result file.
 //!
 //! # Layers
 //!
-//! A module imports only from modules before it in this list:
-//! `vectors`, `diagnostics`, `deck`, `model`, `reader`, `elements`, `linear`, `lcp`, `contact`, `prepare`,
-//! `dynamics`, `output`, `cli`. The rooms of a layer (its sub-folders) import one way as well.
+//! A module imports only from modules before it in this list: `vectors`, `diagnostics`, `deck`,
+//! `model`, `reader`, `elements`, `linear`, `lcp`, `contact`, `prepare`, `dynamics`, `output`,
+//! `cli`. The rooms of a layer (its sub-folders) import one way as well.
 //!
 //! # Equations
 //!

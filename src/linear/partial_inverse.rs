@@ -19,8 +19,8 @@ struct Front {
     values: Mat<f64>,
 }
 
-/// The inverse of P^T L D L^T P at some unknowns, given by their `positions` in the order of pivots,
-/// m x m column by column:
+/// The inverse of P^T L D L^T P at some unknowns, given by their `positions` in the order of
+/// pivots, m x m column by column:
 ///
 /// ```text
 /// Y = L^-1 E,   E the unit vectors of the positions

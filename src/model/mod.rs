@@ -11,7 +11,6 @@ mod equation;
 mod load;
 mod material;
 mod mesh;
-mod rigid_body;
 mod sets;
 mod settings;
 mod step;
@@ -24,12 +23,11 @@ pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub use equation::Equation;
 pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
 pub use material::{Material, Plane, Section};
-pub use mesh::{Element, Mesh, Set};
-pub use rigid_body::RigidBody;
+pub use mesh::{Element, Face, Mesh, Set};
 pub use sets::{HistorySet, NamedSets};
 pub use settings::{Factorization, Impact, ImpactTime, LcpChoice, Scheme, Settings, SolverChoice};
 pub use step::{Frames, Increments, Step};
-pub use surface::{ALL_EXTERIOR, Face, Surface, SurfaceKind};
+pub use surface::{ALL_EXTERIOR, RigidBody, Surface, SurfaceKind};
 
 /// A whole problem: what a deck says, checked and with all names resolved to indices.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -43,8 +43,8 @@ fn pushed(ny: usize, way: f64, points: &[(f64, f64)]) -> (Model, Block) {
     (model, column)
 }
 
-/// A piece is half as long as one that failed at its start, or as long as its place in the increment
-/// allows: what is hard at the start costs no short pieces later.
+/// A piece is half as long as one that failed at its start, or as long as its place in the
+/// increment allows: what is hard at the start costs no short pieces later.
 #[test]
 fn after_halved_pieces_come_longer_ones_again() {
     let (mut model, _) = pushed(2, 0.4, &[(0.0, 0.0), (0.5, 1.0), (2.0, 1.0)]);

@@ -48,8 +48,9 @@ fn an_impact_at_the_very_end_of_an_increment_does_not_cut_it() {
     }
 }
 
-/// A block on its corner that slides across the bend of a plate from one segment to the next, `depth`
-/// below the first, in one increment of 0.1, while the plate is bent from one angle to the other.
+/// A block on its corner that slides across the bend of a plate from one segment to the next,
+/// `depth` below the first, in one increment of 0.1, while the plate is bent from one angle to the
+/// other.
 fn slide(
     settings: Settings,
     [bend, bent]: [f64; 2],

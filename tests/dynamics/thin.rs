@@ -16,8 +16,8 @@ use crate::blocks::{Block, add_block, fixed, model, run_to_end, step, throw};
 
 const LENGTH: f64 = 10.0;
 
-/// Foils with elements that are `ratio` times as long as the foil is thick, each above the one before by
-/// `lifts` thicknesses, in one surface that touches itself.
+/// Foils with elements that are `ratio` times as long as the foil is thick, each above the one
+/// before by `lifts` thicknesses, in one surface that touches itself.
 fn foils(ratio: f64, layers: usize, triangles: bool, lifts: &[f64]) -> (Model, Vec<Block>) {
     let mut model = model(1e3, 0.3, 1.0);
     let (size, mut y) = (LENGTH / 4.0, 0.0);

@@ -99,8 +99,8 @@ impl ContactLedger {
         }
     }
 
-    /// Adds |Bt d| of the closed pairs to the ways of their slave nodes; of several pairs of a node the
-    /// largest.
+    /// Adds |Bt d| of the closed pairs to the ways of their slave nodes; of several pairs of a node
+    /// the largest.
     fn slide(&mut self, solved: &Solved) {
         let forces = &solved.forces;
         let mut ways = vec![0.0_f64; self.slip.len()];

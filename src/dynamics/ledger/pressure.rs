@@ -61,8 +61,8 @@ impl SlaveFaces {
     /// N = sum Bn^T Pn,  A = sum over the faces max(-n.N/|N|, 0) t l/2,  p = |N|/A    eq. (9.8)
     /// ```
     ///
-    /// The sum of N runs over all pairs of the node; n, l and t are outward normal, current length and
-    /// thickness of a face.
+    /// The sum of N runs over all pairs of the node; n, l and t are outward normal, current length
+    /// and thickness of a face.
     pub fn pressure(&self, problem: &StepProblem, u: &[f64], forces: &ContactForces) -> Vec<f64> {
         let mut pressure = self.start.clone();
         let mut normal = vec![0.0; u.len()];
