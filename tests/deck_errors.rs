@@ -4,7 +4,7 @@ mod deck_advice;
 
 use std::path::Path;
 use stickslip::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Sources};
-use stickslip::prepare::{adjust, report_adjusted, report_penetrations};
+use stickslip::prepare::prepare;
 use stickslip::{deck, reader};
 
 const SQUARE: &str = include_str!("decks/square.inp");
@@ -26,14 +26,11 @@ fn messages(source: &Source) -> (Diagnostics, String) {
         Source::Text(text) => deck::parse_str("deck.inp", text, &mut sources, &mut d),
         Source::File(path) => deck::read(Path::new(path), &mut sources, &mut d),
     };
-    let mut model = reader::build(&deck, &mut d);
+    let model = reader::build(&deck, &mut d);
     assert_eq!(model.is_some(), !d.has_errors());
-    if let Some(model) = &mut model {
-        let adjusted = adjust(model);
-        report_adjusted(model, &adjusted, &mut d);
-        if !d.has_errors() {
-            report_penetrations(model, &mut d);
-        }
+    if let Some(model) = model {
+        let prepared = prepare(model, &mut d);
+        assert_eq!(prepared.is_some(), !d.has_errors());
     }
     let text = d.render(&sources, false);
     (d, text)
@@ -164,6 +161,7 @@ fn faulty(code: Code) -> Source {
         MixedOperation => step("*CLOAD, OP=NEW\n4, 2, 1."),
         ConflictingSupport => step("*BOUNDARY\n4, 1\n*BOUNDARY\n4, 1, 1, 0.1"),
         IgnoredVariable => square("U, RF", "U, PEEQ"),
+        BadEquation => model("*EQUATION\n2\n4, 1, 0., 3, 1, -1."),
         ConstantIncrement => square("*DYNAMIC, DIRECT\n0.1, 1.", "*DYNAMIC\n0.1, 1., 1.e-3, 0.2"),
     }
 }

@@ -5,7 +5,7 @@ use stickslip::contact::contact_surfaces;
 use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::model::*;
 use stickslip::output::contact_names;
-use stickslip::prepare::adjust as adjust_nodes;
+use stickslip::prepare::PreparedModel;
 use stickslip::{deck, reader};
 
 /// The model of a deck, which must have no errors, and the text of its warnings.
@@ -462,8 +462,8 @@ fn adjusted(adjust: &str) -> ([f64; 2], usize) {
             &PAIR.replace("TYPE", &format!("ADJUST={adjust}, TYPE")),
             1,
         );
-    let mut model = read(&deck).0;
-    let moved = adjust_nodes(&mut model);
+    let prepared = PreparedModel::new(read(&deck).0);
+    let (model, moved) = (prepared.model(), prepared.adjusted());
     let height = |label: u64| {
         let found = model.mesh.node_labels.iter().position(|&l| l == label);
         model.mesh.coordinates[found.expect("node")][1]
@@ -574,4 +574,121 @@ fn an_arc_is_cut_into_chords_of_one_degree() {
         let radius = middle[0].hypot(middle[1]);
         (1.0 - 3.9e-5..1.0 - 3.7e-5).contains(&radius)
     }));
+}
+
+/// Equations of the square with these cards.
+fn equations(cards: &str) -> Vec<Equation> {
+    with(cards, "").equations
+}
+
+#[test]
+fn equations_are_solved_for_their_first_terms() {
+    // 2 u + 1 v - 0.5 w = 0, on two lines; a node set and one node
+    let cards = "*NSET, NSET=UP\n4, 3\n*NSET, NSET=DOWN\n2, 1\n*EQUATION\n2\nUP, 1, 1., DOWN, 2, -1.\n\
+                 5\n3, 2, 2., 1, 1, 1., 2, 1, -0.5, 2, 1, -0.5\n1, 2, 0.\n";
+    let equation = |dof, terms: &[(usize, f64)]| Equation {
+        dof,
+        terms: terms.to_vec(),
+    };
+    // sets in the order of the node numbers: 3 with 1, 4 with 2
+    let expected = [
+        equation(4, &[(1, 1.0)]),
+        equation(5, &[(0, -0.5), (2, 0.5)]),
+        equation(6, &[(3, 1.0)]),
+    ];
+    assert_eq!(equations(cards), expected);
+}
+
+#[test]
+fn equations_between_eliminated_displacements_are_substituted() {
+    // u4 = 2 u3, u3 = 3 v3 - u1, given in this order
+    let cards = "*EQUATION\n2\n4, 1, 1., 3, 1, -2.\n3\n3, 1, 1., 3, 2, -3., 1, 1, 1.\n";
+    let found = equations(cards);
+    assert_eq!(found[0].terms, [(0, -1.0), (5, 3.0)]);
+    assert_eq!(found[1].terms, [(0, -2.0), (5, 6.0)]);
+}
+
+#[test]
+fn a_node_of_equations_needs_no_element() {
+    let cards = "*NODE\n50, 0., 9.\n60, 0., 8.\n*NSET, NSET=UP\n3, 4\n*EQUATION\n2\nUP, 2, 1., 50, 2, -1.\n";
+    let model = with(cards, "");
+    assert_eq!(model.mesh.node_labels, [1, 2, 3, 4, 50], "60 is left out");
+    let terms: Vec<_> = model
+        .equations
+        .iter()
+        .map(|e| (e.dof, e.terms[0].0))
+        .collect();
+    assert_eq!(terms, [(5, 9), (7, 9)]);
+}
+
+#[test]
+fn equations_that_cannot_be_used_are_told() {
+    let sets = "*NSET, NSET=ONE\n3\n*NSET, NSET=TWO\n3, 4\n*NSET, NSET=MIXED, UNSORTED\n4, 3\n\
+                *NSET, NSET=BOTH\n1, 2\n*EQUATION\n";
+    let faults = [
+        (
+            "2\n4, 1, 0., 3, 1, 1.",
+            "D517",
+            "the first coefficient is zero",
+        ),
+        ("2\n4, 3, 1., 3, 1, 1.", "D501", "only directions 1 and 2"),
+        ("2\n4, 7, 1., 3, 1, 1.", "D501", "no degree of freedom 7"),
+        ("2\n9, 1, 1., 3, 1, 1.", "D304", "node 9 is not defined"),
+        ("1\n4, 1, 1.", "D517", "two terms at least, found 1"),
+        ("2\n4, 1, 1.", "D112", "an equation of 2 terms ends after 1"),
+        ("2\n4, 1, 1., 3, 1, 1., 3, 2, 1.", "D110", "only 6 fields"),
+        (
+            "2\n1, 1, 1., 3, 1, 1.",
+            "D517",
+            "direction 1 of node 1 is eliminated by an equation and prescribed",
+        ),
+        (
+            "2\n4, 1, 1., 3, 1, 1.\n2\n4, 1, 1., 2, 1, 1.",
+            "D517",
+            "eliminated by an earlier equation",
+        ),
+        (
+            "2\n4, 1, 1., 4, 1, 1.",
+            "D517",
+            "direction 1 of node 4 stands in it again",
+        ),
+        (
+            "2\n4, 1, 1., 3, 1, 1.\n2\n3, 1, 1., 4, 1, 1.",
+            "D517",
+            "in a circle",
+        ),
+        (
+            "2\nTWO, 1, 1., ALL, 2, 1.",
+            "D517",
+            "the set has 4 nodes, that of the first term 2",
+        ),
+        (
+            "2\nONE, 1, 1., BOTH, 2, 1.",
+            "D517",
+            "the set has 2 nodes, that of the first term 1",
+        ),
+        ("2\nMIXED, 1, 1., BOTH, 2, 1.", "D517", "MIXED is UNSORTED"),
+    ];
+    for (rows, code, message) in faults {
+        let text = SQUARE.replacen("*STEP", &format!("{sets}{rows}\n*STEP"), 1);
+        let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+        let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
+        assert!(reader::build(&deck, &mut d).is_none(), "{rows}");
+        let found = d.render(&sources, false);
+        let is_told = found.contains(message) && found.contains(&format!("error[{code}]"));
+        assert!(is_told, "{rows}\n{found}");
+    }
+}
+
+#[test]
+fn a_velocity_that_an_equation_changes_is_told() {
+    let text = |velocity: &str| {
+        let cards = format!(
+            "*EQUATION\n2\n4, 2, 1., 3, 2, -2.\n*INITIAL CONDITIONS, TYPE=VELOCITY\n3, 2, 0.3\n4, 2, {velocity}"
+        );
+        SQUARE.replacen("*STEP", &format!("{cards}\n*STEP"), 1)
+    };
+    assert_eq!(read(&text("0.6")).1, "");
+    let warning = "direction 2 of node 4 does not start with its velocity";
+    assert!(read(&text("0.7")).1.contains(warning));
 }

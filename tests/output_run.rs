@@ -15,9 +15,8 @@ mod blocks;
 
 use std::path::Path;
 
-use blocks::{add_block, add_contact, model, step, throw};
+use blocks::{add_block, add_contact, model, run, step, throw};
 use hdf5::File;
-use stickslip::dynamics;
 use stickslip::model::{Frames, Model, Settings};
 use stickslip::output::{Claim, JobFiles, ResultSummary, ResultWriter, RunRecord, Verbosity};
 use tempfile::TempDir;
@@ -39,7 +38,7 @@ fn solve(model: &Model, folder: &Path) -> JobFiles {
     let record = RunRecord::default();
     let claim = Claim::take(&files, true).expect("claim");
     let mut writer = ResultWriter::create(model, claim, &record, Verbosity::Quiet).expect("writer");
-    let summary = dynamics::run(model, &mut writer).expect("run");
+    let summary = run(model, &mut writer).expect("run");
     writer.finish(&summary).expect("finish");
     files
 }

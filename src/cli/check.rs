@@ -17,8 +17,8 @@ pub(super) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exit, CliEr
     let Some(model) = &loaded.model else {
         return Ok(Exit::Rejected);
     };
-    check_names(model)?;
-    print(&ModelEcho::new(model).lines(model))?;
+    check_names(model.model())?;
+    print(&ModelEcho::new(model.model()).lines(model))?;
     Ok(Exit::Finished)
 }
 

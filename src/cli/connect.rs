@@ -4,15 +4,14 @@ use std::path::Path;
 
 use crate::diagnostics::{Code, Diagnostics, Severity, Sources, Strictness};
 use crate::dynamics::{Observer, RunError, RunSummary};
-use crate::model::Model;
-use crate::prepare::{adjust, report_adjusted, report_penetrations};
+use crate::prepare::{PreparedModel, prepare};
 use crate::{dynamics, reader};
 
 /// A deck as read.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Loaded {
-    /// The model, when the deck has no errors.
-    pub model: Option<Model>,
+    /// The model, ready to run, when the deck has no errors.
+    pub model: Option<PreparedModel>,
     /// Errors, warnings and notes for the screen of `check`.
     pub all_messages: String,
     /// The same for that of `run`, which does not care what other codes would make of the deck.
@@ -34,7 +33,7 @@ pub(super) struct Loaded {
 /// Reads a deck; messages coloured or not.
 type Load = fn(&Path, Strictness, bool) -> Loaded;
 /// Solves all steps of a model.
-type Solve = fn(&Model, &mut dyn Observer) -> Result<RunSummary, RunError>;
+type Solve = fn(&PreparedModel, &mut dyn Observer) -> Result<RunSummary, RunError>;
 
 /// What the commands need of the rest of the program.
 pub(super) struct Numerics {
@@ -55,17 +54,11 @@ impl Numerics {
 fn load(path: &Path, strictness: Strictness, colour: bool) -> Loaded {
     let mut sources = Sources::new();
     let mut d = Diagnostics::with_strictness(strictness);
-    let mut model = reader::read_model(path, &mut sources, &mut d);
-    if let Some(model) = &mut model {
-        let adjusted = adjust(model);
-        report_adjusted(model, &adjusted, &mut d);
-        if !d.has_errors() {
-            report_penetrations(model, &mut d);
-        }
-    }
+    let model = reader::read_model(path, &mut sources, &mut d);
+    let model = model.and_then(|model| prepare(model, &mut d));
     let ours = d.without(Code::LongNumber);
     Loaded {
-        model: model.filter(|_| !d.has_errors()),
+        model,
         all_messages: d.render(&sources, colour),
         messages: ours.render(&sources, colour),
         plain_messages: ours.render(&sources, false),

@@ -6,10 +6,13 @@ use super::connect::Numerics;
 use super::exit::Exit;
 use super::run_tests::{Bench, code, numerics, report, summary};
 use crate::dynamics::{Observer, Outcome, RunError, RunSummary};
-use crate::model::Model;
 use crate::output::Interrupt;
+use crate::prepare::PreparedModel;
 
-fn to_an_error_at_the_start(_: &Model, _: &mut dyn Observer) -> Result<RunSummary, RunError> {
+fn to_an_error_at_the_start(
+    _: &PreparedModel,
+    _: &mut dyn Observer,
+) -> Result<RunSummary, RunError> {
     Err(RunError::Observer(io::ErrorKind::StorageFull.into()))
 }
 
@@ -18,7 +21,7 @@ thread_local! {
     static INTERRUPT: (Interrupt, cell::Cell<i32>) = (Interrupt::default(), cell::Cell::new(0));
 }
 
-fn until_told(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+fn until_told(_: &PreparedModel, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
     for k in 0..=10 {
         if k == 3 {
             INTERRUPT.with(|(interrupt, signal)| interrupt.request(signal.get()));

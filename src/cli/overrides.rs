@@ -1,13 +1,13 @@
 //! What the command line changes in the model.
 
 use super::args::RunArgs;
-use crate::model::{Frames, Model, SolverChoice};
+use crate::model::{Frames, SolverChoice, Step};
 use crate::output::{frames, solver};
 
-/// Applies the command line to the steps of the model; says where the deck wanted otherwise.
-pub(super) fn apply(args: &RunArgs, model: &mut Model) -> Vec<String> {
+/// Applies the command line to the steps; says where the deck wanted otherwise.
+pub(super) fn apply(args: &RunArgs, steps: &mut [Step]) -> Vec<String> {
     let mut notes = vec![];
-    for (i, step) in model.steps.iter_mut().enumerate() {
+    for (i, step) in steps.iter_mut().enumerate() {
         let number = i + 1;
         if let Some(wanted) = args.frames() {
             notes.extend(frames_note(number, &step.frames, &wanted));

@@ -8,11 +8,11 @@ use super::exit::Exit;
 use super::version::{COMMIT, NUMBER, PROFILE};
 use crate::cli::{overrides, signals};
 use crate::dynamics::{Outcome, RunError};
-use crate::model::Model;
 use crate::output::{
     Claim, Interrupt, JobFiles, ModelEcho, ResultWriter, RunRecord, Verbosity, check_names,
     program_lines,
 };
+use crate::prepare::PreparedModel;
 
 /// Solves a deck; `command` is the command as typed. The run ends early when `interrupt` asks for
 /// it.
@@ -30,15 +30,15 @@ pub(super) fn run(
     if args.verbosity() != Verbosity::Quiet {
         complain_of(&loaded.messages);
     }
-    check_names(&model)?;
+    check_names(model.model())?;
     if interrupt.signal().is_some() {
         return Ok(signals::exit(interrupt));
     }
     let files = JobFiles::new(&args.deck.path, &args.output);
     let claim = Claim::take(&files, args.overwrite)?;
     let record = record(command, &loaded, start_threads(args.threads)?);
-    let notes = overrides::apply(args, &mut model);
-    let mut writer = ResultWriter::create(&model, claim, &record, args.verbosity())?;
+    let notes = overrides::apply(args, model.steps_mut());
+    let mut writer = ResultWriter::create(model.model(), claim, &record, args.verbosity())?;
     writer.heed(interrupt);
     for line in header(args, &files, &loaded, &record, &model) {
         writer.line(&line)?;
@@ -59,7 +59,7 @@ pub(super) fn run(
 
 /// Solves the model and completes the results.
 fn solve(
-    model: &Model,
+    model: &PreparedModel,
     writer: &mut ResultWriter,
     numerics: &Numerics,
     interrupt: &Interrupt,
@@ -110,10 +110,10 @@ fn header(
     files: &JobFiles,
     loaded: &Loaded,
     record: &RunRecord,
-    model: &Model,
+    model: &PreparedModel,
 ) -> Vec<String> {
-    let mut lines = program_lines(record, PROFILE, &files.name, &model.title);
+    let mut lines = program_lines(record, PROFILE, &files.name, &model.model().title);
     lines.push(deck_line_of(&args.deck.path, loaded, Some(&files.log)));
-    lines.extend(ModelEcho::new(model).lines(model));
+    lines.extend(ModelEcho::new(model.model()).lines(model));
     lines
 }

@@ -19,9 +19,11 @@ use crate::dynamics::{
 use crate::elements::Strained;
 use crate::lcp::{FrictionalLcp, LcpError};
 use crate::model::{
-    Element, ElementType, Frames, Increments, Material, Mesh, Model, Section, Set, Settings, Step,
+    Element, ElementType, Frames, Increments, Material, Mesh, Model, Procedure, Section, Set,
+    Settings, Step,
 };
 use crate::output::{Interrupt, ResultSummary};
+use crate::prepare::PreparedModel;
 
 /// One square, one step of ten increments with a frame at its end.
 fn square() -> Model {
@@ -48,6 +50,7 @@ fn square() -> Model {
         }],
         steps: vec![Step {
             name: None,
+            procedure: Procedure::Dynamic,
             increments: Increments {
                 dt: 0.1,
                 period: 1.0,
@@ -69,7 +72,7 @@ fn square() -> Model {
 fn loaded(model: Option<Model>) -> Loaded {
     Loaded {
         errors: usize::from(model.is_none()),
-        model,
+        model: model.map(PreparedModel::new),
         plain_messages: "warning: this is a test".into(),
         text: "*HEADING\n".into(),
         lines: 1,
@@ -139,14 +142,14 @@ fn failure() -> Failure {
     }
 }
 
-fn to_the_end(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+fn to_the_end(_: &PreparedModel, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
     for k in 0..=10 {
         observer.increment(&report(k)).map_err(RunError::Observer)?;
     }
     Ok(summary(Outcome::Finished, 10))
 }
 
-fn to_a_stop(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+fn to_a_stop(_: &PreparedModel, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
     for k in 0..=3 {
         observer.increment(&report(k)).map_err(RunError::Observer)?;
     }
@@ -159,7 +162,10 @@ fn to_a_stop(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunEr
     Ok(summary(Outcome::Stopped(Box::new(failure)), 3))
 }
 
-fn to_an_unsolved_lcp(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+fn to_an_unsolved_lcp(
+    _: &PreparedModel,
+    observer: &mut dyn Observer,
+) -> Result<RunSummary, RunError> {
     observer.increment(&report(0)).map_err(RunError::Observer)?;
     let mut failure = failure();
     failure.cause = Cause::Lcp(Box::new(FailedLcp {
@@ -170,7 +176,7 @@ fn to_an_unsolved_lcp(_: &Model, observer: &mut dyn Observer) -> Result<RunSumma
     Ok(summary(Outcome::Stopped(Box::new(failure)), 0))
 }
 
-fn to_a_passage(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+fn to_a_passage(_: &PreparedModel, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
     observer.increment(&report(0)).map_err(RunError::Observer)?;
     let mut failure = failure();
     failure.cause = Cause::Crossed {
@@ -190,7 +196,7 @@ fn one_contact() -> FrictionalLcp {
     }
 }
 
-fn to_a_full_disk(_: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+fn to_a_full_disk(_: &PreparedModel, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
     observer.increment(&report(0)).map_err(RunError::Observer)?;
     let full = io::Error::from(io::ErrorKind::StorageFull);
     Err(RunError::Observer(full))

@@ -111,6 +111,7 @@ codes! {
     ConflictingSupport "D514" "A degree of freedom is prescribed twice in a step."
     IgnoredVariable "D515" "An output variable that is not written."
     ConstantIncrement "D516" "Increments do not grow, although the step lets them."
+    BadEquation "D517" "An equation between displacements that cannot be used as it is."
 }
 
 #[cfg(test)]

@@ -5,9 +5,9 @@
 
 mod amplitude;
 mod bodies;
+mod constraint;
 mod contact;
 mod element_type;
-mod equation;
 mod load;
 mod material;
 mod mesh;
@@ -18,16 +18,16 @@ mod surface;
 
 pub use amplitude::{Amplitude, TimeBase};
 pub use bodies::Bodies;
+pub use constraint::{Equation, RigidBody};
 pub use contact::{Adjust, Contact, Interaction};
 pub use element_type::{ElementType, Formulation, Shape, Topology};
-pub use equation::Equation;
 pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
 pub use material::{Material, Plane, Section};
 pub use mesh::{Element, Face, Mesh, Set};
 pub use sets::{HistorySet, NamedSets};
 pub use settings::{Factorization, Impact, ImpactTime, LcpChoice, Scheme, Settings, SolverChoice};
-pub use step::{Frames, Increments, Step};
-pub use surface::{ALL_EXTERIOR, RigidBody, Surface, SurfaceKind};
+pub use step::{Frames, Increments, Procedure, Step};
+pub use surface::{ALL_EXTERIOR, Surface, SurfaceKind};
 
 /// A whole problem: what a deck says, checked and with all names resolved to indices.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -3,11 +3,13 @@
 
 use super::{BodyForce, Load, PointLoad, Pressure, Settings, Support, Traction};
 
-/// One dynamic step: everything that acts in it, whether named in it or carried on from before.
+/// One step: everything that acts in it, whether named in it or carried on from before.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
     /// Name of the step, if it has one.
     pub name: Option<String>,
+    /// What is solved in it.
+    pub procedure: Procedure,
     /// Its increments.
     pub increments: Increments,
     /// Settings of the solver.
@@ -24,6 +26,13 @@ pub struct Step {
     pub tractions: Vec<Load<Traction>>,
     /// When field frames are written.
     pub frames: Frames,
+}
+
+/// What is solved in a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Procedure {
+    /// The equation of motion, integrated implicitly in time (`*DYNAMIC`).
+    Dynamic,
 }
 
 /// Time increments of a step.

@@ -1,5 +1,5 @@
-//! Contact surfaces: element faces, nodes or rigid segments, and the rigid bodies made of them.
-//! Segments run from a to b with the body on the left (docs/theory.md, sections 3 and 9).
+//! Contact surfaces: element faces, nodes or rigid segments. Segments run from a to b with the body
+//! on the left, as in docs/theory.md, section 3.
 
 use super::mesh::{Face, Mesh};
 
@@ -25,15 +25,6 @@ pub enum SurfaceKind {
     /// Segments [a, b] between nodes without element, the rigid body on the left of the direction
     /// from a to b: can be master only.
     Rigid(Vec<[usize; 2]>),
-}
-
-/// A rigid surface and the node that it moves with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct RigidBody {
-    /// Index of the rigid surface.
-    pub surface: usize,
-    /// Reference node (index).
-    pub reference: usize,
 }
 
 impl Surface {

@@ -107,7 +107,7 @@ pub(super) fn are_dense(step: &Step) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Increments, Settings};
+    use crate::model::{Increments, Procedure, Settings};
 
     fn model(frames: Frames, period: f64) -> Model {
         let increments = Increments {
@@ -118,6 +118,7 @@ mod tests {
         };
         let step = Step {
             name: None,
+            procedure: Procedure::Dynamic,
             increments,
             settings: Settings::default(),
             supports: vec![],

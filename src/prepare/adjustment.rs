@@ -2,7 +2,7 @@
 //! surface (`ADJUST=` of `*CONTACT PAIR`), with a check of the elements that change shape.
 
 use super::initial_gaps::{InitialGap, gaps};
-use crate::contact::contact_surfaces;
+use crate::contact::ContactSurfaces;
 use crate::contact::tolerances::{ADJUSTMENT_REACH, COORDINATE_ROUND_OFF};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
 use crate::model::{Adjust, Contact, Element, Model};
@@ -27,7 +27,7 @@ pub struct Adjusted {
 
 /// Moves slave nodes onto the master surfaces as the contacts of a model ask for, one contact after
 /// the other: the reference coordinates change, so that nothing is strained.
-pub fn adjust(model: &mut Model) -> Vec<Adjusted> {
+pub(super) fn adjust(model: &mut Model, surfaces: &[ContactSurfaces]) -> Vec<Adjusted> {
     if model
         .contacts
         .iter()
@@ -37,7 +37,7 @@ pub fn adjust(model: &mut Model) -> Vec<Adjusted> {
     }
     let bodies = model.mesh.bodies();
     let mut adjusted = Vec::new();
-    for (i, surfaces) in contact_surfaces(model).iter().enumerate() {
+    for (i, surfaces) in surfaces.iter().enumerate() {
         let Some(wanted) = model.contacts[i].adjust else {
             continue;
         };
@@ -115,7 +115,7 @@ fn area(nodes: &[usize], x: &[[f64; 2]]) -> f64 {
 }
 
 /// Reports what was moved; an element that was spoiled is an error.
-pub fn report_adjusted(model: &Model, adjusted: &[Adjusted], d: &mut Diagnostics) {
+pub(super) fn report_adjusted(model: &Model, adjusted: &[Adjusted], d: &mut Diagnostics) {
     for moved in adjusted {
         let contact = &model.contacts[moved.contact];
         d.push(match moved.spoiled {
@@ -154,6 +154,7 @@ fn note(model: &Model, contact: &Contact, moved: &Adjusted) -> Diagnostic {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::contact_surfaces;
     use crate::diagnostics::Span;
     use crate::model::{ElementType, Face, Interaction, Surface, SurfaceKind};
 
@@ -214,7 +215,9 @@ mod tests {
             left_out: Vec::new(),
             span: Span::default(),
         });
-        adjust(&mut model).iter().map(|moved| moved.count).sum()
+        let surfaces = contact_surfaces(&model);
+        let adjusted = adjust(&mut model, &surfaces);
+        adjusted.iter().map(|moved| moved.count).sum()
     }
 
     #[test]

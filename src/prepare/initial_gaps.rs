@@ -2,8 +2,7 @@
 //! configuration, with branch and bound over the bounding circles of the segments.
 
 use crate::contact::tolerances::PROJECTION_BEYOND_ENDS;
-use crate::contact::{Circle, CircleTree, ContactSurfaces, Projection, contact_surfaces, project};
-use crate::model::Model;
+use crate::contact::{Circle, CircleTree, ContactSurfaces, Projection, project};
 
 /// Gap of a slave node to the segment it faces in the reference configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,16 +19,9 @@ pub struct InitialGap {
     pub edge: f64,
 }
 
-/// Gaps of the slave nodes of each contact of a model in the reference configuration; nodes that
-/// face no segment are left out.
-pub fn initial_gaps(model: &Model) -> Vec<Vec<InitialGap>> {
-    let bodies = model.mesh.bodies();
-    let of_contact = |contact: &ContactSurfaces| gaps(contact, &model.mesh.coordinates, &bodies);
-    contact_surfaces(model).iter().map(of_contact).collect()
-}
-
-/// Gaps of the slave nodes of a contact at the positions `x`.
-pub(crate) fn gaps(contact: &ContactSurfaces, x: &[[f64; 2]], bodies: &[usize]) -> Vec<InitialGap> {
+/// Gaps of the slave nodes of a contact at the positions `x`; nodes that face no segment are left
+/// out.
+pub(super) fn gaps(contact: &ContactSurfaces, x: &[[f64; 2]], bodies: &[usize]) -> Vec<InitialGap> {
     let circles = contact.segments.iter().map(|&[a, b]| circle(x[a], x[b]));
     let start = Start {
         contact,

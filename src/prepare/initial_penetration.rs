@@ -1,7 +1,7 @@
 //! Check of the initial configuration: penetrated nodes, overlapping bodies and surfaces that do
 //! not face each other, reported as diagnostics at the contact in the deck.
 
-use super::initial_gaps::{InitialGap, initial_gaps};
+use super::initial_gaps::InitialGap;
 use crate::contact::project;
 use crate::contact::tolerances::{COORDINATE_ROUND_OFF, PENETRATION_FAULT};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
@@ -12,21 +12,22 @@ use std::collections::{HashMap, HashSet};
 /// the first increment pushes out, as warnings. Bodies that lie on the same side of a common face
 /// are errors too: all gaps are zero there, and contact would never close. A pair of which no node
 /// faces the other surface is a warning.
-pub fn report_penetrations(model: &Model, d: &mut Diagnostics) {
-    let all_gaps = initial_gaps(model);
-    report_nothing_faced(model, &all_gaps, d);
+pub(super) fn report_penetrations(
+    model: &Model,
+    all_gaps: &[Vec<InitialGap>],
+    d: &mut Diagnostics,
+) {
+    report_nothing_faced(model, all_gaps, d);
     for (contact, gaps) in model.contacts.iter().zip(all_gaps) {
-        if let Some(face) = common_face(model, contact, &gaps) {
+        if let Some(face) = common_face(model, contact, gaps) {
             d.push(overlap(model, contact, face));
         }
         let depth = |gap: &InitialGap| -gap.gap / gap.edge;
-        let inside: Vec<InitialGap> = gaps
-            .into_iter()
-            .filter(|gap| depth(gap) > COORDINATE_ROUND_OFF)
-            .collect();
-        let deepest = inside.iter().max_by(|a, b| depth(a).total_cmp(&depth(b)));
+        let is_inside = |gap: &&InitialGap| depth(gap) > COORDINATE_ROUND_OFF;
+        let inside = || gaps.iter().filter(is_inside);
+        let deepest = inside().max_by(|a, b| depth(a).total_cmp(&depth(b)));
         if let Some(deepest) = deepest {
-            d.push(diagnostic(model, contact, deepest, inside.len()));
+            d.push(diagnostic(model, contact, deepest, inside().count()));
         }
     }
 }

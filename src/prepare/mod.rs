@@ -4,7 +4,8 @@
 mod adjustment;
 mod initial_gaps;
 mod initial_penetration;
+mod prepared_model;
 
-pub use adjustment::{Adjusted, adjust, report_adjusted};
-pub use initial_gaps::{InitialGap, initial_gaps};
-pub use initial_penetration::report_penetrations;
+pub use adjustment::Adjusted;
+pub use initial_gaps::InitialGap;
+pub use prepared_model::{PreparedModel, prepare};

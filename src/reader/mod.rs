@@ -21,7 +21,7 @@ use context::Context;
 use mesh::{Outline, nodes_elements, sets, surface};
 use std::path::Path;
 use steps::boundary::Targets;
-use steps::{amplitude, boundary, step};
+use steps::{amplitude, boundary, equation, step};
 
 /// Reads a deck file into a model; `None` if there are errors.
 pub fn read_model(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Option<Model> {
@@ -63,7 +63,9 @@ fn read(cx: &mut Context) -> Model {
     };
     let guide = check::crossing_time(&mesh_index.mesh, &properties);
     let steps = step::read(&outline, targets, &surfaces, guide, cx);
+    let equations = equation::read(&outline, targets, &steps.all, cx);
     let initial_velocity = boundary::initial_velocity(&outline, targets, &steps.at_start, cx);
+    equation::check_velocities(&equations, &initial_velocity, &steps.at_start, targets, cx);
     Model {
         title: title(&outline),
         mesh: with_sections(mesh_index.mesh, &properties.section_of),
@@ -77,7 +79,10 @@ fn read(cx: &mut Context) -> Model {
         sections: properties.sections,
         contacts,
         amplitudes: amplitudes.all,
-        equations: Vec::new(),
+        equations: equations
+            .into_iter()
+            .map(|(equation, _)| equation)
+            .collect(),
         initial_velocity,
         steps: steps.all,
         rigid_bodies: rigid_surface::bodies(&rigid_surfaces),

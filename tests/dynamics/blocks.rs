@@ -3,11 +3,14 @@
 use std::io;
 
 use stickslip::diagnostics::Span;
-use stickslip::dynamics::{Cutback, IncrementReport, Observer, Outcome, RunSummary, run};
-use stickslip::model::{
-    Contact, Element, ElementType, Face, Frames, Increments, Interaction, Material, Model, Section,
-    Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
+use stickslip::dynamics::{
+    self, Cutback, IncrementReport, Observer, Outcome, RunError, RunSummary,
 };
+use stickslip::model::{
+    Contact, Element, ElementType, Face, Frames, Increments, Interaction, Material, Model,
+    Procedure, Section, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
+};
+use stickslip::prepare::PreparedModel;
 
 /// A rectangular block of nx x ny Q4.
 pub struct Block {
@@ -157,6 +160,7 @@ pub fn step(dt: f64, count: usize, settings: Settings, mut supports: Vec<Support
     supports.sort_by_key(|support| support.dof);
     Step {
         name: None,
+        procedure: Procedure::Dynamic,
         increments: Increments {
             dt,
             period: dt * count as f64,
@@ -190,6 +194,11 @@ impl Observer for Keep {
         self.cutbacks.push(cutback.clone());
         Ok(())
     }
+}
+
+/// Runs a model as it is, after its preparation.
+pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+    dynamics::run(&PreparedModel::new(model.clone()), observer)
 }
 
 /// Runs a model to its end.

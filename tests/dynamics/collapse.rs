@@ -2,8 +2,8 @@
 
 use std::io;
 
-use crate::blocks::{Keep, add_block, add_contact, fixed, model, step};
-use stickslip::dynamics::{Cause, Cutback, IncrementReport, Observer, Outcome, run};
+use crate::blocks::{Keep, add_block, add_contact, fixed, model, run, step};
+use stickslip::dynamics::{Cause, Cutback, IncrementReport, Observer, Outcome};
 use stickslip::model::{ImpactTime, Model, Settings, Support, SupportMotion};
 
 /// A block whose upper face loses its length, and the ends of that face.

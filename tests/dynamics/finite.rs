@@ -1,7 +1,7 @@
 //! Numbers that are not finite: nothing is accepted with them, and the cause says where they are.
 
-use crate::blocks::{Keep, add_block, add_contact, fixed, model, step};
-use stickslip::dynamics::{Cause, Outcome, run};
+use crate::blocks::{Keep, add_block, add_contact, fixed, model, run, step};
+use stickslip::dynamics::{Cause, Outcome};
 use stickslip::model::{
     Load, Model, PointLoad, Pressure, Settings, Support, SupportMotion, TimeBase, Variation,
 };

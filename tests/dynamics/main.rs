@@ -4,6 +4,7 @@ mod accounts;
 mod blocks;
 mod collapse;
 mod elastic_bar;
+mod equations;
 mod events;
 mod fast;
 mod finite;

@@ -20,8 +20,8 @@ use stickslip::dynamics::{
 use stickslip::elements::{ElementResult, Strained};
 use stickslip::model::{
     Contact, Element, ElementType, Face, Frames, HistorySet, Increments, Interaction, Material,
-    Mesh, Model, NamedSets, Section, Set, Settings, Step, Support, SupportMotion, Surface,
-    SurfaceKind,
+    Mesh, Model, NamedSets, Procedure, Section, Set, Settings, Step, Support, SupportMotion,
+    Surface, SurfaceKind,
 };
 use stickslip::output::{Claim, JobFiles, ResultWriter, RunRecord, Verbosity};
 
@@ -127,6 +127,7 @@ fn step() -> Step {
     let to = SupportMotion::Ramp { to: 0.0 };
     Step {
         name: None,
+        procedure: Procedure::Dynamic,
         increments: Increments {
             dt: 0.1,
             period: 1.0,
@@ -168,6 +169,7 @@ pub fn report(k: usize) -> IncrementReport {
         },
         nodal: nodal(k, ramp(4.0), ramp(5.0)),
         elements: vec![ElementResult::default(); 3].into(),
+        contact_energy: None,
         energy: Energy {
             kinetic: cosine * cosine,
             strain: sine * sine,

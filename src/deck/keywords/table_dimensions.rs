@@ -190,6 +190,7 @@ pub(crate) static DIMENSIONS: &[Dimensions] = &[
         &["NAME", "INPUT", "SHIFTY", "SCALEX", "SCALEY", "SMOOTH"],
         &[("SHIFTX", TIME)],
     ),
+    keyword("EQUATION", NAMES, &["INPUT"], &[]),
     keyword(
         "INITIAL CONDITIONS",
         &[under("TYPE", "VELOCITY", &[Plain, Plain, VELOCITY])],

@@ -70,7 +70,10 @@ pub(crate) static MODEL: &[Keyword] = &[
             P::value("ELSET", "element set whose nodes are taken"),
             INPUT,
             P::flag("INTERNAL", CAE).ignored(),
-            P::flag("UNSORTED", "sets have no order").ignored(),
+            P::flag(
+                "UNSORTED",
+                "sets have no order: *EQUATION refuses an unsorted one",
+            ),
             P::value("INSTANCE", "assembly decks are not read yet").refused(),
         ],
         "A node set: nodes and node sets, whole or as ranges.",
@@ -391,6 +394,20 @@ pub(crate) static MODEL: &[Keyword] = &[
             P::value("SMOOTH", "corners are not smoothed").warned(),
         ],
         "A function of time: time, value, time, value, ...",
+    ),
+    Keyword::read(
+        "EQUATION",
+        Scope::Model,
+        Data::Required,
+        &[INPUT],
+        "Linear equations between displacements, a1 u1 + a2 u2 + ... = 0 at all times: the number of \
+         terms on a line, then node or node set, direction, coefficient of each, four terms on a line; \
+         any number of equations. Sets give an equation for every node, in the order of the numbers; \
+         those after the first have as many nodes, or one. The first term is eliminated: no *BOUNDARY \
+         may prescribe it and no other equation eliminate it; the others may be prescribed, or \
+         eliminated by other equations. A node without element moves as its equations say. The \
+         forces of the equations are in RF; their first terms start with the velocities that follow \
+         from those of the others.",
     ),
     Keyword::read(
         "INITIAL CONDITIONS",

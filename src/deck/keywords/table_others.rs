@@ -91,7 +91,6 @@ pub(crate) static OTHERS: &[Keyword] = &[
     refused("ELCOPY", "Give all elements with *ELEMENT."),
     refused("PARAMETER", "Write numbers, not parameters."),
     refused("TIE", "Surfaces cannot be tied yet."),
-    refused("EQUATION", CONSTRAINT),
     refused("MPC", CONSTRAINT),
     refused("COUPLING", CONSTRAINT),
     refused("KINEMATIC", CONSTRAINT),

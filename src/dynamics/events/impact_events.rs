@@ -9,8 +9,6 @@ use crate::dynamics::ledger::motion;
 use crate::dynamics::results::State;
 use crate::dynamics::step::{Interval, StepProblem, TimePoint, Workspace};
 
-/// Impacts within an increment of the nominal, after which nodes land within what is left of it.
-pub(crate) const MOST_EVENTS: usize = 50;
 /// Part of a nominal increment within which impacts are taken together; no piece is shorter.
 const IMPACT_GROUPING_TIME: f64 = 1e-3;
 /// Accuracy of the time of an impact, in increments of the nominal.
@@ -42,8 +40,6 @@ pub(crate) struct Subincrements<'a, 'm> {
     pub rest: Interval,
     /// Length of an increment of the nominal.
     pub nominal: f64,
-    /// Length of the last piece.
-    pub last: f64,
 }
 
 /// A node goes into a body.
@@ -112,13 +108,15 @@ impl<'m> Subincrements<'_, 'm> {
     ///
     /// then tells when the pairs that stay out meet: at T(tau). The piece ends at the impact when
     /// T(tau) = tau, which secants find; without elastic forces T does not depend on tau.
-    pub fn next(&mut self) -> Result<Subincrement, FailedSubincrement> {
+    ///
+    /// `last` is the length of the last subincrement.
+    pub fn next(&mut self, last: f64) -> Result<Subincrement, FailedSubincrement> {
         let (rest, group) = (self.rest.dt, IMPACT_GROUPING_TIME * self.nominal);
         let search = &mut self.workspace.search;
         search.start(&self.start.v, rest);
         search.cover(&self.start.u);
         let mut active = ActiveConstraints::new(self.problem, search, &self.start.u, self.contact);
-        let mut tau = self.predicted(&mut active);
+        let mut tau = self.predicted(&mut active, last);
         let mut root = ImpactTime::new(rest);
         for _ in 0..TRIALS {
             let solved = self.attempt(tau, Some(&active))?;
@@ -179,7 +177,7 @@ impl<'m> Subincrements<'_, 'm> {
     }
 
     /// Length of the piece by the motion of the start.
-    fn predicted(&mut self, active: &mut ActiveConstraints) -> f64 {
+    fn predicted(&mut self, active: &mut ActiveConstraints, last: f64) -> f64 {
         let (rest, group) = (self.rest.dt, IMPACT_GROUPING_TIME * self.nominal);
         let start = self.start;
         loop {
@@ -187,7 +185,7 @@ impl<'m> Subincrements<'_, 'm> {
                 v: &start.v,
                 a: &start.a,
                 end: 0.0,
-                duration: rest.min(MOTION_HORIZON * self.last),
+                duration: rest.min(MOTION_HORIZON * last),
             };
             match self.first_entry(active, motion) {
                 Some(entry) if entry.time < group => self.join_at_start(active, entry),

@@ -3,4 +3,4 @@
 mod impact_events;
 mod impact_time;
 
-pub(crate) use impact_events::{MOST_EVENTS, Subincrement, Subincrements};
+pub(crate) use impact_events::{FailedSubincrement, Subincrement, Subincrements};

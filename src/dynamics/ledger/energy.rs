@@ -6,7 +6,11 @@ use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{Cause, Energy, State};
 use crate::dynamics::step::{Equilibrium, StepProblem, dot};
 use crate::elements::ElementResult;
-use crate::linear::largest;
+use crate::linear::{larger, largest};
+
+/// Normal work of contact in an increment up to which it is round-off, as a part of the largest energy
+/// so far: forces and displacements are converged to 1e-11 (`TOLERANCE`), and pairs add up.
+pub(super) const CONTACT_WORK_ROUND_OFF: f64 = 1e-10;
 
 /// Energy ledger: every term is computed on its own, so that the balance shows what is wrong.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -16,6 +20,10 @@ pub(crate) struct Ledger {
     pub largest: Vec<f64>,
     /// Strain energy, stress and strain of every element.
     pub elements: Arc<[ElementResult]>,
+    /// Energy that contact put in in the last increment, if it did.
+    pub contact_energy: Option<f64>,
+    /// Largest kinetic or strain energy or external work so far.
+    scale: f64,
     /// T + W at the start of the analysis.
     start: f64,
 }
@@ -34,6 +42,7 @@ impl Ledger {
         let mut ledger = Ledger {
             energy,
             largest: vec![0.0; problem.parts.bodies()],
+            scale: larger(kinetic, strain),
             start: kinetic + strain,
             ..Ledger::default()
         };
@@ -86,7 +95,7 @@ impl Ledger {
         self.enter_bodies(problem, end, &elements);
         self.elements = elements.into();
         let e = &mut self.energy;
-        let strain0 = e.strain;
+        let (strain0, contact_work0) = (e.strain, e.normal_contact_work);
         e.strain = self.elements.iter().map(|element| element.energy).sum();
         e.kinetic = problem.mass.kinetic_energy(&end.v);
 
@@ -119,6 +128,11 @@ impl Ledger {
             + e.friction_dissipation
             + e.impact_loss
             + e.numerical_dissipation;
+        for energy in [e.kinetic, e.strain, e.external_work] {
+            self.scale = larger(self.scale, energy.abs());
+        }
+        let work = e.normal_contact_work - contact_work0;
+        self.contact_energy = (work > CONTACT_WORK_ROUND_OFF * self.scale).then_some(work);
         self.check(end)?;
         Ok(self)
     }

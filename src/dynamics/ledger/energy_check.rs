@@ -1,37 +1,30 @@
 //! Energy check of contact in the energy-momentum scheme: positive normal work at corners that
 //! turn concave under a sliding node. Section 7 of docs/theory.md.
 
-use super::energy::Ledger;
+use super::energy::{CONTACT_WORK_ROUND_OFF, Ledger};
 use crate::contact::Pair;
 use crate::contact::tolerances::CLOSED_GAP;
-use crate::dynamics::increment::{Failed, Solved};
+use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{Cause, State};
 use crate::dynamics::step::StepProblem;
 
-/// Energy that a pair may put in, as a part of the largest energy of its bodies.
-const NEGLIGIBLE: f64 = 1e-10;
-
-/// Takes a converged increment from `start`, unless contact puts energy in that counts beside the
-/// largest energy that the bodies in contact have had so far.
+/// Checks that contact puts no energy in, in a converged increment from `start`, that counts beside
+/// the largest energy that the bodies in contact have had so far.
 ///
 /// # Errors
-/// The increment counts as failed, with [`Cause::GainedEnergy`]: in its halves a node passes a corner
-/// before or after the corner turns concave.
+/// [`Cause::GainedEnergy`]: in halves of the increment a node passes a corner before or after the
+/// corner turns concave.
 pub(crate) fn check_energy_gain(
     problem: &StepProblem,
     start: &State,
     ledger: &Ledger,
-    solved: Solved,
-) -> Result<Solved, Failed> {
-    let part = gain(problem, start, ledger, &solved);
-    if part <= NEGLIGIBLE {
-        return Ok(solved);
+    solved: &Solved,
+) -> Result<(), Cause> {
+    let part = gain(problem, start, ledger, solved);
+    if part <= CONTACT_WORK_ROUND_OFF {
+        return Ok(());
     }
-    Err(Failed {
-        cause: Cause::GainedEnergy { part },
-        worst: None,
-        passes: solved.passes,
-    })
+    Err(Cause::GainedEnergy { part })
 }
 
 /// The energy that contact puts in because nodes slide on to segments that they were behind, as a part of

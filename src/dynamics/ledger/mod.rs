@@ -1,6 +1,5 @@
 //! Accounts of converged increments: energies, contacts, bodies, nodes, rigid surfaces.
 
-mod acceptance;
 mod accounts;
 mod bodies;
 mod contact_ledger;
@@ -10,7 +9,7 @@ mod nodal_results;
 mod pressure;
 mod rigid_surfaces;
 
-pub(crate) use acceptance::{Accepted, start_failure};
 pub(crate) use accounts::Accounts;
 pub(crate) use energy::Ledger;
+pub(crate) use energy_check::check_energy_gain;
 pub(crate) use nodal_results::{landings, motion};

@@ -161,6 +161,8 @@ pub struct IncrementReport {
     pub elements: Arc<[ElementResult]>,
     /// Energy ledger.
     pub energy: Energy,
+    /// Energy that contact put in, if its normal work was positive beyond round-off.
+    pub contact_energy: Option<f64>,
     /// Momentum.
     pub momentum: Momentum,
     /// Results of every body, in the order of [`crate::model::Bodies`].

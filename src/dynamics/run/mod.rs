@@ -1,6 +1,10 @@
 //! The loop over steps and increments, with cutbacks.
 
+mod acceptance;
+mod bisection;
+mod impact_control;
 mod nominal_increment;
 mod runner;
+mod time_control;
 
 pub use runner::{RunError, run};

@@ -1,13 +1,15 @@
 //! Nominal time increments of a step and their bisection. Section 4 of docs/theory.md, Cutback.
 
 use crate::dynamics::step::{Interval, StepPlace};
+use crate::model::Increments;
 
 /// A step's duration counts as a multiple of its increment within this relative difference.
-pub(crate) const WHOLE: f64 = 1e-6;
+const WHOLE: f64 = 1e-6;
 
 /// One nominal increment of a step, in step time.
 #[derive(Clone, Copy)]
 pub(crate) struct NominalIncrement {
+    pub place: StepPlace,
     pub from: f64,
     pub to: f64,
     pub length: f64,
@@ -15,8 +17,8 @@ pub(crate) struct NominalIncrement {
 }
 
 impl NominalIncrement {
-    /// Subincrement number `piece` of 2^halvings.
-    pub fn piece(&self, place: StepPlace, piece: u32, halvings: u32) -> Interval {
+    /// Part number `piece` of 2^halvings.
+    pub fn piece(&self, piece: u32, halvings: u32) -> Interval {
         let parts = f64::from(1_u32 << halvings);
         let at = |k: u32| match k {
             0 => self.from,
@@ -24,15 +26,40 @@ impl NominalIncrement {
             k => self.from + self.length * (f64::from(k) / parts),
         };
         Interval {
-            start: place.time_point(at(piece)),
-            end: place.time_point(at(piece + 1)),
+            start: self.place.time_point(at(piece)),
+            end: self.place.time_point(at(piece + 1)),
             dt: self.length / parts,
         }
     }
 }
 
+/// The nominal increments of a step.
+pub(crate) fn nominal_increments(
+    place: StepPlace,
+    Increments { dt, dt_min, .. }: Increments,
+) -> impl Iterator<Item = NominalIncrement> {
+    let count = increments_of(place.period, dt);
+    (0..count).map(move |i| {
+        let from = dt * i as f64;
+        let to = if i + 1 == count {
+            place.period
+        } else {
+            dt * (i + 1) as f64
+        };
+        // the nominal length keeps the factors of K* valid; only a last, shorter one differs
+        let is_shorter = to - from < dt * (1.0 - WHOLE);
+        NominalIncrement {
+            place,
+            from,
+            to,
+            length: if is_shorter { to - from } else { dt },
+            dt_min,
+        }
+    })
+}
+
 /// Number of increments of length `dt` in a step; the last may be shorter.
-pub(crate) fn increments_of(period: f64, dt: f64) -> usize {
+fn increments_of(period: f64, dt: f64) -> usize {
     let ratio = period / dt;
     let whole = ratio.round();
     let count = if (ratio - whole).abs() <= WHOLE * whole {
@@ -44,8 +71,23 @@ pub(crate) fn increments_of(period: f64, dt: f64) -> usize {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
+
+    /// The increment from 0.3 to 0.4 of a step that starts at 2.
+    pub fn nominal() -> NominalIncrement {
+        NominalIncrement {
+            place: StepPlace {
+                number: 1,
+                start: 2.0,
+                period: 1.0,
+            },
+            from: 0.3,
+            to: 0.4,
+            length: 0.1,
+            dt_min: 0.0,
+        }
+    }
 
     #[test]
     fn increments_fill_the_step() {
@@ -56,19 +98,27 @@ mod tests {
     }
 
     #[test]
-    fn pieces_of_an_increment_meet() {
+    fn the_last_increment_may_be_shorter() {
         let place = StepPlace {
-            number: 1,
-            start: 2.0,
-            period: 1.0,
+            period: 0.25,
+            ..nominal().place
         };
-        let nominal = NominalIncrement {
-            from: 0.3,
-            to: 0.4,
-            length: 0.1,
+        let increments = Increments {
+            dt: 0.1,
+            period: 0.25,
             dt_min: 0.0,
+            direct: true,
         };
-        let pieces: Vec<Interval> = (0..4).map(|k| nominal.piece(place, k, 2)).collect();
+        let all: Vec<NominalIncrement> = nominal_increments(place, increments).collect();
+        assert_eq!(all.len(), 3);
+        assert_eq!((all[1].to, all[2].to), (all[2].from, 0.25));
+        assert_eq!((all[0].length, all[1].length), (0.1, 0.1));
+        assert!((all[2].length - 0.05).abs() < 1e-15);
+    }
+
+    #[test]
+    fn pieces_of_an_increment_meet() {
+        let pieces: Vec<Interval> = (0..4).map(|k| nominal().piece(k, 2)).collect();
         assert_eq!((pieces[0].start.step, pieces[3].end.step), (0.3, 0.4));
         for pair in pieces.windows(2) {
             assert_eq!(pair[0].end, pair[1].start);

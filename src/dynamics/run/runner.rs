@@ -1,26 +1,26 @@
-//! Time stepping of a run: steps, increments, cutbacks by bisection and subincrements between
-//! impacts. Section 4 of docs/theory.md, Cutback, and section 6, Impacts as events.
+//! Time stepping of a run: steps, nominal increments and what their time control makes of them; a
+//! subincrement is attempted, checked, and accepted or cut back. Section 4 of docs/theory.md, Cutback.
 
 use std::io;
 
-use super::nominal_increment::{NominalIncrement, WHOLE, increments_of};
-use crate::contact::{ContactSurfaces, contact_surfaces};
-use crate::dynamics::events::{MOST_EVENTS, Subincrement, Subincrements};
-use crate::dynamics::increment::{Attempt, ClosedPairs, Failed, Solved};
-use crate::dynamics::ledger::{Accepted, Accounts, Ledger, landings, start_failure};
+use super::acceptance::{Accepted, failure, start_failure};
+use super::bisection::Bisection;
+use super::impact_control::ImpactControl;
+use super::nominal_increment::{NominalIncrement, nominal_increments};
+use super::time_control::{Span, TimeControl};
+use crate::dynamics::events::{FailedSubincrement, Subincrement, Subincrements};
+use crate::dynamics::increment::ClosedPairs;
+use crate::dynamics::ledger::{Accounts, Ledger, landings};
 use crate::dynamics::results::{
     Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State, Timings,
 };
-use crate::dynamics::step::{
-    Interval, Loads, Mass, Parts, StepPlace, StepProblem, Unknowns, Weights, Workspace,
-};
-use crate::elements::{Elements, most_strained};
-use crate::model::{ImpactTime, Increments, Model, Step};
+use crate::dynamics::step::{Discretization, StepPlace, StepProblem, Workspace};
+use crate::elements::most_strained;
+use crate::model::{ImpactTime, Procedure, Step};
+use crate::prepare::PreparedModel;
 
 /// Halvings of an increment before the run stops.
 const HALVINGS: u32 = 10;
-/// Halvings of an increment because of the energy that contact puts in.
-const GAIN_HALVINGS: u32 = 5;
 
 /// Why a run could not go on, apart from a failed increment.
 #[derive(Debug, thiserror::Error)]
@@ -34,300 +34,168 @@ pub enum RunError {
 ///
 /// # Errors
 /// The observer's. A failed increment is no error but an [`Outcome`].
-pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
-    let elements = Elements::new(model);
-    let mass = Mass::new(&elements, model.mesh.node_count());
-    let parts = Parts::new(model);
-    let contacts = contact_surfaces(model);
-    let mut runner = Runner {
-        model,
-        elements: &elements,
-        mass: &mass,
-        parts: &parts,
-        contacts: &contacts,
-        state: State {
-            u: vec![0.0; model.mesh.dof_count()],
-            v: model.initial_velocity.clone(),
-            a: vec![0.0; model.mesh.dof_count()],
-        },
-        contact: ClosedPairs::default(),
-        ledger: Ledger::default(),
-        accounts: Accounts::new(model, &mass, &contacts),
-        increment: 0,
-        cutbacks: 0,
-        events: 0,
-        timings: Timings::default(),
-        totals: SolverCounts {
-            converged: true,
-            ..SolverCounts::default()
-        },
-        observer,
-    };
-    let mut outcome = Outcome::Finished;
+pub fn run(prepared: &PreparedModel, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+    let discretization = Discretization::new(prepared);
+    let mut runner = Runner::new(&discretization, observer);
     let mut start = 0.0;
-    for (number, step) in model.steps.iter().enumerate() {
-        match runner.step(number + 1, step, start)? {
-            Outcome::Finished => start += step.increments.period,
-            stopped => {
-                outcome = stopped;
-                break;
-            }
+    for (index, step) in prepared.model().steps.iter().enumerate() {
+        let place = StepPlace {
+            number: index + 1,
+            start,
+            period: step.increments.period,
+        };
+        runner.summary.outcome = runner.step(step, place)?;
+        if runner.summary.outcome != Outcome::Finished {
+            break;
         }
+        start += place.period;
     }
-    Ok(RunSummary {
-        outcome,
-        increments: runner.increment,
-        cutbacks: runner.cutbacks,
-        events: runner.events,
-        solver: runner.totals,
-        timings: runner.timings,
-    })
+    Ok(runner.summary)
 }
 
-/// State of a run.
+/// The time control of a nominal increment.
+fn time_control(when: ImpactTime, nominal: NominalIncrement) -> Box<dyn TimeControl> {
+    match when {
+        ImpactTime::Increment => Box::new(Bisection::new(nominal)),
+        ImpactTime::Event => Box::new(ImpactControl::new(nominal)),
+    }
+}
+
+/// Where a run stands.
 struct Runner<'m, 'o> {
-    model: &'m Model,
-    elements: &'m Elements,
-    mass: &'m Mass,
-    parts: &'m Parts,
-    contacts: &'m [ContactSurfaces],
+    discretization: &'m Discretization<'m>,
+    /// Motion, closed pairs and energies at the end of the last increment.
     state: State,
     contact: ClosedPairs,
     ledger: Ledger,
     accounts: Accounts,
-    increment: usize,
-    cutbacks: usize,
-    events: usize,
-    timings: Timings,
-    totals: SolverCounts,
+    summary: RunSummary,
     observer: &'o mut dyn Observer,
 }
 
-impl<'m> Runner<'m, '_> {
-    fn step(&mut self, number: usize, step: &'m Step, start: f64) -> Result<Outcome, RunError> {
-        let place = StepPlace {
-            number,
-            start,
-            period: step.increments.period,
-        };
-        let problem = StepProblem {
-            model: self.model,
-            elements: self.elements,
-            mass: self.mass,
-            parts: self.parts,
-            contacts: self.contacts,
-            settings: step.settings,
-            weights: Weights::new(step.settings.scheme),
-            unknowns: Unknowns::new(self.model, self.elements, step, &self.state.u),
-            loads: Loads::new(self.model, step),
-        };
-        let mut workspace = Workspace::new(&problem);
-        if number == 1
-            && let Some(failure) = self.report_start(&problem, &mut workspace, place)?
-        {
-            return Ok(Outcome::Stopped(Box::new(failure)));
+impl<'m, 'o> Runner<'m, 'o> {
+    /// A run before its first step.
+    fn new(discretization: &'m Discretization<'m>, observer: &'o mut dyn Observer) -> Self {
+        let Discretization {
+            model,
+            contacts,
+            mass,
+            ..
+        } = discretization;
+        Runner {
+            discretization,
+            state: State {
+                u: vec![0.0; model.mesh.dof_count()],
+                v: model.initial_velocity.clone(),
+                a: vec![0.0; model.mesh.dof_count()],
+            },
+            contact: ClosedPairs::default(),
+            ledger: Ledger::default(),
+            accounts: Accounts::new(model, mass, contacts),
+            summary: RunSummary {
+                outcome: Outcome::Finished,
+                increments: 0,
+                cutbacks: 0,
+                events: 0,
+                solver: SolverCounts::at_start(),
+                timings: Timings::default(),
+            },
+            observer,
         }
-        let outcome = self.increments(&problem, &mut workspace, place, step.increments);
-        self.timings.add(&workspace.meter.timings);
+    }
+
+    /// Runs a step by its procedure; how it ends.
+    fn step(&mut self, step: &'m Step, place: StepPlace) -> Result<Outcome, RunError> {
+        let problem = StepProblem::new(self.discretization, step, &self.state.u);
+        let mut workspace = Workspace::new(&problem);
+        let outcome = match step.procedure {
+            Procedure::Dynamic => self.dynamic(&problem, &mut workspace, step, place),
+        };
+        self.summary.timings.add(&workspace.meter.timings);
         outcome
     }
 
-    /// The increments of a step.
-    fn increments(
+    /// Dynamics: the acceleration of the start, then all increments.
+    fn dynamic(
         &mut self,
         problem: &StepProblem<'m>,
         workspace: &mut Workspace<'m>,
+        step: &Step,
         place: StepPlace,
-        Increments {
-            dt, period, dt_min, ..
-        }: Increments,
     ) -> Result<Outcome, RunError> {
-        let count = increments_of(period, dt);
-        for i in 0..count {
-            let from = dt * i as f64;
-            let to = if i + 1 == count {
-                period
-            } else {
-                dt * (i + 1) as f64
-            };
-            // The nominal length keeps the factors valid; only a last, shorter one differs.
-            let length = if to - from < dt * (1.0 - WHOLE) {
-                to - from
-            } else {
-                dt
-            };
-            let nominal = NominalIncrement {
-                from,
-                to,
-                length,
-                dt_min,
-            };
-            let end = match problem.settings.impact_time {
-                ImpactTime::Increment => {
-                    self.increment_in_halves(problem, workspace, place, nominal)
-                }
-                ImpactTime::Event => {
-                    self.increment_with_impacts(problem, workspace, place, nominal)
-                }
-            };
-            if let Some(end) = end? {
+        if place.number == 1
+            && let Some(failure) = self.start(problem, workspace, place)?
+        {
+            return Ok(Outcome::Stopped(Box::new(failure)));
+        }
+        for nominal in nominal_increments(place, step.increments) {
+            let end = self.increment(problem, workspace, nominal)?;
+            if end != Outcome::Finished {
                 return Ok(end);
             }
         }
         Ok(Outcome::Finished)
     }
 
-    /// One increment of the nominal, in halves, quarters ... where it does not converge; how the run
-    /// ends, if it does.
-    fn increment_in_halves(
+    /// One nominal increment, divided by its time control: attempt, check, accept or cut back.
+    fn increment(
         &mut self,
         problem: &StepProblem<'m>,
         workspace: &mut Workspace<'m>,
-        place: StepPlace,
         nominal: NominalIncrement,
-    ) -> Result<Option<Outcome>, RunError> {
-        // The next piece is number `piece` of 2^halvings.
-        let (mut piece, mut halvings) = (0_u32, 0_u32);
-        while piece < 1 << halvings {
+    ) -> Result<Outcome, RunError> {
+        let mut control = time_control(problem.settings.impact_time, nominal);
+        while let Some(span) = control.next() {
             if self.observer.wants_stop() {
-                return Ok(Some(Outcome::Interrupted));
+                return Ok(Outcome::Interrupted);
             }
-            let interval = nominal.piece(place, piece, halvings);
-            workspace.meter.counts = SolverCounts::default();
-            let attempt = Attempt {
-                problem,
-                workspace,
-                start: &self.state,
-                interval,
-                active: None,
-            };
-            let solved = attempt.solve(&self.contact);
-            match solved.and_then(|s| self.checked(problem, s, interval.dt, halvings, nominal)) {
-                Ok(entered) => {
-                    self.accept(problem, place, interval, entered, workspace.meter.counts)?;
-                    piece += 1;
-                    while halvings > 0 && piece % 2 == 0 {
-                        (piece, halvings) = (piece / 2, halvings - 1);
-                    }
+            let halvings = control.halvings();
+            let attempt = self.attempt(problem, workspace, span, nominal.length);
+            let before = (&self.state, &self.ledger);
+            let checked =
+                attempt.and_then(|found| Accepted::new(problem, before, found, halvings, &nominal));
+            match checked {
+                Ok(accepted) => {
+                    let Subincrement {
+                        interval, is_cut, ..
+                    } = accepted.subincrement;
+                    control.accepted(&interval, is_cut);
+                    self.accept(problem, workspace, nominal.place, accepted)?;
                 }
                 Err(failed) => {
-                    let failure = self.failure(place, interval, failed, halvings);
+                    control.failed(&failed.0);
+                    let number = self.summary.increments + 1;
+                    let failure = failure(number, nominal.place, *failed, halvings);
                     if let Some(failure) = self.cut_back(failure, nominal.dt_min)? {
-                        return Ok(Some(Outcome::Stopped(Box::new(failure))));
+                        return Ok(Outcome::Stopped(Box::new(failure)));
                     }
-                    (piece, halvings) = (2 * piece, halvings + 1);
                 }
             }
         }
-        Ok(None)
+        Ok(Outcome::Finished)
     }
 
-    /// One increment of the nominal, in pieces that end at impacts, or halfway where one does not
-    /// converge; how the run ends, if it does.
-    fn increment_with_impacts(
-        &mut self,
+    /// Solves a span, or its part up to the next impact; `nominal` is the length of the nominal
+    /// increment.
+    fn attempt(
+        &self,
         problem: &StepProblem<'m>,
         workspace: &mut Workspace<'m>,
-        place: StepPlace,
-        nominal: NominalIncrement,
-    ) -> Result<Option<Outcome>, RunError> {
-        let (mut events, mut from, mut last) = (0, nominal.from, nominal.length);
-        // Ends of what is left, and of its halves; the next piece goes no further than the last.
-        let mut ends = vec![nominal.to];
-        while let Some(&to) = ends.last() {
-            if self.observer.wants_stop() {
-                return Ok(Some(Outcome::Interrupted));
-            }
-            let is_whole = from == nominal.from && to == nominal.to;
-            let rest = Interval {
-                start: place.time_point(from),
-                end: place.time_point(to),
-                dt: if is_whole { nominal.length } else { to - from },
-            };
-            workspace.meter.counts = SolverCounts::default();
-            let mut pieces = Subincrements {
-                problem,
-                workspace,
-                start: &self.state,
-                contact: &self.contact,
-                rest,
-                nominal: nominal.length,
-                last,
-            };
-            let next = match events < MOST_EVENTS {
-                true => pieces.next(),
-                false => pieces.rest(),
-            };
-            let halvings = ends.len() as u32 - 1;
-            let checked = next.and_then(|piece| {
-                let Subincrement {
-                    interval,
-                    solved,
-                    is_cut,
-                } = piece;
-                let checked = self.checked(problem, solved, interval.dt, halvings, nominal);
-                let entered = checked.map_err(|failed| Box::new((interval, failed)))?;
-                Ok((interval, entered, is_cut))
-            });
-            match checked {
-                Ok((interval, entered, is_cut)) => {
-                    self.accept(problem, place, interval, entered, workspace.meter.counts)?;
-                    (from, last) = (interval.end.step, interval.dt);
-                    if is_cut {
-                        (events, self.events) = (events + 1, self.events + 1);
-                    } else {
-                        ends.pop();
-                    }
-                }
-                Err(broken) => {
-                    let (interval, failed) = *broken;
-                    let failure = self.failure(place, interval, failed, halvings);
-                    if let Some(failure) = self.cut_back(failure, nominal.dt_min)? {
-                        return Ok(Some(Outcome::Stopped(Box::new(failure))));
-                    }
-                    ends.push(from + interval.dt / 2.0);
-                }
-            }
-        }
-        Ok(None)
-    }
-
-    /// A converged increment with its energies, which must be finite; one into which contact puts
-    /// energy is halved, a few times.
-    fn checked(
-        &self,
-        problem: &StepProblem,
-        solved: Solved,
-        dt: f64,
-        halvings: u32,
-        nominal: NominalIncrement,
-    ) -> Result<Accepted, Failed> {
-        let may_be_halved = halvings < GAIN_HALVINGS && dt / 2.0 >= nominal.dt_min;
-        let before = (&self.state, &self.ledger);
-        Accepted::new(problem, before, solved, dt, may_be_halved)
-    }
-
-    fn failure(
-        &self,
-        place: StepPlace,
-        interval: Interval,
-        failed: Failed,
-        halvings: u32,
-    ) -> Failure {
-        let Failed {
-            cause,
-            worst,
-            passes,
-        } = failed;
-        Failure {
-            increment: self.increment + 1,
-            step: place.number,
-            time: interval.start.total,
-            dt: interval.dt,
-            cause,
-            worst,
-            passes,
-            halvings,
+        span: Span,
+        nominal: f64,
+    ) -> Result<Subincrement, FailedSubincrement> {
+        workspace.meter.counts = SolverCounts::default();
+        let mut subincrements = Subincrements {
+            problem,
+            workspace,
+            start: &self.state,
+            contact: &self.contact,
+            rest: span.interval,
+            nominal,
+        };
+        match span.until_impact {
+            Some(last) => subincrements.next(last),
+            None => subincrements.rest(),
         }
     }
 
@@ -338,7 +206,7 @@ impl<'m> Runner<'m, '_> {
         if failure.halvings == HALVINGS || next_dt < dt_min {
             return Ok(Some(failure));
         }
-        self.cutbacks += 1;
+        self.summary.cutbacks += 1;
         self.observer.cutback(&Cutback { failure, next_dt })?;
         Ok(None)
     }
@@ -347,48 +215,56 @@ impl<'m> Runner<'m, '_> {
     fn accept(
         &mut self,
         problem: &StepProblem,
+        workspace: &Workspace,
         place: StepPlace,
-        interval: Interval,
-        Accepted { solved, ledger }: Accepted,
-        solver: SolverCounts,
+        Accepted {
+            subincrement,
+            ledger,
+        }: Accepted,
     ) -> Result<(), RunError> {
-        self.ledger = ledger;
-        let accounted = (self.accounts).enter(problem, &solved, interval, &self.ledger.elements);
-        let landings = landings(problem, &self.state, &self.contact, &solved, interval);
+        let Subincrement {
+            interval,
+            solved,
+            is_cut,
+        } = subincrement;
+        let accounted = (self.accounts).enter(problem, &solved, interval, &ledger.elements);
         let solver = SolverCounts {
             converged: true,
-            ..solver
+            ..workspace.meter.counts
         };
-        self.totals.add(&solver);
-        self.increment += 1;
+        self.summary.solver.add(&solver);
+        self.summary.increments += 1;
+        self.summary.events += usize::from(is_cut);
         let report = IncrementReport {
-            increment: self.increment,
+            increment: self.summary.increments,
             step: place.number,
             time: interval.end.total,
             step_time: interval.end.step,
             dt: interval.dt,
             ends_step: interval.end.step == place.period,
-            energy: self.ledger.energy,
-            strain: most_strained(&self.ledger.elements),
-            elements: self.ledger.elements.clone(),
-            landings,
+            energy: ledger.energy,
+            contact_energy: ledger.contact_energy,
+            strain: most_strained(&ledger.elements),
+            elements: ledger.elements.clone(),
+            landings: landings(problem, &self.state, &self.contact, &solved, interval),
             solver,
             passes: solved.passes,
             state: solved.end,
             ..accounted
         };
-        self.contact = ClosedPairs::new(&solved.forces);
         self.observer.increment(&report)?;
+        self.ledger = ledger;
+        self.contact = ClosedPairs::new(&solved.forces);
         self.state = report.state;
         Ok(())
     }
 
-    /// Completes the start state (velocity of supports and equations, acceleration) and reports it, or gives
-    /// the failure when it is not finite.
-    fn report_start(
+    /// Completes the start state (velocity of supports and equations, acceleration) and reports it,
+    /// or gives the failure when it is not finite.
+    fn start(
         &mut self,
         problem: &StepProblem,
-        workspace: &mut Workspace<'m>,
+        workspace: &mut Workspace,
         place: StepPlace,
     ) -> Result<Option<Failure>, RunError> {
         let now = place.time_point(0.0);
@@ -398,18 +274,14 @@ impl<'m> Runner<'m, '_> {
         if let Some(failure) = start_failure(&self.state, &self.ledger, place) {
             return Ok(Some(failure));
         }
+        let (state, elements) = (&self.state, &self.ledger.elements);
         let report = IncrementReport {
             step: place.number,
             energy: self.ledger.energy,
-            solver: SolverCounts {
-                converged: true,
-                ..SolverCounts::default()
-            },
-            state: self.state.clone(),
-            elements: self.ledger.elements.clone(),
-            ..self
-                .accounts
-                .start(problem, &self.state, &self.ledger.elements)
+            solver: SolverCounts::at_start(),
+            state: state.clone(),
+            elements: elements.clone(),
+            ..self.accounts.start(problem, state, elements)
         };
         self.observer.increment(&report)?;
         Ok(None)

@@ -58,6 +58,14 @@ impl Timings {
 }
 
 impl SolverCounts {
+    /// The counts of the start: no work, converged.
+    pub(crate) fn at_start() -> Self {
+        SolverCounts {
+            converged: true,
+            ..SolverCounts::default()
+        }
+    }
+
     /// Adds the counts of one increment to the totals of a run.
     pub(crate) fn add(&mut self, other: &SolverCounts) {
         self.passes += other.passes;

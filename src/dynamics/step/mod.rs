@@ -1,5 +1,6 @@
 //! What stays the same over a step: unknowns, loads, supports, mass, scheme, effective stiffness.
 
+mod discretization;
 mod effective_stiffness;
 mod loads;
 mod mass;
@@ -12,10 +13,10 @@ mod supports;
 mod unknowns;
 mod workspace;
 
-pub(crate) use loads::{Loads, TimePoint};
+pub(crate) use discretization::Discretization;
+pub(crate) use loads::TimePoint;
 pub(crate) use mass::{Mass, dot};
 pub(crate) use parts::Parts;
-pub(crate) use scheme::Weights;
 pub(crate) use step_place::StepPlace;
 pub(crate) use step_problem::{Equilibrium, Interval, StepProblem, check_finite, difference, sum};
 pub(crate) use unknowns::Unknowns;

@@ -1,6 +1,7 @@
 //! Equation of motion of a step, eq. (3.1) (paper eq. 21), evaluated at an iterate: loads, internal and
 //! inertia forces, and contact pairs. Sections 3 and 4 of docs/theory.md.
 
+use super::discretization::Discretization;
 use super::loads::{Loads, TimePoint};
 use super::mass::Mass;
 use super::parts::Parts;
@@ -14,7 +15,7 @@ use crate::contact::{
 use crate::dynamics::results::{Cause, State};
 use crate::elements::Elements;
 use crate::lcp::LcpMethod;
-use crate::model::{Model, Settings};
+use crate::model::{Model, Settings, Step};
 
 /// What stays the same over a step.
 pub(crate) struct StepProblem<'m> {
@@ -56,6 +57,30 @@ impl Equilibrium {
     /// r = R_theta - F(U_theta) - M A, eq. (4.5).
     pub fn out_of_balance(&self) -> Vec<f64> {
         difference(&difference(&self.load, &self.internal), &self.inertia)
+    }
+}
+
+impl<'m> StepProblem<'m> {
+    /// The problem of a step that starts with the displacements `u0`.
+    pub fn new(discretization: &'m Discretization<'m>, step: &'m Step, u0: &[f64]) -> Self {
+        let Discretization {
+            model,
+            contacts,
+            elements,
+            mass,
+            parts,
+        } = discretization;
+        StepProblem {
+            model,
+            elements,
+            mass,
+            parts,
+            contacts,
+            settings: step.settings,
+            weights: Weights::new(step.settings.scheme),
+            unknowns: Unknowns::new(model, elements, step, u0),
+            loads: Loads::new(model, step),
+        }
     }
 }
 
@@ -104,6 +129,7 @@ impl StepProblem<'_> {
             .into_iter()
             .filter(|at| self.unknowns.moves(&at.nodes))
             .map(|at| Pair::new(at, form, x, u0, u))
+            .filter(|pair| self.unknowns.opens(pair))
             .collect()
     }
 

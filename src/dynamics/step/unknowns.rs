@@ -2,14 +2,17 @@
 //! supports, and dofs that follow others by equations. Section 3 of docs/theory.md.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 use super::loads::TimePoint;
 use super::supports::Supports;
+use crate::contact::Pair;
+use crate::contact::tolerances::TIED_ROW;
 use crate::elements::Elements;
 use crate::linear::Transformation;
 use crate::model::{Equation, Model, Step};
 
-/// The unknowns of a step: the displacements of the free dofs.
+/// The unknowns q of a step, U = T q + g(t), eq. (3.7): the displacements of the free dofs.
 ///
 /// A free dof has a row of the identity in T, a support an empty one and its prescribed motion in
 /// g, and a dof of an equation the sum of the rows, and of the g, that it follows.
@@ -49,6 +52,21 @@ impl<'m> Unknowns<'m> {
     pub fn moves(&self, nodes: &[usize]) -> bool {
         let mut dofs = nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]);
         dofs.any(|dof| !self.map.row(dof).is_empty())
+    }
+
+    /// Whether the gap of a pair can change: it cannot where equations tie the node to the segment, so
+    /// that Bn T is round-off.
+    pub fn opens(&self, pair: &Pair) -> bool {
+        if self.equations.is_empty() {
+            return true;
+        }
+        let mut row = BTreeMap::new();
+        for (dof, b) in pair.dofs().into_iter().zip(pair.normal) {
+            for &(unknown, c) in self.map.row(dof) {
+                *row.entry(unknown).or_insert(0.0) += c * b;
+            }
+        }
+        row.values().any(|entry: &f64| entry.abs() > TIED_ROW)
     }
 
     /// T^T v: the share of every unknown in forces on all dofs.
@@ -106,7 +124,7 @@ impl<'m> Unknowns<'m> {
         self.follow(a);
     }
 
-    /// Makes a vector of displacements, velocities or accelerations satisfy the equations.
+    /// Makes a vector of displacements, velocities or accelerations satisfy the equations, eq. (3.8).
     fn follow(&self, v: &mut [f64]) {
         for equation in self.equations {
             v[equation.dof] = equation.terms.iter().map(|&(dof, c)| c * v[dof]).sum();

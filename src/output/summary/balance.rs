@@ -1,13 +1,12 @@
 //! Running checks of conservation: energy balance (docs/theory.md, section 9), energy put in by
-//! contact (section 7), and linear momentum of a model without supports and loads.
+//! contact (section 7), and linear momentum of a model on which nothing acts from outside.
 
 use crate::dynamics::{Energy, IncrementReport, Momentum};
 use crate::linear::larger;
-use crate::model::Model;
+use crate::model::{Equation, Model};
 
-/// Work of the normal contact forces in an increment, as a part of the largest energy, up to which
-/// it is round-off.
-const CONTACT_WORK_ROUND_OFF: f64 = 1e-12;
+/// Sum of the coefficients of an equation, as a part of their sizes, that is round-off.
+const SUM_ROUND_OFF: f64 = 1e-12;
 
 /// Follows the energy balance, the energy that contact puts in and, of a free model, the momentum.
 #[derive(Debug, Clone, Default)]
@@ -16,9 +15,7 @@ pub(crate) struct Balance {
     largest: f64,
     /// Largest absolute balance so far.
     worst: f64,
-    /// Work of the normal contact forces so far.
-    contact_work: f64,
-    /// Its largest absolute value so far.
+    /// Largest absolute work of the normal contact forces so far.
     most_contact_work: f64,
     contact_energy: ContactEnergy,
     /// Momentum at the start, when nothing outside may change it.
@@ -43,13 +40,14 @@ pub(crate) struct ContactEnergy {
 impl Balance {
     /// The balance of a model's run.
     pub fn new(model: &Model) -> Self {
-        let free = model.steps.iter().all(|step| {
-            step.supports.is_empty()
-                && step.point_loads.is_empty()
-                && step.body_forces.is_empty()
-                && step.pressures.is_empty()
-                && step.tractions.is_empty()
-        });
+        let free = model.equations.iter().all(keeps_momentum)
+            && model.steps.iter().all(|step| {
+                step.supports.is_empty()
+                    && step.point_loads.is_empty()
+                    && step.body_forces.is_empty()
+                    && step.pressures.is_empty()
+                    && step.tractions.is_empty()
+            });
         Balance {
             free,
             ..Balance::default()
@@ -73,14 +71,12 @@ impl Balance {
             self.add_momentum(report.momentum);
         }
         let work = report.energy.normal_contact_work;
-        let added = work - std::mem::replace(&mut self.contact_work, work);
         self.most_contact_work = larger(self.most_contact_work, work.abs());
-        let puts_in = added > CONTACT_WORK_ROUND_OFF * self.largest;
-        if puts_in {
+        if let Some(added) = report.contact_energy {
             self.contact_energy.count += 1;
             self.contact_energy.energy += added;
         }
-        puts_in.then_some(added)
+        report.contact_energy
     }
 
     /// The increments in which contact put energy in.
@@ -114,6 +110,20 @@ impl Balance {
     pub fn momentum_drift(&self) -> Option<f64> {
         self.free.then(|| part(self.drift, self.momentum))
     }
+}
+
+/// Whether the forces of an equation have no resultant: the sum of its coefficients is zero for each
+/// direction.
+fn keeps_momentum(equation: &Equation) -> bool {
+    let own = [(equation.dof, -1.0)];
+    let terms = own.iter().chain(&equation.terms);
+    let mut sums = [[0.0; 2]; 2];
+    for &(dof, c) in terms {
+        let [sum, size] = &mut sums[dof % 2];
+        (*sum, *size) = (*sum + c, *size + f64::abs(c));
+    }
+    sums.iter()
+        .all(|[sum, size]| sum.abs() <= SUM_ROUND_OFF * size)
 }
 
 /// `value / whole`; 0 where `value` is 0, whatever the whole.

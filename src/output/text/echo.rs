@@ -7,7 +7,7 @@ use crate::model::{
     SolverChoice, Step, SurfaceKind,
 };
 use crate::output::frames::{DEFAULT_FRAMES, are_dense};
-use crate::prepare::{InitialGap, initial_gaps};
+use crate::prepare::{InitialGap, PreparedModel};
 use crate::vectors::cross;
 
 /// Numbers that describe a model.
@@ -61,13 +61,14 @@ impl ModelEcho {
     }
 
     /// The lines of the echo.
-    pub fn lines(&self, model: &Model) -> Vec<String> {
+    pub fn lines(&self, prepared: &PreparedModel) -> Vec<String> {
+        let model = prepared.model();
         let mut lines = self.model_lines(model);
         if model.contacts.is_empty() {
             lines.push(label("contact", "none"));
         }
-        for (contact, gaps) in model.contacts.iter().zip(initial_gaps(model)) {
-            lines.extend(contact_lines(model, contact, &gaps));
+        for (contact, gaps) in model.contacts.iter().zip(prepared.initial_gaps()) {
+            lines.extend(contact_lines(model, contact, gaps));
         }
         for (i, step) in model.steps.iter().enumerate() {
             lines.extend(self.step_lines(i, step));
@@ -99,6 +100,10 @@ impl ModelEcho {
         ];
         let mut lines = wrap("model", &size);
         lines.extend(wrap("", &shape));
+        if !model.equations.is_empty() {
+            let count = counted(model.equations.len(), "equation");
+            lines.push(label("", &format!("{count} between displacements")));
+        }
         lines
     }
 

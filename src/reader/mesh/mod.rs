@@ -5,6 +5,7 @@ mod mesh_index;
 pub(crate) mod nodes_elements;
 mod outline;
 mod profile;
+mod references;
 pub(crate) mod sets;
 pub(crate) mod surface;
 

@@ -2,13 +2,14 @@
 
 use super::mesh_index::{Group, MeshIndex, RawElement, RawNode};
 use super::outline::Outline;
+use super::references;
 use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{ElementType, Mesh};
 use crate::reader::context::Context;
 use crate::reader::mesh::element_type;
 use crate::reader::names::{Labelled, Labels};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 /// Reads nodes and elements; leaves out nodes without element that are no reference nodes.
 pub(crate) fn read(outline: &Outline, cx: &mut Context) -> MeshIndex {
@@ -28,7 +29,11 @@ pub(crate) fn read(outline: &Outline, cx: &mut Context) -> MeshIndex {
         reading.report_empty(outline, cx);
     }
     reading.report_not_planar(cx);
-    let references = reading.reference_labels(outline);
+    let groups = reading.node_groups.iter();
+    let groups: Vec<_> = groups
+        .map(|group| (group.name.key.as_str(), group.labels.as_slice()))
+        .collect();
+    let references = references::labels(outline, &groups);
     reading.mesh_index(&references, cx)
 }
 
@@ -213,34 +218,7 @@ impl Reading {
         }
     }
 
-    /// Numbers that may be those of reference nodes, which need no element.
-    fn reference_labels(&self, outline: &Outline) -> Vec<u64> {
-        let mut labels = Vec::new();
-        for card in outline.model_cards("RIGID BODY") {
-            let Some(named) = card.value("REF NODE") else {
-                continue;
-            };
-            let label = named.as_integer();
-            labels.extend(label.and_then(|label| u64::try_from(label).ok()));
-            let groups = self.node_groups.iter();
-            let meant = groups.filter(|group| group.name.key == named.name_key());
-            labels.extend(meant.flat_map(|group| &group.labels));
-            let sets = outline.model_cards("NSET");
-            let is_meant = |set: &&&Card| {
-                let name = set.value("NSET");
-                name.is_some_and(|name| name.name_key() == named.name_key())
-            };
-            for set in sets.iter().filter(is_meant) {
-                let count = if set.has("GENERATE") { 2 } else { usize::MAX };
-                let numbers = set.rows.iter().flat_map(|row| row.fields().take(count));
-                let numbers = numbers.filter_map(|field| field.as_integer());
-                labels.extend(numbers.filter_map(|label| u64::try_from(label).ok()));
-            }
-        }
-        labels
-    }
-
-    fn mesh_index(self, references: &[u64], cx: &mut Context) -> MeshIndex {
+    fn mesh_index(self, references: &BTreeSet<u64>, cx: &mut Context) -> MeshIndex {
         let mut used = vec![false; self.nodes.len()];
         let index_of = |label: &u64| self.node_index.get(label).copied().flatten();
         for index in self

@@ -15,6 +15,8 @@ pub(crate) struct Sets {
     pub node_names: Names,
     /// Node sets in the order of their names.
     pub nodes: Vec<Set>,
+    /// Names, as compared, of node sets whose members have an order that is not kept.
+    pub unsorted: BTreeSet<String>,
     /// Names of the element sets.
     pub element_names: Names,
     /// Element sets in the order of their names.
@@ -60,6 +62,7 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
     let mut sets = Sets {
         node_names: nodes.names,
         nodes: Vec::new(),
+        unsorted: nodes.unsorted,
         element_names,
         elements: element_sets,
     };
@@ -94,6 +97,7 @@ struct Family<'a> {
     drafts: Vec<Draft>,
     cards: Vec<(usize, &'a Card)>,
     from_elements: Vec<(usize, Text<'a>)>,
+    unsorted: BTreeSet<String>,
 }
 
 impl<'a> Family<'a> {
@@ -104,6 +108,7 @@ impl<'a> Family<'a> {
             drafts: Vec::new(),
             cards: Vec::new(),
             from_elements: Vec::new(),
+            unsorted: BTreeSet::new(),
         }
     }
 
@@ -155,6 +160,10 @@ impl<'a> Family<'a> {
     fn fill(&mut self, cx: &mut Context) {
         for (index, card) in std::mem::take(&mut self.cards) {
             let generate = card.has("GENERATE");
+            if card.has("UNSORTED") {
+                let name = card.value("NSET").map(|name| name.name_key());
+                self.unsorted.extend(name);
+            }
             if card.keyword.name == "NSET"
                 && let Some(source) = card.value("ELSET")
             {

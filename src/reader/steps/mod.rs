@@ -2,6 +2,7 @@
 
 pub(crate) mod amplitude;
 pub(crate) mod boundary;
+pub(crate) mod equation;
 mod load_history;
 mod loads;
 mod output_requests;

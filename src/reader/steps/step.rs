@@ -7,7 +7,7 @@ use super::loads::Loads;
 use super::output_requests::{Requests, restart, time_points};
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic};
-use crate::model::{HistorySet, Impact, Increments, Settings, Step, Support};
+use crate::model::{HistorySet, Impact, Increments, Procedure, Settings, Step, Support};
 use crate::reader::contact::rigid_surface;
 use crate::reader::context::Context;
 use crate::reader::mesh::{Outline, StepCards, Surfaces};
@@ -114,6 +114,7 @@ impl Reading<'_> {
     fn build(&self, name: Option<String>, increments: Increments) -> Step {
         let mut step = Step {
             name,
+            procedure: Procedure::Dynamic,
             increments,
             settings: self.settings,
             supports: Vec::new(),

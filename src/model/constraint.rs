@@ -1,6 +1,7 @@
-//! Linear constraint equations between displacements. Section 3 of docs/theory.md.
+//! Constraints between displacements: linear equations (section 3 of docs/theory.md, Unknowns), and
+//! rigid surfaces that move with a reference node (section 9, Rigid surfaces).
 
-/// A dof that follows others at all times: u_dof = sum c_k u_k.
+/// A dof that follows others at all times: u_dof = sum c_k u_k, eq. (3.8).
 ///
 /// A term is never a dof that follows others itself, nor one without a motion of its own unless it
 /// is prescribed or belongs to the equation of a node with elements.
@@ -17,4 +18,13 @@ impl Equation {
     pub fn dofs(&self) -> impl Iterator<Item = usize> + '_ {
         std::iter::once(self.dof).chain(self.terms.iter().map(|&(dof, _)| dof))
     }
+}
+
+/// A rigid surface and the node that it moves with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RigidBody {
+    /// Index of the rigid surface.
+    pub surface: usize,
+    /// Reference node (index).
+    pub reference: usize,
 }

@@ -1,0 +1,123 @@
+//! Impact events: a nominal increment in subincrements that end at impacts, or halfway where one
+//! fails. Section 6 of docs/theory.md, Impacts as events.
+
+use super::nominal_increment::NominalIncrement;
+use super::time_control::{Span, TimeControl};
+use crate::dynamics::step::Interval;
+
+/// Impacts within a nominal increment, after which nodes land within what is left of it: contacts that
+/// chatter must not stall a run.
+const MOST_EVENTS: usize = 50;
+
+/// A nominal increment that is done up to the step time `from`.
+pub(crate) struct ImpactControl {
+    nominal: NominalIncrement,
+    from: f64,
+    /// Length of the last subincrement.
+    last: f64,
+    events: usize,
+    /// Ends of what is left, and of its halves: the next subincrement goes no further than the last.
+    ends: Vec<f64>,
+}
+
+impl ImpactControl {
+    /// Starts with the increment as a whole.
+    pub fn new(nominal: NominalIncrement) -> Self {
+        ImpactControl {
+            from: nominal.from,
+            last: nominal.length,
+            events: 0,
+            ends: vec![nominal.to],
+            nominal,
+        }
+    }
+}
+
+impl TimeControl for ImpactControl {
+    fn next(&self) -> Option<Span> {
+        let to = *self.ends.last()?;
+        let NominalIncrement { place, length, .. } = self.nominal;
+        let is_whole = self.from == self.nominal.from && to == self.nominal.to;
+        Some(Span {
+            interval: Interval {
+                start: place.time_point(self.from),
+                end: place.time_point(to),
+                dt: if is_whole { length } else { to - self.from },
+            },
+            until_impact: (self.events < MOST_EVENTS).then_some(self.last),
+        })
+    }
+
+    fn halvings(&self) -> u32 {
+        self.ends.len().saturating_sub(1) as u32
+    }
+
+    fn accepted(&mut self, interval: &Interval, ends_at_impact: bool) {
+        (self.from, self.last) = (interval.end.step, interval.dt);
+        if ends_at_impact {
+            self.events += 1;
+        } else {
+            self.ends.pop();
+        }
+    }
+
+    fn failed(&mut self, interval: &Interval) {
+        self.ends.push(self.from + interval.dt / 2.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::run::nominal_increment::tests::nominal;
+
+    /// The first part of an interval, up to an impact.
+    fn up_to(interval: Interval, length: f64) -> Interval {
+        let end = interval.start.step + length;
+        Interval {
+            end: nominal().place.time_point(end),
+            dt: length,
+            ..interval
+        }
+    }
+
+    #[test]
+    fn subincrements_fill_the_increment() {
+        let mut control = ImpactControl::new(nominal());
+        let mut lengths = Vec::new();
+        let mut next = |control: &ImpactControl| {
+            let span = control.next().expect("something is left");
+            lengths.push((span.interval.dt * 1e3).round());
+            span.interval
+        };
+        let whole = next(&control);
+        control.accepted(&up_to(whole, 0.02), true);
+        let rest = next(&control);
+        control.failed(&rest);
+        assert_eq!(control.halvings(), 1);
+        let half = next(&control);
+        control.accepted(&half, false);
+        let other = next(&control);
+        control.accepted(&other, false);
+        assert_eq!(control.next(), None);
+        assert_eq!(lengths, [100.0, 80.0, 40.0, 40.0]);
+        assert_eq!(other.end, whole.end);
+    }
+
+    #[test]
+    fn contacts_that_chatter_do_not_stall() {
+        let mut control = ImpactControl::new(nominal());
+        let mut count = 0;
+        while let Some(Span {
+            interval,
+            until_impact: Some(_),
+        }) = control.next()
+        {
+            count += 1;
+            control.accepted(&up_to(interval, 1e-4), true);
+        }
+        assert_eq!(count, MOST_EVENTS);
+        let rest = control.next().expect("the rest");
+        assert_eq!(rest.interval.end, nominal().place.time_point(nominal().to));
+    }
+}

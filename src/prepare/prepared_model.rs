@@ -1,0 +1,77 @@
+//! A model that is ready to run, and the way to it: nodes adjusted, contact surfaces and initial gaps
+//! known, initial penetration reported. Program and library go this way.
+
+use super::adjustment::{Adjusted, adjust, report_adjusted};
+use super::initial_gaps::{InitialGap, gaps};
+use super::initial_penetration::report_penetrations;
+use crate::contact::{ContactSurfaces, contact_surfaces};
+use crate::diagnostics::Diagnostics;
+use crate::model::{Model, Step};
+
+/// A model with its nodes adjusted, its contact surfaces and the initial gaps between them. Mesh and
+/// contacts stay as they are from here on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PreparedModel {
+    model: Model,
+    surfaces: Vec<ContactSurfaces>,
+    gaps: Vec<Vec<InitialGap>>,
+    adjusted: Vec<Adjusted>,
+}
+
+/// Prepares a model; reports adjusted nodes, elements that the adjustment spoils, and initial
+/// penetration. `None` if there are errors.
+pub fn prepare(model: Model, d: &mut Diagnostics) -> Option<PreparedModel> {
+    let prepared = PreparedModel::new(model);
+    report_adjusted(&prepared.model, &prepared.adjusted, d);
+    if !d.has_errors() {
+        report_penetrations(&prepared.model, &prepared.gaps, d);
+    }
+    (!d.has_errors()).then_some(prepared)
+}
+
+impl PreparedModel {
+    /// Prepares a model whose initial configuration is known to be sound: [`prepare`] checks it.
+    pub fn new(mut model: Model) -> Self {
+        let mut surfaces = contact_surfaces(&model);
+        let adjusted = adjust(&mut model, &surfaces);
+        let x = &model.mesh.coordinates;
+        if !adjusted.is_empty() {
+            let moved = surfaces.into_iter();
+            surfaces = moved.map(|contact| contact.with_sharp_corners(x)).collect();
+        }
+        let bodies = model.mesh.bodies();
+        let of_contact = |contact: &ContactSurfaces| gaps(contact, x, &bodies);
+        PreparedModel {
+            gaps: surfaces.iter().map(of_contact).collect(),
+            surfaces,
+            adjusted,
+            model,
+        }
+    }
+
+    /// The model, nodes adjusted.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Steps, to change what is set for them.
+    pub fn steps_mut(&mut self) -> &mut [Step] {
+        &mut self.model.steps
+    }
+
+    /// Surfaces of every contact.
+    pub fn contact_surfaces(&self) -> &[ContactSurfaces] {
+        &self.surfaces
+    }
+
+    /// Gaps of the slave nodes of each contact in the reference configuration; nodes that face no
+    /// segment are left out.
+    pub fn initial_gaps(&self) -> &[Vec<InitialGap>] {
+        &self.gaps
+    }
+
+    /// What was moved, contact by contact.
+    pub fn adjusted(&self) -> &[Adjusted] {
+        &self.adjusted
+    }
+}

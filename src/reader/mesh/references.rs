@@ -1,0 +1,44 @@
+//! Nodes that need no element: reference nodes of rigid surfaces and nodes of equations.
+
+use super::outline::Outline;
+use crate::deck::{Card, Text};
+use std::collections::BTreeSet;
+
+/// Numbers that may be those of reference nodes or of nodes of equations; `groups` are the node sets
+/// of `*NODE` by their names, as compared, with the numbers of their members.
+pub(super) fn labels(outline: &Outline, groups: &[(&str, &[u64])]) -> BTreeSet<u64> {
+    let (mut labels, mut names) = (BTreeSet::new(), BTreeSet::new());
+    for field in fields(outline) {
+        match field.as_integer() {
+            Some(label) => labels.extend(u64::try_from(label).ok()),
+            None => drop(names.insert(field.name_key())),
+        }
+    }
+    for (_, members) in groups.iter().filter(|(name, _)| names.contains(*name)) {
+        labels.extend(*members);
+    }
+    let is_meant = |set: &&Card| {
+        let name = set.value("NSET");
+        name.is_some_and(|name| names.contains(&name.name_key()))
+    };
+    for set in outline.model_cards("NSET").into_iter().filter(is_meant) {
+        let count = if set.has("GENERATE") { 2 } else { usize::MAX };
+        let numbers = set.rows.iter().flat_map(|row| row.fields().take(count));
+        let numbers = numbers.filter_map(|field| field.as_integer());
+        labels.extend(numbers.filter_map(|label| u64::try_from(label).ok()));
+    }
+    labels
+}
+
+/// Fields that say a reference node, or a node or node set of an equation.
+fn fields<'a>(outline: &Outline<'a>) -> Vec<Text<'a>> {
+    let bodies = outline.model_cards("RIGID BODY").into_iter();
+    let equations = outline.model_cards("EQUATION").into_iter();
+    // a line of one field is the number of terms
+    let rows = equations.flat_map(|card| &card.rows);
+    let terms = rows.filter(|row| row.get(1).is_some());
+    bodies
+        .filter_map(|card| card.value("REF NODE"))
+        .chain(terms.flat_map(|row| row.fields().step_by(3)))
+        .collect()
+}
