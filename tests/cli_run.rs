@@ -312,7 +312,7 @@ fn runs_are_warned_about_when_they_shall_be_looked_at_again() {
 
 #[test]
 fn equations_of_a_deck_are_echoed_and_kept() {
-    let tie = "*EQUATION\n2\n13, 2, 1., 14, 2, -1.\n*STEP";
+    let tie = "*EQUATION\n2\n7, 2, 1., 8, 2, -1.\n*STEP";
     let bench = Bench::new(&DROP.replacen("*STEP", tie, 1));
     let (code, out, err) = bench.stickslip(&["run", "drop.inp"]);
     assert_eq!((code, err.as_str()), (0, ""), "{out}");

@@ -3,8 +3,7 @@
 
 /// A dof that follows others at all times: u_dof = sum c_k u_k, eq. (3.8).
 ///
-/// A term is never a dof that follows others itself, nor one without a motion of its own unless it
-/// is prescribed or belongs to the equation of a node with elements.
+/// The u_k are free or prescribed: none follows others itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Equation {
     /// The dof that is eliminated, `2 node + direction`.
