@@ -277,7 +277,7 @@ fn magnitudes_that_overflow_together_are_errors_of_the_deck() {
     );
     let sum = "the mass of all elements up to element 3";
     assert_eq!(found(density, "3e307"), sum);
-    let speed = "the wave speed sqrt(E/rho) of material STEEL";
+    let speed = "the wave speed of material STEEL";
     assert_eq!(found(density, "1e-308"), speed);
     let thick = "*SOLID SECTION, ELSET=EBASE, MATERIAL=STEEL\n1.";
     let thicker = "*SOLID SECTION, ELSET=EBASE, MATERIAL=STEEL\n1e304";

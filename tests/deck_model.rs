@@ -692,3 +692,44 @@ fn a_velocity_that_an_equation_changes_is_told() {
     let warning = "direction 2 of node 4 does not start with its velocity";
     assert!(read(&text("0.7")).1.contains(warning));
 }
+
+#[test]
+fn mean_dilatation_is_an_option_of_the_section() {
+    let text = |kind: &str, formulation: &str| {
+        let section = format!("*SOLID SECTION, FORMULATION={formulation},");
+        SQUARE
+            .replace("CPS4", kind)
+            .replace("*SOLID SECTION,", &section)
+    };
+    for (name, formulation) in [
+        ("MEAN DILATATION", Formulation::MeanDilatation),
+        ("DISPLACEMENT", Formulation::Displacement),
+    ] {
+        let (model, messages) = read(&text("CPE4", name));
+        assert_eq!(messages, "");
+        let expected = ElementType {
+            formulation,
+            ..ElementType::CPE4
+        };
+        assert_eq!(model.mesh.elements[0].element_type, expected);
+    }
+    // nothing locks with it
+    let soft = text("CPE4", "MEAN DILATATION").replace("0.3", "0.499");
+    assert_eq!(read(&soft).1, "");
+}
+
+#[test]
+fn mean_dilatation_is_for_plane_strain_quadrilaterals() {
+    let text = SQUARE.replace(
+        "*SOLID SECTION,",
+        "*SOLID SECTION, FORMULATION=MEAN DILATATION,",
+    );
+    let (mut sources, mut d) = (Sources::default(), Diagnostics::default());
+    let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
+    assert!(reader::build(&deck, &mut d).is_none());
+    let found = d.render(&sources, false);
+    assert!(
+        found.contains("MEAN DILATATION is for CPE4: element 7 is CPS4"),
+        "{found}"
+    );
+}

@@ -320,7 +320,7 @@ fn a_missing_increment_comes_with_a_guide_wherever_the_mesh_lies() {
         let help = d.iter().filter_map(|item| item.help.as_deref()).last();
         assert_eq!(
             help,
-            Some("a wave crosses the shortest element side in 3.16e-2")
+            Some("a wave crosses the shortest element side in 3.02e-2")
         );
     }
     assert!(SQUARE.contains(nodes));

@@ -1,12 +1,13 @@
 //! The element types behind one enum: each variant is one file with its quadrature and mass.
 //! Section 2 of docs/theory.md.
 
+use super::mean_dilatation::Quad4MeanDilatation;
 use super::quad4::{self, Quad4};
 use super::recovery::ElementResult;
 use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion};
 use super::tri3::{self, Tri3};
 use super::voigt::PlaneMaterial;
-use crate::model::Shape;
+use crate::model::{ElementType, Formulation, Shape};
 
 /// An element of any type.
 #[allow(clippy::large_enum_variant)] // most elements are quadrilaterals: kept in one piece for speed
@@ -15,6 +16,8 @@ pub(super) enum AnyElement {
     Tri3(Tri3),
     /// Q4, displacement formulation.
     Quad4(Quad4),
+    /// Q4, mean dilatation.
+    Quad4MeanDilatation(Quad4MeanDilatation),
 }
 
 /// Evaluates an expression for the element in an [`AnyElement`], whatever its type.
@@ -23,6 +26,7 @@ macro_rules! with_element {
         match $any {
             AnyElement::Tri3($element) => $value,
             AnyElement::Quad4($element) => $value,
+            AnyElement::Quad4MeanDilatation($element) => $value,
         }
     };
 }
@@ -31,9 +35,17 @@ impl AnyElement {
     /// The element of the model between nodes at the coordinates `x`, of thickness `t`.
     pub fn new(element: &crate::model::Element, x: &[[f64; 2]], t: f64) -> Self {
         let nodes = &element.nodes;
-        match element.element_type.shape {
-            Shape::Tri3 => Self::Tri3(Tri3::new(first(nodes), x, t, tri3::reference)),
-            Shape::Quad4 => Self::Quad4(Quad4::new(first(nodes), x, t, quad4::reference)),
+        let ElementType {
+            shape, formulation, ..
+        } = element.element_type;
+        match (shape, formulation) {
+            (Shape::Tri3, _) => Self::Tri3(Tri3::new(first(nodes), x, t, tri3::reference)),
+            (Shape::Quad4, Formulation::Displacement) => {
+                Self::Quad4(Quad4::new(first(nodes), x, t, quad4::reference))
+            }
+            (Shape::Quad4, Formulation::MeanDilatation) => Self::Quad4MeanDilatation(
+                Quad4MeanDilatation::new(first(nodes), x, t, quad4::reference),
+            ),
         }
     }
 

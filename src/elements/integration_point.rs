@@ -25,7 +25,6 @@ pub struct Reference<const N: usize, const P: usize> {
 
 impl<const N: usize, const P: usize> Reference<N, P> {
     /// Volume of the element (length^3).
-    #[cfg(test)]
     pub fn volume(&self) -> f64 {
         self.points.iter().map(|p| p.volume).sum()
     }

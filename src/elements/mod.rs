@@ -10,6 +10,7 @@ mod elements;
 mod formulation;
 mod integration_point;
 mod kinematics;
+mod mean_dilatation;
 mod quad4;
 mod recovery;
 mod solid;

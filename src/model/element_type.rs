@@ -2,6 +2,8 @@
 //! sides and cell of each shape. Section 2 of docs/theory.md; the mechanics of each type stands in
 //! its own file of `elements`.
 
+use std::fmt;
+
 use super::Plane;
 
 /// Type of an element, as named in the deck.
@@ -118,6 +120,16 @@ impl ElementType {
     /// Nodes, counter-clockwise, and sides.
     pub fn topology(self) -> &'static Topology {
         self.shape.topology()
+    }
+}
+
+impl fmt::Display for ElementType {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let name = self.name();
+        match self.formulation {
+            Formulation::Displacement => write!(f, "{name}"),
+            Formulation::MeanDilatation => write!(f, "{name} with mean dilatation"),
+        }
     }
 }
 

@@ -14,6 +14,19 @@ pub struct Material {
     pub density: f64,
 }
 
+impl Material {
+    /// Speed of longitudinal waves (length/time): sqrt(E/((1 - nu^2) rho)) in plane stress,
+    /// sqrt(E (1 - nu)/((1 + nu) (1 - 2 nu) rho)) in plane strain.
+    pub fn wave_speed(&self, plane: Plane) -> f64 {
+        let nu = self.poisson;
+        let factor = match plane {
+            Plane::Stress => 1.0 / (1.0 - nu * nu),
+            Plane::Strain => (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+        };
+        (self.young * factor / self.density).sqrt()
+    }
+}
+
 /// Kinematic assumption across the thickness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Plane {

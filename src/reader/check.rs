@@ -4,7 +4,7 @@ use super::context::Context;
 use super::material::Properties;
 use super::mesh::{MeshIndex, Surfaces};
 use crate::diagnostics::{Code, Diagnostic, Span};
-use crate::model::{Contact, Element, Mesh, SurfaceKind};
+use crate::model::{Contact, Element, Mesh, Plane, SurfaceKind};
 use crate::vectors::{cross, difference};
 use std::collections::HashMap;
 
@@ -81,10 +81,9 @@ pub(super) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &m
         return;
     }
     for (material, &span) in properties.materials.iter().zip(&properties.material_spans) {
-        // c = sqrt(E / rho)
-        let speed = (material.young / material.density).sqrt();
+        let speed = material.wave_speed(Plane::Strain);
         if material.density > 0.0 && !speed.is_normal() {
-            let what = format!("the wave speed sqrt(E/rho) of material {}", material.name);
+            let what = format!("the wave speed of material {}", material.name);
             unusable(&what, speed, span, cx);
         }
     }
@@ -167,18 +166,19 @@ fn range_of_thickness(
     Some((low, all.iter().copied().fold(low, f64::max)))
 }
 
-/// Time in which a wave crosses the shortest element side.
+/// Shortest time in which a wave crosses a side of an element.
 pub(super) fn crossing_time(mesh: &Mesh, properties: &Properties) -> Option<f64> {
-    let speeds = properties
-        .materials
-        .iter()
-        .map(|m| (m.young / m.density).sqrt());
-    let fastest = speeds.filter(|s| s.is_finite()).reduce(f64::max)?;
-    let sides = mesh.elements.iter().flat_map(Element::sides);
     let length = |[a, b]: [usize; 2]| {
         let (a, b) = (mesh.coordinates[a], mesh.coordinates[b]);
         (b[0] - a[0]).hypot(b[1] - a[1])
     };
-    let shortest = sides.map(length).reduce(f64::min)?;
-    Some(shortest / fastest).filter(|time| time.is_finite() && *time > 0.0)
+    let of_element = |(element, section): (&Element, &Option<usize>)| {
+        let material = properties.sections.get((*section)?)?.material;
+        let material = properties.materials.get(material)?;
+        let shortest = element.sides().map(length).reduce(f64::min)?;
+        Some(shortest / material.wave_speed(element.element_type.plane))
+    };
+    let times = mesh.elements.iter().zip(&properties.section_of);
+    let shortest = times.filter_map(of_element).reduce(f64::min)?;
+    Some(shortest).filter(|time| time.is_finite() && *time > 0.0)
 }

@@ -5,7 +5,7 @@ use super::mesh::{Block, MeshIndex, Outline, Sets};
 use super::names::Names;
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic, Span};
-use crate::model::{Material, Plane, Section};
+use crate::model::{ElementType, Formulation, Material, Plane, Section};
 
 /// Poisson's ratio from which on fully integrated elements lock in plane strain: lambda / mu =
 /// 2 nu / (1 - 2 nu) is 9 there.
@@ -19,6 +19,8 @@ pub(super) struct Properties {
     pub sections: Vec<Section>,
     /// Section of each element.
     pub section_of: Vec<Option<usize>>,
+    /// Type of each element, in the formulation of its section.
+    pub element_types: Vec<ElementType>,
     /// Places of the materials.
     pub material_spans: Vec<Span>,
 }
@@ -69,6 +71,9 @@ pub(super) fn read(
         materials: Vec::new(),
         sections: Vec::new(),
         section_of: vec![None; mesh_index.mesh.elements.len()],
+        element_types: (mesh_index.mesh.elements.iter())
+            .map(|element| element.element_type)
+            .collect(),
         material_spans: drafts.iter().map(|draft| draft.span).collect(),
     };
     let poisson_spans: Vec<Span> = drafts.iter().map(|draft| draft.poisson_span).collect();
@@ -87,7 +92,7 @@ pub(super) fn read(
         .into_iter()
         .map(|draft| material(draft, cx))
         .collect();
-    properties.report_locking(mesh_index, &poisson_spans, cx);
+    properties.report_locking(&poisson_spans, cx);
     properties
 }
 
@@ -212,10 +217,10 @@ fn material(draft: Draft, cx: &mut Context) -> Material {
 
 /// Notes a wave speed that hints at mixed units.
 fn hint_at_units(material: &Material, span: Span, cx: &mut Context) {
-    let speed = (material.young / material.density).sqrt();
+    let speed = material.wave_speed(Plane::Strain);
     if speed.is_finite() && speed > 0.0 && !(10.0..=1e8).contains(&speed) {
         let name = &material.name;
-        let message = format!("the waves in material {name} run at sqrt(E/rho) = {speed:.3e}");
+        let message = format!("the waves in material {name} run at {speed:.3e}");
         let note = Diagnostic::note(Code::UnitsHint, span, message);
         cx.d.push(note.help("most materials lie between 10 and 1e8 in common units"));
     }
@@ -260,6 +265,9 @@ impl Properties {
             return false;
         };
         let complete = section.is_some() && cx.errors() == errors;
+        if card.choice("FORMULATION") == Some("MEAN DILATATION") {
+            self.set_mean_dilatation(&set.members, card, mesh_index, cx);
+        }
         let index = self.sections.len();
         self.sections.extend(section);
         let mut taken = Vec::new();
@@ -281,6 +289,34 @@ impl Properties {
             cx.error(Code::TwoSections, card.span_of("ELSET"), message);
         }
         complete
+    }
+
+    /// Gives elements one volume strain each; all must be CPE4.
+    fn set_mean_dilatation(
+        &mut self,
+        elements: &[usize],
+        card: &Card,
+        mesh_index: &MeshIndex,
+        cx: &mut Context,
+    ) {
+        for &index in elements {
+            let Some(element_type) = self.element_types.get_mut(index) else {
+                continue;
+            };
+            if *element_type == ElementType::CPE4 {
+                element_type.formulation = Formulation::MeanDilatation;
+            } else if element_type.formulation == Formulation::Displacement {
+                let label = mesh_index.mesh.elements.get(index).map_or(0, |e| e.label);
+                let name = element_type.name();
+                let message = format!("MEAN DILATATION is for CPE4: element {label} is {name}");
+                let error =
+                    Diagnostic::error(Code::ElementType, card.span_of("FORMULATION"), message);
+                cx.d.push(error.help(
+                    "give other elements a section of their own with FORMULATION=DISPLACEMENT",
+                ));
+                return;
+            }
+        }
     }
 
     /// Reports elements without section, unless a section could not be read.
@@ -312,12 +348,14 @@ impl Properties {
 
     /// Warns about nearly incompressible materials in plane strain, at their Poisson's ratios; in
     /// plane stress the thickness gives way and nothing locks.
-    fn report_locking(&self, mesh_index: &MeshIndex, poisson_spans: &[Span], cx: &mut Context) {
+    fn report_locking(&self, poisson_spans: &[Span], cx: &mut Context) {
         let mut locks = vec![false; self.materials.len()];
-        for (element, section) in mesh_index.mesh.elements.iter().zip(&self.section_of) {
+        for (element_type, section) in self.element_types.iter().zip(&self.section_of) {
             let section = section.and_then(|s| self.sections.get(s));
             let locks = section.and_then(|s| locks.get_mut(s.material));
-            if let (Plane::Strain, Some(locks)) = (element.element_type.plane, locks) {
+            if let (Plane::Strain, Formulation::Displacement, Some(locks)) =
+                (element_type.plane, element_type.formulation, locks)
+            {
                 *locks = true;
             }
         }
@@ -331,7 +369,8 @@ impl Properties {
                 let warning = Diagnostic::warning(Code::Locking, span, message);
                 cx.d.push(warning.help(
                     "CPE3 and CPE4 are integrated fully: from nu = 0.45 on they are too stiff, the \
-                     more so the closer nu is to 0.5",
+                     more so the closer nu is to 0.5; CPE4 is not with FORMULATION=MEAN DILATATION \
+                     on its *SOLID SECTION",
                 ));
             }
         }

@@ -18,6 +18,7 @@ use crate::diagnostics::{Diagnostics, Sources};
 use crate::model::{Element, Mesh, Model, NamedSets};
 use contact::{pairs, rigid_surface};
 use context::Context;
+use material::Properties;
 use mesh::{Outline, nodes_elements, sets, surface};
 use std::path::Path;
 use steps::boundary::Targets;
@@ -68,7 +69,7 @@ fn read(cx: &mut Context) -> Model {
     equation::check_velocities(&equations, &initial_velocity, &steps.at_start, targets, cx);
     Model {
         title: title(&outline),
-        mesh: with_sections(mesh_index.mesh, &properties.section_of),
+        mesh: with_sections(mesh_index.mesh, &properties),
         sets: NamedSets {
             nodes: sets.nodes,
             elements: sets.elements,
@@ -99,10 +100,12 @@ fn title(outline: &Outline) -> String {
     lines.collect::<Vec<_>>().join(" ")
 }
 
-fn with_sections(mesh: Mesh, section_of: &[Option<usize>]) -> Mesh {
-    let elements = mesh.elements.into_iter().zip(section_of);
-    let elements = elements.map(|(element, section)| Element {
+fn with_sections(mesh: Mesh, properties: &Properties) -> Mesh {
+    let sections = properties.section_of.iter().zip(&properties.element_types);
+    let elements = mesh.elements.into_iter().zip(sections);
+    let elements = elements.map(|(element, (section, &element_type))| Element {
         section: section.unwrap_or(0),
+        element_type,
         ..element
     });
     Mesh {

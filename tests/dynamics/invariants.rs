@@ -4,7 +4,7 @@ use crate::blocks::{Keep, add_block, add_contact, model, run_to_end, step, throw
 use stickslip::model::{Model, Scheme, Settings};
 
 /// Largest change of energy and of the momenta, relative to their scales.
-fn drift(keep: &Keep) -> [f64; 3] {
+pub fn drift(keep: &Keep) -> [f64; 3] {
     let first = &keep.reports[0];
     let energy = |r: &stickslip::dynamics::IncrementReport| r.energy.kinetic + r.energy.strain;
     let speed = (2.0 * energy(first)).sqrt();

@@ -15,6 +15,7 @@ mod invariants;
 mod lcp_methods;
 mod loads;
 mod many;
+mod mean_dilatation;
 mod patch;
 mod pieces;
 mod rigid;

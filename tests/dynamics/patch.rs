@@ -2,9 +2,19 @@
 
 use nalgebra::{DMatrix, DVector};
 use stickslip::elements::Elements;
-use stickslip::model::{Element, ElementType, Model};
+use stickslip::model::{Element, ElementType, Formulation, Model, Shape};
 
 use crate::blocks::model;
+
+/// Both shapes, and mean dilatation.
+const TYPES: [ElementType; 3] = [
+    ElementType::CPE4,
+    ElementType::CPE3,
+    ElementType {
+        formulation: Formulation::MeanDilatation,
+        ..ElementType::CPE4
+    },
+];
 
 /// Five quadrilaterals, or ten triangles, over [0, 2.4] x [0, 1.2] (MacNeal & Harder 1985, scaled):
 ///
@@ -17,7 +27,7 @@ use crate::blocks::model;
 /// | /           \ |
 /// 0 ------------- 1
 /// ```
-fn patch(triangles: bool) -> Model {
+fn patch(element_type: ElementType) -> Model {
     let mut model = model(1000.0, 0.3, 1.0);
     model.mesh.coordinates = vec![
         [0.0, 0.0],
@@ -36,15 +46,12 @@ fn patch(triangles: bool) -> Model {
         [3, 0, 4, 7],
         [4, 5, 6, 7],
     ];
-    let (element_type, nodes): (_, Vec<Vec<usize>>) = match triangles {
-        false => (ElementType::CPE4, quads.map(Vec::from).into()),
-        true => (
-            ElementType::CPE3,
-            quads
-                .into_iter()
-                .flat_map(|[a, b, c, d]| [vec![a, b, c], vec![a, c, d]])
-                .collect(),
-        ),
+    let nodes: Vec<Vec<usize>> = match element_type.shape {
+        Shape::Quad4 => quads.map(Vec::from).into(),
+        Shape::Tri3 => quads
+            .into_iter()
+            .flat_map(|[a, b, c, d]| [vec![a, b, c], vec![a, c, d]])
+            .collect(),
     };
     let element = |(i, nodes)| Element {
         label: i as u64,
@@ -94,12 +101,12 @@ fn solve_inner(body: &Elements, mut u: Vec<f64>) -> Vec<f64> {
 
 #[test]
 fn an_affine_boundary_deforms_a_distorted_patch_affinely() {
-    for triangles in [false, true] {
-        let model = patch(triangles);
+    for element_type in TYPES {
+        let model = patch(element_type);
         let body = Elements::new(&model);
         let exact = affine(&model);
         let mut start = exact.clone();
-        start[8..].fill(0.0);
+        start[8..].iter_mut().for_each(|u| *u /= 2.0);
         let u = solve_inner(&body, start);
         for (dof, (u, exact)) in u.iter().zip(&exact).enumerate() {
             assert!(
@@ -121,8 +128,8 @@ fn an_affine_boundary_deforms_a_distorted_patch_affinely() {
 
 #[test]
 fn the_mass_adds_up_to_that_of_the_patch() {
-    for triangles in [false, true] {
-        let body = Elements::new(&patch(triangles));
+    for element_type in TYPES {
+        let body = Elements::new(&patch(element_type));
         let total: f64 = (0..body.len())
             .map(|e| body.mass(e).iter().sum::<f64>())
             .sum();

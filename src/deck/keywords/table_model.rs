@@ -209,6 +209,17 @@ pub(crate) static MODEL: &[Keyword] = &[
         &[
             P::value("ELSET", "elements; required"),
             P::value("MATERIAL", "material; required"),
+            P::choice(
+                "FORMULATION",
+                &[
+                    V::read("DISPLACEMENT", "strains of the displacements (default)"),
+                    V::read(
+                        "MEAN DILATATION",
+                        "one volume strain per element, for nearly incompressible materials; CPE4 only",
+                    ),
+                ],
+                "how strains follow from the displacements",
+            ),
             P::value("CONTROLS", OTHER_SOLVER).warned(),
             P::value("ORIENTATION", "materials are isotropic").refused(),
             P::flag("NODAL THICKNESS", "the thickness is constant").refused(),

@@ -3,7 +3,7 @@
 use super::format::{counted, general, grouped, scientific};
 use super::layout::{label, wrap};
 use crate::model::{
-    Contact, Element, ElementType, Frames, Impact, ImpactTime, Model, Plane, Scheme, Settings,
+    Contact, Element, ElementType, Frames, Impact, ImpactTime, Model, Scheme, Settings,
     SolverChoice, Step, SurfaceKind,
 };
 use crate::output::frames::{DEFAULT_FRAMES, are_dense};
@@ -208,10 +208,15 @@ fn smallest_gap(gaps: &[InitialGap]) -> String {
 
 /// Names of the element types in the mesh.
 fn kinds(elements: &[Element]) -> String {
-    let is_present = |name: &&str| elements.iter().any(|e| e.element_type.name() == *name);
-    let names = ElementType::NAMED.map(ElementType::name).into_iter();
-    let present = names.filter(is_present);
-    present.collect::<Vec<_>>().join(" ")
+    let mut types: Vec<ElementType> = Vec::new();
+    for element in elements {
+        if !types.contains(&element.element_type) {
+            types.push(element.element_type);
+        }
+    }
+    let mut names: Vec<String> = types.iter().map(ElementType::to_string).collect();
+    names.sort();
+    names.join(" ")
 }
 
 /// Number of dofs prescribed in any step.
@@ -253,14 +258,8 @@ pub(crate) fn shortest_edge(corners: &[[f64; 2]]) -> f64 {
     sides(corners).map(length).fold(f64::INFINITY, f64::min)
 }
 
-/// Speed of longitudinal waves: sqrt(E / ((1 - nu^2) rho)) in plane stress,
-/// sqrt(E (1 - nu) / ((1 + nu) (1 - 2 nu) rho)) in plane strain.
+/// Speed of longitudinal waves in an element.
 pub(crate) fn wave_speed(model: &Model, element: &Element) -> f64 {
     let material = &model.materials[model.sections[element.section].material];
-    let nu = material.poisson;
-    let factor = match element.element_type.plane {
-        Plane::Stress => 1.0 / (1.0 - nu * nu),
-        Plane::Strain => (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
-    };
-    (material.young * factor / material.density).sqrt()
+    material.wave_speed(element.element_type.plane)
 }

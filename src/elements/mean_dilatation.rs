@@ -1,0 +1,347 @@
+//! The mean dilatation formulation (Q1P0; Simo, Taylor & Pister 1985), for nearly incompressible
+//! materials in plane strain: all integration points of an element have the volume ratio theta = v/V of
+//! the whole element, and the stored energy is that of the modified deformation gradient
+//!
+//! ```text
+//! Fbar = (theta/J)^(1/2) F,  det Fbar = theta
+//! ```
+//!
+//! eq. (2.9). The exponent is that of plane strain (de Souza Neto et al. 1996): F_zz stays 1, so that the material
+//! keeps its plane strain law. Section 2 of docs/theory.md.
+
+use nalgebra::{Matrix2, SMatrix, SVector, Vector3};
+
+use super::formulation::{Formulation, add_geometric, strain_displacement};
+use super::integration_point::{Point, PointState, Reference};
+use super::kinematics::{
+    Configuration, determinant, displacement_gradient, green_lagrange, smaller,
+};
+use super::solid::Solid;
+use super::voigt::PlaneMaterial;
+
+/// Q4 with mean dilatation (CPE4 with `FORMULATION=MEAN DILATATION`).
+pub type Quad4MeanDilatation = Solid<4, 4, 8, MeanDilatation>;
+
+/// The volume ratio of the whole element at every integration point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeanDilatation;
+
+/// Deformation of an integration point at the start and the end of the motion, which are the same at
+/// one configuration.
+#[derive(Clone, Copy)]
+struct PointMotion {
+    h: [Matrix2<f64>; 2],
+    /// Green-Lagrange strain of the displacements.
+    strain: [Matrix2<f64>; 2],
+    /// J - 1.
+    dilatation: [f64; 2],
+}
+
+/// Stress of an integration point with mean quantities of the motion.
+#[derive(Clone, Copy)]
+struct PointStress {
+    /// Displacement gradient of the mid configuration.
+    h: Matrix2<f64>,
+    /// C_m/2: half the mean of the right Cauchy-Green tensors.
+    half_c: Matrix2<f64>,
+    /// K = det F_m (F_m^T F_m)^-1, so that J1 - J0 = K : (E1 - E0).
+    k: Matrix2<f64>,
+    /// Mean strain that the material has.
+    strain: Matrix2<f64>,
+    /// Stress that does work on the strain that the material has.
+    s: Matrix2<f64>,
+    /// Mean of theta/J.
+    ratio: f64,
+    /// Mean of J, over J0 J1.
+    inverse_j: f64,
+    /// Mean of theta, over J0 J1.
+    theta_over_jj: f64,
+    /// A - a theta_m: factor of K in the stress that does work on the strain of the displacements.
+    pressure: f64,
+}
+
+impl PointMotion {
+    fn new<const N: usize>(point: &Point<N>, u: [&SMatrix<f64, 2, N>; 2]) -> Self {
+        let h = u.map(|u| displacement_gradient(point, u));
+        PointMotion {
+            h,
+            strain: h.map(|h| green_lagrange(&h)),
+            dilatation: h.map(|h| h.trace() + h.determinant()),
+        }
+    }
+
+    /// Strain that the material has, with r = theta/J: Ebar = r E + (r - 1)/2 I, eq. (2.10).
+    fn material_strain(&self, theta: [f64; 2]) -> [Matrix2<f64>; 2] {
+        std::array::from_fn(|i| {
+            let excess = (theta[i] - self.dilatation[i]) / (1.0 + self.dilatation[i]);
+            self.strain[i] + (self.strain[i] + Matrix2::identity() / 2.0) * excess
+        })
+    }
+
+    fn stress(&self, theta: [f64; 2], material: &PlaneMaterial) -> PointStress {
+        let [e0, e1] = self.material_strain(theta);
+        let [j0, j1] = self.dilatation.map(|j| 1.0 + j);
+        let [t0, t1] = theta.map(|t| 1.0 + t);
+        let h = (self.h[0] + self.h[1]) / 2.0;
+        let f = Matrix2::identity() + h;
+        let c = f.transpose() * f;
+        PointStress {
+            h,
+            half_c: (Matrix2::identity() + self.strain[0] + self.strain[1]) / 2.0,
+            k: Matrix2::new(c.m22, -c.m12, -c.m21, c.m11) / f.determinant(),
+            strain: (e0 + e1) / 2.0,
+            s: material.stress_between(&e0, &e1),
+            ratio: (t0 / j0 + t1 / j1) / 2.0,
+            inverse_j: (j0 + j1) / 2.0 / (j0 * j1),
+            theta_over_jj: (t0 + t1) / 2.0 / (j0 * j1),
+            pressure: 0.0,
+        }
+    }
+}
+
+impl PointStress {
+    /// S : C_m/2, the mean Kirchhoff stress of the material in the plane over theta/J.
+    fn kirchhoff(&self) -> f64 {
+        self.s.dot(&self.half_c)
+    }
+
+    /// Stress that does work on the strain of the displacements, eq. (2.11).
+    fn effective(&self) -> Matrix2<f64> {
+        self.s * self.ratio + self.k * self.pressure
+    }
+}
+
+/// Motion and stresses of all points: the one evaluation of the material.
+///
+/// The changes of the products r C and theta/J between two configurations are exact with mean
+/// quantities,
+///
+/// ```text
+/// dEbar = r_m dE + C_m/2 dr,  dr = (J_m dtheta - theta_m dJ)/(J0 J1),  dJ = K : dE
+/// ```
+///
+/// so that S : dEbar = W1 - W0 at every point makes the work of the internal force that of the
+/// stored energy of the element, eq. (2.11).
+fn stresses<const N: usize, const P: usize>(
+    element: &Reference<N, P>,
+    material: &PlaneMaterial,
+    configuration: &Configuration<N>,
+) -> ([PointMotion; P], [PointStress; P], [f64; 2]) {
+    let u = match configuration {
+        Configuration::At(u) => [u, u],
+        Configuration::Between(u0, u1) => [u0, u1],
+    };
+    let motions = std::array::from_fn(|p| PointMotion::new(&element.points[p], u));
+    let mean = |value: &dyn Fn(usize) -> f64| {
+        let weighted = element.points.iter().enumerate();
+        weighted
+            .map(|(p, point)| value(p) * point.volume)
+            .sum::<f64>()
+            / element.volume()
+    };
+    // theta - 1 = int (J - 1) dOmega / V
+    let theta = [0, 1].map(|i| mean(&|p| motions[p].dilatation[i]));
+    let mut stresses: [PointStress; P] =
+        std::array::from_fn(|p| motions[p].stress(theta, material));
+    // a = S : C_m/2 / (J0 J1),  A = int a J_m dOmega / V
+    let shared = mean(&|p| stresses[p].kirchhoff() * stresses[p].inverse_j);
+    for stress in &mut stresses {
+        stress.pressure = shared - stress.kirchhoff() * stress.theta_over_jj;
+    }
+    (motions, stresses, theta)
+}
+
+impl Formulation for MeanDilatation {
+    fn states<const N: usize, const P: usize>(
+        element: &Reference<N, P>,
+        material: &PlaneMaterial,
+        configuration: &Configuration<N>,
+    ) -> [PointState; P] {
+        let (motions, stresses, theta) = stresses(element, material, configuration);
+        std::array::from_fn(|p| {
+            let stress = &stresses[p];
+            PointState {
+                h: stress.h,
+                strain: stress.strain,
+                material_determinant: 1.0 + theta[1],
+                s: stress.effective(),
+                determinant: smaller(determinant(&stress.h), 1.0 + motions[p].dilatation[1]),
+            }
+        })
+    }
+
+    /// Second derivative of the stored energy, eq. (2.12); in the energy-momentum form with mean
+    /// quantities.
+    fn tangent<const N: usize, const P: usize, const D: usize>(
+        element: &Reference<N, P>,
+        material: &PlaneMaterial,
+        configuration: &Configuration<N>,
+    ) -> SMatrix<f64, D, D> {
+        let (_, stresses, _) = stresses(element, material, configuration);
+        let b: [SMatrix<f64, 3, D>; P] = std::array::from_fn(|p| {
+            let f = Matrix2::identity() + stresses[p].h;
+            strain_displacement::<N, D>(&element.points[p], &f)
+        });
+        // DJ = B^T K, Dtheta = int DJ dOmega / V
+        let dj: [SVector<f64, D>; P] =
+            std::array::from_fn(|p| b[p].transpose() * work_conjugate(&stresses[p].k));
+        let mut dtheta = SVector::<f64, D>::zeros();
+        for (point, dj) in element.points.iter().zip(&dj) {
+            dtheta += dj * (point.volume / element.volume());
+        }
+        let mut k = SMatrix::<f64, D, D>::zeros();
+        for (p, point) in element.points.iter().enumerate() {
+            let stress = &stresses[p];
+            // Dr = (J_m Dtheta - theta_m DJ)/(J0 J1), DEbar = r B + C/2 Dr
+            let dr = dtheta * stress.inverse_j - dj[p] * stress.theta_over_jj;
+            let half_c = &stress.half_c;
+            let half_c = Vector3::new(half_c.m11, half_c.m22, 2.0 * half_c.m12);
+            let b_bar = b[p] * stress.ratio + half_c * dr.transpose();
+            k += b_bar.transpose() * (material.tangent(&stress.strain) * b_bar) * point.volume;
+            // S : D2Ebar without the second derivatives of J and theta
+            let s = b[p].transpose() * work_conjugate(&stress.s)
+                - dj[p] * (stress.kirchhoff() * stress.inverse_j);
+            let mixed = s * dr.transpose() * point.volume;
+            k += mixed + mixed.transpose();
+            add_geometric(&mut k, point, &(stress.s * stress.ratio));
+            add_second_of_volume(&mut k, point, stress.pressure);
+        }
+        k
+    }
+}
+
+/// A stress as the vector whose product with the strain vector (xx, yy, 2 xy) is the work.
+fn work_conjugate(s: &Matrix2<f64>) -> Vector3<f64> {
+    Vector3::new(s.m11, s.m22, s.m12)
+}
+
+/// Adds p D2J dOmega of a point: J = det F is bilinear in the displacements x and y.
+fn add_second_of_volume<const N: usize, const D: usize>(
+    k: &mut SMatrix<f64, D, D>,
+    point: &Point<N>,
+    pressure: f64,
+) {
+    let g = &point.gradient;
+    for a in 0..N {
+        for b in 0..N {
+            let cross = g[(a, 0)] * g[(b, 1)] - g[(a, 1)] * g[(b, 0)];
+            k[(2 * a, 2 * b + 1)] += pressure * cross * point.volume;
+            k[(2 * b + 1, 2 * a)] += pressure * cross * point.volume;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::formulation::{evaluate, internal_force};
+    use crate::elements::quad4;
+    use crate::model::{Material, Plane};
+
+    const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [2.0, 0.3], [1.7, 1.9], [-0.2, 1.2]];
+
+    fn corners() -> SMatrix<f64, 2, 4> {
+        SMatrix::from_columns(&CORNERS.map(|p| p.into()))
+    }
+
+    fn quad() -> Reference<4, 4> {
+        quad4::reference(&corners(), 0.5)
+    }
+
+    fn nearly_incompressible() -> PlaneMaterial {
+        let material = Material {
+            name: "M".into(),
+            young: 1000.0,
+            poisson: 0.49,
+            density: 1.0,
+        };
+        PlaneMaterial::new(&material, Plane::Strain)
+    }
+
+    /// Some displacements of moderate size, the same for every run.
+    fn displacements(seed: usize) -> SMatrix<f64, 2, 4> {
+        SMatrix::from_fn(|i, a| (((seed + 7 * a + 3 * i) * 37) % 23) as f64 / 100.0 - 0.11)
+    }
+
+    fn force(configuration: &Configuration<4>) -> SMatrix<f64, 2, 4> {
+        internal_force::<MeanDilatation, 4, 4>(&quad(), &nearly_incompressible(), configuration).0
+    }
+
+    fn energy(u: &SMatrix<f64, 2, 4>) -> f64 {
+        evaluate::<MeanDilatation, 4, 4>(&quad(), &nearly_incompressible(), u).energy
+    }
+
+    /// Difference quotient of a function of the displacements in direction j.
+    fn quotient<T>(f: impl Fn(SMatrix<f64, 2, 4>) -> T, j: usize) -> T
+    where
+        T: std::ops::Sub<Output = T> + std::ops::Div<f64, Output = T>,
+    {
+        let (mut step, h) = (SMatrix::<f64, 2, 4>::zeros(), 1e-6);
+        step[j] = h;
+        (f(displacements(5) + step) - f(displacements(5) - step)) / (2.0 * h)
+    }
+
+    #[test]
+    fn internal_force_is_the_derivative_of_the_strain_energy() {
+        let found = force(&Configuration::At(displacements(5)));
+        for j in 0..8 {
+            let expected = quotient(|u| energy(&u), j);
+            assert!((found[j] - expected).abs() < 1e-8 * found.norm(), "{j}");
+        }
+    }
+
+    #[test]
+    fn tangent_is_the_derivative_of_the_internal_force() {
+        let at = Configuration::At(displacements(5));
+        let k = MeanDilatation::tangent::<4, 4, 8>(&quad(), &nearly_incompressible(), &at);
+        for j in 0..8 {
+            let column = quotient(|u| force(&Configuration::At(u)), j);
+            for i in 0..8 {
+                assert!((k[(i, j)] - column[i]).abs() < 1e-8 * k.norm(), "({i},{j})");
+            }
+        }
+        assert!((k - k.transpose()).norm() < 1e-14 * k.norm());
+    }
+
+    #[test]
+    fn the_energy_momentum_force_does_exactly_the_work_of_the_strain_energy() {
+        let (u0, u1) = (displacements(5), displacements(11));
+        let force = force(&Configuration::Between(u0, u1));
+        let (work, change) = (force.dot(&(u1 - u0)), energy(&u1) - energy(&u0));
+        assert!(
+            (work - change).abs() < 1e-13 * energy(&u1),
+            "{work} {change}"
+        );
+        // no resultant, and no moment about the origin in the mid configuration
+        let x = corners() + (u0 + u1) / 2.0;
+        let moment: f64 = (0..4)
+            .map(|a| x[(0, a)] * force[(1, a)] - x[(1, a)] * force[(0, a)])
+            .sum();
+        assert!(force.column_sum().norm() < 1e-13 * force.norm());
+        assert!(moment.abs() < 1e-13 * force.norm());
+    }
+
+    #[test]
+    fn rigid_rotation_gives_no_internal_force() {
+        for degrees in (0..=360).step_by(15) {
+            let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+            let u = Matrix2::new(cos, -sin, sin, cos) * corners() - corners();
+            let force = force(&Configuration::At(u));
+            assert!(force.amax() < 1e-11 * 1000.0, "{degrees}: {}", force.amax());
+        }
+    }
+
+    #[test]
+    fn in_a_homogeneous_deformation_both_formulations_agree() {
+        use crate::elements::displacement::Displacement;
+        let u = Matrix2::new(0.2, 0.3, 0.1, -0.1) * corners();
+        let (element, material) = (quad(), nearly_incompressible());
+        let mean = evaluate::<MeanDilatation, 4, 4>(&element, &material, &u);
+        let standard = evaluate::<Displacement, 4, 4>(&element, &material, &u);
+        assert!((mean.energy - standard.energy).abs() < 1e-13 * standard.energy);
+        assert!((mean.across - standard.across).abs() < 1e-13 * standard.across.abs());
+        for (a, b) in mean.stress.iter().zip(standard.stress) {
+            assert!((a - b).abs() < 1e-12 * mean.von_mises());
+        }
+    }
+}
