@@ -20,8 +20,8 @@ pub(crate) const INSIDE_ROUND_OFF: f64 = 1e-9;
 /// Length of the line followed into the body behind a node, in depths of the node: where it leaves
 /// the body, the node is nearer to the far side.
 pub(crate) const NEARER_HALF: f64 = 2.0;
-/// Entry of Bn over the unknowns (whose largest is of the order of 1) below which equations keep a node
-/// on its segment: round-off of weights and directions.
+/// Entry of Bn over the unknowns (whose largest is of the order of 1) below which equations keep a
+/// node on its segment: round-off of weights and directions.
 pub(crate) const TIED_ROW: f64 = 1e-9;
 /// Part of its reference length below which a segment has collapsed to a point and has no normal.
 pub(crate) const COLLAPSED_LENGTH: f64 = 1e-9;

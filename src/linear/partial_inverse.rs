@@ -27,8 +27,8 @@ struct Front {
 /// inverse = Y^T D^-1 Y
 /// ```
 ///
-/// Column j of Y is zero but on the way from its position to the root of the elimination tree, so
-/// that the supernodes off these ways are never visited.
+/// Column j of Y is nonzero only on the path from its position to the root of the elimination tree,
+/// so that the supernodes off these paths are never visited.
 pub(super) fn inverse_at(
     factor: SupernodalLdltRef<'_, usize, f64>,
     positions: &[usize],

@@ -81,11 +81,11 @@ fn split(model: &mut Model, faces: &[Face]) -> Vec<Face> {
 }
 
 /// Every combination of slenderness, layers and shape.
-fn each(mut look: impl FnMut(f64, usize, bool)) {
+fn each(mut visit: impl FnMut(f64, usize, bool)) {
     for ratio in [1e2, 1e3, 1e4] {
         for layers in [1, 2] {
             for triangles in [false, true] {
-                look(ratio, layers, triangles);
+                visit(ratio, layers, triangles);
             }
         }
     }

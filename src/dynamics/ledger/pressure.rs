@@ -76,7 +76,7 @@ impl SlaveFaces {
         let mut area = vec![0.0; pressure.len()];
         for face in &self.faces {
             let [a, b] = face.nodes.map(|node| problem.position(u, node));
-            // n l = (e_y, -e_x): on the right of the way from a to b
+            // n l = (e_y, -e_x): on the right of the direction from a to b
             let e = [b[0] - a[0], b[1] - a[1]];
             for (node, _) in (face.nodes.iter().zip(face.counts)).filter(|(_, counts)| *counts) {
                 let force = of_node(*node);

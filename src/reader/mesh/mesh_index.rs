@@ -1,5 +1,5 @@
-//! The mesh with the node and element numbers of the deck and the sets named where their members are
-//! defined.
+//! The mesh with the node and element numbers of the deck and the sets named where their members
+//! are defined.
 
 use crate::deck::Name;
 use crate::diagnostics::Span;
