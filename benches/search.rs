@@ -1,8 +1,8 @@
 //! Time of contact search against the number of segments.
 //!
 //! `cargo bench --bench search` measures a lattice of discs in contact with all others and with
-//! themselves: a search anew, the pairs found with lists that hold, the ways of an increment followed,
-//! and the search among all segments.
+//! themselves: a search anew, the pairs found with lists that hold, the ways of an increment
+//! followed, and the search among all segments.
 
 #[path = "../tests/contact_support/mod.rs"]
 mod contact_support;
@@ -16,12 +16,12 @@ use stickslip::contact::{
     NodeContact, Pairing, Search, SlaveNode, all_segments, find_penetration, find_targets,
 };
 
-/// Segments searched in one go: in many small scenes, or few large ones. Only so do caches and branch
-/// predictors not learn the small ones by heart.
+/// Segments searched in one go: in many small scenes, or few large ones. Only so do caches and
+/// branch predictors not learn the small ones by heart.
 const TOTAL: usize = 200_000;
 
-/// Displacements number `k` of the discs of a lattice: all are further than any margin from where they
-/// were, and turned and pushed by other amounts.
+/// Displacements number `k` of the discs of a lattice: all are further than any margin from where
+/// they were, and turned and pushed by other amounts.
 fn elsewhere(x: &[[f64; 2]], k: usize) -> Vec<f64> {
     let shift = [0.0, 9.0][k % 2];
     let mut u = Vec::with_capacity(2 * x.len());
@@ -74,7 +74,7 @@ fn main() {
         let unsolved = vec![0.0; x.len()];
         group.bench_function(BenchmarkId::new("ways", n), |bencher| {
             bencher.iter(|| {
-                search.cover_way(&u, &moved);
+                search.cover_path(&u, &moved);
                 find_penetration(&search, &u, black_box(&moved), &touch, &unsolved)
             });
         });

@@ -76,7 +76,7 @@ FIELDS = {
     "contact-pressure": Field(
         _plain("contact pressure"), partial(on_outline, "CONTACT_PRESSURE"), on_edges=True
     ),
-    "slip": Field(_plain("way slid in contact"), partial(on_outline, "SLIP"), on_edges=True),
+    "slip": Field(_plain("accumulated slip"), partial(on_outline, "SLIP"), on_edges=True),
 }
 """Fields by their names on the command line."""
 

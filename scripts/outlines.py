@@ -104,9 +104,9 @@ def distances(point: Array, start: Array, end: Array) -> Array:
 
 
 def closed_hollow(point: Array, before: Array, after: Array) -> Array:
-    """How deep the legs of closed hollows lie in each other; infinite where a node has other legs.
+    """Overlap of the legs of closed concave corners; infinite where a node has other legs.
 
-    At a hollow whose legs lie on each other the angle is zero but for round-off. When it is
+    At a concave corner whose legs lie on each other the angle is zero but for round-off. When it is
     negative by that much, the node itself is covered once more, and far from all other edges.
     """
     one, two = before - point, after - point

@@ -1,17 +1,16 @@
 //! **stickslip**: large-displacement dynamics of plane deformable bodies with exact contact and
 //! Coulomb friction.
 //!
-//! A keyword deck is read ([`deck`], [`reader`]) into a [`model`]; its bodies are integrated in time
-//! ([`dynamics`]) with total-Lagrangian elements ([`elements`]) of hyperelastic [`materials`], node-to-segment [`contact`] posed
-//! as a linear complementarity problem ([`lcp`]) at every pass, and sparse factorisations
-//! ([`linear`]); [`output`] observes the run and writes the result file.
+//! A keyword deck is read ([`deck`], [`reader`]) into a [`model`]; its bodies are integrated in
+//! time ([`dynamics`]) with total-Lagrangian elements ([`elements`]) of hyperelastic [`materials`],
+//! node-to-segment [`contact`] posed as a linear complementarity problem ([`lcp`]) at every pass, and
+//! sparse factorisations ([`linear`]); [`output`] observes the run and writes the result file.
 //!
 //! # Layers
 //!
-//! A module imports only from modules before it in this list:
-//! `vectors`, `diagnostics`, `deck`, `materials`, `model`, `reader`, `elements`, `linear`, `lcp`,
-//! `contact`, `prepare`, `dynamics`, `output`, `cli`. The rooms of a layer (its sub-folders) import one
-//! way as well.
+//! A module imports only from modules before it in this list: `vectors`, `diagnostics`, `deck`,
+//! `materials`, `model`, `reader`, `elements`, `linear`, `lcp`, `contact`, `prepare`, `dynamics`,
+//! `output`, `cli`. The rooms of a layer (its sub-folders) import one way as well.
 //!
 //! # Equations
 //!
@@ -28,19 +27,32 @@
 //! | slave, master | the node side and the segment side of a contact pair |
 //! | segment | an edge of the master surface from node a to node b, the body on its left |
 //! | candidate | a segment that the search lists for a slave node |
-//! | contact target | what a slave node may not go through: a segment, or the convex corner between two |
-//! | corner | a node between two segments of a surface: convex, or concave |
+//! | projection, xi | foot of the perpendicular from a node to a segment; xi is 0 at a and 1 at b |
+//! | contact target | what a slave node must not penetrate: a segment, or the convex corner between two |
+//! | corner | a node between two segments of a surface: convex or concave; sharp below 120 degrees |
+//! | common normal | normal of node-to-corner contact, from the normal cones of both corners |
+//! | interior | the inside of the bodies, followed from element to element behind a segment |
 //! | slave index | number of a slave node among those of all contacts |
 //! | pair | one slave node with one contact target; a CONTACT PAIR of the deck is a *contact* |
 //! | closed pair | a pair that carries a force |
 //! | territory | circle about an entity that it does not leave while lists of candidates hold |
 //! | gap g | distance of the slave node from its segment, positive when open |
 //! | normal e_n | unit vector out of the master body; tangent e_t points from a to b |
+//! | crossing | a node on the moving line of a segment: entering, leaving or touching |
+//! | penetration | a slave node inside a body: initial, or at the end of an increment |
 //! | slip Dt | tangential motion of the slave node relative to its segment within the increment |
 //! | Pn, Pt | normal (>= 0) and tangential contact force of a pair |
 //! | Phi, Psi | normal and tangential impact impulse of a pair |
 //! | internal force F | nodal forces of the stresses; R external load, M mass, K tangent |
 //! | K* | effective matrix theta2 K + 2/dt^2 M; Q = B K*^-1 B^T its Delassus matrix |
+//! | compliance W | K*^-1 at the dofs in contact |
+//! | residual, correction | errors of a pass: out-of-balance force, last change of displacement |
+//! | acceptance | checks that a converged increment passes before it is entered in the ledger |
+//! | ledger | energies, impulses and works summed over the run, and their balance |
+//! | landing | a node that closes its gap within an increment |
+//! | cutback | a failed attempt at an increment, repeated with a shorter one |
+//! | subincrement | part of a nominal increment, from a cutback or up to an impact |
+//! | frame, history | fields at some times; scalars of every increment, in the result file |
 //! | event | an impact that ends a subincrement (`IMPACT TIME=EVENT`) |
 //! | nominal increment | an increment of the step's fixed grid; cutbacks and events divide it |
 //! | d | displacement increment U1 - U0 |

@@ -114,7 +114,7 @@ proptest! {
         let u0 = vec![0.0; 2 * x.len()];
         let u1 = displacements(&bodies, &ways, shake);
         search.cover(&u0);
-        search.cover_way(&u0, &u1);
+        search.cover_path(&u0, &u1);
         let territory = &search.territories()[0];
         for (k, &slave) in surfaces.slaves.iter().enumerate() {
             let listed: Vec<usize> = territory.candidates(k).map(|c| c.segment).collect();

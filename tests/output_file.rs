@@ -304,8 +304,8 @@ fn history_has_a_row_per_increment() {
     assert_eq!(values::<i64>(&file, "model/element_sets/SQUARES"), [0, 1]);
 }
 
-/// Component i of node n is k + (2 n + i)/100 times a factor: 4 for RF, 10 for CF, 5 for the contact
-/// force, 1, 2 and 3 for the motion.
+/// Component i of node n is k + (2 n + i)/100 times a factor: 4 for RF, 10 for CF, 5 for the
+/// contact force, 1, 2 and 3 for the motion.
 #[test]
 fn sums_and_means_over_node_sets() {
     let (_folder, _, file) = written();

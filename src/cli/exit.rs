@@ -14,7 +14,8 @@ pub enum Exit {
     Rejected = 2,
     /// The command line is wrong, or asks for threads that cannot be started.
     Usage = 3,
-    /// A file or the screen could not be read or written, results exist already, or another run has the job.
+    /// A file or the screen could not be read or written, results exist already, or another run has
+    /// the job.
     FileSystem = 4,
     /// The terminal was closed (SIGHUP); the results up to there are valid.
     HungUp = 129,

@@ -14,7 +14,8 @@ use crate::output::{
 };
 use crate::prepare::PreparedModel;
 
-/// Solves a deck; `command` is the command as typed. The run ends early when `interrupt` asks for it.
+/// Solves a deck; `command` is the command as typed. The run ends early when `interrupt` asks for
+/// it.
 pub(super) fn run(
     args: &RunArgs,
     command: &str,

@@ -4,23 +4,24 @@
 
 // Geometry of surfaces and bodies.
 
-/// Cosine of the turn beyond which a convex corner of the reference configuration is sharp (an angle
-/// below 120 degrees): folded legs there are the corner itself, elsewhere a closed concave corner.
+/// Cosine of the turn beyond which a convex corner of the reference configuration is sharp (an
+/// angle below 120 degrees): folded legs there are the corner itself, elsewhere a closed concave
+/// corner.
 pub(crate) const SHARP_TURN_COSINE: f64 = 0.5;
-/// Sine of the turn at a corner below which its two segments count as one straight face: the turn of
-/// a smooth, finely meshed surface.
+/// Sine of the turn at a corner below which its two segments count as one straight face: the turn
+/// of a smooth, finely meshed surface.
 pub(crate) const STRAIGHT_SINE: f64 = 1e-3;
-/// Sine of the angle between the legs of a corner below which they lie on each other: a sharp corner
-/// and a closed concave corner look alike there.
+/// Sine of the angle between the legs of a corner below which they lie on each other: a sharp
+/// corner and a closed concave corner have the same tangents there.
 pub(crate) const FOLDED_CORNER_SINE: f64 = 0.3;
 /// Distance (in side lengths of the element) by which a line may pass outside an element and still
 /// go through it: round-off of coordinates.
 pub(crate) const INSIDE_ROUND_OFF: f64 = 1e-9;
-/// Length of the line followed into the body behind a node, in depths of the node: where it leaves the
-/// body, the node is nearer to the far side.
+/// Length of the line followed into the body behind a node, in depths of the node: where it leaves
+/// the body, the node is nearer to the far side.
 pub(crate) const NEARER_HALF: f64 = 2.0;
-/// Entry of Bn over the unknowns (whose largest is of the order of 1) below which equations keep a node
-/// on its segment: round-off of weights and directions.
+/// Entry of Bn over the unknowns (whose largest is of the order of 1) below which equations keep a
+/// node on its segment: round-off of weights and directions.
 pub(crate) const TIED_ROW: f64 = 1e-9;
 /// Part of its reference length below which a segment has collapsed to a point and has no normal.
 pub(crate) const COLLAPSED_LENGTH: f64 = 1e-9;
@@ -33,8 +34,8 @@ pub(crate) const PROJECTION_BEYOND_ENDS: f64 = 1e-6;
 /// Distance up to which a node at rest pairs with a segment at rest, in mean segment lengths of the
 /// contact.
 pub(crate) const PAIRING_REACH: f64 = 2.0;
-/// Growth of the circle of an entity at rest, in mean segment lengths of the contact: it may move this
-/// far before its candidates are searched anew.
+/// Growth of the circle of an entity at rest, in mean segment lengths of the contact: it may move
+/// this far before its candidates are searched anew.
 pub(crate) const SEARCH_MARGIN: f64 = 0.5;
 /// Further growth of the circle of a moving entity, in displacements per increment: lists then last
 /// about two increments at constant velocity.
@@ -42,11 +43,11 @@ pub(crate) const SEARCH_MARGIN_PER_MOTION: f64 = 2.0;
 
 // Selection of targets.
 
-/// Gap below which (with its sign) a node counts as touching at the start of an increment: a closed
-/// gap is zero to the tolerance of the passes.
+/// Gap, in absolute value, below which a node counts as closed at the start of an increment: a
+/// closed gap is zero to the tolerance of the passes.
 pub(crate) const CLOSED_GAP: f64 = 1e-9;
-/// Depth of a node at the start of the analysis up to which contact pushes it out; deeper nodes belong
-/// to another side of the body.
+/// Depth of a node at the start of the analysis up to which contact pushes it out; deeper nodes
+/// belong to another side of the body.
 pub(crate) const INITIAL_DEPTH: f64 = 2e-3;
 /// Distance from a corner, besides the displacement of the node, within which both segments of a
 /// concave corner constrain it.
@@ -58,26 +59,26 @@ pub(crate) const FACING_SINE: f64 = 0.5;
 pub(crate) const CONE_MISS: f64 = 0.1;
 /// Distance from a convex corner, along the faces, within which a node meets the corner itself.
 pub(crate) const CORNER_TIP: f64 = 1e-5;
-/// Overrun beyond the ends of a segment up to which a node that has left it within an increment for no
-/// other keeps it: whether it has slid off is decided by the end of the increment.
+/// Overrun beyond the ends of a segment up to which a node that has left it within an increment for
+/// no other keeps it: whether it has slid off is decided by the end of the increment.
 pub(crate) const KEPT_BEYOND_ENDS: f64 = 0.1;
 /// The same once the passes have settled, where targets change no more.
 pub(crate) const KEPT_WHEN_SETTLED: f64 = 1e-3;
-/// Overlap below which an open pair stays open once the passes have settled, so that a force does not
-/// alternate between two nodes that face each other.
+/// Overlap below which an open pair stays open once the passes have settled, so that a force does
+/// not alternate between two nodes that face each other.
 pub(crate) const SETTLED_OVERLAP: f64 = 1e-10;
 
 // Crossing and penetration.
 
 /// Round-off of a cross product, in units of the products that make it.
 pub(crate) const CROSS_ROUND_OFF: f64 = 32.0 * f64::EPSILON;
-/// Overrun beyond the ends of a moving segment at which a node still crosses it: no node slips between
-/// two segments by round-off.
+/// Overrun beyond the ends of a moving segment at which a node still crosses it: no node slips
+/// between two segments by round-off.
 pub(crate) const CROSSING_BEYOND_ENDS: f64 = 1e-9;
 /// Depth behind a segment that is round-off of positions.
 pub(crate) const DEPTH_ROUND_OFF: f64 = 1e-9;
-/// Depth to which a free node may clip a corner on its straight path within an increment; halving the
-/// increment need not find a node inside when it is less.
+/// Depth to which a free node may clip a corner on its straight path within an increment; halving
+/// the increment need not find a node inside when it is less.
 pub(crate) const CORNER_CLIP_DEPTH: f64 = 0.01;
 /// Distance from the end of a segment at which a crossing is at the corner itself.
 pub(crate) const SEGMENT_END: f64 = 1e-6;

@@ -31,8 +31,8 @@ fn capitals(word: &str) -> impl Iterator<Item = char> {
     word.chars().flat_map(char::to_uppercase)
 }
 
-/// Insertions, deletions, replacements and exchanges of neighbours between two words, if they are no
-/// more than allowed.
+/// Insertions, deletions, replacements and exchanges of neighbours between two words, if they are
+/// no more than allowed.
 fn typing_errors(a: &[char], b: &[char], allowed: usize) -> Option<usize> {
     let mut before_last = Vec::new();
     let mut last: Vec<usize> = (0..=b.len()).collect();

@@ -89,7 +89,8 @@ impl CheckedSolver {
     /// The inverse at the rows and columns `unknowns` (distinct), m x m column by column.
     ///
     /// # Errors
-    /// Values that are not finite, or row sums that disagree with a solve; a matrix without factors.
+    /// Values that are not finite, or row sums that disagree with a solve; a matrix without
+    /// factors.
     pub fn inverse_at(&mut self, unknowns: &[usize]) -> Result<Vec<f64>, LinearError> {
         let (n, m) = (self.matrix.size(), unknowns.len());
         let mut b = vec![0.0; n];

@@ -19,16 +19,16 @@ struct Front {
     values: Mat<f64>,
 }
 
-/// The inverse of P^T L D L^T P at some unknowns, given by their `positions` in the order of pivots,
-/// m x m column by column:
+/// The inverse of P^T L D L^T P at some unknowns, given by their `positions` in the order of
+/// pivots, m x m column by column:
 ///
 /// ```text
 /// Y = L^-1 E,   E the unit vectors of the positions
 /// inverse = Y^T D^-1 Y
 /// ```
 ///
-/// Column j of Y is zero but on the way from its position to the root of the elimination tree, so
-/// that the supernodes off these ways are never visited.
+/// Column j of Y is nonzero only on the path from its position to the root of the elimination tree,
+/// so that the supernodes off these paths are never visited.
 pub(super) fn inverse_at(
     factor: SupernodalLdltRef<'_, usize, f64>,
     positions: &[usize],

@@ -35,8 +35,8 @@ impl Amplitude {
         p.1 + (q.1 - p.1) * ((t - p.0) / (q.0 - p.0))
     }
 
-    /// Derivative at `t`; at a corner that of the interval before it, at the first point that of the
-    /// interval after it.
+    /// Derivative at `t`; at a corner that of the interval before it, at the first point that of
+    /// the interval after it.
     pub fn rate(&self, t: f64) -> f64 {
         let (first, last) = (self.points[0], self.points[self.points.len() - 1]);
         if self.points.len() == 1 || t < first.0 || t > last.0 {

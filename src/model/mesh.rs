@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use super::{ElementType, Face};
+use super::ElementType;
 
 /// Nodes and elements of a model.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -27,7 +27,8 @@ impl Mesh {
         2 * self.coordinates.len()
     }
 
-    /// For every node the body it belongs to: the smallest index of the nodes that elements connect.
+    /// For every node the body it belongs to: the smallest index of the nodes that elements
+    /// connect.
     pub fn bodies(&self) -> Vec<usize> {
         let mut parent: Vec<usize> = (0..self.node_count()).collect();
         for element in &self.elements {
@@ -90,6 +91,22 @@ impl Element {
     /// Nodes of side `side`, 0-based.
     pub fn side(&self, side: usize) -> [usize; 2] {
         self.element_type.topology().sides[side].map(|local| self.nodes[local])
+    }
+}
+
+/// One side of an element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Face {
+    /// Element index.
+    pub element: usize,
+    /// Side, 0-based: 0 is S1.
+    pub side: usize,
+}
+
+impl Face {
+    /// Node indices [a, b]; the body lies on the left of the direction from a to b.
+    pub fn nodes(&self, mesh: &Mesh) -> [usize; 2] {
+        mesh.elements[self.element].side(self.side)
     }
 }
 

@@ -24,11 +24,11 @@ pub use contact::{Adjust, Contact, Interaction};
 pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
 pub use material::{Material, Section};
-pub use mesh::{Element, Mesh, Set};
+pub use mesh::{Element, Face, Mesh, Set};
 pub use sets::{HistorySet, NamedSets};
 pub use settings::{Factorization, Impact, ImpactTime, LcpChoice, Scheme, Settings, SolverChoice};
 pub use step::{Frames, Increments, Procedure, Step};
-pub use surface::{ALL_EXTERIOR, Face, Surface, SurfaceKind};
+pub use surface::{ALL_EXTERIOR, Surface, SurfaceKind};
 
 /// A whole problem: what a deck says, checked and with all names resolved to indices.
 #[derive(Debug, Clone, PartialEq, Default)]

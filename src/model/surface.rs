@@ -1,7 +1,7 @@
 //! Contact surfaces: element faces, nodes or rigid segments. Segments run from a to b with the body
 //! on the left, as in docs/theory.md, section 3.
 
-use super::Mesh;
+use super::mesh::{Face, Mesh};
 
 /// Name of the surface of general contact: all faces that belong to one element only.
 pub const ALL_EXTERIOR: &str = "ALL_EXTERIOR";
@@ -22,25 +22,9 @@ pub enum SurfaceKind {
     Faces(Vec<Face>),
     /// Nodes: can be slave only.
     Nodes(Vec<usize>),
-    /// Segments [a, b] between nodes without element, the obstacle on the left of the way from a
-    /// to b: can be master only.
+    /// Segments [a, b] between nodes without element, the rigid body on the left of the direction
+    /// from a to b: can be master only.
     Rigid(Vec<[usize; 2]>),
-}
-
-/// One side of an element.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Face {
-    /// Element index.
-    pub element: usize,
-    /// Side, 0-based: 0 is S1.
-    pub side: usize,
-}
-
-impl Face {
-    /// Node indices [a, b]; the body lies on the left of the way from a to b.
-    pub fn nodes(&self, mesh: &Mesh) -> [usize; 2] {
-        mesh.elements[self.element].side(self.side)
-    }
 }
 
 impl Surface {

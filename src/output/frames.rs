@@ -78,8 +78,8 @@ fn passed(step: &Step, first: usize, end: f64) -> usize {
 }
 
 /// The first k from `first` on with `time(k)` after `end`; `time` increases linearly from 0. With
-/// intervals that are nothing beside `end`, one more is done each time: every increment writes a
-/// frame.
+/// intervals that are negligible against `end`, one more is done each time: every increment writes
+/// a frame.
 fn multiples(first: usize, end: f64, time: impl Fn(usize) -> f64) -> usize {
     let intervals = end / time(1);
     if !(0.0..MOST_INTERVALS).contains(&intervals) {

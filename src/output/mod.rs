@@ -1,9 +1,9 @@
 //! Result file, status file, log and screen.
 //!
-//! [`ResultWriter`] observes a run and writes the files of a job ([`JobFiles`]), of which one run has
-//! the [`Claim`] at a time: `JOB.vtkhdf` (`result_file`: `vtkhdf`, `model`, `history`, `record`,
-//! `space`), `JOB.sta` (`status`), `JOB.log` (`log`) and the screen (`screen`, `progress`).
-//! `docs/output.md` describes them.
+//! [`ResultWriter`] observes a run and writes the files of a job ([`JobFiles`]), of which one run
+//! has the [`Claim`] at a time: `JOB.vtkhdf` (`result_file`: `vtkhdf`, `model`, `history`,
+//! `record`, `space`), `JOB.sta` (`status`), `JOB.log` (`log`) and the screen (`screen`,
+//! `progress`). `docs/output.md` describes them.
 
 mod error;
 mod file;

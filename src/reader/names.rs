@@ -106,7 +106,8 @@ impl Labelled {
 }
 
 /// Largest node or element number: the largest that Abaqus reads. CalculiX keeps 32 bits, and the
-/// numbers that are given to the points of rigid surfaces have to follow the largest one of the deck.
+/// numbers that are given to the points of rigid surfaces have to follow the largest one of the
+/// deck.
 const LARGEST_LABEL: i64 = 999_999_999;
 
 /// Node or element numbers of the deck.

@@ -26,8 +26,8 @@ pub fn scene(bodies: &[Body]) -> (ContactSurfaces, Vec<[f64; 2]>) {
 /// Segments of a disc of a lattice.
 pub const DISC: usize = 32;
 
-/// Discs, about `segments` segments, in fours with small distances. The fours lie in a
-/// square lattice and too far apart to touch: what a disc has near it does not depend on their number.
+/// Discs, about `segments` segments, in fours with small distances. The fours lie in a square
+/// lattice and too far apart to touch: what a disc has near it does not depend on their number.
 pub fn lattice(segments: usize) -> (ContactSurfaces, Vec<[f64; 2]>) {
     let fours = segments.div_ceil(4 * DISC);
     let columns = (fours as f64).sqrt().ceil() as usize;

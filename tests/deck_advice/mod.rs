@@ -1,4 +1,5 @@
-//! What messages say beyond the fault itself: what is meant, what has no effect, what will go wrong.
+//! What messages say beyond the fault itself: what is meant, what has no effect, what will go
+//! wrong.
 
 use super::{LINE, SHARED, SQUARE, Source, change, messages, model, rigid, shared, square, step};
 use stickslip::diagnostics::{Code, Severity};

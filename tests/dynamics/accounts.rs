@@ -84,8 +84,8 @@ fn bodies_and_contacts_add_up_to_the_ledger() {
     }
 }
 
-/// What the contact has given to the upper beam since the start is its change of momentum, linear and
-/// about its centre.
+/// What the contact has given to the upper beam since the start is its change of momentum, linear
+/// and about its centre.
 #[test]
 fn impulses_are_the_change_of_momentum() {
     let (kept, _) = run_to_end(&oblique_impact(0.3, Scheme::EnergyMomentum));
@@ -270,8 +270,8 @@ fn the_work_of_a_run_is_that_of_its_increments() {
     }
 }
 
-/// Without a node near the other surface there is no smallest gap, at the start or later; it is that of
-/// the nearest node as soon as one is near.
+/// Without a node near the other surface there is no smallest gap, at the start or later; it is
+/// that of the nearest node as soon as one is near.
 #[test]
 fn the_smallest_gap_is_that_of_the_nearest_node_or_unknown() {
     let mut model = model(1e3, 0.3, 1.0);

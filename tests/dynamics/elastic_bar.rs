@@ -103,9 +103,9 @@ fn without_impulses_the_wall_force_alternates() {
     }
 }
 
-/// A node that closes the gap g0 in an increment starts it with the velocity V0+ = -(2/dt) g0 after the
-/// impulse, so that it ends it at rest on the wall, V1 = (2/dt) d - V0+ = 0 with d = -g0. When it lands in
-/// the second half it is not fast enough for an impulse: V0+ = -v0.
+/// A node that closes the gap g0 in an increment starts it with the velocity V0+ = -(2/dt) g0 after
+/// the impulse, so that it ends it at rest on the wall, V1 = (2/dt) d - V0+ = 0 with d = -g0. When
+/// it lands in the second half it is not fast enough for an impulse: V0+ = -v0.
 #[test]
 fn a_node_is_at_rest_at_the_end_of_the_increment_it_lands_in() {
     let paper = Scheme::Ss22 {

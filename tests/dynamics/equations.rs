@@ -1,5 +1,5 @@
-//! Equations between displacements: tied meshes, sliders, levers, control nodes and prescribed terms,
-//! with contact on both bodies.
+//! Equations between displacements: tied meshes, sliders, levers, control nodes and prescribed
+//! terms, with contact on both bodies.
 
 use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::dynamics::IncrementReport;

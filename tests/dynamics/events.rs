@@ -27,8 +27,8 @@ fn settings(scheme: Scheme, impact_time: ImpactTime) -> Settings {
     }
 }
 
-/// A block at some height above a fixed plate, turned by `angle` about its lower left corner, thrown
-/// down.
+/// A block at some height above a fixed plate, turned by `angle` about its lower left corner,
+/// thrown down.
 struct Fall {
     model: Model,
     block: Block,
@@ -234,7 +234,7 @@ fn at_rest(friction: f64) -> Fall {
 }
 
 #[test]
-fn a_resting_block_costs_no_pieces() {
+fn a_resting_block_costs_no_subincrements() {
     for scheme in SCHEMES {
         for friction in [0.0, 0.3] {
             let mut fall = at_rest(friction);
@@ -287,8 +287,9 @@ fn two_runs_are_the_same_to_the_last_bit() {
     }
 }
 
-/// Between impacts the motion is not that of the start, so that the time of an impact is searched for: a
-/// node that lands is on the plate at the end of its piece, to the accuracy of that search.
+/// Between impacts the motion is not that of the start, so that the time of an impact is searched
+/// for: a node that lands is on the plate at the end of its subincrement, to the accuracy of that
+/// search.
 #[test]
 fn a_node_that_lands_is_on_the_plate_when_its_piece_ends() {
     let dt = 0.02;

@@ -43,20 +43,20 @@ fn pushed(ny: usize, way: f64, points: &[(f64, f64)]) -> (Model, Block) {
     (model, column)
 }
 
-/// A piece is half as long as one that failed at its start, or as long as its place in the increment
-/// allows: what is hard at the start costs no short pieces later.
+/// A subincrement is half as long as one that failed at its start, or as long as its place in the
+/// increment allows: what is hard at the start costs no short subincrements later.
 #[test]
-fn after_halved_pieces_come_longer_ones_again() {
+fn after_halved_subincrements_come_longer_ones_again() {
     let (mut model, _) = pushed(2, 0.4, &[(0.0, 0.0), (0.5, 1.0), (2.0, 1.0)]);
     model.steps[0].settings.max_passes = 8;
     let (keep, summary) = run_to_end(&model);
-    let pieces = keep.reports[1..].iter().map(|r| (r.time - r.dt, r.dt));
-    let pieces: Vec<(f64, f64)> = pieces.collect();
-    println!("{pieces:?}");
-    let shortest = pieces.iter().map(|piece| piece.1).fold(1.0, f64::min);
+    let parts = keep.reports[1..].iter().map(|r| (r.time - r.dt, r.dt));
+    let parts: Vec<(f64, f64)> = parts.collect();
+    println!("{parts:?}");
+    let shortest = parts.iter().map(|part| part.1).fold(1.0, f64::min);
     assert!(shortest < 0.2 && summary.cutbacks == keep.cutbacks.len());
-    assert_eq!(pieces[pieces.len() - 2..], [(0.5, 0.5), (1.0, 1.0)]);
-    for &(start, dt) in &pieces {
+    assert_eq!(parts[parts.len() - 2..], [(0.5, 0.5), (1.0, 1.0)]);
+    for &(start, dt) in &parts {
         let failed = |c: &Cutback| (c.failure.time, c.failure.dt) == (start, 2.0 * dt);
         let fits = start % (2.0 * dt) == 0.0 && dt < 1.0;
         assert_eq!(keep.cutbacks.iter().any(failed), fits, "{dt} at {start}");

@@ -141,7 +141,8 @@ fn a_shaken_support_moves_as_its_amplitude_says() {
         }
         assert!(keep.reports.last().unwrap().energy.external_work > 0.0);
         balance_closes(&keep.reports);
-        // Newton: the impulse of the reactions is the change of momentum, but for the supports' own.
+        // Newton: the impulse of the reactions is the change of momentum, but for the supports'
+        // own.
         let last = keep.reports.last().unwrap();
         assert!(
             last.nodal.reaction[dof] != 0.0 && last.nodal.reaction[2 * block.node(4, 1)] == 0.0
@@ -219,7 +220,8 @@ fn a_ramped_support_moves_with_the_velocity_of_its_ramp() {
             let across = block.nodes().map(|n| fixed(2 * n + 1));
             along.chain(across).collect()
         };
-        // to 0.3 within 0.6, then back to 0.1 within 0.4: the mass 2 with the velocities 0.5 and -0.5
+        // to 0.3 within 0.6, then back to 0.1 within 0.4: the mass 2 with the velocities 0.5 and
+        // -0.5
         model.steps = vec![
             step(0.1, 6, settings(scheme), held(0.3)),
             step(0.05, 8, settings(scheme), held(0.1)),

@@ -77,8 +77,8 @@ fn with_contact(cards: &str) -> Model {
     model.unwrap_or_else(|| panic!("{}", d.render(&sources, false)))
 }
 
-/// General contact holds the rigid floor away from all exterior faces, with the assigned friction, as the
-/// pair does; both together do so once.
+/// General contact holds the rigid floor away from all exterior faces, with the assigned friction,
+/// as the pair does; both together do so once.
 #[test]
 fn a_rigid_surface_takes_part_in_general_contact() {
     let pair = "*CONTACT PAIR, INTERACTION=DRY\nBOT, FLOOR\n";

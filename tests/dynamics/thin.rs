@@ -16,8 +16,8 @@ use crate::blocks::{Block, add_block, fixed, model, run_to_end, step, throw};
 
 const LENGTH: f64 = 10.0;
 
-/// Foils with elements that are `ratio` times as long as the foil is thick, each above the one before by
-/// `lifts` thicknesses, in one surface that touches itself.
+/// Foils with elements that are `ratio` times as long as the foil is thick, each above the one
+/// before by `lifts` thicknesses, in one surface that touches itself.
 fn foils(ratio: f64, layers: usize, triangles: bool, lifts: &[f64]) -> (Model, Vec<Block>) {
     let mut model = model(1e3, 0.3, 1.0);
     let (size, mut y) = (LENGTH / 4.0, 0.0);
@@ -81,11 +81,11 @@ fn split(model: &mut Model, faces: &[Face]) -> Vec<Face> {
 }
 
 /// Every combination of slenderness, layers and shape.
-fn each(mut look: impl FnMut(f64, usize, bool)) {
+fn each(mut visit: impl FnMut(f64, usize, bool)) {
     for ratio in [1e2, 1e3, 1e4] {
         for layers in [1, 2] {
             for triangles in [false, true] {
-                look(ratio, layers, triangles);
+                visit(ratio, layers, triangles);
             }
         }
     }

@@ -11,27 +11,28 @@ use crate::vectors::{cross, difference};
 /// Contact of a slave node in an increment.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct NodeContact {
-    /// Whether it carried a force before.
+    /// Whether it carried a force in the increment before.
     pub before: bool,
     /// Segments at which it carries forces at the end.
     pub now: Vec<usize>,
 }
 
-/// A slave node that went into a body.
+/// A slave node that has penetrated a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Penetration {
     /// Slave node.
     pub slave: usize,
-    /// Ends of the segment it went through.
+    /// Ends of the segment through which it entered.
     pub segment: [usize; 2],
 }
 
-/// A slave node that goes into a body on the straight way from the displacements `u0` to `u1`, if
-/// there is one; the search covers the way, `touch` holds the contact of every slave_index, `unsolved` what the
-/// tolerance of the increment leaves of the way of every node (length): a depth that does not count.
+/// The first slave node that penetrates a body on its straight path from the displacements `u0` to
+/// `u1`, if there is one. The search must cover the paths; `touch` has an entry per slave index;
+/// `unsolved` is the error of every node's displacement that the tolerance of the increment allows
+/// (length), a depth that does not count.
 ///
-/// To go in is allowed for nodes that are held by the segment or come out again in contact: a node
-/// that slides round a corner cuts it, for its way is straight.
+/// A node may enter through a segment at which it carries a force, or leave again in contact: the
+/// straight path of a node that slides round a corner cuts the corner.
 pub fn find_penetration(
     search: &Search,
     u0: &[f64],
@@ -45,7 +46,7 @@ pub fn find_penetration(
     for territory in search.territories() {
         let contact = territory.surfaces();
         for (k, &slave) in contact.slaves.iter().enumerate() {
-            let way = NodePath {
+            let path = NodePath {
                 contact,
                 x,
                 u: [u0, u1],
@@ -56,11 +57,11 @@ pub fn find_penetration(
             slave_index += 1;
             events.clear();
             for candidate in territory.candidates(k) {
-                let found = crossings(&way.motions(candidate.segment), 1.0);
+                let found = crossings(&path.motions(candidate.segment), 1.0);
                 events.extend(found.into_iter().map(|c| (candidate.segment, c)));
             }
-            let ends_inside = || way.ends_inside(territory.candidates(k).map(|c| c.segment));
-            if let Some(segment) = way.passage(&mut events).or_else(ends_inside) {
+            let ends_inside = || path.ends_inside(territory.candidates(k).map(|c| c.segment));
+            if let Some(segment) = path.entry(&mut events).or_else(ends_inside) {
                 let segment = contact.segments[segment];
                 return Some(Penetration { slave, segment });
             }
@@ -69,7 +70,7 @@ pub fn find_penetration(
     None
 }
 
-/// The way of one slave node.
+/// The straight path of one slave node in an increment.
 struct NodePath<'a> {
     contact: &'a ContactSurfaces,
     x: &'a [[f64; 2]],
@@ -88,14 +89,14 @@ impl NodePath<'_> {
         })
     }
 
-    /// Place relative to a segment at a part of the way.
-    fn place(&self, segment: usize, part: f64) -> Projection {
+    /// Projection on a segment at a fraction of the path.
+    fn project(&self, segment: usize, part: f64) -> Projection {
         let [s, a, b] = self.motions(segment).map(|m| m.at(part));
         project(s, a, b)
     }
 
-    /// The segment through which the node goes in without a reason.
-    fn passage(&self, events: &mut [(usize, Crossing)]) -> Option<usize> {
+    /// The segment through which the node enters a body and may not.
+    fn entry(&self, events: &mut [(usize, Crossing)]) -> Option<usize> {
         events.sort_by(|(_, c), (_, d)| c.time.total_cmp(&d.time));
         for (n, (segment, entering)) in events.iter().enumerate() {
             if entering.direction != Direction::Entering {
@@ -118,32 +119,32 @@ impl NodePath<'_> {
         None
     }
 
-    /// The segment that the node is behind at the end, nearest to it of all and not held by it, although
-    /// the node was outside at the start: it came round a corner that has become a concave corner.
+    /// The nearest segment at the end, if the node is behind it without a force although it was
+    /// outside at the start: it has come round a corner that has turned concave.
     fn ends_inside(&self, segments: impl Iterator<Item = usize> + Clone) -> Option<usize> {
         let is_own = |i: &usize| self.contact.segments[*i].contains(&self.slave);
         let others = segments.filter(|i| !is_own(i));
         let is_behind = |&i: &usize| {
-            let p = self.place(i, 1.0);
+            let p = self.project(i, 1.0);
             (0.0..=1.0).contains(&p.xi)
                 && p.gap < 0.0
                 && !self.is_round_off(i, -p.gap, p.length)
-                && -p.gap <= 2.0 * self.length_of_way(i)
+                && -p.gap <= 2.0 * self.relative_displacement(i)
                 && !self.is_far_side(i)
         };
-        let depth = |i: usize| -self.place(i, 1.0).gap;
+        let depth = |i: usize| -self.project(i, 1.0).gap;
         let nearest = |i: &usize, j: &usize| depth(*i).total_cmp(&depth(*j));
         let i = others.clone().filter(is_behind).min_by(nearest)?;
         let is_nearest = others.clone().all(|j| self.distance(j) >= depth(i));
         let was_outside = |j: usize| {
-            let p = self.place(j, 0.0);
+            let p = self.project(j, 0.0);
             self.is_round_off(j, -p.gap, p.length) && self.are_near(i, j)
         };
         let is_held = self.touch.now.contains(&i);
         (is_nearest && !is_held && others.clone().any(was_outside)).then_some(i)
     }
 
-    /// Whether the node is part of the body behind a segment at the end.
+    /// Whether the node belongs to the body behind a segment at the end.
     fn is_far_side(&self, i: usize) -> bool {
         let at = |node: usize| position(self.x, self.u[1], node);
         let ContactSurfaces {
@@ -154,7 +155,7 @@ impl NodePath<'_> {
 
     /// Distance from a segment at the end.
     fn distance(&self, i: usize) -> f64 {
-        let p = self.place(i, 1.0);
+        let p = self.project(i, 1.0);
         let beyond = (p.xi - p.xi.clamp(0.0, 1.0)) * p.length;
         beyond.hypot(p.gap)
     }
@@ -162,41 +163,43 @@ impl NodePath<'_> {
     /// Whether a node that enters through one segment may leave through another.
     fn may_leave(&self, (i, entered): (usize, f64), (j, left): (usize, f64)) -> bool {
         let middle = entered + (left - entered) / 2.0;
-        let (p, q) = (self.place(i, middle), self.place(j, middle));
+        let (p, q) = (self.project(i, middle), self.project(j, middle));
         let depth = (-p.gap).min(-q.gap);
         let slides = || {
-            let is_held = |k| self.are_near(i, k);
-            self.touch.before || self.touch.now.iter().copied().any(is_held)
+            let is_near = |k| self.are_near(i, k);
+            self.touch.before || self.touch.now.iter().copied().any(is_near)
         };
         self.is_round_off(i, depth, p.length)
             || (self.are_near(i, j) && (depth <= CORNER_CLIP_DEPTH * p.length || slides()))
     }
 
-    /// Whether a node that enters through a segment and does not leave is not inside for that.
+    /// Whether a node that enters through a segment and never leaves is outside the body all the
+    /// same.
     fn may_stay(&self, i: usize, xi: f64) -> bool {
-        let p = self.place(i, 1.0);
+        let p = self.project(i, 1.0);
         if self.is_round_off(i, -p.gap, p.length)
             || self.touch.now.contains(&i)
-            || self.is_beside(i, xi, &p)
+            || self.is_outside_corner(i, xi, &p)
         {
             return true;
         }
-        let is_on = |j: usize| (0.0..=1.0).contains(&self.place(j, 1.0).xi);
+        let is_on = |j: usize| (0.0..=1.0).contains(&self.project(j, 1.0).xi);
         let mut held = self.touch.now.iter();
         held.any(|&j| is_on(j) && self.are_near(i, j))
             || (self.touch.before && self.has_slid_off(i, &p))
     }
 
-    /// Whether a depth behind segment `i`, whose length is given, does not count.
+    /// Whether a depth behind segment `i` of the given length is within the tolerance of the
+    /// solution.
     fn is_round_off(&self, i: usize, depth: f64, length: f64) -> bool {
         let [a, b] = self.contact.segments[i];
         let unsolved = [self.slave, a, b].map(|node| self.unsolved[node]);
         depth <= largest(&unsolved) + DEPTH_ROUND_OFF * length
     }
 
-    /// Whether the node has met a segment at its very end and is outside the corner there: behind its
-    /// line, but before that of the neighbour.
-    fn is_beside(&self, i: usize, xi: f64, p: &Projection) -> bool {
+    /// Whether the node has crossed a segment at its very end and is outside the corner there:
+    /// behind the line of this segment and in front of that of its neighbour.
+    fn is_outside_corner(&self, i: usize, xi: f64, p: &Projection) -> bool {
         let is_end_b = xi > 0.5;
         if xi.min(1.0 - xi) > SEGMENT_END {
             return false;
@@ -209,7 +212,7 @@ impl NodePath<'_> {
         let Some(j) = neighbour else {
             return !(0.0..=1.0).contains(&p.xi);
         };
-        let q = self.place(j, 1.0);
+        let q = self.project(j, 1.0);
         let is_convex = if is_end_b {
             turns_left(p, &q)
         } else {
@@ -218,22 +221,22 @@ impl NodePath<'_> {
         is_convex && self.is_round_off(j, -q.gap, q.length)
     }
 
-    /// Whether the node has slid off the end of a surface that is not closed.
+    /// Whether the node has slid off the end of an open surface.
     fn has_slid_off(&self, i: usize, p: &Projection) -> bool {
         let next = |k: usize| self.contact.next[k];
         let previous = |k: usize| self.contact.previous[k];
         (p.xi > 1.0 && self.walk(i, &next, None)) || (p.xi < 0.0 && self.walk(i, &previous, None))
     }
 
-    /// Whether two segments follow each other, or do so with others between them that are not longer
-    /// than twice the node's way: the other side of a thin body is far in this sense.
+    /// Whether two segments are neighbours on the surface, or the surface between them is not
+    /// longer than twice the displacement of the node: the far side of a thin body is not near.
     fn are_near(&self, i: usize, j: usize) -> bool {
         let step = |k: usize| self.contact.next[k];
         i == j || self.walk(i, &step, Some(j)) || self.walk(j, &step, Some(i))
     }
 
-    /// How far the node goes relative to the start of a segment.
-    fn length_of_way(&self, segment: usize) -> f64 {
+    /// Displacement of the node relative to the start a of a segment (length).
+    fn relative_displacement(&self, segment: usize) -> f64 {
         let [start, end] = [0.0, 1.0].map(|part| {
             let [s, a, _] = self.motions(segment).map(|m| m.at(part));
             difference(a, s)
@@ -241,10 +244,10 @@ impl NodePath<'_> {
         (end[0] - start[0]).hypot(end[1] - start[1])
     }
 
-    /// Whether steps from a segment lead to another, or to the end of the surface, over segments that
-    /// are not longer than twice the node's way.
+    /// Whether the chain of segments from one segment leads to another (or, for `None`, to the end
+    /// of the surface) within twice the displacement of the node.
     fn walk(&self, from: usize, step: &dyn Fn(usize) -> Option<usize>, to: Option<usize>) -> bool {
-        let way = self.length_of_way(from);
+        let displacement = self.relative_displacement(from);
         let (mut segment, mut between) = (from, 0.0);
         loop {
             let following = step(segment);
@@ -253,15 +256,15 @@ impl NodePath<'_> {
                 Some(k) if k != from => segment = k,
                 _ => return false,
             }
-            between += self.place(segment, 1.0).length;
-            if between > 2.0 * way {
+            between += self.project(segment, 1.0).length;
+            if between > 2.0 * displacement {
                 return false;
             }
         }
     }
 }
 
-/// Whether the way along one segment turns left into another: round a convex corner.
+/// Whether the corner from one segment to the next turns left, so that it is convex.
 fn turns_left(first: &Projection, second: &Projection) -> bool {
     cross(first.tangent, second.tangent) > 0.0
 }

@@ -24,9 +24,8 @@ fn passes_of(closed: bool, from: [f64; 2], to: [f64; 2], touch: NodeContact) -> 
     (u1[0], u1[1]) = (to[0] - from[0], to[1] - from[1]);
     let contacts = [surfaces];
     let mut search = Search::new(&contacts, &x);
-    search.cover_way(&u0, &u1);
-    find_penetration(&search, &u0, &u1, &[touch], &vec![0.0; x.len()])
-        .map(|passage| passage.segment)
+    search.cover_path(&u0, &u1);
+    find_penetration(&search, &u0, &u1, &[touch], &vec![0.0; x.len()]).map(|entry| entry.segment)
 }
 
 fn passes(from: [f64; 2], to: [f64; 2], touch: NodeContact) -> Option<[usize; 2]> {
@@ -69,15 +68,15 @@ fn what_other_bodies_leave_unsolved_is_no_excuse() {
     u1[1] = -1.6;
     let contacts = [surfaces];
     let mut search = Search::new(&contacts, &x);
-    search.cover_way(&u0, &u1);
-    let passage = |fast: usize| {
+    search.cover_path(&u0, &u1);
+    let entry = |fast: usize| {
         let mut unsolved = vec![0.0; x.len()];
         unsolved[fast] = 0.2;
-        find_penetration(&search, &u0, &u1, &[FREE], &unsolved).map(|passage| passage.segment)
+        find_penetration(&search, &u0, &u1, &[FREE], &unsolved).map(|entry| entry.segment)
     };
     // 0.1 deep: a node far away, those of the segment, the node itself
-    assert_eq!(passage(1), Some(TOP));
-    assert_eq!([passage(TOP[0]), passage(TOP[1]), passage(0)], [None; 3]);
+    assert_eq!(entry(1), Some(TOP));
+    assert_eq!([entry(TOP[0]), entry(TOP[1]), entry(0)], [None; 3]);
 }
 
 #[test]
@@ -150,29 +149,29 @@ fn a_node_may_slide_over_several_segments() {
 fn a_hollow_corner_holds_a_node_with_both_sides() {
     // A valley over (2, 1), (0, 0), (-2, 1): the node goes on along the line of its left slope.
     let surfaces = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]], 0.0);
-    let passage = |way: f64| {
+    let entry = |travel: f64| {
         let x = [[0.2, 0.1], [2.0, 1.0], [0.0, 0.0], [-2.0, 1.0]];
         let u0 = [0.0; 8];
         let mut u1 = u0;
-        (u1[0], u1[1]) = (-way, -way / 2.0);
+        (u1[0], u1[1]) = (-travel, -travel / 2.0);
         let contacts = [surfaces.clone()];
         let mut search = Search::new(&contacts, &x);
-        search.cover_way(&u0, &u1);
+        search.cover_path(&u0, &u1);
         find_penetration(&search, &u0, &u1, &[held(true, 0)], &[0.0; 4])
     };
     let through = Penetration {
         slave: 0,
         segment: [2, 3],
     };
-    assert_eq!(passage(0.1), None);
-    assert_eq!(passage(0.21), Some(through));
-    assert_eq!(passage(0.6), Some(through));
+    assert_eq!(entry(0.1), None);
+    assert_eq!(entry(0.21), Some(through));
+    assert_eq!(entry(0.6), Some(through));
 }
 
 #[test]
 fn a_node_may_not_end_inside_a_vertex_that_has_become_a_hollow() {
-    // The node touches the roof beside its top, which sinks to a concave corner; it ends on the line of the
-    // first side, behind the second.
+    // The node touches the roof near its top, which sinks until the corner is concave; it ends on
+    // the line of the first side, behind the second.
     let x = [[0.05, -0.05], [1.0, -1.0], [0.0, 0.0], [-1.0, -0.9]];
     let surfaces = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]], 0.0);
     let end = [[-0.2, -0.36], [1.0, 0.0], [0.0, -0.3], [-1.0, 0.0]];
@@ -190,12 +189,12 @@ fn a_node_may_not_end_inside_a_vertex_that_has_become_a_hollow() {
         now: Vec::new(),
     }];
     let u1 = move_to(end);
-    search.cover_way(&u0, &u1);
-    let passage = find_penetration(&search, &u0, &u1, &touch, &[0.0; 4]);
-    assert_eq!(passage.map(|p| p.segment), Some([2, 3]));
+    search.cover_path(&u0, &u1);
+    let entry = find_penetration(&search, &u0, &u1, &touch, &[0.0; 4]);
+    assert_eq!(entry.map(|p| p.segment), Some([2, 3]));
     // in the concave corner
     let above = [[-0.2, -0.2], end[1], end[2], end[3]];
     let u1 = move_to(above);
-    search.cover_way(&u0, &u1);
+    search.cover_path(&u0, &u1);
     assert_eq!(find_penetration(&search, &u0, &u1, &touch, &[0.0; 4]), None);
 }

@@ -9,14 +9,14 @@ const HALVINGS: usize = 60;
 pub(crate) struct Quartic {
     /// Coefficients.
     pub c: [f64; 5],
-    /// Values up to this size are zero.
+    /// Absolute value up to which the polynomial counts as zero.
     pub tolerance: f64,
 }
 
 /// A zero with the signs of the polynomial before and after it; 0 beyond the ends of [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Zero {
-    /// Place.
+    /// Position t.
     pub t: f64,
     /// Sign before.
     pub before: i8,
@@ -27,7 +27,7 @@ pub(crate) struct Zero {
 /// The zeros of a polynomial on [0, 1].
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Zeros {
-    /// Increasing; double ones, with equal signs on both sides, included.
+    /// In increasing order, with double zeros (equal signs on both sides).
     At(Vec<Zero>),
     /// The polynomial is zero on all of [0, 1].
     Everywhere,

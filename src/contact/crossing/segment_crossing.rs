@@ -18,7 +18,7 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// The straight way from one position to another within a time of 1.
+    /// The straight path from one position to another within a time of 1.
     pub fn straight(from: [f64; 2], to: [f64; 2]) -> Self {
         Motion {
             position: from,
@@ -38,23 +38,23 @@ impl Motion {
     }
 }
 
-/// How a node goes through the line of a segment.
+/// Sense in which a node crosses the line of a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
     /// From outside the body to its inside.
     Entering,
     /// From inside the body to its outside.
     Leaving,
-    /// It meets the line without going through: it grazes it, ends on it, or moves along it.
+    /// It meets the line and stays on its side: it grazes it, ends on it, or moves along it.
     Touching,
 }
 
-/// A node meets the line of a segment.
+/// A node on the line of a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
     /// Time.
     pub time: f64,
-    /// Place on the segment, 0 at a and 1 at b.
+    /// Position on the segment, 0 at a and 1 at b.
     pub xi: f64,
     /// Sense.
     pub direction: Direction,
@@ -66,8 +66,8 @@ pub struct Crossing {
 /// r x e = 0,   0 <= xi = r.e/e.e <= 1,   r = x_s - x_a, e = x_b - x_a    eq. (10.5)
 /// ```
 ///
-/// With second-order motion this is a polynomial of degree 4 in time; it has the sign of the gap. A
-/// node that moves along the line of the segment meets it once, when it comes to lie on it.
+/// For motion of second order r x e is a quartic in time with the sign of the gap. A node that
+/// moves along the line of the segment meets it once, when it reaches one of its ends.
 pub fn crossings(nodes: &[Motion; 3], dt: f64) -> Vec<Crossing> {
     let mut found = line_crossings(nodes, dt);
     found.retain_mut(|crossing| {
@@ -78,13 +78,13 @@ pub fn crossings(nodes: &[Motion; 3], dt: f64) -> Vec<Crossing> {
     found
 }
 
-/// The same for the line of the segment, which goes on beyond its ends.
+/// The same for the infinite line through the segment.
 pub fn line_crossings(nodes: &[Motion; 3], dt: f64) -> Vec<Crossing> {
     let relative = Relative::new(nodes, dt);
     match relative.cross().zeros() {
         Zeros::At(zeros) => {
             let crossing = |zero: Zero| {
-                relative.place(zero.t).map(|xi| Crossing {
+                relative.xi(zero.t).map(|xi| Crossing {
                     time: zero.t * dt,
                     xi,
                     direction: direction(zero),
@@ -92,7 +92,7 @@ pub fn line_crossings(nodes: &[Motion; 3], dt: f64) -> Vec<Crossing> {
             };
             zeros.into_iter().filter_map(crossing).collect()
         }
-        Zeros::Everywhere => relative.along(dt).into_iter().collect(),
+        Zeros::Everywhere => relative.first_on_segment(dt).into_iter().collect(),
     }
 }
 
@@ -136,7 +136,7 @@ impl Relative {
         self.product(cross)
     }
 
-    /// A product of r and e that is linear in both.
+    /// A bilinear product of r and e.
     fn product(&self, of: fn([f64; 2], [f64; 2]) -> f64) -> Quartic {
         let mut c = [0.0; 5];
         for (i, r) in self.r.iter().enumerate() {
@@ -150,8 +150,8 @@ impl Relative {
         }
     }
 
-    /// xi = r.e/e.e, if the segment has a length or the node is where its ends are.
-    fn place(&self, t: f64) -> Option<f64> {
+    /// xi = r.e/e.e; for a segment of zero length 0 where the node coincides with it, else none.
+    fn xi(&self, t: f64) -> Option<f64> {
         let [r, e] =
             [&self.r, &self.e].map(|c| [0, 1].map(|i| c[0][i] + (c[1][i] + c[2][i] * t) * t));
         let scale = CROSS_ROUND_OFF * (size(&self.r) + size(&self.e));
@@ -163,8 +163,8 @@ impl Relative {
         }
     }
 
-    /// A node that is in the line of the segment at all times: when it is first on the segment.
-    fn along(&self, dt: f64) -> Option<Crossing> {
+    /// For a node that is on the line of the segment at all times: when it is first on the segment.
+    fn first_on_segment(&self, dt: f64) -> Option<Crossing> {
         // r.e = 0 at the end a, (r - e).e = 0 at b, r.(dr/dt) = 0 where r may vanish
         let to_b = Relative {
             r: [0, 1, 2].map(|k| [0, 1].map(|i| self.r[k][i] - self.e[k][i])),
@@ -182,7 +182,7 @@ impl Relative {
         }
         times.sort_by(f64::total_cmp);
         let on = |t: f64| {
-            let xi = self.place(t)?;
+            let xi = self.xi(t)?;
             (-CROSSING_BEYOND_ENDS..=1.0 + CROSSING_BEYOND_ENDS)
                 .contains(&xi)
                 .then_some(Crossing {
@@ -328,7 +328,7 @@ mod tests {
 
     #[test]
     fn a_segment_that_turns_inside_out_is_not_met_from_afar() {
-        // b goes through a at t = 1, the node stays beside
+        // b passes through a at t = 1; the node stays away from the line
         let b = Motion {
             position: [-1.0, 0.0],
             velocity: [1.0, 0.0],

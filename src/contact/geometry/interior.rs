@@ -1,7 +1,9 @@
-//! The inside of the bodies: whether a straight line from a segment stays in the elements behind it.
+//! Interior of the bodies: whether a straight line from a segment stays in the elements behind it.
+//! Section 10 of docs/theory.md.
 //!
-//! The line walks from element to element through their common sides, so that the far side of a thin
-//! body is told from a node that another part has pressed in, however thin the body is.
+//! The line is followed from element to element through their common sides. This tells a node on
+//! the far side of a thin body from a node of another part that has penetrated it, however thin the
+//! body.
 
 use crate::contact::tolerances::{INSIDE_ROUND_OFF, NEARER_HALF};
 use std::collections::HashMap;
@@ -10,12 +12,12 @@ use super::projection::project;
 use crate::model::Mesh;
 use crate::vectors::{difference, dot};
 
-/// The elements of a mesh with what lies on the left of each of their sides.
+/// The elements of a mesh, found by their sides.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Interior {
     /// Sides [a, b] of every element, the element on their left.
     sides: Vec<Box<[[usize; 2]]>>,
-    /// Element on the left of the way along a side [a, b].
+    /// Element on the left of the side from a to b.
     left: HashMap<[usize; 2], usize>,
 }
 
@@ -39,9 +41,10 @@ impl Interior {
         Interior { sides, left }
     }
 
-    /// Whether a node that is behind the line of a segment, at the positions `at`, lies in the body
-    /// there without being part of it, nearer to the segment than to the other side of the body.
-    /// A segment without an element has all behind it.
+    /// Whether a node behind the line of a segment, at the positions `at`, has penetrated the body
+    /// there through this segment: it lies in the body, belongs to none of the elements on the
+    /// line, and is nearer to the segment than to the far side. Behind a segment without an element
+    /// everything is inside.
     pub fn takes_in(
         &self,
         segment: [usize; 2],
@@ -52,7 +55,7 @@ impl Interior {
             .is_none_or(|line| self.is_foreign(&line, node))
     }
 
-    /// The same at any depth: the body takes the node in by some segment, not surely by this one.
+    /// Whether the node lies in the body at any depth: it may have entered through another segment.
     pub fn contains(
         &self,
         segment: [usize; 2],
@@ -63,14 +66,15 @@ impl Interior {
             .is_none_or(|line| self.is_foreign(&line, node))
     }
 
-    /// Whether a node behind the line of a segment is part of the body there: it lies on another side
-    /// of it.
+    /// Whether a node behind the line of a segment belongs to the body there: it is a node of the
+    /// far side.
     pub fn joins(&self, segment: [usize; 2], node: usize, at: impl Fn(usize) -> [f64; 2]) -> bool {
         let line = self.line(segment, node, 1.0, at);
         line.is_some_and(|line| line.stays && self.has_node(&line, node))
     }
 
-    /// The line from the foot of a node on a segment, at `depths` its depth; none without an element.
+    /// The line from the projection of a node on a segment to the node and beyond, `depths` times
+    /// its depth long; none without an element.
     fn line(
         &self,
         segment: [usize; 2],
@@ -133,7 +137,7 @@ impl Interior {
         (start <= end).then_some([start, end])
     }
 
-    /// Whether a line stays in the body, and the node is no part of the elements on it.
+    /// Whether a line stays in the body and the node belongs to none of the elements on it.
     fn is_foreign(&self, line: &Line, node: usize) -> bool {
         line.stays && !self.has_node(line, node)
     }

@@ -1,4 +1,5 @@
-//! Surfaces as nodes and segments, projection of a point on a segment, and the inside of the bodies.
+//! Surfaces as nodes and segments, projection of a point on a segment, and the inside of the
+//! bodies.
 
 mod interior;
 mod projection;

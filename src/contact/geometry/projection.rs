@@ -1,19 +1,20 @@
-//! Projection of a node on a segment: gap, foot and local frame. Section 3 of docs/theory.md.
+//! Projection of a node on a segment: gap, projection point and local frame. Section 3 of
+//! docs/theory.md.
 
 use crate::vectors::{difference, dot, length};
 
-/// Place of a point relative to a segment from a to b, the body lying on the left of the way.
+/// A point in the local frame of a segment from a to b, which has its body on the left.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Projection {
-    /// Foot of the perpendicular, 0 at a and 1 at b; outside this range beyond the ends.
+    /// Coordinate of the projection on the segment: 0 at a, 1 at b.
     pub xi: f64,
-    /// Distance along the normal, positive outside the body (length).
+    /// Gap: distance along the normal, positive outside the body (length).
     pub gap: f64,
     /// Length of the segment.
     pub length: f64,
     /// Unit vector from a to b.
     pub tangent: [f64; 2],
-    /// Unit vector out of the body.
+    /// Unit normal out of the body.
     pub normal: [f64; 2],
 }
 
@@ -49,7 +50,7 @@ mod tests {
 
     #[test]
     fn the_normal_points_out_of_the_body_on_the_left() {
-        // The top of a body runs from right to left: the body lies below, on the left of the way.
+        // The top of a body runs from right to left, with the body below it on its left.
         let p = project([1.0, 3.0], [4.0, 2.0], [0.0, 2.0]);
         assert_eq!((p.xi, p.gap, p.length), (0.75, 1.0, 4.0));
         assert_eq!((p.tangent, p.normal), ([-1.0, 0.0], [0.0, 1.0]));

@@ -1,4 +1,5 @@
-//! Contact surfaces as slave nodes and oriented master segments, with their adjacency and sharp_corners.
+//! Contact surfaces: slave nodes and oriented master segments, with their neighbours and sharp
+//! corners. Section 10 of docs/theory.md.
 
 use crate::contact::tolerances::SHARP_TURN_COSINE;
 use std::collections::HashMap;
@@ -14,26 +15,27 @@ use crate::vectors::{cross, dot};
 pub struct ContactSurfaces {
     /// Slave nodes.
     pub slaves: Vec<usize>,
-    /// For every slave node the nodes before and after it on its own surface, where it has both.
+    /// For every slave node the nodes before and after it on its own surface, if it has both.
     pub adjacent: Vec<Option<[usize; 2]>>,
-    /// Master segments [a, b], the body on the left of the way from a to b.
+    /// Master segments [a, b] with the body on the left of the direction from a to b.
     pub segments: Vec<[usize; 2]>,
     /// For every segment the one that starts where it ends, if any.
     pub next: Vec<Option<usize>>,
     /// For every segment the one that ends where it starts, if any.
     pub previous: Vec<Option<usize>>,
-    /// For every segment whether the body has a corner at its end b from the start: an angle below
-    /// 120 degrees. Where both legs of any other corner lie on each other, a concave corner has closed.
+    /// For every segment whether the body has a sharp corner at its end b in the reference
+    /// configuration: an angle below 120 degrees. Folded legs of any other corner are a closed
+    /// concave corner.
     pub sharp_corners: Vec<bool>,
     /// Coefficient of friction mu.
     pub friction: f64,
-    /// The inside of the bodies; without elements all is inside behind a segment.
+    /// Interior of the bodies; behind a segment without an element everything is inside.
     pub interior: Arc<Interior>,
 }
 
 impl ContactSurfaces {
-    /// Slave nodes, which lie on the segments `own` (none if the slave side is nodes only), against
-    /// master segments.
+    /// Slave nodes against master segments; `own` are the segments of the slave surface, none if it
+    /// is made of nodes.
     pub fn new(
         slaves: Vec<usize>,
         own: &[[usize; 2]],
@@ -43,14 +45,14 @@ impl ContactSurfaces {
         // node at the other end of the segment that starts or ends at a node
         let following: HashMap<usize, usize> = own.iter().map(|&[a, b]| (a, b)).collect();
         let preceding: HashMap<usize, usize> = own.iter().map(|&[a, b]| (b, a)).collect();
-        let beside = |slave: &usize| Some([*preceding.get(slave)?, *following.get(slave)?]);
+        let neighbours = |slave: &usize| Some([*preceding.get(slave)?, *following.get(slave)?]);
         // segment that starts or ends at a node
         let numbered = || segments.iter().enumerate();
         let starting: HashMap<usize, usize> = numbered().map(|(i, &[a, _])| (a, i)).collect();
         let ending: HashMap<usize, usize> = numbered().map(|(i, &[_, b])| (b, i)).collect();
         let at = |of: &HashMap<usize, usize>, node: usize| of.get(&node).copied();
         ContactSurfaces {
-            adjacent: slaves.iter().map(beside).collect(),
+            adjacent: slaves.iter().map(neighbours).collect(),
             next: segments.iter().map(|&[_, b]| at(&starting, b)).collect(),
             previous: segments.iter().map(|&[a, _]| at(&ending, a)).collect(),
             sharp_corners: vec![false; segments.len()],
@@ -61,13 +63,13 @@ impl ContactSurfaces {
         }
     }
 
-    /// With the inside of the bodies behind the segments.
+    /// With the interior of the bodies behind the segments.
     pub fn with_interior(mut self, interior: Arc<Interior>) -> Self {
         self.interior = interior;
         self
     }
 
-    /// With the sharp_corners that the surfaces have at the positions `x`.
+    /// With the sharp corners of the surfaces at the positions `x`.
     pub fn with_sharp_corners(mut self, x: &[[f64; 2]]) -> Self {
         let tangent = |i: usize| {
             let [a, b] = self.segments[i].map(|node| x[node]);

@@ -25,12 +25,12 @@ impl Circle {
         dot(d, d) <= reach * reach
     }
 
-    /// Distance of a point from the circle, negative inside (length); never too large.
+    /// Lower bound of the distance of a point from the circle, negative inside (length).
     fn distance(&self, point: [f64; 2]) -> f64 {
         length(difference(self.centre, point)) * (1.0 - DISTANCE_ROUND_OFF) - self.radius
     }
 
-    /// A circle about the middle of some circles that holds them all.
+    /// A circle about the middle of some circles that contains them all.
     fn around(circles: impl Iterator<Item = Circle> + Clone) -> Circle {
         let extent = |i: usize| {
             let bounds = |(low, high): (f64, f64), c: Circle| {
@@ -54,10 +54,10 @@ impl Circle {
     }
 }
 
-/// A hierarchy of circles: all members, halves of them, quarters ... down to small groups.
+/// A binary hierarchy of circles: all members, halves of them, quarters, down to small groups.
 ///
-/// Halves are split at the median of the centres along their longer extent, ties by index, so that
-/// the hierarchy depends on nothing but the circles.
+/// Groups are split at the median of the centres along their longer extent, ties by index, so that
+/// the hierarchy is a function of the circles alone.
 #[derive(Debug, Default)]
 pub(crate) struct CircleTree {
     /// The members with their indices; every group is a range of it.
@@ -74,7 +74,7 @@ impl CircleTree {
         tree
     }
 
-    /// The hierarchy of other circles, in the same memory.
+    /// Replaces the circles, in the same memory.
     pub fn rebuild(&mut self, members: impl IntoIterator<Item = Circle>) {
         self.members.clear();
         self.members.extend(members.into_iter().zip(0..));
@@ -141,7 +141,7 @@ impl CircleTree {
             } else {
                 let halves = [2 * group, 2 * group + 1];
                 let nearer_first = distance(halves[0]) <= distance(halves[1]);
-                // the last one is looked into first
+                // the last one is visited first
                 open.extend(if nearer_first {
                     [halves[1], halves[0]]
                 } else {
@@ -152,7 +152,7 @@ impl CircleTree {
     }
 
     /// Appends all overlapping pairs of a member of this hierarchy and one of the other; two groups
-    /// are looked into only when their circles overlap.
+    /// are compared only when their circles overlap.
     pub fn overlaps(&self, other: &CircleTree, found: &mut Vec<[u32; 2]>) {
         if self.members.is_empty() || other.members.is_empty() {
             return;

@@ -1,5 +1,5 @@
 //! Candidate search between slave nodes and segments, after Zhong & Nilsson (1989), with lists
-//! that stay valid over many increments. Section 10 of docs/theory.md, Territories.
+//! that stay valid over several increments. Section 10 of docs/theory.md, Territories.
 
 use super::bounding_circles::{Circle, CircleTree};
 use crate::contact::geometry::{ContactSurfaces, position};
@@ -13,11 +13,11 @@ use crate::vectors::{difference, dot, length};
 pub struct Candidate {
     /// Index of the segment in its contact.
     pub segment: usize,
-    /// Distance up to which it pairs (length).
+    /// Distance up to which it pairs with the node (length).
     pub reach: f64,
 }
 
-/// All segments of a contact, at any distance: the search without territories.
+/// All segments of a contact at any distance: the exhaustive search.
 pub fn all_segments(surfaces: &ContactSurfaces) -> impl Iterator<Item = Candidate> + Clone {
     (0..surfaces.segments.len()).map(|segment| Candidate {
         segment,
@@ -27,9 +27,9 @@ pub fn all_segments(surfaces: &ContactSurfaces) -> impl Iterator<Item = Candidat
 
 /// Contact search with hierarchies of circular territories.
 ///
-/// Each slave node and each segment has a circle, grown by a margin, each contact two hierarchies of
-/// such circles. The lists of candidates they give hold until an entity has gone further than its
-/// margin, be it for many increments.
+/// Each slave node and each segment has a circle that is grown by a margin, and each contact two
+/// hierarchies of such circles. Overlapping circles are candidates; the lists are valid until an
+/// entity has moved further than its margin.
 pub struct Search<'m> {
     x: &'m [[f64; 2]],
     territories: Vec<Territory<'m>>,
@@ -46,17 +46,17 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// Starts an increment of length `dt` with the velocities `v`: nodes pair farther by the way
-    /// dt |v| that they and the segments may go in it.
+    /// Starts an increment of length `dt` with the velocities `v`: the reach of a pair grows by the
+    /// displacements dt |v| of its node and its segment.
     pub fn start(&mut self, v: &[f64], dt: f64) {
         for territory in &mut self.territories {
             for side in [&mut territory.slaves, &mut territory.segments] {
-                side.set_way(|node| dt * length([v[2 * node], v[2 * node + 1]]));
+                side.set_travel(|node| dt * length([v[2 * node], v[2 * node + 1]]));
             }
         }
     }
 
-    /// Searches anew where the lists do not hold for the displacements `u`.
+    /// Searches the contacts whose lists are not valid for the displacements `u`.
     pub fn cover(&mut self, u: &[f64]) {
         let x = self.x;
         for territory in &mut self.territories {
@@ -67,13 +67,14 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// Searches anew where the lists do not hold on all of the straight way from `u0` to `u1`.
-    pub fn cover_way(&mut self, u0: &[f64], u1: &[f64]) {
+    /// Searches the contacts whose lists are not valid on the whole straight path from `u0` to
+    /// `u1`.
+    pub fn cover_path(&mut self, u0: &[f64], u1: &[f64]) {
         let x = self.x;
         for territory in &mut self.territories {
             let [at_start, at_end] = [u0, u1].map(|u| move |node| position(x, u, node));
             if !territory.reaches(at_start) || !territory.reaches(at_end) {
-                territory.lengthen_ways(at_start, at_end);
+                territory.extend_travel(at_start, at_end);
                 territory.search(|node| {
                     let (p, q) = (at_start(node), at_end(node));
                     [0, 1].map(|i| p[i] + (q[i] - p[i]) / 2.0)
@@ -159,27 +160,29 @@ impl<'m> Territory<'m> {
 
     /// Distance up to which the slave node number `k` pairs with a segment (length).
     pub fn reach(&self, k: usize, segment: usize) -> f64 {
-        self.reach + self.slaves.way[k] + self.segments.way[segment]
+        self.reach + self.slaves.travel[k] + self.segments.travel[segment]
     }
 
-    /// Whether the lists hold at the given positions for the ways of the increment: no entity is
-    /// further from its place at the search than its margin less its way.
+    /// Whether the lists are valid at the given positions for the travel of the increment: the
+    /// distance of every entity from its position at the search plus its travel is within its
+    /// margin.
     fn covers(&self, at: impl Fn(usize) -> [f64; 2]) -> bool {
         self.slaves.is_within(&at, true) && self.segments.is_within(&at, true)
     }
 
-    /// Whether the lists have all that may touch at the given positions.
+    /// Whether the lists hold all pairs that may touch at the given positions.
     fn reaches(&self, at: impl Fn(usize) -> [f64; 2]) -> bool {
         self.slaves.is_within(&at, false) && self.segments.is_within(&at, false)
     }
 
-    fn lengthen_ways(&mut self, from: impl Fn(usize) -> [f64; 2], to: impl Fn(usize) -> [f64; 2]) {
+    fn extend_travel(&mut self, from: impl Fn(usize) -> [f64; 2], to: impl Fn(usize) -> [f64; 2]) {
         for side in [&mut self.slaves, &mut self.segments] {
-            side.lengthen_way(|node| distance(from(node), to(node)));
+            side.extend_travel(|node| distance(from(node), to(node)));
         }
     }
 
-    /// Lists the segments that each slave node may come near before an entity leaves its margin.
+    /// Lists the segments that each slave node can come near while all entities are within their
+    /// margins.
     fn search(&mut self, at: impl Fn(usize) -> [f64; 2]) {
         self.slaves.draw(&at, self.skin, 0.0);
         self.segments.draw(&at, self.skin, self.reach);
@@ -215,14 +218,14 @@ impl<'m> Territory<'m> {
     }
 }
 
-/// The entities of one side of a contact, each between two nodes (a slave node between itself).
+/// The entities of one side of a contact by their end nodes; both ends of a slave node are itself.
 struct Side {
     ends: Vec<[usize; 2]>,
-    /// How far each may go in the increment (length).
-    way: Vec<f64>,
+    /// Distance that each may travel in the increment (length).
+    travel: Vec<f64>,
     /// Positions of the ends at the last search; empty before the first.
     reference: Vec<[[f64; 2]; 2]>,
-    /// How far the ends may go from there (length).
+    /// Distance that the ends may move from there (length).
     margin: Vec<f64>,
     /// Their territories at the last search.
     circles: CircleTree,
@@ -231,7 +234,7 @@ struct Side {
 impl Side {
     fn new(ends: Vec<[usize; 2]>) -> Self {
         Side {
-            way: vec![0.0; ends.len()],
+            travel: vec![0.0; ends.len()],
             reference: Vec::new(),
             margin: Vec::new(),
             circles: CircleTree::default(),
@@ -239,23 +242,24 @@ impl Side {
         }
     }
 
-    fn set_way(&mut self, way: impl Fn(usize) -> f64) {
-        for (own, [a, b]) in self.way.iter_mut().zip(&self.ends) {
-            *own = way(*a).max(way(*b));
+    fn set_travel(&mut self, travel: impl Fn(usize) -> f64) {
+        for (own, [a, b]) in self.travel.iter_mut().zip(&self.ends) {
+            *own = travel(*a).max(travel(*b));
         }
     }
 
-    fn lengthen_way(&mut self, way: impl Fn(usize) -> f64) {
-        for (own, [a, b]) in self.way.iter_mut().zip(&self.ends) {
-            *own = own.max(way(*a)).max(way(*b));
+    fn extend_travel(&mut self, travel: impl Fn(usize) -> f64) {
+        for (own, [a, b]) in self.travel.iter_mut().zip(&self.ends) {
+            *own = own.max(travel(*a)).max(travel(*b));
         }
     }
 
-    /// Whether the ends are within the margins, less the ways if these are still to be gone.
-    fn is_within(&self, at: impl Fn(usize) -> [f64; 2], with_way: bool) -> bool {
+    /// Whether the ends are within the margins, with the travel of the increment still ahead if
+    /// wanted.
+    fn is_within(&self, at: impl Fn(usize) -> [f64; 2], with_travel: bool) -> bool {
         self.reference.len() == self.ends.len()
             && (0..self.ends.len()).all(|i| {
-                let left = self.margin[i] - if with_way { self.way[i] } else { 0.0 };
+                let left = self.margin[i] - if with_travel { self.travel[i] } else { 0.0 };
                 let is_near = |k: usize| {
                     let (p, q) = (self.reference[i][k], at(self.ends[i][k]));
                     let d = difference(p, q);
@@ -272,11 +276,11 @@ impl Side {
         self.reference
             .extend(self.ends.iter().map(|ends| ends.map(&at)));
         self.margin.clear();
-        // m = l/2 + 2 w, eq. (10.2)
+        // m = l/2 + 2 w, eq. (10.2), w the travel
         self.margin.extend(
-            self.way
+            self.travel
                 .iter()
-                .map(|way| skin + SEARCH_MARGIN_PER_MOTION * way),
+                .map(|travel| skin + SEARCH_MARGIN_PER_MOTION * travel),
         );
         // length/2 + m (+ R of a segment), eq. (10.1)
         let circle = |([a, b], margin): (&[[f64; 2]; 2], &f64)| Circle {

@@ -4,10 +4,10 @@
 use crate::contact::tolerances::CONE_MISS;
 use crate::vectors::angle;
 
-/// A convex corner that a slave node meets: between a segment and the next.
+/// A convex corner, between a segment and the next, as the target of a slave node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corner {
-    /// The segment behind the corner.
+    /// The segment after the corner.
     pub next: usize,
     /// Weight of its normal, between 0 and 1; that of the segment before the corner is 1 - weight.
     pub weight: f64,
@@ -15,18 +15,18 @@ pub struct Corner {
 
 impl Corner {
     /// The sum of two quantities with the weights of the corner.
-    pub fn blend(&self, before: f64, behind: f64) -> f64 {
-        (1.0 - self.weight) * before + self.weight * behind
+    pub fn blend(&self, before: f64, after: f64) -> f64 {
+        (1.0 - self.weight) * before + self.weight * after
     }
 }
 
 /// Weight of the second normal in the normal of node against node.
 ///
-/// `normals` are those of the segments before and behind a convex corner, `own` those before and
-/// behind the slave node on its own surface. A normal that separates the two corners lies in the
-/// cone between `normals` and in the cone between the opposites of `own`; it is the middle of what
-/// these have in common, if anything: flush blocks meet with the normal of their faces, corners
-/// with that of the bisectors. A corner that is not convex has none.
+/// `normals` are those of the segments before and after a convex corner, `own` those before and
+/// after the slave node on its own surface. A normal that separates the two corners lies in the
+/// normal cone between `normals` and in the cone between the opposites of `own`; the common normal
+/// is the middle of their intersection. Flush blocks meet with the normal of their faces, corners
+/// with that of their bisectors. Concave corners have no common normal.
 pub fn common_normal(normals: [[f64; 2]; 2], own: [[f64; 2]; 2]) -> Option<f64> {
     let [n, m] = normals;
     let opposite = own.map(|n| [-n[0], -n[1]]);

@@ -9,8 +9,8 @@ use crate::contact::tolerances::{
 };
 use crate::vectors::{cross, difference, dot};
 
-/// A slave node between the start of an increment and an iterate, and where it is relative to the
-/// segments around it.
+/// A slave node at the start of an increment and at the iterate of a pass, with the segments around
+/// it.
 #[derive(Clone, Copy)]
 pub struct SlaveNode<'a> {
     /// Surfaces of the contact.
@@ -19,12 +19,12 @@ pub struct SlaveNode<'a> {
     pub start: &'a [[f64; 2]],
     /// Positions of all nodes in the iterate (length).
     pub now: &'a [[f64; 2]],
-    /// Number of the slave node in the contact.
+    /// Index of the slave node in its contact.
     pub slave: usize,
 }
 
 impl SlaveNode<'_> {
-    /// Whether the straight way of the node goes into the body through the segment.
+    /// Whether the node enters the body through the segment on its straight path.
     pub(crate) fn enters(&self, segment: usize) -> bool {
         let [a, b] = self.surfaces.segments[segment];
         let motions = [self.surfaces.slaves[self.slave], a, b]
@@ -33,14 +33,15 @@ impl SlaveNode<'_> {
         crossings(&motions, 1.0).iter().any(is_entering)
     }
 
-    /// Whether the node is so far in front of a segment that it does not matter what is beside it.
+    /// Whether the node is so far in front of a segment that the neighbours of the segment do not
+    /// matter.
     pub(crate) fn is_far(&self, segment: usize) -> bool {
         let p = self.project(segment);
         p.gap > p.length && p.gap > 2.0 * self.relative_displacement(segment)
     }
 
-    /// Whether the node's own surface lies in front of the line of a segment through the node, if the
-    /// node has a surface.
+    /// Whether the node's own surface faces the segment: it lies in front of the parallel to the
+    /// segment through the node. None for a node without neighbours.
     pub(crate) fn is_opposite(&self, segment: usize) -> Option<bool> {
         let node = self.surfaces.slaves[self.slave];
         let normal = self.project(segment).normal;
@@ -58,7 +59,7 @@ impl SlaveNode<'_> {
         p.gap >= -CLOSED_GAP * p.length
     }
 
-    /// Whether the node started a little inside, as a mesh may have it.
+    /// Whether the node started with a small penetration that the mesh may have.
     pub(crate) fn was_pushed_in(&self, segment: usize) -> bool {
         let p = self.project_at_start(segment);
         let is_shallow = p.gap >= -INITIAL_DEPTH * p.length
@@ -68,7 +69,8 @@ impl SlaveNode<'_> {
         is_shallow && (surfaces.interior).takes_in(surfaces.segments[segment], node, start)
     }
 
-    /// Whether the node was part of the body behind the segment: on the far side of a thin body.
+    /// Whether the node belongs to the body behind the segment: it is on the far side of a thin
+    /// body.
     pub(crate) fn was_far_side(&self, segment: usize) -> bool {
         let (surfaces, start) = (self.surfaces, |node: usize| self.start[node]);
         let node = surfaces.slaves[self.slave];
@@ -81,13 +83,13 @@ impl SlaveNode<'_> {
         self.surfaces.segments[segment].contains(&node)
     }
 
-    /// Distance from the end of a segment within which the other side of a concave corner is taken into
-    /// account.
+    /// Distance from the end of a segment within which the other segment of a concave corner counts
+    /// (length).
     pub(crate) fn corner_reach(&self, segment: usize) -> f64 {
         CORNER_ZONE * self.project(segment).length + 2.0 * self.relative_displacement(segment)
     }
 
-    /// How far the node has gone relative to a segment since the start.
+    /// Displacement of the node relative to a segment since the start (length).
     pub(crate) fn relative_displacement(&self, segment: usize) -> f64 {
         let [a, b] = self.surfaces.segments[segment];
         let xi = self.project(segment).xi.clamp(0.0, 1.0);
@@ -97,8 +99,8 @@ impl SlaveNode<'_> {
         (relative(0).powi(2) + relative(1).powi(2)).sqrt()
     }
 
-    /// Sine of the turn to the left from one segment to the next: positive at a convex corner; 1 or
-    /// -1 beyond a right angle.
+    /// Sine of the turn to the left from one segment to the next: positive at a convex corner,
+    /// negative at a concave one; 1 or -1 beyond a right angle.
     pub(crate) fn corner_sine(&self, i: usize, j: usize) -> f64 {
         let [e, f] = [i, j].map(|i| {
             let [a, b] = self.surfaces.segments[i].map(|n| self.now[n]);
@@ -116,7 +118,7 @@ impl SlaveNode<'_> {
         }
     }
 
-    /// The foot xi of the node on a segment in the iterate.
+    /// Coordinate xi of the projection on a segment in the iterate.
     pub(crate) fn xi(&self, segment: usize) -> f64 {
         let [a, b] = self.surfaces.segments[segment].map(|n| self.now[n]);
         let s = self.now[self.surfaces.slaves[self.slave]];
@@ -124,12 +126,12 @@ impl SlaveNode<'_> {
         dot(r, e) / dot(e, e)
     }
 
-    /// Place of the node relative to a segment in the iterate.
+    /// Projection on a segment in the iterate.
     pub(crate) fn project(&self, segment: usize) -> Projection {
         self.project_at(self.now, segment)
     }
 
-    /// The same at the start.
+    /// Projection on a segment at the start.
     pub(crate) fn project_at_start(&self, segment: usize) -> Projection {
         self.project_at(self.start, segment)
     }
@@ -148,7 +150,7 @@ mod tests {
     fn how_deep_a_node_still_touches_is_a_part_of_the_length_of_the_segment() {
         let surfaces = ContactSurfaces::new(vec![2], &[], vec![[0, 1]], 0.0);
         let was_in_front = |length: f64, depth: f64| {
-            // the body lies below, on the left of the way from right to left
+            // the segment runs from right to left, with the body below it
             let x = [[length, 0.0], [0.0, 0.0], [0.5 * length, -depth * length]];
             let node = SlaveNode {
                 surfaces: &surfaces,

@@ -9,12 +9,12 @@ use crate::contact::tolerances::{
     CLOSED_GAP, CORNER_TIP, CORNER_ZONE, PROJECTION_BEYOND_ENDS, STRAIGHT_SINE,
 };
 
-/// What a slave node may not go through.
+/// What a slave node must not penetrate: a segment, or the corner at its end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactTarget {
     /// Index of the segment in its contact.
     pub segment: usize,
-    /// The corner at the segment's end b, if it is that which the node meets.
+    /// The corner at the segment's end b, if the node meets the corner.
     pub corner: Option<Corner>,
 }
 
@@ -34,15 +34,15 @@ impl ContactTarget {
     }
 }
 
-/// Which targets hold a node.
+/// Selection of the targets of a node.
 ///
-/// The body lies behind each of its segments near a concave corner, and behind one of them
-/// near a convex corner; a node outside is therefore held by all segments that it faces, but only by
-/// one of those that follow each other round convex corners. It was outside at the start, and is
-/// held by segments that it was in front of then: such contact never adds energy.
+/// Near a concave corner a node outside the body is in front of both segments; near a convex corner
+/// it is in front of at least one. A node is therefore constrained by every segment that it faces,
+/// but by only one of a run of segments round convex corners. These are segments that it was in
+/// front of at the start of the increment: such contact never adds energy.
 impl SlaveNode<'_> {
-    /// The targets of the node, with increasing segments; the candidates come with increasing segments
-    /// too.
+    /// The targets of the node in the order of their segments; the candidates must come in this
+    /// order.
     pub fn targets(&self, candidates: impl Iterator<Item = Candidate>) -> Vec<ContactTarget> {
         let faced = self.faced(candidates);
         if faced.is_empty() {
@@ -72,8 +72,8 @@ impl SlaveNode<'_> {
         targets
     }
 
-    /// Whether the node is not beyond the ends of a target of a pass before by more than `beyond` (in
-    /// segment lengths).
+    /// Whether the node still projects on a target of an earlier pass, beyond its ends by `beyond`
+    /// segment lengths at most.
     pub fn is_over(&self, target: &ContactTarget, beyond: f64) -> bool {
         target.segments().any(|i| {
             let p = self.project(i);
@@ -81,7 +81,8 @@ impl SlaveNode<'_> {
         })
     }
 
-    /// Whether two targets belong to one run round convex corners, so that one is enough.
+    /// Whether two targets belong to one run of segments round convex corners, of which one is
+    /// enough.
     pub fn is_same_face(&self, one: &ContactTarget, other: &ContactTarget) -> bool {
         one.segments().any(|i| {
             other.segments().any(|j| {
@@ -92,7 +93,8 @@ impl SlaveNode<'_> {
         })
     }
 
-    /// Segments into which the node projects, and the two at a corner where it projects into neither.
+    /// Segments into which the node projects, and the two at a corner where it projects into
+    /// neither.
     fn faced(&self, candidates: impl Iterator<Item = Candidate>) -> Vec<usize> {
         let mut faced = Vec::new();
         for Candidate { segment: i, reach } in candidates {
@@ -110,7 +112,7 @@ impl SlaveNode<'_> {
                 && !self.is_own(j)
             {
                 let p = self.project(i);
-                // between the segments of a concave corner there is nothing but the body
+                // the zone between the segments of a concave corner lies in the body
                 let near = match self.corner_sine(i, j) < 0.0 {
                     true => reach.min(self.corner_reach(i)),
                     false => reach,
@@ -128,7 +130,7 @@ impl SlaveNode<'_> {
         faced
     }
 
-    /// The faced segments in runs round corners that are not concave.
+    /// The faced segments as runs of neighbours with straight or convex corners between them.
     fn runs(&self, faced: &[usize]) -> Vec<Vec<usize>> {
         if faced.len() == 1 {
             return vec![faced.to_vec()];
@@ -162,8 +164,8 @@ impl SlaveNode<'_> {
         runs
     }
 
-    /// The segment of a run that holds the node: of those that it was in front of at the start the
-    /// one that it is in front of now.
+    /// The segment of a run that constrains the node: among those that it was in front of at the
+    /// start, one that it is in front of now.
     fn choose(&self, run: &[usize]) -> Option<usize> {
         let gap = |i: usize| self.project(i).gap;
         let mut best: Option<usize> = None;
@@ -194,9 +196,9 @@ impl SlaveNode<'_> {
         })
     }
 
-    /// The segment beside one that the surface of the node does not face, round a convex corner that the
-    /// node is near: where a corner slides over a corner, one face of it holds the node and not the
-    /// other, behind which the node's own body would lie.
+    /// The neighbour, round a convex corner near the node, of a segment that the surface of the
+    /// node does not face. Where a corner slides over a corner, only the face that the surface of
+    /// the node faces constrains it; behind the other the node's own body would lie.
     fn adjacent_to_faced_away(&self, i: usize) -> Option<usize> {
         if self.is_opposite(i)? {
             return None;
@@ -204,29 +206,29 @@ impl SlaveNode<'_> {
         let (p, near) = (self.project(i), self.corner_reach(i));
         let before = self.surfaces.previous[i]
             .filter(|&h| p.xi * p.length <= near && self.corner_sine(h, i) > STRAIGHT_SINE);
-        let behind = self.surfaces.next[i]
+        let after = self.surfaces.next[i]
             .filter(|&j| (1.0 - p.xi) * p.length <= near && self.corner_sine(i, j) > STRAIGHT_SINE);
-        let holds = |&j: &usize| {
+        let constrains = |&j: &usize| {
             let start = self.project_at_start(j);
             let was_near = (-near..=start.length + near).contains(&(start.xi * start.length));
             was_near && self.was_in_front(j) && !self.is_own(j) && self.is_opposite(j) == Some(true)
         };
-        before.filter(holds).or(behind.filter(holds))
+        before.filter(constrains).or(after.filter(constrains))
     }
 
-    /// The segment before or behind a run from which the node came round convex corners.
+    /// The segment before or after a run from which the node has come round convex corners.
     fn came_from(&self, run: &[usize]) -> Option<usize> {
         let (&first, &last) = (run.first()?, run.last()?);
         let before = || self.walk(first, false);
-        let behind = || self.walk(last, true);
+        let after = || self.walk(last, true);
         match self.project_at_start(first).xi < 0.5 {
-            true => before().or_else(behind),
-            false => behind().or_else(before),
+            true => before().or_else(after),
+            false => after().or_else(before),
         }
     }
 
-    /// The first segment before or behind another that the node was over at the start, round convex
-    /// corners and not farther than twice its way.
+    /// The first segment before or after another that the node projected on at the start, round
+    /// convex corners and within twice its displacement.
     fn walk(&self, from: usize, forward: bool) -> Option<usize> {
         let ContactSurfaces { next, previous, .. } = self.surfaces;
         let farthest = 2.0 * self.relative_displacement(from);
@@ -250,7 +252,7 @@ impl SlaveNode<'_> {
         }
     }
 
-    /// The other sides of the concave corners at the ends of a segment, where the node is near them.
+    /// The other segments of the concave corners at the ends of a segment that the node is near.
     fn across_concave_corners(&self, i: usize) -> impl Iterator<Item = usize> {
         let p = self.project(i);
         let near = self.corner_reach(i);
@@ -273,26 +275,25 @@ impl SlaveNode<'_> {
     fn corner_target(&self, i: usize) -> Option<ContactTarget> {
         let xi = self.xi(i);
         let before = self.surfaces.previous[i].filter(|_| xi < CORNER_ZONE);
-        let behind = self.surfaces.next[i].filter(|_| xi > 1.0 - CORNER_ZONE);
+        let after = self.surfaces.next[i].filter(|_| xi > 1.0 - CORNER_ZONE);
         before
             .and_then(|h| self.corner_between(h, i))
-            .or_else(|| behind.and_then(|j| self.corner_between(i, j)))
+            .or_else(|| after.and_then(|j| self.corner_between(i, j)))
     }
 
     /// The corner between a segment and the next, if the node meets it: node against node.
     fn corner_between(&self, i: usize, j: usize) -> Option<ContactTarget> {
         let (p, q) = (self.project(i), self.project(j));
-        // along the bisector of both tangents, times its length, which is 2 at most
-        let aside = (p.xi - 1.0) * p.length + q.xi * q.length;
+        // distance from the corner along the sum of both tangents, whose length is 2 at most
+        let offset = (p.xi - 1.0) * p.length + q.xi * q.length;
         let length = p.length.min(q.length);
-        if aside.abs() > 2.0 * CORNER_TIP * length || self.corner_sine(i, j) <= STRAIGHT_SINE {
+        if offset.abs() > 2.0 * CORNER_TIP * length || self.corner_sine(i, j) <= STRAIGHT_SINE {
             return None;
         }
         let node = self.surfaces.slaves[self.slave];
-        let [before, behind] = self.surfaces.adjacent[self.slave]?;
+        let [before, after] = self.surfaces.adjacent[self.slave]?;
         let at = |n: usize| self.now[n];
-        let own =
-            [[before, node], [node, behind]].map(|[a, b]| project(at(a), at(a), at(b)).normal);
+        let own = [[before, node], [node, after]].map(|[a, b]| project(at(a), at(a), at(b)).normal);
         let corner = Corner {
             next: j,
             weight: common_normal([p.normal, q.normal], own)?,

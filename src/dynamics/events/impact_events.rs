@@ -209,7 +209,7 @@ impl<'m> Subincrements<'_, 'm> {
         let (problem, u0) = (self.problem, &self.start.u);
         let Workspace { search, meter, .. } = &mut *self.workspace;
         let find = || {
-            search.cover_way(u0, &motion.displacement(u0));
+            search.cover_path(u0, &motion.displacement(u0));
             let mut first: Option<PredictedImpact> = None;
             let mut slave_index = 0;
             for territory in search.territories() {

@@ -133,7 +133,8 @@ impl BodyMasses {
     }
 }
 
-/// Linear momentum sum p and angular momentum sum x cross p about the origin of all bodies, p = M V.
+/// Linear momentum sum p and angular momentum sum x cross p about the origin of all bodies, p = M
+/// V.
 pub(crate) fn momentum(problem: &StepProblem, u: &[f64], p: &[f64]) -> Momentum {
     let mut momentum = Momentum::default();
     for node in 0..problem.model.mesh.node_count() {

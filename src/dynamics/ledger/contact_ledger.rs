@@ -16,7 +16,7 @@ struct Sums {
     impulse: ContactImpulse,
 }
 
-/// Sums over the run of every contact, and the way that every slave node has slid.
+/// Sums over the run of every contact, and the accumulated slip of every slave node.
 pub(crate) struct ContactLedger {
     contacts: Vec<Sums>,
     /// `N` entries; NaN at nodes that are no slave nodes.
@@ -28,7 +28,7 @@ pub(crate) struct ContactLedger {
 }
 
 impl ContactLedger {
-    /// Opens the ledger; `slip` is the way slid by every node up to now.
+    /// Opens the ledger; `slip` is the slip of every node accumulated so far.
     pub fn new(model: &Model, surfaces: &[ContactSurfaces], slip: Vec<f64>) -> Self {
         let reference = |master: usize| {
             let mut bodies = model.rigid_bodies.iter();
@@ -99,19 +99,19 @@ impl ContactLedger {
         }
     }
 
-    /// Adds |Bt d| of the closed pairs to the ways of their slave nodes; of several pairs of a node the
-    /// largest.
+    /// Adds |Bt d| of the closed pairs to the slip of their slave nodes; of several pairs of a node
+    /// the largest.
     fn slide(&mut self, solved: &Solved) {
         let forces = &solved.forces;
-        let mut ways = vec![0.0_f64; self.slip.len()];
+        let mut increments = vec![0.0_f64; self.slip.len()];
         for (k, pair) in forces.pairs.iter().enumerate() {
             if forces.is_closed(k) {
-                let way = &mut ways[pair.target.nodes[0]];
-                *way = way.max(pair.tangent_of(&solved.d).abs());
+                let slip = &mut increments[pair.target.nodes[0]];
+                *slip = slip.max(pair.tangent_of(&solved.d).abs());
             }
         }
-        for (slip, way) in self.slip.iter_mut().zip(ways) {
-            *slip += way;
+        for (slip, increment) in self.slip.iter_mut().zip(increments) {
+            *slip += increment;
         }
     }
 }

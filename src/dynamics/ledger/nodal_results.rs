@@ -12,12 +12,12 @@ use crate::lcp::ContactState;
 use crate::linear::larger;
 use crate::vectors::cross;
 
-/// Change of velocity, relative to the largest velocity of the two bodies, from which an impulse is an
-/// impact.
+/// Change of velocity, relative to the largest velocity of the two bodies, from which an impulse is
+/// an impact.
 const STRUCK: f64 = 1e-9;
 
-/// Reactions, contact forces, gaps and status at the nodes; reactions of rigid surfaces still stand at
-/// the nodes of these.
+/// Reactions, contact forces, gaps and status at the nodes; reactions of rigid surfaces still stand
+/// at the nodes of these.
 pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResults {
     let dofs = solved.d.len();
     let contact_force = solved.forces.resultant(dofs);
@@ -109,8 +109,8 @@ pub(crate) fn contact_of_slots(contacts: &[ContactSurfaces]) -> Vec<usize> {
         .collect()
 }
 
-/// Pairs that carry force now, or were struck at the start, and were open before: time and place from
-/// the second-order motion of the start (paper eq. 50), with the exact condition of meeting.
+/// Pairs that carry force now, or were struck at the start, and were open before: time and place
+/// from the second-order motion of the start (paper eq. 50), with the exact condition of meeting.
 pub(crate) fn landings(
     problem: &StepProblem,
     start: &State,

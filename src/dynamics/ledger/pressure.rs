@@ -61,8 +61,8 @@ impl SlaveFaces {
     /// N = sum Bn^T Pn,  A = sum over the faces max(-n.N/|N|, 0) t l/2,  p = |N|/A    eq. (9.8)
     /// ```
     ///
-    /// The sum of N runs over all pairs of the node; n, l and t are outward normal, current length and
-    /// thickness of a face.
+    /// The sum of N runs over all pairs of the node; n, l and t are outward normal, current length
+    /// and thickness of a face.
     pub fn pressure(&self, problem: &StepProblem, u: &[f64], forces: &ContactForces) -> Vec<f64> {
         let mut pressure = self.start.clone();
         let mut normal = vec![0.0; u.len()];
@@ -76,7 +76,7 @@ impl SlaveFaces {
         let mut area = vec![0.0; pressure.len()];
         for face in &self.faces {
             let [a, b] = face.nodes.map(|node| problem.position(u, node));
-            // n l = (e_y, -e_x): on the right of the way from a to b
+            // n l = (e_y, -e_x): on the right of the direction from a to b
             let e = [b[0] - a[0], b[1] - a[1]];
             for (node, _) in (face.nodes.iter().zip(face.counts)).filter(|(_, counts)| *counts) {
                 let force = of_node(*node);

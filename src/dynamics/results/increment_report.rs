@@ -40,8 +40,8 @@ pub enum NodeStatus {
 /// Results at nodes, apart from the motion.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NodalResults {
-    /// Support reaction, `2 N` entries (force); 0 at free dofs. That of a rigid surface stands at its
-    /// reference node.
+    /// Support reaction, `2 N` entries (force); 0 at free dofs. That of a rigid surface stands at
+    /// its reference node.
     pub reaction: Vec<f64>,
     /// Concentrated loads on the node, `2 N` entries (force).
     pub concentrated: Vec<f64>,

@@ -16,7 +16,7 @@ pub struct Timings {
     pub solve: Duration,
     /// Contact search: territories and their candidates.
     pub search: Duration,
-    /// Pairs among the candidates, their rows and complementarity problems, check of the ways.
+    /// Pairs among the candidates, their rows and Delassus matrices, penetration check.
     pub contact: Duration,
     /// Complementarity problems.
     pub lcp: Duration,

@@ -123,7 +123,7 @@ impl<'m> Workspace<'m> {
         unsolved: &[f64],
     ) -> Option<Penetration> {
         let Workspace { search, meter, .. } = self;
-        meter.time(|t| &mut t.search, || search.cover_way(u0, u1));
+        meter.time(|t| &mut t.search, || search.cover_path(u0, u1));
         meter.time(
             |t| &mut t.contact,
             || find_penetration(search, u0, u1, touch, unsolved),

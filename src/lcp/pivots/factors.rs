@@ -97,7 +97,7 @@ impl Factors {
     }
 }
 
-/// Whether all pivots are finite and none is negligible beside the largest.
+/// Whether all pivots are finite and none is negligible against the largest.
 fn regular(pivots: impl Iterator<Item = f64>) -> bool {
     let (mut smallest, mut largest, mut finite) = (f64::INFINITY, 0.0_f64, true);
     for pivot in pivots {

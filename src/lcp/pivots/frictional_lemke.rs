@@ -111,7 +111,8 @@ impl PivotMatrix for FrictionalMatrix<'_> {
         self.scaled.size() + self.scaled.owners.len()
     }
 
-    /// Rows of eq. (8.3): g = Qnn Pn + Qnt Pt;  Dt+ = sign (Qtn Pn + Qtt Pt) + Dt-;  T- = mu Pn - T+.
+    /// Rows of eq. (8.3): g = Qnn Pn + Qnt Pt;  Dt+ = sign (Qtn Pn + Qtt Pt) + Dt-;  T- = mu Pn -
+    /// T+.
     fn add_product(&self, z: &[(usize, f64)], out: &mut [f64]) {
         let (n, end) = (self.scaled.contacts, self.scaled.size());
         let m = self.scaled.owners.len();

@@ -24,8 +24,8 @@ pub(crate) struct Vertex {
     pub pivots: usize,
 }
 
-/// Follows the almost complementary path of w = M z + q + d z0, eq. (8.4), with data scaled near 1, from
-/// the ray of large z0 to z0 = 0.
+/// Follows the almost complementary path of w = M z + q + d z0, eq. (8.4), with data scaled near 1,
+/// from the ray of large z0 to z0 = 0.
 pub(crate) fn follow_path<M: PivotMatrix>(
     matrix: &M,
     q: &[f64],

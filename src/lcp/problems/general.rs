@@ -1,4 +1,4 @@
-//! The general problem, its solution and the ways in which solving can fail.
+//! The general problem, its solution and the errors of the solvers.
 
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;

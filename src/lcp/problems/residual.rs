@@ -37,9 +37,10 @@ pub fn residual(lcp: &Lcp, z: &DVector<f64>) -> f64 {
 
 /// Residual of the forces (pn, pt) of a frictional problem, zero for a solution.
 ///
-/// The law of eq. (3.6) as r = max over contacts of |min(Pn, g)|, |min(T+, Dt+)|, |min(T-, Dt-)| with
-/// T+- = (mu Pn +- Pt)/2 and Dt+- the positive and negative part of the slip; lengths in units of
-/// the deepest penetration plus 1e-6 of the terms of Q P, forces in that unit over mean diag Qnn.
+/// The law of eq. (3.6) as r = max over contacts of |min(Pn, g)|, |min(T+, Dt+)|, |min(T-, Dt-)|
+/// with T+- = (mu Pn +- Pt)/2 and Dt+- the positive and negative part of the slip; lengths in units
+/// of the deepest penetration plus 1e-6 of the terms of Q P, forces in that unit over mean diag
+/// Qnn.
 pub(crate) fn frictional_residual(problem: &FrictionalLcp, pn: &[f64], pt: &[f64]) -> f64 {
     let n = problem.gap.len();
     let (mut motion, mut terms) = (vec![0.0; 2 * n], vec![0.0; 2 * n]);

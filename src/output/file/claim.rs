@@ -1,8 +1,9 @@
 //! The right to write the files of a job.
 //!
-//! `JOB.log` stands for the job: who creates it, or locks it, has the job. The system lifts the lock
-//! when the program ends, however it ends, so that a killed run is in nobody's way. Until the first
-//! frame is complete nothing of an earlier run is touched: the result grows in `JOB.vtkhdf.part`.
+//! `JOB.log` stands for the job: who creates it, or locks it, has the job. The system lifts the
+//! lock when the program ends, however it ends, so that a killed run is in nobody's way. Until the
+//! first frame is complete nothing of an earlier run is touched: the result grows in
+//! `JOB.vtkhdf.part`.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};

@@ -168,7 +168,7 @@ const PRESSURE: Meaning = meaning(
     "force/length^2",
 );
 const SLIP: Meaning = meaning(
-    "way slid in contact since the start at slave nodes, NaN at others",
+    "slip accumulated since the start at slave nodes, NaN at others",
     "length",
 );
 const ACROSS: Meaning = meaning(

@@ -112,8 +112,8 @@ impl Balance {
     }
 }
 
-/// Whether the forces of an equation have no resultant: the sum of its coefficients is zero for each
-/// direction.
+/// Whether the forces of an equation have no resultant: the sum of its coefficients is zero for
+/// each direction.
 fn keeps_momentum(equation: &Equation) -> bool {
     let own = [(equation.dof, -1.0)];
     let terms = own.iter().chain(&equation.terms);

@@ -11,7 +11,8 @@ use crate::output::text::{LARGE, WIDTH, general, label, scientific};
 const BALANCE: f64 = 1e-8;
 /// Work of the normal contact forces, as a part of the largest energy, that counts.
 const CONTACT_WORK: f64 = 0.01;
-/// Increments, in the time that a wave takes along the shortest edge, that are more than a mesh can show.
+/// Increments, in the time that a wave takes along the shortest edge, that are more than a mesh can
+/// show.
 const MANY: f64 = 100.0;
 /// Increments in the longest period that show its motion well.
 const ENOUGH: f64 = 20.0;
@@ -83,8 +84,8 @@ impl Findings {
         ))
     }
 
-    /// An increment longer than the longest period 2 L/c of longitudinal vibration: the motion of no
-    /// body relative to itself is resolved.
+    /// An increment longer than the longest period 2 L/c of longitudinal vibration: the motion of
+    /// no body relative to itself is resolved.
     fn long_text(&self) -> Option<String> {
         let longest = self.bodies.iter().map(|times| 2.0 * times.body);
         let period = longest.reduce(f64::max)?;
@@ -163,9 +164,9 @@ impl Watch {
     }
 }
 
-/// Names of the contacts that never closed, sorted, from the names of all and whether they did. Where
-/// the same surfaces meet the other way round, nodes of one of them may carry it all; in general contact
-/// it is enough that something has met something.
+/// Names of the contacts that never closed, sorted, from the names of all and whether they did.
+/// Where the same surfaces meet the other way round, nodes of one of them may carry it all; in
+/// general contact it is enough that something has met something.
 pub(crate) fn never_closed(contacts: &[(String, bool)]) -> Vec<String> {
     let has_closed = |wanted: &str| {
         contacts

@@ -8,7 +8,7 @@ pub(crate) fn label(label: &str, text: &str) -> String {
     format!("{label:<9}{text}")
 }
 
-/// The pieces three blanks apart, in as many lines as they need.
+/// The pieces of text three blanks apart, in as many lines as they need.
 pub(crate) fn wrap(first: &str, pieces: &[String]) -> Vec<String> {
     let mut lines = vec![];
     let mut line = label(first, "");

@@ -39,7 +39,8 @@ impl StrainWatch {
         }
     }
 
-    /// Takes an increment in; its most strained element, if it is the first beyond the material's range.
+    /// Takes an increment in; its most strained element, if it is the first beyond the material's
+    /// range.
     pub fn add(&mut self, report: &IncrementReport) -> Option<Strained> {
         let now = report.strain;
         if now.strain > self.most.strain {

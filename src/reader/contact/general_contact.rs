@@ -85,8 +85,8 @@ fn general(
     })
 }
 
-/// Pairs of faces touch in general contact already; the nodes of a pair with a rigid surface are left
-/// out of its general contact.
+/// Pairs of faces touch in general contact already; the nodes of a pair with a rigid surface are
+/// left out of its general contact.
 pub(crate) fn report_pairs(pairs: &[Contact], surfaces: &Surfaces, cx: &mut Context) {
     let is_rigid = |pair: &Contact| {
         let master = surfaces.all.get(pair.master);

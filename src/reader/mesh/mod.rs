@@ -1,6 +1,7 @@
 //! Nodes, elements, sets and surfaces.
 
 mod element_type;
+mod mesh_index;
 pub(crate) mod nodes_elements;
 mod outline;
 mod profile;
@@ -8,7 +9,7 @@ mod references;
 pub(crate) mod sets;
 pub(crate) mod surface;
 
-pub(crate) use nodes_elements::MeshIndex;
+pub(crate) use mesh_index::MeshIndex;
 pub(crate) use outline::{Block, Outline, StepCards};
 pub(crate) use sets::Sets;
 pub(crate) use surface::{Found, Sides, Surfaces, side_count};

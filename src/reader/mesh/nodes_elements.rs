@@ -1,53 +1,15 @@
 //! `*NODE` and `*ELEMENT`.
 
+use super::mesh_index::{Group, MeshIndex, RawElement, RawNode};
 use super::outline::Outline;
 use super::references;
-use crate::deck::{Card, Name, Row, Text};
+use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
-use crate::model::{Element, ElementType, Mesh};
+use crate::model::{ElementType, Mesh};
 use crate::reader::context::Context;
 use crate::reader::mesh::element_type;
 use crate::reader::names::{Labelled, Labels};
 use std::collections::{BTreeSet, HashMap};
-
-/// The mesh and what the deck calls its parts.
-pub(crate) struct MeshIndex {
-    /// Nodes that belong to elements, and elements. Sections are not yet known.
-    pub mesh: Mesh,
-    /// Node numbers.
-    pub nodes: Labels,
-    /// Element numbers.
-    pub elements: Labels,
-    /// Places of the elements.
-    pub element_spans: Vec<Span>,
-    /// Node sets named on `*NODE`.
-    pub node_groups: Vec<Group>,
-    /// Element sets named on `*ELEMENT`.
-    pub element_groups: Vec<Group>,
-}
-
-/// A set named where its members are defined.
-pub(crate) struct Group {
-    /// Its name.
-    pub name: Name,
-    /// Where it is named.
-    pub span: Span,
-    /// Numbers of its members.
-    pub labels: Vec<u64>,
-}
-
-struct RawNode {
-    label: u64,
-    at: [f64; 3],
-    span: Span,
-}
-
-struct RawElement {
-    label: u64,
-    nodes: Vec<u64>,
-    element_type: ElementType,
-    span: Span,
-}
 
 /// Reads nodes and elements; leaves out nodes without element that are no reference nodes.
 pub(crate) fn read(outline: &Outline, cx: &mut Context) -> MeshIndex {
@@ -311,42 +273,6 @@ impl Reading {
         };
         let warning = Diagnostic::warning(Code::UnusedNode, first.span, message);
         cx.d.push(warning.help("left out, together with what the deck says about them"));
-    }
-}
-
-impl MeshIndex {
-    /// Adds nodes without element at these points; their numbers follow the largest one.
-    pub fn add_points(&mut self, points: &[[f64; 2]]) {
-        let largest = self.mesh.node_labels.iter().max().copied().unwrap_or(0);
-        let labels = (1..).map(|i| largest.saturating_add(i));
-        self.mesh.node_labels.extend(labels.take(points.len()));
-        self.mesh.coordinates.extend(points);
-    }
-
-    fn add_node(&mut self, node: &RawNode) {
-        let [x, y, _] = node.at;
-        self.nodes
-            .insert(node.label, Labelled::Index(self.mesh.node_count()));
-        self.mesh.node_labels.push(node.label);
-        self.mesh.coordinates.push([x, y]);
-    }
-
-    fn add_element(&mut self, element: &RawElement) {
-        let index = |label: &u64| match self.nodes.get(*label) {
-            Some(Labelled::Index(index)) => Some(index),
-            _ => None,
-        };
-        let nodes: Option<Vec<usize>> = element.nodes.iter().map(index).collect();
-        let Some(nodes) = nodes else { return };
-        let next = self.mesh.elements.len();
-        self.elements.insert(element.label, Labelled::Index(next));
-        self.element_spans.push(element.span);
-        self.mesh.elements.push(Element {
-            label: element.label,
-            element_type: element.element_type,
-            nodes,
-            section: 0,
-        });
     }
 }
 

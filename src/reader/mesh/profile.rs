@@ -11,13 +11,14 @@ const CHORD: f64 = std::f64::consts::PI / 180.0;
 /// degrees, relative and in radians.
 const ARC_ROUND_OFF: f64 = 1e-4;
 
-/// A rigid profile: points and the way between them, the rigid on the right of the way.
+/// A rigid profile: points and the sides between them, with the rigid body on the right of each
+/// side.
 #[derive(Default)]
 pub(crate) struct Profile {
     /// Points in the order of the rows.
     pub points: Vec<[f64; 2]>,
     /// Chords [from, to] between the points.
-    ways: Vec<[usize; 2]>,
+    sides: Vec<[usize; 2]>,
     /// First point of the chain that is read.
     start: usize,
     /// Last point so far.
@@ -33,7 +34,7 @@ impl Profile {
                 return profile;
             }
         }
-        if profile.ways.is_empty() && !card.rows.is_empty() {
+        if profile.sides.is_empty() && !card.rows.is_empty() {
             fault(
                 card.span,
                 "this rigid surface has no segments",
@@ -45,10 +46,10 @@ impl Profile {
     }
 
     /// Segments between nodes of which the first point is number `first`: the rigid lies on the
-    /// left of the way from a to b, so that their way is that of the rows from the end on.
+    /// left of the direction from a to b, so that they run from the last row to the first.
     pub fn segments(&self, first: usize) -> Vec<[usize; 2]> {
-        let ways = self.ways.iter().rev();
-        ways.map(|[from, to]| [first + to, first + from]).collect()
+        let sides = self.sides.iter().rev();
+        sides.map(|[from, to]| [first + to, first + from]).collect()
     }
 
     fn row(&mut self, row: &Row, cx: &mut Context) -> Option<()> {
@@ -65,7 +66,7 @@ impl Profile {
                 if self.points.get(self.end) == Some(&to) {
                     return fault(row.span(), "this line has no length", "leave it out", cx);
                 }
-                self.way_to(to);
+                self.side_to(to);
             }
             "CIRCL" => {
                 let (to, centre) = (point(row, 1, 5, cx)?, point(row, 3, 5, cx)?);
@@ -95,7 +96,7 @@ impl Profile {
     }
 
     /// A chord to the next point, which may be the first of the chain again.
-    fn way_to(&mut self, to: [f64; 2]) {
+    fn side_to(&mut self, to: [f64; 2]) {
         let closes = self.points.get(self.start) == Some(&to);
         let next = if closes {
             self.start
@@ -105,7 +106,7 @@ impl Profile {
         if !closes {
             self.points.push(to);
         }
-        self.ways.push([self.end, next]);
+        self.sides.push([self.end, next]);
         self.end = next;
     }
 
@@ -134,12 +135,12 @@ impl Profile {
             let part = k as f64 / count;
             let (sin, cos) = (part * angle).sin_cos();
             let scale = 1.0 + part * (s / r - 1.0);
-            self.way_to([
+            self.side_to([
                 centre[0] + scale * (cos * p[0] - sin * p[1]),
                 centre[1] + scale * (sin * p[0] + cos * p[1]),
             ]);
         }
-        self.way_to(to);
+        self.side_to(to);
         Some(())
     }
 }

@@ -4,8 +4,8 @@ use super::outline::Outline;
 use crate::deck::{Card, Text};
 use std::collections::BTreeSet;
 
-/// Numbers that may be those of reference nodes or of nodes of equations; `groups` are the node sets
-/// of `*NODE` by their names, as compared, with the numbers of their members.
+/// Numbers that may be those of reference nodes or of nodes of equations; `groups` are the node
+/// sets of `*NODE` by their names, as compared, with the numbers of their members.
 pub(super) fn labels(outline: &Outline, groups: &[(&str, &[u64])]) -> BTreeSet<u64> {
     let (mut labels, mut names) = (BTreeSet::new(), BTreeSet::new());
     for field in fields(outline) {

@@ -1,6 +1,6 @@
 //! `*NSET` and `*ELSET`.
 
-use super::nodes_elements::{Group, MeshIndex};
+use super::mesh_index::{Group, MeshIndex};
 use super::outline::Outline;
 use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};

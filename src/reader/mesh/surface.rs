@@ -1,6 +1,6 @@
 //! `*SURFACE`.
 
-use super::nodes_elements::MeshIndex;
+use super::mesh_index::MeshIndex;
 use super::outline::Outline;
 use super::profile::Profile;
 use super::sets::Sets;

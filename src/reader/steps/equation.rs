@@ -33,7 +33,8 @@ struct Solved {
 /// Equations by the dofs that they eliminate.
 type ByDof = BTreeMap<usize, Solved>;
 
-/// Reads all equations with their places: those between eliminated dofs are substituted into each other.
+/// Reads all equations with their places: those between eliminated dofs are substituted into each
+/// other.
 pub(crate) fn read(
     outline: &Outline,
     targets: Targets,
@@ -213,8 +214,8 @@ fn report_prescribed(solved: &ByDof, steps: &[Step], targets: Targets, cx: &mut 
     }
 }
 
-/// The equations with each other's first terms replaced by what these follow, so that all terms that
-/// are left are independent; each with its place.
+/// The equations with each other's first terms replaced by what these follow, so that all terms
+/// that are left are independent; each with its place.
 fn substituted(mut solved: ByDof, targets: Targets, cx: &mut Context) -> Vec<(Equation, Span)> {
     let mut equations = BTreeMap::new();
     for dof in elimination_order(&solved) {
@@ -274,8 +275,8 @@ fn elimination_order(solved: &ByDof) -> Vec<usize> {
     order
 }
 
-/// Warns where the deck gives an eliminated dof another velocity (`2 N` entries) than follows from the
-/// other terms; `supports` have velocities of their own.
+/// Warns where the deck gives an eliminated dof another velocity (`2 N` entries) than follows from
+/// the other terms; `supports` have velocities of their own.
 pub(crate) fn check_velocities(
     equations: &[(Equation, Span)],
     velocity: &[f64],

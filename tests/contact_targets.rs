@@ -1,16 +1,16 @@
-//! Which segments and corners hold a slave node.
+//! Segments and corners that are selected as targets of a slave node.
 
 use stickslip::contact::{ContactSurfaces, ContactTarget, SlaveNode, all_segments};
 
-/// A closed or open chain of master segments over `points`, the body on the left of the way.
+/// A closed or open chain of master segments over `points`, the body on their left.
 fn chain(points: &[[f64; 2]], closed: bool) -> Vec<[usize; 2]> {
     let count = points.len();
     let last = if closed { count } else { count - 1 };
     (0..last).map(|i| [i, (i + 1) % count]).collect()
 }
 
-/// Targets of a node that goes from `from` to `to` beside chains of points at rest.
-fn sites_beside(
+/// Targets of a node that goes from `from` to `to` near chains of points at rest.
+fn targets_near(
     chains: &[&[[f64; 2]]],
     closed: bool,
     from: [f64; 2],
@@ -28,11 +28,11 @@ fn sites_beside(
     let (mut start, mut now) = (x.clone(), x);
     start.push(from);
     now.push(to);
-    sites_of(&surfaces, &start, &now)
+    targets_of(&surfaces, &start, &now)
 }
 
 /// Targets of the only slave node of surfaces between two sets of positions.
-fn sites_of(
+fn targets_of(
     surfaces: &ContactSurfaces,
     start: &[[f64; 2]],
     now: &[[f64; 2]],
@@ -54,7 +54,7 @@ fn segments(targets: &[ContactTarget]) -> Vec<usize> {
 /// Targets beside a square from (0, 0) to (1, 1): bottom 0, right 1, top 2, left 3.
 fn beside_square(from: [f64; 2], to: [f64; 2]) -> Vec<usize> {
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-    segments(&sites_beside(&[&square], true, from, to))
+    segments(&targets_near(&[&square], true, from, to))
 }
 
 #[test]
@@ -76,7 +76,7 @@ fn a_node_is_held_by_the_face_that_it_came_to() {
 #[test]
 fn the_other_sides_of_a_body_do_not_hold() {
     let plate = [[0.0, 0.0], [4.0, 0.0], [4.0, 0.1], [0.0, 0.1]];
-    let near_plate = |from, to| segments(&sites_beside(&[&plate], true, from, to));
+    let near_plate = |from, to| segments(&targets_near(&[&plate], true, from, to));
     assert_eq!(
         near_plate([2.0, 0.2], [2.0, 0.03]),
         [2],
@@ -120,7 +120,7 @@ fn a_corner_that_slides_over_a_corner_is_held_by_the_face_that_its_surface_lies_
     now[5][1] = 0.99;
     let held_by = |own: &[[usize; 2]]| {
         let surfaces = ContactSurfaces::new(vec![5], own, segments.clone(), 0.0);
-        self::segments(&sites_of(&surfaces, &start, &now))
+        self::segments(&targets_of(&surfaces, &start, &now))
     };
     assert_eq!(held_by(&[[4, 5], [5, 6]]), [2]);
     assert_eq!(
@@ -131,10 +131,10 @@ fn a_corner_that_slides_over_a_corner_is_held_by_the_face_that_its_surface_lies_
 }
 
 #[test]
-fn both_sides_of_a_hollow_hold() {
+fn both_sides_of_a_concave_corner_are_targets() {
     // a valley over (2, 1), (0, 0), (-2, 1)
     let valley = [[2.0, 1.0], [0.0, 0.0], [-2.0, 1.0]];
-    let near_plate = |from, to| segments(&sites_beside(&[&valley], false, from, to));
+    let near_plate = |from, to| segments(&targets_near(&[&valley], false, from, to));
     assert_eq!(near_plate([0.0, 0.5], [0.0, 0.1]), [0, 1]);
     assert_eq!(near_plate([0.0, 0.5], [0.0, -0.2]), [0, 1]);
     assert_eq!(
@@ -147,25 +147,25 @@ fn both_sides_of_a_hollow_hold() {
 }
 
 #[test]
-fn nothing_holds_a_node_far_behind_a_hollow() {
+fn a_node_far_behind_a_concave_corner_has_no_target() {
     // in the line of the first side, two lengths beyond its end: across the body of a cross
     let arm = [[-1.0, 0.0], [0.0, 0.0], [0.0, -1.0]];
     let across = [2.0, 1e-12];
     assert_eq!(
-        segments(&sites_beside(&[&arm], false, across, across)),
+        segments(&targets_near(&[&arm], false, across, across)),
         [0; 0]
     );
     // a concave corner that has closed, but for round-off to either side: it is no sharp corner
     for x in [1e-16, -1e-16] {
         let closed = [[x, 1.0], [0.0, 0.0], [-x, 1.0]];
         let below = [1e-6, -2.0];
-        let targets = sites_beside(&[&closed], false, below, below);
+        let targets = targets_near(&[&closed], false, below, below);
         assert_eq!(segments(&targets), [0; 0], "{x}");
     }
 }
 
 #[test]
-fn a_sharp_corner_is_no_closed_hollow() {
+fn a_sharp_corner_differs_from_a_closed_concave_corner() {
     let tip = [[-0.01, -1.0], [0.0, 0.0], [0.01, -1.0]].map(|[x, y]: [f64; 2]| [-x, y]);
     let mut x = tip.to_vec();
     x.push([1e-3, 0.5]);
@@ -173,7 +173,7 @@ fn a_sharp_corner_is_no_closed_hollow() {
         ContactSurfaces::new(vec![3], &[], vec![[0, 1], [1, 2]], 0.0).with_sharp_corners(&x);
     let mut now = x.clone();
     now[3] = [1e-3, 0.1];
-    let targets = sites_of(&surfaces, &x, &now);
+    let targets = targets_of(&surfaces, &x, &now);
     assert_eq!(
         targets.len(),
         1,
@@ -187,7 +187,7 @@ fn several_bodies_hold_a_node_at_once() {
     let wall = [[0.5, -4.0], [0.5, 4.0]];
     let wall_to_the_left: Vec<[f64; 2]> = wall.iter().rev().copied().collect();
     let targets = |wall: &[[f64; 2]]| {
-        segments(&sites_beside(
+        segments(&targets_near(
             &[&floor, wall],
             false,
             [0.3, 0.2],
@@ -216,7 +216,7 @@ fn tip_to_tip(from: [f64; 2], to: [f64; 2], sides: [[f64; 2]; 2]) -> Vec<Contact
     // the triangle's way round, body on the left: left upper node, tip, right upper node
     let own = [[4, 3], [3, 5]];
     let surfaces = ContactSurfaces::new(vec![3], &own, vec![[0, 1], [1, 2]], 0.0);
-    sites_of(&surfaces, &start, &now)
+    targets_of(&surfaces, &start, &now)
 }
 
 #[test]

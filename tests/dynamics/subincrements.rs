@@ -1,4 +1,4 @@
-//! Pieces of increments: how short they get, and what is no impact.
+//! Subincrements: the shortest length at impacts, and motions without an impact.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -34,22 +34,24 @@ fn fall(scheme: Scheme, part: f64) -> (Keep, RunSummary) {
     run_to_end(&model)
 }
 
-/// Impacts within a thousandth of an increment before its end are taken in it: no piece is shorter.
+/// Impacts within a thousandth of an increment before its end are taken in it: no subincrement is
+/// shorter.
 #[test]
 fn an_impact_at_the_very_end_of_an_increment_does_not_cut_it() {
     for scheme in SCHEMES {
-        for (part, pieces) in [(0.9, 2), (0.998, 2), (0.9995, 1), (1.0 - 1e-6, 1)] {
+        for (part, count) in [(0.9, 2), (0.998, 2), (0.9995, 1), (1.0 - 1e-6, 1)] {
             let (keep, summary) = fall(scheme, part);
             let first = keep.reports[1..].iter().filter(|r| r.time <= 1.0).count();
             let shortest = keep.reports[1..].iter().map(|r| r.dt).fold(1.0, f64::min);
-            assert_eq!((first, summary.cutbacks), (pieces, 0), "{scheme:?} {part}");
+            assert_eq!((first, summary.cutbacks), (count, 0), "{scheme:?} {part}");
             assert!(shortest >= 1e-3, "{shortest:e}");
         }
     }
 }
 
-/// A block on its corner that slides across the bend of a plate from one segment to the next, `depth`
-/// below the first, in one increment of 0.1, while the plate is bent from one angle to the other.
+/// A block on its corner that slides across the bend of a plate from one segment to the next,
+/// `depth` below the first, in one increment of 0.1, while the plate is bent from one angle to the
+/// other.
 fn slide(
     settings: Settings,
     [bend, bent]: [f64; 2],
@@ -105,7 +107,7 @@ fn round_off_of_a_sliding_node_is_no_gain_of_energy() {
 
 /// A node that was behind the line of the segment it comes to, and does not touch it.
 #[test]
-fn a_node_above_a_vertex_that_turns_hollow_gains_nothing() {
+fn a_node_above_a_corner_that_turns_concave_gets_no_energy() {
     let (keep, summary) = slide(Settings::default(), [-0.01, 0.01], -1e-4, [0.7, 0.0]);
     let contact = &keep.reports[1].contacts[0];
     assert!(contact.closed == 0 && contact.min_gap > 0.0);

@@ -6,7 +6,7 @@
 //!         \  /        the right and down
 //!     ____.\/-.____
 //!     |     |     |   2 Q4, all nodes held; the top of the roof goes down and
-//!     +-----+-----+   makes it a valley
+//!     +-----+-----+   makes the corner concave
 //! ```
 
 use std::f64::consts::FRAC_PI_4;
@@ -16,13 +16,14 @@ use stickslip::dynamics::{Cause, Cutback};
 use stickslip::model::{Settings, Support, SupportMotion};
 
 #[test]
-fn a_vertex_that_turns_hollow_under_a_node() {
+fn a_corner_that_turns_concave_under_a_node() {
     for passing_speed in [0.0, 1e9] {
         slide_over_the_roof(passing_speed);
     }
 }
 
-/// The block on the roof, and far away another that passes with some speed: its energy is no excuse.
+/// The block on the roof, and far away another that passes with some speed: its energy is no
+/// excuse.
 fn slide_over_the_roof(passing_speed: f64) {
     let (rise, dt) = (0.005, 0.1);
     let mut model = model(1e4, 0.2, 1.0);
@@ -51,8 +52,8 @@ fn slide_over_the_roof(passing_speed: f64) {
     model.steps = vec![step(dt, 1, Settings::default(), supports)];
 
     let (keep, _) = run_to_end(&model);
-    let is_gain = |c: &&Cutback| matches!(c.failure.cause, Cause::GainedEnergy { .. });
-    let halved = keep.cutbacks.iter().filter(is_gain).count();
+    let adds_energy = |c: &&Cutback| matches!(c.failure.cause, Cause::GainedEnergy { .. });
+    let halved = keep.cutbacks.iter().filter(adds_energy).count();
     let energies: Vec<_> = keep.reports.iter().map(|report| report.energy).collect();
     let most = energies
         .windows(2)
