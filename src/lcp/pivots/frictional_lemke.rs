@@ -1,5 +1,7 @@
 //! Lemke's method on the frictional problem, by its structure.
 
+use nalgebra::DMatrix;
+
 use super::basis::PivotMatrix;
 use super::pivoting::follow_path;
 use super::settings::LemkeSettings;
@@ -23,6 +25,8 @@ struct FrictionalMatrix<'a> {
     scaled: &'a Scaled,
     /// 1 or -1 for each tangential unknown.
     signs: Vec<f64>,
+    /// Transposed Q: its rows one after the other.
+    rows: DMatrix<f64>,
 }
 
 /// Solves a scaled problem by Lemke's method with covering vector d = (1, 1/(1 + mu), 0), both
@@ -48,7 +52,7 @@ pub(crate) fn lemke_forces(
             .map(|i| covering[*i] / (1.0 + scaled.mu[*i])),
     );
     d.resize(n + 2 * m, 0.0);
-    let matrix = FrictionalMatrix { scaled, signs };
+    let matrix = FrictionalMatrix::new(scaled, signs);
     let vertex = follow_path(&matrix, &q, &d, settings).map_err(|error| match error {
         LcpError::Ray {
             pivots,
@@ -68,7 +72,16 @@ pub(crate) fn lemke_forces(
     })
 }
 
-impl FrictionalMatrix<'_> {
+impl<'a> FrictionalMatrix<'a> {
+    fn new(scaled: &'a Scaled, signs: Vec<f64>) -> Self {
+        let rows = scaled.q.transpose();
+        FrictionalMatrix {
+            scaled,
+            signs,
+            rows,
+        }
+    }
+
     /// p = (Pn, Pt) of z: Pt = sign (2 T+ - mu Pn).
     fn forces(&self, z: impl Iterator<Item = (usize, f64)>) -> Vec<f64> {
         let n = self.scaled.contacts;
@@ -153,8 +166,7 @@ impl PivotMatrix for FrictionalMatrix<'_> {
         if j >= end {
             return if j - m == i { 1.0 } else { 0.0 };
         }
-        // Row i of the symmetric Q, read where it is contiguous.
-        let q = self.scaled.column(i);
+        let q = self.rows.column(i); // row i of Q
         if j >= n {
             return sign(i) * sign(j) * 2.0 * q[j];
         }
@@ -167,27 +179,23 @@ impl PivotMatrix for FrictionalMatrix<'_> {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::DMatrix;
-
     use super::*;
     use crate::lcp::problems::FrictionalLcp;
 
-    /// Three contacts, the second without friction, the third slipping backwards.
+    /// Three contacts with a Q that is not symmetric, the second without friction, the third slipping
+    /// backwards.
     #[test]
     fn entries_are_those_of_the_product() {
         let factor = DMatrix::from_fn(6, 6, |i, j| ((7 * i + 3 * j) % 5) as f64 - 1.5);
         let problem = FrictionalLcp {
-            q: &factor * factor.transpose(),
+            q: &factor * factor.transpose() + &factor,
             gap: vec![-1.0, -0.5, -2.0].into(),
             slip: vec![0.25, 0.5, -0.75].into(),
             mu: vec![0.5, 0.0, 0.25].into(),
         };
         let scaled = Scaled::new(&problem).expect("finite");
         let signs = vec![1.0, -1.0];
-        let matrix = FrictionalMatrix {
-            scaled: &scaled,
-            signs,
-        };
+        let matrix = FrictionalMatrix::new(&scaled, signs);
         for j in 0..matrix.size() {
             let mut column = vec![0.0; matrix.size()];
             matrix.add_product(&[(j, 1.0)], &mut column);

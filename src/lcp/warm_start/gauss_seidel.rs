@@ -42,23 +42,24 @@ fn update(scaled: &Scaled, k: usize, force: f64, p: &mut [f64], v: &mut [f64]) -
 }
 
 /// State and forces of contact i alone, from its 2 x 2 block of Q and the motion b that the other
-/// contacts leave: g = a Pn + c Pt + b_n, Dt = c Pn + e Pt + b_t.
+/// contacts leave: g = a Pn + c Pt + b_n, Dt = f Pn + e Pt + b_t.
 fn local(scaled: &Scaled, i: usize, p: &[f64], v: &[f64]) -> (ContactState, f64, f64) {
     let a = scaled.q[(i, i)];
     let Some(t) = scaled.tangents[i] else {
         let pn = -(v[i] - a * p[i]) / a;
         return closed_or_open(ContactState::SlipPlus, pn, 0.0);
     };
-    let (c, e, mu) = (scaled.q[(i, t)], scaled.q[(t, t)], scaled.mu[i]);
+    let (c, f) = (scaled.q[(i, t)], scaled.q[(t, i)]);
+    let (e, mu) = (scaled.q[(t, t)], scaled.mu[i]);
     let b_n = v[i] - a * p[i] - c * p[t];
-    let b_t = v[t] - c * p[i] - e * p[t];
+    let b_t = v[t] - f * p[i] - e * p[t];
     if b_n >= 0.0 {
         return (ContactState::Open, 0.0, 0.0);
     }
-    let determinant = a * e - c * c;
+    let determinant = a * e - c * f;
     let (pn, pt) = (
         (c * b_t - e * b_n) / determinant,
-        (c * b_n - a * b_t) / determinant,
+        (f * b_n - a * b_t) / determinant,
     );
     if pn >= 0.0 && pt.abs() <= mu * pn {
         return (ContactState::Stick, pn, pt);
@@ -69,7 +70,7 @@ fn local(scaled: &Scaled, i: usize, p: &[f64], v: &[f64]) -> (ContactState, f64,
         (ContactState::SlipMinus, -1.0),
     ] {
         let pn = -b_n / (a - s * mu * c);
-        if pn >= 0.0 && s * ((c - s * mu * e) * pn + b_t) >= 0.0 {
+        if pn >= 0.0 && s * ((f - s * mu * e) * pn + b_t) >= 0.0 {
             return closed_or_open(state, pn, -s * mu * pn);
         }
     }

@@ -6,6 +6,9 @@ use crate::lcp::problems::{ContactState, Scaled, max_abs};
 /// Shift of the diagonal, relative to its entries, that makes a singular system solvable.
 const SHIFT: f64 = 1e-10;
 
+/// Difference of mirrored entries, relative to their diagonal entries, of a symmetric matrix.
+const ASYMMETRY: f64 = 1e-9;
+
 /// Corrections by the residual: the first makes the gaps exact to round-off, more are needed only
 /// by the shifted system.
 const CORRECTIONS: usize = 6;
@@ -21,11 +24,12 @@ pub(crate) fn forces(scaled: &Scaled, states: &[ContactState]) -> Option<(Vec<f6
     }
     let matrix = || matrix(scaled, states, &unknowns);
     let size = unknowns.len();
-    let symmetric = scaled.owners.iter().all(|i| states[*i].slip_sign() == 0.0);
-    let regular = if symmetric {
-        Factors::cholesky(matrix(), size)
+    let nothing_slides = scaled.owners.iter().all(|i| states[*i].slip_sign() == 0.0);
+    let values = matrix();
+    let regular = if nothing_slides && is_symmetric(&values, size) {
+        Factors::cholesky(values, size)
     } else {
-        Factors::lu(matrix(), size)
+        Factors::lu(values, size)
     };
     let factors = regular.or_else(|| Factors::lu(shifted(matrix(), size), size))?;
     let (p, v) = refine(scaled, states, &unknowns, &factors);
@@ -66,6 +70,16 @@ fn sliding(scaled: &Scaled, states: &[ContactState], k: usize) -> Option<(usize,
         return None;
     }
     scaled.tangents[k].map(|t| (t, -states[k].slip_sign() * scaled.mu[k]))
+}
+
+/// Whether the two triangles of a matrix are equal but for what corrections by the residual remove.
+fn is_symmetric(matrix: &[f64], size: usize) -> bool {
+    let at = |i: usize, j: usize| matrix[i + j * size];
+    let is_mirrored = |i: usize, j: usize| {
+        let scale = (at(i, i) * at(j, j)).abs().sqrt();
+        (at(i, j) - at(j, i)).abs() <= ASYMMETRY * scale
+    };
+    (0..size).all(|j| (0..j).all(|i| is_mirrored(i, j)))
 }
 
 /// The matrix with its diagonal increased a little.
