@@ -6,7 +6,6 @@ use stickslip::diagnostics::Span;
 use stickslip::dynamics::{
     self, Cutback, IncrementReport, Observer, Outcome, RunError, RunSummary,
 };
-use stickslip::materials::Law;
 use stickslip::model::{
     Contact, Element, ElementType, Face, Frames, Increments, Interaction, Material, Model,
     Procedure, Section, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
@@ -57,7 +56,8 @@ pub fn model(young: f64, poisson: f64, density: f64) -> Model {
     Model {
         materials: vec![Material {
             name: "M".into(),
-            law: Law::elastic(young, poisson),
+            young,
+            poisson,
             density,
         }],
         sections: vec![Section {

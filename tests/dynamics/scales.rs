@@ -11,7 +11,6 @@
 //! ```
 
 use crate::blocks::{Block, Keep, add_block, add_contact, fixed, model, run_to_end, step, throw};
-use stickslip::materials::Law;
 use stickslip::model::{BodyForce, Load, Material, Model, Section, Settings, Variation};
 
 /// How much the base exceeds the light body, or that it is held altogether.
@@ -30,9 +29,8 @@ fn make_heavy(model: &mut Model, elements: std::ops::Range<usize>, base: Base) {
         Base::Thick(thickness) => (1.0, thickness),
     };
     let light = model.materials[0].clone();
-    let moduli = light.law.small_strain();
     model.materials.push(Material {
-        law: Law::elastic(factor * moduli.young, moduli.poisson),
+        young: factor * light.young,
         density: factor * light.density,
         ..light
     });

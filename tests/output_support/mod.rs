@@ -18,7 +18,6 @@ use stickslip::dynamics::{
     Timings,
 };
 use stickslip::elements::{ElementResult, Strained};
-use stickslip::materials::Law;
 use stickslip::model::{
     Contact, Element, ElementType, Face, Frames, HistorySet, Increments, Interaction, Material,
     Mesh, Model, NamedSets, Procedure, Section, Set, Settings, Step, Support, SupportMotion,
@@ -50,7 +49,8 @@ pub fn model() -> Model {
         ],
         materials: vec![Material {
             name: "M".into(),
-            law: Law::elastic(1000.0, 0.0),
+            young: 1000.0,
+            poisson: 0.0,
             density: 2.0,
         }],
         sections: vec![Section {
@@ -166,7 +166,6 @@ pub fn report(k: usize) -> IncrementReport {
             u: ramp(1.0),
             v: ramp(2.0),
             a: ramp(3.0),
-            internal: vec![],
         },
         nodal: nodal(k, ramp(4.0), ramp(5.0)),
         elements: vec![ElementResult::default(); 3].into(),
