@@ -97,7 +97,7 @@ pub(super) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &m
         };
         let area = area(element, &mesh_index.mesh);
         let mass = material.density * section.thickness * area;
-        let stiffness = material.young * section.thickness;
+        let stiffness = material.law.small_strain().young * section.thickness;
         total += mass;
         let magnitudes = [
             ("area of", area),

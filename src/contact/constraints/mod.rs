@@ -1,20 +1,9 @@
-//! Contact constraints: gap, slip and their rows, compliance and Delassus operator, and the
-//! constraints that are closed.
+//! Contact constraints: gap, slip and their rows, compliance and Delassus operator.
 
-mod closed_pairs;
 mod compliance;
-mod configurations;
-mod constraint;
 mod delassus;
-mod kinds;
-mod node_to_corner;
-mod node_to_segment;
+mod pair;
 
-pub use closed_pairs::{ClosedPair, ClosedPairs};
 pub use compliance::Compliance;
-pub use configurations::{Configurations, RowForm};
-pub use constraint::{Constraint, ConstraintKey, PerDof, Rows};
-pub use delassus::frictional_lcp;
-
-#[cfg(test)]
-mod seam_tests;
+pub use delassus::{add_contact_forces, frictional_lcp};
+pub use pair::{Pair, RowForm};

@@ -8,8 +8,8 @@ use super::bisection::Bisection;
 use super::impact_control::ImpactControl;
 use super::nominal_increment::{NominalIncrement, nominal_increments};
 use super::time_control::{Span, TimeControl};
-use crate::contact::ClosedPairs;
 use crate::dynamics::events::{FailedSubincrement, Subincrement, Subincrements};
+use crate::dynamics::increment::ClosedPairs;
 use crate::dynamics::ledger::{Accounts, Ledger, landings};
 use crate::dynamics::results::{
     Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State, Timings,
@@ -80,6 +80,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             model,
             contacts,
             mass,
+            elements,
             ..
         } = discretization;
         Runner {
@@ -88,6 +89,7 @@ impl<'m, 'o> Runner<'m, 'o> {
                 u: vec![0.0; model.mesh.dof_count()],
                 v: model.initial_velocity.clone(),
                 a: vec![0.0; model.mesh.dof_count()],
+                internal: elements.initial_variables(),
             },
             contact: ClosedPairs::default(),
             ledger: Ledger::default(),
@@ -254,7 +256,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         };
         self.observer.increment(&report)?;
         self.ledger = ledger;
-        self.contact = solved.forces.closed;
+        self.contact = ClosedPairs::new(&solved.forces);
         self.state = report.state;
         Ok(())
     }

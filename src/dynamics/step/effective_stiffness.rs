@@ -4,8 +4,8 @@
 use super::mass::unknown_mass;
 use super::step_problem::StepProblem;
 use super::unknowns::Unknowns;
-use crate::contact::{Compliance, Constraint};
-use crate::elements::Elements;
+use crate::contact::{Compliance, Pair};
+use crate::elements::{Elements, Motion};
 use crate::linear::{Assembled, CheckedSolver, LinearError, linear_solver};
 use crate::model::SolverChoice;
 
@@ -29,9 +29,9 @@ impl FactoredMatrix {
         self.solver.factorize()
     }
 
-    /// Solves for the columns of the compliance that `constraints` need.
-    pub fn prepare(&mut self, constraints: &[&Constraint]) -> Result<(), LinearError> {
-        self.compliance.prepare(constraints, &mut self.solver)
+    /// Solves for the columns of the compliance that `pairs` need.
+    pub fn prepare(&mut self, pairs: &[Pair]) -> Result<(), LinearError> {
+        self.compliance.prepare(pairs, &mut self.solver)
     }
 }
 
@@ -72,12 +72,7 @@ impl EffectiveStiffness {
     }
 
     /// Assembles K* in the given configuration, to be factorised next.
-    pub fn assemble(
-        &mut self,
-        problem: &StepProblem,
-        dt: f64,
-        (start, u): (Option<&[f64]>, &[f64]),
-    ) {
+    pub fn assemble(&mut self, problem: &StepProblem, dt: f64, motion: Motion) {
         let StepProblem {
             elements,
             weights,
@@ -89,7 +84,7 @@ impl EffectiveStiffness {
         let mass = self.m.solver.matrix();
         let k = self.k.solver.matrix_mut();
         k.clear();
-        elements.for_each_tangent(start, u, |element, tangent| {
+        elements.for_each_tangent(motion, |element, tangent| {
             k.add(element, tangent, weights.theta2)
         });
         self.stiffness = parts.largest_diagonal(k, &unknowns.dof);

@@ -10,11 +10,10 @@ use super::unknowns::Unknowns;
 use super::workspace::System;
 use crate::contact::tolerances::COLLAPSED_LENGTH;
 use crate::contact::{
-    Configurations, Constraint, ContactSurfaces, PairTarget, Projection, Search, find_targets,
-    position, project,
+    ContactSurfaces, Pair, Pairing, Projection, Search, find_targets, position, project,
 };
 use crate::dynamics::results::{Cause, State};
-use crate::elements::Elements;
+use crate::elements::{Elements, Motion};
 use crate::lcp::LcpMethod;
 use crate::model::{Model, Settings, Step};
 
@@ -121,34 +120,17 @@ impl StepProblem<'_> {
         }
     }
 
-    /// Constraints between the displacements `u0` and `u` of an increment, which the search covers,
-    /// `before` being those of the last pass; rigid surfaces have none among themselves. Where the
-    /// passes have `settled`, slave nodes keep their targets.
-    pub fn constraints(
-        &self,
-        search: &Search,
-        [u0, u]: [&[f64]; 2],
-        before: &[Constraint],
-        settled: bool,
-    ) -> Vec<Constraint> {
-        let before: Vec<PairTarget> = before.iter().map(|c| c.source).collect();
-        let configurations = self.configurations(u0, u);
-        find_targets(search, [u0, u], &before, settled)
+    /// Pairs between `u0` and the iterate `u`, which the search covers, `before` being those of the
+    /// last pass; obstacles have none among themselves.
+    pub fn pairs(&self, search: &Search, u0: &[f64], u: &[f64], before: &Pairing) -> Vec<Pair> {
+        let x = &self.model.mesh.coordinates;
+        let form = self.weights.row_form();
+        find_targets(search, u0, u, before)
             .into_iter()
-            .filter(|source| self.unknowns.moves(&source.nodes))
-            .map(|source| Constraint::new(source, &configurations))
-            .filter(|constraint| self.unknowns.opens(constraint))
+            .filter(|at| self.unknowns.moves(&at.nodes))
+            .map(|at| Pair::new(at, form, x, u0, u))
+            .filter(|pair| self.unknowns.opens(pair))
             .collect()
-    }
-
-    /// The configurations between which constraints of the scheme are linearised.
-    pub fn configurations<'a>(&'a self, u0: &'a [f64], u: &'a [f64]) -> Configurations<'a> {
-        Configurations {
-            form: self.weights.row_form(),
-            x: &self.model.mesh.coordinates,
-            u0,
-            u,
-        }
     }
 
     /// Load, internal force and inertia of the iterate U0 + d.
@@ -168,7 +150,7 @@ impl StepProblem<'_> {
         let u_theta = self.weights.displacement(&start.u, d, v0p, dt);
         let internal = self
             .weights
-            .internal_force(self.elements, &start.u, &u, &u_theta)?;
+            .internal_force(self.elements, start, &u, &u_theta)?;
         let load = self
             .loads
             .weighted(self.elements, self.weights.theta1, t0, t1, &u_theta);
@@ -195,7 +177,8 @@ impl StepProblem<'_> {
     pub fn start_acceleration(&self, mut mass: System, start: &State, now: TimePoint) -> Vec<f64> {
         let mut a = vec![0.0; start.u.len()];
         let load = self.loads.weighted(self.elements, 1.0, now, now, &start.u);
-        let Ok(internal) = self.elements.internal_force(None, &start.u) else {
+        let motion = Motion::at(&start.u, &start.internal);
+        let Ok(internal) = self.elements.internal_force(motion) else {
             return a;
         };
         let r = difference(&load, &internal);

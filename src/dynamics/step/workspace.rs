@@ -5,9 +5,10 @@ use super::effective_stiffness::{EffectiveStiffness, FactoredMatrix};
 use super::meter::Meter;
 use super::step_problem::{Equilibrium, Interval, StepProblem};
 use crate::contact::{
-    ClosedPairs, Compliance, Constraint, Penetration, Search, find_penetration, frictional_lcp,
+    Compliance, NodeContact, Pair, Pairing, Penetration, Search, find_penetration, frictional_lcp,
 };
 use crate::dynamics::results::{Cause, State};
+use crate::elements::Motion;
 use crate::lcp::{
     ContactState, FrictionalLcp, FrictionalSolution, LcpError, LcpMethod, solve_frictional,
 };
@@ -46,27 +47,33 @@ impl<'m> Workspace<'m> {
 
     /// The effective stiffness K*.
     pub fn k(&mut self) -> System<'_> {
-        System::new(&mut self.stiffness.k, &mut self.meter)
+        System {
+            matrix: &mut self.stiffness.k,
+            meter: &mut self.meter,
+        }
     }
 
     /// The mass M.
     pub fn m(&mut self) -> System<'_> {
-        System::new(&mut self.stiffness.m, &mut self.meter)
+        System {
+            matrix: &mut self.stiffness.m,
+            meter: &mut self.meter,
+        }
     }
 
-    /// Assembles and factorises K* for increments of length `dt` in the given configuration.
+    /// Assembles and factorises K* for increments of length `dt` in the configuration of a motion.
     pub fn factorize(
         &mut self,
         problem: &StepProblem,
         dt: f64,
-        configuration: (Option<&[f64]>, &[f64]),
+        motion: Motion,
     ) -> Result<(), LinearError> {
         let Workspace {
             stiffness, meter, ..
         } = self;
         meter.time(
             |t| &mut t.assembly,
-            || stiffness.assemble(problem, dt, configuration),
+            || stiffness.assemble(problem, dt, motion),
         );
         meter.counts.factorizations += 1;
         self.k().factorize()
@@ -84,55 +91,47 @@ impl<'m> Workspace<'m> {
         self.meter.time(|t| &mut t.assembly, evaluate)
     }
 
-    /// K x in the given configuration, K being the tangent.
+    /// K x in the configuration of a motion, K being the tangent.
     pub fn tangent_product(
         &mut self,
         problem: &StepProblem,
-        (start, u): (Option<&[f64]>, &[f64]),
+        motion: Motion,
         x: &[f64],
     ) -> Vec<f64> {
-        let product = || problem.elements.tangent_product(start, u, x);
+        let product = || problem.elements.tangent_product(motion, x);
         self.meter.time(|t| &mut t.assembly, product)
     }
 
-    /// Constraints between the displacements `u0` and `u`, as [`StepProblem::constraints`] says.
-    pub fn constraints(
+    /// Pairs between `u0` and the iterate `u`, `before` being those of the last pass.
+    pub fn pairs(
         &mut self,
         problem: &StepProblem,
-        [u0, u]: [&[f64]; 2],
-        before: &[Constraint],
-        settled: bool,
-    ) -> Vec<Constraint> {
+        u0: &[f64],
+        u: &[f64],
+        before: &Pairing,
+    ) -> Vec<Pair> {
         let Workspace { search, meter, .. } = self;
         meter.time(|t| &mut t.search, || search.cover(u));
-        meter.time(
-            |t| &mut t.contact,
-            || problem.constraints(search, [u0, u], before, settled),
-        )
+        meter.time(|t| &mut t.contact, || problem.pairs(search, u0, u, before))
     }
 
     /// A node that has gone into a body between `u0` and `u1`, as [`find_penetration`] says.
     pub fn find_penetration(
         &mut self,
         [u0, u1]: [&[f64]; 2],
-        closed: [&ClosedPairs; 2],
+        touch: &[NodeContact],
         unsolved: &[f64],
     ) -> Option<Penetration> {
         let Workspace { search, meter, .. } = self;
         meter.time(|t| &mut t.search, || search.cover_path(u0, u1));
         meter.time(
             |t| &mut t.contact,
-            || find_penetration(search, [u0, u1], closed, unsolved),
+            || find_penetration(search, u0, u1, touch, unsolved),
         )
     }
 }
 
-impl<'a> System<'a> {
-    /// A matrix whose work is measured by `meter`.
-    pub fn new(matrix: &'a mut FactoredMatrix, meter: &'a mut Meter) -> Self {
-        System { matrix, meter }
-    }
-
+impl System<'_> {
     /// Whether there are factors of the matrix as it is.
     pub fn is_factorized(&self) -> bool {
         self.matrix.solver.is_factorized()
@@ -150,17 +149,17 @@ impl<'a> System<'a> {
         meter.time(|t| &mut t.solve, || matrix.solver.solve(b))
     }
 
-    /// The complementarity problem of some constraints with the given gaps and slips without forces.
+    /// The complementarity problem of some pairs with the given gaps and slips without forces.
     pub fn frictional_lcp(
         &mut self,
-        constraints: &[&Constraint],
+        pairs: &[Pair],
         gap: Vec<f64>,
         slip: Vec<f64>,
     ) -> Result<FrictionalLcp, LinearError> {
         let Self { matrix, meter } = self;
-        meter.time(|t| &mut t.solve, || matrix.prepare(constraints))?;
+        meter.time(|t| &mut t.solve, || matrix.prepare(pairs))?;
         let compliance: &Compliance = &matrix.compliance;
-        let pose = || frictional_lcp(constraints, compliance, gap, slip);
+        let pose = || frictional_lcp(pairs, compliance, gap, slip);
         Ok(meter.time(|t| &mut t.contact, pose))
     }
 

@@ -77,7 +77,7 @@ impl Findings {
     fn strain_text(&self) -> Option<String> {
         let strain = self.strain.filter(|&strain| strain > LARGE)?;
         Some(format!(
-            "the largest principal strain is {}, above {}, where a St. Venant-Kirchhoff material is \
+            "the largest principal strain is {}, above {}, where a St. Venant-Kirchhoff material (*ELASTIC) is \
              too stiff in tension and too soft in compression: trust no forces there, or lower the loads",
             general(strain, 4),
             general(LARGE, 1),
