@@ -13,7 +13,7 @@ use std::time::Duration;
 use contact_support::{DISC, lattice};
 use criterion::{BenchmarkId, Criterion, Throughput};
 use stickslip::contact::{
-    NodeContact, Pairing, Search, SlaveNode, all_segments, find_penetration, find_targets,
+    ClosedPairs, Search, SlaveNode, all_segments, find_penetration, find_targets,
 };
 
 /// Segments searched in one go: in many small scenes, or few large ones. Only so do caches and
@@ -62,20 +62,19 @@ fn main() {
         });
         group.throughput(Throughput::Elements(n as u64));
         search.cover(&u);
-        let before = Pairing::default();
         group.bench_function(BenchmarkId::new("pairs", n), |bencher| {
             bencher.iter(|| {
                 search.cover(black_box(&u));
-                find_targets(&search, &u, &u, &before).len()
+                find_targets(&search, [&u, &u], &[], false).len()
             });
         });
         let moved: Vec<f64> = (0..u.len()).map(|i| 1e-3 * (i as f64).sin()).collect();
-        let touch = vec![NodeContact::default(); x.len()];
+        let closed = ClosedPairs::default();
         let unsolved = vec![0.0; x.len()];
         group.bench_function(BenchmarkId::new("ways", n), |bencher| {
             bencher.iter(|| {
                 search.cover_path(&u, &moved);
-                find_penetration(&search, &u, black_box(&moved), &touch, &unsolved)
+                find_penetration(&search, [&u, black_box(&moved)], [&closed; 2], &unsolved)
             });
         });
         if n <= 1_000 {

@@ -34,6 +34,9 @@
 //! | interior | the inside of the bodies, followed from element to element behind a segment |
 //! | slave index | number of a slave node among those of all contacts |
 //! | pair | one slave node with one contact target; a CONTACT PAIR of the deck is a *contact* |
+//! | constraint | g >= 0 with friction, of one pair, linearised at the iterate |
+//! | force rows Bn, Bt | what a unit force Pn or Pt of a constraint exerts on its dofs |
+//! | derivative rows Gn, Gt | change of gap and slip with its dofs; as the force rows for pairs |
 //! | closed pair | a pair that carries a force |
 //! | territory | circle about an entity that it does not leave while lists of candidates hold |
 //! | gap g | distance of the slave node from its segment, positive when open |
@@ -44,7 +47,7 @@
 //! | Pn, Pt | normal (>= 0) and tangential contact force of a pair |
 //! | Phi, Psi | normal and tangential impact impulse of a pair |
 //! | internal force F | nodal forces of the stresses; R external load, M mass, K tangent |
-//! | K* | effective matrix theta2 K + 2/dt^2 M; Q = B K*^-1 B^T its Delassus matrix |
+//! | K* | effective matrix theta2 K + 2/dt^2 M; Q = G K*^-1 B^T its Delassus matrix |
 //! | compliance W | K*^-1 at the dofs in contact |
 //! | residual, correction | errors of a pass: out-of-balance force, last change of displacement |
 //! | acceptance | checks that a converged increment passes before it is entered in the ledger |

@@ -1,4 +1,5 @@
-//! Node-to-segment contact: pairs, their rows and their complementarity problem.
+//! Contact of slave nodes with segments and corners: surfaces, search, targets, constraints and
+//! their complementarity problem, crossing and tunnelling.
 
 mod constraints;
 mod crossing;
@@ -6,15 +7,16 @@ mod geometry;
 mod search;
 mod targets;
 pub(crate) mod tolerances;
-pub use constraints::{Compliance, Pair, RowForm, add_contact_forces, frictional_lcp};
-pub use crossing::{
-    Crossing, Direction, Motion, NodeContact, Penetration, crossings, find_penetration,
-    line_crossings,
+mod tunnelling;
+
+pub use constraints::{
+    ClosedPair, ClosedPairs, Compliance, Configurations, Constraint, ConstraintKey, PerDof,
+    RowForm, Rows, frictional_lcp,
 };
+pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
 pub(crate) use geometry::position;
-pub use geometry::{ContactSurfaces, Interior, Projection, contact_surfaces, project};
-pub use search::{Candidate, Search, Territory, all_segments};
+pub use geometry::{Along, ContactSurfaces, Interior, Projection, contact_surfaces, project};
+pub use search::{Candidate, ListedSlave, Search, Territory, all_segments};
 pub(crate) use search::{Circle, CircleTree};
-pub use targets::{
-    ContactTarget, Corner, PairTarget, Pairing, SlaveNode, common_normal, find_targets,
-};
+pub use targets::{ContactTarget, Corner, PairTarget, SlaveNode, common_normal, find_targets};
+pub use tunnelling::{Penetration, find_penetration};

@@ -1,15 +1,15 @@
 //! Compliance at the contacts: the entries of an inverse W that the Delassus operator
-//! Q = B T W T^T B^T needs, W being K*^-1 in a pass and M^-1 for impulses. Sections 5 and 6 of
+//! Q = G T W T^T B^T needs, W being K*^-1 in a pass and M^-1 for impulses. Sections 5 and 6 of
 //! docs/theory.md.
 
 use nalgebra::DMatrix;
 
-use super::pair::Pair;
+use super::constraint::Constraint;
 use crate::linear::{CheckedSolver, LinearError, Transformation};
 
-/// The inverse of a factorised matrix at the unknowns that pairs act on.
+/// The inverse of a factorised matrix at the unknowns that constraints act on.
 ///
-/// It is computed when pairs first need it and kept until the matrix changes, so that a Delassus
+/// It is computed when constraints first need it and kept until the matrix changes, so that a Delassus
 /// matrix for any normals costs no further solves.
 #[derive(Debug)]
 pub struct Compliance {
@@ -24,13 +24,16 @@ pub struct Compliance {
     inverse: DMatrix<f64>,
 }
 
-/// The rows of a pair at one unknown: entries of Bn T and Bt T.
+/// The rows of a constraint at one unknown.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct UnknownEntry {
+    /// Row of the inverse.
     place: usize,
     group: usize,
-    normal: f64,
-    tangent: f64,
+    /// Entries of Bn T and Bt T.
+    force: [f64; 2],
+    /// Entries of Gn T and Gt T.
+    derivative: [f64; 2],
 }
 
 impl Compliance {
@@ -54,19 +57,17 @@ impl Compliance {
         self.inverse = DMatrix::zeros(0, 0);
     }
 
-    /// Computes the inverse at the unknowns of `pairs` too, if some are missing.
+    /// Computes the inverse at the unknowns of `constraints` too, if some are missing.
     ///
     /// # Errors
     /// What the solver says.
     pub fn prepare(
         &mut self,
-        pairs: &[Pair],
+        constraints: &[&Constraint],
         solver: &mut CheckedSolver,
     ) -> Result<(), LinearError> {
-        let terms = pairs
-            .iter()
-            .flat_map(Pair::dofs)
-            .flat_map(|dof| self.map.row(dof));
+        let dofs = constraints.iter().flat_map(|constraint| &constraint.dofs);
+        let terms = dofs.flat_map(|&dof| self.map.row(dof));
         let missing = |unknown: &usize| self.place[*unknown].is_none();
         let missing: Vec<usize> = terms.map(|term| term.0).filter(missing).collect();
         if missing.is_empty() {
@@ -84,12 +85,14 @@ impl Compliance {
         Ok(())
     }
 
-    /// Entries of Bn T and Bt T of a pair that are not both zero; the pair must have been prepared.
-    pub(super) fn entries(&self, pair: &Pair) -> Vec<UnknownEntry> {
-        let mut entries = Vec::with_capacity(8);
-        for (k, dof) in pair.dofs().into_iter().enumerate() {
-            let [normal, tangent] = [pair.normal[k], pair.tangent[k]];
-            if normal == 0.0 && tangent == 0.0 {
+    /// Entries of the rows of a constraint that are not all zero; it must have been prepared.
+    pub(super) fn entries(&self, constraint: &Constraint) -> Vec<UnknownEntry> {
+        let (force_rows, derivative_rows) = (&constraint.force_rows, constraint.derivative_rows());
+        let mut entries = Vec::with_capacity(constraint.dofs.len());
+        for (k, &dof) in constraint.dofs.iter().enumerate() {
+            let [force, derivative] =
+                [force_rows, derivative_rows].map(|rows| [rows.normal[k], rows.tangential[k]]);
+            if force == [0.0; 2] && derivative == [0.0; 2] {
                 continue;
             }
             for &(unknown, c) in self.map.row(dof) {
@@ -97,8 +100,8 @@ impl Compliance {
                     entries.push(UnknownEntry {
                         place,
                         group: self.groups[unknown],
-                        normal: c * normal,
-                        tangent: c * tangent,
+                        force: force.map(|entry| c * entry),
+                        derivative: derivative.map(|entry| c * entry),
                     });
                 }
             }
@@ -106,8 +109,8 @@ impl Compliance {
         entries
     }
 
-    /// Block (B_p T) W (B_q T)^T of Q = B T W T^T B^T, eq. (5.1), of two pairs: normal before
-    /// tangential.
+    /// Block (G_p T) W (B_q T)^T of Q = G T W T^T B^T, eq. (5.1), of two constraints: what normal
+    /// (first column) and tangential force of q add to gap (first row) and slip of p.
     pub(super) fn between(&self, p: &[UnknownEntry], q: &[UnknownEntry]) -> [[f64; 2]; 2] {
         let mut product = [[0.0; 2]; 2];
         for of_q in q {
@@ -118,12 +121,12 @@ impl Compliance {
             let mut sum = [0.0; 2];
             for of_p in p {
                 let w = column[of_p.place];
-                sum[0] += of_p.normal * w;
-                sum[1] += of_p.tangent * w;
+                sum[0] += of_p.derivative[0] * w;
+                sum[1] += of_p.derivative[1] * w;
             }
             for (product, sum) in product.iter_mut().zip(sum) {
-                product[0] += sum * of_q.normal;
-                product[1] += sum * of_q.tangent;
+                product[0] += sum * of_q.force[0];
+                product[1] += sum * of_q.force[1];
             }
         }
         product

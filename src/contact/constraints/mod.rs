@@ -1,9 +1,20 @@
-//! Contact constraints: gap, slip and their rows, compliance and Delassus operator.
+//! Contact constraints: gap, slip and their rows, compliance and Delassus operator, and the
+//! constraints that are closed.
 
+mod closed_pairs;
 mod compliance;
+mod configurations;
+mod constraint;
 mod delassus;
-mod pair;
+mod kinds;
+mod node_to_corner;
+mod node_to_segment;
 
+pub use closed_pairs::{ClosedPair, ClosedPairs};
 pub use compliance::Compliance;
-pub use delassus::{add_contact_forces, frictional_lcp};
-pub use pair::{Pair, RowForm};
+pub use configurations::{Configurations, RowForm};
+pub use constraint::{Constraint, ConstraintKey, PerDof, Rows};
+pub use delassus::frictional_lcp;
+
+#[cfg(test)]
+mod seam_tests;

@@ -8,4 +8,4 @@ mod surfaces;
 pub use interior::Interior;
 pub(crate) use projection::position;
 pub use projection::{Projection, project};
-pub use surfaces::{ContactSurfaces, contact_surfaces};
+pub use surfaces::{Along, ContactSurfaces, contact_surfaces};

@@ -86,6 +86,45 @@ impl ContactSurfaces {
     }
 }
 
+/// Direction along a chain of segments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Along {
+    /// From a segment to the one that starts where it ends.
+    Forward,
+    /// From a segment to the one that ends where it starts.
+    Backward,
+}
+
+impl ContactSurfaces {
+    /// Follows a chain of segments: the segments after `from`, then `None` where an open chain ends.
+    ///
+    /// The walk ends once the segments left behind, `from` not counted, are longer in sum than
+    /// `farthest`, and where it is back at `from`.
+    pub fn walk(
+        &self,
+        from: usize,
+        along: Along,
+        farthest: f64,
+        length: impl Fn(usize) -> f64,
+    ) -> impl Iterator<Item = Option<usize>> {
+        let (mut at, mut between) = (Some(from), 0.0);
+        std::iter::from_fn(move || {
+            let segment = at?;
+            if segment != from {
+                between += length(segment);
+            }
+            if between > farthest {
+                return None;
+            }
+            at = match along {
+                Along::Forward => self.next[segment],
+                Along::Backward => self.previous[segment],
+            };
+            (at != Some(from)).then_some(at)
+        })
+    }
+}
+
 /// The contacts of a model.
 pub fn contact_surfaces(model: &Model) -> Vec<ContactSurfaces> {
     if model.contacts.is_empty() {

@@ -89,12 +89,18 @@ impl<'m> Search<'m> {
         &self.territories
     }
 
-    /// Number of slave nodes of all contacts.
-    pub fn slave_count(&self) -> usize {
-        self.territories
-            .iter()
-            .map(|t| t.contact.slaves.len())
-            .sum()
+    /// The slave nodes of all contacts with their candidates, in the order of their numbers.
+    pub fn slaves(&self) -> impl Iterator<Item = ListedSlave<'_, 'm>> {
+        let of_contact = |territory: &'_ Territory<'m>| 0..territory.contact.slaves.len();
+        let territories = self.territories.iter();
+        let all = territories.flat_map(move |t| of_contact(t).map(move |slave| (t, slave)));
+        all.enumerate()
+            .map(|(slave_index, (territory, slave))| ListedSlave {
+                slave_index,
+                surfaces: territory.contact,
+                slave,
+                territory,
+            })
     }
 
     /// Reference coordinates of the nodes.
@@ -105,6 +111,30 @@ impl<'m> Search<'m> {
     /// Number of searches so far, of every contact on its own.
     pub fn searches(&self) -> usize {
         self.searches
+    }
+}
+
+/// A slave node with the segments that the search lists for it.
+#[derive(Clone, Copy)]
+pub struct ListedSlave<'a, 'm> {
+    /// Number of the slave node among those of all contacts.
+    pub slave_index: usize,
+    /// Surfaces of its contact.
+    pub surfaces: &'m ContactSurfaces,
+    /// Number of the slave node in its contact.
+    pub slave: usize,
+    territory: &'a Territory<'m>,
+}
+
+impl<'a> ListedSlave<'a, '_> {
+    /// The node.
+    pub fn node(&self) -> usize {
+        self.surfaces.slaves[self.slave]
+    }
+
+    /// Its candidates, with increasing segments.
+    pub fn candidates(&self) -> impl Iterator<Item = Candidate> + Clone + use<'a> {
+        self.territory.candidates(self.slave)
     }
 }
 
@@ -150,7 +180,7 @@ impl<'m> Territory<'m> {
     }
 
     /// Candidates of the slave node number `k` of the contact, with increasing segments.
-    pub fn candidates(&self, k: usize) -> impl Iterator<Item = Candidate> + Clone {
+    pub fn candidates(&self, k: usize) -> impl Iterator<Item = Candidate> + Clone + use<'_> {
         let list = &self.candidates[self.starts[k]..self.starts[k + 1]];
         list.iter().map(move |&i| Candidate {
             segment: i as usize,

@@ -4,4 +4,4 @@ mod bounding_circles;
 mod candidate_search;
 
 pub(crate) use bounding_circles::{Circle, CircleTree};
-pub use candidate_search::{Candidate, Search, Territory, all_segments};
+pub use candidate_search::{Candidate, ListedSlave, Search, Territory, all_segments};

@@ -6,6 +6,6 @@ mod slave_node;
 mod target_selection;
 
 pub use corner::{Corner, common_normal};
-pub use pairing::{PairTarget, Pairing, find_targets};
+pub use pairing::{PairTarget, find_targets};
 pub use slave_node::SlaveNode;
 pub use target_selection::ContactTarget;

@@ -3,8 +3,8 @@
 
 use super::slave_node::SlaveNode;
 use super::target_selection::ContactTarget;
-use crate::contact::geometry::{ContactSurfaces, position};
-use crate::contact::search::Search;
+use crate::contact::geometry::position;
+use crate::contact::search::{ListedSlave, Search};
 use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED};
 
 /// Which slave node meets which segment, or which corner.
@@ -21,62 +21,43 @@ pub struct PairTarget {
     pub friction: f64,
 }
 
-impl PairTarget {
-    /// What tells pairs of an increment apart: slave_index and segment.
-    pub fn key(&self) -> [usize; 2] {
-        [self.slave_index, self.target.segment]
-    }
-}
-
-/// Pairs that the slave_count had in the pass before.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Pairing {
-    /// Targets, increasing by slave_index; empty before the first pass.
-    pub targets: Vec<PairTarget>,
-    /// Whether targets are kept even where others hold the node now: passes that go to and fro across
-    /// a corner come to rest with it.
-    pub settled: bool,
-}
-
 /// The pairs of all contacts between the displacements `u0` of the start of an increment and `u` of
-/// an iterate, which the search covers.
+/// an iterate, which the search covers; increasing by slave index and segment, as those `before`,
+/// of the last pass. Where the passes have `settled`, targets are kept even if others hold the node
+/// now: passes that go to and fro across a corner come to rest with it.
 ///
 /// A node that has just left its segment by a little and finds no other keeps it: whether it has
 /// slid off is decided by the end of the increment, not by one of its passes.
-pub fn find_targets(search: &Search, u0: &[f64], u: &[f64], before: &Pairing) -> Vec<PairTarget> {
+pub fn find_targets(
+    search: &Search,
+    [u0, u]: [&[f64]; 2],
+    before: &[PairTarget],
+    settled: bool,
+) -> Vec<PairTarget> {
     let x = search.coordinates();
     let positions =
         |u: &[f64]| -> Vec<[f64; 2]> { (0..x.len()).map(|n| position(x, u, n)).collect() };
     let (start, now) = (positions(u0), positions(u));
     let mut pairs: Vec<PairTarget> = Vec::new();
-    let mut old = before.targets.as_slice();
-    let mut slave_index = 0;
-    for territory in search.territories() {
-        let surfaces = territory.surfaces();
-        for slave in 0..surfaces.slaves.len() {
-            let node = SlaveNode {
-                surfaces,
-                start: &start,
-                now: &now,
-                slave,
-            };
-            let (own, rest) =
-                old.split_at(old.partition_point(|target| target.slave_index <= slave_index));
-            old = rest;
-            let found = node.targets(territory.candidates(slave));
-            let targets = with_kept(&node, found, own, before.settled);
-            pairs.extend(
-                targets
-                    .iter()
-                    .map(|&target| pair_target(surfaces, slave_index, slave, target)),
-            );
-            slave_index += 1;
-        }
+    let mut old = before;
+    for listed in search.slaves() {
+        let node = SlaveNode {
+            surfaces: listed.surfaces,
+            start: &start,
+            now: &now,
+            slave: listed.slave,
+        };
+        let is_own = |pair: &PairTarget| pair.slave_index <= listed.slave_index;
+        let (own, rest) = old.split_at(old.partition_point(is_own));
+        old = rest;
+        let found = node.targets(listed.candidates());
+        let targets = with_kept(&node, found, own, settled);
+        pairs.extend(targets.iter().map(|&target| pair_target(&listed, target)));
     }
     without_twins(pairs)
 }
 
-/// Targets of a slave_index, of which some of the pass before are kept.
+/// Targets of a slave node, of which some of the pass before are kept.
 fn with_kept(
     node: &SlaveNode,
     found: Vec<ContactTarget>,
@@ -106,18 +87,14 @@ fn with_kept(
     targets
 }
 
-fn pair_target(
-    surfaces: &ContactSurfaces,
-    slave_index: usize,
-    slave: usize,
-    target: ContactTarget,
-) -> PairTarget {
+fn pair_target(listed: &ListedSlave, target: ContactTarget) -> PairTarget {
+    let surfaces = listed.surfaces;
     let [a, b] = surfaces.segments[target.segment];
     let c = target.corner.map_or(b, |v| surfaces.segments[v.next][1]);
     PairTarget {
-        slave_index,
+        slave_index: listed.slave_index,
         target,
-        nodes: [surfaces.slaves[slave], a, b, c],
+        nodes: [listed.node(), a, b, c],
         friction: surfaces.friction,
     }
 }

@@ -3,7 +3,7 @@
 
 use super::corner::{Corner, common_normal};
 use super::slave_node::SlaveNode;
-use crate::contact::geometry::{ContactSurfaces, project};
+use crate::contact::geometry::{Along, project};
 use crate::contact::search::Candidate;
 use crate::contact::tolerances::{
     CLOSED_GAP, CORNER_TIP, CORNER_ZONE, PROJECTION_BEYOND_ENDS, STRAIGHT_SINE,
@@ -19,7 +19,8 @@ pub struct ContactTarget {
 }
 
 impl ContactTarget {
-    fn face(segment: usize) -> Self {
+    /// A segment that is met between its ends.
+    pub fn face(segment: usize) -> Self {
         ContactTarget {
             segment,
             corner: None,
@@ -219,8 +220,8 @@ impl SlaveNode<'_> {
     /// The segment before or after a run from which the node has come round convex corners.
     fn came_from(&self, run: &[usize]) -> Option<usize> {
         let (&first, &last) = (run.first()?, run.last()?);
-        let before = || self.walk(first, false);
-        let after = || self.walk(last, true);
+        let before = || self.walk(first, Along::Backward);
+        let after = || self.walk(last, Along::Forward);
         match self.project_at_start(first).xi < 0.5 {
             true => before().or_else(after),
             false => after().or_else(before),
@@ -229,27 +230,26 @@ impl SlaveNode<'_> {
 
     /// The first segment before or after another that the node projected on at the start, round
     /// convex corners and within twice its displacement.
-    fn walk(&self, from: usize, forward: bool) -> Option<usize> {
-        let ContactSurfaces { next, previous, .. } = self.surfaces;
+    fn walk(&self, from: usize, direction: Along) -> Option<usize> {
         let farthest = 2.0 * self.relative_displacement(from);
-        let (mut i, mut between) = (from, 0.0);
-        loop {
-            let j = if forward { next[i]? } else { previous[i]? };
-            let turn = if forward {
-                self.corner_sine(i, j)
-            } else {
-                self.corner_sine(j, i)
+        let length = |i: usize| self.project(i).length;
+        let mut at = from;
+        for following in (self.surfaces).walk(from, direction, farthest, length) {
+            let (i, j) = (at, following?);
+            let turn = match direction {
+                Along::Forward => self.corner_sine(i, j),
+                Along::Backward => self.corner_sine(j, i),
             };
-            if j == from || turn < -STRAIGHT_SINE || between > farthest {
+            if turn < -STRAIGHT_SINE {
                 return None;
             }
             let is_over = (-CORNER_ZONE..=1.0 + CORNER_ZONE).contains(&self.project_at_start(j).xi);
             if is_over && self.was_in_front(j) && !self.is_own(j) {
                 return Some(j);
             }
-            between += self.project(j).length;
-            i = j;
+            at = j;
         }
+        None
     }
 
     /// The other segments of the concave corners at the ends of a segment that the node is near.

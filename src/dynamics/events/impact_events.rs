@@ -3,8 +3,8 @@
 
 use super::impact_time::ImpactTime;
 use crate::contact::tolerances::IMPACT_GAP;
-use crate::contact::{Crossing, Direction, Projection, crossings};
-use crate::dynamics::increment::{ActiveConstraints, Attempt, ClosedPairs, Failed, Solved};
+use crate::contact::{ClosedPairs, Crossing, Direction, ListedSlave, Projection, crossings};
+use crate::dynamics::increment::{ActiveConstraints, Attempt, Failed, Solved};
 use crate::dynamics::ledger::motion;
 use crate::dynamics::results::State;
 use crate::dynamics::step::{Interval, StepProblem, TimePoint, Workspace};
@@ -77,6 +77,36 @@ impl FreeMotion<'_> {
             self.duration * (size(self.v) + self.duration / 2.0 * size(self.a))
         };
         start.gap.abs() <= way(s) + way(a).max(way(b))
+    }
+
+    /// The impact of a slave node on a segment, unless one is kept out of the other as a constraint.
+    fn impact(
+        &self,
+        problem: &StepProblem,
+        u0: &[f64],
+        active: &ActiveConstraints,
+        listed: &ListedSlave,
+        segment: usize,
+    ) -> Option<PredictedImpact> {
+        let (slave_index, s) = (listed.slave_index, listed.node());
+        let [a, b] = listed.surfaces.segments[segment];
+        let nodes = [s, a, b];
+        let p = problem.place(u0, nodes);
+        let is_free = self.may_meet(&p, nodes)
+            && s != a
+            && s != b
+            && problem.unknowns.moves(&nodes)
+            && !active.holds(slave_index, &p);
+        if !is_free {
+            return None;
+        }
+        let time = self.entry(problem, u0, nodes)?;
+        Some(PredictedImpact {
+            time,
+            slave_index,
+            segment,
+            nodes,
+        })
     }
 
     /// When the node s goes in through the segment from a to b. One that comes out again before the
@@ -200,7 +230,7 @@ impl<'m> Subincrements<'_, 'm> {
         active.join_at_start(entry.slave_index, entry.segment, p.normal);
     }
 
-    /// The first entry of a node into a body that does not active it.
+    /// The first entry of a node into a body that is not kept out of it as a constraint.
     fn first_entry(
         &mut self,
         active: &ActiveConstraints,
@@ -211,33 +241,14 @@ impl<'m> Subincrements<'_, 'm> {
         let find = || {
             search.cover_path(u0, &motion.displacement(u0));
             let mut first: Option<PredictedImpact> = None;
-            let mut slave_index = 0;
-            for territory in search.territories() {
-                let surfaces = territory.surfaces();
-                for (k, &s) in surfaces.slaves.iter().enumerate() {
-                    for candidate in territory.candidates(k) {
-                        let segment = candidate.segment;
-                        let [a, b] = surfaces.segments[segment];
-                        let nodes = [s, a, b];
-                        let p = problem.place(u0, nodes);
-                        let is_free = motion.may_meet(&p, nodes)
-                            && s != a
-                            && s != b
-                            && problem.unknowns.moves(&nodes)
-                            && !active.holds(slave_index, &p);
-                        if is_free
-                            && let Some(time) = motion.entry(problem, u0, nodes)
-                            && first.is_none_or(|first| time < first.time)
-                        {
-                            first = Some(PredictedImpact {
-                                time,
-                                slave_index,
-                                segment,
-                                nodes,
-                            });
-                        }
+            for listed in search.slaves() {
+                for candidate in listed.candidates() {
+                    let impact = motion.impact(problem, u0, active, &listed, candidate.segment);
+                    if let Some(impact) = impact
+                        && first.is_none_or(|first| impact.time < first.time)
+                    {
+                        first = Some(impact);
                     }
-                    slave_index += 1;
                 }
             }
             first
@@ -261,7 +272,7 @@ impl<'m> Subincrements<'_, 'm> {
     fn accept(&mut self, tau: f64, solved: Solved) -> Result<Subincrement, FailedSubincrement> {
         let (interval, contact) = (self.interval(tau), self.contact);
         let mut attempt = self.attempt_at(interval, None);
-        match attempt.check_ways(&solved.d, contact, &solved.forces) {
+        match attempt.check_paths(&solved.d, contact, &solved.forces.closed) {
             Ok(()) => Ok(Subincrement {
                 interval,
                 solved,

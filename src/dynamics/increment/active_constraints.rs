@@ -1,23 +1,26 @@
 //! Active constraints of a subincrement in event-driven integration. Section 6 of docs/theory.md,
 //! Impacts as events, items 1 and 4.
 
-use super::closed_pairs::ClosedPairs;
 use crate::contact::tolerances::{
     CLOSED_GAP, FACING_ALIKE_COSINE, INITIAL_DEPTH, PROJECTION_BEYOND_ENDS,
 };
-use crate::contact::{Pair, Projection, Search};
+use crate::contact::{
+    ClosedPair, ClosedPairs, Constraint, ConstraintKey, ListedSlave, Projection, Search,
+};
 use crate::dynamics::step::StepProblem;
 
-/// The pairs that are constraints in a piece of an increment between impacts: those that touch at
-/// its start, and those that have joined them.
+/// The pairs that are constraints in a subincrement between impacts: those that touch at its start,
+/// and those that have joined them.
 ///
 /// A node that touches may slide on to other segments that face nearly the same way, or that it was
 /// not in front of; that is no impact. One that runs against a wall meets it later.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ActiveConstraints {
-    /// Slots and segments that touch at the start, increasing, with the normals of the segments.
-    touching: Vec<([usize; 2], [f64; 2])>,
-    /// Slots that have joined, with all their segments; increasing.
+    /// The pairs of slave nodes and segments that touch at the start.
+    touching: ClosedPairs,
+    /// Normals of these segments, in the same order.
+    normals: Vec<[f64; 2]>,
+    /// Slave indices that have joined, with all their segments; increasing.
     joined: Vec<usize>,
 }
 
@@ -25,85 +28,97 @@ impl ActiveConstraints {
     /// The pairs that touch in the displacements `u0`, which the search covers; `before` are those
     /// that carried forces up to then.
     pub fn new(problem: &StepProblem, search: &Search, u0: &[f64], before: &ClosedPairs) -> Self {
-        let (mut touching, before) = (Vec::new(), before.keys());
-        let mut slave_index = 0;
-        for territory in search.territories() {
-            let surfaces = territory.surfaces();
-            for (k, &slave) in surfaces.slaves.iter().enumerate() {
-                for candidate in territory.candidates(k) {
-                    let [a, b] = surfaces.segments[candidate.segment];
-                    if slave == a || slave == b {
-                        continue;
-                    }
-                    let key = [slave_index, candidate.segment];
-                    let p = problem.place(u0, [slave, a, b]);
-                    let is_inside = || {
-                        let at = |node: usize| problem.position(u0, node);
-                        p.gap >= -CLOSED_GAP * p.length
-                            || surfaces.interior.takes_in([a, b], slave, at)
-                    };
-                    if (touches(&p) && is_inside()) || before.binary_search(&key).is_ok() {
-                        touching.push((key, p.normal));
-                    }
-                }
-                slave_index += 1;
+        let mut active = ActiveConstraints::default();
+        for listed in search.slaves() {
+            for candidate in listed.candidates() {
+                let segment = candidate.segment;
+                let touched = touched_normal(problem, u0, &listed, segment, before);
+                active.add(listed.slave_index, segment, touched);
             }
         }
-        ActiveConstraints {
-            touching,
-            joined: Vec::new(),
-        }
+        active
     }
 
-    /// Takes in a slave_index that lands soon after the start.
+    /// Takes in a slave node that lands soon after the start.
     pub fn join_at_start(&mut self, slave_index: usize, segment: usize, normal: [f64; 2]) {
-        let key = [slave_index, segment];
-        if let Err(at) = self.touching.binary_search_by_key(&key, |(key, _)| *key) {
-            self.touching.insert(at, (key, normal));
-        }
+        self.add(slave_index, segment, Some(normal));
         self.join(slave_index);
     }
 
-    /// Takes in a slave_index that lands within the piece.
+    /// Takes in a slave node that lands within the subincrement.
     pub fn join(&mut self, slave_index: usize) {
         if let Err(at) = self.joined.binary_search(&slave_index) {
             self.joined.insert(at, slave_index);
         }
     }
 
-    /// Slots and segments that touch at the start.
-    pub fn keys(&self) -> Vec<[usize; 2]> {
-        self.touching.iter().map(|(key, _)| *key).collect()
+    /// The pairs that touch at the start.
+    pub fn touching(&self) -> &ClosedPairs {
+        &self.touching
     }
 
-    /// Whether a slave_index is kept out of a segment that has the place `start` relative to its node at
-    /// the start.
+    /// Whether a slave node is kept out of a segment that has the place `start` relative to it at the
+    /// start.
     pub fn holds(&self, slave_index: usize, start: &Projection) -> bool {
         if self.joined.binary_search(&slave_index).is_ok() {
             return true;
         }
-        let from = self
-            .touching
-            .partition_point(|(key, _)| key[0] < slave_index);
-        let mut own = self.touching[from..]
-            .iter()
-            .take_while(|(key, _)| key[0] == slave_index)
-            .peekable();
+        let own = &self.normals[self.touching.range_of_slave(slave_index)];
         let is_behind = start.gap <= CLOSED_GAP * start.length;
         let faces_alike =
             |n: &[f64; 2]| n[0] * start.normal[0] + n[1] * start.normal[1] >= FACING_ALIKE_COSINE;
-        own.peek().is_some() && (is_behind || own.any(|(_, normal)| faces_alike(normal)))
+        !own.is_empty() && (is_behind || own.iter().any(faces_alike))
     }
 
-    /// The pairs that are constraints, and the others.
-    pub fn split(&self, problem: &StepProblem, u0: &[f64], pairs: Vec<Pair>) -> [Vec<Pair>; 2] {
-        let (held, free) = pairs.into_iter().partition(|pair| {
-            let [s, a, b, c] = pair.target.nodes;
-            let is_held = |nodes| self.holds(pair.target.slave_index, &problem.place(u0, nodes));
-            is_held([s, a, b]) || (pair.target.target.corner.is_some() && is_held([s, b, c]))
+    /// The constraints that count, and the others.
+    pub fn split(
+        &self,
+        problem: &StepProblem,
+        u0: &[f64],
+        constraints: Vec<Constraint>,
+    ) -> [Vec<Constraint>; 2] {
+        let (held, free) = constraints.into_iter().partition(|constraint| {
+            let source = &constraint.source;
+            let [s, a, b, c] = source.nodes;
+            let is_held = |nodes| self.holds(source.slave_index, &problem.place(u0, nodes));
+            is_held([s, a, b]) || (source.target.corner.is_some() && is_held([s, b, c]))
         });
         [held, free]
     }
+
+    /// Adds a pair that touches with the given normal.
+    fn add(&mut self, slave_index: usize, segment: usize, normal: Option<[f64; 2]>) {
+        let pair = ClosedPair::touching(slave_index, segment);
+        if let (Some(normal), Err(at)) = (normal, self.touching.position(pair.key)) {
+            self.touching.insert(pair);
+            self.normals.insert(at, normal);
+        }
+    }
+}
+
+/// Normal of a segment that a slave node touches at the displacements `u0`, or touched `before`.
+fn touched_normal(
+    problem: &StepProblem,
+    u0: &[f64],
+    listed: &ListedSlave,
+    segment: usize,
+    before: &ClosedPairs,
+) -> Option<[f64; 2]> {
+    let (surfaces, slave) = (listed.surfaces, listed.node());
+    let [a, b] = surfaces.segments[segment];
+    if slave == a || slave == b {
+        return None;
+    }
+    let p = problem.place(u0, [slave, a, b]);
+    let is_inside = || {
+        let at = |node: usize| problem.position(u0, node);
+        p.gap >= -CLOSED_GAP * p.length || surfaces.interior.takes_in([a, b], slave, at)
+    };
+    let key = ConstraintKey {
+        slave_index: listed.slave_index,
+        segment,
+    };
+    ((touches(&p) && is_inside()) || before.closes(key)).then_some(p.normal)
 }
 
 fn touches(p: &Projection) -> bool {
@@ -119,10 +134,8 @@ mod tests {
     /// the first by an angle.
     fn is_held(direction: f64, turn: f64) -> bool {
         let normal = |angle: f64| [angle.cos(), angle.sin()];
-        let active = ActiveConstraints {
-            touching: vec![([3, 7], normal(direction))],
-            joined: Vec::new(),
-        };
+        let mut active = ActiveConstraints::default();
+        active.add(3, 7, Some(normal(direction)));
         let [x, y] = normal(direction + turn);
         let start = Projection {
             xi: -0.5,
@@ -163,10 +176,8 @@ mod tests {
                 assert_eq!(touches(&at(part)), is_touched, "{part:e} {length:e}");
             }
             // a wall that a node was not in front of stops it as any other segment that it touches
-            let active = ActiveConstraints {
-                touching: vec![([3, 7], [1.0, 0.0])],
-                joined: Vec::new(),
-            };
+            let mut active = ActiveConstraints::default();
+            active.add(3, 7, Some([1.0, 0.0]));
             for (part, is_held) in [(-0.1, true), (5e-10, true), (2e-9, false)] {
                 assert_eq!(active.holds(3, &at(part)), is_held, "{part:e} {length:e}");
             }

@@ -1,227 +1,204 @@
-//! Contact forces of a pass and impact impulses, each the solution of a frictional complementarity
-//! problem. Sections 5 and 6 of docs/theory.md (paper eqs 30 and 36 to 47).
+//! Contact forces of a pass, the solution of a frictional complementarity problem of the
+//! constraints of the iterate. Section 5 of docs/theory.md (paper eqs 36 to 47).
 
-use super::closed_pairs::ClosedPairs;
+use super::contact_system::{ContactSystem, Guess};
 use crate::contact::tolerances::SETTLED_OVERLAP;
-use crate::contact::{Pair, add_contact_forces};
-use crate::dynamics::results::{Cause, FailedLcp};
-use crate::dynamics::step::{System, Unknowns};
-use crate::lcp::{ContactState, FrictionalLcp, LcpMethod};
+use crate::contact::{ClosedPair, ClosedPairs, Constraint};
+use crate::dynamics::results::Cause;
 
-/// Part of the compliance of a pair that holds its force near that of the pass before.
-const PROXIMAL_WEIGHT: f64 = 1e-5;
-
-/// Pairs with their contact forces (or impulses).
+/// Constraints with the forces (or impulses) of those that are closed.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ContactForces {
-    pub pairs: Vec<Pair>,
-    /// Normal force Pn >= 0 of every pair.
-    pub normal: Vec<f64>,
-    /// Tangential force Pt of every pair.
-    pub tangential: Vec<f64>,
-    /// State of every pair.
-    pub state: Vec<ContactState>,
-    /// Number of pairs that entered the complementarity problem.
+    /// With increasing keys, but for those that were no constraints.
+    pub constraints: Vec<Constraint>,
+    /// The closed ones among them.
+    pub closed: ClosedPairs,
+    /// Number of constraints that entered the complementarity problem.
     pub problem_size: usize,
+    /// Pivots of its solution.
+    pub pivots: usize,
 }
 
 impl ContactForces {
-    /// Pairs without forces.
-    pub fn open(pairs: Vec<Pair>) -> Self {
-        let n = pairs.len();
+    /// The forces of the last increment, whose constraints are not linearised any more.
+    pub fn without_constraints(closed: &ClosedPairs) -> Self {
         ContactForces {
-            pairs,
-            normal: vec![0.0; n],
-            tangential: vec![0.0; n],
-            state: vec![ContactState::Open; n],
-            problem_size: 0,
+            closed: closed.clone(),
+            ..ContactForces::default()
         }
     }
 
-    /// With further pairs that carry no force.
-    pub fn with_open(mut self, pairs: Vec<Pair>) -> Self {
-        let open = ContactForces::open(pairs);
-        self.pairs.extend(open.pairs);
-        self.normal.extend(open.normal);
-        self.tangential.extend(open.tangential);
-        self.state.extend(open.state);
-        self
+    /// Adds constraints that carry no force.
+    pub fn add_open(&mut self, constraints: Vec<Constraint>) {
+        self.constraints.extend(constraints);
+    }
+
+    /// All constraints with the closed pair that belongs to each, if any.
+    pub fn iter(&self) -> impl Iterator<Item = (&Constraint, Option<&ClosedPair>)> {
+        let mut closed = self.closed.iter().peekable();
+        let constraints = self.constraints.iter();
+        constraints.map(move |constraint| {
+            let own = closed.next_if(|pair| pair.key == constraint.key);
+            (constraint, own)
+        })
+    }
+
+    /// The closed constraints with their forces.
+    pub fn acting(&self) -> impl Iterator<Item = (&Constraint, &ClosedPair)> {
+        self.iter()
+            .filter_map(|(constraint, pair)| Some((constraint, pair?)))
     }
 
     /// Contact force Bn^T Pn + Bt^T Pt of eq. (3.1), over all dofs.
     pub fn resultant(&self, dofs: usize) -> Vec<f64> {
         let mut force = vec![0.0; dofs];
-        for (k, pair) in self.pairs.iter().enumerate() {
-            if self.is_closed(k) {
-                add_contact_forces(pair, self.normal[k], self.tangential[k], &mut force);
-            }
+        for (constraint, pair) in self.acting() {
+            constraint.add_force(pair.force, &mut force);
         }
         force
     }
 
-    /// Whether a pair carries a force.
-    pub fn is_closed(&self, k: usize) -> bool {
-        self.normal[k] > 0.0
-    }
-
-    /// Numbers of closed and of sticking pairs.
-    pub fn count(&self) -> (usize, usize) {
-        let closed = (0..self.pairs.len()).filter(|&k| self.is_closed(k));
-        closed.fold((0, 0), |(closed, sticking), k| {
-            (
-                closed + 1,
-                sticking + usize::from(self.state[k] == ContactState::Stick),
-            )
-        })
-    }
-
-    /// Solves the complementarity problem of the pairs listed in `chosen`, with the given constant
-    /// terms, and stores their forces; with `nearest`, of several solutions that near these forces.
-    fn solve(
+    /// Contact forces of a pass, in place of those of the pass before, and the correction
+    /// dU = y + W (Bn^T Pn + Bt^T Pt), y = W r being the correction without them (all dofs).
+    ///
+    /// Constraints that were open before (or without any before, that y leaves open) stay out of the
+    /// problem first; those that would overlap with the forces of the others enter afterwards, so
+    /// that the answer is that of all constraints. When the passes have settled, they enter only if
+    /// they would overlap by more than round-off: two nodes that face each other may carry the same
+    /// force, and it must not go to and fro between them.
+    pub(super) fn solve(
         &mut self,
-        chosen: &[usize],
-        constants: (Vec<f64>, Vec<f64>),
-        (warm, nearest): (Vec<ContactState>, Option<Vec<[f64; 2]>>),
-        system: &mut System,
-        method: LcpMethod,
-    ) -> Result<(), Cause> {
-        let pairs: Vec<Pair> = chosen.iter().map(|&k| self.pairs[k]).collect();
-        let mut problem = system.frictional_lcp(&pairs, constants.0, constants.1)?;
-        if let Some(forces) = nearest {
-            add_proximal_term(&mut problem, &forces);
-        }
-        let solution = system.solve_lcp(&problem, &warm, method);
-        let solution = solution.map_err(|error| {
-            let nodes = |[s, a, b, _]: [usize; 4]| [s, a, b];
-            let pairs = pairs.iter().map(|pair| nodes(pair.target.nodes)).collect();
-            Cause::Lcp(Box::new(FailedLcp {
-                error,
-                problem,
-                pairs,
-            }))
-        })?;
-        self.problem_size = pairs.len();
-        for (i, &k) in chosen.iter().enumerate() {
-            self.normal[k] = solution.pn[i];
-            self.tangential[k] = solution.pt[i];
-            self.state[k] = solution.state[i];
-        }
-        Ok(())
-    }
-
-    /// Contact forces of a pass and the correction dU = y + W (Bn^T Pn + Bt^T Pt), y = W r being
-    /// the correction without them (all dofs).
-    ///
-    /// Pairs that were open before (or without any before, that y leaves open) stay out of the problem
-    /// first; those that would overlap with the forces of the others enter afterwards, so that the
-    /// answer is that of all pairs. When the passes have settled, they enter only if they would
-    /// overlap by more than round-off: two nodes that face each other may carry the same force, and
-    /// it must not go to and fro between them.
-    pub fn of_pass(
-        pairs: Vec<Pair>,
-        (warm, settled): (&ClosedPairs, bool),
+        constraints: Vec<Constraint>,
         y: &[f64],
-        unknowns: &Unknowns,
-        mut system: System,
-        method: LcpMethod,
-    ) -> Result<(Self, Vec<f64>), Cause> {
-        let mut forces = ContactForces::open(pairs);
-        let gap_after = |pair: &Pair, du: &[f64]| pair.gap + pair.normal_of(du);
-        let closed_before = |pair: &Pair| warm.closes(&pair.target);
-        let overlap = |pair: &Pair| {
-            if settled {
-                SETTLED_OVERLAP * pair.length
-            } else {
-                0.0
-            }
-        };
-        let mut inside: Vec<bool> = forces.pairs.iter().map(closed_before).collect();
+        settled: bool,
+        system: &mut ContactSystem,
+    ) -> Result<Vec<f64>, Cause> {
+        let before = std::mem::take(self).closed;
+        self.constraints = constraints;
+        let overlap = if settled { SETTLED_OVERLAP } else { 0.0 };
+        let was_closed = |constraint: &Constraint| before.closes(constraint.key);
+        let mut inside: Vec<bool> = self.constraints.iter().map(was_closed).collect();
         let mut du = y.to_vec();
-        let mut entered = inside.contains(&true);
-        let mut may_enter = !entered;
-        loop {
-            for (pair, inside) in forces.pairs.iter().zip(&mut inside) {
-                if may_enter && !*inside && gap_after(pair, &du) < -overlap(pair) {
-                    (*inside, entered) = (true, true);
-                }
-            }
-            may_enter = true;
-            if !entered {
-                return Ok((forces, du));
-            }
-            entered = false;
-            let chosen: Vec<usize> = (0..inside.len()).filter(|&k| inside[k]).collect();
-            let at = |k: &usize| &forces.pairs[*k];
-            // g + Bn y and Dt + Bt y, eq. (5.2)
-            let constants = (
-                chosen.iter().map(|k| gap_after(at(k), y)).collect(),
-                chosen
-                    .iter()
-                    .map(|k| at(k).slip + at(k).tangent_of(y))
-                    .collect(),
-            );
-            let states = chosen.iter().map(|k| warm.state(&at(k).target)).collect();
-            let last = || chosen.iter().map(|k| warm.force(&at(k).target)).collect();
-            let warm = (states, settled.then(last));
-            forces.solve(&chosen, constants, warm, &mut system, method)?;
-            let load = unknowns.restrict(&forces.resultant(y.len()));
-            let correction = system.solve(&load)?;
-            du.copy_from_slice(y);
-            unknowns.add(&correction, &mut du);
+        let mut entered = inside.contains(&true) || self.enter(&mut inside, &du, overlap);
+        while entered {
+            let chosen = self.constraints.iter().zip(&inside);
+            let chosen: Vec<&Constraint> = chosen
+                .filter(|(_, inside)| **inside)
+                .map(|(c, _)| c)
+                .collect();
+            // g + Gn y and Dt + Gt y, eq. (5.2)
+            let gaps = chosen.iter().map(|c| c.gap + c.gap_change(y)).collect();
+            let slips = chosen.iter().map(|c| c.slip + c.slip_change(y)).collect();
+            let guess = Guess::from_pass(&chosen, &before, settled);
+            let solution = system.solve(&chosen, [gaps, slips], guess)?;
+            (self.closed, self.problem_size) = (solution.closed, chosen.len());
+            self.pivots += solution.pivots;
+            du = system.respond(y, &self.resultant(y.len()))?;
+            entered = self.enter(&mut inside, &du, overlap);
         }
+        Ok(du)
     }
 
-    /// Impact impulses Phi, Psi of pairs at the start of an increment and the velocity after them,
-    /// V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1) (paper eq. 30), posed as eq. (6.2):
-    ///
-    /// ```text
-    /// 0 <= Phi  complementary to  Bn V0+ + (2/dt) max(g0, 0) >= 0
-    /// |Psi| <= mu Phi, Psi opposes Bt V0+
-    /// ```
-    ///
-    /// so that kinetic energy never grows. Gives the velocity and the impulses.
-    pub fn impulses(
-        pairs: Vec<Pair>,
-        v0: &[f64],
-        dt: f64,
-        unknowns: &Unknowns,
-        mut mass: System,
-        method: LcpMethod,
-    ) -> Result<(Vec<f64>, Self), Cause> {
-        let approach = |p: &Pair| p.normal_of(v0) + 2.0 / dt * p.start_gap.max(0.0);
-        let mut v0p = v0.to_vec();
-        if pairs.iter().all(|pair| approach(pair) >= 0.0) {
-            return Ok((v0p, ContactForces::default()));
+    /// Lets constraints into the problem that would overlap after the correction `du` by more than the
+    /// part `overlap` of their scales; whether there are any.
+    fn enter(&self, inside: &mut [bool], du: &[f64], overlap: f64) -> bool {
+        let mut entered = false;
+        for (constraint, inside) in self.constraints.iter().zip(inside) {
+            let gap_after = || constraint.gap + constraint.gap_change(du);
+            if !*inside && gap_after() < -overlap * constraint.scale {
+                (*inside, entered) = (true, true);
+            }
         }
-        if !mass.is_factorized() {
-            mass.factorize()?;
-        }
-        // Bn V0 + (2/dt) max(g0, 0) and Bt V0, eq. (6.2)
-        let constants = (
-            pairs.iter().map(approach).collect(),
-            pairs.iter().map(|pair| pair.tangent_of(v0)).collect(),
-        );
-        let chosen: Vec<usize> = (0..pairs.len()).collect();
-        let states = vec![ContactState::Stick; pairs.len()];
-        let mut impulses = ContactForces::open(pairs);
-        impulses.solve(&chosen, constants, (states, None), &mut mass, method)?;
-        let load = unknowns.restrict(&impulses.resultant(v0.len()));
-        let jump = mass.solve(&load)?;
-        unknowns.add(&jump, &mut v0p);
-        Ok((v0p, impulses))
+        entered
     }
 }
 
-/// Equal-force rule, eq. (5.3): adds eps Q_kk (P_k - P_k^0) to gaps and slips, P^0 being the forces of
-/// the pass before. Where several pairs can carry the same force, the solution near that of the pass
-/// before is taken; the term vanishes as the passes converge.
-fn add_proximal_term(problem: &mut FrictionalLcp, forces: &[[f64; 2]]) {
-    let n = forces.len();
-    for (k, [pn, pt]) in forces.iter().enumerate() {
-        let [normal, tangential] = [k, k + n].map(|i| PROXIMAL_WEIGHT * problem.q[(i, i)]);
-        problem.q[(k, k)] += normal;
-        problem.q[(k + n, k + n)] += tangential;
-        problem.gap[k] -= normal * pn;
-        problem.slip[k] -= tangential * pt;
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Compliance, ConstraintKey, ContactTarget, PairTarget, Rows};
+    use crate::dynamics::step::{FactoredMatrix, Meter, System};
+    use crate::lcp::{ContactState, LcpMethod};
+    use crate::linear::{Assembled, Transformation};
+    use crate::model::SolverChoice;
+
+    const DOFS: usize = 14;
+
+    /// A constraint of 14 dofs with other derivative rows than force rows:
+    /// Bn = 1, Bt = 1, -1, 1, ...; Gn = 1/2, Gt = 1/8 + Bt/4.
+    fn wide(mu: f64) -> Constraint {
+        let sign = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let row = |entry: &dyn Fn(usize) -> f64| (0..DOFS).map(entry).collect::<Vec<f64>>();
+        let derivative = Rows::new(&row(&|_| 0.5), &row(&|k| 0.125 + 0.25 * sign(k)));
+        Constraint {
+            key: ConstraintKey {
+                slave_index: 3,
+                segment: 0,
+            },
+            dofs: (0..DOFS).collect(),
+            slave_dofs: 6,
+            force_rows: Rows::new(&row(&|_| 1.0), &row(&sign)),
+            other_derivative_rows: Some(Box::new(derivative)),
+            gap: -7.0,
+            start_gap: 0.0,
+            slip: 0.5,
+            mu,
+            scale: 1.0,
+            source: PairTarget {
+                slave_index: 3,
+                target: ContactTarget::face(0),
+                nodes: [0, 1, 2, 2],
+                friction: mu,
+            },
+        }
+    }
+
+    /// Forces and correction of the constraint with W = 1/2 and y = 1/2 at every dof, by both methods.
+    ///
+    /// By hand: Q = G W B^T = [7/2, 0; 7/8, 7/4], constant terms g + Gn y = -7/2 and
+    /// Dt + Gt y = 11/8.
+    fn solved(mu: f64, method: LcpMethod) -> ([f64; 2], ContactState, Vec<f64>) {
+        let map = Transformation::identity(DOFS);
+        let elements: Vec<Vec<usize>> = (0..DOFS).map(|dof| vec![dof, (dof + 1) % DOFS]).collect();
+        let mut stiffness = Assembled::new(&map, &elements);
+        (0..DOFS).for_each(|dof| stiffness.add(dof, &[1.0, 0.0, 0.0, 1.0], 1.0));
+        let compliance = Compliance::new(map.clone(), (0..DOFS).collect());
+        let mut matrix = FactoredMatrix::new(SolverChoice::Faer, stiffness, compliance);
+        matrix.factorize().expect("positive definite");
+        let mut meter = Meter::default();
+        let mut system = ContactSystem {
+            map: &map,
+            system: System::new(&mut matrix, &mut meter),
+            method,
+        };
+        let mut forces = ContactForces::default();
+        let solved = forces.solve(vec![wide(mu)], &[0.5; DOFS], false, &mut system);
+        let du = solved.expect("solved");
+        let pair = forces.closed.iter().next().expect("closed");
+        (pair.force, pair.state, du)
+    }
+
+    #[test]
+    fn a_wide_constraint_with_own_derivative_rows_has_the_forces_computed_by_hand() {
+        for method in [LcpMethod::Hybrid, LcpMethod::Lemke] {
+            // sticks: Pn = 1, Pt = -(7/8 + 11/8)/(7/4); slides: Pt = -mu Pn, the slip being positive
+            for (mu, state, pt) in [
+                (2.0, ContactState::Stick, -9.0 / 7.0),
+                (0.5, ContactState::SlipPlus, -0.5),
+            ] {
+                let (force, found, du) = solved(mu, method);
+                assert_eq!(found, state, "{method:?}");
+                assert!((force[0] - 1.0).abs() < 1e-13, "{method:?} {force:?}");
+                assert!((force[1] - pt).abs() < 1e-13, "{method:?} {force:?}");
+                for (dof, du) in du.iter().enumerate() {
+                    // dU = y + W (Bn^T Pn + Bt^T Pt)
+                    let sign = if dof.is_multiple_of(2) { 1.0 } else { -1.0 };
+                    let expected = 0.5 + (1.0 + sign * pt) / 2.0;
+                    assert!((du - expected).abs() < 1e-13, "{dof}: {du} {expected}");
+                }
+                let gap = wide(mu).gap + wide(mu).gap_change(&du);
+                assert!(gap.abs() < 1e-12, "{gap:e}");
+            }
+        }
     }
 }

@@ -2,12 +2,84 @@
 //! round-off floor. Section 4 of docs/theory.md, Convergence.
 
 use super::contact_forces::ContactForces;
-use crate::dynamics::results::{PassReport, Worst};
-use crate::dynamics::step::Parts;
+use crate::dynamics::results::{Cause, PassReport, Worst};
+use crate::dynamics::step::{EffectiveStiffness, Equilibrium, Parts, StepProblem, check_finite};
 use crate::linear::{larger, largest};
 
 /// Round-off of a sum of some terms, in units of its largest term.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+
+/// Forces and displacements of a pass, over all dofs.
+pub(crate) struct Pass<'a> {
+    /// Load, internal force and inertia of the iterate.
+    pub equilibrium: &'a Equilibrium,
+    /// Force of the supports' motion.
+    pub support_force: &'a Vec<f64>,
+    /// Out-of-balance force without contact.
+    pub r: &'a [f64],
+    /// Constraints and their forces.
+    pub contact: &'a ContactForces,
+    /// Displacement U of the iterate, increment d = U - U0 and correction dU.
+    pub displacements: [&'a Vec<f64>; 3],
+}
+
+impl Pass<'_> {
+    /// All forces and the correction must be finite.
+    ///
+    /// # Errors
+    /// [`Cause::NotFinite`] with the first quantity that is not.
+    pub fn check_finite(&self, contact_force: &Vec<f64>) -> Result<(), Cause> {
+        check_finite(&[
+            ("the load", &self.equilibrium.load),
+            ("the internal force", &self.equilibrium.internal),
+            ("the inertia force", &self.equilibrium.inertia),
+            ("the contact force", contact_force),
+            ("the force of the supports", self.support_force),
+            ("the displacement correction", self.displacements[2]),
+        ])
+    }
+
+    /// What residual and correction of the pass are measured against.
+    pub fn scales<'m>(
+        &self,
+        problem: &StepProblem<'m>,
+        stiffness: &EffectiveStiffness,
+        contact_force: &[f64],
+    ) -> Scales<'m> {
+        let parts = problem.parts;
+        let Equilibrium {
+            load,
+            internal,
+            inertia,
+            ..
+        } = self.equilibrium;
+        let forces = [load, internal, inertia, contact_force, self.support_force];
+        let [u, d, du] = self.displacements.map(|u| parts.largest_of_bodies(u));
+        let lengths = Lengths {
+            displacement: u,
+            increment: d.into_iter().zip(du).map(|(d, du)| larger(d, du)).collect(),
+            position: parts.largest_of_bodies(&self.contact_positions(problem)),
+        };
+        let diagonals = (stiffness.stiffness.as_slice(), stiffness.inertia.as_slice());
+        let forces = forces.map(|force| problem.unknowns.magnitudes(force));
+        let force = largest_forces(parts, forces.iter().map(|force| force.as_ref()));
+        Scales::new(parts, force, diagonals, lengths, problem.settings.tolerance)
+    }
+
+    /// At the dofs of every closed constraint the largest coordinate of its nodes, elsewhere zero.
+    fn contact_positions(&self, problem: &StepProblem) -> Vec<f64> {
+        let [u, ..] = self.displacements;
+        let mut positions = vec![0.0; u.len()];
+        for (constraint, _) in self.contact.acting() {
+            let of_node = |node: usize| largest(&problem.position(u, node));
+            let most = constraint.nodes().map(of_node).fold(0.0, larger);
+            for &dof in &constraint.dofs {
+                positions[dof] = larger(positions[dof], most);
+            }
+        }
+        positions
+    }
+}
 
 /// What residual and correction of a pass are measured against: computed scales, so that the
 /// answer does not depend on the system of units, of every part and body its own, so that a light one
@@ -93,8 +165,7 @@ impl<'a> Scales<'a> {
     }
 
     /// Largest relative residual and correction of a pass.
-    pub fn report(&self, errors: &Errors, forces: &ContactForces, pivots: usize) -> PassReport {
-        let (active, stick) = forces.count();
+    pub fn report(&self, errors: &Errors, forces: &ContactForces) -> PassReport {
         let residuals = (0..self.force.len()).map(|part| self.residual(errors, part));
         let corrections = (0..self.increment.len()).map(|body| {
             self.relative(
@@ -106,10 +177,10 @@ impl<'a> Scales<'a> {
         PassReport {
             residual: residuals.fold(0.0, larger),
             correction: corrections.fold(0.0, larger),
-            active,
-            stick,
+            active: forces.closed.len(),
+            stick: forces.closed.sticking(),
             lcp_size: forces.problem_size,
-            pivots,
+            pivots: forces.pivots,
         }
     }
 

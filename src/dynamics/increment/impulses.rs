@@ -1,101 +1,146 @@
 //! Velocity jump at the start of an increment: the set of pairs that take impact impulses,
 //! iterated along with the passes. Section 6 of docs/theory.md (paper eq. 30).
 
-use super::closed_pairs::ClosedPairs;
+use super::active_constraints::ActiveConstraints;
 use super::contact_forces::ContactForces;
-use crate::contact::{Pair, PairTarget};
+use super::contact_system::{ContactSystem, Guess};
+use crate::contact::{ClosedPairs, Constraint, ConstraintKey};
 use crate::dynamics::results::{Cause, State};
 use crate::dynamics::step::{StepProblem, Workspace};
+use crate::lcp::ContactState;
 use crate::model::Impact;
 
 /// Changes of the set of pairs with impulses after which it is kept.
 const SET_CHANGES: usize = 5;
 
 /// The impact impulses of an increment: they act on the pairs that carry force at its end, and on
-/// those that touch at its start where an impact ended the piece before.
+/// those that touch at its start where an impact ended the subincrement before.
 pub(crate) struct Impulses {
-    /// Slots and segments of these pairs, increasing: those of the last pass.
-    keys: Vec<[usize; 2]>,
-    /// Slots and segments, increasing, of pairs on which they act in any case.
-    pub touching: Vec<[usize; 2]>,
+    /// The pairs closed at the end of the last pass.
+    closed: ClosedPairs,
+    /// The pairs that touch at the start and have impulses in any case.
+    pub touching: ClosedPairs,
     changes: usize,
-    /// V0+ of the last pass with the pairs it is for.
-    last: Option<(Vec<PairTarget>, Vec<f64>)>,
+    /// V0+ of the last pass with the constraints that it is for.
+    last: Option<(Vec<Constraint>, Vec<f64>)>,
     /// Phi, Psi of the last pass.
     pub acting: ContactForces,
 }
 
 impl Impulses {
-    /// Starts with the pairs that were closed in the last increment; those of `touching` have
-    /// impulses in any case.
-    pub fn new(contact: &ClosedPairs, touching: Vec<[usize; 2]>) -> Self {
+    /// Starts with the pairs that were closed in the last increment; those that touch at the start
+    /// have impulses in any case, where only some pairs are constraints.
+    pub fn new(before: &ClosedPairs, active: Option<&ActiveConstraints>) -> Self {
         Impulses {
-            keys: contact.keys(),
-            touching,
+            closed: before.clone(),
+            touching: active.map_or_else(ClosedPairs::default, |a| a.touching().clone()),
             changes: 0,
             last: None,
             acting: ContactForces::default(),
         }
     }
 
-    /// Velocity V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1), for the pairs of the iterate.
+    /// Velocity V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1), for the constraints of the iterate.
     pub fn velocity(
         &mut self,
         problem: &StepProblem,
         workspace: &mut Workspace,
-        pairs: &[Pair],
+        constraints: &[Constraint],
         start: &State,
         dt: f64,
     ) -> Result<Vec<f64>, Cause> {
         if problem.settings.impact == Impact::None {
             return Ok(start.v.clone());
         }
-        let struck = pairs.iter().filter(|pair| self.strikes(&pair.target));
-        let targets: Vec<PairTarget> = struck.clone().map(|pair| pair.target).collect();
+        // rows of the start do not change with the iterate
         let at_start = problem.weights.impulses_at_start();
+        let configurations = problem.configurations(&start.u, &start.u);
+        let rows = |constraint: &Constraint| match at_start {
+            true => constraint.relinearized(&configurations),
+            false => constraint.clone(),
+        };
+        let struck = constraints
+            .iter()
+            .filter(|constraint| self.strikes(constraint));
+        let struck: Vec<Constraint> = struck.map(rows).collect();
         if let Some((last, v0p)) = &self.last
             && at_start
-            && *last == targets
+            && *last == struck
         {
-            // rows of the start do not change with the iterate
             return Ok(v0p.clone());
         }
-        let (x, u0) = (&problem.model.mesh.coordinates, &start.u);
-        let form = problem.weights.row_form();
-        let rows = |pair: &Pair| match at_start {
-            true => Pair::new(pair.target, form, x, u0, u0),
-            false => *pair,
+        let system = ContactSystem {
+            map: &problem.unknowns.map,
+            system: workspace.m(),
+            method: problem.method(),
         };
-        let struck: Vec<Pair> = struck.map(rows).collect();
-        let (m, method) = (workspace.m(), problem.method());
-        let (v0p, acting) =
-            ContactForces::impulses(struck, &start.v, dt, &problem.unknowns, m, method)?;
+        let (v0p, acting) = impulses(struck.clone(), &start.v, dt, system)?;
         self.acting = acting;
-        self.last = Some((targets, v0p.clone()));
+        self.last = Some((struck, v0p.clone()));
         Ok(v0p)
     }
 
     /// Takes over the pairs in contact after a pass; whether they are the same as before. After
     /// some changes the set is kept: impulses of any set take energy, never give it.
-    pub fn rest(&mut self, problem: &StepProblem, contact: &ClosedPairs) -> bool {
-        let keys = contact.keys();
-        let others = |keys: &[[usize; 2]]| -> Vec<[usize; 2]> {
-            let touches = |key: &[usize; 2]| self.touching.binary_search(key).is_ok();
-            keys.iter().copied().filter(|key| !touches(key)).collect()
-        };
+    pub fn rest(&mut self, problem: &StepProblem, closed: &ClosedPairs) -> bool {
         let rest = problem.settings.impact == Impact::None
-            || others(&keys) == others(&self.keys)
+            || self.free_keys(closed).eq(self.free_keys(&self.closed))
             || self.changes >= SET_CHANGES;
         if !rest {
-            self.keys = keys;
+            self.closed.clone_from(closed);
             self.changes += 1;
         }
         rest
     }
 
-    fn strikes(&self, at: &PairTarget) -> bool {
-        let mut segments = at.target.segments();
-        self.keys.binary_search(&at.key()).is_ok()
-            || segments.any(|i| self.touching.binary_search(&[at.slave_index, i]).is_ok())
+    /// Keys of the pairs that have impulses only because they are closed.
+    fn free_keys(&self, closed: &ClosedPairs) -> impl Iterator<Item = ConstraintKey> {
+        let keys = closed.iter().map(|pair| pair.key);
+        keys.filter(|key| !self.touching.closes(*key))
     }
+
+    fn strikes(&self, constraint: &Constraint) -> bool {
+        self.closed.closes(constraint.key) || self.touching.has_segment_of(constraint)
+    }
+}
+
+/// Impact impulses Phi, Psi of constraints at the start of an increment and the velocity after them,
+/// V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1) (paper eq. 30), posed as eq. (6.2):
+///
+/// ```text
+/// 0 <= Phi  complementary to  Gn V0+ + (2/dt) max(g0, 0) >= 0
+/// |Psi| <= mu Phi, Psi opposes Gt V0+
+/// ```
+///
+/// so that kinetic energy never grows where G = B. Gives the velocity and the impulses.
+fn impulses(
+    constraints: Vec<Constraint>,
+    v0: &[f64],
+    dt: f64,
+    mut system: ContactSystem,
+) -> Result<(Vec<f64>, ContactForces), Cause> {
+    // Gn V0 + (2/dt) max(g0, 0) and Gt V0, eq. (6.2)
+    let approach = |c: &Constraint| c.gap_change(v0) + 2.0 / dt * c.start_gap.max(0.0);
+    let approaches: Vec<f64> = constraints.iter().map(approach).collect();
+    if approaches.iter().all(|&approach| approach >= 0.0) {
+        return Ok((v0.to_vec(), ContactForces::default()));
+    }
+    let slides = constraints.iter().map(|c| c.slip_change(v0)).collect();
+    let guess = Guess {
+        states: vec![ContactState::Stick; constraints.len()],
+        nearest: None,
+    };
+    if !system.system.is_factorized() {
+        system.system.factorize()?;
+    }
+    let all: Vec<&Constraint> = constraints.iter().collect();
+    let solution = system.solve(&all, [approaches, slides], guess)?;
+    let impulses = ContactForces {
+        problem_size: constraints.len(),
+        closed: solution.closed,
+        pivots: solution.pivots,
+        constraints,
+    };
+    let v0p = system.respond(v0, &impulses.resultant(v0.len()))?;
+    Ok((v0p, impulses))
 }

@@ -2,12 +2,13 @@
 
 mod active_constraints;
 mod attempt;
-mod closed_pairs;
 mod contact_forces;
+mod contact_system;
 mod convergence;
 mod impulses;
+mod trace;
 
 pub(crate) use active_constraints::ActiveConstraints;
-pub(crate) use attempt::{Attempt, Failed, Solved};
-pub(crate) use closed_pairs::ClosedPairs;
+pub(crate) use attempt::{Attempt, Solved};
 pub(crate) use contact_forces::ContactForces;
+pub(crate) use trace::Failed;

@@ -1,7 +1,7 @@
 //! Work, impulses and slip of every contact since the start, section 9 of docs/theory.md.
 
 use super::nodal_results::contact_of_slots;
-use crate::contact::{ContactSurfaces, Pair};
+use crate::contact::{Constraint, ContactSurfaces};
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{ContactImpulse, ContactOnBody, ContactResultant};
 use crate::dynamics::step::StepProblem;
@@ -60,29 +60,24 @@ impl ContactLedger {
                 result.bodies = vec![ContactOnBody::default(); bodies.count];
             }
         }
-        let forces = &solved.forces;
-        for (k, pair) in forces.pairs.iter().enumerate() {
-            if !forces.is_closed(k) {
-                continue;
-            }
-            let contact = self.contact_of[pair.target.slave_index];
-            let [pn, pt] = [forces.normal[k], forces.tangential[k]];
+        for (constraint, pair) in solved.forces.acting() {
+            let contact = self.contact_of[pair.key.slave_index];
+            let [pn, pt] = pair.force;
             // Pn.(Bn d) and -Pt.(Bt d)
             let sums = &mut self.contacts[contact];
-            sums.normal_work += pn * pair.normal_of(&solved.d);
-            sums.friction_dissipation -= pt * pair.tangent_of(&solved.d);
+            sums.normal_work += pn * constraint.normal_motion(&solved.d);
+            sums.friction_dissipation -= pt * constraint.tangential_motion(&solved.d);
             let result = &mut resultants[contact];
-            result.impulse.add(pair, [dt * pn, dt * pt]);
+            result.impulse.add(constraint, [dt * pn, dt * pt]);
             if !result.bodies.is_empty() {
-                let position = |node| problem.position(u, node);
-                add_to_bodies(bodies, position, pair, [pn, pt], &mut result.bodies);
+                let forces = constraint.nodal_forces(pair.force);
+                add_to_bodies(problem, bodies, u, forces, &mut result.bodies);
             }
         }
-        let impacts = &solved.impulses;
-        for (k, pair) in impacts.pairs.iter().enumerate() {
-            let impulse = &mut resultants[self.contact_of[pair.target.slave_index]].impulse;
-            let [phi, psi] = [impacts.normal[k], impacts.tangential[k]];
-            impulse.add(pair, [phi, psi]);
+        for (constraint, pair) in solved.impulses.acting() {
+            let impulse = &mut resultants[self.contact_of[pair.key.slave_index]].impulse;
+            let [phi, psi] = pair.force;
+            impulse.add(constraint, [phi, psi]);
             impulse.impact_normal += phi;
             impulse.impact_tangential += psi;
         }
@@ -102,12 +97,11 @@ impl ContactLedger {
     /// Adds |Bt d| of the closed pairs to the slip of their slave nodes; of several pairs of a node
     /// the largest.
     fn slide(&mut self, solved: &Solved) {
-        let forces = &solved.forces;
         let mut increments = vec![0.0_f64; self.slip.len()];
-        for (k, pair) in forces.pairs.iter().enumerate() {
-            if forces.is_closed(k) {
-                let slip = &mut increments[pair.target.nodes[0]];
-                *slip = slip.max(pair.tangent_of(&solved.d).abs());
+        for (constraint, _) in solved.forces.acting() {
+            let slip = constraint.tangential_motion(&solved.d).abs();
+            for node in constraint.slave_nodes() {
+                increments[node] = increments[node].max(slip);
             }
         }
         for (slip, increment) in self.slip.iter_mut().zip(increments) {
@@ -117,10 +111,11 @@ impl ContactLedger {
 }
 
 impl ContactImpulse {
-    /// Adds the normal and tangential impulse of a pair.
-    fn add(&mut self, pair: &Pair, [normal, tangential]: [f64; 2]) {
-        for i in 0..2 {
-            self.vector[i] += pair.normal[i] * normal + pair.tangent[i] * tangential;
+    /// Adds the normal and tangential impulse of a constraint.
+    fn add(&mut self, constraint: &Constraint, [normal, tangential]: [f64; 2]) {
+        for (_, [x, y]) in constraint.slave_forces([normal, tangential]) {
+            self.vector[0] += x;
+            self.vector[1] += y;
         }
         self.normal += normal;
         self.tangential += tangential;
@@ -138,21 +133,19 @@ impl ContactImpulse {
     }
 }
 
-/// Adds the forces [Pn, Pt] of a pair to those on the bodies of its nodes; moments about the origin
-/// with the nodes at their `position`.
+/// Adds forces at nodes to those on the bodies of the nodes; moments about the origin.
 fn add_to_bodies(
+    problem: &StepProblem,
     bodies: &Bodies,
-    position: impl Fn(usize) -> [f64; 2],
-    pair: &Pair,
-    [pn, pt]: [f64; 2],
+    u: &[f64],
+    forces: impl Iterator<Item = (usize, [f64; 2])>,
     results: &mut [ContactOnBody],
 ) {
-    for (k, &node) in pair.target.nodes.iter().enumerate() {
+    for (node, [fx, fy]) in forces {
         let Some(body) = bodies.of_node[node] else {
             continue;
         };
-        let x = position(node);
-        let [fx, fy] = [2 * k, 2 * k + 1].map(|i| pair.normal[i] * pn + pair.tangent[i] * pt);
+        let x = problem.position(u, node);
         let result = &mut results[body];
         result.force[0] += fx;
         result.force[1] += fy;

@@ -111,9 +111,10 @@ impl Ledger {
                 dt * v_mid * inertia[p] + d[p] * (internal[p] - load[p] - contact[p]);
         }
         // Pn.(Bn d), eq. (9.2), and -Pt.(Bt d), eq. (9.3)
-        for (k, pair) in forces.pairs.iter().enumerate() {
-            e.normal_contact_work += forces.normal[k] * pair.normal_of(d);
-            e.friction_dissipation -= forces.tangential[k] * pair.tangent_of(d);
+        for (constraint, pair) in forces.acting() {
+            let [pn, pt] = pair.force;
+            e.normal_contact_work += pn * constraint.normal_motion(d);
+            e.friction_dissipation -= pt * constraint.tangential_motion(d);
         }
         // T(V0) - T(V0+), eq. (9.4)
         if v0p != &start.v {

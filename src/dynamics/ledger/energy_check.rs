@@ -2,7 +2,7 @@
 //! turn concave under a sliding node. Section 7 of docs/theory.md.
 
 use super::energy::{CONTACT_WORK_ROUND_OFF, Ledger};
-use crate::contact::Pair;
+use crate::contact::Constraint;
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{Cause, State};
@@ -38,20 +38,21 @@ fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) 
         return 0.0;
     }
     let Solved { d, forces, .. } = solved;
-    let pairs = forces.pairs.iter().zip(&forces.normal);
-    let works = pairs.map(|(pair, normal)| {
-        let [slave, a, b, _] = pair.target.nodes;
+    let works = forces.acting().map(|(constraint, pair)| {
+        let [slave, a, b, _] = constraint.source.nodes;
         let p = problem.place(&start.u, [slave, a, b]);
         let was_beyond = !(0.0..=1.0).contains(&p.xi) && p.gap < -CLOSED_GAP * p.length;
         // Pn (Bn d) of a pair that was behind, beyond the ends, eq. (7.4)
         let work = if was_beyond {
-            normal * pair.normal_of(d)
+            pair.force[0] * constraint.normal_motion(d)
         } else {
             0.0
         };
-        (pair, work)
+        (constraint, work)
     });
-    let largest = |pair: &Pair| problem.parts.most(&ledger.largest, pair.target.nodes);
+    let largest = |c: &Constraint| problem.parts.most(&ledger.largest, c.nodes());
     let parts = works.filter(|&(_, work)| work > 0.0);
-    parts.map(|(pair, work)| work / largest(pair)).sum()
+    parts
+        .map(|(constraint, work)| work / largest(constraint))
+        .sum()
 }

@@ -3,9 +3,10 @@
 //! Crossing).
 
 use crate::contact::{
-    ContactSurfaces, Crossing, Direction, Motion, Pair, RowForm, crossings, line_crossings, project,
+    ClosedPair, ClosedPairs, Configurations, Constraint, ContactSurfaces, Crossing, Direction,
+    Motion, PairTarget, RowForm, crossings, line_crossings, project,
 };
-use crate::dynamics::increment::{ClosedPairs, Solved};
+use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{ContactResultant, Landing, NodalResults, NodeStatus, State};
 use crate::dynamics::step::{Equilibrium, Interval, StepProblem};
 use crate::lcp::ContactState;
@@ -38,29 +39,33 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         status: vec![NodeStatus::None; dofs / 2],
         ..NodalResults::default()
     };
-    for (k, pair) in solved.forces.pairs.iter().enumerate() {
-        let slave = pair.target.nodes[0];
-        results.gap[slave] = results.gap[slave].min(end_gap(problem, solved, pair));
-        let status = match (solved.forces.is_closed(k), solved.forces.state[k]) {
-            (false, _) => NodeStatus::Open,
-            (true, ContactState::Stick) => NodeStatus::Stick,
-            (true, _) => NodeStatus::Slip,
+    for (constraint, pair) in solved.forces.iter() {
+        let gap = end_gap(problem, solved, constraint);
+        let status = match pair.map(|pair| pair.state) {
+            None => NodeStatus::Open,
+            Some(ContactState::Stick) => NodeStatus::Stick,
+            Some(_) => NodeStatus::Slip,
         };
-        results.status[slave] = results.status[slave].max(status);
+        for slave in constraint.slave_nodes() {
+            results.gap[slave] = results.gap[slave].min(gap);
+            results.status[slave] = results.status[slave].max(status);
+        }
     }
     results
 }
 
-fn end_gap(problem: &StepProblem, solved: &Solved, pair: &Pair) -> f64 {
-    let u = &solved.end.u;
-    Pair::new(
-        pair.target,
-        RowForm::End,
-        &problem.model.mesh.coordinates,
-        u,
-        u,
-    )
-    .gap
+/// Gap of a constraint at the end of the increment.
+fn end_gap(problem: &StepProblem, solved: &Solved, constraint: &Constraint) -> f64 {
+    let at = end_rows_at(problem, &solved.end.u);
+    constraint.relinearized(&at).gap
+}
+
+/// One configuration, with the gradients of gap and slip as rows.
+fn end_rows_at<'a>(problem: &'a StepProblem, u: &'a [f64]) -> Configurations<'a> {
+    Configurations {
+        form: RowForm::End,
+        ..problem.configurations(u, u)
+    }
 }
 
 /// Resultants of every contact; moments about the origin, forces acting at U_theta.
@@ -72,25 +77,23 @@ pub(crate) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
     let mut resultants = vec![none; problem.contacts.len()];
     let mut largest_normal = vec![0.0_f64; resultants.len()];
     let contact_of = contact_of_slots(problem.contacts);
-    let forces = &solved.forces;
-    for (k, pair) in forces.pairs.iter().enumerate() {
-        let contact = contact_of[pair.target.slave_index];
+    for (constraint, pair) in solved.forces.iter() {
+        let contact = contact_of[constraint.key.slave_index];
         let r = &mut resultants[contact];
-        r.min_gap = r.min_gap.min(end_gap(problem, solved, pair));
-        if !forces.is_closed(k) {
-            continue;
+        r.min_gap = r.min_gap.min(end_gap(problem, solved, constraint));
+        let Some(pair) = pair else { continue };
+        let [pn, pt] = pair.force;
+        for (node, [fx, fy]) in constraint.slave_forces(pair.force) {
+            let x = problem.position(&solved.equilibrium.u_theta, node);
+            r.force[0] += fx;
+            r.force[1] += fy;
+            r.moment += cross(x, [fx, fy]);
         }
-        let (pn, pt) = (forces.normal[k], forces.tangential[k]);
-        let f = [0, 1].map(|i| pair.normal[i] * pn + pair.tangent[i] * pt);
-        let x = problem.position(&solved.equilibrium.u_theta, pair.target.nodes[0]);
-        r.force[0] += f[0];
-        r.force[1] += f[1];
-        r.moment += cross(x, f);
         r.normal += pn;
         r.tangential += pt;
         r.closed += 1;
-        r.sticking += usize::from(forces.state[k] == ContactState::Stick);
-        r.cone_violation = larger(r.cone_violation, pt.abs() - pair.target.friction * pn);
+        r.sticking += usize::from(pair.state == ContactState::Stick);
+        r.cone_violation = larger(r.cone_violation, pt.abs() - constraint.mu * pn);
         largest_normal[contact] = larger(largest_normal[contact], pn);
     }
     for (r, largest) in resultants.iter_mut().zip(largest_normal) {
@@ -118,33 +121,30 @@ pub(crate) fn landings(
     solved: &Solved,
     interval: Interval,
 ) -> Vec<Landing> {
-    let forces = &solved.forces;
     let fastest = problem.parts.largest_of_bodies(&start.v);
-    let landing = |k: usize| {
-        let pair = &forces.pairs[k];
-        let least = STRUCK * problem.parts.most(&fastest, pair.target.nodes);
-        let touched = solved.touching.binary_search(&pair.target.key()).is_ok();
+    let landing_of = |(constraint, pair): (&Constraint, Option<&ClosedPair>)| {
+        let least = STRUCK * problem.parts.most(&fastest, constraint.nodes());
+        let touched = solved.touching.closes(constraint.key);
         let is_struck = || {
-            let x = &problem.model.mesh.coordinates;
-            let rows = Pair::new(pair.target, RowForm::End, x, &start.u, &start.u);
-            let [before, after] = [&start.v, &solved.v0p].map(|v| rows.normal_of(v));
+            let rows = constraint.relinearized(&end_rows_at(problem, &start.u));
+            let [before, after] = [&start.v, &solved.v0p].map(|v| rows.gap_change(v));
             before < -least && after > before + least
         };
-        let lands = !before.holds(pair.target.slave_index)
-            && (forces.is_closed(k) || (touched && is_struck()));
-        lands.then(|| landing(problem, start, pair, interval, touched))
+        let was_closed = !before.of_slave(constraint.key.slave_index).is_empty();
+        let lands = !was_closed && (pair.is_some() || (touched && is_struck()));
+        lands.then(|| landing(problem, start, &constraint.source, interval, touched))
     };
-    (0..forces.pairs.len()).filter_map(landing).collect()
+    solved.forces.iter().filter_map(landing_of).collect()
 }
 
 fn landing(
     problem: &StepProblem,
     start: &State,
-    pair: &Pair,
+    pair: &PairTarget,
     interval: Interval,
     touched: bool,
 ) -> Landing {
-    let [s, a, b, _] = pair.target.nodes;
+    let [s, a, b, _] = pair.nodes;
     let motions = [s, a, b].map(|node| motion(problem, &start.u, &start.v, &start.a, node));
     let tau = match impact_time(&motions, interval.dt) {
         // it touches and does not meet again
@@ -158,8 +158,8 @@ fn landing(
     let relative = |i: usize| s[i] - (1.0 - p.xi) * a[i] - p.xi * b[i];
     Landing {
         time: interval.start.total + tau,
-        slave: pair.target.nodes[0],
-        segment: [pair.target.nodes[1], pair.target.nodes[2]],
+        slave: pair.nodes[0],
+        segment: [pair.nodes[1], pair.nodes[2]],
         xi: p.xi,
         approach_speed: -(p.normal[0] * relative(0) + p.normal[1] * relative(1)),
     }

@@ -1,6 +1,5 @@
 //! Contact pressure at slave nodes: normal force over the area of a node.
 
-use crate::contact::add_contact_forces;
 use crate::dynamics::increment::ContactForces;
 use crate::dynamics::step::StepProblem;
 use crate::model::{Face, Mesh, Model, SurfaceKind};
@@ -66,10 +65,8 @@ impl SlaveFaces {
     pub fn pressure(&self, problem: &StepProblem, u: &[f64], forces: &ContactForces) -> Vec<f64> {
         let mut pressure = self.start.clone();
         let mut normal = vec![0.0; u.len()];
-        for (k, pair) in forces.pairs.iter().enumerate() {
-            if forces.is_closed(k) {
-                add_contact_forces(pair, forces.normal[k], 0.0, &mut normal);
-            }
+        for (constraint, pair) in forces.acting() {
+            constraint.add_force([pair.force[0], 0.0], &mut normal);
         }
         let of_node = |node: usize| [normal[2 * node], normal[2 * node + 1]];
         let size = |[x, y]: [f64; 2]| x.hypot(y);

@@ -4,6 +4,7 @@
 use std::fmt;
 
 use super::pass_report::PassReport;
+use crate::contact::Constraint;
 use crate::elements::Inverted;
 use crate::lcp::{FrictionalLcp, LcpError};
 use crate::linear::LinearError;
@@ -68,6 +69,25 @@ pub struct FailedLcp {
     pub problem: FrictionalLcp,
     /// Nodes (indices) of its pairs: slave, segment ends a and b.
     pub pairs: Vec<[usize; 3]>,
+}
+
+impl FailedLcp {
+    /// The problem of some constraints that was not solved.
+    pub(crate) fn new(
+        error: LcpError,
+        problem: FrictionalLcp,
+        constraints: &[&Constraint],
+    ) -> Self {
+        let nodes = |constraint: &&Constraint| {
+            let [s, a, b, _] = constraint.source.nodes;
+            [s, a, b]
+        };
+        FailedLcp {
+            error,
+            problem,
+            pairs: constraints.iter().map(nodes).collect(),
+        }
+    }
 }
 
 /// The node with the largest residual or correction of a failed increment.

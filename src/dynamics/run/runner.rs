@@ -8,8 +8,8 @@ use super::bisection::Bisection;
 use super::impact_control::ImpactControl;
 use super::nominal_increment::{NominalIncrement, nominal_increments};
 use super::time_control::{Span, TimeControl};
+use crate::contact::ClosedPairs;
 use crate::dynamics::events::{FailedSubincrement, Subincrement, Subincrements};
-use crate::dynamics::increment::ClosedPairs;
 use crate::dynamics::ledger::{Accounts, Ledger, landings};
 use crate::dynamics::results::{
     Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State, Timings,
@@ -256,7 +256,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         };
         self.observer.increment(&report)?;
         self.ledger = ledger;
-        self.contact = ClosedPairs::new(&solved.forces);
+        self.contact = solved.forces.closed;
         self.state = report.state;
         Ok(())
     }

@@ -4,7 +4,7 @@
 use super::mass::unknown_mass;
 use super::step_problem::StepProblem;
 use super::unknowns::Unknowns;
-use crate::contact::{Compliance, Pair};
+use crate::contact::{Compliance, Constraint};
 use crate::elements::{Elements, Motion};
 use crate::linear::{Assembled, CheckedSolver, LinearError, linear_solver};
 use crate::model::SolverChoice;
@@ -29,9 +29,9 @@ impl FactoredMatrix {
         self.solver.factorize()
     }
 
-    /// Solves for the columns of the compliance that `pairs` need.
-    pub fn prepare(&mut self, pairs: &[Pair]) -> Result<(), LinearError> {
-        self.compliance.prepare(pairs, &mut self.solver)
+    /// Solves for the columns of the compliance that `constraints` need.
+    pub fn prepare(&mut self, constraints: &[&Constraint]) -> Result<(), LinearError> {
+        self.compliance.prepare(constraints, &mut self.solver)
     }
 }
 

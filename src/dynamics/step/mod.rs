@@ -14,10 +14,14 @@ mod unknowns;
 mod workspace;
 
 pub(crate) use discretization::Discretization;
+pub(crate) use effective_stiffness::EffectiveStiffness;
+#[cfg(test)]
+pub(crate) use effective_stiffness::FactoredMatrix;
 pub(crate) use loads::TimePoint;
 pub(crate) use mass::{Mass, dot};
+#[cfg(test)]
+pub(crate) use meter::Meter;
 pub(crate) use parts::Parts;
 pub(crate) use step_place::StepPlace;
 pub(crate) use step_problem::{Equilibrium, Interval, StepProblem, check_finite, difference, sum};
-pub(crate) use unknowns::Unknowns;
 pub(crate) use workspace::{System, Workspace};

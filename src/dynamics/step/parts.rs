@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use crate::linear::{Assembled, larger, largest};
+use crate::linear::{Assembled, larger};
 use crate::model::{Equation, Model};
 
 /// The bodies of a model and their parts, both numbered from 0.
@@ -89,8 +89,9 @@ impl Parts {
     }
 
     /// The largest of the values of the bodies that some nodes belong to.
-    pub fn most(&self, of_bodies: &[f64], nodes: [usize; 4]) -> f64 {
-        largest(&nodes.map(|node| of_bodies[self.body[node]]))
+    pub fn most(&self, of_bodies: &[f64], nodes: impl Iterator<Item = usize>) -> f64 {
+        let of_node = |node: usize| of_bodies[self.body[node]].abs();
+        nodes.map(of_node).fold(0.0, larger)
     }
 }
 

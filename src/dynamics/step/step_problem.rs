@@ -10,7 +10,8 @@ use super::unknowns::Unknowns;
 use super::workspace::System;
 use crate::contact::tolerances::COLLAPSED_LENGTH;
 use crate::contact::{
-    ContactSurfaces, Pair, Pairing, Projection, Search, find_targets, position, project,
+    Configurations, Constraint, ContactSurfaces, PairTarget, Projection, Search, find_targets,
+    position, project,
 };
 use crate::dynamics::results::{Cause, State};
 use crate::elements::{Elements, Motion};
@@ -120,17 +121,34 @@ impl StepProblem<'_> {
         }
     }
 
-    /// Pairs between `u0` and the iterate `u`, which the search covers, `before` being those of the
-    /// last pass; obstacles have none among themselves.
-    pub fn pairs(&self, search: &Search, u0: &[f64], u: &[f64], before: &Pairing) -> Vec<Pair> {
-        let x = &self.model.mesh.coordinates;
-        let form = self.weights.row_form();
-        find_targets(search, u0, u, before)
+    /// Constraints between the displacements `u0` and `u` of an increment, which the search covers,
+    /// `before` being those of the last pass; rigid surfaces have none among themselves. Where the
+    /// passes have `settled`, slave nodes keep their targets.
+    pub fn constraints(
+        &self,
+        search: &Search,
+        [u0, u]: [&[f64]; 2],
+        before: &[Constraint],
+        settled: bool,
+    ) -> Vec<Constraint> {
+        let before: Vec<PairTarget> = before.iter().map(|c| c.source).collect();
+        let configurations = self.configurations(u0, u);
+        find_targets(search, [u0, u], &before, settled)
             .into_iter()
-            .filter(|at| self.unknowns.moves(&at.nodes))
-            .map(|at| Pair::new(at, form, x, u0, u))
-            .filter(|pair| self.unknowns.opens(pair))
+            .filter(|source| self.unknowns.moves(&source.nodes))
+            .map(|source| Constraint::new(source, &configurations))
+            .filter(|constraint| self.unknowns.opens(constraint))
             .collect()
+    }
+
+    /// The configurations between which constraints of the scheme are linearised.
+    pub fn configurations<'a>(&'a self, u0: &'a [f64], u: &'a [f64]) -> Configurations<'a> {
+        Configurations {
+            form: self.weights.row_form(),
+            x: &self.model.mesh.coordinates,
+            u0,
+            u,
+        }
     }
 
     /// Load, internal force and inertia of the iterate U0 + d.

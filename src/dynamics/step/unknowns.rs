@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use super::loads::TimePoint;
 use super::supports::Supports;
-use crate::contact::Pair;
+use crate::contact::Constraint;
 use crate::contact::tolerances::TIED_ROW;
 use crate::elements::Elements;
 use crate::linear::Transformation;
@@ -54,14 +54,15 @@ impl<'m> Unknowns<'m> {
         dofs.any(|dof| !self.map.row(dof).is_empty())
     }
 
-    /// Whether the gap of a pair can change: it cannot where equations tie the node to the segment, so
-    /// that Bn T is round-off.
-    pub fn opens(&self, pair: &Pair) -> bool {
+    /// Whether the gap of a constraint can change: it cannot where equations tie the node to the segment, so
+    /// that Gn T is round-off.
+    pub fn opens(&self, constraint: &Constraint) -> bool {
         if self.equations.is_empty() {
             return true;
         }
         let mut row = BTreeMap::new();
-        for (dof, b) in pair.dofs().into_iter().zip(pair.normal) {
+        let gradient = &constraint.derivative_rows().normal;
+        for (&dof, b) in constraint.dofs.iter().zip(gradient) {
             for &(unknown, c) in self.map.row(dof) {
                 *row.entry(unknown).or_insert(0.0) += c * b;
             }

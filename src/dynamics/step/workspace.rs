@@ -5,7 +5,7 @@ use super::effective_stiffness::{EffectiveStiffness, FactoredMatrix};
 use super::meter::Meter;
 use super::step_problem::{Equilibrium, Interval, StepProblem};
 use crate::contact::{
-    Compliance, NodeContact, Pair, Pairing, Penetration, Search, find_penetration, frictional_lcp,
+    ClosedPairs, Compliance, Constraint, Penetration, Search, find_penetration, frictional_lcp,
 };
 use crate::dynamics::results::{Cause, State};
 use crate::elements::Motion;
@@ -47,18 +47,12 @@ impl<'m> Workspace<'m> {
 
     /// The effective stiffness K*.
     pub fn k(&mut self) -> System<'_> {
-        System {
-            matrix: &mut self.stiffness.k,
-            meter: &mut self.meter,
-        }
+        System::new(&mut self.stiffness.k, &mut self.meter)
     }
 
     /// The mass M.
     pub fn m(&mut self) -> System<'_> {
-        System {
-            matrix: &mut self.stiffness.m,
-            meter: &mut self.meter,
-        }
+        System::new(&mut self.stiffness.m, &mut self.meter)
     }
 
     /// Assembles and factorises K* for increments of length `dt` in the configuration of a motion.
@@ -102,36 +96,44 @@ impl<'m> Workspace<'m> {
         self.meter.time(|t| &mut t.assembly, product)
     }
 
-    /// Pairs between `u0` and the iterate `u`, `before` being those of the last pass.
-    pub fn pairs(
+    /// Constraints between the displacements `u0` and `u`, as [`StepProblem::constraints`] says.
+    pub fn constraints(
         &mut self,
         problem: &StepProblem,
-        u0: &[f64],
-        u: &[f64],
-        before: &Pairing,
-    ) -> Vec<Pair> {
+        [u0, u]: [&[f64]; 2],
+        before: &[Constraint],
+        settled: bool,
+    ) -> Vec<Constraint> {
         let Workspace { search, meter, .. } = self;
         meter.time(|t| &mut t.search, || search.cover(u));
-        meter.time(|t| &mut t.contact, || problem.pairs(search, u0, u, before))
+        meter.time(
+            |t| &mut t.contact,
+            || problem.constraints(search, [u0, u], before, settled),
+        )
     }
 
     /// A node that has gone into a body between `u0` and `u1`, as [`find_penetration`] says.
     pub fn find_penetration(
         &mut self,
         [u0, u1]: [&[f64]; 2],
-        touch: &[NodeContact],
+        closed: [&ClosedPairs; 2],
         unsolved: &[f64],
     ) -> Option<Penetration> {
         let Workspace { search, meter, .. } = self;
         meter.time(|t| &mut t.search, || search.cover_path(u0, u1));
         meter.time(
             |t| &mut t.contact,
-            || find_penetration(search, u0, u1, touch, unsolved),
+            || find_penetration(search, [u0, u1], closed, unsolved),
         )
     }
 }
 
-impl System<'_> {
+impl<'a> System<'a> {
+    /// A matrix whose work is measured by `meter`.
+    pub fn new(matrix: &'a mut FactoredMatrix, meter: &'a mut Meter) -> Self {
+        System { matrix, meter }
+    }
+
     /// Whether there are factors of the matrix as it is.
     pub fn is_factorized(&self) -> bool {
         self.matrix.solver.is_factorized()
@@ -149,17 +151,17 @@ impl System<'_> {
         meter.time(|t| &mut t.solve, || matrix.solver.solve(b))
     }
 
-    /// The complementarity problem of some pairs with the given gaps and slips without forces.
+    /// The complementarity problem of some constraints with the given gaps and slips without forces.
     pub fn frictional_lcp(
         &mut self,
-        pairs: &[Pair],
+        constraints: &[&Constraint],
         gap: Vec<f64>,
         slip: Vec<f64>,
     ) -> Result<FrictionalLcp, LinearError> {
         let Self { matrix, meter } = self;
-        meter.time(|t| &mut t.solve, || matrix.prepare(pairs))?;
+        meter.time(|t| &mut t.solve, || matrix.prepare(constraints))?;
         let compliance: &Compliance = &matrix.compliance;
-        let pose = || frictional_lcp(pairs, compliance, gap, slip);
+        let pose = || frictional_lcp(constraints, compliance, gap, slip);
         Ok(meter.time(|t| &mut t.contact, pose))
     }
 

@@ -1,21 +1,13 @@
 //! Tunnelling check of a converged increment: slave nodes that pass into or through a body on
 //! their straight paths from U0 to U1. Section 10 of docs/theory.md, Penetration.
 
-use super::segment_crossing::{Crossing, Direction, Motion, crossings};
-use crate::contact::geometry::{ContactSurfaces, Projection, position, project};
+use crate::contact::constraints::ClosedPairs;
+use crate::contact::crossing::{Crossing, Direction, Motion, crossings};
+use crate::contact::geometry::{Along, ContactSurfaces, Projection, position, project};
 use crate::contact::search::Search;
 use crate::contact::tolerances::{CORNER_CLIP_DEPTH, DEPTH_ROUND_OFF, SEGMENT_END};
 use crate::linear::largest;
 use crate::vectors::{cross, difference};
-
-/// Contact of a slave node in an increment.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct NodeContact {
-    /// Whether it carried a force in the increment before.
-    pub before: bool,
-    /// Segments at which it carries forces at the end.
-    pub now: Vec<usize>,
-}
 
 /// A slave node that has penetrated a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,44 +19,41 @@ pub struct Penetration {
 }
 
 /// The first slave node that penetrates a body on its straight path from the displacements `u0` to
-/// `u1`, if there is one. The search must cover the paths; `touch` has an entry per slave index;
-/// `unsolved` is the error of every node's displacement that the tolerance of the increment allows
-/// (length), a depth that does not count.
+/// `u1`, if there is one. The search must cover the paths; `closed` are the pairs in contact before
+/// the increment and at its end; `unsolved` is the error of every node's displacement that the
+/// tolerance of the increment allows (length), a depth that does not count.
 ///
 /// A node may enter through a segment at which it carries a force, or leave again in contact: the
 /// straight path of a node that slides round a corner cuts the corner.
 pub fn find_penetration(
     search: &Search,
-    u0: &[f64],
-    u1: &[f64],
-    touch: &[NodeContact],
+    [u0, u1]: [&[f64]; 2],
+    closed: [&ClosedPairs; 2],
     unsolved: &[f64],
 ) -> Option<Penetration> {
     let x = search.coordinates();
-    let mut slave_index = 0;
     let mut events = Vec::new();
-    for territory in search.territories() {
-        let contact = territory.surfaces();
-        for (k, &slave) in contact.slaves.iter().enumerate() {
-            let path = NodePath {
-                contact,
-                x,
-                u: [u0, u1],
-                slave,
-                touch: &touch[slave_index],
-                unsolved,
-            };
-            slave_index += 1;
-            events.clear();
-            for candidate in territory.candidates(k) {
-                let found = crossings(&path.motions(candidate.segment), 1.0);
-                events.extend(found.into_iter().map(|c| (candidate.segment, c)));
-            }
-            let ends_inside = || path.ends_inside(territory.candidates(k).map(|c| c.segment));
-            if let Some(segment) = path.entry(&mut events).or_else(ends_inside) {
-                let segment = contact.segments[segment];
-                return Some(Penetration { slave, segment });
-            }
+    for listed in search.slaves() {
+        let path = NodePath {
+            contact: listed.surfaces,
+            x,
+            u: [u0, u1],
+            slave: listed.node(),
+            slave_index: listed.slave_index,
+            closed,
+            unsolved,
+        };
+        events.clear();
+        for candidate in listed.candidates() {
+            let found = crossings(&path.motions(candidate.segment), 1.0);
+            events.extend(found.into_iter().map(|c| (candidate.segment, c)));
+        }
+        let ends_inside = || path.ends_inside(listed.candidates().map(|c| c.segment));
+        if let Some(segment) = path.entry(&mut events).or_else(ends_inside) {
+            return Some(Penetration {
+                slave: path.slave,
+                segment: path.contact.segments[segment],
+            });
         }
     }
     None
@@ -76,11 +65,24 @@ struct NodePath<'a> {
     x: &'a [[f64; 2]],
     u: [&'a [f64]; 2],
     slave: usize,
-    touch: &'a NodeContact,
+    slave_index: usize,
+    /// Closed pairs before the increment and at its end.
+    closed: [&'a ClosedPairs; 2],
     unsolved: &'a [f64],
 }
 
 impl NodePath<'_> {
+    /// Whether the node was in contact before the increment.
+    fn was_held(&self) -> bool {
+        !self.closed[0].of_slave(self.slave_index).is_empty()
+    }
+
+    /// Segments that hold the node at the end.
+    fn held_by(&self) -> impl Iterator<Item = usize> {
+        let pairs = self.closed[1].of_slave(self.slave_index).iter();
+        pairs.flat_map(|pair| pair.target.segments())
+    }
+
     fn motions(&self, segment: usize) -> [Motion; 3] {
         let [a, b] = self.contact.segments[segment];
         [self.slave, a, b].map(|node| {
@@ -140,7 +142,7 @@ impl NodePath<'_> {
             let p = self.project(j, 0.0);
             self.is_round_off(j, -p.gap, p.length) && self.are_near(i, j)
         };
-        let is_held = self.touch.now.contains(&i);
+        let is_held = self.held_by().any(|held| held == i);
         (is_nearest && !is_held && others.clone().any(was_outside)).then_some(i)
     }
 
@@ -166,8 +168,8 @@ impl NodePath<'_> {
         let (p, q) = (self.project(i, middle), self.project(j, middle));
         let depth = (-p.gap).min(-q.gap);
         let slides = || {
-            let is_near = |k| self.are_near(i, k);
-            self.touch.before || self.touch.now.iter().copied().any(is_near)
+            let is_held = |k| self.are_near(i, k);
+            self.was_held() || self.held_by().any(is_held)
         };
         self.is_round_off(i, depth, p.length)
             || (self.are_near(i, j) && (depth <= CORNER_CLIP_DEPTH * p.length || slides()))
@@ -178,15 +180,14 @@ impl NodePath<'_> {
     fn may_stay(&self, i: usize, xi: f64) -> bool {
         let p = self.project(i, 1.0);
         if self.is_round_off(i, -p.gap, p.length)
-            || self.touch.now.contains(&i)
+            || self.held_by().any(|held| held == i)
             || self.is_outside_corner(i, xi, &p)
         {
             return true;
         }
         let is_on = |j: usize| (0.0..=1.0).contains(&self.project(j, 1.0).xi);
-        let mut held = self.touch.now.iter();
-        held.any(|&j| is_on(j) && self.are_near(i, j))
-            || (self.touch.before && self.has_slid_off(i, &p))
+        self.held_by().any(|j| is_on(j) && self.are_near(i, j))
+            || (self.was_held() && self.has_slid_off(i, &p))
     }
 
     /// Whether a depth behind segment `i` of the given length is within the tolerance of the
@@ -223,16 +224,15 @@ impl NodePath<'_> {
 
     /// Whether the node has slid off the end of an open surface.
     fn has_slid_off(&self, i: usize, p: &Projection) -> bool {
-        let next = |k: usize| self.contact.next[k];
-        let previous = |k: usize| self.contact.previous[k];
-        (p.xi > 1.0 && self.walk(i, &next, None)) || (p.xi < 0.0 && self.walk(i, &previous, None))
+        (p.xi > 1.0 && self.leads(i, Along::Forward, None))
+            || (p.xi < 0.0 && self.leads(i, Along::Backward, None))
     }
 
     /// Whether two segments are neighbours on the surface, or the surface between them is not
     /// longer than twice the displacement of the node: the far side of a thin body is not near.
     fn are_near(&self, i: usize, j: usize) -> bool {
-        let step = |k: usize| self.contact.next[k];
-        i == j || self.walk(i, &step, Some(j)) || self.walk(j, &step, Some(i))
+        let leads = |i: usize, j: usize| self.leads(i, Along::Forward, Some(j));
+        i == j || leads(i, j) || leads(j, i)
     }
 
     /// Displacement of the node relative to the start a of a segment (length).
@@ -244,23 +244,13 @@ impl NodePath<'_> {
         (end[0] - start[0]).hypot(end[1] - start[1])
     }
 
-    /// Whether the chain of segments from one segment leads to another (or, for `None`, to the end
-    /// of the surface) within twice the displacement of the node.
-    fn walk(&self, from: usize, step: &dyn Fn(usize) -> Option<usize>, to: Option<usize>) -> bool {
-        let displacement = self.relative_displacement(from);
-        let (mut segment, mut between) = (from, 0.0);
-        loop {
-            let following = step(segment);
-            match following {
-                _ if following == to => return true,
-                Some(k) if k != from => segment = k,
-                _ => return false,
-            }
-            between += self.project(segment, 1.0).length;
-            if between > 2.0 * displacement {
-                return false;
-            }
-        }
+    /// Whether the chain leads from a segment to another, or to the end of the surface, within
+    /// twice the displacement of the node.
+    fn leads(&self, from: usize, along: Along, to: Option<usize>) -> bool {
+        let farthest = 2.0 * self.relative_displacement(from);
+        let length = |i: usize| self.project(i, 1.0).length;
+        let mut chain = self.contact.walk(from, along, farthest, length);
+        chain.any(|following| following == to)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Tests of the tunnelling check: a node at a thin plate, a concave corner, a sinking roof.
 
-use super::penetration_check::{NodeContact, Penetration, find_penetration};
+use super::penetration_check::{Penetration, find_penetration};
+use crate::contact::constraints::{ClosedPair, ClosedPairs};
 use crate::contact::geometry::ContactSurfaces;
 use crate::contact::search::Search;
 
@@ -16,7 +17,7 @@ fn plate(closed: bool) -> (ContactSurfaces, Vec<[f64; 2]>) {
     (surfaces, x)
 }
 
-fn passes_of(closed: bool, from: [f64; 2], to: [f64; 2], touch: NodeContact) -> Option<[usize; 2]> {
+fn passes_of(closed: bool, from: [f64; 2], to: [f64; 2], contact: Contact) -> Option<[usize; 2]> {
     let (surfaces, mut x) = plate(closed);
     x[0] = from;
     let u0 = vec![0.0; 2 * x.len()];
@@ -25,24 +26,50 @@ fn passes_of(closed: bool, from: [f64; 2], to: [f64; 2], touch: NodeContact) -> 
     let contacts = [surfaces];
     let mut search = Search::new(&contacts, &x);
     search.cover_path(&u0, &u1);
-    find_penetration(&search, &u0, &u1, &[touch], &vec![0.0; x.len()]).map(|entry| entry.segment)
+    find_penetration(
+        &search,
+        [&u0, &u1],
+        contact.closed().each_ref(),
+        &vec![0.0; x.len()],
+    )
+    .map(|entry| entry.segment)
 }
 
-fn passes(from: [f64; 2], to: [f64; 2], touch: NodeContact) -> Option<[usize; 2]> {
-    passes_of(true, from, to, touch)
+fn passes(from: [f64; 2], to: [f64; 2], contact: Contact) -> Option<[usize; 2]> {
+    passes_of(true, from, to, contact)
 }
 
-const FREE: NodeContact = NodeContact {
+/// Contact of the slave node: whether it was held before, and by which segment it is at the end.
+#[derive(Clone, Copy)]
+struct Contact {
+    before: bool,
+    now: Option<usize>,
+}
+
+impl Contact {
+    fn closed(self) -> [ClosedPairs; 2] {
+        let before = self.before.then(|| ClosedPair::touching(0, 0));
+        let now = self.now.map(|segment| ClosedPair::touching(0, segment));
+        [before, now].map(|pair| pair.into_iter().collect())
+    }
+}
+
+const FREE: Contact = Contact {
     before: false,
-    now: Vec::new(),
+    now: None,
+};
+/// In contact before and no more.
+const LEAVES: Contact = Contact {
+    before: true,
+    now: None,
 };
 /// The segments from (5, 0.5) to (4, 0.5) on top and from (4, 0) to (5, 0) below.
 const TOP: [usize; 2] = [13, 14];
 const BOTTOM: [usize; 2] = [5, 6];
 
-fn held(before: bool, now: usize) -> NodeContact {
-    let now = vec![now];
-    NodeContact { before, now }
+fn held(before: bool, now: usize) -> Contact {
+    let now = Some(now);
+    Contact { before, now }
 }
 
 #[test]
@@ -72,7 +99,9 @@ fn what_other_bodies_leave_unsolved_is_no_excuse() {
     let entry = |fast: usize| {
         let mut unsolved = vec![0.0; x.len()];
         unsolved[fast] = 0.2;
-        find_penetration(&search, &u0, &u1, &[FREE], &unsolved).map(|entry| entry.segment)
+        let closed = FREE.closed();
+        find_penetration(&search, [&u0, &u1], closed.each_ref(), &unsolved)
+            .map(|entry| entry.segment)
     };
     // 0.1 deep: a node far away, those of the segment, the node itself
     assert_eq!(entry(1), Some(TOP));
@@ -103,11 +132,7 @@ fn corners_may_be_cut_in_contact() {
     assert_eq!(passes(on_top, on_side, held(true, 8)), None, "slides round");
     assert_eq!(passes(on_side, on_top, held(true, 9)), None);
     let beyond = [8.1, 0.3];
-    let leaves = NodeContact {
-        before: true,
-        now: Vec::new(),
-    };
-    assert_eq!(passes(on_top, beyond, leaves), None, "slides off");
+    assert_eq!(passes(on_top, beyond, LEAVES), None, "slides off");
     assert!(
         passes([7.7, 0.6], [8.1, 0.2], FREE).is_some(),
         "flies through"
@@ -129,14 +154,10 @@ fn a_node_on_a_vertex_may_go_anywhere_outside() {
 #[test]
 fn a_node_may_slide_off_the_end_of_an_open_surface() {
     // Without the left side the top ends at (0, 0.5).
-    let slides = NodeContact {
-        before: true,
-        now: Vec::new(),
-    };
-    let off = |touch| passes_of(false, [0.1, 0.5], [-0.1, 0.3], touch);
-    assert_eq!(off(slides.clone()), None);
+    let off = |contact| passes_of(false, [0.1, 0.5], [-0.1, 0.3], contact);
+    assert_eq!(off(LEAVES), None);
     assert!(off(FREE).is_some());
-    assert!(passes_of(false, [4.5, 0.5], [4.4, 0.3], slides).is_some());
+    assert!(passes_of(false, [4.5, 0.5], [4.4, 0.3], LEAVES).is_some());
 }
 
 #[test]
@@ -157,7 +178,8 @@ fn a_hollow_corner_holds_a_node_with_both_sides() {
         let contacts = [surfaces.clone()];
         let mut search = Search::new(&contacts, &x);
         search.cover_path(&u0, &u1);
-        find_penetration(&search, &u0, &u1, &[held(true, 0)], &[0.0; 4])
+        let closed = held(true, 0).closed();
+        find_penetration(&search, [&u0, &u1], closed.each_ref(), &[0.0; 4])
     };
     let through = Penetration {
         slave: 0,
@@ -184,17 +206,15 @@ fn a_node_may_not_end_inside_a_vertex_that_has_become_a_hollow() {
             .flat_map(|(e, x)| [e[0] - x[0], e[1] - x[1]])
             .collect()
     };
-    let touch = [NodeContact {
-        before: true,
-        now: Vec::new(),
-    }];
+    let closed = LEAVES.closed();
     let u1 = move_to(end);
     search.cover_path(&u0, &u1);
-    let entry = find_penetration(&search, &u0, &u1, &touch, &[0.0; 4]);
+    let entry = find_penetration(&search, [&u0, &u1], closed.each_ref(), &[0.0; 4]);
     assert_eq!(entry.map(|p| p.segment), Some([2, 3]));
     // in the concave corner
     let above = [[-0.2, -0.2], end[1], end[2], end[3]];
     let u1 = move_to(above);
     search.cover_path(&u0, &u1);
-    assert_eq!(find_penetration(&search, &u0, &u1, &touch, &[0.0; 4]), None);
+    let entry = find_penetration(&search, [&u0, &u1], closed.each_ref(), &[0.0; 4]);
+    assert_eq!(entry, None);
 }

@@ -1,0 +1,177 @@
+//! A contact constraint, linearised at the current iterate: gap and slip, the rows that its force
+//! acts with and the derivatives of gap and slip. All that the complementarity problem, contact
+//! forces, impulses, convergence and the ledger know of contact. Sections 3 and 5 of
+//! docs/theory.md.
+
+use smallvec::SmallVec;
+
+use super::configurations::Configurations;
+use crate::contact::targets::PairTarget;
+
+/// One value for every dof of a constraint: stored in place up to the eight dofs of a corner, on
+/// the heap beyond.
+pub type PerDof<T> = SmallVec<[T; 8]>;
+
+/// What identifies a constraint through passes and increments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ConstraintKey {
+    /// Number of the slave node among those of all contacts.
+    pub slave_index: usize,
+    /// Segment in its contact, at a corner that before it. A kind with one constraint for each slave
+    /// node gives the same number to all.
+    pub segment: usize,
+}
+
+/// A normal and a tangential row over the dofs of a constraint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rows {
+    /// Normal row.
+    pub normal: PerDof<f64>,
+    /// Tangential row.
+    pub tangential: PerDof<f64>,
+}
+
+impl Rows {
+    /// Rows of two slices of the same length.
+    pub fn new(normal: &[f64], tangential: &[f64]) -> Self {
+        Rows {
+            normal: SmallVec::from_slice(normal),
+            tangential: SmallVec::from_slice(tangential),
+        }
+    }
+}
+
+/// A constraint g >= 0 with Coulomb friction, linearised at the current iterate.
+///
+/// ```text
+/// nodal forces   B^T P = Bn^T Pn + Bt^T Pt          B: force rows
+/// rates          dg = Gn du,  dDt = Gt du           G: derivative rows
+/// increment      Bn d = g - g0,  Bt d = Dt          d = U - U0
+/// ```
+///
+/// Force rows and derivative rows are two things even where they hold the same numbers: the former
+/// make work and momenta right, the latter say how gap and slip go on from the iterate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Constraint {
+    /// What identifies it.
+    pub key: ConstraintKey,
+    /// Its dofs, x and y of one node after the other, those of slave nodes first; every dof once.
+    pub dofs: PerDof<usize>,
+    /// Number of dofs of slave nodes.
+    pub slave_dofs: usize,
+    /// Force rows Bn and Bt (dimensionless).
+    pub force_rows: Rows,
+    /// Derivative rows Gn and Gt (dimensionless), where they are others than the force rows.
+    pub other_derivative_rows: Option<Box<Rows>>,
+    /// Gap g of the iterate (length), positive when open.
+    pub gap: f64,
+    /// Gap of the start in the sense of the force rows, g - Bn d (length).
+    pub start_gap: f64,
+    /// Slip Dt since the start of the increment (length).
+    pub slip: f64,
+    /// Coefficient of friction mu.
+    pub mu: f64,
+    /// Length that gaps are relative to: that of the segment.
+    pub scale: f64,
+    /// The slave node and target it was made from. Only the contact layer and reports of contact
+    /// read it.
+    pub source: PairTarget,
+}
+
+impl Constraint {
+    /// The constraint of one slave node and the given others, whose derivative rows are its force
+    /// rows and whose slip is Bt d.
+    pub(super) fn of_nodes(
+        source: PairTarget,
+        nodes: &[usize],
+        rows: Rows,
+        (gap, scale): (f64, f64),
+        at: &Configurations,
+    ) -> Self {
+        let dofs: PerDof<usize> = nodes.iter().flat_map(|n| [2 * n, 2 * n + 1]).collect();
+        let mut constraint = Constraint {
+            key: ConstraintKey {
+                slave_index: source.slave_index,
+                segment: source.target.segment,
+            },
+            dofs,
+            slave_dofs: 2,
+            force_rows: rows,
+            other_derivative_rows: None,
+            gap,
+            start_gap: gap,
+            slip: 0.0,
+            mu: source.friction,
+            scale,
+            source,
+        };
+        // g0 = g - Bn d; Dt = Bt d, eq. (3.5); d = U - U0
+        let d = |dof: usize| at.u[dof] - at.u0[dof];
+        let rows = &constraint.force_rows;
+        let start_gap = gap - constraint.product(&rows.normal, d);
+        let slip = constraint.product(&rows.tangential, d);
+        (constraint.start_gap, constraint.slip) = (start_gap, slip);
+        constraint
+    }
+
+    /// Derivative rows G.
+    pub fn derivative_rows(&self) -> &Rows {
+        let other = self.other_derivative_rows.as_deref();
+        other.unwrap_or(&self.force_rows)
+    }
+
+    /// Gn v: what a vector over all dofs adds to the gap.
+    pub fn gap_change(&self, v: &[f64]) -> f64 {
+        self.product(&self.derivative_rows().normal, |dof| v[dof])
+    }
+
+    /// Gt v: what a vector over all dofs adds to the slip.
+    pub fn slip_change(&self, v: &[f64]) -> f64 {
+        self.product(&self.derivative_rows().tangential, |dof| v[dof])
+    }
+
+    /// Bn d: the work of a unit normal force on a displacement over all dofs (length).
+    pub fn normal_motion(&self, d: &[f64]) -> f64 {
+        self.product(&self.force_rows.normal, |dof| d[dof])
+    }
+
+    /// Bt d: the work of a unit tangential force on a displacement over all dofs (length).
+    pub fn tangential_motion(&self, d: &[f64]) -> f64 {
+        self.product(&self.force_rows.tangential, |dof| d[dof])
+    }
+
+    /// Adds Bn^T Pn + Bt^T Pt to a vector over all dofs.
+    pub fn add_force(&self, [pn, pt]: [f64; 2], force: &mut [f64]) {
+        let Rows { normal, tangential } = &self.force_rows;
+        for (&dof, (n, t)) in self.dofs.iter().zip(normal.iter().zip(tangential)) {
+            force[dof] += n * pn + t * pt;
+        }
+    }
+
+    /// Its nodes, slave nodes first.
+    pub fn nodes(&self) -> impl Iterator<Item = usize> {
+        self.dofs.chunks_exact(2).map(|dofs| dofs[0] / 2)
+    }
+
+    /// Its slave nodes.
+    pub fn slave_nodes(&self) -> impl Iterator<Item = usize> {
+        self.nodes().take(self.slave_dofs / 2)
+    }
+
+    /// Bn^T Pn + Bt^T Pt at every node.
+    pub fn nodal_forces(&self, [pn, pt]: [f64; 2]) -> impl Iterator<Item = (usize, [f64; 2])> {
+        let Rows { normal, tangential } = &self.force_rows;
+        let force = move |k: usize| normal[k] * pn + tangential[k] * pt;
+        let numbered = self.nodes().enumerate();
+        numbered.map(move |(k, node)| (node, [force(2 * k), force(2 * k + 1)]))
+    }
+
+    /// Bn^T Pn + Bt^T Pt at every slave node.
+    pub fn slave_forces(&self, force: [f64; 2]) -> impl Iterator<Item = (usize, [f64; 2])> {
+        self.nodal_forces(force).take(self.slave_dofs / 2)
+    }
+
+    fn product(&self, row: &[f64], v: impl Fn(usize) -> f64) -> f64 {
+        row.iter().zip(&self.dofs).map(|(b, &dof)| b * v(dof)).sum()
+    }
+}

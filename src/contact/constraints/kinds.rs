@@ -1,0 +1,21 @@
+//! Kinds of contact constraints: which kind is made for which target. Section 3 of docs/theory.md.
+
+use super::configurations::Configurations;
+use super::constraint::Constraint;
+use super::{node_to_corner, node_to_segment};
+use crate::contact::targets::PairTarget;
+
+impl Constraint {
+    /// The constraint of a slave node at its target.
+    pub fn new(source: PairTarget, at: &Configurations) -> Self {
+        match source.target.corner {
+            None => node_to_segment::constraint(source, at),
+            Some(corner) => node_to_corner::constraint(source, corner, at),
+        }
+    }
+
+    /// The same constraint between other configurations.
+    pub fn relinearized(&self, at: &Configurations) -> Self {
+        Constraint::new(self.source, at)
+    }
+}

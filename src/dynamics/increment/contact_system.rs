@@ -1,0 +1,100 @@
+//! Complementarity problem of some constraints with one of the two system matrices: K* for the
+//! contact forces of a pass, M for the impulses. Sections 5 and 6 of docs/theory.md.
+
+use crate::contact::{ClosedPair, ClosedPairs, Constraint};
+use crate::dynamics::results::{Cause, FailedLcp};
+use crate::dynamics::step::System;
+use crate::lcp::{ContactState, FrictionalLcp, FrictionalSolution, LcpMethod};
+use crate::linear::{LinearError, Transformation};
+
+/// Part of the compliance of a constraint that holds its force near that of the pass before.
+const PROXIMAL_WEIGHT: f64 = 1e-5;
+
+/// A system matrix with what its complementarity problems need.
+pub(super) struct ContactSystem<'a> {
+    /// T of the unknowns.
+    pub map: &'a Transformation,
+    pub system: System<'a>,
+    pub method: LcpMethod,
+}
+
+/// What a complementarity problem starts from.
+pub(super) struct Guess {
+    /// State of every constraint.
+    pub states: Vec<ContactState>,
+    /// Forces of every constraint near which, of several solutions, the answer is to lie.
+    pub nearest: Option<Vec<[f64; 2]>>,
+}
+
+/// What is closed, and the pivots that it took.
+pub(super) struct ContactSolution {
+    pub closed: ClosedPairs,
+    pub pivots: usize,
+}
+
+impl Guess {
+    /// States of the pairs closed `before`; when the passes have settled, their forces too.
+    pub fn from_pass(constraints: &[&Constraint], before: &ClosedPairs, settled: bool) -> Self {
+        let forces = || constraints.iter().map(|c| before.force(c.key)).collect();
+        Guess {
+            states: constraints.iter().map(|c| before.state(c.key)).collect(),
+            nearest: settled.then(forces),
+        }
+    }
+}
+
+impl ContactSystem<'_> {
+    /// Forces of the given constraints from the constant terms of their gaps and slips.
+    pub fn solve(
+        &mut self,
+        constraints: &[&Constraint],
+        [gaps, slips]: [Vec<f64>; 2],
+        guess: Guess,
+    ) -> Result<ContactSolution, Cause> {
+        let mut problem = self.system.frictional_lcp(constraints, gaps, slips)?;
+        if let Some(forces) = &guess.nearest {
+            add_proximal_term(&mut problem, forces);
+        }
+        match self.system.solve_lcp(&problem, &guess.states, self.method) {
+            Ok(solution) => Ok(ContactSolution {
+                closed: closed_of(constraints, &solution),
+                pivots: solution.counters.pivots,
+            }),
+            Err(error) => {
+                let failed = FailedLcp::new(error, problem, constraints);
+                Err(Cause::Lcp(Box::new(failed)))
+            }
+        }
+    }
+
+    /// y + W load, both over all dofs, W being the inverse of the matrix.
+    pub fn respond(&mut self, y: &[f64], load: &[f64]) -> Result<Vec<f64>, LinearError> {
+        let correction = self.system.solve(&self.map.restrict(load))?;
+        let mut response = y.to_vec();
+        self.map.add(&correction, &mut response);
+        Ok(response)
+    }
+}
+
+/// The constraints that carry a force.
+fn closed_of(constraints: &[&Constraint], solution: &FrictionalSolution) -> ClosedPairs {
+    let pair = |(k, constraint): (usize, &&Constraint)| {
+        let force = [solution.pn[k], solution.pt[k]];
+        (force[0] > 0.0).then(|| ClosedPair::new(constraint, force, solution.state[k]))
+    };
+    constraints.iter().enumerate().filter_map(pair).collect()
+}
+
+/// Equal-force rule, eq. (5.3): adds eps Q_kk (P_k - P_k^0) to gaps and slips, P^0 being the forces of
+/// the pass before. Where several pairs can carry the same force, the solution near that of the pass
+/// before is taken; the term vanishes as the passes converge.
+fn add_proximal_term(problem: &mut FrictionalLcp, forces: &[[f64; 2]]) {
+    let n = forces.len();
+    for (k, [pn, pt]) in forces.iter().enumerate() {
+        let [normal, tangential] = [k, k + n].map(|i| PROXIMAL_WEIGHT * problem.q[(i, i)]);
+        problem.q[(k, k)] += normal;
+        problem.q[(k + n, k + n)] += tangential;
+        problem.gap[k] -= normal * pn;
+        problem.slip[k] -= tangential * pt;
+    }
+}
