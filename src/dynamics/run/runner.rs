@@ -3,7 +3,7 @@
 
 use std::io;
 
-use super::acceptance::{Accepted, failure, start_failure};
+use super::acceptance::{Accepted, Before, failure, start_failure};
 use super::bisection::Bisection;
 use super::impact_control::ImpactControl;
 use super::nominal_increment::{NominalIncrement, nominal_increments};
@@ -153,9 +153,14 @@ impl<'m, 'o> Runner<'m, 'o> {
             }
             let halvings = control.halvings();
             let attempt = self.attempt(problem, workspace, span, nominal.length);
-            let before = (&self.state, &self.ledger);
-            let checked =
-                attempt.and_then(|found| Accepted::new(problem, before, found, halvings, &nominal));
+            let before = Before {
+                state: &self.state,
+                closed: &self.contact,
+                ledger: &self.ledger,
+            };
+            let checked = attempt.and_then(|found| {
+                Accepted::new(problem, workspace, before, found, halvings, &nominal)
+            });
             match checked {
                 Ok(accepted) => {
                     let Subincrement {
@@ -271,7 +276,7 @@ impl<'m, 'o> Runner<'m, 'o> {
     ) -> Result<Option<Failure>, RunError> {
         let now = place.time_point(0.0);
         problem.unknowns.prescribe_velocity(now, &mut self.state.v);
-        self.state.a = problem.start_acceleration(workspace.m(), &self.state, now);
+        self.state.a = workspace.start_acceleration(problem, &self.state, now);
         self.ledger = Ledger::new(problem, &self.state);
         if let Some(failure) = start_failure(&self.state, &self.ledger, place) {
             return Ok(Some(failure));

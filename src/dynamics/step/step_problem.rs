@@ -7,14 +7,13 @@ use super::mass::Mass;
 use super::parts::Parts;
 use super::scheme::Weights;
 use super::unknowns::Unknowns;
-use super::workspace::System;
 use crate::contact::tolerances::COLLAPSED_LENGTH;
 use crate::contact::{
     Configurations, Constraint, ContactSurfaces, PairTarget, Projection, Search, find_targets,
     position, project,
 };
 use crate::dynamics::results::{Cause, State};
-use crate::elements::{Elements, Motion};
+use crate::elements::Elements;
 use crate::lcp::LcpMethod;
 use crate::model::{Model, Settings, Step};
 
@@ -189,25 +188,6 @@ impl StepProblem<'_> {
             acceleration,
             inertia,
         })
-    }
-
-    /// Acceleration at the start of the analysis, M A = R - F, the supports being at rest.
-    pub fn start_acceleration(&self, mut mass: System, start: &State, now: TimePoint) -> Vec<f64> {
-        let mut a = vec![0.0; start.u.len()];
-        let load = self.loads.weighted(self.elements, 1.0, now, now, &start.u);
-        let motion = Motion::at(&start.u, &start.internal);
-        let Ok(internal) = self.elements.internal_force(motion) else {
-            return a;
-        };
-        let r = difference(&load, &internal);
-        let solved = mass
-            .factorize()
-            .and_then(|()| mass.solve(&self.unknowns.restrict(&r)));
-        // Without it only the estimate of the first landings would be less good.
-        if let Ok(acceleration) = solved {
-            self.unknowns.add(&acceleration, &mut a);
-        }
-        a
     }
 }
 

@@ -2,8 +2,9 @@
 //! times and counts. Each operation measures itself. Section 4 of docs/theory.md.
 
 use super::effective_stiffness::{EffectiveStiffness, FactoredMatrix};
+use super::loads::TimePoint;
 use super::meter::Meter;
-use super::step_problem::{Equilibrium, Interval, StepProblem};
+use super::step_problem::{Equilibrium, Interval, StepProblem, difference};
 use crate::contact::{
     ClosedPairs, Compliance, Constraint, Penetration, Search, find_penetration, frictional_lcp,
 };
@@ -110,6 +111,28 @@ impl<'m> Workspace<'m> {
             |t| &mut t.contact,
             || problem.constraints(search, [u0, u], before, settled),
         )
+    }
+
+    /// Acceleration at the start of the analysis, M A = R - F, the supports being at rest.
+    pub fn start_acceleration(
+        &mut self,
+        problem: &StepProblem,
+        start: &State,
+        now: TimePoint,
+    ) -> Vec<f64> {
+        let mut a = vec![0.0; start.u.len()];
+        let motion = Motion::at(&start.u, &start.internal);
+        let Ok(internal) = problem.elements.internal_force(motion) else {
+            return a;
+        };
+        let load = (problem.loads).weighted(problem.elements, 1.0, now, now, &start.u);
+        let r = problem.unknowns.restrict(&difference(&load, &internal));
+        let mut mass = self.m();
+        // Without it only the estimate of the first landings would be less good.
+        if let Ok(acceleration) = mass.factorize().and_then(|()| mass.solve(&r)) {
+            problem.unknowns.add(&acceleration, &mut a);
+        }
+        a
     }
 
     /// A node that has gone into a body between `u0` and `u1`, as [`find_penetration`] says.
