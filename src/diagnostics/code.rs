@@ -3,7 +3,7 @@
 
 macro_rules! codes {
     ($($name:ident $id:literal $meaning:literal)*) => {
-        /// What a diagnostic is about.
+        /// Subject of a diagnostic.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Code {
             $(#[doc = $meaning] $name,)*

@@ -27,8 +27,7 @@ impl Mesh {
         2 * self.coordinates.len()
     }
 
-    /// For every node the body it belongs to: the smallest index of the nodes that elements
-    /// connect.
+    /// Body of every node, numbered by the smallest index of the nodes that elements connect.
     pub fn bodies(&self) -> Vec<usize> {
         let mut parent: Vec<usize> = (0..self.node_count()).collect();
         for element in &self.elements {

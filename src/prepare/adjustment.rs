@@ -10,7 +10,7 @@ use crate::model::{Adjust, Contact, Element, Model};
 /// Smallest ratio of an element's area to that before.
 const SMALLEST_AREA: f64 = 0.5;
 
-/// What was moved for a contact.
+/// Nodes moved for a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Adjusted {
     /// Index of the contact.
@@ -25,7 +25,7 @@ pub struct Adjusted {
     pub spoiled: Option<usize>,
 }
 
-/// Moves slave nodes onto the master surfaces as the contacts of a model ask for, one contact after
+/// Moves slave nodes onto the master surfaces as the contacts of a model require, one contact after
 /// the other: the reference coordinates change, so that nothing is strained.
 pub(super) fn adjust(model: &mut Model, surfaces: &[ContactSurfaces]) -> Vec<Adjusted> {
     if model
@@ -88,7 +88,7 @@ fn move_nodes(model: &mut Model, contact: usize, moved: &[InitialGap]) -> Option
     })
 }
 
-/// Whether an element that was convex is no more, or lost half its area.
+/// Whether an element has lost its convexity or half its area.
 fn is_spoiled(element: &Element, before: &[[f64; 2]], after: &[[f64; 2]]) -> bool {
     let nodes = &element.nodes;
     if nodes.iter().all(|&n| before[n] == after[n]) {
@@ -114,7 +114,7 @@ fn area(nodes: &[usize], x: &[[f64; 2]]) -> f64 {
     sides.sum::<f64>() / 2.0
 }
 
-/// Reports what was moved; an element that was spoiled is an error.
+/// Reports the moved nodes; an element that was spoiled is an error.
 pub(super) fn report_adjusted(model: &Model, adjusted: &[Adjusted], d: &mut Diagnostics) {
     for moved in adjusted {
         let contact = &model.contacts[moved.contact];

@@ -11,7 +11,7 @@ use std::collections::HashMap;
 /// Smallest cross product of two sides, relative to the square of the longest side.
 const FLAT: f64 = 1e-10;
 
-/// Reports elements that are clockwise, degenerate, not convex or there twice.
+/// Reports elements that are clockwise, degenerate, not convex or defined twice.
 pub(super) fn mesh(mesh_index: &MeshIndex, cx: &mut Context) {
     let mut known: HashMap<Vec<usize>, u64> = HashMap::new();
     for (element, &span) in mesh_index

@@ -100,7 +100,7 @@ fn push_list(text: &mut String, status: Status, title: &str) {
     }
 }
 
-/// A sentence with its stars kept from being taken as markup.
+/// A sentence with its stars escaped for Markdown.
 fn plain(sentence: &str) -> String {
     sentence.replace('*', "\\*")
 }

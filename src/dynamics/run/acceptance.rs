@@ -1,5 +1,5 @@
-//! What a converged increment must pass before it is accepted, and the failure of one that does not.
-//! Section 4 of docs/theory.md, Cutback.
+//! Checks that a converged increment must pass before it is accepted, and the failures of those that
+//! do not. Section 4 of docs/theory.md, Cutback.
 
 use super::nominal_increment::NominalIncrement;
 use crate::dynamics::events::{FailedSubincrement, Subincrement};
@@ -8,18 +8,18 @@ use crate::dynamics::ledger::{Ledger, check_energy_gain};
 use crate::dynamics::results::{Failure, State};
 use crate::dynamics::step::{Interval, StepPlace, StepProblem};
 
-/// Halvings of an increment because of the energy that contact puts in.
+/// Most halvings of an increment because of the energy that contact puts in.
 const GAIN_HALVINGS: u32 = 5;
 
-/// A subincrement that counts, and the ledger with it.
+/// An accepted subincrement, and the ledger with its energies.
 pub(crate) struct Accepted {
     pub subincrement: Subincrement,
     pub ledger: Ledger,
 }
 
 impl Accepted {
-    /// A converged subincrement, `halvings` times halved, of the `nominal` increment: its energies must
-    /// be finite, and contact must put in none as long as halving helps.
+    /// Accepts a converged subincrement, `halvings` times halved, of the `nominal` increment: its
+    /// energies must be finite, and contact must put in none while halvings are left for that.
     pub fn new(
         problem: &StepProblem,
         (start, ledger): (&State, &Ledger),

@@ -5,7 +5,7 @@ use super::nominal_increment::NominalIncrement;
 use super::time_control::{Span, TimeControl};
 use crate::dynamics::step::Interval;
 
-/// A nominal increment of which the parts up to number `piece` of 2^`halvings` are done.
+/// A nominal increment of which the parts up to number `part` of 2^`halvings` are done.
 pub(crate) struct Bisection {
     nominal: NominalIncrement,
     piece: u32,

@@ -4,7 +4,7 @@
 use crate::elements::Elements;
 use crate::model::{Load, Model, Pressure, Step, TimeBase, Variation};
 
-/// Times of a moment: since the start of the step and of the analysis, and the step's duration.
+/// A point in time: time since the start of the step and of the analysis, and the step's duration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TimePoint {
     pub step: f64,
@@ -82,13 +82,13 @@ impl<'m> Loads<'m> {
         r
     }
 
-    fn add_concentrated(&self, weight: f64, moment: TimePoint, r: &mut [f64]) {
+    fn add_concentrated(&self, weight: f64, at: TimePoint, r: &mut [f64]) {
         for load in &self.step.point_loads {
             r[load.at.dof] += weight * moment.magnitude(self.model, load);
         }
     }
 
-    fn add(&self, elements: &Elements, weight: f64, moment: TimePoint, u: &[f64], r: &mut [f64]) {
+    fn add(&self, elements: &Elements, weight: f64, at: TimePoint, u: &[f64], r: &mut [f64]) {
         if weight == 0.0 {
             return;
         }
@@ -143,7 +143,7 @@ impl<'m> Loads<'m> {
         let [a, b] = load.at.face.nodes(&self.model.mesh);
         let x = &self.model.mesh.coordinates;
         let e = [0, 1].map(|i| x[b][i] + u[2 * b + i] - x[a][i] - u[2 * a + i]);
-        // n dl = (e_y, -e_x): on the right of the way from a to b
+        // n dl = (e_y, -e_x): on the right of the direction from a to b
         let half = p * elements.thickness(load.at.face.element) / 2.0;
         for node in [a, b] {
             r[2 * node] -= half * e[1];

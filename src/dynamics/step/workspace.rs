@@ -1,5 +1,5 @@
-//! What the increments of a step work with: effective stiffness with its factors, contact search,
-//! times and counts. Each operation measures itself. Section 4 of docs/theory.md.
+//! Workspace of the increments of a step: effective stiffness with its factors, contact search,
+//! times and counts. Each operation measures its own time. Section 4 of docs/theory.md.
 
 use super::effective_stiffness::{EffectiveStiffness, FactoredMatrix};
 use super::meter::Meter;
@@ -95,7 +95,7 @@ impl<'m> Workspace<'m> {
         self.meter.time(|t| &mut t.assembly, product)
     }
 
-    /// Constraints between the displacements `u0` and `u`, as [`StepProblem::constraints`] says.
+    /// Constraints between the displacements `u0` and `u`, see [`StepProblem::constraints`].
     pub fn constraints(
         &mut self,
         problem: &StepProblem,
@@ -111,7 +111,7 @@ impl<'m> Workspace<'m> {
         )
     }
 
-    /// A node that has gone into a body between `u0` and `u1`, as [`find_penetration`] says.
+    /// A node that has entered a body between `u0` and `u1`, see [`find_penetration`].
     pub fn find_penetration(
         &mut self,
         [u0, u1]: [&[f64]; 2],
@@ -133,7 +133,7 @@ impl<'a> System<'a> {
         System { matrix, meter }
     }
 
-    /// Whether there are factors of the matrix as it is.
+    /// Whether the factors are those of the current matrix.
     pub fn is_factorized(&self) -> bool {
         self.matrix.solver.is_factorized()
     }
@@ -164,7 +164,7 @@ impl<'a> System<'a> {
         Ok(meter.time(|t| &mut t.contact, pose))
     }
 
-    /// Solves a complementarity problem, from the states `warm` on.
+    /// Solves a complementarity problem, starting from the states `warm`.
     pub fn solve_lcp(
         &mut self,
         problem: &FrictionalLcp,

@@ -8,8 +8,8 @@ pub(crate) fn label(label: &str, text: &str) -> String {
     format!("{label:<9}{text}")
 }
 
-/// The pieces of text three blanks apart, in as many lines as they need.
-pub(crate) fn wrap(first: &str, pieces: &[String]) -> Vec<String> {
+/// The items three blanks apart, wrapped into lines.
+pub(crate) fn wrap(first: &str, items: &[String]) -> Vec<String> {
     let mut lines = vec![];
     let mut line = label(first, "");
     let mut empty = true;

@@ -8,8 +8,8 @@ use crate::reader::context::Context;
 use crate::reader::mesh::{Block, MeshIndex, Outline, Sides, Surfaces};
 use std::collections::HashMap;
 
-/// Reads general contact and adds its surface: its contact with itself and one with every rigid
-/// surface, which a pair of the deck may hold already for some nodes.
+/// Reads general contact and adds its surface: contact of the surface with itself and with every
+/// rigid surface, there without the slave nodes of contact pairs.
 pub(crate) fn read(
     outline: &Outline,
     mesh_index: &MeshIndex,
@@ -32,7 +32,7 @@ pub(crate) fn read(
     all
 }
 
-/// Nodes that pairs of the deck hold away from a rigid surface, increasing.
+/// Slave nodes of the contact pairs with a rigid surface, increasing.
 fn paired(
     rigid: usize,
     pairs: &[Contact],
@@ -85,8 +85,8 @@ fn general(
     })
 }
 
-/// Pairs of faces touch in general contact already; the nodes of a pair with a rigid surface are
-/// left out of its general contact.
+/// Reports contact pairs of faces, which general contact includes; pairs with a rigid surface take
+/// precedence for their nodes.
 pub(crate) fn report_pairs(pairs: &[Contact], surfaces: &Surfaces, cx: &mut Context) {
     let is_rigid = |pair: &Contact| {
         let master = surfaces.all.get(pair.master);

@@ -189,7 +189,7 @@ pub(crate) fn side_count(mesh: &Mesh, element: usize) -> usize {
     mesh.elements.get(element).map_or(0, |e| e.sides().len())
 }
 
-/// How many elements share each side.
+/// Number of elements that share each side.
 pub(crate) struct Sides(HashMap<[usize; 2], usize>);
 
 impl Sides {
@@ -204,12 +204,12 @@ impl Sides {
         Sides(counts)
     }
 
-    /// Whether another element lies behind a face.
+    /// Whether two elements share a face.
     pub fn is_interior(&self, face: Face, mesh: &Mesh) -> bool {
         self.0.get(&key(mesh, face)).is_some_and(|&count| count > 1)
     }
 
-    /// Sides that no other element shares, of these elements in order.
+    /// Exterior sides of these elements, in order: sides of one element only.
     pub fn free_faces(&self, elements: &[usize], mesh: &Mesh) -> Vec<Face> {
         let sides = |&element: &usize| {
             (0..side_count(mesh, element)).map(move |side| Face { element, side })
