@@ -34,6 +34,7 @@ LEDGER = (
     ("strain", "strain", 1),
     ("friction_dissipation", "friction", 1),
     ("impact_loss", "impact loss", 1),
+    ("material_dissipation", "materials", 1),
     ("numerical_dissipation", "numerical dissipation", 1),
     ("normal_contact_work", "normal contact (taken)", -1),
 )

@@ -25,6 +25,7 @@ ENERGIES = (
     "normal_contact_work",
     "friction_dissipation",
     "impact_loss",
+    "material_dissipation",
     "numerical_dissipation",
     "balance",
 )

@@ -2,15 +2,15 @@
 //! Coulomb friction.
 //!
 //! A keyword deck is read ([`deck`], [`reader`]) into a [`model`]; its bodies are integrated in
-//! time ([`dynamics`]) with total-Lagrangian elements ([`elements`]), node-to-segment [`contact`]
-//! posed as a linear complementarity problem ([`lcp`]) at every pass, and sparse factorisations
-//! ([`linear`]); [`output`] observes the run and writes the result file.
+//! time ([`dynamics`]) with total-Lagrangian elements ([`elements`]) of hyperelastic [`materials`],
+//! node-to-segment [`contact`] posed as a linear complementarity problem ([`lcp`]) at every pass, and
+//! sparse factorisations ([`linear`]); [`output`] observes the run and writes the result file.
 //!
 //! # Layers
 //!
 //! A module imports only from modules before it in this list: `vectors`, `diagnostics`, `deck`,
-//! `model`, `reader`, `elements`, `linear`, `lcp`, `contact`, `prepare`, `dynamics`, `output`,
-//! `cli`. The rooms of a layer (its sub-folders) import one way as well.
+//! `materials`, `model`, `reader`, `elements`, `linear`, `lcp`, `contact`, `prepare`, `dynamics`,
+//! `output`, `cli`. The rooms of a layer (its sub-folders) import one way as well.
 //!
 //! # Equations
 //!
@@ -71,6 +71,7 @@ pub mod dynamics;
 pub mod elements;
 pub mod lcp;
 pub mod linear;
+pub mod materials;
 pub mod model;
 pub mod output;
 pub mod prepare;

@@ -58,7 +58,7 @@ fn square_reads_without_messages() {
     assert_eq!(model.mesh.elements[0].label, 7);
     assert_eq!(model.mesh.elements[0].element_type, ElementType::CPS4);
     assert_eq!(model.sections[0].thickness, 0.5);
-    assert_eq!(model.materials[0].young, 1000.0);
+    assert_eq!(model.materials[0].law.small_strain().young, 1000.0);
     assert_eq!(model.sets.nodes[1].name, "FOOT");
     assert_eq!(model.sets.history, [history(1, true)]);
     let step = &model.steps[0];

@@ -15,10 +15,11 @@ use sources::{parse_sources, read_sources};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The layers, lowest first.
-const LAYERS: [&str; 13] = [
+const LAYERS: [&str; 14] = [
     "vectors",
     "diagnostics",
     "deck",
+    "materials",
     "model",
     "reader",
     "elements",

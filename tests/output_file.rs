@@ -158,7 +158,7 @@ const VECTOR_PER_INCREMENT: [&str; 18] = [
     "/history/nodes/TIP/mean/A",
 ];
 
-const PER_INCREMENT: [&str; 56] = [
+const PER_INCREMENT: [&str; 57] = [
     "/history/contact/BOTTOM_TOP/normal_work",
     "/history/contact/BOTTOM_TOP/friction_dissipation",
     "/history/contact/BOTTOM_TOP/normal_impulse",
@@ -189,6 +189,7 @@ const PER_INCREMENT: [&str; 56] = [
     "/history/energy/normal_contact_work",
     "/history/energy/friction_dissipation",
     "/history/energy/impact_loss",
+    "/history/energy/material_dissipation",
     "/history/energy/numerical_dissipation",
     "/history/energy/balance",
     "/history/contact/BOTTOM_TOP/moment",

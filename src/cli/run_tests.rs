@@ -18,6 +18,7 @@ use crate::dynamics::{
 };
 use crate::elements::Strained;
 use crate::lcp::{FrictionalLcp, LcpError};
+use crate::materials::Law;
 use crate::model::{
     Element, ElementType, Frames, Increments, Material, Mesh, Model, Procedure, Section, Set,
     Settings, Step,
@@ -40,8 +41,7 @@ fn square() -> Model {
         },
         materials: vec![Material {
             name: "M".into(),
-            young: 1.0,
-            poisson: 0.0,
+            law: Law::elastic(1.0, 0.0),
             density: 1.0,
         }],
         sections: vec![Section {
@@ -91,6 +91,7 @@ pub(super) fn report(increment: usize) -> IncrementReport {
             u: vec![1.0; 8],
             v: vec![0.0; 8],
             a: vec![0.0; 8],
+            internal: vec![],
         },
         nodal: NodalResults {
             reaction: vec![0.0; 8],

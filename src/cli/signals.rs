@@ -1,6 +1,7 @@
 //! Signals that request the end of a run.
 //!
-//! After the first one the run ends with the current increment and complete results. A second one ends the program at once.
+//! After the first one the run ends with the current increment and complete results. A second one
+//! ends the program at once.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -24,7 +25,7 @@ const ONE_REQUEST: Duration = Duration::from_millis(250);
 /// # Errors
 /// Those of the system.
 pub(super) fn receive() -> io::Result<Interrupt> {
-    // A file beyond the size limit shall be an error where it is written, without ending the program.
+    // A file beyond the size limit is an error where it is written and must not end the program.
     flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))?;
     let ignored = ignored_signals();
     let wanted = [SIGHUP, SIGINT, SIGTERM].into_iter();

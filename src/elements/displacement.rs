@@ -4,11 +4,11 @@
 use nalgebra::SMatrix;
 
 use super::formulation::{Formulation, add_geometric, strain_displacement};
-use super::integration_point::{Point, PointState, Reference};
+use super::integration_point::{PointState, Reference, Strains};
 use super::kinematics::{
     Configuration, determinant, displacement_gradient, green_lagrange, smaller,
 };
-use super::voigt::PlaneMaterial;
+use crate::materials::Committed;
 
 /// Strains of the displacements, E = (F^T F - I)/2.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,27 +17,28 @@ pub struct Displacement;
 impl Formulation for Displacement {
     fn states<const N: usize, const P: usize>(
         element: &Reference<N, P>,
-        material: &PlaneMaterial,
+        material: &Committed,
         configuration: &Configuration<N>,
     ) -> [PointState; P] {
-        std::array::from_fn(|p| state(&element.points[p], material, configuration))
+        std::array::from_fn(|p| state(element, p, material, configuration))
     }
 
     /// K = int B_L^T C B_L + B_NL^T S B_NL dOmega, eq. (2.6) (paper eq. 12).
     ///
-    /// In the energy-momentum form B_L is that of the mid configuration on both sides and S the mean
-    /// stress: a symmetric approximation of the exact tangent, which has B_L of the end on the right; up to
-    /// the factor theta2 = 1/2.
+    /// In the energy-momentum form B_L is that of the mid configuration on both sides, S the
+    /// energy-momentum stress and C the symmetric part of its own tangent: a symmetric approximation of
+    /// the exact tangent, which has B_L of the end on the right; up to the factor theta2 = 1/2.
     fn tangent<const N: usize, const P: usize, const D: usize>(
         element: &Reference<N, P>,
-        material: &PlaneMaterial,
+        material: &Committed,
         configuration: &Configuration<N>,
     ) -> SMatrix<f64, D, D> {
         let mut k = SMatrix::<f64, D, D>::zeros();
-        for point in &element.points {
-            let state = state(point, material, configuration);
+        for (p, point) in element.points.iter().enumerate() {
+            let state = state(element, p, material, configuration);
+            let c = state.strains.tangent(material, p);
             let b = strain_displacement::<N, D>(point, &state.f());
-            k += b.transpose() * (material.tangent(&state.strain) * b) * point.volume;
+            k += b.transpose() * (c * b) * point.volume;
             add_geometric(&mut k, point, &state.s);
         }
         k
@@ -45,33 +46,35 @@ impl Formulation for Displacement {
 }
 
 /// Deformation and stress at a point: the one evaluation of the material.
-fn state<const N: usize>(
-    point: &Point<N>,
-    material: &PlaneMaterial,
+fn state<const N: usize, const P: usize>(
+    element: &Reference<N, P>,
+    p: usize,
+    material: &Committed,
     configuration: &Configuration<N>,
 ) -> PointState {
+    let point = &element.points[p];
     match configuration {
         Configuration::At(u) => {
             let h = displacement_gradient(point, u);
-            let (strain, determinant) = (green_lagrange(&h), determinant(&h));
+            let (strains, determinant) = (Strains::At(green_lagrange(&h)), determinant(&h));
             PointState {
                 h,
-                strain,
+                strains,
                 material_determinant: determinant,
-                s: material.stress(&strain),
+                s: strains.stress(material, p),
                 determinant,
             }
         }
         Configuration::Between(u0, u1) => {
             let [h0, h1] = [u0, u1].map(|u| displacement_gradient(point, u));
-            let [e0, e1] = [h0, h1].map(|h| green_lagrange(&h));
+            let strains = Strains::Between(green_lagrange(&h0), green_lagrange(&h1));
             let h = (h0 + h1) / 2.0;
             let mid = determinant(&h);
             PointState {
                 h,
-                strain: (e0 + e1) / 2.0,
+                strains,
                 material_determinant: mid,
-                s: material.stress_between(&e0, &e1),
+                s: strains.stress(material, p),
                 determinant: smaller(mid, determinant(&h1)),
             }
         }
@@ -83,23 +86,17 @@ mod tests {
     use super::*;
     use crate::elements::formulation::{evaluate, internal_force};
     use crate::elements::{quad4, tri3};
-    use crate::model::{Material, Plane};
+    use crate::materials::{Law, Plane, PlaneLaw};
     use nalgebra::Matrix2;
 
     /// Plane strain, E = 1000, nu = 0.3.
-    fn plane_strain() -> PlaneMaterial {
-        let material = Material {
-            name: "M".into(),
-            young: 1000.0,
-            poisson: 0.3,
-            density: 1.0,
-        };
-        PlaneMaterial::new(&material, Plane::Strain)
+    fn plane_strain() -> PlaneLaw {
+        Law::elastic(1000.0, 0.3).in_plane(Plane::Strain)
     }
 
     fn strain_energy<const N: usize, const P: usize>(
         element: &Reference<N, P>,
-        c: &PlaneMaterial,
+        c: &Committed,
         u: &SMatrix<f64, 2, N>,
     ) -> f64 {
         evaluate::<Displacement, N, P>(element, c, u).energy
@@ -123,7 +120,8 @@ mod tests {
     }
 
     fn check_tangent<const N: usize, const P: usize, const D: usize>(element: &Reference<N, P>) {
-        let c = plane_strain();
+        let law = plane_strain();
+        let c = Committed::new(&law, &[]);
         let u = displacements::<N>(5);
         let k = Displacement::tangent::<N, P, D>(element, &c, &Configuration::At(u));
         let h = 1e-6;
@@ -149,7 +147,8 @@ mod tests {
     }
 
     fn check_gradient<const N: usize, const P: usize>(element: &Reference<N, P>) {
-        let (c, u, h) = (plane_strain(), displacements::<N>(5), 1e-6);
+        let law = plane_strain();
+        let (c, u, h) = (Committed::new(&law, &[]), displacements::<N>(5), 1e-6);
         let force = internal_force::<Displacement, _, _>(element, &c, &Configuration::At(u)).0;
         for j in 0..2 * N {
             let mut du = SMatrix::<f64, 2, N>::zeros();
@@ -168,7 +167,8 @@ mod tests {
 
     #[test]
     fn averaged_force_does_exactly_the_work_of_the_strain_energy() {
-        let (c, element) = (plane_strain(), quad());
+        let law = plane_strain();
+        let (c, element) = (Committed::new(&law, &[]), quad());
         let (u0, u1) = (displacements::<4>(5), displacements::<4>(11));
         let (force, _) =
             internal_force::<Displacement, _, _>(&element, &c, &Configuration::Between(u0, u1));
@@ -181,7 +181,8 @@ mod tests {
         element: &Reference<N, P>,
         x: &SMatrix<f64, 2, N>,
     ) {
-        let c = plane_strain();
+        let law = plane_strain();
+        let c = Committed::new(&law, &[]);
         for degrees in (0..=360).step_by(15) {
             let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
             let u = Matrix2::new(cos, -sin, sin, cos) * x - x;
@@ -213,23 +214,35 @@ mod tests {
         for degrees in [0.0_f64, 40.0, 200.0] {
             let (sin, cos) = degrees.to_radians().sin_cos();
             let f = Matrix2::new(cos, -sin, sin, cos) * Matrix2::new(1.0, g, 0.0, 1.0);
-            let found = evaluate::<Displacement, _, _>(&element, &plane_strain(), &(f * x - x))
-                .principal_strain;
+            let found = evaluate::<Displacement, _, _>(
+                &element,
+                &Committed::new(&plane_strain(), &[]),
+                &(f * x - x),
+            )
+            .principal_strain;
             assert!((found - expected).abs() < 1e-14, "{found}");
         }
         // compression to 0.6: E = (0.36 - 1)/2
         let f = Matrix2::new(0.6, 0.0, 0.0, 1.0);
         assert!(
-            (evaluate::<Displacement, _, _>(&element, &plane_strain(), &(f * x - x))
-                .principal_strain
+            (evaluate::<Displacement, _, _>(
+                &element,
+                &Committed::new(&plane_strain(), &[]),
+                &(f * x - x)
+            )
+            .principal_strain
                 - 0.32)
                 .abs()
                 < 1e-14
         );
         assert!(
-            evaluate::<Displacement, _, _>(&element, &plane_strain(), &(f * x * f64::NAN))
-                .principal_strain
-                .is_nan()
+            evaluate::<Displacement, _, _>(
+                &element,
+                &Committed::new(&plane_strain(), &[]),
+                &(f * x * f64::NAN)
+            )
+            .principal_strain
+            .is_nan()
         );
     }
 
@@ -241,10 +254,11 @@ mod tests {
         let x = SMatrix::from_columns(
             &[[0.0, 0.0], [2.0, 0.3], [1.7, 1.9], [-0.2, 1.2]].map(|p| p.into()),
         );
-        let (c, element) = (plane_strain(), quad());
+        let law = plane_strain();
+        let (c, element) = (Committed::new(&law, &[]), quad());
         let u = gradient * x;
-        for point in &element.points {
-            let state = state(point, &c, &Configuration::At(u));
+        for p in 0..4 {
+            let state = state(&element, p, &c, &Configuration::At(u));
             let s = Matrix2::new(274.038462, 173.076923, 173.076923, 62.5);
             let p = Matrix2::new(380.769231, 226.442308, 183.173077, 73.557692);
             assert!((state.s - s).amax() < 1e-6);

@@ -6,7 +6,7 @@ use super::quad4::{self, Quad4};
 use super::recovery::ElementResult;
 use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion};
 use super::tri3::{self, Tri3};
-use super::voigt::PlaneMaterial;
+use crate::materials::Committed;
 use crate::model::{ElementType, Formulation, Shape};
 
 /// An element of any type.
@@ -54,6 +54,11 @@ impl AnyElement {
         with_element!(self, element => element.nodes())
     }
 
+    /// Number of integration points.
+    pub fn points(&self) -> usize {
+        with_element!(self, element => element.points())
+    }
+
     /// Share of each node in a uniform force per volume (length^3).
     pub fn nodal_volumes(&self) -> [f64; MAX_NODES] {
         with_element!(self, element => element.nodal_volumes())
@@ -65,18 +70,24 @@ impl AnyElement {
     }
 
     /// Internal force with the smallest determinant of the deformation gradient.
-    pub fn force(&self, material: &PlaneMaterial, motion: Motion) -> (ElementVector, f64) {
+    pub fn force(&self, material: &Committed, motion: Motion) -> (ElementVector, f64) {
         with_element!(self, element => element.force(material, motion))
     }
 
     /// Tangent.
-    pub fn tangent(&self, material: &PlaneMaterial, motion: Motion) -> ElementMatrix {
+    pub fn tangent(&self, material: &Committed, motion: Motion) -> ElementMatrix {
         with_element!(self, element => element.tangent(material, motion))
     }
 
     /// Strain energy, stress and strain at displacements `u`.
-    pub fn evaluate(&self, material: &PlaneMaterial, u: &[f64]) -> ElementResult {
+    pub fn evaluate(&self, material: &Committed, u: &[f64]) -> ElementResult {
         with_element!(self, element => element.evaluate(material, u))
+    }
+
+    /// Internal variables at displacements `u`, written to `updated`, and the energy dissipated on the
+    /// way to them (force length).
+    pub fn update(&self, material: &Committed, u: &[f64], updated: &mut [f64]) -> f64 {
+        with_element!(self, element => element.update(material, u, updated))
     }
 }
 

@@ -6,8 +6,9 @@ use rayon::prelude::*;
 use super::element::AnyElement;
 use super::recovery::ElementResult;
 use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion};
-use super::voigt::PlaneMaterial;
+use crate::materials::{Committed, ConstitutiveLaw, PlaneLaw};
 use crate::model::Model;
+use std::ops::Range;
 
 /// Elements below which a sweep over them is not worth a second thread.
 const PARALLEL_CHUNK: usize = 1024;
@@ -24,7 +25,9 @@ pub struct Inverted {
 /// An element with its material, density and thickness.
 struct Part {
     element: AnyElement,
-    material: PlaneMaterial,
+    law: PlaneLaw,
+    /// Place of the internal variables of its points among those of all elements.
+    variables: Range<usize>,
     density: f64,
     thickness: f64,
 }
@@ -38,16 +41,47 @@ pub struct Elements {
     dofs: usize,
 }
 
+/// Internal variables at the end of an increment.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Updated {
+    /// Internal variables of all points, element by element.
+    pub variables: Vec<f64>,
+    /// Energy dissipated on the way to them (force length).
+    pub dissipated: f64,
+}
+
+impl Part {
+    /// The material with its committed variables among those of all elements.
+    fn material<'a>(&'a self, committed: &'a [f64]) -> Committed<'a> {
+        Committed::new(&self.law, &committed[self.variables.clone()])
+    }
+
+    fn force(&self, motion: Motion) -> (ElementVector, f64) {
+        self.element.force(&self.material(motion.committed), motion)
+    }
+
+    fn tangent(&self, motion: Motion) -> ElementMatrix {
+        self.element
+            .tangent(&self.material(motion.committed), motion)
+    }
+}
+
 impl Elements {
     /// Elements of a model.
     pub fn new(model: &Model) -> Self {
         let x = &model.mesh.coordinates;
+        let mut variables = 0;
         let parts = model.mesh.elements.iter().map(|element| {
             let section = &model.sections[element.section];
             let material = &model.materials[section.material];
+            let law = material.law.in_plane(element.element_type.plane);
+            let element = AnyElement::new(element, x, section.thickness);
+            let first = variables;
+            variables += element.points() * law.variables();
             Part {
-                element: AnyElement::new(element, x, section.thickness),
-                material: PlaneMaterial::new(material, element.element_type.plane),
+                element,
+                law,
+                variables: first..variables,
                 density: material.density,
                 thickness: section.thickness,
             }
@@ -95,26 +129,46 @@ impl Elements {
         part.element.mass(part.density)
     }
 
-    /// Strain energy, mean stress and mean strain of every element at displacements `u`.
-    pub fn evaluate(&self, u: &[f64]) -> Vec<ElementResult> {
+    /// Internal variables of all points before the first increment, element by element: zero.
+    pub fn initial_variables(&self) -> Vec<f64> {
+        vec![0.0; self.parts.last().map_or(0, |part| part.variables.end)]
+    }
+
+    /// Internal variables at the end of an increment with displacements `u`. `committed` stays as it
+    /// is: the increment commits or drops what this returns.
+    pub fn update(&self, u: &[f64], committed: &[f64]) -> Updated {
+        let mut updated = Updated {
+            variables: committed.to_vec(),
+            dissipated: 0.0,
+        };
+        for part in self.parts.iter().filter(|part| !part.variables.is_empty()) {
+            let variables = &mut updated.variables[part.variables.clone()];
+            updated.dissipated += part.element.update(&part.material(committed), u, variables);
+        }
+        updated
+    }
+
+    /// Strain energy, mean stress and mean strain of every element at displacements `u`, with the
+    /// internal variables there.
+    pub fn evaluate(&self, u: &[f64], variables: &[f64]) -> Vec<ElementResult> {
         self.parts
             .par_iter()
             .with_min_len(PARALLEL_CHUNK)
-            .map(|part| part.element.evaluate(&part.material, u))
+            .map(|part| part.element.evaluate(&part.material(variables), u))
             .collect()
     }
 
-    /// Internal force F(u), or its energy-momentum form between `start` and `u`, 2 N entries.
+    /// Internal force F at the end of a motion, or its energy-momentum form from start to end, 2 N
+    /// entries.
     ///
     /// # Errors
     /// The first element that is turned inside out.
-    pub fn internal_force(&self, start: Option<&[f64]>, u: &[f64]) -> Result<Vec<f64>, Inverted> {
-        let motion = Motion { start, end: u };
+    pub fn internal_force(&self, motion: Motion) -> Result<Vec<f64>, Inverted> {
         let forces: Vec<(ElementVector, f64)> = self
             .parts
             .par_iter()
             .with_min_len(PARALLEL_CHUNK)
-            .map(|part| part.element.force(&part.material, motion))
+            .map(|part| part.force(motion))
             .collect();
         let mut total = vec![0.0; self.dofs];
         for (element, (force, determinant)) in forces.iter().enumerate() {
@@ -134,18 +188,12 @@ impl Elements {
 
     /// Calls `add(element, k)` with the tangent of every element in order, k being D x D column by
     /// column, in the configuration of [`Self::internal_force`].
-    pub fn for_each_tangent(
-        &self,
-        start: Option<&[f64]>,
-        u: &[f64],
-        mut add: impl FnMut(usize, &[f64]),
-    ) {
-        let motion = Motion { start, end: u };
+    pub fn for_each_tangent(&self, motion: Motion, mut add: impl FnMut(usize, &[f64])) {
         for (chunk, parts) in self.parts.chunks(2 * PARALLEL_CHUNK).enumerate() {
             let tangents: Vec<ElementMatrix> = parts
                 .par_iter()
                 .with_min_len(PARALLEL_CHUNK)
-                .map(|part| part.element.tangent(&part.material, motion))
+                .map(|part| part.tangent(motion))
                 .collect();
             for (i, k) in tangents.iter().enumerate() {
                 let d = 2 * parts[i].element.nodes().len();
@@ -156,19 +204,15 @@ impl Elements {
 
     /// K v with the tangent in the configuration of [`Self::internal_force`], 2 N entries. Elements
     /// at whose nodes `v` is zero cost nothing.
-    pub fn tangent_product(&self, start: Option<&[f64]>, u: &[f64], v: &[f64]) -> Vec<f64> {
+    pub fn tangent_product(&self, motion: Motion, v: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; self.dofs];
-        let motion = Motion { start, end: u };
         for part in &self.parts {
             let nodes = part.element.nodes();
             let dofs = || nodes.iter().flat_map(|n| [2 * n, 2 * n + 1]);
             if dofs().all(|dof| v[dof] == 0.0) {
                 continue;
             }
-            let (k, d) = (
-                part.element.tangent(&part.material, motion),
-                2 * nodes.len(),
-            );
+            let (k, d) = (part.tangent(motion), 2 * nodes.len());
             for (j, column) in dofs().enumerate() {
                 for (i, row) in dofs().enumerate() {
                     product[row] += k[j * d + i] * v[column];
@@ -182,6 +226,7 @@ impl Elements {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::materials::Law;
     use crate::model::{Element, ElementType, Material, Section};
 
     #[test]
@@ -189,8 +234,7 @@ mod tests {
         let mut model = Model::default();
         model.materials.push(Material {
             name: "M".into(),
-            young: 100.0,
-            poisson: 0.3,
+            law: Law::elastic(100.0, 0.3),
             density: 1.0,
         });
         model.sections.push(Section {
@@ -219,11 +263,11 @@ mod tests {
         let force = |t: f64| {
             let moved: Vec<f64> = u.iter().zip(&v).map(|(u, v)| u + t * v).collect();
             elements
-                .internal_force(None, &moved)
+                .internal_force(Motion::at(&moved, &[]))
                 .expect("no element inverted")
         };
         let (ahead, behind) = (force(1e-5), force(-1e-5));
-        let product = elements.tangent_product(None, &u, &v);
+        let product = elements.tangent_product(Motion::at(&u, &[]), &v);
         let largest = product.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
         for (i, p) in product.iter().enumerate() {
             let quotient = (ahead[i] - behind[i]) / 2e-5;

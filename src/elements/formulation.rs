@@ -7,7 +7,7 @@ use nalgebra::{SMatrix, Vector3};
 use super::integration_point::{Point, PointState, Reference};
 use super::kinematics::{Configuration, smaller};
 use super::recovery::{ElementResult, PointResult};
-use super::voigt::PlaneMaterial;
+use crate::materials::Committed;
 
 /// How strains and stresses at the integration points follow from the displacements of an element.
 /// Chosen at compile time: a sweep has no dispatch within an element.
@@ -16,14 +16,14 @@ pub trait Formulation {
     /// which force, tangent and output follow.
     fn states<const N: usize, const P: usize>(
         element: &Reference<N, P>,
-        material: &PlaneMaterial,
+        material: &Committed,
         configuration: &Configuration<N>,
     ) -> [PointState; P];
 
     /// Tangent K = dF/du, D x D (force/length); symmetric.
     fn tangent<const N: usize, const P: usize, const D: usize>(
         element: &Reference<N, P>,
-        material: &PlaneMaterial,
+        material: &Committed,
         configuration: &Configuration<N>,
     ) -> SMatrix<f64, D, D>;
 }
@@ -32,7 +32,7 @@ pub trait Formulation {
 /// determinant of the deformation gradient.
 pub fn internal_force<F: Formulation, const N: usize, const P: usize>(
     element: &Reference<N, P>,
-    material: &PlaneMaterial,
+    material: &Committed,
     configuration: &Configuration<N>,
 ) -> (SMatrix<f64, 2, N>, f64) {
     let mut force = SMatrix::<f64, 2, N>::zeros();
@@ -49,15 +49,31 @@ pub fn internal_force<F: Formulation, const N: usize, const P: usize>(
 /// Strain energy, stress and strain of an element at displacements `u`.
 pub fn evaluate<F: Formulation, const N: usize, const P: usize>(
     element: &Reference<N, P>,
-    material: &PlaneMaterial,
+    material: &Committed,
     u: &SMatrix<f64, 2, N>,
 ) -> ElementResult {
     let states = F::states(element, material, &Configuration::At(*u));
     let weighted = element.points.iter().zip(&states);
-    ElementResult::of_points(weighted.map(|(point, state)| {
-        let result = PointResult::new(state, material);
+    ElementResult::of_points(weighted.enumerate().map(|(p, (point, state))| {
+        let result = PointResult::new(state, material, p);
         (result, point.volume)
     }))
+}
+
+/// Internal variables of all points at displacements `u`, written to `updated`, and the energy
+/// dissipated on the way to them, int D dOmega (force length).
+pub fn update<F: Formulation, const N: usize, const P: usize>(
+    element: &Reference<N, P>,
+    material: &Committed,
+    u: &SMatrix<f64, 2, N>,
+    updated: &mut [f64],
+) -> f64 {
+    let states = F::states(element, material, &Configuration::At(*u));
+    let mut dissipated = 0.0;
+    for (p, (point, state)) in element.points.iter().zip(&states).enumerate() {
+        dissipated += material.update(p, state.strains.end(), updated) * point.volume;
+    }
+    dissipated
 }
 
 /// B_L: delta E (xx, yy, 2 xy) per nodal displacement (1/length).

@@ -1,7 +1,9 @@
 //! Integration points of the elements with their precomputed gradients and weights
 //! (total-Lagrangian form), and deformation and stress there. Section 2 of docs/theory.md.
 
-use nalgebra::{Matrix2, SMatrix, SVector};
+use nalgebra::{Matrix2, Matrix3, SMatrix, SVector};
+
+use crate::materials::Committed;
 
 /// One integration point in the reference configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,13 +37,48 @@ impl<const N: usize, const P: usize> Reference<N, P> {
     }
 }
 
+/// Green-Lagrange strains at which a material is evaluated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Strains {
+    /// One strain.
+    At(Matrix2<f64>),
+    /// Those of start and end, in the energy-momentum form.
+    Between(Matrix2<f64>, Matrix2<f64>),
+}
+
+impl Strains {
+    /// Second Piola-Kirchhoff stress at a point, eq. (2.3), or energy-momentum stress, eq. (4.8)
+    /// (force/length^2).
+    pub fn stress(&self, material: &Committed, point: usize) -> Matrix2<f64> {
+        match self {
+            Strains::At(e) => material.stress(point, e),
+            Strains::Between(e0, e1) => material.mean_stress(point, [e0, e1]),
+        }
+    }
+
+    /// Tangent of [`Self::stress`] in Voigt order (force/length^2).
+    pub fn tangent(&self, material: &Committed, point: usize) -> Matrix3<f64> {
+        match self {
+            Strains::At(e) => material.tangent(point, e),
+            Strains::Between(e0, e1) => material.mean_tangent(point, [e0, e1]),
+        }
+    }
+
+    /// The strain at the end.
+    pub fn end(&self) -> &Matrix2<f64> {
+        match self {
+            Strains::At(e) | Strains::Between(_, e) => e,
+        }
+    }
+}
+
 /// Deformation and stress at an integration point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointState {
     /// Displacement gradient H = F - I of the strain-displacement matrix.
     pub h: Matrix2<f64>,
-    /// Green-Lagrange strain that the material has.
-    pub strain: Matrix2<f64>,
+    /// Green-Lagrange strain that the material has, or strains.
+    pub strains: Strains,
     /// Determinant of the deformation gradient in the plane that the material has.
     pub material_determinant: f64,
     /// Second Piola-Kirchhoff stress S that does work on the strain of the displacements

@@ -12,12 +12,12 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector3};
 
 use super::formulation::{Formulation, add_geometric, strain_displacement};
-use super::integration_point::{Point, PointState, Reference};
+use super::integration_point::{Point, PointState, Reference, Strains};
 use super::kinematics::{
     Configuration, determinant, displacement_gradient, green_lagrange, smaller,
 };
 use super::solid::Solid;
-use super::voigt::PlaneMaterial;
+use crate::materials::Committed;
 
 /// Q4 with mean dilatation (CPE4 with `FORMULATION=MEAN DILATATION`).
 pub type Quad4MeanDilatation = Solid<4, 4, 8, MeanDilatation>;
@@ -46,8 +46,8 @@ struct PointStress {
     half_c: Matrix2<f64>,
     /// K = det F_m (F_m^T F_m)^-1, so that J1 - J0 = K : (E1 - E0).
     k: Matrix2<f64>,
-    /// Mean strain that the material has.
-    strain: Matrix2<f64>,
+    /// Strains that the material has.
+    strains: Strains,
     /// Stress that does work on the strain that the material has.
     s: Matrix2<f64>,
     /// Mean of theta/J.
@@ -78,8 +78,9 @@ impl PointMotion {
         })
     }
 
-    fn stress(&self, theta: [f64; 2], material: &PlaneMaterial) -> PointStress {
+    fn stress(&self, theta: [f64; 2], material: &Committed, p: usize) -> PointStress {
         let [e0, e1] = self.material_strain(theta);
+        let strains = Strains::Between(e0, e1);
         let [j0, j1] = self.dilatation.map(|j| 1.0 + j);
         let [t0, t1] = theta.map(|t| 1.0 + t);
         let h = (self.h[0] + self.h[1]) / 2.0;
@@ -89,8 +90,8 @@ impl PointMotion {
             h,
             half_c: (Matrix2::identity() + self.strain[0] + self.strain[1]) / 2.0,
             k: Matrix2::new(c.m22, -c.m12, -c.m21, c.m11) / f.determinant(),
-            strain: (e0 + e1) / 2.0,
-            s: material.stress_between(&e0, &e1),
+            strains,
+            s: strains.stress(material, p),
             ratio: (t0 / j0 + t1 / j1) / 2.0,
             inverse_j: (j0 + j1) / 2.0 / (j0 * j1),
             theta_over_jj: (t0 + t1) / 2.0 / (j0 * j1),
@@ -124,7 +125,7 @@ impl PointStress {
 /// stored energy of the element, eq. (2.11).
 fn stresses<const N: usize, const P: usize>(
     element: &Reference<N, P>,
-    material: &PlaneMaterial,
+    material: &Committed,
     configuration: &Configuration<N>,
 ) -> ([PointMotion; P], [PointStress; P], [f64; 2]) {
     let u = match configuration {
@@ -142,7 +143,7 @@ fn stresses<const N: usize, const P: usize>(
     // theta - 1 = int (J - 1) dOmega / V
     let theta = [0, 1].map(|i| mean(&|p| motions[p].dilatation[i]));
     let mut stresses: [PointStress; P] =
-        std::array::from_fn(|p| motions[p].stress(theta, material));
+        std::array::from_fn(|p| motions[p].stress(theta, material, p));
     // a = S : C_m/2 / (J0 J1),  A = int a J_m dOmega / V
     let shared = mean(&|p| stresses[p].kirchhoff() * stresses[p].inverse_j);
     for stress in &mut stresses {
@@ -154,7 +155,7 @@ fn stresses<const N: usize, const P: usize>(
 impl Formulation for MeanDilatation {
     fn states<const N: usize, const P: usize>(
         element: &Reference<N, P>,
-        material: &PlaneMaterial,
+        material: &Committed,
         configuration: &Configuration<N>,
     ) -> [PointState; P] {
         let (motions, stresses, theta) = stresses(element, material, configuration);
@@ -162,7 +163,7 @@ impl Formulation for MeanDilatation {
             let stress = &stresses[p];
             PointState {
                 h: stress.h,
-                strain: stress.strain,
+                strains: stress.strains,
                 material_determinant: 1.0 + theta[1],
                 s: stress.effective(),
                 determinant: smaller(determinant(&stress.h), 1.0 + motions[p].dilatation[1]),
@@ -174,7 +175,7 @@ impl Formulation for MeanDilatation {
     /// quantities.
     fn tangent<const N: usize, const P: usize, const D: usize>(
         element: &Reference<N, P>,
-        material: &PlaneMaterial,
+        material: &Committed,
         configuration: &Configuration<N>,
     ) -> SMatrix<f64, D, D> {
         let (_, stresses, _) = stresses(element, material, configuration);
@@ -197,7 +198,7 @@ impl Formulation for MeanDilatation {
             let half_c = &stress.half_c;
             let half_c = Vector3::new(half_c.m11, half_c.m22, 2.0 * half_c.m12);
             let b_bar = b[p] * stress.ratio + half_c * dr.transpose();
-            k += b_bar.transpose() * (material.tangent(&stress.strain) * b_bar) * point.volume;
+            k += b_bar.transpose() * (stress.strains.tangent(material, p) * b_bar) * point.volume;
             // S : D2Ebar without the second derivatives of J and theta
             let s = b[p].transpose() * work_conjugate(&stress.s)
                 - dj[p] * (stress.kirchhoff() * stress.inverse_j);
@@ -236,7 +237,7 @@ mod tests {
     use super::*;
     use crate::elements::formulation::{evaluate, internal_force};
     use crate::elements::quad4;
-    use crate::model::{Material, Plane};
+    use crate::materials::{Law, Plane, PlaneLaw};
 
     const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [2.0, 0.3], [1.7, 1.9], [-0.2, 1.2]];
 
@@ -248,14 +249,8 @@ mod tests {
         quad4::reference(&corners(), 0.5)
     }
 
-    fn nearly_incompressible() -> PlaneMaterial {
-        let material = Material {
-            name: "M".into(),
-            young: 1000.0,
-            poisson: 0.49,
-            density: 1.0,
-        };
-        PlaneMaterial::new(&material, Plane::Strain)
+    fn nearly_incompressible() -> PlaneLaw {
+        Law::elastic(1000.0, 0.49).in_plane(Plane::Strain)
     }
 
     /// Some displacements of moderate size, the same for every run.
@@ -264,11 +259,17 @@ mod tests {
     }
 
     fn force(configuration: &Configuration<4>) -> SMatrix<f64, 2, 4> {
-        internal_force::<MeanDilatation, 4, 4>(&quad(), &nearly_incompressible(), configuration).0
+        internal_force::<MeanDilatation, 4, 4>(
+            &quad(),
+            &Committed::new(&nearly_incompressible(), &[]),
+            configuration,
+        )
+        .0
     }
 
     fn energy(u: &SMatrix<f64, 2, 4>) -> f64 {
-        evaluate::<MeanDilatation, 4, 4>(&quad(), &nearly_incompressible(), u).energy
+        evaluate::<MeanDilatation, 4, 4>(&quad(), &Committed::new(&nearly_incompressible(), &[]), u)
+            .energy
     }
 
     /// Difference quotient of a function of the displacements in direction j.
@@ -293,7 +294,11 @@ mod tests {
     #[test]
     fn tangent_is_the_derivative_of_the_internal_force() {
         let at = Configuration::At(displacements(5));
-        let k = MeanDilatation::tangent::<4, 4, 8>(&quad(), &nearly_incompressible(), &at);
+        let k = MeanDilatation::tangent::<4, 4, 8>(
+            &quad(),
+            &Committed::new(&nearly_incompressible(), &[]),
+            &at,
+        );
         for j in 0..8 {
             let column = quotient(|u| force(&Configuration::At(u)), j);
             for i in 0..8 {
@@ -336,8 +341,9 @@ mod tests {
         use crate::elements::displacement::Displacement;
         let u = Matrix2::new(0.2, 0.3, 0.1, -0.1) * corners();
         let (element, material) = (quad(), nearly_incompressible());
-        let mean = evaluate::<MeanDilatation, 4, 4>(&element, &material, &u);
-        let standard = evaluate::<Displacement, 4, 4>(&element, &material, &u);
+        let mean = evaluate::<MeanDilatation, 4, 4>(&element, &Committed::new(&material, &[]), &u);
+        let standard =
+            evaluate::<Displacement, 4, 4>(&element, &Committed::new(&material, &[]), &u);
         assert!((mean.energy - standard.energy).abs() < 1e-13 * standard.energy);
         assert!((mean.across - standard.across).abs() < 1e-13 * standard.across.abs());
         for (a, b) in mean.stress.iter().zip(standard.stress) {

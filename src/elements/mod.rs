@@ -15,7 +15,7 @@ mod quad4;
 mod recovery;
 mod solid;
 mod tri3;
-mod voigt;
 
-pub use elements::{Elements, Inverted};
+pub use elements::{Elements, Inverted, Updated};
 pub use recovery::{ElementResult, Strained, most_strained};
+pub use solid::Motion;

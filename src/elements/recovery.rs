@@ -6,7 +6,7 @@ use nalgebra::Matrix2;
 
 use super::integration_point::PointState;
 use super::kinematics::{green_lagrange, smaller};
-use super::voigt::PlaneMaterial;
+use crate::materials::{Across, Committed};
 
 /// Strain energy of one element, and its stress and strain averaged over the volume.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -55,13 +55,13 @@ pub(super) struct PointResult {
 
 impl PointResult {
     /// sigma = F S F^T/J, eq. (2.8), with J = det F F_zz, and sigma_zz = F_zz S_zz F_zz / J.
-    pub fn new(state: &PointState, material: &PlaneMaterial) -> Self {
-        let (f, thickness) = (state.f(), material.thickness(&state.strain));
-        let (z, s) = (thickness.stretch, thickness.stress);
+    pub fn new(state: &PointState, material: &Committed, point: usize) -> Self {
+        let (f, e) = (state.f(), state.strains.end());
+        let Across { stretch, stress } = material.across(point, e);
         PointResult {
-            energy: material.energy(&state.strain),
-            sigma: f * state.s * f.transpose() / (state.determinant * z),
-            across: s * z / state.material_determinant,
+            energy: material.stored_energy(point, e),
+            sigma: f * state.s * f.transpose() / (state.determinant * stretch),
+            across: stress * stretch / state.material_determinant,
             strain: green_lagrange(&state.h),
         }
     }
@@ -79,7 +79,7 @@ impl PointResult {
 }
 
 impl ElementResult {
-    /// Energy and volume means of integration points with their weights (length^3).
+    /// Energy int W dOmega, eq. (2.4), and volume means of integration points with their weights (length^3).
     pub(super) fn of_points(points: impl Iterator<Item = (PointResult, f64)>) -> Self {
         let (mut sigma, mut strain) = (Matrix2::zeros(), Matrix2::zeros());
         let (mut energy, mut across, mut volume, mut principal) = (0.0, 0.0, 0.0, 0.0);
@@ -117,6 +117,7 @@ impl ElementResult {
 mod tests {
     use super::*;
     use crate::elements::Elements;
+    use crate::materials::Law;
     use crate::model::{Element, ElementType, Material, Mesh, Model, Section};
 
     /// A unit square of E = 100, nu = 0.25.
@@ -130,8 +131,7 @@ mod tests {
         }];
         let material = Material {
             name: "M".into(),
-            young: 100.0,
-            poisson: 0.25,
+            law: Law::elastic(100.0, 0.25),
             density: 1.0,
         };
         Model {
@@ -150,7 +150,7 @@ mod tests {
     }
 
     fn evaluate(model: &Model, u: &[f64]) -> Vec<ElementResult> {
-        Elements::new(model).evaluate(u)
+        Elements::new(model).evaluate(u, &[])
     }
 
     #[test]

@@ -5,11 +5,11 @@ use std::marker::PhantomData;
 
 use nalgebra::SMatrix;
 
-use super::formulation::{Formulation, evaluate, internal_force};
+use super::formulation::{Formulation, evaluate, internal_force, update};
 use super::integration_point::Reference;
 use super::kinematics::Configuration;
 use super::recovery::ElementResult;
-use super::voigt::PlaneMaterial;
+use crate::materials::Committed;
 
 /// Largest number of nodes of an element.
 pub(super) const MAX_NODES: usize = 4;
@@ -29,12 +29,27 @@ pub struct Solid<const N: usize, const P: usize, const D: usize, F> {
     formulation: PhantomData<F>,
 }
 
-/// Displacements of all nodes between which an element is evaluated: the end alone, or start and
-/// end in the energy-momentum form (2 N entries each).
-#[derive(Clone, Copy)]
-pub(super) struct Motion<'a> {
+/// Displacements of all nodes between which the elements are evaluated (2 N entries each), and the
+/// internal variables of their materials.
+#[derive(Debug, Clone, Copy)]
+pub struct Motion<'a> {
+    /// Displacements of the start in the energy-momentum form; without it forces are those of the end.
     pub start: Option<&'a [f64]>,
+    /// Displacements of the end.
     pub end: &'a [f64],
+    /// Internal variables that the last accepted increment has committed, element by element.
+    pub committed: &'a [f64],
+}
+
+impl<'a> Motion<'a> {
+    /// Displacements at which forces are those of the displacements.
+    pub fn at(end: &'a [f64], committed: &'a [f64]) -> Self {
+        Motion {
+            start: None,
+            end,
+            committed,
+        }
+    }
 }
 
 impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P, D, F> {
@@ -58,6 +73,11 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
         &self.nodes
     }
 
+    /// Number of integration points.
+    pub(super) fn points(&self) -> usize {
+        P
+    }
+
     /// Share of each node in a uniform force per volume (length^3); N entries are used.
     pub(super) fn nodal_volumes(&self) -> [f64; MAX_NODES] {
         let mut shares = [0.0; MAX_NODES];
@@ -71,7 +91,7 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
     }
 
     /// Internal force with the smallest determinant of the deformation gradient.
-    pub(super) fn force(&self, material: &PlaneMaterial, motion: Motion) -> (ElementVector, f64) {
+    pub(super) fn force(&self, material: &Committed, motion: Motion) -> (ElementVector, f64) {
         let mut result = [0.0; MAX_DOFS];
         let configuration = self.configuration(motion);
         let (force, determinant) =
@@ -81,7 +101,7 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
     }
 
     /// Tangent.
-    pub(super) fn tangent(&self, material: &PlaneMaterial, motion: Motion) -> ElementMatrix {
+    pub(super) fn tangent(&self, material: &Committed, motion: Motion) -> ElementMatrix {
         let mut result = [0.0; MAX_DOFS * MAX_DOFS];
         let configuration = self.configuration(motion);
         let k = F::tangent::<N, P, D>(&self.reference, material, &configuration);
@@ -90,8 +110,14 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
     }
 
     /// Strain energy, stress and strain.
-    pub(super) fn evaluate(&self, material: &PlaneMaterial, u: &[f64]) -> ElementResult {
+    pub(super) fn evaluate(&self, material: &Committed, u: &[f64]) -> ElementResult {
         evaluate::<F, N, P>(&self.reference, material, &self.gather(u))
+    }
+
+    /// Internal variables at displacements `u`, written to `updated`, and the energy dissipated on the
+    /// way to them (force length).
+    pub(super) fn update(&self, material: &Committed, u: &[f64], updated: &mut [f64]) -> f64 {
+        update::<F, N, P>(&self.reference, material, &self.gather(u), updated)
     }
 
     /// Entries of a vector over all dofs at the nodes, 2 x N.

@@ -17,14 +17,15 @@ mod settings;
 mod step;
 mod surface;
 
+pub use crate::materials::Plane;
 pub use amplitude::{Amplitude, TimeBase};
 pub use bodies::Bodies;
 pub use constraint::{Equation, RigidBody};
 pub use contact::{Adjust, Contact, Interaction};
 pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
-pub use material::{Material, Plane, Section};
-pub use mesh::{Element, Face, Mesh, Set};
+pub use material::{Material, Section};
+pub use mesh::{Element, Face, Mesh, Set, SharedSides};
 pub use sets::{HistorySet, NamedSets};
 pub use settings::{Factorization, Impact, ImpactTime, LcpChoice, Scheme, Settings, SolverChoice};
 pub use step::{Frames, Increments, Procedure, Step};

@@ -5,7 +5,7 @@ use super::material::Properties;
 use super::mesh::{MeshIndex, Surfaces};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Contact, Element, Mesh, Plane, SurfaceKind};
-use crate::vectors::{cross, difference};
+use crate::vectors::polygon_area;
 use std::collections::HashMap;
 
 /// Smallest cross product of two sides, relative to the square of the longest side.
@@ -97,7 +97,7 @@ pub(super) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &m
         };
         let area = area(element, &mesh_index.mesh);
         let mass = material.density * section.thickness * area;
-        let stiffness = material.young * section.thickness;
+        let stiffness = material.law.small_strain().young * section.thickness;
         total += mass;
         let magnitudes = [
             ("area of", area),
@@ -120,13 +120,7 @@ fn unusable(what: &str, value: f64, span: Span, cx: &mut Context) {
 
 /// Area of an element.
 fn area(element: &Element, mesh: &Mesh) -> f64 {
-    let at = |&node: &usize| mesh.coordinates[node];
-    let corners: Vec<[f64; 2]> = element.nodes.iter().map(at).collect();
-    let from_first = |p: [f64; 2]| difference(corners[0], p);
-    let triangles = corners
-        .windows(2)
-        .map(|side| cross(from_first(side[0]), from_first(side[1])));
-    triangles.sum::<f64>() / 2.0
+    polygon_area(element.nodes.iter().map(|&node| mesh.coordinates[node]))
 }
 
 /// Warns where the two sides of a contact differ in thickness.

@@ -1,7 +1,7 @@
 //! The state shared by all functions of the reader: deck and diagnostics; undefined names with a
 //! suggestion of what was meant.
 
-use super::catalogue::{Catalogue, list_of, help_for, with_article};
+use super::catalogue::{Catalogue, help_for, list_of, with_article};
 use crate::deck::{Card, Deck, Text};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Span, closest};
 use std::cell::OnceCell;

@@ -1,14 +1,15 @@
-//! `*MATERIAL` with its constants, and `*SOLID SECTION`.
+//! `*MATERIAL` with its law and density, and `*SOLID SECTION`.
 
 use super::context::Context;
 use super::mesh::{Block, MeshIndex, Outline, Sets};
 use super::names::Names;
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic, Span};
-use crate::model::{ElementType, Formulation, Material, Plane, Section};
+use crate::materials::{Law, NeoHooke, Plane};
+use crate::model::{ElementType, Formulation, Material, Section};
 
-/// Poisson's ratio from which on fully integrated elements lock in plane strain: lambda / mu =
-/// 2 nu / (1 - 2 nu) is 9 there.
+/// Poisson's ratio at small strains from which on fully integrated elements lock in plane strain:
+/// lambda / mu = 2 nu / (1 - 2 nu) is 9 there.
 const LOCKING: f64 = 0.45;
 
 /// Materials and sections.
@@ -29,9 +30,9 @@ pub(super) struct Properties {
 struct Draft {
     name: String,
     span: Span,
-    /// Place of Poisson's ratio.
+    /// Place of Poisson's ratio, or of the compressibility.
     poisson_span: Span,
-    elastic: Constant<(f64, f64)>,
+    law: Constant<Law>,
     density: Constant<f64>,
 }
 
@@ -92,22 +93,32 @@ pub(super) fn read(
         .into_iter()
         .map(|draft| material(draft, cx))
         .collect();
+    properties.report_plane_stress(mesh_index, cx);
     properties.report_locking(&poisson_spans, cx);
     properties
 }
 
 fn draft(name: String, block: &Block, cx: &mut Context) -> Draft {
-    let elastic = block.parts_of("ELASTIC");
-    let density = block.parts_of("DENSITY");
-    cx.only_once(&elastic);
-    cx.only_once(&density);
-    let row = elastic.first().and_then(|card| card.rows.first());
+    let [elastic, hyperelastic, density] =
+        ["ELASTIC", "HYPERELASTIC", "DENSITY"].map(|keyword| block.parts_of(keyword));
+    for cards in [&elastic, &hyperelastic, &density] {
+        cx.only_once(cards);
+    }
+    if let (Some(_), Some(card)) = (elastic.first(), hyperelastic.first()) {
+        let message = "a material has one law: *ELASTIC is given already";
+        cx.error(Code::RepeatedCard, card.span, message);
+    }
+    let law = elastic.first().or(hyperelastic.first());
+    let row = law.and_then(|card| card.rows.first());
     let poisson = row.and_then(|row| row.get(1)).map(|field| field.span);
     Draft {
         name,
         span: block.head.span,
         poisson_span: poisson.unwrap_or(block.head.span),
-        elastic: constant(&elastic, elastic_row, cx),
+        law: match hyperelastic.is_empty() {
+            true => constant(&elastic, elastic_row, cx),
+            false => hyperelastic_law(&hyperelastic, cx),
+        },
         density: constant(&density, density_row, cx),
     }
 }
@@ -136,7 +147,7 @@ fn constant<T: PartialEq + Copy>(
 }
 
 /// `E, nu[, T]`
-fn elastic_row(row: &Row, cx: &mut Context) -> Option<(f64, f64)> {
+fn elastic_row(row: &Row, cx: &mut Context) -> Option<Law> {
     row.at_most(3, cx.d);
     let young = row.real(0, "Young's modulus", cx.d);
     let poisson = row.real_or(1, 0.0, cx.d);
@@ -150,7 +161,45 @@ fn elastic_row(row: &Row, cx: &mut Context) -> Option<(f64, f64)> {
         out_of_range("Poisson's ratio must lie between -1 and 0.5", row, 1, cx);
         return None;
     }
-    Some((young, poisson))
+    Some(Law::elastic(young, poisson))
+}
+
+/// The law of `*HYPERELASTIC`, which must say NEO HOOKE.
+fn hyperelastic_law(cards: &[&Card], cx: &mut Context) -> Constant<Law> {
+    if let Some(card) = cards.first().filter(|card| !card.has("NEO HOOKE")) {
+        let message = "*HYPERELASTIC needs the parameter NEO HOOKE";
+        let error = Diagnostic::error(Code::MissingParameter, card.span, message);
+        cx.d.push(error.help("its data line is C10, D1"));
+        return Constant::Wrong;
+    }
+    constant(cards, neo_hooke_row, cx)
+}
+
+/// `C10, D1[, T]`
+fn neo_hooke_row(row: &Row, cx: &mut Context) -> Option<Law> {
+    row.at_most(3, cx.d);
+    let c10 = row.real(0, "C10", cx.d);
+    let d1 = row.real_or(1, 0.0, cx.d);
+    temperature(row, 2, cx)?;
+    let (c10, d1) = (c10?, d1?);
+    if c10 <= 0.0 {
+        out_of_range("C10 must be positive", row, 0, cx);
+        return None;
+    }
+    if d1 <= 0.0 {
+        let span = row.get(1).map_or(row.span(), |field| field.span);
+        let message = match d1 == 0.0 {
+            true => "D1 = 0 makes the material incompressible, which elements here cannot be",
+            false => "D1 must be positive",
+        };
+        let error = Diagnostic::error(Code::MaterialRange, span, message);
+        cx.d.push(error.help(
+            "D1 = 2/K with the bulk modulus K; where it is not known, K = 20 mu (D1 = 0.05/C10) is \
+             usual for rubber",
+        ));
+        return None;
+    }
+    Some(Law::NeoHooke(NeoHooke { c10, d1 }))
 }
 
 /// A temperature in field `index`: one row serves all of them.
@@ -189,7 +238,7 @@ fn report_incomplete(drafts: &[Draft], used: &[bool], cx: &mut Context) {
     }
     for (draft, _) in drafts.iter().zip(used).filter(|(_, used)| **used) {
         let mut missing = Vec::new();
-        if draft.elastic == Constant::Missing {
+        if draft.law == Constant::Missing {
             missing.push("*ELASTIC");
         }
         if draft.density == Constant::Missing {
@@ -204,11 +253,9 @@ fn report_incomplete(drafts: &[Draft], used: &[bool], cx: &mut Context) {
 
 /// A complete material; unknown constants are zero, which a model without errors never has in use.
 fn material(draft: Draft, cx: &mut Context) -> Material {
-    let (young, poisson) = draft.elastic.given().unwrap_or((0.0, 0.0));
     let material = Material {
         name: draft.name,
-        young,
-        poisson,
+        law: draft.law.given().unwrap_or(Law::elastic(0.0, 0.0)),
         density: draft.density.given().unwrap_or(0.0),
     };
     hint_at_units(&material, draft.span, cx);
@@ -346,6 +393,26 @@ impl Properties {
         }
     }
 
+    /// Reports materials in plane stress elements that are for plane strain only.
+    fn report_plane_stress(&self, mesh_index: &MeshIndex, cx: &mut Context) {
+        let places = mesh_index.element_spans.iter().zip(&self.section_of);
+        for (element, (&span, section)) in mesh_index.mesh.elements.iter().zip(places) {
+            let section = section.and_then(|s| self.sections.get(s));
+            let material = section.and_then(|s| self.materials.get(s.material));
+            if let (Plane::Stress, Some(material)) = (element.element_type.plane, material)
+                && !material.law.has_plane_stress()
+            {
+                let message = format!(
+                    "element {} is in plane stress, material {} is for plane strain only",
+                    element.label, material.name
+                );
+                let error = Diagnostic::error(Code::PlaneStrainOnly, span, message);
+                cx.d.push(error.help("take CPE elements, or *ELASTIC"));
+                return;
+            }
+        }
+    }
+
     /// Warns about nearly incompressible materials in plane strain, at their Poisson's ratios; in
     /// plane stress the thickness gives way and nothing locks.
     fn report_locking(&self, poisson_spans: &[Span], cx: &mut Context) {
@@ -361,10 +428,12 @@ impl Properties {
         }
         let materials = self.materials.iter().zip(poisson_spans).zip(locks);
         for ((material, &span), _) in materials.filter(|(_, locks)| *locks) {
-            if material.poisson >= LOCKING {
+            let poisson = material.law.small_strain().poisson;
+            if poisson >= LOCKING {
                 let message = format!(
                     "material {} with nu = {} makes plane strain elements lock",
-                    material.name, material.poisson
+                    material.name,
+                    (poisson * 1e6).round() / 1e6
                 );
                 let warning = Diagnostic::warning(Code::Locking, span, message);
                 cx.d.push(warning.help(

@@ -6,6 +6,7 @@ use stickslip::diagnostics::Span;
 use stickslip::dynamics::{
     self, Cutback, IncrementReport, Observer, Outcome, RunError, RunSummary,
 };
+use stickslip::materials::Law;
 use stickslip::model::{
     Contact, Element, ElementType, Face, Frames, Increments, Interaction, Material, Model,
     Procedure, Section, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
@@ -56,8 +57,7 @@ pub fn model(young: f64, poisson: f64, density: f64) -> Model {
     Model {
         materials: vec![Material {
             name: "M".into(),
-            young,
-            poisson,
+            law: Law::elastic(young, poisson),
             density,
         }],
         sections: vec![Section {

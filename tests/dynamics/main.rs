@@ -16,6 +16,7 @@ mod lcp_methods;
 mod loads;
 mod many;
 mod mean_dilatation;
+mod neo_hooke;
 mod patch;
 mod rigid;
 mod scales;

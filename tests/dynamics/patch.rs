@@ -1,7 +1,7 @@
 //! Patch test: a distorted patch whose boundary is displaced affinely deforms affinely.
 
 use nalgebra::{DMatrix, DVector};
-use stickslip::elements::Elements;
+use stickslip::elements::{Elements, Motion};
 use stickslip::model::{Element, ElementType, Formulation, Model, Shape};
 
 use crate::blocks::model;
@@ -74,7 +74,7 @@ fn solve_inner(body: &Elements, mut u: Vec<f64>) -> Vec<f64> {
     let inner = 8..16;
     for _ in 0..12 {
         let mut k = DMatrix::zeros(u.len(), u.len());
-        body.for_each_tangent(None, &u, |element, matrix| {
+        body.for_each_tangent(Motion::at(&u, &[]), |element, matrix| {
             let dofs: Vec<usize> = body
                 .nodes(element)
                 .iter()
@@ -87,7 +87,7 @@ fn solve_inner(body: &Elements, mut u: Vec<f64>) -> Vec<f64> {
             }
         });
         let f = body
-            .internal_force(None, &u)
+            .internal_force(Motion::at(&u, &[]))
             .expect("no element is inverted");
         let residual = DVector::from_column_slice(&f[inner.clone()]);
         let k = k.view((8, 8), (8, 8)).into_owned();
@@ -115,7 +115,7 @@ fn an_affine_boundary_deforms_a_distorted_patch_affinely() {
             );
         }
         // Green-Lagrange strain (F^T F - I)/2 in every element
-        let elements = body.evaluate(&u);
+        let elements = body.evaluate(&u, &[]);
         for means in &elements {
             for (value, exact) in means.strain.iter().zip([0.225, -0.05, 0.225]) {
                 assert!((value - exact).abs() < 1e-12);

@@ -11,6 +11,7 @@
 //! ```
 
 use crate::blocks::{Block, Keep, add_block, add_contact, fixed, model, run_to_end, step, throw};
+use stickslip::materials::Law;
 use stickslip::model::{BodyForce, Load, Material, Model, Section, Settings, Variation};
 
 /// How much the base exceeds the light body, or that it is held altogether.
@@ -29,8 +30,9 @@ fn make_heavy(model: &mut Model, elements: std::ops::Range<usize>, base: Base) {
         Base::Thick(thickness) => (1.0, thickness),
     };
     let light = model.materials[0].clone();
+    let moduli = light.law.small_strain();
     model.materials.push(Material {
-        young: factor * light.young,
+        law: Law::elastic(factor * moduli.young, moduli.poisson),
         density: factor * light.density,
         ..light
     });

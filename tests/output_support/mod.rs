@@ -18,6 +18,7 @@ use stickslip::dynamics::{
     Timings,
 };
 use stickslip::elements::{ElementResult, Strained};
+use stickslip::materials::Law;
 use stickslip::model::{
     Contact, Element, ElementType, Face, Frames, HistorySet, Increments, Interaction, Material,
     Mesh, Model, NamedSets, Procedure, Section, Set, Settings, Step, Support, SupportMotion,
@@ -49,8 +50,7 @@ pub fn model() -> Model {
         ],
         materials: vec![Material {
             name: "M".into(),
-            young: 1000.0,
-            poisson: 0.0,
+            law: Law::elastic(1000.0, 0.0),
             density: 2.0,
         }],
         sections: vec![Section {
@@ -166,6 +166,7 @@ pub fn report(k: usize) -> IncrementReport {
             u: ramp(1.0),
             v: ramp(2.0),
             a: ramp(3.0),
+            internal: vec![],
         },
         nodal: nodal(k, ramp(4.0), ramp(5.0)),
         elements: vec![ElementResult::default(); 3].into(),

@@ -13,6 +13,7 @@ const ACCELERATION: Quantity = Quantity::Of("length/time^2");
 const DENSITY: Quantity = Quantity::Of("mass/length^3");
 const FORCE: Quantity = Quantity::Of("force");
 const STRESS: Quantity = Quantity::Of("force/length^2");
+const COMPRESSIBILITY: Quantity = Quantity::Of("length^2/force");
 const BODY_FORCE: Quantity = Quantity::Of("force/length^3");
 
 type Row = &'static [Quantity];
@@ -128,6 +129,12 @@ pub(crate) static DIMENSIONS: &[Dimensions] = &[
         &[("STRAIN RATE REGULARIZATION", Unknown)],
     ),
     keyword("ELASTIC", &[row(&[STRESS, Plain, Plain])], &[], &[]),
+    keyword(
+        "HYPERELASTIC",
+        &[row(&[STRESS, COMPRESSIBILITY, Plain])],
+        &["N", "POISSON"],
+        &[],
+    ),
     keyword("DENSITY", &[row(&[DENSITY, Plain])], &[], &[]),
     keyword(
         "SOLID SECTION",

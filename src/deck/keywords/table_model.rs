@@ -6,6 +6,7 @@ const INPUT: P = P::value("INPUT", "file that holds the data lines");
 const NAME: P = P::value("NAME", "name");
 const CAE: &str = "written by Abaqus/CAE for its own use";
 const OTHER_SOLVER: &str = "a number for another solver";
+const ONLY_NEO_HOOKE: &str = "of the hyperelastic materials only NEO HOOKE is supported";
 const SMOOTHING: &str = "contact is enforced on the surface as meshed";
 
 /// Keywords of the model.
@@ -194,6 +195,38 @@ pub(crate) static MODEL: &[Keyword] = &[
          Green-Lagrange strain, as in CalculiX; Abaqus' law agrees for small strains. In plane strain \
          elements lock from nu = 0.45 on (warning). A temperature in the third field has no effect \
          (warning).",
+    ),
+    Keyword::read(
+        "HYPERELASTIC",
+        Scope::Block("MATERIAL"),
+        Data::Required,
+        &[
+            P::flag("NEO HOOKE", "the form of the energy; required"),
+            P::flag("MOONEY-RIVLIN", ONLY_NEO_HOOKE).refused(),
+            P::flag("YEOH", ONLY_NEO_HOOKE).refused(),
+            P::flag("OGDEN", ONLY_NEO_HOOKE).refused(),
+            P::flag("ARRUDA-BOYCE", ONLY_NEO_HOOKE).refused(),
+            P::flag("POLYNOMIAL", ONLY_NEO_HOOKE).refused(),
+            P::flag("REDUCED POLYNOMIAL", ONLY_NEO_HOOKE).refused(),
+            P::flag("MARLOW", ONLY_NEO_HOOKE).refused(),
+            P::flag("VAN DER WAALS", ONLY_NEO_HOOKE).refused(),
+            P::flag("USER", ONLY_NEO_HOOKE).refused(),
+            P::value("N", ONLY_NEO_HOOKE).refused(),
+            P::flag("TEST DATA INPUT", "give C10 and D1 on the data line").refused(),
+            P::value("POISSON", "give D1 on the data line").refused(),
+            P::choice(
+                "MODULI",
+                &[
+                    V::read("INSTANTANEOUS", "(default)"),
+                    V::refused("LONG TERM", "materials have no memory"),
+                ],
+                "moduli that the data line gives",
+            ),
+        ],
+        "C10, D1 of a neo-Hookean material in plane strain: U = C10 (Ibar1 - 3) + (J - 1)^2/D1; at \
+         small strains the shear modulus is 2 C10, the bulk modulus 2/D1. D1 = 0 (incompressible) and \
+         plane stress are errors. Elements lock as with *ELASTIC (warning). A temperature in the third \
+         field has no effect (warning).",
     ),
     Keyword::read(
         "DENSITY",

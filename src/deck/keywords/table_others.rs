@@ -30,7 +30,7 @@ const SECTION: &str = "Elements have solid sections: use *SOLID SECTION.";
 const CONSTRAINT: &str = "Constraints between nodes are not supported yet.";
 const RIGID: &str = "Define it with *SURFACE, TYPE=SEGMENTS and *RIGID BODY.";
 const DISCRETE: &str = "Springs, dashpots, masses and connectors are not supported yet.";
-const INELASTIC: &str = "Materials are elastic, St. Venant-Kirchhoff.";
+const INELASTIC: &str = "Materials are elastic: *ELASTIC, or *HYPERELASTIC, NEO HOOKE.";
 const GENERAL: &str = "General contact is that of all exterior faces alike.";
 const CONTACT_CHANGE: &str = "Contacts hold for all steps.";
 const THERMAL: &str = "There are no temperatures.";
@@ -127,7 +127,6 @@ pub(crate) static OTHERS: &[Keyword] = &[
     refused("COHESIVE SECTION", SECTION),
     refused("SURFACE SECTION", SECTION),
     refused("USER SECTION", SECTION),
-    refused("HYPERELASTIC", INELASTIC),
     refused("HYPERFOAM", INELASTIC),
     refused("PLASTIC", INELASTIC),
     refused("CYCLIC HARDENING", INELASTIC),

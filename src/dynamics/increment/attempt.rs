@@ -10,6 +10,7 @@ use super::trace::{Failed, Trace};
 use crate::contact::{ClosedPairs, Constraint, Penetration};
 use crate::dynamics::results::{Cause, PassReport, State};
 use crate::dynamics::step::{Equilibrium, Interval, StepProblem, Workspace, difference, sum};
+use crate::elements::Updated;
 use crate::linear::LinearError;
 use crate::model::Factorization;
 
@@ -37,6 +38,8 @@ pub(crate) struct Solved {
     pub impulses: ContactForces,
     /// Motion at the end.
     pub end: State,
+    /// Energy that the materials have dissipated.
+    pub material_dissipation: f64,
     /// Its passes.
     pub passes: Vec<PassReport>,
 }
@@ -173,8 +176,8 @@ impl<'m> Attempt<'_, 'm> {
     /// theta2 K d_p, the force of the supports' motion in the predictor.
     fn support_force(&mut self, d_p: &[f64], u: &[f64], u_theta: &[f64]) -> Vec<f64> {
         let (problem, weights) = (self.problem, &self.problem.weights);
-        let configuration = weights.configuration(&self.start.u, u, u_theta);
-        let mut force = (self.workspace).tangent_product(problem, configuration, d_p);
+        let motion = weights.motion(self.start, u, u_theta);
+        let mut force = (self.workspace).tangent_product(problem, motion, d_p);
         force.iter_mut().for_each(|f| *f *= weights.theta2);
         force
     }
@@ -188,8 +191,8 @@ impl<'m> Attempt<'_, 'm> {
         if self.workspace.stiffness.fits(dt, near) && !every && !worn {
             return Ok(());
         }
-        let configuration = (problem.weights).configuration(&self.start.u, u, u_theta);
-        let factorized = (self.workspace).factorize(problem, dt, configuration);
+        let motion = (problem.weights).motion(self.start, u, u_theta);
+        let factorized = (self.workspace).factorize(problem, dt, motion);
         factorized.map_err(|error| match error {
             LinearError::NotPositiveDefinite { unknown, .. } => Cause::Indefinite {
                 node: problem.unknowns.dof[unknown] / 2,
@@ -276,10 +279,15 @@ impl<'m> Attempt<'_, 'm> {
         let mut v: Vec<f64> = d.iter().zip(&v0p).map(|(d, v0p)| rate * d - v0p).collect();
         let mut u = sum(&self.start.u, &d);
         (self.problem.unknowns).prescribe(self.interval.end, &mut u, &mut v);
+        let Updated {
+            variables: internal,
+            dissipated,
+        } = (self.problem.elements).update(&u, &self.start.internal);
         let end = State {
             u,
             v,
             a: equilibrium.acceleration.clone(),
+            internal,
         };
         end.check_finite()?;
         Ok(Solved {
@@ -290,6 +298,7 @@ impl<'m> Attempt<'_, 'm> {
             touching: impulses.touching,
             impulses: impulses.acting,
             end,
+            material_dissipation: dissipated,
             passes: Vec::new(),
         })
     }

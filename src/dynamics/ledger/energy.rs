@@ -32,7 +32,7 @@ impl Ledger {
     /// Opens the ledger at the start of the analysis.
     pub fn new(problem: &StepProblem, start: &State) -> Self {
         let kinetic = problem.mass.kinetic_energy(&start.v);
-        let elements = problem.elements.evaluate(&start.u);
+        let elements = problem.elements.evaluate(&start.u, &start.internal);
         let strain = elements.iter().map(|element| element.energy).sum();
         let energy = Energy {
             kinetic,
@@ -91,7 +91,7 @@ impl Ledger {
             inertia,
             ..
         } = &solved.equilibrium;
-        let elements = problem.elements.evaluate(&end.u);
+        let elements = problem.elements.evaluate(&end.u, &end.internal);
         self.enter_bodies(problem, end, &elements);
         self.elements = elements.into();
         let e = &mut self.energy;
@@ -121,13 +121,17 @@ impl Ledger {
             let kinetic = |v| problem.mass.kinetic_energy(v);
             e.impact_loss += kinetic(&start.v) - kinetic(v0p);
         }
-        // d.F_theta - (W1 - W0), eq. (9.5)
-        e.numerical_dissipation += dot(d, &solved.equilibrium.internal) - (e.strain - strain0);
+        // D, and d.F_theta - (W1 - W0) - D, eq. (9.5)
+        let dissipated = solved.material_dissipation;
+        e.material_dissipation += dissipated;
+        e.numerical_dissipation +=
+            dot(d, &solved.equilibrium.internal) - (e.strain - strain0) - dissipated;
 
         // T + W less what they were at the start and every term above, eq. (9.6)
         e.balance = e.kinetic + e.strain - self.start - e.external_work - e.normal_contact_work
             + e.friction_dissipation
             + e.impact_loss
+            + e.material_dissipation
             + e.numerical_dissipation;
         for energy in [e.kinetic, e.strain, e.external_work] {
             self.scale = larger(self.scale, energy.abs());
@@ -155,6 +159,11 @@ impl Ledger {
             ),
             ("the friction dissipation", e.friction_dissipation, &state.v),
             ("the impact loss", e.impact_loss, &state.v),
+            (
+                "the dissipation of the materials",
+                e.material_dissipation,
+                &state.u,
+            ),
             (
                 "the numerical dissipation",
                 e.numerical_dissipation,

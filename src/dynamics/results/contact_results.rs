@@ -43,7 +43,8 @@ pub struct ContactResultant {
     pub min_gap: f64,
     /// max(|Pt| - mu Pn, 0) / max(Pn); 0 without contact.
     pub cone_violation: f64,
-    /// Moment of the force about the reference node of a rigid master (force length); 0 for other masters.
+    /// Moment of the force about the reference node of a rigid master (force length); 0 for other
+    /// masters.
     pub reference_moment: f64,
     /// Work of the normal contact forces since the start of the analysis.
     pub normal_work: f64,

@@ -8,7 +8,7 @@ use super::failure::Failure;
 use super::pass_report::PassReport;
 use crate::elements::{ElementResult, Strained};
 
-/// Motion at one time; `2 N` entries each.
+/// Motion at one time, `2 N` entries each, and what the materials remember.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct State {
     /// Displacement (length).
@@ -17,6 +17,9 @@ pub struct State {
     pub v: Vec<f64>,
     /// Acceleration (length/time^2).
     pub a: Vec<f64>,
+    /// Internal variables of the materials at all integration points, element by element: accepted or
+    /// dropped with the rest of the state.
+    pub internal: Vec<f64>,
 }
 
 /// Contact status of a node as slave; a node that is slave of several pairs shows the highest.
@@ -71,6 +74,8 @@ pub struct Energy {
     pub friction_dissipation: f64,
     /// Kinetic energy taken by the impact impulses.
     pub impact_loss: f64,
+    /// Energy dissipated by the materials.
+    pub material_dissipation: f64,
     /// Energy dissipated by the integration scheme.
     pub numerical_dissipation: f64,
     /// Energy balance; for exact solutions zero, so that it measures the residual of the passes.

@@ -80,6 +80,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             model,
             contacts,
             mass,
+            elements,
             ..
         } = discretization;
         Runner {
@@ -88,6 +89,7 @@ impl<'m, 'o> Runner<'m, 'o> {
                 u: vec![0.0; model.mesh.dof_count()],
                 v: model.initial_velocity.clone(),
                 a: vec![0.0; model.mesh.dof_count()],
+                internal: elements.initial_variables(),
             },
             contact: ClosedPairs::default(),
             ledger: Ledger::default(),

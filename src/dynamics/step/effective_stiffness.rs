@@ -5,7 +5,7 @@ use super::mass::unknown_mass;
 use super::step_problem::StepProblem;
 use super::unknowns::Unknowns;
 use crate::contact::{Compliance, Constraint};
-use crate::elements::Elements;
+use crate::elements::{Elements, Motion};
 use crate::linear::{Assembled, CheckedSolver, LinearError, linear_solver};
 use crate::model::SolverChoice;
 
@@ -35,8 +35,8 @@ impl FactoredMatrix {
     }
 }
 
-/// The effective matrix K* = theta2 K + (2/dt²) M, eq. (4.6), kept until it is assembled again, and the
-/// mass matrix, both over the unknowns of a step: T^T K* T and T^T M T.
+/// The effective matrix K* = theta2 K + (2/dt²) M, eq. (4.6), kept until it is assembled again, and
+/// the mass matrix, both over the unknowns of a step: T^T K* T and T^T M T.
 pub(crate) struct EffectiveStiffness {
     /// K*.
     pub k: FactoredMatrix,
@@ -72,12 +72,7 @@ impl EffectiveStiffness {
     }
 
     /// Assembles K* in the given configuration, to be factorised next.
-    pub fn assemble(
-        &mut self,
-        problem: &StepProblem,
-        dt: f64,
-        (start, u): (Option<&[f64]>, &[f64]),
-    ) {
+    pub fn assemble(&mut self, problem: &StepProblem, dt: f64, motion: Motion) {
         let StepProblem {
             elements,
             weights,
@@ -89,7 +84,7 @@ impl EffectiveStiffness {
         let mass = self.m.solver.matrix();
         let k = self.k.solver.matrix_mut();
         k.clear();
-        elements.for_each_tangent(start, u, |element, tangent| {
+        elements.for_each_tangent(motion, |element, tangent| {
             k.add(element, tangent, weights.theta2)
         });
         self.stiffness = parts.largest_diagonal(k, &unknowns.dof);

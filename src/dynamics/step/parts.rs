@@ -9,8 +9,9 @@ use crate::model::{Equation, Model};
 /// The bodies of a model and their parts, both numbered from 0.
 ///
 /// A body is what elements and equations connect. Nodes of a body are in one part when the elements
-/// around them, and around the nodes of their equations, have the same sections: a light part beside a stiff
-/// or heavy part of its body is solved to its own scale, as is a light body beside a heavy one.
+/// around them, and around the nodes of their equations, have the same sections: a light part
+/// beside a stiff or heavy part of its body is solved to its own scale, as is a light body beside a
+/// heavy one.
 pub(crate) struct Parts {
     /// Body of every node.
     body: Vec<usize>,

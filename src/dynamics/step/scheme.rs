@@ -2,7 +2,8 @@
 //! (1984) and the energy-momentum form of Simo & Tarnow (1992). Section 4 of docs/theory.md.
 
 use crate::contact::RowForm;
-use crate::elements::{Elements, Inverted};
+use crate::dynamics::results::State;
+use crate::elements::{Elements, Inverted, Motion};
 use crate::model::Scheme;
 
 /// The single-step scheme SS22 with its weights, or the energy-momentum form of its mid-point rule.
@@ -55,25 +56,21 @@ impl Weights {
     pub fn internal_force(
         &self,
         elements: &Elements,
-        u0: &[f64],
+        start: &State,
         u1: &[f64],
         u_theta: &[f64],
     ) -> Result<Vec<f64>, Inverted> {
-        let (start, u) = self.configuration(u0, u1, u_theta);
-        elements.internal_force(start, u)
+        elements.internal_force(self.motion(start, u1, u_theta))
     }
 
-    /// The configuration of internal force and tangent, as the elements take it.
-    pub fn configuration<'a>(
-        &self,
-        u0: &'a [f64],
-        u1: &'a [f64],
-        u_theta: &'a [f64],
-    ) -> (Option<&'a [f64]>, &'a [f64]) {
-        if self.energy_momentum {
-            (Some(u0), u1)
-        } else {
-            (None, u_theta)
+    /// The motion at which internal force and tangent are evaluated.
+    pub fn motion<'a>(&self, start: &'a State, u1: &'a [f64], u_theta: &'a [f64]) -> Motion<'a> {
+        match self.energy_momentum {
+            true => Motion {
+                start: Some(&start.u),
+                ..Motion::at(u1, &start.internal)
+            },
+            false => Motion::at(u_theta, &start.internal),
         }
     }
 }

@@ -14,7 +14,7 @@ use crate::contact::{
     position, project,
 };
 use crate::dynamics::results::{Cause, State};
-use crate::elements::Elements;
+use crate::elements::{Elements, Motion};
 use crate::lcp::LcpMethod;
 use crate::model::{Model, Settings, Step};
 
@@ -168,7 +168,7 @@ impl StepProblem<'_> {
         let u_theta = self.weights.displacement(&start.u, d, v0p, dt);
         let internal = self
             .weights
-            .internal_force(self.elements, &start.u, &u, &u_theta)?;
+            .internal_force(self.elements, start, &u, &u_theta)?;
         let load = self
             .loads
             .weighted(self.elements, self.weights.theta1, t0, t1, &u_theta);
@@ -195,7 +195,8 @@ impl StepProblem<'_> {
     pub fn start_acceleration(&self, mut mass: System, start: &State, now: TimePoint) -> Vec<f64> {
         let mut a = vec![0.0; start.u.len()];
         let load = self.loads.weighted(self.elements, 1.0, now, now, &start.u);
-        let Ok(internal) = self.elements.internal_force(None, &start.u) else {
+        let motion = Motion::at(&start.u, &start.internal);
+        let Ok(internal) = self.elements.internal_force(motion) else {
             return a;
         };
         let r = difference(&load, &internal);

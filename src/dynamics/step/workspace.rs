@@ -8,6 +8,7 @@ use crate::contact::{
     ClosedPairs, Compliance, Constraint, Penetration, Search, find_penetration, frictional_lcp,
 };
 use crate::dynamics::results::{Cause, State};
+use crate::elements::Motion;
 use crate::lcp::{
     ContactState, FrictionalLcp, FrictionalSolution, LcpError, LcpMethod, solve_frictional,
 };
@@ -54,19 +55,19 @@ impl<'m> Workspace<'m> {
         System::new(&mut self.stiffness.m, &mut self.meter)
     }
 
-    /// Assembles and factorises K* for increments of length `dt` in the given configuration.
+    /// Assembles and factorises K* for increments of length `dt` in the configuration of a motion.
     pub fn factorize(
         &mut self,
         problem: &StepProblem,
         dt: f64,
-        configuration: (Option<&[f64]>, &[f64]),
+        motion: Motion,
     ) -> Result<(), LinearError> {
         let Workspace {
             stiffness, meter, ..
         } = self;
         meter.time(
             |t| &mut t.assembly,
-            || stiffness.assemble(problem, dt, configuration),
+            || stiffness.assemble(problem, dt, motion),
         );
         meter.counts.factorizations += 1;
         self.k().factorize()
@@ -84,14 +85,14 @@ impl<'m> Workspace<'m> {
         self.meter.time(|t| &mut t.assembly, evaluate)
     }
 
-    /// K x in the given configuration, K being the tangent.
+    /// K x in the configuration of a motion, K being the tangent.
     pub fn tangent_product(
         &mut self,
         problem: &StepProblem,
-        (start, u): (Option<&[f64]>, &[f64]),
+        motion: Motion,
         x: &[f64],
     ) -> Vec<f64> {
-        let product = || problem.elements.tangent_product(start, u, x);
+        let product = || problem.elements.tangent_product(motion, x);
         self.meter.time(|t| &mut t.assembly, product)
     }
 

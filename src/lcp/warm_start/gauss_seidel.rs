@@ -1,4 +1,5 @@
-//! Non-smooth Gauss-Seidel: each contact in turn is solved exactly, the forces of all others being fixed.
+//! Non-smooth Gauss-Seidel: each contact in turn is solved exactly, with the forces of all others
+//! fixed. Section 8 of docs/theory.md.
 
 use crate::lcp::problems::{ContactState, Counters, Scaled, axpy};
 

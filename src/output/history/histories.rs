@@ -98,7 +98,7 @@ const STEP: [Scalar<IncrementReport, i64>; 1] =
         r.step as i64
     })];
 
-const ENERGY: [Scalar<Energy, f64>; 8] = [
+const ENERGY: [Scalar<Energy, f64>; 9] = [
     scalar("kinetic", "kinetic energy", "energy", |e| e.kinetic),
     scalar("strain", "strain energy", "energy", |e| e.strain),
     scalar(
@@ -124,6 +124,12 @@ const ENERGY: [Scalar<Energy, f64>; 8] = [
         "kinetic energy taken by the impact impulses since the start",
         "energy",
         |e| e.impact_loss,
+    ),
+    scalar(
+        "material_dissipation",
+        "energy dissipated by the materials since the start",
+        "energy",
+        |e| e.material_dissipation,
     ),
     scalar(
         "numerical_dissipation",

@@ -37,7 +37,7 @@ impl Monitor {
         Monitor {
             balance: Balance::new(model),
             watch: Watch::default(),
-            strain: StrainWatch::default(),
+            strain: StrainWatch::new(model),
             failed_attempts: 0,
             cutbacks: 0,
             landings: 0,

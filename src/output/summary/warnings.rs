@@ -5,7 +5,7 @@ use crate::dynamics::IncrementReport;
 use crate::linear::larger;
 use crate::model::{ALL_EXTERIOR, Bodies, Model};
 use crate::output::file::{BodyTimes, body_times, contact_names};
-use crate::output::text::{LARGE, WIDTH, general, label, scientific};
+use crate::output::text::{LARGE, general, scientific, wrap_words};
 
 /// Energy balance, relative to the largest energy, above which a run is warned about.
 const BALANCE: f64 = 1e-8;
@@ -47,7 +47,7 @@ impl Findings {
         let increments = [self.long_text(), self.short_text()];
         let open = self.open.iter().map(|name| self.open_text(name));
         let all = texts.into_iter().chain(increments).flatten().chain(open);
-        all.flat_map(|text| sentence(&text)).collect()
+        all.flat_map(|text| wrap_words("warning", &text)).collect()
     }
 
     fn balance_text(&self) -> Option<String> {
@@ -77,8 +77,9 @@ impl Findings {
     fn strain_text(&self) -> Option<String> {
         let strain = self.strain.filter(|&strain| strain > LARGE)?;
         Some(format!(
-            "the largest principal strain is {}, above {}, where a St. Venant-Kirchhoff material is \
-             too stiff in tension and too soft in compression: trust no forces there, or lower the loads",
+            "the largest principal strain is {}, above {}, where a St. Venant-Kirchhoff material \
+             (*ELASTIC) is too stiff in tension and too soft in compression: trust no forces there, \
+             or lower the loads",
             general(strain, 4),
             general(LARGE, 1),
         ))
@@ -191,26 +192,6 @@ pub(crate) fn never_closed(contacts: &[(String, bool)]) -> Vec<String> {
     open
 }
 
-/// The text of a warning, wrapped into lines.
-fn sentence(text: &str) -> Vec<String> {
-    let mut lines = vec![];
-    let mut line = label("warning", "");
-    let mut is_empty = true;
-    for word in text.split(' ') {
-        if !is_empty && line.len() + 1 + word.len() > WIDTH {
-            lines.push(std::mem::replace(&mut line, label("", "")));
-            is_empty = true;
-        }
-        if !is_empty {
-            line.push(' ');
-        }
-        line.push_str(word);
-        is_empty = false;
-    }
-    lines.push(line);
-    lines
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -239,7 +220,7 @@ mod tests {
 
     fn text(findings: &Findings) -> String {
         let lines = findings.lines();
-        assert!(lines.iter().all(|line| line.len() <= WIDTH), "{lines:?}");
+        assert!(lines.iter().all(|line| line.len() <= 80), "{lines:?}");
         let words: Vec<&str> = lines
             .iter()
             .flat_map(|line| line.split_whitespace())

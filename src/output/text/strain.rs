@@ -3,7 +3,7 @@
 use super::format::scientific;
 use crate::dynamics::IncrementReport;
 use crate::elements::Strained;
-use crate::model::Model;
+use crate::model::{Element, Model};
 
 /// Principal strain above which a St. Venant-Kirchhoff material is inaccurate.
 pub(crate) const LARGE: f64 = 0.2;
@@ -15,8 +15,10 @@ pub(crate) const LIMIT: [&str; 2] = [
 ];
 
 /// Follows the largest principal strain.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct StrainWatch {
+    /// Whether the law of an element is meant for small strains.
+    is_limited: Vec<bool>,
     most: Strained,
     /// Number of its increment.
     increment: usize,
@@ -24,6 +26,19 @@ pub(crate) struct StrainWatch {
 }
 
 impl StrainWatch {
+    /// Follows the elements of `model`.
+    pub fn new(model: &Model) -> Self {
+        let law =
+            |element: &Element| &model.materials[model.sections[element.section].material].law;
+        let elements = model.mesh.elements.iter();
+        StrainWatch {
+            is_limited: elements
+                .map(|element| law(element).is_for_small_strains())
+                .collect(),
+            ..StrainWatch::default()
+        }
+    }
+
     /// Enters an increment; returns its most strained element if it is the first beyond the
     /// material's range.
     pub fn add(&mut self, report: &IncrementReport) -> Option<Strained> {
@@ -31,7 +46,8 @@ impl StrainWatch {
         if now.strain > self.most.strain {
             (self.most, self.increment) = (now, report.increment);
         }
-        let is_first = now.strain > LARGE && !self.warned;
+        let is_first =
+            now.strain > LARGE && self.is_limited.get(now.element) == Some(&true) && !self.warned;
         self.warned |= is_first;
         is_first.then_some(now)
     }

@@ -5,7 +5,7 @@ use crate::deck::{Card, Name, Row};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{ALL_EXTERIOR, Contact, Face, Interaction, Mesh, Surface, SurfaceKind};
 use crate::reader::context::Context;
-use crate::reader::mesh::{Block, MeshIndex, Outline, Sides, Surfaces};
+use crate::reader::mesh::{Block, MeshIndex, Outline, Surfaces};
 use std::collections::HashMap;
 
 /// Reads general contact and adds its surface: contact of the surface with itself and with every
@@ -149,8 +149,7 @@ fn assigned_in(row: &Row, interactions: &Interactions, cx: &mut Context) -> Opti
 
 /// All faces that belong to one element only, chain by chain along the boundaries.
 fn exterior(mesh: &Mesh) -> Vec<Face> {
-    let elements: Vec<usize> = (0..mesh.elements.len()).collect();
-    let free = Sides::new(mesh).free_faces(&elements, mesh);
+    let free = mesh.exterior_faces();
     let mut starts: HashMap<usize, Vec<usize>> = HashMap::new();
     for (i, face) in free.iter().enumerate() {
         starts.entry(face.nodes(mesh)[0]).or_default().push(i);

@@ -33,7 +33,7 @@ pub(crate) enum Direction {
 /// Prescribed dofs, as they are carried from step to step.
 #[derive(Default)]
 pub(crate) struct Supports {
-    held: BTreeMap<usize, Held>,
+    held: BTreeMap<usize, Prescription>,
 }
 
 #[derive(Clone, Copy)]
@@ -130,7 +130,7 @@ impl Supports {
         span: Span,
         cx: &mut Context,
     ) {
-        let earlier = self.held.insert(dof, Held { motion, step });
+        let earlier = self.held.insert(dof, Prescription { motion, step });
         if earlier.is_some_and(|held| held.step == step && held.motion != motion) {
             let message = "another displacement is prescribed here than before in this step";
             let warning = Diagnostic::warning(Code::ConflictingSupport, span, message);

@@ -1,0 +1,209 @@
+//! A law at the integration points of one element, with the internal variables that the last accepted
+//! increment has committed. Section 2 of docs/theory.md.
+
+use nalgebra::{Matrix2, Matrix3};
+
+use super::{Across, ConstitutiveLaw, PlaneLaw};
+
+/// A law with the committed internal variables of the integration points of an element, point after
+/// point.
+#[derive(Debug, Clone, Copy)]
+pub struct Committed<'a, L = PlaneLaw> {
+    law: &'a L,
+    variables: &'a [f64],
+}
+
+impl<'a, L: ConstitutiveLaw> Committed<'a, L> {
+    /// A law with the variables of all points of an element.
+    pub fn new(law: &'a L, variables: &'a [f64]) -> Self {
+        Committed { law, variables }
+    }
+
+    /// Internal variables of a point.
+    fn at(&self, point: usize) -> &[f64] {
+        let count = self.law.variables();
+        &self.variables[point * count..(point + 1) * count]
+    }
+
+    /// Stored energy W(E, z) of a point per volume (force/length^2).
+    pub fn stored_energy(&self, point: usize, e: &Matrix2<f64>) -> f64 {
+        self.law.stored_energy(e, self.at(point))
+    }
+
+    /// Second Piola-Kirchhoff stress at a point (force/length^2).
+    pub fn stress(&self, point: usize, e: &Matrix2<f64>) -> Matrix2<f64> {
+        self.law.stress(e, self.at(point))
+    }
+
+    /// Energy-momentum stress at a point (force/length^2).
+    pub fn mean_stress(&self, point: usize, [e0, e1]: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
+        self.law.mean_stress(e0, e1, self.at(point))
+    }
+
+    /// Tangent at a point in Voigt order (force/length^2).
+    pub fn tangent(&self, point: usize, e: &Matrix2<f64>) -> Matrix3<f64> {
+        self.law.tangent(e, self.at(point))
+    }
+
+    /// Tangent of the energy-momentum stress at a point in Voigt order (force/length^2).
+    pub fn mean_tangent(&self, point: usize, [e0, e1]: [&Matrix2<f64>; 2]) -> Matrix3<f64> {
+        self.law.mean_tangent(e0, e1, self.at(point))
+    }
+
+    /// Stretch and stress across the thickness at a point.
+    pub fn across(&self, point: usize, e: &Matrix2<f64>) -> Across {
+        self.law.across(e, self.at(point))
+    }
+
+    /// Internal variables of a point at the strain of the end of an increment, written to `updated`, and
+    /// the energy dissipated on the way to them per volume (force/length^2).
+    pub fn update(&self, point: usize, e: &Matrix2<f64>, updated: &mut [f64]) -> f64 {
+        let count = self.law.variables();
+        let updated = &mut updated[point * count..(point + 1) * count];
+        self.law.update(e, self.at(point), updated)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::materials::energy_momentum;
+
+    /// Elastic with W = G/2 (E - Z):(E - Z) at a plastic strain Z = (Z_xx, Z_yy, Z_xy); at the end of an
+    /// increment Z follows until the elastic strain is within the yield surface |E - Z| <= Y.
+    struct Yielding {
+        g: f64,
+        y: f64,
+    }
+
+    fn plastic(z: &[f64]) -> Matrix2<f64> {
+        Matrix2::new(z[0], z[2], z[2], z[1])
+    }
+
+    impl ConstitutiveLaw for Yielding {
+        fn variables(&self) -> usize {
+            3
+        }
+
+        fn stored_energy(&self, e: &Matrix2<f64>, z: &[f64]) -> f64 {
+            (e - plastic(z)).norm_squared() * self.g / 2.0
+        }
+
+        fn energy_change(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> f64 {
+            self.stress(&((e0 + e1) / 2.0), z).dot(&(e1 - e0))
+        }
+
+        fn stress(&self, e: &Matrix2<f64>, z: &[f64]) -> Matrix2<f64> {
+            (e - plastic(z)) * self.g
+        }
+
+        fn tangent(&self, _e: &Matrix2<f64>, _z: &[f64]) -> Matrix3<f64> {
+            Matrix3::from_diagonal(&nalgebra::Vector3::new(self.g, self.g, self.g / 2.0))
+        }
+
+        fn mean_stress(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix2<f64> {
+            energy_momentum::stress(self, e0, e1, z)
+        }
+
+        fn mean_tangent(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix3<f64> {
+            energy_momentum::tangent(self, e0, e1, z)
+        }
+
+        fn across(&self, _e: &Matrix2<f64>, _z: &[f64]) -> Across {
+            Across {
+                stretch: 1.0,
+                stress: 0.0,
+            }
+        }
+
+        fn update(&self, e: &Matrix2<f64>, z: &[f64], updated: &mut [f64]) -> f64 {
+            let elastic = e - plastic(z);
+            let beyond = (1.0 - self.y / elastic.norm()).max(0.0);
+            let flow = elastic * beyond;
+            updated.copy_from_slice(&[z[0] + flow.m11, z[1] + flow.m22, z[2] + flow.m12]);
+            self.stored_energy(e, z) - self.stored_energy(e, updated)
+        }
+    }
+
+    const LAW: Yielding = Yielding { g: 50.0, y: 0.02 };
+    /// Internal variables of two points.
+    type Variables = [f64; 6];
+
+    /// What a body of two points has at one time, as the state of a run.
+    #[derive(Clone, Debug, PartialEq)]
+    struct State {
+        strains: [Matrix2<f64>; 2],
+        committed: Variables,
+    }
+
+    /// An increment to new strains: the state at its end, the work of the stresses and the energy
+    /// dissipated; `None` if the strain has gone too far at once.
+    fn attempt(start: &State, strains: [Matrix2<f64>; 2]) -> Option<(State, f64, f64)> {
+        let material = Committed::new(&LAW, &start.committed);
+        let (mut work, mut dissipated, mut committed) = (0.0, 0.0, [0.0; 6]);
+        for (p, (e0, e1)) in start.strains.iter().zip(&strains).enumerate() {
+            work += material.mean_stress(p, [e0, e1]).dot(&(e1 - e0));
+            dissipated += material.update(p, e1, &mut committed);
+        }
+        let step = strains[0] - start.strains[0];
+        let end = State { strains, committed };
+        (step.norm() < 0.03).then_some((end, work, dissipated))
+    }
+
+    fn energy(state: &State) -> f64 {
+        let material = Committed::new(&LAW, &state.committed);
+        let at = |p: usize| material.stored_energy(p, &state.strains[p]);
+        at(0) + at(1)
+    }
+
+    /// Strains of the two points at a time, the second with a quarter of the first and other signs.
+    fn path(time: f64) -> [Matrix2<f64>; 2] {
+        let e = Matrix2::new(0.06, 0.01, 0.01, -0.03) * (2.0 * time).sin();
+        [e, e * -0.25]
+    }
+
+    #[test]
+    fn variables_are_committed_with_an_accepted_increment_and_dropped_with_a_failed_one() {
+        let mut state = State {
+            strains: path(0.0),
+            committed: [0.0; 6],
+        };
+        let (mut time, mut failed, mut total) = (0.0, 0, 0.0);
+        while time < 3.0 {
+            // too long at first, then in halves: a failed attempt leaves nothing behind
+            let mut dt = 0.5;
+            let (end, work, dissipated) = loop {
+                let before = state.clone();
+                let found = attempt(&state, path(time + dt));
+                assert_eq!(state, before);
+                match found {
+                    Some(found) => break found,
+                    None => (dt, failed) = (dt / 2.0, failed + 1),
+                }
+            };
+            // work = W1 - W0 + D with D >= 0
+            let change = energy(&end) - energy(&state);
+            assert!((work - change - dissipated).abs() < 1e-14 && dissipated >= 0.0);
+            (time, total, state) = (time + dt, total + dissipated, end);
+        }
+        assert!(failed > 3 && total > 0.01);
+        // the first point has yielded; the second, with a quarter of its strain, has not
+        assert!(state.committed[0].abs() > 0.01 && state.committed[3..] == [0.0; 3]);
+        // the way in small increments from the start ends on the same yield surface
+        let elastic = state.strains[0] - plastic(&state.committed);
+        assert!(elastic.norm() <= LAW.y * (1.0 + 1e-14));
+    }
+
+    #[test]
+    fn stresses_are_those_of_the_committed_variables() {
+        let start = [0.01, -0.02, 0.005, 0.0, 0.0, 0.0];
+        let material = Committed::new(&LAW, &start);
+        let e = Matrix2::new(0.05, 0.0, 0.0, 0.01);
+        let before = material.stress(0, &e);
+        let mut updated = [0.0; 6];
+        material.update(0, &e, &mut updated);
+        assert_eq!(material.stress(0, &e), before);
+        let after = Committed::new(&LAW, &updated).stress(0, &e);
+        assert!((after.norm() - LAW.g * LAW.y).abs() < 1e-13 && before.norm() > after.norm());
+    }
+}

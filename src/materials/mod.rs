@@ -1,0 +1,23 @@
+//! Materials: strain energy, second Piola-Kirchhoff stress and tangent at one integration point, as
+//! functions of the Green-Lagrange strain and of committed internal variables. Section 2 of
+//! docs/theory.md.
+//!
+//! A deformation gradient F enters through E = (F^T F - I)/2 alone, so that every material is
+//! objective; det F > 0 is checked by the elements. Symmetric tensors of the plane are 2 x 2
+//! matrices; tangents act on strains in Voigt order (E_xx, E_yy, 2 E_xy). A [`Law`] has the constants
+//! of the deck, a [`PlaneLaw`] is the same reduced to the plane of the elements.
+
+mod committed;
+mod constitutive_law;
+pub mod energy_momentum;
+mod law;
+mod neo_hooke;
+mod plane;
+mod saint_venant_kirchhoff;
+
+pub use committed::Committed;
+pub use constitutive_law::{Across, ConstitutiveLaw};
+pub use law::{Law, PlaneLaw};
+pub use neo_hooke::NeoHooke;
+pub use plane::{Plane, SmallStrainModuli};
+pub use saint_venant_kirchhoff::{PlaneSaintVenantKirchhoff, SaintVenantKirchhoff};

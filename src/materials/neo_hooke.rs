@@ -1,0 +1,280 @@
+//! Compressible neo-Hookean material with the energy split into isochoric and volumetric part
+//! (Holzapfel, Nonlinear Solid Mechanics, sections 6.4 and 6.5; Bonet & Wood, Nonlinear Continuum
+//! Mechanics for Finite Element Analysis, section 6.5). Section 2 of docs/theory.md.
+
+use nalgebra::{Matrix2, Matrix3, Vector3};
+
+use super::{Across, ConstitutiveLaw, SmallStrainModuli, energy_momentum};
+
+/// Neo-Hookean material in plane strain, `*HYPERELASTIC, NEO HOOKE`.
+///
+/// With C = I + 2 E (C_zz = 1), I1 = tr C, J = det F, Ibar1 = J^(-2/3) I1:
+///
+/// ```text
+/// energy   W = C10 (Ibar1 - 3) + (J - 1)²/D1
+/// stress   S = 2 C10 J^(-2/3) (I - I1/3 C^-1) + p J C^-1,     p = 2 (J - 1)/D1
+/// tangent  C = 4 C10/3 J^(-2/3) [ I1 C^-1 o C^-1 + I1/3 C^-1 x C^-1 - I x C^-1 - C^-1 x I ]
+///              + (p + 2 J/D1) J C^-1 x C^-1 - 2 p J C^-1 o C^-1
+/// domain   J > 0; the pressure stays below 2/D1 in compression
+/// moduli   mu = 2 C10,  K = 2/D1
+/// ```
+///
+/// (A o A)_ijkl = (A_ik A_jl + A_il A_jk)/2. Terms are arranged so that small strains keep their
+/// digits: with t = 2 tr E, q = 4 det E, J² = 1 + t + q, a = J^(2/3), b = a - 1,
+///
+/// ```text
+/// Ibar1 - 3 = (b² (b + 3) - q)/a,     I - I1/3 C^-1 = [(2 t/3 + q) I - (1 + t/3) 2 cof E]/J²
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NeoHooke {
+    /// Shear constant C10 (force/length^2, > 0).
+    pub c10: f64,
+    /// Compressibility D1 (length^2/force, > 0).
+    pub d1: f64,
+}
+
+/// Measures of the change of volume and shape at a strain.
+struct Dilatation {
+    /// t = 2 tr E, so that I1 = 3 + t.
+    t: f64,
+    /// q = 4 det E.
+    q: f64,
+    /// J = sqrt(1 + t + q).
+    j: f64,
+    /// J - 1 = (t + q)/(J + 1).
+    grown: f64,
+    /// a = J^(2/3).
+    a: f64,
+    /// b = a - 1 = (t + q)/(a² + a + 1).
+    b: f64,
+}
+
+impl Dilatation {
+    fn new(e: &Matrix2<f64>) -> Self {
+        let (t, q) = (2.0 * e.trace(), 4.0 * e.determinant());
+        let (j, a) = ((1.0 + t + q).sqrt(), (1.0 + t + q).cbrt());
+        Dilatation {
+            t,
+            q,
+            j,
+            grown: (t + q) / (j + 1.0),
+            a,
+            b: (t + q) / (a * a + a + 1.0),
+        }
+    }
+
+    /// a (Ibar1 - 3)
+    fn distortion(&self) -> f64 {
+        self.b * self.b * (self.b + 3.0) - self.q
+    }
+}
+
+/// Cofactor matrix of a symmetric 2 x 2 matrix: det(A) A^-1.
+fn cofactor(m: &Matrix2<f64>) -> Matrix2<f64> {
+    Matrix2::new(m.m22, -m.m12, -m.m12, m.m11)
+}
+
+impl NeoHooke {
+    /// mu = 2 C10 and K = 2/D1, E = 9 K mu/(3 K + mu), nu = (3 K - 2 mu)/(2 (3 K + mu)).
+    pub fn small_strain(&self) -> SmallStrainModuli {
+        let (mu, k) = (2.0 * self.c10, 2.0 / self.d1);
+        SmallStrainModuli {
+            young: 9.0 * k * mu / (3.0 * k + mu),
+            poisson: (3.0 * k - 2.0 * mu) / (2.0 * (3.0 * k + mu)),
+        }
+    }
+
+    /// p = dU/dJ = 2 (J - 1)/D1 (force/length^2).
+    fn pressure(&self, v: &Dilatation) -> f64 {
+        2.0 * v.grown / self.d1
+    }
+}
+
+impl ConstitutiveLaw for NeoHooke {
+    /// W = C10 (Ibar1 - 3) + (J - 1)²/D1, eq. (2.14), by eq. (2.16)
+    fn stored_energy(&self, e: &Matrix2<f64>, _z: &[f64]) -> f64 {
+        let v = Dilatation::new(e);
+        self.c10 * v.distortion() / v.a + v.grown * v.grown / self.d1
+    }
+
+    /// The differences of t, q, J², a, J and b one after the other from dE, det being quadratic:
+    ///
+    /// ```text
+    /// dq = 4 cof(E_m):dE                        da = db = (dt + dq)/(a1² + a1 a0 + a0²)
+    /// d(b³ + 3 b²) = da (b1² + b1 b0 + b0² + 3 (b1 + b0))
+    /// dJ = (dt + dq)/(J1 + J0)                  d(N/a) = (dN - N0/a0 da)/a1
+    /// ```
+    fn energy_change(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, _z: &[f64]) -> f64 {
+        let (v0, v1) = (Dilatation::new(e0), Dilatation::new(e1));
+        let (mean, de) = ((e0 + e1) / 2.0, e1 - e0);
+        let dq = 4.0 * cofactor(&mean).dot(&de);
+        let squared = 2.0 * de.trace() + dq;
+        let da = squared / (v1.a * v1.a + v1.a * v0.a + v0.a * v0.a);
+        let cubic = v1.b * v1.b + v1.b * v0.b + v0.b * v0.b + 3.0 * (v1.b + v0.b);
+        let shape = (da * cubic - dq - v0.distortion() / v0.a * da) / v1.a;
+        let dj = squared / (v1.j + v0.j);
+        self.c10 * shape + dj * (v1.grown + v0.grown) / self.d1
+    }
+
+    /// S = 2 C10 J^(-2/3) (I - I1/3 C^-1) + p J C^-1, eq. (2.15), by eq. (2.16)
+    fn stress(&self, e: &Matrix2<f64>, _z: &[f64]) -> Matrix2<f64> {
+        let v = Dilatation::new(e);
+        let cof = cofactor(e) * 2.0; // cof C = I + 2 cof E
+        let shape = Matrix2::identity() * (2.0 * v.t / 3.0 + v.q) - cof * (1.0 + v.t / 3.0);
+        // J C^-1 = cof C/J
+        (shape * (2.0 * self.c10 / v.a) / v.j + (Matrix2::identity() + cof) * self.pressure(&v))
+            / v.j
+    }
+
+    fn tangent(&self, e: &Matrix2<f64>, _z: &[f64]) -> Matrix3<f64> {
+        let v = Dilatation::new(e);
+        let inverse = (Matrix2::identity() + cofactor(e) * 2.0) / (v.j * v.j);
+        let (xx, yy, xy) = (inverse.m11, inverse.m22, inverse.m12);
+        let c = Vector3::new(xx, yy, xy);
+        let one = Vector3::new(1.0, 1.0, 0.0);
+        let square = c * c.transpose();
+        // C^-1 o C^-1 on engineering strains
+        let product = Matrix3::new(
+            xx * xx,
+            xy * xy,
+            xx * xy,
+            xy * xy,
+            yy * yy,
+            yy * xy,
+            xx * xy,
+            yy * xy,
+            (xx * yy + xy * xy) / 2.0,
+        );
+        let (i1, p) = (3.0 + v.t, self.pressure(&v));
+        let mixed = one * c.transpose();
+        let shape = product * i1 + square * (i1 / 3.0) - (mixed + mixed.transpose());
+        shape * (4.0 * self.c10 / (3.0 * v.a)) + square * ((p + 2.0 * v.j / self.d1) * v.j)
+            - product * (2.0 * p * v.j)
+    }
+
+    /// F_zz = 1, S_zz = 2 C10 J^(-2/3) (1 - I1/3) + p J
+    fn across(&self, e: &Matrix2<f64>, _z: &[f64]) -> Across {
+        let v = Dilatation::new(e);
+        Across {
+            stretch: 1.0,
+            stress: self.pressure(&v) * v.j - 2.0 * self.c10 / v.a * v.t / 3.0,
+        }
+    }
+
+    fn mean_stress(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix2<f64> {
+        energy_momentum::stress(self, e0, e1, z)
+    }
+
+    fn mean_tangent(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix3<f64> {
+        energy_momentum::tangent(self, e0, e1, z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::materials::{Plane, SaintVenantKirchhoff};
+
+    const MATERIAL: NeoHooke = NeoHooke {
+        c10: 200.0,
+        d1: 2e-3,
+    };
+
+    fn strain(f: &Matrix2<f64>) -> Matrix2<f64> {
+        (f.transpose() * f - Matrix2::identity()) / 2.0
+    }
+
+    /// Cauchy stress F S F^T/J.
+    fn cauchy(f: &Matrix2<f64>) -> Matrix2<f64> {
+        f * MATERIAL.stress(&strain(f), &[]) * f.transpose() / f.determinant()
+    }
+
+    #[test]
+    fn simple_shear_in_closed_form() {
+        // F = I + g e_x e_y: J = 1, sigma = 2 C10 dev(F F^T): xy: mu g, xx: mu g² 2/3, yy = zz: -mu g²/3
+        let (mu, g) = (2.0 * MATERIAL.c10, 0.7);
+        let f = Matrix2::new(1.0, g, 0.0, 1.0);
+        let sigma = cauchy(&f);
+        let expected = Matrix2::new(2.0 * g / 3.0, 1.0, 1.0, -g / 3.0) * (mu * g);
+        assert!((sigma - expected).norm() < 1e-13 * mu);
+        let across = MATERIAL.across(&strain(&f), &[]);
+        assert!((across.stress + mu * g * g / 3.0).abs() < 1e-13 * mu);
+        let energy = MATERIAL.stored_energy(&strain(&f), &[]);
+        assert!((energy - MATERIAL.c10 * g * g).abs() < 1e-13 * mu);
+    }
+
+    #[test]
+    fn uniaxial_strain_in_closed_form() {
+        // F = diag(l, 1, 1): J = l, b = diag(l², 1, 1),
+        // sigma_xx = 2 C10 l^(-5/3) 2/3 (l² - 1) + 2 (l - 1)/D1, the others -1/2 of the first part
+        for l in [0.4_f64, 0.9, 1.0, 1.5, 3.0] {
+            let f = Matrix2::new(l, 0.0, 0.0, 1.0);
+            let shape = 2.0 * MATERIAL.c10 * l.powf(-5.0 / 3.0) * (l * l - 1.0) * 2.0 / 3.0;
+            let p = 2.0 * (l - 1.0) / MATERIAL.d1;
+            let expected = Matrix2::new(shape + p, 0.0, 0.0, p - shape / 2.0);
+            assert!((cauchy(&f) - expected).norm() < 1e-12 * (1.0 + expected.norm()));
+            let across = MATERIAL.across(&strain(&f), &[]);
+            assert!((across.stress / l - expected.m22).abs() < 1e-12 * (1.0 + expected.norm()));
+        }
+    }
+
+    #[test]
+    fn stress_and_tangent_are_derivatives() {
+        let h = 1e-6;
+        for f in [
+            Matrix2::new(1.0, 0.0, 0.0, 1.0),
+            Matrix2::new(1.4, 0.3, -0.5, 0.8),
+            Matrix2::new(0.5, 0.4, 0.1, 0.9),
+        ] {
+            let e = strain(&f);
+            let (s, c) = (MATERIAL.stress(&e, &[]), MATERIAL.tangent(&e, &[]));
+            let units = [
+                Matrix2::new(1.0, 0.0, 0.0, 0.0),
+                Matrix2::new(0.0, 0.0, 0.0, 1.0),
+                Matrix2::new(0.0, 0.5, 0.5, 0.0),
+            ];
+            for (k, unit) in units.iter().enumerate() {
+                let energy = |h: f64| MATERIAL.stored_energy(&(e + unit * h), &[]);
+                let slope = (energy(h) - energy(-h)) / (2.0 * h);
+                assert!((slope - s.dot(unit)).abs() < 1e-8 * c.norm());
+                let stress = |h: f64| MATERIAL.stress(&(e + unit * h), &[]);
+                let d = (stress(h) - stress(-h)) / (2.0 * h);
+                let column = Vector3::new(d.m11, d.m22, d.m12);
+                assert!((column - c.column(k)).norm() < 1e-8 * c.norm());
+            }
+            assert_eq!(c, c.transpose());
+        }
+    }
+
+    #[test]
+    fn small_strains_are_those_of_linear_elasticity_with_all_digits() {
+        let moduli = MATERIAL.small_strain();
+        assert!((moduli.young - 9.0 * 1000.0 * 400.0 / 3400.0).abs() < 1e-12 * moduli.young);
+        let linear = SaintVenantKirchhoff {
+            young: moduli.young,
+            poisson: moduli.poisson,
+        };
+        let linear = linear.in_plane(Plane::Strain);
+        let c = linear.tangent(&Matrix2::zeros(), &[]);
+        assert!((MATERIAL.tangent(&Matrix2::zeros(), &[]) - c).norm() < 1e-14 * c.norm());
+        let e = Matrix2::new(3.0, -1.0, -1.0, 2.0) * 1e-14;
+        let (s, expected) = (MATERIAL.stress(&e, &[]), linear.stress(&e, &[]));
+        assert!((s - expected).norm() < 1e-12 * expected.norm());
+        let (w, expected) = (
+            MATERIAL.stored_energy(&e, &[]),
+            linear.stored_energy(&e, &[]),
+        );
+        assert!((w - expected).abs() < 1e-12 * expected);
+        let change = MATERIAL.energy_change(&e, &(e * 3.0), &[]);
+        assert!((change - 8.0 * expected).abs() < 1e-11 * expected);
+    }
+
+    #[test]
+    fn the_energy_change_is_the_difference_of_energies() {
+        let e0 = strain(&Matrix2::new(1.4, 0.3, -0.5, 0.8));
+        let e1 = strain(&Matrix2::new(0.5, 0.4, 0.1, 0.9));
+        let [w0, w1] = [e0, e1].map(|e| MATERIAL.stored_energy(&e, &[]));
+        let change = MATERIAL.energy_change(&e0, &e1, &[]);
+        assert!((change - (w1 - w0)).abs() < 1e-14 * (w0 + w1));
+    }
+}
