@@ -34,7 +34,7 @@ const LAYERS: [&str; 14] = [
 
 /// Folders in which some files name each other's items, as a type and its tables do; in all others
 /// the files import one way.
-const MUTUAL: [&str; 2] = ["dynamics/increment", "dynamics/step"];
+const MUTUAL: [&str; 1] = ["dynamics/step"];
 
 /// Names of the layers that a source text names after `crate::`, comments and tests included.
 fn imports_of(text: &str) -> impl Iterator<Item = &str> {

@@ -1,4 +1,4 @@
-//! The yardstick: Lemke's method on a dense N x (N + 1) tableau, as in textbooks, with the same
+//! The reference for speed: Lemke's method on a dense N x (N + 1) tableau, as in textbooks, with the same
 //! lexicographic rule and tolerances.
 
 use stickslip::lcp::Lcp;
