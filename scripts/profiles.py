@@ -97,7 +97,7 @@ def nearest(position: Array, nodes: Integers, profile: Profile) -> tuple[Array, 
     left = side(first[segment], second[segment], point) > 0
     least = distance[rows, segment]
     turn = profile.turns(position)
-    # At a corner both segments are equally near. A point is inside a convex obstacle if it is left of both.
+    # At a corner both segments are equally near. A point inside a convex obstacle is left of both.
     inside = left.copy()
     for step in (-1, 1):
         other = (segment + step) % count

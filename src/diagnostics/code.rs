@@ -89,7 +89,7 @@ codes! {
     Locking "D405" "A nearly incompressible material in plane strain locks."
     ThicknessMismatch "D406" "The two sides of a contact differ in thickness."
     SurfaceUse "D407"
-        "A surface that cannot be used as it is: slave and master at once, or nodes where faces are needed."
+        "A surface cannot be used as it is: slave and master at once, or nodes where faces are needed."
     FrictionRange "D408" "A friction coefficient lies outside its range."
     UnitsHint "D409" "A magnitude that hints at mixed units."
     InitialPenetration "D410" "A slave node starts inside the master body."

@@ -253,8 +253,8 @@ fn contact_of_joined_bodies_is_complementary_and_keeps_the_balance() {
     }
 }
 
-/// Change of the momentum of the moving bodies: the impulses on the slave surfaces; the two forces of an
-/// equation with coefficients 1 and -1 have no resultant.
+/// Change of the momentum of the moving bodies: the impulses on the slave surfaces; the two forces of
+/// an equation with coefficients 1 and -1 have no resultant.
 fn momentum_follows_contact(model: &Model, reports: &[IncrementReport]) {
     let start = reports[0].momentum.linear[0];
     let mut impulse = 0.0;

@@ -54,7 +54,8 @@ impl Tree {
         paths.any(|own| own == path || own.starts_with(&folder))
     }
 
-    /// Whether a path of modules and items exists below the modules whose files start with `start`. Re-exports are followed: an item may stand in any file of the module.
+    /// Whether a path of modules and items exists below the modules whose files start with `start`.
+    /// Re-exports are followed: an item may be in any file of the module.
     fn has_item(&self, start: &str, segments: &[&str]) -> bool {
         let [name, rest @ ..] = segments else {
             return true;
