@@ -1,5 +1,5 @@
-//! What a converged increment must pass before it is accepted, and the failure of one that does not.
-//! Section 4 of docs/theory.md, Cutback.
+//! Checks that a converged increment must pass before it is accepted, and the failures of those that
+//! do not. Section 4 of docs/theory.md, Cutback.
 
 use super::nominal_increment::NominalIncrement;
 use crate::contact::{ClosedPairs, Penetration};
@@ -9,7 +9,7 @@ use crate::dynamics::ledger::{Ledger, check_energy_gain};
 use crate::dynamics::results::{Cause, Failure, State};
 use crate::dynamics::step::{Interval, StepPlace, StepProblem, Workspace, sum};
 
-/// Halvings of an increment because of the energy that contact puts in.
+/// Most halvings of an increment because of the energy that contact puts in.
 const GAIN_HALVINGS: u32 = 5;
 
 /// Where a subincrement starts from: motion, closed pairs and energies at the end of the last one.
@@ -20,16 +20,16 @@ pub(crate) struct Before<'a> {
     pub ledger: &'a Ledger,
 }
 
-/// A subincrement that counts, and the ledger with it.
+/// An accepted subincrement, and the ledger with its energies.
 pub(crate) struct Accepted {
     pub subincrement: Subincrement,
     pub ledger: Ledger,
 }
 
 impl Accepted {
-    /// A converged subincrement, `halvings` times halved, of the `nominal` increment: no node may have
-    /// gone through a surface, its energies must be finite, and contact must put in none as long as
-    /// halving helps.
+    /// Accepts a converged subincrement, `halvings` times halved, of the `nominal` increment: no node
+    /// may have gone through a surface, the energies must be finite, and contact must put in none while
+    /// halvings are left for that.
     pub fn new(
         problem: &StepProblem,
         workspace: &mut Workspace,

@@ -17,7 +17,7 @@ use crate::elements::Elements;
 use crate::lcp::LcpMethod;
 use crate::model::{Model, Settings, Step};
 
-/// What stays the same over a step.
+/// The equation of motion of a step.
 pub(crate) struct StepProblem<'m> {
     pub model: &'m Model,
     pub elements: &'m Elements,
@@ -95,7 +95,7 @@ impl StepProblem<'_> {
         position(&self.model.mesh.coordinates, u, node)
     }
 
-    /// Place of a node relative to a segment: of slave, a and b.
+    /// Projection of a node on a segment; `nodes` are slave, a and b.
     pub fn place(&self, u: &[f64], nodes: [usize; 3]) -> Projection {
         let [s, a, b] = nodes.map(|node| self.position(u, node));
         project(s, a, b)
@@ -104,7 +104,7 @@ impl StepProblem<'_> {
     /// Every segment must have a length to have a normal.
     ///
     /// # Errors
-    /// [`Cause::Collapsed`] with the first one that has next to none of its own left.
+    /// [`Cause::Collapsed`] with the first segment that has almost no length.
     pub fn check_segments(&self, u: &[f64]) -> Result<(), Cause> {
         let x = &self.model.mesh.coordinates;
         let length = |[p, q]: [[f64; 2]; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);

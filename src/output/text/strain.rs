@@ -1,14 +1,14 @@
-//! The largest principal strain of a run, and where the material law ends.
+//! The largest principal strain of a run, compared with the range of the material law.
 
 use super::format::scientific;
 use crate::dynamics::IncrementReport;
 use crate::elements::Strained;
 use crate::model::{Element, Model};
 
-/// Principal strain above which a St. Venant-Kirchhoff material is no guide.
+/// Principal strain above which a St. Venant-Kirchhoff material is inaccurate.
 pub(crate) const LARGE: f64 = 0.2;
 
-/// What an element that turned inside out may come from.
+/// Why an element may turn inside out.
 pub(crate) const LIMIT: [&str; 2] = [
     "material St. Venant-Kirchhoff gives way at 58 % of its length (strain -1/3):",
     "         beyond that shorter increments do not help, smaller loads do",
@@ -39,8 +39,8 @@ impl StrainWatch {
         }
     }
 
-    /// Takes an increment in; its most strained element, if it is the first beyond the material's
-    /// range.
+    /// Enters an increment; returns its most strained element if it is the first beyond the
+    /// material's range.
     pub fn add(&mut self, report: &IncrementReport) -> Option<Strained> {
         let now = report.strain;
         if now.strain > self.most.strain {
@@ -52,7 +52,7 @@ impl StrainWatch {
         is_first.then_some(now)
     }
 
-    /// The largest of the run.
+    /// The largest strain of the run as text.
     pub fn line(&self, model: &Model) -> String {
         let strain = scientific(self.most.strain, 2);
         match self.increment {
