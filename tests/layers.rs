@@ -12,7 +12,7 @@ mod sources;
 use circles::{circles, describe_circles};
 use imports::Modules;
 use sources::{parse_sources, read_sources};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// The layers, lowest first.
 const LAYERS: [&str; 14] = [
