@@ -215,6 +215,29 @@ mod tests {
     }
 
     #[test]
+    fn diagonal_matrices_are_inverted_and_checked() {
+        let diagonal = |values: [f64; 3]| {
+            let unknowns = [vec![0], vec![1], vec![2]];
+            let mut a = Assembled::new(&Transformation::identity(3), &unknowns);
+            for (i, value) in values.into_iter().enumerate() {
+                a.add(i, &[value], 1.0);
+            }
+            a
+        };
+        for choice in [SolverChoice::Faer, SolverChoice::Sprs] {
+            let mut solver = factorized(choice, diagonal([2.0, 4.0, 8.0])).unwrap();
+            let inverse = solver.inverse_at(&[2, 0]).unwrap();
+            assert_eq!(inverse, [0.125, 0.0, 0.0, 0.5], "{choice:?}");
+            let error = factorized(choice, diagonal([2.0, -4.0, 8.0])).err();
+            let pivot = LinearError::NotPositiveDefinite {
+                unknown: 1,
+                pivot: -4.0,
+            };
+            assert_eq!(error, Some(pivot), "{choice:?}");
+        }
+    }
+
+    #[test]
     fn indefinite_and_non_finite_matrices_are_errors() {
         for choice in [SolverChoice::Faer, SolverChoice::Sprs] {
             let error = factorized(choice, grid(6, -0.5)).err();

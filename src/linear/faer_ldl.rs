@@ -32,14 +32,15 @@ fn library(error: impl std::fmt::Debug) -> LinearError {
 }
 
 /// Supernodal at every size: the automatic choice prefers the slower simplicial form below some
-/// ten thousand unknowns.
+/// ten thousand unknowns, and the library's own threshold for all still leaves it diagonal matrices,
+/// whose factorisation takes no operations.
 fn analyse(
     n: usize,
     starts: &[usize],
     rows: &[usize],
 ) -> Result<SymbolicCholesky<usize>, LinearError> {
     let parameters = CholeskySymbolicParams {
-        supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+        supernodal_flop_ratio_threshold: SupernodalThreshold(-1.0),
         ..Default::default()
     };
     factorize_symbolic_cholesky(
