@@ -15,12 +15,16 @@ use crate::materials::Committed;
 pub struct Displacement;
 
 impl Formulation for Displacement {
-    fn states<const N: usize, const P: usize>(
+    #[inline]
+    fn for_each_state<const N: usize, const P: usize>(
         element: &Reference<N, P>,
         material: &Committed,
         configuration: &Configuration<N>,
-    ) -> [PointState; P] {
-        std::array::from_fn(|p| state(element, p, material, configuration))
+        mut visit: impl FnMut(usize, &PointState),
+    ) {
+        for p in 0..P {
+            visit(p, &state(element, p, material, configuration));
+        }
     }
 
     /// K = int B_L^T C B_L + B_NL^T S B_NL dOmega, eq. (2.6) (paper eq. 12).
@@ -46,6 +50,7 @@ impl Formulation for Displacement {
 }
 
 /// Deformation and stress at a point: the one evaluation of the material.
+#[inline(always)]
 fn state<const N: usize, const P: usize>(
     element: &Reference<N, P>,
     p: usize,

@@ -12,13 +12,14 @@ use crate::materials::Committed;
 /// How strains and stresses at the integration points follow from the displacements of an element.
 /// Chosen at compile time: a sweep has no dispatch within an element.
 pub trait Formulation {
-    /// Deformation and stress at every integration point: the one evaluation of the material, from
-    /// which force, tangent and output follow.
-    fn states<const N: usize, const P: usize>(
+    /// Visits every integration point p with its deformation and stress: the one evaluation of the
+    /// material, from which force, tangent and output follow.
+    fn for_each_state<const N: usize, const P: usize>(
         element: &Reference<N, P>,
         material: &Committed,
         configuration: &Configuration<N>,
-    ) -> [PointState; P];
+        visit: impl FnMut(usize, &PointState),
+    );
 
     /// Tangent K = dF/du, D x D (force/length); symmetric.
     fn tangent<const N: usize, const P: usize, const D: usize>(
@@ -37,12 +38,12 @@ pub fn internal_force<F: Formulation, const N: usize, const P: usize>(
 ) -> (SMatrix<f64, 2, N>, f64) {
     let mut force = SMatrix::<f64, 2, N>::zeros();
     let mut determinant = f64::INFINITY;
-    let states = F::states(element, material, configuration);
-    for (point, state) in element.points.iter().zip(&states) {
+    F::for_each_state(element, material, configuration, |p, state| {
+        let point = &element.points[p];
         // B_L^T S of node a is F S dh_a/dX: the first Piola-Kirchhoff stress times the gradient.
         force += state.f() * state.s * point.gradient.transpose() * point.volume;
         determinant = smaller(determinant, state.determinant);
-    }
+    });
     (force, determinant)
 }
 
@@ -52,12 +53,12 @@ pub fn evaluate<F: Formulation, const N: usize, const P: usize>(
     material: &Committed,
     u: &SMatrix<f64, 2, N>,
 ) -> ElementResult {
-    let states = F::states(element, material, &Configuration::At(*u));
-    let weighted = element.points.iter().zip(&states);
-    ElementResult::of_points(weighted.enumerate().map(|(p, (point, state))| {
-        let result = PointResult::new(state, material, p);
-        (result, point.volume)
-    }))
+    let mut results = [PointResult::default(); P];
+    F::for_each_state(element, material, &Configuration::At(*u), |p, state| {
+        results[p] = PointResult::new(state, material, p);
+    });
+    let weights = element.points.iter().map(|point| point.volume);
+    ElementResult::of_points(results.into_iter().zip(weights))
 }
 
 /// Internal variables of all points at displacements `u`, written to `updated`, and the energy
@@ -68,11 +69,11 @@ pub fn update<F: Formulation, const N: usize, const P: usize>(
     u: &SMatrix<f64, 2, N>,
     updated: &mut [f64],
 ) -> f64 {
-    let states = F::states(element, material, &Configuration::At(*u));
     let mut dissipated = 0.0;
-    for (p, (point, state)) in element.points.iter().zip(&states).enumerate() {
-        dissipated += material.update(p, state.strains.end(), updated) * point.volume;
-    }
+    F::for_each_state(element, material, &Configuration::At(*u), |p, state| {
+        let volume = element.points[p].volume;
+        dissipated += material.update(p, state.strains.end(), updated) * volume;
+    });
     dissipated
 }
 

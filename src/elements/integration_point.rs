@@ -49,6 +49,7 @@ pub enum Strains {
 impl Strains {
     /// Second Piola-Kirchhoff stress at a point, eq. (2.3), or energy-momentum stress, eq. (4.8)
     /// (force/length^2).
+    #[inline(always)]
     pub fn stress(&self, material: &Committed, point: usize) -> Matrix2<f64> {
         match self {
             Strains::At(e) => material.stress(point, e),
@@ -57,6 +58,7 @@ impl Strains {
     }
 
     /// Tangent of [`Self::stress`] in Voigt order (force/length^2).
+    #[inline(always)]
     pub fn tangent(&self, material: &Committed, point: usize) -> Matrix3<f64> {
         match self {
             Strains::At(e) => material.tangent(point, e),

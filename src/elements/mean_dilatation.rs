@@ -153,22 +153,23 @@ fn stresses<const N: usize, const P: usize>(
 }
 
 impl Formulation for MeanDilatation {
-    fn states<const N: usize, const P: usize>(
+    fn for_each_state<const N: usize, const P: usize>(
         element: &Reference<N, P>,
         material: &Committed,
         configuration: &Configuration<N>,
-    ) -> [PointState; P] {
+        mut visit: impl FnMut(usize, &PointState),
+    ) {
         let (motions, stresses, theta) = stresses(element, material, configuration);
-        std::array::from_fn(|p| {
-            let stress = &stresses[p];
-            PointState {
+        for (p, stress) in stresses.iter().enumerate() {
+            let state = PointState {
                 h: stress.h,
                 strains: stress.strains,
                 material_determinant: 1.0 + theta[1],
                 s: stress.effective(),
                 determinant: smaller(determinant(&stress.h), 1.0 + motions[p].dilatation[1]),
-            }
-        })
+            };
+            visit(p, &state);
+        }
     }
 
     /// Second derivative of the stored energy, eq. (2.12); in the energy-momentum form with mean

@@ -46,6 +46,7 @@ pub fn most_strained(results: &[ElementResult]) -> Strained {
 }
 
 /// Strain energy per volume, stress and strain at one integration point.
+#[derive(Clone, Copy, Default)]
 pub(super) struct PointResult {
     energy: f64,
     sigma: Matrix2<f64>,

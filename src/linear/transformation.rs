@@ -12,6 +12,8 @@ pub struct Transformation {
     starts: Vec<usize>,
     /// Unknown and coefficient of every term, row by row.
     terms: Vec<(usize, f64)>,
+    /// Dof of every unknown, where all rows are empty or of the identity.
+    selected: Option<Vec<usize>>,
 }
 
 impl Transformation {
@@ -22,11 +24,27 @@ impl Transformation {
             terms.extend(row);
             starts.push(terms.len());
         }
-        Transformation {
+        let mut map = Transformation {
             unknowns,
             starts,
             terms,
+            selected: None,
+        };
+        map.selected = map.selection();
+        map
+    }
+
+    /// Dof of every unknown, if each is that of one dof.
+    fn selection(&self) -> Option<Vec<usize>> {
+        let mut selected = Vec::with_capacity(self.unknowns);
+        for (dof, row) in self.rows().enumerate() {
+            match row {
+                [] => {}
+                [(unknown, c)] if *unknown == selected.len() && *c == 1.0 => selected.push(dof),
+                _ => return None,
+            }
         }
+        (selected.len() == self.unknowns).then_some(selected)
     }
 
     /// The identity of size `n`.
@@ -52,6 +70,9 @@ impl Transformation {
 
     /// T^T v over the unknowns for a vector v over all dofs.
     pub fn restrict(&self, v: &[f64]) -> Vec<f64> {
+        if let Some(selected) = &self.selected {
+            return selected.iter().map(|&dof| v[dof]).collect();
+        }
         // adding to -0.0 keeps every value, the sign of a zero included
         let mut restricted = vec![-0.0; self.unknowns];
         for (row, value) in self.rows().zip(v) {
@@ -64,6 +85,10 @@ impl Transformation {
 
     /// Adds T q to a vector v over all dofs.
     pub fn add(&self, q: &[f64], v: &mut [f64]) {
+        if let Some(selected) = &self.selected {
+            selected.iter().zip(q).for_each(|(&dof, q)| v[dof] += q);
+            return;
+        }
         for (row, value) in self.rows().zip(v) {
             for &(unknown, c) in row {
                 *value += c * q[unknown];

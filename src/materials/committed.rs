@@ -20,6 +20,7 @@ impl<'a, L: ConstitutiveLaw> Committed<'a, L> {
     }
 
     /// Internal variables of a point.
+    #[inline]
     fn at(&self, point: usize) -> &[f64] {
         let count = self.law.variables();
         &self.variables[point * count..(point + 1) * count]
@@ -31,21 +32,25 @@ impl<'a, L: ConstitutiveLaw> Committed<'a, L> {
     }
 
     /// Second Piola-Kirchhoff stress at a point (force/length^2).
+    #[inline]
     pub fn stress(&self, point: usize, e: &Matrix2<f64>) -> Matrix2<f64> {
         self.law.stress(e, self.at(point))
     }
 
     /// Energy-momentum stress at a point (force/length^2).
+    #[inline]
     pub fn mean_stress(&self, point: usize, [e0, e1]: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
         self.law.mean_stress(e0, e1, self.at(point))
     }
 
     /// Tangent at a point in Voigt order (force/length^2).
+    #[inline]
     pub fn tangent(&self, point: usize, e: &Matrix2<f64>) -> Matrix3<f64> {
         self.law.tangent(e, self.at(point))
     }
 
     /// Tangent of the energy-momentum stress at a point in Voigt order (force/length^2).
+    #[inline]
     pub fn mean_tangent(&self, point: usize, [e0, e1]: [&Matrix2<f64>; 2]) -> Matrix3<f64> {
         self.law.mean_tangent(e0, e1, self.at(point))
     }

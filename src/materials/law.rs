@@ -77,6 +77,7 @@ macro_rules! of_each {
 }
 
 impl ConstitutiveLaw for PlaneLaw {
+    #[inline]
     fn variables(&self) -> usize {
         of_each!(self, law => law.variables())
     }
@@ -89,10 +90,12 @@ impl ConstitutiveLaw for PlaneLaw {
         of_each!(self, law => law.energy_change(e0, e1, z))
     }
 
+    #[inline]
     fn stress(&self, e: &Matrix2<f64>, z: &[f64]) -> Matrix2<f64> {
         of_each!(self, law => law.stress(e, z))
     }
 
+    #[inline]
     fn tangent(&self, e: &Matrix2<f64>, z: &[f64]) -> Matrix3<f64> {
         of_each!(self, law => law.tangent(e, z))
     }
@@ -101,10 +104,12 @@ impl ConstitutiveLaw for PlaneLaw {
         of_each!(self, law => law.across(e, z))
     }
 
+    #[inline]
     fn mean_stress(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix2<f64> {
         of_each!(self, law => law.mean_stress(e0, e1, z))
     }
 
+    #[inline]
     fn mean_tangent(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix3<f64> {
         of_each!(self, law => law.mean_tangent(e0, e1, z))
     }

@@ -119,6 +119,7 @@ impl SlaveNode<'_> {
     }
 
     /// Coordinate xi of the projection on a segment in the iterate.
+    #[inline]
     pub(crate) fn xi(&self, segment: usize) -> f64 {
         let [a, b] = self.surfaces.segments[segment].map(|n| self.now[n]);
         let s = self.now[self.surfaces.slaves[self.slave]];
@@ -127,6 +128,7 @@ impl SlaveNode<'_> {
     }
 
     /// Projection on a segment in the iterate.
+    #[inline]
     pub(crate) fn project(&self, segment: usize) -> Projection {
         self.project_at(self.now, segment)
     }
@@ -136,6 +138,7 @@ impl SlaveNode<'_> {
         self.project_at(self.start, segment)
     }
 
+    #[inline]
     fn project_at(&self, at: &[[f64; 2]], segment: usize) -> Projection {
         let [a, b] = self.surfaces.segments[segment];
         project(at[self.surfaces.slaves[self.slave]], at[a], at[b])
