@@ -1,8 +1,8 @@
 //! Time of contact search against the number of segments.
 //!
 //! `cargo bench --bench search` measures a lattice of discs in contact with all others and with
-//! themselves: a search anew, the pairs found with lists that hold, the ways of an increment
-//! followed, and the search among all segments.
+//! themselves: a new search, pairing with valid lists, the penetration check of an
+//! increment, and the search among all segments.
 
 #[path = "../tests/contact_support/mod.rs"]
 mod contact_support;

@@ -1,4 +1,4 @@
-"""Command lines of the scripts: what the user can mend is told in one line, without a traceback."""
+"""Command lines of the scripts: errors that the user can correct are one line, without a traceback."""
 
 import argparse
 import math
@@ -12,7 +12,7 @@ FAULT = 2
 
 
 class Fault(Exception):
-    """Something that the user can mend; its text is one line."""
+    """An error that the user can correct; its text is one line."""
 
 
 def one_line(error: BaseException) -> str:

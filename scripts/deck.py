@@ -42,7 +42,7 @@ class Deck:
 
     @classmethod
     def read(cls, path: Path | str) -> "Deck":
-        """Reads a deck; what its cards ask for with INPUT= stands in their place."""
+        """Reads a deck; data lines from files named with INPUT= are inserted."""
         cards: list[Card] = []
         for line in _lines(Path(path), Path(path).parent):
             if line.startswith("*"):
@@ -143,7 +143,7 @@ def _read_input(lines: list[str], path: Path, main: Path, depth: int) -> None:
 
 
 def fields(line: str) -> list[str]:
-    """What stands between the commas of a line; commas between quotation marks do not count."""
+    """Fields of a line between its commas; commas between quotation marks do not count."""
     if '"' not in line:
         return [part.strip() for part in line.split(",")]
     parts = [""]

@@ -22,7 +22,7 @@ REWORDED = ("description",)
 """Attributes for readers."""
 
 REMAINDERS = ("balance", "residual", "cone_violation")
-"""Datasets that hold what is left over where terms cancel: round-off, without a size of its own."""
+"""Datasets of terms that cancel: round-off, without a scale of their own."""
 
 NEGLIGIBLE = 1e-9
 """A dataset that is smaller than this part of the largest of its dimension is round-off as well."""
@@ -62,7 +62,7 @@ class Difference:
 
 @dataclass
 class Comparison:
-    """What two result files have in common and where they differ."""
+    """Comparison of two result files: common span and differences."""
 
     datasets: int = 0
     differences: list[Difference] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""Outlines of bodies, and where points are relative to them; signs of areas are exact."""
+"""Outlines of bodies and the position of points relative to them; signs of areas are exact."""
 
 from dataclasses import dataclass
 from fractions import Fraction

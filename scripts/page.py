@@ -77,7 +77,7 @@ class Grid:
 
 @dataclass(frozen=True)
 class Legends:
-    """What stands beside the panels."""
+    """Entries and colour bar beside the panels."""
 
     entries: Sequence[Artist] = ()
     norm: Normalize | None = None

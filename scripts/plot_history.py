@@ -64,7 +64,7 @@ def energy(axes: Axes, results: Results) -> None:
 
 
 def relative_balance(results: Results) -> Array:
-    """What is left of the energy balance, against the largest energy."""
+    """The energy balance, relative to the largest energy."""
     return np.abs(results.energy["balance"]) / (results.largest_energy or 1.0)
 
 
@@ -75,7 +75,7 @@ def balance(axes: Axes, results: Results) -> None:
 
 
 def linear_momentum(axes: Axes, results: Results) -> None:
-    """Both components; what is round-off looks like nothing."""
+    """Both components; round-off is drawn as zero."""
     for label, values in zip("xy", results.linear_momentum.T):
         axes.plot(results.time, values, label=label)
     speed = np.linalg.norm(results.point_field("V", 0), axis=1).max()
@@ -85,7 +85,7 @@ def linear_momentum(axes: Axes, results: Results) -> None:
 
 
 def angular_momentum(axes: Axes, results: Results) -> None:
-    """Angular momentum; what is round-off looks like nothing."""
+    """Angular momentum; round-off is drawn as zero."""
     axes.plot(results.time, results.angular_momentum, color="k")
     flat(axes, np.ptp(results.angular_momentum), np.abs(results.angular_momentum).max())
     axes.set_ylabel("angular momentum\nabout the origin")

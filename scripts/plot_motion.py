@@ -176,7 +176,7 @@ def shown_at(results: Results, times: Iterable[float]) -> list[Shown]:
 
 
 def arguments_of_command_line() -> argparse.Namespace:
-    """What was asked for."""
+    """Options of the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("result", type=Path, nargs="+", help="result files JOB.vtkhdf")
     parser.add_argument(

@@ -64,7 +64,7 @@ def profiles(results: Results) -> list[Profile]:
 
 
 def crossings(start: Array, end: Array, first: Array, second: Array) -> Integers:
-    """How often the ways start, end [n, 2] go through segments first, second, to their left.
+    """How often the paths start, end [n, 2] cross segments first, second, to their left.
 
     The way back counts -1. What is left of a segment by less than LIMIT of the way touches it, and
     counts as in front of it.
@@ -97,7 +97,7 @@ def nearest(position: Array, nodes: Integers, profile: Profile) -> tuple[Array, 
     left = side(first[segment], second[segment], point) > 0
     least = distance[rows, segment]
     turn = profile.turns(position)
-    # At a corner two segments are as near. Inside a convex obstacle is what is left of both.
+    # At a corner both segments are equally near. A point inside a convex obstacle is left of both.
     inside = left.copy()
     for step in (-1, 1):
         other = (segment + step) % count

@@ -30,6 +30,22 @@ pub fn angle(p: [f64; 2], q: [f64; 2]) -> f64 {
     cross(p, q).atan2(dot(p, q))
 }
 
+/// Area of a polygon with the given corners, counter-clockwise: sum (p_i - p_0) x (p_i+1 - p_0) / 2.
+pub fn polygon_area(corners: impl IntoIterator<Item = [f64; 2]>) -> f64 {
+    let mut corners = corners.into_iter();
+    let Some(first) = corners.next() else {
+        return 0.0;
+    };
+    // the terms of the first and last side are zero, being relative to the first corner
+    let mut last = [0.0; 2];
+    let terms = corners.map(|corner| {
+        let side = [last, difference(first, corner)];
+        last = side[1];
+        cross(side[0], side[1])
+    });
+    terms.sum::<f64>() / 2.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

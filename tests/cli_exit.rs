@@ -94,7 +94,7 @@ fn info_describes_a_result_file() {
     assert!(err.contains("is not a result file"), "{err}");
 }
 
-/// A fifo has no end to wait for, and a device none to read.
+/// A fifo would wait for its writer, and a device never ends.
 #[cfg(unix)]
 #[test]
 fn what_is_no_regular_file_is_4() {
@@ -155,7 +155,7 @@ fn a_file_without_lines_is_an_error_at_once() {
         .to_string_lossy()
         .into_owned();
     let file = std::fs::File::create(&path).expect("deck");
-    // A terabyte of zeros that takes no room.
+    // A sparse terabyte of zeros.
     file.set_len(1 << 40).expect("sparse");
     let (code, _, err) = stickslip(&["check", &path]);
     assert_eq!(code, 2);

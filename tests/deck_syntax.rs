@@ -1,5 +1,5 @@
 //! Lines, fields, numbers and names: one small deck for each rule of the deck language, and the
-//! faults that other codes let pass.
+//! faults that other codes accept.
 
 use stickslip::deck::{self, Card, Deck};
 use stickslip::diagnostics::{Code, Diagnostics, Severity, Sources, Strictness};
@@ -55,7 +55,7 @@ fn faults(old: &str, new: &str) -> Vec<Code> {
     serious.map(|item| item.code).collect()
 }
 
-/// The change must neither matter nor be mentioned.
+/// The change must have no effect on the model or the messages.
 fn same(old: &str, new: &str) {
     let (model, d) = square(old, new);
     assert_eq!(codes(&d), [], "{new}");

@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// What a stranger would look for: beginnings of the second column of the table.
+/// Equations that a new reader looks for: beginnings of the second column of the table.
 const MAIN_EQUATIONS: [&str; 12] = [
     "strain",
     "tangent",

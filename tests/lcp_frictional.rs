@@ -419,7 +419,7 @@ fn warm_states_are_only_a_guess() {
     ));
 }
 
-/// Data that are no problem at all: an error or a checked answer, never a panic.
+/// Invalid data: an error or a checked answer, never a panic.
 #[test]
 fn extreme_numbers_never_panic() {
     let mut random = Random(32);

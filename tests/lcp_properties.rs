@@ -1,4 +1,4 @@
-//! Random frictional problems of every kind: none may stay unsolved.
+//! Random frictional problems of many kinds: all must be solved.
 
 mod lcp_support;
 
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use stickslip::lcp::{FrictionalLcp, LcpMethod, solve_frictional};
 
-/// Where Q comes from.
+/// Kinds of Q.
 #[derive(Debug, Clone, Copy)]
 enum Kind {
     /// Full random matrix.

@@ -161,7 +161,7 @@ fn percentile(sorted: &[usize], share: f64) -> usize {
     sorted[rank.max(1) - 1]
 }
 
-/// Lines `figure place name` of what is larger than allowed, largest first.
+/// Lines `figure place name` of all that exceed the limit, largest first.
 fn larger<'a>(
     most: usize,
     measured: impl Iterator<Item = (usize, &'a str, &'a str)>,

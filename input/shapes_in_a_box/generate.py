@@ -30,9 +30,9 @@ SIZE = 1.8
 """No shape has a longer diagonal."""
 COLUMNS, ROWS, PITCH = 4, 3, 2.6
 MARGIN, WALL, EDGE = 0.1, 0.3, 0.9
-"""Air between the outermost shapes' places and the walls; thickness of these; their elements."""
+"""Gap between the outermost shapes and the walls; thickness of the walls; their elements."""
 FRICTION = {"one": 0.2, "two": 0.6, "three": 0.0, "four": 0.2, "five": 0.0, "six": 0.6}
-"""Friction of every deck; the place of a deck in this list starts its chance."""
+"""Friction of every deck; the index of a deck in this list is the seed of its random numbers."""
 DT, INCREMENTS = 0.004, 400
 
 

@@ -21,12 +21,12 @@ use crate::output::Verbosity;
                   signals HUP, INT, TERM (results so far are valid)."
 )]
 pub(super) struct Args {
-    /// What to do.
+    /// Subcommand.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// What to do.
+/// Subcommands.
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Solve a deck: writes JOB.vtkhdf, JOB.sta and JOB.log, JOB being the deck's name without .inp

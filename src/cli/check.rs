@@ -22,7 +22,7 @@ pub(super) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exit, CliEr
     Ok(Exit::Finished)
 }
 
-/// Reads a deck; a deck that cannot be opened is a matter of the file system.
+/// Reads a deck; a deck that cannot be opened is an error of the file system.
 pub(super) fn load(deck: &DeckArgs, numerics: &Numerics) -> Result<Loaded, CliError> {
     let path = &deck.path;
     regular_file(path).map_err(|source| CliError::Deck {

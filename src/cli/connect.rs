@@ -1,4 +1,4 @@
-//! The calls into the reader and the solver, all of them.
+//! All calls of the commands into the reader and the solver, replaceable in tests.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ pub(super) struct Loaded {
     pub model: Option<PreparedModel>,
     /// Errors, warnings and notes for the screen of `check`.
     pub all_messages: String,
-    /// The same for that of `run`, which does not care what other codes would make of the deck.
+    /// The same for the screen of `run`, without those about differences from other codes.
     pub messages: String,
     /// The same without colour, for the log.
     pub plain_messages: String,
@@ -35,7 +35,7 @@ type Load = fn(&Path, Strictness, bool) -> Loaded;
 /// Solves all steps of a model.
 type Solve = fn(&PreparedModel, &mut dyn Observer) -> Result<RunSummary, RunError>;
 
-/// What the commands need of the rest of the program.
+/// Reader and solver, as the commands call them.
 pub(super) struct Numerics {
     pub load: Load,
     pub solve: Solve,

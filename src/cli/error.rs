@@ -8,7 +8,7 @@ use thiserror::Error;
 use super::exit::Exit;
 use crate::output::{NameError, OutputError, SummaryError, reason};
 
-/// Why a command did not get to its end.
+/// Why a command failed.
 #[derive(Debug, Error)]
 pub(super) enum CliError {
     /// The deck cannot be read.
@@ -19,7 +19,7 @@ pub(super) enum CliError {
         /// Why.
         source: io::Error,
     },
-    /// A name of the deck cannot stand in the result file.
+    /// A name of the deck is not possible in the result file.
     #[error(transparent)]
     Name(#[from] NameError),
     /// The files of the job cannot be created.
@@ -33,10 +33,10 @@ pub(super) enum CliError {
     Broken {
         /// Why, with the file.
         source: io::Error,
-        /// What there is to read.
+        /// Which results can be read.
         kept: Option<String>,
     },
-    /// The standard output cannot be written, and is no closed pipe.
+    /// Writing to the standard output failed, except by a closed pipe.
     #[error("cannot write the standard output: {}", reason(.0))]
     Screen(io::Error),
     /// Signals cannot be received.
@@ -64,7 +64,7 @@ pub(super) enum CliError {
 }
 
 impl CliError {
-    /// The exit code that tells of it.
+    /// Its exit code.
     pub fn exit(&self) -> Exit {
         match self {
             CliError::Name(_) | CliError::Output(OutputError::Name(_)) => Exit::Rejected,

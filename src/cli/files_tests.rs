@@ -1,4 +1,4 @@
-//! `run` with a made-up solver: who has the files of a job, and what is left of them.
+//! `run` with a substitute solver: claim of the files of a job, and the files left after a failure.
 
 use std::{cell, io};
 
@@ -17,7 +17,7 @@ fn to_an_error_at_the_start(
 }
 
 thread_local! {
-    /// What comes in while [`until_told`] solves.
+    /// The signal that arrives while [`until_told`] solves.
     static INTERRUPT: (Interrupt, cell::Cell<i32>) = (Interrupt::default(), cell::Cell::new(0));
 }
 

@@ -50,7 +50,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     })
 }
 
-/// Help and version are no errors.
+/// Prints help, version or the error of the command line; the exit code.
 fn usage(error: &clap::Error) -> Exit {
     let is_asked_for = matches!(
         error.kind(),

@@ -1,10 +1,11 @@
-//! What the command line changes in the model.
+//! Changes of the model by the command line.
 
 use super::args::RunArgs;
 use crate::model::{Frames, SolverChoice, Step};
 use crate::output::{frames, solver};
 
-/// Applies the command line to the steps; says where the deck wanted otherwise.
+/// Applies the command line to the steps; returns a note for each value of the deck that it
+/// replaces.
 pub(super) fn apply(args: &RunArgs, steps: &mut [Step]) -> Vec<String> {
     let mut notes = vec![];
     for (i, step) in steps.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! The subcommand `run`: from the deck to the finished result files, whichever way the run ends.
+//! The subcommand `run`: from the deck to the finished result files, however the run ends.
 
 use super::args::RunArgs;
 use super::check::{complain_of, deck_line_of, load};
@@ -14,7 +14,7 @@ use crate::output::{
 };
 use crate::prepare::PreparedModel;
 
-/// Solves a deck; `command` is the command as typed. The run ends early when `interrupt` asks for
+/// Solves a deck; `command` is the command as typed. The run ends early when `interrupt` requests
 /// it.
 pub(super) fn run(
     args: &RunArgs,
@@ -74,7 +74,7 @@ fn solve(
         Err(source) => {
             let kept = writer.kept();
             let error = CliError::Broken { source, kept };
-            // What is wrong already is told below; the files may be beyond completing.
+            // The first error is reported below; completing the files may fail as well.
             let _ = writer.detail(&format!("error: {error}"));
             let _ = writer.abandon(error.exit() as u8);
             Err(error)
@@ -82,7 +82,7 @@ fn solve(
     }
 }
 
-/// Starts the threads of the program and gives their number.
+/// Starts the threads of the program and returns their number.
 fn start_threads(wanted: Option<usize>) -> Result<usize, CliError> {
     if let Some(threads) = wanted {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);

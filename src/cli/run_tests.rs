@@ -1,4 +1,4 @@
-//! `run` with a made-up reader and solver.
+//! `run` with a substitute reader and solver.
 
 use std::io;
 use std::path::{Path, PathBuf};

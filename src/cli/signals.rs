@@ -1,7 +1,7 @@
-//! Signals that ask for the end of a run.
+//! Signals that request the end of a run.
 //!
-//! The first one is passed on: the run ends after the increment it is at, with its results
-//! complete. A second one ends the program at once.
+//! After the first one the run ends with the current increment and complete results. A second one
+//! ends the program at once.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -20,12 +20,12 @@ use crate::output::Interrupt;
 /// sent one each.
 const ONE_REQUEST: Duration = Duration::from_millis(250);
 
-/// Starts to receive signals, those aside that the program is told to ignore (as `nohup` does).
+/// Starts to receive signals, except those that the program was started to ignore (as by `nohup`).
 ///
 /// # Errors
 /// Those of the system.
 pub(super) fn receive() -> io::Result<Interrupt> {
-    // A file that grows larger than it may is an error where it is written, not the end.
+    // A file beyond the size limit is an error where it is written and must not end the program.
     flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))?;
     let ignored = ignored_signals();
     let wanted = [SIGHUP, SIGINT, SIGTERM].into_iter();
@@ -62,8 +62,8 @@ pub(super) fn exit(interrupt: &Interrupt) -> Exit {
     }
 }
 
-/// The signals that the program was started to ignore, signal n as bit n - 1; none where the
-/// system does not tell (Linux does).
+/// The signals that the program was started to ignore, signal n as bit n - 1; 0 on systems
+/// other than Linux, which do not report them.
 fn ignored_signals() -> u64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

@@ -4,7 +4,7 @@ use std::io::{self, IsTerminal, Write};
 
 use super::error::CliError;
 
-/// Prints to the standard output, unless that is a closed pipe.
+/// Prints to the standard output; a closed pipe is ignored.
 pub(super) fn print(lines: &[String]) -> Result<(), CliError> {
     let mut out = io::stdout().lock();
     let mut lines = lines.iter();
@@ -12,7 +12,7 @@ pub(super) fn print(lines: &[String]) -> Result<(), CliError> {
     on_screen(printed.and_then(|()| out.flush()))
 }
 
-/// What became of printing; a closed pipe is nobody's error.
+/// The result of printing; a closed pipe is not an error.
 pub(super) fn on_screen(printed: io::Result<()>) -> Result<(), CliError> {
     match printed {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(CliError::Screen(error)),
@@ -20,7 +20,7 @@ pub(super) fn on_screen(printed: io::Result<()>) -> Result<(), CliError> {
     }
 }
 
-/// Prints to the standard error, unless that is a closed pipe.
+/// Prints to the standard error; failures are ignored.
 pub(super) fn complain(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", text.trim_end());
 }

@@ -3,7 +3,7 @@
 
 macro_rules! codes {
     ($($name:ident $id:literal $meaning:literal)*) => {
-        /// What a diagnostic is about.
+        /// Subject of a diagnostic.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Code {
             $(#[doc = $meaning] $name,)*
@@ -56,7 +56,8 @@ codes! {
     NotText "D121" "A file holds a NUL byte: it is not a text."
     EndlessLine "D122" "A line is longer than the program reads."
     UnsupportedKeyword "D201" "A known keyword that cannot be honoured and would change the answer."
-    UnsupportedParameter "D202" "A known parameter or value that cannot be honoured and would change the answer."
+    UnsupportedParameter "D202"
+        "A known parameter or value that cannot be honoured and would change the answer."
     IgnoredKeyword "D203" "A known keyword that is left out without changing the answer."
     IgnoredParameter "D204" "A parameter or value that is left out or replaced."
     WrongPlace "D205" "A keyword stands where it has no meaning."
@@ -68,7 +69,8 @@ codes! {
     RepeatedElement "D303" "An element number, or the nodes of an element, appear twice."
     UndefinedNode "D304" "A node is named that does not exist."
     UndefinedElement "D305" "An element is named that does not exist."
-    UndefinedName "D306" "A set, surface, material, amplitude or interaction is named that does not exist."
+    UndefinedName "D306"
+        "A set, surface, material, amplitude or interaction is named that does not exist."
     RepeatedName "D307" "A name is defined twice."
     ElementType "D308" "An element type that cannot be used."
     BadShape "D309" "An element is clockwise, degenerate or not convex."
@@ -86,7 +88,8 @@ codes! {
     TwoSections "D404" "An element has two sections."
     Locking "D405" "A nearly incompressible material in plane strain locks."
     ThicknessMismatch "D406" "The two sides of a contact differ in thickness."
-    SurfaceUse "D407" "A surface that cannot be used as it is: slave and master at once, or nodes where faces are needed."
+    SurfaceUse "D407"
+        "A surface cannot be used as it is: slave and master at once, or nodes where faces are needed."
     FrictionRange "D408" "A friction coefficient lies outside its range."
     UnitsHint "D409" "A magnitude that hints at mixed units."
     InitialPenetration "D410" "A slave node starts inside the master body."

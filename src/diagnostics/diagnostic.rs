@@ -14,7 +14,7 @@ const LONGEST_TEXT: usize = 1000;
 pub enum Severity {
     /// The deck is rejected.
     Error,
-    /// The deck is read, but not quite as written.
+    /// The deck is read, but differently from what it says.
     Warning,
     /// Worth knowing.
     Note,
@@ -27,11 +27,11 @@ pub struct Diagnostic {
     pub severity: Severity,
     /// What it is about.
     pub code: Code,
-    /// Where, if it has a place.
+    /// Where; `None` without a place in the deck.
     pub span: Option<Span>,
     /// What was found and what was expected.
     pub message: String,
-    /// Words beside the caret.
+    /// Text beside the caret.
     pub label: Option<String>,
     /// What to do about it.
     pub help: Option<String>,
@@ -69,7 +69,7 @@ impl Diagnostic {
         }
     }
 
-    /// The same with words beside the caret.
+    /// The same with text beside the caret.
     pub fn label(mut self, label: impl Into<String>) -> Diagnostic {
         self.label = Some(shortened(label.into()));
         self
@@ -90,7 +90,7 @@ impl Diagnostic {
     }
 }
 
-/// A message in which what is echoed from a deck is of readable length.
+/// A message with overlong words of the deck cut to readable length.
 fn shortened(text: String) -> String {
     if text.len() <= LONGEST_WORD {
         return text;

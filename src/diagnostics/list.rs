@@ -6,7 +6,7 @@ use std::collections::{BinaryHeap, HashSet};
 /// Most diagnostics of one severity that are shown.
 pub(super) const SHOWN: usize = 20;
 
-/// What becomes of doubtful decks.
+/// Treatment of unknown keywords and of warnings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Strictness {
     /// Unknown keywords and parameters are errors.
@@ -30,7 +30,7 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// No diagnostics yet, the usual rules.
+    /// No diagnostics yet, normal strictness.
     pub fn new() -> Diagnostics {
         Diagnostics::default()
     }
@@ -60,8 +60,8 @@ impl Diagnostics {
         self.items.push(diagnostic);
     }
 
-    /// Whether a diagnostic would be shown if it were the last one: an advice that takes time is
-    /// made for those only. One that is not shown now will not be later.
+    /// Whether a diagnostic would be shown if it were the last one. Suggestions that take time are
+    /// made for such diagnostics only; further diagnostics never bring others back.
     pub fn may_show(&self, diagnostic: &Diagnostic) -> bool {
         let first = &self.first[self.judge(diagnostic) as usize];
         first.len() < SHOWN || first.peek().is_some_and(|last| diagnostic.span < *last)

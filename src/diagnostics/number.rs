@@ -3,7 +3,7 @@
 /// Magnitudes that are written with all their digits.
 const PLAIN: std::ops::Range<f64> = 1e-6..1e16;
 
-/// A number in a message: as it is, with an exponent when it would fill lines with zeros.
+/// A number in a message, with an exponent when it would otherwise be a long row of zeros.
 pub fn shown(x: f64) -> String {
     match x == 0.0 || PLAIN.contains(&x.abs()) {
         true => x.to_string(),

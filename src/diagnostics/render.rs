@@ -85,7 +85,7 @@ fn snippet<'a>(
     )
 }
 
-/// The place alone, where its file has no such line: an empty file.
+/// The place without source text, for a file without such a line: an empty file.
 fn origin(span: Span, sources: &Sources) -> Option<Origin<'_>> {
     let source = sources.get(span.file)?;
     let origin = Origin::path(source.name()).line(span.line as usize);

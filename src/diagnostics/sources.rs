@@ -12,7 +12,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// Name as given on the command line, or as the including file and its folder make it.
+    /// Name as given on the command line, or its path from the folder of the including file.
     pub fn name(&self) -> &str {
         &self.name
     }

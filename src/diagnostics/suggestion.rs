@@ -2,7 +2,7 @@
 //! neighbouring letters counted as one error (optimal string alignment, a restricted
 //! Damerau-Levenshtein distance).
 
-/// Most typing errors in a word that is understood.
+/// Most typing errors for which a suggestion is made.
 const MOST_ERRORS: usize = 2;
 
 /// The candidate that `word` is probably meant to be: the one with the fewest typing errors, if
@@ -48,7 +48,7 @@ fn typing_errors(a: &[char], b: &[char], allowed: usize) -> Option<usize> {
             }
             row.push(best);
         }
-        // Errors never grow fewer from one row to the next but by an exchange, from the one before.
+        // Counts never decrease from row to row; an exchange refers to the row before the last.
         if last.iter().chain(&row).all(|&errors| errors > allowed) {
             return None;
         }

@@ -64,7 +64,8 @@ pub struct JsonAnswer {
     pub solved: bool,
 }
 
-/// Solves a problem given as JSON. A text that is no problem has the answer `invalid`.
+/// Solves a problem given as JSON. A text that does not state a problem has the answer
+/// `invalid`.
 pub fn solve_json(text: &str) -> JsonAnswer {
     let answer = match read(text) {
         Ok((lcp, None)) => match lemke(&lcp, &covering_vector(&lcp), &LemkeSettings::default()) {
@@ -98,7 +99,7 @@ impl FrictionalLcp {
         serde_json::to_string(&problem).unwrap_or_default()
     }
 
-    /// The frictional problem of a JSON text, or why it is none.
+    /// The frictional problem stated by a JSON text, or the reason why it states none.
     pub fn from_json(text: &str) -> Result<Self, String> {
         read(text)?
             .1

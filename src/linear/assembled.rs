@@ -5,8 +5,8 @@ use sprs::{CsMat, CsMatView};
 
 use super::Transformation;
 
-/// Marks an entry of an element matrix that does not go to one place as it is.
-const NO_SLOT: usize = usize::MAX;
+/// Marks an entry of an element matrix that equations distribute over several entries.
+const DISTRIBUTED: usize = usize::MAX;
 
 /// A symmetric sparse matrix over unknowns, assembled from element matrices over dofs. Both
 /// triangles are stored by columns; the pattern is built once and refilled in place.
@@ -14,12 +14,12 @@ const NO_SLOT: usize = usize::MAX;
 pub struct Assembled {
     matrix: CsMat<f64>,
     /// Position in the values of every entry of every element matrix, column by column.
-    slots: Vec<usize>,
-    /// Start of each element in `slots`.
+    positions: Vec<usize>,
+    /// Start of each element in `positions`.
     starts: Vec<usize>,
     /// Terms of the entries whose dofs follow others, element by element.
     couplings: Vec<Coupling>,
-    /// Start of each element in `couplings`.
+    /// Start of each element in `couplings`, and their end.
     coupling_starts: Vec<usize>,
 }
 
@@ -29,13 +29,13 @@ struct Coupling {
     /// Entry of the element matrix.
     entry: usize,
     /// Its position in the values.
-    slot: usize,
+    position: usize,
     /// Product of the two coefficients.
     coefficient: f64,
 }
 
 impl Assembled {
-    /// Zero matrix over the unknowns of `map` with the pattern of elements whose dofs are given.
+    /// Zero matrix over the unknowns of `map`, with the pattern of elements with the given dofs.
     pub fn new(map: &Transformation, elements: &[Vec<usize>]) -> Self {
         let n = map.unknowns();
         let mut entries: Vec<(usize, usize)> = (0..n).map(|i| (i, i)).collect();
@@ -58,7 +58,7 @@ impl Assembled {
         let values = vec![0.0; rows.len()];
         let mut assembled = Assembled {
             matrix: CsMat::new_csc((n, n), starts_of_columns, rows, values),
-            slots: Vec::new(),
+            positions: Vec::new(),
             starts: vec![0],
             couplings: Vec::new(),
             coupling_starts: vec![0],
@@ -75,25 +75,25 @@ impl Assembled {
             .iter()
             .flat_map(|column| dofs.iter().map(move |row| (row, column)));
         for (entry, (&row, &column)) in pairs.enumerate() {
-            let slot = match (map.row(row), map.row(column)) {
+            let position = match (map.row(row), map.row(column)) {
                 (&[(row, 1.0)], &[(column, 1.0)]) => self.position(row, column),
                 (rows, columns) => {
                     for &(column, c) in columns {
                         for &(row, r) in rows {
-                            let (slot, coefficient) = (self.position(row, column), r * c);
+                            let (position, coefficient) = (self.position(row, column), r * c);
                             self.couplings.push(Coupling {
                                 entry,
-                                slot,
+                                position,
                                 coefficient,
                             });
                         }
                     }
-                    NO_SLOT
+                    DISTRIBUTED
                 }
             };
-            self.slots.push(slot);
+            self.positions.push(position);
         }
-        self.starts.push(self.slots.len());
+        self.starts.push(self.positions.len());
         self.coupling_starts.push(self.couplings.len());
     }
 
@@ -110,17 +110,17 @@ impl Assembled {
 
     /// Adds `factor` times the matrix `k` (column by column) of an element.
     pub fn add(&mut self, element: usize, k: &[f64], factor: f64) {
-        let slots = &self.slots[self.starts[element]..self.starts[element + 1]];
-        debug_assert_eq!(slots.len(), k.len(), "element matrix fits its dofs");
+        let positions = &self.positions[self.starts[element]..self.starts[element + 1]];
+        debug_assert_eq!(positions.len(), k.len(), "element matrix fits its dofs");
         let values = self.matrix.data_mut();
-        for (&slot, &value) in slots.iter().zip(k) {
-            if slot != NO_SLOT {
-                values[slot] += factor * value;
+        for (&position, &value) in positions.iter().zip(k) {
+            if position != DISTRIBUTED {
+                values[position] += factor * value;
             }
         }
         let couplings = self.coupling_starts[element]..self.coupling_starts[element + 1];
         for coupling in &self.couplings[couplings] {
-            values[coupling.slot] += coupling.coefficient * factor * k[coupling.entry];
+            values[coupling.position] += coupling.coefficient * factor * k[coupling.entry];
         }
     }
 
@@ -153,8 +153,8 @@ impl Assembled {
         (0..self.size()).map(|i| self.matrix.get(i, i).copied().unwrap_or(0.0))
     }
 
-    /// Connected group of every unknown, numbered from 0: what no entry of the matrix connects has
-    /// no part in each other's inverse.
+    /// Connected group of every unknown, numbered from 0: the inverse has no entries between
+    /// different groups.
     pub fn groups(&self) -> Vec<usize> {
         let n = self.size();
         let (mut group, mut count) = (vec![usize::MAX; n], 0);
@@ -183,7 +183,7 @@ impl Assembled {
 mod tests {
     use super::*;
 
-    /// Elements of three dofs each, the second dof of the first and the third of the second held.
+    /// Elements of three dofs each, the second dof of the first and the third of the second prescribed.
     fn two_elements(map: &Transformation) -> Assembled {
         let mut a = Assembled::new(map, &[vec![0, 1, 2], vec![2, 3, 4]]);
         let k: Vec<f64> = (0..9).map(f64::from).collect();

@@ -7,7 +7,7 @@ use sprs::CsMatView;
 use super::{Assembled, LinearError, LinearSolver, larger, largest};
 
 /// Largest residual of a solve, relative to the terms it is made of. A backward stable solve stays
-/// near the round-off unit; what exceeds this bound is no solution.
+/// near the round-off unit.
 const RESIDUAL: f64 = 1e-9;
 
 /// A matrix with its solver; every solve is checked for finiteness and residual.
@@ -18,7 +18,7 @@ pub struct CheckedSolver {
 }
 
 impl CheckedSolver {
-    /// A matrix that is still to be factorised; `solver` must be new or have seen its pattern.
+    /// A matrix without factors yet; `solver` must be new or have factorised the same pattern.
     pub fn new(solver: Box<dyn LinearSolver>, matrix: Assembled) -> Self {
         CheckedSolver {
             solver,
@@ -27,7 +27,7 @@ impl CheckedSolver {
         }
     }
 
-    /// The matrix for new values; they count after [`Self::factorize`].
+    /// The matrix, to set new values; solves use them after [`Self::factorize`].
     pub fn matrix_mut(&mut self) -> &mut Assembled {
         self.factorized = false;
         &mut self.matrix
@@ -36,7 +36,7 @@ impl CheckedSolver {
     /// Factorises the matrix.
     ///
     /// # Errors
-    /// What [`LinearSolver::factorize`] says, or values that are not finite.
+    /// Those of [`LinearSolver::factorize`], or values that are not finite.
     pub fn factorize(&mut self) -> Result<(), LinearError> {
         if self
             .matrix

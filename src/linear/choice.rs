@@ -3,7 +3,7 @@
 use super::{FaerLdl, LinearSolver, SprsLdl};
 use crate::model::SolverChoice;
 
-/// The solver of the deck's choice.
+/// The solver that the deck chooses.
 pub fn linear_solver(choice: SolverChoice) -> Box<dyn LinearSolver> {
     match choice {
         SolverChoice::Faer => Box::new(FaerLdl::default()),

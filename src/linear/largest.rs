@@ -1,6 +1,6 @@
-//! The largest of some values, which no NaN gets past.
+//! Largest values, NaN where one of the values is.
 
-/// Largest absolute value, 0 of nothing; NaN when there is one.
+/// Largest absolute value, 0 without values; NaN when one is.
 pub fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
     values
         .into_iter()

@@ -1,4 +1,5 @@
-//! Sparse symmetric matrices with a fixed pattern, and their factorisations.
+//! Sparse symmetric matrices with a fixed pattern over the unknowns of u = T q + g, their
+//! factorisations, and parts of their inverses.
 
 mod assembled;
 mod checked;

@@ -7,7 +7,7 @@ use sprs::CsMatView;
 
 use super::LinearError;
 
-/// The pattern of a matrix as faer sees it.
+/// The pattern of a matrix in faer's form.
 pub(super) fn pattern<'a>(
     n: usize,
     starts: &'a [usize],

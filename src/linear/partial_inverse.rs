@@ -9,7 +9,7 @@ use faer::prelude::{Reborrow, ReborrowMut};
 use faer::sparse::linalg::cholesky::supernodal::SupernodalLdltRef;
 use faer::{Accum, Mat, Par};
 
-/// What the supernodes below have left to one above: rows of L^-1 P that are still to be finished.
+/// Contributions of the supernodes below to one above: unfinished rows of L^-1 E.
 struct Front {
     /// Columns (positions in the list of unknowns) that are not zero, increasing.
     columns: Vec<usize>,

@@ -16,7 +16,7 @@ pub enum LinearError {
     /// The matrix or a solution holds a value that is not finite.
     #[error("{0} is not finite")]
     NotFinite(&'static str),
-    /// The residual of a solve is too large.
+    /// The residual of a solve exceeds its bound.
     #[error("relative residual {residual:.1e} of a solve")]
     Residual {
         /// Residual relative to the terms it is made of.
@@ -25,7 +25,7 @@ pub enum LinearError {
     /// A solve without factors.
     #[error("the matrix is not factorised")]
     NotFactorized,
-    /// The library refused.
+    /// The library failed.
     #[error("{0}")]
     Library(String),
 }

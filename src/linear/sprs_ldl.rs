@@ -13,7 +13,7 @@ use super::{LinearError, LinearSolver};
 #[derive(Default)]
 pub struct SprsLdl {
     order: Vec<usize>,
-    /// The library wants at least two unknowns; a single one is its own pivot.
+    /// The library needs at least two unknowns; the pivot of a single one.
     single: Option<f64>,
     factor: Option<LdlNumeric<f64, usize>>,
 }

@@ -52,7 +52,7 @@ impl Transformation {
 
     /// T^T v over the unknowns for a vector v over all dofs.
     pub fn restrict(&self, v: &[f64]) -> Vec<f64> {
-        // -0.0 is what adds nothing, not even the sign of a zero.
+        // adding to -0.0 keeps every value, the sign of a zero included
         let mut restricted = vec![-0.0; self.unknowns];
         for (row, value) in self.rows().zip(v) {
             for &(unknown, c) in row {

@@ -15,7 +15,7 @@ pub enum TimeBase {
 pub struct Amplitude {
     /// Name in the deck.
     pub name: String,
-    /// Which time it takes.
+    /// Its time.
     pub time: TimeBase,
     /// Points (time, value), times strictly increasing, at least one.
     pub points: Vec<(f64, f64)>,
@@ -35,8 +35,8 @@ impl Amplitude {
         p.1 + (q.1 - p.1) * ((t - p.0) / (q.0 - p.0))
     }
 
-    /// Derivative at `t`; at a corner that of the interval before it, at the first point that of
-    /// the interval after it.
+    /// Derivative at `t`; at a point of the table the slope of the interval before it, at the first
+    /// point of the interval after it.
     pub fn rate(&self, t: f64) -> f64 {
         let (first, last) = (self.points[0], self.points[self.points.len() - 1]);
         if self.points.len() == 1 || t < first.0 || t > last.0 {

@@ -1,4 +1,4 @@
-//! Bodies: what elements connect.
+//! Bodies: groups of nodes connected by elements.
 
 use super::Mesh;
 

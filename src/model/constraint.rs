@@ -13,7 +13,7 @@ pub struct Equation {
 }
 
 impl Equation {
-    /// The dof that is eliminated and those that it follows.
+    /// The eliminated dof and the dofs that it follows.
     pub fn dofs(&self) -> impl Iterator<Item = usize> + '_ {
         std::iter::once(self.dof).chain(self.terms.iter().map(|&(dof, _)| dof))
     }

@@ -1,4 +1,4 @@
-//! Contact pairs and their interactions: hard contact with Coulomb friction (docs/theory.md,
+//! Contacts of a model and their interactions: hard contact with Coulomb friction (docs/theory.md,
 //! section 3).
 
 use crate::diagnostics::Span;
@@ -24,7 +24,7 @@ pub struct Contact {
     pub adjust: Option<Adjust>,
     /// Slave nodes that take no part (indices, increasing).
     pub left_out: Vec<usize>,
-    /// Where the deck says so, for messages.
+    /// Place in the deck, for messages.
     pub span: Span,
 }
 
@@ -38,7 +38,7 @@ pub enum Adjust {
 }
 
 impl Contact {
-    /// Whether a surface touches itself.
+    /// Whether slave and master are the same surface.
     pub fn is_self_contact(&self) -> bool {
         self.slave == self.master
     }

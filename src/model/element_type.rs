@@ -1,5 +1,5 @@
 //! Element types of a deck: shape, formulation and assumption across the thickness, with the nodes,
-//! sides and cell of each shape. Section 2 of docs/theory.md; the mechanics of each type stands in
+//! sides and cell of each shape. Section 2 of docs/theory.md; the mechanics of each type is in
 //! its own file of `elements`.
 
 use std::fmt;
@@ -107,7 +107,7 @@ impl ElementType {
         Self::NAMED.into_iter().find(|known| known.name() == name)
     }
 
-    /// Name in the deck; the formulation is an option of the section and no part of it.
+    /// Name in the deck; the formulation is an option of the section and has no name of its own.
     pub fn name(self) -> &'static str {
         match (self.shape, self.plane) {
             (Shape::Tri3, Plane::Strain) => "CPE3",

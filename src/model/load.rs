@@ -17,10 +17,10 @@ pub enum Variation {
     Amplitude(usize),
 }
 
-/// A load: where and what (`at`), its full magnitude and its variation in time.
+/// A load: its kind and place (`at`), its full magnitude and its variation in time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Load<T> {
-    /// What is loaded, and in which direction.
+    /// Loaded dof, element or face, and direction.
     pub at: T,
     /// Full magnitude.
     pub magnitude: f64,

@@ -27,8 +27,7 @@ impl Mesh {
         2 * self.coordinates.len()
     }
 
-    /// For every node the body it belongs to: the smallest index of the nodes that elements
-    /// connect.
+    /// Body of every node, numbered by the smallest index of the nodes that elements connect.
     pub fn bodies(&self) -> Vec<usize> {
         let mut parent: Vec<usize> = (0..self.node_count()).collect();
         for element in &self.elements {
@@ -42,21 +41,36 @@ impl Mesh {
 
     /// Faces that belong to one element only, in the order of the elements.
     pub fn exterior_faces(&self) -> Vec<Face> {
-        let all = || {
-            let elements = self.elements.iter().enumerate();
-            elements.flat_map(|(element, e)| {
-                (0..e.sides().len()).map(move |side| Face { element, side })
-            })
-        };
-        let ends = |face: &Face| {
-            let [a, b] = face.nodes(self);
-            [a.min(b), a.max(b)]
-        };
-        let mut count: HashMap<[usize; 2], usize> = HashMap::new();
-        for face in all() {
-            *count.entry(ends(&face)).or_default() += 1;
+        let sides = SharedSides::new(self);
+        let faces = self.faces();
+        faces.filter(|&face| !sides.contains(face, self)).collect()
+    }
+
+    /// All sides of all elements.
+    fn faces(&self) -> impl Iterator<Item = Face> + '_ {
+        let elements = self.elements.iter().enumerate();
+        elements
+            .flat_map(|(element, e)| (0..e.sides().len()).map(move |side| Face { element, side }))
+    }
+}
+
+/// Sides between elements of a mesh: number of elements by the nodes of each side.
+pub struct SharedSides(HashMap<[usize; 2], usize>);
+
+impl SharedSides {
+    /// Counts the elements of every side.
+    pub fn new(mesh: &Mesh) -> Self {
+        let mut counts = HashMap::new();
+        for face in mesh.faces() {
+            *counts.entry(face.sorted_nodes(mesh)).or_default() += 1;
         }
-        all().filter(|face| count[&ends(face)] == 1).collect()
+        SharedSides(counts)
+    }
+
+    /// Whether two elements share a face.
+    pub fn contains(&self, face: Face, mesh: &Mesh) -> bool {
+        let count = self.0.get(&face.sorted_nodes(mesh));
+        count.is_some_and(|&count| count > 1)
     }
 }
 
@@ -107,6 +121,12 @@ impl Face {
     /// Node indices [a, b]; the body lies on the left of the direction from a to b.
     pub fn nodes(&self, mesh: &Mesh) -> [usize; 2] {
         mesh.elements[self.element].side(self.side)
+    }
+
+    /// Node indices in increasing order, the same for both elements of a side.
+    fn sorted_nodes(&self, mesh: &Mesh) -> [usize; 2] {
+        let [a, b] = self.nodes(mesh);
+        [a.min(b), a.max(b)]
     }
 }
 

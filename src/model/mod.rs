@@ -1,4 +1,5 @@
-//! The problem as plain data: indices resolved, no text.
+//! The problem as plain data, all names resolved to indices: mesh, materials, sets, surfaces,
+//! contacts, constraints, steps with loads and settings.
 //!
 //! Everything is indexed from 0 in the order of the deck. Vectors over degrees of freedom hold
 //! `2 N` entries, dof `2 n + i` being direction i (0 = x, 1 = y) of node n.
@@ -24,13 +25,13 @@ pub use contact::{Adjust, Contact, Interaction};
 pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
 pub use material::{Material, Section};
-pub use mesh::{Element, Face, Mesh, Set};
+pub use mesh::{Element, Face, Mesh, Set, SharedSides};
 pub use sets::{HistorySet, NamedSets};
 pub use settings::{Factorization, Impact, ImpactTime, LcpChoice, Scheme, Settings, SolverChoice};
 pub use step::{Frames, Increments, Procedure, Step};
 pub use surface::{ALL_EXTERIOR, Surface, SurfaceKind};
 
-/// A whole problem: what a deck says, checked and with all names resolved to indices.
+/// A whole problem: the content of a deck, checked, with all names resolved to indices.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Model {
     /// Text of `*HEADING`, lines joined by a blank.

@@ -14,11 +14,11 @@ pub struct NamedSets {
     pub history: Vec<HistorySet>,
 }
 
-/// A node set in the history: sums and means over the set are always there.
+/// A node set in the history: sums and means over the set are always written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct HistorySet {
     /// Index into `NamedSets::nodes`.
     pub set: usize,
-    /// Whether motion and reactions of every node of the set are there too.
+    /// Whether motion and reactions of every node of the set are written too.
     pub each_node: bool,
 }

@@ -12,7 +12,7 @@ pub struct Settings {
     pub impact_time: ImpactTime,
     /// Solver of the complementarity problem.
     pub lcp: LcpChoice,
-    /// When the effective matrix is factored anew.
+    /// When the effective matrix is factorised again.
     pub factorization: Factorization,
     /// Sparse factorisation.
     pub solver: SolverChoice,
@@ -51,12 +51,12 @@ pub enum Scheme {
     },
 }
 
-/// What happens to the velocity of landing nodes.
+/// Change of the velocity of landing nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Impact {
     /// Impulses at the start of the increment.
     Impulse,
-    /// Nothing.
+    /// No impulses.
     None,
 }
 
@@ -65,20 +65,20 @@ pub enum Impact {
 pub enum ImpactTime {
     /// Within the increment.
     Increment,
-    /// At the time of the impact, where the increment is cut.
+    /// At the time of the impact, which ends a subincrement.
     Event,
 }
 
 /// Solver of the complementarity problem of a pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LcpChoice {
-    /// Warm-started active set, with Lemke's method behind it.
+    /// Warm-started active set; Lemke's method where it fails.
     Hybrid,
     /// Lemke's method at every pass.
     Lemke,
 }
 
-/// When the effective matrix is factored anew.
+/// When the effective matrix is factorised again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Factorization {
     /// Kept as long as the passes converge quickly.

@@ -3,12 +3,12 @@
 
 use super::{BodyForce, Load, PointLoad, Pressure, Settings, Support, Traction};
 
-/// One step: everything that acts in it, whether named in it or carried on from before.
+/// One step with everything that acts in it, whether given in it or in an earlier step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
     /// Name of the step, if it has one.
     pub name: Option<String>,
-    /// What is solved in it.
+    /// Its procedure.
     pub procedure: Procedure,
     /// Its increments.
     pub increments: Increments,
@@ -28,7 +28,7 @@ pub struct Step {
     pub frames: Frames,
 }
 
-/// What is solved in a step.
+/// Procedure of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Procedure {
     /// The equation of motion, integrated implicitly in time (`*DYNAMIC`).
@@ -42,13 +42,13 @@ pub struct Increments {
     pub dt: f64,
     /// Duration T of the step (time).
     pub period: f64,
-    /// Smallest increment a cutback may reach (time); 0 when the deck says nothing.
+    /// Smallest increment a cutback may reach (time); 0 by default.
     pub dt_min: f64,
-    /// Whether the deck asked for fixed increments (DIRECT).
+    /// Whether the deck requests fixed increments (DIRECT).
     pub direct: bool,
 }
 
-/// When field frames are written. The start and the end of a step always are.
+/// When field frames are written. The start and the end of a step are always written.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Frames {
     /// The program's default number of frames.
@@ -58,7 +58,7 @@ pub enum Frames {
     Count(usize),
     /// At multiples of this time since the start of the step.
     Every(f64),
-    /// Every so many increments.
+    /// Each time this number of increments is done.
     Increments(usize),
     /// At these step times, increasing.
     Times(Vec<f64>),

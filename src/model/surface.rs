@@ -11,7 +11,7 @@ pub const ALL_EXTERIOR: &str = "ALL_EXTERIOR";
 pub struct Surface {
     /// Name as typed in the deck.
     pub name: String,
-    /// What it is made of.
+    /// Its faces, nodes or rigid segments.
     pub kind: SurfaceKind,
 }
 

@@ -9,10 +9,10 @@ use thiserror::Error;
 /// Why the files of a job could not be created.
 #[derive(Debug, Error)]
 pub enum OutputError {
-    /// A name of the deck cannot stand in the result file.
+    /// A name of the deck is not possible in the result file.
     #[error(transparent)]
     Name(#[from] NameError),
-    /// Files of an earlier run are in the way.
+    /// Files of an earlier run exist.
     #[error(
         "{} exists already; --overwrite replaces the results of an earlier run",
         list(files)
@@ -21,10 +21,10 @@ pub enum OutputError {
         /// The files.
         files: Vec<PathBuf>,
     },
-    /// Another run of the job is going on.
+    /// Another run of the job is in progress.
     #[error("{} belongs to a run that is still going on", path.display())]
     Held {
-        /// The file that tells.
+        /// Its locked file.
         path: PathBuf,
     },
     /// A fifo, a device or a folder has the name of a file of the job.
@@ -46,7 +46,7 @@ pub enum OutputError {
     Write(#[from] io::Error),
 }
 
-/// A name that cannot stand in the result file.
+/// A name that is not possible in the result file.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error(
     "the {what} name '{name}' cannot stand in the result file: a name there may not be empty, '.', \
@@ -82,7 +82,7 @@ pub(super) fn at(path: &Path) -> impl Fn(io::Error) -> io::Error + '_ {
     }
 }
 
-/// Why, in words that do not depend on the system where it matters.
+/// Reason of an error, in the same words on all systems for the frequent errors.
 pub fn reason(error: &io::Error) -> String {
     match error.kind() {
         ErrorKind::StorageFull => "no space left on device".to_owned(),
@@ -92,8 +92,8 @@ pub fn reason(error: &io::Error) -> String {
     }
 }
 
-/// An error of the HDF5 library as an error of input and output: that of the system, if the library
-/// tells of one.
+/// An error of the HDF5 library as an input/output error: the system's error, if the library names
+/// one.
 pub(super) fn io_error(error: hdf5::Error) -> io::Error {
     let stack = error.stack();
     let frames = stack.iter().flat_map(|stack| stack.iter());

@@ -1,4 +1,4 @@
-//! What a field frame holds, and the last good state of a run, which becomes its final frame.
+//! Contents of a field frame, and the last good state of a run, which becomes its final frame.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// Copies the results of an increment into the memory at hand.
+    /// Copies the results of an increment, reusing the allocated memory.
     fn set(&mut self, report: &IncrementReport) {
         let (state, nodal) = (&report.state, &report.nodal);
         self.time = report.time;
@@ -44,7 +44,7 @@ pub(super) struct LastState {
 }
 
 impl LastState {
-    /// Takes in the end of an increment, which is not yet in the file.
+    /// Stores the end of an increment, which is not yet in the file.
     pub fn set(&mut self, report: &IncrementReport) {
         self.frame.set(report);
         self.is_written = false;

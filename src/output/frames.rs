@@ -3,13 +3,13 @@
 use crate::dynamics::IncrementReport;
 use crate::model::{Frames, Model, Step};
 
-/// Frames of a step when nothing is said.
+/// Frames of a step by default.
 pub const DEFAULT_FRAMES: usize = 100;
 
-/// Part of an increment by which its end may miss a frame's time: round-off only.
+/// Round-off by which an increment may end before a frame's time, relative to its length.
 const TIME_TOLERANCE: f64 = 1e-6;
 
-/// Intervals up to which frame times are counted: beyond, neighbours are the same number.
+/// Largest count of intervals: beyond it neighbouring frame times are not distinct numbers.
 const MOST_INTERVALS: f64 = (1_u64 << 52) as f64;
 
 /// Decides which increments write a frame.
@@ -49,7 +49,7 @@ impl<'a> FrameSchedule<'a> {
         reached || report.ends_step
     }
 
-    /// Whether the increment reaches scheduled times; they are then done.
+    /// Whether the increment reaches scheduled times, which are then passed.
     fn reaches(&mut self, report: &IncrementReport) -> bool {
         let Some(step) = self.steps.get(self.step - 1) else {
             return false;
@@ -77,9 +77,9 @@ fn passed(step: &Step, first: usize, end: f64) -> usize {
     }
 }
 
-/// The first k from `first` on with `time(k)` after `end`; `time` increases linearly from 0. With
-/// intervals that are negligible against `end`, one more is done each time: every increment writes
-/// a frame.
+/// The first k from `first` on with `time(k)` after `end`; `time` increases linearly from 0. Where
+/// intervals are negligible against `end`, the count advances by one: every increment writes a
+/// frame.
 fn multiples(first: usize, end: f64, time: impl Fn(usize) -> f64) -> usize {
     let intervals = end / time(1);
     if !(0.0..MOST_INTERVALS).contains(&intervals) {
@@ -92,8 +92,8 @@ fn multiples(first: usize, end: f64, time: impl Fn(usize) -> f64) -> usize {
     k
 }
 
-/// Whether frames are asked for at intervals shorter than the increments of a step: each writes
-/// one.
+/// Whether the deck requests frames at intervals shorter than the increments of a step, so that
+/// each increment writes one.
 pub(super) fn are_dense(step: &Step) -> bool {
     let increments = &step.increments;
     let interval = match step.frames {

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI32, Ordering};
 
-/// A request from outside to end the run: the number of a signal, shared between who receives it
-/// and who heeds it.
+/// A request from outside to end the run: the number of a signal, shared between its receiver and
+/// the run.
 #[derive(Debug, Clone, Default)]
 pub struct Interrupt {
     /// 0 as long as there is none.
@@ -12,12 +12,12 @@ pub struct Interrupt {
 }
 
 impl Interrupt {
-    /// Asks for the end of the run.
+    /// Requests the end of the run.
     pub fn request(&self, signal: i32) {
         self.signal.store(signal, Ordering::Relaxed);
     }
 
-    /// The signal that asks for the end, if one does.
+    /// The signal that requests the end, if there is one.
     pub fn signal(&self) -> Option<i32> {
         Some(self.signal.load(Ordering::Relaxed)).filter(|&signal| signal != 0)
     }

@@ -39,14 +39,14 @@ impl JobFiles {
         self.log.with_file_name(name)
     }
 
-    /// `JOB.vtkhdf.part`, the result before its first frame is in it.
+    /// `JOB.vtkhdf.part`, the result until its first frame is complete.
     pub(super) fn draft(&self) -> PathBuf {
         self.result
             .with_file_name(format!("{}.vtkhdf.part", self.name))
     }
 
-    /// The files that exist and tell of a run; an empty log is what one left that was killed
-    /// before its first frame.
+    /// The existing files with results of a run; the empty log of a run killed before its first
+    /// frame does not count.
     pub(super) fn results(&self) -> Vec<PathBuf> {
         let is_empty = |path: &Path| {
             let data = path.symlink_metadata();

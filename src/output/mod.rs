@@ -1,7 +1,7 @@
 //! Result file, status file, log and screen.
 //!
-//! [`ResultWriter`] observes a run and writes the files of a job ([`JobFiles`]), of which one run
-//! has the [`Claim`] at a time: `JOB.vtkhdf` (`result_file`: `vtkhdf`, `model`, `history`,
+//! [`ResultWriter`] observes a run and writes the files of a job ([`JobFiles`]), which are claimed by
+//! one run at a time ([`Claim`]): `JOB.vtkhdf` (`result_file`: `vtkhdf`, `model`, `history`,
 //! `record`, `space`), `JOB.sta` (`status`), `JOB.log` (`log`) and the screen (`screen`,
 //! `progress`). `docs/output.md` describes them.
 

@@ -15,14 +15,14 @@ use crate::model::Model;
 
 /// `JOB.vtkhdf` while it is being written.
 pub(super) struct ResultFile {
-    /// The name it is to have, or has.
+    /// Its final path.
     path: PathBuf,
     file: File,
     fields: Fields,
     history: History,
     record: Record,
     space: Space,
-    /// Whether the library has failed: then nobody knows what the file holds.
+    /// Whether the library has failed, so that the content of the file is unknown.
     is_broken: bool,
 }
 
@@ -77,7 +77,7 @@ impl ResultFile {
     }
 
     /// Appends a frame and writes everything to the disk, so that the file is readable even when
-    /// the program is killed. Ends with room for what comes next.
+    /// the program is killed; then reserves space for the next rows.
     pub fn frame(&mut self, frame: &Frame) -> io::Result<()> {
         self.room()?;
         let written = (self.fields.write(frame))
@@ -117,13 +117,13 @@ impl ResultFile {
         Ok(())
     }
 
-    /// Whether what was written is there to be read.
+    /// Whether the frames written can be read.
     pub fn is_readable(&self) -> bool {
         !self.is_broken
     }
 
-    /// Makes sure that the disk takes what is written next: a file of which the library has
-    /// written a part only is lost as a whole.
+    /// Reserves disk space for the next rows: a file that the library has written only in part is
+    /// lost as a whole.
     fn room(&mut self) -> io::Result<()> {
         self.space.ensure().map_err(at(&self.path))
     }

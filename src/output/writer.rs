@@ -1,5 +1,5 @@
-//! The observer of a run: passes each increment on to result file, status file, log and screen, and
-//! closes them at the end.
+//! The observer of a run: writes each increment to the result file, status file, log and screen, and
+//! completes them at the end.
 
 use std::fs;
 use std::io::{self, ErrorKind};
@@ -25,7 +25,7 @@ const SCREEN_CUTBACKS: usize = 20;
 /// Increments with energy from contact that the log shows.
 const LOGGED_CONTACT_ENERGIES: usize = 100;
 
-/// Writes everything a run leaves behind: result file, status file, log and screen.
+/// Writes the files of a run and its screen.
 pub struct ResultWriter<'a> {
     model: &'a Model,
     result: ResultFile,
@@ -73,7 +73,7 @@ impl<'a> ResultWriter<'a> {
         self.interrupt = interrupt.clone();
     }
 
-    /// What there is to read of the results after an error: up to which time.
+    /// After an error: up to which time the results can be read.
     pub fn kept(&self) -> Option<String> {
         let is_kept = self.status.is_some() && self.result.is_readable();
         is_kept.then(|| {
@@ -82,12 +82,12 @@ impl<'a> ResultWriter<'a> {
         })
     }
 
-    /// Why the screen was given up; a closed pipe is no reason.
+    /// Error of a failed screen; none for a closed pipe.
     pub fn lost_screen(&mut self) -> Option<io::Error> {
         self.console.lost()
     }
 
-    /// With the first frame the files of the job appear, in place of those of an earlier run.
+    /// After the first frame, puts the files of the job in place of those of an earlier run.
     fn publish(&mut self) -> io::Result<()> {
         if self.status.is_none() {
             let status = StatusFile::create(&self.claim.files().status)?;
@@ -133,7 +133,7 @@ impl<'a> ResultWriter<'a> {
         self.print_totals(summary, output, total)
     }
 
-    /// Ends a run that gives no summary; the record gets the exit status.
+    /// Ends a run without summary; the record gets the exit status.
     pub fn abandon(&mut self, exit_status: u8) -> io::Result<()> {
         self.console.finish();
         self.result.abandon(exit_status)
@@ -184,7 +184,7 @@ impl<'a> ResultWriter<'a> {
         }
     }
 
-    /// The energy that contact put in goes to the log, increment by increment up to a number.
+    /// Logs the energy that contact put in, for a limited number of increments.
     fn print_contact_energy(&mut self, increment: usize, energy: f64) -> io::Result<()> {
         let balance = &self.monitor.balance;
         let count = balance.contact_energy().count;
@@ -203,7 +203,7 @@ impl<'a> ResultWriter<'a> {
         Ok(())
     }
 
-    /// All cutbacks go to the log, the first ones to the screen too.
+    /// Prints a cutback: all to the log, the first ones also to the screen.
     fn print_cutback(&mut self, cutback: &Cutback) -> io::Result<()> {
         let count = self.monitor.add_cutback();
         for line in cutback_lines(cutback) {
@@ -239,7 +239,7 @@ impl<'a> ResultWriter<'a> {
         self.print_kept()
     }
 
-    /// Up to where the results are good.
+    /// Prints up to which time the results are valid.
     fn print_kept(&mut self) -> io::Result<()> {
         let (name, _) = self.result.name_and_size();
         let pieces = match self.result.frames() {
@@ -287,7 +287,7 @@ impl Observer for ResultWriter<'_> {
     }
 }
 
-/// Writes a file in place of what has its name, be it a link or a fifo.
+/// Writes a file in place of an existing one, which may be a link or a fifo.
 fn replace(path: &Path, text: &str) -> io::Result<()> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => Err(error),

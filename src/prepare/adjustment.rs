@@ -6,11 +6,12 @@ use crate::contact::ContactSurfaces;
 use crate::contact::tolerances::{ADJUSTMENT_REACH, COORDINATE_ROUND_OFF};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
 use crate::model::{Adjust, Contact, Element, Model};
+use crate::vectors::{cross, difference, polygon_area};
 
 /// Smallest ratio of an element's area to that before.
 const SMALLEST_AREA: f64 = 0.5;
 
-/// What was moved for a contact.
+/// Nodes moved for a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Adjusted {
     /// Index of the contact.
@@ -25,7 +26,7 @@ pub struct Adjusted {
     pub spoiled: Option<usize>,
 }
 
-/// Moves slave nodes onto the master surfaces as the contacts of a model ask for, one contact after
+/// Moves slave nodes onto the master surfaces as the contacts of a model require, one contact after
 /// the other: the reference coordinates change, so that nothing is strained.
 pub(super) fn adjust(model: &mut Model, surfaces: &[ContactSurfaces]) -> Vec<Adjusted> {
     if model
@@ -88,7 +89,7 @@ fn move_nodes(model: &mut Model, contact: usize, moved: &[InitialGap]) -> Option
     })
 }
 
-/// Whether an element that was convex is no more, or lost half its area.
+/// Whether an element has lost its convexity or half its area.
 fn is_spoiled(element: &Element, before: &[[f64; 2]], after: &[[f64; 2]]) -> bool {
     let nodes = &element.nodes;
     if nodes.iter().all(|&n| before[n] == after[n]) {
@@ -97,24 +98,14 @@ fn is_spoiled(element: &Element, before: &[[f64; 2]], after: &[[f64; 2]]) -> boo
     let count = nodes.len();
     let corner = |i: usize| {
         let [p, q, r] = [i, i + 1, i + 2].map(|k| after[nodes[k % count]]);
-        (q[0] - p[0]) * (r[1] - q[1]) - (q[1] - p[1]) * (r[0] - q[0])
+        cross(difference(p, q), difference(q, r))
     };
-    let small = area(nodes, after) < SMALLEST_AREA * area(nodes, before);
+    let area = |x: &[[f64; 2]]| polygon_area(nodes.iter().map(|&n| x[n]));
+    let small = area(after) < SMALLEST_AREA * area(before);
     small || (0..count).any(|i| corner(i) <= 0.0)
 }
 
-/// Area of a polygon.
-fn area(nodes: &[usize], x: &[[f64; 2]]) -> f64 {
-    let origin = x[nodes[0]];
-    let at = |n: usize| [x[n][0] - origin[0], x[n][1] - origin[1]];
-    let sides = nodes.windows(2).map(|pair| {
-        let [p, q] = [at(pair[0]), at(pair[1])];
-        p[0] * q[1] - p[1] * q[0]
-    });
-    sides.sum::<f64>() / 2.0
-}
-
-/// Reports what was moved; an element that was spoiled is an error.
+/// Reports the moved nodes; an element that was spoiled is an error.
 pub(super) fn report_adjusted(model: &Model, adjusted: &[Adjusted], d: &mut Diagnostics) {
     for moved in adjusted {
         let contact = &model.contacts[moved.contact];

@@ -33,7 +33,7 @@ pub(super) fn gaps(contact: &ContactSurfaces, x: &[[f64; 2]], bodies: &[usize]) 
     slaves.filter_map(|&slave| start.gap(slave)).collect()
 }
 
-/// Circle about all points whose projection a segment takes at no distance.
+/// Circle about a segment with the ends beyond which a projection is still accepted.
 fn circle(a: [f64; 2], b: [f64; 2]) -> Circle {
     Circle {
         centre: [0, 1].map(|i| a[i] + (b[i] - a[i]) / 2.0),
@@ -41,7 +41,7 @@ fn circle(a: [f64; 2], b: [f64; 2]) -> Circle {
     }
 }
 
-/// One contact in the reference configuration.
+/// The surfaces of a contact in the reference configuration.
 struct Start<'m> {
     contact: &'m ContactSurfaces,
     x: &'m [[f64; 2]],
@@ -81,7 +81,7 @@ impl Start<'_> {
         project(self.x[slave], self.x[a], self.x[b])
     }
 
-    /// Distance from a segment that the node projects into.
+    /// Distance from segment `i`, if the node projects into it.
     fn over(&self, slave: usize, i: usize) -> Option<(f64, usize)> {
         let p = self.faced(slave, i)?;
         let is_over = (-PROJECTION_BEYOND_ENDS..=1.0 + PROJECTION_BEYOND_ENDS).contains(&p.xi);
@@ -101,8 +101,8 @@ impl Start<'_> {
         is_between.then_some((distance, segment))
     }
 
-    /// Place of a node relative to a segment that it may face: not its own, not deeper below than
-    /// the segment is long, and not the back of another side of its own body.
+    /// Projection of a node on a segment that it may face: a segment without the node, penetrated by
+    /// less than its length, and with the node in front if both belong to the same body.
     fn faced(&self, slave: usize, i: usize) -> Option<Projection> {
         let [a, b] = self.contact.segments[i];
         let p = self.project(slave, i);

@@ -64,7 +64,7 @@ fn report_nothing_faced(model: &Model, gaps: &[Vec<InitialGap>], d: &mut Diagnos
     }
 }
 
-/// A slave face that lies on a master face and looks the same way.
+/// A slave face that lies on a master face, both with the same outward normal.
 fn common_face(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Option<[usize; 2]> {
     let x = &model.mesh.coordinates;
     let touching: HashMap<usize, [usize; 2]> = gaps
@@ -142,12 +142,12 @@ fn remedy(model: &Model, contact: &Contact) -> String {
     }
 }
 
-/// Whether a contact is that of two surfaces that the deck pairs.
+/// Whether a contact is a pair of two different surfaces of the deck.
 fn is_pair(model: &Model, contact: &Contact) -> bool {
     !contact.is_self_contact() && model.surfaces[contact.slave].name != ALL_EXTERIOR
 }
 
-/// What the slave surface is in contact with.
+/// The opposite side of the slave surface, for messages.
 fn opposite(model: &Model, contact: &Contact) -> String {
     match contact.is_self_contact() {
         true => "another body".into(),

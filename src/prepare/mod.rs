@@ -1,5 +1,5 @@
-//! What is done to a model before it runs: gaps of the slave nodes in the reference configuration,
-//! nodes moved on to their masters, and the check for initial penetration.
+//! Preparation of a model before its run: adjustment of slave nodes onto their masters, contact
+//! surfaces, initial gaps, and the check for initial penetration.
 
 mod adjustment;
 mod initial_gaps;

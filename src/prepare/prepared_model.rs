@@ -1,5 +1,5 @@
-//! A model that is ready to run, and the way to it: nodes adjusted, contact surfaces and initial gaps
-//! known, initial penetration reported. Program and library go this way.
+//! A model that is ready to run, and its preparation: nodes adjusted, contact surfaces and initial
+//! gaps computed, initial penetration reported. Program and library both use it.
 
 use super::adjustment::{Adjusted, adjust, report_adjusted};
 use super::initial_gaps::{InitialGap, gaps};
@@ -30,7 +30,7 @@ pub fn prepare(model: Model, d: &mut Diagnostics) -> Option<PreparedModel> {
 }
 
 impl PreparedModel {
-    /// Prepares a model whose initial configuration is known to be sound: [`prepare`] checks it.
+    /// Prepares a model without the checks that [`prepare`] makes.
     pub fn new(mut model: Model) -> Self {
         let mut surfaces = contact_surfaces(&model);
         let adjusted = adjust(&mut model, &surfaces);
@@ -54,7 +54,7 @@ impl PreparedModel {
         &self.model
     }
 
-    /// Steps, to change what is set for them.
+    /// Steps, to change their settings.
     pub fn steps_mut(&mut self) -> &mut [Step] {
         &mut self.model.steps
     }
@@ -70,7 +70,7 @@ impl PreparedModel {
         &self.gaps
     }
 
-    /// What was moved, contact by contact.
+    /// Moved nodes, contact by contact.
     pub fn adjusted(&self) -> &[Adjusted] {
         &self.adjusted
     }

@@ -1,4 +1,4 @@
-//! What the names of a deck stand for: sets, surfaces, materials, amplitudes, interactions.
+//! Kinds of the names that a deck defines: sets, surfaces, materials, amplitudes, interactions.
 
 use crate::deck::{Card, Deck};
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ const DEFINITIONS: [(&str, &str, &str); 9] = [
 /// Most names that a message lists.
 const LISTED: usize = 8;
 
-/// The names of a deck, as compared, with the kinds of things that bear them.
+/// Keys of the names of a deck, with the kinds of objects that have them.
 pub(super) struct Catalogue {
     kinds: BTreeMap<String, Vec<&'static str>>,
 }
@@ -37,21 +37,21 @@ impl Catalogue {
         Catalogue { kinds }
     }
 
-    /// Another kind of thing than `kind` that bears this name, as compared.
+    /// Another kind than `kind` of the objects with this key.
     pub fn other_kind(&self, name: &str, kind: &str) -> Option<&'static str> {
         let kinds = self.kinds.get(name)?;
         kinds.iter().copied().find(|other| *other != kind)
     }
 }
 
-/// Names that a card defines, and of what kind.
+/// Key and kind of the object that a card defines.
 fn definitions(card: &Card) -> Option<(String, &'static str)> {
     let defines = |&&(keyword, _, _): &&(&str, &str, &str)| keyword == card.keyword.name;
     let (_, parameter, kind) = DEFINITIONS.iter().find(defines)?;
     Some((card.value(parameter)?.name_key(), kind))
 }
 
-/// A kind of thing with its article.
+/// A kind of object with its article.
 pub(super) fn with_article(kind: &str) -> String {
     let article = if kind.starts_with(['a', 'e']) {
         "an"
@@ -61,8 +61,8 @@ pub(super) fn with_article(kind: &str) -> String {
     format!("{article} {kind}")
 }
 
-/// What to write where a thing of the kind `wanted` is asked for and `name` is a `found`.
-pub(super) fn way_out(wanted: &str, found: &str, name: &str) -> Option<String> {
+/// Help where an object of kind `wanted` is needed and `name` is a `found`.
+pub(super) fn help_for(wanted: &str, found: &str, name: &str) -> Option<String> {
     match (wanted, found) {
         ("node set", "element set") => Some(format!(
             "*NSET, NSET=..., ELSET={name} makes a node set of its nodes"
@@ -77,7 +77,7 @@ pub(super) fn way_out(wanted: &str, found: &str, name: &str) -> Option<String> {
     }
 }
 
-/// The names that do exist, the first few of them.
+/// A list of the defined names, of the first few where there are many.
 pub(super) fn list_of<'n>(kind: &str, names: impl Iterator<Item = &'n str>) -> String {
     let names: Vec<&str> = names.collect();
     let plural = match kind {

@@ -5,13 +5,13 @@ use super::materials::Properties;
 use super::mesh::{MeshIndex, Surfaces};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Contact, Element, Mesh, Plane, SurfaceKind};
-use crate::vectors::{cross, difference};
+use crate::vectors::polygon_area;
 use std::collections::HashMap;
 
 /// Smallest cross product of two sides, relative to the square of the longest side.
 const FLAT: f64 = 1e-10;
 
-/// Reports elements that are clockwise, degenerate, not convex or there twice.
+/// Reports elements that are clockwise, degenerate, not convex or defined twice.
 pub(super) fn mesh(mesh_index: &MeshIndex, cx: &mut Context) {
     let mut known: HashMap<Vec<usize>, u64> = HashMap::new();
     for (element, &span) in mesh_index
@@ -120,13 +120,7 @@ fn unusable(what: &str, value: f64, span: Span, cx: &mut Context) {
 
 /// Area of an element.
 fn area(element: &Element, mesh: &Mesh) -> f64 {
-    let at = |&node: &usize| mesh.coordinates[node];
-    let corners: Vec<[f64; 2]> = element.nodes.iter().map(at).collect();
-    let from_first = |p: [f64; 2]| difference(corners[0], p);
-    let triangles = corners
-        .windows(2)
-        .map(|side| cross(from_first(side[0]), from_first(side[1])));
-    triangles.sum::<f64>() / 2.0
+    polygon_area(element.nodes.iter().map(|&node| mesh.coordinates[node]))
 }
 
 /// Warns where the two sides of a contact differ in thickness.

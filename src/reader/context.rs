@@ -1,7 +1,7 @@
 //! The state shared by all functions of the reader: deck and diagnostics; undefined names with a
 //! suggestion of what was meant.
 
-use super::catalogue::{Catalogue, list_of, way_out, with_article};
+use super::catalogue::{Catalogue, help_for, list_of, with_article};
 use crate::deck::{Card, Deck, Text};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Span, closest};
 use std::cell::OnceCell;
@@ -12,7 +12,7 @@ pub(super) struct Context<'a> {
     pub deck: &'a Deck,
     /// Messages so far.
     pub d: &'a mut Diagnostics,
-    /// What the names of the deck stand for, collected for the first name that is not found.
+    /// Kinds of the names of the deck, collected for the first name that is not found.
     catalogue: OnceCell<Catalogue>,
 }
 
@@ -36,7 +36,7 @@ impl<'a> Context<'a> {
         self.d.push(Diagnostic::warning(code, span, message));
     }
 
-    /// Whether something may be missing because of a reported error.
+    /// Whether cards may be missing because of a reported error.
     pub fn may_lack_cards(&self) -> bool {
         self.deck.incomplete || self.deck.dropped
     }
@@ -46,8 +46,7 @@ impl<'a> Context<'a> {
         self.d.count(Severity::Error)
     }
 
-    /// Reports a name of a thing called `what` that is not defined, unless the cause may be
-    /// reported already.
+    /// Reports an undefined name of a `what`, unless the cause may have been reported already.
     pub fn undefined<'n>(
         &mut self,
         what: &str,
@@ -59,7 +58,7 @@ impl<'a> Context<'a> {
         }
         let message = format!("{what} {} is not defined", name.text);
         let error = Diagnostic::error(Code::UndefinedName, name.span, message);
-        // What takes time to find is found for what is shown.
+        // The search for a suggestion takes time: for shown errors only.
         let error = match self.d.may_show(&error) {
             true => self.with_what_is_meant(error, what, name, known),
             false => error,
@@ -67,8 +66,8 @@ impl<'a> Context<'a> {
         self.d.push(error);
     }
 
-    /// An undefined name with what it may be: a thing of another kind, a name with a comma missing
-    /// behind it, a typing error, or else one of the names that there are.
+    /// Adds a suggestion to the error of an undefined name: an object of another kind, a name with
+    /// a comma missing behind it, a typing error, or else the list of defined names.
     fn with_what_is_meant<'n>(
         &self,
         error: Diagnostic,
@@ -79,7 +78,7 @@ impl<'a> Context<'a> {
         let catalogue = self.catalogue.get_or_init(|| Catalogue::new(self.deck));
         if let Some(kind) = catalogue.other_kind(&name.name_key(), what) {
             let label = format!("{} is {}", name.text, with_article(kind));
-            let way = way_out(what, kind, name.text).map(|way| way + "; ");
+            let way = help_for(what, kind, name.text).map(|way| way + "; ");
             return error
                 .label(label)
                 .help(way.unwrap_or_default() + &list_of(what, known));

@@ -1,8 +1,8 @@
 //! From cards to the model: what each keyword means, and the checks across them.
 //!
 //! One file per family of keywords. Names and numbers are collected before they are looked up, so
-//! the order of a deck never matters; an error in a card spoils the names it defines, so that they
-//! are not reported as undefined where they are used.
+//! the order of a deck never matters; names that a card with an error defines are marked, so
+//! that they are not reported as undefined where they are used.
 
 mod catalogue;
 mod check;
@@ -42,7 +42,7 @@ pub fn build(deck: &Deck, d: &mut Diagnostics) -> Option<Model> {
     (!d.has_errors()).then_some(model)
 }
 
-/// Reads everything; what has an error is missing in the result.
+/// Reads the whole model; cards with errors are missing in it.
 fn read(cx: &mut Context) -> Model {
     let outline = Outline::new(cx);
     let mut mesh_index = nodes_elements::read(&outline, cx);
@@ -114,7 +114,7 @@ fn with_sections(mesh: Mesh, properties: &Properties) -> Mesh {
     }
 }
 
-/// Parameters that were not asked for.
+/// Warns about parameters that the reader has not used.
 fn report_unused(deck: &Deck, d: &mut Diagnostics) {
     for card in &deck.cards {
         Card::report_unused(card, d);

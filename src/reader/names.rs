@@ -1,5 +1,5 @@
 //! Symbol tables of the reader: user-defined names, and node and element numbers, resolved to
-//! indices. What an already reported error left undefined is not reported again.
+//! indices. Names left undefined by a reported error are not reported again.
 
 use super::context::Context;
 use crate::deck::{Card, Name, Text};
@@ -15,7 +15,7 @@ pub(super) struct Names {
 }
 
 impl Names {
-    /// No names yet of things called `what`.
+    /// No names yet of objects called `what`.
     pub fn new(what: &'static str) -> Names {
         Names {
             what,
@@ -65,17 +65,17 @@ impl Names {
         Some(name)
     }
 
-    /// Marks a name as defined with an error that is reported.
+    /// Marks a name whose definition has a reported error.
     pub fn spoil(&mut self, name: &Name) {
         self.index.entry(name.key.clone()).or_insert(None);
     }
 
-    /// Marks that a definition lacks its name, which is reported.
+    /// Marks that some definition has no name, which is reported.
     pub fn spoil_unknown(&mut self) {
         self.nameless = true;
     }
 
-    /// Number of the name that `text` says; reports an undefined one.
+    /// Number of a name; reports an undefined one.
     pub fn find(&self, text: Text, cx: &mut Context) -> Option<usize> {
         let name = text.name(cx.d)?;
         let found = self.index.get(&name.key);
@@ -86,7 +86,7 @@ impl Names {
     }
 }
 
-/// What a node or element number stands for.
+/// Meaning of a node or element number of the deck.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Labelled {
     /// The node or element of this index.
@@ -120,7 +120,7 @@ pub(super) struct Labels {
 }
 
 impl Labels {
-    /// No numbers yet of things called `what`.
+    /// No numbers yet of objects called `what`.
     pub fn new(what: &'static str, code: Code) -> Labels {
         Labels {
             what,
@@ -135,12 +135,12 @@ impl Labels {
         self.index.insert(label, labelled);
     }
 
-    /// What a number stands for.
+    /// Meaning of a number.
     pub fn get(&self, label: u64) -> Option<Labelled> {
         self.index.get(&label).copied()
     }
 
-    /// Index of the number that `text` says; reports one that does not exist.
+    /// Index of the node or element with this number; reports one that does not exist.
     pub fn find(&self, text: Text, cx: &mut Context) -> Option<usize> {
         let label = self.number(text, cx)?;
         match self.get(label) {
@@ -153,7 +153,7 @@ impl Labels {
         }
     }
 
-    /// The number from 1 to the largest allowed that `text` says.
+    /// The number in `text`, from 1 to the largest allowed.
     pub fn number(&self, text: Text, cx: &mut Context) -> Option<u64> {
         let value = text.integer(cx.d)?;
         let what = self.what;

@@ -1,5 +1,5 @@
-//! Who has the files of a job, what is left of them by signals and full disks, and screens that
-//! cannot be written.
+//! Claim of the files of a job, results after signals and on full disks, and screens that cannot be
+//! written.
 
 use std::fs;
 use std::process::{Child, Command, Stdio};
@@ -76,7 +76,7 @@ fn a_run_that_goes_on_keeps_its_files_and_a_killed_one_does_not() {
         err,
         "error: drop.log belongs to a run that is still going on\n"
     );
-    // Even without its log the job is known by its result.
+    // Even without its log the job is recognised by its result.
     fs::remove_file(bench.path("drop.log")).expect("log");
     let (code, _, err) = bench.stickslip(&["run", "drop.inp", "-q", "--overwrite"]);
     assert_eq!(code, 4, "{err}");
@@ -112,7 +112,7 @@ fn signals_end_a_run_with_its_results() {
     }
 }
 
-/// A run that cannot get on: it waits for somebody to read its screen, which a long title fills.
+/// A blocked run: it waits for a reader of its screen, which a long title fills.
 #[test]
 fn a_second_signal_ends_a_run_at_once() {
     let title = "A long title. ".repeat(4000);

@@ -1,5 +1,4 @@
-//! What messages say beyond the fault itself: what is meant, what has no effect, what will go
-//! wrong.
+//! Advice in messages: likely meaning of unknown names, input without effect, later failures.
 
 use super::{LINE, SHARED, SQUARE, Source, change, messages, model, rigid, shared, square, step};
 use stickslip::diagnostics::{Code, Severity};

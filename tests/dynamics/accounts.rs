@@ -3,6 +3,8 @@
 use stickslip::dynamics::{ContactOnBody, IncrementReport, NodeStatus, SolverCounts};
 use stickslip::model::{Bodies, Contact, LcpChoice, Model, Scheme, Settings, SurfaceKind};
 
+use stickslip::vectors::cross;
+
 use crate::blocks::{add_block, add_contact, fixed, model, run_to_end, step, throw};
 use crate::friction::block_on_base;
 use crate::invariants::oblique_impact;
@@ -15,10 +17,6 @@ const SS22: Scheme = Scheme::Ss22 {
 /// `a` and `b` agree to round-off of `scale`.
 fn near(a: f64, b: f64, scale: f64) {
     assert!((a - b).abs() <= 1e-12 * scale, "{a:e} is not {b:e}");
-}
-
-fn cross(x: [f64; 2], f: [f64; 2]) -> f64 {
-    x[0] * f[1] - x[1] * f[0]
 }
 
 /// Largest of kinetic and strain energy.
@@ -84,7 +82,7 @@ fn bodies_and_contacts_add_up_to_the_ledger() {
     }
 }
 
-/// What the contact has given to the upper beam since the start is its change of momentum, linear
+/// The impulse of the contact on the upper beam since the start is its change of momentum, linear
 /// and about its centre.
 #[test]
 fn impulses_are_the_change_of_momentum() {
@@ -154,7 +152,7 @@ fn general_contact_has_a_resultant_for_every_body_and_they_cancel() {
     let change = after.bodies[1].velocity[1] - before.bodies[1].velocity[1];
     let force = after.contacts[0].bodies[1].force[1];
     near(MASSES[1] * change, after.dt * force, 1.0);
-    // and its angular momentum: about the centre of mass, x cross m v taken away
+    // and its angular momentum, about the centre of mass: less x cross m v
     let spin = |report: &IncrementReport| {
         let momenta = report.bodies.iter().zip(MASSES);
         let orbits = momenta.map(|(b, mass)| mass * cross(b.center, b.velocity));
@@ -218,7 +216,7 @@ fn check_pressure_and_slip(model: &Model, all_nodes: bool) {
     assert!(last.nodal.slip[node] > 0.1, "{}", last.nodal.slip[node]);
 }
 
-/// A concentrated load is told as it acts in the increment: at its middle.
+/// A concentrated load is reported at the middle of the increment, where it acts.
 #[test]
 fn concentrated_loads_are_those_of_the_increment() {
     use stickslip::model::{Load, PointLoad, Variation};

@@ -8,10 +8,20 @@ use stickslip::dynamics::{
 };
 use stickslip::materials::Law;
 use stickslip::model::{
-    Contact, Element, ElementType, Face, Frames, Increments, Interaction, Material, Model,
-    Procedure, Section, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
+    BodyForce, Contact, Element, ElementType, Face, Frames, Increments, Interaction, Load,
+    Material, Model, Procedure, Scheme, Section, Settings, Step, Support, SupportMotion, Surface,
+    SurfaceKind, Variation,
 };
 use stickslip::prepare::PreparedModel;
+
+/// The paper's scheme.
+pub const PAPER: Scheme = Scheme::Ss22 {
+    theta1: 1.0,
+    theta2: 1.0,
+};
+
+/// The default scheme and that of the paper.
+pub const SCHEMES: [Scheme; 2] = [Scheme::EnergyMomentum, PAPER];
 
 /// A rectangular block of nx x ny Q4.
 pub struct Block {
@@ -147,11 +157,32 @@ pub fn add_contact(model: &mut Model, slave: Vec<Face>, master: Vec<Face>, frict
     });
 }
 
-/// A support that stays where it is.
+/// A support at rest.
 pub fn fixed(dof: usize) -> Support {
     Support {
         dof,
         motion: SupportMotion::Ramp { to: 0.0 },
+    }
+}
+
+/// Settings with this scheme.
+pub fn settings(scheme: Scheme) -> Settings {
+    Settings {
+        scheme,
+        ..Settings::default()
+    }
+}
+
+/// Constant downward gravity on an element.
+pub fn gravity(element: usize, magnitude: f64) -> Load<BodyForce> {
+    Load {
+        at: BodyForce {
+            element,
+            direction: [0.0, -1.0],
+            per_mass: true,
+        },
+        magnitude,
+        variation: Variation::Constant,
     }
 }
 
@@ -196,7 +227,7 @@ impl Observer for Keep {
     }
 }
 
-/// Runs a model as it is, after its preparation.
+/// Prepares and runs a model.
 pub fn run(model: &Model, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
     dynamics::run(&PreparedModel::new(model.clone()), observer)
 }

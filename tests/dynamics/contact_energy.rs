@@ -22,8 +22,8 @@ fn a_corner_that_turns_concave_under_a_node() {
     }
 }
 
-/// The block on the roof, and far away another that passes with some speed: its energy is no
-/// excuse.
+/// The block on the roof, and far away another that passes with some speed, whose energy must not
+/// count.
 fn slide_over_the_roof(passing_speed: f64) {
     let (rise, dt) = (0.005, 0.1);
     let mut model = model(1e4, 0.2, 1.0);

@@ -6,7 +6,7 @@
 //!        |               y fixed
 //! ```
 
-use crate::blocks::{add_block, add_contact, fixed, model, run_to_end, step, throw};
+use crate::blocks::{PAPER, add_block, add_contact, fixed, model, run_to_end, step, throw};
 use stickslip::dynamics::IncrementReport;
 use stickslip::model::{Impact, Model, Scheme, Settings};
 
@@ -61,11 +61,6 @@ fn figures(reports: &[IncrementReport]) -> (f64, f64, f64) {
     (mean, variance.sqrt() / mean, (time - duration) / dt)
 }
 
-const PAPER: Scheme = Scheme::Ss22 {
-    theta1: 1.0,
-    theta2: 1.0,
-};
-
 #[test]
 fn the_wall_force_is_rho_c_v0() {
     for scheme in [PAPER, Scheme::EnergyMomentum] {
@@ -115,7 +110,7 @@ fn a_node_is_at_rest_at_the_end_of_the_increment_it_lands_in() {
     for scheme in [paper, Scheme::EnergyMomentum] {
         for part in [0.1, 0.4, 0.9] {
             let mut model = bar(scheme, Impact::Impulse);
-            // what is left of the way in the increment of the landing
+            // rest of the displacement in the increment of the landing
             let way = SPEED * model.steps[0].increments.dt;
             let first = model.mesh.node_count() - 2 * 51;
             for x in &mut model.mesh.coordinates[first..] {

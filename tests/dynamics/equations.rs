@@ -4,28 +4,15 @@
 use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::dynamics::IncrementReport;
 use stickslip::model::{
-    Amplitude, Equation, Load, Model, PointLoad, Scheme, Settings, Support, SupportMotion,
-    TimeBase, Variation,
+    Amplitude, Equation, Load, Model, PointLoad, Scheme, Support, SupportMotion, TimeBase,
+    Variation,
 };
 
 use stickslip::{deck, reader};
 
-use crate::blocks::{Block, add_block, add_contact, fixed, model, run_to_end, step, throw};
-
-const SCHEMES: [Scheme; 2] = [
-    Scheme::EnergyMomentum,
-    Scheme::Ss22 {
-        theta1: 1.0,
-        theta2: 1.0,
-    },
-];
-
-fn settings(scheme: Scheme) -> Settings {
-    Settings {
-        scheme,
-        ..Settings::default()
-    }
-}
+use crate::blocks::{
+    Block, SCHEMES, add_block, add_contact, fixed, model, run_to_end, settings, step, throw,
+};
 
 /// Adds u_dof = sum c u_k.
 fn follow(model: &mut Model, dof: usize, terms: Vec<(usize, f64)>) {
@@ -266,8 +253,8 @@ fn contact_of_joined_bodies_is_complementary_and_keeps_the_balance() {
     }
 }
 
-/// Change of the momentum of what moves: the impulses on the slave surfaces; the two forces of an
-/// equation with coefficients 1 and -1 have no resultant.
+/// Change of the momentum of the moving bodies: the impulses on the slave surfaces; the two forces of
+/// an equation with coefficients 1 and -1 have no resultant.
 fn momentum_follows_contact(model: &Model, reports: &[IncrementReport]) {
     let start = reports[0].momentum.linear[0];
     let mut impulse = 0.0;
@@ -454,7 +441,7 @@ fn tied_faces_do_not_touch() {
         let (keep, _) = run_to_end(&model);
         assert_exact(&model, &keep.reports);
         assert!(keep.reports.iter().all(|r| r.contacts[0].normal == 0.0));
-        // nothing outside pushes
+        // no external force acts
         let momentum = |r: &IncrementReport| r.momentum.linear;
         let (first, last) = (
             momentum(&keep.reports[0]),

@@ -9,15 +9,12 @@
 //!   |================|  fixed plate
 //! ```
 
-use crate::blocks::{Block, Keep, add_block, add_contact, fixed, model, run_to_end, step, throw};
-use stickslip::dynamics::{IncrementReport, Landing, RunSummary};
-use stickslip::model::{BodyForce, ImpactTime, Load, Model, Scheme, Settings, Variation};
-
-const PAPER: Scheme = Scheme::Ss22 {
-    theta1: 1.0,
-    theta2: 1.0,
+use crate::blocks::{
+    Block, Keep, PAPER, SCHEMES, add_block, add_contact, fixed, gravity, model, run_to_end, step,
+    throw,
 };
-const SCHEMES: [Scheme; 2] = [PAPER, Scheme::EnergyMomentum];
+use stickslip::dynamics::{IncrementReport, Landing, RunSummary};
+use stickslip::model::{ImpactTime, Model, Scheme, Settings};
 
 fn settings(scheme: Scheme, impact_time: ImpactTime) -> Settings {
     Settings {
@@ -208,18 +205,10 @@ fn free_bodies_keep_their_momenta_through_impacts() {
 
 fn weigh(fall: &mut Fall, g: f64, settings: Settings, dt: f64, count: usize) -> (Keep, RunSummary) {
     let first = fall.block.first_element;
-    let mut gravity = step(dt, count, settings, Vec::new());
-    let pull = |element| Load {
-        at: BodyForce {
-            element,
-            direction: [0.0, -1.0],
-            per_mass: true,
-        },
-        magnitude: g,
-        variation: Variation::Constant,
-    };
-    gravity.body_forces = (first..first + 4).map(pull).collect();
-    fall.model.steps = vec![gravity];
+    let mut weighed = step(dt, count, settings, Vec::new());
+    let pull = |element| gravity(element, g);
+    weighed.body_forces = (first..first + 4).map(pull).collect();
+    fall.model.steps = vec![weighed];
     fall.run(settings, dt, count)
 }
 
@@ -319,7 +308,7 @@ fn a_node_that_lands_is_on_the_plate_when_its_piece_ends() {
     }
 }
 
-/// What counts as struck is told by the velocities of the two bodies, not by that of any other.
+/// Whether a node is struck depends on the velocities of its two bodies only.
 #[test]
 fn a_slow_body_lands_beside_a_fast_one() {
     let run = |scheme: Scheme, passing_speed: f64| {

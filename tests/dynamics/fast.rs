@@ -1,4 +1,4 @@
-//! Fast bodies and thin ones: nothing goes through anything.
+//! Fast bodies and thin ones: no tunnelling.
 //!
 //! ```text
 //!          +---+
@@ -9,17 +9,14 @@
 //!   |==================| plate, 6 long, 24 x 1 Q4, ends fixed
 //! ```
 
-use crate::blocks::{Block, Keep, add_block, add_contact, fixed, model, run_to_end, step, throw};
+use crate::blocks::{
+    Block, Keep, PAPER, add_block, add_contact, fixed, gravity, model, run_to_end, step, throw,
+};
 use stickslip::dynamics::{Cause, Cutback};
-use stickslip::model::{BodyForce, Load, Model, Scheme, Settings, Variation};
+use stickslip::model::{Model, Scheme, Settings};
 
 /// Length of an element.
 const SIZE: f64 = 0.25;
-
-const PAPER: Scheme = Scheme::Ss22 {
-    theta1: 1.0,
-    theta2: 1.0,
-};
 
 /// A block, turned by `angle`, above a plate of the given thickness.
 struct Bodies {
@@ -126,15 +123,7 @@ fn a_body_that_gathers_speed_in_an_increment_does_not_go_through_a_thin_plate() 
             let mut bodies = Bodies::new(thickness, 9.0 * SIZE, 0.3);
             bodies.step(scheme, dt, 2);
             let first = bodies.block.first_element;
-            let pull = |element| Load {
-                at: BodyForce {
-                    element,
-                    direction: [0.0, -1.0],
-                    per_mass: true,
-                },
-                magnitude: 2.0 * elements * SIZE / (dt * dt),
-                variation: Variation::Constant,
-            };
+            let pull = |element| gravity(element, 2.0 * elements * SIZE / (dt * dt));
             bodies.model.steps[0].body_forces = (first..first + 4).map(pull).collect();
             let (keep, summary) = run_to_end(&bodies.model);
             let depth = bodies.depth(&keep);

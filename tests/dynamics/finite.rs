@@ -1,4 +1,4 @@
-//! Numbers that are not finite: nothing is accepted with them, and the cause says where they are.
+//! Numbers that are not finite: increments with them fail, and the cause says where they are.
 
 use crate::blocks::{Keep, add_block, add_contact, fixed, model, run, step};
 use stickslip::dynamics::{Cause, Outcome};
@@ -70,7 +70,7 @@ fn an_increment_whose_energy_overflows_is_not_accepted() {
 #[test]
 fn passes_that_diverge_are_no_failure_of_the_linear_solver() {
     // blown up by a pressure that no stress balances at once, each pass overshoots to the third
-    // power; a force beyond all measure wrecks the elements in the first pass
+    // power; a huge force turns the elements inside out in the first pass
     for pressure in [0.0, -1e20] {
         let mut model = model(1.0, 0.3, 1.0);
         let block = add_block(&mut model, [0.0, 0.0], [1.0, 1.0], (1, 1), 0.0);

@@ -2,15 +2,10 @@
 
 use stickslip::model::{Amplitude, BodyForce, Load, Model, Scheme, Settings, TimeBase, Variation};
 
-use crate::blocks::{Block, add_block, add_contact, fixed, model, run_to_end, step, throw};
+use crate::blocks::{
+    Block, SCHEMES, add_block, add_contact, fixed, model, run_to_end, step, throw,
+};
 
-const SCHEMES: [Scheme; 2] = [
-    Scheme::EnergyMomentum,
-    Scheme::Ss22 {
-        theta1: 1.0,
-        theta2: 1.0,
-    },
-];
 const GRAVITY: f64 = 10.0;
 
 /// A flat block of mass 2 lying on a long, fixed base; gravity along `direction`, growing over 0.2:

@@ -1,4 +1,4 @@
-//! Increments that do not converge are halved, and no further than they must be.
+//! Increments that do not converge are halved, as often as necessary.
 //!
 //! ```text
 //!        | | |  pushed down by its upper face
@@ -13,8 +13,8 @@ use stickslip::model::{
     Amplitude, Factorization, Model, Settings, Support, SupportMotion, TimeBase,
 };
 
-/// A block elsewhere, and a column of 1 x `ny` Q4 whose top goes down by `way` times an amplitude.
-fn pushed(ny: usize, way: f64, points: &[(f64, f64)]) -> (Model, Block) {
+/// A block elsewhere, and a column of 1 x `ny` Q4 whose top goes down by `depth` times an amplitude.
+fn pushed(ny: usize, depth: f64, points: &[(f64, f64)]) -> (Model, Block) {
     let mut model = model(1e3, 0.3, 1e-6);
     add_block(&mut model, [9.0, 0.0], [1.0, 1.0], (1, 1), 0.0);
     let height = ny as f64;
@@ -25,7 +25,7 @@ fn pushed(ny: usize, way: f64, points: &[(f64, f64)]) -> (Model, Block) {
         points: points.to_vec(),
     });
     let motion = SupportMotion::Amplitude {
-        value: -way,
+        value: -depth,
         amplitude: 0,
     };
     let ends = |j: usize| [column.node(0, j), column.node(1, j)];

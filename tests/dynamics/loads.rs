@@ -2,26 +2,13 @@
 
 use stickslip::dynamics::{IncrementReport, Outcome};
 use stickslip::model::{
-    Amplitude, BodyForce, Load, Model, Pressure, Scheme, Settings, Support, SupportMotion,
-    TimeBase, Traction, Variation,
+    Amplitude, Load, Model, Pressure, Scheme, Settings, Support, SupportMotion, TimeBase, Traction,
+    Variation,
 };
 
-use crate::blocks::{Block, add_block, add_contact, fixed, model, run_to_end, step};
-
-const SCHEMES: [Scheme; 2] = [
-    Scheme::EnergyMomentum,
-    Scheme::Ss22 {
-        theta1: 1.0,
-        theta2: 1.0,
-    },
-];
-
-fn settings(scheme: Scheme) -> Settings {
-    Settings {
-        scheme,
-        ..Settings::default()
-    }
-}
+use crate::blocks::{
+    Block, SCHEMES, add_block, add_contact, fixed, gravity, model, run_to_end, settings, step,
+};
 
 /// A free block 2 x 1 of mass 2.
 fn free_block() -> (Model, Block) {
@@ -42,17 +29,7 @@ fn gravity_and_dead_traction_give_the_momentum_of_their_resultant() {
     for scheme in SCHEMES {
         let (mut model, block) = free_block();
         let mut step = step(0.01, 50, settings(scheme), Vec::new());
-        step.body_forces = (0..8)
-            .map(|element| Load {
-                at: BodyForce {
-                    element,
-                    direction: [0.0, -1.0],
-                    per_mass: true,
-                },
-                magnitude: 9.81,
-                variation: Variation::Constant,
-            })
-            .collect();
+        step.body_forces = (0..8).map(|element| gravity(element, 9.81)).collect();
         step.tractions = block
             .faces(1)
             .into_iter()
@@ -179,17 +156,7 @@ fn both_orders_of_two_surfaces_carry_the_weight_together() {
             .flat_map(|i| [fixed(2 * base.node(i, 0)), fixed(2 * base.node(i, 0) + 1)])
             .collect();
         let mut step = step(0.01, 100, settings(scheme), supports);
-        step.body_forces = (16..24)
-            .map(|element| Load {
-                at: BodyForce {
-                    element,
-                    direction: [0.0, -1.0],
-                    per_mass: true,
-                },
-                magnitude: 10.0,
-                variation: Variation::Constant,
-            })
-            .collect();
+        step.body_forces = (16..24).map(|element| gravity(element, 10.0)).collect();
         model.steps = vec![step];
         let (keep, summary) = run_to_end(&model);
         println!("{scheme:?} {summary:?}");

@@ -1,4 +1,4 @@
-//! Many bodies: nine blocks thrown about in a box, 144 contacts, no node in any other body.
+//! Many bodies: nine blocks in a box, 144 contacts, no node inside another body.
 
 use crate::blocks::{Block, Keep, add_block, add_contact, fixed, model, run_to_end, step, throw};
 use stickslip::dynamics::{Cause, Cutback};

@@ -9,7 +9,7 @@ use stickslip::{deck, reader};
 use crate::blocks::run_to_end;
 
 /// Between impacts a square of mass 1 falls freely onto a floor that slides away below it with the
-/// velocity 0.5; the ledger closes with the work of the floor, and nothing gets through it.
+/// velocity 0.5; the ledger closes with the work of the floor, and no node passes through it.
 #[test]
 fn a_square_on_a_sliding_floor() {
     let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
@@ -37,8 +37,8 @@ fn a_square_on_a_sliding_floor() {
     assert!(landed);
 }
 
-/// The reaction stands at the reference node, and nowhere else: against the contact forces on the
-/// floor, with their moment about that node; the slave nodes tell the same.
+/// The reaction is at the reference node only: it balances the contact forces on the floor, with
+/// their moment about that node, and agrees with the forces on the slave nodes.
 fn check_reaction(model: &Model, report: &IncrementReport, floor: &[usize]) {
     let reference = model.rigid_bodies[0].reference;
     let (nodal, reaction) = (&report.nodal, &report.rigid[0]);

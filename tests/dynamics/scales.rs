@@ -10,9 +10,11 @@
 //!    +-------+  its foot held
 //! ```
 
-use crate::blocks::{Block, Keep, add_block, add_contact, fixed, model, run_to_end, step, throw};
+use crate::blocks::{
+    Block, Keep, PAPER, add_block, add_contact, fixed, gravity, model, run_to_end, step, throw,
+};
 use stickslip::materials::Law;
-use stickslip::model::{BodyForce, Load, Material, Model, Section, Settings, Variation};
+use stickslip::model::{Material, Model, Section, Settings};
 
 /// How much the base exceeds the light body, or that it is held altogether.
 #[derive(Clone, Copy)]
@@ -141,22 +143,11 @@ fn come_to_rest(tolerance: f64) -> (usize, usize, Vec<f64>) {
     let supports = plate.nodes().flat_map(|n| [2 * n, 2 * n + 1]).map(fixed);
     let settings = Settings {
         tolerance,
-        scheme: stickslip::model::Scheme::Ss22 {
-            theta1: 1.0,
-            theta2: 1.0,
-        },
+        scheme: PAPER,
         ..Settings::default()
     };
     let mut sinks = step(0.1, 60, settings, supports.collect());
-    let weight = |element| Load {
-        at: BodyForce {
-            element,
-            direction: [0.0, -1.0],
-            per_mass: true,
-        },
-        magnitude: 9.81,
-        variation: Variation::Constant,
-    };
+    let weight = |element| gravity(element, 9.81);
     sinks.body_forces = (3..9).map(weight).collect();
     model.steps = vec![sinks];
     let (keep, summary) = run_to_end(&model);

@@ -2,17 +2,9 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use crate::blocks::{Keep, add_block, add_contact, fixed, model, run_to_end, step, throw};
+use crate::blocks::{Keep, SCHEMES, add_block, add_contact, fixed, model, run_to_end, step, throw};
 use stickslip::dynamics::RunSummary;
 use stickslip::model::{ImpactTime, Scheme, Settings, Support, SupportMotion};
-
-const SCHEMES: [Scheme; 2] = [
-    Scheme::Ss22 {
-        theta1: 1.0,
-        theta2: 1.0,
-    },
-    Scheme::EnergyMomentum,
-];
 
 fn settings(scheme: Scheme) -> Settings {
     Settings {

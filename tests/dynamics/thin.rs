@@ -1,4 +1,4 @@
-//! Thin bodies whose surface touches itself and other bodies: the far side is no contact.
+//! Thin bodies in self-contact and in contact with others: no contact with the far side.
 //!
 //! ```text
 //!    |=====|=====|=====|=====|     the second, shifted, on the first or into it
@@ -7,12 +7,11 @@
 
 use stickslip::diagnostics::Span;
 use stickslip::model::{
-    BodyForce, Contact, ElementType, Face, Interaction, Load, Model, Settings, Surface,
-    SurfaceKind, Variation,
+    Contact, ElementType, Face, Interaction, Model, Settings, Surface, SurfaceKind,
 };
 use stickslip::prepare::PreparedModel;
 
-use crate::blocks::{Block, add_block, fixed, model, run_to_end, step, throw};
+use crate::blocks::{Block, add_block, fixed, gravity, model, run_to_end, step, throw};
 
 const LENGTH: f64 = 10.0;
 
@@ -135,15 +134,7 @@ fn foils_sag_on_each_other() {
         let held = ends(&foils[0]).into_iter();
         let supports = held.flat_map(|n| [2 * n, 2 * n + 1]).map(fixed).collect();
         let mut sag = step(0.002, 10, Settings::default(), supports);
-        let pull = |element| Load {
-            at: BodyForce {
-                element,
-                direction: [0.0, -1.0],
-                per_mass: true,
-            },
-            magnitude: 9.81,
-            variation: Variation::Constant,
-        };
+        let pull = |element| gravity(element, 9.81);
         sag.body_forces = (0..model.mesh.elements.len()).map(pull).collect();
         model.steps = vec![sag];
         let (keep, summary) = run_to_end(&model);

@@ -15,7 +15,7 @@ const FOLDERS: [&str; 7] = [
     "benches/",
 ];
 
-/// Words of the language that stand in backticks without being items.
+/// Words of the language in backticks.
 const LANGUAGE: [&str; 5] = ["use", "crate", "pub", "mod", "unwrap"];
 
 /// The files of the repository by path; texts of Rust files.
@@ -54,8 +54,8 @@ impl Tree {
         paths.any(|own| own == path || own.starts_with(&folder))
     }
 
-    /// Whether a path of modules and items leads somewhere from the modules whose files start with
-    /// `start`. Re-exports are followed: an item may stand in any file of the module.
+    /// Whether a path of modules and items exists below the modules whose files start with `start`.
+    /// Re-exports are followed: an item may be in any file of the module.
     fn has_item(&self, start: &str, segments: &[&str]) -> bool {
         let [name, rest @ ..] = segments else {
             return true;

@@ -1,4 +1,4 @@
-//! Numbers of equations: where they stand in the theory and where they are cited.
+//! Numbers of equations: their definitions in the theory and their citations.
 
 use std::fmt;
 

@@ -1,5 +1,5 @@
-//! The yardstick: Lemke's method on a dense N x (N + 1) tableau, as in textbooks, with the same
-//! lexicographic rule and tolerances.
+//! The reference for speed: Lemke's method on a dense N x (N + 1) tableau, as in textbooks, with the
+//! same lexicographic rule and tolerances.
 
 use stickslip::lcp::Lcp;
 

@@ -1,4 +1,4 @@
-//! A small model and made-up results for it.
+//! A small model and invented results for it.
 //!
 //! ```text
 //!  40 ---- 50 ---- 60
@@ -246,7 +246,7 @@ fn landing() -> Landing {
     }
 }
 
-/// What the run record says.
+/// The run record.
 pub fn record() -> RunRecord {
     RunRecord {
         version: "0.0.0".into(),

@@ -13,7 +13,7 @@ pub struct Card {
     pub keyword: &'static Keyword,
     /// Place of the keyword.
     pub span: Span,
-    /// Whether the keyword line has an error that is reported.
+    /// Whether an error of the keyword line has been reported.
     pub faulty: bool,
     /// Its data lines.
     pub rows: Vec<Row>,
@@ -45,7 +45,7 @@ impl Card {
         Some(param)
     }
 
-    /// Place of a parameter; that of the keyword if it is not given.
+    /// Place of a parameter, or of the keyword where the parameter is absent.
     pub fn span_of(&self, name: &str) -> Span {
         self.param(name).map_or(self.span, |param| param.span)
     }
@@ -75,23 +75,23 @@ impl Card {
         self.value(name)
     }
 
-    /// The word that a parameter says, in full.
+    /// The full word that a parameter has as its value.
     pub fn choice(&self, name: &str) -> Option<&'static str> {
         self.param(name).and_then(|param| param.choice)
     }
 
-    /// The number that a parameter says.
+    /// The value of a parameter as a real number.
     pub fn real(&self, name: &str, d: &mut Diagnostics) -> Option<f64> {
         self.value(name).and_then(|value| value.real(d))
     }
 
-    /// The integer that a parameter says.
+    /// The value of a parameter as an integer.
     pub fn integer(&self, name: &str, d: &mut Diagnostics) -> Option<i64> {
         self.value(name).and_then(|value| value.integer(d))
     }
 
-    /// Warns about parameters that nobody asked for; those with a choice of words are settled when
-    /// they are read.
+    /// Warns about parameters that the reader has not used; those with a choice of words are
+    /// checked when the card is read.
     pub fn report_unused(&self, d: &mut Diagnostics) {
         let unused = |p: &&Param| !p.used.get() && !p.faulty && p.choice.is_none();
         for param in self.params.iter().filter(unused) {
@@ -148,12 +148,12 @@ impl Row {
         })
     }
 
-    /// Field `index`, from 0, if something is typed there.
+    /// Field `index`, from 0; `None` where it is blank.
     pub fn get(&self, index: usize) -> Option<Text<'_>> {
         self.fields().nth(index).filter(|field| !field.is_empty())
     }
 
-    /// Field `index`, which must say `what`.
+    /// Field `index`; reports that `what` is missing where it is blank.
     pub fn required(&self, index: usize, what: &str, d: &mut Diagnostics) -> Option<Text<'_>> {
         let field = self.get(index);
         if field.is_none() {
@@ -165,12 +165,12 @@ impl Row {
         field
     }
 
-    /// The number in field `index`, which must say `what`.
+    /// The number in field `index`; reports that `what` is missing where it is blank.
     pub fn real(&self, index: usize, what: &str, d: &mut Diagnostics) -> Option<f64> {
         self.required(index, what, d)?.real(d)
     }
 
-    /// The number in field `index`, or `default` if nothing is typed there.
+    /// The number in field `index`, or `default` where it is blank.
     pub fn real_or(&self, index: usize, default: f64, d: &mut Diagnostics) -> Option<f64> {
         match self.get(index) {
             Some(field) => field.real(d),
@@ -202,7 +202,7 @@ impl Row {
             .any(|pair| pair.iter().all(Text::is_digits))
     }
 
-    /// Warns about the first field from `count` on in which something is typed: it has no effect.
+    /// Warns that the first field from `count` on that is not blank has no effect.
     pub fn without_effect(&self, count: usize, message: &str, help: &str, d: &mut Diagnostics) {
         if let Some(field) = self.fields().skip(count).find(|field| !field.is_empty()) {
             let warning = Diagnostic::warning(Code::IgnoredParameter, field.span, message);

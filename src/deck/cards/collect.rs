@@ -1,4 +1,4 @@
-//! Cards from lines.
+//! Collects the lines of a deck into cards; cards with a reported error are left out.
 
 use super::card::{Card, Row};
 use super::resolve::{self, Piece};
@@ -12,16 +12,16 @@ use std::collections::HashSet;
 pub struct Deck {
     /// Cards whose keyword is known, in order, included files in their place.
     pub cards: Vec<Card>,
-    /// Whether something that is not read, and reported, could define anything: a missing file.
+    /// Whether a file is missing, which is reported: it might define any name.
     pub incomplete: bool,
-    /// Whether a card is left out because of a reported error: something may be missing.
+    /// Whether a card is left out because of a reported error.
     pub dropped: bool,
-    /// Names, as compared, that left out cards may have defined.
+    /// Keys of the names that the cards left out may define.
     pub suspects: HashSet<String>,
 }
 
 impl Deck {
-    /// Whether it is an assembly deck, which is reported.
+    /// Whether the deck has an assembly, which is reported as an error.
     pub fn has_assembly(&self) -> bool {
         let refused = |card: &Card| card.keyword.status == Status::Refused;
         let mut cards = self.cards.iter().filter(|card| refused(card));
@@ -29,7 +29,7 @@ impl Deck {
     }
 }
 
-/// A file that a keyword line asks for.
+/// A file named on a keyword line.
 pub(crate) struct Inclusion {
     /// Path as typed.
     pub path: String,
@@ -112,7 +112,7 @@ impl Collector {
         self.rows = Rows::Skip;
     }
 
-    /// Adds a keyword line; returns the file it asks for.
+    /// Adds a keyword line; returns the file that it names.
     pub fn keyword(&mut self, pieces: &[Piece], d: &mut Diagnostics) -> Option<Inclusion> {
         let (first, rest) = pieces.split_first()?;
         let Some(keyword) = resolve::keyword(first.text, d) else {
@@ -152,7 +152,7 @@ impl Collector {
         });
     }
 
-    /// `*INCLUDE` is no card of its own: the lines of its file belong to the card before it.
+    /// The file of `*INCLUDE`, whose lines continue the card before it.
     fn inclusion(
         &mut self,
         keyword: &'static Keyword,
@@ -175,13 +175,13 @@ impl Collector {
         Some(inclusion(path, true))
     }
 
-    /// A card is left out because of a reported error.
+    /// Leaves out a card with a reported error, and the names that it defines.
     fn drop_card(&mut self, pieces: &[Piece]) {
         self.deck.dropped = true;
         self.suspect(pieces);
     }
 
-    /// Names that are left out because of a reported error.
+    /// Records the names that a card with a reported error may define.
     fn suspect(&mut self, pieces: &[Piece]) {
         for piece in pieces {
             if let Some((value, _)) = assignment(piece.text.text).value {

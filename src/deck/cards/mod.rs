@@ -1,4 +1,4 @@
-//! Keyword cards: read from files, checked against the table, collected.
+//! Keyword cards: read from files, checked against the keyword table, collected into a deck.
 
 mod card;
 mod collect;

@@ -1,4 +1,5 @@
-//! Keywords, parameters and their words, looked up in the table; what is not read is reported here.
+//! Looks keywords, parameters and their values up in the keyword table; reports those that are
+//! unknown, ignored or refused.
 
 use super::card::{Card, Param};
 use crate::deck::keywords::{Keyword, Parameter, Scope, Status, Takes, Value, find, keywords};
@@ -14,7 +15,8 @@ pub(crate) struct Piece<'a> {
     pub continued: bool,
 }
 
-/// The keyword that is typed with its star, or the one that is meant; reports what is not read.
+/// The keyword of a text that begins with its star, or the one probably meant; reports unknown,
+/// ignored and refused keywords.
 pub(crate) fn keyword(text: Text, d: &mut Diagnostics) -> Option<&'static Keyword> {
     let (starred, span) = (text.text.trim_start_matches('*'), text.span);
     let typed = starred.trim();
@@ -36,7 +38,8 @@ pub(crate) fn keyword(text: Text, d: &mut Diagnostics) -> Option<&'static Keywor
     Some(keyword)
 }
 
-/// Reports a word that is not typed in full; the word to go on with.
+/// The known word of a match, or the one probably meant unless reading is lenient; reports
+/// abbreviations and unknown words.
 fn known_word(
     found: Match,
     unknown: impl FnOnce() -> Diagnostic,
@@ -60,7 +63,8 @@ fn known_word(
     }
 }
 
-/// An unknown keyword as typed after its star; several words, or a blank first, may be a comment.
+/// Error of an unknown keyword, as typed after its star; several words or a leading blank suggest
+/// a comment.
 fn unknown_keyword(starred: &str, span: Span, found: Match) -> Diagnostic {
     let meant = match found {
         Match::Unknown(Some(name)) => Some(format!("*{name}")),
@@ -108,7 +112,7 @@ fn report_keyword(keyword: &Keyword, span: Span, d: &mut Diagnostics) {
     }
 }
 
-/// A sentence of the table in the form of an advice: no capital, no full stop.
+/// A sentence of the table as the help of a diagnostic: without capital and full stop.
 fn advice(sentence: &str) -> String {
     let mut characters = sentence.trim_end_matches('.').chars();
     let first = characters.next().into_iter().flat_map(char::to_lowercase);
@@ -175,7 +179,7 @@ fn unknown_parameter(card: &Card, typed: &str, piece: &Piece, found: Match) -> D
         .help(help)
 }
 
-/// `None` if the parameter is left out.
+/// Reports a parameter that is ignored or refused; `None` if it is left out.
 fn check_status(card: &Card, known: &Parameter, span: Span, d: &mut Diagnostics) -> Option<()> {
     let (name, title) = (known.name, card.title());
     match known.status {
@@ -196,7 +200,7 @@ fn check_status(card: &Card, known: &Parameter, span: Span, d: &mut Diagnostics)
     }
 }
 
-/// Checks that a value is there, or not, and one of those allowed.
+/// Checks that a value is given where the parameter takes one, and that it is an allowed word.
 fn check_value(known: &Parameter, param: &mut Param, d: &mut Diagnostics) {
     let name = known.name;
     let typed = param.value.as_ref().filter(|(value, _)| !value.is_empty());
@@ -214,7 +218,7 @@ fn check_value(known: &Parameter, param: &mut Param, d: &mut Diagnostics) {
     }
 }
 
-/// The word among the values of a parameter; `None` if it cannot be used.
+/// The full word of a typed value; `None` if it is unknown or refused.
 fn choose(known: &Parameter, typed: &str, span: Span, d: &mut Diagnostics) -> Option<&'static str> {
     let names = known.values().iter().map(|value| value.name);
     let found = word::find(typed, names.clone());

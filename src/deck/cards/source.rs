@@ -78,12 +78,12 @@ struct Reading<'a> {
     sources: &'a mut Sources,
     d: &'a mut Diagnostics,
     collector: Collector,
-    /// The files being read, outermost first: what identifies each, and its folder.
+    /// The files being read, outermost first: canonical path and folder of each.
     open: Vec<(PathBuf, PathBuf)>,
 }
 
 impl Reading<'_> {
-    /// Reads the lines of a file, unless it is none of a deck.
+    /// Reads the lines of a file; reports content that is not text of a deck.
     fn content(&mut self, file: FileId, content: &Content, rows_only: bool) {
         match content.complaint(file) {
             Some(complaint) => {
@@ -191,7 +191,7 @@ impl Reading<'_> {
         Ok((path.display().to_string(), path, content))
     }
 
-    /// A file as seen from the including file, else from the main deck.
+    /// Path of a file relative to the including file, or else to the main deck.
     fn find(&self, path: &str) -> Result<PathBuf, String> {
         let (Some(first), Some(last)) = (self.open.first(), self.open.last()) else {
             return Err("this deck was not read from a file".to_string());
@@ -206,7 +206,7 @@ impl Reading<'_> {
     }
 }
 
-/// The lines of a text; LF and CRLF end them.
+/// The lines of a text, which end with LF or CRLF.
 fn numbered(file: FileId, text: &str) -> Vec<Line<'_>> {
     let bare = |line: &str| line.len() - usize::from(line.ends_with('\r'));
     let lines = text.split('\n').zip(1..);
@@ -273,12 +273,12 @@ fn reason(error: &std::io::Error) -> String {
     }
 }
 
-/// What two paths of one file have in common.
+/// Canonical path of a file, the same for all paths to it.
 fn identity(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
 }
 
-/// The text after a byte order mark.
+/// The text without its byte order mark.
 fn without_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
 }

@@ -12,8 +12,8 @@ pub(crate) fn of(keyword: &Keyword) -> Option<&'static Dimensions> {
     DIMENSIONS.iter().find(|d| d.keyword == keyword.name)
 }
 
-/// Faults of the table of dimensions: keywords and parameters that are taken but stand not in it,
-/// and the other way round.
+/// Faults of the table of dimensions: accepted keywords and parameters that it lacks, and entries
+/// without such a keyword or parameter.
 pub fn dimension_faults() -> Vec<String> {
     let mut faults = Vec::new();
     for keyword in keywords().filter(|k| k.status == Status::Read) {
@@ -43,7 +43,7 @@ pub fn dimension_faults() -> Vec<String> {
     faults
 }
 
-/// Parameters that do not stop a run.
+/// Parameters that are accepted: read, ignored or left out with a warning.
 fn taken(keyword: &Keyword) -> impl Iterator<Item = &'static Parameter> {
     let parameters = keyword.parameters.iter();
     parameters.filter(|parameter| parameter.status != Status::Refused)
@@ -76,7 +76,7 @@ fn entry(keyword: &Keyword, dimensions: &Dimensions) -> String {
     format!(" \"{}\": {{\n{content}\n }}", keyword.name)
 }
 
-/// The words that a parameter can say without stopping a run.
+/// The accepted words of a parameter's values.
 fn words(values: &[Value]) -> String {
     let taken = values
         .iter()

@@ -9,7 +9,7 @@ pub enum Quantity {
     Plain,
     /// A number of this dimension, written as in the result file: `mass/length^3`.
     Of(&'static str),
-    /// A number of this dimension; this one if nothing is typed.
+    /// A number of the given dimension, and its default.
     OfOr(&'static str, &'static str),
     /// A number of this dimension or a name.
     OrName(&'static str),
@@ -26,7 +26,7 @@ pub struct RowForm {
     pub word: Option<(usize, &'static [&'static str])>,
     /// What the fields hold.
     pub fields: &'static [Quantity],
-    /// Whether they follow each other over and over.
+    /// Whether the fields repeat along the line.
     pub repeats: bool,
 }
 
@@ -41,7 +41,7 @@ pub struct Dimensions {
     pub plain: &'static [&'static str],
     /// Parameters that take numbers with a dimension.
     pub measured: &'static [(&'static str, Quantity)],
-    /// Whether the keyword may hold anything, none of which has a dimension.
+    /// Whether the keyword takes any parameters and data, all without dimension.
     pub anything: bool,
 }
 

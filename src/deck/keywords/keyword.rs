@@ -8,11 +8,11 @@ use crate::deck::lines::word;
 pub enum Status {
     /// Read and honoured.
     Read,
-    /// Left out silently: it does not touch the answer.
+    /// Left out silently: it does not affect the results.
     Ignored,
     /// Left out or replaced with a warning.
     Warned,
-    /// Stops with an error: leaving it out would change the answer.
+    /// Stops with an error: leaving it out would change the results.
     Refused,
 }
 
@@ -25,7 +25,7 @@ pub enum Scope {
     Step,
     /// Before the first step or in a step.
     Anywhere,
-    /// Under the model keyword of this name, among others of the same kind.
+    /// In the block of the model keyword of this name.
     Block(&'static str),
     /// Structure of assembly decks.
     Assembly,
@@ -66,7 +66,7 @@ pub struct Value {
     pub name: &'static str,
     /// What the program does with it.
     pub status: Status,
-    /// One sentence, where the word does not say it.
+    /// One sentence; empty where the word explains itself.
     pub text: &'static str,
 }
 

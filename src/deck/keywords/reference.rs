@@ -32,9 +32,9 @@ A deck is a text file. A keyword line begins with `*`, a comment line with `**`;
 their keyword, with fields between commas. Case and blanks in keywords, parameters and names do not
 matter; a name in quotation marks keeps both. A keyword line that ends with a comma continues on the
 next line. Empty lines are skipped, an empty field has its default. Units are up to the user: any
-consistent set gives the same answer, and `scripts/rescale.py` writes a deck in another one. A file holds
-text, ASCII or UTF-8, without NUL bytes, and no line of more than 65536 bytes (Abaqus reads 256): anything
-else is an error at once.
+consistent set gives the same results, and `scripts/rescale.py` writes a deck in another one. A file
+holds text, ASCII or UTF-8, without NUL bytes, and no line of more than 65536 bytes (Abaqus reads
+256): anything else is an error at once.
 
 Keywords, parameters and values not listed here are errors. A unique beginning of at least four
 letters is understood, with a warning. Fields beyond those described are errors. Keywords of the model
@@ -100,7 +100,7 @@ fn push_list(text: &mut String, status: Status, title: &str) {
     }
 }
 
-/// A sentence with its stars kept from being taken as markup.
+/// A sentence with its stars escaped for Markdown.
 fn plain(sentence: &str) -> String {
     sentence.replace('*', "\\*")
 }

@@ -35,7 +35,7 @@ const fn keyword(
     }
 }
 
-/// A keyword that other programs read, with nothing that touches an answer.
+/// A keyword of other programs without effect on the results.
 const fn harmless(keyword: &'static str) -> Dimensions {
     Dimensions {
         keyword,
@@ -56,7 +56,7 @@ const fn row(fields: Row) -> RowForm {
     }
 }
 
-/// Data lines with these fields over and over.
+/// Data lines that repeat these fields.
 const fn repeated(fields: Row) -> RowForm {
     RowForm {
         repeats: true,

@@ -1,4 +1,4 @@
-//! Text of a file, up to the first thing that no deck has.
+//! Text of a deck file, read up to the first NUL byte or overlong line.
 
 use crate::diagnostics::{Code, Diagnostic, FileId, Span};
 use std::fs::File;
@@ -8,12 +8,12 @@ use std::path::Path;
 /// Longest line, in bytes.
 pub(crate) const LONGEST_LINE: usize = 1 << 16;
 
-/// What no deck has.
+/// Content that shows that a file is not a deck.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Fault {
     /// A NUL byte.
     Nul,
-    /// A line that does not end.
+    /// A line longer than [`LONGEST_LINE`].
     Endless,
 }
 
@@ -52,16 +52,16 @@ impl Content {
         Ok(Content { text, fault })
     }
 
-    /// A text from elsewhere.
+    /// Content given as text.
     pub fn new(text: &str) -> Content {
-        // Bytes in memory are always read.
+        // Reading from memory cannot fail.
         Content::read(text.as_bytes()).unwrap_or(Content {
             text: String::new(),
             fault: None,
         })
     }
 
-    /// What is wrong where the text ends.
+    /// Error at the fault that ends the text.
     pub fn complaint(&self, file: FileId) -> Option<Diagnostic> {
         let last = self.text.rsplit('\n').next().unwrap_or_default();
         let line = 1 + self.text.bytes().filter(|&byte| byte == b'\n').count();

@@ -1,4 +1,4 @@
-//! Pieces of keyword lines and data lines.
+//! Lines of a deck file: their kind, their fields, and the assignments of keyword lines.
 
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, FileId, Span};
 use nom::bytes::complete::{tag, take_till};
@@ -23,9 +23,9 @@ pub(crate) struct Line<'a> {
 pub(crate) enum Kind {
     /// Nothing but blanks.
     Blank,
-    /// Two stars first.
+    /// Begins with two stars.
     Comment,
-    /// One star first.
+    /// Begins with one star.
     Keyword,
     /// Anything else.
     Data,
@@ -60,7 +60,7 @@ impl<'a> Line<'a> {
     }
 
     /// Byte ranges of the fields between its commas, without blanks around them; an empty last
-    /// field is no field. Commas between quotation marks do not count.
+    /// field is dropped. Commas between quotation marks do not count.
     pub fn fields(&self, d: &mut Diagnostics) -> Vec<(u32, u32)> {
         let mut fields = Vec::new();
         let mut start = 0;
@@ -114,7 +114,7 @@ fn trimmed(text: &str, start: usize, end: usize) -> (u32, u32) {
     (first as u32, last as u32)
 }
 
-/// Name and value of a parameter, `NAME` or `NAME=value`, with the bytes of each.
+/// Name and value of a parameter, `NAME` or `NAME=value`, with their offsets in bytes.
 pub(crate) struct Assignment<'a> {
     /// The name and where it starts.
     pub name: (&'a str, usize),

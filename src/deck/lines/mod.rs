@@ -1,4 +1,4 @@
-//! Files as logical lines, fields, numbers and names.
+//! Lines of deck files, their fields, and the numbers, names and words in these.
 
 mod content;
 mod lexer;

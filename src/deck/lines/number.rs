@@ -71,14 +71,14 @@ fn exponent(input: Input) -> IResult<Input, (Input, bool)> {
     alt((lettered, letterless)).parse(input)
 }
 
-/// `(E|D)[+-]digits`, what a decimal comma leaves of `1,E6`
+/// `(E|D)[+-]digits`, the second field of `1,E6` written with a decimal comma
 fn is_exponent(text: &str) -> bool {
     let lettered = text.starts_with(|c: char| c.is_ascii_alphabetic());
     let parsed = exponent(Input::new(text));
     lettered && parsed.is_ok_and(|(rest, _)| rest.fragment().is_empty())
 }
 
-/// What was parsed, if it is the whole of `text`.
+/// The parsed value, if nothing of `text` is left over.
 fn whole<'a, T>(text: &'a str, parsed: IResult<Input<'a>, T>) -> Result<T, NotANumber> {
     match parsed {
         Ok((rest, value)) if rest.fragment().is_empty() => Ok(value),
@@ -90,7 +90,7 @@ fn whole<'a, T>(text: &'a str, parsed: IResult<Input<'a>, T>) -> Result<T, NotAN
     }
 }
 
-/// The first character from `offset` on that no number has there.
+/// The first character from `offset` on that cannot continue a number.
 fn unexpected(text: &str, offset: usize) -> NotANumber {
     let rest = text.get(offset..).unwrap_or("");
     let begun = take_while1::<_, _, nom::error::Error<&str>>(|c: char| "+-.eEdD".contains(c));

@@ -1,5 +1,5 @@
-//! Fields and parameter values with their place, read as numbers or names; reports what is neither,
-//! and what Abaqus or CalculiX would read differently.
+//! Fields and parameter values with their places, read as numbers or names. Reports values that are
+//! neither, and those that Abaqus or CalculiX read differently.
 
 use super::name::Name;
 use super::number::NotANumber;
@@ -27,7 +27,7 @@ impl<'a> Text<'a> {
         self.text.is_empty()
     }
 
-    /// The integer it says; reports anything else.
+    /// Its value as an integer; reports anything else.
     pub fn integer(&self, d: &mut Diagnostics) -> Option<i64> {
         let parsed = number::integer(self.text);
         parsed
@@ -35,17 +35,17 @@ impl<'a> Text<'a> {
             .ok()
     }
 
-    /// The integer it says, if it is one; reports nothing.
+    /// Its value as an integer, if it is one; reports nothing.
     pub fn as_integer(&self) -> Option<i64> {
         number::integer(self.text).ok()
     }
 
-    /// The real number it says, if it is one; reports nothing.
+    /// Its value as a real number, if it is one; reports nothing.
     pub fn as_real(&self) -> Option<f64> {
         number::real(self.text).ok().map(|real| real.value)
     }
 
-    /// The real number it says; reports anything else.
+    /// Its value as a real number; reports anything else.
     pub fn real(&self, d: &mut Diagnostics) -> Option<f64> {
         match number::real(self.text) {
             Err(why) => {
@@ -99,7 +99,7 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// Place of the first blanks, if nothing but numbers stand between the blanks.
+    /// Place of the first blanks, if the field is a list of numbers with blanks between them.
     fn gap_between_numbers(&self) -> Option<Span> {
         let start = self.text.find(char::is_whitespace)?;
         let (before, after) = self.text.split_at(start);
@@ -113,12 +113,12 @@ impl<'a> Text<'a> {
         })
     }
 
-    /// Whether it is digits only: a number without point, sign or exponent.
+    /// Whether it consists of digits only, without point, sign or exponent.
     pub(crate) fn is_digits(&self) -> bool {
         !self.is_empty() && self.text.bytes().all(|byte| byte.is_ascii_digit())
     }
 
-    /// The name it says; reports names that cannot be.
+    /// Its value as a name; reports invalid names.
     pub fn name(&self, d: &mut Diagnostics) -> Option<Name> {
         let fault = match self.quoted_content() {
             Some(content) if fits(content) => return Some(Name::quoted(content)),
@@ -137,7 +137,7 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// How the name it says is compared, whether or not it can be one.
+    /// Key by which its value is compared as a name, valid or not.
     pub fn name_key(&self) -> String {
         let quoted = self.quoted_content();
         quoted.map_or_else(|| word::fold(self.text), str::to_string)

@@ -13,7 +13,7 @@ pub(crate) enum Match {
     Exact(&'static str),
     /// It is the beginning of this one and of no other.
     Abbreviation(&'static str),
-    /// It is none of them, but perhaps this one is meant.
+    /// It is none of them; the one probably meant.
     Unknown(Option<&'static str>),
 }
 
@@ -35,7 +35,7 @@ pub(crate) fn find(word: &str, known: impl Iterator<Item = &'static str> + Clone
     }
 }
 
-/// The same, but of an unknown word nobody asks what is meant.
+/// As [`find`], without a suggestion for an unknown word.
 pub(crate) fn find_known(word: &str, known: impl Iterator<Item = &'static str> + Clone) -> Match {
     let short = fold(word);
     if let Some(exact) = known.clone().find(|k| folded(k).eq(short.chars())) {
@@ -50,7 +50,7 @@ pub(crate) fn find_known(word: &str, known: impl Iterator<Item = &'static str> +
     }
 }
 
-/// The word that is meant; a word of which this one is the beginning counts too.
+/// The known word at the smallest edit distance, if that is small.
 fn suggestion(
     short: &str,
     known: impl Iterator<Item = &'static str> + Clone,

@@ -4,21 +4,22 @@
 use super::impact_time::ImpactTime;
 use crate::contact::tolerances::IMPACT_GAP;
 use crate::contact::{ClosedPairs, Crossing, Direction, ListedSlave, Projection, crossings};
-use crate::dynamics::increment::{ActiveConstraints, Attempt, Failed, Solved};
+use crate::dynamics::increment::{ActiveConstraints, Attempt, ConstraintSet, Failed, Solved};
 use crate::dynamics::ledger::motion;
 use crate::dynamics::results::State;
 use crate::dynamics::step::{Interval, StepProblem, TimePoint, Workspace};
 
-/// Part of a nominal increment within which impacts are taken together; no piece is shorter.
+/// Part of a nominal increment within which impacts are taken together; no subincrement is
+/// shorter.
 const IMPACT_GROUPING_TIME: f64 = 1e-3;
-/// Accuracy of the time of an impact, in increments of the nominal.
+/// Accuracy of the time of an impact, in nominal increments.
 const ACCURACY: f64 = 1e-10;
-/// How far beyond a piece (in its lengths) its motion tells of impacts.
+/// How long the motion of a subincrement is followed to find the next impact, in its lengths.
 const MOTION_HORIZON: f64 = 2.0;
 /// Attempts to find the time of an impact.
 const TRIALS: usize = 12;
 
-/// A piece of an increment that ends at the next impact, or at the end of the increment.
+/// A converged part of an increment that ends at the next impact, or at the end of the increment.
 pub(crate) struct Subincrement {
     pub interval: Interval,
     pub solved: Solved,
@@ -26,10 +27,10 @@ pub(crate) struct Subincrement {
     pub is_cut: bool,
 }
 
-/// A piece that failed, with its times.
+/// A subincrement that failed, with its times.
 pub(crate) type FailedSubincrement = Box<(Interval, Failed)>;
 
-/// Solves the next piece of an increment.
+/// Solves the next subincrement.
 pub(crate) struct Subincrements<'a, 'm> {
     pub problem: &'a StepProblem<'m>,
     pub workspace: &'a mut Workspace<'m>,
@@ -38,25 +39,25 @@ pub(crate) struct Subincrements<'a, 'm> {
     pub contact: &'a ClosedPairs,
     /// What is left of the increment.
     pub rest: Interval,
-    /// Length of an increment of the nominal.
+    /// Length of the nominal increment.
     pub nominal: f64,
 }
 
 /// A node goes into a body.
 #[derive(Clone, Copy)]
 struct PredictedImpact {
-    /// Time since the start of the piece.
+    /// Time since the start of the subincrement.
     time: f64,
     slave_index: usize,
     segment: usize,
     nodes: [usize; 3],
 }
 
-/// Second-order motion of all nodes from the start of a piece.
+/// Second-order motion of all nodes from the start of a subincrement.
 struct FreeMotion<'a> {
     v: &'a [f64],
     a: &'a [f64],
-    /// End of the piece, if it is the motion of one.
+    /// End of the subincrement, where this is its own converged motion.
     end: f64,
     /// How long it is followed.
     duration: f64,
@@ -110,7 +111,7 @@ impl FreeMotion<'_> {
     }
 
     /// When the node s goes in through the segment from a to b. One that comes out again before the
-    /// end of the piece has not gone in: between its ends the motion of a piece is an estimate.
+    /// end of the subincrement has not gone in: between its ends its motion is an estimate.
     fn entry(&self, problem: &StepProblem, u0: &[f64], nodes: [usize; 3]) -> Option<f64> {
         let motions = nodes.map(|node| motion(problem, u0, self.v, self.a, node));
         let found = crossings(&motions, self.duration);
@@ -127,16 +128,17 @@ impl FreeMotion<'_> {
 }
 
 impl<'m> Subincrements<'_, 'm> {
-    /// The piece up to the earliest impact of a pair that does not touch at the start.
+    /// The subincrement up to the earliest impact of a pair that does not touch at the start.
     ///
     /// Its length tau is predicted from the second-order motion of the start (paper eq. 50), with
-    /// the exact condition of meeting. The motion of the converged piece,
+    /// the exact condition of meeting. The motion of the converged
+    /// subincrement,
     ///
     /// ```text
     /// U(t) = U0 + t V0+ + t²/2 A,   A = (2/tau²) (d - tau V0+),   eq. (6.3)
     /// ```
     ///
-    /// then tells when the pairs that stay out meet: at T(tau). The piece ends at the impact when
+    /// then tells when the pairs that stay out meet: at T(tau). The subincrement ends at the impact when
     /// T(tau) = tau, which secants find; without elastic forces T does not depend on tau.
     ///
     /// `last` is the length of the last subincrement.
@@ -149,7 +151,7 @@ impl<'m> Subincrements<'_, 'm> {
         let mut tau = self.predicted(&mut active, last);
         let mut root = ImpactTime::new(rest);
         for _ in 0..TRIALS {
-            let solved = self.attempt(tau, Some(&active))?;
+            let solved = self.attempt(tau, ConstraintSet::Active(&active))?;
             let a = solved.mean_acceleration(tau);
             let motion = FreeMotion {
                 v: &solved.v0p,
@@ -167,7 +169,7 @@ impl<'m> Subincrements<'_, 'm> {
                 }
                 Some(entry) if entry.time > rest - group => {
                     if tau == rest {
-                        // it lands within the piece, at its very end
+                        // it lands within the subincrement, at its very end
                         active.join(entry.slave_index);
                         root = ImpactTime::new(rest);
                         continue;
@@ -185,28 +187,24 @@ impl<'m> Subincrements<'_, 'm> {
             };
             // T(tau) = tau, eq. (6.4)
             if (met - tau).abs() <= ACCURACY * self.nominal {
-                return self.accept(tau, solved);
+                return Ok(self.converged(tau, solved));
             }
             tau = root.next(tau, met, solved);
         }
         match root.before {
             // not as far as the impact
-            Some((tau, solved)) if tau >= group => self.accept(tau, solved),
+            Some((tau, solved)) if tau >= group => Ok(self.converged(tau, solved)),
             _ => self.rest(),
         }
     }
 
     /// All that is left of the increment; nodes land within it.
     pub fn rest(&mut self) -> Result<Subincrement, FailedSubincrement> {
-        let solved = self.attempt(self.rest.dt, None)?;
-        Ok(Subincrement {
-            interval: self.rest,
-            solved,
-            is_cut: false,
-        })
+        let solved = self.attempt(self.rest.dt, ConstraintSet::All)?;
+        Ok(self.converged(self.rest.dt, solved))
     }
 
-    /// Length of the piece by the motion of the start.
+    /// Length of the subincrement by the motion of the start.
     fn predicted(&mut self, active: &mut ActiveConstraints, last: f64) -> f64 {
         let (rest, group) = (self.rest.dt, IMPACT_GROUPING_TIME * self.nominal);
         let start = self.start;
@@ -256,50 +254,24 @@ impl<'m> Subincrements<'_, 'm> {
         meter.time(|t| &mut t.contact, find)
     }
 
-    fn attempt(
-        &mut self,
-        tau: f64,
-        active: Option<&ActiveConstraints>,
-    ) -> Result<Solved, FailedSubincrement> {
-        let (interval, contact) = (self.interval(tau), self.contact);
-        let attempt = self.attempt_at(interval, active);
-        attempt
-            .solve(contact)
-            .map_err(|failed| Box::new((interval, failed)))
-    }
-
-    /// Takes a converged piece, if no node has gone into a body otherwise than by an impact.
-    fn accept(&mut self, tau: f64, solved: Solved) -> Result<Subincrement, FailedSubincrement> {
-        let (interval, contact) = (self.interval(tau), self.contact);
-        let mut attempt = self.attempt_at(interval, None);
-        match attempt.check_paths(&solved.d, contact, &solved.forces.closed) {
-            Ok(()) => Ok(Subincrement {
-                interval,
-                solved,
-                is_cut: tau < self.rest.dt,
-            }),
-            Err(cause) => {
-                let failed = Failed {
-                    cause,
-                    worst: None,
-                    passes: solved.passes,
-                };
-                Err(Box::new((interval, failed)))
-            }
-        }
-    }
-
-    fn attempt_at<'b>(
-        &'b mut self,
-        interval: Interval,
-        active: Option<&'b ActiveConstraints>,
-    ) -> Attempt<'b, 'm> {
-        Attempt {
+    fn attempt(&mut self, tau: f64, set: ConstraintSet) -> Result<Solved, FailedSubincrement> {
+        let interval = self.interval(tau);
+        let attempt = Attempt {
             problem: self.problem,
             workspace: self.workspace,
             start: self.start,
             interval,
-            active,
+            set,
+        };
+        let solved = attempt.solve(self.contact);
+        solved.map_err(|failed| Box::new((interval, failed)))
+    }
+
+    fn converged(&self, tau: f64, solved: Solved) -> Subincrement {
+        Subincrement {
+            interval: self.interval(tau),
+            solved,
+            is_cut: tau < self.rest.dt,
         }
     }
 

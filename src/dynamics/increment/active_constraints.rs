@@ -9,6 +9,50 @@ use crate::contact::{
 };
 use crate::dynamics::step::StepProblem;
 
+/// Relative difference of lengths between which subincrements between impacts share the factors of K*.
+const SAME_LENGTH: f64 = 1e-3;
+
+/// Which pairs are constraints in a subincrement.
+#[derive(Clone, Copy)]
+pub(crate) enum ConstraintSet<'a> {
+    /// All pairs: nodes land within the subincrement.
+    All,
+    /// The active ones: nodes of the others land at its end, at the next impact.
+    Active(&'a ActiveConstraints),
+}
+
+impl ConstraintSet<'_> {
+    /// The constraints that count, and the others.
+    pub fn split(
+        self,
+        problem: &StepProblem,
+        u0: &[f64],
+        constraints: Vec<Constraint>,
+    ) -> [Vec<Constraint>; 2] {
+        match self {
+            ConstraintSet::All => [constraints, Vec::new()],
+            ConstraintSet::Active(active) => active.split(problem, u0, constraints),
+        }
+    }
+
+    /// The pairs that touch at the start because an impact ended the subincrement before.
+    pub fn touching(self) -> ClosedPairs {
+        match self {
+            ConstraintSet::All => ClosedPairs::default(),
+            ConstraintSet::Active(active) => active.touching.clone(),
+        }
+    }
+
+    /// Relative difference of lengths within which factors of K* are kept: the trials for the time of
+    /// an impact differ by little.
+    pub fn length_tolerance(self) -> f64 {
+        match self {
+            ConstraintSet::All => 0.0,
+            ConstraintSet::Active(_) => SAME_LENGTH,
+        }
+    }
+}
+
 /// The pairs that are constraints in a subincrement between impacts: those that touch at its start,
 /// and those that have joined them.
 ///
@@ -52,11 +96,6 @@ impl ActiveConstraints {
         }
     }
 
-    /// The pairs that touch at the start.
-    pub fn touching(&self) -> &ClosedPairs {
-        &self.touching
-    }
-
     /// Whether a slave node is kept out of a segment that has the place `start` relative to it at the
     /// start.
     pub fn holds(&self, slave_index: usize, start: &Projection) -> bool {
@@ -70,8 +109,7 @@ impl ActiveConstraints {
         !own.is_empty() && (is_behind || own.iter().any(faces_alike))
     }
 
-    /// The constraints that count, and the others.
-    pub fn split(
+    fn split(
         &self,
         problem: &StepProblem,
         u0: &[f64],

@@ -1,13 +1,13 @@
 //! Solution of one increment: predictor and corrector passes with contact forces and impulses.
 //! Section 4 of docs/theory.md (paper eqs 27, 29 and 36 to 49).
 
-use super::active_constraints::ActiveConstraints;
+use super::active_constraints::ConstraintSet;
 use super::contact_forces::ContactForces;
 use super::contact_system::ContactSystem;
 use super::convergence::{Errors, Pass};
 use super::impulses::Impulses;
 use super::trace::{Failed, Trace};
-use crate::contact::{ClosedPairs, Constraint, Penetration};
+use crate::contact::{ClosedPairs, Constraint};
 use crate::dynamics::results::{Cause, PassReport, State};
 use crate::dynamics::step::{Equilibrium, Interval, StepProblem, Workspace, difference, sum};
 use crate::elements::Updated;
@@ -16,8 +16,6 @@ use crate::model::Factorization;
 
 /// Passes that one factorisation serves within an increment.
 const KEPT_PASSES: usize = 8;
-/// Relative difference of lengths between which subincrements share the factors of K*.
-const SAME_LENGTH: f64 = 1e-3;
 /// Passes after which slave nodes keep their targets.
 const SEARCHING_PASSES: usize = 4;
 
@@ -59,8 +57,7 @@ pub(crate) struct Attempt<'a, 'm> {
     pub workspace: &'a mut Workspace<'m>,
     pub start: &'a State,
     pub interval: Interval,
-    /// The pairs that are constraints; without it all, and nodes land within the increment.
-    pub active: Option<&'a ActiveConstraints>,
+    pub set: ConstraintSet<'a>,
 }
 
 impl<'m> Attempt<'_, 'm> {
@@ -80,7 +77,7 @@ impl<'m> Attempt<'_, 'm> {
     fn passes(&mut self, before: &ClosedPairs, trace: &mut Trace) -> Result<Solved, Cause> {
         let (problem, start, dt) = (self.problem, self.start, self.interval.dt);
         let mut contact = ContactForces::without_constraints(before);
-        let mut impulses = Impulses::new(before, self.active);
+        let mut impulses = Impulses::new(before, self.set);
         self.workspace.search.start(&start.v, dt);
 
         // the predictor starts from U0
@@ -124,7 +121,6 @@ impl<'m> Attempt<'_, 'm> {
             d = sum(&d, &du);
             if impulses.rest(problem, &contact.closed) && has_converged {
                 trace.worst = None;
-                self.check_paths(&d, before, &contact.closed)?;
                 contact.add_open(self.outside(left_out, &u));
                 return self.finish(v0p, d, contact, impulses);
             }
@@ -143,10 +139,7 @@ impl<'m> Attempt<'_, 'm> {
         let (problem, u0) = (self.problem, &self.start.u);
         problem.check_segments(u)?;
         let constraints = (self.workspace).constraints(problem, [u0, u], before, settled);
-        Ok(match self.active {
-            Some(active) => active.split(problem, u0, constraints),
-            None => [constraints, Vec::new()],
-        })
+        Ok(self.set.split(problem, u0, constraints))
     }
 
     /// Load, internal force and inertia of the iterate U0 + d.
@@ -187,7 +180,7 @@ impl<'m> Attempt<'_, 'm> {
         let (problem, dt) = (self.problem, self.interval.dt);
         let every = problem.settings.factorization == Factorization::EveryPass;
         let worn = pass > 0 && pass.is_multiple_of(KEPT_PASSES);
-        let near = self.active.map_or(0.0, |_| SAME_LENGTH);
+        let near = self.set.length_tolerance();
         if self.workspace.stiffness.fits(dt, near) && !every && !worn {
             return Ok(());
         }
@@ -229,40 +222,6 @@ impl<'m> Attempt<'_, 'm> {
         };
         let left_out = left_out.into_iter();
         left_out.filter(|c| c.gap >= 0.0 || is_over(c)).collect()
-    }
-
-    /// No node may have gone into a body on its way from U0 to U0 + d; `before` and `closed` are the
-    /// pairs in contact before the increment and at its end. Where only some pairs are constraints, the
-    /// others tell when the next impact is.
-    pub fn check_paths(
-        &mut self,
-        d: &[f64],
-        before: &ClosedPairs,
-        closed: &ClosedPairs,
-    ) -> Result<(), Cause> {
-        if self.active.is_some() {
-            return Ok(());
-        }
-        let StepProblem {
-            parts,
-            settings,
-            unknowns,
-            ..
-        } = self.problem;
-        let ways = parts.largest_of_bodies(d);
-        let unsolved = |&body: &usize| settings.tolerance * ways[body];
-        let unsolved: Vec<f64> = parts.of_nodes().iter().map(unsolved).collect();
-        let (u0, u1) = (&self.start.u, sum(&self.start.u, d));
-        let closed = [before, closed];
-        let found = (self.workspace).find_penetration([u0, &u1], closed, &unsolved);
-        found.map_or(Ok(()), |Penetration { slave, segment }| {
-            let [a, b] = segment;
-            Err(Cause::Crossed {
-                slave,
-                segment,
-                prescribed: !unknowns.moves(&[slave, a, b]),
-            })
-        })
     }
 
     /// Motion and forces at the end of a converged increment.

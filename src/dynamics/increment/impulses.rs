@@ -1,7 +1,7 @@
 //! Velocity jump at the start of an increment: the set of pairs that take impact impulses,
 //! iterated along with the passes. Section 6 of docs/theory.md (paper eq. 30).
 
-use super::active_constraints::ActiveConstraints;
+use super::active_constraints::ConstraintSet;
 use super::contact_forces::ContactForces;
 use super::contact_system::{ContactSystem, Guess};
 use crate::contact::{ClosedPairs, Constraint, ConstraintKey};
@@ -30,10 +30,10 @@ pub(crate) struct Impulses {
 impl Impulses {
     /// Starts with the pairs that were closed in the last increment; those that touch at the start
     /// have impulses in any case, where only some pairs are constraints.
-    pub fn new(before: &ClosedPairs, active: Option<&ActiveConstraints>) -> Self {
+    pub fn new(before: &ClosedPairs, set: ConstraintSet) -> Self {
         Impulses {
             closed: before.clone(),
-            touching: active.map_or_else(ClosedPairs::default, |a| a.touching().clone()),
+            touching: set.touching(),
             changes: 0,
             last: None,
             acting: ContactForces::default(),

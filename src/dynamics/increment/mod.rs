@@ -8,7 +8,7 @@ mod convergence;
 mod impulses;
 mod trace;
 
-pub(crate) use active_constraints::ActiveConstraints;
+pub(crate) use active_constraints::{ActiveConstraints, ConstraintSet};
 pub(crate) use attempt::{Attempt, Solved};
 pub(crate) use contact_forces::ContactForces;
 pub(crate) use trace::Failed;

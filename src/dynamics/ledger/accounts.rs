@@ -17,7 +17,7 @@ use crate::dynamics::step::{Interval, Mass, StepProblem};
 use crate::elements::ElementResult;
 use crate::model::{Contact, Model};
 
-/// What a run keeps account of beside the energy ledger: bodies, rigid surfaces and contacts.
+/// Accounts of a run besides the energy ledger: bodies, rigid surfaces and contacts.
 pub(crate) struct Accounts {
     bodies: BodyMasses,
     rigid: RigidSurfaces,
@@ -37,7 +37,7 @@ impl Accounts {
         }
     }
 
-    /// Motion of the start with the energies of the elements, without forces.
+    /// Motion at the start with the energies of the elements, without forces.
     pub fn start(
         &self,
         problem: &StepProblem,

@@ -5,7 +5,7 @@ use crate::dynamics::step::{Mass, StepProblem};
 use crate::elements::ElementResult;
 use crate::model::{Bodies, Model};
 
-/// What does not change about the bodies of a model.
+/// Masses of the bodies of a model, constant over a run.
 pub(crate) struct BodyMasses {
     pub bodies: Bodies,
     /// Mass of every body.

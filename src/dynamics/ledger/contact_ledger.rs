@@ -1,6 +1,6 @@
 //! Work, impulses and slip of every contact since the start, section 9 of docs/theory.md.
 
-use super::nodal_results::contact_of_slots;
+use super::nodal_results::contact_of_slave_indices;
 use crate::contact::{Constraint, ContactSurfaces};
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{ContactImpulse, ContactOnBody, ContactResultant};
@@ -19,9 +19,9 @@ struct Sums {
 /// Sums over the run of every contact, and the accumulated slip of every slave node.
 pub(crate) struct ContactLedger {
     contacts: Vec<Sums>,
-    /// `N` entries; NaN at nodes that are no slave nodes.
+    /// `N` entries; NaN at all nodes but slave nodes.
     pub slip: Vec<f64>,
-    /// Contact of every slave_index.
+    /// Contact of every slave index.
     contact_of: Vec<usize>,
     /// Reference node of every contact whose master is a rigid surface.
     reference: Vec<Option<usize>>,
@@ -37,7 +37,7 @@ impl ContactLedger {
         ContactLedger {
             contacts: vec![Sums::default(); surfaces.len()],
             slip,
-            contact_of: contact_of_slots(surfaces),
+            contact_of: contact_of_slave_indices(surfaces),
             reference: (model.contacts.iter())
                 .map(|contact| reference(contact.master).map(|body| body.reference))
                 .collect(),
@@ -94,8 +94,8 @@ impl ContactLedger {
         }
     }
 
-    /// Adds |Bt d| of the closed pairs to the slip of their slave nodes; of several pairs of a node
-    /// the largest.
+    /// Adds |Bt d| of the closed pairs to the slip of their slave nodes; where a node has several
+    /// pairs, the largest.
     fn slide(&mut self, solved: &Solved) {
         let mut increments = vec![0.0_f64; self.slip.len()];
         for (constraint, _) in solved.forces.acting() {

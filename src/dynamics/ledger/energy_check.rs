@@ -27,12 +27,12 @@ pub(crate) fn check_energy_gain(
     Err(Cause::GainedEnergy { part })
 }
 
-/// The energy that contact puts in because nodes slide on to segments that they were behind, as a part of
-/// the largest energy of the bodies of each pair, summed.
+/// Energy that contact puts in because nodes slide on to segments that they were behind: the sum over
+/// the pairs, each relative to the largest energy of its bodies.
 ///
 /// With energy-momentum rows a pair does the work Pn (g1 - g0). It is positive where a node slides over
 /// a convex corner on to a segment with g0 < 0, and that segment holds it because the corner turns
-/// concave in the same increment. Nodes that start inside, as a mesh may have them, do not count.
+/// concave in the same increment. Nodes that the mesh places inside are left out.
 fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) -> f64 {
     if !problem.weights.energy_momentum {
         return 0.0;

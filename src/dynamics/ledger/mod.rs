@@ -1,4 +1,4 @@
-//! Accounts of converged increments: energies, contacts, bodies, nodes, rigid surfaces.
+//! Ledger of converged increments: energies and their check, contacts, bodies, nodes, rigid surfaces.
 
 mod accounts;
 mod bodies;

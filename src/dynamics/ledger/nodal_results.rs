@@ -17,8 +17,8 @@ use crate::vectors::cross;
 /// an impact.
 const STRUCK: f64 = 1e-9;
 
-/// Reactions, contact forces, gaps and status at the nodes; reactions of rigid surfaces still stand
-/// at the nodes of these.
+/// Reactions, contact forces, gaps and status at the nodes; reactions of rigid surfaces are still at
+/// their own nodes.
 pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResults {
     let dofs = solved.d.len();
     let contact_force = solved.forces.resultant(dofs);
@@ -76,7 +76,7 @@ pub(crate) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
     };
     let mut resultants = vec![none; problem.contacts.len()];
     let mut largest_normal = vec![0.0_f64; resultants.len()];
-    let contact_of = contact_of_slots(problem.contacts);
+    let contact_of = contact_of_slave_indices(problem.contacts);
     for (constraint, pair) in solved.forces.iter() {
         let contact = contact_of[constraint.key.slave_index];
         let r = &mut resultants[contact];
@@ -104,8 +104,8 @@ pub(crate) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
     resultants
 }
 
-/// The contact that every slave_index belongs to.
-pub(crate) fn contact_of_slots(contacts: &[ContactSurfaces]) -> Vec<usize> {
+/// The contact of every slave index.
+pub(crate) fn contact_of_slave_indices(contacts: &[ContactSurfaces]) -> Vec<usize> {
     let numbered = contacts.iter().enumerate();
     numbered
         .flat_map(|(c, surfaces)| std::iter::repeat_n(c, surfaces.slaves.len()))
@@ -113,7 +113,7 @@ pub(crate) fn contact_of_slots(contacts: &[ContactSurfaces]) -> Vec<usize> {
 }
 
 /// Pairs that carry force now, or were struck at the start, and were open before: time and place
-/// from the second-order motion of the start (paper eq. 50), with the exact condition of meeting.
+/// from the second-order motion of the start (paper eq. 50), with the exact condition of crossing.
 pub(crate) fn landings(
     problem: &StepProblem,
     start: &State,
@@ -147,7 +147,7 @@ fn landing(
     let [s, a, b, _] = pair.nodes;
     let motions = [s, a, b].map(|node| motion(problem, &start.u, &start.v, &start.a, node));
     let tau = match impact_time(&motions, interval.dt) {
-        // it touches and does not meet again
+        // it touches at the start and does not cross
         tau if touched && tau == interval.dt => 0.0,
         tau => tau,
     };
@@ -181,8 +181,8 @@ pub(crate) fn motion(
     }
 }
 
-/// First time in [0, dt] at which the node meets the segment, or else its line, from outside; 0
-/// when it is not outside at the start, dt when it stays there.
+/// First time in [0, dt] at which the node reaches the segment, or else its line, from outside; 0
+/// when it is inside at the start, dt when it stays outside.
 fn impact_time(motions: &[Motion; 3], dt: f64) -> f64 {
     let [s, a, b] = motions.map(|m| m.position);
     if project(s, a, b).gap <= 0.0 {

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 /// A face on which slave nodes take pressure.
 struct SlaveFace {
     nodes: [usize; 2],
-    /// Which of both take it.
+    /// Which of its two nodes take it.
     counts: [bool; 2],
     thickness: f64,
 }
@@ -21,7 +21,7 @@ pub(crate) struct SlaveFaces {
 }
 
 impl SlaveFaces {
-    /// Faces of the slave surfaces; slave nodes on none of them take the exterior faces of their
+    /// Faces of the slave surfaces; slave nodes without such a face take the exterior faces of their
     /// elements.
     pub fn new(model: &Model) -> Self {
         let mesh = &model.mesh;
@@ -54,7 +54,7 @@ impl SlaveFaces {
     }
 
     /// Pressure |N| / A of every node, `N` entries (force/length^2), in the configuration of
-    /// displacements `u`; NaN without area, and at nodes that are no slave nodes.
+    /// displacements `u`; NaN without area, and at all nodes but slave nodes.
     ///
     /// ```text
     /// N = sum Bn^T Pn,  A = sum over the faces max(-n.N/|N|, 0) t l/2,  p = |N|/A    eq. (9.8)

@@ -22,7 +22,7 @@ impl RigidSurfaces {
         self.0.len()
     }
 
-    /// Takes the reactions from the nodes of the surfaces to the reference nodes, in the
+    /// Moves the reactions from the nodes of the surfaces to the reference nodes, in the
     /// configuration of displacements `u`: the force sum R_a and the moment sum (x_a - x_ref) x
     /// R_a, eq. (9.9).
     pub fn collect(

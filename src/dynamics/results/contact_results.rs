@@ -43,7 +43,8 @@ pub struct ContactResultant {
     pub min_gap: f64,
     /// max(|Pt| - mu Pn, 0) / max(Pn); 0 without contact.
     pub cone_violation: f64,
-    /// Moment of the force about the reference node of a rigid master (force length); 0 of others.
+    /// Moment of the force about the reference node of a rigid master (force length); 0 for other
+    /// masters.
     pub reference_moment: f64,
     /// Work of the normal contact forces since the start of the analysis.
     pub normal_work: f64,
@@ -53,7 +54,7 @@ pub struct ContactResultant {
     pub impulse: ContactImpulse,
     /// Impulses since the start of the analysis.
     pub impulse_sum: ContactImpulse,
-    /// Force on each body of a surface that touches itself; empty for two surfaces.
+    /// Force on each body in self-contact; empty for two surfaces.
     pub bodies: Vec<ContactOnBody>,
 }
 
@@ -67,7 +68,7 @@ pub struct Landing {
     pub slave: usize,
     /// Nodes a and b of the segment (indices).
     pub segment: [usize; 2],
-    /// Place on the segment, 0 at a, 1 at b.
+    /// Local coordinate on the segment, 0 at a, 1 at b.
     pub xi: f64,
     /// Approach speed -dg/dt just before (length/time).
     pub approach_speed: f64,

@@ -21,7 +21,7 @@ pub enum Cause {
         /// Determinant.
         determinant: f64,
     },
-    /// A segment has no length left.
+    /// A segment has shrunk to almost no length.
     Collapsed {
         /// Its ends (indices).
         segment: [usize; 2],
@@ -33,9 +33,9 @@ pub enum Cause {
     },
     /// The factorisation or a solve with it failed.
     LinearSolver(LinearError),
-    /// The passes went away from any solution until numbers were not finite.
+    /// The passes diverged until numbers were not finite.
     Diverged,
-    /// A node has gone into a body through a segment.
+    /// A node has entered a body through a segment.
     Crossed {
         /// Slave node (index).
         slave: usize,
@@ -44,9 +44,9 @@ pub enum Cause {
         /// Whether the motion of all three is prescribed.
         prescribed: bool,
     },
-    /// Contact would put energy in.
+    /// Positive work of the normal contact forces: contact would put energy in.
     GainedEnergy {
-        /// As a part of the largest energy.
+        /// The energy put in, relative to the largest energy.
         part: f64,
     },
     /// A complementarity problem was not solved.
@@ -55,7 +55,7 @@ pub enum Cause {
     NotFinite {
         /// Which.
         what: &'static str,
-        /// Node (index) where it is not, or that moves most.
+        /// Node (index) of the value, or the node that moves most.
         node: usize,
     },
 }
@@ -116,7 +116,7 @@ pub struct Failure {
     pub dt: f64,
     /// Why.
     pub cause: Cause,
-    /// Where it is worst, when there is such a place.
+    /// The node with the largest error, where the passes have one.
     pub worst: Option<Worst>,
     /// Passes of the attempt.
     pub passes: Vec<PassReport>,
@@ -160,7 +160,7 @@ impl From<LinearError> for Cause {
 }
 
 impl Cause {
-    /// Whether it says only that a number has become too large.
+    /// Whether the only cause is a number that has become too large.
     pub(crate) fn is_overflow(&self) -> bool {
         match self {
             Cause::LinearSolver(LinearError::NotFinite(_)) | Cause::NotFinite { .. } => true,

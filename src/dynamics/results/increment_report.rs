@@ -40,7 +40,7 @@ pub enum NodeStatus {
 /// Results at nodes, apart from the motion.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NodalResults {
-    /// Support reaction, `2 N` entries (force); 0 at free dofs. That of a rigid surface stands at
+    /// Support reaction, `2 N` entries (force); 0 at free dofs. That of a rigid surface is at
     /// its reference node.
     pub reaction: Vec<f64>,
     /// Concentrated loads on the node, `2 N` entries (force).
@@ -51,10 +51,11 @@ pub struct NodalResults {
     pub gap: Vec<f64>,
     /// Contact status, `N` entries.
     pub status: Vec<NodeStatus>,
-    /// Contact pressure, `N` entries (force/length^2); NaN at nodes that are no slave nodes.
+    /// Contact pressure, `N` entries (force/length^2); NaN at all nodes but slave
+    /// nodes.
     pub pressure: Vec<f64>,
-    /// Way slid in contact since the start of the analysis, `N` entries (length); NaN at nodes that
-    /// are no slave nodes.
+    /// Accumulated slip since the start of the analysis, `N` entries (length); NaN at all nodes but
+    /// slave nodes.
     pub slip: Vec<f64>,
 }
 
@@ -77,7 +78,7 @@ pub struct Energy {
     pub material_dissipation: f64,
     /// Energy dissipated by the integration scheme.
     pub numerical_dissipation: f64,
-    /// What is left of the balance: only the unconverged residual.
+    /// Energy balance; for exact solutions zero, so that it measures the residual of the passes.
     pub balance: f64,
 }
 
@@ -90,7 +91,7 @@ pub struct Momentum {
     pub angular: f64,
 }
 
-/// Motion, energies and contact force of a body: what elements connect.
+/// Motion, energies and contact force of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BodyResult {
     /// Centre of mass (length).
@@ -118,7 +119,7 @@ pub struct RigidReaction {
     pub moment: f64,
 }
 
-/// What the solver did in an increment, or in a whole run.
+/// Work of the solver in an increment or in a whole run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SolverCounts {
     /// Predictor and corrector passes.
@@ -203,7 +204,7 @@ pub trait Observer {
     /// An increment is repeated with half its length.
     fn cutback(&mut self, cutback: &Cutback) -> io::Result<()>;
 
-    /// Whether the run is to end here; asked before every attempt at an increment.
+    /// Whether the run shall end here; asked before every attempt at an increment.
     fn wants_stop(&self) -> bool {
         false
     }

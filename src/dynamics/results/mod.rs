@@ -1,4 +1,4 @@
-//! What a run reports, as plain data: increments, passes, contacts, energies, failures, totals.
+//! Results that a run reports, as plain data: increments, passes, contacts, energies, failures, totals.
 
 mod contact_results;
 mod failure;

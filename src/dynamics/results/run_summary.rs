@@ -16,7 +16,7 @@ pub struct Timings {
     pub solve: Duration,
     /// Contact search: territories and their candidates.
     pub search: Duration,
-    /// Pairs among the candidates, their rows and Delassus matrices, penetration check.
+    /// Pairing of candidates, constraint rows and Delassus matrices, penetration check.
     pub contact: Duration,
     /// Complementarity problems.
     pub lcp: Duration,
@@ -29,7 +29,7 @@ pub enum Outcome {
     Finished,
     /// An increment failed for good; the results up to it are valid.
     Stopped(Box<Failure>),
-    /// The observer wanted no more; the results up to there are valid.
+    /// The observer requested the end; the results up to there are valid.
     Interrupted,
 }
 

@@ -1,28 +1,39 @@
-//! What a converged increment must pass before it is accepted, and the failure of one that does not.
-//! Section 4 of docs/theory.md, Cutback.
+//! Checks that a converged increment must pass before it is accepted, and the failures of those that
+//! do not. Section 4 of docs/theory.md, Cutback.
 
 use super::nominal_increment::NominalIncrement;
+use crate::contact::{ClosedPairs, Penetration};
 use crate::dynamics::events::{FailedSubincrement, Subincrement};
-use crate::dynamics::increment::Failed;
+use crate::dynamics::increment::{Failed, Solved};
 use crate::dynamics::ledger::{Ledger, check_energy_gain};
-use crate::dynamics::results::{Failure, State};
-use crate::dynamics::step::{Interval, StepPlace, StepProblem};
+use crate::dynamics::results::{Cause, Failure, State};
+use crate::dynamics::step::{Interval, StepPlace, StepProblem, Workspace, sum};
 
-/// Halvings of an increment because of the energy that contact puts in.
+/// Most halvings of an increment because of the energy that contact puts in.
 const GAIN_HALVINGS: u32 = 5;
 
-/// A subincrement that counts, and the ledger with it.
+/// Where a subincrement starts from: motion, closed pairs and energies at the end of the last one.
+#[derive(Clone, Copy)]
+pub(crate) struct Before<'a> {
+    pub state: &'a State,
+    pub closed: &'a ClosedPairs,
+    pub ledger: &'a Ledger,
+}
+
+/// An accepted subincrement, and the ledger with its energies.
 pub(crate) struct Accepted {
     pub subincrement: Subincrement,
     pub ledger: Ledger,
 }
 
 impl Accepted {
-    /// A converged subincrement, `halvings` times halved, of the `nominal` increment: its energies must
-    /// be finite, and contact must put in none as long as halving helps.
+    /// Accepts a converged subincrement, `halvings` times halved, of the `nominal` increment: no node
+    /// may have gone through a surface, the energies must be finite, and contact must put in none while
+    /// halvings are left for that.
     pub fn new(
         problem: &StepProblem,
-        (start, ledger): (&State, &Ledger),
+        workspace: &mut Workspace,
+        before: Before,
         subincrement: Subincrement,
         halvings: u32,
         nominal: &NominalIncrement,
@@ -30,13 +41,18 @@ impl Accepted {
         let Subincrement {
             interval, solved, ..
         } = &subincrement;
-        let dt = interval.dt;
-        let may_be_halved = halvings < GAIN_HALVINGS && dt / 2.0 >= nominal.dt_min;
-        let after = ledger.clone().with(problem, start, solved, dt);
-        let checked = after.and_then(|after| match may_be_halved {
-            true => check_energy_gain(problem, start, ledger, solved).map(|()| after),
-            false => Ok(after),
-        });
+        let may_be_halved = halvings < GAIN_HALVINGS && interval.dt / 2.0 >= nominal.dt_min;
+        let checked = check_paths(problem, workspace, before, solved)
+            .and_then(|()| {
+                let ledger = before.ledger.clone();
+                ledger.with(problem, before.state, solved, interval.dt)
+            })
+            .and_then(|after| match may_be_halved {
+                true => {
+                    check_energy_gain(problem, before.state, before.ledger, solved).map(|()| after)
+                }
+                false => Ok(after),
+            });
         match checked {
             Ok(ledger) => Ok(Accepted {
                 subincrement,
@@ -52,6 +68,30 @@ impl Accepted {
             ))),
         }
     }
+}
+
+/// No node may have gone into a body on its straight path from U0 to U0 + d. What the tolerance of the
+/// passes leaves of a displacement is no depth.
+fn check_paths(
+    problem: &StepProblem,
+    workspace: &mut Workspace,
+    before: Before,
+    solved: &Solved,
+) -> Result<(), Cause> {
+    let largest = problem.parts.largest_of_bodies(&solved.d);
+    let unsolved = |&body: &usize| problem.settings.tolerance * largest[body];
+    let unsolved: Vec<f64> = problem.parts.of_nodes().iter().map(unsolved).collect();
+    let (u0, u1) = (&before.state.u, sum(&before.state.u, &solved.d));
+    let closed = [before.closed, &solved.forces.closed];
+    let found = workspace.find_penetration([u0, &u1], closed, &unsolved);
+    found.map_or(Ok(()), |Penetration { slave, segment }| {
+        let [a, b] = segment;
+        Err(Cause::Crossed {
+            slave,
+            segment,
+            prescribed: !problem.unknowns.moves(&[slave, a, b]),
+        })
+    })
 }
 
 /// The failure of increment number `increment`, `halvings` times halved.

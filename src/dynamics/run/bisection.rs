@@ -5,10 +5,10 @@ use super::nominal_increment::NominalIncrement;
 use super::time_control::{Span, TimeControl};
 use crate::dynamics::step::Interval;
 
-/// A nominal increment of which the parts up to number `piece` of 2^`halvings` are done.
+/// A nominal increment of which the parts up to number `part` of 2^`halvings` are done.
 pub(crate) struct Bisection {
     nominal: NominalIncrement,
-    piece: u32,
+    part: u32,
     halvings: u32,
 }
 
@@ -17,7 +17,7 @@ impl Bisection {
     pub fn new(nominal: NominalIncrement) -> Self {
         Bisection {
             nominal,
-            piece: 0,
+            part: 0,
             halvings: 0,
         }
     }
@@ -25,8 +25,8 @@ impl Bisection {
 
 impl TimeControl for Bisection {
     fn next(&self) -> Option<Span> {
-        let interval = || self.nominal.piece(self.piece, self.halvings);
-        (self.piece < 1 << self.halvings).then(|| Span {
+        let interval = || self.nominal.part(self.part, self.halvings);
+        (self.part < 1 << self.halvings).then(|| Span {
             interval: interval(),
             until_impact: None,
         })
@@ -37,14 +37,14 @@ impl TimeControl for Bisection {
     }
 
     fn accepted(&mut self, _: &Interval, _: bool) {
-        self.piece += 1;
-        while self.halvings > 0 && self.piece.is_multiple_of(2) {
-            (self.piece, self.halvings) = (self.piece / 2, self.halvings - 1);
+        self.part += 1;
+        while self.halvings > 0 && self.part.is_multiple_of(2) {
+            (self.part, self.halvings) = (self.part / 2, self.halvings - 1);
         }
     }
 
     fn failed(&mut self, _: &Interval) {
-        (self.piece, self.halvings) = (2 * self.piece, self.halvings + 1);
+        (self.part, self.halvings) = (2 * self.part, self.halvings + 1);
     }
 }
 

@@ -5,18 +5,19 @@ use super::nominal_increment::NominalIncrement;
 use super::time_control::{Span, TimeControl};
 use crate::dynamics::step::Interval;
 
-/// Impacts within a nominal increment, after which nodes land within what is left of it: contacts that
-/// chatter must not stall a run.
+/// Impact events within a nominal increment, after which its rest is one subincrement without events:
+/// chattering contacts must not stall a run.
 const MOST_EVENTS: usize = 50;
 
-/// A nominal increment that is done up to the step time `from`.
+/// A nominal increment that is solved up to the step time `from`.
 pub(crate) struct ImpactControl {
     nominal: NominalIncrement,
     from: f64,
     /// Length of the last subincrement.
     last: f64,
     events: usize,
-    /// Ends of what is left, and of its halves: the next subincrement goes no further than the last.
+    /// End of the nominal increment and ends of its halves; the last entry bounds the next
+    /// subincrement.
     ends: Vec<f64>,
 }
 

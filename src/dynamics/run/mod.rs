@@ -1,4 +1,4 @@
-//! The loop over steps and increments, with cutbacks.
+//! The loop over steps and increments: time control, acceptance and cutbacks.
 
 mod acceptance;
 mod bisection;

@@ -17,8 +17,8 @@ pub(crate) struct NominalIncrement {
 }
 
 impl NominalIncrement {
-    /// Part number `piece` of 2^halvings.
-    pub fn piece(&self, piece: u32, halvings: u32) -> Interval {
+    /// Part number `part` of 2^halvings.
+    pub fn part(&self, part: u32, halvings: u32) -> Interval {
         let parts = f64::from(1_u32 << halvings);
         let at = |k: u32| match k {
             0 => self.from,
@@ -26,8 +26,8 @@ impl NominalIncrement {
             k => self.from + self.length * (f64::from(k) / parts),
         };
         Interval {
-            start: self.place.time_point(at(piece)),
-            end: self.place.time_point(at(piece + 1)),
+            start: self.place.time_point(at(part)),
+            end: self.place.time_point(at(part + 1)),
             dt: self.length / parts,
         }
     }
@@ -117,12 +117,12 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn pieces_of_an_increment_meet() {
-        let pieces: Vec<Interval> = (0..4).map(|k| nominal().piece(k, 2)).collect();
-        assert_eq!((pieces[0].start.step, pieces[3].end.step), (0.3, 0.4));
-        for pair in pieces.windows(2) {
+    fn parts_of_an_increment_meet() {
+        let parts: Vec<Interval> = (0..4).map(|k| nominal().part(k, 2)).collect();
+        assert_eq!((parts[0].start.step, parts[3].end.step), (0.3, 0.4));
+        for pair in parts.windows(2) {
             assert_eq!(pair[0].end, pair[1].start);
         }
-        assert!(pieces.iter().all(|piece| piece.dt == 0.025));
+        assert!(parts.iter().all(|part| part.dt == 0.025));
     }
 }

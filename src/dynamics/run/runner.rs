@@ -1,9 +1,9 @@
-//! Time stepping of a run: steps, nominal increments and what their time control makes of them; a
+//! Time stepping of a run: steps, and nominal increments divided by their time control; each
 //! subincrement is attempted, checked, and accepted or cut back. Section 4 of docs/theory.md, Cutback.
 
 use std::io;
 
-use super::acceptance::{Accepted, failure, start_failure};
+use super::acceptance::{Accepted, Before, failure, start_failure};
 use super::bisection::Bisection;
 use super::impact_control::ImpactControl;
 use super::nominal_increment::{NominalIncrement, nominal_increments};
@@ -19,10 +19,10 @@ use crate::elements::most_strained;
 use crate::model::{ImpactTime, Procedure, Step};
 use crate::prepare::PreparedModel;
 
-/// Halvings of an increment before the run stops.
+/// Most halvings of an increment; a further failure stops the run.
 const HALVINGS: u32 = 10;
 
-/// Why a run could not go on, apart from a failed increment.
+/// Errors that end a run, apart from a failed increment.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The observer could not take the results.
@@ -33,7 +33,7 @@ pub enum RunError {
 /// Runs all steps of a model; the observer receives the start and every increment.
 ///
 /// # Errors
-/// The observer's. A failed increment is no error but an [`Outcome`].
+/// Those of the observer. A failed increment is an [`Outcome`].
 pub fn run(prepared: &PreparedModel, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
     let discretization = Discretization::new(prepared);
     let mut runner = Runner::new(&discretization, observer);
@@ -61,7 +61,7 @@ fn time_control(when: ImpactTime, nominal: NominalIncrement) -> Box<dyn TimeCont
     }
 }
 
-/// Where a run stands.
+/// A run in progress.
 struct Runner<'m, 'o> {
     discretization: &'m Discretization<'m>,
     /// Motion, closed pairs and energies at the end of the last increment.
@@ -106,7 +106,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         }
     }
 
-    /// Runs a step by its procedure; how it ends.
+    /// Runs a step by its procedure; returns how it ends.
     fn step(&mut self, step: &'m Step, place: StepPlace) -> Result<Outcome, RunError> {
         let problem = StepProblem::new(self.discretization, step, &self.state.u);
         let mut workspace = Workspace::new(&problem);
@@ -153,9 +153,14 @@ impl<'m, 'o> Runner<'m, 'o> {
             }
             let halvings = control.halvings();
             let attempt = self.attempt(problem, workspace, span, nominal.length);
-            let before = (&self.state, &self.ledger);
-            let checked =
-                attempt.and_then(|found| Accepted::new(problem, before, found, halvings, &nominal));
+            let before = Before {
+                state: &self.state,
+                closed: &self.contact,
+                ledger: &self.ledger,
+            };
+            let checked = attempt.and_then(|found| {
+                Accepted::new(problem, workspace, before, found, halvings, &nominal)
+            });
             match checked {
                 Ok(accepted) => {
                     let Subincrement {
@@ -201,8 +206,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         }
     }
 
-    /// Reports a failed attempt that is to be repeated with half its length; gives it back if it
-    /// may not be halved any more.
+    /// Reports a failed attempt that is to be repeated with half its length; returns it when
+    /// it may not be halved again.
     fn cut_back(&mut self, failure: Failure, dt_min: f64) -> Result<Option<Failure>, RunError> {
         let next_dt = failure.dt / 2.0;
         if failure.halvings == HALVINGS || next_dt < dt_min {
@@ -213,7 +218,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         Ok(None)
     }
 
-    /// Takes over a converged increment and reports it.
+    /// Makes a converged increment the state of the run and reports it.
     fn accept(
         &mut self,
         problem: &StepProblem,
@@ -271,7 +276,7 @@ impl<'m, 'o> Runner<'m, 'o> {
     ) -> Result<Option<Failure>, RunError> {
         let now = place.time_point(0.0);
         problem.unknowns.prescribe_velocity(now, &mut self.state.v);
-        self.state.a = problem.start_acceleration(workspace.m(), &self.state, now);
+        self.state.a = workspace.start_acceleration(problem, &self.state, now);
         self.ledger = Ledger::new(problem, &self.state);
         if let Some(failure) = start_failure(&self.state, &self.ledger, place) {
             return Ok(Some(failure));

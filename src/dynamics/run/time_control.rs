@@ -3,7 +3,7 @@
 
 use crate::dynamics::step::Interval;
 
-/// What a time control wants solved next.
+/// The next subincrement of a time control.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Span {
     pub interval: Interval,
@@ -13,13 +13,13 @@ pub(crate) struct Span {
 
 /// Divides one nominal increment.
 pub(crate) trait TimeControl {
-    /// What is to be solved next; none at the end of the nominal increment.
+    /// The next subincrement; none at the end of the nominal increment.
     fn next(&self) -> Option<Span>;
 
-    /// How often what comes next has been halved.
+    /// Number of halvings of the next subincrement.
     fn halvings(&self) -> u32;
 
-    /// Goes on from the end of an accepted interval, which an impact may have ended.
+    /// Continues from the end of an accepted interval, which an impact may have ended.
     fn accepted(&mut self, interval: &Interval, ends_at_impact: bool);
 
     /// Halves an interval that failed.

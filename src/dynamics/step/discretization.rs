@@ -1,4 +1,5 @@
-//! What lasts for a run: elements, mass, bodies with their parts, and contact surfaces.
+//! Discretization of a model, constant over a run: elements, mass, bodies with their parts, contact
+//! surfaces.
 
 use super::mass::Mass;
 use super::parts::Parts;
@@ -7,7 +8,7 @@ use crate::elements::Elements;
 use crate::model::Model;
 use crate::prepare::PreparedModel;
 
-/// A prepared model with its elements, their mass and what convergence is measured by.
+/// A prepared model with its elements, their mass, and the bodies and parts that scale convergence.
 pub(crate) struct Discretization<'m> {
     pub model: &'m Model,
     pub contacts: &'m [ContactSurfaces],

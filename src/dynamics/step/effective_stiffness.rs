@@ -23,7 +23,7 @@ impl FactoredMatrix {
         }
     }
 
-    /// Factorises the matrix anew.
+    /// Factorises the matrix again.
     pub fn factorize(&mut self) -> Result<(), LinearError> {
         self.compliance.clear();
         self.solver.factorize()
@@ -35,14 +35,14 @@ impl FactoredMatrix {
     }
 }
 
-/// The effective matrix K* = theta2 K + (2/dt²) M, eq. (4.6), kept until it is assembled anew, and the
-/// mass matrix, both over the unknowns of a step: T^T K* T and T^T M T.
+/// The effective matrix K* = theta2 K + (2/dt²) M, eq. (4.6), kept until it is assembled again, and
+/// the mass matrix, both over the unknowns of a step: T^T K* T and T^T M T.
 pub(crate) struct EffectiveStiffness {
     /// K*.
     pub k: FactoredMatrix,
     /// M, factorised when an impulse first needs it.
     pub m: FactoredMatrix,
-    /// Increment that K* belongs to.
+    /// Length of the increments of K* (time).
     dt: f64,
     /// Largest diagonal entry of theta2 K in every part (force/length).
     pub stiffness: Vec<f64>,
@@ -65,8 +65,8 @@ impl EffectiveStiffness {
         }
     }
 
-    /// Whether K* is factorised for increments of length `dt`, or of one that differs from it by no
-    /// more than the part `near`.
+    /// Whether K* is factorised for increments of length `dt`, or of a length that differs from it
+    /// by at most the relative difference `near`.
     pub fn fits(&self, dt: f64, near: f64) -> bool {
         self.k.solver.is_factorized() && (self.dt - dt).abs() <= near * dt
     }

@@ -4,7 +4,7 @@
 use crate::elements::Elements;
 use crate::model::{Load, Model, Pressure, Step, TimeBase, Variation};
 
-/// Times of a moment: since the start of the step and of the analysis, and the step's duration.
+/// A point in time: time since the start of the step and of the analysis, and the step's duration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TimePoint {
     pub step: f64,
@@ -82,17 +82,17 @@ impl<'m> Loads<'m> {
         r
     }
 
-    fn add_concentrated(&self, weight: f64, moment: TimePoint, r: &mut [f64]) {
+    fn add_concentrated(&self, weight: f64, at: TimePoint, r: &mut [f64]) {
         for load in &self.step.point_loads {
-            r[load.at.dof] += weight * moment.magnitude(self.model, load);
+            r[load.at.dof] += weight * at.magnitude(self.model, load);
         }
     }
 
-    fn add(&self, elements: &Elements, weight: f64, moment: TimePoint, u: &[f64], r: &mut [f64]) {
+    fn add(&self, elements: &Elements, weight: f64, at: TimePoint, u: &[f64], r: &mut [f64]) {
         if weight == 0.0 {
             return;
         }
-        self.add_concentrated(weight, moment, r);
+        self.add_concentrated(weight, at, r);
         for load in &self.step.body_forces {
             // int N^T f^B dOmega, f^B uniform in the element
             let element = load.at.element;
@@ -101,7 +101,7 @@ impl<'m> Loads<'m> {
             } else {
                 1.0
             };
-            let f = weight * density * moment.magnitude(self.model, load);
+            let f = weight * density * at.magnitude(self.model, load);
             let volumes = elements.nodal_volumes(element);
             for (&node, volume) in elements.nodes(element).iter().zip(volumes) {
                 r[2 * node] += f * volume * load.at.direction[0];
@@ -114,7 +114,7 @@ impl<'m> Loads<'m> {
             let x = &self.model.mesh.coordinates;
             let length = (x[b][0] - x[a][0]).hypot(x[b][1] - x[a][1]);
             let area = length * elements.thickness(load.at.face.element);
-            let f = weight * moment.magnitude(self.model, load) * area / 2.0;
+            let f = weight * at.magnitude(self.model, load) * area / 2.0;
             for node in [a, b] {
                 r[2 * node] += f * load.at.direction[0];
                 r[2 * node + 1] += f * load.at.direction[1];
@@ -124,7 +124,7 @@ impl<'m> Loads<'m> {
             self.add_pressure(
                 elements,
                 load,
-                weight * moment.magnitude(self.model, load),
+                weight * at.magnitude(self.model, load),
                 u,
                 r,
             );
@@ -143,7 +143,7 @@ impl<'m> Loads<'m> {
         let [a, b] = load.at.face.nodes(&self.model.mesh);
         let x = &self.model.mesh.coordinates;
         let e = [0, 1].map(|i| x[b][i] + u[2 * b + i] - x[a][i] - u[2 * a + i]);
-        // n dl = (e_y, -e_x): on the right of the way from a to b
+        // n dl = (e_y, -e_x): on the right of the direction from a to b
         let half = p * elements.thickness(load.at.face.element) / 2.0;
         for node in [a, b] {
             r[2 * node] -= half * e[1];

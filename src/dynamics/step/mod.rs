@@ -1,4 +1,5 @@
-//! What stays the same over a step: unknowns, loads, supports, mass, scheme, effective stiffness.
+//! The problem of a step: unknowns, loads, supports, mass, scheme, effective stiffness, and the
+//! workspace of its increments.
 
 mod discretization;
 mod effective_stiffness;

@@ -1,5 +1,5 @@
-//! What convergence is measured against apart: bodies, and parts of bodies with one kind of section
-//! (docs/theory.md, convergence).
+//! Bodies, and parts of bodies with one kind of section: convergence is measured for each of them
+//! (section 4 of docs/theory.md, Convergence).
 
 use std::collections::HashMap;
 
@@ -9,9 +9,9 @@ use crate::model::{Equation, Model};
 /// The bodies of a model and their parts, both numbered from 0.
 ///
 /// A body is what elements and equations connect. Nodes of a body are in one part when the elements
-/// around them, and around the nodes of their equations, have the same sections: beside a stiff or
-/// heavy part of its body a light one is solved to its own scale, as a light body is beside a heavy
-/// one.
+/// around them, and around the nodes of their equations, have the same sections: a light part
+/// beside a stiff or heavy part of its body is solved to its own scale, as is a light body beside a
+/// heavy one.
 pub(crate) struct Parts {
     /// Body of every node.
     body: Vec<usize>,
@@ -112,8 +112,8 @@ fn sections(model: &Model) -> Vec<Vec<usize>> {
     cluster.iter().map(of_node).collect()
 }
 
-/// First node of the group of every node, groups being united by equations; `first` nodes of the
-/// groups without them, each that of its own group.
+/// First node of the group of every node after equations have united groups; `first` holds the
+/// first nodes of the groups before.
 fn united(mut first: Vec<usize>, equations: &[Equation]) -> Vec<usize> {
     let own = |first: &[usize], mut node: usize| {
         while first[node] != node {

@@ -7,18 +7,17 @@ use super::mass::Mass;
 use super::parts::Parts;
 use super::scheme::Weights;
 use super::unknowns::Unknowns;
-use super::workspace::System;
 use crate::contact::tolerances::COLLAPSED_LENGTH;
 use crate::contact::{
     Configurations, Constraint, ContactSurfaces, PairTarget, Projection, Search, find_targets,
     position, project,
 };
 use crate::dynamics::results::{Cause, State};
-use crate::elements::{Elements, Motion};
+use crate::elements::Elements;
 use crate::lcp::LcpMethod;
 use crate::model::{Model, Settings, Step};
 
-/// What stays the same over a step.
+/// The equation of motion of a step.
 pub(crate) struct StepProblem<'m> {
     pub model: &'m Model,
     pub elements: &'m Elements,
@@ -96,7 +95,7 @@ impl StepProblem<'_> {
         position(&self.model.mesh.coordinates, u, node)
     }
 
-    /// Place of a node relative to a segment: of slave, a and b.
+    /// Projection of a node on a segment; `nodes` are slave, a and b.
     pub fn place(&self, u: &[f64], nodes: [usize; 3]) -> Projection {
         let [s, a, b] = nodes.map(|node| self.position(u, node));
         project(s, a, b)
@@ -105,7 +104,7 @@ impl StepProblem<'_> {
     /// Every segment must have a length to have a normal.
     ///
     /// # Errors
-    /// [`Cause::Collapsed`] with the first one that has next to none of its own left.
+    /// [`Cause::Collapsed`] with the first segment that has almost no length.
     pub fn check_segments(&self, u: &[f64]) -> Result<(), Cause> {
         let x = &self.model.mesh.coordinates;
         let length = |[p, q]: [[f64; 2]; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
@@ -189,25 +188,6 @@ impl StepProblem<'_> {
             acceleration,
             inertia,
         })
-    }
-
-    /// Acceleration at the start of the analysis, M A = R - F, the supports being at rest.
-    pub fn start_acceleration(&self, mut mass: System, start: &State, now: TimePoint) -> Vec<f64> {
-        let mut a = vec![0.0; start.u.len()];
-        let load = self.loads.weighted(self.elements, 1.0, now, now, &start.u);
-        let motion = Motion::at(&start.u, &start.internal);
-        let Ok(internal) = self.elements.internal_force(motion) else {
-            return a;
-        };
-        let r = difference(&load, &internal);
-        let solved = mass
-            .factorize()
-            .and_then(|()| mass.solve(&self.unknowns.restrict(&r)));
-        // Without it only the estimate of the first landings would be less good.
-        if let Ok(acceleration) = solved {
-            self.unknowns.add(&acceleration, &mut a);
-        }
-        a
     }
 }
 

@@ -54,8 +54,8 @@ impl<'m> Unknowns<'m> {
         dofs.any(|dof| !self.map.row(dof).is_empty())
     }
 
-    /// Whether the gap of a constraint can change: it cannot where equations tie the node to the segment, so
-    /// that Gn T is round-off.
+    /// Whether the gap of a constraint can change. Where equations tie the node to the segment it
+    /// cannot: Gn T is zero but for round-off.
     pub fn opens(&self, constraint: &Constraint) -> bool {
         if self.equations.is_empty() {
             return true;
@@ -90,7 +90,7 @@ impl<'m> Unknowns<'m> {
         &self.constrained
     }
 
-    /// Displacement increment g(t) - u0 of what is prescribed; zero at free dofs.
+    /// Displacement increment g(t) - u0 of the supports; zero at free dofs.
     pub fn prescribed_increment(&self, u0: &[f64], end: TimePoint) -> Vec<f64> {
         let mut d = vec![0.0; u0.len()];
         for (dof, u, _) in self.supports.motion(end) {
@@ -138,7 +138,7 @@ impl<'m> Unknowns<'m> {
         self.pass_on(v, |force| force)
     }
 
-    /// The largest that forces on all dofs can be once they are passed on, whatever their signs.
+    /// Upper bounds of forces on all dofs after they are passed on: sums of absolute values.
     pub fn magnitudes<'v>(&self, v: &'v [f64]) -> Cow<'v, [f64]> {
         self.pass_on(v, f64::abs)
     }
@@ -157,7 +157,7 @@ impl<'m> Unknowns<'m> {
     }
 }
 
-/// Which dofs are free: those of nodes with elements, or that a dof with elements follows, but for
+/// Which dofs are free: those of nodes with elements, and those that such a dof follows, except
 /// supports and dofs that follow others.
 fn free_dofs(elements: &Elements, equations: &[Equation], step: &Step, dofs: usize) -> Vec<bool> {
     let mut free = vec![false; dofs];

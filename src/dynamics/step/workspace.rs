@@ -1,9 +1,10 @@
-//! What the increments of a step work with: effective stiffness with its factors, contact search,
-//! times and counts. Each operation measures itself. Section 4 of docs/theory.md.
+//! Workspace of the increments of a step: effective stiffness with its factors, contact search,
+//! times and counts. Each operation measures its own time. Section 4 of docs/theory.md.
 
 use super::effective_stiffness::{EffectiveStiffness, FactoredMatrix};
+use super::loads::TimePoint;
 use super::meter::Meter;
-use super::step_problem::{Equilibrium, Interval, StepProblem};
+use super::step_problem::{Equilibrium, Interval, StepProblem, difference};
 use crate::contact::{
     ClosedPairs, Compliance, Constraint, Penetration, Search, find_penetration, frictional_lcp,
 };
@@ -96,7 +97,7 @@ impl<'m> Workspace<'m> {
         self.meter.time(|t| &mut t.assembly, product)
     }
 
-    /// Constraints between the displacements `u0` and `u`, as [`StepProblem::constraints`] says.
+    /// Constraints between the displacements `u0` and `u`, see [`StepProblem::constraints`].
     pub fn constraints(
         &mut self,
         problem: &StepProblem,
@@ -112,7 +113,29 @@ impl<'m> Workspace<'m> {
         )
     }
 
-    /// A node that has gone into a body between `u0` and `u1`, as [`find_penetration`] says.
+    /// Acceleration at the start of the analysis, M A = R - F, the supports being at rest.
+    pub fn start_acceleration(
+        &mut self,
+        problem: &StepProblem,
+        start: &State,
+        now: TimePoint,
+    ) -> Vec<f64> {
+        let mut a = vec![0.0; start.u.len()];
+        let motion = Motion::at(&start.u, &start.internal);
+        let Ok(internal) = problem.elements.internal_force(motion) else {
+            return a;
+        };
+        let load = (problem.loads).weighted(problem.elements, 1.0, now, now, &start.u);
+        let r = problem.unknowns.restrict(&difference(&load, &internal));
+        let mut mass = self.m();
+        // The acceleration only improves the estimate of the first landings.
+        if let Ok(acceleration) = mass.factorize().and_then(|()| mass.solve(&r)) {
+            problem.unknowns.add(&acceleration, &mut a);
+        }
+        a
+    }
+
+    /// A node that has entered a body between `u0` and `u1`, see [`find_penetration`].
     pub fn find_penetration(
         &mut self,
         [u0, u1]: [&[f64]; 2],
@@ -134,7 +157,7 @@ impl<'a> System<'a> {
         System { matrix, meter }
     }
 
-    /// Whether there are factors of the matrix as it is.
+    /// Whether the factors are those of the current matrix.
     pub fn is_factorized(&self) -> bool {
         self.matrix.solver.is_factorized()
     }
@@ -165,7 +188,7 @@ impl<'a> System<'a> {
         Ok(meter.time(|t| &mut t.contact, pose))
     }
 
-    /// Solves a complementarity problem, from the states `warm` on.
+    /// Solves a complementarity problem, starting from the states `warm`.
     pub fn solve_lcp(
         &mut self,
         problem: &FrictionalLcp,

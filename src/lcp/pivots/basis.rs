@@ -8,10 +8,10 @@
 use super::factors::Factors;
 use crate::lcp::problems::{axpy, dot, max_abs};
 
-/// Marks an index without a place in the kernel.
+/// Marks an index outside the kernel.
 const NONE: usize = usize::MAX;
 
-/// The matrix M as the pivots see it.
+/// The operations on the matrix M that pivoting needs.
 pub(crate) trait PivotMatrix {
     /// Number of rows and columns.
     fn size(&self) -> usize;
@@ -50,7 +50,7 @@ impl Values {
         }
     }
 
-    /// The place of a variable.
+    /// The value of a variable, to be changed.
     pub fn at(&mut self, variable: Variable) -> &mut f64 {
         match variable {
             Variable::W(i) => &mut self.w[i],
@@ -163,7 +163,7 @@ impl<'a, M: PivotMatrix> Basis<'a, M> {
         y
     }
 
-    /// The basic w that belong to the kernel values y, and what the kernel rows are off by.
+    /// The basic w that belong to the kernel values y, and the residual of the kernel rows.
     fn complete(&self, b: &[f64], y: &[f64]) -> (Values, Vec<f64>) {
         let size = self.size();
         let mut values = Values {
@@ -288,8 +288,8 @@ impl<'a, M: PivotMatrix> Basis<'a, M> {
         }
     }
 
-    /// Computes the inverse of the kernel anew. Returns false, and keeps the old one, when the
-    /// kernel is singular.
+    /// Recomputes the inverse of the kernel. Returns false, and keeps the old one, when the kernel
+    /// is singular.
     pub fn reinvert(&mut self) -> bool {
         let size = self.columns.len();
         let mut kernel = vec![0.0; size * size];

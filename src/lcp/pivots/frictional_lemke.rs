@@ -1,4 +1,5 @@
-//! Lemke's method on the frictional problem, by its structure.
+//! Lemke's method on the frictional problem, with the blocks of its matrix instead of the matrix
+//! itself. Section 8 of docs/theory.md.
 
 use nalgebra::DMatrix;
 
@@ -19,7 +20,7 @@ pub(crate) struct LemkeForces {
 
 /// M of the frictional problem, z = (Pn, T+, Dt-), without being formed.
 ///
-/// The tangent of a contact that would slip in the negative direction is turned round (`signs`), so
+/// The tangent of a contact that would slip in the negative direction is reversed (`signs`), so
 /// that q is negative at penetrations only and open contacts need no pivots.
 struct FrictionalMatrix<'a> {
     scaled: &'a Scaled,
@@ -99,7 +100,7 @@ impl<'a> FrictionalMatrix<'a> {
         p
     }
 
-    /// State of contact i by what is basic. T+ and T- both at zero mean that there is no force.
+    /// State of contact i by its basic variables; with T+ and T- both zero it has no force.
     fn state(&self, i: usize, basic: &[bool]) -> ContactState {
         let Some(t) = self.scaled.tangents[i] else {
             return if basic[i] {

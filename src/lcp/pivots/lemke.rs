@@ -1,4 +1,5 @@
-//! Lemke's method for the general problem.
+//! Lemke's method for the general problem, after equilibration by powers of two. Section 8 of
+//! docs/theory.md.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,4 +1,4 @@
-//! Lemke's method on a revised basis.
+//! Lemke's method: basis, ratio test and path, for general and for frictional problems.
 
 mod basis;
 mod factors;

@@ -1,4 +1,4 @@
-//! The path of Lemke's method.
+//! The almost complementary path of Lemke's method. Section 8 of docs/theory.md.
 
 use super::basis::{Basis, PivotMatrix, Values, Variable};
 use super::ratio::{Candidates, perturbation};
@@ -141,8 +141,8 @@ fn advance<M: PivotMatrix>(
     *values.at(entering) = step;
 }
 
-/// The basic values from the data instead of from the exchanges; the kernel is inverted anew when
-/// its inverse has become inaccurate.
+/// The basic values, recomputed from the data; the kernel is inverted again when its inverse has
+/// become inaccurate.
 fn recompute<M: PivotMatrix>(basis: &mut Basis<M>, q: &[f64]) -> Values {
     let (mut x, before, _) = basis.solve_refined(q);
     let scale = q.iter().fold(1.0_f64, |l, v| l.max(v.abs()));

@@ -20,12 +20,12 @@ pub(crate) struct Candidates {
 }
 
 impl Candidates {
-    /// Rows that may leave, with positive divisors; `tolerance` makes ratios tie.
+    /// Rows that may leave, with positive divisors; ratios within `tolerance` are tied.
     pub fn new(rows: Vec<(Variable, f64)>, tolerance: f64) -> Self {
         Self { rows, tolerance }
     }
 
-    /// Keeps those whose ratio value / divisor ties with the smallest.
+    /// Keeps the candidates whose ratio value / divisor ties with the smallest.
     pub fn keep_smallest(&mut self, value: impl Fn(Variable) -> f64) {
         let ratios: Vec<f64> = self.rows.iter().map(|(v, y)| value(*v) / y).collect();
         let smallest = ratios.iter().copied().fold(f64::INFINITY, f64::min);
@@ -35,18 +35,18 @@ impl Candidates {
             .retain(|_| ratio.next().is_some_and(|r| r <= limit));
     }
 
-    /// Whether a variable is among those left.
+    /// Whether a variable is still a candidate.
     pub fn contains(&self, variable: Variable) -> bool {
         self.rows.iter().any(|(v, _)| *v == variable)
     }
 
-    /// The first of those left.
+    /// The first of the remaining candidates.
     pub fn first(&self) -> Option<Variable> {
         self.rows.first().map(|(v, _)| *v)
     }
 
-    /// The variable left when the ties are broken by the values of p and then by the columns of
-    /// the inverse basis.
+    /// The candidate that remains when ties are broken by the values of p and then by the columns
+    /// of the inverse basis.
     pub fn break_ties<M: PivotMatrix>(
         mut self,
         basis: &Basis<M>,

@@ -23,7 +23,7 @@ pub(crate) fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
     }
 }
 
-/// Largest absolute value, 0 of nothing.
+/// Largest absolute value, 0 for an empty slice.
 pub(crate) fn max_abs(values: &[f64]) -> f64 {
     values
         .iter()

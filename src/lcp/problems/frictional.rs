@@ -13,8 +13,8 @@ use super::general::{Lcp, LcpError, expect_finite, expect_non_negative, expect_s
 ///                                Dt opposes Pt where |Pt| = mu Pn
 /// ```
 ///
-/// Q is a compliance (length/force), positive definite or semidefinite. The proof that a solution is
-/// found asks for a symmetric Q; the methods take others too.
+/// Q is a compliance (length/force), positive definite or semidefinite. The proof that a
+/// solution is found requires a symmetric Q; the methods take others too.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrictionalLcp {
     /// Q (2n x 2n): n normal, then n tangential rows and columns.

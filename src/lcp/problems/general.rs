@@ -25,7 +25,7 @@ pub struct LcpSolution {
     pub pivots: usize,
 }
 
-/// Why a problem has no solution to return.
+/// Why a problem was not solved.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum LcpError {
     /// The path of Lemke's method ended on a secondary ray.
@@ -33,8 +33,8 @@ pub enum LcpError {
     Ray {
         /// Basis exchanges until then.
         pivots: usize,
-        /// What grows without bound along the ray: positions in z, or contacts of a frictional
-        /// problem (those that press against each other).
+        /// Unknowns that grow without bound along the ray: positions in z, or contacts of a
+        /// frictional problem (those that press against each other).
         members: Vec<usize>,
     },
     /// The path did not end within the allowed number of exchanges.
@@ -54,7 +54,7 @@ pub enum LcpError {
     /// The data, or the data after scaling, contain an infinite number or one that is not a number.
     #[error("the problem contains a number that is not finite")]
     NotFinite,
-    /// The data exclude each other.
+    /// The sizes of the data do not agree.
     #[error("{what}: expected size {expected}, found {found}")]
     Size {
         /// The item of the wrong size.

@@ -11,7 +11,7 @@ use super::scaling::Equilibration;
 pub(crate) const TOLERANCE: f64 = 1e-9;
 
 /// Part of the terms |M_ij z_j| that enters the scale of a residual. Evaluating w rounds by about
-/// 1e-16 of the largest term, so that 1e-9 of the scale is never below what arithmetic can do.
+/// 1e-16 of the largest term, so that 1e-9 of the scale is never below round-off.
 pub(crate) const ROUNDING: f64 = 1e-6;
 
 /// Residual of z, zero for a solution, infinite when a number is not finite or a size is wrong.

@@ -1,5 +1,5 @@
-//! The frictional problem as the methods see it: without units, without the tangential unknowns of
-//! frictionless contacts.
+//! The dimensionless form of the frictional problem that the methods solve, without the tangential
+//! unknowns of frictionless contacts. Section 8 of docs/theory.md.
 
 use nalgebra::DMatrix;
 
@@ -10,10 +10,10 @@ use super::scaling::power_of_two;
 
 /// v = Q p + b with p = (Pn of all n contacts, Pt of the m contacts with mu > 0).
 ///
-/// With the weights w_i = root of Qnn_ii over its mean, the lengths of contact i are in units of
-/// w_i times the deepest penetration (over its weight), the forces in that over Qnn_ii; all rounded
-/// to powers of two. One weight for normal and tangent leaves the friction law as it is. The
-/// penetration is what drives the forces: a gap or a slip many orders larger must not make a
+/// With the weights w_i = root of Qnn_ii over its mean, the unit of length of contact i is
+/// w_i times the deepest penetration (over its weight), the unit of force is that length over
+/// Qnn_ii; both are rounded to powers of two. One weight for normal and tangent keeps the friction
+/// law. The penetration drives the forces: a gap or a slip many orders larger must not make a
 /// closed contact inaccurate.
 pub(crate) struct Scaled {
     /// Number of contacts n.

@@ -1,11 +1,11 @@
-//! Scale factors that are powers of two: multiplying by them rounds nothing.
+//! Scale factors that are powers of two: multiplication by them is exact.
 
 use nalgebra::DMatrix;
 
 /// Sweeps over rows and columns when a matrix is equilibrated.
 const SWEEPS: usize = 4;
 
-/// Largest power of two that is not above |x|; 1 for zero.
+/// Largest power of two <= |x|; 1 for zero.
 pub(crate) fn power_of_two(x: f64) -> f64 {
     const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
     if x == 0.0 {

@@ -7,7 +7,7 @@ use crate::lcp::warm_start::reduced;
 const ITERATIONS: usize = 25;
 
 /// A condition violated by less than this, relative to the largest force, does not change a state:
-/// degenerate contacts would otherwise change for ever by round-off.
+/// round-off would otherwise change degenerate contacts for ever.
 const TOLERANCE: f64 = 1e-12;
 
 /// Result of a call.
@@ -18,8 +18,8 @@ pub(crate) enum Outcome {
     Failed(Vec<f64>),
 }
 
-/// Solves for the forces of the states, changes the states that the forces and the motion
-/// contradict, and so on until none changes. A state that repeats means failure.
+/// Solves for the forces of the states and changes the states that forces and motion contradict,
+/// until none changes. Repeated states mean failure.
 pub(crate) fn active_set(
     scaled: &Scaled,
     mut states: Vec<ContactState>,
@@ -45,7 +45,7 @@ pub(crate) fn active_set(
     Outcome::Failed(last)
 }
 
-/// The states that forces p of `states` and their motion v ask for.
+/// The states that follow from the forces p of `states` and their motion v.
 fn next_states(
     scaled: &Scaled,
     states: &[ContactState],
@@ -111,7 +111,7 @@ fn landing(scaled: &Scaled, i: usize, t: usize, v: &[f64]) -> ContactState {
     }
 }
 
-/// States to begin with when none are known: what the motion without forces asks for.
+/// Initial states when none are known: those that follow from the motion without forces.
 pub(crate) fn first_states(scaled: &Scaled) -> Vec<ContactState> {
     let open = vec![ContactState::Open; scaled.contacts];
     next_states(scaled, &open, &vec![0.0; scaled.size()], &scaled.b)

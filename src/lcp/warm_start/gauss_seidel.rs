@@ -1,4 +1,5 @@
-//! Non-smooth Gauss-Seidel: each contact in turn is solved exactly with all others held.
+//! Non-smooth Gauss-Seidel: each contact in turn is solved exactly, with the forces of all others
+//! fixed. Section 8 of docs/theory.md.
 
 use crate::lcp::problems::{ContactState, Counters, Scaled, axpy};
 
@@ -41,8 +42,8 @@ fn update(scaled: &Scaled, k: usize, force: f64, p: &mut [f64], v: &mut [f64]) -
     change.abs()
 }
 
-/// State and forces of contact i alone, from its 2 x 2 block of Q and the motion b that the other
-/// contacts leave: g = a Pn + c Pt + b_n, Dt = f Pn + e Pt + b_t.
+/// State and forces of contact i alone, from its 2 x 2 block of Q and the motion b due to the other
+/// contacts: g = a Pn + c Pt + b_n, Dt = f Pn + e Pt + b_t.
 fn local(scaled: &Scaled, i: usize, p: &[f64], v: &[f64]) -> (ContactState, f64, f64) {
     let a = scaled.q[(i, i)];
     let Some(t) = scaled.tangents[i] else {
@@ -93,7 +94,7 @@ mod tests {
     use super::*;
     use crate::lcp::problems::FrictionalLcp;
 
-    /// Contacts that do not know of each other: one is open, one slides, one sticks.
+    /// Uncoupled contacts: one is open, one slides, one sticks.
     #[test]
     fn contacts_alone_are_solved_in_one_sweep() {
         let problem = FrictionalLcp {

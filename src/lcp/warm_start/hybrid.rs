@@ -1,4 +1,5 @@
-//! Solving a frictional problem: which method when, and the check after each.
+//! Solves a frictional problem: the order of the methods, and the check of each answer. Section 8 of
+//! docs/theory.md.
 
 use nalgebra::DVector;
 
@@ -90,8 +91,8 @@ pub fn solve_frictional(
     lemke(problem, &scaled, &mut counters)
 }
 
-/// The active set from the warm states, and again from the states that more and more Gauss-Seidel
-/// sweeps lead to, which break its cycles.
+/// The active set from the warm states, then from the states after ever more Gauss-Seidel sweeps,
+/// which break its cycles.
 fn iterate(
     problem: &FrictionalLcp,
     scaled: &Scaled,
@@ -137,7 +138,7 @@ fn project(scaled: &Scaled, p: &mut [f64]) {
 }
 
 /// Lemke's method, along up to [`PATHS`] paths with different covering vectors: where round-off
-/// ends one path on a ray, another goes through. The error is that of the first path.
+/// ends one path on a ray, another reaches a solution. The error is that of the first path.
 fn lemke(
     problem: &FrictionalLcp,
     scaled: &Scaled,
@@ -159,9 +160,9 @@ fn lemke(
     first
 }
 
-/// One path of Lemke's method. The forces of its states are then solved for directly, which is
-/// more accurate than what the exchanges leave, with the states corrected that ties within the
-/// tolerance have left wrong; redundant contacts may need the forces of the path itself.
+/// One path of Lemke's method. The forces of its states are then solved for directly, which
+/// is more accurate than the exchanges, and states that are wrong because of ties within the
+/// tolerance are corrected; redundant contacts may need the forces of the path itself.
 fn follow(
     problem: &FrictionalLcp,
     scaled: &Scaled,
@@ -208,7 +209,7 @@ fn accept(
     })
 }
 
-/// Forces without the round-off that leaves the friction cone: Pn >= 0, |Pt| <= mu Pn.
+/// Forces moved into the friction cone where round-off left them outside: Pn >= 0, |Pt| <= mu Pn.
 fn admissible(scaled: &Scaled, states: &[ContactState], mut p: Vec<f64>) -> Vec<f64> {
     for i in 0..scaled.contacts {
         p[i] = if states[i].is_closed() {
@@ -238,7 +239,7 @@ fn finish(
     let residual = frictional_residual(problem, &pn, &pt);
     let (pn, pt) = (DVector::from_vec(pn), DVector::from_vec(pt));
     let (gap, slip) = problem.motion(&pn, &pt);
-    // Without friction the side of the slip is not part of the solution: read it off.
+    // Without friction the solution leaves the direction of slip open: take it from the slip.
     let state = (0..problem.len()).map(|i| match states[i] {
         closed if closed.is_closed() && problem.mu[i] == 0.0 => ContactState::sliding(slip[i]),
         other => other,

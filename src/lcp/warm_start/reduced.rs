@@ -15,8 +15,8 @@ const CORRECTIONS: usize = 6;
 
 /// Solves for the forces p of the given states, and their motion v = Q p + b:
 /// gap = 0 where closed, slip = 0 where sticking, Pt = -+mu Pn where sliding, no force where open.
-/// None when there is no finite answer. Where redundant contacts leave the forces undetermined the
-/// load is shared.
+/// None when no solution is finite. Where redundant contacts leave the forces undetermined they
+/// share the load.
 pub(crate) fn forces(scaled: &Scaled, states: &[ContactState]) -> Option<(Vec<f64>, Vec<f64>)> {
     let unknowns = unknowns(scaled, states);
     if unknowns.is_empty() {
@@ -72,7 +72,8 @@ fn sliding(scaled: &Scaled, states: &[ContactState], k: usize) -> Option<(usize,
     scaled.tangents[k].map(|t| (t, -states[k].slip_sign() * scaled.mu[k]))
 }
 
-/// Whether the two triangles of a matrix are equal but for what corrections by the residual remove.
+/// Whether the two triangles of a matrix are equal up to differences that the corrections by the
+/// residual remove.
 fn is_symmetric(matrix: &[f64], size: usize) -> bool {
     let at = |i: usize, j: usize| matrix[i + j * size];
     let is_mirrored = |i: usize, j: usize| {
@@ -89,8 +90,8 @@ fn shifted(mut matrix: Vec<f64>, size: usize) -> Vec<f64> {
     matrix
 }
 
-/// p and v from the factors, corrected by the residual of the unfactored system as long as that
-/// shrinks.
+/// p and v from the factors, corrected by the residual of the unfactored system as long as it
+/// decreases.
 fn refine(
     scaled: &Scaled,
     states: &[ContactState],

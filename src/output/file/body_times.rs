@@ -4,7 +4,7 @@
 use crate::model::{Bodies, Model};
 use crate::output::text::{corners, shortest_edge, wave_speed};
 
-/// Times that longitudinal waves take in a body: the scales for the increment.
+/// Transit times of longitudinal waves in a body: the time scales for the choice of the increment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct BodyTimes {
     /// Shortest time along an edge of an element.

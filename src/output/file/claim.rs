@@ -1,9 +1,8 @@
 //! The right to write the files of a job.
 //!
-//! `JOB.log` stands for the job: who creates it, or locks it, has the job. The system lifts the
-//! lock when the program ends, however it ends, so that a killed run is in nobody's way. Until the
-//! first frame is complete nothing of an earlier run is touched: the result grows in
-//! `JOB.vtkhdf.part`.
+//! The run that creates or locks `JOB.log` has the job. The system releases the lock when the program
+//! ends, however it ends, so that a killed run blocks no other. Until the first frame is complete the
+//! files of an earlier run stay unchanged: the result is written to `JOB.vtkhdf.part`.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};
@@ -27,8 +26,8 @@ impl Claim {
     /// Claims a job; makes its folder where it is missing.
     ///
     /// # Errors
-    /// Results exist and may not be overwritten, another run holds the job, or a name is taken by
-    /// something that is no regular file.
+    /// Results exist and may not be overwritten, another run holds the job, or a name belongs to
+    /// something other than a regular file.
     pub fn take(files: &JobFiles, overwrite: bool) -> Result<Self, OutputError> {
         if !overwrite {
             refuse(files.results())?;
@@ -41,7 +40,7 @@ impl Claim {
             log,
             overwrite,
         };
-        // Whoever had the job before may have finished in the meantime.
+        // A run that had the job before may have finished in the meantime.
         if !overwrite {
             refuse(files.results())?;
         } else if is_held(&files.result) {
@@ -61,8 +60,7 @@ impl Claim {
         self.log.try_clone().map_err(at(&self.files.log))
     }
 
-    /// A name for the result before its first frame is in it; what a killed run left there is
-    /// removed.
+    /// Path of the result until its first frame is complete; the draft of a killed run is removed.
     pub(crate) fn draft(&self) -> Result<PathBuf, OutputError> {
         let draft = self.files.draft();
         match fs::remove_file(&draft) {
@@ -73,7 +71,7 @@ impl Claim {
         }
     }
 
-    /// Gives the result its name, at once and as a whole.
+    /// Gives the result its final name in one operation.
     pub(crate) fn publish(&self) -> io::Result<()> {
         let result = &self.files.result;
         if !self.overwrite && exists(result) {
@@ -85,7 +83,7 @@ impl Claim {
 
 impl Drop for Claim {
     fn drop(&mut self) {
-        // What cannot be removed here is removed by the next run of the job.
+        // The next run of the job removes a draft that cannot be removed here.
         let _ = fs::remove_file(self.files.draft());
         if self.log.metadata().is_ok_and(|data| data.len() == 0) {
             let _ = fs::remove_file(&self.files.log);
@@ -110,7 +108,7 @@ fn create_folder(file: &Path) -> Result<(), OutputError> {
     }
 }
 
-/// Removes links that stand for old results, so that what they point to is not written; refuses
+/// Removes symbolic links in place of old results, so that their targets are not written; refuses
 /// fifos, devices and folders.
 fn clear(files: &JobFiles) -> Result<(), OutputError> {
     for path in files.existing() {
@@ -128,14 +126,14 @@ fn clear(files: &JobFiles) -> Result<(), OutputError> {
     Ok(())
 }
 
-/// The log with its lock. An old one keeps its text for the time being.
+/// The log with its lock; an old log keeps its text until the new one begins.
 fn locked_log(path: &Path, overwrite: bool) -> Result<File, OutputError> {
     loop {
         let mut how = OpenOptions::new();
         how.read(true).write(true);
         let (log, is_new) = match how.clone().create_new(true).open(path) {
             Err(error) if error.kind() == ErrorKind::AlreadyExists => match how.open(path) {
-                // Removed between the two: once more.
+                // The file was removed in between: try again.
                 Err(error) if error.kind() == ErrorKind::NotFound => continue,
                 old => (old.map_err(OutputError::at(path))?, false),
             },
@@ -146,7 +144,7 @@ fn locked_log(path: &Path, overwrite: bool) -> Result<File, OutputError> {
                 let path = path.to_owned();
                 return Err(OutputError::Held { path });
             }
-            // On a file system without locks only a new file tells who comes first.
+            // On a file system without locks only the creation of the file decides.
             Err(TryLockError::Error(_)) if !is_new && !overwrite => refuse(vec![path.to_owned()])?,
             _ => {}
         }
@@ -165,7 +163,7 @@ fn is_at(file: &File, path: &Path) -> bool {
     }
 }
 
-/// Whether a program writes the result file: HDF5 locks it, whatever became of the log.
+/// Whether a program has the result file open: HDF5 locks it even where the log is gone.
 fn is_held(result: &Path) -> bool {
     let file = File::open(result);
     file.is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))

@@ -8,7 +8,7 @@ use ndarray::{ArrayView, IxDyn};
 /// Rows of a chunk of a dataset that grows by one row per increment.
 const CHUNK_ROWS: usize = 64;
 
-/// A frame of fewer bytes is not compressed: that would take longer than writing it.
+/// Frames of fewer bytes are not compressed: it would take longer than writing them.
 const LEAST_COMPRESSED: usize = 1 << 12;
 
 /// Largest chunk in bytes of a dataset that grows by one row per increment: well inside the
@@ -92,7 +92,7 @@ pub(crate) struct Column<T> {
     written: usize,
     /// Rows not in the file yet, one after the other.
     pending: Vec<T>,
-    /// Rows at which the buffer is written.
+    /// Number of rows at which the buffer is written.
     capacity: usize,
 }
 

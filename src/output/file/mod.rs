@@ -1,4 +1,4 @@
-//! The result file: its groups, datasets and room on the disk.
+//! The result file: claim of its name, groups and datasets, reserved disk space.
 
 mod body_times;
 mod claim;

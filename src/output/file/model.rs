@@ -45,7 +45,7 @@ pub(crate) fn write(root: &Group, model: &Model) -> hdf5::Result<()> {
     write_bodies(&group(&at, "bodies")?, model)
 }
 
-/// What elements connect: members, masses and times of waves.
+/// The bodies: members, masses and transit times of waves.
 fn write_bodies(at: &Group, model: &Model) -> hdf5::Result<()> {
     let bodies = Bodies::new(&model.mesh);
     let node: Vec<i64> = bodies.of_node.iter().map(|&body| number(body)).collect();

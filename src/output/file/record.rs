@@ -1,4 +1,4 @@
-//! Group `/run`: what ran, when and how it ended.
+//! Group `/run`: program, deck and command of the run, its times and its end.
 
 use hdf5::Group;
 use sha2::{Digest, Sha256};
@@ -10,7 +10,7 @@ use crate::dynamics::{RunSummary, Timings};
 /// Value of `exit_status` until the run ends.
 pub const UNFINISHED: i64 = -1;
 
-/// What the command line and the deck say about a run.
+/// Program, deck and command of a run.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RunRecord {
     /// Version of the program.

@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::{fs, io};
 
-/// What the system says about a file that can be read; one that is no regular file is not opened,
-/// for a fifo would wait for its writer.
+/// Metadata of a regular, readable file. Other files are not opened: a fifo would wait for its
+/// writer.
 ///
 /// # Errors
-/// The file is not there, may not be read, or is no regular file.
+/// The file does not exist, may not be read, or is not a regular file.
 pub fn regular_file(path: &Path) -> io::Result<fs::Metadata> {
     let data = fs::metadata(path)?;
     if data.is_dir() {

@@ -18,7 +18,7 @@ pub(crate) const fn scalar<R, T>(
     (name, meaning(description, dimension), value)
 }
 
-/// A dataset and the value it shows of a report `R`.
+/// A dataset and the value of a report `R` that it holds.
 type Shown<R, T> = (Column<T>, fn(&R) -> T);
 
 /// Datasets with one scalar of a report `R` each, a row per increment.

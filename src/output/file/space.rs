@@ -1,4 +1,4 @@
-//! Room on the disk for a result file that grows.
+//! Disk space reserved for a growing result file.
 
 use crate::output::error::io_error;
 use std::fs::File;
@@ -15,16 +15,16 @@ use rustix::process::{Resource, getrlimit};
 const INDEX: u64 = 3 * 3200;
 /// Bytes for the attributes that complete the record of the run.
 const CLOSING: u64 = 1 << 16;
-/// Chunks into which the rows of a series between two frames may fall, twice: those of the frame
-/// to come, and those of the increments until then.
+/// Chunks that the rows of a series may take up to the next frame: two for the frame itself and two
+/// for the increments until then.
 const SERIES_CHUNKS: u64 = 4;
 
-/// Keeps blocks of the disk for what is written next, and says beforehand when there are none.
+/// Reserves disk space for the rows to be written next, and fails beforehand when there is none.
 pub(crate) struct Space {
     file: File,
-    /// Bytes by which the file may grow until its next frame is complete, and the record.
+    /// Bytes by which the file may grow until its next frame and the record are complete.
     room: u64,
-    /// End of the part of the file, still to be written, whose blocks are kept.
+    /// End of the reserved part of the file.
     kept: u64,
 }
 
@@ -39,7 +39,7 @@ impl Space {
         })
     }
 
-    /// Makes sure of the room.
+    /// Reserves the space.
     ///
     /// # Errors
     /// The disk is full, or the file would become larger than it may.
@@ -64,7 +64,7 @@ impl Space {
         Ok(())
     }
 
-    /// Where blocks cannot be kept: whether there are as many now.
+    /// Where the file system cannot reserve space: checks that enough is free now.
     fn ask(&self) -> io::Result<()> {
         match fstatvfs(&self.file) {
             Ok(disk) if disk.f_bavail.saturating_mul(disk.f_frsize) < self.room => {
@@ -74,15 +74,15 @@ impl Space {
         }
     }
 
-    /// The library has written, and may have given blocks back.
+    /// Notes that the library has written, which may have released reserved space.
     pub fn written(&mut self) {
         self.kept = 0;
     }
 
-    /// Gives back what is kept beyond the end of the file.
+    /// Releases the space reserved beyond the end of the file.
     pub fn release(&mut self) {
         self.kept = 0;
-        // What stays is lost until the file is removed, nothing else.
+        // After a failure the space stays reserved until the file is removed; the results are complete.
         let _ = self
             .file
             .metadata()
@@ -90,7 +90,7 @@ impl Space {
     }
 }
 
-/// Bytes by which the datasets of a group that grow may do so: `chunks` of each series, a chunk of
+/// Bytes by which the growing datasets of a group may grow: `chunks` of each series, one chunk of
 /// each field. A dataset with several names counts once.
 fn growth(group: &Group, chunks: u64) -> hdf5::Result<u64> {
     let (mut bytes, mut seen) = (0, Vec::new());

@@ -223,7 +223,7 @@ impl Steps {
     }
 }
 
-/// Where fields of one kind go: `PointData` or `CellData`.
+/// The groups of one kind of fields: `PointData` or `CellData`.
 struct Place {
     data: Group,
     offsets: Offsets,
@@ -231,7 +231,7 @@ struct Place {
     rows: usize,
 }
 
-/// First rows of the frames: the same for all fields of one kind, one dataset under their names.
+/// First rows of the frames: one dataset, linked under the name of every field of one kind.
 struct Offsets {
     group: Group,
     /// The first name, and the dataset.

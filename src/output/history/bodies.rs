@@ -1,4 +1,4 @@
-//! Group `/history/bodies`: what elements connect.
+//! Group `/history/bodies`: motion, energies and contact force of every body.
 
 use hdf5::Group;
 

@@ -1,4 +1,5 @@
-//! Histories: one row per increment.
+//! Histories of the result file, one row per increment: energies and solver, nodes, bodies, contacts,
+//! rigid surfaces.
 
 mod bodies;
 mod contacts;

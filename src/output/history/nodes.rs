@@ -1,4 +1,4 @@
-//! Group `/history/nodes`: the node sets that the deck asks for.
+//! Group `/history/nodes`: the node sets that the deck requests.
 
 use hdf5::Group;
 
@@ -8,7 +8,7 @@ use crate::output::file::{Column, constant, group, meaning};
 
 /// A vector over the dofs in a report.
 type Vector = fn(&IncrementReport) -> &[f64];
-/// Name, description and dimension of a dataset, and what it is made of.
+/// Name, description and dimension of a dataset, and the vector that it shows.
 type Shown = (&'static str, &'static str, &'static str, Vector);
 
 const EACH: [Shown; 3] = [

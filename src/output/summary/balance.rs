@@ -1,11 +1,11 @@
 //! Running checks of conservation: energy balance (docs/theory.md, section 9), energy put in by
-//! contact (section 7), and linear momentum of a model on which nothing acts from outside.
+//! contact (section 7), and linear momentum of a model without external forces.
 
 use crate::dynamics::{Energy, IncrementReport, Momentum};
 use crate::linear::larger;
 use crate::model::{Equation, Model};
 
-/// Sum of the coefficients of an equation, as a part of their sizes, that is round-off.
+/// Sum of the coefficients of an equation, relative to their sizes, that counts as zero.
 const SUM_ROUND_OFF: f64 = 1e-12;
 
 /// Follows the energy balance, the energy that contact puts in and, of a free model, the momentum.
@@ -18,7 +18,7 @@ pub(crate) struct Balance {
     /// Largest absolute work of the normal contact forces so far.
     most_contact_work: f64,
     contact_energy: ContactEnergy,
-    /// Momentum at the start, when nothing outside may change it.
+    /// Momentum at the start of a model without external forces.
     start: Option<Momentum>,
     /// Largest linear momentum so far.
     momentum: f64,
@@ -54,7 +54,7 @@ impl Balance {
         }
     }
 
-    /// Takes an increment in; returns the energy that contact put in, if it did.
+    /// Enters an increment; returns the energy that contact put in, if it did.
     pub fn add(&mut self, report: &IncrementReport) -> Option<f64> {
         let Energy {
             kinetic,

@@ -1,5 +1,5 @@
-//! What is followed over a run from increment to increment: conservation, strains, contacts and
-//! counts, and the closing lines that report them.
+//! Running checks of a run, increment by increment: conservation, strains, contacts and counts, and
+//! the closing lines that report them.
 
 use super::balance::Balance;
 use super::warnings::Watch;
@@ -23,7 +23,7 @@ pub(crate) struct Monitor {
     cone_violation: f64,
 }
 
-/// What an increment is reported for besides its line in the table.
+/// Remarks on an increment besides its line in the table.
 pub(crate) struct Remarks {
     /// Energy that contact put in.
     pub contact_energy: Option<f64>,
@@ -45,7 +45,7 @@ impl Monitor {
         }
     }
 
-    /// Takes an accepted increment in.
+    /// Enters an accepted increment.
     pub fn add(&mut self, report: &IncrementReport) -> Remarks {
         let contact_energy = self.balance.add(report);
         self.watch.add(report);
@@ -66,7 +66,7 @@ impl Monitor {
         self.cutbacks
     }
 
-    /// Attempts that the increment just accepted took, the failed ones included.
+    /// Attempts at the increment just accepted, including the failed ones.
     pub fn take_attempts(&mut self) -> usize {
         std::mem::take(&mut self.failed_attempts) + 1
     }

@@ -17,7 +17,7 @@ use crate::output::text::{bytes, counted, general, label, scientific, wrap};
 /// Why a result file could not be read.
 #[derive(Debug, Error)]
 pub enum SummaryError {
-    /// The file is not there or may not be read.
+    /// The file does not exist or may not be read.
     #[error("cannot read {}: {}", path.display(), reason(source))]
     Open {
         /// The file.
@@ -25,7 +25,7 @@ pub enum SummaryError {
         /// Why.
         source: io::Error,
     },
-    /// The file is no result file of this program, or not complete.
+    /// The file is not a complete result file of this program.
     #[error("{} is not a result file of stickslip: {source}", path.display())]
     Content {
         /// The file.
@@ -35,7 +35,7 @@ pub enum SummaryError {
     },
 }
 
-/// What stands in a result file, in numbers.
+/// Figures of a result file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResultSummary {
     /// The file.
@@ -74,7 +74,7 @@ pub struct ResultSummary {
     pub largest_energy: f64,
     /// Largest absolute balance of the history.
     pub worst_balance: f64,
-    /// What the run shall be looked at again for, in lines of the screen.
+    /// Warnings about the run, in lines of the screen.
     pub warnings: Vec<String>,
 }
 
@@ -94,7 +94,7 @@ impl ResultSummary {
     }
 
     fn read_file(path: &Path, size: u64) -> hdf5::Result<Self> {
-        // Without a lock, so that a run can be looked at while it writes.
+        // Without a lock, so that a result can be read while its run writes.
         let file = FileBuilder::new()
             .with_fapl(|properties| properties.file_locking(false))
             .open(path)?;
@@ -227,7 +227,7 @@ fn read_energies(at: &Group) -> hdf5::Result<(Vec<(String, f64)>, f64)> {
     Ok((energies, scale))
 }
 
-/// What the warnings look at; datasets that older files lack are left out.
+/// Figures that the warnings are made from; datasets that older files lack are left out.
 fn read_findings(file: &Group, largest_energy: f64, balance: f64) -> hdf5::Result<Findings> {
     let history = file.group("history")?;
     let work: Vec<f64> = column(&history, "energy/normal_contact_work")?;
@@ -256,7 +256,7 @@ fn read_findings(file: &Group, largest_energy: f64, balance: f64) -> hdf5::Resul
     })
 }
 
-/// Names of the contacts that never closed, nor were struck.
+/// Names of the contacts without normal force and without impact in the whole run.
 fn read_open(at: &Group) -> hdf5::Result<Vec<String>> {
     let has_closed = |name: &str| -> hdf5::Result<bool> {
         let closed: Vec<i64> = column(at, &format!("{name}/closed"))?;

@@ -30,7 +30,7 @@ pub(crate) fn timing_lines(summary: &RunSummary, output: f64, total: f64) -> Vec
     wrap(done, &pieces)
 }
 
-/// What the complementarity problems took, by method; empty without any.
+/// Work of the complementarity problems by method; empty without any.
 pub(crate) fn lcp_lines(solver: &SolverCounts) -> Vec<String> {
     if solver.lcps == 0 {
         return Vec::new();

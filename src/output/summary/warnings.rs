@@ -1,23 +1,23 @@
-//! What a run shall be looked at again for: told at its end, and by `info` from the result file.
+//! Warnings about a whole run: printed at its end, and by `info` from the result file.
 
 use super::balance::Balance;
 use crate::dynamics::IncrementReport;
 use crate::linear::larger;
 use crate::model::{ALL_EXTERIOR, Bodies, Model};
 use crate::output::file::{BodyTimes, body_times, contact_names};
-use crate::output::text::{LARGE, WIDTH, general, label, scientific};
+use crate::output::text::{LARGE, general, scientific, wrap_words};
 
-/// Energy balance, as a part of the largest energy, that converged passes leave.
+/// Energy balance, relative to the largest energy, above which a run is warned about.
 const BALANCE: f64 = 1e-8;
-/// Work of the normal contact forces, as a part of the largest energy, that counts.
+/// Work of the normal contact forces, relative to the largest energy, that is warned about.
 const CONTACT_WORK: f64 = 0.01;
-/// Increments, in the time that a wave takes along the shortest edge, that are more than a mesh can
-/// show.
+/// Number of increments in the transit time of the shortest edge beyond which the errors of the mesh
+/// dominate.
 const MANY: f64 = 100.0;
-/// Increments in the longest period that show its motion well.
+/// Number of increments that resolve the longest period well.
 const ENOUGH: f64 = 20.0;
 
-/// What is looked at, of a whole run.
+/// Figures of a whole run that warnings are made from.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Findings {
     /// Largest energy balance as a part of the largest energy.
@@ -32,7 +32,7 @@ pub(crate) struct Findings {
     pub dt: f64,
     /// Last time.
     pub time: f64,
-    /// Times of waves in the bodies, where they are known.
+    /// Transit times of waves in the bodies, where they are known.
     pub bodies: Vec<BodyTimes>,
 }
 
@@ -47,7 +47,7 @@ impl Findings {
         let increments = [self.long_text(), self.short_text()];
         let open = self.open.iter().map(|name| self.open_text(name));
         let all = texts.into_iter().chain(increments).flatten().chain(open);
-        all.flat_map(|text| sentence(&text)).collect()
+        all.flat_map(|text| wrap_words("warning", &text)).collect()
     }
 
     fn balance_text(&self) -> Option<String> {
@@ -77,16 +77,16 @@ impl Findings {
     fn strain_text(&self) -> Option<String> {
         let strain = self.strain.filter(|&strain| strain > LARGE)?;
         Some(format!(
-            "the largest principal strain is {}, above {}, where a St. Venant-Kirchhoff material (*ELASTIC) is \
-             too stiff in tension and too soft in compression: trust no forces there; choose a material for \
-             large strains (*HYPERELASTIC, NEO HOOKE) or lower the loads",
+            "the largest principal strain is {}, above {}, where a St. Venant-Kirchhoff material \
+             (*ELASTIC) is too stiff in tension and too soft in compression: trust no forces there; \
+             choose a material for large strains (*HYPERELASTIC, NEO HOOKE) or lower the loads",
             general(strain, 4),
             general(LARGE, 1),
         ))
     }
 
-    /// An increment longer than the longest period 2 L/c of longitudinal vibration: the motion of
-    /// no body relative to itself is resolved.
+    /// An increment longer than the longest period 2 L/c of longitudinal vibration: the vibration of
+    /// no body is resolved.
     fn long_text(&self) -> Option<String> {
         let longest = self.bodies.iter().map(|times| 2.0 * times.body);
         let period = longest.reduce(f64::max)?;
@@ -101,7 +101,8 @@ impl Findings {
         })
     }
 
-    /// An increment in which a wave goes far less than the shortest edge: errors of the mesh rule.
+    /// An increment in which a wave covers a small part of the shortest edge: errors of the mesh
+    /// dominate.
     fn short_text(&self) -> Option<String> {
         let shortest = self.bodies.iter().map(|times| times.edge);
         let edge = shortest.reduce(f64::min)?;
@@ -136,7 +137,7 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// Takes an increment in.
+    /// Enters an increment.
     pub fn add(&mut self, report: &IncrementReport) {
         self.closed.resize(report.contacts.len(), false);
         for (closed, contact) in self.closed.iter_mut().zip(&report.contacts) {
@@ -146,7 +147,7 @@ impl Watch {
         self.time = report.time;
     }
 
-    /// What was found up to the end; large strains are told at their increment.
+    /// The findings of the run; large strains are reported at their increment.
     pub fn findings(&self, model: &Model, balance: &Balance) -> Findings {
         let closed = self.closed.iter().copied();
         let contacts: Vec<(String, bool)> = contact_names(model).into_iter().zip(closed).collect();
@@ -166,8 +167,8 @@ impl Watch {
 }
 
 /// Names of the contacts that never closed, sorted, from the names of all and whether they did.
-/// Where the same surfaces meet the other way round, nodes of one of them may carry it all; in
-/// general contact it is enough that something has met something.
+/// Of two contacts between the same surfaces with slave and master exchanged, one that closed is
+/// enough; so is any contact of general contact.
 pub(crate) fn never_closed(contacts: &[(String, bool)]) -> Vec<String> {
     let has_closed = |wanted: &str| {
         contacts
@@ -191,31 +192,11 @@ pub(crate) fn never_closed(contacts: &[(String, bool)]) -> Vec<String> {
     open
 }
 
-/// The words of a warning in as many lines as they need.
-fn sentence(text: &str) -> Vec<String> {
-    let mut lines = vec![];
-    let mut line = label("warning", "");
-    let mut is_empty = true;
-    for word in text.split(' ') {
-        if !is_empty && line.len() + 1 + word.len() > WIDTH {
-            lines.push(std::mem::replace(&mut line, label("", "")));
-            is_empty = true;
-        }
-        if !is_empty {
-            line.push(' ');
-        }
-        line.push_str(word);
-        is_empty = false;
-    }
-    lines.push(line);
-    lines
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A run that nothing is wrong with: 20 increments for the way to and fro in the slowest body.
+    /// A run without warnings: 20 increments in the longest period of the slowest body.
     fn sound() -> Findings {
         Findings {
             balance: 1e-10,
@@ -239,7 +220,7 @@ mod tests {
 
     fn text(findings: &Findings) -> String {
         let lines = findings.lines();
-        assert!(lines.iter().all(|line| line.len() <= WIDTH), "{lines:?}");
+        assert!(lines.iter().all(|line| line.len() <= 80), "{lines:?}");
         let words: Vec<&str> = lines
             .iter()
             .flat_map(|line| line.split_whitespace())

@@ -1,5 +1,5 @@
-//! Screen and log together: each printed line goes to both, and a run goes on when its screen is
-//! lost.
+//! Screen and log together: each printed line goes to both, and a run continues when the screen
+//! fails.
 
 use std::io::{self, ErrorKind, IsTerminal, Write};
 
@@ -12,7 +12,7 @@ use crate::model::Model;
 /// How much is printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Verbosity {
-    /// Nothing on the standard output; errors and the account of a stop go to the standard error.
+    /// Nothing on the standard output; errors and the report of a stop go to the standard error.
     Quiet,
     /// The header and a table of 20 to 50 lines.
     #[default]
@@ -24,7 +24,7 @@ pub enum Verbosity {
 /// The screen with its live line, and the log, which gets everything the screen does.
 pub(crate) struct Console {
     screen: Option<Box<dyn Write>>,
-    /// Why the screen was given up, if it was not a closed pipe.
+    /// Error of a failed screen; none for a closed pipe.
     lost: Option<io::Error>,
     verbosity: Verbosity,
     table: Table,
@@ -70,8 +70,8 @@ impl Console {
         lines.into_iter().try_for_each(|line| self.line(&line))
     }
 
-    /// Prints a line. A screen that cannot be written, such as a closed pipe, is given up: the run
-    /// goes on without.
+    /// Prints a line. After a failure of the screen, such as a closed pipe, the run continues
+    /// without it.
     pub fn line(&mut self, text: &str) -> io::Result<()> {
         let mut done = Ok(());
         if let Some(screen) = &mut self.screen {
@@ -86,12 +86,12 @@ impl Console {
         self.log.line(text)
     }
 
-    /// Why the screen was given up; a closed pipe is no reason.
+    /// Error of a failed screen; none for a closed pipe.
     pub fn lost(&mut self) -> Option<io::Error> {
         self.lost.take()
     }
 
-    /// Whether the screen was given up otherwise than as a closed pipe.
+    /// Whether the screen has failed, except by a closed pipe.
     pub fn is_lost(&self) -> bool {
         self.lost.is_some()
     }

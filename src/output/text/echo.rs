@@ -1,4 +1,4 @@
-//! The model in a few lines, as the screen and `check` show it.
+//! The model in a few lines, for the screen and for `check`.
 
 use super::format::{counted, general, grouped, scientific};
 use super::layout::{label, wrap};
@@ -23,7 +23,7 @@ pub struct ModelEcho {
     pub shortest_edge: f64,
     /// Largest speed of longitudinal waves (length/time).
     pub wave_speed: f64,
-    /// Shortest time a wave takes along an element's shortest edge: a guide for the increment.
+    /// Shortest transit time of a wave along an element's edge: a guide for the increment.
     pub edge_time: f64,
     /// Number of dofs prescribed in any step.
     pub prescribed: usize,

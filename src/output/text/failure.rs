@@ -1,4 +1,4 @@
-//! The text about a run that stopped.
+//! Report of a stopped run: cause, worst place, advice and passes.
 
 use super::format::{counted, scientific};
 use super::layout::wrap;
@@ -11,7 +11,7 @@ use crate::model::Model;
 /// Pairs of a complementarity problem that the text names.
 const SHOWN_PAIRS: usize = 4;
 
-/// Increment, time, cause, worst place, what was tried and the passes; `u` is the last converged
+/// Increment, time, cause, worst place, halvings and the passes; `u` is the last converged
 /// displacement.
 pub(crate) fn failure_lines(failure: &Failure, model: &Model, u: &[f64]) -> Vec<String> {
     let time = scientific(failure.time, 6);
@@ -53,7 +53,7 @@ fn worst_line(worst: &Worst, model: &Model) -> String {
     )
 }
 
-/// What lies behind the cause.
+/// Likely reasons of the cause.
 fn hint(cause: &Cause, model: &Model) -> &'static [&'static str] {
     match *cause {
         Cause::Inverted { element, .. } => inversion_hint(element, model),
@@ -99,8 +99,8 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
     }
 }
 
-/// The pairs that an unsolved complementarity problem is about: those that press against each other
-/// on a ray, else all; the first of them.
+/// The first pairs of an unsolved complementarity problem: on a ray those that press against each
+/// other, else of all.
 fn pairs_line(failed: &FailedLcp, model: &Model) -> String {
     let pairs: Vec<[usize; 3]> = match &failed.error {
         LcpError::Ray { members, .. } if !members.is_empty() => members

@@ -1,6 +1,6 @@
 //! Numbers as text.
 
-/// `x` in scientific notation with two exponent digits at least, such as `1.00e-05`.
+/// `x` in scientific notation with at least two digits of the exponent, such as `1.00e-05`.
 pub(crate) fn scientific(x: f64, decimals: usize) -> String {
     if !x.is_finite() {
         return if x.is_nan() {
@@ -52,7 +52,7 @@ pub(crate) fn general(x: f64, digits: usize) -> String {
     trimmed(&format!("{x:.decimals$}")).to_owned()
 }
 
-/// A number without the zeros at the end of its fraction.
+/// A number without trailing zeros of its fraction.
 fn trimmed(number: &str) -> &str {
     match number.contains('.') {
         true => number.trim_end_matches('0').trim_end_matches('.'),

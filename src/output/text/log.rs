@@ -1,4 +1,4 @@
-//! `JOB.log` and what stands in it only.
+//! `JOB.log`: its file, and the convergence tables and cutbacks that only the log holds.
 
 use std::fs::File;
 use std::io::{self, LineWriter, Write};
@@ -13,12 +13,12 @@ use crate::output::error::at;
 pub(crate) struct Log {
     file: LineWriter<File>,
     path: PathBuf,
-    /// What is to be written as soon as the log may be; nothing once it is.
+    /// Lines that wait until the log begins; none afterwards.
     waiting: Option<String>,
 }
 
 impl Log {
-    /// A log that keeps its lines to itself until [`Log::begin`]; till then an old text stays.
+    /// A log that buffers its lines until [`Log::begin`]; until then the file keeps an old text.
     pub fn new(file: File, path: &Path) -> Self {
         Log {
             file: LineWriter::new(file),
@@ -27,7 +27,7 @@ impl Log {
         }
     }
 
-    /// Empties the file and writes what has waited.
+    /// Empties the file and writes the buffered lines.
     pub fn begin(&mut self) -> io::Result<()> {
         let waiting = self.waiting.take().unwrap_or_default();
         let emptied = self.file.get_mut().set_len(0);
@@ -87,7 +87,7 @@ pub(crate) fn increment_line(report: &IncrementReport) -> String {
     )
 }
 
-/// The lines that tell of a cutback.
+/// The lines about a cutback.
 pub(crate) fn cutback_lines(cutback: &Cutback) -> Vec<String> {
     let failure = &cutback.failure;
     let pieces = [

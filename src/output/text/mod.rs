@@ -17,7 +17,7 @@ pub use echo::{ModelEcho, frames, solver};
 pub(crate) use echo::{corners, element_mass, shortest_edge, wave_speed};
 pub(crate) use failure::failure_lines;
 pub(crate) use format::{bytes, counted, general, scientific};
-pub(crate) use layout::{WIDTH, label, wrap};
+pub(crate) use layout::{label, wrap, wrap_words};
 pub(crate) use log::{Log, cutback_lines};
 pub(crate) use status::StatusFile;
 pub(crate) use strain::{LARGE, SmallStrainElements, StrainWatch, warning_lines};

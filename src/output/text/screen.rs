@@ -18,16 +18,16 @@ const HEADER: &str =
 pub(crate) struct Table {
     /// Increment of each step (time).
     increments: Vec<f64>,
-    /// Increments from one line to the next, as long as none is cut back.
+    /// Nominal increments from one line to the next.
     stride: f64,
-    /// Increments since the last line; one that was cut back counts by its length.
+    /// Increments since the last line; a subincrement counts by its length.
     since: f64,
     /// Lines so far.
     lines: usize,
 }
 
 impl Table {
-    /// A table with 20 to 50 lines for the increments the model's steps ask for.
+    /// A table with 20 to 50 lines for the nominal increments of the model's steps.
     pub fn new(model: &Model) -> Self {
         let increments = model.steps.iter().map(|step| step.increments);
         Table {
@@ -86,7 +86,7 @@ pub(crate) fn sticking(report: &IncrementReport) -> usize {
     report.contacts.iter().map(|contact| contact.sticking).sum()
 }
 
-/// The smallest of 1, 2, 5, 10, 20, ... that gives no more than the allowed lines.
+/// The smallest of 1, 2, 5, 10, 20, ... that gives no more lines than allowed.
 fn stride(increments: f64) -> usize {
     let mut power = 1usize;
     while increments.is_finite() && power < usize::MAX / 100 {

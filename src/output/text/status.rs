@@ -51,7 +51,7 @@ impl StatusFile {
         Ok(StatusFile { file, path })
     }
 
-    /// Writes the line of an increment that needed so many attempts; `error` is the relative
+    /// Writes the line of an increment with the number of its attempts; `error` is the relative
     /// energy balance.
     pub fn write(
         &mut self,

@@ -1,4 +1,4 @@
-//! The largest principal strain of a run, and where the material law ends.
+//! The largest principal strain of a run, compared with the range of the material law.
 
 use super::format::scientific;
 use crate::dynamics::IncrementReport;
@@ -6,23 +6,23 @@ use crate::elements::Strained;
 use crate::materials::Law;
 use crate::model::Model;
 
-/// Principal strain above which a St. Venant-Kirchhoff material is no guide.
+/// Principal strain above which a St. Venant-Kirchhoff material is inaccurate.
 pub(crate) const LARGE: f64 = 0.2;
 
-/// What an element of a St. Venant-Kirchhoff material that turned inside out may come from.
+/// Why an element of a St. Venant-Kirchhoff material may turn inside out.
 const SOFTENING: [&str; 3] = [
     "material St. Venant-Kirchhoff gives way at 58 % of its length (strain -1/3):",
     "         beyond that shorter increments do not help; use smaller loads, or in",
     "         plane strain a material for large strains (*HYPERELASTIC, NEO HOOKE)",
 ];
 
-/// What an element of a material for large strains that turned inside out may come from.
+/// Why an element of a material for large strains may turn inside out.
 const CRUSHED: [&str; 2] = [
     "         the element was crushed or distorted too far: use smaller loads, or a mesh",
     "         whose elements are better shaped there when they are deformed",
 ];
 
-/// What lies behind an element that turned inside out.
+/// Likely reasons for an element that turned inside out.
 pub(crate) fn inversion_hint(element: usize, model: &Model) -> &'static [&'static str] {
     match law(element, model).is_for_small_strains() {
         true => &SOFTENING,
@@ -79,8 +79,8 @@ impl StrainWatch {
         }
     }
 
-    /// Takes an increment in; the most strained element of a law for small strains, if it is the first
-    /// beyond its range.
+    /// Enters an increment; returns its most strained element with a law for small strains if it is the
+    /// first beyond the range of that law.
     pub fn add(&mut self, report: &IncrementReport) -> Option<Strained> {
         let now = report.strain;
         if now.strain > self.most.strain {
@@ -94,7 +94,7 @@ impl StrainWatch {
         self.warned.then_some(limited)
     }
 
-    /// The largest of the run.
+    /// The largest strain of the run as text.
     pub fn line(&self, model: &Model) -> String {
         let strain = scientific(self.most.strain, 2);
         match self.increment {

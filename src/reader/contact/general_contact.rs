@@ -5,11 +5,11 @@ use crate::deck::{Card, Name, Row};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{ALL_EXTERIOR, Contact, Face, Interaction, Mesh, Surface, SurfaceKind};
 use crate::reader::context::Context;
-use crate::reader::mesh::{Block, MeshIndex, Outline, Sides, Surfaces};
+use crate::reader::mesh::{Block, MeshIndex, Outline, Surfaces};
 use std::collections::HashMap;
 
-/// Reads general contact and adds its surface: its contact with itself and one with every rigid
-/// surface, which a pair of the deck may hold already for some nodes.
+/// Reads general contact and adds its surface: contact of the surface with itself and with every
+/// rigid surface, there without the slave nodes of contact pairs.
 pub(crate) fn read(
     outline: &Outline,
     mesh_index: &MeshIndex,
@@ -32,7 +32,7 @@ pub(crate) fn read(
     all
 }
 
-/// Nodes that pairs of the deck hold away from a rigid surface, increasing.
+/// Slave nodes of the contact pairs with a rigid surface, increasing.
 fn paired(
     rigid: usize,
     pairs: &[Contact],
@@ -85,8 +85,8 @@ fn general(
     })
 }
 
-/// Pairs of faces touch in general contact already; the nodes of a pair with a rigid surface are
-/// left out of its general contact.
+/// Reports contact pairs of faces, which general contact includes; pairs with a rigid surface take
+/// precedence for their nodes.
 pub(crate) fn report_pairs(pairs: &[Contact], surfaces: &Surfaces, cx: &mut Context) {
     let is_rigid = |pair: &Contact| {
         let master = surfaces.all.get(pair.master);
@@ -149,8 +149,7 @@ fn assigned_in(row: &Row, interactions: &Interactions, cx: &mut Context) -> Opti
 
 /// All faces that belong to one element only, chain by chain along the boundaries.
 fn exterior(mesh: &Mesh) -> Vec<Face> {
-    let elements: Vec<usize> = (0..mesh.elements.len()).collect();
-    let free = Sides::new(mesh).free_faces(&elements, mesh);
+    let free = mesh.exterior_faces();
     let mut starts: HashMap<usize, Vec<usize>> = HashMap::new();
     for (i, face) in free.iter().enumerate() {
         starts.entry(face.nodes(mesh)[0]).or_default().push(i);

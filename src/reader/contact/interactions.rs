@@ -33,7 +33,7 @@ impl Interactions {
         Interactions { names, all }
     }
 
-    /// The interaction that `name` says; reports an undefined one.
+    /// The interaction of a name; reports an undefined one.
     pub fn find(&self, name: Text, cx: &mut Context) -> Option<Interaction> {
         let index = self.names.find(name, cx)?;
         self.all.get(index).copied()
@@ -57,7 +57,8 @@ fn friction(block: &Block, cx: &mut Context) -> Option<f64> {
     }
 }
 
-/// Warns about numbers of a law that is exact; LINEAR is warned about as a whole.
+/// Warns that the data of a pressure-overclosure law have no effect, as contact is exact; LINEAR
+/// has a warning of its own.
 fn warn_of_behavior_data(card: &Card, cx: &mut Context) {
     if let (Some(row), None | Some("HARD")) =
         (card.rows.first(), card.choice("PRESSURE-OVERCLOSURE"))

@@ -65,7 +65,7 @@ fn report_adjusted_self_contact(contact: Option<&Contact>, card: &Card, cx: &mut
     }
 }
 
-/// The same slave and master twice would count each contact force twice.
+/// Reports a second pair of the same slave and master, which would double the contact forces.
 fn report_repeated(contacts: &[Contact], cx: &mut Context) {
     let mut seen = HashSet::new();
     for contact in contacts {
@@ -76,7 +76,7 @@ fn report_repeated(contacts: &[Contact], cx: &mut Context) {
     }
 }
 
-/// `slave, master`; one surface touches itself.
+/// `slave, master`; a single surface is in contact with itself.
 fn contact(
     row: &Row,
     interaction: Option<Interaction>,

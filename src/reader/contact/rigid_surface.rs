@@ -86,7 +86,7 @@ fn rigid(
     ))
 }
 
-/// The node, or the one node of the set, that a field says.
+/// The node that a field names, or the only node of the set.
 fn reference_node(
     field: Text,
     mesh_index: &MeshIndex,

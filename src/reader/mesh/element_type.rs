@@ -1,4 +1,4 @@
-//! Element types.
+//! Reads element types; explains why the types of other codes cannot be used.
 
 use crate::deck::Text;
 use crate::diagnostics::{Code, Diagnostic, closest};
@@ -11,7 +11,7 @@ pub(crate) fn read(name: Text, cx: &mut Context) -> Option<ElementType> {
     ElementType::from_name(&folded).or_else(|| unusable(name, &folded, cx))
 }
 
-/// Reports a type; a lenient reader takes elements with one integration point as full ones.
+/// Reports a type; lenient reading replaces reduced by full integration of 4-node elements.
 fn unusable(name: Text, folded: &str, cx: &mut Context) -> Option<ElementType> {
     let full = folded.strip_suffix('R').and_then(ElementType::from_name);
     if let Some(full) = full.filter(|full| full.topology().nodes == 4 && cx.d.is_lenient()) {

@@ -1,12 +1,12 @@
-//! The mesh with the node and element numbers of the deck and the sets named where their members
-//! are defined.
+//! The mesh with the node and element numbers of the deck, and the sets named on `*NODE` and
+//! `*ELEMENT`.
 
 use crate::deck::Name;
 use crate::diagnostics::Span;
 use crate::model::{Element, ElementType, Mesh};
 use crate::reader::names::{Labelled, Labels};
 
-/// The mesh and what the deck calls its parts.
+/// The mesh, with the numbers and sets that the deck gives to its nodes and elements.
 pub(crate) struct MeshIndex {
     /// Nodes that belong to elements, and elements. Sections are not yet known.
     pub mesh: Mesh,
@@ -65,7 +65,7 @@ impl MeshIndex {
         self.mesh.coordinates.push([x, y]);
     }
 
-    /// Adds an element whose nodes are there.
+    /// Adds an element whose nodes have been added.
     pub fn add_element(&mut self, element: &RawElement) {
         let index = |label: &u64| match self.nodes.get(*label) {
             Some(Labelled::Index(index)) => Some(index),

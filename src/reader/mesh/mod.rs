@@ -12,4 +12,4 @@ pub(crate) mod surface;
 pub(crate) use mesh_index::MeshIndex;
 pub(crate) use outline::{Block, Outline, StepCards};
 pub(crate) use sets::Sets;
-pub(crate) use surface::{Found, Sides, Surfaces, side_count};
+pub(crate) use surface::{Found, Surfaces, side_count};

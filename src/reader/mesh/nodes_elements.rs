@@ -11,7 +11,8 @@ use crate::reader::mesh::element_type;
 use crate::reader::names::{Labelled, Labels};
 use std::collections::{BTreeSet, HashMap};
 
-/// Reads nodes and elements; leaves out nodes without element that are no reference nodes.
+/// Reads nodes and elements; leaves out nodes of neither an element, a rigid surface nor an
+/// equation.
 pub(crate) fn read(outline: &Outline, cx: &mut Context) -> MeshIndex {
     let errors = cx.errors();
     let mut reading = Reading {
@@ -183,7 +184,7 @@ impl Reading {
         }
     }
 
-    /// A mesh without nodes or elements is reported at their card, or else where it should stand:
+    /// Reports a mesh without nodes or elements at their card, or else where it should stand:
     /// elements after the last nodes, nodes at the first keyword of the deck.
     fn report_empty(&self, outline: &Outline, cx: &mut Context) {
         let (keyword, before) = match (self.nodes.is_empty(), self.elements.is_empty()) {
@@ -199,7 +200,7 @@ impl Reading {
         }
     }
 
-    /// All nodes must have the same z, to a small fraction of the model's size.
+    /// Reports nodes whose z differ by more than a small fraction of the model's size.
     fn report_not_planar(&self, cx: &mut Context) {
         let range = |i: usize| {
             let values = self.nodes.iter().map(|node| node.at[i]);
@@ -286,8 +287,8 @@ fn group(card: &Card, parameter: &str, labels: Vec<u64>, cx: &mut Context) -> Op
     })
 }
 
-/// Rows of one element each: an element goes on until it has `count` fields, unless the next row
-/// would give it too many.
+/// Groups rows by element: an element takes rows until it has `count` fields or the next row would
+/// exceed them.
 fn element_rows(rows: &[Row], count: usize) -> Vec<&[Row]> {
     let mut elements = Vec::new();
     let mut rest = rows;

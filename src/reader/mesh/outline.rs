@@ -1,4 +1,4 @@
-//! Which cards stand where: the model, its blocks, and the steps.
+//! The cards of a deck in their order: blocks of the model, and steps. Reports cards out of place.
 
 use crate::deck::{Card, Data, Scope, Status};
 use crate::diagnostics::{Code, Diagnostic};
@@ -28,7 +28,7 @@ pub(crate) struct StepCards<'a> {
     pub cards: Vec<&'a Card>,
 }
 
-/// The cards of a deck by their place.
+/// The cards of a deck, sorted into blocks of the model and steps.
 #[derive(Default)]
 pub(crate) struct Outline<'a> {
     /// Cards outside steps.
@@ -39,7 +39,7 @@ pub(crate) struct Outline<'a> {
     has_steps: bool,
     /// Whether a step is open.
     open: bool,
-    /// Whether the last card belongs to the model, so that a block may go on.
+    /// Whether the last card belongs to the model, so that its block may continue.
     in_model: bool,
 }
 

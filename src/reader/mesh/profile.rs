@@ -5,10 +5,10 @@ use crate::diagnostics::{Code, Diagnostic, Span, shown};
 use crate::reader::context::Context;
 use crate::vectors::{angle, difference};
 
-/// Largest angle of the chords that an arc is cut into.
+/// Largest angle that a chord of an arc subtends.
 const CHORD: f64 = std::f64::consts::PI / 180.0;
-/// Largest difference of an arc's radii at its ends, and smallest distance of its angle from 180
-/// degrees, relative and in radians.
+/// Largest relative difference of an arc's radii at its ends; smallest difference of its angle from
+/// 180 degrees, in radians.
 const ARC_ROUND_OFF: f64 = 1e-4;
 
 /// A rigid profile: points and the sides between them, with the rigid body on the right of each
@@ -45,7 +45,7 @@ impl Profile {
         profile
     }
 
-    /// Segments between nodes of which the first point is number `first`: the rigid lies on the
+    /// Segments between nodes of which the first point is number `first`: the body lies on the
     /// left of the direction from a to b, so that they run from the last row to the first.
     pub fn segments(&self, first: usize) -> Vec<[usize; 2]> {
         let sides = self.sides.iter().rev();
@@ -129,7 +129,7 @@ impl Profile {
             let message = format!("this arc has {} degrees", shown(angle.abs().to_degrees()));
             return fault(row.span(), &message, help, cx);
         }
-        // the guard keeps round angles such as 90 degrees from getting one chord more
+        // round-off must not add a chord to angles such as 90 degrees
         let count = (angle.abs() / CHORD * (1.0 - 1e-9)).ceil();
         for k in 1..count as usize {
             let part = k as f64 / count;

@@ -30,7 +30,7 @@ pub(super) fn labels(outline: &Outline, groups: &[(&str, &[u64])]) -> BTreeSet<u
     labels
 }
 
-/// Fields that say a reference node, or a node or node set of an equation.
+/// Fields that name a reference node, or a node or node set of an equation.
 fn fields<'a>(outline: &Outline<'a>) -> Vec<Text<'a>> {
     let bodies = outline.model_cards("RIGID BODY").into_iter();
     let equations = outline.model_cards("EQUATION").into_iter();

@@ -15,7 +15,7 @@ pub(crate) struct Sets {
     pub node_names: Names,
     /// Node sets in the order of their names.
     pub nodes: Vec<Set>,
-    /// Names, as compared, of node sets whose members have an order that is not kept.
+    /// Keys of node sets whose members are listed unsorted; that order is lost.
     pub unsorted: BTreeSet<String>,
     /// Names of the element sets.
     pub element_names: Names,
@@ -24,7 +24,7 @@ pub(crate) struct Sets {
 }
 
 impl Sets {
-    /// The node, or the nodes of the set, that a field says.
+    /// The node, or the nodes of the set, that a field names.
     pub fn nodes_of(&self, field: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<usize> {
         match field.as_integer() {
             Some(_) => mesh_index.nodes.find(field, cx).into_iter().collect(),
@@ -32,7 +32,7 @@ impl Sets {
         }
     }
 
-    /// The element, or the elements of the set, that a field says.
+    /// The element, or the elements of the set, that a field names.
     pub fn elements_of(&self, field: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<usize> {
         match field.as_integer() {
             Some(_) => mesh_index.elements.find(field, cx).into_iter().collect(),

@@ -6,10 +6,10 @@ use super::profile::Profile;
 use super::sets::Sets;
 use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span, closest};
-use crate::model::{Face, Mesh, Surface, SurfaceKind};
+use crate::model::{Face, Mesh, SharedSides, Surface, SurfaceKind};
 use crate::reader::context::Context;
 use crate::reader::names::Names;
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeSet, HashSet};
 
 /// All surfaces.
 pub(crate) struct Surfaces {
@@ -36,7 +36,7 @@ pub(crate) fn read(
         rigid: Vec::new(),
         rigid_points: Vec::new(),
     };
-    let sides = Sides::new(&mesh_index.mesh);
+    let shared = SharedSides::new(&mesh_index.mesh);
     for card in outline.model_cards("SURFACE") {
         let Some(name) = surfaces.names.new_name(card, cx) else {
             continue;
@@ -50,7 +50,7 @@ pub(crate) fn read(
                 surfaces.rigid_points.extend(&profile.points);
                 SurfaceKind::Rigid(profile.segments(first))
             }
-            _ => SurfaceKind::Faces(faces(card, mesh_index, sets, &sides, cx)),
+            _ => SurfaceKind::Faces(faces(card, mesh_index, sets, &shared, cx)),
         };
         if card.faulty || cx.errors() > errors {
             surfaces.names.spoil(&name);
@@ -109,7 +109,7 @@ fn faces(
     card: &Card,
     mesh_index: &MeshIndex,
     sets: &Sets,
-    sides: &Sides,
+    shared: &SharedSides,
     cx: &mut Context,
 ) -> Vec<Face> {
     let mut faces = Vec::new();
@@ -122,9 +122,9 @@ fn faces(
         let elements = sets.elements_of(field, mesh_index, cx);
         let found = match row.get(1) {
             Some(face) => named_faces(&elements, face, mesh_index, cx),
-            None => sides.free_faces(&elements, &mesh_index.mesh),
+            None => exterior_faces(&elements, shared, &mesh_index.mesh),
         };
-        sides.report_interior(&found, row, &mesh_index.mesh, cx);
+        report_interior(&found, shared, row, &mesh_index.mesh, cx);
         let before = faces.len();
         faces.extend(found.iter().copied().filter(|&face| seen.insert(face)));
         if faces.len() - before < found.len() {
@@ -189,56 +189,29 @@ pub(crate) fn side_count(mesh: &Mesh, element: usize) -> usize {
     mesh.elements.get(element).map_or(0, |e| e.sides().len())
 }
 
-/// How many elements share each side.
-pub(crate) struct Sides(HashMap<[usize; 2], usize>);
-
-impl Sides {
-    /// Counts the sides of a mesh.
-    pub fn new(mesh: &Mesh) -> Sides {
-        let mut counts = HashMap::new();
-        for (element, e) in mesh.elements.iter().enumerate() {
-            for side in 0..e.sides().len() {
-                *counts.entry(key(mesh, Face { element, side })).or_insert(0) += 1;
-            }
-        }
-        Sides(counts)
-    }
-
-    /// Whether another element lies behind a face.
-    pub fn is_interior(&self, face: Face, mesh: &Mesh) -> bool {
-        self.0.get(&key(mesh, face)).is_some_and(|&count| count > 1)
-    }
-
-    /// Sides that no other element shares, of these elements in order.
-    pub fn free_faces(&self, elements: &[usize], mesh: &Mesh) -> Vec<Face> {
-        let sides = |&element: &usize| {
-            (0..side_count(mesh, element)).map(move |side| Face { element, side })
-        };
-        let all = elements.iter().flat_map(sides);
-        all.filter(|&face| !self.is_interior(face, mesh)).collect()
-    }
-
-    fn report_interior(&self, faces: &[Face], row: &Row, mesh: &Mesh, cx: &mut Context) {
-        let interior = || faces.iter().filter(|&&face| self.is_interior(face, mesh));
-        let Some(first) = interior().next().filter(|_| !cx.d.has_errors()) else {
-            return;
-        };
-        let label = mesh.elements.get(first.element).map_or(0, |e| e.label);
-        let side = first.side + 1;
-        let message = match interior().count() {
-            1 => format!("face S{side} of element {label} lies between two elements"),
-            n => format!(
-                "{n} of these faces lie between two elements, the first is S{side} of {label}"
-            ),
-        };
-        cx.warning(Code::InteriorFace, row.span(), message);
-    }
+/// Exterior sides of these elements, in order.
+fn exterior_faces(elements: &[usize], shared: &SharedSides, mesh: &Mesh) -> Vec<Face> {
+    let sides =
+        |&element: &usize| (0..side_count(mesh, element)).map(move |side| Face { element, side });
+    let all = elements.iter().flat_map(sides);
+    all.filter(|&face| !shared.contains(face, mesh)).collect()
 }
 
-/// The nodes of a face in increasing order.
-fn key(mesh: &Mesh, face: Face) -> [usize; 2] {
-    let [a, b] = face.nodes(mesh);
-    [a.min(b), a.max(b)]
+/// Warns about faces between two elements.
+fn report_interior(faces: &[Face], shared: &SharedSides, row: &Row, mesh: &Mesh, cx: &mut Context) {
+    let interior = || faces.iter().filter(|&&face| shared.contains(face, mesh));
+    let Some(first) = interior().next().filter(|_| !cx.d.has_errors()) else {
+        return;
+    };
+    let label = mesh.elements.get(first.element).map_or(0, |e| e.label);
+    let side = first.side + 1;
+    let message = match interior().count() {
+        1 => format!("face S{side} of element {label} lies between two elements"),
+        n => {
+            format!("{n} of these faces lie between two elements, the first is S{side} of {label}")
+        }
+    };
+    cx.warning(Code::InteriorFace, row.span(), message);
 }
 
 /// A surface with its index and the place of its name.

@@ -24,7 +24,7 @@ impl Amplitudes {
     }
 }
 
-/// Reads all amplitudes, those inside steps too.
+/// Reads all amplitudes, including those in steps.
 pub(crate) fn read(cx: &mut Context) -> Amplitudes {
     let mut amplitudes = Amplitudes {
         names: Names::new("amplitude"),
@@ -55,7 +55,7 @@ pub(crate) fn read(cx: &mut Context) -> Amplitudes {
     amplitudes
 }
 
-/// Which time a card's parameter `TIME` names.
+/// The time base given by a card's parameter `TIME`.
 pub(crate) fn time_base(card: &Card) -> TimeBase {
     match card.choice("TIME") {
         Some("TOTAL TIME") => TimeBase::Total,

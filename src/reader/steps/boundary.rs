@@ -9,7 +9,7 @@ use crate::reader::context::Context;
 use crate::reader::mesh::{MeshIndex, Outline, Sets};
 use std::collections::BTreeMap;
 
-/// What supports and loads refer to.
+/// Objects of the model that supports and loads refer to.
 #[derive(Clone, Copy)]
 pub(crate) struct Targets<'a> {
     /// Mesh.
@@ -22,7 +22,7 @@ pub(crate) struct Targets<'a> {
     pub rigid_surfaces: &'a [RigidSurface],
 }
 
-/// A direction that the deck may name.
+/// A direction of displacement or rotation that the deck names.
 pub(crate) enum Direction {
     /// 0 = x, 1 = y.
     Plane(usize),
@@ -33,13 +33,13 @@ pub(crate) enum Direction {
 /// Prescribed dofs, as they are carried from step to step.
 #[derive(Default)]
 pub(crate) struct Supports {
-    held: BTreeMap<usize, Held>,
+    held: BTreeMap<usize, Prescription>,
 }
 
 #[derive(Clone, Copy)]
-struct Held {
+struct Prescription {
     motion: SupportMotion,
-    /// Step that last named it; 0 for model data.
+    /// Step that last prescribed it; 0 for model data.
     step: usize,
 }
 
@@ -59,7 +59,7 @@ impl Supports {
         self.held.clear();
     }
 
-    /// A step ends: what follows its time stays where it is.
+    /// Ends a step: supports that follow an amplitude in step time keep their last value.
     pub fn end_step(&mut self, period: f64, amplitudes: &[Amplitude]) {
         for held in self.held.values_mut() {
             if let SupportMotion::Amplitude { value, amplitude } = held.motion
@@ -130,7 +130,7 @@ impl Supports {
         span: Span,
         cx: &mut Context,
     ) {
-        let earlier = self.held.insert(dof, Held { motion, step });
+        let earlier = self.held.insert(dof, Prescription { motion, step });
         if earlier.is_some_and(|held| held.step == step && held.motion != motion) {
             let message = "another displacement is prescribed here than before in this step";
             let warning = Diagnostic::warning(Code::ConflictingSupport, span, message);
@@ -202,7 +202,7 @@ fn dof_number(field: Text, cx: &mut Context) -> Option<usize> {
     None
 }
 
-/// The direction that a field says, in the plane or not.
+/// The direction that a field names, in the plane or out of it.
 pub(crate) fn direction(field: Text, cx: &mut Context) -> Option<Direction> {
     Some(match dof_number(field, cx)? {
         number @ 1..=2 => Direction::Plane(number - 1),
@@ -270,7 +270,7 @@ fn velocity_row(row: &Row, targets: Targets, cx: &mut Context) -> Vec<(usize, f6
     }
 }
 
-/// A support moves as prescribed from the start: it has no initial velocity of its own.
+/// Reports initial velocities of supported dofs, which move as prescribed from the start.
 fn report_supported(
     velocity: &[f64],
     places: &BTreeMap<usize, Span>,

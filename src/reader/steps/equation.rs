@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Terms on a data line; each takes three fields.
 const TERMS_PER_LINE: usize = 4;
 
-/// Sum of velocities, as a part of its terms, that is round-off.
+/// Sum of velocities, relative to its largest terms, that counts as zero.
 const ROUND_OFF: f64 = 1e-12;
 
 /// A term of an equation, or of those of all nodes of a set.
@@ -58,8 +58,8 @@ pub(crate) fn read(
     substituted(solved, targets, cx)
 }
 
-/// The terms of one equation, whose number stands on the line `head`: `None` where the lines of
-/// further equations cannot be told any more; without those that have an error.
+/// The terms of one equation without faulty ones; line `head` holds their number. `None` when it is
+/// unclear where the next equation begins.
 fn terms<'r>(
     card: &Card,
     head: &Row,
@@ -214,8 +214,8 @@ fn report_prescribed(solved: &ByDof, steps: &[Step], targets: Targets, cx: &mut 
     }
 }
 
-/// The equations with each other's first terms replaced by what these follow, so that all terms
-/// that are left are independent; each with its place.
+/// The equations with eliminated dofs replaced by their own equations, so that all remaining terms
+/// are independent; each with its place.
 fn substituted(mut solved: ByDof, targets: Targets, cx: &mut Context) -> Vec<(Equation, Span)> {
     let mut equations = BTreeMap::new();
     for dof in elimination_order(&solved) {
@@ -244,8 +244,8 @@ fn substituted(mut solved: ByDof, targets: Targets, cx: &mut Context) -> Vec<(Eq
     equations.into_values().collect()
 }
 
-/// The eliminated dofs, each after those that it follows; without those that follow each other in a
-/// circle.
+/// The eliminated dofs, each after those it depends on; dofs that depend on themselves are left
+/// out.
 fn elimination_order(solved: &ByDof) -> Vec<usize> {
     let mut users: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     let mut open: BTreeMap<usize, usize> = BTreeMap::new();
@@ -275,8 +275,8 @@ fn elimination_order(solved: &ByDof) -> Vec<usize> {
     order
 }
 
-/// Warns where the deck gives an eliminated dof another velocity (`2 N` entries) than follows from
-/// the other terms; `supports` have velocities of their own.
+/// Warns where the deck gives an eliminated dof a velocity (`2 N` entries) that differs from the one
+/// its equation implies; the velocities of `supports` are prescribed.
 pub(crate) fn check_velocities(
     equations: &[(Equation, Span)],
     velocity: &[f64],

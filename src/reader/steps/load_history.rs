@@ -15,7 +15,7 @@ pub(crate) struct StepContext {
     pub ramp: bool,
 }
 
-/// Whether a step keeps what earlier steps gave; the first card of its kind decides.
+/// Whether a step keeps the loads of earlier steps (`OP`); the first card of its kind decides.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Operation {
     step: usize,
@@ -23,7 +23,7 @@ pub(crate) struct Operation {
 }
 
 impl Operation {
-    /// Takes note of a card; says whether everything given before is removed now.
+    /// Enters a card; true if it removes all loads of earlier steps.
     pub fn starts_anew(&mut self, card: &Card, step: usize, cx: &mut Context) -> bool {
         let typed = card.choice("OP");
         let new = typed == Some("NEW");
@@ -40,29 +40,29 @@ impl Operation {
     }
 }
 
-/// Loads of one kind by what tells them apart.
-pub(crate) struct Carried<K, T> {
+/// Loads of one kind by their keys.
+pub(crate) struct LoadHistory<K, T> {
     parts: BTreeMap<K, Vec<Part<T>>>,
 }
 
 #[derive(Clone, Copy)]
 struct Part<T> {
     load: Load<T>,
-    /// Step that named it.
+    /// Step that gave it.
     step: usize,
     /// Magnitude at the end of the step before.
     end: f64,
 }
 
-impl<K, T> Default for Carried<K, T> {
+impl<K, T> Default for LoadHistory<K, T> {
     fn default() -> Self {
-        Carried {
+        LoadHistory {
             parts: BTreeMap::new(),
         }
     }
 }
 
-impl<K: Ord + Copy, T: Copy + PartialEq> Carried<K, T> {
+impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
     /// All loads of the current step.
     pub fn list(&self) -> Vec<Load<T>> {
         self.parts
@@ -121,7 +121,7 @@ impl<K: Ord + Copy, T: Copy + PartialEq> Carried<K, T> {
         });
     }
 
-    /// A step ends: loads stay at what they have reached, unless they follow the total time.
+    /// Ends a step: loads keep the magnitude they have reached, unless they follow the total time.
     pub fn end_step(&mut self, period: f64, total: f64, amplitudes: &[Amplitude]) {
         for part in self.parts.values_mut().flatten() {
             part.end_step(period, total, amplitudes);

@@ -1,7 +1,7 @@
 //! `*CLOAD`, `*DLOAD` and `*DSLOAD`.
 
 use super::boundary::{Targets, row_direction};
-use super::load_history::{Carried, Operation, StepContext};
+use super::load_history::{LoadHistory, Operation, StepContext};
 use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Amplitude, BodyForce, Face, PointLoad, Pressure, Step, SurfaceKind, Traction};
@@ -11,11 +11,11 @@ use crate::reader::mesh::{Surfaces, side_count, surface};
 /// All loads, as they are carried from step to step.
 #[derive(Default)]
 pub(crate) struct Loads {
-    points: Carried<usize, PointLoad>,
-    bodies: Carried<(usize, Body), BodyForce>,
-    pressures: Carried<Face, Pressure>,
-    surface_pressures: Carried<(usize, Face), Pressure>,
-    tractions: Carried<(usize, Face), Traction>,
+    points: LoadHistory<usize, PointLoad>,
+    bodies: LoadHistory<(usize, Body), BodyForce>,
+    pressures: LoadHistory<Face, Pressure>,
+    surface_pressures: LoadHistory<(usize, Face), Pressure>,
+    tractions: LoadHistory<(usize, Face), Traction>,
     point_operation: Operation,
     element_operation: Operation,
     surface_operation: Operation,
@@ -250,7 +250,7 @@ impl Loads {
         step.tractions = self.tractions.list();
     }
 
-    /// A step ends at `total` time after `period`.
+    /// Ends a step of duration `period` at total time `total`.
     pub fn end_step(&mut self, period: f64, total: f64, amplitudes: &[Amplitude]) {
         self.points.end_step(period, total, amplitudes);
         self.bodies.end_step(period, total, amplitudes);

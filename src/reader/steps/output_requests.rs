@@ -1,4 +1,4 @@
-//! `*OUTPUT`, `*NODE OUTPUT`, `*NODE FILE`, `*NODE PRINT` and their kin; `*TIME POINTS`.
+//! `*OUTPUT`, `*NODE OUTPUT`, `*NODE FILE`, `*NODE PRINT` and related keywords; `*TIME POINTS`.
 
 use super::amplitude::time_base;
 use crate::deck::{Card, Row};
@@ -86,12 +86,12 @@ fn generated(row: &Row, cx: &mut Context) -> Vec<f64> {
         .collect()
 }
 
-/// What the deck has asked for so far.
+/// Output requests of the deck so far.
 pub(crate) struct Requests {
     points: TimePoints,
     /// Frames of the current step.
     frames: Frames,
-    /// Time points that follow the total time: they are cut out anew for every step.
+    /// Time points in total time: those of each step are selected when it is built.
     total_times: Option<Vec<f64>>,
     /// Node sets of the history.
     pub history: Vec<HistorySet>,
@@ -180,7 +180,7 @@ impl Requests {
         }
     }
 
-    /// Takes over when a card asks for frames, if it says so.
+    /// Sets the times of frames, if the card gives any.
     fn when(&mut self, card: &Card, cx: &mut Context) {
         let given: Vec<&str> = WHEN.into_iter().filter(|name| card.has(name)).collect();
         if let [first, second, ..] = given[..] {
@@ -195,14 +195,14 @@ impl Requests {
         }
     }
 
-    /// Histories hold every increment: what a card says about their times must be right, though.
+    /// Checks the times on a card for histories; histories hold every increment all the same.
     fn check_when(&self, card: &Card, cx: &mut Context) {
         for name in WHEN.into_iter().filter(|name| card.has(name)) {
             self.asked(name, card, cx);
         }
     }
 
-    /// What a parameter asks for: frames, and time points that follow the total time.
+    /// Frames that a parameter requests, and its time points in total time.
     fn asked(
         &self,
         name: &str,
@@ -281,7 +281,7 @@ fn time_interval(card: &Card, cx: &mut Context) -> Option<Frames> {
     Some(Frames::Every(interval))
 }
 
-/// `*RESTART`: nothing is written yet.
+/// Warns that `*RESTART` writes nothing.
 pub(crate) fn restart(card: &Card, cx: &mut Context) {
     let off = card.integer("FREQUENCY", cx.d) == Some(0);
     if card.has("WRITE") && !off {

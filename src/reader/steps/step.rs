@@ -1,4 +1,4 @@
-//! `*STEP` and `*DYNAMIC`; what is carried from step to step.
+//! `*STEP` and `*DYNAMIC`; the state of supports, loads and settings from step to step.
 
 use super::amplitude::Amplitudes;
 use super::boundary::{Supports, Targets};
@@ -144,7 +144,7 @@ impl Reading<'_> {
         }
     }
 
-    /// The one procedure of a step.
+    /// Reads the procedure of a step; reports a missing or second one.
     fn procedure(&mut self, cards: &StepCards, cx: &mut Context) -> Option<Increments> {
         let found = named(cards, "DYNAMIC");
         cx.only_once(&found);
@@ -288,7 +288,7 @@ fn check_times(
     None
 }
 
-/// Other codes let increments grow where they converge easily.
+/// Warns that increments do not grow, as those of other codes do.
 fn warn_that_increments_stay(row: &Row, cx: &mut Context) {
     let [first, largest] = [0, 3].map(|i| row.get(i));
     let span = largest.or(first).map_or(row.span(), |field| field.span);
@@ -301,7 +301,7 @@ fn warn_that_increments_stay(row: &Row, cx: &mut Context) {
     cx.d.push_once(warning.help("give the increment that suits the whole step in the first field"));
 }
 
-/// Notes that the duration is no multiple of the increment.
+/// Notes that the duration is not a multiple of the increment.
 fn note_short_end(row: &Row, dt: f64, period: f64, cx: &mut Context) {
     let count = period / dt;
     if (count - count.round()).abs() > 1e-6 * count.clamp(1.0, 1e5) {
