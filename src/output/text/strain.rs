@@ -18,8 +18,8 @@ const SOFTENING: [&str; 3] = [
 
 /// Why an element of a material for large strains may turn inside out.
 const CRUSHED: [&str; 2] = [
-    "         the element was crushed or distorted too far: use smaller loads, or a mesh",
-    "         whose elements are better shaped there when they are deformed",
+    "         the element was crushed or distorted too far: use smaller loads, or",
+    "         a mesh whose elements keep a better shape there",
 ];
 
 /// Likely reasons for an element that turned inside out.
@@ -150,7 +150,7 @@ mod tests {
                 thickness: 1.0,
             });
             model.mesh.elements.push(Element {
-                label: index as i64 + 1,
+                label: index as u64 + 1,
                 element_type: ElementType::CPE4,
                 nodes: vec![0, 1, 2, 3],
                 section: index,
