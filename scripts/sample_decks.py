@@ -27,6 +27,7 @@ QUICK = (
     "input/corner_to_corner/corners_right_mu02",
     "input/disc_pile/disc_pile",
     "input/fast_bullet/bullet_one",
+    "input/rubber_ring/rubber_ring_mu05",
     "input/shapes_in_a_box/shapes_two",
     "input/two_cantilevers/A_mu04",
     "input/two_cantilevers/B_mu04",

@@ -344,6 +344,7 @@ fn follow_ups_of_a_reported_cause_are_not_reported() {
         ("*MATERIAL, NAME=RUBBER", "*MATERIAL, NAME=RUB&BER"),
         ("*ELASTIC", "*HYPERELASTIC"),
         ("*ELASTIC", "*ELASTIC, TYPE=LAMINA"),
+        ("*ELASTIC", "*HYPERELASTIC, POLYNOMIAL, N=2"),
         ("*NSET, NSET=FOOT", "*NSET, NSTE=FOOT"),
         ("*NSET, NSET=FOOT", "*NSET"),
         ("*NSET, NSET=FOOT", "*XYZZY, NSET=FOOT"),

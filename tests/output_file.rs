@@ -158,7 +158,7 @@ const VECTOR_PER_INCREMENT: [&str; 18] = [
     "/history/nodes/TIP/mean/A",
 ];
 
-const PER_INCREMENT: [&str; 57] = [
+const PER_INCREMENT: [&str; 58] = [
     "/history/contact/BOTTOM_TOP/normal_work",
     "/history/contact/BOTTOM_TOP/friction_dissipation",
     "/history/contact/BOTTOM_TOP/normal_impulse",
@@ -181,6 +181,7 @@ const PER_INCREMENT: [&str; 57] = [
     "/history/contact/BOTTOM_TOP_2/impact_tangential_impulse_sum",
     "/history/time",
     "/history/strain/largest_principal",
+    "/history/strain/largest_principal_elastic",
     "/history/dt",
     "/history/step",
     "/history/energy/kinetic",

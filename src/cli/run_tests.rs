@@ -2,6 +2,7 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::Parser;
 use nalgebra::{DMatrix, DVector};
@@ -16,7 +17,7 @@ use crate::dynamics::{
     Cause, Cutback, FailedLcp, Failure, IncrementReport, NodalResults, NodeStatus, Observer,
     Outcome, PassReport, RunError, RunSummary, SolverCounts, State, Timings, Worst,
 };
-use crate::elements::Strained;
+use crate::elements::{ElementResult, Strained};
 use crate::lcp::{FrictionalLcp, LcpError};
 use crate::materials::Law;
 use crate::model::{
@@ -107,6 +108,10 @@ pub(super) fn report(increment: usize) -> IncrementReport {
             element: 0,
             strain: 0.03 * increment as f64,
         },
+        elements: Arc::new([ElementResult {
+            principal_strain: 0.03 * increment as f64,
+            ..ElementResult::default()
+        }]),
         ..IncrementReport::default()
     }
 }

@@ -3,6 +3,8 @@
 
 use nalgebra::{Matrix2, Matrix3};
 
+#[cfg(test)]
+use super::yielding::Yielding;
 use super::{
     Across, ConstitutiveLaw, NeoHooke, Plane, PlaneSaintVenantKirchhoff, SaintVenantKirchhoff,
     SmallStrainModuli,
@@ -15,6 +17,9 @@ pub enum Law {
     SaintVenantKirchhoff(SaintVenantKirchhoff),
     /// `*HYPERELASTIC, NEO HOOKE`
     NeoHooke(NeoHooke),
+    /// A law with internal variables.
+    #[cfg(test)]
+    Yielding(Yielding),
 }
 
 impl Law {
@@ -28,6 +33,8 @@ impl Law {
         match self {
             Law::SaintVenantKirchhoff(law) => law.small_strain(),
             Law::NeoHooke(law) => law.small_strain(),
+            #[cfg(test)]
+            Law::Yielding(law) => law.small_strain(),
         }
     }
 
@@ -41,6 +48,8 @@ impl Law {
         match self {
             Law::SaintVenantKirchhoff(_) => true,
             Law::NeoHooke(_) => false,
+            #[cfg(test)]
+            Law::Yielding(_) => false,
         }
     }
 
@@ -53,6 +62,8 @@ impl Law {
         match self {
             Law::SaintVenantKirchhoff(law) => PlaneLaw::SaintVenantKirchhoff(law.in_plane(plane)),
             Law::NeoHooke(law) => PlaneLaw::NeoHooke(*law),
+            #[cfg(test)]
+            Law::Yielding(law) => PlaneLaw::Yielding(*law),
         }
     }
 }
@@ -64,6 +75,9 @@ pub enum PlaneLaw {
     SaintVenantKirchhoff(PlaneSaintVenantKirchhoff),
     /// In plane strain.
     NeoHooke(NeoHooke),
+    /// A law with internal variables.
+    #[cfg(test)]
+    Yielding(Yielding),
 }
 
 /// The same function of the law that it is.
@@ -72,6 +86,8 @@ macro_rules! of_each {
         match $self {
             PlaneLaw::SaintVenantKirchhoff($law) => $value,
             PlaneLaw::NeoHooke($law) => $value,
+            #[cfg(test)]
+            PlaneLaw::Yielding($law) => $value,
         }
     };
 }

@@ -14,6 +14,8 @@ mod law;
 mod neo_hooke;
 mod plane;
 mod saint_venant_kirchhoff;
+#[cfg(test)]
+pub(crate) mod yielding;
 
 pub use committed::Committed;
 pub use constitutive_law::{Across, ConstitutiveLaw};

@@ -1,7 +1,7 @@
 //! Checks across keywords: the quality of the mesh, magnitudes, thicknesses.
 
 use super::context::Context;
-use super::material::Properties;
+use super::materials::Properties;
 use super::mesh::{MeshIndex, Surfaces};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Contact, Element, Mesh, Plane, SurfaceKind};

@@ -32,6 +32,60 @@ fn numbers_that_are_none() {
     ));
 }
 
+/// Messages of the square in plane strain with these cards in place of its law: one error each.
+fn texts_of_laws<const N: usize>(cards: [&str; N]) -> String {
+    let texts = cards.map(|cards| {
+        let deck = SQUARE.replace("CPS4", "CPE4");
+        let (d, text) = messages(&change(&deck, "*ELASTIC\n1000., 0.3", cards));
+        assert_eq!(d.count(Severity::Error), 1, "{text}");
+        text
+    });
+    texts.join("\n")
+}
+
+#[test]
+fn forms_of_hyperelasticity() {
+    let texts = texts_of_laws([
+        "*HYPERELASTIC\n200., 2.E-3",
+        "*HYPERELASTIC, YEOH\n200., 2.E-3",
+        "*HYPERELASTIC, POLYNOMIAL, N=2\n200., 2.E-3",
+        "*HYPERELASTIC, NEO HOOKE, TEST DATA INPUT\n200., 2.E-3",
+        "*HYPERELASTIC, NEO HOOKE, POISSON=0.45\n200.",
+        "*HYPERELASTIC, NEO HOOKE, MODULI=LONG TERM\n200., 2.E-3",
+    ]);
+    insta::assert_snapshot!(texts);
+}
+
+#[test]
+fn constants_of_a_neo_hookean_material() {
+    let texts = texts_of_laws([
+        "*HYPERELASTIC, NEO HOOKE",
+        "*HYPERELASTIC, NEO HOOKE\n200.",
+        "*HYPERELASTIC, NEO HOOKE\n200.,",
+        "*HYPERELASTIC, NEO HOOKE\n, 2.E-3",
+        "*HYPERELASTIC, NEO HOOKE\n0., 2.E-3",
+        "*HYPERELASTIC, NEO HOOKE\n-200., 2.E-3",
+        "*HYPERELASTIC, NEO HOOKE\n200., 0.",
+        "*HYPERELASTIC, NEO HOOKE\n200., -2.E-3",
+        "*HYPERELASTIC, NEO HOOKE\n200., x",
+        "*HYPERELASTIC, NEO HOOKE\n200., 2.E-3, , 4.",
+        "*HYPERELASTIC, NEO HOOKE\n200., 2.E-3, 20.\n210., 2.E-3, 40.",
+    ]);
+    insta::assert_snapshot!(texts);
+}
+
+#[test]
+fn two_laws_in_one_material() {
+    // nearly incompressible, yet without the warning that belongs to a law
+    let texts = texts_of_laws([
+        "*ELASTIC\n1000., 0.3\n*HYPERELASTIC, NEO HOOKE\n200., 1.E-4",
+        "*HYPERELASTIC, NEO HOOKE\n200., 1.E-4\n*ELASTIC\n1000., 0.3",
+        "*HYPERELASTIC, NEO HOOKE\n200., 1.E-4\n*HYPERELASTIC, NEO HOOKE\n200., 1.E-4",
+        "*ELASTIC\n1000., 0.49\n*ELASTIC\n1000., 0.3",
+    ]);
+    insta::assert_snapshot!(texts);
+}
+
 #[test]
 fn a_decimal_comma_makes_one_field_more() {
     insta::assert_snapshot!(texts_of(

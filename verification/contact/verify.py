@@ -18,6 +18,7 @@ MOTION = {
     "rings_mu02": (0.0, 0.6, 1.2, 2.0, 3.0, 4.0),
     "corners_left_mu00": (0.0, 0.05, 0.2, 0.5, 1.0, 1.5),
     "corners_right_mu00": (0.0, 0.05, 0.2, 0.5, 1.0, 1.5),
+    "rubber_ring_mu05": (0.0, 0.1, 0.2, 0.3, 0.5, 0.8),
     "bullet_one": (0.0, 0.1, 0.12, 0.15, 0.2, 0.3),
     "column_mu02": (2.0, 4.0, 6.0, 8.0, 9.0, 12.0),
     "shapes_two": (0.0, 0.2, 0.4, 0.8, 1.2, 1.6),
@@ -121,7 +122,7 @@ def check(verification: runner.Verification, case: runner.Case, results: Results
         linear, angular = momentum_changes(results)
         verification.check("change of linear momentum", name, float(linear.max()))
         verification.check("change of angular momentum", name, float(angular.max()))
-    if case.group in ("free", "bullet"):
+    if case.group in ("free", "bullet", "rubber"):
         verification.check("rise of the energy / start", name, rise(results) / energy(results)[0])
     if case.group == "bullet":
         verification.check("bullet above the plate at the end", name, above(results))

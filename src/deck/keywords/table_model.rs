@@ -6,7 +6,8 @@ const INPUT: P = P::value("INPUT", "file that holds the data lines");
 const NAME: P = P::value("NAME", "name");
 const CAE: &str = "written by Abaqus/CAE for its own use";
 const OTHER_SOLVER: &str = "a number for another solver";
-const ONLY_NEO_HOOKE: &str = "of the hyperelastic materials only NEO HOOKE is supported";
+const ONLY_NEO_HOOKE: &str =
+    "only NEO HOOKE is supported: C10, D1 with C10 = mu/2, D1 = 2/K of small strains";
 const SMOOTHING: &str = "contact is enforced on the surface as meshed";
 
 /// Keywords of the model.
@@ -211,9 +212,13 @@ pub(crate) static MODEL: &[Keyword] = &[
             P::flag("MARLOW", ONLY_NEO_HOOKE).refused(),
             P::flag("VAN DER WAALS", ONLY_NEO_HOOKE).refused(),
             P::flag("USER", ONLY_NEO_HOOKE).refused(),
-            P::value("N", ONLY_NEO_HOOKE).refused(),
+            P::value("N", "order of other forms"),
             P::flag("TEST DATA INPUT", "give C10 and D1 on the data line").refused(),
-            P::value("POISSON", "give D1 on the data line").refused(),
+            P::value(
+                "POISSON",
+                "give D1 = 3 (1 - 2 nu)/(2 C10 (1 + nu)) on the data line",
+            )
+            .refused(),
             P::choice(
                 "MODULI",
                 &[
@@ -223,10 +228,12 @@ pub(crate) static MODEL: &[Keyword] = &[
                 "moduli that the data line gives",
             ),
         ],
-        "C10, D1 of a neo-Hookean material in plane strain: U = C10 (Ibar1 - 3) + (J - 1)^2/D1; at \
-         small strains the shear modulus is 2 C10, the bulk modulus 2/D1. D1 = 0 (incompressible) and \
-         plane stress are errors. Elements lock as with *ELASTIC (warning). A temperature in the third \
-         field has no effect (warning).",
+        "C10, D1 of a neo-Hookean material, for large strains in plane strain: U = C10 (Ibar1 - 3) + \
+         (J - 1)^2/D1; at small strains the shear modulus is mu = 2 C10, the bulk modulus K = 2/D1. D1 is \
+         required and positive: an incompressible material (D1 = 0) and plane stress are errors. A \
+         material has *ELASTIC or *HYPERELASTIC. Where (3 K - 2 mu)/(6 K + 2 mu), Poisson's ratio at small \
+         strains, is 0.45 or more, elements lock unless their section has FORMULATION=MEAN DILATATION \
+         (warning). A temperature in the third field has no effect (warning).",
     ),
     Keyword::read(
         "DENSITY",

@@ -3,6 +3,8 @@
 mod acceptance;
 mod bisection;
 mod impact_control;
+#[cfg(test)]
+mod internal_variables_tests;
 mod nominal_increment;
 mod runner;
 mod time_control;

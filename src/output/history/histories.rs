@@ -6,8 +6,8 @@ use super::bodies::BodyHistory;
 use super::contacts::{ContactHistory, Impacts, create_contacts};
 use super::nodes::{NodeHistory, create_nodes};
 use super::rigid_surfaces::{RigidHistory, create_rigid};
+use super::strains::StrainHistory;
 use crate::dynamics::{Energy, IncrementReport, Momentum, SolverCounts};
-use crate::elements::Strained;
 use crate::model::Model;
 use crate::output::file::{Column, Scalar, Series, group, meaning, scalar};
 
@@ -18,7 +18,7 @@ pub(crate) struct History {
     energy: Series<Energy, f64>,
     momentum: MomentumHistory,
     bodies: BodyHistory,
-    strain: Series<Strained, f64>,
+    strain: StrainHistory,
     contacts: Vec<ContactHistory>,
     impacts: Impacts,
     rigid: Vec<RigidHistory>,
@@ -36,7 +36,7 @@ impl History {
             energy: Series::create(&group(&at, "energy")?, &ENERGY)?,
             momentum: MomentumHistory::create(&group(&at, "momentum")?)?,
             bodies: BodyHistory::create(&group(&at, "bodies")?, model)?,
-            strain: Series::create(&group(&at, "strain")?, &STRAIN)?,
+            strain: StrainHistory::create(&group(&at, "strain")?, model)?,
             contacts: create_contacts(&group(&at, "contact")?, model)?,
             impacts: Impacts::create(&group(&at, "impacts")?)?,
             rigid: create_rigid(&group(&at, "rigid")?, model)?,
@@ -52,7 +52,7 @@ impl History {
         self.energy.push(&report.energy)?;
         self.momentum.push(&report.momentum)?;
         self.bodies.push(&report.bodies)?;
-        self.strain.push(&report.strain)?;
+        self.strain.push(report)?;
         for (contact, resultant) in self.contacts.iter_mut().zip(&report.contacts) {
             contact.push(resultant)?;
         }
@@ -144,14 +144,6 @@ const ENERGY: [Scalar<Energy, f64>; 9] = [
         |e| e.balance,
     ),
 ];
-
-const STRAIN: [Scalar<Strained, f64>; 1] = [scalar(
-    "largest_principal",
-    "largest absolute principal value of the Green-Lagrange strain in the plane, of all integration \
-     points",
-    "1",
-    |s| s.strain,
-)];
 
 const ANGULAR: [Scalar<Momentum, f64>; 1] = [scalar(
     "angular",

@@ -6,5 +6,6 @@ mod contacts;
 mod histories;
 mod nodes;
 mod rigid_surfaces;
+mod strains;
 
 pub(crate) use histories::History;

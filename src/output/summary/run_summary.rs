@@ -235,7 +235,10 @@ fn read_findings(file: &Group, largest_energy: f64, balance: f64) -> hdf5::Resul
     let increments: Vec<f64> = column(&history, "dt")?;
     let [edge, body] = ["edge_time", "wave_time"]
         .map(|name| column::<f64>(file, &format!("model/bodies/{name}")).unwrap_or_default());
-    let strain: Option<Vec<f64>> = column(&history, "strain/largest_principal").ok();
+    // a file from before there was the second dataset has elastic materials only
+    let strain: Option<Vec<f64>> = ["largest_principal_elastic", "largest_principal"]
+        .iter()
+        .find_map(|name| column(&history, &format!("strain/{name}")).ok());
     let dt = largest(&increments);
     Ok(Findings {
         balance: part(balance, largest_energy),

@@ -24,7 +24,7 @@ pub(crate) struct Findings {
     pub balance: f64,
     /// Largest work of the normal contact forces as a part of the largest energy.
     pub contact_work: f64,
-    /// Largest principal strain, where it is known.
+    /// Largest principal strain in a material for small strains, where it is known.
     pub strain: Option<f64>,
     /// Names of the contacts that never closed, sorted.
     pub open: Vec<String>,
@@ -78,8 +78,8 @@ impl Findings {
         let strain = self.strain.filter(|&strain| strain > LARGE)?;
         Some(format!(
             "the largest principal strain is {}, above {}, where a St. Venant-Kirchhoff material \
-             (*ELASTIC) is too stiff in tension and too soft in compression: trust no forces there, \
-             or lower the loads",
+             (*ELASTIC) is too stiff in tension and too soft in compression: trust no forces there; \
+             choose a material for large strains (*HYPERELASTIC, NEO HOOKE) or lower the loads",
             general(strain, 4),
             general(LARGE, 1),
         ))

@@ -3,7 +3,7 @@
 use super::format::{counted, scientific};
 use super::layout::wrap;
 use super::log::pass_table;
-use super::strain::LIMIT;
+use super::strain::inversion_hint;
 use crate::dynamics::{Cause, FailedLcp, Failure, Worst};
 use crate::lcp::LcpError;
 use crate::model::Model;
@@ -24,7 +24,11 @@ pub(crate) fn failure_lines(failure: &Failure, model: &Model, u: &[f64]) -> Vec<
     let mut lines = wrap("stopped", &what);
     lines.extend(failure.worst.as_ref().map(|worst| worst_line(worst, model)));
     lines.extend(place_line(&failure.cause, model, u));
-    lines.extend(hint(&failure.cause).iter().map(|&line| line.to_owned()));
+    lines.extend(
+        hint(&failure.cause, model)
+            .iter()
+            .map(|&line| line.to_owned()),
+    );
     if increment > 0 {
         lines.push(format!(
             "tried    {} of the increment; the last attempt with dt {}",
@@ -50,9 +54,9 @@ fn worst_line(worst: &Worst, model: &Model) -> String {
 }
 
 /// Likely reasons of the cause.
-fn hint(cause: &Cause) -> &'static [&'static str] {
-    match cause {
-        Cause::Inverted { .. } => &LIMIT,
+fn hint(cause: &Cause, model: &Model) -> &'static [&'static str] {
+    match *cause {
+        Cause::Inverted { element, .. } => inversion_hint(element, model),
         Cause::Crossed {
             prescribed: true, ..
         } => &["         both sides are prescribed: they are driven into each other"],

@@ -20,4 +20,4 @@ pub(crate) use format::{bytes, counted, general, scientific};
 pub(crate) use layout::{label, wrap, wrap_words};
 pub(crate) use log::{Log, cutback_lines};
 pub(crate) use status::StatusFile;
-pub(crate) use strain::{LARGE, StrainWatch, warning_lines};
+pub(crate) use strain::{LARGE, SmallStrainElements, StrainWatch, warning_lines};

@@ -1,0 +1,171 @@
+//! `*SOLID SECTION`: material, thickness and formulation of elements.
+
+use super::constant::out_of_range;
+use crate::deck::Card;
+use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::model::{Element, ElementType, Formulation, Material, Section};
+use crate::reader::context::Context;
+use crate::reader::mesh::{MeshIndex, Outline, Sets};
+use crate::reader::names::Names;
+
+/// Materials and sections.
+pub(crate) struct Properties {
+    /// Materials in the order of their names.
+    pub materials: Vec<Material>,
+    /// Sections.
+    pub sections: Vec<Section>,
+    /// Section of each element.
+    pub section_of: Vec<Option<usize>>,
+    /// Type of each element, in the formulation of its section.
+    pub element_types: Vec<ElementType>,
+    /// Places of the materials.
+    pub material_spans: Vec<Span>,
+}
+
+/// `*SOLID SECTION`, with `thickness` on its data line.
+fn section(card: &Card, materials: &Names, cx: &mut Context) -> Option<Section> {
+    let material = card.required("MATERIAL", cx.d);
+    let material = material.and_then(|name| materials.find(name, cx));
+    let row = card.rows.first();
+    let thickness = row.map_or(Some(1.0), |row| row.real_or(0, 1.0, cx.d));
+    if let (Some(row), Some(value)) = (row, thickness) {
+        row.at_most(1, cx.d);
+        if value <= 0.0 {
+            out_of_range("the thickness must be positive", row, 0, cx);
+        }
+    }
+    if let Some(extra) = card.rows.get(1) {
+        let message = "*SOLID SECTION has one data line, the thickness";
+        cx.error(Code::StrayData, extra.span(), message);
+    }
+    Some(Section {
+        material: material?,
+        thickness: thickness?,
+    })
+}
+
+impl Properties {
+    /// No materials and sections yet.
+    pub(super) fn new(elements: &[Element], material_spans: Vec<Span>) -> Self {
+        Properties {
+            materials: Vec::new(),
+            sections: Vec::new(),
+            section_of: vec![None; elements.len()],
+            element_types: elements.iter().map(|e| e.element_type).collect(),
+            material_spans,
+        }
+    }
+
+    /// Reads the sections and gives them to their elements.
+    pub(super) fn read_sections(
+        &mut self,
+        outline: &Outline,
+        materials: &Names,
+        (mesh_index, sets): (&MeshIndex, &Sets),
+        cx: &mut Context,
+    ) {
+        let mut complete = true;
+        for card in outline.model_cards("SOLID SECTION") {
+            let section = section(card, materials, cx);
+            complete &= self.assign(section, card, mesh_index, sets, cx);
+        }
+        self.report_without_section(complete, mesh_index, cx);
+    }
+
+    /// Gives a section to its elements; says whether all of the card could be read.
+    fn assign(
+        &mut self,
+        section: Option<Section>,
+        card: &Card,
+        mesh_index: &MeshIndex,
+        sets: &Sets,
+        cx: &mut Context,
+    ) -> bool {
+        let errors = cx.errors();
+        let name = card.required("ELSET", cx.d);
+        let found = name.and_then(|name| sets.element_names.find(name, cx));
+        let Some(set) = found.and_then(|index| sets.elements.get(index)) else {
+            return false;
+        };
+        let complete = section.is_some() && cx.errors() == errors;
+        if card.choice("FORMULATION") == Some("MEAN DILATATION") {
+            self.set_mean_dilatation(&set.members, card, mesh_index, cx);
+        }
+        let index = self.sections.len();
+        self.sections.extend(section);
+        let mut taken = Vec::new();
+        for &element in &set.members {
+            match self.section_of.get_mut(element) {
+                Some(Some(_)) => taken.push(element),
+                Some(free) => *free = Some(index),
+                None => {}
+            }
+        }
+        if let Some(element) = taken.first().and_then(|&e| mesh_index.mesh.elements.get(e)) {
+            let message = match taken.len() {
+                1 => format!("element {} has a section already", element.label),
+                n => format!(
+                    "{n} elements have a section already, the first is {}",
+                    element.label
+                ),
+            };
+            cx.error(Code::TwoSections, card.span_of("ELSET"), message);
+        }
+        complete
+    }
+
+    /// Gives elements one volume strain each; all must be CPE4.
+    fn set_mean_dilatation(
+        &mut self,
+        elements: &[usize],
+        card: &Card,
+        mesh_index: &MeshIndex,
+        cx: &mut Context,
+    ) {
+        for &index in elements {
+            let Some(element_type) = self.element_types.get_mut(index) else {
+                continue;
+            };
+            if *element_type == ElementType::CPE4 {
+                element_type.formulation = Formulation::MeanDilatation;
+            } else if element_type.formulation == Formulation::Displacement {
+                let label = mesh_index.mesh.elements.get(index).map_or(0, |e| e.label);
+                let name = element_type.name();
+                let message = format!("MEAN DILATATION is for CPE4: element {label} is {name}");
+                let error =
+                    Diagnostic::error(Code::ElementType, card.span_of("FORMULATION"), message);
+                cx.d.push(error.help(
+                    "give other elements a section of their own with FORMULATION=DISPLACEMENT",
+                ));
+                return;
+            }
+        }
+    }
+
+    /// Reports elements without section, unless a section could not be read.
+    fn report_without_section(&self, complete: bool, mesh_index: &MeshIndex, cx: &mut Context) {
+        let bare = || {
+            self.section_of
+                .iter()
+                .enumerate()
+                .filter(|(_, s)| s.is_none())
+        };
+        let is_cause = complete || !cx.d.has_errors();
+        let Some((first, _)) = bare().next().filter(|_| is_cause) else {
+            return;
+        };
+        let element = mesh_index.mesh.elements.get(first);
+        let span = mesh_index.element_spans.get(first);
+        if let (Some(element), Some(&span), false) = (element, span, cx.may_lack_cards()) {
+            let message = match bare().count() {
+                1 => format!("element {} has no section", element.label),
+                n => format!(
+                    "{n} elements have no section, the first is {}",
+                    element.label
+                ),
+            };
+            let error = Diagnostic::error(Code::NoSection, span, message);
+            cx.d.push(error.help("give them a material and a thickness with *SOLID SECTION"));
+        }
+    }
+}
