@@ -71,13 +71,13 @@ impl FreeMotion<'_> {
         (0..u0.len()).map(at).collect()
     }
 
-    /// Whether the ways of the nodes are long enough for them to meet.
+    /// Whether the displacements of the nodes are large enough for them to meet.
     fn may_meet(&self, start: &Projection, [s, a, b]: [usize; 3]) -> bool {
-        let way = |node: usize| {
+        let displacement = |node: usize| {
             let size = |x: &[f64]| x[2 * node].hypot(x[2 * node + 1]);
             self.duration * (size(self.v) + self.duration / 2.0 * size(self.a))
         };
-        start.gap.abs() <= way(s) + way(a).max(way(b))
+        start.gap.abs() <= displacement(s) + displacement(a).max(displacement(b))
     }
 
     /// The impact of a slave node on a segment, unless one is kept out of the other as a constraint.
@@ -131,8 +131,7 @@ impl<'m> Subincrements<'_, 'm> {
     /// The subincrement up to the earliest impact of a pair that does not touch at the start.
     ///
     /// Its length tau is predicted from the second-order motion of the start (paper eq. 50), with
-    /// the exact condition of meeting. The motion of the converged
-    /// subincrement,
+    /// the exact condition of meeting. The motion of the converged subincrement,
     ///
     /// ```text
     /// U(t) = U0 + t V0+ + t²/2 A,   A = (2/tau²) (d - tau V0+),   eq. (6.3)

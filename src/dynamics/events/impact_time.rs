@@ -6,11 +6,11 @@ use crate::dynamics::increment::Solved;
 /// Reduction of the error by a trial from which on the time is bracketed by halving.
 const SLOW: f64 = 0.5;
 
-/// Looks for the length of a piece that ends at the impact.
+/// Looks for the length of a subincrement that ends at the impact.
 pub(crate) struct ImpactTime {
     /// What is left of the increment.
     rest: f64,
-    /// The longest piece tried that ends before an impact.
+    /// The longest subincrement tried that ends before an impact.
     pub before: Option<(f64, Solved)>,
     /// The shortest one that ends after it.
     after: Option<f64>,
@@ -77,15 +77,15 @@ mod tests {
         assert_eq!(trials(|_| 0.3, 1.0, 1.0, 0.3), Some(1), "free motion");
         let elastic = |tau: f64| 0.3 + 0.2 * (tau - 0.3) + 0.1 * (tau - 0.3) * (tau - 0.3);
         assert!(trials(elastic, 1.0, 0.35, 0.3).unwrap() < 12);
-        // the piece as a whole seems free, its first part does not
+        // the subincrement as a whole seems free, its first part does not
         let jump = |tau: f64| if tau < 0.4 { 1.0 } else { 0.2 };
         assert!(trials(jump, 1.0, 1.0, 0.4).is_some(), "bracketed");
         assert_eq!(trials(|_| 1.0, 1.0, 0.5, 1.0), Some(1), "no impact");
     }
 
     #[test]
-    fn secants_that_hardly_come_nearer_give_way_to_halving() {
-        // a piece that ends after the impact at 0.4 tells of one only a little before its end
+    fn secants_that_hardly_come_nearer_are_followed_by_halving() {
+        // a subincrement that ends after the impact at 0.4 tells of one only a little before its end
         let met = |tau: f64| {
             if tau < 0.4 {
                 1.0
