@@ -1,20 +1,14 @@
 //! Command line: `run`, `check`, `info` and `lcp`.
 
 mod args;
-mod check;
+mod commands;
 mod connect;
 mod error;
 mod exit;
-#[cfg(test)]
-mod files_tests;
-mod info;
-mod lcp;
-mod overrides;
-mod run;
-#[cfg(test)]
-mod run_tests;
 mod signals;
 mod terminal;
+#[cfg(test)]
+mod tests;
 mod version;
 
 use std::ffi::OsString;
@@ -39,10 +33,10 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     let numerics = Numerics::connected();
     let done = match &args.command {
         Command::Run(args) => (signals::receive().map_err(CliError::Signals))
-            .and_then(|interrupt| run::run(args, &typed(&arguments), &numerics, &interrupt)),
-        Command::Check(args) => check::check(args, &numerics),
-        Command::Info(args) => info::info(args),
-        Command::Lcp(args) => lcp::lcp(args),
+            .and_then(|interrupt| commands::run(args, &typed(&arguments), &numerics, &interrupt)),
+        Command::Check(args) => commands::check(args, &numerics),
+        Command::Info(args) => commands::info(args),
+        Command::Lcp(args) => commands::lcp(args),
     };
     done.unwrap_or_else(|error| {
         complain(&format!("error: {error}"));

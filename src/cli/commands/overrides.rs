@@ -1,6 +1,6 @@
 //! Changes of the model by the command line.
 
-use super::args::RunArgs;
+use crate::cli::args::RunArgs;
 use crate::model::{Frames, SolverChoice, Step};
 use crate::output::{frames, solver};
 

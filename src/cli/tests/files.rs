@@ -1,10 +1,10 @@
-//! `run` with a substitute solver: claim of the files of a job, and the files left after a failure.
+//! The subcommand `run`: claim of the files of a job, and the files left after a failure.
 
 use std::{cell, io};
 
-use super::connect::Numerics;
-use super::exit::Exit;
-use super::run_tests::{Bench, code, numerics, report, summary};
+use super::run::{Bench, code, numerics, report, summary};
+use crate::cli::connect::Numerics;
+use crate::cli::exit::Exit;
 use crate::dynamics::{Observer, Outcome, RunError, RunSummary};
 use crate::output::Interrupt;
 use crate::prepare::PreparedModel;

@@ -1,12 +1,13 @@
 //! The subcommand `run`: from the deck to the finished result files, however the run ends.
 
-use super::args::RunArgs;
 use super::check::{complain_of, deck_line_of, load};
-use super::connect::{Loaded, Numerics};
-use super::error::CliError;
-use super::exit::Exit;
-use super::version::{COMMIT, NUMBER, PROFILE};
-use crate::cli::{overrides, signals};
+use super::overrides;
+use crate::cli::args::RunArgs;
+use crate::cli::connect::{Loaded, Numerics};
+use crate::cli::error::CliError;
+use crate::cli::exit::Exit;
+use crate::cli::signals;
+use crate::cli::version::{COMMIT, NUMBER, PROFILE};
 use crate::dynamics::{Outcome, RunError};
 use crate::output::{
     Claim, Interrupt, JobFiles, ModelEcho, ResultWriter, RunRecord, Verbosity, check_names,
@@ -16,7 +17,7 @@ use crate::prepare::PreparedModel;
 
 /// Solves a deck; `command` is the command as typed. The run ends early when `interrupt` requests
 /// it.
-pub(super) fn run(
+pub(in crate::cli) fn run(
     args: &RunArgs,
     command: &str,
     numerics: &Numerics,

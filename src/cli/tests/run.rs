@@ -1,4 +1,4 @@
-//! `run` with a substitute reader and solver.
+//! The subcommand `run`: outcomes, messages, exit codes; what the tests of `run` share.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -8,11 +8,11 @@ use clap::Parser;
 use nalgebra::{DMatrix, DVector};
 use tempfile::TempDir;
 
-use super::args::{Args, Command};
-use super::connect::{Loaded, Numerics};
-use super::error::CliError;
-use super::exit::Exit;
-use crate::cli::run;
+use crate::cli::args::{Args, Command};
+use crate::cli::commands::run;
+use crate::cli::connect::{Loaded, Numerics};
+use crate::cli::error::CliError;
+use crate::cli::exit::Exit;
 use crate::dynamics::{
     Cause, Cutback, FailedLcp, Failure, IncrementReport, NodalResults, NodeStatus, Observer,
     Outcome, PassReport, RunError, RunSummary, SolverCounts, State, Timings, Worst,
@@ -246,9 +246,7 @@ impl Bench {
         let options = options.iter().map(|option| (*option).as_ref());
         let args = Args::try_parse_from(fixed.into_iter().chain(options)).expect("arguments");
         match args.command {
-            Command::Run(args) => {
-                run::run(&args, "stickslip run job.inp", numerics, &self.interrupt)
-            }
+            Command::Run(args) => run(&args, "stickslip run job.inp", numerics, &self.interrupt),
             other => panic!("{other:?}"),
         }
     }

@@ -2,15 +2,15 @@
 
 use std::fs;
 
-use super::args::LcpArgs;
-use super::error::CliError;
-use super::exit::Exit;
-use super::terminal::print;
+use crate::cli::args::LcpArgs;
+use crate::cli::error::CliError;
+use crate::cli::exit::Exit;
+use crate::cli::terminal::print;
 use crate::lcp::solve_json;
 use crate::output::regular_file;
 
 /// Solves a complementarity problem given as JSON and prints the answer as JSON.
-pub(super) fn lcp(args: &LcpArgs) -> Result<Exit, CliError> {
+pub(in crate::cli) fn lcp(args: &LcpArgs) -> Result<Exit, CliError> {
     let text = regular_file(&args.problem).and_then(|_| fs::read_to_string(&args.problem));
     let text = text.map_err(|source| CliError::Problem {
         path: args.problem.clone(),

@@ -2,15 +2,15 @@
 
 use std::path::Path;
 
-use super::args::{CheckArgs, DeckArgs};
-use super::connect::{Loaded, Numerics};
-use super::error::CliError;
-use super::exit::Exit;
-use super::terminal::{coloured, complain, print};
+use crate::cli::args::{CheckArgs, DeckArgs};
+use crate::cli::connect::{Loaded, Numerics};
+use crate::cli::error::CliError;
+use crate::cli::exit::Exit;
+use crate::cli::terminal::{coloured, complain, print};
 use crate::output::{ModelEcho, check_names, deck_line, regular_file};
 
 /// Reads a deck and describes its model.
-pub(super) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exit, CliError> {
+pub(in crate::cli) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exit, CliError> {
     let loaded = load(&args.deck, numerics)?;
     complain_of(&loaded.all_messages);
     print(&[deck_line_of(&args.deck.path, &loaded, None)])?;

@@ -1,0 +1,12 @@
+//! The subcommands.
+
+mod check;
+mod info;
+mod lcp;
+mod overrides;
+mod run;
+
+pub(super) use check::check;
+pub(super) use info::info;
+pub(super) use lcp::lcp;
+pub(super) use run::run;

@@ -1,0 +1,4 @@
+//! `run` with a substitute reader and solver.
+
+mod files;
+mod run;
