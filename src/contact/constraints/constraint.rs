@@ -79,12 +79,12 @@ pub struct Constraint {
 }
 
 impl Constraint {
-    /// The constraint of one slave node and the given others, whose derivative rows are its force
-    /// rows and whose slip is Bt d.
+    /// The constraint of one slave node and the given others, with its force rows and derivative rows;
+    /// its slip is Bt d.
     pub(super) fn of_nodes(
         source: PairTarget,
         nodes: &[usize],
-        rows: Rows,
+        [force_rows, derivative_rows]: [Rows; 2],
         (gap, scale): (f64, f64),
         at: &Configurations,
     ) -> Self {
@@ -96,8 +96,9 @@ impl Constraint {
             },
             dofs,
             slave_dofs: 2,
-            force_rows: rows,
-            other_derivative_rows: None,
+            other_derivative_rows: (derivative_rows != force_rows)
+                .then(|| Box::new(derivative_rows)),
+            force_rows,
             gap,
             start_gap: gap,
             slip: 0.0,
@@ -112,6 +113,14 @@ impl Constraint {
         let slip = constraint.product(&rows.tangential, d);
         (constraint.start_gap, constraint.slip) = (start_gap, slip);
         constraint
+    }
+
+    /// The same constraint with its force rows as derivative rows, so that Q is symmetric.
+    pub fn with_force_rows(&self) -> Self {
+        Constraint {
+            other_derivative_rows: None,
+            ..self.clone()
+        }
     }
 
     /// Derivative rows G.

@@ -3,7 +3,7 @@
 
 use super::configurations::Configurations;
 use super::constraint::{Constraint, Rows};
-use super::node_to_segment::segment_rows;
+use super::node_to_segment::{RowPair, segment_rows};
 use crate::contact::targets::{Corner, PairTarget};
 
 /// The constraint at the corner b between the segments from a to b and from b to c; nodes s, a, b, c.
@@ -28,10 +28,16 @@ pub(super) fn constraint(source: PairTarget, corner: Corner, at: &Configurations
         let (row, next) = (at_first_nodes(row), at_last_nodes(next));
         std::array::from_fn(|k| corner.blend(row[k], next[k]) / m)
     };
-    let rows = Rows::new(
-        &blend(before.normal, behind.normal),
-        &blend(before.tangential, behind.tangential),
-    );
+    let both = |p: RowPair, q: RowPair| {
+        Rows::new(
+            &blend(p.normal, q.normal),
+            &blend(p.tangential, q.tangential),
+        )
+    };
+    let rows = [
+        both(before.force, behind.force),
+        both(before.derivative, behind.derivative),
+    ];
     let gap = corner.blend(p.gap, q.gap) / m;
     Constraint::of_nodes(source, &source.nodes, rows, (gap, p.length), at)
 }

@@ -1,16 +1,36 @@
-//! Constraint of a slave node at a segment: projection, gap and rows of Bn and Bt, of the end
-//! configuration (section 3 of docs/theory.md) or as discrete gradients (section 7).
+//! Constraint of a slave node at a segment: projection, gap, force rows of the end configuration
+//! (section 3 of docs/theory.md) or as discrete gradients (section 7), and derivative rows.
 
 use super::configurations::{Configurations, RowForm};
 use super::constraint::{Constraint, Rows};
 use crate::contact::geometry::{Projection, project};
 use crate::contact::targets::PairTarget;
+use crate::vectors::{cross, difference, dot};
 
-/// A node on a segment, with the rows at s, a and b.
-pub(super) struct SegmentRows {
-    pub projection: Projection,
+/// Normal and tangential row at s, a and b.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RowPair {
     pub normal: [f64; 6],
     pub tangential: [f64; 6],
+}
+
+/// A node on a segment, with its force rows and derivative rows.
+pub(super) struct SegmentRows {
+    pub projection: Projection,
+    pub force: RowPair,
+    pub derivative: RowPair,
+}
+
+/// Start and end of the increment: r = x_s - x_a, e = x_b - x_a and what follows from them.
+struct Arms {
+    r: [f64; 2],
+    e: [f64; 2],
+    /// |e|
+    length: f64,
+    /// pi1 = r.e
+    dot: f64,
+    /// pi2 = r x e
+    cross: f64,
 }
 
 /// The constraint of the slave node s at the segment from a to b; nodes s, a, b.
@@ -18,87 +38,136 @@ pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint 
     let [s, a, b, _] = source.nodes;
     let SegmentRows {
         projection,
-        normal,
-        tangential,
+        force,
+        derivative,
     } = segment_rows([s, a, b], at);
-    let rows = Rows::new(&normal, &tangential);
+    let rows = [force, derivative].map(|rows| Rows::new(&rows.normal, &rows.tangential));
     let gap_and_scale = (projection.gap, projection.length);
     Constraint::of_nodes(source, &[s, a, b], rows, gap_and_scale, at)
 }
 
 /// Projection and rows of the node s on the segment from a to b.
 pub(super) fn segment_rows(nodes: [usize; 3], at: &Configurations) -> SegmentRows {
-    let end = at.iterate(nodes);
-    let (normal, tangential) = match at.form {
-        RowForm::End => end_rows(end),
-        RowForm::DiscreteGradient => discrete_gradient_rows(at.start(nodes), end),
-    };
+    let (start, end) = (at.start(nodes), at.iterate(nodes));
     let [s, a, b] = end;
+    let projection = project(s, a, b);
+    let (force, derivative) = match at.form {
+        RowForm::End => end_rows(&projection, start, end),
+        RowForm::DiscreteGradient => {
+            let (start, end) = (Arms::new(start), Arms::new(end));
+            (
+                discrete_gradient_rows(&start, &end),
+                derivatives_of_differences(&start, &end),
+            )
+        }
+    };
     SegmentRows {
-        projection: project(s, a, b),
-        normal,
-        tangential,
+        projection,
+        force,
+        derivative,
     }
 }
 
-/// Rows of the end configuration, eq. (3.4): e_n at s, -(1 - xi) e_n at a, -xi e_n at b; the same with
-/// e_t.
-fn end_rows([s, a, b]: [[f64; 2]; 3]) -> ([f64; 6], [f64; 6]) {
-    let p = project(s, a, b);
+/// Force rows of the end configuration, eq. (3.4): e_n at s, -(1 - xi) e_n at a, -xi e_n at b; the
+/// same with e_t. The normal row is the derivative of the gap; the slip e_t.w has the derivative of
+/// eq. (3.9).
+fn end_rows(
+    p: &Projection,
+    start: [[f64; 2]; 3],
+    end: [[f64; 2]; 3],
+) -> (RowPair, RowPair) {
     let weights = [1.0, -(1.0 - p.xi), -p.xi];
-    let row = |e: [f64; 2]| std::array::from_fn(|k| weights[k / 2] * e[k % 2]);
-    (row(p.normal), row(p.tangent))
+    let row = |e: [f64; 2]| -> [f64; 6] { std::array::from_fn(|k| weights[k / 2] * e[k % 2]) };
+    let (normal, tangential) = (row(p.normal), row(p.tangent));
+    // w = d_s - (1 - xi) d_a - xi d_b, d_e = d_b - d_a
+    let d = |node: usize, i: usize| end[node][i] - start[node][i];
+    let w = [0, 1].map(|i| d(0, i) + weights[1] * d(1, i) + weights[2] * d(2, i));
+    let stretch = [0, 1].map(|i| d(2, i) - d(1, i));
+    // Gt = Bt + (e_n.w)/l (e_n at b, -e_n at a) - (e_t.d_e) Gxi
+    // Gxi = (Bt + g/l (e_n at b, -e_n at a))/l, eq. (3.9)
+    let turn = nodal([0.0; 2], p.normal);
+    let (across, along) = (dot(p.normal, w) / p.length, dot(p.tangent, stretch) / p.length);
+    let slope = std::array::from_fn(|k| {
+        tangential[k] + across * turn[k] - along * (tangential[k] + p.gap / p.length * turn[k])
+    });
+    let force = RowPair { normal, tangential };
+    let derivative = RowPair {
+        normal,
+        tangential: slope,
+    };
+    (force, derivative)
 }
 
-/// Discrete gradients between the positions `start` and `end` of s, a and b.
+/// Discrete gradients between the start and the end of the increment.
 ///
-/// With a = x_s - x_a, e = x_b - x_a the gap g = pi2/sqrt(pi3) and the projection xi = pi1/pi3 are
-/// functions of pi1 = a.e, pi2 = a x e, pi3 = e.e, eq. (7.1), quadratic in the positions: their
-/// gradients at the mid configuration are exact difference quotients.
-fn discrete_gradient_rows(start: [[f64; 2]; 3], end: [[f64; 2]; 3]) -> ([f64; 6], [f64; 6]) {
-    let arms = |[s, a, b]: [[f64; 2]; 3]| ([s[0] - a[0], s[1] - a[1]], [b[0] - a[0], b[1] - a[1]]);
-    let ((a0, e0), (a1, e1)) = (arms(start), arms(end));
-    let dot = |p: [f64; 2], q: [f64; 2]| p[0] * q[0] + p[1] * q[1];
-    let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
+/// The gap g = pi2/sqrt(pi3) and the projection xi = pi1/pi3 are functions of pi1 = r.e,
+/// pi2 = r x e, pi3 = e.e, eq. (7.1), quadratic in the positions: their gradients at the mid
+/// configuration are exact difference quotients.
+fn discrete_gradient_rows(start: &Arms, end: &Arms) -> RowPair {
     let mean = |p: [f64; 2], q: [f64; 2]| [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0];
-    let (a, e) = (mean(a0, a1), mean(e0, e1));
-    let (l0, l1) = (dot(e0, e0).sqrt(), dot(e1, e1).sqrt());
-
-    // gradients of pi1, pi2, pi3 with respect to (a, e)
-    let (pi1_a, pi1_e) = (e, a);
-    let (pi2_a, pi2_e) = ([e[1], -e[0]], [-a[1], a[0]]);
-    let pi3_e = [2.0 * e[0], 2.0 * e[1]];
+    let (l0, l1) = (start.length, end.length);
+    let [pi1, pi2, pi3] = gradients(mean(start.r, end.r), mean(start.e, end.e));
 
     // Bn = alpha grad pi2 + beta grad pi3, alpha = (1/l0 + 1/l1)/2,
     // beta = -(pi2_0 + pi2_1)/2 / (l0 l1 (l0 + l1)), eq. (7.2)
     let alpha = (1.0 / l0 + 1.0 / l1) / 2.0;
-    let beta = -(cross(a0, e0) + cross(a1, e1)) / 2.0 / (l0 * l1 * (l0 + l1));
-    let normal = nodal(
-        [alpha * pi2_a[0], alpha * pi2_a[1]],
-        [
-            alpha * pi2_e[0] + beta * pi3_e[0],
-            alpha * pi2_e[1] + beta * pi3_e[1],
-        ],
-    );
+    let beta = -(start.cross + end.cross) / 2.0 / (l0 * l1 * (l0 + l1));
 
     // Bt = gamma grad pi1 + delta grad pi3, gamma = L (1/l0² + 1/l1²)/2,
     // delta = -L (pi1_0 + pi1_1)/2 / (l0² l1²), L = (l0 + l1)/2, eq. (7.3)
     let length = (l0 + l1) / 2.0;
     let gamma = length * (1.0 / (l0 * l0) + 1.0 / (l1 * l1)) / 2.0;
-    let delta = -length * (dot(a0, e0) + dot(a1, e1)) / 2.0 / (l0 * l0 * l1 * l1);
-    let tangent = nodal(
-        [gamma * pi1_a[0], gamma * pi1_a[1]],
-        [
-            gamma * pi1_e[0] + delta * pi3_e[0],
-            gamma * pi1_e[1] + delta * pi3_e[1],
-        ],
-    );
-    (normal, tangent)
+    let delta = -length * (start.dot + end.dot) / 2.0 / (l0 * l0 * l1 * l1);
+    RowPair {
+        normal: sum_of(alpha, &pi2, beta, &pi3),
+        tangential: sum_of(gamma, &pi1, delta, &pi3),
+    }
 }
 
-/// From parts with respect to (a, e) to the nodes: s: a-part, a: -(a-part) - (e-part), b: e-part.
-fn nodal(a: [f64; 2], e: [f64; 2]) -> [f64; 6] {
-    [a[0], a[1], -a[0] - e[0], -a[1] - e[1], e[0], e[1]]
+/// Derivatives of the gap g1 and the slip L (xi1 - xi0) with respect to the end.
+fn derivatives_of_differences(start: &Arms, end: &Arms) -> RowPair {
+    let (l0, l1) = (start.length, end.length);
+    let [pi1, pi2, pi3] = gradients(end.r, end.e);
+    // Gn = grad pi2/l1 - pi2_1/(2 l1³) grad pi3, eq. (7.4)
+    let normal = sum_of(1.0 / l1, &pi2, -end.cross / (2.0 * l1.powi(3)), &pi3);
+    // Gt = L (grad pi1/l1² - pi1_1/l1⁴ grad pi3) + (xi1 - xi0)/(4 l1) grad pi3, eq. (7.5)
+    let length = (l0 + l1) / 2.0;
+    let moved = end.dot / (l1 * l1) - start.dot / (l0 * l0);
+    let of_length = -length * end.dot / l1.powi(4) + moved / (4.0 * l1);
+    let tangential = sum_of(length / (l1 * l1), &pi1, of_length, &pi3);
+    RowPair { normal, tangential }
+}
+
+impl Arms {
+    /// The arms of the positions of s, a and b.
+    fn new([s, a, b]: [[f64; 2]; 3]) -> Self {
+        let (r, e) = (difference(a, s), difference(a, b));
+        Arms {
+            r,
+            e,
+            length: dot(e, e).sqrt(),
+            dot: dot(r, e),
+            cross: cross(r, e),
+        }
+    }
+}
+
+/// Gradients of pi1 = r.e, pi2 = r x e and pi3 = e.e at s, a and b.
+fn gradients(r: [f64; 2], e: [f64; 2]) -> [[f64; 6]; 3] {
+    let pi1 = nodal(e, r);
+    let pi2 = nodal([e[1], -e[0]], [-r[1], r[0]]);
+    let pi3 = nodal([0.0; 2], [2.0 * e[0], 2.0 * e[1]]);
+    [pi1, pi2, pi3]
+}
+
+/// p row + q other
+fn sum_of(p: f64, row: &[f64; 6], q: f64, other: &[f64; 6]) -> [f64; 6] {
+    std::array::from_fn(|k| p * row[k] + q * other[k])
+}
+
+/// From parts with respect to (r, e) to the nodes: s: r-part, a: -(r-part) - (e-part), b: e-part.
+fn nodal(r: [f64; 2], e: [f64; 2]) -> [f64; 6] {
+    [r[0], r[1], -r[0] - e[0], -r[1] - e[1], e[0], e[1]]
 }
 
 #[cfg(test)]
@@ -130,17 +199,24 @@ mod tests {
     }
 
     #[test]
-    fn end_rows_are_the_derivative_of_the_gap() {
-        let constraint = between(RowForm::End, &U0, &U1);
-        assert_eq!(constraint.gap, projected(&U1).gap);
-        assert_eq!(constraint.dofs[..], [0, 1, 2, 3, 4, 5]);
-        for k in 0..6 {
-            let mut u = [U1, U1];
-            u[0][k] += 1e-6;
-            u[1][k] -= 1e-6;
-            let quotient = (projected(&u[0]).gap - projected(&u[1]).gap) / 2e-6;
-            let row = &constraint.derivative_rows().normal;
-            assert!((row[k] - quotient).abs() < 1e-9, "{k}");
+    fn derivative_rows_are_the_derivatives_of_gap_and_slip() {
+        for form in [RowForm::End, RowForm::DiscreteGradient] {
+            let constraint = between(form, &U0, &U1);
+            assert_eq!(constraint.gap, projected(&U1).gap);
+            assert_eq!(constraint.dofs[..], [0, 1, 2, 3, 4, 5]);
+            let rows = constraint.derivative_rows();
+            for k in 0..6 {
+                let moved = |by: f64| {
+                    let mut u = U1;
+                    u[k] += by;
+                    between(form, &U0, &u)
+                };
+                let (p, q) = (moved(1e-6), moved(-1e-6));
+                let gap = (p.gap - q.gap) / 2e-6;
+                let slip = (p.slip - q.slip) / 2e-6;
+                assert!((rows.normal[k] - gap).abs() < 1e-9, "{form:?} {k}");
+                assert!((rows.tangential[k] - slip).abs() < 1e-9, "{form:?} {k}");
+            }
         }
     }
 
