@@ -3,12 +3,7 @@
 from collections.abc import Callable, Sequence
 from math import cos, pi, sin, sqrt
 
-
-def card(keyword: str, *rows: Sequence[object]) -> str:
-    """Text of one card: its keyword line and data lines; floats are written with repr."""
-    lines = ["*" + keyword]
-    lines += [", ".join(repr(x) if isinstance(x, float) else str(x) for x in row) for row in rows]
-    return "\n".join(lines) + "\n"
+from cards import card
 
 
 class Grid:

@@ -6,8 +6,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "scripts"))
 
+from cards import card, dry, elastic, step  # noqa: E402
 from deck import write_to_folder  # noqa: E402
-from quads import card, outline, ring  # noqa: E402
+from quads import outline, ring  # noqa: E402
 
 YOUNG, POISSON, DENSITY, THICKNESS = 1000.0, 0.3, 1.0, 1.0
 RADII = 0.8, 1.0
@@ -45,11 +46,7 @@ def model() -> str:
             left.mesh("CPE4"),
             right.mesh("CPE4"),
             outline("LEFT", "RIGHT"),
-            card("MATERIAL, NAME=ELASTIC"),
-            card("ELASTIC", (YOUNG, POISSON)),
-            card("DENSITY", (DENSITY,)),
-            card("SOLID SECTION, ELSET=LEFT, MATERIAL=ELASTIC", (THICKNESS,)),
-            card("SOLID SECTION, ELSET=RIGHT, MATERIAL=ELASTIC", (THICKNESS,)),
+            elastic(YOUNG, POISSON, DENSITY, "LEFT", "RIGHT", thickness=THICKNESS),
             card("CONTACT PAIR, INTERACTION=DRY", ("LEFT", "RIGHT"), ("RIGHT", "LEFT")),
             card("INITIAL CONDITIONS, TYPE=VELOCITY", *spinning, ("RIGHT", 1, -SPEED)),
         ]
@@ -62,12 +59,8 @@ def problem(friction: float) -> str:
         [
             card("HEADING", (f"two rings thrown at each other; friction {friction}",)),
             card(f"INCLUDE, INPUT={INCLUDE}"),
-            card("SURFACE INTERACTION, NAME=DRY"),
-            card("FRICTION", (friction,)),
-            card(f"STEP, NLGEOM, INC={INCREMENTS}"),
-            card("DYNAMIC, DIRECT", (DT, INCREMENTS * DT)),
-            card("OUTPUT, FIELD, NUMBER INTERVAL=160"),
-            card("END STEP"),
+            dry(friction),
+            step(DT, INCREMENTS, card("OUTPUT, FIELD, NUMBER INTERVAL=160")),
         ]
     )
 

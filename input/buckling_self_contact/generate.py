@@ -7,8 +7,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "scripts"))
 
+from cards import card, dry, elastic, step  # noqa: E402
 from deck import write_to_folder  # noqa: E402
-from quads import Grid, card, outline  # noqa: E402
+from quads import Grid, outline  # noqa: E402
 
 YOUNG, POISSON, DENSITY, THICKNESS = 1e4, 0.3, 1.0, 1.0
 LENGTH, DEPTH = 12.0, 0.16
@@ -43,10 +44,7 @@ def model() -> str:
             column.side_nodes("FOOT", "bottom"),
             column.side_nodes("HEAD", "top"),
             outline("COLUMN"),
-            card("MATERIAL, NAME=ELASTIC"),
-            card("ELASTIC", (YOUNG, POISSON)),
-            card("DENSITY", (DENSITY,)),
-            card("SOLID SECTION, ELSET=COLUMN, MATERIAL=ELASTIC", (THICKNESS,)),
+            elastic(YOUNG, POISSON, DENSITY, "COLUMN", thickness=THICKNESS),
             "** One surface on the row: contact of the surface with itself.\n",
             card("CONTACT PAIR, INTERACTION=DRY", ("COLUMN",)),
             card("AMPLITUDE, NAME=PUSH", *push),
@@ -57,19 +55,18 @@ def model() -> str:
 
 def problem(friction: float) -> str:
     """A deck: heading, include, friction, step."""
-    period = RISE + HOLD
     return "".join(
         [
             card("HEADING", (f"column that folds onto itself; friction {friction}",)),
             card(f"INCLUDE, INPUT={INCLUDE}"),
-            card("SURFACE INTERACTION, NAME=DRY"),
-            card("FRICTION", (friction,)),
-            card(f"STEP, NLGEOM, INC={round(period / DT)}"),
-            card("DYNAMIC, DIRECT", (DT, period)),
-            card("BOUNDARY, AMPLITUDE=PUSH", ("HEAD", 2, 2, -PUSH)),
-            card("OUTPUT, FIELD, NUMBER INTERVAL=200"),
-            card("NODE PRINT, NSET=HEAD", ("U", "RF")),
-            card("END STEP"),
+            dry(friction),
+            step(
+                DT,
+                round((RISE + HOLD) / DT),
+                card("BOUNDARY, AMPLITUDE=PUSH", ("HEAD", 2, 2, -PUSH)),
+                card("OUTPUT, FIELD, NUMBER INTERVAL=200"),
+                card("NODE PRINT, NSET=HEAD", ("U", "RF")),
+            ),
         ]
     )
 

@@ -7,8 +7,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "scripts"))
 
+from cards import card, dry, elastic, step  # noqa: E402
 from deck import write_to_folder  # noqa: E402
-from quads import Grid, card, outline  # noqa: E402
+from quads import Grid, outline  # noqa: E402
 
 YOUNG, POISSON, DENSITY, THICKNESS = 1000.0, 0.3, 1.0, 1.0
 SIDE, ELEMENTS = 1.0, 6
@@ -43,11 +44,7 @@ def model(offset: float) -> str:
             lower.mesh("CPE4"),
             upper.mesh("CPE4"),
             outline("LOWER", "UPPER"),
-            card("MATERIAL, NAME=ELASTIC"),
-            card("ELASTIC", (YOUNG, POISSON)),
-            card("DENSITY", (DENSITY,)),
-            card("SOLID SECTION, ELSET=LOWER, MATERIAL=ELASTIC", (THICKNESS,)),
-            card("SOLID SECTION, ELSET=UPPER, MATERIAL=ELASTIC", (THICKNESS,)),
+            elastic(YOUNG, POISSON, DENSITY, "LOWER", "UPPER", thickness=THICKNESS),
             card("CONTACT PAIR, INTERACTION=DRY", ("LOWER", "UPPER"), ("UPPER", "LOWER")),
             card("INITIAL CONDITIONS, TYPE=VELOCITY", ("LOWER", 2, SPEED), ("UPPER", 2, -SPEED)),
         ]
@@ -60,12 +57,8 @@ def problem(side: str, friction: float) -> str:
         [
             card("HEADING", (f"two corners that meet, upper {side} by 1e-6; friction {friction}",)),
             card(f"INCLUDE, INPUT={side}.inc"),
-            card("SURFACE INTERACTION, NAME=DRY"),
-            card("FRICTION", (friction,)),
-            card(f"STEP, NLGEOM, INC={INCREMENTS}"),
-            card("DYNAMIC, DIRECT", (DT, INCREMENTS * DT)),
-            card("OUTPUT, FIELD, NUMBER INTERVAL=150"),
-            card("END STEP"),
+            dry(friction),
+            step(DT, INCREMENTS, card("OUTPUT, FIELD, NUMBER INTERVAL=150")),
         ]
     )
 

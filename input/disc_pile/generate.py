@@ -8,8 +8,9 @@ from random import Random
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "scripts"))
 
+from cards import card, dry, elastic, step  # noqa: E402
 from deck import write_to_folder  # noqa: E402
-from quads import Grid, Mesh, card, disc  # noqa: E402
+from quads import Grid, Mesh, disc  # noqa: E402
 
 YOUNG, POISSON, DENSITY, THICKNESS = 4000.0, 0.3, 1.0, 1.0
 GRAVITY, FRICTION = 10.0, 0.3
@@ -87,23 +88,19 @@ def deck() -> str:
             card("NSET, NSET=BOX", [wall.name for wall in walls]),
             card("ELSET, ELSET=BOX", [wall.name for wall in walls]),
             card("ELSET, ELSET=DISCS, GENERATE", (first, last, 1)),
-            card("MATERIAL, NAME=ELASTIC"),
-            card("ELASTIC", (YOUNG, POISSON)),
-            card("DENSITY", (DENSITY,)),
-            card("SOLID SECTION, ELSET=BOX, MATERIAL=ELASTIC", (THICKNESS,)),
-            card("SOLID SECTION, ELSET=DISCS, MATERIAL=ELASTIC", (THICKNESS,)),
-            card("SURFACE INTERACTION, NAME=DRY"),
-            card("FRICTION", (FRICTION,)),
+            elastic(YOUNG, POISSON, DENSITY, "BOX", "DISCS", thickness=THICKNESS),
+            dry(FRICTION),
             "** Every body against every other, and against itself.\n",
             card("CONTACT"),
             card("CONTACT INCLUSIONS, ALL EXTERIOR"),
             card("CONTACT PROPERTY ASSIGNMENT", ("", "", "DRY")),
             card("BOUNDARY", ("BOX", 1, 2)),
-            card(f"STEP, NLGEOM, INC={INCREMENTS}"),
-            card("DYNAMIC, DIRECT", (DT, INCREMENTS * DT)),
-            card("DLOAD", ("DISCS", "GRAV", GRAVITY, 0.0, -1.0)),
-            card("OUTPUT, FIELD, NUMBER INTERVAL=200"),
-            card("END STEP"),
+            step(
+                DT,
+                INCREMENTS,
+                card("DLOAD", ("DISCS", "GRAV", GRAVITY, 0.0, -1.0)),
+                card("OUTPUT, FIELD, NUMBER INTERVAL=200"),
+            ),
         ]
     )
 

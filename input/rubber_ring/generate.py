@@ -6,8 +6,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "scripts"))
 
+from cards import card, dry, step  # noqa: E402
 from deck import write_to_folder  # noqa: E402
-from quads import card, outline, ring  # noqa: E402
+from quads import outline, ring  # noqa: E402
 
 C10, D1, DENSITY, THICKNESS = 100.0, 2.0e-3, 1.0, 1.0
 """Shear modulus 2 C10 = 200, bulk modulus 2/D1 = 1000."""
@@ -59,12 +60,8 @@ def problem(friction: float) -> str:
         [
             card("HEADING", (f"a rubber ring thrown on the floor; friction {friction}",)),
             card(f"INCLUDE, INPUT={INCLUDE}"),
-            card("SURFACE INTERACTION, NAME=DRY"),
-            card("FRICTION", (friction,)),
-            card(f"STEP, NLGEOM, INC={INCREMENTS}"),
-            card("DYNAMIC, DIRECT", (DT, INCREMENTS * DT)),
-            card("OUTPUT, FIELD, NUMBER INTERVAL=100"),
-            card("END STEP"),
+            dry(friction),
+            step(DT, INCREMENTS, card("OUTPUT, FIELD, NUMBER INTERVAL=100")),
         ]
     )
 

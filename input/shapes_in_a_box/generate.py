@@ -8,8 +8,9 @@ from random import Random
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "scripts"))
 
+from cards import card, elastic, step  # noqa: E402
 from deck import write_to_folder  # noqa: E402
-from quads import Grid, Mesh, card  # noqa: E402
+from quads import Grid, Mesh  # noqa: E402
 
 YOUNG, POISSON, DENSITY, THICKNESS = 6000.0, 0.3, 1.0, 1.0
 GRAVITY, SPEED = 9.81, 3.0
@@ -110,11 +111,7 @@ def deck(name: str) -> str:
             card("NSET, NSET=BOX", [wall.name for wall in walls]),
             card("ELSET, ELSET=BOX", [wall.name for wall in walls]),
             card("ELSET, ELSET=SHAPES, GENERATE", (first, last, 1)),
-            card("MATERIAL, NAME=ELASTIC"),
-            card("ELASTIC", (YOUNG, POISSON)),
-            card("DENSITY", (DENSITY,)),
-            card("SOLID SECTION, ELSET=BOX, MATERIAL=ELASTIC", (THICKNESS,)),
-            card("SOLID SECTION, ELSET=SHAPES, MATERIAL=ELASTIC", (THICKNESS,)),
+            elastic(YOUNG, POISSON, DENSITY, "BOX", "SHAPES", thickness=THICKNESS),
             card("SURFACE INTERACTION, NAME=DRY"),
             card("FRICTION", (FRICTION[name],)),
             card("CONTACT"),
@@ -122,11 +119,12 @@ def deck(name: str) -> str:
             card("CONTACT PROPERTY ASSIGNMENT", ("", "", "DRY")),
             card("BOUNDARY", ("BOX", 1, 2)),
             card("INITIAL CONDITIONS, TYPE=VELOCITY", *thrown),
-            card(f"STEP, NLGEOM, INC={INCREMENTS}"),
-            card("DYNAMIC, DIRECT", (DT, INCREMENTS * DT)),
-            card("DLOAD", ("SHAPES", "GRAV", GRAVITY, 0.0, -1.0)),
-            card("OUTPUT, FIELD, NUMBER INTERVAL=200"),
-            card("END STEP"),
+            step(
+                DT,
+                INCREMENTS,
+                card("DLOAD", ("SHAPES", "GRAV", GRAVITY, 0.0, -1.0)),
+                card("OUTPUT, FIELD, NUMBER INTERVAL=200"),
+            ),
         ]
     )
 

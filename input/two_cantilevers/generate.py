@@ -7,7 +7,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "scripts"))
 
-from quads import Grid, card  # noqa: E402
+from cards import card, elastic  # noqa: E402
+from quads import Grid  # noqa: E402
 
 YOUNG = 4000.0
 POISSON = 0.3
@@ -49,11 +50,7 @@ def model(refine: int = 1) -> str:
             lower.side_nodes("LOWER_CLAMP", "right"),
             upper.side_surface("UPPER_FACE", "bottom"),
             lower.side_surface("LOWER_FACE", "top"),
-            card("MATERIAL, NAME=ELASTIC"),
-            card("ELASTIC", (YOUNG, POISSON)),
-            card("DENSITY", (DENSITY,)),
-            card("SOLID SECTION, ELSET=UPPER, MATERIAL=ELASTIC", (THICKNESS,)),
-            card("SOLID SECTION, ELSET=LOWER, MATERIAL=ELASTIC", (THICKNESS,)),
+            elastic(YOUNG, POISSON, DENSITY, "UPPER", "LOWER", thickness=THICKNESS),
             card("CONTACT PAIR, INTERACTION=INTERFACE", ("UPPER_FACE", "LOWER_FACE")),
             card("BOUNDARY", ("UPPER_CLAMP", 1, 2), ("LOWER_CLAMP", 1, 2)),
         ]

@@ -4,8 +4,9 @@ import runpy
 from math import cos, pi, sin
 from pathlib import Path
 
+from cards import card, elastic, step
 from deck import Card, Deck
-from quads import Grid, card
+from quads import Grid
 
 ROOT = Path(__file__).resolve().parents[2]
 BLOCK = ROOT / "input" / "block_slope"
@@ -49,19 +50,6 @@ def body(
     return grid.mesh("CPS4") + card("INITIAL CONDITIONS, TYPE=VELOCITY", *rows)
 
 
-def material(young: float, density: float, *sets: str) -> str:
-    """A material and the sections made of it."""
-    sections = [card(f"SOLID SECTION, ELSET={name}, MATERIAL=ELASTIC", (1.0,)) for name in sets]
-    parts = [card("MATERIAL, NAME=ELASTIC"), card("ELASTIC", (young, 0.3))]
-    return "".join([*parts, card("DENSITY", (density,)), *sections])
-
-
-def step(dt: float, increments: int, *cards: str) -> str:
-    """A step without loads and the default settings."""
-    head = card(f"STEP, NLGEOM, INC={increments}")
-    return "".join([head, card("DYNAMIC, DIRECT", (dt, increments * dt)), *cards, card("END STEP")])
-
-
 def parse(text: str, folder: Path) -> Deck:
     """A deck from its text."""
     path = folder / "deck.inp"
@@ -80,7 +68,7 @@ def spinning_bar(folder: Path) -> Deck:
     rows += [(bar.node(i, j), 2, 2.0 + bar.place(i, j)[0]) for j in range(3) for i in range(21)]
     text = card("HEADING", ("spinning, vibrating bar",)) + bar.mesh("CPS4")
     text += card("INITIAL CONDITIONS, TYPE=VELOCITY", *rows)
-    text += material(1e4, 1.0, "BAR") + step(0.02, 300)
+    text += elastic(1e4, 0.3, 1.0, "BAR") + step(0.02, 300)
     return parse(text, folder)
 
 
@@ -100,7 +88,7 @@ def oblique_impact(friction: float, folder: Path) -> Deck:
             card("HEADING", (f"oblique impact of two free bodies, friction {friction}",)),
             body(beam, (0.0, 0.4), 0.0, (0.0, 0.0)),
             body(block, (0.8, -1.0), 0.05, centre),
-            material(1000.0, 1.0, "BEAM", "BLOCK"),
+            elastic(1000.0, 0.3, 1.0, "BEAM", "BLOCK"),
             block.side_surface("BLOCK_FACE", "bottom"),
             beam.side_surface("BEAM_FACE", "top"),
             card("SURFACE INTERACTION, NAME=INTERFACE"),

@@ -7,8 +7,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "scripts"))
 
+from cards import card, elastic  # noqa: E402
 from deck import write_to_folder  # noqa: E402
-from quads import Grid, card  # noqa: E402
+from quads import Grid  # noqa: E402
 
 YOUNG = 1000.0
 DENSITY = 1.0
@@ -44,11 +45,7 @@ def model() -> str:
             bar.side_nodes("BAR_FACE", "left"),
             bar.side_surface("BAR_FACE", "left"),
             wall.side_surface("WALL_FACE", "right"),
-            card("MATERIAL, NAME=ELASTIC"),
-            card("ELASTIC", (YOUNG, 0.0)),
-            card("DENSITY", (DENSITY,)),
-            card("SOLID SECTION, ELSET=BAR, MATERIAL=ELASTIC", (THICKNESS,)),
-            card("SOLID SECTION, ELSET=WALL, MATERIAL=ELASTIC", (THICKNESS,)),
+            elastic(YOUNG, 0.0, DENSITY, "BAR", "WALL", thickness=THICKNESS),
             card("SURFACE INTERACTION, NAME=SMOOTH"),
             card("CONTACT PAIR, INTERACTION=SMOOTH", ("BAR_FACE", "WALL_FACE")),
             card("BOUNDARY", ("WALL", 1, 2), ("BAR", 2, 2)),
