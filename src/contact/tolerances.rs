@@ -67,6 +67,9 @@ pub(crate) const KEPT_WHEN_SETTLED: f64 = 1e-3;
 /// Overlap below which an open pair stays open once the passes have settled, so that a force does
 /// not alternate between two nodes that face each other.
 pub(crate) const SETTLED_OVERLAP: f64 = 1e-10;
+/// Gap of a closed pair, and slip of a sticking one, that is round-off: what positions and solves leave
+/// of it.
+pub(crate) const SOLVED_GAP: f64 = 1e-12;
 
 // Crossing and penetration.
 

@@ -71,11 +71,7 @@ pub(super) fn segment_rows(nodes: [usize; 3], at: &Configurations) -> SegmentRow
 /// Force rows of the end configuration, eq. (3.4): e_n at s, -(1 - xi) e_n at a, -xi e_n at b; the
 /// same with e_t. The normal row is the derivative of the gap; the slip e_t.w has the derivative of
 /// eq. (3.9).
-fn end_rows(
-    p: &Projection,
-    start: [[f64; 2]; 3],
-    end: [[f64; 2]; 3],
-) -> (RowPair, RowPair) {
+fn end_rows(p: &Projection, start: [[f64; 2]; 3], end: [[f64; 2]; 3]) -> (RowPair, RowPair) {
     let weights = [1.0, -(1.0 - p.xi), -p.xi];
     let row = |e: [f64; 2]| -> [f64; 6] { std::array::from_fn(|k| weights[k / 2] * e[k % 2]) };
     let (normal, tangential) = (row(p.normal), row(p.tangent));
@@ -86,7 +82,10 @@ fn end_rows(
     // Gt = Bt + (e_n.w)/l (e_n at b, -e_n at a) - (e_t.d_e) Gxi
     // Gxi = (Bt + g/l (e_n at b, -e_n at a))/l, eq. (3.9)
     let turn = nodal([0.0; 2], p.normal);
-    let (across, along) = (dot(p.normal, w) / p.length, dot(p.tangent, stretch) / p.length);
+    let (across, along) = (
+        dot(p.normal, w) / p.length,
+        dot(p.tangent, stretch) / p.length,
+    );
     let slope = std::array::from_fn(|k| {
         tangential[k] + across * turn[k] - along * (tangential[k] + p.gap / p.length * turn[k])
     });

@@ -4,8 +4,10 @@
 use super::active_constraints::ConstraintSet;
 use super::contact_forces::ContactForces;
 use super::contact_system::ContactSystem;
-use super::convergence::{Errors, Pass};
+use super::convergence::{Errors, Iterate, Pass};
 use super::impulses::Impulses;
+use super::refactorization::{FactorRule, Refactorization};
+use super::rigid_predictor::rigid_predictor;
 use super::trace::{Failed, Trace};
 use crate::contact::{ClosedPairs, Constraint};
 use crate::dynamics::results::{Cause, PassReport, State};
@@ -14,8 +16,6 @@ use crate::elements::Updated;
 use crate::linear::LinearError;
 use crate::model::Factorization;
 
-/// Passes that one factorisation serves within an increment.
-const KEPT_PASSES: usize = 8;
 /// Passes after which slave nodes keep their targets.
 const SEARCHING_PASSES: usize = 4;
 
@@ -64,24 +64,36 @@ impl<'m> Attempt<'_, 'm> {
     /// Solves the increment; `before` are the pairs closed in the last one.
     pub fn solve(mut self, before: &ClosedPairs) -> Result<Solved, Failed> {
         let mut trace = Trace::default();
-        match self.passes(before, &mut trace) {
-            Ok(solved) => Ok(Solved {
-                passes: trace.passes,
-                ..solved
-            }),
-            Err(cause) => Err(trace.failed(cause)),
+        let mut failed = Cause::NotConverged;
+        for rule in FactorRule::ALL {
+            let mut factors = Refactorization::new(rule, self.problem.settings.tolerance);
+            match self.passes(before, &mut factors, &mut trace) {
+                Ok(solved) => {
+                    return Ok(Solved {
+                        passes: trace.passes,
+                        ..solved
+                    });
+                }
+                Err(cause) => failed = cause,
+            }
         }
+        Err(trace.failed(failed))
     }
 
     /// Predictor and correctors, which share one form (paper eqs 27, 29 and 36 to 49).
-    fn passes(&mut self, before: &ClosedPairs, trace: &mut Trace) -> Result<Solved, Cause> {
+    fn passes(
+        &mut self,
+        before: &ClosedPairs,
+        factors: &mut Refactorization,
+        trace: &mut Trace,
+    ) -> Result<Solved, Cause> {
         let (problem, start, dt) = (self.problem, self.start, self.interval.dt);
         let mut contact = ContactForces::without_constraints(before);
         let mut impulses = Impulses::new(before, self.set);
         self.workspace.search.start(&start.v, dt);
 
-        // the predictor starts from U0
-        let mut d = vec![0.0; start.u.len()];
+        // the passes start from the rigid motion of the bodies
+        let mut d = rigid_predictor(problem, start, self.interval);
         for pass in 0..problem.settings.max_passes {
             // g, Dt and their rows in the iterate U = U0 + d
             let u = sum(&start.u, &d);
@@ -96,16 +108,31 @@ impl<'m> Attempt<'_, 'm> {
             let r = equilibrium.out_of_balance();
             trace.balance(&problem.unknowns.restrict(&r));
 
+            // the forces at hand may balance r and close the gaps of the iterate
+            contact.relinearize(constraints);
+            if pass > 0 && impulses.are_at_rest() && factors.are_near() {
+                let iterate = Iterate {
+                    equilibrium: &equilibrium,
+                    contact: &contact,
+                    displacements: [&u, &d],
+                };
+                if self.is_solved(&iterate, settled, trace)? {
+                    trace.worst = None;
+                    contact.add_open(self.outside(left_out, &u));
+                    return self.finish(v0p, d, contact, impulses);
+                }
+            }
+
             // y = K*^-1 r, K* of eq. (4.6), and d_p at the supports, which takes the force theta2 K d_p
-            self.refresh(pass, &u, &equilibrium.u_theta)?;
-            let d_p = self.prescribed_increment(pass);
+            self.refresh(factors, &u, &equilibrium.u_theta)?;
+            let d_p = self.prescribed_increment(pass, &u);
             let support_force = self.support_force(&d_p, &u, &equilibrium.u_theta);
             let r = difference(&r, &support_force);
             let y = self.k_star().respond(&d_p, &r)?;
 
             // Pn, Pt of the complementarity problem, eq. (5.2);
             // dU = y + K*^-1 (Bn^T Pn + Bt^T Pt), eq. (4.7)
-            let du = contact.solve(constraints, &y, settled, &mut self.k_star())?;
+            let du = contact.solve(&y, settled, &mut self.k_star())?;
 
             // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales
             let measured = Pass {
@@ -124,6 +151,7 @@ impl<'m> Attempt<'_, 'm> {
                 contact.add_open(self.outside(left_out, &u));
                 return self.finish(v0p, d, contact, impulses);
             }
+            factors.take_in(trace.correction())?;
         }
         Err(Cause::NotConverged)
     }
@@ -157,12 +185,12 @@ impl<'m> Attempt<'_, 'm> {
         }
     }
 
-    /// The increment d_p of what is prescribed, which the predictor makes; then zero.
-    fn prescribed_increment(&self, pass: usize) -> Vec<f64> {
-        let (unknowns, u0) = (&self.problem.unknowns, &self.start.u);
+    /// What the predictor `u` leaves of the prescribed motion, d_p, which the first pass makes; then
+    /// zero.
+    fn prescribed_increment(&self, pass: usize, u: &[f64]) -> Vec<f64> {
         match pass {
-            0 => unknowns.prescribed_increment(u0, self.interval.end),
-            _ => vec![0.0; u0.len()],
+            0 => (self.problem.unknowns).prescribed_increment(u, self.interval.end),
+            _ => vec![0.0; u.len()],
         }
     }
 
@@ -176,14 +204,19 @@ impl<'m> Attempt<'_, 'm> {
     }
 
     /// Factorises K* anew when the rules say so.
-    fn refresh(&mut self, pass: usize, u: &[f64], u_theta: &[f64]) -> Result<(), Cause> {
+    fn refresh(
+        &mut self,
+        factors: &mut Refactorization,
+        u: &[f64],
+        u_theta: &[f64],
+    ) -> Result<(), Cause> {
         let (problem, dt) = (self.problem, self.interval.dt);
         let every = problem.settings.factorization == Factorization::EveryPass;
-        let worn = pass > 0 && pass.is_multiple_of(KEPT_PASSES);
-        let near = self.set.length_tolerance();
-        if self.workspace.stiffness.fits(dt, near) && !every && !worn {
+        let fits = (self.workspace.stiffness).fits(dt, self.set.length_tolerance());
+        if fits && !every && !factors.are_worn() {
             return Ok(());
         }
+        factors.renew();
         let motion = (problem.weights).motion(self.start, u, u_theta);
         let factorized = (self.workspace).factorize(problem, dt, motion);
         factorized.map_err(|error| match error {
@@ -192,6 +225,23 @@ impl<'m> Attempt<'_, 'm> {
             },
             other => other.into(),
         })
+    }
+
+    /// Whether the forces at hand balance the iterate and its gaps and slips are those of the contact
+    /// law.
+    fn is_solved(
+        &mut self,
+        iterate: &Iterate,
+        settled: bool,
+        trace: &mut Trace,
+    ) -> Result<bool, Cause> {
+        let (problem, stiffness) = (self.problem, &self.workspace.stiffness);
+        let solved = iterate.residual(problem, stiffness, settled)?;
+        if let Some(residual) = solved {
+            trace.solved(residual);
+            self.workspace.meter.counts.residual = residual;
+        }
+        Ok(solved.is_some())
     }
 
     /// Compares residual and correction of a pass with their scales; whether it has converged.

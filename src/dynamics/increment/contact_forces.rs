@@ -28,6 +28,16 @@ impl ContactForces {
         }
     }
 
+    /// Takes over the constraints of the next iterate, with the forces at hand.
+    pub fn relinearize(&mut self, constraints: Vec<Constraint>) {
+        self.constraints = constraints;
+    }
+
+    /// Whether every force at hand belongs to a constraint of the iterate.
+    pub fn all_have_constraints(&self) -> bool {
+        self.acting().count() == self.closed.len()
+    }
+
     /// Adds constraints that carry no force.
     pub fn add_open(&mut self, constraints: Vec<Constraint>) {
         self.constraints.extend(constraints);
@@ -38,6 +48,7 @@ impl ContactForces {
         let mut closed = self.closed.iter().peekable();
         let constraints = self.constraints.iter();
         constraints.map(move |constraint| {
+            while closed.next_if(|pair| pair.key < constraint.key).is_some() {}
             let own = closed.next_if(|pair| pair.key == constraint.key);
             (constraint, own)
         })
@@ -68,13 +79,12 @@ impl ContactForces {
     /// force, and it must not go to and fro between them.
     pub(super) fn solve(
         &mut self,
-        constraints: Vec<Constraint>,
         y: &[f64],
         settled: bool,
         system: &mut ContactSystem,
     ) -> Result<Vec<f64>, Cause> {
-        let before = std::mem::take(self).closed;
-        self.constraints = constraints;
+        let before = std::mem::take(&mut self.closed);
+        (self.problem_size, self.pivots) = (0, 0);
         let overlap = if settled { SETTLED_OVERLAP } else { 0.0 };
         let was_closed = |constraint: &Constraint| before.closes(constraint.key);
         let mut inside: Vec<bool> = self.constraints.iter().map(was_closed).collect();
@@ -172,7 +182,8 @@ mod tests {
             method,
         };
         let mut forces = ContactForces::default();
-        let solved = forces.solve(vec![wide(mu)], &[0.5; DOFS], false, &mut system);
+        forces.relinearize(vec![wide(mu)]);
+        let solved = forces.solve(&[0.5; DOFS], false, &mut system);
         let du = solved.expect("solved");
         let pair = forces.closed.iter().next().expect("closed");
         (pair.force, pair.state, du)

@@ -45,11 +45,35 @@ impl Guess {
 
 impl ContactSystem<'_> {
     /// Forces of the given constraints from the constant terms of their gaps and slips.
+    ///
+    /// Where a problem with derivative rows has no solution, that with the force rows in their place is
+    /// solved: Q is then symmetric and the theorem of section 8 holds.
     pub fn solve(
         &mut self,
         constraints: &[&Constraint],
-        [gaps, slips]: [Vec<f64>; 2],
+        constant_terms: [Vec<f64>; 2],
         guess: Guess,
+    ) -> Result<ContactSolution, Cause> {
+        let with_derivatives = self.solve_once(constraints, constant_terms.clone(), &guess);
+        let are_other = constraints
+            .iter()
+            .any(|c| c.other_derivative_rows.is_some());
+        match with_derivatives {
+            Err(Cause::Lcp(_)) if are_other => {
+                let symmetric: Vec<Constraint> =
+                    constraints.iter().map(|c| c.with_force_rows()).collect();
+                let symmetric: Vec<&Constraint> = symmetric.iter().collect();
+                self.solve_once(&symmetric, constant_terms, &guess)
+            }
+            solved => solved,
+        }
+    }
+
+    fn solve_once(
+        &mut self,
+        constraints: &[&Constraint],
+        [gaps, slips]: [Vec<f64>; 2],
+        guess: &Guess,
     ) -> Result<ContactSolution, Cause> {
         let mut problem = self.system.frictional_lcp(constraints, gaps, slips)?;
         if let Some(forces) = &guess.nearest {

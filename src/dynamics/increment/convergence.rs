@@ -2,13 +2,16 @@
 //! round-off floor. Section 4 of docs/theory.md, Convergence.
 
 use super::contact_forces::ContactForces;
+use crate::contact::tolerances::{SETTLED_OVERLAP, SOLVED_GAP};
 use crate::dynamics::results::{Cause, PassReport, Worst};
-use crate::dynamics::step::{EffectiveStiffness, Equilibrium, Parts, StepProblem, check_finite};
+use crate::dynamics::step::{
+    EffectiveStiffness, Equilibrium, Parts, StepProblem, check_finite, sum,
+};
+use crate::lcp::ContactState;
 use crate::linear::{larger, largest};
 
 /// Round-off of a sum of some terms, in units of its largest term.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
-
 /// Forces and displacements of a pass, over all dofs.
 pub(crate) struct Pass<'a> {
     /// Load, internal force and inertia of the iterate.
@@ -78,6 +81,49 @@ impl Pass<'_> {
             }
         }
         positions
+    }
+}
+
+/// An iterate with the contact forces of the pass before, linearised at it.
+pub(crate) struct Iterate<'a> {
+    pub equilibrium: &'a Equilibrium,
+    /// Constraints of the iterate and the forces at hand.
+    pub contact: &'a ContactForces,
+    /// Displacement U and increment d = U - U0.
+    pub displacements: [&'a Vec<f64>; 2],
+}
+
+impl Iterate<'_> {
+    /// The relative residual, if the iterate is solved: residual, gaps and slips are below the tolerance,
+    /// or round-off.
+    pub fn residual(
+        &self,
+        problem: &StepProblem,
+        stiffness: &EffectiveStiffness,
+        settled: bool,
+    ) -> Result<Option<f64>, Cause> {
+        if !self.contact.all_have_constraints() {
+            return Ok(None);
+        }
+        let [u, d] = self.displacements;
+        let none = vec![0.0; u.len()];
+        let r = self.equilibrium.out_of_balance();
+        let pass = Pass {
+            equilibrium: self.equilibrium,
+            support_force: &none,
+            r: &r,
+            contact: self.contact,
+            displacements: [u, d, &none],
+        };
+        let contact_force = self.contact.resultant(u.len());
+        pass.check_finite(&contact_force)?;
+        let scales = pass.scales(problem, stiffness, &contact_force);
+        let residual = problem.unknowns.restrict(&sum(&r, &contact_force));
+        let errors = Errors::new(problem.parts, &residual, &problem.unknowns.dof, &none);
+        if !scales.converged(&errors) || !scales.obeys_contact_law(self.contact, settled) {
+            return Ok(None);
+        }
+        Ok(Some(scales.report(&errors, self.contact).residual))
     }
 }
 
@@ -199,6 +245,31 @@ impl<'a> Scales<'a> {
         (0..self.increment.len()).all(|body| {
             let most = larger(self.tolerance * self.increment[body], self.resolution[body]);
             is_noise[body] || errors.correction[body] <= most
+        })
+    }
+
+    /// Whether gaps and slips of the constraints are those of the contact law to the tolerance: closed
+    /// gaps zero, open ones not negative, no slip where a pair sticks, none along its friction where it
+    /// slides.
+    pub fn obeys_contact_law(&self, contact: &ContactForces, settled: bool) -> bool {
+        let overlap = if settled { SETTLED_OVERLAP } else { 0.0 };
+        contact.iter().all(|(constraint, pair)| {
+            let of_body =
+                |body: usize| larger(self.tolerance * self.increment[body], self.resolution[body]);
+            let bodies = constraint.nodes().map(|node| self.parts.of_nodes()[node]);
+            let most = bodies
+                .map(of_body)
+                .fold(SOLVED_GAP * constraint.scale, larger);
+            match pair {
+                None => constraint.gap >= -larger(most, overlap * constraint.scale),
+                Some(pair) => {
+                    let slips_along = match pair.state {
+                        ContactState::Stick => constraint.slip.abs(),
+                        state => -state.slip_sign() * constraint.slip,
+                    };
+                    constraint.gap.abs() <= most && (constraint.mu == 0.0 || slips_along <= most)
+                }
+            }
         })
     }
 

@@ -21,6 +21,7 @@ pub(crate) struct Impulses {
     /// The pairs that touch at the start and have impulses in any case.
     pub touching: ClosedPairs,
     changes: usize,
+    at_rest: bool,
     /// V0+ of the last pass with the constraints that it is for.
     last: Option<(Vec<Constraint>, Vec<f64>)>,
     /// Phi, Psi of the last pass.
@@ -35,6 +36,7 @@ impl Impulses {
             closed: before.clone(),
             touching: set.touching(),
             changes: 0,
+            at_rest: false,
             last: None,
             acting: ContactForces::default(),
         }
@@ -80,12 +82,18 @@ impl Impulses {
         Ok(v0p)
     }
 
+    /// Whether the set of pairs stayed the same after the last pass.
+    pub fn are_at_rest(&self) -> bool {
+        self.at_rest
+    }
+
     /// Takes over the pairs in contact after a pass; whether they are the same as before. After
     /// some changes the set is kept: impulses of any set take energy, never give it.
     pub fn rest(&mut self, problem: &StepProblem, closed: &ClosedPairs) -> bool {
         let rest = problem.settings.impact == Impact::None
             || self.free_keys(closed).eq(self.free_keys(&self.closed))
             || self.changes >= SET_CHANGES;
+        self.at_rest = rest;
         if !rest {
             self.closed.clone_from(closed);
             self.changes += 1;

@@ -6,6 +6,8 @@ mod contact_forces;
 mod contact_system;
 mod convergence;
 mod impulses;
+mod refactorization;
+mod rigid_predictor;
 mod trace;
 
 pub(crate) use active_constraints::{ActiveConstraints, ConstraintSet};

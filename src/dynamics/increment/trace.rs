@@ -27,6 +27,20 @@ impl Trace {
         self.unbalanced = Some([first, force]);
     }
 
+    /// Relative correction of the last pass.
+    pub fn correction(&self) -> f64 {
+        self.passes
+            .last()
+            .map_or(f64::INFINITY, |pass| pass.correction)
+    }
+
+    /// The iterate of the last pass is solved to the given residual.
+    pub fn solved(&mut self, residual: f64) {
+        if let Some(pass) = self.passes.last_mut() {
+            pass.residual = residual;
+        }
+    }
+
     /// The failure of the attempt.
     pub fn failed(self, cause: Cause) -> Failed {
         Failed {

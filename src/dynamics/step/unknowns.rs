@@ -90,11 +90,11 @@ impl<'m> Unknowns<'m> {
         &self.constrained
     }
 
-    /// Displacement increment g(t) - u0 of the supports; zero at free dofs.
-    pub fn prescribed_increment(&self, u0: &[f64], end: TimePoint) -> Vec<f64> {
-        let mut d = vec![0.0; u0.len()];
-        for (dof, u, _) in self.supports.motion(end) {
-            d[dof] = u - u0[dof];
+    /// Displacement g(t) - u that is left of the motion of the supports; zero at free dofs.
+    pub fn prescribed_increment(&self, u: &[f64], end: TimePoint) -> Vec<f64> {
+        let mut d = vec![0.0; u.len()];
+        for (dof, prescribed, _) in self.supports.motion(end) {
+            d[dof] = prescribed - u[dof];
         }
         self.follow(&mut d);
         d

@@ -1,0 +1,109 @@
+//! When K* is factorised anew: by the measured rate of the corrections. Section 4 of docs/theory.md,
+//! Factors.
+
+use crate::dynamics::results::Cause;
+
+/// Correction of a pass beside the increment above which its iterate is no solution, whatever the forces
+/// say.
+const NEAR: f64 = 1e-4;
+/// Rate at which fresh factors converge.
+const FRESH_RATE: f64 = 0.03;
+/// Cost of a factorisation, in passes.
+const COST: f64 = 1.0;
+/// Rate of the first two corrections above which factors of an earlier increment are dropped.
+const POOR_RATE: f64 = 0.3;
+/// Passes in a row that grow the correction of an attempt with fresh factors before it is given up.
+const GROWING: usize = 3;
+
+/// Which factors an attempt uses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum FactorRule {
+    /// Those at hand, as long as they pay.
+    Kept,
+    /// Those of its predictor, as long as they pay.
+    Fresh,
+    /// New ones at every pass.
+    EveryPass,
+}
+
+impl FactorRule {
+    /// The rules in the order in which they are tried.
+    pub const ALL: [FactorRule; 3] = [FactorRule::Kept, FactorRule::Fresh, FactorRule::EveryPass];
+}
+
+/// Factors of K* within an attempt.
+pub(super) struct Refactorization {
+    rule: FactorRule,
+    tolerance: f64,
+    /// Passes done.
+    passes: usize,
+    /// Whether the factors are of this attempt.
+    own: bool,
+    /// Passes since the last factorisation.
+    age: usize,
+    worn: bool,
+    correction: f64,
+    growing: usize,
+}
+
+impl Refactorization {
+    pub fn new(rule: FactorRule, tolerance: f64) -> Self {
+        Refactorization {
+            rule,
+            tolerance,
+            passes: 0,
+            own: false,
+            age: 0,
+            worn: rule != FactorRule::Kept,
+            correction: f64::INFINITY,
+            growing: 0,
+        }
+    }
+
+    /// Whether K* is to be factorised before the next pass.
+    pub fn are_worn(&self) -> bool {
+        self.worn
+    }
+
+    /// K* is factorised.
+    pub fn renew(&mut self) {
+        (self.own, self.age) = (true, 0);
+    }
+
+    /// Whether the last correction was so small that the iterate may be the solution.
+    pub fn are_near(&self) -> bool {
+        self.correction < NEAR
+    }
+
+    /// Takes in the relative correction of a pass.
+    ///
+    /// n(theta) = ln(correction/tolerance)/-ln(theta) passes are left at the rate theta; the factors are
+    /// worn when that is more than with fresh ones and the factorisation.
+    pub fn take_in(&mut self, correction: f64) -> Result<(), Cause> {
+        let rate = correction / self.correction;
+        let is_first = self.correction == f64::INFINITY;
+        self.passes += 1;
+        self.age += 1;
+        self.correction = correction;
+        if is_first {
+            self.worn = self.rule == FactorRule::EveryPass;
+            return Ok(());
+        }
+        self.growing = if rate >= 1.0 { self.growing + 1 } else { 0 };
+        if (self.rule == FactorRule::Kept && !self.own && rate > POOR_RATE && self.passes <= 3)
+            || (self.rule != FactorRule::EveryPass && self.growing >= GROWING)
+        {
+            return Err(Cause::NotConverged);
+        }
+        let left = |rate: f64| {
+            if rate < 1.0 {
+                ((correction / self.tolerance).ln() / -rate.ln()).max(0.0)
+            } else {
+                99.0
+            }
+        };
+        self.worn = self.rule == FactorRule::EveryPass
+            || (self.age >= 2 && left(rate) > COST + left(FRESH_RATE));
+        Ok(())
+    }
+}

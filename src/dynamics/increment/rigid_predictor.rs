@@ -1,0 +1,141 @@
+//! Predictor of the passes: bodies that are free, or turn about one node, go on as rigid bodies with
+//! finite rotation. Section 4 of docs/theory.md, Predictor.
+
+use crate::dynamics::results::State;
+use crate::dynamics::step::{Interval, StepProblem};
+use crate::vectors::{cross, difference};
+
+/// How a body is held.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Hold {
+    Free,
+    /// Both dofs of this node are prescribed, and no others.
+    Pinned(usize),
+    /// More is prescribed, or equations tie it.
+    Held,
+}
+
+/// Sums over the nodes of a body.
+#[derive(Debug, Clone, Copy, Default)]
+struct RigidMotion {
+    mass: f64,
+    /// What the body turns about: its centre of mass, or the pin.
+    pole: [f64; 2],
+    /// Displacement of the pole.
+    shift: [f64; 2],
+    /// Angular momentum about the pole.
+    momentum: f64,
+    /// Moment of inertia about the pole.
+    inertia: f64,
+}
+
+/// Displacement increment, over all dofs, of the bodies that may move as rigid bodies; zero elsewhere.
+///
+/// ```text
+/// d = shift + (R - 1) r,  R the rotation by 2 atan(omega dt/2),  omega = H/I
+/// ```
+///
+/// r from the centre of mass, which moves by dt v_c, or from the pin. The first pass is linear about
+/// this configuration: from U0 a body that turns by the angle phi would be stretched by phi²/2.
+pub(super) fn rigid_predictor(
+    problem: &StepProblem,
+    start: &State,
+    interval: Interval,
+) -> Vec<f64> {
+    let mut d = vec![0.0; start.u.len()];
+    if start.v.iter().all(|&v| v == 0.0) {
+        return d;
+    }
+    let (body_of, dt) = (problem.parts.of_nodes(), interval.dt);
+    let holds = holds(problem);
+    let motions = motions(problem, &holds, start, interval);
+    for (node, &body) in body_of.iter().enumerate() {
+        let RigidMotion {
+            pole,
+            shift,
+            momentum,
+            inertia,
+            ..
+        } = motions[body];
+        if holds[body] == Hold::Held || inertia <= 0.0 {
+            continue;
+        }
+        let (sin, cos) = (2.0 * (momentum / inertia * dt / 2.0).atan()).sin_cos();
+        let [x, y] = difference(pole, problem.position(&start.u, node));
+        d[2 * node] = shift[0] + (cos - 1.0) * x - sin * y;
+        d[2 * node + 1] = shift[1] + sin * x + (cos - 1.0) * y;
+    }
+    d
+}
+
+/// How the bodies are held.
+fn holds(problem: &StepProblem) -> Vec<Hold> {
+    let (parts, unknowns) = (problem.parts, &problem.unknowns);
+    let mut holds = vec![Hold::Free; parts.bodies()];
+    let mut constrained = unknowns.constrained().iter().peekable();
+    while let Some(&dof) = constrained.next() {
+        let body = parts.of_nodes()[dof / 2];
+        let both = dof % 2 == 0 && constrained.next_if(|next| **next == dof + 1).is_some();
+        holds[body] = match holds[body] {
+            Hold::Free if both => Hold::Pinned(dof / 2),
+            _ => Hold::Held,
+        };
+    }
+    for dof in problem
+        .model
+        .equations
+        .iter()
+        .flat_map(|equation| equation.dofs())
+    {
+        holds[parts.of_nodes()[dof / 2]] = Hold::Held;
+    }
+    holds
+}
+
+/// Rigid motion of every body.
+fn motions(
+    problem: &StepProblem,
+    holds: &[Hold],
+    start: &State,
+    interval: Interval,
+) -> Vec<RigidMotion> {
+    let body_of = problem.parts.of_nodes();
+    let share = problem.mass.times(&vec![1.0; start.u.len()]);
+    let mut motions = vec![RigidMotion::default(); holds.len()];
+    let mut rates = start.v.clone();
+    let prescribed = (problem.unknowns).prescribed_increment(&start.u, interval.end);
+    for (node, &body) in body_of.iter().enumerate() {
+        let motion = &mut motions[body];
+        let (m, x) = (share[2 * node], problem.position(&start.u, node));
+        motion.mass += m;
+        for i in 0..2 {
+            motion.pole[i] += m * x[i];
+            motion.shift[i] += m * start.v[2 * node + i];
+        }
+    }
+    for (motion, &hold) in motions.iter_mut().zip(holds) {
+        let (mass, dt) = (motion.mass, interval.dt);
+        motion.pole = motion.pole.map(|sum| sum / mass);
+        motion.shift = motion.shift.map(|sum| dt * sum / mass);
+        if let Hold::Pinned(pin) = hold {
+            motion.pole = problem.position(&start.u, pin);
+            motion.shift = [prescribed[2 * pin], prescribed[2 * pin + 1]];
+        }
+    }
+    // H = sum r x M (v - v_pole), I = sum r.M r
+    let mut arms = vec![0.0; start.u.len()];
+    for (node, &body) in body_of.iter().enumerate() {
+        let r = difference(motions[body].pole, problem.position(&start.u, node));
+        for i in 0..2 {
+            arms[2 * node + i] = r[i];
+            rates[2 * node + i] -= motions[body].shift[i] / interval.dt;
+        }
+    }
+    let (p, weighted) = (problem.mass.times(&rates), problem.mass.times(&arms));
+    for (node, &body) in body_of.iter().enumerate() {
+        let at = |v: &[f64]| [v[2 * node], v[2 * node + 1]];
+        motions[body].momentum += cross(at(&arms), at(&p));
+        motions[body].inertia += crate::vectors::dot(at(&arms), at(&weighted));
+    }
+    motions
+}
