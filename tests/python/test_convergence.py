@@ -38,7 +38,7 @@ def test_attempts_that_were_cut_back_are_read_from_the_log() -> None:
 def deck(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Increments with friction, some of which need more passes than they may have."""
     short = shortened(CORNERS / "corners_left_mu02.inp", 40)
-    short.set_settings(MAX_PASSES=3)
+    short.set_settings(MAX_PASSES=4)
     return short.write(tmp_path_factory.mktemp("deck") / "corners.inp")
 
 
@@ -47,12 +47,13 @@ def test_counts_are_those_of_the_results(deck: Path, tmp_path: Path) -> None:
         rows, cutbacks = len(results.time) - 1, int(results.run["cutbacks"])
         passes, most = results.solver["passes"].sum(), results.solver["passes"].max()
         factorizations = int(results.solver["factorizations"].sum())
-    assert rows > 40 and cutbacks > 5
+    assert rows > 40 and cutbacks > 0
     code, text = compare("convergence.py", program.binary(), deck)
     assert code == 0, text
     numbers = text.splitlines()[1].split()
     assert numbers[:2] == [str(rows), str(cutbacks)]
-    assert numbers[2:5] == [f"{passes / rows:.1f}", str(most), str(3 * cutbacks)]
+    assert numbers[2:4] == [f"{passes / rows:.1f}", str(most)]
+    assert int(numbers[4]) >= 4 * cutbacks
     assert numbers[5] == str(factorizations)
     assert numbers[7].endswith("/corners")
 
@@ -64,7 +65,7 @@ def test_two_programs_stand_side_by_side(deck: Path, tmp_path: Path) -> None:
     assert code == 0, text
     head, _, line, total = text.splitlines()
     assert head.startswith("| deck | increments | cutbacks | passes | max |")
-    assert re.search(r"/corners \| (\d+) / \1 \| .* \| 3 / 31 \| ", line), text
+    assert re.search(r"/corners \| (\d+) / \1 \| .* \| 4 / 31 \| ", line), text
     assert total.startswith("| all: 1 decks |")
 
 

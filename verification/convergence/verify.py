@@ -1,0 +1,79 @@
+"""Convergence of the passes: no cutbacks, few passes, few factorisations."""
+
+import re
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+
+import runner  # noqa: E402  (first: it finds the modules of scripts/)
+import numpy as np  # noqa: E402
+from results import Results  # noqa: E402
+
+MASONRY = ("stack", "arch", "card_house")
+"""Groups of bodies on bodies."""
+
+LOOSE = 1e-7
+"""Tolerance from which the energy balance has a limit of its own."""
+
+
+def element_size(results: Results) -> float:
+    """Length of the shortest edge."""
+    place = results.coordinates
+    return min(
+        float(np.linalg.norm(place[cell] - place[np.roll(cell, -1)], axis=1).min())
+        for cell in results.cells
+    )
+
+
+def first_cutback(results: Results) -> str:
+    """The first cutback with its cause, as the log tells it; nothing without any."""
+    log = results.path.with_suffix(".log").read_text()
+    found = re.search(r"^cutback +(.*)\n +(.*)", log, re.M)
+    return f"{found[1]}: {found[2]}" if found else ""
+
+
+def check(verification: runner.Verification, case: runner.Case, results: Results) -> list[object]:
+    """Checks one case; its row of the table."""
+    name = case.name
+    is_loose = float(case.parameters.get("tolerance", 0.0)) >= LOOSE
+    verification.check_run(name, element_size(results), ", loose tolerance" if is_loose else "")
+    passes = results.solver["passes"][1:]
+    factorizations = int(results.solver["factorizations"].sum())
+    cutbacks = int(results.run["cutbacks"])
+    on_bodies = ", bodies on bodies" if case.group in MASONRY else ""
+    verification.check(f"cutbacks{on_bodies}", name, cutbacks)
+    sheared = ", sheared blocks" if case.group == "blocks" else ""
+    verification.check(f"mean passes{sheared}", name, float(passes.mean()))
+    verification.check("largest number of passes", name, int(passes.max()))
+    if case.group == "rotation":
+        turn = results.time[-1] / 0.3  # it turns by 1 rad in a unit of time
+        verification.check("factorisations per 0.3 rad", name, factorizations / turn)
+    balance = np.abs(results.energy["balance"]).max() / results.largest_energy
+    return [
+        name,
+        len(passes),
+        cutbacks,
+        float(passes.mean()),
+        int(passes.max()),
+        factorizations,
+        float(results.run["seconds_total"]),
+        float(balance),
+        first_cutback(results),
+    ]
+
+
+def main() -> int:
+    """Runs, checks, reports."""
+    verification = runner.start(HERE)
+    cases = verification.cases
+    rows = [check(verification, case, verification.results[case.name]) for case in cases]
+    header = ("case", "increments", "cutbacks", "mean passes", "largest", "factorisations")
+    header += ("seconds", "balance", "first cutback")
+    verification.table("Runs", header, rows)
+    return verification.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
