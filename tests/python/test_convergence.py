@@ -65,7 +65,7 @@ def test_two_programs_stand_side_by_side(deck: Path, tmp_path: Path) -> None:
     assert code == 0, text
     head, _, line, total = text.splitlines()
     assert head.startswith("| deck | increments | cutbacks | passes | max |")
-    assert re.search(r"/corners \| (\d+) / \1 \| .* \| 4 / 31 \| ", line), text
+    assert re.search(r"/corners \| (\d+) / \1 \| .* \| \d+ / 31 \| ", line), text
     assert total.startswith("| all: 1 decks |")
 
 
