@@ -4,7 +4,7 @@
 use super::mean_dilatation::Quad4MeanDilatation;
 use super::quad4::{self, Quad4};
 use super::recovery::ElementResult;
-use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion};
+use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion, TangentPart};
 use super::tri3::{self, Tri3};
 use crate::materials::Committed;
 use crate::model::{ElementType, Formulation, Shape};
@@ -74,9 +74,17 @@ impl AnyElement {
         with_element!(self, element => element.force(material, motion))
     }
 
-    /// Tangent.
-    pub fn tangent(&self, material: &Committed, motion: Motion) -> ElementMatrix {
-        with_element!(self, element => element.tangent(material, motion))
+    /// Tangent, or its positive part.
+    pub fn tangent(
+        &self,
+        material: &Committed,
+        motion: Motion,
+        part: TangentPart,
+    ) -> ElementMatrix {
+        match part {
+            TangentPart::Whole => with_element!(self, e => e.tangent(material, motion)),
+            TangentPart::Positive => with_element!(self, e => e.positive_tangent(material, motion)),
+        }
     }
 
     /// Strain energy, stress and strain at displacements `u`.

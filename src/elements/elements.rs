@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::element::AnyElement;
 use super::recovery::ElementResult;
-use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion};
+use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion, TangentPart};
 use crate::materials::{Committed, ConstitutiveLaw, PlaneLaw};
 use crate::model::Model;
 use std::ops::Range;
@@ -60,9 +60,9 @@ impl Part {
         self.element.force(&self.material(motion.committed), motion)
     }
 
-    fn tangent(&self, motion: Motion) -> ElementMatrix {
+    fn tangent(&self, motion: Motion, part: TangentPart) -> ElementMatrix {
         self.element
-            .tangent(&self.material(motion.committed), motion)
+            .tangent(&self.material(motion.committed), motion, part)
     }
 }
 
@@ -186,14 +186,19 @@ impl Elements {
         Ok(total)
     }
 
-    /// Calls `add(element, k)` with the tangent of every element in order, k being D x D column by
-    /// column, in the configuration of [`Self::internal_force`].
-    pub fn for_each_tangent(&self, motion: Motion, mut add: impl FnMut(usize, &[f64])) {
+    /// Calls `add(element, k)` with the tangent of every element in order, or its positive part, k being
+    /// D x D column by column, in the configuration of [`Self::internal_force`].
+    pub fn for_each_tangent(
+        &self,
+        motion: Motion,
+        part: TangentPart,
+        mut add: impl FnMut(usize, &[f64]),
+    ) {
         for (chunk, parts) in self.parts.chunks(2 * PARALLEL_CHUNK).enumerate() {
             let tangents: Vec<ElementMatrix> = parts
                 .par_iter()
                 .with_min_len(PARALLEL_CHUNK)
-                .map(|part| part.tangent(motion))
+                .map(|element| element.tangent(motion, part))
                 .collect();
             for (i, k) in tangents.iter().enumerate() {
                 let d = 2 * parts[i].element.nodes().len();
@@ -212,7 +217,7 @@ impl Elements {
             if dofs().all(|dof| v[dof] == 0.0) {
                 continue;
             }
-            let (k, d) = (part.tangent(motion), 2 * nodes.len());
+            let (k, d) = (part.tangent(motion, TangentPart::Whole), 2 * nodes.len());
             for (j, column) in dofs().enumerate() {
                 for (i, row) in dofs().enumerate() {
                     product[row] += k[j * d + i] * v[column];

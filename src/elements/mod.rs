@@ -18,4 +18,4 @@ mod tri3;
 
 pub use elements::{Elements, Inverted, Updated};
 pub use recovery::{ElementResult, Strained, most_strained};
-pub use solid::Motion;
+pub use solid::{Motion, TangentPart};

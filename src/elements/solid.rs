@@ -3,7 +3,7 @@
 
 use std::marker::PhantomData;
 
-use nalgebra::SMatrix;
+use nalgebra::{DMatrix, SMatrix, SymmetricEigen};
 
 use super::formulation::{Formulation, evaluate, internal_force, update};
 use super::integration_point::Reference;
@@ -39,6 +39,16 @@ pub struct Motion<'a> {
     pub end: &'a [f64],
     /// Internal variables that the last accepted increment has committed, element by element.
     pub committed: &'a [f64],
+}
+
+/// What of the tangents of the elements a matrix is assembled from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TangentPart {
+    /// All of them.
+    Whole,
+    /// Their positive part: the eigenvalues of every element that are negative are zero instead, so
+    /// that no sum is indefinite, whatever the stresses and the material.
+    Positive,
 }
 
 impl<'a> Motion<'a> {
@@ -109,6 +119,13 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
         result
     }
 
+    /// Positive part of the tangent.
+    pub(super) fn positive_tangent(&self, material: &Committed, motion: Motion) -> ElementMatrix {
+        let mut k = self.tangent(material, motion);
+        take_positive_part(&mut k[..D * D], D);
+        k
+    }
+
     /// Strain energy, stress and strain.
     pub(super) fn evaluate(&self, material: &Committed, u: &[f64]) -> ElementResult {
         evaluate::<F, N, P>(&self.reference, material, &self.gather(u))
@@ -130,5 +147,40 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
             None => Configuration::At(self.gather(motion.end)),
             Some(start) => Configuration::Between(self.gather(start), self.gather(motion.end)),
         }
+    }
+}
+
+/// Round-off and iterations of the eigenvalues of an element, which converge in two or three each.
+const EIGENVALUES: (f64, usize) = (f64::EPSILON, 1000);
+
+/// K+ = sum max(lambda, 0) v v^T over the eigenpairs of a symmetric matrix of size `d`, eq. (4.12), in
+/// its place.
+fn take_positive_part(k: &mut [f64], d: usize) {
+    let whole = DMatrix::from_column_slice(d, d, k);
+    let (eps, iterations) = EIGENVALUES;
+    let Some(pairs) = SymmetricEigen::try_new(whole, eps, iterations) else {
+        return;
+    };
+    let positive = pairs.eigenvalues.map(|lambda| lambda.max(0.0));
+    let scaled = &pairs.eigenvectors * DMatrix::from_diagonal(&positive);
+    k.copy_from_slice((scaled * pairs.eigenvectors.transpose()).as_slice());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positive_part_by_hand() {
+        // eigenvalues 3 and -1 with (1, 1) and (1, -1)
+        let mut k = [1.0, 2.0, 2.0, 1.0];
+        take_positive_part(&mut k, 2);
+        assert!(k.iter().all(|value| (value - 1.5).abs() < 1e-15), "{k:?}");
+        let mut k = [4.0, 1.0, 1.0, 4.0];
+        take_positive_part(&mut k, 2);
+        assert!(
+            (k[0] - 4.0).abs() < 1e-15 && (k[1] - 1.0).abs() < 1e-15,
+            "{k:?}"
+        );
     }
 }

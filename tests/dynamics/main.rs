@@ -3,6 +3,7 @@
 mod accounts;
 mod blocks;
 mod collapse;
+mod compressed;
 mod contact_energy;
 mod elastic_bar;
 mod equations;

@@ -2,7 +2,7 @@
 //! energy and momenta.
 
 use nalgebra::{DMatrix, DVector};
-use stickslip::elements::{Elements, Motion};
+use stickslip::elements::{Elements, Motion, TangentPart};
 use stickslip::model::{ElementType, Formulation, Model, Settings};
 
 use crate::blocks::{Block, add_block, model, run_to_end, step, throw};
@@ -25,15 +25,19 @@ fn linear_solution(model: &Model, forces: &[(usize, f64)], held: &[usize]) -> DV
     let elements = Elements::new(model);
     let count = model.mesh.dof_count();
     let mut k = DMatrix::<f64>::zeros(count, count);
-    elements.for_each_tangent(Motion::at(&vec![0.0; count], &[]), |element, matrix| {
-        let nodes = elements.nodes(element).iter();
-        let dofs: Vec<usize> = nodes.flat_map(|n| [2 * n, 2 * n + 1]).collect();
-        for (j, &column) in dofs.iter().enumerate() {
-            for (i, &row) in dofs.iter().enumerate() {
-                k[(row, column)] += matrix[j * dofs.len() + i];
+    elements.for_each_tangent(
+        Motion::at(&vec![0.0; count], &[]),
+        TangentPart::Whole,
+        |element, matrix| {
+            let nodes = elements.nodes(element).iter();
+            let dofs: Vec<usize> = nodes.flat_map(|n| [2 * n, 2 * n + 1]).collect();
+            for (j, &column) in dofs.iter().enumerate() {
+                for (i, &row) in dofs.iter().enumerate() {
+                    k[(row, column)] += matrix[j * dofs.len() + i];
+                }
             }
-        }
-    });
+        },
+    );
     let mut f = DVector::zeros(count);
     for &(dof, force) in forces {
         f[dof] += force;

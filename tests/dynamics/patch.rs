@@ -1,7 +1,7 @@
 //! Patch test: a distorted patch whose boundary is displaced affinely deforms affinely.
 
 use nalgebra::{DMatrix, DVector};
-use stickslip::elements::{Elements, Motion};
+use stickslip::elements::{Elements, Motion, TangentPart};
 use stickslip::model::{Element, ElementType, Formulation, Model, Shape};
 
 use crate::blocks::model;
@@ -74,18 +74,22 @@ fn solve_inner(body: &Elements, mut u: Vec<f64>) -> Vec<f64> {
     let inner = 8..16;
     for _ in 0..12 {
         let mut k = DMatrix::zeros(u.len(), u.len());
-        body.for_each_tangent(Motion::at(&u, &[]), |element, matrix| {
-            let dofs: Vec<usize> = body
-                .nodes(element)
-                .iter()
-                .flat_map(|n| [2 * n, 2 * n + 1])
-                .collect();
-            for (j, &column) in dofs.iter().enumerate() {
-                for (i, &row) in dofs.iter().enumerate() {
-                    k[(row, column)] += matrix[j * dofs.len() + i];
+        body.for_each_tangent(
+            Motion::at(&u, &[]),
+            TangentPart::Whole,
+            |element, matrix| {
+                let dofs: Vec<usize> = body
+                    .nodes(element)
+                    .iter()
+                    .flat_map(|n| [2 * n, 2 * n + 1])
+                    .collect();
+                for (j, &column) in dofs.iter().enumerate() {
+                    for (i, &row) in dofs.iter().enumerate() {
+                        k[(row, column)] += matrix[j * dofs.len() + i];
+                    }
                 }
-            }
-        });
+            },
+        );
         let f = body
             .internal_force(Motion::at(&u, &[]))
             .expect("no element is inverted");

@@ -5,7 +5,7 @@ use super::mass::unknown_mass;
 use super::step_problem::StepProblem;
 use super::unknowns::Unknowns;
 use crate::contact::{Compliance, Constraint};
-use crate::elements::{Elements, Motion};
+use crate::elements::{Elements, Motion, TangentPart};
 use crate::linear::{Assembled, CheckedSolver, LinearError, linear_solver};
 use crate::model::SolverChoice;
 
@@ -71,8 +71,9 @@ impl EffectiveStiffness {
         self.k.solver.is_factorized() && (self.dt - dt).abs() <= near * dt
     }
 
-    /// Assembles K* in the given configuration, to be factorised next.
-    pub fn assemble(&mut self, problem: &StepProblem, dt: f64, motion: Motion) {
+    /// Assembles K* in the given configuration from the tangents of the elements or their positive
+    /// parts, to be factorised next.
+    pub fn assemble(&mut self, problem: &StepProblem, dt: f64, motion: Motion, part: TangentPart) {
         let StepProblem {
             elements,
             weights,
@@ -84,7 +85,7 @@ impl EffectiveStiffness {
         let mass = self.m.solver.matrix();
         let k = self.k.solver.matrix_mut();
         k.clear();
-        elements.for_each_tangent(motion, |element, tangent| {
+        elements.for_each_tangent(motion, part, |element, tangent| {
             k.add(element, tangent, weights.theta2)
         });
         self.stiffness = parts.largest_diagonal(k, &unknowns.dof);

@@ -9,7 +9,7 @@ use crate::contact::{
     ClosedPairs, Compliance, Constraint, Penetration, Search, find_penetration, frictional_lcp,
 };
 use crate::dynamics::results::{Cause, State};
-use crate::elements::Motion;
+use crate::elements::{Motion, TangentPart};
 use crate::lcp::{
     ContactState, FrictionalLcp, FrictionalSolution, LcpError, LcpMethod, solve_frictional,
 };
@@ -56,19 +56,36 @@ impl<'m> Workspace<'m> {
         System::new(&mut self.stiffness.m, &mut self.meter)
     }
 
-    /// Assembles and factorises K* for increments of length `dt` in the configuration of a motion.
+    /// Assembles and factorises K* for increments of length `dt` in the configuration of a motion; where
+    /// it is not positive definite, from the positive parts of the tangents of the elements.
     pub fn factorize(
         &mut self,
         problem: &StepProblem,
         dt: f64,
         motion: Motion,
     ) -> Result<(), LinearError> {
+        match self.factorize_part(problem, dt, motion, TangentPart::Whole) {
+            Err(LinearError::NotPositiveDefinite { .. }) => {
+                self.factorize_part(problem, dt, motion, TangentPart::Positive)
+            }
+            result => result,
+        }
+    }
+
+    /// Assembles and factorises K* from a part of the tangents.
+    fn factorize_part(
+        &mut self,
+        problem: &StepProblem,
+        dt: f64,
+        motion: Motion,
+        part: TangentPart,
+    ) -> Result<(), LinearError> {
         let Workspace {
             stiffness, meter, ..
         } = self;
         meter.time(
             |t| &mut t.assembly,
-            || stiffness.assemble(problem, dt, motion),
+            || stiffness.assemble(problem, dt, motion, part),
         );
         meter.counts.factorizations += 1;
         self.k().factorize()
