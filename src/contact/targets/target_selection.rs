@@ -216,22 +216,20 @@ impl SlaveNode<'_> {
     /// The segment of a run that the node is over, if it has slid there, across corners of gentle turn,
     /// from another that it was over at the start.
     fn slid_on(&self, run: &[usize]) -> Option<ContactTarget> {
-        let is_over = |j: &&usize| (0.0..=1.0).contains(&self.xi(**j));
-        let lowest = |i: &&usize, j: &&usize| {
-            let gap = |i: usize| self.project(i).gap;
-            gap(**i).total_cmp(&gap(**j))
-        };
-        let j = *run.iter().filter(is_over).min_by(lowest)?;
-        if self.held_by.iter().any(|&[_, i]| i == j) {
-            return None;
-        }
-        let is_from = |&i: &usize| self.leads_gently(i, j) && self.tilts_gently(i, j);
         let held = self.held_by.iter().map(|&[_, i]| i);
-        let from = held.chain(self.came_from(&[j])).find(is_from)?;
-        Some(ContactTarget {
-            from: Some(from),
-            ..ContactTarget::face(j)
-        })
+        let slid_from = |i: usize| {
+            let gap = |j: usize| self.project(j).gap;
+            let is_over = |j: &usize| (0.0..=1.0).contains(&self.xi(*j));
+            let is_gentle =
+                |j: &usize| *j == i || (self.leads_gently(i, *j) && self.tilts_gently(i, *j));
+            let over = run.iter().copied().filter(is_over).filter(is_gentle);
+            let j = over.min_by(|j, k| gap(*j).total_cmp(&gap(*k)))?;
+            (j != i).then_some(ContactTarget {
+                from: Some(i),
+                ..ContactTarget::face(j)
+            })
+        };
+        held.chain(self.came_from(run)).find_map(slid_from)
     }
 
     /// Whether the surface leads from segment i to segment j without a sharp turn, within twice the
