@@ -65,7 +65,7 @@ fn main() {
         group.bench_function(BenchmarkId::new("pairs", n), |bencher| {
             bencher.iter(|| {
                 search.cover(black_box(&u));
-                find_targets(&search, [&u, &u], &[], false).len()
+                find_targets(&search, [&u, &u], &[], &[], false).len()
             });
         });
         let moved: Vec<f64> = (0..u.len()).map(|i| 1e-3 * (i as f64).sin()).collect();
@@ -86,6 +86,7 @@ fn main() {
                         start: &x,
                         now: black_box(&x),
                         slave,
+                        held_by: &[],
                     };
                     node.targets(all_segments(surfaces)).len()
                 };

@@ -54,6 +54,7 @@ fn finds_all(search: &Search, surfaces: &ContactSurfaces, x: &[[f64; 2]], [u0, u
             start: &start,
             now: &now,
             slave,
+            held_by: &[],
         };
         assert_eq!(
             node.targets(territory.candidates(slave)),

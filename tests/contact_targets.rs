@@ -42,6 +42,7 @@ fn targets_of(
         start,
         now,
         slave: 0,
+        held_by: &[],
     };
     node.targets(all_segments(surfaces))
 }

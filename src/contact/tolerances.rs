@@ -57,6 +57,10 @@ pub(crate) const FACING_SINE: f64 = 0.5;
 /// Angle (rad) by which two normal cones may miss each other and still have a common normal: meshed
 /// faces that are flush to that accuracy.
 pub(crate) const CONE_MISS: f64 = 0.1;
+/// Sine of the turn at a concave corner up to which a node slides across it as on a straight face.
+pub(crate) const GENTLE_SINE: f64 = 0.02;
+/// The same at a convex corner; and tangent of the tilt of the force on such a node.
+pub(crate) const CONVEX_SINE: f64 = 0.5;
 /// Distance from a convex corner, along the faces, within which a node meets the corner itself.
 pub(crate) const CORNER_TIP: f64 = 1e-5;
 /// Overrun beyond the ends of a segment up to which a node that has left it within an increment for

@@ -66,6 +66,12 @@ impl ClosedPairs {
         self.0.iter()
     }
 
+    /// Slave index and segment of all pairs.
+    pub fn segments(&self) -> Vec<[usize; 2]> {
+        let of_pair = |pair: &ClosedPair| [pair.key.slave_index, pair.key.segment];
+        self.0.iter().map(of_pair).collect()
+    }
+
     /// Number of pairs.
     pub fn len(&self) -> usize {
         self.0.len()

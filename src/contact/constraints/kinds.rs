@@ -14,6 +14,15 @@ impl Constraint {
         }
     }
 
+    /// The same constraint at the start, with the segment that holds the node there.
+    pub fn at_start(&self, start: &Configurations) -> Self {
+        let mut source = self.source;
+        if let Some([a, b]) = source.from.take() {
+            (source.nodes[1], source.nodes[2], source.nodes[3]) = (a, b, b);
+        }
+        Constraint::new(source, start)
+    }
+
     /// The same constraint between other configurations.
     pub fn relinearized(&self, at: &Configurations) -> Self {
         Constraint::new(self.source, at)

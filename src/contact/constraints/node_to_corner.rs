@@ -71,8 +71,10 @@ mod tests {
             target: ContactTarget {
                 segment: 0,
                 corner: Some(corner),
+                from: None,
             },
             nodes: [0, 1, 2, 3],
+            from: None,
             friction: 0.3,
         };
         let (x, u0) = (&ROOF, &[0.0; 8]);

@@ -4,7 +4,7 @@
 use super::configurations::{Configurations, RowForm};
 use super::constraint::{Constraint, Rows};
 use crate::contact::geometry::{Projection, project};
-use crate::contact::targets::PairTarget;
+use crate::contact::targets::{PairTarget, rise};
 use crate::vectors::{cross, difference, dot};
 
 /// Normal and tangential row at s, a and b.
@@ -38,12 +38,34 @@ pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint 
     let [s, a, b, _] = source.nodes;
     let SegmentRows {
         projection,
-        force,
+        mut force,
         derivative,
     } = segment_rows([s, a, b], at);
+    if let Some(from) = source.from.filter(|_| at.form == RowForm::DiscreteGradient) {
+        tilt(&mut force, [s, a, b], from, at);
+    }
     let rows = [force, derivative].map(|rows| Rows::new(&rows.normal, &rows.tangential));
     let gap_and_scale = (projection.gap, projection.length);
     Constraint::of_nodes(source, &[s, a, b], rows, gap_and_scale, at)
+}
+
+/// Tilts the force rows of a node that has slid on from segment i, eq. (7.6):
+///
+/// ```text
+/// Bn <- Bn + kappa Bt,   kappa = (g0 - h0)/(Bt d),   h0 = max(min(g0, g0_i), 0)
+/// ```
+///
+/// Then Bn d = g1 - h0, so that contact puts no energy in.
+fn tilt(rows: &mut RowPair, nodes: [usize; 3], [a, b]: [usize; 2], at: &Configurations) {
+    let [start, end] = [at.start(nodes), at.iterate(nodes)].map(Arms::new);
+    let [p, q] = at.start([a, b]);
+    let [s] = at.start([nodes[0]]);
+    let rise = rise(start.cross / start.length, project(s, p, q).gap);
+    let xi = |arms: &Arms| arms.dot / (arms.length * arms.length);
+    let slip = (start.length + end.length) / 2.0 * (xi(&end) - xi(&start));
+    if rise != 0.0 {
+        rows.normal = sum_of(1.0, &rows.normal, rise / slip, &rows.tangential);
+    }
 }
 
 /// Projection and rows of the node s on the segment from a to b.
@@ -182,11 +204,9 @@ mod tests {
     fn between(form: RowForm, u0: &[f64], u: &[f64]) -> Constraint {
         let source = PairTarget {
             slave_index: 0,
-            target: ContactTarget {
-                segment: 0,
-                corner: None,
-            },
+            target: ContactTarget::face(0),
             nodes: [0, 1, 2, 2],
+            from: None,
             friction: 0.3,
         };
         let x = &X;

@@ -38,6 +38,7 @@ fn made_up(count: usize, rows: [RowsByDof; 2]) -> Constraint {
             slave_index: count,
             target: ContactTarget::face(0),
             nodes: [0, 1, 2, 2],
+            from: None,
             friction: 0.5,
         },
     }

@@ -17,13 +17,16 @@ pub struct PairTarget {
     /// Nodes: slave s, segment ends a and b, and c, the end of the next segment behind a corner;
     /// without corner it is b again.
     pub nodes: [usize; 4],
+    /// Ends of the segment that held the node at the start, where it has slid on from there.
+    pub from: Option<[usize; 2]>,
     /// Coefficient of friction mu.
     pub friction: f64,
 }
 
 /// The pairs of all contacts between the displacements `u0` of the start of an increment and `u` of
 /// an iterate, which the search covers; increasing by slave index and segment, as those `before`,
-/// of the last pass. Where the passes have `settled`, targets are kept even if others hold the node
+/// of the last pass. `held` are slave index and segment of the pairs closed at the start, increasing.
+/// Where the passes have `settled`, targets are kept even if others hold the node
 /// now: passes that go to and fro across a corner come to rest with it.
 ///
 /// A node that has just left its segment by a little and finds no other keeps it: whether it has
@@ -32,6 +35,7 @@ pub fn find_targets(
     search: &Search,
     [u0, u]: [&[f64]; 2],
     before: &[PairTarget],
+    held: &[[usize; 2]],
     settled: bool,
 ) -> Vec<PairTarget> {
     let x = search.coordinates();
@@ -39,13 +43,17 @@ pub fn find_targets(
         |u: &[f64]| -> Vec<[f64; 2]> { (0..x.len()).map(|n| position(x, u, n)).collect() };
     let (start, now) = (positions(u0), positions(u));
     let mut pairs: Vec<PairTarget> = Vec::new();
-    let mut old = before;
+    let (mut old, mut held) = (before, held);
     for listed in search.slaves() {
+        let of_node = |[slave, _]: &[usize; 2]| *slave <= listed.slave_index;
+        let (held_by, rest) = held.split_at(held.partition_point(of_node));
+        held = rest;
         let node = SlaveNode {
             surfaces: listed.surfaces,
             start: &start,
             now: &now,
             slave: listed.slave,
+            held_by,
         };
         let is_own = |pair: &PairTarget| pair.slave_index <= listed.slave_index;
         let (own, rest) = old.split_at(old.partition_point(is_own));
@@ -95,6 +103,7 @@ fn pair_target(listed: &ListedSlave, target: ContactTarget) -> PairTarget {
         slave_index: listed.slave_index,
         target,
         nodes: [listed.node(), a, b, c],
+        from: target.from.map(|i| surfaces.segments[i]),
         friction: surfaces.friction,
     }
 }

@@ -21,6 +21,8 @@ pub struct SlaveNode<'a> {
     pub now: &'a [[f64; 2]],
     /// Index of the slave node in its contact.
     pub slave: usize,
+    /// Slave index and segment of the pairs of the node that were closed at the start.
+    pub held_by: &'a [[usize; 2]],
 }
 
 impl SlaveNode<'_> {
@@ -160,6 +162,7 @@ mod tests {
                 start: &x,
                 now: &x,
                 slave: 0,
+                held_by: &[],
             };
             node.was_in_front(0)
         };

@@ -6,7 +6,8 @@ use super::slave_node::SlaveNode;
 use crate::contact::geometry::{Along, project};
 use crate::contact::search::Candidate;
 use crate::contact::tolerances::{
-    CLOSED_GAP, CORNER_TIP, CORNER_ZONE, PROJECTION_BEYOND_ENDS, STRAIGHT_SINE,
+    CLOSED_GAP, CONVEX_SINE, CORNER_TIP, CORNER_ZONE, GENTLE_SINE, PROJECTION_BEYOND_ENDS,
+    STRAIGHT_SINE,
 };
 
 /// What a slave node must not penetrate: a segment, or the corner at its end.
@@ -16,6 +17,8 @@ pub struct ContactTarget {
     pub segment: usize,
     /// The corner at the segment's end b, if the node meets the corner.
     pub corner: Option<Corner>,
+    /// The segment that held the node at the start, if the node has slid on from there to this one.
+    pub from: Option<usize>,
 }
 
 impl ContactTarget {
@@ -24,6 +27,7 @@ impl ContactTarget {
         ContactTarget {
             segment,
             corner: None,
+            from: None,
         }
     }
 
@@ -33,6 +37,12 @@ impl ContactTarget {
             .into_iter()
             .flatten()
     }
+}
+
+/// Gap at the start of the segment that a node has slid on to, above what it counts as: the gap of the
+/// segment that the node came from, and no overlap.
+pub fn rise(gap: f64, gap_before: f64) -> f64 {
+    gap - gap.min(gap_before).max(0.0)
 }
 
 /// Selection of the targets of a node.
@@ -51,6 +61,12 @@ impl SlaveNode<'_> {
         }
         let mut targets = Vec::new();
         for run in self.runs(&faced) {
+            if let Some(target) = self.slid_on(&run) {
+                targets.push(target);
+                let across = self.across_concave_corners(target.segment);
+                targets.extend(across.map(ContactTarget::face));
+                continue;
+            }
             let Some(segment) = self.choose(&run) else {
                 continue;
             };
@@ -139,7 +155,7 @@ impl SlaveNode<'_> {
         let is_faced = |i: &usize| faced.binary_search(i).is_ok();
         let next = |i: usize| {
             let j = self.surfaces.next[i].filter(is_faced)?;
-            (self.corner_sine(i, j) >= -STRAIGHT_SINE).then_some(j)
+            (self.corner_sine(i, j) >= -GENTLE_SINE).then_some(j)
         };
         let has_previous = |i: &usize| {
             self.surfaces.previous[*i].is_some_and(|h| next(h) == Some(*i) && is_faced(&h))
@@ -197,6 +213,58 @@ impl SlaveNode<'_> {
         })
     }
 
+    /// The segment of a run that the node is over, if it has slid there, across corners of gentle turn,
+    /// from another that it was over at the start.
+    fn slid_on(&self, run: &[usize]) -> Option<ContactTarget> {
+        let held = self.held_by.iter().map(|&[_, i]| i);
+        let slid_from = |i: usize| {
+            let gap = |j: usize| self.project(j).gap;
+            let is_over = |j: &usize| (0.0..=1.0).contains(&self.xi(*j));
+            let is_gentle =
+                |j: &usize| *j == i || (self.leads_gently(i, *j) && self.tilts_gently(i, *j));
+            let over = run.iter().copied().filter(is_over).filter(is_gentle);
+            let j = over.min_by(|j, k| gap(*j).total_cmp(&gap(*k)))?;
+            (j != i).then_some(ContactTarget {
+                from: Some(i),
+                ..ContactTarget::face(j)
+            })
+        };
+        held.chain(self.came_from(run)).find_map(slid_from)
+    }
+
+    /// Whether the surface leads from segment i to segment j without a sharp turn, within twice the
+    /// displacement of the node.
+    fn leads_gently(&self, i: usize, j: usize) -> bool {
+        let farthest = 2.0 * self.relative_displacement(j);
+        let length = |i: usize| self.project(i).length;
+        [Along::Forward, Along::Backward].into_iter().any(|along| {
+            let mut at = i;
+            for following in self.surfaces.walk(i, along, farthest, length) {
+                let Some(next) = following else { return false };
+                let turn = match along {
+                    Along::Forward => self.corner_sine(at, next),
+                    Along::Backward => self.corner_sine(next, at),
+                };
+                if !(-GENTLE_SINE..=CONVEX_SINE).contains(&turn) {
+                    return false;
+                }
+                if next == j {
+                    return true;
+                }
+                at = next;
+            }
+            false
+        })
+    }
+
+    /// Whether the force on a node that has slid from segment i to j stays near the normal of j: the
+    /// tilt kappa = (g0_j - g0_i)/s is that of the surface between them.
+    fn tilts_gently(&self, i: usize, j: usize) -> bool {
+        let (start, now) = (self.project_at_start(j), self.project(j));
+        let slip = (start.length + now.length) / 2.0 * (now.xi - start.xi);
+        rise(start.gap, self.project_at_start(i).gap).abs() <= CONVEX_SINE * slip.abs()
+    }
+
     /// The neighbour, round a convex corner near the node, of a segment that the surface of the
     /// node does not face. Where a corner slides over a corner, only the face that the surface of
     /// the node faces constrains it; behind the other the node's own body would lie.
@@ -240,7 +308,7 @@ impl SlaveNode<'_> {
                 Along::Forward => self.corner_sine(i, j),
                 Along::Backward => self.corner_sine(j, i),
             };
-            if turn < -STRAIGHT_SINE {
+            if turn < -GENTLE_SINE {
                 return None;
             }
             let is_over = (-CORNER_ZONE..=1.0 + CORNER_ZONE).contains(&self.project_at_start(j).xi);
@@ -258,12 +326,12 @@ impl SlaveNode<'_> {
         let near = self.corner_reach(i);
         let at_a = self.surfaces.previous[i].filter(|&h| {
             p.xi * p.length <= near
-                && self.corner_sine(h, i) < -STRAIGHT_SINE
+                && self.corner_sine(h, i) < -GENTLE_SINE
                 && self.project(h).xi >= 0.0
         });
         let at_b = self.surfaces.next[i].filter(|&j| {
             let is_near = (1.0 - p.xi) * p.length <= near;
-            is_near && self.corner_sine(i, j) < -STRAIGHT_SINE && self.project(j).xi <= 1.0
+            is_near && self.corner_sine(i, j) < -GENTLE_SINE && self.project(j).xi <= 1.0
         });
         [at_a, at_b]
             .map(|j| j.filter(|&j| !self.is_own(j) && self.was_in_front(j)))
@@ -308,6 +376,7 @@ impl SlaveNode<'_> {
         (start_gap >= -CLOSED_GAP * length).then_some(ContactTarget {
             segment: i,
             corner: Some(corner),
+            from: None,
         })
     }
 }

@@ -90,6 +90,7 @@ impl<'m> Attempt<'_, 'm> {
         let (problem, start, dt) = (self.problem, self.start, self.interval.dt);
         let mut contact = ContactForces::without_constraints(before);
         let mut impulses = Impulses::new(before, self.set);
+        let held = before.segments();
         self.workspace.search.start(&start.v, dt);
 
         // the passes start from the rigid motion of the bodies
@@ -98,7 +99,8 @@ impl<'m> Attempt<'_, 'm> {
             // g, Dt and their rows in the iterate U = U0 + d
             let u = sum(&start.u, &d);
             let settled = pass >= SEARCHING_PASSES;
-            let [constraints, left_out] = self.constraints(&u, &contact.constraints, settled)?;
+            let [constraints, left_out] =
+                self.constraints(&u, &contact.constraints, &held, settled)?;
 
             // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1)
             let v0p = impulses.velocity(problem, self.workspace, &constraints, start, dt)?;
@@ -162,11 +164,12 @@ impl<'m> Attempt<'_, 'm> {
         &mut self,
         u: &[f64],
         before: &[Constraint],
+        held: &[[usize; 2]],
         settled: bool,
     ) -> Result<[Vec<Constraint>; 2], Cause> {
         let (problem, u0) = (self.problem, &self.start.u);
         problem.check_segments(u)?;
-        let constraints = (self.workspace).constraints(problem, [u0, u], before, settled);
+        let constraints = (self.workspace).constraints(problem, [u0, u], before, held, settled);
         Ok(self.set.split(problem, u0, constraints))
     }
 

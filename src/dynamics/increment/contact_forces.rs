@@ -158,6 +158,7 @@ mod tests {
                 slave_index: 3,
                 target: ContactTarget::face(0),
                 nodes: [0, 1, 2, 2],
+                from: None,
                 friction: mu,
             },
         }

@@ -58,7 +58,7 @@ impl Impulses {
         let at_start = problem.weights.impulses_at_start();
         let configurations = problem.configurations(&start.u, &start.u);
         let rows = |constraint: &Constraint| match at_start {
-            true => constraint.relinearized(&configurations).with_force_rows(),
+            true => constraint.at_start(&configurations).with_force_rows(),
             false => constraint.with_force_rows(),
         };
         let struck = constraints

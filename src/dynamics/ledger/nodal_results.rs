@@ -126,7 +126,7 @@ pub(crate) fn landings(
         let least = STRUCK * problem.parts.most(&fastest, constraint.nodes());
         let touched = solved.touching.closes(constraint.key);
         let is_struck = || {
-            let rows = constraint.relinearized(&end_rows_at(problem, &start.u));
+            let rows = constraint.at_start(&end_rows_at(problem, &start.u));
             let [before, after] = [&start.v, &solved.v0p].map(|v| rows.gap_change(v));
             before < -least && after > before + least
         };

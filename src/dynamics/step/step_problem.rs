@@ -128,11 +128,12 @@ impl StepProblem<'_> {
         search: &Search,
         [u0, u]: [&[f64]; 2],
         before: &[Constraint],
+        held: &[[usize; 2]],
         settled: bool,
     ) -> Vec<Constraint> {
         let before: Vec<PairTarget> = before.iter().map(|c| c.source).collect();
         let configurations = self.configurations(u0, u);
-        find_targets(search, [u0, u], &before, settled)
+        find_targets(search, [u0, u], &before, held, settled)
             .into_iter()
             .filter(|source| self.unknowns.moves(&source.nodes))
             .map(|source| Constraint::new(source, &configurations))

@@ -120,13 +120,14 @@ impl<'m> Workspace<'m> {
         problem: &StepProblem,
         [u0, u]: [&[f64]; 2],
         before: &[Constraint],
+        held: &[[usize; 2]],
         settled: bool,
     ) -> Vec<Constraint> {
         let Workspace { search, meter, .. } = self;
         meter.time(|t| &mut t.search, || search.cover(u));
         meter.time(
             |t| &mut t.contact,
-            || problem.constraints(search, [u0, u], before, settled),
+            || problem.constraints(search, [u0, u], before, held, settled),
         )
     }
 
