@@ -6,7 +6,7 @@ use crate::dynamics::results::Cause;
 /// Correction of a pass beside the increment above which its iterate is no solution, whatever the forces
 /// say.
 const NEAR: f64 = 1e-4;
-/// Rate at which fresh factors converge.
+/// Rate that fresh factors are expected to have, until it has been measured.
 const FRESH_RATE: f64 = 0.03;
 /// Cost of a factorisation, in passes.
 const COST: f64 = 1.0;
@@ -43,6 +43,8 @@ pub(super) struct Refactorization {
     age: usize,
     worn: bool,
     correction: f64,
+    /// Rate of fresh factors.
+    fresh_rate: f64,
     growing: usize,
 }
 
@@ -56,6 +58,7 @@ impl Refactorization {
             age: 0,
             worn: rule != FactorRule::Kept,
             correction: f64::INFINITY,
+            fresh_rate: FRESH_RATE,
             growing: 0,
         }
     }
@@ -89,6 +92,9 @@ impl Refactorization {
             self.worn = self.rule == FactorRule::EveryPass;
             return Ok(());
         }
+        if self.own && self.age == 2 {
+            self.fresh_rate = rate.clamp(FRESH_RATE, 0.5);
+        }
         self.growing = if rate >= 1.0 { self.growing + 1 } else { 0 };
         if (self.rule == FactorRule::Kept && !self.own && rate > POOR_RATE && self.passes <= 3)
             || (self.rule != FactorRule::EveryPass && self.growing >= GROWING)
@@ -103,7 +109,7 @@ impl Refactorization {
             }
         };
         self.worn = self.rule == FactorRule::EveryPass
-            || (self.age >= 2 && left(rate) > COST + left(FRESH_RATE));
+            || (self.age >= 2 && left(rate) > COST + left(self.fresh_rate));
         Ok(())
     }
 }

@@ -124,7 +124,7 @@ fn a_yielding_block_dissipates_what_its_energy_loses() {
 fn a_failed_attempt_leaves_no_internal_variables_behind() {
     // increments so long that some of them do not converge within the passes, and are halved
     let mut step = step(0.1, 10);
-    step.settings.max_passes = 12;
+    step.settings.max_passes = 6;
     let keep = checked_run(block(4.0), step);
     let is_on_committed = |&&count: &&usize| {
         let state = &keep.reports[count - 1].state;
