@@ -1,11 +1,14 @@
 """Increments, cutbacks, passes and factorisations of runs, counted and compared."""
 
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import convergence
 import program
 import pytest
+from conftest import ROOT
 from decks import CANTILEVERS, CORNERS, shortened
 from results import Results
 from test_compared_programs import compare, faulty_program
@@ -86,3 +89,14 @@ def test_a_deck_without_results_is_told(deck: Path, tmp_path: Path) -> None:
     assert "all: 1 decks" in text
     code, text = compare("convergence.py", deck)
     assert code == 2 and "one program is needed, or two" in text
+
+
+def test_the_problems_of_the_verification_are_decks_without_faults(tmp_path: Path) -> None:
+    generate = ROOT / "verification" / "convergence" / "generate.py"
+    subprocess.run([sys.executable, generate, "-o", tmp_path], check=True)
+    decks = sorted(tmp_path.glob("*.inp"))
+    assert len(decks) == 10
+    for deck in decks:
+        command = [program.binary(), "check", deck]
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        assert done.returncode == 0 and "0 errors, 0 warnings" in done.stdout, deck.name
