@@ -61,8 +61,6 @@ pub(crate) const CONE_MISS: f64 = 0.1;
 pub(crate) const GENTLE_SINE: f64 = 0.02;
 /// The same at a convex corner; and tangent of the tilt of the force on such a node.
 pub(crate) const CONVEX_SINE: f64 = 0.5;
-/// Distance beyond the end of a segment from which on a node has slid on to the next.
-pub(crate) const SLID: f64 = 1e-7;
 /// Distance from a convex corner, along the faces, within which a node meets the corner itself.
 pub(crate) const CORNER_TIP: f64 = 1e-5;
 /// Overrun beyond the ends of a segment up to which a node that has left it within an increment for

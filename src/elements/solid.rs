@@ -153,7 +153,7 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
 /// Round-off and iterations of the eigenvalues of an element, which converge in two or three each.
 const EIGENVALUES: (f64, usize) = (f64::EPSILON, 1000);
 
-/// K+ = sum max(lambda, 0) v v^T over the eigenpairs of a symmetric matrix of size `d`, eq. (4.12), in
+/// K+ = sum max(lambda, 0) v v^T over the eigenpairs of a symmetric matrix of size `d`, eq. (4.14), in
 /// its place.
 fn take_positive_part(k: &mut [f64], d: usize) {
     let whole = DMatrix::from_column_slice(d, d, k);

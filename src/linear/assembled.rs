@@ -152,31 +152,30 @@ impl Assembled {
     pub fn diagonal(&self) -> impl Iterator<Item = f64> {
         (0..self.size()).map(|i| self.matrix.get(i, i).copied().unwrap_or(0.0))
     }
+}
 
-    /// Connected group of every unknown, numbered from 0: the inverse has no entries between
-    /// different groups.
-    pub fn groups(&self) -> Vec<usize> {
-        let n = self.size();
-        let (mut group, mut count) = (vec![usize::MAX; n], 0);
-        for first in 0..n {
-            if group[first] != usize::MAX {
-                continue;
-            }
-            let mut reached = vec![first];
-            group[first] = count;
-            while let Some(unknown) = reached.pop() {
-                let column = self.matrix.indptr().outer_inds_sz(unknown);
-                for &next in &self.matrix.indices()[column] {
-                    if group[next] == usize::MAX {
-                        group[next] = count;
-                        reached.push(next);
-                    }
+/// Connected group of every unknown of a matrix, numbered from 0: the inverse has no entries between
+/// different groups.
+pub(super) fn groups(matrix: CsMatView<'_, f64>) -> Vec<usize> {
+    let n = matrix.cols();
+    let (mut group, mut count) = (vec![usize::MAX; n], 0);
+    for first in 0..n {
+        if group[first] != usize::MAX {
+            continue;
+        }
+        let mut reached = vec![first];
+        group[first] = count;
+        while let Some(unknown) = reached.pop() {
+            for &next in &matrix.indices()[matrix.indptr().outer_inds_sz(unknown)] {
+                if group[next] == usize::MAX {
+                    group[next] = count;
+                    reached.push(next);
                 }
             }
-            count += 1;
         }
-        group
+        count += 1;
     }
+    group
 }
 
 #[cfg(test)]
@@ -211,7 +210,7 @@ mod tests {
         let a = two_elements(&Transformation::new(3, rows));
         assert_entries(&a, [[0.0, 6.0, 0.0], [2.0, 8.0, 30.0], [0.0, 10.0, 40.0]]);
         assert_eq!(a.diagonal().collect::<Vec<_>>(), [0.0, 8.0, 40.0]);
-        assert_eq!(a.groups(), [0, 0, 0]);
+        assert_eq!(groups(a.matrix()), [0, 0, 0]);
     }
 
     #[test]
@@ -256,9 +255,9 @@ mod tests {
     fn groups_are_what_elements_and_equations_connect() {
         let elements = [vec![0, 1], vec![2, 3]];
         let apart = Assembled::new(&Transformation::identity(4), &elements);
-        assert_eq!(apart.groups(), [0, 0, 1, 1]);
+        assert_eq!(groups(apart.matrix()), [0, 0, 1, 1]);
         let rows = [0, 1, 0, 2].map(|unknown| vec![(unknown, 1.0)]);
         let tied = Assembled::new(&Transformation::new(3, rows), &elements);
-        assert_eq!(tied.groups(), [0, 0, 0]);
+        assert_eq!(groups(tied.matrix()), [0, 0, 0]);
     }
 }

@@ -2,18 +2,21 @@
 //! product with the matrix for all right-hand sides together; parts of the inverse by their row
 //! sums.
 
-use sprs::CsMatView;
+use sprs::{CsMat, CsMatView};
 
-use super::{Assembled, LinearError, LinearSolver, larger, largest};
+use super::assembled::groups;
+use super::{AddedBlocks, Assembled, LinearError, LinearSolver, larger, largest};
 
 /// Largest residual of a solve, relative to the terms it is made of. A backward stable solve stays
 /// near the round-off unit.
 const RESIDUAL: f64 = 1e-9;
 
-/// A matrix with its solver; every solve is checked for finiteness and residual.
+/// A matrix with its solver and blocks that are added to it; every solve is checked for finiteness and residual.
 pub struct CheckedSolver {
     solver: Box<dyn LinearSolver>,
     matrix: Assembled,
+    /// Sum of the matrix and the blocks added to it, if there are any.
+    sum: Option<CsMat<f64>>,
     factorized: bool,
 }
 
@@ -23,6 +26,7 @@ impl CheckedSolver {
         CheckedSolver {
             solver,
             matrix,
+            sum: None,
             factorized: false,
         }
     }
@@ -30,24 +34,32 @@ impl CheckedSolver {
     /// The matrix, to set new values; solves use them after [`Self::factorize`].
     pub fn matrix_mut(&mut self) -> &mut Assembled {
         self.factorized = false;
+        self.sum = None;
         &mut self.matrix
     }
 
-    /// Factorises the matrix.
+    /// Adds blocks to the matrix in place of those added before, until it gets new values.
+    pub fn add_blocks(&mut self, blocks: AddedBlocks) {
+        self.factorized = false;
+        self.sum = (!blocks.is_empty()).then(|| blocks.added_to(self.matrix.matrix()));
+    }
+
+    /// Factorises the matrix with the added blocks.
     ///
     /// # Errors
     /// Those of [`LinearSolver::factorize`], or values that are not finite.
     pub fn factorize(&mut self) -> Result<(), LinearError> {
-        if self
-            .matrix
-            .matrix()
-            .data()
-            .iter()
-            .any(|value| !value.is_finite())
-        {
+        let Self {
+            solver,
+            matrix,
+            sum,
+            ..
+        } = self;
+        let whole = sum.as_ref().map_or(matrix.matrix(), |sum| sum.view());
+        if whole.data().iter().any(|value| !value.is_finite()) {
             return Err(LinearError::NotFinite("the matrix"));
         }
-        self.solver.factorize(self.matrix.matrix())?;
+        solver.factorize(whole)?;
         self.factorized = true;
         Ok(())
     }
@@ -57,9 +69,20 @@ impl CheckedSolver {
         self.factorized
     }
 
-    /// The matrix.
+    /// The matrix, without added blocks.
     pub fn matrix(&self) -> &Assembled {
         &self.matrix
+    }
+
+    /// Connected group of every unknown of the matrix with the added blocks, numbered from 0: the
+    /// inverse has no entries between different groups.
+    pub fn groups(&self) -> Vec<usize> {
+        groups(self.whole())
+    }
+
+    /// The matrix with the added blocks.
+    fn whole(&self) -> CsMatView<'_, f64> {
+        (self.sum.as_ref()).map_or(self.matrix.matrix(), |sum| sum.view())
     }
 
     /// Solutions for the columns of `b` (n x k, column by column).
@@ -79,7 +102,7 @@ impl CheckedSolver {
         if x.iter().any(|value| !value.is_finite()) {
             return Err(LinearError::NotFinite("a solution"));
         }
-        let residual = relative_residual(self.matrix.matrix(), &sum(&x, n), &sum(b, n));
+        let residual = relative_residual(self.whole(), &sum(&x, n), &sum(b, n));
         if residual.is_nan() || residual > RESIDUAL {
             return Err(LinearError::Residual { residual });
         }

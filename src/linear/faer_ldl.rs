@@ -1,4 +1,4 @@
-//! Binding of faer's sparse Cholesky module: symbolic analysis once, numeric factors, their pivots
+//! Binding of faer's sparse Cholesky module: symbolic analysis once for each pattern, numeric factors, their pivots
 //! and parts of the inverse.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -13,7 +13,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::{Conj, MatMut, Par, Side, Spec};
 use sprs::CsMatView;
 
-use super::ordering::pattern;
+use super::ordering::Pattern;
 use super::partial_inverse::inverse_at;
 use super::solver::check_pivots;
 use super::{LinearError, LinearSolver};
@@ -23,6 +23,8 @@ use super::{LinearError, LinearSolver};
 #[derive(Default)]
 pub struct FaerLdl {
     symbolic: Option<SymbolicCholesky<usize>>,
+    /// Pattern of the symbolic analysis.
+    pattern: Pattern,
     values: Vec<f64>,
     memory: Option<MemBuffer>,
 }
@@ -34,17 +36,13 @@ fn library(error: impl std::fmt::Debug) -> LinearError {
 /// Supernodal at every size: the automatic choice prefers the slower simplicial form below some
 /// ten thousand unknowns, and the library's own threshold for all still leaves it diagonal matrices,
 /// whose factorisation takes no operations.
-fn analyse(
-    n: usize,
-    starts: &[usize],
-    rows: &[usize],
-) -> Result<SymbolicCholesky<usize>, LinearError> {
+fn analyse(pattern: &Pattern) -> Result<SymbolicCholesky<usize>, LinearError> {
     let parameters = CholeskySymbolicParams {
         supernodal_flop_ratio_threshold: SupernodalThreshold(-1.0),
         ..Default::default()
     };
     factorize_symbolic_cholesky(
-        pattern(n, starts, rows),
+        pattern.symbolic(),
         Side::Lower,
         SymmetricOrdering::Amd,
         parameters,
@@ -54,12 +52,12 @@ fn analyse(
 
 impl LinearSolver for FaerLdl {
     fn factorize(&mut self, a: CsMatView<'_, f64>) -> Result<(), LinearError> {
-        let n = a.cols();
-        let starts = a.indptr().to_proper().to_vec();
+        let pattern = Pattern::of(a);
         let symbolic = match self.symbolic.take() {
-            Some(symbolic) => symbolic,
-            None => analyse(n, &starts, a.indices())?,
+            Some(symbolic) if self.pattern == pattern => symbolic,
+            _ => analyse(&pattern)?,
         };
+        self.pattern = pattern;
         let symbolic = self.symbolic.insert(symbolic);
         self.values.resize(symbolic.len_val(), 0.0);
         let parameters = Spec::default();
@@ -68,7 +66,7 @@ impl LinearSolver for FaerLdl {
         symbolic
             .factorize_numeric_ldlt(
                 &mut self.values,
-                SparseColMatRef::new(pattern(n, &starts, a.indices()), a.data()),
+                SparseColMatRef::new(self.pattern.symbolic(), a.data()),
                 Side::Lower,
                 LdltRegularization::default(),
                 Par::Seq,

@@ -1,6 +1,7 @@
-//! Sparse symmetric matrices with a fixed pattern over the unknowns of u = T q + g, their
-//! factorisations, and parts of their inverses.
+//! Sparse symmetric matrices over the unknowns of u = T q + g with the pattern of the elements and, if
+//! need be, further blocks, their factorisations, and parts of their inverses.
 
+mod added_blocks;
 mod assembled;
 mod checked;
 mod choice;
@@ -12,6 +13,7 @@ mod solver;
 mod sprs_ldl;
 mod transformation;
 
+pub use added_blocks::AddedBlocks;
 pub use assembled::Assembled;
 pub use checked::CheckedSolver;
 pub use choice::linear_solver;

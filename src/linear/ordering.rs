@@ -16,6 +16,29 @@ pub(super) fn pattern<'a>(
     SymbolicSparseColMatRef::new_checked(n, n, starts, None, rows)
 }
 
+/// Where a matrix has entries.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(super) struct Pattern {
+    starts: Vec<usize>,
+    rows: Vec<usize>,
+}
+
+impl Pattern {
+    /// The pattern of a matrix by columns.
+    pub fn of(a: CsMatView<'_, f64>) -> Self {
+        Pattern {
+            starts: a.indptr().to_proper().to_vec(),
+            rows: a.indices().to_vec(),
+        }
+    }
+
+    /// The pattern in faer's form.
+    pub fn symbolic(&self) -> SymbolicSparseColMatRef<'_, usize> {
+        let n = self.starts.len().max(1) - 1;
+        pattern(n, &self.starts, &self.rows)
+    }
+}
+
 /// Approximate minimum degree order of a symmetric matrix: entry k is the unknown of pivot k.
 pub(super) fn minimum_degree(a: CsMatView<'_, f64>) -> Result<Vec<usize>, LinearError> {
     let n = a.cols();

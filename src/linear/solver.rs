@@ -32,7 +32,7 @@ pub enum LinearError {
 
 /// A direct solver for symmetric positive definite matrices.
 ///
-/// The first matrix fixes the pattern; later matrices must have the same.
+/// A matrix with the pattern of the last one needs no symbolic analysis.
 pub trait LinearSolver: Send {
     /// Factorises `a` (both triangles, by columns).
     ///

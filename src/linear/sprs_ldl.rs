@@ -4,7 +4,7 @@
 use sprs::{CsMatView, PermOwned, SymmetryCheck};
 use sprs_ldl::{LdlNumeric, LdlSymbolic};
 
-use super::ordering::minimum_degree;
+use super::ordering::{Pattern, minimum_degree};
 use super::solver::check_pivots;
 use super::{LinearError, LinearSolver};
 
@@ -13,6 +13,8 @@ use super::{LinearError, LinearSolver};
 #[derive(Default)]
 pub struct SprsLdl {
     order: Vec<usize>,
+    /// Pattern of the order and the factor.
+    pattern: Pattern,
     /// The library needs at least two unknowns; the pivot of a single one.
     single: Option<f64>,
     factor: Option<LdlNumeric<f64, usize>>,
@@ -25,14 +27,16 @@ impl LinearSolver for SprsLdl {
             return check_pivots(self.single.into_iter().map(|pivot| (0, pivot)));
         }
         let library = |error| LinearError::Library(format!("{error}"));
+        let pattern = Pattern::of(a);
         match &mut self.factor {
-            Some(factor) => factor.update(a).map_err(library)?,
-            None => {
+            Some(factor) if self.pattern == pattern => factor.update(a).map_err(library)?,
+            _ => {
                 self.order = minimum_degree(a)?;
                 let permutation = PermOwned::new(self.order.clone());
                 let check = SymmetryCheck::DontCheckSymmetry;
                 let symbolic = LdlSymbolic::new_perm(a, permutation, check);
                 self.factor = Some(symbolic.factor(a).map_err(library)?);
+                self.pattern = pattern;
             }
         }
         let Some(factor) = &self.factor else {

@@ -50,8 +50,9 @@ impl Compliance {
         }
     }
 
-    /// Forgets the inverse: the matrix has changed.
-    pub fn clear(&mut self) {
+    /// Forgets the inverse: the matrix has changed, and with it, perhaps, the connected groups.
+    pub fn renew(&mut self, groups: Vec<usize>) {
+        self.groups = groups;
         self.place.fill(None);
         self.unknowns.clear();
         self.inverse = DMatrix::zeros(0, 0);
@@ -83,6 +84,11 @@ impl Compliance {
             self.place[unknown] = Some(place);
         }
         Ok(())
+    }
+
+    /// T: what unknowns the dofs depend on.
+    pub fn map(&self) -> &Transformation {
+        &self.map
     }
 
     /// Entries of the rows of a constraint that are not all zero; it must have been prepared.

@@ -1,4 +1,4 @@
-//! Contact constraints: gap, slip and their rows, compliance and Delassus operator, and the
+//! Contact constraints: gap, slip and their rows, stiffness, compliance and Delassus operator, and the
 //! constraints that are closed.
 
 mod closed_pairs;
@@ -9,6 +9,7 @@ mod delassus;
 mod kinds;
 mod node_to_corner;
 mod node_to_segment;
+mod stiffness;
 
 pub use closed_pairs::{ClosedPair, ClosedPairs};
 pub use compliance::Compliance;

@@ -6,7 +6,7 @@ use super::slave_node::SlaveNode;
 use crate::contact::geometry::{Along, project};
 use crate::contact::search::Candidate;
 use crate::contact::tolerances::{
-    CLOSED_GAP, CONVEX_SINE, CORNER_TIP, CORNER_ZONE, GENTLE_SINE, PROJECTION_BEYOND_ENDS, SLID,
+    CLOSED_GAP, CONVEX_SINE, CORNER_TIP, CORNER_ZONE, GENTLE_SINE, PROJECTION_BEYOND_ENDS,
     STRAIGHT_SINE,
 };
 
@@ -218,24 +218,18 @@ impl SlaveNode<'_> {
     fn slid_on(&self, run: &[usize]) -> Option<ContactTarget> {
         let held = self.held_by.iter().map(|&[_, i]| i);
         let slid_from = |i: usize| {
-            if (-SLID..=1.0 + SLID).contains(&self.xi(i)) {
-                return None;
-            }
             let gap = |j: usize| self.project(j).gap;
             let is_over = |j: &usize| (0.0..=1.0).contains(&self.xi(*j));
-            let is_gentle = |j: &usize| self.leads_gently(i, *j) && self.tilts_gently(i, *j);
+            let is_gentle =
+                |j: &usize| *j == i || (self.leads_gently(i, *j) && self.tilts_gently(i, *j));
             let over = run.iter().copied().filter(is_over).filter(is_gentle);
             let j = over.min_by(|j, k| gap(*j).total_cmp(&gap(*k)))?;
-            Some(ContactTarget {
+            (j != i).then_some(ContactTarget {
                 from: Some(i),
                 ..ContactTarget::face(j)
             })
         };
-        let was_behind = run.iter().all(|&j| !self.was_in_front(j));
-        let came = || self.came_from(run).filter(|_| was_behind);
-        held.clone()
-            .find_map(slid_from)
-            .or_else(|| came().and_then(slid_from))
+        held.chain(self.came_from(run)).find_map(slid_from)
     }
 
     /// Whether the surface leads from segment i to segment j without a sharp turn, within twice the

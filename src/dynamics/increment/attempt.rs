@@ -11,7 +11,9 @@ use super::rigid_predictor::rigid_predictor;
 use super::trace::{Failed, Trace};
 use crate::contact::{ClosedPairs, Constraint};
 use crate::dynamics::results::{Cause, PassReport, State};
-use crate::dynamics::step::{Equilibrium, Interval, StepProblem, Workspace, difference, sum};
+use crate::dynamics::step::{
+    ClosedConstraints, Equilibrium, Interval, StepProblem, Workspace, difference, sum,
+};
 use crate::elements::Updated;
 use crate::linear::LinearError;
 use crate::model::Factorization;
@@ -118,7 +120,7 @@ impl<'m> Attempt<'_, 'm> {
                     contact: &contact,
                     displacements: [&u, &d],
                 };
-                if self.is_solved(&iterate, [settled, factors.stagnate()], trace)? {
+                if self.is_solved(&iterate, settled, trace)? {
                     trace.worst = None;
                     contact.add_open(self.outside(left_out, &u));
                     return self.finish(v0p, d, contact, impulses);
@@ -126,7 +128,7 @@ impl<'m> Attempt<'_, 'm> {
             }
 
             // y = K*^-1 r, K* of eq. (4.6), and d_p at the supports, which takes the force theta2 K d_p
-            self.refresh(factors, &u, &equilibrium.u_theta)?;
+            self.refresh(factors, [&u, &equilibrium.u_theta], &contact)?;
             let d_p = self.prescribed_increment(pass, &u);
             let support_force = self.support_force(&d_p, &u, &equilibrium.u_theta);
             let r = difference(&r, &support_force);
@@ -210,8 +212,8 @@ impl<'m> Attempt<'_, 'm> {
     fn refresh(
         &mut self,
         factors: &mut Refactorization,
-        u: &[f64],
-        u_theta: &[f64],
+        [u, u_theta]: [&[f64]; 2],
+        contact: &ContactForces,
     ) -> Result<(), Cause> {
         let (problem, dt) = (self.problem, self.interval.dt);
         let every = problem.settings.factorization == Factorization::EveryPass;
@@ -221,7 +223,11 @@ impl<'m> Attempt<'_, 'm> {
         }
         factors.renew();
         let motion = (problem.weights).motion(self.start, u, u_theta);
-        let factorized = (self.workspace).factorize(problem, dt, motion);
+        let closed = ClosedConstraints {
+            acting: contact.acting().collect(),
+            at: problem.configurations(&self.start.u, u),
+        };
+        let factorized = (self.workspace).factorize(problem, dt, motion, &closed);
         factorized.map_err(|error| match error {
             LinearError::NotPositiveDefinite { unknown, .. } => Cause::Indefinite {
                 node: problem.unknowns.dof[unknown] / 2,
@@ -235,11 +241,11 @@ impl<'m> Attempt<'_, 'm> {
     fn is_solved(
         &mut self,
         iterate: &Iterate,
-        state: [bool; 2],
+        settled: bool,
         trace: &mut Trace,
     ) -> Result<bool, Cause> {
         let (problem, stiffness) = (self.problem, &self.workspace.stiffness);
-        let solved = iterate.residual(problem, stiffness, state)?;
+        let solved = iterate.residual(problem, stiffness, settled)?;
         if let Some(residual) = solved {
             trace.solved(residual);
             self.workspace.meter.counts.residual = residual;

@@ -4,9 +4,12 @@
 use super::mass::unknown_mass;
 use super::step_problem::StepProblem;
 use super::unknowns::Unknowns;
-use crate::contact::{Compliance, Constraint};
+use crate::contact::{ClosedPair, Compliance, Configurations, Constraint};
 use crate::elements::{Elements, Motion, TangentPart};
-use crate::linear::{Assembled, CheckedSolver, LinearError, linear_solver};
+use crate::lcp::ContactState;
+use crate::linear::{
+    AddedBlocks, Assembled, CheckedSolver, LinearError, Transformation, larger, linear_solver,
+};
 use crate::model::SolverChoice;
 
 /// A symmetric matrix over the unknowns, factorised, with its compliance at the contacts.
@@ -16,16 +19,16 @@ pub(crate) struct FactoredMatrix {
 }
 
 impl FactoredMatrix {
-    pub fn new(choice: SolverChoice, matrix: Assembled, compliance: Compliance) -> Self {
-        FactoredMatrix {
-            solver: CheckedSolver::new(linear_solver(choice), matrix),
-            compliance,
-        }
+    /// A matrix over the unknowns of a map, without factors.
+    pub fn new(choice: SolverChoice, matrix: Assembled, map: &Transformation) -> Self {
+        let solver = CheckedSolver::new(linear_solver(choice), matrix);
+        let compliance = Compliance::new(map.clone(), solver.groups());
+        FactoredMatrix { solver, compliance }
     }
 
     /// Factorises the matrix again.
     pub fn factorize(&mut self) -> Result<(), LinearError> {
-        self.compliance.clear();
+        self.compliance.renew(self.solver.groups());
         self.solver.factorize()
     }
 
@@ -33,6 +36,37 @@ impl FactoredMatrix {
     pub fn prepare(&mut self, constraints: &[&Constraint]) -> Result<(), LinearError> {
         self.compliance.prepare(constraints, &mut self.solver)
     }
+}
+
+/// What K* is made of besides inertia.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum StiffnessForm {
+    /// Tangents of the elements and contact stiffness.
+    Tangent,
+    /// Tangents of the elements, with the closed constraints held.
+    Held,
+    /// Positive parts of the tangents, with the closed constraints held.
+    Positive,
+}
+
+impl StiffnessForm {
+    /// All, from the one with which passes converge fastest to the one that is never indefinite.
+    pub const ALL: [Self; 3] = [Self::Tangent, Self::Held, Self::Positive];
+
+    /// Part of the tangents of the elements.
+    fn part(self) -> TangentPart {
+        match self {
+            Self::Tangent | Self::Held => TangentPart::Whole,
+            Self::Positive => TangentPart::Positive,
+        }
+    }
+}
+
+/// Closed constraints of an iterate with their forces.
+pub(crate) struct ClosedConstraints<'a> {
+    pub acting: Vec<(&'a Constraint, &'a ClosedPair)>,
+    /// Configurations that they are linearised between.
+    pub at: Configurations<'a>,
 }
 
 /// The effective matrix K* = theta2 K + (2/dt²) M, eq. (4.6), kept until it is assembled again, and
@@ -54,11 +88,9 @@ impl EffectiveStiffness {
     /// Both matrices for the unknowns of a step.
     pub fn new(elements: &Elements, unknowns: &Unknowns, choice: SolverChoice) -> Self {
         let mass = unknown_mass(elements, unknowns);
-        let groups = mass.groups();
-        let compliance = || Compliance::new(unknowns.map.clone(), groups.clone());
         EffectiveStiffness {
-            k: FactoredMatrix::new(choice, mass.zeros(), compliance()),
-            m: FactoredMatrix::new(choice, mass, compliance()),
+            k: FactoredMatrix::new(choice, mass.zeros(), &unknowns.map),
+            m: FactoredMatrix::new(choice, mass, &unknowns.map),
             dt: f64::NAN,
             stiffness: Vec::new(),
             inertia: Vec::new(),
@@ -72,8 +104,14 @@ impl EffectiveStiffness {
     }
 
     /// Assembles K* in the given configuration from the tangents of the elements or their positive
-    /// parts, to be factorised next.
-    pub fn assemble(&mut self, problem: &StepProblem, dt: f64, motion: Motion, part: TangentPart) {
+    /// parts, without contact.
+    pub fn assemble(
+        &mut self,
+        problem: &StepProblem,
+        dt: f64,
+        motion: Motion,
+        form: StiffnessForm,
+    ) {
         let StepProblem {
             elements,
             weights,
@@ -85,7 +123,7 @@ impl EffectiveStiffness {
         let mass = self.m.solver.matrix();
         let k = self.k.solver.matrix_mut();
         k.clear();
-        elements.for_each_tangent(motion, part, |element, tangent| {
+        elements.for_each_tangent(motion, form.part(), |element, tangent| {
             k.add(element, tangent, weights.theta2)
         });
         self.stiffness = parts.largest_diagonal(k, &unknowns.dof);
@@ -94,5 +132,27 @@ impl EffectiveStiffness {
         self.inertia = inertia.into_iter().map(|m| c * m).collect();
         k.add_matrix(mass, c);
         self.dt = dt;
+    }
+
+    /// Adds the stiffness of the closed constraints to K*, to be factorised next.
+    pub fn add_contact(&mut self, contact: &ClosedConstraints, form: StiffnessForm) {
+        let FactoredMatrix { solver, compliance } = &mut self.k;
+        let diagonal: Vec<f64> = solver.matrix().diagonal().collect();
+        let map = compliance.map();
+        let mut blocks = AddedBlocks::default();
+        for (constraint, pair) in &contact.acting {
+            let k = match form {
+                // K* <- K* - Kc, eq. (4.12)
+                StiffnessForm::Tangent => -constraint.stiffness(pair.force, &contact.at),
+                // K* <- K* + gamma (Gn^T Gn + Gt^T Gt), gamma the largest K*_ii, eq. (4.13)
+                StiffnessForm::Held | StiffnessForm::Positive => {
+                    let unknowns = constraint.dofs.iter().flat_map(|&dof| map.row(dof));
+                    let gamma = unknowns.map(|term| diagonal[term.0]).fold(0.0, larger);
+                    constraint.hold(pair.state == ContactState::Stick) * gamma
+                }
+            };
+            blocks.add(map, &constraint.dofs, &k);
+        }
+        solver.add_blocks(blocks);
     }
 }

@@ -15,9 +15,9 @@ mod unknowns;
 mod workspace;
 
 pub(crate) use discretization::Discretization;
-pub(crate) use effective_stiffness::EffectiveStiffness;
 #[cfg(test)]
 pub(crate) use effective_stiffness::FactoredMatrix;
+pub(crate) use effective_stiffness::{ClosedConstraints, EffectiveStiffness};
 pub(crate) use loads::TimePoint;
 pub(crate) use mass::{Mass, dot};
 #[cfg(test)]

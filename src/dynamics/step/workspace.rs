@@ -1,7 +1,9 @@
 //! Workspace of the increments of a step: effective stiffness with its factors, contact search,
 //! times and counts. Each operation measures its own time. Section 4 of docs/theory.md.
 
-use super::effective_stiffness::{EffectiveStiffness, FactoredMatrix};
+use super::effective_stiffness::{
+    ClosedConstraints, EffectiveStiffness, FactoredMatrix, StiffnessForm,
+};
 use super::loads::TimePoint;
 use super::meter::Meter;
 use super::step_problem::{Equilibrium, Interval, StepProblem, difference};
@@ -9,7 +11,7 @@ use crate::contact::{
     ClosedPairs, Compliance, Constraint, Penetration, Search, find_penetration, frictional_lcp,
 };
 use crate::dynamics::results::{Cause, State};
-use crate::elements::{Motion, TangentPart};
+use crate::elements::Motion;
 use crate::lcp::{
     ContactState, FrictionalLcp, FrictionalSolution, LcpError, LcpMethod, solve_frictional,
 };
@@ -56,39 +58,35 @@ impl<'m> Workspace<'m> {
         System::new(&mut self.stiffness.m, &mut self.meter)
     }
 
-    /// Assembles and factorises K* for increments of length `dt` in the configuration of a motion; where
-    /// it is not positive definite, from the positive parts of the tangents of the elements.
+    /// Assembles and factorises K* for increments of length `dt` in the configuration of a motion with
+    /// the given closed constraints, in the first form in which it is positive definite.
+    ///
+    /// # Errors
+    /// That of the last form, or another than that K* is not positive definite.
     pub fn factorize(
         &mut self,
         problem: &StepProblem,
         dt: f64,
         motion: Motion,
+        contact: &ClosedConstraints,
     ) -> Result<(), LinearError> {
-        match self.factorize_part(problem, dt, motion, TangentPart::Whole) {
-            Err(LinearError::NotPositiveDefinite { .. }) => {
-                self.factorize_part(problem, dt, motion, TangentPart::Positive)
+        let mut result = Ok(());
+        for form in StiffnessForm::ALL {
+            let Workspace {
+                stiffness, meter, ..
+            } = &mut *self;
+            let assemble = || {
+                stiffness.assemble(problem, dt, motion, form);
+                stiffness.add_contact(contact, form);
+            };
+            meter.time(|t| &mut t.assembly, assemble);
+            meter.counts.factorizations += 1;
+            result = self.k().factorize();
+            if !matches!(result, Err(LinearError::NotPositiveDefinite { .. })) {
+                break;
             }
-            result => result,
         }
-    }
-
-    /// Assembles and factorises K* from a part of the tangents.
-    fn factorize_part(
-        &mut self,
-        problem: &StepProblem,
-        dt: f64,
-        motion: Motion,
-        part: TangentPart,
-    ) -> Result<(), LinearError> {
-        let Workspace {
-            stiffness, meter, ..
-        } = self;
-        meter.time(
-            |t| &mut t.assembly,
-            || stiffness.assemble(problem, dt, motion, part),
-        );
-        meter.counts.factorizations += 1;
-        self.k().factorize()
+        result
     }
 
     /// Load, internal force and inertia of the iterate U0 + d.
