@@ -16,6 +16,11 @@ use crate::blocks::{
     Block, SCHEMES, add_block, add_contact, fixed, gravity, model, run_to_end, settings, step,
 };
 
+const NEO_HOOKE: Law = Law::NeoHooke(NeoHooke {
+    c10: 200.0,
+    d1: 2e-3,
+});
+
 const TYPES: [ElementType; 2] = [
     ElementType::CPE4,
     ElementType {
@@ -80,6 +85,42 @@ fn a_bar_far_beyond_its_euler_load_that_the_ground_holds() {
     }
 }
 
+/// A block between platens with friction, pressed by 40 %: no increment is cut, and what holds the
+/// block in K* costs no passes.
+#[test]
+fn a_block_between_platens_that_alone_hold_it() {
+    for scheme in SCHEMES {
+        let mut model = model(1.0, 0.3, 1.0);
+        model.materials[0].law = NEO_HOOKE;
+        let block = add_block(&mut model, [0.0, 0.0], [1.0, 0.5], (12, 6), 0.0);
+        let platens =
+            [-1.0, 0.5].map(|y| add_block(&mut model, [-1.0, y], [3.0, 1.0], (1, 1), 0.0));
+        for element in &mut model.mesh.elements {
+            element.element_type = ElementType::CPE4;
+        }
+        add_contact(&mut model, block.faces(0), platens[0].faces(2), 0.3);
+        add_contact(&mut model, block.faces(2), platens[1].faces(0), 0.3);
+        let mut supports: Vec<Support> = platens
+            .iter()
+            .flat_map(Block::nodes)
+            .collect::<Vec<_>>()
+            .into_iter()
+            .flat_map(|n| [fixed(2 * n), fixed(2 * n + 1)])
+            .collect();
+        let lid = platens[1].nodes();
+        for support in &mut supports {
+            if lid.contains(&(support.dof / 2)) && support.dof % 2 == 1 {
+                support.motion = SupportMotion::Ramp { to: -0.2 };
+            }
+        }
+        model.steps = vec![step(0.05, 20, settings(scheme), supports)];
+        let (keep, summary) = run_to_end(&model);
+        assert_eq!(summary.cutbacks, 0, "{scheme:?}");
+        let most = keep.reports.iter().map(|report| report.passes.len()).max();
+        assert!(most <= Some(12), "{scheme:?} {most:?}");
+    }
+}
+
 /// Tangent of all elements, or its positive part, at displacements `u`.
 fn tangent(elements: &Elements, u: &[f64], part: TangentPart) -> DMatrix<f64> {
     let mut k = DMatrix::zeros(u.len(), u.len());
@@ -118,14 +159,7 @@ fn least_eigenvalues(law: Law, element_type: ElementType, stretch: f64) -> [f64;
 
 #[test]
 fn the_positive_part_of_the_tangent_has_no_negative_eigenvalues() {
-    let laws = [
-        Law::elastic(1e3, 0.3),
-        Law::NeoHooke(NeoHooke {
-            c10: 200.0,
-            d1: 2e-3,
-        }),
-    ];
-    for law in laws {
+    for law in [Law::elastic(1e3, 0.3), NEO_HOOKE] {
         for element_type in TYPES {
             // 0.5 lies beyond the largest force of the St. Venant-Kirchhoff law, at 1/sqrt(3)
             for stretch in [0.5, 0.7, 0.9] {
