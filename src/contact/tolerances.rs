@@ -57,10 +57,13 @@ pub(crate) const FACING_SINE: f64 = 0.5;
 /// Angle (rad) by which two normal cones may miss each other and still have a common normal: meshed
 /// faces that are flush to that accuracy.
 pub(crate) const CONE_MISS: f64 = 0.1;
-/// Sine of the turn at a concave corner up to which a node slides across it as on a straight face.
+/// Sine of the turn at a concave corner up to which one of its segments is enough for a node.
 pub(crate) const GENTLE_SINE: f64 = 0.02;
-/// The same at a convex corner; and tangent of the tilt of the force on such a node.
-pub(crate) const CONVEX_SINE: f64 = 0.5;
+/// Sine of the turn at corners that a node slides across within an increment, and tangent of the tilt
+/// of the force on it.
+pub(crate) const SLIDING_SINE: f64 = 0.5;
+/// Distance beyond the end of a segment from which on a node has slid on to the next.
+pub(crate) const SLID: f64 = 1e-7;
 /// Distance from a convex corner, along the faces, within which a node meets the corner itself.
 pub(crate) const CORNER_TIP: f64 = 1e-5;
 /// Overrun beyond the ends of a segment up to which a node that has left it within an increment for

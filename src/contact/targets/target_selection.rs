@@ -6,7 +6,7 @@ use super::slave_node::SlaveNode;
 use crate::contact::geometry::{Along, project};
 use crate::contact::search::Candidate;
 use crate::contact::tolerances::{
-    CLOSED_GAP, CONVEX_SINE, CORNER_TIP, CORNER_ZONE, GENTLE_SINE, PROJECTION_BEYOND_ENDS,
+    CLOSED_GAP, CORNER_TIP, CORNER_ZONE, GENTLE_SINE, PROJECTION_BEYOND_ENDS, SLID, SLIDING_SINE,
     STRAIGHT_SINE,
 };
 
@@ -218,18 +218,24 @@ impl SlaveNode<'_> {
     fn slid_on(&self, run: &[usize]) -> Option<ContactTarget> {
         let held = self.held_by.iter().map(|&[_, i]| i);
         let slid_from = |i: usize| {
+            if (-SLID..=1.0 + SLID).contains(&self.xi(i)) {
+                return None;
+            }
             let gap = |j: usize| self.project(j).gap;
             let is_over = |j: &usize| (0.0..=1.0).contains(&self.xi(*j));
-            let is_gentle =
-                |j: &usize| *j == i || (self.leads_gently(i, *j) && self.tilts_gently(i, *j));
+            let is_gentle = |j: &usize| self.leads_gently(i, *j) && self.tilts_gently(i, *j);
             let over = run.iter().copied().filter(is_over).filter(is_gentle);
             let j = over.min_by(|j, k| gap(*j).total_cmp(&gap(*k)))?;
-            (j != i).then_some(ContactTarget {
+            Some(ContactTarget {
                 from: Some(i),
                 ..ContactTarget::face(j)
             })
         };
-        held.chain(self.came_from(run)).find_map(slid_from)
+        let was_behind = run.iter().all(|&j| !self.was_in_front(j));
+        let came = || self.came_from(run).filter(|_| was_behind);
+        held.clone()
+            .find_map(slid_from)
+            .or_else(|| came().and_then(slid_from))
     }
 
     /// Whether the surface leads from segment i to segment j without a sharp turn, within twice the
@@ -245,7 +251,7 @@ impl SlaveNode<'_> {
                     Along::Forward => self.corner_sine(at, next),
                     Along::Backward => self.corner_sine(next, at),
                 };
-                if !(-GENTLE_SINE..=CONVEX_SINE).contains(&turn) {
+                if turn.abs() > SLIDING_SINE {
                     return false;
                 }
                 if next == j {
@@ -262,7 +268,7 @@ impl SlaveNode<'_> {
     fn tilts_gently(&self, i: usize, j: usize) -> bool {
         let (start, now) = (self.project_at_start(j), self.project(j));
         let slip = (start.length + now.length) / 2.0 * (now.xi - start.xi);
-        rise(start.gap, self.project_at_start(i).gap).abs() <= CONVEX_SINE * slip.abs()
+        rise(start.gap, self.project_at_start(i).gap).abs() <= SLIDING_SINE * slip.abs()
     }
 
     /// The neighbour, round a convex corner near the node, of a segment that the surface of the

@@ -120,7 +120,7 @@ impl<'m> Attempt<'_, 'm> {
                     contact: &contact,
                     displacements: [&u, &d],
                 };
-                if self.is_solved(&iterate, settled, trace)? {
+                if self.is_solved(&iterate, [settled, factors.stagnate()], trace)? {
                     trace.worst = None;
                     contact.add_open(self.outside(left_out, &u));
                     return self.finish(v0p, d, contact, impulses);
@@ -241,11 +241,11 @@ impl<'m> Attempt<'_, 'm> {
     fn is_solved(
         &mut self,
         iterate: &Iterate,
-        settled: bool,
+        state: [bool; 2],
         trace: &mut Trace,
     ) -> Result<bool, Cause> {
         let (problem, stiffness) = (self.problem, &self.workspace.stiffness);
-        let solved = iterate.residual(problem, stiffness, settled)?;
+        let solved = iterate.residual(problem, stiffness, state)?;
         if let Some(residual) = solved {
             trace.solved(residual);
             self.workspace.meter.counts.residual = residual;

@@ -12,6 +12,11 @@ use crate::linear::{larger, largest};
 
 /// Round-off of a sum of some terms, in units of its largest term.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+/// Part of the tolerance to which an iterate must be in balance to be the solution, unless its corrections
+/// have come down to round-off: a pass whose residual and correction are below the tolerance ends with
+/// an iterate that is better by the rate of the passes.
+const BALANCED: f64 = 0.1;
+
 /// Forces and displacements of a pass, over all dofs.
 pub(crate) struct Pass<'a> {
     /// Load, internal force and inertia of the iterate.
@@ -100,7 +105,7 @@ impl Iterate<'_> {
         &self,
         problem: &StepProblem,
         stiffness: &EffectiveStiffness,
-        settled: bool,
+        [settled, stagnates]: [bool; 2],
     ) -> Result<Option<f64>, Cause> {
         if !self.contact.all_have_constraints() {
             return Ok(None);
@@ -117,7 +122,9 @@ impl Iterate<'_> {
         };
         let contact_force = self.contact.resultant(u.len());
         pass.check_finite(&contact_force)?;
-        let scales = pass.scales(problem, stiffness, &contact_force);
+        let part = if stagnates { 1.0 } else { BALANCED };
+        let scales = (pass.scales(problem, stiffness, &contact_force))
+            .with_tolerance(part * problem.settings.tolerance);
         let residual = problem.unknowns.restrict(&sum(&r, &contact_force));
         let errors = Errors::new(problem.parts, &residual, &problem.unknowns.dof, &none);
         if !scales.converged(&errors) || !scales.obeys_contact_law(self.contact, settled) {
@@ -208,6 +215,11 @@ impl<'a> Scales<'a> {
             increment,
             tolerance,
         }
+    }
+
+    /// The same scales with another tolerance.
+    pub fn with_tolerance(self, tolerance: f64) -> Self {
+        Scales { tolerance, ..self }
     }
 
     /// Largest relative residual and correction of a pass.

@@ -12,6 +12,8 @@ const FRESH_RATE: f64 = 0.03;
 const COST: f64 = 1.0;
 /// Rate of the first two corrections above which factors of an earlier increment are dropped.
 const POOR_RATE: f64 = 0.3;
+/// Rate of corrections that become hardly smaller.
+const STAGNANT: f64 = 0.5;
 /// Passes in a row that grow the correction of an attempt with fresh factors before it is given up.
 const GROWING: usize = 3;
 
@@ -43,6 +45,8 @@ pub(super) struct Refactorization {
     age: usize,
     worn: bool,
     correction: f64,
+    /// Last correction over the one before.
+    rate: f64,
     /// Rate of fresh factors.
     fresh_rate: f64,
     growing: usize,
@@ -58,6 +62,7 @@ impl Refactorization {
             age: 0,
             worn: rule != FactorRule::Kept,
             correction: f64::INFINITY,
+            rate: 0.0,
             fresh_rate: FRESH_RATE,
             growing: 0,
         }
@@ -78,6 +83,11 @@ impl Refactorization {
         self.correction < NEAR
     }
 
+    /// Whether the corrections become hardly smaller: where they are small, that is round-off.
+    pub fn stagnate(&self) -> bool {
+        self.rate > STAGNANT
+    }
+
     /// Takes in the relative correction of a pass.
     ///
     /// n(theta) = ln(correction/tolerance)/-ln(theta) passes are left at the rate theta; the factors are
@@ -87,7 +97,7 @@ impl Refactorization {
         let is_first = self.correction == f64::INFINITY;
         self.passes += 1;
         self.age += 1;
-        self.correction = correction;
+        (self.correction, self.rate) = (correction, rate);
         if is_first {
             self.worn = self.rule == FactorRule::EveryPass;
             return Ok(());
@@ -96,9 +106,10 @@ impl Refactorization {
             self.fresh_rate = rate.clamp(FRESH_RATE, 0.5);
         }
         self.growing = if rate >= 1.0 { self.growing + 1 } else { 0 };
-        if (self.rule == FactorRule::Kept && !self.own && rate > POOR_RATE && self.passes <= 3)
-            || (self.rule != FactorRule::EveryPass && self.growing >= GROWING)
-        {
+        if self.growing >= GROWING {
+            return Err(Cause::Diverged);
+        }
+        if self.rule == FactorRule::Kept && !self.own && rate > POOR_RATE && self.passes <= 3 {
             return Err(Cause::NotConverged);
         }
         let left = |rate: f64| {
