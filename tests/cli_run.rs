@@ -171,6 +171,53 @@ fn a_crash_stops_with_the_last_good_state() {
     assert_eq!(summary.frames.last(), Some(&summary.time));
 }
 
+/// The text between the labels of a cutback and of the next table, words one blank apart.
+fn told(change: [&str; 2]) -> String {
+    let bench = Bench::new(&DROP.replace(change[0], change[1]));
+    let (_, out, _) = bench.stickslip(&["run", "drop.inp"]);
+    assert!(out.lines().all(|line| line.len() <= 80), "{out}");
+    let lines = out.lines().skip_while(|line| !line.starts_with("cutback"));
+    let words: Vec<&str> = lines.flat_map(str::split_whitespace).collect();
+    words.join(" ")
+}
+
+#[test]
+fn a_cutback_tells_how_the_passes_went_and_what_to_change() {
+    let settings = "0.002, 0.1\n*STICKSLIP, MAX PASSES=2";
+    let few = told(["0.002, 0.1", settings]);
+    assert!(
+        few.contains("the passes did not converge about 2 more passes were needed"),
+        "{few}"
+    );
+    let advice = "advice raise MAX PASSES of *STICKSLIP to 4 or more";
+    assert_eq!(few.matches("advice").count(), 1, "said once: {few}");
+    assert!(few.contains(advice), "{few}");
+    // enough passes, as advised
+    let enough = told(["0.002, 0.1", &settings.replace("=2", "=4")]);
+    assert_eq!(enough, "", "no cutback");
+    let crushed = told(["2, -0.5", "2, -5000."]);
+    assert!(
+        crushed.contains("turned inside out") && crushed.contains("NEO HOOKE"),
+        "{crushed}"
+    );
+}
+
+#[test]
+fn the_errors_of_the_answer_are_those_of_the_result_file() {
+    let bench = Bench::new(DROP);
+    let (_, out, _) = bench.stickslip(&["run", "drop.inp"]);
+    let (_, info, _) = bench.stickslip(&["info", "drop.vtkhdf"]);
+    let errors = |text: &str| -> Vec<String> {
+        let lines = text
+            .lines()
+            .filter(|line| line.starts_with("error    residual"));
+        lines.map(str::to_owned).collect()
+    };
+    assert_eq!(errors(&out).len(), 1, "{out}");
+    assert!(errors(&out)[0].ends_with("of a segment"), "{out}");
+    assert_eq!(errors(&out), errors(&info));
+}
+
 #[test]
 fn a_quiet_crash_is_told_on_the_standard_error() {
     let bench = Bench::new(&DROP.replace("2, -0.5", "2, -5000."));

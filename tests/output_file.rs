@@ -158,7 +158,7 @@ const VECTOR_PER_INCREMENT: [&str; 18] = [
     "/history/nodes/TIP/mean/A",
 ];
 
-const PER_INCREMENT: [&str; 58] = [
+const PER_INCREMENT: [&str; 61] = [
     "/history/contact/BOTTOM_TOP/normal_work",
     "/history/contact/BOTTOM_TOP/friction_dissipation",
     "/history/contact/BOTTOM_TOP/normal_impulse",
@@ -216,6 +216,9 @@ const PER_INCREMENT: [&str; 58] = [
     "/history/solver/lemke_calls",
     "/history/solver/factorizations",
     "/history/solver/residual",
+    "/history/solver/overlap",
+    "/history/solver/gap_violation",
+    "/history/solver/slip_violation",
     "/history/solver/converged",
 ];
 

@@ -57,6 +57,10 @@ fn the_file_shows_the_collision() {
     assert_eq!(summary.exit_status, 0);
     assert!(summary.landings >= 4, "{summary:?}");
     assert!(summary.worst_balance < 1e-8 * summary.largest_energy);
+    let violation = summary.violation.expect("there is contact");
+    let worst = violation.overlap.max(violation.gap).max(violation.slip);
+    assert!(worst < 1e-9 && violation.gap > 0.0, "{violation:?}");
+    assert!(summary.residual > 0.0 && summary.residual < 1e-10);
     let file = File::open(&files.result).expect("file");
     let stress = values(&file, "VTKHDF/CellData/S");
     assert_eq!(stress.len(), 13 * model.mesh.elements.len() * 3);

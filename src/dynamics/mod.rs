@@ -7,8 +7,9 @@ mod results;
 mod run;
 mod step;
 pub use results::{
-    BodyResult, Cause, ContactImpulse, ContactOnBody, ContactResultant, Cutback, Energy, FailedLcp,
-    Failure, IncrementReport, Landing, Momentum, NodalResults, NodeStatus, Observer, Outcome,
-    PassReport, RigidReaction, RunSummary, SolverCounts, State, Timings, Worst,
+    Alternation, BodyResult, Cause, ContactImpulse, ContactOnBody, ContactResultant,
+    ContactViolation, Course, Cutback, Energy, FailedLcp, Failure, IncrementReport, Landing,
+    Momentum, NodalResults, NodeStatus, Observer, Outcome, PassReport, RigidReaction, RunSummary,
+    SolverCounts, State, Timings, Worst,
 };
 pub use run::{RunError, run};

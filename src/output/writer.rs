@@ -12,10 +12,10 @@ use super::frame::LastState;
 use super::frames::FrameSchedule;
 use super::interrupt::Interrupt;
 use super::result_file::ResultFile;
-use super::summary::{Monitor, Remarks, lcp_lines, timing_lines};
+use super::summary::{Monitor, Remarks, error_line, lcp_lines, timing_lines};
 use super::text::{
-    Console, Log, StatusFile, Verbosity, bytes, counted, cutback_lines, failure_lines, scientific,
-    warning_lines, wrap,
+    Console, Log, StatusFile, Verbosity, bytes, counted, cutback_advice, cutback_lines,
+    failure_lines, scientific, warning_lines, wrap,
 };
 use crate::dynamics::{Cause, Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary};
 use crate::model::Model;
@@ -206,7 +206,11 @@ impl<'a> ResultWriter<'a> {
     /// Prints a cutback: all to the log, the first ones also to the screen.
     fn print_cutback(&mut self, cutback: &Cutback) -> io::Result<()> {
         let count = self.monitor.add_cutback();
-        for line in cutback_lines(cutback) {
+        let mut lines = cutback_lines(cutback, self.model);
+        if self.monitor.is_new_kind(cutback) {
+            lines.extend(cutback_advice(cutback, self.model));
+        }
+        for line in lines {
             match count <= SCREEN_CUTBACKS {
                 true => self.console.line(&line)?,
                 false => self.console.detail(&line)?,
@@ -220,7 +224,9 @@ impl<'a> ResultWriter<'a> {
     }
 
     fn print_failure(&mut self, failure: &Failure) -> io::Result<()> {
-        self.alarm(failure_lines(failure, self.model, &self.last.frame.state.u))?;
+        let last = &self.last.frame;
+        let lines = failure_lines(failure, self.model, &last.state.u, &last.elements);
+        self.alarm(lines)?;
         if let Cause::Lcp(failed) = &failure.cause {
             let path = self.claim.files().failed_lcp(failure.increment);
             replace(&path, &failed.problem.to_json()).map_err(at(&path))?;
@@ -259,7 +265,11 @@ impl<'a> ResultWriter<'a> {
     fn print_totals(&mut self, summary: &RunSummary, output: f64, total: f64) -> io::Result<()> {
         self.console.lines(timing_lines(summary, output, total))?;
         self.console.lines(self.monitor.lines(self.model))?;
-        self.console.lines(lcp_lines(&summary.solver))?;
+        let solver = &summary.solver;
+        let has_contact = !self.model.contacts.is_empty();
+        let violation = has_contact.then_some(solver.violation);
+        (self.console).line(&error_line(solver.residual, violation))?;
+        self.console.lines(lcp_lines(solver))?;
         self.console.lines(self.monitor.warnings(self.model))?;
         let (name, size) = self.result.name_and_size();
         let frames = counted(self.result.frames(), "frame");

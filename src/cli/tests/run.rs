@@ -137,6 +137,7 @@ fn failure() -> Failure {
             element: 0,
             determinant: -0.1,
         },
+        course: None,
         worst: Some(Worst {
             node: 2,
             position: [1.5, 2.5],

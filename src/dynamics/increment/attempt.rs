@@ -68,6 +68,7 @@ impl<'m> Attempt<'_, 'm> {
         let mut trace = Trace::default();
         let mut failed = Cause::NotConverged;
         for rule in FactorRule::ALL {
+            trace.begin();
             let mut factors = Refactorization::new(rule, self.problem.settings.tolerance);
             match self.passes(before, &mut factors, &mut trace) {
                 Ok(solved) => {
@@ -79,7 +80,7 @@ impl<'m> Attempt<'_, 'm> {
                 Err(cause) => failed = cause,
             }
         }
-        Err(trace.failed(failed))
+        Err(trace.failed(failed, self.problem.settings.tolerance))
     }
 
     /// Predictor and correctors, which share one form (paper eqs 27, 29 and 36 to 49).
@@ -267,7 +268,7 @@ impl<'m> Attempt<'_, 'm> {
         let report = scales.report(&errors, pass.contact);
         let position = |node| problem.position(u, node);
         trace.worst = scales.worst(&residual, &problem.unknowns.dof, position);
-        trace.passes.push(report);
+        trace.add(report, pass.contact);
         meter.count_pass(report.residual);
         Ok(scales.converged(&errors))
     }

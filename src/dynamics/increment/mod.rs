@@ -1,6 +1,7 @@
 //! One increment: passes, contact forces, impulses, convergence.
 
 mod active_constraints;
+mod alternation;
 mod attempt;
 mod contact_forces;
 mod contact_system;

@@ -1,8 +1,9 @@
-//! Ledger of converged increments: energies and their check, contacts, bodies, nodes, rigid surfaces.
+//! Ledger of converged increments: energies and their check, contacts and their errors, bodies, nodes, rigid surfaces.
 
 mod accounts;
 mod bodies;
 mod contact_ledger;
+mod contact_violation;
 mod energy;
 mod energy_check;
 mod nodal_results;
@@ -10,6 +11,7 @@ mod pressure;
 mod rigid_surfaces;
 
 pub(crate) use accounts::Accounts;
+pub(crate) use contact_violation::contact_violation;
 pub(crate) use energy::Ledger;
 pub(crate) use energy_check::check_energy_gain;
 pub(crate) use nodal_results::{landings, motion};

@@ -1,4 +1,4 @@
-//! Resultants, impulses and impacts of the contacts.
+//! Resultants, impulses, impacts and errors of the contacts.
 
 /// Impulses of a contact: those of its forces and of its impacts, or of its impacts alone.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -13,6 +13,17 @@ pub struct ContactImpulse {
     pub impact_normal: f64,
     /// Sum of Psi (force time).
     pub impact_tangential: f64,
+}
+
+/// How far the pairs at the end of an increment are from the contact law, in lengths of their segments.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ContactViolation {
+    /// Largest overlap of an open pair.
+    pub overlap: f64,
+    /// Largest gap of a closed pair, in absolute value.
+    pub gap: f64,
+    /// Largest slip of a sticking pair in the increment, in absolute value.
+    pub slip: f64,
 }
 
 /// Force of one contact on a body.

@@ -3,6 +3,7 @@
 
 use std::fmt;
 
+use super::course::Course;
 use super::pass_report::PassReport;
 use crate::contact::Constraint;
 use crate::elements::Inverted;
@@ -116,6 +117,8 @@ pub struct Failure {
     pub dt: f64,
     /// Why.
     pub cause: Cause,
+    /// How the passes went, where they did not converge.
+    pub course: Option<Box<Course>>,
     /// The node with the largest error, where the passes have one.
     pub worst: Option<Worst>,
     /// Passes of the attempt.

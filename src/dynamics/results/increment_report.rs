@@ -3,7 +3,7 @@
 use std::io;
 use std::sync::Arc;
 
-use super::contact_results::{ContactResultant, Landing};
+use super::contact_results::{ContactResultant, ContactViolation, Landing};
 use super::failure::Failure;
 use super::pass_report::PassReport;
 use crate::elements::{ElementResult, Strained};
@@ -119,7 +119,7 @@ pub struct RigidReaction {
     pub moment: f64,
 }
 
-/// Work of the solver in an increment or in a whole run.
+/// Work of the solver in an increment or in a whole run, and the errors of its answer.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SolverCounts {
     /// Predictor and corrector passes.
@@ -140,6 +140,8 @@ pub struct SolverCounts {
     pub factorizations: usize,
     /// Relative force residual of the last pass.
     pub residual: f64,
+    /// How far the pairs are from the contact law at the end.
+    pub violation: ContactViolation,
     /// Whether the increment converged.
     pub converged: bool,
 }

@@ -44,7 +44,7 @@ pub struct RunSummary {
     pub cutbacks: usize,
     /// Number of increments that an impact ended (`IMPACT TIME=EVENT`).
     pub events: usize,
-    /// Counters summed over the increments (`lcp_size` and `residual`: the largest).
+    /// Counters summed over the increments (`lcp_size`, `residual` and `violation`: the largest).
     pub solver: SolverCounts,
     /// Time per phase.
     pub timings: Timings,

@@ -62,6 +62,7 @@ impl Accepted {
                 subincrement.interval,
                 Failed {
                     cause,
+                    course: None,
                     worst: None,
                     passes: subincrement.solved.passes,
                 },
@@ -103,6 +104,7 @@ pub(crate) fn failure(
 ) -> Failure {
     let Failed {
         cause,
+        course,
         worst,
         passes,
     } = failed;
@@ -112,6 +114,7 @@ pub(crate) fn failure(
         time: interval.start.total,
         dt: interval.dt,
         cause,
+        course,
         worst,
         passes,
         halvings,
@@ -127,6 +130,7 @@ pub(crate) fn start_failure(state: &State, ledger: &Ledger, place: StepPlace) ->
         time: place.start,
         dt: 0.0,
         cause,
+        course: None,
         worst: None,
         passes: Vec::new(),
         halvings: 0,

@@ -10,7 +10,7 @@ use super::nominal_increment::{NominalIncrement, nominal_increments};
 use super::time_control::{Span, TimeControl};
 use crate::contact::ClosedPairs;
 use crate::dynamics::events::{FailedSubincrement, Subincrement, Subincrements};
-use crate::dynamics::ledger::{Accounts, Ledger, landings};
+use crate::dynamics::ledger::{Accounts, Ledger, contact_violation, landings};
 use crate::dynamics::results::{
     Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State, Timings,
 };
@@ -236,6 +236,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         } = subincrement;
         let accounted = (self.accounts).enter(problem, &solved, interval, &ledger.elements);
         let solver = SolverCounts {
+            violation: contact_violation(problem, &self.state, &solved),
             converged: true,
             ..workspace.meter.counts
         };

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::dynamics::results::{SolverCounts, Timings};
+use crate::dynamics::results::{ContactViolation, SolverCounts, Timings};
 use crate::lcp::{Counters, LcpMethod};
 use crate::linear::larger;
 use crate::model::LcpChoice;
@@ -77,7 +77,19 @@ impl SolverCounts {
         self.lemke_calls += other.lemke_calls;
         self.factorizations += other.factorizations;
         self.residual = larger(self.residual, other.residual);
+        self.violation = self.violation.larger(other.violation);
         self.converged = self.converged && other.converged;
+    }
+}
+
+impl ContactViolation {
+    /// The larger of two, of each kind.
+    pub(crate) fn larger(self, other: Self) -> Self {
+        ContactViolation {
+            overlap: larger(self.overlap, other.overlap),
+            gap: larger(self.gap, other.gap),
+            slip: larger(self.slip, other.slip),
+        }
     }
 }
 
@@ -95,7 +107,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn totals_are_sums_but_for_the_largest_problem_and_the_largest_residual() {
+    fn totals_are_sums_but_for_the_largest_problem_and_the_largest_errors() {
         let increment = |k: usize| SolverCounts {
             passes: 2 * k,
             lcps: 3 * k,
@@ -106,6 +118,11 @@ mod tests {
             lemke_calls: 8 * k,
             factorizations: 9 * k,
             residual: k as f64,
+            violation: ContactViolation {
+                overlap: 10.0 / k as f64,
+                gap: 11.0 * k as f64,
+                slip: 12.0 * k as f64,
+            },
             converged: true,
         };
         let mut totals = SolverCounts {
@@ -118,6 +135,10 @@ mod tests {
         let expected = SolverCounts {
             lcp_size: 4 * 5,
             residual: 5.0,
+            violation: ContactViolation {
+                overlap: 5.0,
+                ..increment(5).violation
+            },
             ..increment(2 + 5 + 3)
         };
         assert_eq!(totals, expected);

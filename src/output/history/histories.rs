@@ -217,12 +217,32 @@ const COUNTS: [Scalar<SolverCounts, i64>; 8] = [
     ),
 ];
 
-const RESIDUAL: [Scalar<SolverCounts, f64>; 1] = [scalar(
-    "residual",
-    "relative force residual of the last pass",
-    "1",
-    |s| s.residual,
-)];
+const ERRORS: [Scalar<SolverCounts, f64>; 4] = [
+    scalar(
+        "residual",
+        "relative force residual of the last pass",
+        "1",
+        |s| s.residual,
+    ),
+    scalar(
+        "overlap",
+        "largest overlap of an open pair at the end, in lengths of its segment",
+        "1",
+        |s| s.violation.overlap,
+    ),
+    scalar(
+        "gap_violation",
+        "largest gap of a closed pair at the end, in lengths of its segment",
+        "1",
+        |s| s.violation.gap,
+    ),
+    scalar(
+        "slip_violation",
+        "largest slip of a sticking pair in the increment, in lengths of its segment",
+        "1",
+        |s| s.violation.slip,
+    ),
+];
 
 const CONVERGED: [Scalar<SolverCounts, u8>; 1] = [scalar(
     "converged",
@@ -234,7 +254,7 @@ const CONVERGED: [Scalar<SolverCounts, u8>; 1] = [scalar(
 /// `/history/solver`.
 struct SolverHistory {
     counts: Series<SolverCounts, i64>,
-    residual: Series<SolverCounts, f64>,
+    errors: Series<SolverCounts, f64>,
     converged: Series<SolverCounts, u8>,
 }
 
@@ -242,20 +262,20 @@ impl SolverHistory {
     fn create(at: &Group) -> hdf5::Result<Self> {
         Ok(SolverHistory {
             counts: Series::create(at, &COUNTS)?,
-            residual: Series::create(at, &RESIDUAL)?,
+            errors: Series::create(at, &ERRORS)?,
             converged: Series::create(at, &CONVERGED)?,
         })
     }
 
     fn push(&mut self, counts: &SolverCounts) -> hdf5::Result<()> {
         self.counts.push(counts)?;
-        self.residual.push(counts)?;
+        self.errors.push(counts)?;
         self.converged.push(counts)
     }
 
     fn flush(&mut self) -> hdf5::Result<()> {
         self.counts.flush()?;
-        self.residual.flush()?;
+        self.errors.flush()?;
         self.converged.flush()
     }
 }

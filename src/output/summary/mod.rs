@@ -10,4 +10,4 @@ mod warnings;
 pub use header::{deck_line, program_lines};
 pub(crate) use monitor::{Monitor, Remarks};
 pub use run_summary::{ResultSummary, SummaryError};
-pub(crate) use totals::{lcp_lines, timing_lines};
+pub(crate) use totals::{error_line, lcp_lines, timing_lines};

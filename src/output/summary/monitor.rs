@@ -1,9 +1,11 @@
 //! Running checks of a run, increment by increment: conservation, strains, contacts and counts, and
 //! the closing lines that report them.
 
+use std::mem::{Discriminant, discriminant};
+
 use super::balance::Balance;
 use super::warnings::Watch;
-use crate::dynamics::IncrementReport;
+use crate::dynamics::{Cause, Course, Cutback, IncrementReport};
 use crate::elements::Strained;
 use crate::linear::larger;
 use crate::model::Model;
@@ -18,6 +20,8 @@ pub(crate) struct Monitor {
     /// Failed attempts since the last increment.
     failed_attempts: usize,
     cutbacks: usize,
+    /// Causes of the cutbacks so far, each with the course of the passes.
+    kinds: Vec<(Discriminant<Cause>, Option<Discriminant<Course>>)>,
     landings: usize,
     /// Largest violation of Coulomb's cone.
     cone_violation: f64,
@@ -40,6 +44,7 @@ impl Monitor {
             strain: StrainWatch::new(model),
             failed_attempts: 0,
             cutbacks: 0,
+            kinds: Vec::new(),
             landings: 0,
             cone_violation: 0.0,
         }
@@ -64,6 +69,18 @@ impl Monitor {
         self.failed_attempts += 1;
         self.cutbacks += 1;
         self.cutbacks
+    }
+
+    /// Whether a cutback is the first of its cause and course.
+    pub fn is_new_kind(&mut self, cutback: &Cutback) -> bool {
+        let failure = &cutback.failure;
+        let course = failure.course.as_deref().map(discriminant);
+        let kind = (discriminant(&failure.cause), course);
+        let is_new = !self.kinds.contains(&kind);
+        if is_new {
+            self.kinds.push(kind);
+        }
+        is_new
     }
 
     /// Attempts at the increment just accepted, including the failed ones.

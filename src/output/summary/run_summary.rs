@@ -8,7 +8,9 @@ use hdf5::{FileBuilder, Group, H5Type};
 use thiserror::Error;
 
 use super::balance::part;
+use super::totals::error_line;
 use super::warnings::{Findings, never_closed};
+use crate::dynamics::ContactViolation;
 use crate::linear::{larger, largest};
 use crate::output::error::reason;
 use crate::output::file::{BodyTimes, UNFINISHED, regular_file};
@@ -74,6 +76,11 @@ pub struct ResultSummary {
     pub largest_energy: f64,
     /// Largest absolute balance of the history.
     pub worst_balance: f64,
+    /// Largest relative force residual of the history.
+    pub residual: f64,
+    /// How far the pairs were from the contact law at most; none without contact, and of a file from
+    /// before there was this history.
+    pub violation: Option<ContactViolation>,
     /// Warnings about the run, in lines of the screen.
     pub warnings: Vec<String>,
 }
@@ -123,6 +130,8 @@ impl ResultSummary {
             energies,
             largest_energy,
             worst_balance: largest(&balance),
+            residual: largest(&column::<f64>(&history, "solver/residual")?),
+            violation: read_violation(&history)?,
             warnings: findings.lines(),
         })
     }
@@ -144,6 +153,7 @@ impl ResultSummary {
         lines.extend(self.progress());
         lines.extend(self.contact_lines());
         lines.extend(self.energy_lines());
+        lines.push(error_line(self.residual, self.violation));
         lines.extend(self.warnings.iter().cloned());
         lines
     }
@@ -254,6 +264,20 @@ fn read_findings(file: &Group, largest_energy: f64, balance: f64) -> hdf5::Resul
             .map(|(edge, body)| BodyTimes { edge, body })
             .collect(),
     })
+}
+
+/// How far the pairs were from the contact law at most, where the file has contacts and says it.
+fn read_violation(history: &Group) -> hdf5::Result<Option<ContactViolation>> {
+    let solver = history.group("solver")?;
+    if history.group("contact")?.member_names()?.is_empty() || !solver.link_exists("overlap") {
+        return Ok(None);
+    }
+    let most = |name| column::<f64>(&solver, name).map(|values| largest(&values));
+    Ok(Some(ContactViolation {
+        overlap: most("overlap")?,
+        gap: most("gap_violation")?,
+        slip: most("slip_violation")?,
+    }))
 }
 
 /// Names of the contacts without normal force and without impact in the whole run.

@@ -1,8 +1,8 @@
-//! Closing lines of a run: time by phases, and counts of the complementarity problems.
+//! Closing lines of a run: time by phases, largest errors, counts of the complementarity problems.
 
-use crate::dynamics::{Outcome, RunSummary, SolverCounts};
+use crate::dynamics::{ContactViolation, Outcome, RunSummary, SolverCounts};
 use crate::output::file::phases;
-use crate::output::text::{counted, general, wrap};
+use crate::output::text::{counted, general, scientific, wrap};
 
 /// Time of the run and the parts of its phases; `output` and `total` are wall-clock times in
 /// seconds.
@@ -30,6 +30,19 @@ pub(crate) fn timing_lines(summary: &RunSummary, output: f64, total: f64) -> Vec
     wrap(done, &pieces)
 }
 
+/// The largest errors of the increments: relative force residual and, with contacts, how far their pairs
+/// are from the contact law.
+pub(crate) fn error_line(residual: f64, violation: Option<ContactViolation>) -> String {
+    let mut line = format!("error    residual {}", scientific(residual, 1));
+    if let Some(ContactViolation { overlap, gap, slip }) = violation {
+        let [overlap, gap, slip] = [overlap, gap, slip].map(|part| scientific(part, 0));
+        line.push_str(&format!(
+            "; overlap {overlap}, gap {gap}, slip {slip} of a segment"
+        ));
+    }
+    line
+}
+
 /// Work of the complementarity problems by method; empty without any.
 pub(crate) fn lcp_lines(solver: &SolverCounts) -> Vec<String> {
     if solver.lcps == 0 {
@@ -43,4 +56,22 @@ pub(crate) fn lcp_lines(solver: &SolverCounts) -> Vec<String> {
         counted(solver.lemke_calls, "Lemke solve"),
     ];
     wrap("LCP", &pieces)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_of_contact_are_shown_where_there_is_any() {
+        assert_eq!(error_line(8.1e-12, None), "error    residual 8.1e-12");
+        let violation = ContactViolation {
+            overlap: 0.0,
+            gap: 3e-13,
+            slip: f64::NAN,
+        };
+        let line = error_line(8.1e-12, Some(violation));
+        let expected = "error    residual 8.1e-12; overlap 0e+00, gap 3e-13, slip nan of a segment";
+        assert_eq!(line, expected);
+    }
 }

@@ -1,19 +1,26 @@
 //! Report of a stopped run: cause, worst place, advice and passes.
 
-use super::format::{counted, scientific};
-use super::layout::wrap;
+use super::advice::{advice, course_text};
+use super::format::{counted, general, scientific};
+use super::layout::{wrap, wrap_words};
 use super::log::pass_table;
 use super::strain::inversion_hint;
 use crate::dynamics::{Cause, FailedLcp, Failure, Worst};
+use crate::elements::ElementResult;
 use crate::lcp::LcpError;
 use crate::model::Model;
 
 /// Pairs of a complementarity problem that the text names.
 const SHOWN_PAIRS: usize = 4;
 
-/// Increment, time, cause, worst place, halvings and the passes; `u` is the last converged
-/// displacement.
-pub(crate) fn failure_lines(failure: &Failure, model: &Model, u: &[f64]) -> Vec<String> {
+/// Increment, time, cause, worst place, advice, halvings and the passes; `u` and `elements` are the last
+/// converged displacement and the results of the elements there.
+pub(crate) fn failure_lines(
+    failure: &Failure,
+    model: &Model,
+    u: &[f64],
+    elements: &[ElementResult],
+) -> Vec<String> {
     let time = scientific(failure.time, 6);
     let (increment, step) = (failure.increment, failure.step);
     let where_it_failed = match increment {
@@ -22,13 +29,19 @@ pub(crate) fn failure_lines(failure: &Failure, model: &Model, u: &[f64]) -> Vec<
     };
     let what = [where_it_failed, failure.cause.to_string()];
     let mut lines = wrap("stopped", &what);
+    if let Some(course) = &failure.course {
+        lines.extend(wrap_words("", &course_text(course, model)));
+    }
     lines.extend(failure.worst.as_ref().map(|worst| worst_line(worst, model)));
     lines.extend(place_line(&failure.cause, model, u));
-    lines.extend(
-        hint(&failure.cause, model)
-            .iter()
-            .map(|&line| line.to_owned()),
-    );
+    if let Cause::Indefinite { node } = failure.cause {
+        lines.extend(body_line(node, model, elements));
+    }
+    let hint = hint(&failure.cause, model).iter();
+    lines.extend(hint.map(|&line| line.to_owned()));
+    if let Some(advice) = advice(failure, model) {
+        lines.extend(wrap_words("advice", &advice));
+    }
     if increment > 0 {
         lines.push(format!(
             "tried    {} of the increment; the last attempt with dt {}",
@@ -99,6 +112,31 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
     }
 }
 
+/// The body of a node: its element there that is compressed most, with a set that holds the element.
+fn body_line(node: usize, model: &Model, results: &[ElementResult]) -> Option<String> {
+    let all = model.mesh.elements.iter().enumerate();
+    let own = all.filter(|(_, element)| element.nodes.contains(&node));
+    let strain = |index: usize| results.get(index).map_or(0.0, least_principal);
+    let (index, element) = own.min_by(|p, q| strain(p.0).total_cmp(&strain(q.0)))?;
+    let sets = (model.sets.elements.iter()).filter(|set| set.members.binary_search(&index).is_ok());
+    let set = sets.min_by_key(|set| set.members.len());
+    let of_set = set.map_or(String::new(), |set| format!(" of {}", set.name));
+    let strained = match strain(index) {
+        strain if strain < 0.0 => format!("compressed by the strain {}", general(strain, 2)),
+        _ => "not compressed".to_owned(),
+    };
+    let label = element.label;
+    Some(format!(
+        "element  {label}{of_set} at this node was {strained}"
+    ))
+}
+
+/// The smallest principal value of the mean strain of an element in the plane.
+fn least_principal(result: &ElementResult) -> f64 {
+    let [xx, yy, xy] = result.strain;
+    (xx + yy) / 2.0 - ((xx - yy) / 2.0).hypot(xy)
+}
+
 /// The first pairs of an unsolved complementarity problem: on a ray those that press against each
 /// other, else of all.
 fn pairs_line(failed: &FailedLcp, model: &Model) -> String {
@@ -142,4 +180,40 @@ fn centre(model: &Model, element: usize, u: &[f64]) -> [f64; 2] {
 
 fn point([x, y]: [f64; 2]) -> String {
     format!("({}, {})", scientific(x, 5), scientific(y, 5))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Element, ElementType, Set};
+
+    #[test]
+    fn an_indefinite_matrix_names_the_body_and_its_compression() {
+        let mut model = Model::default();
+        model.mesh.elements = (0..3)
+            .map(|k| Element {
+                label: 10 * (k as u64 + 1),
+                element_type: ElementType::CPE3,
+                nodes: vec![k, k + 1, k + 2],
+                section: 0,
+            })
+            .collect();
+        let set = |name: &str, members: &[usize]| Set {
+            name: name.into(),
+            members: members.to_vec(),
+        };
+        model.sets.elements = vec![set("ALL", &[0, 1, 2]), set("BAR", &[1, 2])];
+        // the first two have node 1; principal strains of the second are -0.3 and 0.2
+        let strained = |strain| ElementResult {
+            strain,
+            ..ElementResult::default()
+        };
+        let results = [[-0.1, 0.0, 0.0], [-0.05, -0.05, 0.25], [-0.9, 0.0, 0.0]].map(strained);
+        let line = |node, results: &[ElementResult]| body_line(node, &model, results);
+        let expected = "element  20 of BAR at this node was compressed by the strain -0.3";
+        assert_eq!(line(1, &results).as_deref(), Some(expected));
+        let start = line(0, &[]).expect("before the first increment");
+        assert_eq!(start, "element  10 of ALL at this node was not compressed");
+        assert_eq!(line(9, &results), None, "a node without element");
+    }
 }

@@ -4,9 +4,11 @@ use std::fs::File;
 use std::io::{self, LineWriter, Write};
 use std::path::{Path, PathBuf};
 
+use super::advice::{advice, course_text};
 use super::format::scientific;
-use super::layout::wrap;
+use super::layout::{wrap, wrap_words};
 use crate::dynamics::{Cutback, IncrementReport, PassReport};
+use crate::model::Model;
 use crate::output::error::at;
 
 /// Writes the log.
@@ -87,8 +89,8 @@ pub(crate) fn increment_line(report: &IncrementReport) -> String {
     )
 }
 
-/// The lines about a cutback.
-pub(crate) fn cutback_lines(cutback: &Cutback) -> Vec<String> {
+/// The lines about a cutback: increment, cause, and how the passes went.
+pub(crate) fn cutback_lines(cutback: &Cutback, model: &Model) -> Vec<String> {
     let failure = &cutback.failure;
     let pieces = [
         format!(
@@ -100,5 +102,20 @@ pub(crate) fn cutback_lines(cutback: &Cutback) -> Vec<String> {
         ),
         failure.cause.to_string(),
     ];
-    wrap("cutback", &pieces)
+    let mut lines = wrap("cutback", &pieces);
+    let course = failure.course.as_deref();
+    lines.extend(
+        course
+            .into_iter()
+            .flat_map(|course| wrap_words("", &course_text(course, model))),
+    );
+    lines
+}
+
+/// What to change so that an attempt as the failed one need not be repeated; empty without advice.
+pub(crate) fn cutback_advice(cutback: &Cutback, model: &Model) -> Vec<String> {
+    let text = advice(&cutback.failure, model);
+    (text.into_iter())
+        .flat_map(|text| wrap_words("advice", &text))
+        .collect()
 }

@@ -1,5 +1,6 @@
 //! Text for people: log, status file, screen, numbers.
 
+mod advice;
 mod console;
 mod echo;
 mod failure;
@@ -18,6 +19,6 @@ pub(crate) use echo::{corners, element_mass, shortest_edge, wave_speed};
 pub(crate) use failure::failure_lines;
 pub(crate) use format::{bytes, counted, general, scientific};
 pub(crate) use layout::{label, wrap, wrap_words};
-pub(crate) use log::{Log, cutback_lines};
+pub(crate) use log::{Log, cutback_advice, cutback_lines};
 pub(crate) use status::StatusFile;
 pub(crate) use strain::{LARGE, SmallStrainElements, StrainWatch, warning_lines};

@@ -24,10 +24,15 @@ const CRUSHED: [&str; 2] = [
 
 /// Likely reasons for an element that turned inside out.
 pub(crate) fn inversion_hint(element: usize, model: &Model) -> &'static [&'static str] {
-    match law(element, model).is_for_small_strains() {
+    match is_for_small_strains(element, model) {
         true => &SOFTENING,
         false => &CRUSHED,
     }
+}
+
+/// Whether the law of an element is meant for small strains.
+pub(crate) fn is_for_small_strains(element: usize, model: &Model) -> bool {
+    law(element, model).is_for_small_strains()
 }
 
 fn law(element: usize, model: &Model) -> &Law {
@@ -43,7 +48,7 @@ impl SmallStrainElements {
     /// Those of `model`.
     pub fn new(model: &Model) -> Self {
         let all = 0..model.mesh.elements.len();
-        let is_limited = |&element: &usize| law(element, model).is_for_small_strains();
+        let is_limited = |&element: &usize| is_for_small_strains(element, model);
         SmallStrainElements(all.filter(is_limited).collect())
     }
 
