@@ -7,7 +7,8 @@ use crate::linear::largest;
 
 /// Corrections whose mean rate counts at the end of an attempt.
 const LAST: usize = 4;
-/// Growth of the corrections, from their smallest to the last, from which on passes diverged.
+/// Growth of the corrections from their smallest to the last, or of the forces to be balanced from the
+/// first to the last, from which on passes diverged.
 const GROWTH: f64 = 10.0;
 /// Mean rate from which on the corrections count as not falling.
 const STALLED: f64 = 0.9;
@@ -97,16 +98,20 @@ impl Trace {
         }
     }
 
-    /// The cause as it is, or that passes with ever larger forces have made numbers overflow.
+    /// The cause as it is, or that passes with ever larger forces have made numbers overflow, or K*
+    /// indefinite.
     fn explain(&self, cause: Cause) -> Cause {
-        let has_grown = |[first, last]: [f64; 2]| last > first || last.is_nan();
+        let has_grown = |factor: f64| {
+            let grown = |[first, last]: [f64; 2]| last > factor * first || last.is_nan();
+            self.unbalanced.is_some_and(grown)
+        };
         // where an element is wrecked, there are no forces to compare
         let is_wrecked = matches!(cause, Cause::Inverted { .. }) && !self.passes.is_empty();
-        let diverged = is_wrecked || self.unbalanced.is_some_and(has_grown);
-        match cause.is_overflow() && diverged {
-            true => Cause::Diverged,
-            false => cause,
-        }
+        let diverged = match cause {
+            Cause::Indefinite { .. } => has_grown(GROWTH),
+            _ => cause.is_overflow() && (is_wrecked || has_grown(1.0)),
+        };
+        if diverged { Cause::Diverged } else { cause }
     }
 }
 
@@ -182,5 +187,19 @@ mod tests {
     fn other_causes_speak_for_themselves() {
         let found = failed(Cause::Indefinite { node: 3 }, &[1.0, 0.5, 0.25]);
         assert_eq!((found.course, found.passes.len()), (None, 5));
+    }
+
+    #[test]
+    fn an_indefinite_matrix_of_a_wrecked_iterate_is_divergence() {
+        let cause = |last: f64| {
+            let mut trace = Trace::default();
+            [1.0, last]
+                .iter()
+                .for_each(|force| trace.balance(&[*force]));
+            trace.failed(Cause::Indefinite { node: 3 }, 1e-10).cause
+        };
+        assert_eq!(cause(2.0), Cause::Indefinite { node: 3 });
+        assert_eq!(cause(1e3), Cause::Diverged);
+        assert_eq!(cause(f64::NAN), Cause::Diverged);
     }
 }
