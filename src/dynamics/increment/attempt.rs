@@ -6,7 +6,7 @@ use super::contact_forces::ContactForces;
 use super::contact_system::ContactSystem;
 use super::convergence::{Errors, Iterate, Pass};
 use super::impulses::Impulses;
-use super::refactorization::{FactorRule, Refactorization};
+use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::rigid_predictor::rigid_predictor;
 use super::trace::{Failed, Trace};
 use crate::contact::{ClosedPairs, Constraint};
@@ -16,10 +16,6 @@ use crate::dynamics::step::{
 };
 use crate::elements::Updated;
 use crate::linear::LinearError;
-use crate::model::Factorization;
-
-/// Passes after which slave nodes keep their targets.
-const SEARCHING_PASSES: usize = 4;
 
 /// A converged increment.
 #[derive(Default)]
@@ -67,7 +63,7 @@ impl<'m> Attempt<'_, 'm> {
     pub fn solve(mut self, before: &ClosedPairs) -> Result<Solved, Failed> {
         let mut trace = Trace::default();
         let mut failed = Cause::NotConverged;
-        for rule in FactorRule::ALL {
+        for &rule in FactorRule::order(self.problem.settings.factorization) {
             trace.begin();
             let mut factors = Refactorization::new(rule, self.problem.settings.tolerance);
             match self.passes(before, &mut factors, &mut trace) {
@@ -93,7 +89,6 @@ impl<'m> Attempt<'_, 'm> {
         let (problem, start, dt) = (self.problem, self.start, self.interval.dt);
         let mut contact = ContactForces::without_constraints(before);
         let mut impulses = Impulses::new(before, self.set);
-        let held = before.segments();
         self.workspace.search.start(&start.v, dt);
 
         // the passes start from the rigid motion of the bodies
@@ -102,8 +97,7 @@ impl<'m> Attempt<'_, 'm> {
             // g, Dt and their rows in the iterate U = U0 + d
             let u = sum(&start.u, &d);
             let settled = pass >= SEARCHING_PASSES;
-            let [constraints, left_out] =
-                self.constraints(&u, &contact.constraints, &held, settled)?;
+            let [constraints, left_out] = self.constraints(&u, &contact, before, settled)?;
 
             // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1)
             let v0p = impulses.velocity(problem, self.workspace, &constraints, start, dt)?;
@@ -115,44 +109,28 @@ impl<'m> Attempt<'_, 'm> {
 
             // the forces at hand may balance r and close the gaps of the iterate
             contact.relinearize(constraints);
-            if pass > 0 && impulses.are_at_rest() && factors.are_near() {
-                let iterate = Iterate {
-                    equilibrium: &equilibrium,
-                    contact: &contact,
-                    displacements: [&u, &d],
-                };
-                if self.is_solved(&iterate, [settled, factors.stagnate()], trace)? {
-                    trace.worst = None;
-                    contact.add_open(self.outside(left_out, &u));
-                    return self.finish(v0p, d, contact, impulses);
-                }
+            let iterate = Iterate::new(&equilibrium, &contact, [&u, &d]);
+            let may_end = impulses.are_at_rest() && factors.are_near();
+            if may_end && self.is_solved(&iterate, [settled, factors.stagnate()], trace)? {
+                contact.add_open(self.outside(left_out, &u));
+                return self.finish(v0p, d, contact, impulses);
             }
 
             // y = K*^-1 r, K* of eq. (4.6), and d_p at the supports, which takes the force theta2 K d_p
             self.refresh(factors, [&u, &equilibrium.u_theta], &contact)?;
-            let d_p = self.prescribed_increment(pass, &u);
-            let support_force = self.support_force(&d_p, &u, &equilibrium.u_theta);
-            let r = difference(&r, &support_force);
-            let y = self.k_star().respond(&d_p, &r)?;
+            let (y, support_force) = self.without_contact(pass, &r, [&u, &equilibrium.u_theta])?;
 
             // Pn, Pt of the complementarity problem, eq. (5.2);
             // dU = y + K*^-1 (Bn^T Pn + Bt^T Pt), eq. (4.7)
             let du = contact.solve(&y, settled, &mut self.k_star())?;
 
             // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales
-            let measured = Pass {
-                equilibrium: &equilibrium,
-                support_force: &support_force,
-                r: &r,
-                contact: &contact,
-                displacements: [&u, &d, &du],
-            };
-            let has_converged = self.measure(&measured, trace)?;
+            let iterate = Iterate::new(&equilibrium, &contact, [&u, &d]);
+            let has_converged = self.measure(&iterate.pass(&support_force, &du), trace)?;
 
             // d <- d + dU, eq. (4.7)
             d = sum(&d, &du);
             if impulses.rest(problem, &contact.closed) && has_converged {
-                trace.worst = None;
                 contact.add_open(self.outside(left_out, &u));
                 return self.finish(v0p, d, contact, impulses);
             }
@@ -161,18 +139,19 @@ impl<'m> Attempt<'_, 'm> {
         Err(Cause::NotConverged)
     }
 
-    /// Constraints of the iterate `u`, `before` being those of the last pass: those that count, and the
-    /// others.
+    /// Constraints of the iterate `u`, `last` being those of the pass before and `start` the pairs closed
+    /// at the start: those that count, and the others.
     fn constraints(
         &mut self,
         u: &[f64],
-        before: &[Constraint],
-        held: &[[usize; 2]],
+        last: &ContactForces,
+        start: &ClosedPairs,
         settled: bool,
     ) -> Result<[Vec<Constraint>; 2], Cause> {
         let (problem, u0) = (self.problem, &self.start.u);
         problem.check_segments(u)?;
-        let constraints = (self.workspace).constraints(problem, [u0, u], before, held, settled);
+        let (before, held) = (&last.constraints, start.segments());
+        let constraints = (self.workspace).constraints(problem, [u0, u], before, &held, settled);
         Ok(self.set.split(problem, u0, constraints))
     }
 
@@ -189,6 +168,19 @@ impl<'m> Attempt<'_, 'm> {
             system: self.workspace.k(),
             method: self.problem.method(),
         }
+    }
+
+    /// Correction y of the iterate without contact forces, and the force of the supports' motion.
+    fn without_contact(
+        &mut self,
+        pass: usize,
+        r: &[f64],
+        [u, u_theta]: [&[f64]; 2],
+    ) -> Result<(Vec<f64>, Vec<f64>), Cause> {
+        let d_p = self.prescribed_increment(pass, u);
+        let support_force = self.support_force(&d_p, u, u_theta);
+        let y = (self.k_star()).respond(&d_p, &difference(r, &support_force))?;
+        Ok((y, support_force))
     }
 
     /// What the predictor `u` leaves of the prescribed motion, d_p, which the first pass makes; then
@@ -217,9 +209,8 @@ impl<'m> Attempt<'_, 'm> {
         contact: &ContactForces,
     ) -> Result<(), Cause> {
         let (problem, dt) = (self.problem, self.interval.dt);
-        let every = problem.settings.factorization == Factorization::EveryPass;
         let fits = (self.workspace.stiffness).fits(dt, self.set.length_tolerance());
-        if fits && !every && !factors.are_worn() {
+        if fits && !factors.are_worn() {
             return Ok(());
         }
         factors.renew();
@@ -262,7 +253,9 @@ impl<'m> Attempt<'_, 'm> {
         } = &mut *self.workspace;
         let contact_force = pass.contact.resultant(u.len());
         pass.check_finite(&contact_force)?;
-        let residual = problem.unknowns.restrict(&sum(pass.r, &contact_force));
+        let residual = problem
+            .unknowns
+            .restrict(&sum(&pass.out_of_balance(), &contact_force));
         let scales = pass.scales(problem, stiffness, &contact_force);
         let errors = Errors::new(problem.parts, &residual, &problem.unknowns.dof, du);
         let report = scales.report(&errors, pass.contact);

@@ -5,7 +5,7 @@ use super::contact_forces::ContactForces;
 use crate::contact::tolerances::{SETTLED_OVERLAP, SOLVED_GAP};
 use crate::dynamics::results::{Cause, PassReport, Worst};
 use crate::dynamics::step::{
-    EffectiveStiffness, Equilibrium, Parts, StepProblem, check_finite, sum,
+    EffectiveStiffness, Equilibrium, Parts, StepProblem, check_finite, difference, sum,
 };
 use crate::lcp::ContactState;
 use crate::linear::{larger, largest};
@@ -23,8 +23,6 @@ pub(crate) struct Pass<'a> {
     pub equilibrium: &'a Equilibrium,
     /// Force of the supports' motion.
     pub support_force: &'a Vec<f64>,
-    /// Out-of-balance force without contact.
-    pub r: &'a [f64],
     /// Constraints and their forces.
     pub contact: &'a ContactForces,
     /// Displacement U of the iterate, increment d = U - U0 and correction dU.
@@ -32,6 +30,11 @@ pub(crate) struct Pass<'a> {
 }
 
 impl Pass<'_> {
+    /// Out-of-balance force without contact.
+    pub fn out_of_balance(&self) -> Vec<f64> {
+        difference(&self.equilibrium.out_of_balance(), self.support_force)
+    }
+
     /// All forces and the correction must be finite.
     ///
     /// # Errors
@@ -98,7 +101,31 @@ pub(crate) struct Iterate<'a> {
     pub displacements: [&'a Vec<f64>; 2],
 }
 
-impl Iterate<'_> {
+impl<'a> Iterate<'a> {
+    /// An iterate U = U0 + d.
+    pub fn new(
+        equilibrium: &'a Equilibrium,
+        contact: &'a ContactForces,
+        displacements: [&'a Vec<f64>; 2],
+    ) -> Self {
+        Iterate {
+            equilibrium,
+            contact,
+            displacements,
+        }
+    }
+
+    /// The pass that makes the correction dU of the iterate.
+    pub fn pass<'p>(&'p self, support_force: &'p Vec<f64>, du: &'p Vec<f64>) -> Pass<'p> {
+        let [u, d] = self.displacements;
+        Pass {
+            equilibrium: self.equilibrium,
+            support_force,
+            contact: self.contact,
+            displacements: [u, d, du],
+        }
+    }
+
     /// The relative residual, if the iterate is solved: residual, gaps and slips are below the tolerance,
     /// or round-off.
     pub fn residual(
@@ -110,22 +137,16 @@ impl Iterate<'_> {
         if !self.contact.all_have_constraints() {
             return Ok(None);
         }
-        let [u, d] = self.displacements;
-        let none = vec![0.0; u.len()];
-        let r = self.equilibrium.out_of_balance();
-        let pass = Pass {
-            equilibrium: self.equilibrium,
-            support_force: &none,
-            r: &r,
-            contact: self.contact,
-            displacements: [u, d, &none],
-        };
-        let contact_force = self.contact.resultant(u.len());
+        let none = vec![0.0; self.displacements[0].len()];
+        let pass = self.pass(&none, &none);
+        let contact_force = self.contact.resultant(none.len());
         pass.check_finite(&contact_force)?;
         let part = if stagnates { 1.0 } else { BALANCED };
         let scales = (pass.scales(problem, stiffness, &contact_force))
             .with_tolerance(part * problem.settings.tolerance);
-        let residual = problem.unknowns.restrict(&sum(&r, &contact_force));
+        let residual = problem
+            .unknowns
+            .restrict(&sum(&pass.out_of_balance(), &contact_force));
         let errors = Errors::new(problem.parts, &residual, &problem.unknowns.dof, &none);
         if !scales.converged(&errors) || !scales.obeys_contact_law(self.contact, settled) {
             return Ok(None);

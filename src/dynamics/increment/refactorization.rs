@@ -2,6 +2,7 @@
 //! Factors.
 
 use crate::dynamics::results::Cause;
+use crate::model::Factorization;
 
 /// Correction of a pass beside the increment above which its iterate is no solution, whatever the forces
 /// say.
@@ -14,7 +15,9 @@ const COST: f64 = 1.0;
 const POOR_RATE: f64 = 0.3;
 /// Rate of corrections that become hardly smaller.
 const STAGNANT: f64 = 0.5;
-/// Passes in a row that grow the correction of an attempt with fresh factors before it is given up.
+/// Passes after which slave nodes keep their targets: before, corrections may go to and fro with them.
+pub(super) const SEARCHING_PASSES: usize = 4;
+/// Passes in a row that then grow the correction before an attempt is given up.
 const GROWING: usize = 3;
 
 /// Which factors an attempt uses.
@@ -30,7 +33,12 @@ pub(super) enum FactorRule {
 
 impl FactorRule {
     /// The rules in the order in which they are tried.
-    pub const ALL: [FactorRule; 3] = [FactorRule::Kept, FactorRule::Fresh, FactorRule::EveryPass];
+    pub fn order(choice: Factorization) -> &'static [FactorRule] {
+        match choice {
+            Factorization::Keep => &[FactorRule::Kept, FactorRule::Fresh, FactorRule::EveryPass],
+            Factorization::EveryPass => &[FactorRule::EveryPass],
+        }
+    }
 }
 
 /// Factors of K* within an attempt.
@@ -105,7 +113,8 @@ impl Refactorization {
         if self.own && self.age == 2 {
             self.fresh_rate = rate.clamp(FRESH_RATE, 0.5);
         }
-        self.growing = if rate >= 1.0 { self.growing + 1 } else { 0 };
+        let grows = rate >= 1.0 && self.passes > SEARCHING_PASSES;
+        self.growing = if grows { self.growing + 1 } else { 0 };
         if self.growing >= GROWING {
             return Err(Cause::Diverged);
         }
