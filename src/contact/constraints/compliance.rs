@@ -4,8 +4,8 @@
 
 use nalgebra::DMatrix;
 
-use super::constraint::Constraint;
-use crate::linear::{CheckedSolver, LinearError, Transformation};
+use super::constraint::{Constraint, Rows};
+use crate::linear::{CheckedSolver, LinearError, Rotation, Transformation};
 
 /// The inverse of a factorised matrix at the unknowns that constraints act on.
 ///
@@ -15,6 +15,8 @@ use crate::linear::{CheckedSolver, LinearError, Transformation};
 pub struct Compliance {
     /// T: what unknowns the dofs depend on.
     map: Transformation,
+    /// R of the bodies since the matrix was factorised.
+    rotation: Rotation,
     /// Connected group of every unknown: the inverse is zero between groups.
     groups: Vec<usize>,
     /// Row of the inverse of every unknown, where it has been computed.
@@ -43,6 +45,7 @@ impl Compliance {
         let place = vec![None; map.unknowns()];
         Compliance {
             map,
+            rotation: Rotation::default(),
             groups,
             place,
             unknowns: Vec::new(),
@@ -53,9 +56,20 @@ impl Compliance {
     /// Forgets the inverse: the matrix has changed, and with it, perhaps, the connected groups.
     pub fn renew(&mut self, groups: Vec<usize>) {
         self.groups = groups;
+        self.rotation = Rotation::default();
         self.place.fill(None);
         self.unknowns.clear();
         self.inverse = DMatrix::zeros(0, 0);
+    }
+
+    /// Turns W with the bodies, to R W R^T, since the matrix was factorised.
+    pub fn turn(&mut self, rotation: Rotation) {
+        self.rotation = rotation;
+    }
+
+    /// R of the bodies since the matrix was factorised.
+    pub fn rotation(&self) -> &Rotation {
+        &self.rotation
     }
 
     /// Computes the inverse at the unknowns of `constraints` too, if some are missing.
@@ -91,13 +105,15 @@ impl Compliance {
         &self.map
     }
 
-    /// Entries of the rows of a constraint that are not all zero; it must have been prepared.
+    /// Entries of the rows of a constraint, turned back with R^T, that are not all zero; it must have
+    /// been prepared.
     pub(super) fn entries(&self, constraint: &Constraint) -> Vec<UnknownEntry> {
-        let (force_rows, derivative_rows) = (&constraint.force_rows, constraint.derivative_rows());
+        let rows = [&constraint.force_rows, constraint.derivative_rows()];
+        let rows = rows.map(|rows| self.turned_back(&constraint.dofs, rows));
         let mut entries = Vec::with_capacity(constraint.dofs.len());
         for (k, &dof) in constraint.dofs.iter().enumerate() {
             let [force, derivative] =
-                [force_rows, derivative_rows].map(|rows| [rows.normal[k], rows.tangential[k]]);
+                (rows.each_ref()).map(|rows| [rows.normal[k], rows.tangential[k]]);
             if force == [0.0; 2] && derivative == [0.0; 2] {
                 continue;
             }
@@ -113,6 +129,14 @@ impl Compliance {
             }
         }
         entries
+    }
+
+    /// Rows times R, over the dofs of a constraint, eq. (4.20).
+    fn turned_back(&self, dofs: &[usize], rows: &Rows) -> Rows {
+        let mut turned = rows.clone();
+        self.rotation.turn_row(dofs, &mut turned.normal);
+        self.rotation.turn_row(dofs, &mut turned.tangential);
+        turned
     }
 
     /// Block (G_p T) W (B_q T)^T of Q = G T W T^T B^T, eq. (5.1), of two constraints: what normal

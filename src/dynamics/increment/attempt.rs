@@ -201,7 +201,7 @@ impl<'m> Attempt<'_, 'm> {
         force
     }
 
-    /// Factorises K* anew when the rules say so.
+    /// Factorises K* anew when the rules say so, else turns its factors with the bodies.
     fn refresh(
         &mut self,
         factors: &mut Refactorization,
@@ -210,11 +210,12 @@ impl<'m> Attempt<'_, 'm> {
     ) -> Result<(), Cause> {
         let (problem, dt) = (self.problem, self.interval.dt);
         let fits = (self.workspace.stiffness).fits(dt, self.set.length_tolerance());
+        let motion = (problem.weights).motion(self.start, u, u_theta);
         if fits && !factors.are_worn() {
+            self.workspace.turn(problem, motion);
             return Ok(());
         }
         factors.renew();
-        let motion = (problem.weights).motion(self.start, u, u_theta);
         let closed = ClosedConstraints {
             acting: contact.acting().collect(),
             at: problem.configurations(&self.start.u, u),

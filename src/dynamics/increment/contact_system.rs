@@ -3,7 +3,7 @@
 
 use crate::contact::{ClosedPair, ClosedPairs, Constraint};
 use crate::dynamics::results::{Cause, FailedLcp};
-use crate::dynamics::step::System;
+use crate::dynamics::step::{System, sum};
 use crate::lcp::{ContactState, FrictionalLcp, FrictionalSolution, LcpMethod};
 use crate::linear::{LinearError, Transformation};
 
@@ -93,10 +93,8 @@ impl ContactSystem<'_> {
 
     /// y + W load, both over all dofs, W being the inverse of the matrix.
     pub fn respond(&mut self, y: &[f64], load: &[f64]) -> Result<Vec<f64>, LinearError> {
-        let correction = self.system.solve(&self.map.restrict(load))?;
-        let mut response = y.to_vec();
-        self.map.add(&correction, &mut response);
-        Ok(response)
+        let response = self.system.respond(self.map, load)?;
+        Ok(sum(y, &response))
     }
 }
 

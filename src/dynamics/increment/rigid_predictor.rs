@@ -2,18 +2,8 @@
 //! finite rotation. Section 4 of docs/theory.md, Predictor.
 
 use crate::dynamics::results::State;
-use crate::dynamics::step::{Interval, StepProblem};
+use crate::dynamics::step::{Hold, Interval, StepProblem, holds};
 use crate::vectors::{cross, difference};
-
-/// How a body is held.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Hold {
-    Free,
-    /// Both dofs of this node are prescribed, and no others.
-    Pinned(usize),
-    /// More is prescribed, or equations tie it.
-    Held,
-}
 
 /// Sums over the nodes of a body.
 #[derive(Debug, Clone, Copy, Default)]
@@ -68,30 +58,6 @@ pub(super) fn rigid_predictor(
     d
 }
 
-/// How the bodies are held.
-fn holds(problem: &StepProblem) -> Vec<Hold> {
-    let (parts, unknowns) = (problem.parts, &problem.unknowns);
-    let mut holds = vec![Hold::Free; parts.bodies()];
-    let mut constrained = unknowns.constrained().iter().peekable();
-    while let Some(&dof) = constrained.next() {
-        let body = parts.of_nodes()[dof / 2];
-        let both = dof % 2 == 0 && constrained.next_if(|next| **next == dof + 1).is_some();
-        holds[body] = match holds[body] {
-            Hold::Free if both => Hold::Pinned(dof / 2),
-            _ => Hold::Held,
-        };
-    }
-    for dof in problem
-        .model
-        .equations
-        .iter()
-        .flat_map(|equation| equation.dofs())
-    {
-        holds[parts.of_nodes()[dof / 2]] = Hold::Held;
-    }
-    holds
-}
-
 /// Rigid motion of every body.
 fn motions(
     problem: &StepProblem,
@@ -108,8 +74,8 @@ fn motions(
         let motion = &mut motions[body];
         let (m, x) = (share[2 * node], problem.position(&start.u, node));
         motion.mass += m;
-        for i in 0..2 {
-            motion.pole[i] += m * x[i];
+        for (i, x) in x.into_iter().enumerate() {
+            motion.pole[i] += m * x;
             motion.shift[i] += m * start.v[2 * node + i];
         }
     }

@@ -1,11 +1,11 @@
 //! System matrices of a step with their factors and compliances at the contacts: the effective
 //! stiffness K* of the passes and the mass of the impulses. Sections 4 and 6 of docs/theory.md.
 
+use super::bodies::BodyAngles;
 use super::mass::unknown_mass;
 use super::step_problem::StepProblem;
-use super::unknowns::Unknowns;
 use crate::contact::{ClosedPair, Compliance, Configurations, Constraint};
-use crate::elements::{Elements, Motion, TangentPart};
+use crate::elements::{Motion, TangentPart};
 use crate::lcp::ContactState;
 use crate::linear::{
     AddedBlocks, Assembled, CheckedSolver, LinearError, Transformation, larger, linear_solver,
@@ -76,6 +76,8 @@ pub(crate) struct EffectiveStiffness {
     pub k: FactoredMatrix,
     /// M, factorised when an impulse first needs it.
     pub m: FactoredMatrix,
+    /// Angles of the bodies in K*.
+    angles: BodyAngles,
     /// Length of the increments of K* (time).
     dt: f64,
     /// Largest diagonal entry of theta2 K in every part (force/length).
@@ -86,11 +88,19 @@ pub(crate) struct EffectiveStiffness {
 
 impl EffectiveStiffness {
     /// Both matrices for the unknowns of a step.
-    pub fn new(elements: &Elements, unknowns: &Unknowns, choice: SolverChoice) -> Self {
+    pub fn new(problem: &StepProblem) -> Self {
+        let StepProblem {
+            elements,
+            unknowns,
+            settings,
+            ..
+        } = problem;
+        let choice = settings.solver;
         let mass = unknown_mass(elements, unknowns);
         EffectiveStiffness {
             k: FactoredMatrix::new(choice, mass.zeros(), &unknowns.map),
             m: FactoredMatrix::new(choice, mass, &unknowns.map),
+            angles: BodyAngles::new(problem),
             dt: f64::NAN,
             stiffness: Vec::new(),
             inertia: Vec::new(),
@@ -131,7 +141,14 @@ impl EffectiveStiffness {
         let inertia = parts.largest_diagonal(mass, &unknowns.dof);
         self.inertia = inertia.into_iter().map(|m| c * m).collect();
         k.add_matrix(mass, c);
+        self.angles.assemble(problem, motion);
         self.dt = dt;
+    }
+
+    /// Turns the factors of K* with the bodies, to the configuration of a motion, eq. (4.20).
+    pub fn turn(&mut self, problem: &StepProblem, motion: Motion) {
+        let rotation = self.angles.rotation(problem, motion);
+        self.k.compliance.turn(rotation);
     }
 
     /// Adds the stiffness of the closed constraints to K*, to be factorised next.

@@ -1,6 +1,7 @@
 //! The problem of a step: unknowns, loads, supports, mass, scheme, effective stiffness, and the
 //! workspace of its increments.
 
+mod bodies;
 mod discretization;
 mod effective_stiffness;
 mod loads;
@@ -14,6 +15,7 @@ mod supports;
 mod unknowns;
 mod workspace;
 
+pub(crate) use bodies::{Hold, holds};
 pub(crate) use discretization::Discretization;
 #[cfg(test)]
 pub(crate) use effective_stiffness::FactoredMatrix;

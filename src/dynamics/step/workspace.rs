@@ -15,7 +15,7 @@ use crate::elements::Motion;
 use crate::lcp::{
     ContactState, FrictionalLcp, FrictionalSolution, LcpError, LcpMethod, solve_frictional,
 };
-use crate::linear::LinearError;
+use crate::linear::{LinearError, Rotation, Transformation};
 
 /// Matrices, contact search and meter of a step.
 pub(crate) struct Workspace<'m> {
@@ -33,17 +33,10 @@ pub(crate) struct System<'a> {
 impl<'m> Workspace<'m> {
     /// The workspace of a step, without factors and without lists of candidates.
     pub fn new(problem: &StepProblem<'m>) -> Self {
-        let StepProblem {
-            model,
-            elements,
-            contacts,
-            settings,
-            unknowns,
-            ..
-        } = problem;
+        let x = &problem.model.mesh.coordinates;
         Workspace {
-            stiffness: EffectiveStiffness::new(elements, unknowns, settings.solver),
-            search: Search::new(contacts, &model.mesh.coordinates),
+            stiffness: EffectiveStiffness::new(problem),
+            search: Search::new(problem.contacts, x),
             meter: Meter::default(),
         }
     }
@@ -87,6 +80,14 @@ impl<'m> Workspace<'m> {
             }
         }
         result
+    }
+
+    /// Turns the factors of K* with the bodies, to the configuration of a motion.
+    pub fn turn(&mut self, problem: &StepProblem, motion: Motion) {
+        let Workspace {
+            stiffness, meter, ..
+        } = self;
+        meter.time(|t| &mut t.solve, || stiffness.turn(problem, motion));
     }
 
     /// Load, internal force and inertia of the iterate U0 + d.
@@ -188,6 +189,22 @@ impl<'a> System<'a> {
     pub fn solve(&mut self, b: &[f64]) -> Result<Vec<f64>, LinearError> {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.solver.solve(b))
+    }
+
+    /// R T A^-1 T^T R^T f for the forces `f` over all dofs, A being the matrix and R the rotation of its
+    /// bodies, eq. (4.20).
+    pub fn respond(&mut self, map: &Transformation, f: &[f64]) -> Result<Vec<f64>, LinearError> {
+        let mut turned_back = f.to_vec();
+        self.rotation().turn_back(&mut turned_back);
+        let solution = self.solve(&map.restrict(&turned_back))?;
+        let mut response = vec![0.0; f.len()];
+        map.add(&solution, &mut response);
+        self.rotation().turn(&mut response);
+        Ok(response)
+    }
+
+    fn rotation(&self) -> &Rotation {
+        self.matrix.compliance.rotation()
     }
 
     /// The complementarity problem of some constraints with the given gaps and slips without forces.
