@@ -39,7 +39,8 @@ attempts that were cut back."""
 
 CUTBACK = re.compile(r"cutback +increment (\d+) ")
 TABLE = re.compile(r" +pass +residual ")
-"""Lines of a log: a cutback, the head of a table of passes."""
+BELOW = ("     ", "advice ")
+"""Lines of a log: a cutback, the head of a table of passes; how lines below a cutback begin."""
 
 
 @dataclass(frozen=True)
@@ -123,8 +124,8 @@ def cut_attempts(log: Sequence[str]) -> list[tuple[int, int]]:
     cut = []
     for row, line in enumerate(log):
         if found := CUTBACK.match(line):
-            # the cause and the table of the passes, with more blanks before them than increments
-            below = list(takewhile(lambda text: text.startswith("     "), log[row + 1 :]))
+            # the cause, advice, and the table of the passes
+            below = list(takewhile(lambda text: text.startswith(BELOW), log[row + 1 :]))
             heads = [place for place, text in enumerate(below, 1) if TABLE.match(text)]
             cut.append((int(found[1]), len(below) - heads[0] if heads else 0))
     return cut

@@ -19,6 +19,8 @@ increment 3 of step 1: time 3.000000e-02, dt 1.000e-02
         1  5.53e-02   1.00e+00      11       0      11       0
 cutback  increment 12 at 2.200e-01, dt 2.00e-02 -> 1.00e-02
          the passes did not converge
+advice   an increment of half the length may help: this goes on in
+         a second line
      pass  residual correction  active   stick     LCP  pivots
         1  5.53e-02   1.00e+00      11       0      11       0
         2  7.93e-05   1.39e-03      11       0      11       0
