@@ -46,7 +46,7 @@ fn pushed(ny: usize, depth: f64, points: &[(f64, f64)]) -> (Model, Block) {
 #[test]
 fn after_halved_subincrements_come_longer_ones_again() {
     let (mut model, _) = pushed(2, 0.4, &[(0.0, 0.0), (0.5, 1.0), (2.0, 1.0)]);
-    model.steps[0].settings.max_passes = 8;
+    model.steps[0].settings.max_passes = 6;
     let (keep, summary) = run_to_end(&model);
     let parts = keep.reports[1..].iter().map(|r| (r.time - r.dt, r.dt));
     let parts: Vec<(f64, f64)> = parts.collect();

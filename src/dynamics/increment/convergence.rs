@@ -141,9 +141,8 @@ impl<'a> Iterate<'a> {
         let pass = self.pass(&none, &none);
         let contact_force = self.contact.resultant(none.len());
         pass.check_finite(&contact_force)?;
-        let part = if stagnates { 1.0 } else { BALANCED };
-        let scales = (pass.scales(problem, stiffness, &contact_force))
-            .with_tolerance(part * problem.settings.tolerance);
+        let scales = pass.scales(problem, stiffness, &contact_force);
+        let scales = if stagnates { scales } else { scales.strict() };
         let residual = problem
             .unknowns
             .restrict(&sum(&pass.out_of_balance(), &contact_force));
@@ -238,9 +237,12 @@ impl<'a> Scales<'a> {
         }
     }
 
-    /// The same scales with another tolerance.
-    pub fn with_tolerance(self, tolerance: f64) -> Self {
-        Scales { tolerance, ..self }
+    /// A part of the tolerance, and no allowance for the round-off of residuals: as long as corrections
+    /// become smaller it has not been reached.
+    pub fn strict(mut self) -> Self {
+        self.noise.fill(0.0);
+        self.tolerance *= BALANCED;
+        self
     }
 
     /// Largest relative residual and correction of a pass.
