@@ -5,7 +5,7 @@
 //!
 //! With z = (r, e), r = x_s - x_a, e = x_b - x_a, the products of eq. (7.1) are pi_i = z.H_i z/2 with
 //! constant H_i, and grad pi_i = H_i z. Of the discrete gradients Bn = alpha H2 zm + beta H3 zm and
-//! Bt = gamma H1 zm + delta H3 zm, eqs (7.2) and (7.3), zm = (z0 + z1)/2, the derivatives with respect
+//! Bt = gamma H1 zm + delta H3 zm, eq. (7.2), eq. (7.3), zm = (z0 + z1)/2, the derivatives with respect
 //! to the end are (rows: force; columns: d of the end)
 //!
 //! ```text

@@ -42,7 +42,7 @@ fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) 
         let [slave, a, b, _] = constraint.source.nodes;
         let p = problem.place(&start.u, [slave, a, b]);
         let was_beyond = !(0.0..=1.0).contains(&p.xi) && p.gap < -CLOSED_GAP * p.length;
-        // Pn (Bn d) of a pair that was behind, beyond the ends, eq. (7.4)
+        // Pn (Bn d) of a pair that was behind, beyond the ends, eq. (7.7)
         let work = if was_beyond {
             pair.force[0] * constraint.normal_motion(d)
         } else {
