@@ -34,6 +34,9 @@ LEDGER = (
     ("strain", "strain", 1),
     ("friction_dissipation", "friction", 1),
     ("impact_loss", "impact loss", 1),
+    ("landing_return", "landing return (given)", -1),
+    ("release_loss", "release loss", 1),
+    ("damping", "damping", 1),
     ("material_dissipation", "materials", 1),
     ("numerical_dissipation", "numerical dissipation", 1),
     ("normal_contact_work", "normal contact (taken)", -1),
@@ -53,9 +56,11 @@ def energy(axes: Axes, results: Results) -> None:
     """Where the energy is: the accounts stacked, negative ones below zero, and what was put in."""
     account = results.energy
     start = account["kinetic"][0] + account["strain"][0]
-    parts = np.array([sign * account[name] for name, _, sign in LEDGER])
-    labels = [label for _, label, _ in LEDGER]
-    colours = style.COLOURS[: len(labels)]
+    coloured = zip(LEDGER, style.ACCOUNTS)
+    entered = [(entry, colour) for entry, colour in coloured if account[entry[0]].any()]
+    parts = np.array([sign * account[name] for (name, _, sign), _ in entered])
+    labels = [label for (_, label, _), _ in entered]
+    colours = [colour for _, colour in entered]
     look = {"colors": colours, "alpha": 0.85, "linewidth": 0}
     axes.stackplot(results.time, np.maximum(parts, 0.0), labels=labels, **look)
     axes.stackplot(results.time, np.minimum(parts, 0.0), **look)

@@ -17,6 +17,8 @@ MOST_PIXELS = 1e8
 """Larger pictures are refused: they would need gigabytes of memory."""
 
 COLOURS = ("#0b559f", "#d1495b", "#2e8b57", "#e08e0b", "#6a4c93", "#5c6b73", "#17a2b8")
+ACCOUNTS = (*COLOURS[:4], "#9acd32", "#c38d5a", "#222222", *COLOURS[4:])
+"""Colours of the accounts of the energy ledger."""
 
 matplotlib.rcParams.update(
     {

@@ -158,7 +158,7 @@ const VECTOR_PER_INCREMENT: [&str; 18] = [
     "/history/nodes/TIP/mean/A",
 ];
 
-const PER_INCREMENT: [&str; 61] = [
+const PER_INCREMENT: [&str; 64] = [
     "/history/contact/BOTTOM_TOP/normal_work",
     "/history/contact/BOTTOM_TOP/friction_dissipation",
     "/history/contact/BOTTOM_TOP/normal_impulse",
@@ -190,6 +190,9 @@ const PER_INCREMENT: [&str; 61] = [
     "/history/energy/normal_contact_work",
     "/history/energy/friction_dissipation",
     "/history/energy/impact_loss",
+    "/history/energy/landing_return",
+    "/history/energy/release_loss",
+    "/history/energy/damping",
     "/history/energy/material_dissipation",
     "/history/energy/numerical_dissipation",
     "/history/energy/balance",

@@ -131,6 +131,9 @@ impl Ledger {
         e.balance = e.kinetic + e.strain - self.start - e.external_work - e.normal_contact_work
             + e.friction_dissipation
             + e.impact_loss
+            - e.landing_return
+            + e.release_loss
+            + e.damping
             + e.material_dissipation
             + e.numerical_dissipation;
         for energy in [e.kinetic, e.strain, e.external_work] {
@@ -159,6 +162,9 @@ impl Ledger {
             ),
             ("the friction dissipation", e.friction_dissipation, &state.v),
             ("the impact loss", e.impact_loss, &state.v),
+            ("the landing return", e.landing_return, &state.v),
+            ("the release loss", e.release_loss, &state.u),
+            ("the energy taken by damping", e.damping, &state.v),
             (
                 "the dissipation of the materials",
                 e.material_dissipation,

@@ -74,6 +74,12 @@ pub struct Energy {
     pub friction_dissipation: f64,
     /// Kinetic energy taken by the impact impulses.
     pub impact_loss: f64,
+    /// Kinetic energy given back after landings.
+    pub landing_return: f64,
+    /// Strain energy that nodes without mass lose as they come to rest after a release.
+    pub release_loss: f64,
+    /// Energy dissipated by the damping of the materials.
+    pub damping: f64,
     /// Energy dissipated by the materials.
     pub material_dissipation: f64,
     /// Energy dissipated by the integration scheme.

@@ -98,7 +98,7 @@ const STEP: [Scalar<IncrementReport, i64>; 1] =
         r.step as i64
     })];
 
-const ENERGY: [Scalar<Energy, f64>; 9] = [
+const ENERGY: [Scalar<Energy, f64>; 12] = [
     scalar("kinetic", "kinetic energy", "energy", |e| e.kinetic),
     scalar("strain", "strain energy", "energy", |e| e.strain),
     scalar(
@@ -124,6 +124,24 @@ const ENERGY: [Scalar<Energy, f64>; 9] = [
         "kinetic energy taken by the impact impulses since the start",
         "energy",
         |e| e.impact_loss,
+    ),
+    scalar(
+        "landing_return",
+        "kinetic energy given back after landings since the start",
+        "energy",
+        |e| e.landing_return,
+    ),
+    scalar(
+        "release_loss",
+        "strain energy lost by nodes without mass after releases since the start",
+        "energy",
+        |e| e.release_loss,
+    ),
+    scalar(
+        "damping",
+        "energy dissipated by the damping of the materials since the start",
+        "energy",
+        |e| e.damping,
     ),
     scalar(
         "material_dissipation",

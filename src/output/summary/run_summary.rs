@@ -211,28 +211,41 @@ impl ResultSummary {
     }
 }
 
+/// Accounts of the energy ledger, in the order of the summary.
+const ACCOUNTS: [&str; 11] = [
+    "kinetic",
+    "strain",
+    "external_work",
+    "normal_contact_work",
+    "friction_dissipation",
+    "impact_loss",
+    "landing_return",
+    "release_loss",
+    "damping",
+    "material_dissipation",
+    "numerical_dissipation",
+];
+
+/// Accounts that most runs have no entry in: told where they are not zero.
+const RARE_ACCOUNTS: [&str; 3] = ["landing_return", "release_loss", "damping"];
+
 /// Last value of each energy, and the largest that counts as the balance's scale.
 fn read_energies(at: &Group) -> hdf5::Result<(Vec<(String, f64)>, f64)> {
     let mut energies = vec![];
     let mut scale: f64 = 0.0;
-    for name in [
-        "kinetic",
-        "strain",
-        "external_work",
-        "normal_contact_work",
-        "friction_dissipation",
-        "impact_loss",
-        "material_dissipation",
-        "numerical_dissipation",
-    ] {
-        if name == "material_dissipation" && !at.link_exists(name) {
+    for name in ACCOUNTS {
+        let is_newer = name == "material_dissipation" || RARE_ACCOUNTS.contains(&name);
+        if is_newer && !at.link_exists(name) {
             continue; // a file from before there was this account
         }
         let values: Vec<f64> = column(at, name)?;
         if energies.len() < 3 {
             scale = larger(scale, largest(&values));
         }
-        energies.push((name.to_owned(), values.last().copied().unwrap_or(0.0)));
+        let last = values.last().copied().unwrap_or(0.0);
+        if last != 0.0 || !RARE_ACCOUNTS.contains(&name) {
+            energies.push((name.to_owned(), last));
+        }
     }
     Ok((energies, scale))
 }
