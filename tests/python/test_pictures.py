@@ -62,7 +62,7 @@ def test_histories_by_name(contact: Results) -> None:
     ("name", "words"),
     [
         ("energi/kinetic", "contact, dt, energy, "),
-        ("energy/kinetik", "energy has balance, external_work, "),
+        ("energy/kinetik", "energy has balance, damping, external_work, "),
         ("nodes/TIP/U:2", "nodes has LOWER_TIP, UPPER_TIP"),
         ("nodes/UPPER_TIP[1]/U:2", "there are 21, 42, 63"),
         ("nodes/UPPER_TIP/U:3", "components 1 to 2"),
