@@ -198,20 +198,18 @@ impl NodePath<'_> {
         depth <= largest(&unsolved) + DEPTH_ROUND_OFF * length
     }
 
-    /// Whether the node has crossed a segment at its very end and is outside the corner there:
-    /// behind the line of this segment and in front of that of its neighbour.
+    /// Whether the node has crossed a segment near its end and is outside the corner there: behind the
+    /// line of this segment and in front of that of its neighbour. On the neighbour it need not leave
+    /// the body again, where it has only clipped the corner.
     fn is_outside_corner(&self, i: usize, xi: f64, p: &Projection) -> bool {
-        let is_end_b = xi > 0.5;
-        if xi.min(1.0 - xi) > SEGMENT_END {
-            return false;
-        }
+        let (is_end_b, from_end) = (xi > 0.5, xi.min(1.0 - xi));
         let neighbour = if is_end_b {
             self.contact.next[i]
         } else {
             self.contact.previous[i]
         };
         let Some(j) = neighbour else {
-            return !(0.0..=1.0).contains(&p.xi);
+            return from_end <= SEGMENT_END && !(0.0..=1.0).contains(&p.xi);
         };
         let q = self.project(j, 1.0);
         let is_convex = if is_end_b {
@@ -219,7 +217,7 @@ impl NodePath<'_> {
         } else {
             turns_left(&q, p)
         };
-        is_convex && self.is_round_off(j, -q.gap, q.length)
+        from_end <= CORNER_CLIP_DEPTH && is_convex && self.is_round_off(j, -q.gap, q.length)
     }
 
     /// Whether the node has slid off the end of an open surface.

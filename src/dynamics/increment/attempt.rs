@@ -134,6 +134,7 @@ impl<'m> Attempt<'_, 'm> {
                 contact.add_open(self.outside(left_out, &u));
                 return self.finish(v0p, d, contact, impulses);
             }
+            if std::env::var("DBGP").is_ok() { let p = trace.passes.last().unwrap(); eprintln!("pass {pass} res {:.2e} corr {:.2e} active {} stick {} lcp {} worn {} facs {}", p.residual, p.correction, p.active, p.stick, p.lcp_size, factors.are_worn(), self.workspace.meter.counts.factorizations); }
             factors.take_in(trace.correction())?;
         }
         Err(Cause::NotConverged)

@@ -100,7 +100,7 @@ impl ContactForces {
             let gaps = chosen.iter().map(|c| c.gap + c.gap_change(y)).collect();
             let slips = chosen.iter().map(|c| c.slip + c.slip_change(y)).collect();
             let guess = Guess::from_pass(&chosen, &before, settled);
-            let solution = system.solve(&chosen, [gaps, slips], guess)?;
+            let solution = system.solve(&chosen, [gaps, slips], &guess)?;
             (self.closed, self.problem_size) = (solution.closed, chosen.len());
             self.pivots += solution.pivots;
             du = system.respond(y, &self.resultant(y.len()))?;

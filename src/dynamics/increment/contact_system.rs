@@ -19,11 +19,14 @@ pub(super) struct ContactSystem<'a> {
 }
 
 /// What a complementarity problem starts from.
+#[derive(Clone)]
 pub(super) struct Guess {
     /// State of every constraint.
     pub states: Vec<ContactState>,
-    /// Forces of every constraint near which, of several solutions, the answer is to lie.
-    pub nearest: Option<Vec<[f64; 2]>>,
+    /// Forces of every constraint near which, of several solutions, the answer may lie, if there are any.
+    pub forces: Option<Vec<[f64; 2]>>,
+    /// Whether it is to lie there, or only where there is no answer otherwise.
+    pub is_near: bool,
 }
 
 /// What is closed, and the pivots that it took.
@@ -33,13 +36,24 @@ pub(super) struct ContactSolution {
 }
 
 impl Guess {
-    /// States of the pairs closed `before`; when the passes have settled, their forces too.
+    /// States and forces of the pairs closed `before`, near which the answer lies when the passes have
+    /// settled.
     pub fn from_pass(constraints: &[&Constraint], before: &ClosedPairs, settled: bool) -> Self {
-        let forces = || constraints.iter().map(|c| before.force(c.key)).collect();
+        let forces = constraints.iter().map(|c| before.force(c.key));
         Guess {
             states: constraints.iter().map(|c| before.state(c.key)).collect(),
-            nearest: settled.then(forces),
+            forces: Some(forces.collect()),
+            is_near: settled,
         }
+    }
+
+    /// The same, with an answer near the forces before.
+    fn near(&self) -> Option<Self> {
+        let is_other = self.forces.is_some() && !self.is_near;
+        is_other.then(|| Guess {
+            is_near: true,
+            ..self.clone()
+        })
     }
 }
 
@@ -47,14 +61,32 @@ impl ContactSystem<'_> {
     /// Forces of the given constraints from the constant terms of their gaps and slips.
     ///
     /// Where a problem with derivative rows has no solution, that with the force rows in their place is
-    /// solved: Q is then symmetric and the theorem of section 8 holds.
+    /// solved: Q is then symmetric and the theorem of section 8 holds. Where pairs are so nearly one that
+    /// round-off spoils both, the answer near the forces before is taken.
     pub fn solve(
         &mut self,
         constraints: &[&Constraint],
         constant_terms: [Vec<f64>; 2],
-        guess: Guess,
+        guess: &Guess,
     ) -> Result<ContactSolution, Cause> {
-        let with_derivatives = self.solve_once(constraints, constant_terms.clone(), &guess);
+        let solved = self.solve_with_rows(constraints, &constant_terms, guess);
+        match (&solved, guess.near()) {
+            (Err(Cause::Lcp(_)), Some(near)) => {
+                let found = self.solve_with_rows(constraints, &constant_terms, &near);
+                found.or(solved)
+            }
+            _ => solved,
+        }
+    }
+
+    /// With the derivative rows, else with the force rows.
+    fn solve_with_rows(
+        &mut self,
+        constraints: &[&Constraint],
+        constant_terms: &[Vec<f64>; 2],
+        guess: &Guess,
+    ) -> Result<ContactSolution, Cause> {
+        let with_derivatives = self.solve_once(constraints, constant_terms.clone(), guess);
         let are_other = constraints
             .iter()
             .any(|c| c.other_derivative_rows.is_some());
@@ -63,7 +95,7 @@ impl ContactSystem<'_> {
                 let symmetric: Vec<Constraint> =
                     constraints.iter().map(|c| c.with_force_rows()).collect();
                 let symmetric: Vec<&Constraint> = symmetric.iter().collect();
-                self.solve_once(&symmetric, constant_terms, &guess)
+                self.solve_once(&symmetric, constant_terms.clone(), guess)
             }
             solved => solved,
         }
@@ -76,7 +108,7 @@ impl ContactSystem<'_> {
         guess: &Guess,
     ) -> Result<ContactSolution, Cause> {
         let mut problem = self.system.frictional_lcp(constraints, gaps, slips)?;
-        if let Some(forces) = &guess.nearest {
+        if let Some(forces) = guess.forces.as_ref().filter(|_| guess.is_near) {
             add_proximal_term(&mut problem, forces);
         }
         match self.system.solve_lcp(&problem, &guess.states, self.method) {

@@ -16,6 +16,9 @@ const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 /// have come down to round-off: a pass whose residual and correction are below the tolerance ends with
 /// an iterate that is better by the rate of the passes.
 const BALANCED: f64 = 0.1;
+/// Round-off of the residual of an iterate whose corrections become hardly smaller, in units of eq. (4.10):
+/// a row of K has about as much beside its diagonal entry as the others have together.
+const STAGNANT_NOISE: f64 = 4.0;
 
 /// Forces and displacements of a pass, over all dofs.
 pub(crate) struct Pass<'a> {
@@ -142,7 +145,10 @@ impl<'a> Iterate<'a> {
         let contact_force = self.contact.resultant(none.len());
         pass.check_finite(&contact_force)?;
         let scales = pass.scales(problem, stiffness, &contact_force);
-        let scales = if stagnates { scales } else { scales.strict() };
+        let scales = match stagnates {
+            true => scales.stagnant(),
+            false => scales.strict(),
+        };
         let residual = problem
             .unknowns
             .restrict(&sum(&pass.out_of_balance(), &contact_force));
@@ -242,6 +248,13 @@ impl<'a> Scales<'a> {
     pub fn strict(mut self) -> Self {
         self.noise.fill(0.0);
         self.tolerance *= BALANCED;
+        self
+    }
+
+    /// All the round-off that residuals may have: there is nothing more to be gained.
+    pub fn stagnant(mut self) -> Self {
+        let noise = self.noise.iter_mut();
+        noise.for_each(|noise| *noise *= STAGNANT_NOISE);
         self
     }
 

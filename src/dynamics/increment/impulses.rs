@@ -136,13 +136,14 @@ fn impulses(
     let slides = constraints.iter().map(|c| c.slip_change(v0)).collect();
     let guess = Guess {
         states: vec![ContactState::Stick; constraints.len()],
-        nearest: None,
+        forces: None,
+        is_near: false,
     };
     if !system.system.is_factorized() {
         system.system.factorize()?;
     }
     let all: Vec<&Constraint> = constraints.iter().collect();
-    let solution = system.solve(&all, [approaches, slides], guess)?;
+    let solution = system.solve(&all, [approaches, slides], &guess)?;
     let impulses = ContactForces {
         problem_size: constraints.len(),
         closed: solution.closed,
