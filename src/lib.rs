@@ -53,6 +53,8 @@
 //! | acceptance | checks that a converged increment passes before it is entered in the ledger |
 //! | ledger | energies, impulses and works summed over the run, and their balance |
 //! | landing | a node that closes its gap within an increment |
+//! | landing return | energy D that the force of a landing takes, given back as kinetic energy |
+//! | pattern w, share y | velocities along which it is given back, V1 <- V1 + sum y w |
 //! | cutback | a failed attempt at an increment, repeated with a shorter one |
 //! | subincrement | part of a nominal increment, from a cutback or up to an impact |
 //! | frame, history | fields at some times; scalars of every increment, in the result file |

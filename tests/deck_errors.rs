@@ -157,6 +157,7 @@ fn faulty(code: Code) -> Source {
         AmplitudeTable => model("*AMPLITUDE, NAME=A\n0., 0., 1., 1., 1., 0."),
         BadIncrement => square("0.1, 1.", "2., 1."),
         UnstableScheme => step("*STICKSLIP, SCHEME=SS22, THETA1=0.4"),
+        SchemeOption => step("*STICKSLIP, SCHEME=SS22, LANDING=RETURN"),
         BadDirection => step("*DLOAD\nBODY, GRAV, 9.81, 0., 0."),
         NoStep => Source::Text(SQUARE.split("*STEP").next().unwrap_or("").to_string()),
         OutputTimes => step("*OUTPUT, FIELD, FREQUENCY=1, TIME INTERVAL=0.1"),

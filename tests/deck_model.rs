@@ -262,7 +262,8 @@ fn increments_are_limited_unless_direct() {
 fn settings_are_read_and_kept() {
     let card = "*STICKSLIP, SCHEME=SS22, THETA1=0.5, THETA2=0.6, IMPACT=NONE, IMPACT TIME=EVENT, \
                 LCP=LEMKE, FACTORIZATION=EVERY PASS, SOLVER=SPRS, TOLERANCE=1e-9, MAX PASSES=9";
-    let model = second_step("*STEP", card, "*STICKSLIP, SCHEME=energy-momentum");
+    let next = "*STICKSLIP, SCHEME=energy-momentum, LANDING=RETURN";
+    let model = second_step("*STEP", card, next);
     let settings = Settings {
         scheme: Scheme::Ss22 {
             theta1: 0.5,
@@ -270,6 +271,7 @@ fn settings_are_read_and_kept() {
         },
         impact: Impact::None,
         impact_time: ImpactTime::Event,
+        landing: LandingRule::Plastic,
         lcp: LcpChoice::Lemke,
         factorization: Factorization::EveryPass,
         solver: SolverChoice::Sprs,
@@ -277,8 +279,12 @@ fn settings_are_read_and_kept() {
         max_passes: 9,
     };
     assert_eq!(model.steps[0].settings, settings);
-    let scheme = Scheme::EnergyMomentum;
-    assert_eq!(model.steps[1].settings, Settings { scheme, ..settings });
+    let second = Settings {
+        scheme: Scheme::EnergyMomentum,
+        landing: LandingRule::Return,
+        ..settings
+    };
+    assert_eq!(model.steps[1].settings, second);
     assert_eq!(read(SQUARE).0.steps[0].settings, Settings::default());
 }
 

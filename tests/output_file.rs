@@ -158,7 +158,7 @@ const VECTOR_PER_INCREMENT: [&str; 18] = [
     "/history/nodes/TIP/mean/A",
 ];
 
-const PER_INCREMENT: [&str; 64] = [
+const PER_INCREMENT: [&str; 70] = [
     "/history/contact/BOTTOM_TOP/normal_work",
     "/history/contact/BOTTOM_TOP/friction_dissipation",
     "/history/contact/BOTTOM_TOP/normal_impulse",
@@ -169,6 +169,9 @@ const PER_INCREMENT: [&str; 64] = [
     "/history/contact/BOTTOM_TOP/tangential_impulse_sum",
     "/history/contact/BOTTOM_TOP/impact_normal_impulse_sum",
     "/history/contact/BOTTOM_TOP/impact_tangential_impulse_sum",
+    "/history/contact/BOTTOM_TOP/landing_return",
+    "/history/contact/BOTTOM_TOP/return_impulse",
+    "/history/contact/BOTTOM_TOP/return_impulse_sum",
     "/history/contact/BOTTOM_TOP_2/normal_work",
     "/history/contact/BOTTOM_TOP_2/friction_dissipation",
     "/history/contact/BOTTOM_TOP_2/normal_impulse",
@@ -179,6 +182,9 @@ const PER_INCREMENT: [&str; 64] = [
     "/history/contact/BOTTOM_TOP_2/tangential_impulse_sum",
     "/history/contact/BOTTOM_TOP_2/impact_normal_impulse_sum",
     "/history/contact/BOTTOM_TOP_2/impact_tangential_impulse_sum",
+    "/history/contact/BOTTOM_TOP_2/landing_return",
+    "/history/contact/BOTTOM_TOP_2/return_impulse",
+    "/history/contact/BOTTOM_TOP_2/return_impulse_sum",
     "/history/time",
     "/history/strain/largest_principal",
     "/history/strain/largest_principal_elastic",

@@ -116,6 +116,7 @@ codes! {
     IgnoredVariable "D515" "An output variable that is not written."
     ConstantIncrement "D516" "Increments do not grow, although the step lets them."
     BadEquation "D517" "An equation between displacements that cannot be used as it is."
+    SchemeOption "D518" "An option that the scheme of the time integration does not have."
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 mod events;
 mod increment;
+mod landing;
 mod ledger;
 mod results;
 mod run;

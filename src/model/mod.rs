@@ -27,7 +27,9 @@ pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Tra
 pub use material::{Material, Section};
 pub use mesh::{Element, Face, Mesh, Set, SharedSides};
 pub use sets::{HistorySet, NamedSets};
-pub use settings::{Factorization, Impact, ImpactTime, LcpChoice, Scheme, Settings, SolverChoice};
+pub use settings::{
+    Factorization, Impact, ImpactTime, LandingRule, LcpChoice, Scheme, Settings, SolverChoice,
+};
 pub use step::{Frames, Increments, Procedure, Step};
 pub use surface::{ALL_EXTERIOR, Surface, SurfaceKind};
 

@@ -10,6 +10,8 @@ pub struct Settings {
     pub impact: Impact,
     /// When nodes land.
     pub impact_time: ImpactTime,
+    /// What becomes of the energy that landings take.
+    pub landing: LandingRule,
     /// Solver of the complementarity problem.
     pub lcp: LcpChoice,
     /// When the effective matrix is factorised again.
@@ -28,6 +30,7 @@ impl Default for Settings {
             scheme: Scheme::EnergyMomentum,
             impact: Impact::Impulse,
             impact_time: ImpactTime::Increment,
+            landing: LandingRule::Plastic,
             lcp: LcpChoice::Hybrid,
             factorization: Factorization::Keep,
             solver: SolverChoice::Faer,
@@ -67,6 +70,15 @@ pub enum ImpactTime {
     Increment,
     /// At the time of the impact, which ends a subincrement.
     Event,
+}
+
+/// What becomes of the energy that the normal contact forces take at landings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LandingRule {
+    /// It is lost.
+    Plastic,
+    /// It is given back as kinetic energy.
+    Return,
 }
 
 /// Solver of the complementarity problem of a pass.

@@ -15,7 +15,7 @@ const SS22: Scheme = Scheme::Ss22 {
 };
 
 /// `a` and `b` agree to round-off of `scale`.
-fn near(a: f64, b: f64, scale: f64) {
+pub fn near(a: f64, b: f64, scale: f64) {
     assert!((a - b).abs() <= 1e-12 * scale, "{a:e} is not {b:e}");
 }
 
@@ -26,7 +26,7 @@ fn energy(reports: &[IncrementReport]) -> f64 {
 }
 
 /// Masses of the beams of [`oblique_impact`].
-const MASSES: [f64; 2] = [3.2, 2.4];
+pub const MASSES: [f64; 2] = [3.2, 2.4];
 
 #[test]
 fn bodies_start_as_they_are_thrown() {
@@ -110,7 +110,7 @@ fn impulses_are_the_change_of_momentum() {
 }
 
 /// The beams of [`oblique_impact`] in general contact.
-fn all_exterior() -> Model {
+pub fn all_exterior() -> Model {
     let mut model = oblique_impact(0.3, Scheme::EnergyMomentum);
     let faces = model.mesh.exterior_faces();
     model.surfaces[0].kind = SurfaceKind::Faces(faces);

@@ -13,6 +13,7 @@ mod finite;
 mod friction;
 mod halving;
 mod invariants;
+mod landing_return;
 mod lcp_methods;
 mod loads;
 mod many;

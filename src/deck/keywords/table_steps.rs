@@ -260,6 +260,17 @@ pub(crate) static STEPS: &[Keyword] = &[
                 "when nodes land",
             ),
             P::choice(
+                "LANDING",
+                &[
+                    V::read("PLASTIC", "what landings take is lost (default)"),
+                    V::read(
+                        "RETURN",
+                        "it is given back as kinetic energy (not with SS22)",
+                    ),
+                ],
+                "energy that contact takes at landings",
+            ),
+            P::choice(
                 "LCP",
                 &[
                     V::read(

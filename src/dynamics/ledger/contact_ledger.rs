@@ -2,7 +2,7 @@
 
 use super::nodal_results::contact_of_slave_indices;
 use crate::contact::{Constraint, ContactSurfaces};
-use crate::dynamics::increment::Solved;
+use crate::dynamics::increment::{PairReturn, Solved};
 use crate::dynamics::results::{ContactImpulse, ContactOnBody, ContactResultant};
 use crate::dynamics::step::StepProblem;
 use crate::model::{Bodies, Model};
@@ -13,6 +13,7 @@ use crate::vectors::cross;
 struct Sums {
     normal_work: f64,
     friction_dissipation: f64,
+    landing_return: f64,
     impulse: ContactImpulse,
 }
 
@@ -69,6 +70,10 @@ impl ContactLedger {
             sums.friction_dissipation -= pt * constraint.tangential_motion(&solved.d);
             let result = &mut resultants[contact];
             result.impulse.add(constraint, [dt * pn, dt * pt]);
+            for returned in solved.returned.of_pair(pair.key) {
+                sums.landing_return += returned.energy;
+                result.impulse.add_return(returned);
+            }
             if !result.bodies.is_empty() {
                 let forces = constraint.nodal_forces(pair.force);
                 add_to_bodies(problem, bodies, u, forces, &mut result.bodies);
@@ -87,6 +92,7 @@ impl ContactLedger {
             result.impulse_sum = sums.impulse;
             result.normal_work = sums.normal_work;
             result.friction_dissipation = sums.friction_dissipation;
+            result.landing_return = sums.landing_return;
             if let Some(node) = self.reference[c] {
                 let x = problem.position(u, node);
                 result.reference_moment = result.moment - cross(x, result.force);
@@ -121,6 +127,14 @@ impl ContactImpulse {
         self.tangential += tangential;
     }
 
+    /// Adds the impulse of a landing return.
+    fn add_return(&mut self, returned: &PairReturn) {
+        self.vector[0] += returned.vector[0];
+        self.vector[1] += returned.vector[1];
+        self.normal += returned.normal;
+        self.landing_return += returned.normal;
+    }
+
     /// Adds the impulses of another increment.
     fn sum(&mut self, other: &ContactImpulse) {
         for i in 0..2 {
@@ -130,6 +144,7 @@ impl ContactImpulse {
         self.tangential += other.tangential;
         self.impact_normal += other.impact_normal;
         self.impact_tangential += other.impact_tangential;
+        self.landing_return += other.landing_return;
     }
 }
 

@@ -121,6 +121,9 @@ impl Ledger {
             let kinetic = |v| problem.mass.kinetic_energy(v);
             e.impact_loss += kinetic(&start.v) - kinetic(v0p);
         }
+        // what landings and releases are given back, and what relaxed nodes have lost
+        e.landing_return += solved.returned.energy();
+        e.release_loss += solved.returned.released;
         // D, and d.F_theta - (W1 - W0) - D, eq. (9.5)
         let dissipated = solved.material_dissipation;
         e.material_dissipation += dissipated;

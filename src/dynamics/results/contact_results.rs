@@ -1,11 +1,11 @@
 //! Resultants, impulses, impacts and errors of the contacts.
 
-/// Impulses of a contact: those of its forces and of its impacts, or of its impacts alone.
+/// Impulses of a contact: those of its forces, of its impacts and of landing returns.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ContactImpulse {
     /// Impulse on the slave surface (force time).
     pub vector: [f64; 2],
-    /// Sum of dt Pn + Phi (force time).
+    /// Sum of dt Pn + Phi and of what landing returns give (force time).
     pub normal: f64,
     /// Sum of dt Pt + Psi (force time).
     pub tangential: f64,
@@ -13,6 +13,9 @@ pub struct ContactImpulse {
     pub impact_normal: f64,
     /// Sum of Psi (force time).
     pub impact_tangential: f64,
+    /// Sum of the normal impulses of landing returns; negative ones take back what the next increment
+    /// gives (force time).
+    pub landing_return: f64,
 }
 
 /// How far the pairs at the end of an increment are from the contact law, in lengths of their segments.
@@ -61,6 +64,8 @@ pub struct ContactResultant {
     pub normal_work: f64,
     /// Energy dissipated by friction since the start of the analysis.
     pub friction_dissipation: f64,
+    /// Kinetic energy given back after its landings since the start of the analysis.
+    pub landing_return: f64,
     /// Impulses of the increment.
     pub impulse: ContactImpulse,
     /// Impulses since the start of the analysis.

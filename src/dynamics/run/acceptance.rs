@@ -5,6 +5,7 @@ use super::nominal_increment::NominalIncrement;
 use crate::contact::{ClosedPairs, Penetration};
 use crate::dynamics::events::{FailedSubincrement, Subincrement};
 use crate::dynamics::increment::{Failed, Solved};
+use crate::dynamics::landing::return_landings;
 use crate::dynamics::ledger::{Ledger, check_energy_gain};
 use crate::dynamics::results::{Cause, Failure, State};
 use crate::dynamics::step::{Interval, StepPlace, StepProblem, Workspace, sum};
@@ -27,22 +28,23 @@ pub(crate) struct Accepted {
 }
 
 impl Accepted {
-    /// Accepts a converged subincrement, `halvings` times halved, of the `nominal` increment: no node
-    /// may have gone through a surface, the energies must be finite, and contact must put in none while
+    /// Accepts a converged subincrement, `halvings` times halved, of the `nominal` increment, and gives
+    /// back what its landings have taken: no node may have gone through a surface, the energies must be finite, and contact must put in none while
     /// halvings are left for that.
     pub fn new(
         problem: &StepProblem,
         workspace: &mut Workspace,
         before: Before,
-        subincrement: Subincrement,
+        mut subincrement: Subincrement,
         halvings: u32,
         nominal: &NominalIncrement,
     ) -> Result<Self, FailedSubincrement> {
         let Subincrement {
             interval, solved, ..
-        } = &subincrement;
+        } = &mut subincrement;
         let may_be_halved = halvings < GAIN_HALVINGS && interval.dt / 2.0 >= nominal.dt_min;
         let checked = check_paths(problem, workspace, before, solved)
+            .and_then(|()| return_landings(problem, workspace, interval.dt, solved))
             .and_then(|()| {
                 let ledger = before.ledger.clone();
                 ledger.with(problem, before.state, solved, interval.dt)

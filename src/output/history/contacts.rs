@@ -6,7 +6,7 @@ use crate::dynamics::{ContactImpulse, ContactResultant, Landing};
 use crate::model::{Bodies, Contact, Model};
 use crate::output::file::{Column, Meaning, Scalar, Series, contact_names, group, meaning, scalar};
 
-const RESULTANTS: [Scalar<ContactResultant, f64>; 7] = [
+const RESULTANTS: [Scalar<ContactResultant, f64>; 8] = [
     scalar(
         "moment",
         "moment of the force about the origin",
@@ -46,6 +46,12 @@ const RESULTANTS: [Scalar<ContactResultant, f64>; 7] = [
         "energy",
         |c| c.friction_dissipation,
     ),
+    scalar(
+        "landing_return",
+        "kinetic energy given back after its landings since the start",
+        "energy",
+        |c| c.landing_return,
+    ),
 ];
 
 const REFERENCE_MOMENT: [Scalar<ContactResultant, f64>; 1] = [scalar(
@@ -59,10 +65,10 @@ const IMPULSE: Meaning = meaning(
     "impulse on the slave surface in the increment",
     "force*time",
 );
-const IMPULSES: [Scalar<ContactImpulse, f64>; 4] = [
+const IMPULSES: [Scalar<ContactImpulse, f64>; 5] = [
     scalar(
         "normal_impulse",
-        "sum of dt Pn + Phi in the increment",
+        "sum of dt Pn + Phi and of return impulses in the increment",
         "force*time",
         |i| i.normal,
     ),
@@ -84,13 +90,19 @@ const IMPULSES: [Scalar<ContactImpulse, f64>; 4] = [
         "force*time",
         |i| i.impact_tangential,
     ),
+    scalar(
+        "return_impulse",
+        "sum of the normal impulses of landing returns in the increment",
+        "force*time",
+        |i| i.landing_return,
+    ),
 ];
 
 const IMPULSE_SUM: Meaning = meaning("impulse on the slave surface since the start", "force*time");
-const IMPULSE_SUMS: [Scalar<ContactImpulse, f64>; 4] = [
+const IMPULSE_SUMS: [Scalar<ContactImpulse, f64>; 5] = [
     scalar(
         "normal_impulse_sum",
-        "sum of dt Pn + Phi since the start",
+        "sum of dt Pn + Phi and of return impulses since the start",
         "force*time",
         |i| i.normal,
     ),
@@ -111,6 +123,12 @@ const IMPULSE_SUMS: [Scalar<ContactImpulse, f64>; 4] = [
         "sum of Psi since the start",
         "force*time",
         |i| i.impact_tangential,
+    ),
+    scalar(
+        "return_impulse_sum",
+        "sum of the normal impulses of landing returns since the start",
+        "force*time",
+        |i| i.landing_return,
     ),
 ];
 

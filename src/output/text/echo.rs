@@ -3,8 +3,8 @@
 use super::format::{counted, general, grouped, scientific};
 use super::layout::{label, wrap};
 use crate::model::{
-    Contact, Element, ElementType, Frames, Impact, ImpactTime, Model, Scheme, Settings,
-    SolverChoice, Step, SurfaceKind,
+    Contact, Element, ElementType, Frames, Impact, ImpactTime, LandingRule, Model, Scheme,
+    Settings, SolverChoice, Step, SurfaceKind,
 };
 use crate::output::frames::{DEFAULT_FRAMES, are_dense};
 use crate::prepare::{InitialGap, PreparedModel};
@@ -122,7 +122,7 @@ impl ModelEcho {
         let settings = &step.settings;
         let numerics = [
             scheme(settings.scheme),
-            impact(settings).to_owned(),
+            impact(settings),
             format!("solver {}", solver(settings.solver)),
         ];
         let mut lines = wrap(&format!("step {}", index + 1), &times);
@@ -167,11 +167,15 @@ fn scheme(scheme: Scheme) -> String {
     }
 }
 
-fn impact(settings: &Settings) -> &'static str {
-    match (settings.impact, settings.impact_time) {
+fn impact(settings: &Settings) -> String {
+    let impulses = match (settings.impact, settings.impact_time) {
         (Impact::None, _) => "no impact impulses",
         (Impact::Impulse, ImpactTime::Increment) => "impact impulses",
         (Impact::Impulse, ImpactTime::Event) => "impact impulses at the times of impacts",
+    };
+    match settings.landing {
+        LandingRule::Plastic => impulses.to_owned(),
+        LandingRule::Return => format!("{impulses}, landing return"),
     }
 }
 

@@ -2,7 +2,9 @@
 
 use crate::deck::Card;
 use crate::diagnostics::{Code, Diagnostic, shown};
-use crate::model::{Factorization, Impact, ImpactTime, LcpChoice, Scheme, Settings, SolverChoice};
+use crate::model::{
+    Factorization, Impact, ImpactTime, LandingRule, LcpChoice, Scheme, Settings, SolverChoice,
+};
 use crate::reader::context::Context;
 
 /// Changes settings as a card says.
@@ -16,6 +18,11 @@ pub(crate) fn apply(card: &Card, settings: &mut Settings, cx: &mut Context) {
     match card.choice("IMPACT TIME") {
         Some("EVENT") => settings.impact_time = ImpactTime::Event,
         Some(_) => settings.impact_time = ImpactTime::Increment,
+        None => {}
+    }
+    match card.choice("LANDING") {
+        Some("RETURN") => settings.landing = LandingRule::Return,
+        Some(_) => settings.landing = LandingRule::Plastic,
         None => {}
     }
     match card.choice("LCP") {
@@ -38,6 +45,21 @@ pub(crate) fn apply(card: &Card, settings: &mut Settings, cx: &mut Context) {
     }
     if let Some(passes) = max_passes(card, cx) {
         settings.max_passes = passes;
+    }
+    check_landing(card, settings, cx);
+}
+
+/// The landing return needs the energy-momentum scheme, whose contact force takes Pn g0 at a landing and
+/// nothing else.
+fn check_landing(card: &Card, settings: &Settings, cx: &mut Context) {
+    let is_ss22 = matches!(settings.scheme, Scheme::Ss22 { .. });
+    if settings.landing == LandingRule::Return && is_ss22 {
+        let given = ["LANDING", "SCHEME"].map(|name| (card.choice(name), name));
+        let named = given.iter().find(|(value, _)| value.is_some());
+        let span = named.map_or(card.span, |(_, name)| card.span_of(name));
+        let message = "LANDING=RETURN is not for SCHEME=SS22";
+        let error = Diagnostic::error(Code::SchemeOption, span, message);
+        cx.d.push(error.help("leave out SCHEME=SS22, or choose LANDING=PLASTIC"));
     }
 }
 

@@ -1,0 +1,38 @@
+//! Energy that is given back after a converged increment. Section 6 of docs/theory.md, Landing
+//! return.
+
+use crate::contact::ConstraintKey;
+
+/// What is given back after an increment, and what relaxed nodes have lost for it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Returned {
+    /// What was given back to each pair.
+    pub pairs: Vec<PairReturn>,
+    /// Strain energy R that nodes without mass lost as they came to rest after releases.
+    pub released: f64,
+}
+
+/// What was given back to a pair.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PairReturn {
+    /// The pair.
+    pub key: ConstraintKey,
+    /// Energy D.
+    pub energy: f64,
+    /// Normal impulse (dt²/2) y (force time).
+    pub normal: f64,
+    /// Impulse on the slave node (force time).
+    pub vector: [f64; 2],
+}
+
+impl Returned {
+    /// Energy given back to all pairs.
+    pub fn energy(&self) -> f64 {
+        self.pairs.iter().map(|pair| pair.energy).sum()
+    }
+
+    /// What was given back to the pair of a constraint.
+    pub fn of_pair(&self, key: ConstraintKey) -> impl Iterator<Item = &PairReturn> {
+        self.pairs.iter().filter(move |pair| pair.key == key)
+    }
+}

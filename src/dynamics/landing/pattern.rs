@@ -1,0 +1,133 @@
+//! Patterns of velocity along which energy is given back, with the momenta of the loads that they
+//! belong to. Section 6 of docs/theory.md, Landing return.
+
+use crate::dynamics::results::Cause;
+use crate::dynamics::step::{Hold, StepProblem, Workspace, holds};
+use crate::vectors::{cross, difference, dot};
+
+/// A load along whose response energy is given back.
+pub(crate) struct ReturnLoad {
+    /// Nodal forces over all dofs, at the positions of the end, as Gn^T of a pair.
+    pub force: Vec<f64>,
+    /// Energy to be given back.
+    pub energy: f64,
+}
+
+/// A pattern of velocity.
+pub(super) struct Pattern {
+    /// w, over all dofs.
+    pub w: Vec<f64>,
+    /// M w.
+    pub momentum: Vec<f64>,
+}
+
+/// The patterns of some loads at the end of an increment of length `dt`, where the displacements are `u`.
+///
+/// w = K*^-1 Gn^T, eq. (6.6): what a load changes in the velocity of the end, but for a factor.
+///
+/// # Errors
+/// Solves with K* that fail.
+pub(super) fn patterns(
+    problem: &StepProblem,
+    workspace: &mut Workspace,
+    dt: f64,
+    u: &[f64],
+    loads: &[ReturnLoad],
+) -> Result<Vec<Pattern>, Cause> {
+    let bodies = RigidBodies::new(problem, u);
+    let pattern = |load: &ReturnLoad| {
+        let mut w = (workspace.k()).respond(&problem.unknowns.map, &load.force)?;
+        bodies.correct(problem, dt, &load.force, &mut w);
+        let momentum = problem.mass.times(&w);
+        Ok(Pattern { w, momentum })
+    };
+    loads.iter().map(pattern).collect()
+}
+
+/// The free bodies as rigid ones.
+struct RigidBodies {
+    is_free: Vec<bool>,
+    /// Mass and moment of inertia of every body.
+    inertia: Vec<[f64; 2]>,
+    /// Arms from the centres of mass, over all dofs.
+    arms: Vec<f64>,
+}
+
+impl RigidBodies {
+    /// The bodies at the displacements `u`.
+    fn new(problem: &StepProblem, u: &[f64]) -> Self {
+        let is_free: Vec<bool> = holds(problem).iter().map(|&h| h == Hold::Free).collect();
+        let (body_of, dofs) = (problem.parts.of_nodes(), u.len());
+        let share = problem.mass.times(&vec![1.0; dofs]);
+        let mut sums = vec![[0.0; 3]; is_free.len()];
+        for (node, &body) in body_of.iter().enumerate() {
+            let (m, [x, y]) = (share[2 * node], problem.position(u, node));
+            add(&mut sums[body], [m, m * x, m * y]);
+        }
+        let arm = |(node, &body): (usize, &usize)| match (is_free[body], sums[body]) {
+            (true, [m, x, y]) => difference([x / m, y / m], problem.position(u, node)),
+            (false, _) => [0.0; 2],
+        };
+        let arms = body_of.iter().enumerate().flat_map(arm).collect();
+        let mut bodies = RigidBodies {
+            is_free,
+            inertia: sums.iter().map(|[m, ..]| [*m, 0.0]).collect(),
+            arms,
+        };
+        let weighted = problem.mass.times(&bodies.arms);
+        for (node, &body) in body_of.iter().enumerate() {
+            bodies.inertia[body][1] += dot(at(&bodies.arms, node), at(&weighted, node));
+        }
+        bodies
+    }
+
+    /// Sums of forces or momenta over the dofs of every body, and of their moments.
+    fn sums(&self, problem: &StepProblem, v: &[f64]) -> Vec<[f64; 3]> {
+        let mut sums = vec![[0.0; 3]; self.is_free.len()];
+        for (node, &body) in problem.parts.of_nodes().iter().enumerate() {
+            let [x, y] = at(v, node);
+            add(&mut sums[body], [x, y, cross(at(&self.arms, node), [x, y])]);
+        }
+        sums
+    }
+
+    /// Gives every free body the momenta of its load by a rigid motion of its own,
+    ///
+    /// ```text
+    /// w <- w + dv + domega e_z x r
+    /// sum p = (dt²/2) sum f,  sum r x p = (dt²/2) sum r x f,   eq. (6.7)
+    /// ```
+    ///
+    /// p = M w, f the load, r from the centre of mass. K* alone does not quite: it is that of another
+    /// configuration, holds contact stiffness, and its factors may have been turned with the bodies.
+    fn correct(&self, problem: &StepProblem, dt: f64, force: &[f64], w: &mut [f64]) {
+        let loads = self.sums(problem, force);
+        let own = self.sums(problem, &problem.mass.times(w));
+        let rates: Vec<[f64; 3]> = (0..loads.len())
+            .map(|body| {
+                let [mass, inertia] = self.inertia[body];
+                let missing = |k: usize| dt * dt / 2.0 * loads[body][k] - own[body][k];
+                match self.is_free[body] {
+                    true => [missing(0) / mass, missing(1) / mass, missing(2) / inertia],
+                    false => [0.0; 3],
+                }
+            })
+            .collect();
+        for (node, &body) in problem.parts.of_nodes().iter().enumerate() {
+            let ([vx, vy, omega], [x, y]) = (rates[body], at(&self.arms, node));
+            w[2 * node] += vx - omega * y;
+            w[2 * node + 1] += vy + omega * x;
+        }
+    }
+}
+
+/// x and y of a node.
+fn at(v: &[f64], node: usize) -> [f64; 2] {
+    [v[2 * node], v[2 * node + 1]]
+}
+
+fn add(sum: &mut [f64; 3], term: [f64; 3]) {
+    sum.iter_mut()
+        .zip(term)
+        .for_each(|(sum, term)| *sum += term);
+}
