@@ -142,6 +142,7 @@ fn faulty(code: Code) -> Source {
             "*ELASTIC\n1000., 0.3",
             "*HYPERELASTIC, NEO HOOKE\n200., 2.E-3",
         ),
+        BrakedFlight => shared("*DENSITY", "*DAMPING, ALPHA=2.\n*DENSITY"),
         FrictionRange => shared("0.3, 2.1E5", "-0.3"),
         GeneralContact => shared("*CONTACT PAIR", &format!("{GENERAL}*CONTACT PAIR")),
         InitialPenetration => shared("11, 1., 1.1", "11, 1., 0.99"),

@@ -77,6 +77,8 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
         ("/model/element_sets/SQUARES", vec![2]),
         ("/history/momentum/linear", vec![I, 2]),
         ("/history/momentum/angular", vec![I]),
+        ("/history/momentum/damped_linear", vec![I, 2]),
+        ("/history/momentum/damped_angular", vec![I]),
         ("/history/impacts/time", vec![1]),
         ("/history/impacts/increment", vec![1]),
         ("/history/impacts/slave", vec![1]),

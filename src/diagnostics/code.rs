@@ -99,6 +99,7 @@ codes! {
     NothingFaced "D414" "No node of the slave surface faces the master surface at the start."
     Magnitude "D415" "A quantity of the model is too large or too small to be computed with."
     PlaneStrainOnly "D416" "A material that is for plane strain only in plane stress elements."
+    BrakedFlight "D417" "Mass-proportional damping of a body without support."
     BadDof "D501" "A degree of freedom that plane elements do not have."
     ValueOutsideStep "D502" "A motion is prescribed before the first step."
     VelocityOnSupport "D503" "An initial velocity on a prescribed degree of freedom."

@@ -8,7 +8,7 @@ use super::integration_point::{PointState, Reference, Strains};
 use super::kinematics::{
     Configuration, determinant, displacement_gradient, green_lagrange, smaller,
 };
-use crate::materials::Committed;
+use crate::materials::StressAtPoints;
 
 /// Strains of the displacements, E = (F^T F - I)/2.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,7 +18,7 @@ impl Formulation for Displacement {
     #[inline]
     fn for_each_state<const N: usize, const P: usize>(
         element: &Reference<N, P>,
-        material: &Committed,
+        material: &impl StressAtPoints,
         configuration: &Configuration<N>,
         mut visit: impl FnMut(usize, &PointState),
     ) {
@@ -34,7 +34,7 @@ impl Formulation for Displacement {
     /// the exact tangent, which has B_L of the end on the right; up to the factor theta2 = 1/2.
     fn tangent<const N: usize, const P: usize, const D: usize>(
         element: &Reference<N, P>,
-        material: &Committed,
+        material: &impl StressAtPoints,
         configuration: &Configuration<N>,
     ) -> SMatrix<f64, D, D> {
         let mut k = SMatrix::<f64, D, D>::zeros();
@@ -54,7 +54,7 @@ impl Formulation for Displacement {
 fn state<const N: usize, const P: usize>(
     element: &Reference<N, P>,
     p: usize,
-    material: &Committed,
+    material: &impl StressAtPoints,
     configuration: &Configuration<N>,
 ) -> PointState {
     let point = &element.points[p];
@@ -91,7 +91,7 @@ mod tests {
     use super::*;
     use crate::elements::formulation::{evaluate, internal_force};
     use crate::elements::{quad4, tri3};
-    use crate::materials::{Law, Plane, PlaneLaw};
+    use crate::materials::{Committed, Law, Plane, PlaneLaw};
     use nalgebra::Matrix2;
 
     /// Plane strain, E = 1000, nu = 0.3.

@@ -6,7 +6,7 @@ use super::quad4::{self, Quad4};
 use super::recovery::ElementResult;
 use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion, TangentPart};
 use super::tri3::{self, Tri3};
-use crate::materials::Committed;
+use crate::materials::{Committed, StressAtPoints};
 use crate::model::{ElementType, Formulation, Shape};
 
 /// An element of any type.
@@ -54,6 +54,11 @@ impl AnyElement {
         with_element!(self, element => element.nodes())
     }
 
+    /// Dofs of the nodes, in the order of element vectors.
+    pub fn dofs(&self) -> impl Iterator<Item = usize> + '_ {
+        self.nodes().iter().flat_map(|n| [2 * n, 2 * n + 1])
+    }
+
     /// Number of integration points.
     pub fn points(&self) -> usize {
         with_element!(self, element => element.points())
@@ -70,14 +75,14 @@ impl AnyElement {
     }
 
     /// Internal force with the smallest determinant of the deformation gradient.
-    pub fn force(&self, material: &Committed, motion: Motion) -> (ElementVector, f64) {
+    pub fn force(&self, material: &impl StressAtPoints, motion: Motion) -> (ElementVector, f64) {
         with_element!(self, element => element.force(material, motion))
     }
 
     /// Tangent, or its positive part.
     pub fn tangent(
         &self,
-        material: &Committed,
+        material: &impl StressAtPoints,
         motion: Motion,
         part: TangentPart,
     ) -> ElementMatrix {
@@ -85,6 +90,11 @@ impl AnyElement {
             TangentPart::Whole => with_element!(self, e => e.tangent(material, motion)),
             TangentPart::Positive => with_element!(self, e => e.positive_tangent(material, motion)),
         }
+    }
+
+    /// Work of the stress on the strains of a motion from its start to its end (force length).
+    pub fn work(&self, material: &impl StressAtPoints, motion: Motion) -> f64 {
+        with_element!(self, element => element.work(material, motion))
     }
 
     /// Strain energy, stress and strain at displacements `u`.

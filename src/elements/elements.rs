@@ -3,9 +3,10 @@
 
 use rayon::prelude::*;
 
+use super::damping::ElementDamping;
 use super::element::AnyElement;
 use super::recovery::ElementResult;
-use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion, TangentPart};
+use super::solid::{ElementMatrix, ElementVector, Increment, MAX_NODES, Motion, TangentPart};
 use crate::materials::{Committed, ConstitutiveLaw, PlaneLaw};
 use crate::model::Model;
 use std::ops::Range;
@@ -38,6 +39,8 @@ struct Part {
 /// elements, so that they do not depend on the number of threads.
 pub struct Elements {
     parts: Vec<Part>,
+    /// Elements with damping, increasing.
+    damped: Vec<(usize, ElementDamping)>,
     dofs: usize,
 }
 
@@ -71,23 +74,27 @@ impl Elements {
     pub fn new(model: &Model) -> Self {
         let x = &model.mesh.coordinates;
         let mut variables = 0;
-        let parts = model.mesh.elements.iter().map(|element| {
+        let (mut parts, mut damped) = (Vec::new(), Vec::new());
+        for (index, element) in model.mesh.elements.iter().enumerate() {
             let section = &model.sections[element.section];
             let material = &model.materials[section.material];
-            let law = material.law.in_plane(element.element_type.plane);
+            let plane = element.element_type.plane;
+            let law = material.law.in_plane(plane);
             let element = AnyElement::new(element, x, section.thickness);
+            damped.extend(ElementDamping::new(&element, material, plane).map(|d| (index, d)));
             let first = variables;
             variables += element.points() * law.variables();
-            Part {
+            parts.push(Part {
                 element,
                 law,
                 variables: first..variables,
                 density: material.density,
                 thickness: section.thickness,
-            }
-        });
+            });
+        }
         Elements {
-            parts: parts.collect(),
+            parts,
+            damped,
             dofs: model.mesh.dof_count(),
         }
     }
@@ -212,19 +219,93 @@ impl Elements {
     pub fn tangent_product(&self, motion: Motion, v: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; self.dofs];
         for part in &self.parts {
-            let nodes = part.element.nodes();
-            let dofs = || nodes.iter().flat_map(|n| [2 * n, 2 * n + 1]);
-            if dofs().all(|dof| v[dof] == 0.0) {
-                continue;
-            }
-            let (k, d) = (part.tangent(motion, TangentPart::Whole), 2 * nodes.len());
-            for (j, column) in dofs().enumerate() {
-                for (i, row) in dofs().enumerate() {
-                    product[row] += k[j * d + i] * v[column];
-                }
+            if part.element.dofs().any(|dof| v[dof] != 0.0) {
+                let k = part.tangent(motion, TangentPart::Whole);
+                add_product(&part.element, &k, v, &mut product);
             }
         }
         product
+    }
+
+    /// Whether any element is damped.
+    pub fn has_damping(&self) -> bool {
+        !self.damped.is_empty()
+    }
+
+    /// Force of damping F_d in an increment of length `dt` with the displacement increment `d`, eq.
+    /// (4.22), 2 N entries.
+    pub fn damping_force(&self, increment: Increment, d: &[f64], dt: f64) -> Vec<f64> {
+        let impulses = self.of_damped(|element, damping| damping.impulse(element, increment, d));
+        let mut force = self.sum_of_damped(&impulses);
+        force.iter_mut().for_each(|f| *f /= dt);
+        force
+    }
+
+    /// Impulse that mass-proportional damping takes in a displacement increment, alpha M d, 2 N entries
+    /// (force time).
+    pub fn mass_damping_impulse(&self, d: &[f64]) -> Vec<f64> {
+        self.sum_of_damped(&self.of_damped(|element, damping| damping.mass_impulse(element, d)))
+    }
+
+    /// Energy d.F_d that damping dissipates in an increment of length `dt` with the displacement
+    /// increment `d`, eq. (4.23) (force length).
+    pub fn damping_dissipation(&self, increment: Increment, d: &[f64], dt: f64) -> f64 {
+        let work = |element: &_, damping: &ElementDamping| damping.work(element, increment, d);
+        self.of_damped(work).iter().sum::<f64>() / dt
+    }
+
+    /// Calls `add(element, c)` with the damping matrix of every damped element in order, eq. (4.24), or
+    /// its positive part, c being D x D column by column (force time/length).
+    pub fn for_each_damping(
+        &self,
+        increment: Increment,
+        part: TangentPart,
+        mut add: impl FnMut(usize, &[f64]),
+    ) {
+        let of = |element: &_, damping: &ElementDamping| damping.matrix(element, increment, part);
+        for ((element, _), c) in self.damped.iter().zip(self.of_damped(of)) {
+            let d = 2 * self.nodes(*element).len();
+            add(*element, &c[..d * d]);
+        }
+    }
+
+    /// Cd v with the damping matrix, 2 N entries.
+    pub fn damping_product(&self, increment: Increment, v: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; self.dofs];
+        for (element, damping) in &self.damped {
+            let element = &self.parts[*element].element;
+            let c = damping.matrix(element, increment, TangentPart::Whole);
+            add_product(element, &c, v, &mut product);
+        }
+        product
+    }
+
+    /// A quantity of all damped elements.
+    fn of_damped<T: Send>(&self, of: impl Fn(&AnyElement, &ElementDamping) -> T + Sync) -> Vec<T> {
+        let damped = self.damped.par_iter().with_min_len(PARALLEL_CHUNK);
+        let all = damped.map(|(element, damping)| of(&self.parts[*element].element, damping));
+        all.collect()
+    }
+
+    /// Sum of vectors of the damped elements, 2 N entries.
+    fn sum_of_damped(&self, vectors: &[ElementVector]) -> Vec<f64> {
+        let mut sum = vec![0.0; self.dofs];
+        for ((element, _), vector) in self.damped.iter().zip(vectors) {
+            for (dof, value) in self.parts[*element].element.dofs().zip(vector) {
+                sum[dof] += value;
+            }
+        }
+        sum
+    }
+}
+
+/// Adds k v to a product over all dofs, k being a matrix of the element.
+fn add_product(element: &AnyElement, k: &ElementMatrix, v: &[f64], product: &mut [f64]) {
+    let d = 2 * element.nodes().len();
+    for (j, column) in element.dofs().enumerate() {
+        for (i, row) in element.dofs().enumerate() {
+            product[row] += k[j * d + i] * v[column];
+        }
     }
 }
 
@@ -232,7 +313,7 @@ impl Elements {
 mod tests {
     use super::*;
     use crate::materials::Law;
-    use crate::model::{Element, ElementType, Material, Section};
+    use crate::model::{Damping, Element, ElementType, Material, Section};
 
     #[test]
     fn the_tangent_product_is_the_change_of_the_internal_force() {
@@ -241,6 +322,7 @@ mod tests {
             name: "M".into(),
             law: Law::elastic(100.0, 0.3),
             density: 1.0,
+            damping: Damping::default(),
         });
         model.sections.push(Section {
             material: 0,

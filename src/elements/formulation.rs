@@ -4,10 +4,10 @@
 
 use nalgebra::{SMatrix, Vector3};
 
-use super::integration_point::{Point, PointState, Reference};
+use super::integration_point::{Point, PointState, Reference, Strains};
 use super::kinematics::{Configuration, smaller};
 use super::recovery::{ElementResult, PointResult};
-use crate::materials::Committed;
+use crate::materials::{Committed, StressAtPoints};
 
 /// How strains and stresses at the integration points follow from the displacements of an element.
 /// Chosen at compile time: a sweep has no dispatch within an element.
@@ -16,7 +16,7 @@ pub trait Formulation {
     /// material, from which force, tangent and output follow.
     fn for_each_state<const N: usize, const P: usize>(
         element: &Reference<N, P>,
-        material: &Committed,
+        material: &impl StressAtPoints,
         configuration: &Configuration<N>,
         visit: impl FnMut(usize, &PointState),
     );
@@ -24,7 +24,7 @@ pub trait Formulation {
     /// Tangent K = dF/du, D x D (force/length); symmetric.
     fn tangent<const N: usize, const P: usize, const D: usize>(
         element: &Reference<N, P>,
-        material: &Committed,
+        material: &impl StressAtPoints,
         configuration: &Configuration<N>,
     ) -> SMatrix<f64, D, D>;
 }
@@ -33,7 +33,7 @@ pub trait Formulation {
 /// determinant of the deformation gradient.
 pub fn internal_force<F: Formulation, const N: usize, const P: usize>(
     element: &Reference<N, P>,
-    material: &Committed,
+    material: &impl StressAtPoints,
     configuration: &Configuration<N>,
 ) -> (SMatrix<f64, 2, N>, f64) {
     let mut force = SMatrix::<f64, 2, N>::zeros();
@@ -45,6 +45,22 @@ pub fn internal_force<F: Formulation, const N: usize, const P: usize>(
         determinant = smaller(determinant, state.determinant);
     });
     (force, determinant)
+}
+
+/// Work of the stress on the strains between two configurations, int S:(E1 - E0) dOmega (force length).
+pub fn work<F: Formulation, const N: usize, const P: usize>(
+    element: &Reference<N, P>,
+    material: &impl StressAtPoints,
+    configuration: &Configuration<N>,
+) -> f64 {
+    let mut work = 0.0;
+    F::for_each_state(element, material, configuration, |p, state| {
+        if let Strains::Between(e0, e1) = state.strains {
+            let s = material.mean_stress(p, [&e0, &e1]);
+            work += s.dot(&(e1 - e0)) * element.points[p].volume;
+        }
+    });
+    work
 }
 
 /// Strain energy, stress and strain of an element at displacements `u`.

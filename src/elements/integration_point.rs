@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix2, Matrix3, SMatrix, SVector};
 
-use crate::materials::Committed;
+use crate::materials::StressAtPoints;
 
 /// One integration point in the reference configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,7 +50,7 @@ impl Strains {
     /// Second Piola-Kirchhoff stress at a point, eq. (2.3), or energy-momentum stress, eq. (4.8)
     /// (force/length^2).
     #[inline(always)]
-    pub fn stress(&self, material: &Committed, point: usize) -> Matrix2<f64> {
+    pub fn stress(&self, material: &impl StressAtPoints, point: usize) -> Matrix2<f64> {
         match self {
             Strains::At(e) => material.stress(point, e),
             Strains::Between(e0, e1) => material.mean_stress(point, [e0, e1]),
@@ -59,7 +59,7 @@ impl Strains {
 
     /// Tangent of [`Self::stress`] in Voigt order (force/length^2).
     #[inline(always)]
-    pub fn tangent(&self, material: &Committed, point: usize) -> Matrix3<f64> {
+    pub fn tangent(&self, material: &impl StressAtPoints, point: usize) -> Matrix3<f64> {
         match self {
             Strains::At(e) => material.tangent(point, e),
             Strains::Between(e0, e1) => material.mean_tangent(point, [e0, e1]),

@@ -17,7 +17,7 @@ use super::kinematics::{
     Configuration, determinant, displacement_gradient, green_lagrange, smaller,
 };
 use super::solid::Solid;
-use crate::materials::Committed;
+use crate::materials::StressAtPoints;
 
 /// Q4 with mean dilatation (CPE4 with `FORMULATION=MEAN DILATATION`).
 pub type Quad4MeanDilatation = Solid<4, 4, 8, MeanDilatation>;
@@ -78,7 +78,7 @@ impl PointMotion {
         })
     }
 
-    fn stress(&self, theta: [f64; 2], material: &Committed, p: usize) -> PointStress {
+    fn stress(&self, theta: [f64; 2], material: &impl StressAtPoints, p: usize) -> PointStress {
         let [e0, e1] = self.material_strain(theta);
         let strains = Strains::Between(e0, e1);
         let [j0, j1] = self.dilatation.map(|j| 1.0 + j);
@@ -125,7 +125,7 @@ impl PointStress {
 /// stored energy of the element, eq. (2.11).
 fn stresses<const N: usize, const P: usize>(
     element: &Reference<N, P>,
-    material: &Committed,
+    material: &impl StressAtPoints,
     configuration: &Configuration<N>,
 ) -> ([PointMotion; P], [PointStress; P], [f64; 2]) {
     let u = match configuration {
@@ -155,7 +155,7 @@ fn stresses<const N: usize, const P: usize>(
 impl Formulation for MeanDilatation {
     fn for_each_state<const N: usize, const P: usize>(
         element: &Reference<N, P>,
-        material: &Committed,
+        material: &impl StressAtPoints,
         configuration: &Configuration<N>,
         mut visit: impl FnMut(usize, &PointState),
     ) {
@@ -176,7 +176,7 @@ impl Formulation for MeanDilatation {
     /// quantities.
     fn tangent<const N: usize, const P: usize, const D: usize>(
         element: &Reference<N, P>,
-        material: &Committed,
+        material: &impl StressAtPoints,
         configuration: &Configuration<N>,
     ) -> SMatrix<f64, D, D> {
         let (_, stresses, _) = stresses(element, material, configuration);
@@ -238,7 +238,7 @@ mod tests {
     use super::*;
     use crate::elements::formulation::{evaluate, internal_force};
     use crate::elements::quad4;
-    use crate::materials::{Law, Plane, PlaneLaw};
+    use crate::materials::{Committed, Law, Plane, PlaneLaw};
 
     const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [2.0, 0.3], [1.7, 1.9], [-0.2, 1.2]];
 

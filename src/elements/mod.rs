@@ -3,6 +3,7 @@
 //! Displacements and forces of an element with N nodes are 2 x N matrices, column a belonging to
 //! node a. Element matrices have D = 2 N rows, row 2 a + i belonging to direction i of node a.
 
+mod damping;
 mod displacement;
 mod element;
 #[allow(clippy::module_inception)] // the elements of all bodies
@@ -18,4 +19,4 @@ mod tri3;
 
 pub use elements::{Elements, Inverted, Updated};
 pub use recovery::{ElementResult, Strained, most_strained};
-pub use solid::{Motion, TangentPart};
+pub use solid::{Increment, Motion, TangentPart};

@@ -119,7 +119,7 @@ mod tests {
     use super::*;
     use crate::elements::Elements;
     use crate::materials::Law;
-    use crate::model::{Element, ElementType, Material, Mesh, Model, Section};
+    use crate::model::{Damping, Element, ElementType, Material, Mesh, Model, Section};
 
     /// A unit square of E = 100, nu = 0.25.
     fn square(element_type: ElementType) -> Model {
@@ -134,6 +134,7 @@ mod tests {
             name: "M".into(),
             law: Law::elastic(100.0, 0.25),
             density: 1.0,
+            damping: Damping::default(),
         };
         Model {
             mesh: Mesh {

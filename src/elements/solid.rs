@@ -5,16 +5,16 @@ use std::marker::PhantomData;
 
 use nalgebra::{DMatrix, SMatrix, SymmetricEigen};
 
-use super::formulation::{Formulation, evaluate, internal_force, update};
+use super::formulation::{Formulation, evaluate, internal_force, update, work};
 use super::integration_point::Reference;
 use super::kinematics::Configuration;
 use super::recovery::ElementResult;
-use crate::materials::Committed;
+use crate::materials::{Committed, StressAtPoints};
 
 /// Largest number of nodes of an element.
 pub(super) const MAX_NODES: usize = 4;
 /// Largest number of dofs of an element.
-const MAX_DOFS: usize = 2 * MAX_NODES;
+pub(super) const MAX_DOFS: usize = 2 * MAX_NODES;
 /// Values of one element in the order of its dofs; the first D are used.
 pub(super) type ElementVector = [f64; MAX_DOFS];
 /// Square matrix of one element, column by column; the first D^2 entries are used.
@@ -29,6 +29,9 @@ pub struct Solid<const N: usize, const P: usize, const D: usize, F> {
     formulation: PhantomData<F>,
 }
 
+/// Displacements of start and end of an increment, 2 N entries each.
+pub type Increment<'a> = [&'a [f64]; 2];
+
 /// Displacements of all nodes between which the elements are evaluated (2 N entries each), and the
 /// internal variables of their materials.
 #[derive(Debug, Clone, Copy)]
@@ -39,6 +42,8 @@ pub struct Motion<'a> {
     pub end: &'a [f64],
     /// Internal variables that the last accepted increment has committed, element by element.
     pub committed: &'a [f64],
+    /// The increment in which damping acts; without it there is none.
+    pub increment: Option<Increment<'a>>,
 }
 
 /// What of the tangents of the elements a matrix is assembled from.
@@ -58,6 +63,7 @@ impl<'a> Motion<'a> {
             start: None,
             end,
             committed,
+            increment: None,
         }
     }
 }
@@ -101,7 +107,11 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
     }
 
     /// Internal force with the smallest determinant of the deformation gradient.
-    pub(super) fn force(&self, material: &Committed, motion: Motion) -> (ElementVector, f64) {
+    pub(super) fn force(
+        &self,
+        material: &impl StressAtPoints,
+        motion: Motion,
+    ) -> (ElementVector, f64) {
         let mut result = [0.0; MAX_DOFS];
         let configuration = self.configuration(motion);
         let (force, determinant) =
@@ -111,7 +121,7 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
     }
 
     /// Tangent.
-    pub(super) fn tangent(&self, material: &Committed, motion: Motion) -> ElementMatrix {
+    pub(super) fn tangent(&self, material: &impl StressAtPoints, motion: Motion) -> ElementMatrix {
         let mut result = [0.0; MAX_DOFS * MAX_DOFS];
         let configuration = self.configuration(motion);
         let k = F::tangent::<N, P, D>(&self.reference, material, &configuration);
@@ -120,10 +130,19 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
     }
 
     /// Positive part of the tangent.
-    pub(super) fn positive_tangent(&self, material: &Committed, motion: Motion) -> ElementMatrix {
+    pub(super) fn positive_tangent(
+        &self,
+        material: &impl StressAtPoints,
+        motion: Motion,
+    ) -> ElementMatrix {
         let mut k = self.tangent(material, motion);
         take_positive_part(&mut k[..D * D], D);
         k
+    }
+
+    /// Work of the stress on the strains of a motion from its start to its end (force length).
+    pub(super) fn work(&self, material: &impl StressAtPoints, motion: Motion) -> f64 {
+        work::<F, N, P>(&self.reference, material, &self.configuration(motion))
     }
 
     /// Strain energy, stress and strain.

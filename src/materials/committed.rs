@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix2, Matrix3};
 
-use super::{Across, ConstitutiveLaw, PlaneLaw};
+use super::{Across, ConstitutiveLaw, PlaneLaw, StressAtPoints};
 
 /// A law with the committed internal variables of the integration points of an element, point after
 /// point.
@@ -31,30 +31,6 @@ impl<'a, L: ConstitutiveLaw> Committed<'a, L> {
         self.law.stored_energy(e, self.at(point))
     }
 
-    /// Second Piola-Kirchhoff stress at a point (force/length^2).
-    #[inline]
-    pub fn stress(&self, point: usize, e: &Matrix2<f64>) -> Matrix2<f64> {
-        self.law.stress(e, self.at(point))
-    }
-
-    /// Energy-momentum stress at a point (force/length^2).
-    #[inline]
-    pub fn mean_stress(&self, point: usize, [e0, e1]: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
-        self.law.mean_stress(e0, e1, self.at(point))
-    }
-
-    /// Tangent at a point in Voigt order (force/length^2).
-    #[inline]
-    pub fn tangent(&self, point: usize, e: &Matrix2<f64>) -> Matrix3<f64> {
-        self.law.tangent(e, self.at(point))
-    }
-
-    /// Tangent of the energy-momentum stress at a point in Voigt order (force/length^2).
-    #[inline]
-    pub fn mean_tangent(&self, point: usize, [e0, e1]: [&Matrix2<f64>; 2]) -> Matrix3<f64> {
-        self.law.mean_tangent(e0, e1, self.at(point))
-    }
-
     /// Stretch and stress across the thickness at a point.
     pub fn across(&self, point: usize, e: &Matrix2<f64>) -> Across {
         self.law.across(e, self.at(point))
@@ -66,6 +42,29 @@ impl<'a, L: ConstitutiveLaw> Committed<'a, L> {
         let count = self.law.variables();
         let updated = &mut updated[point * count..(point + 1) * count];
         self.law.update(e, self.at(point), updated)
+    }
+}
+
+impl<L: ConstitutiveLaw> StressAtPoints for Committed<'_, L> {
+    #[inline]
+    fn stress(&self, point: usize, e: &Matrix2<f64>) -> Matrix2<f64> {
+        self.law.stress(e, self.at(point))
+    }
+
+    /// Energy-momentum stress.
+    #[inline]
+    fn mean_stress(&self, point: usize, [e0, e1]: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
+        self.law.mean_stress(e0, e1, self.at(point))
+    }
+
+    #[inline]
+    fn tangent(&self, point: usize, e: &Matrix2<f64>) -> Matrix3<f64> {
+        self.law.tangent(e, self.at(point))
+    }
+
+    #[inline]
+    fn mean_tangent(&self, point: usize, [e0, e1]: [&Matrix2<f64>; 2]) -> Matrix3<f64> {
+        self.law.mean_tangent(e0, e1, self.at(point))
     }
 }
 

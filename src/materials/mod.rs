@@ -14,6 +14,8 @@ mod law;
 mod neo_hooke;
 mod plane;
 mod saint_venant_kirchhoff;
+mod stress_at_points;
+mod viscosity;
 #[cfg(test)]
 pub(crate) mod yielding;
 
@@ -23,3 +25,5 @@ pub use law::{Law, PlaneLaw};
 pub use neo_hooke::NeoHooke;
 pub use plane::{Plane, SmallStrainModuli};
 pub use saint_venant_kirchhoff::{PlaneSaintVenantKirchhoff, SaintVenantKirchhoff};
+pub use stress_at_points::StressAtPoints;
+pub use viscosity::Viscosity;

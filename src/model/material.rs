@@ -11,6 +11,17 @@ pub struct Material {
     pub law: Law,
     /// Density rho of the reference configuration (mass/length^3).
     pub density: f64,
+    /// Damping.
+    pub damping: Damping,
+}
+
+/// Damping of a material: none by default.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Damping {
+    /// Damping in proportion to the mass (1/time).
+    pub alpha: f64,
+    /// Damping in proportion to the elasticity at small strains (time).
+    pub beta: f64,
 }
 
 impl Material {

@@ -24,7 +24,7 @@ pub use constraint::{Equation, RigidBody};
 pub use contact::{Adjust, Contact, Interaction};
 pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
-pub use material::{Material, Section};
+pub use material::{Damping, Material, Section};
 pub use mesh::{Element, Face, Mesh, Set, SharedSides};
 pub use sets::{HistorySet, NamedSets};
 pub use settings::{

@@ -67,7 +67,7 @@ fn read(cx: &mut Context) -> Model {
     let equations = equation::read(&outline, targets, &steps.all, cx);
     let initial_velocity = boundary::initial_velocity(&outline, targets, &steps.at_start, cx);
     equation::check_velocities(&equations, &initial_velocity, &steps.at_start, targets, cx);
-    Model {
+    let model = Model {
         title: title(&outline),
         mesh: with_sections(mesh_index.mesh, &properties),
         sets: NamedSets {
@@ -87,7 +87,9 @@ fn read(cx: &mut Context) -> Model {
         initial_velocity,
         steps: steps.all,
         rigid_bodies: rigid_surface::bodies(&rigid_surfaces),
-    }
+    };
+    check::braked_flight(&model, &properties.damping_spans, cx);
+    model
 }
 
 /// Text under `*HEADING`, lines joined by a blank.

@@ -57,6 +57,25 @@ fn forms_of_hyperelasticity() {
 }
 
 #[test]
+fn damping_that_cannot_be() {
+    let texts = [
+        "*DAMPING",
+        "*DAMPING, ALPHA=-0.5",
+        "*DAMPING, BETA=-1.E-5",
+        "*DAMPING, BETA=1.E-5, STRUCTURAL=0.1",
+        "*DAMPING, ALPHA=1., COMPOSITE=0.02",
+        "*DAMPING, BETA=1.E-5\n*DAMPING, ALPHA=1.",
+    ]
+    .map(|card| {
+        let deck = square("*DENSITY", &format!("{card}\n*DENSITY"));
+        let (d, text) = messages(&deck);
+        assert_eq!(d.count(Severity::Error), 1, "{text}");
+        text
+    });
+    insta::assert_snapshot!(texts.join("\n"));
+}
+
+#[test]
 fn constants_of_a_neo_hookean_material() {
     let texts = texts_of_laws([
         "*HYPERELASTIC, NEO HOOKE",

@@ -8,7 +8,7 @@ use stickslip::dynamics::{
 };
 use stickslip::materials::Law;
 use stickslip::model::{
-    BodyForce, Contact, Element, ElementType, Face, Frames, Increments, Interaction, Load,
+    BodyForce, Contact, Damping, Element, ElementType, Face, Frames, Increments, Interaction, Load,
     Material, Model, Procedure, Scheme, Section, Settings, Step, Support, SupportMotion, Surface,
     SurfaceKind, Variation,
 };
@@ -69,6 +69,7 @@ pub fn model(young: f64, poisson: f64, density: f64) -> Model {
             name: "M".into(),
             law: Law::elastic(young, poisson),
             density,
+            damping: Damping::default(),
         }],
         sections: vec![Section {
             material: 0,

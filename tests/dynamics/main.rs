@@ -5,6 +5,7 @@ mod blocks;
 mod collapse;
 mod compressed;
 mod contact_energy;
+mod damping;
 mod elastic_bar;
 mod equations;
 mod events;

@@ -20,9 +20,9 @@ use stickslip::dynamics::{
 use stickslip::elements::{ElementResult, Strained};
 use stickslip::materials::Law;
 use stickslip::model::{
-    Contact, Element, ElementType, Face, Frames, HistorySet, Increments, Interaction, Material,
-    Mesh, Model, NamedSets, Procedure, Section, Set, Settings, Step, Support, SupportMotion,
-    Surface, SurfaceKind,
+    Contact, Damping, Element, ElementType, Face, Frames, HistorySet, Increments, Interaction,
+    Material, Mesh, Model, NamedSets, Procedure, Section, Set, Settings, Step, Support,
+    SupportMotion, Surface, SurfaceKind,
 };
 use stickslip::output::{Claim, JobFiles, ResultWriter, RunRecord, Verbosity};
 
@@ -52,6 +52,7 @@ pub fn model() -> Model {
             name: "M".into(),
             law: Law::elastic(1000.0, 0.0),
             density: 2.0,
+            damping: Damping::default(),
         }],
         sections: vec![Section {
             material: 0,
@@ -180,6 +181,8 @@ pub fn report(k: usize) -> IncrementReport {
         momentum: Momentum {
             linear: [k as f64, -1.0],
             angular: 0.5,
+            damped_linear: [0.25, 0.0],
+            damped_angular: -0.5,
         },
         strain: Strained {
             element: 1,

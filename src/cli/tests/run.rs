@@ -21,8 +21,8 @@ use crate::elements::{ElementResult, Strained};
 use crate::lcp::{FrictionalLcp, LcpError};
 use crate::materials::Law;
 use crate::model::{
-    Element, ElementType, Frames, Increments, Material, Mesh, Model, Procedure, Section, Set,
-    Settings, Step,
+    Damping, Element, ElementType, Frames, Increments, Material, Mesh, Model, Procedure, Section,
+    Set, Settings, Step,
 };
 use crate::output::{Interrupt, ResultSummary};
 use crate::prepare::PreparedModel;
@@ -44,6 +44,7 @@ fn square() -> Model {
             name: "M".into(),
             law: Law::elastic(1.0, 0.0),
             density: 1.0,
+            damping: Damping::default(),
         }],
         sections: vec![Section {
             material: 0,

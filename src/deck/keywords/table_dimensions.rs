@@ -137,6 +137,12 @@ pub(crate) static DIMENSIONS: &[Dimensions] = &[
     ),
     keyword("DENSITY", &[row(&[DENSITY, Plain])], &[], &[]),
     keyword(
+        "DAMPING",
+        &[],
+        &[],
+        &[("ALPHA", Quantity::Of("1/time")), ("BETA", TIME)],
+    ),
+    keyword(
         "SOLID SECTION",
         &[row(&[OfOr("length", "1")])],
         &["ELSET", "MATERIAL", "CONTROLS"],

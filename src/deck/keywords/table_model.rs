@@ -243,6 +243,35 @@ pub(crate) static MODEL: &[Keyword] = &[
         "Mass per volume; a temperature in the second field has no effect (warning).",
     ),
     Keyword::read(
+        "DAMPING",
+        Scope::Block("MATERIAL"),
+        Data::None,
+        &[
+            P::value(
+                "ALPHA",
+                "damping in proportion to the mass: ratio ALPHA/(2 omega) of a mode; also brakes the \
+                 free flight of bodies without support (warning)",
+            ),
+            P::value(
+                "BETA",
+                "damping in proportion to the elasticity at small strains: ratio BETA omega/2 of a \
+                 mode; none in rigid motion, momenta are kept",
+            ),
+            P::value(
+                "COMPOSITE",
+                "there are no modes to damp: give ALPHA and BETA",
+            )
+            .refused(),
+            P::value(
+                "STRUCTURAL",
+                "give BETA, which damps in proportion to the rate",
+            )
+            .refused(),
+        ],
+        "Damping of a material (Rayleigh): at least one of ALPHA (1/time) and BETA (time), not \
+         negative. What it dissipates is a term of the energy balance.",
+    ),
+    Keyword::read(
         "SOLID SECTION",
         Scope::Model,
         Data::Rows,

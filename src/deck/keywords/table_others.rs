@@ -145,8 +145,10 @@ pub(crate) static OTHERS: &[Keyword] = &[
     refused("NO TENSION", INELASTIC),
     refused("DAMAGE INITIATION", INELASTIC),
     refused("DAMAGE EVOLUTION", INELASTIC),
-    refused("DAMPING", "Material damping is not supported yet."),
-    refused("MODAL DAMPING", "Material damping is not supported yet."),
+    refused(
+        "MODAL DAMPING",
+        "There are no modes: give *DAMPING of the materials.",
+    ),
     refused("CONTACT EXCLUSIONS", GENERAL),
     refused("CONTACT INITIALIZATION DATA", GENERAL),
     refused("CONTACT INITIALIZATION ASSIGNMENT", GENERAL),

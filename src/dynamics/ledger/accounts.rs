@@ -10,8 +10,8 @@ use super::rigid_surfaces::RigidSurfaces;
 use crate::contact::ContactSurfaces;
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{
-    ContactOnBody, ContactResultant, IncrementReport, NodalResults, NodeStatus, RigidReaction,
-    State,
+    ContactOnBody, ContactResultant, IncrementReport, Momentum, NodalResults, NodeStatus,
+    RigidReaction, State,
 };
 use crate::dynamics::step::{Interval, Mass, StepProblem};
 use crate::elements::ElementResult;
@@ -23,6 +23,8 @@ pub(crate) struct Accounts {
     rigid: RigidSurfaces,
     faces: SlaveFaces,
     contacts: ContactLedger,
+    /// Momentum that mass-proportional damping has taken.
+    damped: Momentum,
 }
 
 impl Accounts {
@@ -34,6 +36,7 @@ impl Accounts {
             rigid: RigidSurfaces::new(model),
             contacts: ContactLedger::new(model, contacts, faces.start.clone()),
             faces,
+            damped: Momentum::default(),
         }
     }
 
@@ -77,6 +80,7 @@ impl Accounts {
         interval: Interval,
         elements: &[ElementResult],
     ) -> IncrementReport {
+        self.enter_damping(problem, solved);
         let mut report = self.moving(problem, &solved.end, elements);
         let u = &solved.equilibrium.u_theta;
         let mut contacts = contact_resultants(problem, solved);
@@ -96,6 +100,22 @@ impl Accounts {
         }
     }
 
+    /// Adds the momentum that mass-proportional damping takes in an increment: alpha M d, which acts
+    /// halfway, eq. (9.10).
+    fn enter_damping(&mut self, problem: &StepProblem, solved: &Solved) {
+        if !problem.elements.has_damping() {
+            return;
+        }
+        let Solved { d, end, .. } = solved;
+        let halfway: Vec<f64> = end.u.iter().zip(d).map(|(u1, d)| u1 - d / 2.0).collect();
+        let impulse = problem.elements.mass_damping_impulse(d);
+        let taken = momentum(problem, &halfway, &impulse);
+        for (sum, p) in self.damped.linear.iter_mut().zip(taken.linear) {
+            *sum += p;
+        }
+        self.damped.angular += taken.angular;
+    }
+
     /// Momentum and motion of the bodies.
     fn moving(
         &self,
@@ -107,7 +127,11 @@ impl Accounts {
         let State { u, v, .. } = state;
         let moving = Moving { u, v, p, elements };
         IncrementReport {
-            momentum: momentum(problem, u, p),
+            momentum: Momentum {
+                damped_linear: self.damped.linear,
+                damped_angular: self.damped.angular,
+                ..momentum(problem, u, p)
+            },
             bodies: self.bodies.results(problem, &moving),
             ..IncrementReport::default()
         }

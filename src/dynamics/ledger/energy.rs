@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{Cause, Energy, State};
-use crate::dynamics::step::{Equilibrium, StepProblem, dot};
+use crate::dynamics::step::{Equilibrium, StepProblem, dot, sum};
 use crate::elements::ElementResult;
 use crate::linear::{larger, largest};
 
@@ -124,11 +124,13 @@ impl Ledger {
         // what landings and releases are given back, and what relaxed nodes have lost
         e.landing_return += solved.returned.energy();
         e.release_loss += solved.returned.released;
-        // D, and d.F_theta - (W1 - W0) - D, eq. (9.5)
-        let dissipated = solved.material_dissipation;
+        // d.F_d, D, and d.F - (W1 - W0) - d.F_d - D, eq. (9.5)
+        let (u1, dissipated) = (sum(&start.u, d), solved.material_dissipation);
+        let damping = (problem.elements).damping_dissipation([&start.u, &u1], d, dt);
+        e.damping += damping;
         e.material_dissipation += dissipated;
         e.numerical_dissipation +=
-            dot(d, &solved.equilibrium.internal) - (e.strain - strain0) - dissipated;
+            dot(d, &solved.equilibrium.internal) - (e.strain - strain0) - damping - dissipated;
 
         // T + W less what they were at the start and every term above, eq. (9.6)
         e.balance = e.kinetic + e.strain - self.start - e.external_work - e.normal_contact_work

@@ -95,6 +95,11 @@ pub struct Momentum {
     pub linear: [f64; 2],
     /// Angular momentum about the origin (mass length^2/time).
     pub angular: f64,
+    /// Linear momentum that mass-proportional damping has taken since the start of the analysis (mass
+    /// length/time).
+    pub damped_linear: [f64; 2],
+    /// Angular momentum that it has taken (mass length^2/time).
+    pub damped_angular: f64,
 }
 
 /// Motion, energies and contact force of a body.

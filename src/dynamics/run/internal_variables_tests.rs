@@ -8,7 +8,8 @@ use crate::dynamics::{Cutback, IncrementReport, Observer, Outcome};
 use crate::elements::Elements;
 use crate::materials::{Law, yielding::Yielding};
 use crate::model::{
-    Element, ElementType, Frames, Increments, Material, Model, Procedure, Section, Settings, Step,
+    Damping, Element, ElementType, Frames, Increments, Material, Model, Procedure, Section,
+    Settings, Step,
 };
 use crate::prepare::PreparedModel;
 
@@ -23,6 +24,7 @@ fn block(rate: f64) -> Model {
         name: "M".into(),
         law: Law::Yielding(YIELDING),
         density: 1.0,
+        damping: Damping::default(),
     });
     model.sections.push(Section {
         material: 0,

@@ -80,7 +80,7 @@ pub(crate) struct EffectiveStiffness {
     angles: BodyAngles,
     /// Length of the increments of K* (time).
     dt: f64,
-    /// Largest diagonal entry of theta2 K in every part (force/length).
+    /// Largest diagonal entry of theta2 K, with damping, in every part (force/length).
     pub stiffness: Vec<f64>,
     /// Largest diagonal entry of (2/dt²) M in every part (force/length).
     pub inertia: Vec<f64>,
@@ -105,6 +105,11 @@ impl EffectiveStiffness {
             stiffness: Vec::new(),
             inertia: Vec::new(),
         }
+    }
+
+    /// Length of the increments for which K* was assembled (time).
+    pub fn dt(&self) -> f64 {
+        self.dt
     }
 
     /// Whether K* is factorised for increments of length `dt`, or of a length that differs from it
@@ -136,6 +141,12 @@ impl EffectiveStiffness {
         elements.for_each_tangent(motion, form.part(), |element, tangent| {
             k.add(element, tangent, weights.theta2)
         });
+        // K* <- K* + Cd/dt, eq. (4.24)
+        if let Some(increment) = motion.increment {
+            elements.for_each_damping(increment, form.part(), |element, damping| {
+                k.add(element, damping, 1.0 / dt)
+            });
+        }
         self.stiffness = parts.largest_diagonal(k, &unknowns.dof);
         let c = 2.0 / (dt * dt);
         let inertia = parts.largest_diagonal(mass, &unknowns.dof);

@@ -65,12 +65,17 @@ impl Weights {
 
     /// The motion at which internal force and tangent are evaluated.
     pub fn motion<'a>(&self, start: &'a State, u1: &'a [f64], u_theta: &'a [f64]) -> Motion<'a> {
+        let increment = Some([start.u.as_slice(), u1]);
         match self.energy_momentum {
             true => Motion {
                 start: Some(&start.u),
+                increment,
                 ..Motion::at(u1, &start.internal)
             },
-            false => Motion::at(u_theta, &start.internal),
+            false => Motion {
+                increment,
+                ..Motion::at(u_theta, &start.internal)
+            },
         }
     }
 }

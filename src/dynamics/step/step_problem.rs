@@ -45,7 +45,7 @@ pub(crate) struct Equilibrium {
     pub u_theta: Vec<f64>,
     /// Load R_theta.
     pub load: Vec<f64>,
-    /// Internal force F_theta.
+    /// Internal force F_theta, with that of damping.
     pub internal: Vec<f64>,
     /// Acceleration A.
     pub acceleration: Vec<f64>,
@@ -166,9 +166,13 @@ impl StepProblem<'_> {
         } = interval;
         let u = sum(&start.u, d);
         let u_theta = self.weights.displacement(&start.u, d, v0p, dt);
-        let internal = self
+        let mut internal = self
             .weights
             .internal_force(self.elements, start, &u, &u_theta)?;
+        if self.elements.has_damping() {
+            let damping = self.elements.damping_force([&start.u, &u], d, dt);
+            internal = sum(&internal, &damping);
+        }
         let load = self
             .loads
             .weighted(self.elements, self.weights.theta1, t0, t1, &u_theta);

@@ -6,7 +6,7 @@ use super::effective_stiffness::{
 };
 use super::loads::TimePoint;
 use super::meter::Meter;
-use super::step_problem::{Equilibrium, Interval, StepProblem, difference};
+use super::step_problem::{Equilibrium, Interval, StepProblem, difference, sum};
 use crate::contact::{
     ClosedPairs, Compliance, Constraint, Penetration, Search, find_penetration, frictional_lcp,
 };
@@ -102,14 +102,24 @@ impl<'m> Workspace<'m> {
         self.meter.time(|t| &mut t.assembly, evaluate)
     }
 
-    /// K x in the configuration of a motion, K being the tangent.
+    /// (K + Cd/(theta2 dt)) x in the configuration of a motion, K being the tangent, Cd the damping matrix
+    /// and dt that of K*.
     pub fn tangent_product(
         &mut self,
         problem: &StepProblem,
         motion: Motion,
         x: &[f64],
     ) -> Vec<f64> {
-        let product = || problem.elements.tangent_product(motion, x);
+        let (elements, theta2) = (problem.elements, problem.weights.theta2);
+        let weight = 1.0 / (theta2 * self.stiffness.dt());
+        let product = || match motion.increment {
+            Some(increment) if elements.has_damping() => {
+                let damping = elements.damping_product(increment, x);
+                let damping: Vec<f64> = damping.iter().map(|c| weight * c).collect();
+                sum(&elements.tangent_product(motion, x), &damping)
+            }
+            _ => elements.tangent_product(motion, x),
+        };
         self.meter.time(|t| &mut t.assembly, product)
     }
 

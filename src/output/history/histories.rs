@@ -163,35 +163,51 @@ const ENERGY: [Scalar<Energy, f64>; 12] = [
     ),
 ];
 
-const ANGULAR: [Scalar<Momentum, f64>; 1] = [scalar(
-    "angular",
-    "angular momentum about the origin",
-    "mass*length^2/time",
-    |m| m.angular,
-)];
+const ANGULAR: [Scalar<Momentum, f64>; 2] = [
+    scalar(
+        "angular",
+        "angular momentum about the origin",
+        "mass*length^2/time",
+        |m| m.angular,
+    ),
+    scalar(
+        "damped_angular",
+        "angular momentum taken by mass-proportional damping since the start",
+        "mass*length^2/time",
+        |m| m.damped_angular,
+    ),
+];
 
 /// `/history/momentum`.
 struct MomentumHistory {
     linear: Column<f64>,
+    damped_linear: Column<f64>,
     angular: Series<Momentum, f64>,
 }
 
 impl MomentumHistory {
     fn create(at: &Group) -> hdf5::Result<Self> {
         let text = meaning("linear momentum", "mass*length/time");
+        let damped = meaning(
+            "linear momentum taken by mass-proportional damping since the start",
+            "mass*length/time",
+        );
         Ok(MomentumHistory {
             linear: Column::series(at, "linear", &[2], text)?,
+            damped_linear: Column::series(at, "damped_linear", &[2], damped)?,
             angular: Series::create(at, &ANGULAR)?,
         })
     }
 
     fn push(&mut self, momentum: &Momentum) -> hdf5::Result<()> {
         self.linear.push(momentum.linear)?;
+        self.damped_linear.push(momentum.damped_linear)?;
         self.angular.push(momentum)
     }
 
     fn flush(&mut self) -> hdf5::Result<()> {
         self.linear.flush()?;
+        self.damped_linear.flush()?;
         self.angular.flush()
     }
 }

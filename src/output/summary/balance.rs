@@ -22,7 +22,7 @@ pub(crate) struct Balance {
     start: Option<Momentum>,
     /// Largest linear momentum so far.
     momentum: f64,
-    /// Largest change of the linear momentum so far.
+    /// Largest change of the linear momentum so far, what mass-proportional damping took put back.
     drift: f64,
     free: bool,
 }
@@ -85,7 +85,8 @@ impl Balance {
     }
 
     fn add_momentum(&mut self, momentum: Momentum) {
-        let [x, y] = momentum.linear;
+        let [dx, dy] = momentum.damped_linear;
+        let [x, y] = [momentum.linear[0] + dx, momentum.linear[1] + dy];
         let [x0, y0] = self.start.get_or_insert(momentum).linear;
         self.momentum = larger(self.momentum, x.hypot(y));
         self.drift = larger(self.drift, (x - x0).hypot(y - y0));

@@ -135,7 +135,7 @@ mod tests {
     use super::*;
     use crate::elements::ElementResult;
     use crate::materials::NeoHooke;
-    use crate::model::{Element, ElementType, Material, Section};
+    use crate::model::{Damping, Element, ElementType, Material, Section};
 
     /// An elastic element and one of rubber.
     fn model() -> Model {
@@ -149,6 +149,7 @@ mod tests {
                 name: format!("M{index}"),
                 law,
                 density: 1.0,
+                damping: Damping::default(),
             });
             model.sections.push(Section {
                 material: index,

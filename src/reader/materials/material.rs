@@ -1,11 +1,11 @@
 //! `*MATERIAL` with its law and `*DENSITY`.
 
 use super::constant::{Constant, constant, out_of_range, temperature};
-use super::law;
+use super::{damping, law};
 use crate::deck::Row;
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::materials::{Law, Plane};
-use crate::model::{Material, Section};
+use crate::model::{Damping, Material, Section};
 use crate::reader::context::Context;
 use crate::reader::mesh::{Block, Outline};
 use crate::reader::names::Names;
@@ -18,6 +18,9 @@ struct Draft {
     poisson_span: Span,
     law: Constant<Law>,
     density: Constant<f64>,
+    damping: Damping,
+    /// Place of mass-proportional damping.
+    damping_span: Span,
 }
 
 /// The materials of a deck before their sections are known.
@@ -51,6 +54,11 @@ impl Drafts {
         self.all.iter().map(|draft| draft.poisson_span).collect()
     }
 
+    /// Places of their mass-proportional damping.
+    pub fn damping_spans(&self) -> Vec<Span> {
+        self.all.iter().map(|draft| draft.damping_span).collect()
+    }
+
     /// Reports constants that a material in use lacks.
     pub fn report_incomplete(&self, sections: &[Section], cx: &mut Context) {
         if cx.may_lack_cards() {
@@ -79,6 +87,8 @@ fn draft(name: String, block: &Block, cx: &mut Context) -> Draft {
         poisson_span: law::poisson_span(block).unwrap_or(block.head.span),
         law: law::read(block, cx),
         density: constant(&density, density_row, cx),
+        damping: damping::read(block, cx),
+        damping_span: damping::span(block).unwrap_or(block.head.span),
     }
 }
 
@@ -115,6 +125,7 @@ impl Draft {
             name: self.name,
             law: self.law.given().unwrap_or(Law::elastic(0.0, 0.0)),
             density: self.density.given().unwrap_or(0.0),
+            damping: self.damping,
         };
         hint_at_units(&material, self.span, cx);
         material

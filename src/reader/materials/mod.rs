@@ -1,6 +1,7 @@
 //! `*MATERIAL` with its cards, and `*SOLID SECTION`.
 
 mod constant;
+mod damping;
 mod law;
 mod material;
 mod section;
@@ -24,6 +25,7 @@ pub(super) fn read(
     properties.read_sections(outline, &drafts.names, (mesh_index, sets), cx);
     drafts.report_incomplete(&properties.sections, cx);
     let poisson_spans = drafts.poisson_spans();
+    properties.damping_spans = drafts.damping_spans();
     properties.materials = drafts.complete(cx);
     properties.report_plane_stress(mesh_index, cx);
     properties.report_locking(&poisson_spans, cx);

@@ -20,6 +20,8 @@ pub(crate) struct Properties {
     pub element_types: Vec<ElementType>,
     /// Places of the materials.
     pub material_spans: Vec<Span>,
+    /// Places of their mass-proportional damping.
+    pub damping_spans: Vec<Span>,
 }
 
 /// `*SOLID SECTION`, with `thickness` on its data line.
@@ -53,6 +55,7 @@ impl Properties {
             section_of: vec![None; elements.len()],
             element_types: elements.iter().map(|e| e.element_type).collect(),
             material_spans,
+            damping_spans: Vec::new(),
         }
     }
 

@@ -87,8 +87,8 @@ mod tests {
     use crate::dynamics::step::{ClosedConstraints, Discretization, Workspace};
     use crate::materials::{Law, SaintVenantKirchhoff};
     use crate::model::{
-        Element, ElementType, Frames, Increments, Material, Model, Procedure, Section, Settings,
-        Step, Support, SupportMotion,
+        Damping, Element, ElementType, Frames, Increments, Material, Model, Procedure, Section,
+        Settings, Step, Support, SupportMotion,
     };
     use crate::prepare::PreparedModel;
 
@@ -111,6 +111,7 @@ mod tests {
             name: "M".into(),
             law: Law::SaintVenantKirchhoff(law),
             density: 1.0,
+            damping: Damping::default(),
         });
         model.sections.push(Section {
             material: 0,

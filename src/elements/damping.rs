@@ -1,0 +1,266 @@
+//! Damping of an element: impulse in an increment, damping matrix, dissipated energy. Section 4 of
+//! docs/theory.md, Damping.
+
+use super::element::AnyElement;
+use super::solid::{ElementMatrix, ElementVector, Increment, MAX_DOFS, Motion, TangentPart};
+use crate::materials::{Plane, Viscosity};
+use crate::model::{Damping, Material};
+
+/// Damping of an element whose material has it.
+pub(super) struct ElementDamping {
+    viscosity: Option<Viscosity>,
+    /// alpha M per direction, n x n column by column (mass/time).
+    mass: Option<Vec<f64>>,
+}
+
+impl ElementDamping {
+    /// Damping of an element of a material, if it has any.
+    pub fn new(element: &AnyElement, material: &Material, plane: Plane) -> Option<Self> {
+        let Damping { alpha, beta } = material.damping;
+        let moduli = material.law.small_strain();
+        let viscosity = (beta > 0.0).then(|| Viscosity::new(beta, moduli, plane));
+        let mass = (alpha > 0.0).then(|| element.mass(alpha * material.density));
+        (viscosity.is_some() || mass.is_some()).then_some(ElementDamping { viscosity, mass })
+    }
+
+    /// F_d dt, eq. (4.22): int B_L^T beta C0 dE dOmega with B_L of the mid configuration, and alpha M d.
+    pub fn impulse(&self, element: &AnyElement, increment: Increment, d: &[f64]) -> ElementVector {
+        let mut impulse = self.mass_impulse(element, d);
+        if let Some(viscosity) = &self.viscosity {
+            let (viscous, _) = element.force(viscosity, between(increment));
+            impulse.iter_mut().zip(viscous).for_each(|(p, v)| *p += v);
+        }
+        impulse
+    }
+
+    /// alpha M d, eq. (4.22).
+    pub fn mass_impulse(&self, element: &AnyElement, d: &[f64]) -> ElementVector {
+        let (mut impulse, nodes) = ([0.0; MAX_DOFS], element.nodes());
+        for (a, b, m) in self.mass_entries(nodes.len()) {
+            for i in 0..2 {
+                impulse[2 * a + i] += m * d[2 * nodes[b] + i];
+            }
+        }
+        impulse
+    }
+
+    /// int dE:beta C0:dE dOmega + d.(alpha M d), eq. (4.23).
+    pub fn work(&self, element: &AnyElement, increment: Increment, d: &[f64]) -> f64 {
+        let viscosity = self.viscosity.as_ref();
+        let viscous = viscosity.map_or(0.0, |v| element.work(v, between(increment)));
+        let impulse = self.mass_impulse(element, d);
+        let of_mass = element.dofs().zip(impulse).map(|(dof, p)| p * d[dof]);
+        viscous + of_mass.sum::<f64>()
+    }
+
+    /// Cd = alpha M + 1/2 (int B_L^T 2 beta C0 B_L + B_NL^T S_d dt B_NL dOmega), eq. (4.24), or its
+    /// positive part.
+    pub fn matrix(
+        &self,
+        element: &AnyElement,
+        increment: Increment,
+        part: TangentPart,
+    ) -> ElementMatrix {
+        let viscosity = self.viscosity.as_ref();
+        let mut matrix = viscosity.map_or([0.0; MAX_DOFS * MAX_DOFS], |viscosity| {
+            let tangent = element.tangent(viscosity, between(increment), part);
+            tangent.map(|entry| entry / 2.0)
+        });
+        let n = element.nodes().len();
+        for (a, b, m) in self.mass_entries(n) {
+            for i in 0..2 {
+                matrix[(2 * b + i) * 2 * n + 2 * a + i] += m;
+            }
+        }
+        matrix
+    }
+
+    /// Entries of alpha M of `n` nodes: row, column, value.
+    fn mass_entries(&self, n: usize) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        let entries = self.mass.iter().flatten().enumerate();
+        entries.map(move |(k, &m)| (k % n, k / n, m))
+    }
+}
+
+/// The motion in which viscosity acts: that of the increment, in either scheme.
+fn between([u0, u1]: Increment) -> Motion {
+    Motion {
+        start: Some(u0),
+        ..Motion::at(u1, &[])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::Elements;
+    use crate::materials::yielding::Yielding;
+    use crate::materials::{Law, NeoHooke};
+    use crate::model::{Element, ElementType, Formulation, Model, Section};
+
+    const DAMPING: Damping = Damping {
+        alpha: 0.7,
+        beta: 0.3,
+    };
+    /// Reference positions of five nodes.
+    const X: [[f64; 2]; 5] = [[0.0, 0.0], [1.0, 0.1], [1.2, 1.1], [-0.1, 0.9], [0.6, 1.8]];
+    const DOFS: usize = 2 * X.len();
+
+    /// A quadrilateral and a triangle on it.
+    fn elements(law: Law, quad: ElementType, damping: Damping) -> Elements {
+        let mut model = Model::default();
+        let name = "M".into();
+        model.materials.push(Material {
+            name,
+            law,
+            density: 1.5,
+            damping,
+        });
+        model.sections.push(Section {
+            material: 0,
+            thickness: 2.0,
+        });
+        model.mesh.coordinates = X.to_vec();
+        let tri = ElementType {
+            plane: quad.plane,
+            ..ElementType::CPE3
+        };
+        for (element_type, nodes) in [(quad, vec![0, 1, 2, 3]), (tri, vec![3, 2, 4])] {
+            model.mesh.elements.push(Element {
+                label: 1,
+                element_type,
+                nodes,
+                section: 0,
+            });
+        }
+        Elements::new(&model)
+    }
+
+    /// All laws in all formulations that they have.
+    fn all(damping: Damping) -> Vec<Elements> {
+        let mean = ElementType {
+            formulation: Formulation::MeanDilatation,
+            ..ElementType::CPE4
+        };
+        let elastic = Law::elastic(100.0, 0.3);
+        let rubber = Law::NeoHooke(NeoHooke {
+            c10: 20.0,
+            d1: 0.02,
+        });
+        let yielding = Law::Yielding(Yielding { g: 50.0, y: 0.02 });
+        let cases = [
+            (elastic, ElementType::CPS4),
+            (elastic, ElementType::CPE4),
+            (elastic, mean),
+            (rubber, ElementType::CPE4),
+            (rubber, mean),
+            (yielding, ElementType::CPE4),
+        ];
+        let elements = cases.map(|(law, quad)| elements(law, quad, damping));
+        elements.into()
+    }
+
+    fn wave(scale: f64, k: f64) -> Vec<f64> {
+        (0..DOFS).map(|i| scale * (k * i as f64).sin()).collect()
+    }
+
+    /// Displacements of the nodes that `u` has moved, turned by an angle.
+    fn turned(u: &[f64], angle: f64) -> Vec<f64> {
+        let (sin, cos) = angle.sin_cos();
+        let turn = |n: usize| {
+            let [x, y] = [X[n][0] + u[2 * n], X[n][1] + u[2 * n + 1]];
+            [cos * x - sin * y - X[n][0], sin * x + cos * y - X[n][1]]
+        };
+        (0..X.len()).flat_map(turn).collect()
+    }
+
+    fn impulse(elements: &Elements, u0: &[f64], u1: &[f64]) -> Vec<f64> {
+        let d: Vec<f64> = u1.iter().zip(u0).map(|(u1, u0)| u1 - u0).collect();
+        elements.damping_force([u0, u1], &d, 1.0)
+    }
+
+    fn norm(v: &[f64]) -> f64 {
+        v.iter().map(|x| x * x).sum::<f64>().sqrt()
+    }
+
+    #[test]
+    fn what_it_dissipates_is_the_work_of_its_force_and_never_negative() {
+        for elements in all(DAMPING) {
+            for k in 1..20 {
+                let (u0, u1) = (wave(0.1, f64::from(k)), wave(0.12, 0.37 * f64::from(k)));
+                let d: Vec<f64> = u1.iter().zip(&u0).map(|(u1, u0)| u1 - u0).collect();
+                let impulse = impulse(&elements, &u0, &u1);
+                let work: f64 = impulse.iter().zip(&d).map(|(p, d)| p * d).sum();
+                let dissipated = elements.damping_dissipation([&u0, &u1], &d, 0.5);
+                assert!(dissipated > 0.0);
+                assert!((work - dissipated * 0.5).abs() < 1e-13 * work, "{work}");
+            }
+        }
+    }
+
+    #[test]
+    fn viscosity_keeps_momenta_and_is_silent_in_rigid_motion() {
+        let viscous = Damping {
+            alpha: 0.0,
+            ..DAMPING
+        };
+        for elements in all(viscous) {
+            let (u0, u1) = (wave(0.1, 1.3), wave(0.12, 2.9));
+            let force = impulse(&elements, &u0, &u1);
+            let (mut sum, mut moment) = ([0.0; 2], 0.0);
+            for n in 0..X.len() {
+                let [fx, fy] = [force[2 * n], force[2 * n + 1]];
+                let halfway = |i: usize| X[n][i] + (u0[2 * n + i] + u1[2 * n + i]) / 2.0;
+                sum = [sum[0] + fx, sum[1] + fy];
+                moment += halfway(0) * fy - halfway(1) * fx;
+            }
+            assert!(sum[0].hypot(sum[1]) < 1e-14 * norm(&force));
+            assert!(moment.abs() < 1e-14 * norm(&force));
+            // a strained body that turns, by any angle
+            for angle in [0.1, 1.0, 2.0] {
+                let rigid = impulse(&elements, &u0, &turned(&u0, angle));
+                assert!(norm(&rigid) < 1e-14 * norm(&force), "{}", norm(&rigid));
+            }
+        }
+    }
+
+    #[test]
+    fn the_damping_matrix_is_the_derivative_of_the_impulse() {
+        for elements in all(DAMPING) {
+            // exact where the strain does not change; else B_L of the end stands on its right
+            let u = wave(0.1, 1.3);
+            let mut matrix = vec![0.0; DOFS * DOFS];
+            elements.for_each_damping([&u, &u], TangentPart::Whole, |element, c| {
+                let nodes = elements.nodes(element).iter();
+                let dofs: Vec<usize> = nodes.flat_map(|n| [2 * n, 2 * n + 1]).collect();
+                for (j, &column) in dofs.iter().enumerate() {
+                    for (i, &row) in dofs.iter().enumerate() {
+                        matrix[column * DOFS + row] += c[j * dofs.len() + i];
+                    }
+                }
+            });
+            for j in 0..DOFS {
+                let at = |h: f64| {
+                    let mut u1 = u.clone();
+                    u1[j] += h;
+                    impulse(&elements, &u, &u1)
+                };
+                let (ahead, behind) = (at(1e-6), at(-1e-6));
+                for i in 0..DOFS {
+                    let quotient = (ahead[i] - behind[i]) / 2e-6;
+                    let error = (matrix[j * DOFS + i] - quotient).abs();
+                    assert!(error < 1e-8 * norm(&matrix), "({i},{j}): {error}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn without_damping_there_is_no_force() {
+        for elements in all(Damping::default()) {
+            let (u0, u1) = (wave(0.1, 1.3), wave(0.12, 2.9));
+            assert!(!elements.has_damping());
+            assert!(impulse(&elements, &u0, &u1).iter().all(|&p| p == 0.0));
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! Damping of materials: ratios of modes, energy, momenta, and the passes.
+
+use crate::blocks::{Keep, PAPER, SCHEMES, add_block, add_contact, model, run_to_end, step, throw};
+use stickslip::dynamics::IncrementReport;
+use stickslip::materials::{Law, NeoHooke};
+use stickslip::model::{
+    Damping, ElementType, Formulation, Model, Scheme, Settings, Support, SupportMotion,
+};
+
+fn with(scheme: Scheme) -> Settings {
+    Settings {
+        scheme,
+        ..Settings::default()
+    }
+}
+
+fn energy(report: &IncrementReport) -> f64 {
+    report.energy.kinetic + report.energy.strain
+}
+
+fn last(keep: &Keep) -> &IncrementReport {
+    &keep.reports[keep.reports.len() - 1]
+}
+
+fn largest(keep: &Keep, of: impl Fn(&IncrementReport) -> f64) -> f64 {
+    keep.reports.iter().map(of).fold(0.0, f64::max)
+}
+
+/// Speed at the end of the one-element bar at the start, so small that its strains are linear.
+const SPEED: f64 = 1e-7;
+
+/// A bar of one element of side 1 that is held at its left end and across, and is thrown along itself:
+/// one mode with omega² = 3 E/rho = 1.
+fn one_mode(scheme: Scheme, damping: Damping, dt: f64, increments: usize) -> Keep {
+    let mut model = model(1.0, 0.0, 3.0);
+    model.materials[0].damping = damping;
+    let bar = add_block(&mut model, [0.0, 0.0], [1.0, 1.0], (1, 1), 0.0);
+    let fixed = |dof: usize| Support {
+        dof,
+        motion: SupportMotion::Ramp { to: 0.0 },
+    };
+    let mut supports: Vec<Support> = Vec::new();
+    for node in bar.nodes() {
+        let is_held = node == bar.node(0, 0) || node == bar.node(0, 1);
+        supports.extend(is_held.then(|| fixed(2 * node)));
+        supports.push(fixed(2 * node + 1));
+    }
+    model.initial_velocity = vec![0.0; model.mesh.dof_count()];
+    for j in 0..2 {
+        model.initial_velocity[2 * bar.node(1, j)] = SPEED;
+    }
+    model.steps = vec![step(dt, increments, with(scheme), supports)];
+    run_to_end(&model).0
+}
+
+/// One increment of the scheme for x'' + c x' + x = 0 in closed form: displacement and velocity at its
+/// end.
+fn increment(scheme: Scheme, c: f64, dt: f64, [x, v]: [f64; 2]) -> [f64; 2] {
+    let theta2 = match scheme {
+        Scheme::EnergyMomentum => 0.5,
+        Scheme::Ss22 { theta2, .. } => theta2,
+    };
+    // (2/dt²) (d - dt v) + c d/dt + x + theta2 d + (theta1 - theta2) dt v = 0, theta1 = theta2
+    let d = (2.0 / dt * v - x) / (2.0 / (dt * dt) + c / dt + theta2);
+    [x + d, 2.0 * d / dt - v]
+}
+
+#[test]
+fn a_mode_decays_as_in_closed_form() {
+    let dampings = [(0.2, 0.0), (0.0, 0.2), (0.05, 0.1), (0.0, 30.0)];
+    for scheme in SCHEMES {
+        for dt in [0.05, 0.5, 5.0] {
+            for (alpha, beta) in dampings {
+                let keep = one_mode(scheme, Damping { alpha, beta }, dt, 60);
+                // 2 zeta omega = alpha + beta omega², omega = 1
+                let (c, mut expected) = (alpha + beta, [0.0, SPEED]);
+                for report in &keep.reports[1..] {
+                    expected = increment(scheme, c, dt, expected);
+                    let error = (report.state.u[2] - expected[0]).abs();
+                    assert!(error < 3e-7 * SPEED, "dt {dt}: {error:e}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_damping_ratio_is_that_of_rayleigh() {
+    // amplitude after five periods: exp(-zeta omega t), zeta = alpha/(2 omega) + beta omega/2
+    for (alpha, beta) in [(0.06, 0.0), (0.0, 0.06)] {
+        let errors = [0.1, 0.05].map(|dt| {
+            let increments = (10.0 * std::f64::consts::PI / dt).round() as usize;
+            let keep = one_mode(
+                Scheme::EnergyMomentum,
+                Damping { alpha, beta },
+                dt,
+                increments,
+            );
+            let (first, last) = (&keep.reports[0], last(&keep));
+            let found = (energy(last) / energy(first)).ln() / -2.0;
+            found / (0.03 * last.time) - 1.0
+        });
+        println!("relative errors of the ratio: {errors:?}");
+        assert!(errors[0].abs() < 0.005 && errors[1].abs() < 0.005);
+    }
+}
+
+/// A block that flies, spins and is stretched.
+fn flying_block(law: Law, formulation: Formulation, damping: Damping, scheme: Scheme) -> Model {
+    let mut model = model(1.0, 0.3, 1.0);
+    model.materials[0].law = law;
+    model.materials[0].damping = damping;
+    let block = add_block(&mut model, [0.0, 0.0], [2.0, 1.0], (6, 3), 0.0);
+    throw(&mut model, &block, [0.4, -0.3], 0.8, [1.0, 0.5]);
+    for node in block.nodes() {
+        let x = model.mesh.coordinates[node][0] - 1.0;
+        model.initial_velocity[2 * node] += 0.3 * x;
+    }
+    for element in &mut model.mesh.elements {
+        element.element_type = ElementType {
+            formulation,
+            ..ElementType::CPE4
+        };
+    }
+    model.steps = vec![step(0.05, 100, with(scheme), Vec::new())];
+    model
+}
+
+fn laws() -> [Law; 2] {
+    let rubber = NeoHooke { c10: 1.0, d1: 0.2 };
+    [Law::elastic(4.0, 0.3), Law::NeoHooke(rubber)]
+}
+
+/// Largest errors of the linear and the angular momentum, with what mass-proportional damping took.
+fn momentum_errors(keep: &Keep) -> [f64; 2] {
+    let first = &keep.reports[0].momentum;
+    let linear = largest(keep, |r| {
+        let m = &r.momentum;
+        let change = |i: usize| m.linear[i] + m.damped_linear[i] - first.linear[i];
+        change(0).hypot(change(1)) / first.linear[0].hypot(first.linear[1])
+    });
+    let angular = largest(keep, |r| {
+        let m = &r.momentum;
+        (m.angular + m.damped_angular - first.angular).abs() / first.angular.abs()
+    });
+    [linear, angular]
+}
+
+#[test]
+fn viscosity_keeps_both_momenta_and_takes_what_is_booked() {
+    for law in laws() {
+        for formulation in [Formulation::Displacement, Formulation::MeanDilatation] {
+            for beta in [0.005, 0.05, 0.5] {
+                let damping = Damping { alpha: 0.0, beta };
+                let scheme = Scheme::EnergyMomentum;
+                let (keep, summary) = run_to_end(&flying_block(law, formulation, damping, scheme));
+                let (first, last) = (&keep.reports[0], last(&keep));
+                let [linear, angular] = momentum_errors(&keep);
+                let lost = energy(first) - energy(last);
+                let passes = summary.solver.passes as f64 / 100.0;
+                println!(
+                    "beta {beta}: linear {linear:.0e} angular {angular:.0e} lost {:.3} passes {passes:.1}",
+                    lost / energy(first)
+                );
+                assert!(linear < 1e-13 && angular < 1e-12);
+                assert_eq!(last.momentum.damped_linear, [0.0; 2]);
+                assert!(lost > 0.01 * energy(first));
+                assert!((last.energy.damping - lost).abs() < 1e-12 * energy(first));
+                assert!(last.energy.numerical_dissipation.abs() < 1e-12 * energy(first));
+                assert!(largest(&keep, |r| r.energy.balance.abs()) < 1e-12 * energy(first));
+                for pair in keep.reports.windows(2) {
+                    assert!(pair[1].energy.damping >= pair[0].energy.damping);
+                    assert!(energy(&pair[1]) <= energy(&pair[0]) + 1e-12 * energy(first));
+                }
+                assert!(keep.cutbacks.is_empty());
+            }
+        }
+    }
+}
+
+#[test]
+fn viscosity_needs_no_more_passes_where_it_is_large() {
+    let [elastic, _] = laws();
+    let passes = [0.0, 0.5].map(|beta| {
+        let damping = Damping { alpha: 0.0, beta };
+        let model = flying_block(
+            elastic,
+            Formulation::Displacement,
+            damping,
+            Scheme::EnergyMomentum,
+        );
+        run_to_end(&model).1.solver.passes
+    });
+    println!("passes in 100 increments: {passes:?}");
+    assert!(passes[1] <= passes[0] + 100);
+}
+
+#[test]
+fn mass_proportional_damping_brakes_the_flight_as_booked() {
+    let (alpha, dt) = (0.3, 0.05);
+    for scheme in SCHEMES {
+        let damping = Damping { alpha, beta: 0.01 };
+        let model = flying_block(laws()[0], Formulation::Displacement, damping, scheme);
+        let keep = run_to_end(&model).0;
+        let (first, last) = (&keep.reports[0], last(&keep));
+        // p1 = p0 (1 - alpha dt/2)/(1 + alpha dt/2)
+        let factor = ((1.0 - alpha * dt / 2.0) / (1.0 + alpha * dt / 2.0)).powi(100);
+        for i in 0..2 {
+            let expected = factor * first.momentum.linear[i];
+            assert!((last.momentum.linear[i] - expected).abs() < 1e-12 * expected.abs());
+        }
+        let [linear, angular] = momentum_errors(&keep);
+        println!("linear {linear:.0e} angular {angular:.0e}");
+        assert!(linear < 1e-13);
+        assert!(angular < 1e-12 || scheme == PAPER);
+        assert!(largest(&keep, |r| r.energy.balance.abs()) < 1e-12 * energy(first));
+        assert!(last.energy.damping > 0.5 * energy(first));
+    }
+}
+
+#[test]
+fn the_balance_holds_in_contact_and_at_moving_supports() {
+    for scheme in SCHEMES {
+        let mut model = model(1000.0, 0.3, 1.0);
+        model.materials[0].damping = Damping {
+            alpha: 2.0,
+            beta: 2e-3,
+        };
+        let lower = add_block(&mut model, [0.0, 0.0], [2.0, 1.0], (8, 4), 0.0);
+        let upper = add_block(&mut model, [0.5, 1.0], [1.0, 1.0], (5, 5), 0.0);
+        add_contact(&mut model, upper.faces(0), lower.faces(2), 0.3);
+        model.initial_velocity = vec![0.0; model.mesh.dof_count()];
+        let moved = |dof: usize, to: f64| Support {
+            dof,
+            motion: SupportMotion::Ramp { to },
+        };
+        let held = (0..=8).flat_map(|i| [0, 1].map(|k| moved(2 * lower.node(i, 0) + k, 0.0)));
+        let driven = (0..=5).flat_map(|i| {
+            let node = upper.node(i, 5);
+            [moved(2 * node, 0.1), moved(2 * node + 1, -0.02)]
+        });
+        let supports = held.chain(driven).collect();
+        model.steps = vec![step(1e-3, 100, with(scheme), supports)];
+        let (keep, summary) = run_to_end(&model);
+        let last = last(&keep);
+        let largest_energy = largest(&keep, |r| energy(r).max(r.energy.external_work));
+        println!("{:?} {} passes", last.energy, summary.solver.passes);
+        assert!(last.energy.damping > 1e-3 * largest_energy);
+        assert!(last.energy.friction_dissipation > 1e-3 * largest_energy);
+        assert!(largest(&keep, |r| r.energy.balance.abs()) < 1e-12 * largest_energy);
+    }
+}
