@@ -7,7 +7,6 @@ use super::contact_system::ContactSystem;
 use super::convergence::{Errors, Iterate, Pass};
 use super::impulses::Impulses;
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
-use super::returned::Returned;
 use super::rigid_predictor::rigid_predictor;
 use super::trace::{Failed, Trace};
 use crate::contact::{ClosedPairs, Constraint};
@@ -37,8 +36,6 @@ pub(crate) struct Solved {
     pub end: State,
     /// Energy that the materials have dissipated.
     pub material_dissipation: f64,
-    /// What is given back after it.
-    pub returned: Returned,
     /// Its passes.
     pub passes: Vec<PassReport>,
 }
@@ -316,7 +313,7 @@ impl<'m> Attempt<'_, 'm> {
             impulses: impulses.acting,
             end,
             material_dissipation: dissipated,
-            ..Solved::default()
+            passes: Vec::new(),
         })
     }
 }

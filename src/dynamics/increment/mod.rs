@@ -15,5 +15,5 @@ mod trace;
 pub(crate) use active_constraints::{ActiveConstraints, ConstraintSet};
 pub(crate) use attempt::{Attempt, Solved};
 pub(crate) use contact_forces::ContactForces;
-pub(crate) use returned::PairReturn;
+pub(crate) use returned::{PairReturn, Returned};
 pub(crate) use trace::Failed;

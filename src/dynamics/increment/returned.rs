@@ -30,9 +30,4 @@ impl Returned {
     pub fn energy(&self) -> f64 {
         self.pairs.iter().map(|pair| pair.energy).sum()
     }
-
-    /// What was given back to the pair of a constraint.
-    pub fn of_pair(&self, key: ConstraintKey) -> impl Iterator<Item = &PairReturn> {
-        self.pairs.iter().filter(move |pair| pair.key == key)
-    }
 }

@@ -7,7 +7,7 @@ use super::pattern::{Pattern, ReturnLoad, patterns};
 use super::shares::shares;
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::contact::{ClosedPair, Constraint};
-use crate::dynamics::increment::{PairReturn, Solved};
+use crate::dynamics::increment::{PairReturn, Returned, Solved};
 use crate::dynamics::results::Cause;
 use crate::dynamics::step::{StepProblem, Workspace, dot};
 use crate::model::LandingRule;
@@ -22,9 +22,9 @@ pub(crate) fn return_landings(
     workspace: &mut Workspace,
     dt: f64,
     solved: &mut Solved,
-) -> Result<(), Cause> {
+) -> Result<Returned, Cause> {
     if problem.settings.landing == LandingRule::Plastic {
-        return Ok(());
+        return Ok(Returned::default());
     }
     let landings: Vec<_> = (solved.forces.acting())
         .filter_map(|(constraint, pair)| landing(problem, solved, constraint, pair))
@@ -40,8 +40,10 @@ pub(crate) fn return_landings(
             ..pair
         }
     };
-    solved.returned.pairs.extend(returned.map(times));
-    Ok(())
+    Ok(Returned {
+        pairs: returned.map(times).collect(),
+        ..Returned::default()
+    })
 }
 
 /// A pair that lands, with its load and a unit impulse; none of one that was closed at the start.

@@ -8,7 +8,7 @@ use super::nodal_results::{contact_resultants, nodal_results};
 use super::pressure::SlaveFaces;
 use super::rigid_surfaces::RigidSurfaces;
 use crate::contact::ContactSurfaces;
-use crate::dynamics::increment::Solved;
+use crate::dynamics::increment::{Returned, Solved};
 use crate::dynamics::results::{
     ContactOnBody, ContactResultant, IncrementReport, Momentum, NodalResults, NodeStatus,
     RigidReaction, State,
@@ -76,7 +76,7 @@ impl Accounts {
     pub fn enter(
         &mut self,
         problem: &StepProblem,
-        solved: &Solved,
+        (solved, returned): (&Solved, &Returned),
         interval: Interval,
         elements: &[ElementResult],
     ) -> IncrementReport {
@@ -85,6 +85,7 @@ impl Accounts {
         let u = &solved.equilibrium.u_theta;
         let mut contacts = contact_resultants(problem, solved);
         let bodies = &self.bodies.bodies;
+        (self.contacts).enter_returns(returned, &mut contacts);
         (self.contacts).enter(problem, bodies, solved, interval.dt, &mut contacts);
         let mut nodal = nodal_results(problem, solved);
         let (theta1, Interval { start, end, .. }) = (problem.weights.theta1, interval);

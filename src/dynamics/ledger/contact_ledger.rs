@@ -2,7 +2,7 @@
 
 use super::nodal_results::contact_of_slave_indices;
 use crate::contact::{Constraint, ContactSurfaces};
-use crate::dynamics::increment::{PairReturn, Solved};
+use crate::dynamics::increment::{PairReturn, Returned, Solved};
 use crate::dynamics::results::{ContactImpulse, ContactOnBody, ContactResultant};
 use crate::dynamics::step::StepProblem;
 use crate::model::{Bodies, Model};
@@ -70,10 +70,6 @@ impl ContactLedger {
             sums.friction_dissipation -= pt * constraint.tangential_motion(&solved.d);
             let result = &mut resultants[contact];
             result.impulse.add(constraint, [dt * pn, dt * pt]);
-            for returned in solved.returned.of_pair(pair.key) {
-                sums.landing_return += returned.energy;
-                result.impulse.add_return(returned);
-            }
             if !result.bodies.is_empty() {
                 let forces = constraint.nodal_forces(pair.force);
                 add_to_bodies(problem, bodies, u, forces, &mut result.bodies);
@@ -97,6 +93,15 @@ impl ContactLedger {
                 let x = problem.position(u, node);
                 result.reference_moment = result.moment - cross(x, result.force);
             }
+        }
+    }
+
+    /// Enters what is given back after an increment, before the increment itself.
+    pub fn enter_returns(&mut self, returned: &Returned, resultants: &mut [ContactResultant]) {
+        for pair in &returned.pairs {
+            let contact = self.contact_of[pair.key.slave_index];
+            self.contacts[contact].landing_return += pair.energy;
+            resultants[contact].impulse.add_return(pair);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::dynamics::increment::Solved;
+use crate::dynamics::increment::{Returned, Solved};
 use crate::dynamics::results::{Cause, Energy, State};
 use crate::dynamics::step::{Equilibrium, StepProblem, dot, sum};
 use crate::elements::ElementResult;
@@ -67,7 +67,7 @@ impl Ledger {
         }
     }
 
-    /// The ledger with a converged increment that started from `start`.
+    /// The ledger with a converged increment that started from `start`, and what is given back after it.
     ///
     /// # Errors
     /// An energy that is not finite.
@@ -75,7 +75,7 @@ impl Ledger {
         mut self,
         problem: &StepProblem,
         start: &State,
-        solved: &Solved,
+        (solved, returned): (&Solved, &Returned),
         dt: f64,
     ) -> Result<Self, Cause> {
         let Solved {
@@ -122,8 +122,8 @@ impl Ledger {
             e.impact_loss += kinetic(&start.v) - kinetic(v0p);
         }
         // what landings and releases are given back, and what relaxed nodes have lost
-        e.landing_return += solved.returned.energy();
-        e.release_loss += solved.returned.released;
+        e.landing_return += returned.energy();
+        e.release_loss += returned.released;
         // d.F_d, D, and d.F - (W1 - W0) - d.F_d - D, eq. (9.5)
         let (u1, dissipated) = (sum(&start.u, d), solved.material_dissipation);
         let damping = (problem.elements).damping_dissipation([&start.u, &u1], d, dt);

@@ -4,7 +4,7 @@
 use super::nominal_increment::NominalIncrement;
 use crate::contact::{ClosedPairs, Penetration};
 use crate::dynamics::events::{FailedSubincrement, Subincrement};
-use crate::dynamics::increment::{Failed, Solved};
+use crate::dynamics::increment::{Failed, Returned, Solved};
 use crate::dynamics::landing::return_landings;
 use crate::dynamics::ledger::{Ledger, check_energy_gain};
 use crate::dynamics::results::{Cause, Failure, State};
@@ -21,16 +21,16 @@ pub(crate) struct Before<'a> {
     pub ledger: &'a Ledger,
 }
 
-/// An accepted subincrement, and the ledger with its energies.
+/// An accepted subincrement, what is given back after it, and the ledger with its energies.
 pub(crate) struct Accepted {
     pub subincrement: Subincrement,
+    pub returned: Returned,
     pub ledger: Ledger,
 }
 
 impl Accepted {
-    /// Accepts a converged subincrement, `halvings` times halved, of the `nominal` increment, and gives
-    /// back what its landings have taken: no node may have gone through a surface, the energies must be finite, and contact must put in none while
-    /// halvings are left for that.
+    /// Accepts a converged subincrement, `halvings` times halved, of the `nominal` increment, if it passes
+    /// the checks.
     pub fn new(
         problem: &StepProblem,
         workspace: &mut Workspace,
@@ -39,25 +39,13 @@ impl Accepted {
         halvings: u32,
         nominal: &NominalIncrement,
     ) -> Result<Self, FailedSubincrement> {
-        let Subincrement {
-            interval, solved, ..
-        } = &mut subincrement;
-        let may_be_halved = halvings < GAIN_HALVINGS && interval.dt / 2.0 >= nominal.dt_min;
-        let checked = check_paths(problem, workspace, before, solved)
-            .and_then(|()| return_landings(problem, workspace, interval.dt, solved))
-            .and_then(|()| {
-                let ledger = before.ledger.clone();
-                ledger.with(problem, before.state, solved, interval.dt)
-            })
-            .and_then(|after| match may_be_halved {
-                true => {
-                    check_energy_gain(problem, before.state, before.ledger, solved).map(|()| after)
-                }
-                false => Ok(after),
-            });
-        match checked {
-            Ok(ledger) => Ok(Accepted {
+        let dt = subincrement.interval.dt;
+        let may_be_halved = halvings < GAIN_HALVINGS && dt / 2.0 >= nominal.dt_min;
+        let solved = &mut subincrement.solved;
+        match checked(problem, workspace, before, (dt, solved), may_be_halved) {
+            Ok((returned, ledger)) => Ok(Accepted {
                 subincrement,
+                returned,
                 ledger,
             }),
             Err(cause) => Err(Box::new((
@@ -71,6 +59,26 @@ impl Accepted {
             ))),
         }
     }
+}
+
+/// Checks a converged increment of the given length, gives back what its landings have taken and enters it
+/// in the ledger: no node may have gone through a surface, the energies must be finite, and contact must
+/// put in none where the increment may be halved for that.
+fn checked(
+    problem: &StepProblem,
+    workspace: &mut Workspace,
+    before: Before,
+    (dt, solved): (f64, &mut Solved),
+    may_be_halved: bool,
+) -> Result<(Returned, Ledger), Cause> {
+    check_paths(problem, workspace, before, solved)?;
+    let returned = return_landings(problem, workspace, dt, solved)?;
+    let ledger = before.ledger.clone();
+    let ledger = ledger.with(problem, before.state, (solved, &returned), dt)?;
+    if may_be_halved {
+        check_energy_gain(problem, before.state, before.ledger, solved)?;
+    }
+    Ok((returned, ledger))
 }
 
 /// No node may have gone into a body on its straight path from U0 to U0 + d. What the tolerance of the

@@ -226,6 +226,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         place: StepPlace,
         Accepted {
             subincrement,
+            returned,
             ledger,
         }: Accepted,
     ) -> Result<(), RunError> {
@@ -234,7 +235,8 @@ impl<'m, 'o> Runner<'m, 'o> {
             solved,
             is_cut,
         } = subincrement;
-        let accounted = (self.accounts).enter(problem, &solved, interval, &ledger.elements);
+        let accounted =
+            (self.accounts).enter(problem, (&solved, &returned), interval, &ledger.elements);
         let solver = SolverCounts {
             violation: contact_violation(problem, &self.state, &solved),
             converged: true,
