@@ -1,6 +1,7 @@
 //! Running checks of conservation: energy balance (docs/theory.md, section 9), energy put in by
 //! contact (section 7), and linear momentum of a model without external forces.
 
+use super::losses::{Losses, part};
 use crate::dynamics::{Energy, IncrementReport, Momentum};
 use crate::linear::larger;
 use crate::model::{Equation, Model};
@@ -15,8 +16,8 @@ pub(crate) struct Balance {
     largest: f64,
     /// Largest absolute balance so far.
     worst: f64,
-    /// Largest absolute work of the normal contact forces so far.
-    most_contact_work: f64,
+    /// The last energies.
+    last: Energy,
     contact_energy: ContactEnergy,
     /// Momentum at the start of a model without external forces.
     start: Option<Momentum>,
@@ -70,8 +71,7 @@ impl Balance {
         if self.free {
             self.add_momentum(report.momentum);
         }
-        let work = report.energy.normal_contact_work;
-        self.most_contact_work = larger(self.most_contact_work, work.abs());
+        self.last = report.energy;
         if let Some(added) = report.contact_energy {
             self.contact_energy.count += 1;
             self.contact_energy.energy += added;
@@ -102,9 +102,9 @@ impl Balance {
         part(self.worst, self.largest)
     }
 
-    /// The largest work of the normal contact forces so far as a part of the largest energy.
-    pub fn contact_work(&self) -> f64 {
-        part(self.most_contact_work, self.largest)
+    /// Where the energy has gone so far.
+    pub fn losses(&self) -> Losses {
+        Losses::new(&self.last, self.largest)
     }
 
     /// The change of a free model's linear momentum as a part of its largest value.
@@ -125,11 +125,6 @@ fn keeps_momentum(equation: &Equation) -> bool {
     }
     sums.iter()
         .all(|[sum, size]| sum.abs() <= SUM_ROUND_OFF * size)
-}
-
-/// `value / whole`; 0 where `value` is 0, whatever the whole.
-pub(crate) fn part(value: f64, whole: f64) -> f64 {
-    if value == 0.0 { 0.0 } else { value / whole }
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 mod balance;
 mod header;
+mod losses;
 mod monitor;
 mod run_summary;
 mod totals;

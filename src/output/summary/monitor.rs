@@ -90,7 +90,9 @@ impl Monitor {
 
     /// The closing lines: conservation, largest strain, contact.
     pub fn lines(&self, model: &Model) -> Vec<String> {
-        let mut lines = vec![self.balance_line(), self.strain.line(model)];
+        let mut lines = vec![self.balance_line()];
+        lines.extend(self.balance.losses().lines());
+        lines.push(self.strain.line(model));
         if !model.contacts.is_empty() {
             lines.push(format!(
                 "contact  {}; largest violation of Coulomb's cone {}",

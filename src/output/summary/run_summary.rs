@@ -7,10 +7,10 @@ use hdf5::types::VarLenUnicode;
 use hdf5::{FileBuilder, Group, H5Type};
 use thiserror::Error;
 
-use super::balance::part;
+use super::losses::{Losses, part};
 use super::totals::error_line;
 use super::warnings::{Findings, never_closed};
-use crate::dynamics::ContactViolation;
+use crate::dynamics::{ContactViolation, Energy};
 use crate::linear::{larger, largest};
 use crate::output::error::reason;
 use crate::output::file::{BodyTimes, UNFINISHED, regular_file};
@@ -110,7 +110,8 @@ impl ResultSummary {
         let steps: Vec<i64> = column(&history, "step")?;
         let (energies, largest_energy) = read_energies(&history.group("energy")?)?;
         let balance: Vec<f64> = column(&history, "energy/balance")?;
-        let findings = read_findings(&file, largest_energy, largest(&balance))?;
+        let worst = part(largest(&balance), largest_energy);
+        let findings = read_findings(&file, losses(&energies, largest_energy), worst)?;
         Ok(ResultSummary {
             path: path.to_owned(),
             size,
@@ -207,6 +208,7 @@ impl ResultSummary {
         let mut lines = wrap("energy", &pieces);
         let part = scientific(part(self.worst_balance, self.largest_energy), 1);
         lines.push(label("", &format!("balance {part} of the largest energy")));
+        lines.extend(losses(&self.energies, self.largest_energy).lines());
         lines
     }
 }
@@ -250,10 +252,29 @@ fn read_energies(at: &Group) -> hdf5::Result<(Vec<(String, f64)>, f64)> {
     Ok((energies, scale))
 }
 
+/// Where the energy has gone, from the last value of each energy.
+fn losses(energies: &[(String, f64)], largest: f64) -> Losses {
+    let last = |wanted: &str| {
+        let found = energies.iter().find(|(name, _)| name == wanted);
+        found.map_or(0.0, |(_, energy)| *energy)
+    };
+    let energy = Energy {
+        normal_contact_work: last("normal_contact_work"),
+        friction_dissipation: last("friction_dissipation"),
+        impact_loss: last("impact_loss"),
+        landing_return: last("landing_return"),
+        release_loss: last("release_loss"),
+        damping: last("damping"),
+        material_dissipation: last("material_dissipation"),
+        numerical_dissipation: last("numerical_dissipation"),
+        ..Energy::default()
+    };
+    Losses::new(&energy, largest)
+}
+
 /// Figures that the warnings are made from; datasets that older files lack are left out.
-fn read_findings(file: &Group, largest_energy: f64, balance: f64) -> hdf5::Result<Findings> {
+fn read_findings(file: &Group, losses: Losses, balance: f64) -> hdf5::Result<Findings> {
     let history = file.group("history")?;
-    let work: Vec<f64> = column(&history, "energy/normal_contact_work")?;
     let times: Vec<f64> = column(&history, "time")?;
     let increments: Vec<f64> = column(&history, "dt")?;
     let [edge, body] = ["edge_time", "wave_time"]
@@ -264,8 +285,8 @@ fn read_findings(file: &Group, largest_energy: f64, balance: f64) -> hdf5::Resul
         .find_map(|name| column(&history, &format!("strain/{name}")).ok());
     let dt = largest(&increments);
     Ok(Findings {
-        balance: part(balance, largest_energy),
-        contact_work: part(largest(&work), largest_energy),
+        balance,
+        losses,
         strain: strain.map(|strain| largest(&strain)),
         open: match dt > 0.0 {
             true => read_open(&history.group("contact")?)?,

@@ -1,6 +1,7 @@
 //! Warnings about a whole run: printed at its end, and by `info` from the result file.
 
 use super::balance::Balance;
+use super::losses::Losses;
 use crate::dynamics::IncrementReport;
 use crate::linear::larger;
 use crate::model::{ALL_EXTERIOR, Bodies, Model};
@@ -9,8 +10,6 @@ use crate::output::text::{LARGE, general, scientific, wrap_words};
 
 /// Energy balance, relative to the largest energy, above which a run is warned about.
 const BALANCE: f64 = 1e-8;
-/// Work of the normal contact forces, relative to the largest energy, that is warned about.
-const CONTACT_WORK: f64 = 0.01;
 /// Number of increments in the transit time of the shortest edge beyond which the errors of the mesh
 /// dominate.
 const MANY: f64 = 100.0;
@@ -22,8 +21,8 @@ const ENOUGH: f64 = 20.0;
 pub(crate) struct Findings {
     /// Largest energy balance as a part of the largest energy.
     pub balance: f64,
-    /// Largest work of the normal contact forces as a part of the largest energy.
-    pub contact_work: f64,
+    /// Where the energy has gone.
+    pub losses: Losses,
     /// Largest principal strain in a material for small strains, where it is known.
     pub strain: Option<f64>,
     /// Names of the contacts that never closed, sorted.
@@ -39,15 +38,15 @@ pub(crate) struct Findings {
 impl Findings {
     /// The warnings, each a sentence that says what to do, in lines of the screen.
     pub fn lines(&self) -> Vec<String> {
-        let texts = [
-            self.balance_text(),
-            self.contact_work_text(),
-            self.strain_text(),
-        ];
-        let increments = [self.long_text(), self.short_text()];
-        let open = self.open.iter().map(|name| self.open_text(name));
-        let all = texts.into_iter().chain(increments).flatten().chain(open);
-        all.flat_map(|text| wrap_words("warning", &text)).collect()
+        let mut texts: Vec<String> = self.balance_text().into_iter().collect();
+        texts.extend(self.losses.advice());
+        let others = [self.strain_text(), self.long_text(), self.short_text()];
+        texts.extend(others.into_iter().flatten());
+        texts.extend(self.open.iter().map(|name| self.open_text(name)));
+        texts
+            .iter()
+            .flat_map(|text| wrap_words("warning", text))
+            .collect()
     }
 
     fn balance_text(&self) -> Option<String> {
@@ -58,18 +57,6 @@ impl Findings {
                  TOLERANCE of *STICKSLIP or the increment",
                 scientific(self.balance, 1),
                 scientific(BALANCE, 0),
-            )
-        })
-    }
-
-    fn contact_work_text(&self) -> Option<String> {
-        let is_small = self.contact_work <= CONTACT_WORK;
-        (!is_small).then(|| {
-            format!(
-                "the normal contact forces did work of {} of the largest energy, above {}, as where \
-                 nodes land within increments: choose IMPACT TIME=EVENT or smaller increments",
-                scientific(self.contact_work, 1),
-                general(CONTACT_WORK, 1),
             )
         })
     }
@@ -153,7 +140,7 @@ impl Watch {
         let contacts: Vec<(String, bool)> = contact_names(model).into_iter().zip(closed).collect();
         Findings {
             balance: balance.worst(),
-            contact_work: balance.contact_work(),
+            losses: balance.losses(),
             strain: None,
             open: match self.dt > 0.0 {
                 true => never_closed(&contacts),
@@ -200,7 +187,10 @@ mod tests {
     fn sound() -> Findings {
         Findings {
             balance: 1e-10,
-            contact_work: 0.001,
+            losses: Losses {
+                clipping: 0.001,
+                ..Losses::default()
+            },
             strain: Some(0.1),
             open: vec![],
             dt: 0.1,
@@ -267,7 +257,10 @@ mod tests {
         };
         warns(|f| f.balance = 2e-8, "off by 2.0e-08 of the largest");
         warns(|f| f.balance = f64::NAN, "off by nan");
-        warns(|f| f.contact_work = 0.45, "4.5e-01 of the largest energy");
+        warns(
+            |f| f.losses.clipping = 0.45,
+            "4.5e-01 of the largest energy",
+        );
         warns(|f| f.strain = Some(0.35), "strain is 0.35, above 0.2");
         warns(|f| f.dt = 2.1, "(2), so that no vibration");
         warns(|f| f.dt = 4e-4, "longest increment (0.0004) is less");
