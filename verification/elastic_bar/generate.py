@@ -19,15 +19,15 @@ SPEED, GAP = 0.03, 0.0015
 
 WAVE_SPEED = sqrt(YOUNG / DENSITY)
 DT = LENGTH / ELEMENTS / WAVE_SPEED  # Courant number 1
-INCREMENTS = 150  # contact from 8 to 108
+INCREMENTS = 150  # contact from 8 to 108 at Courant number 1
 
 INCLUDE = "elastic_bar.inc"
 SCHEMES = {"ss22": "SCHEME=SS22, THETA1=1., THETA2=1.", "em": "SCHEME=ENERGY-MOMENTUM"}
 IMPACTS = {"impulse": "IMPULSE", "none": "NONE"}
 
 
-def model() -> str:
-    """Everything but the step."""
+def model(beta: float) -> str:
+    """Everything but the step, with a viscosity in transit times of an element."""
     bar = Grid("BAR", ELEMENTS, 1, lambda i, j: (LENGTH * i / ELEMENTS, DEPTH * j))
     wall = Grid(
         "WALL",
@@ -45,13 +45,22 @@ def model() -> str:
             bar.side_nodes("BAR_FACE", "left"),
             bar.side_surface("BAR_FACE", "left"),
             wall.side_surface("WALL_FACE", "right"),
-            elastic(YOUNG, 0.0, DENSITY, "BAR", "WALL", thickness=THICKNESS),
+            material(beta * DT),
             card("SURFACE INTERACTION, NAME=SMOOTH"),
             card("CONTACT PAIR, INTERACTION=SMOOTH", ("BAR_FACE", "WALL_FACE")),
             card("BOUNDARY", ("WALL", 1, 2), ("BAR", 2, 2)),
             card("INITIAL CONDITIONS, TYPE=VELOCITY", ("BAR", 1, -SPEED)),
         ]
     )
+
+
+def material(beta: float) -> str:
+    """Material and sections."""
+    cards = elastic(YOUNG, 0.0, DENSITY, "BAR", "WALL", thickness=THICKNESS)
+    if beta == 0.0:
+        return cards
+    density = card("DENSITY", (DENSITY,))
+    return cards.replace(density, density + card(f"DAMPING, BETA={beta!r}"))
 
 
 def problem(scheme: str, impact: str) -> str:
@@ -69,10 +78,10 @@ def problem(scheme: str, impact: str) -> str:
     )
 
 
-def write(folder: Path) -> None:
-    """Writes the include file and all decks into `folder`."""
+def write(folder: Path, beta: float = 0.0) -> None:
+    """Writes the include file and all decks into `folder`; `beta` is in transit times h/c."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / INCLUDE).write_text(model())
+    (folder / INCLUDE).write_text(model(beta))
     for scheme in SCHEMES:
         for impact in IMPACTS:
             (folder / f"{scheme}_{impact}.inp").write_text(problem(scheme, impact))

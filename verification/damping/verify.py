@@ -1,0 +1,110 @@
+"""Free decay of the first mode of a bar: logarithmic decrement, period and motion in closed form."""
+
+import sys
+from dataclasses import dataclass
+from math import exp, log, pi, sqrt
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+
+import runner  # noqa: E402  (first: it finds the modules of scripts/)
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+import style  # noqa: E402
+from results import Array, Results  # noqa: E402
+
+bar = runner.load(HERE / "generate.py")
+
+DAMPED = bar.OMEGA * sqrt(1 - bar.RATIO**2)
+"""Frequency of the damped vibration."""
+DECREMENT = 2 * pi * bar.RATIO / sqrt(1 - bar.RATIO**2)
+AMPLITUDE = bar.SPEED / DAMPED
+
+
+def closed_form(time: Array) -> Array:
+    """Displacement of the free end."""
+    return AMPLITUDE * np.exp(-bar.RATIO * bar.OMEGA * time) * np.sin(DAMPED * time)
+
+
+def motion(results: Results) -> Array:
+    """Displacement of the free end of a run."""
+    return results.nodes("END").U[:, :, 0].mean(axis=1)
+
+
+def peaks(time: Array, u: Array) -> tuple[Array, Array]:
+    """Times and values of the maxima, from parabolas through three points."""
+    k = np.flatnonzero((u[1:-1] > u[:-2]) & (u[1:-1] >= u[2:])) + 1
+    left, mid, right = u[k - 1], u[k], u[k + 1]
+    shift = 0.5 * (left - right) / (left - 2 * mid + right)
+    return time[k] + shift * (time[k] - time[k - 1]), mid - 0.25 * (left - right) * shift
+
+
+@dataclass(frozen=True)
+class Figures:
+    """Measured figures of one run."""
+
+    decrement: float
+    period: float
+    deviation: float
+    dissipated: float
+    numerical: float
+
+    @classmethod
+    def of(cls, results: Results) -> "Figures":
+        """Measures a run; all but the deviation, of the amplitude, relative to the closed form."""
+        time, u = results.time, motion(results)
+        at, heights = peaks(time, u)
+        account = results.energy
+        energy = account["kinetic"] + account["strain"]
+        lost = energy[0] - energy[-1]
+        return cls(
+            log(heights[0] / heights[-1]) / (len(heights) - 1) / DECREMENT,
+            float(at[-1] - at[0]) / (len(at) - 1) * DAMPED / (2 * pi),
+            float(np.abs(u - closed_form(time)).max()) / AMPLITUDE,
+            float(account["damping"][-1] / lost),
+            float(np.abs(account["numerical_dissipation"]).max() / energy[0]),
+        )
+
+
+def draw(verification: runner.Verification) -> None:
+    """Motion of the free end of all runs, with the closed form and its envelope."""
+    figure, axes = plt.subplots(figsize=(9, 4))
+    for case in verification.cases:
+        results = verification.results[case.name]
+        axes.plot(results.time / bar.PERIOD, motion(results) / AMPLITUDE, lw=0.9, label=case.name)
+    time = np.linspace(0.0, bar.PERIODS * bar.PERIOD, 1201)
+    axes.plot(time / bar.PERIOD, closed_form(time) / AMPLITUDE, "k--", lw=0.7, label="closed form")
+    for sign in (1, -1):
+        envelope = [sign * exp(-bar.RATIO * bar.OMEGA * t) for t in time]
+        axes.plot(time / bar.PERIOD, envelope, "k:", lw=0.7)
+    axes.set(xlabel="time / period", ylabel="displacement of the end / amplitude")
+    axes.legend(loc="upper right", fontsize="small")
+    style.save(figure, verification.output / "decay.png")
+
+
+def main() -> int:
+    """Runs, checks, draws, reports."""
+    verification = runner.start(HERE)
+    rows = []
+    for case in verification.cases:
+        results = verification.results[case.name]
+        figures = Figures.of(results)
+        verification.check_run(case.name, bar.LENGTH / bar.ELEMENTS)
+        suffix = f", {case.group}" if case.group else ""
+        verification.check(f"decrement / closed form{suffix}", case.name, figures.decrement)
+        verification.check(f"period / closed form{suffix}", case.name, figures.period)
+        verification.check(f"largest deviation{suffix}", case.name, figures.deviation)
+        verification.check("damping / energy lost", case.name, figures.dissipated)
+        if case.name.startswith("em"):
+            verification.check("numerical dissipation / energy", case.name, figures.numerical)
+        rows.append((case.name, figures.decrement, figures.period, figures.deviation))
+    verification.table(
+        "Free decay of a bar", ("case", "decrement", "period", "largest deviation"), rows
+    )
+    draw(verification)
+    return verification.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
