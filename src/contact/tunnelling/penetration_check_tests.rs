@@ -140,8 +140,15 @@ fn corners_may_be_cut_in_contact() {
     assert_eq!(passes([7.985, 0.51], [8.015, 0.48], FREE), None, "clips");
     let lands = held(false, 8);
     assert_eq!(passes([7.95, 0.55], [8.0, 0.48], lands), None);
-    assert_eq!(passes([8.1, 0.4985], [7.9, 0.5], FREE), None, "clips, then on top");
-    assert!(passes([8.1, 0.47], [7.9, 0.5], FREE).is_some(), "cuts the corner off");
+    assert_eq!(
+        passes([8.1, 0.4985], [7.9, 0.5], FREE),
+        None,
+        "clips, then on top"
+    );
+    assert!(
+        passes([8.1, 0.47], [7.9, 0.5], FREE).is_some(),
+        "cuts the corner off"
+    );
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 
-use super::contact_forces::ContactForces;
+use super::forces::ContactForces;
 use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::results::Alternation;
 use crate::lcp::ContactState;

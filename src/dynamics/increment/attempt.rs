@@ -2,10 +2,8 @@
 //! Section 4 of docs/theory.md (paper eqs 27, 29 and 36 to 49).
 
 use super::active_constraints::ConstraintSet;
-use super::contact_forces::ContactForces;
-use super::contact_system::ContactSystem;
 use super::convergence::{Errors, Iterate, Pass};
-use super::impulses::Impulses;
+use super::forces::{ContactForces, ContactSystem, EqualForces, Impulses};
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::rigid_predictor::rigid_predictor;
 use super::trace::{Failed, Trace};
@@ -89,6 +87,7 @@ impl<'m> Attempt<'_, 'm> {
         let (problem, start, dt) = (self.problem, self.start, self.interval.dt);
         let mut contact = ContactForces::without_constraints(before);
         let mut impulses = Impulses::new(before, self.set);
+        let mut equal_forces = EqualForces::new(problem.settings.tolerance);
         self.workspace.search.start(&start.v, dt);
 
         // the passes start from the rigid motion of the bodies
@@ -122,7 +121,8 @@ impl<'m> Attempt<'_, 'm> {
 
             // Pn, Pt of the complementarity problem, eq. (5.2);
             // dU = y + K*^-1 (Bn^T Pn + Bt^T Pt), eq. (4.7)
-            let du = contact.solve(&y, settled, &mut self.k_star())?;
+            let weight = settled.then(|| equal_forces.weight());
+            let du = contact.solve(&y, weight, &mut self.k_star())?;
 
             // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales
             let iterate = Iterate::new(&equilibrium, &contact, [&u, &d]);
@@ -134,7 +134,9 @@ impl<'m> Attempt<'_, 'm> {
                 contact.add_open(self.outside(left_out, &u));
                 return self.finish(v0p, d, contact, impulses);
             }
-            if std::env::var("DBGP").is_ok() { let p = trace.passes.last().unwrap(); eprintln!("pass {pass} res {:.2e} corr {:.2e} active {} stick {} lcp {} worn {} facs {}", p.residual, p.correction, p.active, p.stick, p.lcp_size, factors.are_worn(), self.workspace.meter.counts.factorizations); }
+            if settled {
+                equal_forces.take_in(trace.correction());
+            }
             factors.take_in(trace.correction())?;
         }
         Err(Cause::NotConverged)

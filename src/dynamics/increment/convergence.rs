@@ -1,7 +1,7 @@
 //! Convergence criterion of the passes: relative residual and correction with local scales and a
 //! round-off floor. Section 4 of docs/theory.md, Convergence.
 
-use super::contact_forces::ContactForces;
+use super::forces::ContactForces;
 use crate::contact::tolerances::{SETTLED_OVERLAP, SOLVED_GAP};
 use crate::dynamics::results::{Cause, PassReport, Worst};
 use crate::dynamics::step::{

@@ -3,10 +3,8 @@
 mod active_constraints;
 mod alternation;
 mod attempt;
-mod contact_forces;
-mod contact_system;
 mod convergence;
-mod impulses;
+mod forces;
 mod refactorization;
 mod returned;
 mod rigid_predictor;
@@ -14,6 +12,6 @@ mod trace;
 
 pub(crate) use active_constraints::{ActiveConstraints, ConstraintSet};
 pub(crate) use attempt::{Attempt, Solved};
-pub(crate) use contact_forces::ContactForces;
+pub(crate) use forces::ContactForces;
 pub(crate) use returned::{PairReturn, Returned};
 pub(crate) use trace::Failed;

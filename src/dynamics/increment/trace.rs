@@ -1,7 +1,7 @@
 //! Progress of an attempt at an increment, which it leaves behind when it fails.
 
 use super::alternation::ContactHistory;
-use super::contact_forces::ContactForces;
+use super::forces::ContactForces;
 use crate::dynamics::results::{Cause, Course, PassReport, Worst};
 use crate::linear::largest;
 

@@ -97,12 +97,6 @@ fn check_paths(
     let found = workspace.find_penetration([u0, &u1], closed, &unsolved);
     found.map_or(Ok(()), |Penetration { slave, segment }| {
         let [a, b] = segment;
-        if std::env::var("DBGP").is_ok() { 
-            let (p,q)=(problem.place(u0,[slave,a,b]),problem.place(&u1,[slave,a,b]));
-            eprintln!("crossed slave {slave} segment {segment:?} start xi {} gap {:e} end xi {} gap {:e} len {}",p.xi,p.gap,q.xi,q.gap,q.length);
-            for (c,f) in solved.forces.iter() { if c.nodes().any(|n| n==slave||n==a||n==b) { eprintln!("  pair {:?} gap {:e} start_gap {:e} force {:?} from {:?}", c.source.nodes, c.gap, c.start_gap, f.map(|f| f.force), c.source.from); } }
-            for c in before.closed.iter() { eprintln!("  before {:?}", c.key); }
-        }
         Err(Cause::Crossed {
             slave,
             segment,

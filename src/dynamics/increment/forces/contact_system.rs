@@ -1,17 +1,15 @@
 //! Complementarity problem of some constraints with one of the two system matrices: K* for the
 //! contact forces of a pass, M for the impulses. Sections 5 and 6 of docs/theory.md.
 
+use super::equal_forces::FIRST_WEIGHT;
 use crate::contact::{ClosedPair, ClosedPairs, Constraint};
 use crate::dynamics::results::{Cause, FailedLcp};
 use crate::dynamics::step::{System, sum};
 use crate::lcp::{ContactState, FrictionalLcp, FrictionalSolution, LcpMethod};
 use crate::linear::{LinearError, Transformation};
 
-/// Part of the compliance of a constraint that holds its force near that of the pass before.
-const PROXIMAL_WEIGHT: f64 = 1e-5;
-
 /// A system matrix with what its complementarity problems need.
-pub(super) struct ContactSystem<'a> {
+pub(crate) struct ContactSystem<'a> {
     /// T of the unknowns.
     pub map: &'a Transformation,
     pub system: System<'a>,
@@ -20,38 +18,41 @@ pub(super) struct ContactSystem<'a> {
 
 /// What a complementarity problem starts from.
 #[derive(Clone)]
-pub(super) struct Guess {
+pub(crate) struct Guess {
     /// State of every constraint.
     pub states: Vec<ContactState>,
     /// Forces of every constraint near which, of several solutions, the answer may lie, if there are any.
     pub forces: Option<Vec<[f64; 2]>>,
-    /// Whether it is to lie there, or only where there is no answer otherwise.
-    pub is_near: bool,
+    /// Weight with which it lies there; without, only where there is no answer otherwise.
+    pub weight: Option<f64>,
 }
 
 /// What is closed, and the pivots that it took.
-pub(super) struct ContactSolution {
+pub(crate) struct ContactSolution {
     pub closed: ClosedPairs,
     pub pivots: usize,
 }
 
 impl Guess {
-    /// States and forces of the pairs closed `before`, near which the answer lies when the passes have
-    /// settled.
-    pub fn from_pass(constraints: &[&Constraint], before: &ClosedPairs, settled: bool) -> Self {
+    /// States and forces of the pairs closed `before`, near which the answer lies with a weight.
+    pub fn from_pass(
+        constraints: &[&Constraint],
+        before: &ClosedPairs,
+        weight: Option<f64>,
+    ) -> Self {
         let forces = constraints.iter().map(|c| before.force(c.key));
         Guess {
             states: constraints.iter().map(|c| before.state(c.key)).collect(),
             forces: Some(forces.collect()),
-            is_near: settled,
+            weight,
         }
     }
 
     /// The same, with an answer near the forces before.
     fn near(&self) -> Option<Self> {
-        let is_other = self.forces.is_some() && !self.is_near;
+        let is_other = self.forces.is_some() && self.weight.is_none();
         is_other.then(|| Guess {
-            is_near: true,
+            weight: Some(FIRST_WEIGHT),
             ..self.clone()
         })
     }
@@ -108,8 +109,8 @@ impl ContactSystem<'_> {
         guess: &Guess,
     ) -> Result<ContactSolution, Cause> {
         let mut problem = self.system.frictional_lcp(constraints, gaps, slips)?;
-        if let Some(forces) = guess.forces.as_ref().filter(|_| guess.is_near) {
-            add_proximal_term(&mut problem, forces);
+        if let (Some(forces), Some(weight)) = (&guess.forces, guess.weight) {
+            add_proximal_term(&mut problem, forces, weight);
         }
         match self.system.solve_lcp(&problem, &guess.states, self.method) {
             Ok(solution) => Ok(ContactSolution {
@@ -142,10 +143,10 @@ fn closed_of(constraints: &[&Constraint], solution: &FrictionalSolution) -> Clos
 /// Equal-force rule, eq. (5.3): adds eps Q_kk (P_k - P_k^0) to gaps and slips, P^0 being the forces of
 /// the pass before. Where several pairs can carry the same force, the solution near that of the pass
 /// before is taken; the term vanishes as the passes converge.
-fn add_proximal_term(problem: &mut FrictionalLcp, forces: &[[f64; 2]]) {
+fn add_proximal_term(problem: &mut FrictionalLcp, forces: &[[f64; 2]], weight: f64) {
     let n = forces.len();
     for (k, [pn, pt]) in forces.iter().enumerate() {
-        let [normal, tangential] = [k, k + n].map(|i| PROXIMAL_WEIGHT * problem.q[(i, i)]);
+        let [normal, tangential] = [k, k + n].map(|i| weight * problem.q[(i, i)]);
         problem.q[(k, k)] += normal;
         problem.q[(k + n, k + n)] += tangential;
         problem.gap[k] -= normal * pn;

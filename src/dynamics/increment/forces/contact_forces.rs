@@ -74,18 +74,18 @@ impl ContactForces {
     ///
     /// Constraints that were open before (or without any before, that y leaves open) stay out of the
     /// problem first; those that would overlap with the forces of the others enter afterwards, so
-    /// that the answer is that of all constraints. When the passes have settled, they enter only if
-    /// they would overlap by more than round-off: two nodes that face each other may carry the same
-    /// force, and it must not go to and fro between them.
-    pub(super) fn solve(
+    /// that the answer is that of all constraints. With a `weight` of the equal-force rule, which there is
+    /// when the passes have settled, they enter only if they would overlap by more than round-off: two
+    /// nodes that face each other may carry the same force, and it must not go to and fro between them.
+    pub fn solve(
         &mut self,
         y: &[f64],
-        settled: bool,
+        weight: Option<f64>,
         system: &mut ContactSystem,
     ) -> Result<Vec<f64>, Cause> {
         let before = std::mem::take(&mut self.closed);
         (self.problem_size, self.pivots) = (0, 0);
-        let overlap = if settled { SETTLED_OVERLAP } else { 0.0 };
+        let overlap = weight.map_or(0.0, |_| SETTLED_OVERLAP);
         let was_closed = |constraint: &Constraint| before.closes(constraint.key);
         let mut inside: Vec<bool> = self.constraints.iter().map(was_closed).collect();
         let mut du = y.to_vec();
@@ -99,7 +99,7 @@ impl ContactForces {
             // g + Gn y and Dt + Gt y, eq. (5.2)
             let gaps = chosen.iter().map(|c| c.gap + c.gap_change(y)).collect();
             let slips = chosen.iter().map(|c| c.slip + c.slip_change(y)).collect();
-            let guess = Guess::from_pass(&chosen, &before, settled);
+            let guess = Guess::from_pass(&chosen, &before, weight);
             let solution = system.solve(&chosen, [gaps, slips], &guess)?;
             (self.closed, self.problem_size) = (solution.closed, chosen.len());
             self.pivots += solution.pivots;
@@ -183,7 +183,7 @@ mod tests {
         };
         let mut forces = ContactForces::default();
         forces.relinearize(vec![wide(mu)]);
-        let solved = forces.solve(&[0.5; DOFS], false, &mut system);
+        let solved = forces.solve(&[0.5; DOFS], None, &mut system);
         let du = solved.expect("solved");
         let pair = forces.closed.iter().next().expect("closed");
         (pair.force, pair.state, du)

@@ -1,10 +1,10 @@
 //! Velocity jump at the start of an increment: the set of pairs that take impact impulses,
 //! iterated along with the passes. Section 6 of docs/theory.md (paper eq. 30).
 
-use super::active_constraints::ConstraintSet;
 use super::contact_forces::ContactForces;
 use super::contact_system::{ContactSystem, Guess};
 use crate::contact::{ClosedPairs, Constraint, ConstraintKey};
+use crate::dynamics::increment::ConstraintSet;
 use crate::dynamics::results::{Cause, State};
 use crate::dynamics::step::{StepProblem, Workspace};
 use crate::lcp::ContactState;
@@ -137,7 +137,7 @@ fn impulses(
     let guess = Guess {
         states: vec![ContactState::Stick; constraints.len()],
         forces: None,
-        is_near: false,
+        weight: None,
     };
     if !system.system.is_factorized() {
         system.system.factorize()?;

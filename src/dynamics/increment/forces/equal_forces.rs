@@ -1,0 +1,71 @@
+//! Weight of the equal-force rule, by which pairs that can carry the same force keep it near that of the
+//! pass before. Section 5 of docs/theory.md, Equal-force rule.
+
+/// Part of the compliance of a constraint that holds its force, at first.
+pub(super) const FIRST_WEIGHT: f64 = 1e-5;
+/// Decrease of the weight from pass to pass.
+const DECREASE: f64 = 0.1;
+/// Least weight: with a smaller one, the round-off of the gaps moves the forces.
+const LEAST_WEIGHT: f64 = 1e-7;
+/// Correction, in tolerances, below which growth is round-off.
+const ROUND_OFF: f64 = 100.0;
+
+/// Weight eps of eq. (5.3) from pass to pass.
+///
+/// Forces of pairs that are almost one go on changing at the rate eps/(eps + lambda), lambda being the
+/// compliance of their difference as a part of their own. The weight therefore decreases, until small
+/// corrections grow: then the round-off of the gaps moves the forces, and the first weight holds them.
+pub(crate) struct EqualForces {
+    tolerance: f64,
+    weight: f64,
+    correction: f64,
+    holds: bool,
+}
+
+impl EqualForces {
+    /// Before the passes, `tolerance` being theirs.
+    pub fn new(tolerance: f64) -> Self {
+        EqualForces {
+            tolerance,
+            weight: FIRST_WEIGHT,
+            correction: f64::INFINITY,
+            holds: false,
+        }
+    }
+
+    /// The weight of the next pass.
+    pub fn weight(&self) -> f64 {
+        self.weight
+    }
+
+    /// Takes in the relative correction of a pass with the weight.
+    pub fn take_in(&mut self, correction: f64) {
+        let grows = correction >= self.correction;
+        self.correction = correction;
+        self.holds |= grows && correction < ROUND_OFF * self.tolerance;
+        self.weight = match self.holds {
+            true => FIRST_WEIGHT,
+            false => (DECREASE * self.weight).max(LEAST_WEIGHT),
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_weight_decreases_until_round_off_grows() {
+        let mut rule = EqualForces::new(1e-11);
+        let mut weight = |correction| {
+            rule.take_in(correction);
+            rule.weight()
+        };
+        let about = |weight: f64, expected: f64| (weight / expected - 1.0).abs() < 1e-12;
+        assert!(about(weight(1e-4), 1e-6));
+        assert!(about(weight(1e-3), 1e-7), "a slow mode moves more");
+        assert!(about(weight(1e-10), 1e-7));
+        assert!(about(weight(2e-10), 1e-5), "round-off grows");
+        assert!(about(weight(1e-10), 1e-5));
+    }
+}

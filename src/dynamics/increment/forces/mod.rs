@@ -1,0 +1,11 @@
+//! Contact forces of the passes, impulses, and their complementarity problems.
+
+mod contact_forces;
+mod contact_system;
+mod equal_forces;
+mod impulses;
+
+pub(crate) use contact_forces::ContactForces;
+pub(crate) use contact_system::ContactSystem;
+pub(crate) use equal_forces::EqualForces;
+pub(crate) use impulses::Impulses;
