@@ -121,8 +121,7 @@ impl<'m> Attempt<'_, 'm> {
 
             // Pn, Pt of the complementarity problem, eq. (5.2);
             // dU = y + K*^-1 (Bn^T Pn + Bt^T Pt), eq. (4.7)
-            let weight = settled.then(|| equal_forces.weight());
-            let du = contact.solve(&y, weight, &mut self.k_star())?;
+            let du = contact.solve(&y, equal_forces.weight(settled), &mut self.k_star())?;
 
             // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales
             let iterate = Iterate::new(&equilibrium, &contact, [&u, &d]);
@@ -134,9 +133,7 @@ impl<'m> Attempt<'_, 'm> {
                 contact.add_open(self.outside(left_out, &u));
                 return self.finish(v0p, d, contact, impulses);
             }
-            if settled {
-                equal_forces.take_in(trace.correction());
-            }
+            equal_forces.take_in(trace.correction(), settled);
             factors.take_in(trace.correction())?;
         }
         Err(Cause::NotConverged)

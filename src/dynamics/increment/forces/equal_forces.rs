@@ -33,13 +33,16 @@ impl EqualForces {
         }
     }
 
-    /// The weight of the next pass.
-    pub fn weight(&self) -> f64 {
-        self.weight
+    /// The weight of the next pass, if the passes have `settled`.
+    pub fn weight(&self, settled: bool) -> Option<f64> {
+        settled.then_some(self.weight)
     }
 
-    /// Takes in the relative correction of a pass with the weight.
-    pub fn take_in(&mut self, correction: f64) {
+    /// Takes in the relative correction of a pass, with the weight if they have `settled`.
+    pub fn take_in(&mut self, correction: f64, settled: bool) {
+        if !settled {
+            return;
+        }
         let grows = correction >= self.correction;
         self.correction = correction;
         self.holds |= grows && correction < ROUND_OFF * self.tolerance;
@@ -58,8 +61,8 @@ mod tests {
     fn the_weight_decreases_until_round_off_grows() {
         let mut rule = EqualForces::new(1e-11);
         let mut weight = |correction| {
-            rule.take_in(correction);
-            rule.weight()
+            rule.take_in(correction, true);
+            rule.weight(true).unwrap_or(0.0)
         };
         let about = |weight: f64, expected: f64| (weight / expected - 1.0).abs() < 1e-12;
         assert!(about(weight(1e-4), 1e-6));
