@@ -264,7 +264,7 @@ impl<'m> Attempt<'_, 'm> {
         trace.worst = scales.worst(&residual, &problem.unknowns.dof, position);
         trace.add(report, pass.contact);
         meter.count_pass(report.residual);
-        Ok(scales.converged(&errors))
+        Ok(scales.converged(&errors) && scales.closes_gaps(pass.contact, du))
     }
 
     /// The constraints that did not count, without those that a free node past a corner is behind: the

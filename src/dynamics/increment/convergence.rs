@@ -2,6 +2,7 @@
 //! round-off floor. Section 4 of docs/theory.md, Convergence.
 
 use super::forces::ContactForces;
+use crate::contact::Constraint;
 use crate::contact::tolerances::{SETTLED_OVERLAP, SOLVED_GAP};
 use crate::dynamics::results::{Cause, PassReport, Worst};
 use crate::dynamics::step::{
@@ -302,12 +303,7 @@ impl<'a> Scales<'a> {
     pub fn obeys_contact_law(&self, contact: &ContactForces, settled: bool) -> bool {
         let overlap = if settled { SETTLED_OVERLAP } else { 0.0 };
         contact.iter().all(|(constraint, pair)| {
-            let of_body =
-                |body: usize| larger(self.tolerance * self.increment[body], self.resolution[body]);
-            let bodies = constraint.nodes().map(|node| self.parts.of_nodes()[node]);
-            let most = bodies
-                .map(of_body)
-                .fold(SOLVED_GAP * constraint.scale, larger);
+            let most = self.closed_gap(constraint);
             match pair {
                 None => constraint.gap >= -larger(most, overlap * constraint.scale),
                 Some(pair) => {
@@ -319,6 +315,24 @@ impl<'a> Scales<'a> {
                 }
             }
         })
+    }
+
+    /// Whether a pass with the correction dU closes the gaps of its closed pairs. Where pairs contradict each
+    /// other, the equal-force rule lets the forces grow in balance, and gaps stay.
+    pub fn closes_gaps(&self, contact: &ContactForces, du: &[f64]) -> bool {
+        contact.acting().all(|(constraint, _)| {
+            let gap = constraint.gap + constraint.gap_change(du);
+            gap.abs() <= self.closed_gap(constraint)
+        })
+    }
+
+    /// Largest gap of a closed pair: tolerance times the displacement increment of its bodies, or round-off.
+    fn closed_gap(&self, constraint: &Constraint) -> f64 {
+        let of_body =
+            |body: usize| larger(self.tolerance * self.increment[body], self.resolution[body]);
+        let bodies = constraint.nodes().map(|node| self.parts.of_nodes()[node]);
+        let round_off = SOLVED_GAP * constraint.scale;
+        bodies.map(of_body).fold(round_off, larger)
     }
 
     /// The node with the largest relative residual, if there is any; `residual` over the unknowns, whose

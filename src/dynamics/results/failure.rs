@@ -73,6 +73,11 @@ pub struct FailedLcp {
 }
 
 impl FailedLcp {
+    /// Whether its pairs contradict each other.
+    pub(crate) fn is_contradiction(&self) -> bool {
+        matches!(self.error, LcpError::Ray { .. })
+    }
+
     /// The problem of some constraints that was not solved.
     pub(crate) fn new(
         error: LcpError,

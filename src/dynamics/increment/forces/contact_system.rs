@@ -62,8 +62,9 @@ impl ContactSystem<'_> {
     /// Forces of the given constraints from the constant terms of their gaps and slips.
     ///
     /// Where a problem with derivative rows has no solution, that with the force rows in their place is
-    /// solved: Q is then symmetric and the theorem of section 8 holds. Where pairs are so nearly one that
-    /// round-off spoils both, the answer near the forces before is taken.
+    /// solved: Q is then symmetric and the theorem of section 8 holds, so that a ray says that pairs
+    /// contradict each other. Where pairs are so nearly one that round-off spoils both problems, the answer
+    /// near the forces before is taken.
     pub fn solve(
         &mut self,
         constraints: &[&Constraint],
@@ -72,7 +73,7 @@ impl ContactSystem<'_> {
     ) -> Result<ContactSolution, Cause> {
         let solved = self.solve_with_rows(constraints, &constant_terms, guess);
         match (&solved, guess.near()) {
-            (Err(Cause::Lcp(_)), Some(near)) => {
+            (Err(Cause::Lcp(failed)), Some(near)) if !failed.is_contradiction() => {
                 let found = self.solve_with_rows(constraints, &constant_terms, &near);
                 found.or(solved)
             }
