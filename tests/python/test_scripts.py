@@ -21,9 +21,9 @@ from decks import (
     CANTILEVERS,
     COLUMN,
     CORNERS,
+    IMPACT,
     PILE,
     RINGS,
-    IMPACT,
     SHAPES,
     shortened,
 )
