@@ -53,6 +53,9 @@
 //! | residual, correction | errors of a pass: out-of-balance force, last change of displacement |
 //! | acceptance | checks that a converged increment passes before it is entered in the ledger |
 //! | ledger | energies, impulses and works summed over the run, and their balance |
+//! | redistributed mass M_r | consistent mass with nodes of contact surfaces whose mass others carry |
+//! | donor | a node with mass that carries that of a node without, with a weight w_ij of P |
+//! | release | a pair opens; nodes without mass come to rest and lose the energy R |
 //! | landing | a node that closes its gap within an increment |
 //! | landing return | energy D that the force of a landing takes, given back as kinetic energy |
 //! | pattern w, share y | velocities along which it is given back, V1 <- V1 + sum y w |

@@ -272,6 +272,7 @@ fn settings_are_read_and_kept() {
         impact: Impact::None,
         impact_time: ImpactTime::Event,
         landing: LandingRule::Plastic,
+        contact_mass: ContactMass::Consistent,
         lcp: LcpChoice::Lemke,
         factorization: Factorization::EveryPass,
         solver: SolverChoice::Sprs,

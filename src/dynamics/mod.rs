@@ -4,13 +4,14 @@ mod events;
 mod increment;
 mod landing;
 mod ledger;
+mod release;
 mod results;
 mod run;
 mod step;
 pub use results::{
     Alternation, BodyResult, Cause, ContactImpulse, ContactOnBody, ContactResultant,
     ContactViolation, Course, Cutback, Energy, FailedLcp, Failure, IncrementReport, Landing,
-    Momentum, NodalResults, NodeStatus, Observer, Outcome, PassReport, RigidReaction, RunSummary,
-    SolverCounts, State, Timings, Worst,
+    Momentum, NodalResults, NodeMass, NodeStatus, Observer, Outcome, PassReport, RigidReaction,
+    RunSummary, SolverCounts, State, Timings, Worst,
 };
 pub use run::{RunError, run};

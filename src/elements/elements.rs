@@ -214,6 +214,13 @@ impl Elements {
         }
     }
 
+    /// Tangent of one element in the configuration of [`Self::internal_force`], D x D column by column.
+    pub fn tangent(&self, element: usize, motion: Motion) -> Vec<f64> {
+        let part = &self.parts[element];
+        let d = 2 * part.element.nodes().len();
+        part.tangent(motion, TangentPart::Whole)[..d * d].to_vec()
+    }
+
     /// K v with the tangent in the configuration of [`Self::internal_force`], 2 N entries. Elements
     /// at whose nodes `v` is zero cost nothing.
     pub fn tangent_product(&self, motion: Motion, v: &[f64]) -> Vec<f64> {

@@ -28,7 +28,8 @@ pub use material::{Damping, Material, Section};
 pub use mesh::{Element, Face, Mesh, Set, SharedSides};
 pub use sets::{HistorySet, NamedSets};
 pub use settings::{
-    Factorization, Impact, ImpactTime, LandingRule, LcpChoice, Scheme, Settings, SolverChoice,
+    ContactMass, Factorization, Impact, ImpactTime, LandingRule, LcpChoice, Scheme, Settings,
+    SolverChoice,
 };
 pub use step::{Frames, Increments, Procedure, Step};
 pub use surface::{ALL_EXTERIOR, Surface, SurfaceKind};

@@ -12,6 +12,8 @@ pub struct Settings {
     pub impact_time: ImpactTime,
     /// What becomes of the energy that landings take.
     pub landing: LandingRule,
+    /// Mass of the nodes of contact surfaces, the same in all steps.
+    pub contact_mass: ContactMass,
     /// Solver of the complementarity problem.
     pub lcp: LcpChoice,
     /// When the effective matrix is factorised again.
@@ -31,6 +33,7 @@ impl Default for Settings {
             impact: Impact::Impulse,
             impact_time: ImpactTime::Increment,
             landing: LandingRule::Plastic,
+            contact_mass: ContactMass::Consistent,
             lcp: LcpChoice::Hybrid,
             factorization: Factorization::Keep,
             solver: SolverChoice::Faer,
@@ -79,6 +82,15 @@ pub enum LandingRule {
     Plastic,
     /// It is given back as kinetic energy.
     Return,
+}
+
+/// Mass of the nodes of contact surfaces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ContactMass {
+    /// That of the elements.
+    Consistent,
+    /// Carried by the nodes behind the surface.
+    Redistributed,
 }
 
 /// Solver of the complementarity problem of a pass.

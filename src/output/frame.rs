@@ -29,6 +29,7 @@ impl Frame {
         self.nodal.status.clone_from(&nodal.status);
         self.nodal.pressure.clone_from(&nodal.pressure);
         self.nodal.slip.clone_from(&nodal.slip);
+        self.nodal.mass.clone_from(&nodal.mass);
         self.elements.clone_from(&report.elements);
     }
 }

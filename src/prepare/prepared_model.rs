@@ -4,9 +4,10 @@
 use super::adjustment::{Adjusted, adjust, report_adjusted};
 use super::initial_gaps::{InitialGap, gaps};
 use super::initial_penetration::report_penetrations;
+use super::redistribution::Redistribution;
 use crate::contact::{ContactSurfaces, contact_surfaces};
 use crate::diagnostics::Diagnostics;
-use crate::model::{Model, Step};
+use crate::model::{ContactMass, Model, Step};
 
 /// A model with its nodes adjusted, its contact surfaces and the initial gaps between them. Mesh and
 /// contacts stay as they are from here on.
@@ -16,6 +17,7 @@ pub struct PreparedModel {
     surfaces: Vec<ContactSurfaces>,
     gaps: Vec<Vec<InitialGap>>,
     adjusted: Vec<Adjusted>,
+    redistribution: Redistribution,
 }
 
 /// Prepares a model; reports adjusted nodes, elements that the adjustment spoils, and initial
@@ -40,11 +42,18 @@ impl PreparedModel {
             surfaces = moved.map(|contact| contact.with_sharp_corners(x)).collect();
         }
         let bodies = model.mesh.bodies();
+        let is_redistributed =
+            |step: &Step| step.settings.contact_mass == ContactMass::Redistributed;
+        let redistribution = match model.steps.iter().any(is_redistributed) {
+            true => Redistribution::new(&model, &surfaces),
+            false => Redistribution::default(),
+        };
         let of_contact = |contact: &ContactSurfaces| gaps(contact, x, &bodies);
         PreparedModel {
             gaps: surfaces.iter().map(of_contact).collect(),
             surfaces,
             adjusted,
+            redistribution,
             model,
         }
     }
@@ -68,6 +77,11 @@ impl PreparedModel {
     /// segment are left out.
     pub fn initial_gaps(&self) -> &[Vec<InitialGap>] {
         &self.gaps
+    }
+
+    /// Nodes without mass, and those that carry it.
+    pub fn redistribution(&self) -> &Redistribution {
+        &self.redistribution
     }
 
     /// Moved nodes, contact by contact.

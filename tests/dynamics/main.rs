@@ -21,6 +21,7 @@ mod many;
 mod mean_dilatation;
 mod neo_hooke;
 mod patch;
+mod redistributed_mass;
 mod rigid;
 mod scales;
 mod subincrements;

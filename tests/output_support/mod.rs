@@ -221,6 +221,7 @@ fn nodal(k: usize, reaction: Vec<f64>, contact_force: Vec<f64>) -> NodalResults 
         status,
         pressure: vec![0.25 * k as f64; 7],
         slip: vec![0.5 * k as f64; 7],
+        mass: vec![],
     }
 }
 

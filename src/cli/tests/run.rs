@@ -103,6 +103,7 @@ pub(super) fn report(increment: usize) -> IncrementReport {
             concentrated: vec![0.0; 8],
             pressure: vec![0.0; 4],
             slip: vec![0.0; 4],
+            mass: vec![],
         },
         ends_step: increment == 10,
         strain: Strained {

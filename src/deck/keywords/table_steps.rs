@@ -271,6 +271,17 @@ pub(crate) static STEPS: &[Keyword] = &[
                 "energy that contact takes at landings",
             ),
             P::choice(
+                "CONTACT MASS",
+                &[
+                    V::read("CONSISTENT", "that of the elements (default)"),
+                    V::read(
+                        "REDISTRIBUTED",
+                        "carried by the nodes behind the surface: no node lands with mass",
+                    ),
+                ],
+                "mass of the nodes of contact surfaces, the same in all steps",
+            ),
+            P::choice(
                 "LCP",
                 &[
                     V::read(

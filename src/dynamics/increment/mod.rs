@@ -12,6 +12,6 @@ mod trace;
 
 pub(crate) use active_constraints::{ActiveConstraints, ConstraintSet};
 pub(crate) use attempt::{Attempt, Solved};
-pub(crate) use forces::ContactForces;
-pub(crate) use returned::{PairReturn, Returned};
+pub(crate) use forces::{ContactForces, ContactSystem};
+pub(crate) use returned::{PairReturn, Release, Returned};
 pub(crate) use trace::Failed;

@@ -1,15 +1,26 @@
 //! Energy that is given back after a converged increment. Section 6 of docs/theory.md, Landing
 //! return.
 
-use crate::contact::ConstraintKey;
+use crate::contact::{Constraint, ConstraintKey};
 
 /// What is given back after an increment, and what relaxed nodes have lost for it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Returned {
     /// What was given back to each pair.
     pub pairs: Vec<PairReturn>,
-    /// Strain energy R that nodes without mass lost as they came to rest after releases.
-    pub released: f64,
+    /// What nodes without mass lost as they came to rest.
+    pub release: Release,
+}
+
+/// What nodes without mass lose as they come to rest at the end of an increment in which pairs open.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Release {
+    /// R: strain energy less that of the loads, W - R.u, before the rest and after it (energy).
+    pub loss: f64,
+    /// Work of the loads on the way to the rest (energy).
+    pub load_work: f64,
+    /// The pairs that have opened, at the end, with the forces that they carried before.
+    pub opened: Vec<(Constraint, [f64; 2])>,
 }
 
 /// What was given back to a pair.

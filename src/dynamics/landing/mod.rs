@@ -2,6 +2,8 @@
 
 mod landing_return;
 mod pattern;
+mod release_return;
 mod shares;
 
 pub(crate) use landing_return::return_landings;
+pub(crate) use release_return::return_release;

@@ -4,7 +4,7 @@
 
 use super::bodies::{BodyMasses, Moving, momentum};
 use super::contact_ledger::ContactLedger;
-use super::nodal_results::{contact_resultants, nodal_results};
+use super::nodal_results::{contact_resultants, nodal_results, node_masses};
 use super::pressure::SlaveFaces;
 use super::rigid_surfaces::RigidSurfaces;
 use crate::contact::ContactSurfaces;
@@ -65,6 +65,7 @@ impl Accounts {
                 status: vec![NodeStatus::None; nodes],
                 pressure: self.faces.start.clone(),
                 slip: self.contacts.slip.clone(),
+                mass: node_masses(problem),
             },
             contacts: problem.model.contacts.iter().map(of_contact).collect(),
             rigid: vec![RigidReaction::default(); self.rigid.count()],

@@ -121,16 +121,20 @@ impl Ledger {
             let kinetic = |v| problem.mass.kinetic_energy(v);
             e.impact_loss += kinetic(&start.v) - kinetic(v0p);
         }
-        // what landings and releases are given back, and what relaxed nodes have lost
+        // what landings and releases are given back, R and the work of the loads on the way to rest,
+        // eq. (6.11)
+        let (loss, load_work) = (returned.release.loss, returned.release.load_work);
         e.landing_return += returned.energy();
-        e.release_loss += returned.released;
-        // d.F_d, D, and d.F - (W1 - W0) - d.F_d - D, eq. (9.5)
+        e.release_loss += loss;
+        e.external_work += load_work;
+        // d.F_d, D, and d.F - (W1 - W0) - d.F_d - D, eq. (9.5), W1 that before the rest
         let (u1, dissipated) = (sum(&start.u, d), solved.material_dissipation);
         let damping = (problem.elements).damping_dissipation([&start.u, &u1], d, dt);
         e.damping += damping;
         e.material_dissipation += dissipated;
+        let strain1 = e.strain + loss - load_work;
         e.numerical_dissipation +=
-            dot(d, &solved.equilibrium.internal) - (e.strain - strain0) - damping - dissipated;
+            dot(d, &solved.equilibrium.internal) - (strain1 - strain0) - damping - dissipated;
 
         // T + W less what they were at the start and every term above, eq. (9.6)
         e.balance = e.kinetic + e.strain - self.start - e.external_work - e.normal_contact_work

@@ -7,10 +7,13 @@ use crate::contact::{
     Motion, PairTarget, RowForm, crossings, line_crossings, project,
 };
 use crate::dynamics::increment::Solved;
-use crate::dynamics::results::{ContactResultant, Landing, NodalResults, NodeStatus, State};
+use crate::dynamics::results::{
+    ContactResultant, Landing, NodalResults, NodeMass, NodeStatus, State,
+};
 use crate::dynamics::step::{Equilibrium, Interval, StepProblem};
 use crate::lcp::ContactState;
 use crate::linear::larger;
+use crate::model::ContactMass;
 use crate::vectors::cross;
 
 /// Change of velocity, relative to the largest velocity of the two bodies, from which an impulse is
@@ -37,6 +40,7 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         contact_force,
         gap: vec![f64::NAN; dofs / 2],
         status: vec![NodeStatus::None; dofs / 2],
+        mass: node_masses(problem),
         ..NodalResults::default()
     };
     for (constraint, pair) in solved.forces.iter() {
@@ -52,6 +56,21 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         }
     }
     results
+}
+
+/// Masses of the nodes, where they are redistributed.
+pub(crate) fn node_masses(problem: &StepProblem) -> Vec<NodeMass> {
+    if problem.settings.contact_mass == ContactMass::Consistent {
+        return Vec::new();
+    }
+    let mut masses = vec![NodeMass::Own; problem.model.mesh.node_count()];
+    for &node in problem.redistribution.kept() {
+        masses[node] = NodeMass::Kept;
+    }
+    for node in problem.redistribution.massless() {
+        masses[node] = NodeMass::None;
+    }
+    masses
 }
 
 /// Gap of a constraint at the end of the increment.

@@ -37,6 +37,19 @@ pub enum NodeStatus {
     Slip = 3,
 }
 
+/// Mass of a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[repr(u8)]
+pub enum NodeMass {
+    /// Its own; no node of a contact surface.
+    #[default]
+    Own = 0,
+    /// Its own although it is a node of a contact surface of a body.
+    Kept = 1,
+    /// None: its donors carry it.
+    None = 2,
+}
+
 /// Results at nodes, apart from the motion.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NodalResults {
@@ -57,6 +70,8 @@ pub struct NodalResults {
     /// Accumulated slip since the start of the analysis, `N` entries (length); NaN at all nodes but
     /// slave nodes.
     pub slip: Vec<f64>,
+    /// Masses, `N` entries where they are redistributed, else none.
+    pub mass: Vec<NodeMass>,
 }
 
 /// Energies; all but the first two are cumulative from the start of the analysis.

@@ -13,8 +13,8 @@ pub use contact_results::{
 pub use course::{Alternation, Course};
 pub use failure::{Cause, FailedLcp, Failure, Worst};
 pub use increment_report::{
-    BodyResult, Cutback, Energy, IncrementReport, Momentum, NodalResults, NodeStatus, Observer,
-    RigidReaction, SolverCounts, State,
+    BodyResult, Cutback, Energy, IncrementReport, Momentum, NodalResults, NodeMass, NodeStatus,
+    Observer, RigidReaction, SolverCounts, State,
 };
 pub use pass_report::PassReport;
 pub use run_summary::{Outcome, RunSummary, Timings};

@@ -5,10 +5,11 @@ use super::nominal_increment::NominalIncrement;
 use crate::contact::{ClosedPairs, Penetration};
 use crate::dynamics::events::{FailedSubincrement, Subincrement};
 use crate::dynamics::increment::{Failed, Returned, Solved};
-use crate::dynamics::landing::return_landings;
+use crate::dynamics::landing::{return_landings, return_release};
 use crate::dynamics::ledger::{Ledger, check_energy_gain};
+use crate::dynamics::release::{ReleaseStart, bring_to_rest};
 use crate::dynamics::results::{Cause, Failure, State};
-use crate::dynamics::step::{Interval, StepPlace, StepProblem, Workspace, sum};
+use crate::dynamics::step::{Interval, StepPlace, StepProblem, Workspace};
 
 /// Most halvings of an increment because of the energy that contact puts in.
 const GAIN_HALVINGS: u32 = 5;
@@ -39,10 +40,17 @@ impl Accepted {
         halvings: u32,
         nominal: &NominalIncrement,
     ) -> Result<Self, FailedSubincrement> {
-        let dt = subincrement.interval.dt;
-        let may_be_halved = halvings < GAIN_HALVINGS && dt / 2.0 >= nominal.dt_min;
-        let solved = &mut subincrement.solved;
-        match checked(problem, workspace, before, (dt, solved), may_be_halved) {
+        let Subincrement {
+            interval, solved, ..
+        } = &mut subincrement;
+        let may_be_halved = halvings < GAIN_HALVINGS && interval.dt / 2.0 >= nominal.dt_min;
+        match checked(
+            problem,
+            workspace,
+            before,
+            (*interval, solved),
+            may_be_halved,
+        ) {
             Ok((returned, ledger)) => Ok(Accepted {
                 subincrement,
                 returned,
@@ -61,18 +69,27 @@ impl Accepted {
     }
 }
 
-/// Checks a converged increment of the given length, gives back what its landings have taken and enters it
-/// in the ledger: no node may have gone through a surface, the energies must be finite, and contact must
+/// Checks a converged increment, brings released nodes to rest, gives back what landings and releases have
+/// taken and enters it in the ledger: no node may have gone through a surface, the energies must be finite, and contact must
 /// put in none where the increment may be halved for that.
 fn checked(
     problem: &StepProblem,
     workspace: &mut Workspace,
     before: Before,
-    (dt, solved): (f64, &mut Solved),
+    (interval, solved): (Interval, &mut Solved),
     may_be_halved: bool,
 ) -> Result<(Returned, Ledger), Cause> {
+    let start = ReleaseStart {
+        state: before.state,
+        closed: before.closed,
+    };
+    let release = bring_to_rest(problem, workspace, start, interval, solved);
     check_paths(problem, workspace, before, solved)?;
-    let returned = return_landings(problem, workspace, dt, solved)?;
+    let dt = interval.dt;
+    let mut returned = return_landings(problem, workspace, dt, solved)?;
+    return_release(problem, workspace, dt, solved, (release, &mut returned))?;
+    problem.follow_donors(&mut solved.end.v);
+    problem.follow_donors(&mut solved.end.a);
     let ledger = before.ledger.clone();
     let ledger = ledger.with(problem, before.state, (solved, &returned), dt)?;
     if may_be_halved {
@@ -81,7 +98,7 @@ fn checked(
     Ok((returned, ledger))
 }
 
-/// No node may have gone into a body on its straight path from U0 to U0 + d. What the tolerance of the
+/// No node may have gone into a body on its straight path from U0 to U1. What the tolerance of the
 /// passes leaves of a displacement is no depth.
 fn check_paths(
     problem: &StepProblem,
@@ -89,12 +106,10 @@ fn check_paths(
     before: Before,
     solved: &Solved,
 ) -> Result<(), Cause> {
-    let largest = problem.parts.largest_of_bodies(&solved.d);
-    let unsolved = |&body: &usize| problem.settings.tolerance * largest[body];
-    let unsolved: Vec<f64> = problem.parts.of_nodes().iter().map(unsolved).collect();
-    let (u0, u1) = (&before.state.u, sum(&before.state.u, &solved.d));
+    let unsolved = problem.unsolved(&solved.d);
+    let (u0, u1) = (&before.state.u, &solved.end.u);
     let closed = [before.closed, &solved.forces.closed];
-    let found = workspace.find_penetration([u0, &u1], closed, &unsolved);
+    let found = workspace.find_penetration([u0, u1], closed, &unsolved);
     found.map_or(Ok(()), |Penetration { slave, segment }| {
         let [a, b] = segment;
         Err(Cause::Crossed {

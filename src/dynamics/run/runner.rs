@@ -279,6 +279,7 @@ impl<'m, 'o> Runner<'m, 'o> {
     ) -> Result<Option<Failure>, RunError> {
         let now = place.time_point(0.0);
         problem.unknowns.prescribe_velocity(now, &mut self.state.v);
+        problem.follow_donors(&mut self.state.v);
         self.state.a = workspace.start_acceleration(problem, &self.state, now);
         self.ledger = Ledger::new(problem, &self.state);
         if let Some(failure) = start_failure(&self.state, &self.ledger, place) {

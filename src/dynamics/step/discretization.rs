@@ -6,7 +6,7 @@ use super::parts::Parts;
 use crate::contact::ContactSurfaces;
 use crate::elements::Elements;
 use crate::model::Model;
-use crate::prepare::PreparedModel;
+use crate::prepare::{PreparedModel, Redistribution};
 
 /// A prepared model with its elements, their mass, and the bodies and parts that scale convergence.
 pub(crate) struct Discretization<'m> {
@@ -14,6 +14,7 @@ pub(crate) struct Discretization<'m> {
     pub contacts: &'m [ContactSurfaces],
     pub elements: Elements,
     pub mass: Mass,
+    pub redistribution: &'m Redistribution,
     pub parts: Parts,
 }
 
@@ -22,10 +23,12 @@ impl<'m> Discretization<'m> {
     pub fn new(prepared: &'m PreparedModel) -> Self {
         let model = prepared.model();
         let elements = Elements::new(model);
+        let redistribution = prepared.redistribution();
         Discretization {
             model,
             contacts: prepared.contact_surfaces(),
-            mass: Mass::new(&elements, model.mesh.node_count()),
+            mass: Mass::new(&elements, redistribution, model.mesh.node_count()),
+            redistribution,
             parts: Parts::new(model),
             elements,
         }

@@ -1,6 +1,8 @@
 //! System matrices of a step with their factors and compliances at the contacts: the effective
 //! stiffness K* of the passes and the mass of the impulses. Sections 4 and 6 of docs/theory.md.
 
+use nalgebra::DMatrix;
+
 use super::bodies::BodyAngles;
 use super::mass::unknown_mass;
 use super::step_problem::StepProblem;
@@ -69,12 +71,24 @@ pub(crate) struct ClosedConstraints<'a> {
     pub at: Configurations<'a>,
 }
 
+/// The largest entry of the mass on the diagonal of nodes without mass: no impulse acts there, and M
+/// has factors.
+fn diagonal_of_massless(problem: &StepProblem, mass: &Assembled) -> AddedBlocks {
+    let most = mass.diagonal().fold(0.0, larger);
+    let mut blocks = AddedBlocks::default();
+    for node in problem.redistribution.massless() {
+        let diagonal = DMatrix::identity(2, 2) * most;
+        blocks.add(&problem.unknowns.map, &[2 * node, 2 * node + 1], &diagonal);
+    }
+    blocks
+}
+
 /// The effective matrix K* = theta2 K + (2/dt²) M, eq. (4.6), kept until it is assembled again, and
 /// the mass matrix, both over the unknowns of a step: T^T K* T and T^T M T.
 pub(crate) struct EffectiveStiffness {
     /// K*.
     pub k: FactoredMatrix,
-    /// M, factorised when an impulse first needs it.
+    /// M, factorised when an impulse first needs it, then with a diagonal at nodes without mass.
     pub m: FactoredMatrix,
     /// Angles of the bodies in K*.
     angles: BodyAngles,
@@ -91,15 +105,20 @@ impl EffectiveStiffness {
     pub fn new(problem: &StepProblem) -> Self {
         let StepProblem {
             elements,
+            redistribution,
             unknowns,
             settings,
             ..
         } = problem;
         let choice = settings.solver;
-        let mass = unknown_mass(elements, unknowns);
+        let mass = unknown_mass(elements, redistribution, unknowns);
+        let massless = diagonal_of_massless(problem, &mass);
+        let k = FactoredMatrix::new(choice, mass.zeros(), &unknowns.map);
+        let mut m = FactoredMatrix::new(choice, mass, &unknowns.map);
+        m.solver.add_blocks(massless);
         EffectiveStiffness {
-            k: FactoredMatrix::new(choice, mass.zeros(), &unknowns.map),
-            m: FactoredMatrix::new(choice, mass, &unknowns.map),
+            k,
+            m,
             angles: BodyAngles::new(problem),
             dt: f64::NAN,
             stiffness: Vec::new(),

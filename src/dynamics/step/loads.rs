@@ -3,6 +3,7 @@
 
 use crate::elements::Elements;
 use crate::model::{Load, Model, Pressure, Step, TimeBase, Variation};
+use crate::prepare::Redistribution;
 
 /// A point in time: time since the start of the step and of the analysis, and the step's duration.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,11 +46,16 @@ impl TimePoint {
 pub(crate) struct Loads<'m> {
     model: &'m Model,
     step: &'m Step,
+    redistribution: &'m Redistribution,
 }
 
 impl<'m> Loads<'m> {
-    pub fn new(model: &'m Model, step: &'m Step) -> Self {
-        Loads { model, step }
+    pub fn new(model: &'m Model, step: &'m Step, redistribution: &'m Redistribution) -> Self {
+        Loads {
+            model,
+            step,
+            redistribution,
+        }
     }
 
     /// External load R_theta = (1 - theta1) R(t0) + theta1 R(t1), eq. (4.4), follower pressures in the
@@ -88,13 +94,9 @@ impl<'m> Loads<'m> {
         }
     }
 
-    fn add(&self, elements: &Elements, weight: f64, at: TimePoint, u: &[f64], r: &mut [f64]) {
-        if weight == 0.0 {
-            return;
-        }
-        self.add_concentrated(weight, at, r);
+    /// int N^T f^B dOmega, f^B uniform in the element, on the nodes that carry the mass.
+    fn add_body_forces(&self, elements: &Elements, weight: f64, at: TimePoint, r: &mut [f64]) {
         for load in &self.step.body_forces {
-            // int N^T f^B dOmega, f^B uniform in the element
             let element = load.at.element;
             let density = if load.at.per_mass {
                 elements.density(element)
@@ -104,10 +106,18 @@ impl<'m> Loads<'m> {
             let f = weight * density * at.magnitude(self.model, load);
             let volumes = elements.nodal_volumes(element);
             for (&node, volume) in elements.nodes(element).iter().zip(volumes) {
-                r[2 * node] += f * volume * load.at.direction[0];
-                r[2 * node + 1] += f * volume * load.at.direction[1];
+                let force = load.at.direction.map(|e| f * volume * e);
+                self.redistribution.add_force(node, force, r);
             }
         }
+    }
+
+    fn add(&self, elements: &Elements, weight: f64, at: TimePoint, u: &[f64], r: &mut [f64]) {
+        if weight == 0.0 {
+            return;
+        }
+        self.add_concentrated(weight, at, r);
+        self.add_body_forces(elements, weight, at, r);
         for load in &self.step.tractions {
             // int N^T f^S dGamma over the reference face, half to each end
             let [a, b] = load.at.face.nodes(&self.model.mesh);

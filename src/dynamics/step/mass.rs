@@ -5,21 +5,21 @@ use super::parts::Parts;
 use super::unknowns::Unknowns;
 use crate::elements::Elements;
 use crate::linear::{Assembled, Transformation};
+use crate::prepare::Redistribution;
 
-/// Consistent mass matrix M, the same for both directions: stored over the nodes.
+/// Mass matrix M, the same for both directions: consistent, or redistributed at contact surfaces.
+/// Stored over the nodes.
 pub(crate) struct Mass {
     nodal: Assembled,
 }
 
 impl Mass {
     /// Mass of all elements of a model with `nodes` nodes.
-    pub fn new(elements: &Elements, nodes: usize) -> Self {
-        let nodes_of_elements: Vec<Vec<usize>> = (0..elements.len())
-            .map(|e| elements.nodes(e).to_vec())
-            .collect();
-        let mut nodal = Assembled::new(&Transformation::identity(nodes), &nodes_of_elements);
-        for element in 0..elements.len() {
-            nodal.add(element, &elements.mass(element), 1.0);
+    pub fn new(elements: &Elements, redistribution: &Redistribution, nodes: usize) -> Self {
+        let masses = ElementMasses::new(elements, redistribution);
+        let mut nodal = Assembled::new(&Transformation::identity(nodes), &masses.nodes);
+        for (list, m) in &masses.of_elements {
+            nodal.add(*list, m, 1.0);
         }
         Mass { nodal }
     }
@@ -58,24 +58,146 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Mass matrix T^T M T over the unknowns of a step.
-pub(crate) fn unknown_mass(elements: &Elements, unknowns: &Unknowns) -> Assembled {
-    let of_node = |&node: &usize| [2 * node, 2 * node + 1];
-    let dofs_of_elements: Vec<Vec<usize>> = (0..elements.len())
-        .map(|e| elements.nodes(e).iter().flat_map(of_node).collect())
-        .collect();
-    let mut mass = Assembled::new(&unknowns.map, &dofs_of_elements);
-    for element in 0..elements.len() {
-        let (m, n) = (elements.mass(element), elements.nodes(element).len());
-        let d = 2 * n;
-        let mut both = vec![0.0; d * d];
-        for a in 0..n {
-            for b in 0..n {
-                both[2 * b * d + 2 * a] = m[b * n + a];
-                both[(2 * b + 1) * d + 2 * a + 1] = m[b * n + a];
+/// Masses of the elements over the nodes that carry them.
+struct ElementMasses {
+    /// Lists of nodes: those of every element, then for each with massless nodes those that carry it.
+    nodes: Vec<Vec<usize>>,
+    /// List of every element's mass, and the mass, n x n column by column.
+    of_elements: Vec<(usize, Vec<f64>)>,
+}
+
+impl ElementMasses {
+    fn new(elements: &Elements, redistribution: &Redistribution) -> Self {
+        let nodes = (0..elements.len()).map(|e| elements.nodes(e).to_vec());
+        let mut masses = ElementMasses {
+            nodes: nodes.collect(),
+            of_elements: Vec::with_capacity(elements.len()),
+        };
+        for element in 0..elements.len() {
+            let (own, m) = (elements.nodes(element), elements.mass(element));
+            if own.iter().any(|&node| redistribution.is_massless(node)) {
+                let (carriers, m) = carried(own, &m, redistribution);
+                masses.of_elements.push((masses.nodes.len(), m));
+                masses.nodes.push(carriers);
+            } else {
+                masses.of_elements.push((element, m));
             }
         }
-        mass.add(element, &both, 1.0);
+        masses
+    }
+}
+
+/// P_e^T M_e P_e, eq. (2.17), of an element's mass `m` over its nodes `own`: the nodes with mass that
+/// carry it, and the matrix over them.
+fn carried(own: &[usize], m: &[f64], redistribution: &Redistribution) -> (Vec<usize>, Vec<f64>) {
+    let row = |node: &usize| match redistribution.donors(*node) {
+        Some(donors) => donors.to_vec(),
+        None => vec![(*node, 1.0)],
+    };
+    let rows: Vec<Vec<(usize, f64)>> = own.iter().map(row).collect();
+    let mut carriers: Vec<usize> = rows.iter().flatten().map(|term| term.0).collect();
+    carriers.sort_unstable();
+    carriers.dedup();
+    let place = |node: usize| carriers.partition_point(|&carrier| carrier < node);
+    let (n, size) = (own.len(), carriers.len());
+    let mut carried = vec![0.0; size * size];
+    for (b, column) in rows.iter().enumerate() {
+        for (a, row) in rows.iter().enumerate() {
+            for &(j, cj) in column {
+                for &(i, ci) in row {
+                    carried[place(j) * size + place(i)] += ci * m[b * n + a] * cj;
+                }
+            }
+        }
+    }
+    (carriers, carried)
+}
+
+/// Mass matrix T^T M T over the unknowns of a step. Its pattern is that of the elements too, which come
+/// first among what it is assembled from.
+pub(crate) fn unknown_mass(
+    elements: &Elements,
+    redistribution: &Redistribution,
+    unknowns: &Unknowns,
+) -> Assembled {
+    let masses = ElementMasses::new(elements, redistribution);
+    let of_node = |&node: &usize| [2 * node, 2 * node + 1];
+    let of_list = |nodes: &Vec<usize>| nodes.iter().flat_map(of_node).collect();
+    let lists: Vec<Vec<usize>> = masses.nodes.iter().map(of_list).collect();
+    let mut mass = Assembled::new(&unknowns.map, &lists);
+    for (list, m) in &masses.of_elements {
+        let n = masses.nodes[*list].len();
+        mass.add(*list, &in_both_directions(m, n), 1.0);
     }
     mass
+}
+
+/// A mass per direction, n x n, over the dofs of its nodes, 2n x 2n; both column by column.
+fn in_both_directions(m: &[f64], n: usize) -> Vec<f64> {
+    let d = 2 * n;
+    let mut both = vec![0.0; d * d];
+    for a in 0..n {
+        for b in 0..n {
+            both[2 * b * d + 2 * a] = m[b * n + a];
+            both[(2 * b + 1) * d + 2 * a + 1] = m[b * n + a];
+        }
+    }
+    both
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::prepare::redistribution_tests::{block, redistribution};
+    use nalgebra::DMatrix;
+
+    /// Consistent and redistributed mass of a block with a hole, and the coordinates of its nodes.
+    fn masses(is_triangular: fn(usize, usize) -> bool) -> ([DMatrix<f64>; 2], Vec<[f64; 2]>) {
+        let has = |i: usize, j: usize| !((4..6).contains(&i) && (4..6).contains(&j));
+        let model = block([10, 9], is_triangular, has);
+        let (elements, nodes) = (Elements::new(&model), model.mesh.node_count());
+        let masses = [Redistribution::default(), redistribution(&model)].map(|redistribution| {
+            let mass = Mass::new(&elements, &redistribution, nodes);
+            let dense = mass.nodal.matrix().to_dense();
+            DMatrix::from_fn(nodes, nodes, |i, j| dense[[i, j]])
+        });
+        (masses, model.mesh.coordinates)
+    }
+
+    #[test]
+    fn redistribution_keeps_mass_centre_and_inertia() {
+        for is_triangular in [|_, _| false, |_, _| true, |i, j| (i * j) % 3 == 1] {
+            let ([consistent, redistributed], x) = masses(is_triangular);
+            let affine = [|_| 1.0, |x: [f64; 2]| x[0], |x: [f64; 2]| x[1]];
+            for f in affine {
+                for g in affine {
+                    let moment = |m: &DMatrix<f64>| -> f64 {
+                        let terms = (0..x.len()).flat_map(|i| (0..x.len()).map(move |j| (i, j)));
+                        terms.map(|(i, j)| f(x[i]) * m[(i, j)] * g(x[j])).sum()
+                    };
+                    let [before, after] = [moment(&consistent), moment(&redistributed)];
+                    let error = (after - before).abs() / before.abs();
+                    assert!(error < 1e-14, "{before} {after}: {error:e}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn redistributed_mass_is_positive_semidefinite_and_zero_at_the_skin() {
+        let ([consistent, redistributed], _) = masses(|i, j| (i + j) % 2 == 0);
+        let eigenvalues = redistributed.clone().symmetric_eigenvalues();
+        let largest = eigenvalues.max();
+        assert!(
+            eigenvalues.min() > -1e-15 * largest,
+            "{}",
+            eigenvalues.min()
+        );
+        let empty = (0..110)
+            .filter(|&i| redistributed.column(i).amax() == 0.0)
+            .count();
+        // all of the outer edge, and the node inside the hole that has no elements
+        assert_eq!(empty, 38 + 1);
+        assert!((consistent.trace() - redistributed.trace()).abs() > 1e-3 * largest);
+    }
 }

@@ -17,9 +17,7 @@ mod workspace;
 
 pub(crate) use bodies::{Hold, holds};
 pub(crate) use discretization::Discretization;
-#[cfg(test)]
-pub(crate) use effective_stiffness::FactoredMatrix;
-pub(crate) use effective_stiffness::{ClosedConstraints, EffectiveStiffness};
+pub(crate) use effective_stiffness::{ClosedConstraints, EffectiveStiffness, FactoredMatrix};
 pub(crate) use loads::TimePoint;
 pub(crate) use mass::{Mass, dot};
 #[cfg(test)]

@@ -16,12 +16,14 @@ use crate::dynamics::results::{Cause, State};
 use crate::elements::Elements;
 use crate::lcp::LcpMethod;
 use crate::model::{Model, Settings, Step};
+use crate::prepare::Redistribution;
 
 /// The equation of motion of a step.
 pub(crate) struct StepProblem<'m> {
     pub model: &'m Model,
     pub elements: &'m Elements,
     pub mass: &'m Mass,
+    pub redistribution: &'m Redistribution,
     pub parts: &'m Parts,
     pub contacts: &'m [ContactSurfaces],
     pub settings: Settings,
@@ -68,18 +70,20 @@ impl<'m> StepProblem<'m> {
             contacts,
             elements,
             mass,
+            redistribution,
             parts,
         } = discretization;
         StepProblem {
             model,
             elements,
             mass,
+            redistribution,
             parts,
             contacts,
             settings: step.settings,
             weights: Weights::new(step.settings.scheme),
             unknowns: Unknowns::new(model, elements, step, u0),
-            loads: Loads::new(model, step),
+            loads: Loads::new(model, step, redistribution),
         }
     }
 }
@@ -88,6 +92,19 @@ impl StepProblem<'_> {
     /// Solver of the complementarity problems.
     pub fn method(&self) -> LcpMethod {
         self.settings.lcp.into()
+    }
+
+    /// V <- P V: nodes without mass follow their donors, except where they are prescribed.
+    pub fn follow_donors(&self, v: &mut [f64]) {
+        self.redistribution
+            .follow(v, |dof| self.unknowns.depends(dof));
+    }
+
+    /// What the tolerance of the passes leaves of the displacement of every node in an increment `d`.
+    pub fn unsolved(&self, d: &[f64]) -> Vec<f64> {
+        let largest = self.parts.largest_of_bodies(d);
+        let unsolved = |&body: &usize| self.settings.tolerance * largest[body];
+        self.parts.of_nodes().iter().map(unsolved).collect()
     }
 
     /// Current position of a node.

@@ -51,7 +51,12 @@ impl<'m> Unknowns<'m> {
     /// Whether one of the nodes depends on an unknown.
     pub fn moves(&self, nodes: &[usize]) -> bool {
         let mut dofs = nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]);
-        dofs.any(|dof| !self.map.row(dof).is_empty())
+        dofs.any(|dof| self.depends(dof))
+    }
+
+    /// Whether a dof depends on an unknown.
+    pub fn depends(&self, dof: usize) -> bool {
+        !self.map.row(dof).is_empty()
     }
 
     /// Whether the gap of a constraint can change. Where equations tie the node to the segment it

@@ -140,7 +140,8 @@ impl<'m> Workspace<'m> {
         )
     }
 
-    /// Acceleration at the start of the analysis, M A = R - F, the supports being at rest.
+    /// Acceleration at the start of the analysis, M A = R - F, the supports being at rest; forces on nodes
+    /// without mass go to those that carry it.
     pub fn start_acceleration(
         &mut self,
         problem: &StepProblem,
@@ -153,11 +154,14 @@ impl<'m> Workspace<'m> {
             return a;
         };
         let load = (problem.loads).weighted(problem.elements, 1.0, now, now, &start.u);
-        let r = problem.unknowns.restrict(&difference(&load, &internal));
+        let mut r = difference(&load, &internal);
+        problem.redistribution.hand_on(&mut r);
+        let r = problem.unknowns.restrict(&r);
         let mut mass = self.m();
         // The acceleration only improves the estimate of the first landings.
         if let Ok(acceleration) = mass.factorize().and_then(|()| mass.solve(&r)) {
             problem.unknowns.add(&acceleration, &mut a);
+            problem.follow_donors(&mut a);
         }
         a
     }

@@ -7,7 +7,7 @@ use super::dataset::{Column, Meaning, group, meaning, set_attribute};
 use super::mesh::{write_bodies, write_mesh};
 use crate::dynamics::{NodalResults, State};
 use crate::elements::ElementResult;
-use crate::model::Model;
+use crate::model::{ContactMass, Model, Step};
 use crate::output::frame::Frame;
 
 /// A field with `3` components (or one) per node or element.
@@ -47,6 +47,8 @@ struct PointFields {
     status: Field<u8>,
     pressure: Field<f64>,
     slip: Field<f64>,
+    /// With redistributed mass only.
+    mass: Option<Field<u8>>,
 }
 
 /// Fields of the cells, group `CellData`: elements, then the segments of rigid surfaces.
@@ -76,7 +78,7 @@ impl Fields {
         write_bodies(&cells.data, model, lines.len())?;
         Ok(Fields {
             steps,
-            points: PointFields::create(points)?,
+            points: PointFields::create(points, model)?,
             cells: CellFields::create(cells, lines.len())?,
         })
     }
@@ -95,7 +97,10 @@ impl Fields {
 }
 
 impl PointFields {
-    fn create(mut at: Place) -> hdf5::Result<Self> {
+    fn create(mut at: Place, model: &Model) -> hdf5::Result<Self> {
+        let is_redistributed =
+            |step: &Step| step.settings.contact_mass == ContactMass::Redistributed;
+        let has_mass = model.steps.iter().any(is_redistributed);
         Ok(PointFields {
             displacement: at.field("U", &[3], meaning("displacement", "length"))?,
             velocity: at.field("V", &[3], meaning("velocity", "length/time"))?,
@@ -106,6 +111,10 @@ impl PointFields {
             status: at.field("CONTACT_STATUS", &[], STATUS)?,
             pressure: at.field("CONTACT_PRESSURE", &[], PRESSURE)?,
             slip: at.field("SLIP", &[], SLIP)?,
+            mass: match has_mass {
+                true => Some(at.field("CONTACT_MASS", &[], MASS)?),
+                false => None,
+            },
             offsets: at.offsets,
         })
     }
@@ -120,6 +129,9 @@ impl PointFields {
         self.status.push(nodal.status.iter().map(|&s| s as u8))?;
         self.pressure.push(nodal.pressure.iter().copied())?;
         self.slip.push(nodal.slip.iter().copied())?;
+        if let Some(mass) = &mut self.mass {
+            mass.push(nodal.mass.iter().map(|&m| m as u8))?;
+        }
         self.offsets.push()
     }
 }
@@ -170,6 +182,10 @@ const PRESSURE: Meaning = meaning(
 const SLIP: Meaning = meaning(
     "slip accumulated since the start at slave nodes, NaN at others",
     "length",
+);
+const MASS: Meaning = meaning(
+    "mass: 0 own, 1 own at a contact surface, 2 carried by other nodes",
+    "1",
 );
 const ACROSS: Meaning = meaning(
     "Cauchy stress across the thickness, mean over the element",

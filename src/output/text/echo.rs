@@ -1,7 +1,7 @@
 //! The model in a few lines, for the screen and for `check`.
 
 use super::format::{counted, general, grouped, scientific};
-use super::layout::{label, wrap};
+use super::layout::{label, wrap, wrap_words};
 use crate::model::{
     Contact, Element, ElementType, Frames, Impact, ImpactTime, LandingRule, Model, Scheme,
     Settings, SolverChoice, Step, SurfaceKind,
@@ -9,6 +9,9 @@ use crate::model::{
 use crate::output::frames::{DEFAULT_FRAMES, are_dense};
 use crate::prepare::{InitialGap, PreparedModel};
 use crate::vectors::cross;
+
+/// Most nodes that are named.
+const MOST_NAMES: usize = 12;
 
 /// Numbers that describe a model.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,6 +73,7 @@ impl ModelEcho {
         for (contact, gaps) in model.contacts.iter().zip(prepared.initial_gaps()) {
             lines.extend(contact_lines(model, contact, gaps));
         }
+        lines.extend(mass_lines(prepared));
         for (i, step) in model.steps.iter().enumerate() {
             lines.extend(self.step_lines(i, step));
         }
@@ -200,6 +204,30 @@ fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<S
         smallest_gap(gaps),
     ];
     wrap("contact", &pieces)
+}
+
+/// Nodes without mass and the nodes of contact surfaces that keep theirs, where mass is redistributed.
+fn mass_lines(prepared: &PreparedModel) -> Vec<String> {
+    let (model, redistribution) = (prepared.model(), prepared.redistribution());
+    let kept = redistribution.kept();
+    if redistribution.is_empty() && kept.is_empty() {
+        return Vec::new();
+    }
+    let massless = redistribution.massless().len();
+    let mut text = format!(
+        "redistributed: {} without mass",
+        counted(massless, "contact node")
+    );
+    if !kept.is_empty() {
+        let label = |&node: &usize| model.mesh.node_labels[node].to_string();
+        let mut names: Vec<String> = kept.iter().take(MOST_NAMES).map(label).collect();
+        if kept.len() > MOST_NAMES {
+            names.push(format!("and {} more", kept.len() - MOST_NAMES));
+        }
+        let names = names.join(", ");
+        text = format!("{text}, {} keep their mass: {names}", grouped(kept.len()));
+    }
+    wrap_words("mass", &text)
 }
 
 /// The smallest gap at the start.

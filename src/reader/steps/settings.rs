@@ -3,7 +3,8 @@
 use crate::deck::Card;
 use crate::diagnostics::{Code, Diagnostic, shown};
 use crate::model::{
-    Factorization, Impact, ImpactTime, LandingRule, LcpChoice, Scheme, Settings, SolverChoice,
+    ContactMass, Factorization, Impact, ImpactTime, LandingRule, LcpChoice, Scheme, Settings,
+    SolverChoice,
 };
 use crate::reader::context::Context;
 
@@ -23,6 +24,11 @@ pub(crate) fn apply(card: &Card, settings: &mut Settings, cx: &mut Context) {
     match card.choice("LANDING") {
         Some("RETURN") => settings.landing = LandingRule::Return,
         Some(_) => settings.landing = LandingRule::Plastic,
+        None => {}
+    }
+    match card.choice("CONTACT MASS") {
+        Some("REDISTRIBUTED") => settings.contact_mass = ContactMass::Redistributed,
+        Some(_) => settings.contact_mass = ContactMass::Consistent,
         None => {}
     }
     match card.choice("LCP") {
@@ -46,20 +52,27 @@ pub(crate) fn apply(card: &Card, settings: &mut Settings, cx: &mut Context) {
     if let Some(passes) = max_passes(card, cx) {
         settings.max_passes = passes;
     }
-    check_landing(card, settings, cx);
+    check_scheme(card, settings, cx);
 }
 
 /// The landing return needs the energy-momentum scheme, whose contact force takes Pn g0 at a landing and
-/// nothing else.
-fn check_landing(card: &Card, settings: &Settings, cx: &mut Context) {
-    let is_ss22 = matches!(settings.scheme, Scheme::Ss22 { .. });
-    if settings.landing == LandingRule::Return && is_ss22 {
-        let given = ["LANDING", "SCHEME"].map(|name| (card.choice(name), name));
-        let named = given.iter().find(|(value, _)| value.is_some());
-        let span = named.map_or(card.span, |(_, name)| card.span_of(name));
-        let message = "LANDING=RETURN is not for SCHEME=SS22";
-        let error = Diagnostic::error(Code::SchemeOption, span, message);
-        cx.d.push(error.help("leave out SCHEME=SS22, or choose LANDING=PLASTIC"));
+/// nothing else, as do nodes without mass, for which end rows and impulses are not made.
+fn check_scheme(card: &Card, settings: &Settings, cx: &mut Context) {
+    if settings.scheme == Scheme::EnergyMomentum {
+        return;
+    }
+    let returns = settings.landing == LandingRule::Return;
+    let redistributes = settings.contact_mass == ContactMass::Redistributed;
+    let options = [
+        (returns, "LANDING", "RETURN", "PLASTIC"),
+        (redistributes, "CONTACT MASS", "REDISTRIBUTED", "CONSISTENT"),
+    ];
+    for (_, option, value, other) in options.into_iter().filter(|option| option.0) {
+        let mut given = [option, "SCHEME"].into_iter().filter(|name| card.has(name));
+        let span = given.next().map_or(card.span, |name| card.span_of(name));
+        let message = format!("{option}={value} is not for SCHEME=SS22");
+        let help = format!("leave out SCHEME=SS22, or choose {option}={other}");
+        cx.d.push(Diagnostic::error(Code::SchemeOption, span, message).help(help));
     }
 }
 
@@ -84,6 +97,20 @@ fn scheme(card: &Card, before: Scheme, cx: &mut Context) -> Scheme {
         cx.d.push(error.help("it is stable for THETA2 >= THETA1 >= 1/2"));
     }
     Scheme::Ss22 { theta1, theta2 }
+}
+
+/// The first step says what the mass of contact surfaces is.
+pub(crate) fn check_contact_mass(
+    card: &Card,
+    [before, now]: [ContactMass; 2],
+    step: usize,
+    cx: &mut Context,
+) {
+    if step > 1 && now != before {
+        let message = "CONTACT MASS is the same in all steps";
+        let error = Diagnostic::error(Code::BadValue, card.span_of("CONTACT MASS"), message);
+        cx.d.push(error.help("give it in the first step"));
+    }
 }
 
 fn tolerance(card: &Card, cx: &mut Context) -> Option<f64> {

@@ -95,7 +95,7 @@ impl Reading<'_> {
             ramp: cards.head.choice("AMPLITUDE") == Some("RAMP"),
         };
         let increments = self.procedure(cards, cx);
-        self.own_settings(cards, cx);
+        self.own_settings(cards, number, cx);
         self.conditions(cards, context, cx);
         self.requests.cards(&cards.cards, self.targets.sets, cx);
         let mut supports = self.supports.list();
@@ -164,11 +164,14 @@ impl Reading<'_> {
         increments(card, self.guide, cx)
     }
 
-    fn own_settings(&mut self, cards: &StepCards, cx: &mut Context) {
+    fn own_settings(&mut self, cards: &StepCards, number: usize, cx: &mut Context) {
         let found = named(cards, "STICKSLIP");
         cx.only_once(&found);
         for card in found {
+            let before = self.settings.contact_mass;
             settings::apply(card, &mut self.settings, cx);
+            let now = self.settings.contact_mass;
+            settings::check_contact_mass(card, [before, now], number, cx);
         }
     }
 

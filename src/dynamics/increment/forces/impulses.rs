@@ -22,6 +22,8 @@ pub(crate) struct Impulses {
     pub touching: ClosedPairs,
     changes: usize,
     at_rest: bool,
+    /// Constraints of the last pass with nodes without mass, which take no impulse; increasing.
+    massless: Vec<ConstraintKey>,
     /// V0+ of the last pass with the constraints that it is for.
     last: Option<(Vec<Constraint>, Vec<f64>)>,
     /// Phi, Psi of the last pass.
@@ -37,6 +39,7 @@ impl Impulses {
             touching: set.touching(),
             changes: 0,
             at_rest: false,
+            massless: Vec::new(),
             last: None,
             acting: ContactForces::default(),
         }
@@ -61,6 +64,9 @@ impl Impulses {
             true => constraint.at_start(&configurations).with_force_rows(),
             false => constraint.with_force_rows(),
         };
+        let is_massless = |node| problem.redistribution.is_massless(node);
+        let without_mass = constraints.iter().filter(|c| c.nodes().any(is_massless));
+        self.massless = without_mass.map(|constraint| constraint.key).collect();
         let struck = constraints
             .iter()
             .filter(|constraint| self.strikes(constraint));
@@ -104,11 +110,17 @@ impl Impulses {
     /// Keys of the pairs that have impulses only because they are closed.
     fn free_keys(&self, closed: &ClosedPairs) -> impl Iterator<Item = ConstraintKey> {
         let keys = closed.iter().map(|pair| pair.key);
-        keys.filter(|key| !self.touching.closes(*key))
+        keys.filter(|key| !self.touching.closes(*key) && self.have_mass(*key))
+    }
+
+    fn have_mass(&self, key: ConstraintKey) -> bool {
+        self.massless.binary_search(&key).is_err()
     }
 
     fn strikes(&self, constraint: &Constraint) -> bool {
-        self.closed.closes(constraint.key) || self.touching.has_segment_of(constraint)
+        let is_struck =
+            self.closed.closes(constraint.key) || self.touching.has_segment_of(constraint);
+        is_struck && self.have_mass(constraint.key)
     }
 }
 

@@ -1,0 +1,161 @@
+//! Rest of nodes without mass at the end of an increment in which pairs open. Section 6 of
+//! docs/theory.md, Releases.
+
+use super::free_nodes::{FreeNodes, pair_target};
+use crate::contact::{ClosedPair, ClosedPairs, Constraint};
+use crate::dynamics::increment::{ContactForces, ContactSystem, Release, Solved};
+use crate::dynamics::results::State;
+use crate::dynamics::step::{Interval, StepProblem, System, Workspace, difference, dot, sum};
+use crate::elements::Motion;
+use crate::linear::{larger, largest};
+
+/// Most Newton steps to the rest.
+const STEPS: usize = 10;
+/// Last Newton step beside the way from which on the next is round-off.
+const NEAR: f64 = 1e-6;
+/// Round-off of displacements, and of the sums of a strain energy.
+const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
+
+/// Where an increment starts: its motion and the pairs closed there.
+pub(crate) struct ReleaseStart<'a> {
+    pub state: &'a State,
+    pub closed: &'a ClosedPairs,
+}
+
+/// Lets nodes without mass come to rest at the end of an increment in which pairs have opened, if they
+/// carry no force: the mid-point rule fixes the mean of start and end alone, so that their deviation from
+/// rest would change its sign in every increment. Where there is no rest, or a node would go through a
+/// surface on the way, they stay as they are. Gives what this takes.
+pub(crate) fn bring_to_rest(
+    problem: &StepProblem,
+    workspace: &mut Workspace,
+    start: ReleaseStart,
+    interval: Interval,
+    solved: &mut Solved,
+) -> Release {
+    if problem.redistribution.is_empty() {
+        return Release::default();
+    }
+    let still = &solved.forces.closed;
+    let has_opened = |pair: &&ClosedPair| still.of_slave(pair.key.slave_index).is_empty();
+    let opened: Vec<&ClosedPair> = start.closed.iter().filter(has_opened).collect();
+    if opened.is_empty() {
+        return Release::default();
+    }
+    let mut releasing = Releasing {
+        problem,
+        workspace,
+        interval,
+        end: &solved.end,
+        free: FreeNodes::new(problem, solved, &opened),
+        held: still,
+    };
+    let found = releasing.rest();
+    let safe = found.filter(|u| !releasing.goes_through(&start, u));
+    let found = safe.and_then(|u| Some((releasing.release(&u)?, u)));
+    let Some((mut release, u)) = found else {
+        return Release::default();
+    };
+    let at = problem.configurations(&u, &u);
+    let constraint = |pair: &&ClosedPair| {
+        let target = pair_target(problem, pair)?;
+        Some((Constraint::new(target, &at), pair.force))
+    };
+    release.opened = opened.iter().filter_map(constraint).collect();
+    let updated = problem.elements.update(&u, &start.state.internal);
+    (solved.end.u, solved.end.internal) = (u, updated.variables);
+    release
+}
+
+/// The free nodes of an increment on their way to rest.
+struct Releasing<'a, 'm> {
+    problem: &'a StepProblem<'a>,
+    workspace: &'a mut Workspace<'m>,
+    interval: Interval,
+    /// State at the end of the increment before the rest.
+    end: &'a State,
+    free: FreeNodes,
+    /// The pairs closed there.
+    held: &'a ClosedPairs,
+}
+
+impl Releasing<'_, '_> {
+    /// Displacements with the free nodes at rest: W - R.u is least with all gaps >= min(g1, 0), by Newton
+    /// steps with the contact forces of the pairs that the nodes meet. None where they do not converge.
+    fn rest(&mut self) -> Option<Vec<f64>> {
+        let mut u = self.end.u.clone();
+        for _ in 0..STEPS {
+            let du = self.newton_step(&u)?;
+            u = sum(&u, &du);
+            let (step, way) = (largest(&du), largest(&difference(&u, &self.end.u)));
+            if step <= larger(NEAR * way, ROUND_OFF * largest(&u)) {
+                return Some(u);
+            }
+        }
+        None
+    }
+
+    /// dU = K_ii^-1 (R - F + Bn^T Pn), eq. (6.10), Pn of the complementarity problem of the gaps.
+    fn newton_step(&mut self, u: &[f64]) -> Option<Vec<f64>> {
+        let (problem, end) = (self.problem, self.interval.end);
+        let motion = Motion::at(u, &self.end.internal);
+        let internal = problem.elements.internal_force(motion).ok()?;
+        let load = (problem.loads).weighted(problem.elements, 1.0, end, end, u);
+        let constraints = self.constraints(u);
+        let (free, meter) = (&self.free, &mut self.workspace.meter);
+        let mut stiffness = meter.time(|t| &mut t.assembly, || free.stiffness(problem, motion));
+        let mut system = System::new(&mut stiffness, meter);
+        system.factorize().ok()?;
+        let y = system
+            .respond(&free.map, &difference(&load, &internal))
+            .ok()?;
+        let mut forces = ContactForces::default();
+        forces.relinearize(constraints);
+        let mut contact = ContactSystem {
+            map: &free.map,
+            system,
+            method: problem.method(),
+        };
+        forces.solve(&y, None, &mut contact).ok()
+    }
+
+    /// Constraints at the displacements `u` that the free nodes can close, without friction, their gaps
+    /// above what they may be.
+    fn constraints(&mut self, u: &[f64]) -> Vec<Constraint> {
+        let (start, held) = (&self.end.u, self.held.segments());
+        let found = (self.workspace).constraints(self.problem, [start, u], &[], &held, false);
+        let opens = |constraint: &Constraint| self.free.open(constraint);
+        let above_least = |constraint: Constraint| Constraint {
+            gap: constraint.gap - constraint.start_gap.min(0.0),
+            mu: 0.0,
+            ..constraint
+        };
+        found.into_iter().filter(opens).map(above_least).collect()
+    }
+
+    /// Whether a node has gone into a body on its straight path from the start to the displacements `u`.
+    fn goes_through(&mut self, start: &ReleaseStart, u: &[f64]) -> bool {
+        let unsolved = self.problem.unsolved(&difference(u, &start.state.u));
+        let closed = [start.closed, self.held];
+        let found = (self.workspace).find_penetration([&start.state.u, u], closed, &unsolved);
+        found.is_some()
+    }
+
+    /// What the rest at the displacements `u` takes, eq. (6.11); none if it would give energy.
+    fn release(&self, u: &[f64]) -> Option<Release> {
+        let (elements, end) = (self.problem.elements, self.interval.end);
+        let before = elements.evaluate(&self.end.u, &self.end.internal);
+        let after = elements.evaluate(u, &self.end.internal);
+        let both = before.iter().zip(&after);
+        let taken: f64 = both.map(|(b, a)| b.energy - a.energy).sum();
+        let strain: f64 = before.iter().map(|element| element.energy).sum();
+        let load = (self.problem.loads).weighted(elements, 1.0, end, end, u);
+        let load_work = dot(&load, &difference(u, &self.end.u));
+        let loss = taken + load_work;
+        (loss >= -ROUND_OFF * strain).then(|| Release {
+            loss,
+            load_work,
+            opened: Vec::new(),
+        })
+    }
+}

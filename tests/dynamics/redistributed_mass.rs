@@ -1,0 +1,234 @@
+//! Redistributed mass at contact surfaces: free flight, impacts, gravity, supports, equations.
+
+use crate::blocks::{Keep, add_block, add_contact, fixed, gravity, model, run_to_end, step, throw};
+use crate::invariants::drift;
+use stickslip::diagnostics::{Diagnostics, Sources};
+use stickslip::model::{
+    Amplitude, ContactMass, Equation, ImpactTime, LandingRule, Model, Settings, Support,
+    SupportMotion, TimeBase,
+};
+use stickslip::prepare::PreparedModel;
+use stickslip::{deck, reader};
+
+fn redistributed() -> Settings {
+    Settings {
+        contact_mass: ContactMass::Redistributed,
+        ..Settings::default()
+    }
+}
+
+/// Nodes without mass.
+fn massless(model: &Model) -> Vec<usize> {
+    let prepared = PreparedModel::new(model.clone());
+    prepared.redistribution().massless().collect()
+}
+
+/// No increment ends with an overlap, gains energy, or opens the balance; no node loses its velocity.
+fn assert_sound(keep: &Keep) {
+    let energy = |k: usize| keep.reports[k].energy.kinetic + keep.reports[k].energy.strain;
+    let largest = (0..keep.reports.len()).map(energy).fold(0.0, f64::max);
+    for (k, report) in keep.reports.iter().enumerate() {
+        let violation = &report.solver.violation;
+        assert!(violation.overlap <= 1e-11, "{}: {violation:?}", report.time);
+        assert!(
+            report.energy.balance.abs() < 1e-11 * largest,
+            "{}",
+            report.time
+        );
+        assert_eq!(report.energy.impact_loss, 0.0);
+        let work = report.energy.external_work;
+        let before = k
+            .checked_sub(1)
+            .map_or(0.0, |k| keep.reports[k].energy.external_work);
+        let gain = energy(k) - energy(k.saturating_sub(1)) - (work - before);
+        assert!(gain < 1e-11 * largest, "{}: {gain:e}", report.time);
+    }
+}
+
+/// A beam, stretched at the start, that flies, spins and vibrates.
+#[test]
+fn free_flight_keeps_energy_and_both_momenta() {
+    let mut model = model(1e4, 0.3, 1.0);
+    let bar = add_block(&mut model, [0.0, 0.0], [10.0, 1.0], (20, 4), 0.0);
+    throw(&mut model, &bar, [1.0, 2.0], 1.0, [5.0, 0.5]);
+    for node in bar.nodes() {
+        let x = model.mesh.coordinates[node][0] - 5.0;
+        model.initial_velocity[2 * node] += 0.5 * x;
+    }
+    let skin = model.mesh.exterior_faces();
+    add_contact(&mut model, skin.clone(), skin, 0.0);
+    model.steps = vec![step(0.02, 200, redistributed(), Vec::new())];
+    assert_eq!(massless(&model).len(), 48);
+    let (keep, _) = run_to_end(&model);
+    let [energy, linear, angular] = drift(&keep);
+    println!("energy {energy:.1e} linear {linear:.1e} angular {angular:.1e}");
+    assert!(energy < 1e-11 && linear < 1e-12 && angular < 1e-12);
+    let first = &keep.reports[0].momentum;
+    assert!((first.linear[0] - 10.0).abs() < 1e-12 && (first.linear[1] - 20.0).abs() < 1e-12);
+    assert_sound(&keep);
+}
+
+/// Two beams thrown at each other obliquely, in two steps.
+fn oblique_impact(friction: f64, settings: Settings) -> Model {
+    let mut model = model(1e3, 0.3, 1.0);
+    let lower = add_block(&mut model, [0.0, 0.0], [4.0, 0.8], (16, 4), 0.0);
+    let upper = add_block(&mut model, [0.7, 1.0], [3.0, 0.8], (10, 4), 0.1);
+    throw(&mut model, &lower, [0.3, 0.5], 0.05, [2.0, 0.4]);
+    throw(&mut model, &upper, [-0.8, -1.5], -0.2, [2.2, 1.5]);
+    add_contact(&mut model, upper.faces(0), lower.faces(2), friction);
+    let half = || step(0.005, 150, settings, Vec::new());
+    model.steps = vec![half(), half()];
+    model
+}
+
+#[test]
+fn impacts_keep_both_momenta_and_stop_no_node() {
+    let (increment, event) = (ImpactTime::Increment, ImpactTime::Event);
+    for (impact_time, friction) in [(increment, 0.0), (increment, 0.3), (event, 0.0)] {
+        let settings = Settings {
+            impact_time,
+            ..redistributed()
+        };
+        let (keep, _) = run_to_end(&oblique_impact(friction, settings));
+        let [_, linear, angular] = drift(&keep);
+        let last = &keep.reports.last().expect("reports").energy;
+        println!("{impact_time:?} {friction}: {linear:.1e} {angular:.1e} {last:?}");
+        assert!(keep.reports.iter().any(|r| r.contacts[0].closed > 2));
+        assert!(linear < 1e-12 && angular < 1e-12);
+        assert!(last.release_loss > 0.0);
+        assert_sound(&keep);
+    }
+}
+
+/// With the landing return nothing takes energy where there is no friction.
+#[test]
+fn with_the_landing_return_the_energy_is_kept() {
+    for impact_time in [ImpactTime::Increment, ImpactTime::Event] {
+        let settings = Settings {
+            impact_time,
+            landing: LandingRule::Return,
+            ..redistributed()
+        };
+        let (keep, _) = run_to_end(&oblique_impact(0.0, settings));
+        let [energy, linear, angular] = drift(&keep);
+        let last = &keep.reports.last().expect("reports").energy;
+        println!("{impact_time:?}: {energy:.1e} {linear:.1e} {angular:.1e} {last:?}");
+        assert!(energy < 1e-11 && linear < 1e-12 && angular < 1e-12);
+        let taken = last.release_loss - last.normal_contact_work;
+        assert!((last.landing_return - taken).abs() < 1e-11 * last.kinetic);
+        assert!(last.release_loss > 0.0);
+        assert_sound(&keep);
+    }
+}
+
+/// Weights act where the mass is, so that a body falls without strain, and supports whose nodes are
+/// without mass move as prescribed.
+#[test]
+fn a_block_falls_and_lands_on_a_moving_table() {
+    let mut model = model(1e3, 0.3, 1.0);
+    let table = add_block(&mut model, [-1.0, -1.0], [4.0, 1.0], (8, 4), 0.0);
+    let block = add_block(&mut model, [0.0, 0.05], [2.0, 1.0], (6, 5), 0.0);
+    add_contact(&mut model, block.faces(0), table.faces(2), 0.3);
+    model.amplitudes = vec![Amplitude {
+        name: "RISE".into(),
+        time: TimeBase::Step,
+        points: vec![(0.0, 0.0), (1.0, 0.1)],
+    }];
+    let held = table
+        .nodes()
+        .flat_map(|n| [2 * n, 2 * n + 1])
+        .map(|dof| match dof % 2 {
+            0 => fixed(dof),
+            _ => Support {
+                dof,
+                motion: SupportMotion::Amplitude {
+                    value: 1.0,
+                    amplitude: 0,
+                },
+            },
+        });
+    let mut fall = step(0.005, 60, redistributed(), held.collect());
+    let elements = block.first_element..block.first_element + 30;
+    fall.body_forces = elements.map(|e| gravity(e, 2.0)).collect();
+    model.steps = vec![fall];
+    assert_eq!(massless(&model).len(), 7 + 9);
+    let (keep, _) = run_to_end(&model);
+    for node in block.nodes() {
+        assert!(
+            (keep.reports[0].state.a[2 * node + 1] + 2.0).abs() < 1e-12,
+            "{node}"
+        );
+    }
+    let landed = keep
+        .reports
+        .iter()
+        .position(|r| r.contacts[0].closed > 0)
+        .expect("landed");
+    assert!(landed > 10);
+    assert!(keep.reports[landed - 1].energy.strain < 1e-24);
+    for report in &keep.reports {
+        for node in table.nodes() {
+            assert!((report.state.u[2 * node + 1] - 0.1 * report.time).abs() < 1e-14);
+            assert!((report.state.v[2 * node + 1] - 0.1).abs() < 1e-14);
+        }
+    }
+    assert_sound(&keep);
+}
+
+#[test]
+fn nodes_of_equations_keep_their_mass() {
+    let mut model = oblique_impact(0.3, redistributed());
+    // the two ends of the lower face of the upper beam move alike
+    let [first, last] = [85, 95];
+    for i in 0..2 {
+        model.equations.push(Equation {
+            dof: 2 * first + i,
+            terms: vec![(2 * last + i, 1.0)],
+        });
+    }
+    let all = massless(&oblique_impact(0.3, redistributed()));
+    let found = massless(&model);
+    assert!(all.contains(&first) && all.contains(&last));
+    assert_eq!(found.len(), all.len() - 2);
+    let (keep, _) = run_to_end(&model);
+    let last = &keep.reports.last().expect("reports").energy;
+    assert!(
+        last.balance.abs() < 1e-11 * keep.reports[0].energy.kinetic,
+        "{last:?}"
+    );
+}
+
+/// Messages about the steps of a deck.
+fn messages(steps: [&str; 2]) -> String {
+    let text = include_str!("../decks/rigid_floor.inp");
+    let (head, rest) = text.split_once("*STEP").expect("a step");
+    let (_, body) = rest.split_once('\n').expect("lines");
+    let steps = steps.map(|card| format!("*STEP, NLGEOM\n{card}\n{body}"));
+    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+    let text = format!("{head}{}", steps.concat());
+    let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
+    reader::build(&deck, &mut d);
+    d.render(&sources, false)
+}
+
+#[test]
+fn redistributed_mass_is_for_energy_momentum_and_for_all_steps() {
+    let on = "*STICKSLIP, CONTACT MASS=REDISTRIBUTED";
+    let refused = messages(["*STICKSLIP, SCHEME=SS22, CONTACT MASS=REDISTRIBUTED", ""]);
+    assert!(
+        refused.contains("CONTACT MASS=REDISTRIBUTED is not for SCHEME=SS22"),
+        "{refused}"
+    );
+    let refused = messages([on, "*STICKSLIP, SCHEME=SS22"]);
+    assert!(
+        refused.contains("CONTACT MASS=REDISTRIBUTED is not for SCHEME=SS22"),
+        "{refused}"
+    );
+    let refused = messages(["", on]);
+    assert!(
+        refused.contains("CONTACT MASS is the same in all steps"),
+        "{refused}"
+    );
+    assert!(!messages([on, on]).contains("error"));
+    assert!(!messages([on, "*STICKSLIP, LCP=LEMKE"]).contains("error"));
+}

@@ -1,0 +1,107 @@
+"""Bodies that bounce without friction: energy, momenta, and the force on a wall."""
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+
+import runner  # noqa: E402  (first: it finds the modules of scripts/)
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+import style  # noqa: E402
+from results import Array, Results  # noqa: E402
+
+impact = runner.load(HERE / "generate.py")
+
+TRANSIT = 2 * impact.LENGTH / impact.WAVE_SPEED
+FORCE = impact.WAVE_SPEED * impact.SPEED * impact.DEPTH
+IMPULSE = 2 * impact.LENGTH * impact.DEPTH * impact.SPEED
+
+
+def energy(results: Results) -> Array:
+    """T + W as a part of its value at the start."""
+    total = results.energy["kinetic"] + results.energy["strain"]
+    return total / total[0]
+
+
+def not_returned(results: Results) -> float:
+    """What contact forces and releases have taken and was not given back, as a part of the energy."""
+    account = results.energy
+    taken = account["release_loss"] - account["normal_contact_work"] - account["landing_return"]
+    return float(np.abs(taken[-1]) / results.largest_energy)
+
+
+def momentum_error(results: Results) -> float:
+    """Largest change of the momenta, beside the mass times the speed at the start."""
+    linear = np.abs(results.linear_momentum - results.linear_momentum[0]).max()
+    angular = np.abs(results.angular_momentum - results.angular_momentum[0]).max()
+    return float(max(linear, angular)) / (2.0 * results.energy["kinetic"][0]) ** 0.5
+
+
+def wall(results: Results) -> tuple[float, float, float]:
+    """Mean force in the middle of the contact and its deviation, over rho c v0; impulse over 2 m v0."""
+    (contact,) = results.contacts.values()
+    landing = float(results.impacts["time"].min())
+    middle = np.abs(results.time - landing - 0.5 * TRANSIT) <= 0.2 * TRANSIT
+    force = contact.normal[middle] / FORCE
+    impulse = results.history(f"contact/{contact.name}/normal_impulse_sum")[-1] / IMPULSE
+    return float(force.mean()), float(force.std()), float(impulse)
+
+
+def draw(verification: runner.Verification) -> None:
+    """Energy of all runs over time."""
+    decks = [deck for deck in impact.DECKS if any(deck in c.deck for c in verification.cases)]
+    figure, axes = plt.subplots(len(decks), 1, figsize=(8, 3 * len(decks)), squeeze=False)
+    for at, deck in zip(axes[:, 0], decks):
+        for case in verification.cases:
+            if deck in case.deck:
+                results = verification.results[case.name]
+                at.plot(results.time, energy(results), label=case.name)
+        at.set(ylabel="energy / energy at the start", title=deck)
+        at.legend(fontsize="small")
+    axes[-1, 0].set_xlabel("time")
+    style.save(figure, verification.output / "energy.png")
+
+
+def main() -> int:
+    """Runs, checks, draws, reports."""
+    verification = runner.start(HERE)
+    rows, walls = [], []
+    for case in verification.cases:
+        results = verification.results[case.name]
+        deck = case.deck.removesuffix(".inp")
+        verification.check_run(case.name, impact.edge(deck))
+        kept = energy(results)
+        verification.check("largest rise of the energy", case.name, float(np.diff(kept).max()))
+        verification.check(f"energy kept, {case.group}", case.name, float(kept[-1]))
+        if not case.group.startswith("plastic"):
+            suffix = ", events" if case.group.endswith("events") else ""
+            taken = f"taken and not returned{suffix}"
+            verification.check(taken, case.name, not_returned(results))
+        if deck == "rings":
+            verification.check("change of the momenta", case.name, momentum_error(results))
+        if deck == "bar":
+            force, scatter, impulse = wall(results)
+            verification.check("mean force / rho c v0", case.name, force)
+            verification.check("impulse / change of momentum", case.name, change(results))
+            walls.append((case.name, force, scatter, impulse))
+        passes = float(results.solver["passes"][1:].mean())
+        landings = len(results.impacts["time"])
+        rows.append((case.name, float(results.time[-1]), float(kept[-1]), landings, passes))
+    header = ("case", "time", "energy kept", "landings", "passes")
+    verification.table("Bodies that bounce", header, rows)
+    verification.table("Bar on a wall", ("case", "force", "deviation", "impulse"), walls)
+    draw(verification)
+    return verification.finish()
+
+
+def change(results: Results) -> float:
+    """Impulse of the contact on the bar over the change of its momentum."""
+    (contact,) = results.contacts.values()
+    impulse = results.history(f"contact/{contact.name}/impulse_sum")[-1, 0]
+    return float(impulse / (results.linear_momentum[-1, 0] - results.linear_momentum[0, 0]))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
