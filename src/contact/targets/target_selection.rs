@@ -285,8 +285,8 @@ impl SlaveNode<'_> {
             .filter(|&j| (1.0 - p.xi) * p.length <= near && self.corner_sine(i, j) > STRAIGHT_SINE);
         let constrains = |&j: &usize| {
             let start = self.project_at_start(j);
-            let was_over = (-CORNER_ZONE..=1.0 + CORNER_ZONE).contains(&start.xi);
-            was_over && self.was_in_front(j) && !self.is_own(j) && self.is_opposite(j) == Some(true)
+            let was_near = (-near..=start.length + near).contains(&(start.xi * start.length));
+            was_near && self.was_in_front(j) && !self.is_own(j) && self.is_opposite(j) == Some(true)
         };
         before.filter(constrains).or(after.filter(constrains))
     }
