@@ -4,7 +4,7 @@ use crate::blocks::{Keep, PAPER, SCHEMES, add_block, add_contact, model, run_to_
 use stickslip::dynamics::IncrementReport;
 use stickslip::materials::{Law, NeoHooke};
 use stickslip::model::{
-    Damping, ElementType, Formulation, Model, Scheme, Settings, Support, SupportMotion,
+    Damping, ElementType, Formulation, LandingRule, Model, Scheme, Settings, Support, SupportMotion,
 };
 
 fn with(scheme: Scheme) -> Settings {
@@ -162,7 +162,7 @@ fn viscosity_keeps_both_momenta_and_takes_what_is_booked() {
                     "beta {beta}: linear {linear:.0e} angular {angular:.0e} lost {:.3} passes {passes:.1}",
                     lost / energy(first)
                 );
-                assert!(linear < 1e-13 && angular < 1e-12);
+                assert!(linear < 1e-13 && angular < 2e-13);
                 assert_eq!(last.momentum.damped_linear, [0.0; 2]);
                 assert!(lost > 0.01 * energy(first));
                 assert!((last.energy.damping - lost).abs() < 1e-12 * energy(first));
@@ -212,7 +212,7 @@ fn mass_proportional_damping_brakes_the_flight_as_booked() {
         let [linear, angular] = momentum_errors(&keep);
         println!("linear {linear:.0e} angular {angular:.0e}");
         assert!(linear < 1e-13);
-        assert!(angular < 1e-12 || scheme == PAPER);
+        assert!(angular < 2e-13 || scheme == PAPER);
         assert!(largest(&keep, |r| r.energy.balance.abs()) < 1e-12 * energy(first));
         assert!(last.energy.damping > 0.5 * energy(first));
     }
@@ -248,5 +248,31 @@ fn the_balance_holds_in_contact_and_at_moving_supports() {
         assert!(last.energy.damping > 1e-3 * largest_energy);
         assert!(last.energy.friction_dissipation > 1e-3 * largest_energy);
         assert!(largest(&keep, |r| r.energy.balance.abs()) < 1e-12 * largest_energy);
+    }
+}
+
+#[test]
+fn landings_of_damped_bodies_give_back_energy_and_keep_momenta() {
+    for (alpha, beta) in [(0.0, 2e-3), (0.2, 2e-3)] {
+        let mut model = model(1000.0, 0.3, 1.0);
+        model.materials[0].damping = Damping { alpha, beta };
+        let lower = add_block(&mut model, [0.0, 0.0], [2.0, 1.0], (6, 3), 0.0);
+        let upper = add_block(&mut model, [0.5, 1.05], [1.0, 1.0], (4, 4), 0.3);
+        throw(&mut model, &lower, [0.1, 0.2], 0.0, [0.0; 2]);
+        throw(&mut model, &upper, [0.5, -2.0], 0.4, [1.0, 1.5]);
+        add_contact(&mut model, upper.faces(0), lower.faces(2), 0.0);
+        let settings = Settings {
+            landing: LandingRule::Return,
+            ..Settings::default()
+        };
+        model.steps = vec![step(5e-3, 150, settings, Vec::new())];
+        let keep = run_to_end(&model).0;
+        let (first, last) = (&keep.reports[0], last(&keep));
+        let [linear, angular] = momentum_errors(&keep);
+        println!("{linear:.0e} {angular:.0e} {:?}", last.energy);
+        assert!(linear < 1e-13 && angular < 2e-13);
+        assert!(last.energy.landing_return > 1e-4 * energy(first));
+        assert!(last.energy.damping > 1e-2 * energy(first));
+        assert!(largest(&keep, |r| r.energy.balance.abs()) < 1e-12 * energy(first));
     }
 }
