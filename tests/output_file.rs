@@ -160,7 +160,7 @@ const VECTOR_PER_INCREMENT: [&str; 18] = [
     "/history/nodes/TIP/mean/A",
 ];
 
-const PER_INCREMENT: [&str; 70] = [
+const PER_INCREMENT: [&str; 72] = [
     "/history/contact/BOTTOM_TOP/normal_work",
     "/history/contact/BOTTOM_TOP/friction_dissipation",
     "/history/contact/BOTTOM_TOP/normal_impulse",
@@ -172,6 +172,7 @@ const PER_INCREMENT: [&str; 70] = [
     "/history/contact/BOTTOM_TOP/impact_normal_impulse_sum",
     "/history/contact/BOTTOM_TOP/impact_tangential_impulse_sum",
     "/history/contact/BOTTOM_TOP/landing_return",
+    "/history/contact/BOTTOM_TOP/release_loss",
     "/history/contact/BOTTOM_TOP/return_impulse",
     "/history/contact/BOTTOM_TOP/return_impulse_sum",
     "/history/contact/BOTTOM_TOP_2/normal_work",
@@ -185,6 +186,7 @@ const PER_INCREMENT: [&str; 70] = [
     "/history/contact/BOTTOM_TOP_2/impact_normal_impulse_sum",
     "/history/contact/BOTTOM_TOP_2/impact_tangential_impulse_sum",
     "/history/contact/BOTTOM_TOP_2/landing_return",
+    "/history/contact/BOTTOM_TOP_2/release_loss",
     "/history/contact/BOTTOM_TOP_2/return_impulse",
     "/history/contact/BOTTOM_TOP_2/return_impulse_sum",
     "/history/time",

@@ -57,6 +57,7 @@ CONTACT = {
     "normal_work": (),
     "friction_dissipation": (),
     "landing_return": (),
+    "release_loss": (),
     "return_impulse": (),
     "return_impulse_sum": (),
     "impulse": (2,),

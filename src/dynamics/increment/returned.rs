@@ -36,6 +36,15 @@ pub(crate) struct PairReturn {
     pub vector: [f64; 2],
 }
 
+impl Release {
+    /// The opened pairs, each with its part of the loss by the normal force that it carried.
+    pub fn losses(&self) -> impl Iterator<Item = (ConstraintKey, f64)> + '_ {
+        let whole: f64 = self.opened.iter().map(|(_, [pn, _])| pn).sum();
+        let opened = self.opened.iter().filter(|(_, [pn, _])| *pn > 0.0);
+        opened.map(move |(constraint, [pn, _])| (constraint.key, self.loss * pn / whole))
+    }
+}
+
 impl Returned {
     /// Energy given back to all pairs.
     pub fn energy(&self) -> f64 {

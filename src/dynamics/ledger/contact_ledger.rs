@@ -14,6 +14,7 @@ struct Sums {
     normal_work: f64,
     friction_dissipation: f64,
     landing_return: f64,
+    release_loss: f64,
     impulse: ContactImpulse,
 }
 
@@ -89,6 +90,7 @@ impl ContactLedger {
             result.normal_work = sums.normal_work;
             result.friction_dissipation = sums.friction_dissipation;
             result.landing_return = sums.landing_return;
+            result.release_loss = sums.release_loss;
             if let Some(node) = self.reference[c] {
                 let x = problem.position(u, node);
                 result.reference_moment = result.moment - cross(x, result.force);
@@ -102,6 +104,9 @@ impl ContactLedger {
             let contact = self.contact_of[pair.key.slave_index];
             self.contacts[contact].landing_return += pair.energy;
             resultants[contact].impulse.add_return(pair);
+        }
+        for (key, loss) in returned.release.losses() {
+            self.contacts[self.contact_of[key.slave_index]].release_loss += loss;
         }
     }
 

@@ -64,8 +64,10 @@ pub struct ContactResultant {
     pub normal_work: f64,
     /// Energy dissipated by friction since the start of the analysis.
     pub friction_dissipation: f64,
-    /// Kinetic energy given back after its landings since the start of the analysis.
+    /// Kinetic energy given back after its landings and releases since the start of the analysis.
     pub landing_return: f64,
+    /// Energy that nodes without mass lost after its releases since the start of the analysis.
+    pub release_loss: f64,
     /// Impulses of the increment.
     pub impulse: ContactImpulse,
     /// Impulses since the start of the analysis.

@@ -6,7 +6,7 @@ use crate::dynamics::{ContactImpulse, ContactResultant, Landing};
 use crate::model::{Bodies, Contact, Model};
 use crate::output::file::{Column, Meaning, Scalar, Series, contact_names, group, meaning, scalar};
 
-const RESULTANTS: [Scalar<ContactResultant, f64>; 8] = [
+const RESULTANTS: [Scalar<ContactResultant, f64>; 9] = [
     scalar(
         "moment",
         "moment of the force about the origin",
@@ -48,9 +48,15 @@ const RESULTANTS: [Scalar<ContactResultant, f64>; 8] = [
     ),
     scalar(
         "landing_return",
-        "kinetic energy given back after its landings since the start",
+        "kinetic energy given back after its landings and releases since the start",
         "energy",
         |c| c.landing_return,
+    ),
+    scalar(
+        "release_loss",
+        "energy that nodes without mass lost after its releases since the start",
+        "energy",
+        |c| c.release_loss,
     ),
 ];
 

@@ -84,7 +84,8 @@ impl Losses {
             (
                 self.node_mass,
                 "impulses that stop the mass of landing nodes took",
-                "a finer mesh at the surface takes less (smaller nodes, more work)",
+                "choose CONTACT MASS=REDISTRIBUTED with LANDING=RETURN (shifts the highest \
+                 frequencies; bodies go on bouncing and ringing) or a finer mesh at the surface",
             ),
             (
                 self.scheme.abs(),
