@@ -108,8 +108,18 @@ impl Accounts {
         if !problem.elements.has_damping() {
             return;
         }
-        let Solved { d, end, .. } = solved;
-        let halfway: Vec<f64> = end.u.iter().zip(d).map(|(u1, d)| u1 - d / 2.0).collect();
+        let (d, u_theta) = (&solved.d, &solved.equilibrium.u_theta);
+        // U0 + d/2: U_theta where nodes without mass may have gone on from U0 + d to their rest
+        let halfway: Vec<f64> = match problem.weights.energy_momentum {
+            true => u_theta.clone(),
+            false => solved
+                .end
+                .u
+                .iter()
+                .zip(d)
+                .map(|(u1, d)| u1 - d / 2.0)
+                .collect(),
+        };
         let impulse = problem.elements.mass_damping_impulse(d);
         let taken = momentum(problem, &halfway, &impulse);
         for (sum, p) in self.damped.linear.iter_mut().zip(taken.linear) {
