@@ -2,7 +2,7 @@
 //! docs/theory.md, Releases.
 
 use super::free_nodes::{FreeNodes, pair_target};
-use crate::contact::{ClosedPair, ClosedPairs, Constraint};
+use crate::contact::{ClosedPair, ClosedPairs, Constraint, PairTarget};
 use crate::dynamics::increment::{ContactForces, ContactSystem, Release, Solved};
 use crate::dynamics::results::State;
 use crate::dynamics::step::{Interval, StepProblem, System, Workspace, difference, dot, sum};
@@ -13,6 +13,8 @@ use crate::linear::{larger, largest};
 const STEPS: usize = 10;
 /// Last Newton step beside the way from which on the next is round-off.
 const NEAR: f64 = 1e-6;
+/// Overlap, in lengths of the segment, that is round-off of positions.
+const OVERLAP: f64 = 1e-12;
 /// Round-off of displacements, and of the sums of a strain energy.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
@@ -42,6 +44,7 @@ pub(crate) fn bring_to_rest(
     if opened.is_empty() {
         return Release::default();
     }
+    let open = solved.forces.iter().filter(|(_, pair)| pair.is_none());
     let mut releasing = Releasing {
         problem,
         workspace,
@@ -49,6 +52,7 @@ pub(crate) fn bring_to_rest(
         end: &solved.end,
         free: FreeNodes::new(problem, solved, &opened),
         held: still,
+        open: open.map(|(c, _)| untilted(c.source)).collect(),
     };
     let found = releasing.rest();
     let safe = found.filter(|u| !releasing.goes_through(&start, u));
@@ -67,6 +71,14 @@ pub(crate) fn bring_to_rest(
     release
 }
 
+/// A target whatever held the node at the start: the rest starts at the end.
+fn untilted(target: PairTarget) -> PairTarget {
+    PairTarget {
+        from: None,
+        ..target
+    }
+}
+
 /// The free nodes of an increment on their way to rest.
 struct Releasing<'a, 'm> {
     problem: &'a StepProblem<'a>,
@@ -77,6 +89,8 @@ struct Releasing<'a, 'm> {
     free: FreeNodes,
     /// The pairs closed there.
     held: &'a ClosedPairs,
+    /// Targets of the open constraints of the last pass.
+    open: Vec<PairTarget>,
 }
 
 impl Releasing<'_, '_> {
@@ -89,7 +103,8 @@ impl Releasing<'_, '_> {
             u = sum(&u, &du);
             let (step, way) = (largest(&du), largest(&difference(&u, &self.end.u)));
             if step <= larger(NEAR * way, ROUND_OFF * largest(&u)) {
-                return Some(u);
+                let overlaps = |c: &Constraint| c.gap < -OVERLAP * c.scale;
+                return (!self.constraints(&u).iter().any(overlaps)).then_some(u);
             }
         }
         None
@@ -119,8 +134,8 @@ impl Releasing<'_, '_> {
         forces.solve(&y, None, &mut contact).ok()
     }
 
-    /// Constraints at the displacements `u` that the free nodes can close, without friction, their gaps
-    /// above what they may be.
+    /// Constraints at the displacements `u` that the free nodes can close, those found anew and those of the
+    /// last pass, without friction, their gaps above what they may be.
     fn constraints(&mut self, u: &[f64]) -> Vec<Constraint> {
         let (start, held) = (&self.end.u, self.held.segments());
         let found = (self.workspace).constraints(self.problem, [start, u], &[], &held, false);
@@ -130,7 +145,12 @@ impl Releasing<'_, '_> {
             mu: 0.0,
             ..constraint
         };
-        found.into_iter().filter(opens).map(above_least).collect()
+        let at = self.problem.configurations(start, u);
+        let kept = self.open.iter().map(|&target| Constraint::new(target, &at));
+        let mut all: Vec<Constraint> = found.into_iter().chain(kept).filter(opens).collect();
+        all.sort_by_key(|constraint| constraint.key);
+        all.dedup_by_key(|constraint| constraint.key);
+        all.into_iter().map(above_least).collect()
     }
 
     /// Whether a node has gone into a body on its straight path from the start to the displacements `u`.
