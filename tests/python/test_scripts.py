@@ -21,6 +21,7 @@ from decks import (
     CANTILEVERS,
     COLUMN,
     CORNERS,
+    DISCS,
     IMPACT,
     PILE,
     RINGS,
@@ -89,7 +90,7 @@ def test_an_animation_is_all_that_is_written(job: Job, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "folder",
-    [BLOCK, CANTILEVERS, BAR, RINGS, PILE, COLUMN, CORNERS, BULLET, SHAPES, IMPACT],
+    [BLOCK, CANTILEVERS, BAR, RINGS, PILE, COLUMN, CORNERS, BULLET, SHAPES, IMPACT, DISCS],
     ids=lambda path: path.name,
 )
 def test_decks_are_what_their_generator_writes(folder: Path, tmp_path: Path) -> None:

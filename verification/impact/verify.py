@@ -32,6 +32,15 @@ def not_returned(results: Results) -> float:
     return float(np.abs(taken[-1]) / results.largest_energy)
 
 
+def unshared(results: Results) -> float:
+    """What the contacts of the ledger's returns and releases lack or have too much of, of the energy."""
+    worst = 0.0
+    for name in ("landing_return", "release_loss"):
+        shares = [results.history(f"contact/{contact}/{name}") for contact in results.contacts]
+        worst = max(worst, float(np.abs(sum(shares) - results.energy[name]).max()))
+    return worst / results.largest_energy
+
+
 def momentum_error(results: Results) -> float:
     """Largest change of the momenta, beside the mass times the speed at the start."""
     linear = np.abs(results.linear_momentum - results.linear_momentum[0]).max()
@@ -79,6 +88,7 @@ def main() -> int:
             suffix = ", events" if case.group.endswith("events") else ""
             taken = f"taken and not returned{suffix}"
             verification.check(taken, case.name, not_returned(results))
+        verification.check("contacts / ledger", case.name, unshared(results))
         if deck == "rings":
             verification.check("change of the momenta", case.name, momentum_error(results))
         if deck == "bar":
