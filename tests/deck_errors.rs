@@ -104,7 +104,7 @@ fn faulty(code: Code) -> Source {
         NotText => square("RUBBER", "RUB\0BER"),
         EndlessLine => square("one square", &"one square ".repeat(6000)),
         UnsupportedKeyword => model("*TIE, NAME=GLUE\nTOP, TOP"),
-        UnsupportedParameter => model("*AMPLITUDE, NAME=A, DEFINITION=SMOOTH STEP\n0., 0., 1., 1."),
+        UnsupportedParameter => model("*AMPLITUDE, NAME=A, DEFINITION=USER\n0., 0., 1., 1."),
         IgnoredKeyword => step("*CONTROLS, RESET"),
         IgnoredParameter => square("*DYNAMIC, DIRECT", "*DYNAMIC, DIRECT, ALPHA=-0.05"),
         WrongPlace => step("*MATERIAL, NAME=STEEL"),

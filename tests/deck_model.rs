@@ -396,7 +396,69 @@ fn amplitudes_are_scaled_and_shifted() {
         "*AMPLITUDE, NAME=A, SCALEX=2., SHIFTX=1., SCALEY=3., SHIFTY=-1., VALUE=ABSOLUTE\n0., 0., 1., 1.",
         "",
     );
-    assert_eq!(model.amplitudes[0].points, [(1.0, -1.0), (3.0, 2.0)]);
+    let points = vec![(1.0, -1.0), (3.0, 2.0)];
+    assert_eq!(model.amplitudes[0].curve, Curve::Linear(points));
+}
+
+/// The curve of an amplitude with this definition and these rows.
+fn curve(definition: &str) -> Curve {
+    let card = format!("*AMPLITUDE, NAME=A, DEFINITION={definition}");
+    with(&card, "").amplitudes[0].curve.clone()
+}
+
+fn signal(start: f64, base: f64, signal: Signal) -> Curve {
+    Curve::Signal {
+        start,
+        base,
+        signal,
+    }
+}
+
+#[test]
+fn amplitudes_of_every_definition() {
+    let points = vec![(0.0, 0.0), (2.0, 3.0)];
+    assert_eq!(
+        curve("SMOOTH STEP\n0., 0., 2., 3."),
+        Curve::SmoothStep(points)
+    );
+    let points = vec![(0.5, 0.0), (0.75, 1.0), (1.0, 0.0), (1.25, 4.0)];
+    assert_eq!(
+        curve("EQUALLY SPACED, FIXED INTERVAL=0.25, BEGIN=0.5\n0., 1.,, 4."),
+        Curve::Linear(points)
+    );
+    let wanted = Signal::Decay {
+        size: 2.0,
+        time: 0.5,
+    };
+    assert_eq!(curve("DECAY\n1., 2., 0.25, 0.5"), signal(0.25, 1.0, wanted));
+    let wanted = Signal::Modulated {
+        size: 2.0,
+        frequencies: [3.0, 4.0],
+    };
+    assert_eq!(
+        curve("MODULATED\n1., 2., , 3., 4."),
+        signal(0.0, 1.0, wanted)
+    );
+    let wanted = Signal::Periodic {
+        frequency: 3.0,
+        harmonics: vec![(0.0, 1.0), (2.0, 0.0)],
+    };
+    assert_eq!(
+        curve("PERIODIC\n2, 3., 0.25, 1.\n0., 1., 2."),
+        signal(0.25, 1.0, wanted)
+    );
+}
+
+#[test]
+fn signals_are_scaled_and_shifted() {
+    let wanted = Signal::Periodic {
+        frequency: 1.5,
+        harmonics: vec![(15.0, 20.0)],
+    };
+    assert_eq!(
+        curve("PERIODIC, SCALEX=2., SHIFTX=1., SCALEY=5., SHIFTY=-1.\n1, 3., 0.25, 1.\n3., 4."),
+        signal(1.5, 4.0, wanted)
+    );
 }
 
 #[test]

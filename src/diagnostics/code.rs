@@ -104,7 +104,7 @@ codes! {
     ValueOutsideStep "D502" "A motion is prescribed before the first step."
     VelocityOnSupport "D503" "An initial velocity on a prescribed degree of freedom."
     RampedSupport "D504" "A prescribed displacement without amplitude grows over the step."
-    AmplitudeTable "D505" "The times of an amplitude do not increase, or it has no points."
+    AmplitudeTable "D505" "An amplitude whose times do not increase, or whose numbers make no curve."
     BadIncrement "D506" "The times of a step make no sense."
     UnstableScheme "D507" "Weights that make the time integration unstable."
     BadDirection "D508" "A direction is zero or not of unit length."

@@ -57,6 +57,23 @@ fn forms_of_hyperelasticity() {
 }
 
 #[test]
+fn amplitudes_that_cannot_be() {
+    let amplitude = |text: &str| model(&format!("*AMPLITUDE, NAME=A, DEFINITION={text}"));
+    insta::assert_snapshot!(texts_of(
+        Code::AmplitudeTable,
+        &[
+            amplitude("SMOOTH STEP\n0., 0., 0., 1."),
+            amplitude("EQUALLY SPACED, FIXED INTERVAL=0.\n0., 1."),
+            amplitude("EQUALLY SPACED, FIXED INTERVAL=1.E-20, BEGIN=1.\n0., 1."),
+            amplitude("PERIODIC\n2, 3.\n1., 0."),
+            amplitude("PERIODIC, SCALEX=-1.\n0, 3."),
+            amplitude("DECAY\n0., 1., 0., -2."),
+            amplitude("MODULATED, SCALEY=1.E300\n1.E300, 1., 0., 1., 1."),
+        ],
+    ));
+}
+
+#[test]
 fn damping_that_cannot_be() {
     let texts = [
         "*DAMPING",
