@@ -128,6 +128,7 @@ fn faulty(code: Code) -> Source {
         RepeatedFace => square("BODY, S3", "BODY, S3\n7, S3"),
         EmptyMesh => Source::Text("*STEP, NLGEOM\n*DYNAMIC\n1., 1.\n*END STEP\n".to_string()),
         EmptySurface => model("*NSET, NSET=NONE\n*SURFACE, TYPE=NODE, NAME=S\nNONE"),
+        LineElement => model("*ELEMENT, TYPE=T3D2, ELSET=CURVE\n8, 1, 3"),
         IncompleteMaterial => square("*DENSITY\n1.\n", ""),
         MaterialRange => square("1000., 0.3", "1000., 0.5"),
         NoSection => square("*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER\n0.5\n", ""),

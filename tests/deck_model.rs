@@ -802,3 +802,58 @@ fn mean_dilatation_is_for_plane_strain_quadrilaterals() {
         "{found}"
     );
 }
+
+/// Line elements along boundary curves as a mesh generator writes them: before the plane ones, with
+/// groups of both under one name.
+const CURVES: &str = "*ELEMENT, TYPE=T3D2, ELSET=Line1\n101, 2, 1\n\
+                      *ELEMENT, TYPE=T3D2, ELSET=Line2\n102, 3, 4\n103, 2, 3\n\
+                      *ELSET, ELSET=RIM\n101, 102\n*ELSET, ELSET=BODY\n103\n";
+
+/// The square with the boundary curves of a mesh generator and further cards.
+fn with_curves(more: &str) -> (Model, String) {
+    square("*ELEMENT", &format!("{CURVES}{more}*ELEMENT"))
+}
+
+fn faces_of(model: &Model, surface: usize) -> Vec<usize> {
+    match &model.surfaces[surface].kind {
+        SurfaceKind::Faces(faces) => faces.iter().map(|face| face.side).collect(),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn line_elements_name_sides_of_plane_elements() {
+    let (model, messages) = with_curves(
+        "*SURFACE, NAME=S\nRIM\n103,\n*SURFACE, NAME=B\nBODY\n*NSET, NSET=N, ELSET=RIM\n\
+         *NSET, NSET=M, ELSET=Line1\n",
+    );
+    assert!(messages.starts_with("note[D318]"), "{messages}");
+    assert_eq!(messages.matches("[D").count(), 1, "{messages}");
+    assert_eq!(model.mesh.elements.len(), 1);
+    let surfaces = ["S", "B"].map(|name| model.surfaces.iter().position(|s| s.name == name));
+    let faces = surfaces.map(|surface| faces_of(&model, surface.unwrap_or(0)));
+    assert_eq!(faces, [vec![0, 2, 1], vec![0, 1, 2, 3]]);
+    let members = |name: &str| {
+        let set = model.sets.nodes.iter().find(|set| set.name == name);
+        set.map(|set| set.members.clone())
+    };
+    assert_eq!(members("N"), Some(vec![0, 1, 2, 3]));
+    assert_eq!(members("M"), Some(vec![0, 1]));
+    let sets: Vec<&str> = model
+        .sets
+        .elements
+        .iter()
+        .map(|s| s.name.as_str())
+        .collect();
+    assert_eq!(sets, ["BODY"]);
+}
+
+#[test]
+fn line_elements_that_are_no_sides_are_left_out() {
+    let (model, messages) = square(
+        "*MATERIAL",
+        "*ELEMENT, TYPE=B31, ELSET=RIM\n8, 1, 3\n9, 3, 4\n*SURFACE, NAME=S\nRIM\n*MATERIAL",
+    );
+    assert!(messages.contains("line element 8 is no side"), "{messages}");
+    assert_eq!(faces_of(&model, 1), [2]);
+}

@@ -82,6 +82,7 @@ codes! {
     RepeatedFace "D315" "A face or node stands twice in a surface."
     EmptyMesh "D316" "There are no nodes or no elements."
     EmptySurface "D317" "A surface or set has no members."
+    LineElement "D318" "A line element, which only names a side of a plane element."
     IncompleteMaterial "D401" "A material lacks a constant."
     MaterialRange "D402" "A material constant lies outside its range."
     NoSection "D403" "Elements have no section."

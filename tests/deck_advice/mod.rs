@@ -74,6 +74,23 @@ fn amplitudes_that_cannot_be() {
 }
 
 #[test]
+fn line_elements_in_place_of_plane_ones() {
+    let curve = "*ELEMENT, TYPE=T3D2, ELSET=RIM\n8, 1, 2\n";
+    let section = model(&format!(
+        "{curve}*SOLID SECTION, ELSET=RIM, MATERIAL=RUBBER"
+    ));
+    let face = model(&format!("{curve}*SURFACE, NAME=S\nRIM, S1"));
+    let load = "*STEP, NLGEOM\n*DYNAMIC\n0.1, 1.\n*DLOAD\n8, P1, 1.\n*END STEP\n*STEP";
+    let load = square("*STEP", &format!("{curve}{load}"));
+    let texts = [section, face, load].map(|deck| {
+        let (d, text) = messages(&deck);
+        assert_eq!(d.count(Severity::Error), 1, "{text}");
+        text
+    });
+    insta::assert_snapshot!(texts.join("\n"));
+}
+
+#[test]
 fn damping_that_cannot_be() {
     let texts = [
         "*DAMPING",

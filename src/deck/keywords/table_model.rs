@@ -55,12 +55,16 @@ pub(crate) static MODEL: &[Keyword] = &[
         Scope::Model,
         Data::Rows,
         &[
-            P::value("TYPE", "CPE3, CPS3, CPE4 or CPS4; required"),
+            P::value(
+                "TYPE",
+                "CPE3, CPS3, CPE4 or CPS4; T3D2, T2D2, B21 or B31 for line elements; required",
+            ),
             P::value("ELSET", "element set that takes the elements"),
             INPUT,
         ],
         "Elements: number (1 to 999 999 999) and nodes, counter-clockwise; a row may run over several \
-         lines.",
+         lines. A line element, as Gmsh writes for boundary curves, has two nodes and names the side \
+         of a plane element between them: sets of them make surfaces and node sets.",
     ),
     Keyword::read(
         "NSET",
@@ -129,7 +133,7 @@ pub(crate) static MODEL: &[Keyword] = &[
             P::flag("CROP", "list the faces in one surface").refused(),
         ],
         "A surface: faces S1 = side 1-2, S2 = 2-3, S3 = 3-4 (triangle: 3-1), S4 = 4-1; without a \
-         face the free sides. The outside of a rigid profile lies on the left of the way from START, \
+         face the free sides, and those that line elements name. The outside of a rigid profile lies on the left of the way from START, \
          the obstacle on the right; an arc (less than 180 degrees) is cut into equal chords of at \
          most 1 degree, 3.8e-5 of its radius off the arc at most.",
     ),
