@@ -218,6 +218,26 @@ fn prescribed_displacements_ramp_or_follow_an_amplitude() {
 }
 
 #[test]
+fn prescribed_velocities_go_on_from_step_to_step() {
+    let motions = |first: &str, second: &str| {
+        let model = second_step("*STEP", first, second);
+        let ends: Vec<_> = model.steps.iter().flat_map(|s| s.supports.last()).collect();
+        ends.iter().map(|s| (s.dof, s.motion)).collect::<Vec<_>>()
+    };
+    let ramp = |to| (7, SupportMotion::Ramp { to });
+    let velocity = "*BOUNDARY, TYPE=VELOCITY\n4, 2, 2, 0.25";
+    // both steps last 1
+    assert_eq!(motions(velocity, ""), [ramp(0.25), ramp(0.5)]);
+    let back = "*BOUNDARY, OP=NEW, TYPE=VELOCITY\n4, 2, 2, -0.5";
+    assert_eq!(motions(velocity, back), [ramp(0.25), ramp(-0.25)]);
+    let displacement = "*BOUNDARY\n4, 2, 2, 0.125";
+    assert_eq!(motions(displacement, velocity), [ramp(0.125), ramp(0.375)]);
+    let follow =
+        "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n0., 0., 4., 8.\n*BOUNDARY, AMPLITUDE=A\n4, 2, 2, 3.";
+    assert_eq!(motions(follow, velocity)[1], ramp(6.25));
+}
+
+#[test]
 fn named_supports_fix_their_directions() {
     for (name, dofs) in [
         ("XSYMM", vec![6]),

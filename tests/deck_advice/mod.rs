@@ -91,6 +91,17 @@ fn line_elements_in_place_of_plane_ones() {
 }
 
 #[test]
+fn velocities_that_cannot_be_prescribed() {
+    let velocity = "*BOUNDARY, TYPE=VELOCITY\n4, 2, 2, 0.25\n";
+    let later = format!("*END STEP\n*STEP\n*DYNAMIC, DIRECT\n0.1, 1.\n{velocity}");
+    let curve = "*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n*BOUNDARY, TYPE=VELOCITY, AMPLITUDE=A";
+    insta::assert_snapshot!(texts_of(
+        Code::UnsupportedParameter,
+        &[step(&later), step(&format!("{curve}\n4, 2, 2, 0.25")),],
+    ));
+}
+
+#[test]
 fn damping_that_cannot_be() {
     let texts = [
         "*DAMPING",

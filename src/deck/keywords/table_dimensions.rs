@@ -231,7 +231,10 @@ pub(crate) static DIMENSIONS: &[Dimensions] = &[
     ),
     keyword(
         "BOUNDARY",
-        &[row(&[Plain, Plain, Plain, LENGTH])],
+        &[
+            under("TYPE", "VELOCITY", &[Plain, Plain, Plain, VELOCITY]),
+            row(&[Plain, Plain, Plain, LENGTH]),
+        ],
         &["AMPLITUDE"],
         &[],
     ),

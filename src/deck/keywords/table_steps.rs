@@ -69,7 +69,10 @@ pub(crate) static STEPS: &[Keyword] = &[
                 "TYPE",
                 &[
                     V::read("DISPLACEMENT", "(default)"),
-                    V::refused("VELOCITY", "prescribe the displacement"),
+                    V::read(
+                        "VELOCITY",
+                        "constant, without AMPLITUDE; it goes on in later steps",
+                    ),
                     V::refused("ACCELERATION", "prescribe the displacement"),
                 ],
                 "what is prescribed",
@@ -79,9 +82,9 @@ pub(crate) static STEPS: &[Keyword] = &[
             P::value("REGION TYPE", "not supported").refused(),
             P::flag("USER", "not supported").refused(),
         ],
-        "Prescribed displacements: node or node set, first direction, last direction, value; or \
-         a node set with XSYMM, YSYMM, ZSYMM, PINNED or ENCASTRE. Without amplitude a value grows \
-         linearly over the step. Directions 3 to 6 may be given with value zero.",
+        "Prescribed displacements or velocities: node or node set, first direction, last direction, \
+         value; or a node set with XSYMM, YSYMM, ZSYMM, PINNED or ENCASTRE. Without amplitude a \
+         displacement grows linearly over the step. Directions 3 to 6 may be given with value zero.",
     ),
     Keyword::read(
         "CLOAD",

@@ -34,13 +34,28 @@ pub(crate) enum Direction {
 #[derive(Default)]
 pub(crate) struct Supports {
     held: BTreeMap<usize, Prescription>,
+    /// Duration of the current step.
+    period: f64,
+    /// Displacements at the end of the last step, of the dofs that it prescribed.
+    ends: BTreeMap<usize, f64>,
 }
 
 #[derive(Clone, Copy)]
 struct Prescription {
     motion: SupportMotion,
+    /// The velocity behind the motion, if that is prescribed.
+    velocity: Option<f64>,
     /// Step that last prescribed it; 0 for model data.
     step: usize,
+}
+
+/// What a card prescribes.
+#[derive(Clone, Copy)]
+enum Quantity {
+    /// Displacements, that follow an amplitude or grow over the step.
+    Displacement(Option<usize>),
+    /// Constant velocities.
+    Velocity,
 }
 
 impl Supports {
@@ -59,16 +74,40 @@ impl Supports {
         self.held.clear();
     }
 
-    /// Ends a step: supports that follow an amplitude in step time keep their last value.
-    pub fn end_step(&mut self, period: f64, amplitudes: &[Amplitude]) {
-        for held in self.held.values_mut() {
-            if let SupportMotion::Amplitude { value, amplitude } = held.motion
-                && let Some(curve) = amplitudes.get(amplitude)
-                && curve.time == TimeBase::Step
-            {
-                let to = value * curve.at(period);
+    /// Begins a step of this duration: prescribed velocities go on.
+    pub fn begin_step(&mut self, period: f64) {
+        self.period = period;
+        for (dof, held) in &mut self.held {
+            if let Some(velocity) = held.velocity {
+                let from = self.ends.get(dof).copied().unwrap_or(0.0);
+                let to = from + velocity * period;
                 held.motion = SupportMotion::Ramp { to };
             }
+        }
+    }
+
+    /// Ends a step at the total time `total`: supports that follow an amplitude in step time keep
+    /// their last value.
+    pub fn end_step(&mut self, total: f64, amplitudes: &[Amplitude]) {
+        self.ends.clear();
+        for (&dof, held) in &mut self.held {
+            let end = match held.motion {
+                SupportMotion::Ramp { to } => to,
+                SupportMotion::Amplitude { value, amplitude } => {
+                    let Some(curve) = amplitudes.get(amplitude) else {
+                        continue;
+                    };
+                    match curve.time {
+                        TimeBase::Total => value * curve.at(total),
+                        TimeBase::Step => {
+                            let to = value * curve.at(self.period);
+                            held.motion = SupportMotion::Ramp { to };
+                            to
+                        }
+                    }
+                }
+            };
+            self.ends.insert(dof, end);
         }
     }
 
@@ -77,8 +116,19 @@ impl Supports {
         let Ok(amplitude) = targets.amplitudes.of(card, cx) else {
             return;
         };
+        let quantity = match card.choice("TYPE") {
+            Some("VELOCITY") => Quantity::Velocity,
+            _ => Quantity::Displacement(amplitude),
+        };
+        if let (Quantity::Velocity, Some(_)) = (quantity, amplitude) {
+            let span = card.span_of("AMPLITUDE");
+            let message = "prescribed velocities cannot follow an amplitude";
+            let error = Diagnostic::error(Code::UnsupportedParameter, span, message);
+            cx.d.push(error.help("prescribe the displacement, the integral of the velocity"));
+            return;
+        }
         for row in &card.rows {
-            self.row(row, amplitude, step, targets, cx);
+            self.row(row, quantity, step, targets, cx);
         }
     }
 
@@ -86,7 +136,7 @@ impl Supports {
     fn row(
         &mut self,
         row: &Row,
-        amplitude: Option<usize>,
+        quantity: Quantity,
         step: usize,
         targets: Targets,
         cx: &mut Context,
@@ -98,16 +148,11 @@ impl Supports {
             return;
         };
         if step == 0 && prescribed.value != 0.0 {
-            let message = "a displacement other than zero can be prescribed in a step only";
+            let message = "a motion other than zero can be prescribed in a step only";
             cx.error(Code::ValueOutsideStep, prescribed.span, message);
             return;
         }
-        let value = prescribed.value;
-        let motion = match amplitude {
-            Some(amplitude) => SupportMotion::Amplitude { value, amplitude },
-            None => SupportMotion::Ramp { to: value },
-        };
-        if amplitude.is_none() && value != 0.0 {
+        if let (Quantity::Displacement(None), true) = (quantity, prescribed.value != 0.0) {
             let message = "a displacement without amplitude grows linearly over the step";
             cx.d.push_once(Diagnostic::note(
                 Code::RampedSupport,
@@ -117,26 +162,65 @@ impl Supports {
         }
         for node in nodes.unwrap_or_default() {
             for &direction in &prescribed.directions {
-                self.hold(2 * node + direction, motion, step, row.span(), cx);
+                let dof = 2 * node + direction;
+                let Some(held) = self.prescription(dof, quantity, prescribed.value, step) else {
+                    return report_free_before(dof, row, targets.mesh_index, cx);
+                };
+                self.hold(dof, held, row.span(), cx);
             }
         }
     }
 
-    fn hold(
-        &mut self,
+    /// The prescription of a dof; `None` for a velocity of a dof that moved freely before.
+    fn prescription(
+        &self,
         dof: usize,
-        motion: SupportMotion,
+        quantity: Quantity,
+        value: f64,
         step: usize,
-        span: Span,
-        cx: &mut Context,
-    ) {
-        let earlier = self.held.insert(dof, Prescription { motion, step });
-        if earlier.is_some_and(|held| held.step == step && held.motion != motion) {
+    ) -> Option<Prescription> {
+        let (motion, velocity) = match quantity {
+            Quantity::Displacement(Some(amplitude)) => {
+                (SupportMotion::Amplitude { value, amplitude }, None)
+            }
+            Quantity::Displacement(None) => (SupportMotion::Ramp { to: value }, None),
+            Quantity::Velocity => {
+                let from = match step {
+                    0 | 1 => 0.0,
+                    _ => *self.ends.get(&dof)?,
+                };
+                let to = from + value * self.period;
+                (SupportMotion::Ramp { to }, Some(value))
+            }
+        };
+        Some(Prescription {
+            motion,
+            velocity,
+            step,
+        })
+    }
+
+    fn hold(&mut self, dof: usize, now: Prescription, span: Span, cx: &mut Context) {
+        let earlier = self.held.insert(dof, now);
+        if earlier.is_some_and(|held| held.step == now.step && held.motion != now.motion) {
             let message = "another displacement is prescribed here than before in this step";
             let warning = Diagnostic::warning(Code::ConflictingSupport, span, message);
             cx.d.push(warning.help("the later one holds"));
         }
     }
+}
+
+fn report_free_before(dof: usize, row: &Row, mesh_index: &MeshIndex, cx: &mut Context) {
+    let label = mesh_index.mesh.node_labels.get(dof / 2).copied();
+    let message = format!(
+        "node {} moved freely in direction {} in the step before",
+        label.unwrap_or(0),
+        dof % 2 + 1
+    );
+    let error = Diagnostic::error(Code::UnsupportedParameter, row.span(), message);
+    cx.d.push(error.help(
+        "velocities can be prescribed from the first step on, or after a prescribed displacement",
+    ));
 }
 
 /// Directions and value of a row of `*BOUNDARY`.

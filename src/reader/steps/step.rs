@@ -95,6 +95,8 @@ impl Reading<'_> {
             ramp: cards.head.choice("AMPLITUDE") == Some("RAMP"),
         };
         let increments = self.procedure(cards, cx);
+        let period = increments.map_or(0.0, |increments| increments.period);
+        self.supports.begin_step(period);
         self.own_settings(cards, number, cx);
         self.conditions(cards, context, cx);
         self.requests.cards(&cards.cards, self.targets.sets, cx);
@@ -102,7 +104,6 @@ impl Reading<'_> {
         rigid_surface::follow(self.targets.rigid_surfaces, number, &mut supports, cx);
         at_start.get_or_insert_with(|| supports.clone());
         let name = cards.head.value("NAME").and_then(|name| name.name(cx.d));
-        let period = increments.map_or(0.0, |increments| increments.period);
         let step = increments.map(|increments| Step {
             supports,
             ..self.build(name.map(|n| n.typed), increments)
@@ -131,7 +132,7 @@ impl Reading<'_> {
     fn end(&mut self, period: f64) {
         self.start += period;
         let Amplitudes { all, .. } = self.targets.amplitudes;
-        self.supports.end_step(period, all);
+        self.supports.end_step(self.start, all);
         self.loads.end_step(period, self.start, all);
     }
 
