@@ -396,7 +396,69 @@ fn amplitudes_are_scaled_and_shifted() {
         "*AMPLITUDE, NAME=A, SCALEX=2., SHIFTX=1., SCALEY=3., SHIFTY=-1., VALUE=ABSOLUTE\n0., 0., 1., 1.",
         "",
     );
-    assert_eq!(model.amplitudes[0].points, [(1.0, -1.0), (3.0, 2.0)]);
+    let points = vec![(1.0, -1.0), (3.0, 2.0)];
+    assert_eq!(model.amplitudes[0].curve, Curve::Linear(points));
+}
+
+/// The curve of an amplitude with this definition and these rows.
+fn curve(definition: &str) -> Curve {
+    let card = format!("*AMPLITUDE, NAME=A, DEFINITION={definition}");
+    with(&card, "").amplitudes[0].curve.clone()
+}
+
+fn signal(start: f64, base: f64, signal: Signal) -> Curve {
+    Curve::Signal {
+        start,
+        base,
+        signal,
+    }
+}
+
+#[test]
+fn amplitudes_of_every_definition() {
+    let points = vec![(0.0, 0.0), (2.0, 3.0)];
+    assert_eq!(
+        curve("SMOOTH STEP\n0., 0., 2., 3."),
+        Curve::SmoothStep(points)
+    );
+    let points = vec![(0.5, 0.0), (0.75, 1.0), (1.0, 0.0), (1.25, 4.0)];
+    assert_eq!(
+        curve("EQUALLY SPACED, FIXED INTERVAL=0.25, BEGIN=0.5\n0., 1.,, 4."),
+        Curve::Linear(points)
+    );
+    let wanted = Signal::Decay {
+        size: 2.0,
+        time: 0.5,
+    };
+    assert_eq!(curve("DECAY\n1., 2., 0.25, 0.5"), signal(0.25, 1.0, wanted));
+    let wanted = Signal::Modulated {
+        size: 2.0,
+        frequencies: [3.0, 4.0],
+    };
+    assert_eq!(
+        curve("MODULATED\n1., 2., , 3., 4."),
+        signal(0.0, 1.0, wanted)
+    );
+    let wanted = Signal::Periodic {
+        frequency: 3.0,
+        harmonics: vec![(0.0, 1.0), (2.0, 0.0)],
+    };
+    assert_eq!(
+        curve("PERIODIC\n2, 3., 0.25, 1.\n0., 1., 2."),
+        signal(0.25, 1.0, wanted)
+    );
+}
+
+#[test]
+fn signals_are_scaled_and_shifted() {
+    let wanted = Signal::Periodic {
+        frequency: 1.5,
+        harmonics: vec![(15.0, 20.0)],
+    };
+    assert_eq!(
+        curve("PERIODIC, SCALEX=2., SHIFTX=1., SCALEY=5., SHIFTY=-1.\n1, 3., 0.25, 1.\n3., 4."),
+        signal(1.5, 4.0, wanted)
+    );
 }
 
 #[test]
@@ -739,4 +801,59 @@ fn mean_dilatation_is_for_plane_strain_quadrilaterals() {
         found.contains("MEAN DILATATION is for CPE4: element 7 is CPS4"),
         "{found}"
     );
+}
+
+/// Line elements along boundary curves as a mesh generator writes them: before the plane ones, with
+/// groups of both under one name.
+const CURVES: &str = "*ELEMENT, TYPE=T3D2, ELSET=Line1\n101, 2, 1\n\
+                      *ELEMENT, TYPE=T3D2, ELSET=Line2\n102, 3, 4\n103, 2, 3\n\
+                      *ELSET, ELSET=RIM\n101, 102\n*ELSET, ELSET=BODY\n103\n";
+
+/// The square with the boundary curves of a mesh generator and further cards.
+fn with_curves(more: &str) -> (Model, String) {
+    square("*ELEMENT", &format!("{CURVES}{more}*ELEMENT"))
+}
+
+fn faces_of(model: &Model, surface: usize) -> Vec<usize> {
+    match &model.surfaces[surface].kind {
+        SurfaceKind::Faces(faces) => faces.iter().map(|face| face.side).collect(),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn line_elements_name_sides_of_plane_elements() {
+    let (model, messages) = with_curves(
+        "*SURFACE, NAME=S\nRIM\n103,\n*SURFACE, NAME=B\nBODY\n*NSET, NSET=N, ELSET=RIM\n\
+         *NSET, NSET=M, ELSET=Line1\n",
+    );
+    assert!(messages.starts_with("note[D318]"), "{messages}");
+    assert_eq!(messages.matches("[D").count(), 1, "{messages}");
+    assert_eq!(model.mesh.elements.len(), 1);
+    let surfaces = ["S", "B"].map(|name| model.surfaces.iter().position(|s| s.name == name));
+    let faces = surfaces.map(|surface| faces_of(&model, surface.unwrap_or(0)));
+    assert_eq!(faces, [vec![0, 2, 1], vec![0, 1, 2, 3]]);
+    let members = |name: &str| {
+        let set = model.sets.nodes.iter().find(|set| set.name == name);
+        set.map(|set| set.members.clone())
+    };
+    assert_eq!(members("N"), Some(vec![0, 1, 2, 3]));
+    assert_eq!(members("M"), Some(vec![0, 1]));
+    let sets: Vec<&str> = model
+        .sets
+        .elements
+        .iter()
+        .map(|s| s.name.as_str())
+        .collect();
+    assert_eq!(sets, ["BODY"]);
+}
+
+#[test]
+fn line_elements_that_are_no_sides_are_left_out() {
+    let (model, messages) = square(
+        "*MATERIAL",
+        "*ELEMENT, TYPE=B31, ELSET=RIM\n8, 1, 3\n9, 3, 4\n*SURFACE, NAME=S\nRIM\n*MATERIAL",
+    );
+    assert!(messages.contains("line element 8 is no side"), "{messages}");
+    assert_eq!(faces_of(&model, 1), [2]);
 }

@@ -383,9 +383,12 @@ mod faults_that_pass_elsewhere {
     }
 
     #[test]
-    fn a_curve_of_another_kind_stops() {
+    fn a_smooth_curve_is_read() {
         let curve = "*AMPLITUDE, NAME=A, DEFINITION=SMOOTH STEP\n0., 0., 1., 1.\n*BOUNDARY";
-        assert_eq!(faults("*BOUNDARY", curve), [Code::UnsupportedParameter]);
+        let (model, d) = square("*BOUNDARY", curve);
+        assert_eq!(codes(&d), []);
+        let curve = model.map(|m| m.amplitudes[0].at(0.25));
+        assert_eq!(curve, Some(0.103515625));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Amplitudes: tabulated functions of time with their value and rate. The rate is the velocity of a
+//! Amplitudes: functions of time with their value and exact rate. The rate is the velocity of a
 //! prescribed displacement (docs/theory.md, section 4).
 
 /// Time that an amplitude is a function of.
@@ -10,67 +10,251 @@ pub enum TimeBase {
     Total,
 }
 
-/// A piecewise linear function of time, constant outside its table.
+/// A function of time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Amplitude {
     /// Name in the deck.
     pub name: String,
     /// Its time.
     pub time: TimeBase,
-    /// Points (time, value), times strictly increasing, at least one.
-    pub points: Vec<(f64, f64)>,
+    /// Its values.
+    pub curve: Curve,
+}
+
+/// Values of an amplitude.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Curve {
+    /// Linear between points (time, value), constant outside; times strictly increasing, at least
+    /// one point.
+    Linear(Vec<(f64, f64)>),
+    /// The same points, with rate and second derivative zero at each.
+    SmoothStep(Vec<(f64, f64)>),
+    /// `base` up to the time `start`, and `base + signal(t - start)` from there on.
+    Signal {
+        /// Time at which the signal begins.
+        start: f64,
+        /// Value without the signal.
+        base: f64,
+        /// The signal.
+        signal: Signal,
+    },
+}
+
+/// A function of the time since its start.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Signal {
+    /// `sum over n = 1.. of A_n cos(n w t) + B_n sin(n w t)`
+    Periodic {
+        /// Angular frequency w (1/time).
+        frequency: f64,
+        /// Coefficients (A_n, B_n).
+        harmonics: Vec<(f64, f64)>,
+    },
+    /// `size exp(-t / time)`
+    Decay {
+        /// Value at the start.
+        size: f64,
+        /// Time in which it falls to 1/e of its value, positive.
+        time: f64,
+    },
+    /// `size sin(w1 t) sin(w2 t)`
+    Modulated {
+        /// Largest value.
+        size: f64,
+        /// Angular frequencies w1 and w2 (1/time).
+        frequencies: [f64; 2],
+    },
 }
 
 impl Amplitude {
     /// Value at time `t` (step or total time, as `self.time` says).
     pub fn at(&self, t: f64) -> f64 {
-        let (first, last) = (self.points[0], self.points[self.points.len() - 1]);
-        if t <= first.0 {
-            return first.1;
-        }
-        if t >= last.0 {
-            return last.1;
-        }
-        let (p, q) = self.interval(t);
-        p.1 + (q.1 - p.1) * ((t - p.0) / (q.0 - p.0))
+        self.value_and_rate(t)[0]
     }
 
-    /// Derivative at `t`; at a point of the table the slope of the interval before it, at the first
-    /// point of the interval after it.
+    /// Derivative at `t`; where it jumps, at a point of a table, that of the interval before it, at
+    /// the first point and at the start of a signal that after it.
     pub fn rate(&self, t: f64) -> f64 {
-        let (first, last) = (self.points[0], self.points[self.points.len() - 1]);
-        if self.points.len() == 1 || t < first.0 || t > last.0 {
-            return 0.0;
-        }
-        let (p, q) = self.interval(t);
-        (q.1 - p.1) / (q.0 - p.0)
+        self.value_and_rate(t)[1]
     }
 
-    /// The interval (p, q] of the table with p.0 < t <= q.0, or the first one.
-    fn interval(&self, t: f64) -> ((f64, f64), (f64, f64)) {
-        let end = self
-            .points
-            .partition_point(|p| p.0 < t)
-            .clamp(1, self.points.len() - 1);
-        (self.points[end - 1], self.points[end])
+    fn value_and_rate(&self, t: f64) -> [f64; 2] {
+        match &self.curve {
+            Curve::Linear(points) => in_table(points, t, |x| [x, 1.0]),
+            Curve::SmoothStep(points) => in_table(points, t, smooth_step),
+            Curve::Signal { start, base, .. } if t < *start => [*base, 0.0],
+            Curve::Signal {
+                start,
+                base,
+                signal,
+            } => {
+                let [value, rate] = signal.value_and_rate(t - start);
+                [base + value, rate]
+            }
+        }
     }
+}
+
+impl Signal {
+    /// Value and rate at `t >= 0`.
+    fn value_and_rate(&self, t: f64) -> [f64; 2] {
+        match self {
+            Signal::Periodic {
+                frequency,
+                harmonics,
+            } => {
+                let terms = harmonics.iter().zip(1_u32..).map(|(&(a, b), n)| {
+                    let w = f64::from(n) * frequency;
+                    let (sin, cos) = (w * t).sin_cos();
+                    [a * cos + b * sin, w * (b * cos - a * sin)]
+                });
+                terms.fold([0.0; 2], |sum, term| [sum[0] + term[0], sum[1] + term[1]])
+            }
+            Signal::Decay { size, time } => {
+                let value = size * (-t / time).exp();
+                [value, -value / time]
+            }
+            Signal::Modulated {
+                size,
+                frequencies: [w1, w2],
+            } => {
+                let ((s1, c1), (s2, c2)) = ((w1 * t).sin_cos(), (w2 * t).sin_cos());
+                [size * s1 * s2, size * (w1 * c1 * s2 + w2 * s1 * c2)]
+            }
+        }
+    }
+}
+
+/// `[x^3 (10 - 15 x + 6 x^2), 30 x^2 (1 - x)^2]`: from 0 to 1 as `x` does, and its derivative.
+fn smooth_step(x: f64) -> [f64; 2] {
+    [
+        x.powi(3) * (10.0 - 15.0 * x + 6.0 * x * x),
+        30.0 * (x * (1.0 - x)).powi(2),
+    ]
+}
+
+/// Value and rate at `t` of a table whose values between two points are those of `step`, which
+/// gives the share of the way and its derivative at `0 <= x <= 1`; constant outside the table.
+fn in_table(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
+    let (first, last) = (points[0], points[points.len() - 1]);
+    if points.len() == 1 || t < first.0 || t > last.0 {
+        return [if t < first.0 { first.1 } else { last.1 }, 0.0];
+    }
+    let (p, q) = interval(points, t);
+    let [share, slope] = step((t - p.0) / (q.0 - p.0));
+    let value = match t {
+        _ if t == first.0 => first.1,
+        _ if t == last.0 => last.1,
+        _ => p.1 + (q.1 - p.1) * share,
+    };
+    [value, (q.1 - p.1) / (q.0 - p.0) * slope]
+}
+
+/// The interval (p, q] of a table with p.0 < t <= q.0, or the first one.
+fn interval(points: &[(f64, f64)], t: f64) -> ((f64, f64), (f64, f64)) {
+    let end = points
+        .partition_point(|p| p.0 < t)
+        .clamp(1, points.len() - 1);
+    (points[end - 1], points[end])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::{E, PI};
+
+    fn amplitude(curve: Curve) -> Amplitude {
+        Amplitude {
+            name: "A".into(),
+            time: TimeBase::Step,
+            curve,
+        }
+    }
+
+    fn signal(signal: Signal) -> Amplitude {
+        amplitude(Curve::Signal {
+            start: 1.0,
+            base: 2.0,
+            signal,
+        })
+    }
+
+    fn periodic() -> Amplitude {
+        signal(Signal::Periodic {
+            frequency: PI,
+            harmonics: vec![(0.5, 3.0), (-1.0, 0.25)],
+        })
+    }
+
+    fn modulated() -> Amplitude {
+        signal(Signal::Modulated {
+            size: 3.0,
+            frequencies: [PI, 2.0 * PI],
+        })
+    }
+
+    fn decay() -> Amplitude {
+        signal(Signal::Decay {
+            size: 3.0,
+            time: 0.5,
+        })
+    }
+
+    fn smooth() -> Amplitude {
+        amplitude(Curve::SmoothStep(vec![(1.0, 0.0), (2.0, 4.0), (4.0, 0.0)]))
+    }
+
+    #[track_caller]
+    fn close(found: f64, wanted: f64) {
+        assert!(
+            (found - wanted).abs() <= 1e-14 * wanted.abs().max(1.0),
+            "{found} {wanted}"
+        );
+    }
 
     #[test]
     fn piecewise_linear_with_constant_ends() {
-        let points = vec![(1.0, 0.0), (2.0, 4.0), (4.0, 0.0)];
-        let a = Amplitude {
-            name: "A".into(),
-            time: TimeBase::Step,
-            points,
-        };
+        let a = amplitude(Curve::Linear(vec![(1.0, 0.0), (2.0, 4.0), (4.0, 0.0)]));
         let values: Vec<f64> = [0.0, 1.0, 1.5, 2.0, 3.0, 9.0].map(|t| a.at(t)).to_vec();
         assert_eq!(values, [0.0, 0.0, 2.0, 4.0, 2.0, 0.0]);
         let rates: Vec<f64> = [0.0, 1.0, 1.5, 2.0, 3.0, 9.0].map(|t| a.rate(t)).to_vec();
         assert_eq!(rates, [0.0, 4.0, 4.0, 4.0, -2.0, 0.0]);
+    }
+
+    #[test]
+    fn smooth_steps_rest_at_their_points() {
+        let a = smooth();
+        let values = [0.0, 1.0, 1.5, 2.0, 3.0, 4.0, 9.0].map(|t| a.at(t));
+        assert_eq!(values, [0.0, 0.0, 2.0, 4.0, 2.0, 0.0, 0.0]);
+        let rates = [0.0, 1.0, 1.5, 2.0, 3.0, 4.0, 9.0].map(|t| a.rate(t));
+        assert_eq!(rates, [0.0, 0.0, 7.5, 0.0, -3.75, 0.0, 0.0]);
+        // 4 * 0.25^3 (10 - 15 / 4 + 6 / 16)
+        close(a.at(1.25), 0.4140625);
+    }
+
+    #[test]
+    fn signals_at_points_known_in_closed_form() {
+        let a = periodic();
+        for (t, wanted) in [(0.0, 2.0), (1.0, 1.5), (1.5, 6.0), (2.0, 0.5), (3.0, 1.5)] {
+            close(a.at(t), wanted);
+        }
+        close(a.rate(1.0), PI * 3.5);
+        close(decay().at(0.9), 2.0);
+        close(decay().at(1.5), 2.0 + 3.0 / E);
+        close(decay().rate(1.0), -6.0);
+        close(modulated().at(1.25), 2.0 + 1.5 * 2.0_f64.sqrt());
+        close(modulated().at(1.0), 2.0);
+        close(modulated().rate(1.0), 0.0);
+    }
+
+    #[test]
+    fn rates_are_derivatives_of_the_values() {
+        let h = 1e-5;
+        for a in [smooth(), periodic(), decay(), modulated()] {
+            for t in [0.3, 1.1, 1.3, 1.77, 2.4, 3.9, 5.0] {
+                let difference = (a.at(t + h) - a.at(t - h)) / (2.0 * h);
+                assert!((a.rate(t) - difference).abs() < 1e-7, "{a:?} at {t}");
+            }
+        }
     }
 }

@@ -109,7 +109,7 @@ impl Element {
 }
 
 /// One side of an element.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Face {
     /// Element index.
     pub element: usize,

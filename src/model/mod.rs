@@ -18,7 +18,7 @@ mod step;
 mod surface;
 
 pub use crate::materials::Plane;
-pub use amplitude::{Amplitude, TimeBase};
+pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
 pub use bodies::Bodies;
 pub use constraint::{Equation, RigidBody};
 pub use contact::{Adjust, Contact, Interaction};

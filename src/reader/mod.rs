@@ -15,7 +15,7 @@ mod steps;
 
 use crate::deck::{self, Card, Deck};
 use crate::diagnostics::{Diagnostics, Sources};
-use crate::model::{Element, Mesh, Model, NamedSets};
+use crate::model::{Element, Face, Mesh, Model, NamedSets, Set};
 use contact::{pairs, rigid_surface};
 use context::Context;
 use materials::Properties;
@@ -72,7 +72,7 @@ fn read(cx: &mut Context) -> Model {
         mesh: with_sections(mesh_index.mesh, &properties),
         sets: NamedSets {
             nodes: sets.nodes,
-            elements: sets.elements,
+            elements: plane_sets(sets.elements, &sets.lines),
             history: steps.history,
         },
         surfaces: surfaces.all,
@@ -90,6 +90,13 @@ fn read(cx: &mut Context) -> Model {
     };
     check::braked_flight(&model, &properties.damping_spans, cx);
     model
+}
+
+/// Element sets without those that hold line elements only.
+fn plane_sets(sets: Vec<Set>, lines: &[Vec<Face>]) -> Vec<Set> {
+    let sets = sets.into_iter().zip(lines);
+    let kept = sets.filter(|(set, lines)| !set.members.is_empty() || lines.is_empty());
+    kept.map(|(set, _)| set).collect()
 }
 
 /// Text under `*HEADING`, lines joined by a blank.

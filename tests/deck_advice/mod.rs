@@ -57,6 +57,40 @@ fn forms_of_hyperelasticity() {
 }
 
 #[test]
+fn amplitudes_that_cannot_be() {
+    let amplitude = |text: &str| model(&format!("*AMPLITUDE, NAME=A, DEFINITION={text}"));
+    insta::assert_snapshot!(texts_of(
+        Code::AmplitudeTable,
+        &[
+            amplitude("SMOOTH STEP\n0., 0., 0., 1."),
+            amplitude("EQUALLY SPACED, FIXED INTERVAL=0.\n0., 1."),
+            amplitude("EQUALLY SPACED, FIXED INTERVAL=1.E-20, BEGIN=1.\n0., 1."),
+            amplitude("PERIODIC\n2, 3.\n1., 0."),
+            amplitude("PERIODIC, SCALEX=-1.\n0, 3."),
+            amplitude("DECAY\n0., 1., 0., -2."),
+            amplitude("MODULATED, SCALEY=1.E300\n1.E300, 1., 0., 1., 1."),
+        ],
+    ));
+}
+
+#[test]
+fn line_elements_in_place_of_plane_ones() {
+    let curve = "*ELEMENT, TYPE=T3D2, ELSET=RIM\n8, 1, 2\n";
+    let section = model(&format!(
+        "{curve}*SOLID SECTION, ELSET=RIM, MATERIAL=RUBBER"
+    ));
+    let face = model(&format!("{curve}*SURFACE, NAME=S\nRIM, S1"));
+    let load = "*STEP, NLGEOM\n*DYNAMIC\n0.1, 1.\n*DLOAD\n8, P1, 1.\n*END STEP\n*STEP";
+    let load = square("*STEP", &format!("{curve}{load}"));
+    let texts = [section, face, load].map(|deck| {
+        let (d, text) = messages(&deck);
+        assert_eq!(d.count(Severity::Error), 1, "{text}");
+        text
+    });
+    insta::assert_snapshot!(texts.join("\n"));
+}
+
+#[test]
 fn damping_that_cannot_be() {
     let texts = [
         "*DAMPING",

@@ -4,7 +4,7 @@
 use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::dynamics::IncrementReport;
 use stickslip::model::{
-    Amplitude, Equation, Load, Model, PointLoad, Scheme, Support, SupportMotion, TimeBase,
+    Amplitude, Curve, Equation, Load, Model, PointLoad, Scheme, Support, SupportMotion, TimeBase,
     Variation,
 };
 
@@ -281,7 +281,7 @@ fn a_dof_follows_a_prescribed_and_a_free_one() {
         model.amplitudes = vec![Amplitude {
             name: "PULL".into(),
             time: TimeBase::Step,
-            points: vec![(0.0, 0.0), (0.1, 1.0), (0.3, -0.5)],
+            curve: Curve::Linear(vec![(0.0, 0.0), (0.1, 1.0), (0.3, -0.5)]),
         }];
         let motion = SupportMotion::Amplitude {
             value: 0.2,

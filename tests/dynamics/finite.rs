@@ -23,7 +23,7 @@ fn carried(speed: f64, points: &[(f64, f64)]) -> (Model, usize) {
     model.amplitudes.push(stickslip::model::Amplitude {
         name: "A".into(),
         time: TimeBase::Total,
-        points: points.to_vec(),
+        curve: stickslip::model::Curve::Linear(points.to_vec()),
     });
     let motion = SupportMotion::Amplitude {
         value: speed,

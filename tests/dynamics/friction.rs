@@ -1,6 +1,8 @@
 //! Coulomb friction against closed forms.
 
-use stickslip::model::{Amplitude, BodyForce, Load, Model, Scheme, Settings, TimeBase, Variation};
+use stickslip::model::{
+    Amplitude, BodyForce, Curve, Load, Model, Scheme, Settings, TimeBase, Variation,
+};
 
 use crate::blocks::{
     Block, SCHEMES, add_block, add_contact, fixed, model, run_to_end, step, throw,
@@ -23,7 +25,7 @@ pub fn block_on_base(friction: f64, direction: [f64; 2], scheme: Scheme) -> (Mod
     model.amplitudes = vec![Amplitude {
         name: "GROW".into(),
         time: TimeBase::Step,
-        points,
+        curve: Curve::Linear(points),
     }];
     let mut step = step(
         0.002,

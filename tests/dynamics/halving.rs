@@ -9,7 +9,7 @@
 
 use crate::blocks::{Block, add_block, fixed, model, run_to_end, step};
 use stickslip::dynamics::{Cause, Cutback};
-use stickslip::model::{Amplitude, Model, Settings, Support, SupportMotion, TimeBase};
+use stickslip::model::{Amplitude, Curve, Model, Settings, Support, SupportMotion, TimeBase};
 
 /// A block elsewhere, and a column of 1 x `ny` Q4 whose top goes down by `depth` times an amplitude.
 fn pushed(ny: usize, depth: f64, points: &[(f64, f64)]) -> (Model, Block) {
@@ -20,7 +20,7 @@ fn pushed(ny: usize, depth: f64, points: &[(f64, f64)]) -> (Model, Block) {
     model.amplitudes.push(Amplitude {
         name: "A".into(),
         time: TimeBase::Step,
-        points: points.to_vec(),
+        curve: Curve::Linear(points.to_vec()),
     });
     let motion = SupportMotion::Amplitude {
         value: -depth,

@@ -2,8 +2,8 @@
 
 use stickslip::dynamics::{IncrementReport, Outcome};
 use stickslip::model::{
-    Amplitude, Load, Model, Pressure, Scheme, Settings, Support, SupportMotion, TimeBase, Traction,
-    Variation,
+    Amplitude, Curve, Load, Model, Pressure, Scheme, Settings, Support, SupportMotion, TimeBase,
+    Traction, Variation,
 };
 
 use crate::blocks::{
@@ -89,7 +89,7 @@ fn a_shaken_support_moves_as_its_amplitude_says() {
         model.amplitudes = vec![Amplitude {
             name: "SHAKE".into(),
             time: TimeBase::Step,
-            points: vec![(0.0, 0.0), (0.2, 1.0), (0.4, -1.0), (0.6, 0.0)],
+            curve: Curve::Linear(vec![(0.0, 0.0), (0.2, 1.0), (0.4, -1.0), (0.6, 0.0)]),
         }];
         let mut supports: Vec<Support> = Vec::new();
         for j in 0..=2 {

@@ -4,7 +4,7 @@ use crate::blocks::{Keep, add_block, add_contact, fixed, gravity, model, run_to_
 use crate::invariants::drift;
 use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::model::{
-    Amplitude, ContactMass, Equation, ImpactTime, LandingRule, Model, Settings, Support,
+    Amplitude, ContactMass, Curve, Equation, ImpactTime, LandingRule, Model, Settings, Support,
     SupportMotion, TimeBase,
 };
 use stickslip::prepare::PreparedModel;
@@ -132,7 +132,7 @@ fn a_block_falls_and_lands_on_a_moving_table() {
     model.amplitudes = vec![Amplitude {
         name: "RISE".into(),
         time: TimeBase::Step,
-        points: vec![(0.0, 0.0), (1.0, 0.1)],
+        curve: Curve::Linear(vec![(0.0, 0.0), (1.0, 0.1)]),
     }];
     let held = table
         .nodes()

@@ -8,6 +8,7 @@ use Quantity::{OfOr, OrName, Plain, Unknown};
 
 const LENGTH: Quantity = Quantity::Of("length");
 const TIME: Quantity = Quantity::Of("time");
+const FREQUENCY: Quantity = Quantity::Of("1/time");
 const VELOCITY: Quantity = Quantity::Of("length/time");
 const ACCELERATION: Quantity = Quantity::Of("length/time^2");
 const DENSITY: Quantity = Quantity::Of("mass/length^3");
@@ -199,9 +200,27 @@ pub(crate) static DIMENSIONS: &[Dimensions] = &[
     ),
     keyword(
         "AMPLITUDE",
-        &[repeated(&[TIME, Plain])],
+        &[
+            RowForm {
+                repeats: true,
+                ..under("DEFINITION", "EQUALLY SPACED", &[Plain])
+            },
+            // The first line differs from the others.
+            under(
+                "DEFINITION",
+                "PERIODIC",
+                &[Unknown, Unknown, Unknown, Unknown],
+            ),
+            under("DEFINITION", "DECAY", &[Plain, Plain, TIME, TIME]),
+            under(
+                "DEFINITION",
+                "MODULATED",
+                &[Plain, Plain, TIME, FREQUENCY, FREQUENCY],
+            ),
+            repeated(&[TIME, Plain]),
+        ],
         &["NAME", "INPUT", "SHIFTY", "SCALEX", "SCALEY", "SMOOTH"],
-        &[("SHIFTX", TIME)],
+        &[("SHIFTX", TIME), ("FIXED INTERVAL", TIME), ("BEGIN", TIME)],
     ),
     keyword("EQUATION", NAMES, &["INPUT"], &[]),
     keyword(

@@ -55,12 +55,16 @@ pub(crate) static MODEL: &[Keyword] = &[
         Scope::Model,
         Data::Rows,
         &[
-            P::value("TYPE", "CPE3, CPS3, CPE4 or CPS4; required"),
+            P::value(
+                "TYPE",
+                "CPE3, CPS3, CPE4 or CPS4; T3D2, T2D2, B21 or B31 for line elements; required",
+            ),
             P::value("ELSET", "element set that takes the elements"),
             INPUT,
         ],
         "Elements: number (1 to 999 999 999) and nodes, counter-clockwise; a row may run over several \
-         lines.",
+         lines. A line element, as Gmsh writes for boundary curves, has two nodes and names the side \
+         of a plane element between them: sets of them make surfaces and node sets.",
     ),
     Keyword::read(
         "NSET",
@@ -129,7 +133,7 @@ pub(crate) static MODEL: &[Keyword] = &[
             P::flag("CROP", "list the faces in one surface").refused(),
         ],
         "A surface: faces S1 = side 1-2, S2 = 2-3, S3 = 3-4 (triangle: 3-1), S4 = 4-1; without a \
-         face the free sides. The outside of a rigid profile lies on the left of the way from START, \
+         face the free sides, and those that line elements name. The outside of a rigid profile lies on the left of the way from START, \
          the obstacle on the right; an arc (less than 180 degrees) is cut into equal chords of at \
          most 1 degree, 3.8e-5 of its radius off the arc at most.",
     ),
@@ -439,11 +443,28 @@ pub(crate) static MODEL: &[Keyword] = &[
                         "TABULAR",
                         "linear between points, constant outside (default)",
                     ),
-                    V::refused("SMOOTH STEP", "not supported yet: give a table"),
-                    V::refused("EQUALLY SPACED", "not supported yet: give a table"),
-                    V::refused("PERIODIC", "not supported yet: give a table"),
-                    V::refused("DECAY", "not supported yet: give a table"),
-                    V::refused("MODULATED", "not supported yet: give a table"),
+                    V::read(
+                        "SMOOTH STEP",
+                        "x^3 (10 - 15 x + 6 x^2) of the way between points, constant outside",
+                    ),
+                    V::read(
+                        "EQUALLY SPACED",
+                        "value, value, ... at equal intervals of time, linear between them",
+                    ),
+                    V::read(
+                        "PERIODIC",
+                        "N, w, t0, A0 on the first line, then A1, B1, A2, B2, ...: A0 + sum of \
+                         An cos n w (t - t0) + Bn sin n w (t - t0) from t0 on, A0 before",
+                    ),
+                    V::read(
+                        "DECAY",
+                        "A0, A, t0, td: A0 + A exp(-(t - t0) / td) from t0 on, A0 before",
+                    ),
+                    V::read(
+                        "MODULATED",
+                        "A0, A, t0, w1, w2: A0 + A sin w1 (t - t0) sin w2 (t - t0) from t0 on, \
+                         A0 before",
+                    ),
                     V::refused("USER", "not supported"),
                     V::refused("BUBBLE", "not supported"),
                     V::refused("SOLUTION DEPENDENT", "not supported"),
@@ -467,13 +488,19 @@ pub(crate) static MODEL: &[Keyword] = &[
                 ],
                 "meaning of the values",
             ),
+            P::value("FIXED INTERVAL", "time between equally spaced values"),
+            P::value(
+                "BEGIN",
+                "time of the first equally spaced value (default 0)",
+            ),
             P::value("SHIFTX", "added to the times"),
             P::value("SHIFTY", "added to the values"),
             P::value("SCALEX", "factor of the times"),
             P::value("SCALEY", "factor of the values"),
             P::value("SMOOTH", "corners are not smoothed").warned(),
         ],
-        "A function of time: time, value, time, value, ...",
+        "A function of time: time, value, time, value, ..., or as DEFINITION says. CalculiX reads \
+         tables only.",
     ),
     Keyword::read(
         "EQUATION",

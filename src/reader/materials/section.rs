@@ -86,18 +86,19 @@ impl Properties {
     ) -> bool {
         let errors = cx.errors();
         let name = card.required("ELSET", cx.d);
-        let found = name.and_then(|name| sets.element_names.find(name, cx));
-        let Some(set) = found.and_then(|index| sets.elements.get(index)) else {
+        let known = name.filter(|&name| sets.element_names.find(name, cx).is_some());
+        let Some(set) = known else {
             return false;
         };
+        let elements = sets.elements_of(set, mesh_index, cx);
         let complete = section.is_some() && cx.errors() == errors;
         if card.choice("FORMULATION") == Some("MEAN DILATATION") {
-            self.set_mean_dilatation(&set.members, card, mesh_index, cx);
+            self.set_mean_dilatation(&elements, card, mesh_index, cx);
         }
         let index = self.sections.len();
         self.sections.extend(section);
         let mut taken = Vec::new();
-        for &element in &set.members {
+        for &element in &elements {
             match self.section_of.get_mut(element) {
                 Some(Some(_)) => taken.push(element),
                 Some(free) => *free = Some(index),

@@ -5,10 +5,33 @@ use crate::diagnostics::{Code, Diagnostic, closest};
 use crate::model::ElementType;
 use crate::reader::context::Context;
 
-/// The element type with this name.
-pub(crate) fn read(name: Text, cx: &mut Context) -> Option<ElementType> {
+/// Kind of an element of the deck.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// A plane element.
+    Plane(ElementType),
+    /// Two nodes that name a side of a plane element.
+    Line,
+}
+
+impl Kind {
+    /// Number of nodes.
+    pub fn nodes(self) -> usize {
+        match self {
+            Kind::Plane(element_type) => element_type.topology().nodes,
+            Kind::Line => 2,
+        }
+    }
+}
+
+/// The kind of elements with this name.
+pub(super) fn read(name: Text, cx: &mut Context) -> Option<Kind> {
     let folded = name.name_key();
-    ElementType::from_name(&folded).or_else(|| unusable(name, &folded, cx))
+    if ["T2D2", "T3D2", "B21", "B31"].contains(&folded.as_str()) {
+        return Some(Kind::Line);
+    }
+    let known = ElementType::from_name(&folded).or_else(|| unusable(name, &folded, cx));
+    known.map(Kind::Plane)
 }
 
 /// Reports a type; lenient reading replaces reduced by full integration of 4-node elements.
@@ -41,7 +64,7 @@ fn reason(folded: &str) -> Option<&'static str> {
     } else if starts(&["CAX"]) {
         Some("axisymmetric elements are not supported")
     } else if starts(&["T2D", "T3D", "B2", "B3", "R2D"]) {
-        Some("line elements are not supported: name boundaries with *SURFACE")
+        Some("line elements only name sides of plane elements: use T3D2 with two nodes")
     } else if starts(&["C3D", "S3", "S4", "S6", "S8", "M3D", "R3D"]) {
         Some("the program is plane: use CPS3, CPE3, CPS4 or CPE4")
     } else {

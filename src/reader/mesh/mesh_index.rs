@@ -3,7 +3,7 @@
 
 use crate::deck::Name;
 use crate::diagnostics::Span;
-use crate::model::{Element, ElementType, Mesh};
+use crate::model::{Element, ElementType, Face, Mesh};
 use crate::reader::names::{Labelled, Labels};
 
 /// The mesh, with the numbers and sets that the deck gives to its nodes and elements.
@@ -12,8 +12,10 @@ pub(crate) struct MeshIndex {
     pub mesh: Mesh,
     /// Node numbers.
     pub nodes: Labels,
-    /// Element numbers.
+    /// Element numbers; the indices of line elements follow those of the plane ones.
     pub elements: Labels,
+    /// Faces of the plane elements that the line elements name.
+    pub lines: Vec<Face>,
     /// Places of the elements.
     pub element_spans: Vec<Span>,
     /// Node sets named on `*NODE`.

@@ -1,13 +1,14 @@
 //! `*NODE` and `*ELEMENT`.
 
+use super::element_type::{self, Kind};
+use super::line_elements::{self, RawLine};
 use super::mesh_index::{Group, MeshIndex, RawElement, RawNode};
 use super::outline::Outline;
 use super::references;
 use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
-use crate::model::{ElementType, Mesh};
+use crate::model::Mesh;
 use crate::reader::context::Context;
-use crate::reader::mesh::element_type;
 use crate::reader::names::{Labelled, Labels};
 use std::collections::{BTreeSet, HashMap};
 
@@ -43,6 +44,7 @@ struct Reading {
     nodes: Vec<RawNode>,
     node_index: HashMap<u64, Option<usize>>,
     elements: Vec<RawElement>,
+    lines: Vec<RawLine>,
     element_index: HashMap<u64, Span>,
     node_groups: Vec<Group>,
     element_groups: Vec<Group>,
@@ -98,15 +100,15 @@ impl Reading {
         let kind = card
             .required("TYPE", cx.d)
             .and_then(|name| element_type::read(name, cx));
-        let Some(element_type) = kind else {
+        let Some(kind) = kind else {
             self.elements_incomplete = true;
             self.element_groups
                 .extend(group(card, "ELSET", Vec::new(), cx));
             return;
         };
         let mut labels = Vec::new();
-        for rows in element_rows(&card.rows, element_type.topology().nodes + 1) {
-            match self.element(rows, element_type, cx) {
+        for rows in element_rows(&card.rows, kind.nodes() + 1) {
+            match self.element(rows, kind, cx) {
                 Some(label) => labels.push(label),
                 None => self.elements_incomplete = true,
             }
@@ -115,13 +117,8 @@ impl Reading {
     }
 
     /// Reads one element; returns its number.
-    fn element(
-        &mut self,
-        rows: &[Row],
-        element_type: ElementType,
-        cx: &mut Context,
-    ) -> Option<u64> {
-        let corners = element_type.topology().nodes;
+    fn element(&mut self, rows: &[Row], kind: Kind, cx: &mut Context) -> Option<u64> {
+        let corners = kind.nodes();
         let span = rows.first()?.span();
         let numbers = Labels::new("element", Code::UndefinedElement);
         let fields: Vec<Text> = rows.iter().flat_map(Row::fields).collect();
@@ -143,12 +140,15 @@ impl Reading {
             cx.error(Code::RepeatedElement, first.span, message);
             return Some(label);
         }
-        self.elements.push(RawElement {
-            label,
-            nodes,
-            element_type,
-            span,
-        });
+        match kind {
+            Kind::Plane(element_type) => self.elements.push(RawElement {
+                label,
+                nodes,
+                element_type,
+                span,
+            }),
+            Kind::Line => self.lines.push(RawLine { label, nodes, span }),
+        }
         Some(label)
     }
 
@@ -236,6 +236,7 @@ impl Reading {
             mesh: Mesh::default(),
             nodes: Labels::new("node", Code::UndefinedNode),
             elements: Labels::new("element", Code::UndefinedElement),
+            lines: Vec::new(),
             element_spans: Vec::new(),
             node_groups: self.node_groups,
             element_groups: self.element_groups,
@@ -253,6 +254,7 @@ impl Reading {
         for element in &self.elements {
             mesh_index.add_element(element);
         }
+        line_elements::add(&self.lines, &mut mesh_index, cx);
         mesh_index
     }
 

@@ -4,7 +4,7 @@ use super::mesh_index::{Group, MeshIndex};
 use super::outline::Outline;
 use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
-use crate::model::Set;
+use crate::model::{Face, Set};
 use crate::reader::context::Context;
 use crate::reader::names::{Labelled, Labels, Names};
 use std::collections::BTreeSet;
@@ -19,8 +19,10 @@ pub(crate) struct Sets {
     pub unsorted: BTreeSet<String>,
     /// Names of the element sets.
     pub element_names: Names,
-    /// Element sets in the order of their names.
+    /// Element sets in the order of their names, without line elements.
     pub elements: Vec<Set>,
+    /// Faces that the line elements of the element sets name.
+    pub lines: Vec<Vec<Face>>,
 }
 
 impl Sets {
@@ -32,13 +34,55 @@ impl Sets {
         }
     }
 
-    /// The element, or the elements of the set, that a field names.
+    /// The element, or the elements of the set, that a field names; reports line elements alone.
     pub fn elements_of(&self, field: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<usize> {
-        match field.as_integer() {
-            Some(_) => mesh_index.elements.find(field, cx).into_iter().collect(),
-            None => members(&self.elements, self.element_names.find(field, cx)),
+        let (elements, lines) = self.elements_and_lines_of(field, mesh_index, cx);
+        if elements.is_empty() && !lines.is_empty() {
+            report_lines(field, cx);
         }
+        elements
     }
+
+    /// The element, or the elements of the set, that a field names, and the faces that line elements
+    /// among them name.
+    pub fn elements_and_lines_of(
+        &self,
+        field: Text,
+        mesh_index: &MeshIndex,
+        cx: &mut Context,
+    ) -> (Vec<usize>, Vec<Face>) {
+        if field.as_integer().is_some() {
+            let found = mesh_index.elements.find(field, cx);
+            return split(found.into_iter().collect(), mesh_index);
+        }
+        let set = self.element_names.find(field, cx);
+        let lines = set.and_then(|index| self.lines.get(index)).cloned();
+        (members(&self.elements, set), lines.unwrap_or_default())
+    }
+}
+
+/// Reports line elements where plane ones are needed.
+fn report_lines(field: Text, cx: &mut Context) {
+    let message = format!("{} stands for line elements only", field.text);
+    let error = Diagnostic::error(Code::LineElement, field.span, message);
+    cx.d.push(error.help("they name sides of plane elements, in rows of *SURFACE without a face"));
+}
+
+/// Plane elements, and the faces that line elements name.
+fn split(members: Vec<usize>, mesh_index: &MeshIndex) -> (Vec<usize>, Vec<Face>) {
+    let count = mesh_index.mesh.elements.len();
+    let (elements, lines): (Vec<_>, Vec<_>) = members.into_iter().partition(|&m| m < count);
+    let faces = lines.iter().filter_map(|m| mesh_index.lines.get(m - count));
+    (elements, faces.copied().collect())
+}
+
+/// Element sets and the faces that their line elements name.
+fn split_sets(sets: Vec<Set>, mesh_index: &MeshIndex) -> (Vec<Set>, Vec<Vec<Face>>) {
+    let split = sets.into_iter().map(|Set { name, members }| {
+        let (members, lines) = split(members, mesh_index);
+        (Set { name, members }, lines)
+    });
+    split.unzip()
 }
 
 fn members(sets: &[Set], index: Option<usize>) -> Vec<usize> {
@@ -54,6 +98,7 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
     elements.fill(cx);
     let element_names = elements.names;
     let element_sets = resolve(&element_names, elements.drafts, cx);
+    let (element_sets, lines) = split_sets(element_sets, mesh_index);
 
     let mut nodes = Family::new("node set", &mesh_index.nodes);
     nodes.add_groups(&mesh_index.node_groups);
@@ -65,6 +110,7 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
         unsorted: nodes.unsorted,
         element_names,
         elements: element_sets,
+        lines,
     };
     let mut drafts = nodes.drafts;
     for (index, source) in nodes.from_elements {
@@ -77,6 +123,9 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
             draft
                 .members
                 .extend(cells.flat_map(|element| &element.nodes));
+            let lines = sets.lines.get(set).map_or(&[][..], |lines| lines);
+            let ends = lines.iter().flat_map(|face| face.nodes(&mesh_index.mesh));
+            draft.members.extend(ends);
         }
     }
     sets.nodes = resolve(&sets.node_names, drafts, cx);

@@ -119,10 +119,12 @@ fn faces(
         let Some(field) = row.required(0, "an element or element set", cx.d) else {
             continue;
         };
-        let elements = sets.elements_of(field, mesh_index, cx);
         let found = match row.get(1) {
-            Some(face) => named_faces(&elements, face, mesh_index, cx),
-            None => exterior_faces(&elements, shared, &mesh_index.mesh),
+            Some(face) => {
+                let elements = sets.elements_of(field, mesh_index, cx);
+                named_faces(&elements, face, mesh_index, cx)
+            }
+            None => unnamed_faces(field, (mesh_index, sets), shared, cx),
         };
         report_interior(&found, shared, row, &mesh_index.mesh, cx);
         let before = faces.len();
@@ -132,6 +134,20 @@ fn faces(
             cx.warning(Code::RepeatedFace, row.span(), message);
         }
     }
+    faces
+}
+
+/// Exterior sides of the elements that a field names, and the faces that its line elements name.
+fn unnamed_faces(
+    field: Text,
+    (mesh_index, sets): (&MeshIndex, &Sets),
+    shared: &SharedSides,
+    cx: &mut Context,
+) -> Vec<Face> {
+    let (elements, lines) = sets.elements_and_lines_of(field, mesh_index, cx);
+    let mut faces = exterior_faces(&elements, shared, &mesh_index.mesh);
+    let known: HashSet<Face> = faces.iter().copied().collect();
+    faces.extend(lines.into_iter().filter(|face| !known.contains(face)));
     faces
 }
 

@@ -1,8 +1,9 @@
-//! `*AMPLITUDE`.
+//! `*AMPLITUDE`: tables of points; `signal` reads the other definitions.
 
+use super::signal::{self, Axes, positive};
 use crate::deck::{Card, Row, Text};
 use crate::diagnostics::Code;
-use crate::model::{Amplitude, TimeBase};
+use crate::model::{Amplitude, Curve, TimeBase};
 use crate::reader::context::Context;
 use crate::reader::names::Names;
 
@@ -40,15 +41,15 @@ pub(crate) fn read(cx: &mut Context) -> Amplitudes {
             continue;
         };
         let errors = cx.errors();
-        let points = points(card, cx);
-        if card.faulty || cx.errors() > errors || points.is_empty() {
+        let curve = curve(card, cx);
+        let Some(curve) = curve.filter(|_| !card.faulty && cx.errors() == errors) else {
             amplitudes.names.spoil(&name);
             continue;
-        }
+        };
         amplitudes.all.push(Amplitude {
             name: name.typed.clone(),
             time: time_base(card),
-            points,
+            curve,
         });
         amplitudes.names.define(name);
     }
@@ -63,37 +64,75 @@ pub(crate) fn time_base(card: &Card) -> TimeBase {
     }
 }
 
-/// The table: time * SCALEX + SHIFTX, value * SCALEY + SHIFTY.
-fn points(card: &Card, cx: &mut Context) -> Vec<(f64, f64)> {
-    let mut number = |name: &str, default: f64| card.real(name, cx.d).unwrap_or(default);
-    let (scale_x, shift_x) = (number("SCALEX", 1.0), number("SHIFTX", 0.0));
-    let (scale_y, shift_y) = (number("SCALEY", 1.0), number("SHIFTY", 0.0));
-    let mut points: Vec<(f64, f64)> = Vec::new();
-    for row in &card.rows {
-        for (time, value) in pairs(row, cx) {
-            let point = (time.0 * scale_x + shift_x, value * scale_y + shift_y);
-            if !(point.0.is_finite() && point.1.is_finite()) {
-                cx.error(
-                    Code::AmplitudeTable,
-                    time.1.span,
-                    "this point lies at infinity",
-                );
-                return Vec::new();
-            }
-            if points.last().is_some_and(|last| last.0 >= point.0) {
-                let text = time.1.text;
-                let message = format!("the times of an amplitude must increase, found {text}");
-                cx.error(Code::AmplitudeTable, time.1.span, message);
-                return Vec::new();
-            }
-            points.push(point);
+fn curve(card: &Card, cx: &mut Context) -> Option<Curve> {
+    let axes = Axes::read(card, cx);
+    match card.choice("DEFINITION") {
+        Some("SMOOTH STEP") => points(tabulated(card, cx), axes, cx).map(Curve::SmoothStep),
+        Some("EQUALLY SPACED") => points(equally_spaced(card, cx), axes, cx).map(Curve::Linear),
+        Some(definition @ ("PERIODIC" | "DECAY" | "MODULATED")) => {
+            signal::read(definition, card, axes, cx)
         }
+        _ => points(tabulated(card, cx), axes, cx).map(Curve::Linear),
     }
-    points
 }
 
-/// Times, as numbers and as typed, and values of a row.
-fn pairs<'a>(row: &'a Row, cx: &mut Context) -> Vec<((f64, Text<'a>), f64)> {
+/// Time and value as the card gives them, and the field to name in a message.
+type Given<'a> = (f64, f64, Text<'a>);
+
+/// The points of a table; reports times that do not increase.
+fn points(given: Vec<Given>, axes: Axes, cx: &mut Context) -> Option<Vec<(f64, f64)>> {
+    let mut points: Vec<(f64, f64)> = Vec::new();
+    for (time, value, field) in given {
+        let point = axes.point(time, value);
+        if !(point.0.is_finite() && point.1.is_finite()) {
+            cx.error(
+                Code::AmplitudeTable,
+                field.span,
+                "this point lies at infinity",
+            );
+            return None;
+        }
+        if points.last().is_some_and(|last| last.0 >= point.0) {
+            let message = format!("the times of an amplitude must increase, found {time:?}");
+            cx.error(Code::AmplitudeTable, field.span, message);
+            return None;
+        }
+        points.push(point);
+    }
+    (!points.is_empty()).then_some(points)
+}
+
+/// `time, value, time, value, ...`
+fn tabulated<'a>(card: &'a Card, cx: &mut Context) -> Vec<Given<'a>> {
+    let mut given = Vec::new();
+    for row in &card.rows {
+        given.extend(pairs(row, cx));
+    }
+    given
+}
+
+/// `value, value, ...` at BEGIN and every FIXED INTERVAL after it.
+fn equally_spaced<'a>(card: &'a Card, cx: &mut Context) -> Vec<Given<'a>> {
+    let interval = card.required("FIXED INTERVAL", cx.d);
+    let begin = card.real("BEGIN", cx.d).unwrap_or(0.0);
+    let Some(interval) = interval.and_then(|field| positive(field, "the interval", cx)) else {
+        return Vec::new();
+    };
+    let mut given = Vec::new();
+    for field in card.rows.iter().flat_map(Row::fields) {
+        let value = if field.is_empty() {
+            Some(0.0)
+        } else {
+            field.real(cx.d)
+        };
+        let time = begin + given.len() as f64 * interval;
+        given.extend(value.map(|value| (time, value, field)));
+    }
+    given
+}
+
+/// Times and values of a row.
+fn pairs<'a>(row: &'a Row, cx: &mut Context) -> Vec<Given<'a>> {
     let mut pairs = Vec::new();
     let count = row.fields().count();
     for index in (0..count).step_by(2) {
@@ -105,7 +144,7 @@ fn pairs<'a>(row: &'a Row, cx: &mut Context) -> Vec<((f64, Text<'a>), f64)> {
         }
         let (time, value) = (field.real(cx.d), row.real_or(index + 1, 0.0, cx.d));
         if let (Some(time), Some(value)) = (time, value) {
-            pairs.push(((time, field), value));
+            pairs.push((time, value, field));
         }
     }
     pairs

@@ -7,4 +7,5 @@ mod load_history;
 mod loads;
 mod output_requests;
 mod settings;
+mod signal;
 pub(crate) mod step;
