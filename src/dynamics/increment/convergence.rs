@@ -317,12 +317,17 @@ impl<'a> Scales<'a> {
         })
     }
 
-    /// Whether a pass with the correction dU closes the gaps of its closed pairs. Where pairs contradict each
-    /// other, the equal-force rule lets the forces grow in balance, and gaps stay.
+    /// Whether a pass with the correction dU closes the gaps of its closed pairs, as far as open pairs may
+    /// overlap. Where pairs contradict each other, the equal-force rule lets the forces grow in balance, and
+    /// gaps stay.
     pub fn closes_gaps(&self, contact: &ContactForces, du: &[f64]) -> bool {
         contact.acting().all(|(constraint, _)| {
             let gap = constraint.gap + constraint.gap_change(du);
-            gap.abs() <= self.closed_gap(constraint)
+            let most = larger(
+                self.closed_gap(constraint),
+                SETTLED_OVERLAP * constraint.scale,
+            );
+            gap.abs() <= most
         })
     }
 
