@@ -331,6 +331,23 @@ fn a_missing_increment_comes_with_a_guide_wherever_the_mesh_lies() {
 }
 
 #[test]
+fn output_requests_of_both_families_are_silent() {
+    for request in [
+        "*Output, field, variable=PRESELECT, time marks=NO\n*Element Output, directions=YES\nLE, S",
+        "*Output, history, variable=PRESELECT\n*Energy Output\nALLKE,",
+        "*Output, field\n*Contact Output, slave=TOP, master=TOP\nCSTRESS,",
+        "*EL FILE, DIRECTIONS=NO, POSITION=CENTROIDAL\nS",
+        "*NODE FILE, OUTPUT=2D, GLOBAL=YES, CONTACT ELEMENTS, LAST ITERATIONS\nU, RF",
+        "*CONTACT FILE, LAST ITERATIONS\nCDIS, CSTR",
+        "*NODE PRINT, NSET=FOOT, SUMMARY=NO, GLOBAL=NO\nRF",
+        "*EL PRINT, ELSET=BODY, TOTALS=ONLY, SUMMARY=YES, POSITION=CENTROIDAL\nELSE",
+        "*CONTACT PRINT, TOTALS=YES\nCF",
+    ] {
+        same("*END STEP", &format!("{request}\n*END STEP"));
+    }
+}
+
+#[test]
 fn parameters_without_effect_are_mentioned() {
     let card = "*STICKSLIP, THETA1=0.7\n*CLOAD";
     assert_eq!(faults("*CLOAD", card), [Code::IgnoredParameter]);

@@ -397,13 +397,20 @@ pub(crate) static DIMENSIONS: &[Dimensions] = &[
     keyword(
         "EL PRINT",
         NAMES,
-        &["ELSET", "FREQUENCY", "TIME POINTS", "TOTALS", "GLOBAL"],
+        &[
+            "ELSET",
+            "FREQUENCY",
+            "TIME POINTS",
+            "TOTALS",
+            "GLOBAL",
+            "POSITION",
+        ],
         &[],
     ),
     keyword(
         "CONTACT PRINT",
         NAMES,
-        &["SLAVE", "MASTER", "FREQUENCY", "TOTALS"],
+        &["SLAVE", "MASTER", "FREQUENCY", "TIME POINTS", "TOTALS"],
         &[],
     ),
     keyword("ENERGY OUTPUT", NAMES, &["ELSET", "VARIABLE"], &[]),

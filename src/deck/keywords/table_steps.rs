@@ -31,6 +31,19 @@ const EVERYWHERE: P = P::value("NSET", "fields are written on the whole mesh").i
 const ALL_ELEMENTS: P = P::value("ELSET", "fields are written on the whole mesh").ignored();
 const ALL_VARIABLES: P = P::value("VARIABLE", "all variables are written").ignored();
 const POSITION: P = P::value("POSITION", "stresses are written at element centres").ignored();
+const YES_NO: &[V] = &[V::read("YES", ""), V::read("NO", "")];
+const DIRECTIONS: P = P::choice(
+    "DIRECTIONS",
+    YES_NO,
+    "stresses are those in the axes x and y",
+)
+.ignored();
+const SUMMARY: P = P::choice("SUMMARY", YES_NO, "histories have no tables to sum up").ignored();
+const CONTACT_ELEMENTS: P =
+    P::flag("CONTACT ELEMENTS", "contact elements are not written").ignored();
+const LAST_ITERATIONS: P =
+    P::flag("LAST ITERATIONS", "frames hold accepted increments only").ignored();
+const HISTORY_TIMES: P = P::value("TIME POINTS", "histories hold every increment").ignored();
 const SLAVE: P = P::value("SLAVE", "all contacts are written").ignored();
 const MASTER: P = P::value("MASTER", "all contacts are written").ignored();
 const HISTORY_EVERY: P = P::value("FREQUENCY", "histories hold every increment").ignored();
@@ -356,6 +369,8 @@ pub(crate) static STEPS: &[Keyword] = &[
             GLOBAL,
             FREQUENCY_F,
             ALL_VARIABLES,
+            CONTACT_ELEMENTS,
+            LAST_ITERATIONS,
         ],
         "Under *OUTPUT, HISTORY the history of a node set; else the same as *NODE FILE.",
     ),
@@ -370,6 +385,8 @@ pub(crate) static STEPS: &[Keyword] = &[
             OUTPUT_2D,
             GLOBAL,
             FREQUENCY_F,
+            CONTACT_ELEMENTS,
+            LAST_ITERATIONS,
         ],
         "Fields on nodes in frames; all are always written on the whole mesh.",
     ),
@@ -385,6 +402,9 @@ pub(crate) static STEPS: &[Keyword] = &[
             OUTPUT_2D,
             GLOBAL,
             ALL_VARIABLES,
+            DIRECTIONS,
+            CONTACT_ELEMENTS,
+            LAST_ITERATIONS,
         ],
         "Fields on elements in frames; all are always written on the whole mesh.",
     ),
@@ -400,6 +420,9 @@ pub(crate) static STEPS: &[Keyword] = &[
             POSITION,
             OUTPUT_2D,
             GLOBAL,
+            DIRECTIONS,
+            CONTACT_ELEMENTS,
+            LAST_ITERATIONS,
         ],
         "The same as *ELEMENT OUTPUT.",
     ),
@@ -414,6 +437,8 @@ pub(crate) static STEPS: &[Keyword] = &[
             MASTER,
             EVERYWHERE,
             ALL_VARIABLES,
+            CONTACT_ELEMENTS,
+            LAST_ITERATIONS,
         ],
         "Contact fields in frames; all are always written.",
     ),
@@ -421,7 +446,15 @@ pub(crate) static STEPS: &[Keyword] = &[
         "CONTACT FILE",
         Scope::Step,
         Data::Rows,
-        &[FREQUENCY, TIME_POINTS, SLAVE, MASTER, EVERYWHERE],
+        &[
+            FREQUENCY,
+            TIME_POINTS,
+            SLAVE,
+            MASTER,
+            EVERYWHERE,
+            CONTACT_ELEMENTS,
+            LAST_ITERATIONS,
+        ],
         "The same as *CONTACT OUTPUT.",
     ),
     Keyword::read(
@@ -431,9 +464,10 @@ pub(crate) static STEPS: &[Keyword] = &[
         &[
             P::value("NSET", "node set of the history; required"),
             HISTORY_EVERY,
-            P::value("TIME POINTS", "histories hold every increment").ignored(),
+            HISTORY_TIMES,
             TOTALS,
             GLOBAL,
+            SUMMARY,
         ],
         "The history of a node set: sums of forces, mean motion, and every node.",
     ),
@@ -444,9 +478,11 @@ pub(crate) static STEPS: &[Keyword] = &[
         &[
             ALL_ELEMENTS,
             HISTORY_EVERY,
-            P::value("TIME POINTS", "histories hold every increment").ignored(),
+            HISTORY_TIMES,
             ENERGY_TOTALS,
             GLOBAL,
+            POSITION,
+            SUMMARY,
         ],
         "Energies of the model and of every body are always in the history; stresses are in the frames.",
     ),
@@ -454,7 +490,14 @@ pub(crate) static STEPS: &[Keyword] = &[
         "CONTACT PRINT",
         Scope::Step,
         Data::Rows,
-        &[SLAVE, MASTER, HISTORY_EVERY, CONTACT_TOTALS],
+        &[
+            SLAVE,
+            MASTER,
+            HISTORY_EVERY,
+            HISTORY_TIMES,
+            CONTACT_TOTALS,
+            SUMMARY,
+        ],
         "Contact forces of each contact are always in the history.",
     ),
     Keyword::read(
