@@ -243,6 +243,9 @@ fn named_supports_fix_their_directions() {
         ("XSYMM", vec![6]),
         ("YSYMM", vec![7]),
         ("ZSYMM", vec![]),
+        ("XASYMM", vec![7]),
+        ("YASYMM", vec![6]),
+        ("ZASYMM", vec![6, 7]),
         ("PINNED", vec![6, 7]),
         ("ENCASTRE", vec![6, 7]),
     ] {

@@ -22,7 +22,7 @@ use materials::Properties;
 use mesh::{Outline, nodes_elements, sets, surface};
 use std::path::Path;
 use steps::boundary::Targets;
-use steps::{amplitude, boundary, equation, step};
+use steps::{amplitude, equation, initial_velocity, step};
 
 /// Reads a deck file into a model; `None` if there are errors.
 pub fn read_model(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Option<Model> {
@@ -65,7 +65,7 @@ fn read(cx: &mut Context) -> Model {
     let guide = check::crossing_time(&mesh_index.mesh, &properties);
     let steps = step::read(&outline, targets, &surfaces, guide, cx);
     let equations = equation::read(&outline, targets, &steps.all, cx);
-    let initial_velocity = boundary::initial_velocity(&outline, targets, &steps.at_start, cx);
+    let initial_velocity = initial_velocity::read(&outline, targets, &steps.at_start, cx);
     equation::check_velocities(&equations, &initial_velocity, &steps.at_start, targets, cx);
     let model = Model {
         title: title(&outline),

@@ -91,6 +91,13 @@ fn line_elements_in_place_of_plane_ones() {
 }
 
 #[test]
+fn names_that_are_no_supports() {
+    let text = texts_of(Code::BadDof, &[square("FOOT, 1, 2", "FOOT, ENCASTER")]);
+    assert!(text.contains("did you mean ENCASTRE?"), "{text}");
+    assert!(text.contains("deck.inp:22:7"), "{text}");
+}
+
+#[test]
 fn velocities_that_cannot_be_prescribed() {
     let velocity = "*BOUNDARY, TYPE=VELOCITY\n4, 2, 2, 0.25\n";
     let later = format!("*END STEP\n*STEP\n*DYNAMIC, DIRECT\n0.1, 1.\n{velocity}");

@@ -96,8 +96,9 @@ pub(crate) static STEPS: &[Keyword] = &[
             P::flag("USER", "not supported").refused(),
         ],
         "Prescribed displacements or velocities: node or node set, first direction, last direction, \
-         value; or a node set with XSYMM, YSYMM, ZSYMM, PINNED or ENCASTRE. Without amplitude a \
-         displacement grows linearly over the step. Directions 3 to 6 may be given with value zero.",
+         value; or a node set with XSYMM, YSYMM, ZSYMM, XASYMM, YASYMM, ZASYMM, PINNED or ENCASTRE. \
+         Without amplitude a displacement grows linearly over the step. Directions 3 to 6 may be \
+         given with value zero.",
     ),
     Keyword::read(
         "CLOAD",

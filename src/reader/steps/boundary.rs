@@ -1,12 +1,12 @@
-//! `*BOUNDARY` and `*INITIAL CONDITIONS`.
+//! `*BOUNDARY`: prescribed displacements and velocities.
 
 use super::amplitude::Amplitudes;
 use crate::deck::{Card, Row, Text};
-use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::diagnostics::{Code, Diagnostic, Span, closest};
 use crate::model::{Amplitude, Support, SupportMotion, TimeBase};
 use crate::reader::contact::RigidSurface;
 use crate::reader::context::Context;
-use crate::reader::mesh::{MeshIndex, Outline, Sets};
+use crate::reader::mesh::{MeshIndex, Sets};
 use std::collections::BTreeMap;
 
 /// Objects of the model that supports and loads refer to.
@@ -232,9 +232,8 @@ struct Prescribed {
 
 fn prescribed(row: &Row, cx: &mut Context) -> Option<Prescribed> {
     let first = row.required(1, "the first direction", cx.d)?;
-    if first.as_integer().is_none()
-        && let Some(directions) = named_directions(first)
-    {
+    if first.text.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        let directions = named_directions(first, cx)?;
         row.at_most(2, cx.d);
         return Some(Prescribed {
             directions,
@@ -263,15 +262,32 @@ fn prescribed(row: &Row, cx: &mut Context) -> Option<Prescribed> {
     })
 }
 
-/// Directions that a named condition fixes.
-fn named_directions(name: Text) -> Option<Vec<usize>> {
-    match name.name_key().as_str() {
-        "XSYMM" => Some(vec![0]),
-        "YSYMM" => Some(vec![1]),
-        "ZSYMM" => Some(vec![]),
-        "PINNED" | "ENCASTRE" => Some(vec![0, 1]),
-        _ => None,
+/// Names of supports and the directions that they fix in the plane; Abaqus Keywords Reference,
+/// *BOUNDARY.
+const NAMED: [(&str, &[usize]); 8] = [
+    ("XSYMM", &[0]),
+    ("YSYMM", &[1]),
+    ("ZSYMM", &[]),
+    ("XASYMM", &[1]),
+    ("YASYMM", &[0]),
+    ("ZASYMM", &[0, 1]),
+    ("PINNED", &[0, 1]),
+    ("ENCASTRE", &[0, 1]),
+];
+
+/// Directions that a named support fixes; reports other names.
+fn named_directions(name: Text, cx: &mut Context) -> Option<Vec<usize>> {
+    let key = name.name_key();
+    if let Some((_, directions)) = NAMED.iter().find(|(known, _)| *known == key) {
+        return Some(directions.to_vec());
     }
+    let names = NAMED.iter().map(|&(known, _)| known);
+    let message = format!("{} is neither a direction nor a named support", name.text);
+    let error = Diagnostic::error(Code::BadDof, name.span, message);
+    let list = names.clone().collect::<Vec<_>>().join(", ");
+    let help = format!("directions are numbers; the named supports are {list}");
+    cx.d.push(error.suggest(closest(&key, names)).help(help));
+    None
 }
 
 /// A direction number, 1 to 6.
@@ -308,83 +324,5 @@ pub(crate) fn row_direction(row: &Row, value: f64, cx: &mut Context) -> Option<u
             );
             None
         }
-    }
-}
-
-/// Reads initial velocities, `2 N` entries; `supports` hold at the start.
-pub(crate) fn initial_velocity(
-    outline: &Outline,
-    targets: Targets,
-    supports: &[Support],
-    cx: &mut Context,
-) -> Vec<f64> {
-    let mut velocity = vec![0.0; targets.mesh_index.mesh.dof_count()];
-    let mut places = BTreeMap::new();
-    for card in outline.model_cards("INITIAL CONDITIONS") {
-        card.required("TYPE", cx.d);
-        if card.choice("TYPE") != Some("VELOCITY") {
-            continue;
-        }
-        for row in &card.rows {
-            for (dof, value) in velocity_row(row, targets, cx) {
-                if let Some(entry) = velocity.get_mut(dof) {
-                    *entry = value;
-                    places.insert(dof, row.span());
-                }
-            }
-        }
-    }
-    report_supported(&velocity, &places, supports, targets.mesh_index, cx);
-    velocity
-}
-
-/// `node or set, direction, velocity`
-fn velocity_row(row: &Row, targets: Targets, cx: &mut Context) -> Vec<(usize, f64)> {
-    row.at_most(3, cx.d);
-    let target = row.required(0, "a node or node set", cx.d);
-    let nodes = target.map(|field| targets.sets.nodes_of(field, targets.mesh_index, cx));
-    let value = row.real(2, "the velocity", cx.d);
-    let direction = row_direction(row, value.unwrap_or(0.0), cx);
-    match (nodes, direction, value) {
-        (Some(nodes), Some(direction), Some(value)) => nodes
-            .into_iter()
-            .map(|node| (2 * node + direction, value))
-            .collect(),
-        _ => Vec::new(),
-    }
-}
-
-/// Reports initial velocities of supported dofs, which move as prescribed from the start.
-fn report_supported(
-    velocity: &[f64],
-    places: &BTreeMap<usize, Span>,
-    supports: &[Support],
-    mesh_index: &MeshIndex,
-    cx: &mut Context,
-) {
-    let mut rows: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
-    for dof in supports.iter().map(|support| support.dof) {
-        if let (Some(&value), Some(&span)) = (velocity.get(dof), places.get(&dof))
-            && value != 0.0
-        {
-            rows.entry(span).or_default().push(dof);
-        }
-    }
-    for (span, dofs) in rows {
-        let Some(first) = dofs.first() else { continue };
-        let label = mesh_index
-            .mesh
-            .node_labels
-            .get(first / 2)
-            .copied()
-            .unwrap_or(0);
-        let message = format!(
-            "{} degrees of freedom with this velocity are prescribed, the first is node {label} \
-             direction {}",
-            dofs.len(),
-            first % 2 + 1
-        );
-        let error = Diagnostic::error(Code::VelocityOnSupport, span, message);
-        cx.d.push(error.help("give the velocity to free nodes only"));
     }
 }

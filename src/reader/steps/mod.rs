@@ -3,6 +3,7 @@
 pub(crate) mod amplitude;
 pub(crate) mod boundary;
 pub(crate) mod equation;
+pub(crate) mod initial_velocity;
 mod load_history;
 mod loads;
 mod output_requests;
