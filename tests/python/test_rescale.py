@@ -164,6 +164,7 @@ def test_files_of_data_lines_are_read_in_their_place(tmp_path: Path) -> None:
         ("*CONTACT PAIR, INTER=D\nA, B\n", "INTER of \\*CONTACT PAIR"),
         ("*NODE\n1, 0., 0., 0., 5.\n", "field 5 of \\*NODE"),
         ("*NODE\n1, abc, 0.\n", "field 2 of \\*NODE.* is no number"),
+        ("*AMPLITUDE, NAME=A, DEFINITION=PERIODIC\n1, 2., 3.\n1., 0.\n", "of \\*AMPLITUDE"),
         ("*FRICTION\n0.3, 2.1E5\n", "field 2 of \\*FRICTION"),
         ("*SURFACE BEHAVIOR\n0.1\n", "field 1 of \\*SURFACE BEHAVIOR"),
         ("*SURFACE, NAME=S, TYPE=CYLINDER\nA\n", "TYPE of \\*SURFACE"),
