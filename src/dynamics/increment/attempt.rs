@@ -7,6 +7,7 @@ use super::forces::{ContactForces, ContactSystem, EqualForces, Impulses};
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::rigid_predictor::rigid_predictor;
 use super::trace::{Failed, Trace};
+use crate::contact::tolerances::PROJECTION_BEYOND_ENDS;
 use crate::contact::{ClosedPairs, Constraint};
 use crate::dynamics::results::{Cause, PassReport, State};
 use crate::dynamics::step::{
@@ -267,12 +268,13 @@ impl<'m> Attempt<'_, 'm> {
         Ok(scales.converged(&errors) && scales.closes_gaps(pass.contact, du))
     }
 
-    /// The constraints that did not count, without those that a free node past a corner is behind: the
-    /// line of the segment that it came from.
+    /// The constraints that did not count, without those that a free node past a corner, or at it, is
+    /// behind: the line of the segment that it came from.
     fn outside(&self, left_out: Vec<Constraint>, u: &[f64]) -> Vec<Constraint> {
         let is_over = |constraint: &Constraint| {
             let [s, a, b, _] = constraint.source.nodes;
-            (0.0..=1.0).contains(&self.problem.place(u, [s, a, b]).xi)
+            let xi = self.problem.place(u, [s, a, b]).xi;
+            xi.min(1.0 - xi) > PROJECTION_BEYOND_ENDS
         };
         let left_out = left_out.into_iter();
         left_out.filter(|c| c.gap >= 0.0 || is_over(c)).collect()
