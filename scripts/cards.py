@@ -10,15 +10,31 @@ def card(keyword: str, *rows: Sequence[object]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def material(name: str, young: float, poisson: float, density: float, **damping: float) -> str:
+    """An elastic material; zero parameters of its damping are left out."""
+    parameters = "".join(f", {key.upper()}={value!r}" for key, value in damping.items() if value)
+    return "".join(
+        [
+            card(f"MATERIAL, NAME={name}"),
+            card("ELASTIC", (young, poisson)),
+            card("DENSITY", (density,)),
+            card(f"DAMPING{parameters}") if parameters else "",
+        ]
+    )
+
+
 def elastic(
-    young: float, poisson: float, density: float, *sets: str, thickness: float = 1.0
+    young: float,
+    poisson: float,
+    density: float,
+    *sets: str,
+    thickness: float = 1.0,
+    **damping: float,
 ) -> str:
     """A material and the sections of element sets that are made of it."""
     return "".join(
         [
-            card("MATERIAL, NAME=ELASTIC"),
-            card("ELASTIC", (young, poisson)),
-            card("DENSITY", (density,)),
+            material("ELASTIC", young, poisson, density, **damping),
             *(card(f"SOLID SECTION, ELSET={name}, MATERIAL=ELASTIC", (thickness,)) for name in sets),
         ]
     )

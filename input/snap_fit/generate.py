@@ -7,7 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "scripts"))
 
-from cards import card, dry, step  # noqa: E402
+from cards import card, dry, material, step  # noqa: E402
 from deck import write_to_folder  # noqa: E402
 from quads import Grid  # noqa: E402
 
@@ -75,18 +75,6 @@ def model() -> str:
     )
 
 
-def material(beta: float) -> str:
-    """The material with its viscosity."""
-    cards = [
-        card("MATERIAL, NAME=PP"),
-        card("ELASTIC", (YOUNG, POISSON)),
-        card("DENSITY", (DENSITY,)),
-    ]
-    if beta > 0.0:
-        cards.append(card(f"DAMPING, BETA={beta!r}"))
-    return "".join(cards)
-
-
 def problem(beta: float) -> str:
     """A deck: heading, include, material, step."""
     damping = f"beta {beta!r} s" if beta > 0.0 else "no damping"
@@ -94,7 +82,7 @@ def problem(beta: float) -> str:
         [
             card("HEADING", (f"snap-fit hook over a ramp and back; {damping}",)),
             card(f"INCLUDE, INPUT={INCLUDE}"),
-            material(beta),
+            material("PP", YOUNG, POISSON, DENSITY, beta=beta),
             step(
                 DT,
                 round(2 * PUSH / DT),

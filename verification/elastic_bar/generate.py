@@ -45,22 +45,13 @@ def model(beta: float) -> str:
             bar.side_nodes("BAR_FACE", "left"),
             bar.side_surface("BAR_FACE", "left"),
             wall.side_surface("WALL_FACE", "right"),
-            material(beta * DT),
+            elastic(YOUNG, 0.0, DENSITY, "BAR", "WALL", thickness=THICKNESS, beta=beta * DT),
             card("SURFACE INTERACTION, NAME=SMOOTH"),
             card("CONTACT PAIR, INTERACTION=SMOOTH", ("BAR_FACE", "WALL_FACE")),
             card("BOUNDARY", ("WALL", 1, 2), ("BAR", 2, 2)),
             card("INITIAL CONDITIONS, TYPE=VELOCITY", ("BAR", 1, -SPEED)),
         ]
     )
-
-
-def material(beta: float) -> str:
-    """Material and sections."""
-    cards = elastic(YOUNG, 0.0, DENSITY, "BAR", "WALL", thickness=THICKNESS)
-    if beta == 0.0:
-        return cards
-    density = card("DENSITY", (DENSITY,))
-    return cards.replace(density, density + card(f"DAMPING, BETA={beta!r}"))
 
 
 def problem(scheme: str, impact: str) -> str:

@@ -75,8 +75,6 @@ def bar(settings: str, courant: float, beta: float) -> str:
     labels = bar.next_node, bar.next_element
     wall = Grid("WALL", 1, 1, lambda i, j: (i - 1.0 - GAP, (2 * j - 0.5) * DEPTH), *labels)
     transit = LENGTH / ELEMENTS / WAVE_SPEED
-    material, density = elastic(YOUNG, 0.0, 1.0, "BAR", "WALL"), card("DENSITY", (1.0,))
-    damping = card(f"DAMPING, BETA={beta * transit!r}") if beta else ""
     return "".join(
         [
             card("HEADING", (f"elastic bar on a wall, Courant number {courant}",)),
@@ -85,7 +83,7 @@ def bar(settings: str, courant: float, beta: float) -> str:
             bar.side_nodes("FACE", "left"),
             bar.side_surface("FACE", "left"),
             wall.side_surface("WALL_FACE", "right"),
-            material.replace(density, density + damping),
+            elastic(YOUNG, 0.0, 1.0, "BAR", "WALL", beta=beta * transit),
             dry(0.0),
             card("CONTACT PAIR, INTERACTION=DRY", ("FACE", "WALL_FACE")),
             card("BOUNDARY", ("WALL", 1, 2), ("BAR", 2, 2)),
