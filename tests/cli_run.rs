@@ -346,7 +346,7 @@ fn runs_are_warned_about_when_they_shall_be_looked_at_again() {
             "increments of 0.2 are longer than a wave",
         ),
         (
-            ["0.002, 0.1", "1e-5, 3e-4"],
+            ["0.002, 0.1", "2e-4, 0.032"],
             "less than a 100th of the time a",
         ),
         (

@@ -1,6 +1,7 @@
 //! One deck and one golden text for every diagnostic code.
 
 mod deck_advice;
+mod deck_checks;
 
 use std::path::Path;
 use stickslip::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Sources};
@@ -129,6 +130,10 @@ fn faulty(code: Code) -> Source {
         EmptyMesh => Source::Text("*STEP, NLGEOM\n*DYNAMIC\n1., 1.\n*END STEP\n".to_string()),
         EmptySurface => model("*NSET, NSET=NONE\n*SURFACE, TYPE=NODE, NAME=S\nNONE"),
         LineElement => model("*ELEMENT, TYPE=T3D2, ELSET=CURVE\n8, 1, 3"),
+        CoincidentNodes => square(
+            "7, 1, 2, 3, 4",
+            "7, 1, 2, 3, 4\n8, 5, 6, 7, 8\n*NODE\n5, 1., 0.\n6, 2., 0.\n7, 2., 1.\n8, 1., 1.",
+        ),
         IncompleteMaterial => square("*DENSITY\n1.\n", ""),
         MaterialRange => square("1000., 0.3", "1000., 0.5"),
         NoSection => square("*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER\n0.5\n", ""),
@@ -152,6 +157,8 @@ fn faulty(code: Code) -> Source {
         NothingFaced => shared("EBASE, S3", "2, S2"),
         Magnitude => square("*DENSITY\n1.", "*DENSITY\n1.e-310"),
         Adjusted => shared("DRY, TYPE", "DRY, ADJUST=0.2, TYPE"),
+        FacingAway => shared("EBASE, S3", "EBASE, S1"),
+        FixedSlave => shared("SBOT, STOP", "STOP, SBOT\n*BOUNDARY\n4, 1, 2\n5, 1, 2"),
         BadDof => square("FOOT, 1, 2", "FOOT, 1, 8"),
         ValueOutsideStep => square("FOOT, 1, 2", "FOOT, 1, 2, 0.1"),
         VelocityOnSupport => model("*INITIAL CONDITIONS, TYPE=VELOCITY\nALL, 2, -1."),
@@ -168,6 +175,8 @@ fn faulty(code: Code) -> Source {
         MixedOperation => step("*CLOAD, OP=NEW\n4, 2, 1."),
         ConflictingSupport => step("*BOUNDARY\n4, 1\n*BOUNDARY\n4, 1, 1, 0.1"),
         IgnoredVariable => square("U, RF", "U, PEEQ"),
+        OutOfProportion => square("0.1, 1.", "1.e9, 1.e10"),
+        NothingToDo => square("3, 2, 4.", "3, 2, 0."),
         BadEquation => model("*EQUATION\n2\n4, 1, 0., 3, 1, -1."),
         ConstantIncrement => square("*DYNAMIC, DIRECT\n0.1, 1.", "*DYNAMIC\n0.1, 1., 1.e-3, 0.2"),
     }

@@ -526,7 +526,7 @@ fn a_mesh_in_a_subfolder() {
     let parts = ["mesh.inp", "nodes.txt", "elements.txt"].map(|n| format!("tests/decks/parts/{n}"));
     assert_eq!(names[0], "tests/decks/folder.inp");
     assert_eq!(names[1..], parts);
-    assert_eq!(sources.line_count(), 13 + 3 + 4 + 2);
+    assert_eq!(sources.line_count(), 15 + 3 + 4 + 2);
     assert!(
         sources
             .full_text()

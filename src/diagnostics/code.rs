@@ -83,6 +83,7 @@ codes! {
     EmptyMesh "D316" "There are no nodes or no elements."
     EmptySurface "D317" "A surface or set has no members."
     LineElement "D318" "A line element, which only names a side of a plane element."
+    CoincidentNodes "D319" "Nodes lie at the same place and nothing joins them."
     IncompleteMaterial "D401" "A material lacks a constant."
     MaterialRange "D402" "A material constant lies outside its range."
     NoSection "D403" "Elements have no section."
@@ -101,6 +102,8 @@ codes! {
     Magnitude "D415" "A quantity of the model is too large or too small to be computed with."
     PlaneStrainOnly "D416" "A material that is for plane strain only in plane stress elements."
     BrakedFlight "D417" "Mass-proportional damping of a body without support."
+    FacingAway "D418" "The master surface looks away from the slave surface."
+    FixedSlave "D419" "Most slave nodes are prescribed in both directions."
     BadDof "D501" "A degree of freedom that plane elements do not have."
     ValueOutsideStep "D502" "A motion is prescribed before the first step."
     VelocityOnSupport "D503" "An initial velocity on a prescribed degree of freedom."
@@ -119,6 +122,8 @@ codes! {
     ConstantIncrement "D516" "Increments do not grow, although the step lets them."
     BadEquation "D517" "An equation between displacements that cannot be used as it is."
     SchemeOption "D518" "An option that the scheme of the time integration does not have."
+    OutOfProportion "D519" "The increment or the duration is out of proportion to the speed of waves."
+    NothingToDo "D520" "Nothing moves: there is no load, no velocity and no prescribed motion."
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 //! not face each other, reported as diagnostics at the contact in the deck.
 
 use super::initial_gaps::InitialGap;
-use crate::contact::project;
 use crate::contact::tolerances::{COORDINATE_ROUND_OFF, PENETRATION_FAULT};
+use crate::contact::{ContactSurfaces, project};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
 use crate::model::{ALL_EXTERIOR, Contact, Model, SurfaceKind};
 use std::collections::{HashMap, HashSet};
@@ -14,11 +14,16 @@ use std::collections::{HashMap, HashSet};
 /// faces the other surface is a warning.
 pub(super) fn report_penetrations(
     model: &Model,
+    surfaces: &[ContactSurfaces],
     all_gaps: &[Vec<InitialGap>],
     d: &mut Diagnostics,
 ) {
     report_nothing_faced(model, all_gaps, d);
-    for (contact, gaps) in model.contacts.iter().zip(all_gaps) {
+    for (i, (contact, gaps)) in model.contacts.iter().zip(all_gaps).enumerate() {
+        if let Some(behind) = behind_the_body(model, &surfaces[i], gaps) {
+            d.push(facing_away(model, contact, behind));
+            continue;
+        }
         if let Some(face) = common_face(model, contact, gaps) {
             d.push(overlap(model, contact, face));
         }
@@ -62,6 +67,30 @@ fn report_nothing_faced(model: &Model, gaps: &[Vec<InitialGap>], d: &mut Diagnos
         let warning = Diagnostic::warning(Code::NothingFaced, contact.span, message);
         d.push(warning.help(help));
     }
+}
+
+/// The first slave node that lies behind the master surface at a depth that is an error, but in
+/// none of the elements there: the surface looks away from it.
+fn behind_the_body<'g>(
+    model: &Model,
+    surfaces: &ContactSurfaces,
+    gaps: &'g [InitialGap],
+) -> Option<&'g InitialGap> {
+    let at = |node: usize| model.mesh.coordinates[node];
+    gaps.iter().find(|gap| {
+        let is_deep = -gap.gap > PENETRATION_FAULT * gap.edge;
+        is_deep && !surfaces.interior.contains(gap.segment, gap.slave, at)
+    })
+}
+
+fn facing_away(model: &Model, contact: &Contact, behind: &InitialGap) -> Diagnostic {
+    let [slave, master] = [contact.slave, contact.master].map(|s| &model.surfaces[s].name);
+    let message = format!(
+        "{master} looks away from {slave}: node {} lies {:.3e} behind it, outside of its body",
+        model.mesh.node_labels[behind.slave], -behind.gap,
+    );
+    let error = Diagnostic::error(Code::FacingAway, contact.span, message);
+    error.help("name the faces that look at each other: a face looks out of its body")
 }
 
 /// A slave face that lies on a master face, both with the same outward normal.

@@ -26,7 +26,7 @@ pub fn prepare(model: Model, d: &mut Diagnostics) -> Option<PreparedModel> {
     let prepared = PreparedModel::new(model);
     report_adjusted(&prepared.model, &prepared.adjusted, d);
     if !d.has_errors() {
-        report_penetrations(&prepared.model, &prepared.gaps, d);
+        report_penetrations(&prepared.model, &prepared.surfaces, &prepared.gaps, d);
     }
     (!d.has_errors()).then_some(prepared)
 }

@@ -5,7 +5,7 @@
 //! that they are not reported as undefined where they are used.
 
 mod catalogue;
-mod check;
+mod checks;
 mod contact;
 mod context;
 mod materials;
@@ -46,15 +46,15 @@ pub fn build(deck: &Deck, d: &mut Diagnostics) -> Option<Model> {
 fn read(cx: &mut Context) -> Model {
     let outline = Outline::new(cx);
     let mut mesh_index = nodes_elements::read(&outline, cx);
-    check::mesh(&mesh_index, cx);
+    checks::mesh(&mesh_index, cx);
     let sets = sets::read(&outline, &mesh_index, cx);
     let mut surfaces = surface::read(&outline, &mesh_index, &sets, cx);
     mesh_index.add_points(&surfaces.rigid_points);
     let rigid_surfaces = rigid_surface::read(&outline, &mesh_index, &sets, &surfaces, cx);
     let properties = materials::read(&outline, &mesh_index, &sets, cx);
-    check::magnitudes(&mesh_index, &properties, cx);
+    checks::magnitudes(&mesh_index, &properties, cx);
     let contacts = pairs::read(&outline, &mesh_index, &sets, &mut surfaces, cx);
-    check::thickness(&contacts, &surfaces, &properties, cx);
+    checks::thickness(&contacts, &surfaces, &properties, cx);
     let amplitudes = amplitude::read(cx);
     let targets = Targets {
         mesh_index: &mesh_index,
@@ -62,7 +62,7 @@ fn read(cx: &mut Context) -> Model {
         amplitudes: &amplitudes,
         rigid_surfaces: &rigid_surfaces,
     };
-    let guide = check::crossing_time(&mesh_index.mesh, &properties);
+    let guide = checks::crossing_time(&mesh_index.mesh, &properties);
     let steps = step::read(&outline, targets, &surfaces, guide, cx);
     let equations = equation::read(&outline, targets, &steps.all, cx);
     let initial_velocity = initial_velocity::read(&outline, targets, &steps.at_start, cx);
@@ -88,7 +88,11 @@ fn read(cx: &mut Context) -> Model {
         steps: steps.all,
         rigid_bodies: rigid_surface::bodies(&rigid_surfaces),
     };
-    check::braked_flight(&model, &properties.damping_spans, cx);
+    checks::braked_flight(&model, &properties.damping_spans, cx);
+    checks::coincident_nodes(&model, &mesh_index.element_spans, cx);
+    checks::fixed_slaves(&model, cx);
+    checks::proportion(&model.steps, &outline.steps, guide, cx);
+    checks::motion(&model, &outline.steps, cx);
     model
 }
 
