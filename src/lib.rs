@@ -9,7 +9,7 @@
 //! # Layers
 //!
 //! A module imports only from modules before it in this list: `vectors`, `diagnostics`, `deck`,
-//! `materials`, `model`, `reader`, `elements`, `linear`, `lcp`, `contact`, `prepare`, `dynamics`,
+//! `materials`, `model`, `reader`, `flat_deck`, `elements`, `linear`, `lcp`, `contact`, `prepare`, `dynamics`,
 //! `output`, `cli`. The rooms of a layer (its sub-folders) import one way as well.
 //!
 //! # Equations
@@ -75,6 +75,7 @@ pub mod deck;
 pub mod diagnostics;
 pub mod dynamics;
 pub mod elements;
+pub mod flat_deck;
 pub mod lcp;
 pub mod linear;
 pub mod materials;

@@ -15,13 +15,14 @@ use sources::{parse_sources, read_sources};
 use std::collections::BTreeMap;
 
 /// The layers, lowest first.
-const LAYERS: [&str; 14] = [
+const LAYERS: [&str; 15] = [
     "vectors",
     "diagnostics",
     "deck",
     "materials",
     "model",
     "reader",
+    "flat_deck",
     "elements",
     "linear",
     "lcp",

@@ -33,6 +33,8 @@ pub(super) enum Command {
     Run(RunArgs),
     /// Read a deck, report every error in it and describe the model, without solving
     Check(CheckArgs),
+    /// Write a deck with its includes and assembly as one flat deck that reads as the same model
+    Flatten(FlattenArgs),
     /// Describe a result file
     Info(InfoArgs),
     /// Solve a complementarity problem, such as one that a stopped run has left behind
@@ -121,6 +123,17 @@ pub(super) struct CheckArgs {
     /// The deck
     #[command(flatten)]
     pub deck: DeckArgs,
+}
+
+/// Arguments of `flatten`.
+#[derive(Debug, ClapArgs)]
+pub(super) struct FlattenArgs {
+    /// The deck
+    #[command(flatten)]
+    pub deck: DeckArgs,
+    /// A new file for the flat deck (default: the screen)
+    #[arg(short, long, value_name = "FILE.inp")]
+    pub output: Option<PathBuf>,
 }
 
 /// Arguments of `info`.

@@ -53,6 +53,14 @@ pub(super) enum CliError {
         /// Why.
         source: io::Error,
     },
+    /// A file that the command makes cannot be written.
+    #[error("cannot write {}: {}", path.display(), reason(source))]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
@@ -71,6 +79,7 @@ impl CliError {
             CliError::Threads { .. } => Exit::Usage,
             CliError::Deck { .. }
             | CliError::Problem { .. }
+            | CliError::File { .. }
             | CliError::Output(_)
             | CliError::Write(_)
             | CliError::Broken { .. }

@@ -1,4 +1,4 @@
-//! Command line: `run`, `check`, `info` and `lcp`.
+//! Command line: `run`, `check`, `flatten`, `info` and `lcp`.
 
 mod args;
 mod commands;
@@ -34,6 +34,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     let done = match &args.command {
         Command::Run(args) => (signals::receive().map_err(CliError::Signals))
             .and_then(|interrupt| commands::run(args, &typed(&arguments), &numerics, &interrupt)),
+        Command::Flatten(args) => commands::flatten(args),
         Command::Check(args) => commands::check(args, &numerics),
         Command::Info(args) => commands::info(args),
         Command::Lcp(args) => commands::lcp(args),

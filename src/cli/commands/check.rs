@@ -24,12 +24,17 @@ pub(in crate::cli) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exi
 
 /// Reads a deck; a deck that cannot be opened is an error of the file system.
 pub(super) fn load(deck: &DeckArgs, numerics: &Numerics) -> Result<Loaded, CliError> {
-    let path = &deck.path;
-    regular_file(path).map_err(|source| CliError::Deck {
-        path: path.clone(),
+    openable(&deck.path)?;
+    Ok((numerics.load)(&deck.path, deck.strictness(), coloured()))
+}
+
+/// Refuses a deck that cannot be opened.
+pub(super) fn openable(path: &Path) -> Result<(), CliError> {
+    let opened = regular_file(path).map(|_| ());
+    opened.map_err(|source| CliError::Deck {
+        path: path.to_owned(),
         source,
-    })?;
-    Ok((numerics.load)(path, deck.strictness(), coloured()))
+    })
 }
 
 /// Prints the errors and warnings of a deck.

@@ -248,6 +248,10 @@ pub(crate) static DIMENSIONS: &[Dimensions] = &[
             ),
             load(&["BX", "BY"], &[Plain, Plain, BODY_FORCE]),
             load(&["P1", "P2", "P3", "P4"], &[Plain, Plain, STRESS]),
+            load(
+                &["TRVEC1", "TRVEC2", "TRVEC3", "TRVEC4"],
+                &[Plain, Plain, STRESS, Plain, Plain, Plain],
+            ),
         ],
         &["AMPLITUDE"],
         &[],

@@ -47,6 +47,14 @@ const HISTORY_TIMES: P = P::value("TIME POINTS", "histories hold every increment
 const SLAVE: P = P::value("SLAVE", "all contacts are written").ignored();
 const MASTER: P = P::value("MASTER", "all contacts are written").ignored();
 const HISTORY_EVERY: P = P::value("FREQUENCY", "histories hold every increment").ignored();
+const FOLLOWER: P = P::choice(
+    "FOLLOWER",
+    &[
+        V::read("NO", "the direction stays; needed for TRVEC"),
+        V::read("YES", "the direction follows the face; not for TRVEC"),
+    ],
+    "whether a traction turns with its face",
+);
 const TOTALS: P = P::choice(
     "TOTALS",
     &[
@@ -117,9 +125,10 @@ pub(crate) static STEPS: &[Keyword] = &[
         "DLOAD",
         Scope::Step,
         Data::Rows,
-        &[OP, AMPLITUDE, TIME_DELAY],
+        &[OP, AMPLITUDE, TIME_DELAY, FOLLOWER],
         "Loads on elements (empty first field: on all): GRAV, acceleration, dx, dy; BX or BY, \
-         force per reference volume; P1 to P4, pressure into the body that follows the face.",
+         force per reference volume; P1 to P4, pressure into the body that follows the face; TRVEC1 \
+         to TRVEC4, traction on the face, dx, dy, which keeps its direction (with FOLLOWER=NO).",
     ),
     Keyword::read(
         "DSLOAD",
@@ -129,14 +138,7 @@ pub(crate) static STEPS: &[Keyword] = &[
             OP,
             AMPLITUDE,
             TIME_DELAY,
-            P::choice(
-                "FOLLOWER",
-                &[
-                    V::read("NO", "the direction stays; needed for TRVEC"),
-                    V::read("YES", "the direction follows the face; not for TRVEC"),
-                ],
-                "whether a traction turns with its face",
-            ),
+            FOLLOWER,
             P::choice(
                 "CONSTANT RESULTANT",
                 &[

@@ -34,6 +34,7 @@ impl Profile {
                 return profile;
             }
         }
+        profile.drop_lone_point();
         if profile.sides.is_empty() && !card.rows.is_empty() {
             fault(
                 card.span,
@@ -90,9 +91,18 @@ impl Profile {
     }
 
     fn start(&mut self, at: [f64; 2]) {
+        self.drop_lone_point();
         self.start = self.points.len();
         self.end = self.start;
         self.points.push(at);
+    }
+
+    /// Drops the last point if no side begins or ends there: a START without a LINE or CIRCL.
+    fn drop_lone_point(&mut self) {
+        let is_last = |end: &usize| end + 1 == self.points.len();
+        if !self.sides.iter().rev().take(1).flatten().any(is_last) {
+            self.points.pop();
+        }
     }
 
     /// A chord to the next point, which may be the first of the chain again.

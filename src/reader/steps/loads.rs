@@ -14,6 +14,7 @@ pub(crate) struct Loads {
     points: LoadHistory<usize, PointLoad>,
     bodies: LoadHistory<(usize, Body), BodyForce>,
     pressures: LoadHistory<Face, Pressure>,
+    face_tractions: LoadHistory<Face, Traction>,
     surface_pressures: LoadHistory<(usize, Face), Pressure>,
     tractions: LoadHistory<(usize, Face), Traction>,
     point_operation: Operation,
@@ -83,6 +84,7 @@ impl Loads {
             "DLOAD" => {
                 self.bodies.clear(context);
                 self.pressures.clear(context);
+                self.face_tractions.clear(context);
             }
             _ => {
                 self.surface_pressures.clear(context);
@@ -128,11 +130,18 @@ impl Loads {
             "BY" => Some(Body::Y),
             _ => None,
         };
-        match (body, pressure_side(&key)) {
-            (Some(body), _) => self.body_row(row, body, &elements, source, cx),
-            (None, Some(side)) => self.pressure_row(row, side, &elements, source, cx),
-            (None, None) => unknown_kind(kind, "GRAV, BX, BY, P1, P2, P3 and P4", cx),
+        if let Some(body) = body {
+            return self.body_row(row, body, &elements, source, cx);
         }
+        let Some((side, is_traction)) = loaded_side(&key) else {
+            let known = "GRAV, BX, BY, P1 to P4 and TRVEC1 to TRVEC4";
+            return unknown_kind(kind, known, cx);
+        };
+        let direction = match is_traction {
+            true => Some(dead_direction(kind, row, source.card, cx)?),
+            false => None,
+        };
+        self.face_row(row, (side, direction), &elements, source, cx)
     }
 
     fn body_row(
@@ -167,16 +176,19 @@ impl Loads {
         Some(())
     }
 
-    fn pressure_row(
+    /// A pressure, or a traction with its direction, on one side of each element.
+    fn face_row(
         &mut self,
         row: &Row,
-        side: usize,
+        (side, direction): (usize, Option<[f64; 2]>),
         elements: &[usize],
         source: Source,
         cx: &mut Context,
     ) -> Option<()> {
-        row.at_most(3, cx.d);
-        let magnitude = row.real(2, "the pressure", cx.d)?;
+        if direction.is_none() {
+            row.at_most(3, cx.d);
+        }
+        let magnitude = row.real(2, "the magnitude", cx.d)?;
         let mesh = &source.targets.mesh_index.mesh;
         if let Some(&bad) = elements.iter().find(|&&e| side >= side_count(mesh, e)) {
             let label = mesh.elements.get(bad).map_or(0, |e| e.label);
@@ -184,11 +196,20 @@ impl Loads {
             cx.error(Code::NoSuchFace, row.span(), message);
             return None;
         }
+        let (amplitude, context) = (source.amplitude, source.context);
         for &element in elements {
             let face = Face { element, side };
-            let at = Pressure { face };
-            self.pressures
-                .add(face, at, magnitude, source.amplitude, source.context);
+            match direction {
+                None => {
+                    let at = Pressure { face };
+                    self.pressures.add(face, at, magnitude, amplitude, context);
+                }
+                Some(direction) => {
+                    let at = Traction { face, direction };
+                    self.face_tractions
+                        .add(face, at, magnitude, amplitude, context);
+                }
+            }
         }
         Some(())
     }
@@ -241,13 +262,16 @@ impl Loads {
         }
     }
 
-    /// Writes the loads of the current step.
+    /// Writes the loads of the current step; those of faces in the order of the faces.
     pub fn fill(&self, step: &mut Step) {
         step.point_loads = self.points.list();
         step.body_forces = self.bodies.list();
         step.pressures = self.pressures.list();
         step.pressures.extend(self.surface_pressures.list());
-        step.tractions = self.tractions.list();
+        step.pressures.sort_by_key(|load| load.at.face);
+        step.tractions = self.face_tractions.list();
+        step.tractions.extend(self.tractions.list());
+        step.tractions.sort_by_key(|load| load.at.face);
     }
 
     /// Ends a step of duration `period` at total time `total`.
@@ -255,6 +279,7 @@ impl Loads {
         self.points.end_step(period, total, amplitudes);
         self.bodies.end_step(period, total, amplitudes);
         self.pressures.end_step(period, total, amplitudes);
+        self.face_tractions.end_step(period, total, amplitudes);
         self.surface_pressures.end_step(period, total, amplitudes);
         self.tractions.end_step(period, total, amplitudes);
     }
@@ -267,11 +292,16 @@ fn unknown_kind(kind: Text, known: &str, cx: &mut Context) -> Option<()> {
     None
 }
 
-/// Side, from 0, of P1 to P4.
-fn pressure_side(kind: &str) -> Option<usize> {
-    ["P1", "P2", "P3", "P4"]
+/// Side, from 0, of P1 to P4 and of TRVEC1 to TRVEC4, and whether it is a traction.
+fn loaded_side(kind: &str) -> Option<(usize, bool)> {
+    let (number, is_traction) = match kind.strip_prefix("TRVEC") {
+        Some(number) => (number, true),
+        None => (kind.strip_prefix('P')?, false),
+    };
+    let side = ["1", "2", "3", "4"]
         .iter()
-        .position(|name| *name == kind)
+        .position(|side| *side == number)?;
+    Some((side, is_traction))
 }
 
 fn gravity_direction(row: &Row, magnitude: f64, cx: &mut Context) -> Option<[f64; 2]> {
@@ -302,7 +332,11 @@ fn unit_direction(row: &Row, cx: &mut Context) -> Option<[f64; 2]> {
         return None;
     };
     let span = row.get(3).map_or(row.span(), |field| field.span);
-    let length = x.hypot(y);
+    let length = match x.hypot(y) {
+        // a unit vector to round-off stays as it is given
+        length if (length - 1.0).abs() <= 2.0 * f64::EPSILON => 1.0,
+        length => length,
+    };
     if z != 0.0 {
         cx.error(Code::BadDirection, span, "the direction leaves the plane");
         return None;

@@ -1,0 +1,107 @@
+//! Contacts with their interactions, rigid bodies and equations.
+
+use super::lines::{Lines, name, named, number, set};
+use crate::model::{ALL_EXTERIOR, Adjust, Contact, Equation, Interaction, Model, RigidBody};
+
+/// Terms of an equation on a data line.
+const TERMS: usize = 4;
+
+/// Writes contacts, rigid bodies and equations.
+pub(super) fn write(model: &Model, lines: &mut Lines) {
+    let interactions = Interactions::write(&model.contacts, lines);
+    let is_general = |contact: &&Contact| model.surfaces[contact.slave].name == ALL_EXTERIOR;
+    for contact in model.contacts.iter().filter(|contact| !is_general(contact)) {
+        pair(contact, &interactions, model, lines);
+    }
+    if let Some(general) = model.contacts.iter().find(is_general) {
+        let interaction = interactions.name(general.interaction);
+        lines.card("CONTACT", []);
+        lines.card("CONTACT INCLUSIONS", ["ALL EXTERIOR".to_owned()]);
+        lines.card("CONTACT PROPERTY ASSIGNMENT", []);
+        lines.row([String::new(), String::new(), interaction]);
+    }
+    for &RigidBody { surface, reference } in &model.rigid_bodies {
+        let surface = named("ANALYTICAL SURFACE", &model.surfaces[surface].name);
+        let label = model.mesh.node_labels[reference];
+        lines.card("RIGID BODY", [surface, set("REF NODE", label)]);
+    }
+    for equation in &model.equations {
+        write_equation(equation, model, lines);
+    }
+}
+
+/// The different interactions in the order of the contacts.
+struct Interactions(Vec<Interaction>);
+
+impl Interactions {
+    fn write(contacts: &[Contact], lines: &mut Lines) -> Self {
+        let mut all = Vec::new();
+        for contact in contacts {
+            if !all.contains(&contact.interaction) {
+                all.push(contact.interaction);
+            }
+        }
+        let interactions = Interactions(all);
+        for &interaction in &interactions.0 {
+            let Interaction { friction } = interaction;
+            lines.card(
+                "SURFACE INTERACTION",
+                [set("NAME", interactions.name(interaction))],
+            );
+            lines.card("SURFACE BEHAVIOR", [set("PRESSURE-OVERCLOSURE", "HARD")]);
+            lines.card("FRICTION", []);
+            lines.row([number(friction)]);
+        }
+        interactions
+    }
+
+    fn name(&self, interaction: Interaction) -> String {
+        let index = self.0.iter().position(|known| *known == interaction);
+        format!("INTERACTION-{}", index.map_or(0, |index| index + 1))
+    }
+}
+
+fn pair(contact: &Contact, interactions: &Interactions, model: &Model, lines: &mut Lines) {
+    let mut parameters = vec![
+        set("INTERACTION", interactions.name(contact.interaction)),
+        set("TYPE", "NODE TO SURFACE"),
+    ];
+    parameters.extend(contact.adjust.map(|adjust| match adjust {
+        Adjust::Within(clearance) => set("ADJUST", number(clearance)),
+        Adjust::Nodes(set) => named("ADJUST", &model.sets.nodes[set].name),
+    }));
+    lines.card_of("CONTACT PAIR", &parameters);
+    let surface = |index: usize| name(&model.surfaces[index].name);
+    match contact.is_self_contact() {
+        true => lines.row([surface(contact.slave)]),
+        false => lines.row([contact.slave, contact.master].map(surface)),
+    }
+}
+
+/// Writes -u_dof + sum c_k u_k = 0.
+fn write_equation(equation: &Equation, model: &Model, lines: &mut Lines) {
+    let Equation { dof, terms } = equation;
+    let mut all = vec![(*dof, -1.0)];
+    all.extend(terms);
+    if terms.is_empty() {
+        all.extend(any_other_dof(*dof, model).map(|other| (other, 0.0)));
+    }
+    lines.card("EQUATION", []);
+    lines.row([all.len().to_string()]);
+    for terms in all.chunks(TERMS) {
+        lines.row(terms.iter().flat_map(|&(dof, coefficient)| {
+            let label = model.mesh.node_labels[dof / 2];
+            [
+                label.to_string(),
+                (dof % 2 + 1).to_string(),
+                number(coefficient),
+            ]
+        }));
+    }
+}
+
+/// A dof that no equation eliminates: equations have two terms at least.
+fn any_other_dof(dof: usize, model: &Model) -> Option<usize> {
+    let eliminated = |other: &usize| model.equations.iter().any(|e| e.dof == *other);
+    (0..model.mesh.dof_count()).find(|other| *other != dof && !eliminated(other))
+}

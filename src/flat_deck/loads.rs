@@ -1,0 +1,244 @@
+//! Loads of a step: the cards that lead to them from the loads of the step before.
+
+use super::lines::{Lines, named, number, set};
+use super::mesh::elements_field;
+use crate::model::{
+    Amplitude, BodyForce, Load, Model, PointLoad, Pressure, Step, TimeBase, Traction, Variation,
+};
+
+/// A load as it stands in a data line.
+#[derive(Clone, PartialEq)]
+struct Entry {
+    /// Loaded element, for body forces.
+    element: Option<usize>,
+    /// Node, unless an element is loaded.
+    target: String,
+    /// What acts there.
+    kind: String,
+    /// Fields after the magnitude.
+    direction: Vec<String>,
+    /// Whether it is a traction.
+    is_traction: bool,
+    magnitude: f64,
+    variation: Variation,
+}
+
+/// Loads of the keywords `*CLOAD` and `*DLOAD`.
+#[derive(Default)]
+pub(super) struct Loads([Vec<Entry>; 2]);
+
+impl Loads {
+    /// The loads of a step.
+    pub fn of(step: &Step, model: &Model) -> Loads {
+        let points = step.point_loads.iter().map(|load| point_load(load, model));
+        let bodies = step.body_forces.iter().map(body_force);
+        let pressures = step.pressures.iter().map(|load| pressure(load, model));
+        let tractions = step.tractions.iter().map(|load| traction(load, model));
+        Loads([
+            points.collect(),
+            bodies.chain(pressures).chain(tractions).collect(),
+        ])
+    }
+
+    /// Whether loads grow over the step (`*STEP, AMPLITUDE=RAMP`).
+    pub fn ramp(&self) -> bool {
+        let mut all = self.0.iter().flatten();
+        all.any(|entry| matches!(entry.variation, Variation::Ramp { .. }))
+    }
+
+    /// Writes the cards of a step that begins with the loads `carried` from the step before.
+    pub fn write(&self, carried: &Loads, model: &Model, lines: &mut Lines) {
+        let families = self.0.iter().zip(&carried.0);
+        for (keyword, (now, carried)) in ["CLOAD", "DLOAD"].into_iter().zip(families) {
+            if now == carried {
+                continue;
+            }
+            // Where loads ramp, OP=NEW would fade those that stay.
+            let is_new = !carried.is_empty() && !self.ramp();
+            let operation = is_new.then(|| set("OP", "NEW"));
+            let mut entries = now.clone();
+            if operation.is_none() {
+                remove_carried(&mut entries, carried);
+            }
+            write_cards(keyword, operation, &grouped(entries, model), model, lines);
+        }
+    }
+
+    /// The loads that a step of duration `period` leaves to the next one.
+    pub fn carried(&self, period: f64, amplitudes: &[Amplitude]) -> Loads {
+        let carry = |entries: &Vec<Entry>| {
+            let carried = entries
+                .iter()
+                .map(|entry| entry.carried(period, amplitudes));
+            carried.filter(|entry| entry.magnitude != 0.0).collect()
+        };
+        let [points, elements] = &self.0;
+        Loads([carry(points), carry(elements)])
+    }
+}
+
+impl Entry {
+    fn new<T>(target: String, kind: impl Into<String>, load: &Load<T>) -> Entry {
+        Entry {
+            element: None,
+            target,
+            kind: kind.into(),
+            direction: Vec::new(),
+            is_traction: false,
+            magnitude: load.magnitude,
+            variation: load.variation,
+        }
+    }
+
+    /// The load at the end of a step: it keeps what it has reached, unless it follows the total time.
+    fn carried(&self, period: f64, amplitudes: &[Amplitude]) -> Entry {
+        let mut carried = self.clone();
+        if let Variation::Amplitude(index) = self.variation {
+            let curve = &amplitudes[index];
+            if curve.time == TimeBase::Total {
+                return carried;
+            }
+            carried.magnitude *= curve.at(period);
+        }
+        carried.variation = Variation::Constant;
+        carried
+    }
+
+    fn amplitude(&self) -> Option<usize> {
+        match self.variation {
+            Variation::Amplitude(index) => Some(index),
+            Variation::Constant | Variation::Ramp { .. } => None,
+        }
+    }
+}
+
+fn point_load(load: &Load<PointLoad>, model: &Model) -> Entry {
+    let PointLoad { dof } = load.at;
+    let label = model.mesh.node_labels[dof / 2];
+    Entry::new(label.to_string(), (dof % 2 + 1).to_string(), load)
+}
+
+fn body_force(load: &Load<BodyForce>) -> Entry {
+    let BodyForce {
+        element,
+        direction,
+        per_mass,
+    } = load.at;
+    let kind = match (per_mass, direction[0] != 0.0) {
+        (true, _) => "GRAV",
+        (false, true) => "BX",
+        (false, false) => "BY",
+    };
+    Entry {
+        element: Some(element),
+        direction: if per_mass {
+            direction.map(number).to_vec()
+        } else {
+            Vec::new()
+        },
+        ..Entry::new(String::new(), kind, load)
+    }
+}
+
+fn pressure(load: &Load<Pressure>, model: &Model) -> Entry {
+    let Pressure { face } = load.at;
+    let label = model.mesh.elements[face.element].label;
+    Entry::new(label.to_string(), format!("P{}", face.side + 1), load)
+}
+
+fn traction(load: &Load<Traction>, model: &Model) -> Entry {
+    let Traction { face, direction } = load.at;
+    let label = model.mesh.elements[face.element].label;
+    Entry {
+        direction: direction.map(number).to_vec(),
+        is_traction: true,
+        ..Entry::new(label.to_string(), format!("TRVEC{}", face.side + 1), load)
+    }
+}
+
+/// Removes the loads that are those of the step before.
+fn remove_carried(entries: &mut Vec<Entry>, carried: &[Entry]) {
+    let mut carried = carried.to_vec();
+    entries.retain(
+        |entry| match carried.iter().position(|known| known == entry) {
+            Some(index) => {
+                carried.swap_remove(index);
+                false
+            }
+            None => true,
+        },
+    );
+}
+
+/// Loads with body forces that are alike in one entry, where they act on all elements or on a set.
+fn grouped(entries: Vec<Entry>, model: &Model) -> Vec<Entry> {
+    let mut groups: Vec<(Entry, Vec<usize>)> = Vec::new();
+    let mut rest = Vec::new();
+    for entry in entries {
+        let Some(element) = entry.element else {
+            rest.push(entry);
+            continue;
+        };
+        let alike = Entry {
+            element: None,
+            ..entry
+        };
+        match groups.iter_mut().find(|(known, _)| *known == alike) {
+            Some((_, elements)) => elements.push(element),
+            None => groups.push((alike, vec![element])),
+        }
+    }
+    let written = groups.into_iter().flat_map(|(entry, elements)| {
+        let field = elements_field(&elements, model);
+        let targets = field.map_or_else(
+            || {
+                elements
+                    .iter()
+                    .map(|&e| model.mesh.elements[e].label.to_string())
+                    .collect()
+            },
+            |field| vec![field],
+        );
+        targets.into_iter().map(move |target| Entry {
+            target,
+            ..entry.clone()
+        })
+    });
+    written.chain(rest).collect()
+}
+
+/// Writes loads, those with the same parameters under one card; a card without loads removes all.
+fn write_cards(
+    keyword: &str,
+    operation: Option<String>,
+    entries: &[Entry],
+    model: &Model,
+    lines: &mut Lines,
+) {
+    let card = |first: Option<&Entry>, lines: &mut Lines| {
+        let amplitude = first
+            .and_then(Entry::amplitude)
+            .map(|index| &model.amplitudes[index]);
+        let amplitude = amplitude.map(|amplitude| named("AMPLITUDE", &amplitude.name));
+        let is_dead = first.is_some_and(|entry| entry.is_traction);
+        let follower = is_dead.then(|| set("FOLLOWER", "NO"));
+        let parameters = operation.iter().cloned().chain(amplitude).chain(follower);
+        lines.card_of(keyword, &parameters.collect::<Vec<_>>());
+    };
+    if entries.is_empty() {
+        card(None, lines);
+    }
+    let alike =
+        |a: &Entry, b: &Entry| a.amplitude() == b.amplitude() && a.is_traction == b.is_traction;
+    for entries in entries.chunk_by(alike) {
+        card(entries.first(), lines);
+        for entry in entries {
+            let fields = [
+                entry.target.clone(),
+                entry.kind.clone(),
+                number(entry.magnitude),
+            ];
+            lines.row(fields.into_iter().chain(entry.direction.iter().cloned()));
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! The model written back as a flat deck: one file without includes and assembly, every card and
+//! setting in full, numbers in the shortest form that reads as the same number.
+//!
+//! The deck reads as the same model but for the places of its contacts in the text. Two kinds of
+//! names are made up, as the model does not keep those of the deck: of interactions and of time points.
+
+mod amplitudes;
+mod contact;
+mod lines;
+mod loads;
+mod mesh;
+mod properties;
+mod steps;
+
+use crate::deck;
+use crate::diagnostics::{Diagnostics, Sources, Span};
+use crate::model::Model;
+use crate::reader;
+use lines::Lines;
+
+/// The deck of a model.
+pub fn flat_deck(model: &Model) -> String {
+    let mut lines = Lines::default();
+    title(&model.title, &mut lines);
+    mesh::write(model, &mut lines);
+    properties::write(model, &mut lines);
+    amplitudes::write(&model.amplitudes, &mut lines);
+    contact::write(model, &mut lines);
+    steps::write(model, &mut lines);
+    lines.text()
+}
+
+/// Whether a deck reads as this model but for the places of its contacts.
+pub fn reads_as(text: &str, model: &Model) -> bool {
+    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+    let deck = deck::parse_str("flat.inp", text, &mut sources, &mut d);
+    let read = reader::build(&deck, &mut d);
+    read.is_some_and(|read| without_places(read) == without_places(model.clone()))
+}
+
+fn without_places(mut model: Model) -> Model {
+    for contact in &mut model.contacts {
+        contact.span = Span::default();
+    }
+    model
+}
+
+/// The title on lines of at most 80 characters, cut at single blanks: the reader joins them by these.
+fn title(title: &str, lines: &mut Lines) {
+    if title.is_empty() {
+        return;
+    }
+    lines.card("HEADING", []);
+    let mut line = String::new();
+    for word in title.split(' ') {
+        // a star would begin a keyword, and blanks at the ends of lines are lost
+        let stays =
+            line.is_empty() || line.ends_with(' ') || word.is_empty() || word.starts_with('*');
+        if !stays && line.chars().count() + word.chars().count() > 79 {
+            lines.row([std::mem::take(&mut line)]);
+        } else if !line.is_empty() {
+            line.push(' ');
+        }
+        line.push_str(word);
+    }
+    lines.row([line]);
+}

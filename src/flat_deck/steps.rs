@@ -1,0 +1,266 @@
+//! Initial velocities and steps.
+
+use super::lines::{Lines, named, number, set};
+use super::loads::Loads;
+use super::mesh::first_of_rigid;
+use crate::model::{
+    Amplitude, ContactMass, Factorization, Frames, Impact, ImpactTime, Increments, LandingRule,
+    LcpChoice, Model, Procedure, Scheme, Settings, SolverChoice, Step, Support, SupportMotion,
+    TimeBase,
+};
+
+/// Times on a data line.
+const TIMES: usize = 8;
+
+/// Writes initial velocities and all steps.
+pub(super) fn write(model: &Model, lines: &mut Lines) {
+    initial_velocity(model, lines);
+    for (index, step) in model.steps.iter().enumerate() {
+        time_points(index, step, lines);
+    }
+    let mut supports = Vec::new();
+    let mut loads = Loads::default();
+    for (index, step) in model.steps.iter().enumerate() {
+        let now = Loads::of(step, model);
+        head(step, &now, lines);
+        settings(&step.settings, lines);
+        let held = own_supports(step, model);
+        write_supports(&held, &supports, model, lines);
+        now.write(&loads, model, lines);
+        requests(index, step, model, lines);
+        lines.card("END STEP", []);
+        supports = carried(&held, step, &model.amplitudes);
+        loads = now.carried(step.increments.period, &model.amplitudes);
+    }
+}
+
+fn initial_velocity(model: &Model, lines: &mut Lines) {
+    let velocity = model.initial_velocity.iter().enumerate();
+    let moving: Vec<(usize, &f64)> = velocity.filter(|(_, v)| **v != 0.0).collect();
+    if !moving.is_empty() {
+        lines.card("INITIAL CONDITIONS", [set("TYPE", "VELOCITY")]);
+    }
+    for (dof, &value) in moving {
+        lines.row(dof_fields(dof, model).into_iter().chain([number(value)]));
+    }
+}
+
+fn dof_fields(dof: usize, model: &Model) -> [String; 2] {
+    let label = model.mesh.node_labels[dof / 2];
+    [label.to_string(), (dof % 2 + 1).to_string()]
+}
+
+/// `*STEP` and its procedure.
+fn head(step: &Step, loads: &Loads, lines: &mut Lines) {
+    let mut parameters = vec!["NLGEOM".to_owned()];
+    parameters.extend(step.name.as_ref().map(|name| named("NAME", name)));
+    parameters.extend(loads.ramp().then(|| set("AMPLITUDE", "RAMP")));
+    lines.card_of("STEP", &parameters);
+    let Increments {
+        dt,
+        period,
+        dt_min,
+        direct,
+    } = step.increments;
+    let Procedure::Dynamic = step.procedure;
+    match direct {
+        true => {
+            lines.card("DYNAMIC", ["DIRECT".to_owned()]);
+            lines.row([dt, period, dt_min].map(number));
+        }
+        // the largest increment says that they do not grow
+        false => {
+            lines.card("DYNAMIC", []);
+            lines.row([dt, period, dt_min, dt].map(number));
+        }
+    }
+}
+
+fn settings(settings: &Settings, lines: &mut Lines) {
+    let Settings {
+        scheme,
+        impact,
+        impact_time,
+        landing,
+        ..
+    } = *settings;
+    let mut parameters = match scheme {
+        Scheme::EnergyMomentum => vec![set("SCHEME", "ENERGY-MOMENTUM")],
+        Scheme::Ss22 { theta1, theta2 } => vec![
+            set("SCHEME", "SS22"),
+            set("THETA1", number(theta1)),
+            set("THETA2", number(theta2)),
+        ],
+    };
+    let impact = match impact {
+        Impact::Impulse => "IMPULSE",
+        Impact::None => "NONE",
+    };
+    let impact_time = match impact_time {
+        ImpactTime::Increment => "INCREMENT",
+        ImpactTime::Event => "EVENT",
+    };
+    let landing = match landing {
+        LandingRule::Plastic => "PLASTIC",
+        LandingRule::Return => "RETURN",
+    };
+    parameters.extend([
+        set("IMPACT", impact),
+        set("IMPACT TIME", impact_time),
+        set("LANDING", landing),
+    ]);
+    parameters.extend(solver_settings(settings));
+    lines.card_of("STICKSLIP", &parameters);
+}
+
+fn solver_settings(settings: &Settings) -> [String; 6] {
+    let Settings {
+        scheme: _,
+        impact: _,
+        impact_time: _,
+        landing: _,
+        contact_mass,
+        lcp,
+        factorization,
+        solver,
+        tolerance,
+        max_passes,
+    } = *settings;
+    let contact_mass = match contact_mass {
+        ContactMass::Consistent => "CONSISTENT",
+        ContactMass::Redistributed => "REDISTRIBUTED",
+    };
+    let lcp = match lcp {
+        LcpChoice::Hybrid => "HYBRID",
+        LcpChoice::Lemke => "LEMKE",
+    };
+    let factorization = match factorization {
+        Factorization::Keep => "KEEP",
+        Factorization::EveryPass => "EVERY PASS",
+    };
+    let solver = match solver {
+        SolverChoice::Faer => "FAER",
+        SolverChoice::Sprs => "SPRS",
+    };
+    [
+        set("CONTACT MASS", contact_mass),
+        set("LCP", lcp),
+        set("FACTORIZATION", factorization),
+        set("SOLVER", solver),
+        set("TOLERANCE", number(tolerance)),
+        set("MAX PASSES", max_passes),
+    ]
+}
+
+/// Supports but those of the nodes of rigid surfaces, which follow their reference nodes.
+fn own_supports(step: &Step, model: &Model) -> Vec<Support> {
+    let first = first_of_rigid(model);
+    let own = step
+        .supports
+        .iter()
+        .filter(|support| support.dof / 2 < first);
+    own.copied().collect()
+}
+
+/// Supports that a step leaves to the next one: those that follow an amplitude in step time keep
+/// their last value.
+fn carried(supports: &[Support], step: &Step, amplitudes: &[Amplitude]) -> Vec<Support> {
+    let kept = supports.iter().map(|&Support { dof, motion }| {
+        let motion = match motion {
+            SupportMotion::Amplitude { value, amplitude }
+                if amplitudes[amplitude].time == TimeBase::Step =>
+            {
+                let to = value * amplitudes[amplitude].at(step.increments.period);
+                SupportMotion::Ramp { to }
+            }
+            other => other,
+        };
+        Support { dof, motion }
+    });
+    kept.collect()
+}
+
+/// Writes the supports of a step, all of them where they are not those of the step before.
+fn write_supports(now: &[Support], carried: &[Support], model: &Model, lines: &mut Lines) {
+    if now == carried {
+        return;
+    }
+    let amplitude_of = |support: &Support| match support.motion {
+        SupportMotion::Ramp { .. } => None,
+        SupportMotion::Amplitude { amplitude, .. } => Some(amplitude),
+    };
+    let all = (0..model.amplitudes.len()).map(Some);
+    let mut operation = (!carried.is_empty()).then(|| set("OP", "NEW"));
+    if now.is_empty() {
+        lines.card_of("BOUNDARY", operation.as_slice());
+    }
+    for amplitude in std::iter::once(None).chain(all) {
+        let of_card: Vec<&Support> = now
+            .iter()
+            .filter(|s| amplitude_of(s) == amplitude)
+            .collect();
+        if of_card.is_empty() {
+            continue;
+        }
+        let name = amplitude.map(|index| named("AMPLITUDE", &model.amplitudes[index].name));
+        let parameters: Vec<String> = operation.take().into_iter().chain(name).collect();
+        lines.card_of("BOUNDARY", &parameters);
+        let alike = |a: &&Support, b: &&Support| a.dof / 2 == b.dof / 2 && a.motion == b.motion;
+        for supports in of_card.chunk_by(alike) {
+            support_row(supports, model, lines);
+        }
+    }
+}
+
+/// Supports of one or both directions of a node that move alike.
+fn support_row(supports: &[&Support], model: &Model, lines: &mut Lines) {
+    let (Some(first), Some(last)) = (supports.first(), supports.last()) else {
+        return;
+    };
+    let (SupportMotion::Ramp { to: value } | SupportMotion::Amplitude { value, .. }) = first.motion;
+    let [label, direction] = dof_fields(first.dof, model);
+    let [_, to] = dof_fields(last.dof, model);
+    lines.row([label, direction, to, number(value)]);
+}
+
+/// Name of the times at which a step writes its frames.
+fn times_name(index: usize) -> String {
+    format!("TIMES-{}", index + 1)
+}
+
+fn time_points(index: usize, step: &Step, lines: &mut Lines) {
+    let Frames::Times(times) = &step.frames else {
+        return;
+    };
+    lines.card("TIME POINTS", [set("NAME", times_name(index))]);
+    // frames are written after the start only: this time stands for an empty list
+    let times = if times.is_empty() { &[0.0][..] } else { times };
+    for times in times.chunks(TIMES) {
+        lines.row(times.iter().copied().map(number));
+    }
+}
+
+/// When frames are written; sets of the history, in the first step.
+fn requests(index: usize, step: &Step, model: &Model, lines: &mut Lines) {
+    let when = match &step.frames {
+        Frames::Default => None,
+        Frames::Count(count) => Some(set("NUMBER INTERVAL", count)),
+        Frames::Every(interval) => Some(set("TIME INTERVAL", number(*interval))),
+        Frames::Increments(count) => Some(set("FREQUENCY", count)),
+        Frames::Times(_) => Some(set("TIME POINTS", times_name(index))),
+    };
+    if let Some(when) = when {
+        lines.card("OUTPUT", ["FIELD".to_owned(), when]);
+    }
+    let history = if index == 0 {
+        &model.sets.history[..]
+    } else {
+        &[]
+    };
+    for asked in history {
+        let name = named("NSET", &model.sets.nodes[asked.set].name);
+        let totals = if asked.each_node { "YES" } else { "ONLY" };
+        lines.card("NODE PRINT", [name, set("TOTALS", totals)]);
+        lines.row(["U", "V", "RF"].map(str::to_owned));
+    }
+}
