@@ -11,6 +11,8 @@ use stickslip::{deck, reader};
 const SQUARE: &str = include_str!("decks/square.inp");
 const SHARED: &str = include_str!("decks/shared.inp");
 
+const BLOCKS: &str = include_str!("decks/cae_blocks.inp");
+
 const GENERAL: &str = "*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n";
 const PAIR: &str = "*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE\nSBOT, STOP\n";
 
@@ -112,6 +114,12 @@ fn faulty(code: Code) -> Source {
         MissingEndStep => square("*END STEP\n", ""),
         StepStructure => square("*DYNAMIC, DIRECT\n0.1, 1.\n", ""),
         RepeatedCard => square("*DENSITY", "*DENSITY\n2.\n*DENSITY"),
+        AssemblyStructure => change(BLOCKS, "*End Part\n", ""),
+        Placement => change(
+            BLOCKS,
+            "1.03125,           0.\n",
+            "1.03125,           0.5\n",
+        ),
         RepeatedNode => square("4, 0., 1.", "4, 0., 1.\n4, 0., 2."),
         NotPlanar => square("4, 0., 1.", "4, 0., 1., 0.5"),
         RepeatedElement => square("7, 1, 2, 3, 4", "7, 1, 2, 3, 4\n8, 2, 3, 4, 1"),

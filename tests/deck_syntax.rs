@@ -363,14 +363,6 @@ fn a_contact_given_twice_is_refused() {
     assert!(codes(&d).contains(&Code::SurfaceUse));
 }
 
-#[test]
-fn assembly_decks_are_refused_once() {
-    let (model, d) = build(
-        "*PART, NAME=A\n*NODE\n1, x, 0.\n*END PART\n*ASSEMBLY, NAME=B\n*INSTANCE, NAME=I, PART=A\n*END INSTANCE\n*END ASSEMBLY\n",
-    );
-    assert_eq!((model, codes(&d)), (None, vec![Code::UnsupportedKeyword]));
-}
-
 /// Small faults that a solver was seen to pass over or to report elsewhere.
 mod faults_that_pass_elsewhere {
     use super::*;

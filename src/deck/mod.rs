@@ -4,12 +4,15 @@
 //! into a [`Deck`] of cards whose keywords and parameters are known ones, see [`keywords`]; what
 //! they mean is left to the reader.
 
+mod assembly;
 mod cards;
 mod keywords;
 mod lines;
-pub use cards::{Card, Deck, Param, Row, parse_str, read};
+mod read;
+pub use cards::{Card, Deck, Instance, Param, Placement, Row};
 pub use keywords::{
     Data, Keyword, Parameter, Scope, Status, Takes, Value, dimension_faults, dimensions_json,
     keyword_reference, keywords,
 };
 pub use lines::{Name, Text};
+pub use read::{parse_str, read};

@@ -64,6 +64,8 @@ codes! {
     MissingEndStep "D206" "A step is not closed by `*END STEP`."
     StepStructure "D207" "Steps without a procedure, with two, or not paired with their ends."
     RepeatedCard "D208" "A keyword that may appear once appears again."
+    AssemblyStructure "D209" "Parts, instances or the assembly are not closed, or of no use."
+    Placement "D210" "An instance is moved or turned out of the plane."
     RepeatedNode "D301" "A node is defined twice with different coordinates."
     NotPlanar "D302" "The nodes do not lie in one plane."
     RepeatedElement "D303" "An element number, or the nodes of an element, appear twice."

@@ -1,7 +1,7 @@
 //! The collection of diagnostics of one deck: counts by severity, strictness, order by place.
 
 use super::{Code, Diagnostic, Severity, Span};
-use std::collections::{BinaryHeap, HashSet};
+use std::collections::{BinaryHeap, HashMap, HashSet};
 
 /// Most diagnostics of one severity that are shown.
 pub(super) const SHOWN: usize = 20;
@@ -27,6 +27,10 @@ pub struct Diagnostics {
     /// Places of the first diagnostics of each severity, as many as are shown.
     first: [BinaryHeap<Option<Span>>; 3],
     said: HashSet<(Code, String)>,
+    /// Instance in which a line of a part was reported, by code and place.
+    in_parts: HashMap<(Code, Span), u32>,
+    /// Errors found, those of the same line of a part in further instances included.
+    errors: usize,
 }
 
 impl Diagnostics {
@@ -48,9 +52,13 @@ impl Diagnostics {
         self.strictness == Strictness::Lenient
     }
 
-    /// Adds a diagnostic.
+    /// Adds a diagnostic; that of a line of a part once, however many instances the part has.
     pub fn push(&mut self, mut diagnostic: Diagnostic) {
         diagnostic.severity = self.judge(&diagnostic);
+        self.errors += usize::from(diagnostic.severity == Severity::Error);
+        if self.is_of_another_instance(&diagnostic) {
+            return;
+        }
         self.counts[diagnostic.severity as usize] += 1;
         let first = &mut self.first[diagnostic.severity as usize];
         first.push(diagnostic.span);
@@ -58,6 +66,24 @@ impl Diagnostics {
             first.pop();
         }
         self.items.push(diagnostic);
+    }
+
+    /// Whether the same line of the part has this diagnostic in another instance already.
+    fn is_of_another_instance(&mut self, diagnostic: &Diagnostic) -> bool {
+        let Some(span) = diagnostic.span.filter(|span| span.instance > 0) else {
+            return false;
+        };
+        let line = Span {
+            instance: 0,
+            ..span
+        };
+        let first = self.in_parts.entry((diagnostic.code, line));
+        *first.or_insert(span.instance) != span.instance
+    }
+
+    /// Number of errors found, more than are counted where a part has several instances.
+    pub fn errors_found(&self) -> usize {
+        self.errors
     }
 
     /// Whether a diagnostic would be shown if it were the last one. Suggestions that take time are

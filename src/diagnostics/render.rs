@@ -62,6 +62,9 @@ fn group<'a>(item: &'a Diagnostic, sources: &'a Sources) -> Group<'a> {
         for place in sources.include_chain(span) {
             group = group.element(Level::NOTE.message(included_from(place, sources)));
         }
+        if let Some((name, place)) = sources.instance_of(span) {
+            group = group.element(Level::NOTE.message(in_instance(name, place, sources)));
+        }
     }
     match &item.help {
         Some(help) => group.element(Level::HELP.message(help.as_str())),
@@ -93,8 +96,16 @@ fn origin(span: Span, sources: &Sources) -> Option<Origin<'_>> {
 }
 
 fn included_from(place: Span, sources: &Sources) -> String {
+    format!("included from {}", position(place, sources))
+}
+
+fn in_instance(name: &str, place: Span, sources: &Sources) -> String {
+    format!("in the instance {name} of {}", position(place, sources))
+}
+
+fn position(place: Span, sources: &Sources) -> String {
     let name = sources.get(place.file).map_or("", |source| source.name());
-    format!("included from {name}:{}:{}", place.line, place.column)
+    format!("{name}:{}:{}", place.line, place.column)
 }
 
 /// Bytes of `line` that the characters of `span` take.
@@ -119,6 +130,7 @@ mod tests {
             line,
             column,
             length,
+            instance: 0,
         };
         sources.add("slope.inp", "*HEADING\n*INCLUDE, INPUT=bc.inp\n", None);
         sources.add("bc.inp", "*BONDARY, OP=NEW\n", Some(place(0, 2, 1, 8)));

@@ -47,6 +47,8 @@ impl Source {
 #[derive(Debug, Clone, Default)]
 pub struct Sources {
     files: Vec<Source>,
+    /// Names of the instances of parts, and where each is placed.
+    instances: Vec<(String, Span)>,
 }
 
 impl Sources {
@@ -70,6 +72,19 @@ impl Sources {
             line_starts,
         });
         FileId(self.files.len() as u32 - 1)
+    }
+
+    /// Adds an instance of a part that is placed at `place`; its number is that of spans.
+    pub fn add_instance(&mut self, name: &str, place: Span) -> u32 {
+        self.instances.push((name.to_string(), place));
+        self.instances.len() as u32
+    }
+
+    /// Name and place of the instance that a span belongs to.
+    pub fn instance_of(&self, span: Span) -> Option<(&str, Span)> {
+        let index = (span.instance as usize).checked_sub(1)?;
+        let (name, place) = self.instances.get(index)?;
+        Some((name, *place))
     }
 
     /// The file of an id.

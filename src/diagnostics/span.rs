@@ -15,4 +15,6 @@ pub struct Span {
     pub column: u32,
     /// Number of characters.
     pub length: u32,
+    /// Instance of a part whose copy of the line is meant, from 1; 0 for the line itself.
+    pub instance: u32,
 }

@@ -26,7 +26,7 @@ pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
 pub use material::{Damping, Material, Section};
 pub use mesh::{Element, Face, Mesh, Set, SharedSides};
-pub use sets::{HistorySet, NamedSets};
+pub use sets::{HistorySet, Instance, NamedSets, element_name, node_name};
 pub use settings::{
     ContactMass, Factorization, Impact, ImpactTime, LandingRule, LcpChoice, Scheme, Settings,
     SolverChoice,
@@ -41,7 +41,7 @@ pub struct Model {
     pub title: String,
     /// Nodes and elements.
     pub mesh: Mesh,
-    /// Named sets of nodes and elements, and those of the history.
+    /// Named sets of nodes and elements, those of the history, and instances of parts.
     pub sets: NamedSets,
     /// Named surfaces.
     pub surfaces: Vec<Surface>,
@@ -64,6 +64,16 @@ pub struct Model {
 }
 
 impl Model {
+    /// What the deck calls a node: its number, or `Instance.number`.
+    pub fn node_name(&self, node: usize) -> String {
+        node_name(node, &self.mesh, &self.sets.instances)
+    }
+
+    /// What the deck calls an element: its number, or `Instance.number`.
+    pub fn element_name(&self, element: usize) -> String {
+        element_name(element, &self.mesh, &self.sets.instances)
+    }
+
     /// Segments [a, b] of all rigid surfaces.
     pub fn rigid_segments(&self) -> Vec<[usize; 2]> {
         let segments = self.surfaces.iter().map(|surface| match &surface.kind {

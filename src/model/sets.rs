@@ -1,7 +1,8 @@
-//! Named sets of nodes and elements, and the node sets of the history output (group
-//! `/history/nodes` of the result file).
+//! Named sets of nodes and elements, the node sets of the history output (group `/history/nodes` of
+//! the result file), and instances of parts: which nodes and elements are theirs, and the numbers these
+//! have in the part. The numbers of the mesh are then the program's own, each once.
 
-use super::mesh::Set;
+use super::mesh::{Mesh, Set};
 
 /// The sets of a model.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -12,6 +13,8 @@ pub struct NamedSets {
     pub elements: Vec<Set>,
     /// Node sets whose motion and reactions go to the history, each at most once.
     pub history: Vec<HistorySet>,
+    /// Instances of parts, in the order of their nodes; none in a flat deck.
+    pub instances: Vec<Instance>,
 }
 
 /// A node set in the history: sums and means over the set are always written.
@@ -21,4 +24,46 @@ pub struct HistorySet {
     pub set: usize,
     /// Whether motion and reactions of every node of the set are written too.
     pub each_node: bool,
+}
+
+/// An instance of a part. Its nodes and elements follow one another in the mesh.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Instance {
+    /// Its name.
+    pub name: String,
+    /// Index of its first node.
+    pub first_node: usize,
+    /// Numbers of its nodes in the part.
+    pub node_numbers: Vec<u64>,
+    /// Index of its first element.
+    pub first_element: usize,
+    /// Numbers of its elements in the part.
+    pub element_numbers: Vec<u64>,
+}
+
+impl Instance {
+    fn node_name(&self, node: usize) -> Option<String> {
+        let number = self.node_numbers.get(node.checked_sub(self.first_node)?)?;
+        Some(format!("{}.{number}", self.name))
+    }
+
+    fn element_name(&self, element: usize) -> Option<String> {
+        let index = element.checked_sub(self.first_element)?;
+        let number = self.element_numbers.get(index)?;
+        Some(format!("{}.{number}", self.name))
+    }
+}
+
+/// What the deck calls a node: its number, or `Instance.number`.
+pub fn node_name(node: usize, mesh: &Mesh, instances: &[Instance]) -> String {
+    let mut names = instances.iter().filter_map(|i| i.node_name(node));
+    let label = || mesh.node_labels.get(node).copied().unwrap_or(0);
+    names.next().unwrap_or_else(|| label().to_string())
+}
+
+/// What the deck calls an element: its number, or `Instance.number`.
+pub fn element_name(element: usize, mesh: &Mesh, instances: &[Instance]) -> String {
+    let mut names = instances.iter().filter_map(|i| i.element_name(element));
+    let label = || mesh.elements.get(element).map_or(0, |e| e.label);
+    names.next().unwrap_or_else(|| label().to_string())
 }

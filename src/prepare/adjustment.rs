@@ -112,7 +112,7 @@ pub(super) fn report_adjusted(model: &Model, adjusted: &[Adjusted], d: &mut Diag
         d.push(match moved.spoiled {
             None => note(model, contact, moved),
             Some(element) => {
-                let label = model.mesh.elements[element].label;
+                let label = model.element_name(element);
                 let slave = &model.surfaces[contact.slave].name;
                 let message = format!(
                     "moving the nodes of {slave} onto the master spoils the shape of element {label}"
@@ -131,7 +131,7 @@ fn note(model: &Model, contact: &Contact, moved: &Adjusted) -> Diagnostic {
         if moved.count == 1 { "node" } else { "nodes" },
         model.surfaces[contact.slave].name,
         model.surfaces[contact.master].name,
-        model.mesh.node_labels[moved.node],
+        model.node_name(moved.node),
         moved.largest,
         if moved.count == 1 {
             ""

@@ -87,7 +87,8 @@ fn facing_away(model: &Model, contact: &Contact, behind: &InitialGap) -> Diagnos
     let [slave, master] = [contact.slave, contact.master].map(|s| &model.surfaces[s].name);
     let message = format!(
         "{master} looks away from {slave}: node {} lies {:.3e} behind it, outside of its body",
-        model.mesh.node_labels[behind.slave], -behind.gap,
+        model.node_name(behind.slave),
+        -behind.gap,
     );
     let error = Diagnostic::error(Code::FacingAway, contact.span, message);
     error.help("name the faces that look at each other: a face looks out of its body")
@@ -117,7 +118,7 @@ fn common_face(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Option<
 }
 
 fn overlap(model: &Model, contact: &Contact, face: [usize; 2]) -> Diagnostic {
-    let [a, b] = face.map(|node| model.mesh.node_labels[node]);
+    let [a, b] = face.map(|node| model.node_name(node));
     let message = format!(
         "the face of {} between the nodes {a} and {b} lies in the boundary of {} and looks the \
          same way: the bodies overlap",
@@ -141,7 +142,7 @@ fn diagnostic(model: &Model, contact: &Contact, deepest: &InitialGap, count: usi
         if count == 1 { "node" } else { "nodes" },
         model.surfaces[contact.slave].name,
         opposite(model, contact),
-        model.mesh.node_labels[deepest.slave],
+        model.node_name(deepest.slave),
         -deepest.gap,
         -deepest.gap / deepest.edge,
     );

@@ -28,7 +28,7 @@ impl Catalogue {
     /// Collects the names that the cards of a deck define.
     pub fn new(deck: &Deck) -> Catalogue {
         let mut kinds: BTreeMap<String, Vec<&'static str>> = BTreeMap::new();
-        for (name, kind) in deck.cards.iter().flat_map(definitions) {
+        for (name, kind) in deck.cards.iter().flat_map(|card| definitions(card, deck)) {
             let of_name = kinds.entry(name).or_default();
             if !of_name.contains(&kind) {
                 of_name.push(kind);
@@ -45,10 +45,15 @@ impl Catalogue {
 }
 
 /// Key and kind of the object that a card defines.
-fn definitions(card: &Card) -> Option<(String, &'static str)> {
+fn definitions(card: &Card, deck: &Deck) -> Option<(String, &'static str)> {
     let defines = |&&(keyword, _, _): &&(&str, &str, &str)| keyword == card.keyword.name;
     let (_, parameter, kind) = DEFINITIONS.iter().find(defines)?;
-    Some((card.value(parameter)?.name_key(), kind))
+    let key = card.value(parameter)?.name_key();
+    let key = match deck.instance_of(card.span) {
+        Some(instance) => format!("{}.{key}", instance.name.key),
+        None => key,
+    };
+    Some((key, kind))
 }
 
 /// A kind of object with its article.

@@ -2,8 +2,9 @@
 //! suggestion of what was meant.
 
 use super::catalogue::{Catalogue, help_for, list_of, with_article};
-use crate::deck::{Card, Deck, Text};
-use crate::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Span, closest};
+use super::label::{instance_of, label, number_of};
+use crate::deck::{Card, Deck, Name, Text};
+use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span, closest};
 use std::cell::OnceCell;
 
 /// What every reader function needs: the deck as a whole and a place for messages.
@@ -43,7 +44,78 @@ impl<'a> Context<'a> {
 
     /// Number of errors so far.
     pub fn errors(&self) -> usize {
-        self.d.count(Severity::Error)
+        self.d.errors_found()
+    }
+
+    /// Where a point of a part is in the instance of a span (length).
+    pub fn placed(&self, at: [f64; 2], span: Span) -> [f64; 2] {
+        let instance = self.deck.instance_of(span);
+        instance.map_or(at, |instance| instance.placement.of(at))
+    }
+
+    /// A name of a part as it is called outside: `Instance.name`.
+    pub fn of_instance(&self, name: Name, span: Span) -> Name {
+        match self.deck.instance_of(span) {
+            Some(instance) => Name {
+                typed: format!("{}.{}", instance.name.typed, name.typed),
+                key: format!("{}.{}", instance.name.key, name.key),
+            },
+            None => name,
+        }
+    }
+
+    /// Key by which a name of a part, or of the whole deck, is compared.
+    pub fn key_of(&self, text: Text) -> String {
+        match self.deck.instance_of(text.span) {
+            Some(instance) => format!("{}.{}", instance.name.key, text.name_key()),
+            None => text.name_key(),
+        }
+    }
+
+    /// A number with the name of an instance before it, such as `Block-1.12`, without that name and
+    /// in that instance.
+    pub fn in_instance<'t>(&self, text: Text<'t>) -> Text<'t> {
+        if self.deck.instances.is_empty() {
+            return text;
+        }
+        let parts = text.text.rsplit_once('.');
+        let numbered = parts.filter(|(_, n)| n.bytes().all(|byte| byte.is_ascii_digit()));
+        let found = numbered.and_then(|(name, number)| {
+            let name = Text { text: name, ..text };
+            Some((self.deck.instance(&name.name_key())?, number))
+        });
+        match found {
+            Some((instance, text_of_number)) => Text {
+                text: text_of_number,
+                span: Span {
+                    instance,
+                    ..text.span
+                },
+            },
+            None => text,
+        }
+    }
+
+    /// Whether a text is a number, or one with the name of an instance before it.
+    pub fn is_number(&self, text: Text) -> bool {
+        self.in_instance(text).as_integer().is_some()
+    }
+
+    /// The label of a number, if the text is one; reports nothing.
+    pub fn as_label(&self, text: Text) -> Option<u64> {
+        let text = self.in_instance(text);
+        let number = u64::try_from(text.as_integer()?).ok()?;
+        Some(label(text.span.instance, number))
+    }
+
+    /// What the deck calls the node or element with this label.
+    pub fn named(&self, label: u64) -> String {
+        let index = (instance_of(label) as usize).checked_sub(1);
+        let instance = index.and_then(|index| self.deck.instances.get(index));
+        match instance {
+            Some(instance) => format!("{}.{}", instance.name, number_of(label)),
+            None => label.to_string(),
+        }
     }
 
     /// Reports an undefined name of a `what`, unless the cause may have been reported already.
@@ -53,7 +125,8 @@ impl<'a> Context<'a> {
         name: Text,
         known: impl Iterator<Item = &'n str> + Clone,
     ) {
-        if self.deck.incomplete || self.deck.suspects.contains(&name.name_key()) {
+        let suspects = &self.deck.suspects;
+        if self.deck.incomplete || suspects.contains(&name.name_key()) {
             return;
         }
         let message = format!("{what} {} is not defined", name.text);

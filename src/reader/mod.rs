@@ -8,6 +8,7 @@ mod catalogue;
 mod checks;
 mod contact;
 mod context;
+mod label;
 mod materials;
 mod mesh;
 mod names;
@@ -32,7 +33,7 @@ pub fn read_model(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Op
 
 /// The model that a deck describes; `None` if there are errors.
 pub fn build(deck: &Deck, d: &mut Diagnostics) -> Option<Model> {
-    if deck.has_assembly() || deck.cards.is_empty() {
+    if deck.cards.is_empty() {
         return None;
     }
     let model = read(&mut Context::new(deck, d));
@@ -74,6 +75,7 @@ fn read(cx: &mut Context) -> Model {
             nodes: sets.nodes,
             elements: plane_sets(sets.elements, &sets.lines),
             history: steps.history,
+            instances: mesh_index.instances,
         },
         surfaces: surfaces.all,
         materials: properties.materials,

@@ -2,13 +2,16 @@
 //! indices. Names left undefined by a reported error are not reported again.
 
 use super::context::Context;
+use super::label::{instance_of, label};
 use crate::deck::{Card, Name, Text};
-use crate::diagnostics::{Code, Span};
+use crate::diagnostics::{Code, Diagnostic, Span};
 use std::collections::{BTreeMap, HashMap};
 
 /// The names of one kind of thing, numbered in the order of their definition.
 pub(super) struct Names {
     what: &'static str,
+    /// Whether the names of a part are names in each of its instances.
+    of_parts: bool,
     index: HashMap<String, Option<usize>>,
     typed: Vec<Name>,
     nameless: bool,
@@ -19,10 +22,29 @@ impl Names {
     pub fn new(what: &'static str) -> Names {
         Names {
             what,
+            of_parts: false,
             index: HashMap::new(),
             typed: Vec::new(),
             nameless: false,
         }
+    }
+
+    /// No names yet of objects called `what` that parts may define: the name `Set` of a part is
+    /// `Instance.Set` outside.
+    pub fn of_parts(what: &'static str) -> Names {
+        Names {
+            of_parts: true,
+            ..Names::new(what)
+        }
+    }
+
+    /// The name that a card defines; reports invalid names.
+    pub fn defined(&self, text: Text, cx: &mut Context) -> Option<Name> {
+        let name = text.name(cx.d)?;
+        Some(match self.of_parts {
+            true => cx.of_instance(name, text.span),
+            false => name,
+        })
     }
 
     /// Names as first typed.
@@ -52,7 +74,7 @@ impl Names {
     /// bad or repeated one.
     pub fn new_name(&mut self, card: &Card, cx: &mut Context) -> Option<Name> {
         let text = card.required("NAME", cx.d);
-        let name = text.and_then(|text| text.name(cx.d));
+        let name = text.and_then(|text| self.defined(text, cx));
         let (Some(text), Some(name)) = (text, name) else {
             self.nameless = true;
             return None;
@@ -78,9 +100,14 @@ impl Names {
     /// Number of a name; reports an undefined one.
     pub fn find(&self, text: Text, cx: &mut Context) -> Option<usize> {
         let name = text.name(cx.d)?;
-        let found = self.index.get(&name.key);
+        let local = self.defined(text, cx)?;
+        let found = self.index.get(&local.key);
+        let found = found.or_else(|| self.index.get(&name.key));
         if found.is_none() && !self.nameless {
-            cx.undefined(self.what, text, self.typed());
+            let prefix = local.typed.strip_suffix(&name.typed).unwrap_or_default();
+            let known = self.typed();
+            let known = known.map(|known| known.strip_prefix(prefix).unwrap_or(known));
+            cx.undefined(self.what, text, known);
         }
         *found?
     }
@@ -110,7 +137,7 @@ impl Labelled {
 /// deck.
 const LARGEST_LABEL: i64 = 999_999_999;
 
-/// Node or element numbers of the deck.
+/// Node or element numbers of the deck, as labels.
 pub(super) struct Labels {
     what: &'static str,
     code: Code,
@@ -142,7 +169,7 @@ impl Labels {
 
     /// Index of the node or element with this number; reports one that does not exist.
     pub fn find(&self, text: Text, cx: &mut Context) -> Option<usize> {
-        let label = self.number(text, cx)?;
+        let label = self.label(text, cx)?;
         match self.get(label) {
             Some(Labelled::Index(index)) => Some(index),
             Some(Labelled::LeftOut) => None,
@@ -151,6 +178,13 @@ impl Labels {
                 None
             }
         }
+    }
+
+    /// The label that `text` gives, with its instance.
+    pub fn label(&self, text: Text, cx: &mut Context) -> Option<u64> {
+        let text = cx.in_instance(text);
+        let number = self.number(text, cx)?;
+        Some(label(text.span.instance, number))
     }
 
     /// The number in `text`, from 1 to the largest allowed.
@@ -171,12 +205,20 @@ impl Labels {
     /// Reports a number that does not exist.
     pub fn undefined(&self, label: u64, span: Span, cx: &mut Context) {
         if !self.incomplete && !cx.deck.incomplete {
-            let message = format!("{} {label} is not defined", self.what);
-            cx.error(self.code, span, message);
+            let message = format!("{} {} is not defined", self.what, cx.named(label));
+            let error = Diagnostic::error(self.code, span, message);
+            let outside = instance_of(label) == 0;
+            cx.d.push(match cx.deck.instances.first().filter(|_| outside) {
+                Some(instance) => error.help(format!(
+                    "a number in an instance has its name before it, such as {}.{label}",
+                    instance.name
+                )),
+                None => error,
+            });
         }
     }
 
-    /// Numbers from `first` to `last` with their meaning, in order.
+    /// Labels from `first` to `last` with their meaning, in order.
     pub fn between(&self, first: u64, last: u64) -> impl Iterator<Item = (u64, Labelled)> {
         let valid = first <= last;
         let range = if valid { first..=last } else { 0..=0 };

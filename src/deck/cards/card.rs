@@ -39,6 +39,25 @@ impl Card {
         format!("*{}", self.keyword.name)
     }
 
+    /// The same card, its names and numbers being those of an instance of a part.
+    pub(crate) fn in_instance(mut self, instance: u32) -> Card {
+        self.span.instance = instance;
+        for param in &mut self.params {
+            param.span.instance = instance;
+            if let Some((_, span)) = &mut param.value {
+                span.instance = instance;
+            }
+        }
+        self.with_rows_in(instance)
+    }
+
+    /// The same card, the names and numbers in its rows being those of an instance of a part.
+    pub(crate) fn with_rows_in(mut self, instance: u32) -> Card {
+        let rows = self.rows.into_iter();
+        self.rows = rows.map(|row| row.in_instance(instance)).collect();
+        self
+    }
+
     fn param(&self, name: &str) -> Option<&Param> {
         let param = self.params.iter().find(|param| param.name == name)?;
         param.used.set(true);
@@ -111,6 +130,7 @@ pub struct Row {
     text: Box<str>,
     file: FileId,
     line: u32,
+    instance: u32,
     fields: Box<[(u32, u32)]>,
 }
 
@@ -121,6 +141,7 @@ impl Row {
             text: line.text.into(),
             file: line.file,
             line: line.number,
+            instance: 0,
             fields: fields.into(),
         }
     }
@@ -137,7 +158,16 @@ impl Row {
     }
 
     fn span_between(&self, start: usize, end: usize) -> Span {
-        span_in(&self.text, self.file, self.line, start, end)
+        Span {
+            instance: self.instance,
+            ..span_in(&self.text, self.file, self.line, start, end)
+        }
+    }
+
+    /// The same row, its names and numbers being those of an instance of a part.
+    pub(crate) fn in_instance(mut self, instance: u32) -> Row {
+        self.instance = instance;
+        self
     }
 
     /// All fields in order, empty ones included.

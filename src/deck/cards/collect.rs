@@ -1,8 +1,9 @@
 //! Collects the lines of a deck into cards; cards with a reported error are left out.
 
 use super::card::{Card, Row};
+use super::instance::Instance;
 use super::resolve::{self, Piece};
-use crate::deck::keywords::{Data, Keyword, Scope, Status};
+use crate::deck::keywords::{Data, Keyword, Status};
 use crate::deck::lines::{Line, Text, assignment};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Span};
 use std::collections::HashSet;
@@ -18,14 +19,22 @@ pub struct Deck {
     pub dropped: bool,
     /// Keys of the names that the cards left out may define.
     pub suspects: HashSet<String>,
+    /// Instances of parts; spans number them from 1.
+    pub instances: Vec<Instance>,
 }
 
 impl Deck {
-    /// Whether the deck has an assembly, which is reported as an error.
-    pub fn has_assembly(&self) -> bool {
-        let refused = |card: &Card| card.keyword.status == Status::Refused;
-        let mut cards = self.cards.iter().filter(|card| refused(card));
-        cards.any(|card| card.keyword.scope == Scope::Assembly)
+    /// The instance that a span belongs to.
+    pub fn instance_of(&self, span: Span) -> Option<&Instance> {
+        let index = (span.instance as usize).checked_sub(1)?;
+        self.instances.get(index)
+    }
+
+    /// Number of the instance with this name.
+    pub fn instance(&self, key: &str) -> Option<u32> {
+        let mut all = self.instances.iter().zip(1..);
+        let found = all.find(|(instance, _)| instance.name.key == key);
+        found.map(|(_, number)| number)
     }
 }
 

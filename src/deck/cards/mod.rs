@@ -2,9 +2,11 @@
 
 mod card;
 mod collect;
+mod instance;
 mod resolve;
 mod source;
 
 pub use card::{Card, Param, Row};
 pub use collect::Deck;
-pub use source::{parse_str, read};
+pub use instance::{Instance, Placement};
+pub(super) use source::{parse_str, read};

@@ -2,7 +2,7 @@
 //! unknown, ignored or refused.
 
 use super::card::{Card, Param};
-use crate::deck::keywords::{Keyword, Parameter, Scope, Status, Takes, Value, find, keywords};
+use crate::deck::keywords::{Keyword, Parameter, Status, Takes, Value, find, keywords};
 use crate::deck::lines::{Match, Text, assignment, word};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span};
 use std::cell::Cell;
@@ -94,13 +94,6 @@ fn report_keyword(keyword: &Keyword, span: Span, d: &mut Diagnostics) {
             d.push_once(
                 Diagnostic::warning(Code::IgnoredKeyword, span, message).help(advice(keyword.text)),
             );
-        }
-        Status::Refused if keyword.scope == Scope::Assembly => {
-            d.push_once(Diagnostic::error(
-                Code::UnsupportedKeyword,
-                span,
-                keyword.text,
-            ));
         }
         Status::Refused => {
             let message = format!("*{name} cannot be used");

@@ -65,6 +65,7 @@ fn collect(
             line: 1,
             column: 1,
             length: 1,
+            instance: 0,
         };
         let message = format!("{name} holds no keyword");
         let error = Diagnostic::error(Code::EmptyDeck, start, message);

@@ -5,6 +5,7 @@ mod dimensions;
 mod keyword;
 mod reference;
 mod table;
+mod table_assembly;
 mod table_dimensions;
 mod table_model;
 mod table_others;

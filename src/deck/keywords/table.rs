@@ -1,14 +1,15 @@
 //! The table of all keywords, joined from its parts, and look-up by name.
 
 use super::keyword::Keyword;
-use super::{table_model, table_others, table_steps};
+use super::{table_assembly, table_model, table_others, table_steps};
 use crate::deck::lines::word;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
 /// All known keywords: those read first, then the others.
 pub fn keywords() -> impl Iterator<Item = &'static Keyword> + Clone {
-    let read = table_model::MODEL.iter().chain(table_steps::STEPS);
+    let model = table_assembly::ASSEMBLY.iter().chain(table_model::MODEL);
+    let read = model.chain(table_steps::STEPS);
     read.chain(table_others::OTHERS)
 }
 

@@ -97,6 +97,19 @@ const NAMES: &[RowForm] = &[repeated(&[Plain])];
 pub(crate) static DIMENSIONS: &[Dimensions] = &[
     keyword("HEADING", &[], &[], &[]),
     keyword("INCLUDE", &[], &["INPUT"], &[]),
+    keyword("PART", &[], &["NAME"], &[]),
+    keyword("END PART", &[], &[], &[]),
+    keyword("ASSEMBLY", &[], &["NAME"], &[]),
+    keyword("END ASSEMBLY", &[], &[], &[]),
+    keyword(
+        "INSTANCE",
+        &[row(&[
+            LENGTH, LENGTH, LENGTH, LENGTH, LENGTH, LENGTH, Plain,
+        ])],
+        &["NAME", "PART"],
+        &[],
+    ),
+    keyword("END INSTANCE", &[], &[], &[]),
     keyword(
         "NODE",
         &[row(&[Plain, LENGTH, LENGTH, LENGTH])],
@@ -104,8 +117,8 @@ pub(crate) static DIMENSIONS: &[Dimensions] = &[
         &[],
     ),
     keyword("ELEMENT", NAMES, &["TYPE", "ELSET", "INPUT"], &[]),
-    keyword("NSET", NAMES, &["NSET", "ELSET", "INPUT"], &[]),
-    keyword("ELSET", NAMES, &["ELSET", "INPUT"], &[]),
+    keyword("NSET", NAMES, &["NSET", "ELSET", "INPUT", "INSTANCE"], &[]),
+    keyword("ELSET", NAMES, &["ELSET", "INPUT", "INSTANCE"], &[]),
     keyword(
         "SURFACE",
         &[

@@ -4,6 +4,7 @@ use super::keyword::{Data, Keyword, Parameter as P, Scope, Value as V};
 
 const INPUT: P = P::value("INPUT", "file that holds the data lines");
 const NAME: P = P::value("NAME", "name");
+const OF_INSTANCE: &str = "in the assembly: the rows are numbers and sets of this instance";
 const CAE: &str = "written by Abaqus/CAE for its own use";
 const OTHER_SOLVER: &str = "a number for another solver";
 const ONLY_NEO_HOOKE: &str =
@@ -80,7 +81,7 @@ pub(crate) static MODEL: &[Keyword] = &[
                 "UNSORTED",
                 "sets have no order: *EQUATION refuses an unsorted one",
             ),
-            P::value("INSTANCE", "assembly decks are not read yet").refused(),
+            P::value("INSTANCE", OF_INSTANCE),
         ],
         "A node set: nodes and node sets, whole or as ranges.",
     ),
@@ -94,7 +95,7 @@ pub(crate) static MODEL: &[Keyword] = &[
             INPUT,
             P::flag("INTERNAL", CAE).ignored(),
             P::flag("UNSORTED", "sets have no order").ignored(),
-            P::value("INSTANCE", "assembly decks are not read yet").refused(),
+            P::value("INSTANCE", OF_INSTANCE),
         ],
         "An element set: elements and element sets, whole or as ranges.",
     ),

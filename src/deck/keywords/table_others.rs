@@ -1,6 +1,6 @@
 //! The table of keywords that are known but not read.
 
-use super::keyword::{Data, Keyword, Scope, Status};
+use super::keyword::{Keyword, Status};
 
 const fn ignored(name: &'static str, text: &'static str) -> Keyword {
     Keyword::other(name, Status::Ignored, text)
@@ -12,17 +12,6 @@ const fn warned(name: &'static str, text: &'static str) -> Keyword {
 
 const fn refused(name: &'static str, text: &'static str) -> Keyword {
     Keyword::other(name, Status::Refused, text)
-}
-
-const fn assembly(name: &'static str, status: Status) -> Keyword {
-    Keyword {
-        name,
-        status,
-        scope: Scope::Assembly,
-        data: Data::Rows,
-        parameters: &[],
-        text: "assembly decks are not read yet: write a flat deck, without *PART and *INSTANCE",
-    }
 }
 
 const PROCEDURE: &str = "Steps are dynamic: use *DYNAMIC.";
@@ -42,12 +31,6 @@ const HARMLESS: &str = "It does not touch the answer.";
 
 /// Keywords that are known but not read.
 pub(crate) static OTHERS: &[Keyword] = &[
-    assembly("PART", Status::Refused),
-    assembly("ASSEMBLY", Status::Refused),
-    assembly("INSTANCE", Status::Refused),
-    assembly("END PART", Status::Ignored),
-    assembly("END INSTANCE", Status::Ignored),
-    assembly("END ASSEMBLY", Status::Ignored),
     ignored("PREPRINT", HARMLESS),
     ignored("PHYSICAL CONSTANTS", HARMLESS),
     ignored("FILE FORMAT", HARMLESS),

@@ -70,6 +70,7 @@ impl Content {
             line: line as u32,
             column: last.chars().count() as u32 + 1,
             length: 1,
+            instance: 0,
         };
         let error = |code, message: String| Diagnostic::error(code, span, message);
         Some(match self.fault? {

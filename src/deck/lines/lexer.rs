@@ -103,6 +103,7 @@ pub(crate) fn span_in(text: &str, file: FileId, number: u32, start: usize, end: 
         line: number,
         column: characters(0..start) + 1,
         length: characters(start..end).max(1),
+        instance: 0,
     }
 }
 

@@ -5,7 +5,7 @@ use hdf5::Group;
 use super::body_times::body_times;
 use super::dataset::{Meaning, constant, group, meaning};
 use super::mesh::{connectivity, number};
-use crate::model::{Bodies, Model, Set};
+use crate::model::{Bodies, Instance, Model, Set};
 use crate::output::text::element_mass;
 
 const CONNECTIVITY: Meaning = meaning(
@@ -18,7 +18,10 @@ const SET: Meaning = meaning("indices of the members, from 0", "1");
 pub(crate) fn write(root: &Group, model: &Model) -> hdf5::Result<()> {
     let mesh = &model.mesh;
     let at = group(root, "model")?;
-    let text = meaning("node numbers of the deck", "1");
+    let text = meaning(
+        "node numbers: those of the deck, own ones in instances",
+        "1",
+    );
     constant(
         &at,
         "node_labels",
@@ -36,13 +39,45 @@ pub(crate) fn write(root: &Group, model: &Model) -> hdf5::Result<()> {
         text,
     )?;
     let labels: Vec<i64> = mesh.elements.iter().map(|e| e.label as i64).collect();
-    let text = meaning("element numbers of the deck", "1");
+    let text = meaning(
+        "element numbers: those of the deck, own ones in instances",
+        "1",
+    );
     constant(&at, "element_labels", &[labels.len()], &labels, text)?;
     let nodes = connectivity(mesh);
     constant(&at, "connectivity", &[nodes.len()], &nodes, CONNECTIVITY)?;
+    write_instances(&at, &model.sets.instances)?;
     write_sets(&group(&at, "node_sets")?, &model.sets.nodes)?;
     write_sets(&group(&at, "element_sets")?, &model.sets.elements)?;
     write_bodies(&group(&at, "bodies")?, model)
+}
+
+/// The nodes and elements of instances, with their numbers in the part.
+fn write_instances(at: &Group, instances: &[Instance]) -> hdf5::Result<()> {
+    if instances.is_empty() {
+        return Ok(());
+    }
+    let all = group(at, "instances")?;
+    for instance in instances {
+        let at = group(&all, &instance.name)?;
+        let each = |what: [&str; 2], first: usize, numbers: &[u64], text| {
+            let indices: Vec<i64> = (first as i64..).take(numbers.len()).collect();
+            constant(&at, what[0], &[indices.len()], &indices, SET)?;
+            let text = meaning(text, "1");
+            constant(&at, what[1], &[indices.len()], &as_i64(numbers), text)
+        };
+        let (nodes, elements) = (&instance.node_numbers, &instance.element_numbers);
+        let text = "numbers of these nodes in the part";
+        each(["nodes", "node_numbers"], instance.first_node, nodes, text)?;
+        let text = "numbers of these elements in the part";
+        each(
+            ["elements", "element_numbers"],
+            instance.first_element,
+            elements,
+            text,
+        )?;
+    }
+    Ok(())
 }
 
 /// The bodies: members, masses and transit times of waves.

@@ -5,13 +5,16 @@ use std::collections::HashSet;
 use crate::model::{ALL_EXTERIOR, Contact, Model};
 use crate::output::error::NameError;
 
-/// Checks the names of all sets, and of the surfaces in contact or with a reference node.
+/// Checks the names of all sets and instances, and of the surfaces in contact or with a reference node.
 pub fn check_names(model: &Model) -> Result<(), NameError> {
     for set in &model.sets.nodes {
         check("node set", &set.name)?;
     }
     for set in &model.sets.elements {
         check("element set", &set.name)?;
+    }
+    for instance in &model.sets.instances {
+        check("instance", &instance.name)?;
     }
     for contact in &model.contacts {
         check("surface", &model.surfaces[contact.slave].name)?;

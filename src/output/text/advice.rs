@@ -33,7 +33,7 @@ pub(super) fn course_text(course: &Course, model: &Model) -> String {
 
 /// The first slave node that went to and fro, and the number of others.
 fn alternation_text(alternations: &[Alternation], model: &Model) -> String {
-    let label = |node: usize| model.mesh.node_labels[node];
+    let label = |node: usize| model.node_name(node);
     let segment = |[a, b]: [usize; 2]| format!("{}-{}", label(a), label(b));
     let first = alternations.first().map(|alternation| match *alternation {
         Alternation::Closing([slave, a, b]) => format!(

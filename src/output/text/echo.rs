@@ -219,7 +219,7 @@ fn mass_lines(prepared: &PreparedModel) -> Vec<String> {
         counted(massless, "contact node")
     );
     if !kept.is_empty() {
-        let label = |&node: &usize| model.mesh.node_labels[node].to_string();
+        let label = |&node: &usize| model.node_name(node);
         let mut names: Vec<String> = kept.iter().take(MOST_NAMES).map(label).collect();
         if kept.len() > MOST_NAMES {
             names.push(format!("and {} more", kept.len() - MOST_NAMES));

@@ -59,7 +59,7 @@ pub(crate) fn failure_lines(
 fn worst_line(worst: &Worst, model: &Model) -> String {
     format!(
         "worst    node {} at {}: {} {}",
-        model.mesh.node_labels[worst.node],
+        model.node_name(worst.node),
         point(worst.position),
         worst.quantity,
         scientific(worst.value, 2),
@@ -82,7 +82,7 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
     match *cause {
         Cause::Inverted { element, .. } => Some(format!(
             "element  {} with its centre at {}",
-            model.mesh.elements[element].label,
+            model.element_name(element),
             point(centre(model, element, u)),
         )),
         Cause::Crossed {
@@ -91,21 +91,21 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
             ..
         } => Some(format!(
             "node     {} at {} through the segment {}-{}",
-            model.mesh.node_labels[slave],
+            model.node_name(slave),
             point(position(model, slave, u)),
-            model.mesh.node_labels[a],
-            model.mesh.node_labels[b],
+            model.node_name(a),
+            model.node_name(b),
         )),
         Cause::Collapsed { segment: [a, b] } => Some(format!(
             "segment  {}-{} at {}",
-            model.mesh.node_labels[a],
-            model.mesh.node_labels[b],
+            model.node_name(a),
+            model.node_name(b),
             point(position(model, a, u)),
         )),
         Cause::Lcp(ref failed) => Some(pairs_line(failed, model)),
         Cause::Indefinite { node } | Cause::NotFinite { node, .. } => Some(format!(
             "node     {} at {}",
-            model.mesh.node_labels[node],
+            model.node_name(node),
             point(position(model, node, u)),
         )),
         _ => None,
@@ -117,7 +117,7 @@ fn body_line(node: usize, model: &Model, results: &[ElementResult]) -> Option<St
     let all = model.mesh.elements.iter().enumerate();
     let own = all.filter(|(_, element)| element.nodes.contains(&node));
     let strain = |index: usize| results.get(index).map_or(0.0, least_principal);
-    let (index, element) = own.min_by(|p, q| strain(p.0).total_cmp(&strain(q.0)))?;
+    let (index, _) = own.min_by(|p, q| strain(p.0).total_cmp(&strain(q.0)))?;
     let sets = (model.sets.elements.iter()).filter(|set| set.members.binary_search(&index).is_ok());
     let set = sets.min_by_key(|set| set.members.len());
     let of_set = set.map_or(String::new(), |set| format!(" of {}", set.name));
@@ -125,7 +125,7 @@ fn body_line(node: usize, model: &Model, results: &[ElementResult]) -> Option<St
         strain if strain < 0.0 => format!("compressed by the strain {}", general(strain, 2)),
         _ => "not compressed".to_owned(),
     };
-    let label = element.label;
+    let label = model.element_name(index);
     Some(format!(
         "element  {label}{of_set} at this node was {strained}"
     ))
@@ -147,7 +147,7 @@ fn pairs_line(failed: &FailedLcp, model: &Model) -> String {
             .collect(),
         _ => failed.pairs.clone(),
     };
-    let label = |node: usize| model.mesh.node_labels[node];
+    let label = |node: usize| model.node_name(node);
     let text = |&[slave, a, b]: &[usize; 3]| {
         format!("node {} on segment {}-{}", label(slave), label(a), label(b))
     };

@@ -106,7 +106,7 @@ impl StrainWatch {
             0 => format!("strain   largest principal {strain}"),
             increment => format!(
                 "strain   largest principal {strain} in element {} in increment {increment}",
-                model.mesh.elements[self.most.element].label
+                model.element_name(self.most.element)
             ),
         }
     }
@@ -121,7 +121,8 @@ pub(crate) fn warning_lines(
     [
         format!(
             "warning  principal strain {strain:.3} in element {} in increment {}",
-            model.mesh.elements[element].label, report.increment
+            model.element_name(element),
+            report.increment
         ),
         "         above 0.2 a St. Venant-Kirchhoff material is too stiff in tension and".to_owned(),
         "         too soft in compression: take its forces for a guess, or use a material"

@@ -28,7 +28,7 @@ pub(crate) fn coincident_nodes(model: &Model, spans: &[Span], cx: &mut Context) 
     let Some((_, &span)) = places.find(|(element, _)| element.nodes.contains(&q)) else {
         return;
     };
-    let [a, b] = [p, q].map(|node| model.mesh.node_labels[node]);
+    let [a, b] = [p, q].map(|node| model.node_name(node));
     let message = match pairs.len() {
         1 => format!("node {b} lies where node {a} is, and nothing joins them"),
         n => format!(

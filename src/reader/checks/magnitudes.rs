@@ -22,7 +22,8 @@ pub(crate) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &m
     }
     let mut total = 0.0;
     let places = mesh_index.element_spans.iter().zip(&properties.section_of);
-    for (element, (&span, section)) in mesh_index.mesh.elements.iter().zip(places) {
+    let elements = mesh_index.mesh.elements.iter().enumerate();
+    for ((index, element), (&span, section)) in elements.zip(places) {
         let section = section.and_then(|s| properties.sections.get(s));
         let material = section.and_then(|s| properties.materials.get(s.material));
         let (Some(section), Some(material)) = (section, material) else {
@@ -39,7 +40,7 @@ pub(crate) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &m
             ("mass of all elements up to", total),
         ];
         if let Some((what, value)) = magnitudes.iter().find(|(_, value)| !value.is_normal()) {
-            let what = format!("the {what} element {}", element.label);
+            let what = format!("the {what} element {}", mesh_index.element_name(index));
             return unusable(&what, *value, span, cx);
         }
     }

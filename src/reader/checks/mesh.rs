@@ -2,7 +2,6 @@
 
 use super::magnitudes::unusable;
 use crate::diagnostics::{Code, Diagnostic, Span};
-use crate::model::{Element, Mesh};
 use crate::reader::context::Context;
 use crate::reader::mesh::MeshIndex;
 use std::collections::HashMap;
@@ -12,24 +11,23 @@ const FLAT: f64 = 1e-10;
 
 /// Reports elements that are clockwise, degenerate, not convex or defined twice.
 pub(crate) fn mesh(mesh_index: &MeshIndex, cx: &mut Context) {
-    let mut known: HashMap<Vec<usize>, u64> = HashMap::new();
-    for (element, &span) in mesh_index
-        .mesh
-        .elements
-        .iter()
-        .zip(&mesh_index.element_spans)
-    {
-        shape(element, &mesh_index.mesh, span, cx);
+    let mut known: HashMap<Vec<usize>, usize> = HashMap::new();
+    let elements = mesh_index.mesh.elements.iter().enumerate();
+    for ((index, element), &span) in elements.zip(&mesh_index.element_spans) {
+        shape(index, mesh_index, span, cx);
         let mut nodes = element.nodes.clone();
         nodes.sort_unstable();
-        if let Some(first) = known.insert(nodes, element.label) {
-            let message = format!("element {} has the nodes of element {first}", element.label);
+        if let Some(first) = known.insert(nodes, index) {
+            let [element, first] = [index, first].map(|e| mesh_index.element_name(e));
+            let message = format!("element {element} has the nodes of element {first}");
             cx.error(Code::RepeatedElement, span, message);
         }
     }
 }
 
-fn shape(element: &Element, mesh: &Mesh, span: Span, cx: &mut Context) {
+fn shape(index: usize, mesh_index: &MeshIndex, span: Span, cx: &mut Context) {
+    let mesh = &mesh_index.mesh;
+    let element = &mesh.elements[index];
     let at: Vec<[f64; 2]> = element.nodes.iter().map(|&n| mesh.coordinates[n]).collect();
     let count = at.len();
     let side = |i: usize| {
@@ -40,7 +38,10 @@ fn shape(element: &Element, mesh: &Mesh, span: Span, cx: &mut Context) {
         .map(|i| side(i)[0].hypot(side(i)[1]))
         .fold(0.0, f64::max);
     if !longest.is_finite() {
-        let what = format!("the longest side of element {}", element.label);
+        let what = format!(
+            "the longest side of element {}",
+            mesh_index.element_name(index)
+        );
         return unusable(&what, longest, span, cx);
     }
     let turn = |i: usize| {
@@ -49,7 +50,7 @@ fn shape(element: &Element, mesh: &Mesh, span: Span, cx: &mut Context) {
     };
     let left = (0..count).filter(|&i| turn(i) > FLAT).count();
     let right = (0..count).filter(|&i| turn(i) < -FLAT).count();
-    let label = element.label;
+    let label = mesh_index.element_name(index);
     let (fault, help) = if left == count {
         return;
     } else if right == count {

@@ -18,7 +18,7 @@ pub(crate) struct RigidSurface {
     /// Reference node.
     reference: usize,
     /// Number of the reference node in the deck.
-    label: u64,
+    label: String,
     /// Place of `*RIGID BODY`.
     span: Span,
 }
@@ -80,7 +80,7 @@ fn rigid(
             name: surface.name.clone(),
             nodes: surface.nodes(&mesh_index.mesh),
             reference,
-            label: mesh_index.mesh.node_labels.get(reference).copied()?,
+            label: mesh_index.node_name(reference),
             span: card.span,
         },
     ))

@@ -105,13 +105,11 @@ impl Properties {
                 None => {}
             }
         }
-        if let Some(element) = taken.first().and_then(|&e| mesh_index.mesh.elements.get(e)) {
+        if let Some(&first) = taken.first() {
+            let name = mesh_index.element_name(first);
             let message = match taken.len() {
-                1 => format!("element {} has a section already", element.label),
-                n => format!(
-                    "{n} elements have a section already, the first is {}",
-                    element.label
-                ),
+                1 => format!("element {name} has a section already"),
+                n => format!("{n} elements have a section already, the first is {name}"),
             };
             cx.error(Code::TwoSections, card.span_of("ELSET"), message);
         }
@@ -133,7 +131,7 @@ impl Properties {
             if *element_type == ElementType::CPE4 {
                 element_type.formulation = Formulation::MeanDilatation;
             } else if element_type.formulation == Formulation::Displacement {
-                let label = mesh_index.mesh.elements.get(index).map_or(0, |e| e.label);
+                let label = mesh_index.element_name(index);
                 let name = element_type.name();
                 let message = format!("MEAN DILATATION is for CPE4: element {label} is {name}");
                 let error =
@@ -158,15 +156,12 @@ impl Properties {
         let Some((first, _)) = bare().next().filter(|_| is_cause) else {
             return;
         };
-        let element = mesh_index.mesh.elements.get(first);
+        let name = mesh_index.element_name(first);
         let span = mesh_index.element_spans.get(first);
-        if let (Some(element), Some(&span), false) = (element, span, cx.may_lack_cards()) {
+        if let (Some(&span), false) = (span, cx.may_lack_cards()) {
             let message = match bare().count() {
-                1 => format!("element {} has no section", element.label),
-                n => format!(
-                    "{n} elements have no section, the first is {}",
-                    element.label
-                ),
+                1 => format!("element {name} has no section"),
+                n => format!("{n} elements have no section, the first is {name}"),
             };
             let error = Diagnostic::error(Code::NoSection, span, message);
             cx.d.push(error.help("give them a material and a thickness with *SOLID SECTION"));

@@ -15,7 +15,10 @@ impl Properties {
     /// Reports materials in plane stress elements that are for plane strain only.
     pub(super) fn report_plane_stress(&self, mesh_index: &MeshIndex, cx: &mut Context) {
         let places = mesh_index.element_spans.iter().zip(&self.section_of);
-        for (element, (&span, section)) in mesh_index.mesh.elements.iter().zip(places) {
+        for (index, (&span, section)) in places.enumerate() {
+            let Some(element) = mesh_index.mesh.elements.get(index) else {
+                return;
+            };
             let section = section.and_then(|s| self.sections.get(s));
             let material = section.and_then(|s| self.materials.get(s.material));
             if let (Plane::Stress, Some(material)) = (element.element_type.plane, material)
@@ -23,7 +26,8 @@ impl Properties {
             {
                 let message = format!(
                     "element {} is in plane stress, material {} is for plane strain only",
-                    element.label, material.name
+                    mesh_index.element_name(index),
+                    material.name
                 );
                 let error = Diagnostic::error(Code::PlaneStrainOnly, span, message);
                 cx.d.push(error.help("take CPE elements, or *ELASTIC"));

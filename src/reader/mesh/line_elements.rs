@@ -59,7 +59,7 @@ fn faces_by_nodes(mesh: &Mesh) -> HashMap<Vec<usize>, Face> {
 
 fn report_strays(strays: &[&RawLine], cx: &mut Context) {
     let Some(first) = strays.first() else { return };
-    let label = first.label;
+    let label = cx.named(first.label);
     let message = match strays.len() {
         1 => format!("line element {label} is no side of a plane element"),
         n => format!("{n} line elements are no sides of plane elements, the first is {label}"),

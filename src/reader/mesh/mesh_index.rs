@@ -3,16 +3,18 @@
 
 use crate::deck::Name;
 use crate::diagnostics::Span;
-use crate::model::{Element, ElementType, Face, Mesh};
+use crate::model::{Element, ElementType, Face, Instance, Mesh, element_name, node_name};
 use crate::reader::names::{Labelled, Labels};
 
 /// The mesh, with the numbers and sets that the deck gives to its nodes and elements.
 pub(crate) struct MeshIndex {
     /// Nodes that belong to elements, and elements. Sections are not yet known.
     pub mesh: Mesh,
-    /// Node numbers.
+    /// Instances of parts.
+    pub instances: Vec<Instance>,
+    /// Labels of the nodes.
     pub nodes: Labels,
-    /// Element numbers; the indices of line elements follow those of the plane ones.
+    /// Labels of the elements; the indices of line elements follow those of the plane ones.
     pub elements: Labels,
     /// Faces of the plane elements that the line elements name.
     pub lines: Vec<Face>,
@@ -30,7 +32,7 @@ pub(crate) struct Group {
     pub name: Name,
     /// Where it is named.
     pub span: Span,
-    /// Numbers of its members.
+    /// Labels of its members.
     pub labels: Vec<u64>,
 }
 
@@ -50,6 +52,16 @@ pub(in crate::reader) struct RawElement {
 }
 
 impl MeshIndex {
+    /// What the deck calls a node.
+    pub fn node_name(&self, node: usize) -> String {
+        node_name(node, &self.mesh, &self.instances)
+    }
+
+    /// What the deck calls an element.
+    pub fn element_name(&self, element: usize) -> String {
+        element_name(element, &self.mesh, &self.instances)
+    }
+
     /// Adds nodes without element at these points; their numbers follow the largest one.
     pub fn add_points(&mut self, points: &[[f64; 2]]) {
         let largest = self.mesh.node_labels.iter().max().copied().unwrap_or(0);

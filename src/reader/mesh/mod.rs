@@ -1,6 +1,7 @@
 //! Nodes, elements, sets and surfaces.
 
 mod element_type;
+mod instances;
 mod line_elements;
 mod mesh_index;
 pub(crate) mod nodes_elements;

@@ -1,6 +1,7 @@
 //! `*NODE` and `*ELEMENT`.
 
 use super::element_type::{self, Kind};
+use super::instances;
 use super::line_elements::{self, RawLine};
 use super::mesh_index::{Group, MeshIndex, RawElement, RawNode};
 use super::outline::Outline;
@@ -35,7 +36,7 @@ pub(crate) fn read(outline: &Outline, cx: &mut Context) -> MeshIndex {
     let groups: Vec<_> = groups
         .map(|group| (group.name.key.as_str(), group.labels.as_slice()))
         .collect();
-    let references = references::labels(outline, &groups);
+    let references = references::labels(outline, &groups, cx);
     reading.mesh_index(&references, cx)
 }
 
@@ -59,7 +60,7 @@ impl Reading {
             row.at_most(4, cx.d);
             let numbers = Labels::new("node", Code::UndefinedNode);
             let field = row.required(0, "the node number", cx.d);
-            match field.and_then(|field| numbers.number(field, cx)) {
+            match field.and_then(|field| numbers.label(field, cx)) {
                 Some(label) => {
                     labels.push(label);
                     self.node(label, row, cx);
@@ -77,12 +78,14 @@ impl Reading {
             self.node_index.entry(label).or_insert(None);
             return;
         };
+        let [x, y] = cx.placed([x, y], row.span());
         let next = self.nodes.len();
         let known = *self.node_index.entry(label).or_insert(Some(next));
         match known.and_then(|index| self.nodes.get(index)) {
             Some(first) if first.at != [x, y, z] => {
                 let message = format!(
-                    "node {label} has other coordinates on line {}",
+                    "node {} has other coordinates on line {}",
+                    cx.named(label),
                     first.span.line
                 );
                 cx.error(Code::RepeatedNode, row.span(), message);
@@ -123,20 +126,21 @@ impl Reading {
         let numbers = Labels::new("element", Code::UndefinedElement);
         let fields: Vec<Text> = rows.iter().flat_map(Row::fields).collect();
         let (first, rest) = fields.split_first()?;
-        let label = numbers.number(*first, cx)?;
+        let label = numbers.label(*first, cx)?;
+        let name = cx.named(label);
         if rest.len() < corners && rest.iter().all(|field| field.integer(cx.d).is_some()) {
             let found = rest.len();
-            let message = format!("element {label} needs {corners} nodes, found {found}");
+            let message = format!("element {name} needs {corners} nodes, found {found}");
             cx.error(Code::MissingField, span, message);
             return None;
         }
         if let Some(extra) = rest.get(corners) {
-            let message = format!("element {label} has {corners} nodes, this is one more");
+            let message = format!("element {name} has {corners} nodes, this is one more");
             cx.error(Code::ExtraField, extra.span, message);
         }
         let nodes = self.element_nodes(label, rest.get(..corners)?, cx)?;
         if let Some(earlier) = self.element_index.insert(label, span) {
-            let message = format!("element {label} is defined on line {} too", earlier.line);
+            let message = format!("element {name} is defined on line {} too", earlier.line);
             cx.error(Code::RepeatedElement, first.span, message);
             return Some(label);
         }
@@ -158,12 +162,13 @@ impl Reading {
         let mut good = true;
         for field in fields {
             let numbers = Labels::new("node", Code::UndefinedNode);
-            let Some(node) = numbers.number(*field, cx) else {
+            let Some(node) = numbers.label(*field, cx) else {
                 good = false;
                 continue;
             };
             if nodes.contains(&node) {
-                let message = format!("element {label} has node {node} twice");
+                let [element, node] = [label, node].map(|label| cx.named(label));
+                let message = format!("element {element} has node {node} twice");
                 cx.error(Code::BadShape, field.span, message);
                 good = false;
             }
@@ -179,7 +184,7 @@ impl Reading {
     fn undefined_node(&self, node: u64, span: Span, cx: &mut Context) {
         let known = self.node_index.contains_key(&node);
         if !known && !self.nodes_incomplete && !cx.deck.incomplete {
-            let message = format!("node {node} is not defined");
+            let message = format!("node {} is not defined", cx.named(node));
             cx.error(Code::UndefinedNode, span, message);
         }
     }
@@ -234,6 +239,7 @@ impl Reading {
         self.report_unused(&used, cx);
         let mut mesh_index = MeshIndex {
             mesh: Mesh::default(),
+            instances: Vec::new(),
             nodes: Labels::new("node", Code::UndefinedNode),
             elements: Labels::new("element", Code::UndefinedElement),
             lines: Vec::new(),
@@ -255,6 +261,7 @@ impl Reading {
             mesh_index.add_element(element);
         }
         line_elements::add(&self.lines, &mut mesh_index, cx);
+        mesh_index.instances = instances::number(&mut mesh_index.mesh, cx);
         mesh_index
     }
 
@@ -267,12 +274,10 @@ impl Reading {
         if self.elements_incomplete || self.elements.is_empty() || cx.deck.incomplete {
             return;
         }
+        let name = cx.named(first.label);
         let message = match unused().count() {
-            1 => format!("node {} belongs to no element", first.label),
-            n => format!(
-                "{n} nodes belong to no element, the first is node {}",
-                first.label
-            ),
+            1 => format!("node {name} belongs to no element"),
+            n => format!("{n} nodes belong to no element, the first is node {name}"),
         };
         let warning = Diagnostic::warning(Code::UnusedNode, first.span, message);
         cx.d.push(warning.help("left out, together with what the deck says about them"));
@@ -283,7 +288,9 @@ impl Reading {
 fn group(card: &Card, parameter: &str, labels: Vec<u64>, cx: &mut Context) -> Option<Group> {
     let text = card.value(parameter)?;
     Some(Group {
-        name: text.name(cx.d)?,
+        name: text
+            .name(cx.d)
+            .map(|name| cx.of_instance(name, text.span))?,
         span: text.span,
         labels,
     })

@@ -2,16 +2,17 @@
 
 use super::outline::Outline;
 use crate::deck::{Card, Text};
+use crate::reader::context::Context;
 use std::collections::BTreeSet;
 
-/// Numbers that may be those of reference nodes or of nodes of equations; `groups` are the node
-/// sets of `*NODE` by their names, as compared, with the numbers of their members.
-pub(super) fn labels(outline: &Outline, groups: &[(&str, &[u64])]) -> BTreeSet<u64> {
+/// Labels that may be those of reference nodes or of nodes of equations; `groups` are the node
+/// sets of `*NODE` by their names, as compared, with the labels of their members.
+pub(super) fn labels(outline: &Outline, groups: &[(&str, &[u64])], cx: &Context) -> BTreeSet<u64> {
     let (mut labels, mut names) = (BTreeSet::new(), BTreeSet::new());
     for field in fields(outline) {
-        match field.as_integer() {
-            Some(label) => labels.extend(u64::try_from(label).ok()),
-            None => drop(names.insert(field.name_key())),
+        match cx.is_number(field) {
+            true => labels.extend(cx.as_label(field)),
+            false => names.extend([field.name_key(), cx.key_of(field)]),
         }
     }
     for (_, members) in groups.iter().filter(|(name, _)| names.contains(*name)) {
@@ -19,13 +20,12 @@ pub(super) fn labels(outline: &Outline, groups: &[(&str, &[u64])]) -> BTreeSet<u
     }
     let is_meant = |set: &&Card| {
         let name = set.value("NSET");
-        name.is_some_and(|name| names.contains(&name.name_key()))
+        name.is_some_and(|name| names.contains(&cx.key_of(name)))
     };
     for set in outline.model_cards("NSET").into_iter().filter(is_meant) {
         let count = if set.has("GENERATE") { 2 } else { usize::MAX };
         let numbers = set.rows.iter().flat_map(|row| row.fields().take(count));
-        let numbers = numbers.filter_map(|field| field.as_integer());
-        labels.extend(numbers.filter_map(|label| u64::try_from(label).ok()));
+        labels.extend(numbers.filter_map(|field| cx.as_label(field)));
     }
     labels
 }

@@ -28,9 +28,9 @@ pub(crate) struct Sets {
 impl Sets {
     /// The node, or the nodes of the set, that a field names.
     pub fn nodes_of(&self, field: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<usize> {
-        match field.as_integer() {
-            Some(_) => mesh_index.nodes.find(field, cx).into_iter().collect(),
-            None => members(&self.nodes, self.node_names.find(field, cx)),
+        match cx.is_number(field) {
+            true => mesh_index.nodes.find(field, cx).into_iter().collect(),
+            false => members(&self.nodes, self.node_names.find(field, cx)),
         }
     }
 
@@ -51,7 +51,7 @@ impl Sets {
         mesh_index: &MeshIndex,
         cx: &mut Context,
     ) -> (Vec<usize>, Vec<Face>) {
-        if field.as_integer().is_some() {
+        if cx.is_number(field) {
             let found = mesh_index.elements.find(field, cx);
             return split(found.into_iter().collect(), mesh_index);
         }
@@ -152,7 +152,7 @@ struct Family<'a> {
 impl<'a> Family<'a> {
     fn new(what: &'static str, labels: &'a Labels) -> Family<'a> {
         Family {
-            names: Names::new(what),
+            names: Names::of_parts(what),
             labels,
             drafts: Vec::new(),
             cards: Vec::new(),
@@ -195,7 +195,7 @@ impl<'a> Family<'a> {
     fn define(&mut self, cards: &[&'a Card], parameter: &str, cx: &mut Context) {
         for card in cards {
             let text = card.required(parameter, cx.d);
-            match text.and_then(|text| text.name(cx.d).map(|name| (name, text.span))) {
+            match text.and_then(|text| Some((self.names.defined(text, cx)?, text.span))) {
                 Some((name, span)) => {
                     let index = self.open(name, span);
                     self.cards.push((index, card));
@@ -210,7 +210,7 @@ impl<'a> Family<'a> {
         for (index, card) in std::mem::take(&mut self.cards) {
             let generate = card.has("GENERATE");
             if card.has("UNSORTED") {
-                let name = card.value("NSET").map(|name| name.name_key());
+                let name = card.value("NSET").map(|name| cx.key_of(name));
                 self.unsorted.extend(name);
             }
             if card.keyword.name == "NSET"
@@ -229,7 +229,7 @@ impl<'a> Family<'a> {
 
     fn list(&mut self, index: usize, row: &'a Row, cx: &mut Context) {
         for field in row.fields().filter(|field| !field.is_empty()) {
-            if field.as_integer().is_some() {
+            if cx.is_number(field) {
                 let member = self.labels.find(field, cx);
                 self.extend(index, member);
             } else if let Some(child) = self.names.find(field, cx)
@@ -244,9 +244,9 @@ impl<'a> Family<'a> {
     fn range(&mut self, index: usize, row: &Row, cx: &mut Context) {
         row.at_most(3, cx.d);
         let first = row.required(0, "the first number", cx.d);
-        let first = first.and_then(|field| self.labels.number(field, cx));
+        let first = first.and_then(|field| self.labels.label(field, cx));
         let last = row.required(1, "the last number", cx.d);
-        let last = last.and_then(|field| self.labels.number(field, cx));
+        let last = last.and_then(|field| self.labels.label(field, cx));
         let step = match row.get(2) {
             Some(field) => self.labels.number(field, cx),
             None => Some(1),
@@ -259,12 +259,13 @@ impl<'a> Family<'a> {
     }
 
     fn check_range(&self, first: u64, last: u64, step: u64, row: &Row, cx: &mut Context) {
+        let [start, stop] = [first, last].map(|label| cx.named(label));
         if last < first {
-            let message = format!("the range from {first} to {last} runs backwards");
+            let message = format!("the range from {start} to {stop} runs backwards");
             cx.error(Code::BadRange, row.span(), message);
         } else if !(last - first).is_multiple_of(step) {
-            let message = format!("steps of {step} from {first} do not meet {last}");
-            let end = last - (last - first) % step;
+            let message = format!("steps of {step} from {start} do not meet {stop}");
+            let end = cx.named(last - (last - first) % step);
             let warning = Diagnostic::warning(Code::BadRange, row.span(), message);
             cx.d.push(warning.help(format!("the range ends at {end}")));
         }

@@ -31,7 +31,7 @@ pub(crate) fn read(
     cx: &mut Context,
 ) -> Surfaces {
     let mut surfaces = Surfaces {
-        names: Names::new("surface"),
+        names: Names::of_parts("surface"),
         all: Vec::new(),
         rigid: Vec::new(),
         rigid_points: Vec::new(),
@@ -126,7 +126,7 @@ fn faces(
             }
             None => unnamed_faces(field, (mesh_index, sets), shared, cx),
         };
-        report_interior(&found, shared, row, &mesh_index.mesh, cx);
+        report_interior(&found, shared, row, mesh_index, cx);
         let before = faces.len();
         faces.extend(found.iter().copied().filter(|&face| seen.insert(face)));
         if faces.len() - before < found.len() {
@@ -172,7 +172,7 @@ fn named_faces(
 }
 
 fn no_such_face(element: usize, face: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<Face> {
-    let label = mesh_index.mesh.elements.get(element).map_or(0, |e| e.label);
+    let label = mesh_index.element_name(element);
     let sides = side_count(&mesh_index.mesh, element);
     let message = format!(
         "element {label} has faces S1 to S{sides}, not {}",
@@ -214,12 +214,19 @@ fn exterior_faces(elements: &[usize], shared: &SharedSides, mesh: &Mesh) -> Vec<
 }
 
 /// Warns about faces between two elements.
-fn report_interior(faces: &[Face], shared: &SharedSides, row: &Row, mesh: &Mesh, cx: &mut Context) {
+fn report_interior(
+    faces: &[Face],
+    shared: &SharedSides,
+    row: &Row,
+    mesh_index: &MeshIndex,
+    cx: &mut Context,
+) {
+    let mesh = &mesh_index.mesh;
     let interior = || faces.iter().filter(|&&face| shared.contains(face, mesh));
     let Some(first) = interior().next().filter(|_| !cx.d.has_errors()) else {
         return;
     };
-    let label = mesh.elements.get(first.element).map_or(0, |e| e.label);
+    let label = mesh_index.element_name(first.element);
     let side = first.side + 1;
     let message = match interior().count() {
         1 => format!("face S{side} of element {label} lies between two elements"),

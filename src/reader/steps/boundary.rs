@@ -211,10 +211,9 @@ impl Supports {
 }
 
 fn report_free_before(dof: usize, row: &Row, mesh_index: &MeshIndex, cx: &mut Context) {
-    let label = mesh_index.mesh.node_labels.get(dof / 2).copied();
     let message = format!(
         "node {} moved freely in direction {} in the step before",
-        label.unwrap_or(0),
+        mesh_index.node_name(dof / 2),
         dof % 2 + 1
     );
     let error = Diagnostic::error(Code::UnsupportedParameter, row.span(), message);

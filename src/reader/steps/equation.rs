@@ -130,7 +130,7 @@ fn nodes(field: Text, targets: Targets, cx: &mut Context) -> Option<Vec<usize>> 
     let mut nodes = targets.sets.nodes_of(field, targets.mesh_index, cx);
     let labels = &targets.mesh_index.mesh.node_labels;
     nodes.sort_by_key(|&node| labels.get(node));
-    if nodes.len() > 1 && targets.sets.unsorted.contains(&field.name_key()) {
+    if nodes.len() > 1 && targets.sets.unsorted.contains(&cx.key_of(field)) {
         let message = format!("the set {} is UNSORTED: its order is not kept", field.text);
         let error = Diagnostic::error(Code::BadEquation, field.span, message);
         cx.d.push(error.help("number its nodes in their order, or write an equation for each"));
@@ -192,12 +192,8 @@ fn solve(terms: &[Term], solved: &mut ByDof, targets: Targets, cx: &mut Context)
 
 /// The dof in the words of the deck.
 fn name(dof: usize, targets: Targets) -> String {
-    let label = targets.mesh_index.mesh.node_labels.get(dof / 2);
-    format!(
-        "direction {} of node {}",
-        dof % 2 + 1,
-        label.copied().unwrap_or(0)
-    )
+    let name = targets.mesh_index.node_name(dof / 2);
+    format!("direction {} of node {name}", dof % 2 + 1)
 }
 
 /// An eliminated dof cannot be prescribed as well.

@@ -69,12 +69,7 @@ fn report_supported(
     }
     for (span, dofs) in rows {
         let Some(first) = dofs.first() else { continue };
-        let label = mesh_index
-            .mesh
-            .node_labels
-            .get(first / 2)
-            .copied()
-            .unwrap_or(0);
+        let label = mesh_index.node_name(first / 2);
         let message = format!(
             "{} degrees of freedom with this velocity are prescribed, the first is node {label} \
              direction {}",

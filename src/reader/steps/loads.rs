@@ -191,7 +191,7 @@ impl Loads {
         let magnitude = row.real(2, "the magnitude", cx.d)?;
         let mesh = &source.targets.mesh_index.mesh;
         if let Some(&bad) = elements.iter().find(|&&e| side >= side_count(mesh, e)) {
-            let label = mesh.elements.get(bad).map_or(0, |e| e.label);
+            let label = source.targets.mesh_index.element_name(bad);
             let message = format!("element {label} has no face {}", side + 1);
             cx.error(Code::NoSuchFace, row.span(), message);
             return None;
