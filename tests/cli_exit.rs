@@ -65,12 +65,68 @@ fn a_wrong_command_line_is_3() {
 #[test]
 fn a_missing_file_is_4() {
     let _alone = alone();
-    for command in ["run", "check", "info"] {
+    for command in ["run", "check", "flatten", "info"] {
         let (code, out, err) = stickslip(&[command, "no/such/file"]);
         assert_eq!((code, out.as_str()), (4, ""), "{command}: {err}");
         assert!(err.starts_with("error: cannot read"), "{err}");
         assert!(err.contains("no/such/file"), "{err}");
     }
+}
+
+#[test]
+fn check_echoes_the_model_and_draws_it() {
+    let _alone = alone();
+    let folder = TempDir::new().expect("folder");
+    let picture = folder.path().join("model.svg").display().to_string();
+    for _ in 0..2 {
+        let check = ["check", "tests/decks/shared.inp", "--picture", &picture];
+        let (code, out, _) = stickslip(&check);
+        assert_eq!(code, 0);
+        for text in [
+            "10 nodes   3 elements (CPE4)   20 dofs, 6 fixed   mass 4.68e-08",
+            "extents [0,4] x [0,2.1]   shortest edge 1   wave speed 6.02e+06",
+            "guide    suggested dt 1.7e-07",
+            "the model in 7.5e-07",
+        ] {
+            assert!(out.contains(text), "{text}:\n{out}");
+        }
+    }
+    let drawn = std::fs::read_to_string(&picture).expect("a picture");
+    assert!(drawn.starts_with("<svg") && drawn.ends_with("</svg>\n"));
+    let deck = ["check", "tests/decks/shared.inp", "--picture", "shared.inp"];
+    assert_eq!(stickslip(&deck).0, 3, "not the name of a picture");
+    let nowhere = [
+        "check",
+        "tests/decks/shared.inp",
+        "--picture",
+        "no/such/a.svg",
+    ];
+    let (code, _, err) = stickslip(&nowhere);
+    assert_eq!(code, 4);
+    assert!(err.contains("cannot write no/such/a.svg"), "{err}");
+}
+
+#[test]
+fn flatten_writes_a_deck_that_is_written_the_same_again() {
+    let _alone = alone();
+    let folder = TempDir::new().expect("folder");
+    let flat = folder.path().join("flat.inp").display().to_string();
+    let (code, text, err) = stickslip(&["flatten", "tests/decks/folder.inp"]);
+    assert_eq!((code, err.as_str()), (0, ""));
+    assert!(!text.contains("INCLUDE"), "{text}");
+    let write = ["flatten", "tests/decks/folder.inp", "-o", &flat];
+    assert_eq!(stickslip(&write), (0, String::new(), String::new()));
+    assert_eq!(std::fs::read_to_string(&flat).expect("a deck"), text);
+    assert_eq!(stickslip(&["flatten", &flat]).1, text);
+    let (code, _, err) = stickslip(&write);
+    assert_eq!(code, 4, "nothing is replaced");
+    assert!(
+        err.contains("cannot write") && err.contains("flat.inp"),
+        "{err}"
+    );
+    let (code, out, err) = stickslip(&["flatten", "tests/decks/missing_include.inp"]);
+    assert_eq!((code, out.as_str()), (2, ""));
+    assert!(err.contains("D101"), "{err}");
 }
 
 #[test]

@@ -123,6 +123,10 @@ pub(super) struct CheckArgs {
     /// The deck
     #[command(flatten)]
     pub deck: DeckArgs,
+    /// Draw the model: bodies, supports, loads, velocities, surfaces with normals, contacts; an
+    /// earlier picture is replaced
+    #[arg(long, value_name = "FILE.svg", value_parser = svg_file)]
+    pub picture: Option<PathBuf>,
 }
 
 /// Arguments of `flatten`.
@@ -167,6 +171,14 @@ impl From<Solver> for SolverChoice {
             Solver::Faer => SolverChoice::Faer,
             Solver::Sprs => SolverChoice::Sprs,
         }
+    }
+}
+
+fn svg_file(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match path.extension() {
+        Some(extension) if extension.eq_ignore_ascii_case("svg") => Ok(path),
+        _ => Err("expected the name of a file that ends in .svg".into()),
     }
 }
 

@@ -1,5 +1,6 @@
 //! The subcommand `check`, and the reading of a deck that it shares with `run`.
 
+use std::fs;
 use std::path::Path;
 
 use crate::cli::args::{CheckArgs, DeckArgs};
@@ -7,7 +8,7 @@ use crate::cli::connect::{Loaded, Numerics};
 use crate::cli::error::CliError;
 use crate::cli::exit::Exit;
 use crate::cli::terminal::{coloured, complain, print};
-use crate::output::{ModelEcho, check_names, deck_line, regular_file};
+use crate::output::{ModelEcho, check_names, deck_line, picture, regular_file};
 
 /// Reads a deck and describes its model.
 pub(in crate::cli) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exit, CliError> {
@@ -18,7 +19,16 @@ pub(in crate::cli) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exi
         return Ok(Exit::Rejected);
     };
     check_names(model.model())?;
-    print(&ModelEcho::new(model.model()).lines(model))?;
+    let echo = ModelEcho::new(model.model());
+    print(&echo.lines(model))?;
+    print(&echo.guide())?;
+    if let Some(path) = &args.picture {
+        let written = fs::write(path, picture(model.model()));
+        written.map_err(|source| CliError::File {
+            path: path.clone(),
+            source,
+        })?;
+    }
     Ok(Exit::Finished)
 }
 

@@ -80,6 +80,18 @@ impl ModelEcho {
         lines
     }
 
+    /// What suits the waves of the model: an increment, and the time in which they cross it.
+    pub fn guide(&self) -> Vec<String> {
+        let size = [0, 1].map(|i| self.upper[i] - self.lower[i]);
+        let crossing = size[0].hypot(size[1]) / self.wave_speed;
+        let pieces = [
+            format!("suggested dt {}", general(self.edge_time, 2)),
+            "in which a wave crosses the shortest edge".to_owned(),
+            format!("the model in {}", general(crossing, 2)),
+        ];
+        wrap("guide", &pieces)
+    }
+
     fn model_lines(&self, model: &Model) -> Vec<String> {
         let mesh = &model.mesh;
         let range = |i: usize| {

@@ -1,0 +1,260 @@
+//! The sheet that is drawn on: places of the model become points of the picture, y upwards.
+
+use std::collections::HashMap;
+use std::fmt::Write;
+
+/// Width of the drawing without margins and legend.
+const WIDTH: f64 = 860.0;
+/// Largest and smallest height of the drawing.
+const HEIGHTS: [f64; 2] = [760.0, 160.0];
+/// Space about the drawing, for arrows and names.
+pub(super) const MARGIN: f64 = 70.0;
+/// Width of the legend.
+pub(super) const LEGEND: f64 = 300.0;
+
+/// A point of the picture, or a way in it, in pixels; y downwards.
+pub(super) type Point = [f64; 2];
+
+/// An SVG picture being drawn.
+pub(super) struct Canvas {
+    body: String,
+    /// Smallest and largest coordinates of the model.
+    pub extents: [[f64; 2]; 2],
+    /// Pixels per unit of length.
+    scale: f64,
+    /// Width and height of the drawing.
+    pub size: [f64; 2],
+    /// Height that the legend needs.
+    pub least_height: f64,
+}
+
+/// Colour of the line and its width in pixels.
+#[derive(Clone, Copy)]
+pub(super) struct Pen(pub &'static str, pub f64);
+
+impl Canvas {
+    /// An empty sheet that holds these places.
+    pub fn new(places: &[[f64; 2]]) -> Self {
+        let mut extents = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        for x in places {
+            for i in 0..2 {
+                extents[0][i] = extents[0][i].min(x[i]);
+                extents[1][i] = extents[1][i].max(x[i]);
+            }
+        }
+        // half of the size, which does not overflow
+        let half = [0, 1].map(|i| extents[1][i] / 2.0 - extents[0][i] / 2.0);
+        let scale = (WIDTH / half[0]).min(HEIGHTS[0] / half[1]) / 2.0;
+        let [width, height] = half.map(|half| 2.0 * half * scale);
+        Canvas {
+            body: String::new(),
+            extents,
+            scale,
+            size: [width.max(WIDTH / 2.0), height.max(HEIGHTS[1])],
+            least_height: 0.0,
+        }
+    }
+
+    /// The point of the picture where a place of the model lies: the model is in the middle.
+    pub fn at(&self, x: [f64; 2]) -> Point {
+        let from_middle = |i: usize| {
+            let [low, high] = [self.extents[0][i], self.extents[1][i]];
+            (x[i] - (low / 2.0 + high / 2.0)) * self.scale
+        };
+        let middle = self.size.map(|size| MARGIN + size / 2.0);
+        [middle[0] + from_middle(0), middle[1] - from_middle(1)]
+    }
+
+    /// Pixels that a length of the model takes.
+    pub fn pixels(&self, length: f64) -> f64 {
+        length * self.scale
+    }
+
+    /// Closed loops of places, filled; what lies in two loops is a hole.
+    pub fn fill(&mut self, loops: &[Vec<[f64; 2]>], colour: &str, pen: Pen) {
+        let path: String = loops.iter().map(|places| self.path(places) + "Z").collect();
+        let Pen(stroke, width) = pen;
+        self.tag(&format!(
+            "<path d=\"{path}\" fill=\"{colour}\" fill-rule=\"evenodd\" stroke=\"{stroke}\" \
+             stroke-width=\"{width}\"/>"
+        ));
+    }
+
+    /// Lines through places.
+    pub fn lines(&mut self, lines: &[Vec<[f64; 2]>], pen: Pen) {
+        let path: String = lines.iter().map(|places| self.path(places)).collect();
+        self.stroke(&path, pen);
+    }
+
+    fn path(&self, places: &[[f64; 2]]) -> String {
+        let mut path = String::new();
+        for (i, &place) in places.iter().enumerate() {
+            let [x, y] = self.at(place);
+            let letter = if i == 0 { 'M' } else { 'L' };
+            // writing to a string does not fail
+            let _ = write!(path, "{letter}{x:.1} {y:.1}");
+        }
+        path
+    }
+
+    /// A path in points of the picture.
+    pub fn stroke(&mut self, path: &str, Pen(colour, width): Pen) {
+        if !path.is_empty() {
+            self.tag(&format!(
+                "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" \
+                 stroke-linecap=\"round\" stroke-linejoin=\"round\"/>"
+            ));
+        }
+    }
+
+    /// A filled polygon of points.
+    pub fn polygon(&mut self, points: &[Point], colour: &str) {
+        let points: Vec<String> = points
+            .iter()
+            .map(|[x, y]| format!("{x:.1},{y:.1}"))
+            .collect();
+        self.tag(&format!(
+            "<polygon points=\"{}\" fill=\"{colour}\"/>",
+            points.join(" ")
+        ));
+    }
+
+    /// A dot with its middle at a point.
+    pub fn dot(&mut self, [x, y]: Point, radius: f64, colour: &str) {
+        self.tag(&format!(
+            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{colour}\"/>"
+        ));
+    }
+
+    /// An arrow from `from` by `way`.
+    pub fn arrow(&mut self, from: Point, way: Point, pen: Pen) {
+        let length = way[0].hypot(way[1]);
+        if !(length > 0.0 && length.is_finite()) {
+            return;
+        }
+        let to = [from[0] + way[0], from[1] + way[1]];
+        let e = way.map(|x| x / length);
+        let head = (3.0 + 2.0 * pen.1).min(0.6 * length);
+        let base = [to[0] - head * e[0], to[1] - head * e[1]];
+        let [x0, y0] = from;
+        self.stroke(
+            &format!("M{x0:.1} {y0:.1}L{:.1} {:.1}", base[0], base[1]),
+            pen,
+        );
+        let side = [-0.45 * head * e[1], 0.45 * head * e[0]];
+        let corners = [
+            to,
+            [base[0] + side[0], base[1] + side[1]],
+            [base[0] - side[0], base[1] - side[1]],
+        ];
+        self.polygon(&corners, pen.0);
+    }
+
+    /// Text with a white rim; `anchor` is start, middle or end.
+    pub fn label(&mut self, [x, y]: Point, anchor: &str, colour: &str, text: &str) {
+        let text = escaped(text);
+        let place = format!("x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\"");
+        let rim = "fill=\"#ffffff\" stroke=\"#ffffff\" stroke-width=\"3\"";
+        self.tag(&format!("<text {place} {rim}>{text}</text>"));
+        self.tag(&format!("<text {place} fill=\"{colour}\">{text}</text>"));
+    }
+
+    fn tag(&mut self, tag: &str) {
+        self.body.push_str(tag);
+        self.body.push('\n');
+    }
+
+    /// The whole picture.
+    pub fn text(self) -> String {
+        let width = self.size[0] + 2.0 * MARGIN + LEGEND;
+        let height = (self.size[1] + 2.0 * MARGIN).max(self.least_height);
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
+             viewBox=\"0 0 {width:.0} {height:.0}\" font-family=\"sans-serif\" font-size=\"12\">\n\
+             <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{}</svg>\n",
+            self.body
+        )
+    }
+}
+
+/// Text with the signs that SVG gives a meaning to.
+fn escaped(text: &str) -> String {
+    let mut escaped = String::new();
+    for c in text.chars() {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            c if c.is_control() => escaped.push(' '),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}
+
+/// Keeps marks of one kind apart: few are drawn where many would cover each other.
+pub(super) struct Spacing {
+    distance: f64,
+    taken: HashMap<[i64; 2], Point>,
+}
+
+impl Spacing {
+    /// Marks that are at least so many pixels apart.
+    pub fn new(distance: f64) -> Self {
+        Spacing {
+            distance,
+            taken: HashMap::new(),
+        }
+    }
+
+    /// Whether there is room at a point; takes it.
+    pub fn takes(&mut self, at: Point) -> bool {
+        // a cell has room for one mark
+        let cell = at.map(|x| (x / self.distance * std::f64::consts::SQRT_2).floor() as i64);
+        let is_near = |[x, y]: &Point| (x - at[0]).hypot(y - at[1]) < self.distance;
+        for i in -2..=2 {
+            for j in -2..=2 {
+                let other = [cell[0].saturating_add(i), cell[1].saturating_add(j)];
+                if self.taken.get(&other).is_some_and(is_near) {
+                    return false;
+                }
+            }
+        }
+        self.taken.insert(cell, at);
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_stay_apart() {
+        let mut spacing = Spacing::new(10.0);
+        let points = [
+            [0.0, 0.0],
+            [9.0, 0.0],
+            [10.0, 0.0],
+            [-7.0, -7.0],
+            [-7.0, -8.0],
+        ];
+        assert_eq!(
+            points.map(|at| spacing.takes(at)),
+            [true, false, true, false, true]
+        );
+    }
+
+    #[test]
+    fn text_is_escaped() {
+        assert_eq!(escaped("a<b>&\u{1}c"), "a&lt;b&gt;&amp; c");
+    }
+
+    #[test]
+    fn the_model_is_in_the_middle_and_upright() {
+        let canvas = Canvas::new(&[[1.0, 2.0], [5.0, 4.0]]);
+        let ([x0, y0], [x1, y1]) = (canvas.at([1.0, 2.0]), canvas.at([5.0, 4.0]));
+        assert!((x1 - x0 - 860.0).abs() < 1e-9 && (y0 - y1 - 430.0).abs() < 1e-9);
+        assert!((x0 - MARGIN).abs() < 1e-9 && (y1 - MARGIN).abs() < 1e-9);
+    }
+}
