@@ -1,7 +1,9 @@
-//! No text makes the reader panic: mutations of valid decks and plain noise.
+//! No text makes the reader panic, and every model reads as the same from its flat deck: mutations of
+//! valid decks and plain noise.
 
 use proptest::prelude::*;
 use stickslip::diagnostics::{Diagnostics, Sources, Strictness};
+use stickslip::flat_deck::{flat_deck, reads_as};
 use stickslip::model::{Curve, Increments, Model, Set, Step, Variation};
 use stickslip::{deck, reader};
 
@@ -78,6 +80,8 @@ fn survive(text: &str) {
         assert_eq!(model.is_some(), !d.has_errors(), "{messages}");
         if let Some(model) = model {
             check(&model);
+            let flat = flat_deck(&model);
+            assert!(reads_as(&flat, &model), "not the same model:\n{flat}");
         }
     }
 }

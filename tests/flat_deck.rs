@@ -167,7 +167,8 @@ fn tractions_on_faces_of_elements_are_those_on_surfaces() {
 #[test]
 fn loads_that_ramp() {
     let ramp = ", AMPLITUDE=RAMP";
-    let loads = "*CLOAD\n3, 2, 4.\n4, 1, 1.\n*DLOAD\nBODY, GRAV, 9.81, 0., -1.\nBODY, P3, 1.\n";
+    let loads =
+        "*CLOAD\n3, 2, 4.\n4, 1, 1.\n3, 2, 3.\n*DLOAD\nBODY, GRAV, 9.81, 0., -1.\nBODY, P3, 1.\n";
     for more in [
         "",
         "*CLOAD, OP=NEW\n",
@@ -175,6 +176,7 @@ fn loads_that_ramp() {
         "*CLOAD, OP=NEW\n4, 1, 7.\n",
         "*DLOAD\nBODY, GRAV, 1., 1., 0.\n",
         "*CLOAD, AMPLITUDE=T\n3, 2, 8.\n",
+        "*CLOAD\n3, 2, 1.\n3, 2, 2.\n",
     ] {
         let model = steps([[ramp, loads], [ramp, more], ["", "*CLOAD\n4, 2, 1.\n"]]);
         let ramps = |v: Variation| matches!(v, Variation::Ramp { .. });

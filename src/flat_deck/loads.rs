@@ -5,6 +5,7 @@ use super::mesh::elements_field;
 use crate::model::{
     Amplitude, BodyForce, Load, Model, PointLoad, Pressure, Step, TimeBase, Traction, Variation,
 };
+use std::collections::HashMap;
 
 /// A load as it stands in a data line.
 #[derive(Clone, PartialEq)]
@@ -56,10 +57,10 @@ impl Loads {
             // Where loads ramp, OP=NEW would fade those that stay.
             let is_new = !carried.is_empty() && !self.ramp();
             let operation = is_new.then(|| set("OP", "NEW"));
-            let mut entries = now.clone();
-            if operation.is_none() {
-                remove_carried(&mut entries, carried);
-            }
+            let entries = match is_new {
+                true => now.clone(),
+                false => without_carried(now, carried),
+            };
             write_cards(keyword, operation, &grouped(entries, model), model, lines);
         }
     }
@@ -67,17 +68,26 @@ impl Loads {
     /// The loads that a step of duration `period` leaves to the next one.
     pub fn carried(&self, period: f64, amplitudes: &[Amplitude]) -> Loads {
         let carry = |entries: &Vec<Entry>| {
-            let carried = entries
-                .iter()
-                .map(|entry| entry.carried(period, amplitudes));
-            carried.filter(|entry| entry.magnitude != 0.0).collect()
+            let mut carried: Vec<Entry> = Vec::new();
+            for entry in entries {
+                add(entry.carried(period, amplitudes), &mut carried);
+            }
+            carried.retain(|entry| entry.magnitude != 0.0);
+            carried
         };
         let [points, elements] = &self.0;
         Loads([carry(points), carry(elements)])
     }
 }
 
+/// Element or target, and what acts there.
+type Key<'e> = (Option<usize>, &'e str, &'e str);
+
 impl Entry {
+    fn key(&self) -> Key<'_> {
+        (self.element, &self.target, &self.kind)
+    }
+
     fn new<T>(target: String, kind: impl Into<String>, load: &Load<T>) -> Entry {
         Entry {
             element: None,
@@ -156,18 +166,46 @@ fn traction(load: &Load<Traction>, model: &Model) -> Entry {
     }
 }
 
-/// Removes the loads that are those of the step before.
-fn remove_carried(entries: &mut Vec<Entry>, carried: &[Entry]) {
-    let mut carried = carried.to_vec();
-    entries.retain(
-        |entry| match carried.iter().position(|known| known == entry) {
-            Some(index) => {
-                carried.swap_remove(index);
-                false
-            }
-            None => true,
-        },
-    );
+/// Adds a load; constant loads at the same place and in the same direction are joined.
+fn add(entry: Entry, entries: &mut Vec<Entry>) {
+    let joins = |known: &&mut Entry| {
+        let magnitude = known.magnitude;
+        let is_constant = known.variation == Variation::Constant;
+        is_constant
+            && **known
+                == Entry {
+                    magnitude,
+                    ..entry.clone()
+                }
+    };
+    let mut of_key = entries
+        .iter_mut()
+        .rev()
+        .take_while(|known| known.key() == entry.key());
+    match of_key.find(joins) {
+        Some(known) => known.magnitude += entry.magnitude,
+        None => entries.push(entry),
+    }
+}
+
+/// The loads that are not those of the step before.
+fn without_carried(entries: &[Entry], carried: &[Entry]) -> Vec<Entry> {
+    let mut by_key: HashMap<Key, Vec<&Entry>> = HashMap::new();
+    for entry in carried {
+        by_key.entry(entry.key()).or_default().push(entry);
+    }
+    let mut rest = Vec::new();
+    for entry in entries {
+        let of_key = by_key.get_mut(&entry.key());
+        let found = of_key.and_then(|of_key| {
+            let index = of_key.iter().position(|known| *known == entry)?;
+            Some(of_key.remove(index))
+        });
+        if found.is_none() {
+            rest.push(entry.clone());
+        }
+    }
+    rest
 }
 
 /// Loads with body forces that are alike in one entry, where they act on all elements or on a set.

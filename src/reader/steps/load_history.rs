@@ -127,10 +127,30 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
             part.end_step(period, total, amplitudes);
         }
         self.parts.retain(|_, parts| {
+            add_up(parts);
             parts.retain(|part| part.load.magnitude != 0.0);
             !parts.is_empty()
         });
     }
+}
+
+/// Joins constant loads at the same place and in the same direction.
+fn add_up<T: Copy + PartialEq>(parts: &mut Vec<Part<T>>) {
+    let mut sums: Vec<Part<T>> = Vec::new();
+    for part in parts.drain(..) {
+        let joins = |sum: &&mut Part<T>| {
+            let both = [sum.load.variation, part.load.variation];
+            sum.load.at == part.load.at && both == [Variation::Constant; 2]
+        };
+        match sums.iter_mut().find(joins) {
+            Some(sum) => {
+                sum.load.magnitude += part.load.magnitude;
+                sum.end += part.end;
+            }
+            None => sums.push(part),
+        }
+    }
+    *parts = sums;
 }
 
 impl<T> Part<T> {
