@@ -1,15 +1,19 @@
 //! The element types behind one enum: each variant is one file with its quadrature and mass.
 //! Section 2 of docs/theory.md.
 
+use nalgebra::SMatrix;
+
 use super::mean_dilatation::Quad4MeanDilatation;
-use super::quad4::{self, Quad4};
+use super::quad4::{self, Quad4, Quadrilateral};
 use super::recovery::ElementResult;
 use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion, TangentPart};
-use super::tri3::{self, Tri3};
-use crate::materials::{Committed, StressAtPoints};
-use crate::model::{ElementType, Formulation, Shape};
+use super::sweep::{BlockTangents, Chunk, TangentSweep};
+use super::tri3::{self, Tri3, Triangle};
+use crate::materials::{Committed, ConstitutiveLaw, PlaneLaw, StressAtPoints};
+use crate::model::{ElementType, Formulation, Mesh, Model, Shape};
 
 /// An element of any type.
+#[derive(Clone, Copy)]
 #[allow(clippy::large_enum_variant)] // most elements are quadrilaterals: kept in one piece for speed
 pub(super) enum AnyElement {
     /// T3, displacement formulation.
@@ -39,13 +43,20 @@ impl AnyElement {
             shape, formulation, ..
         } = element.element_type;
         match (shape, formulation) {
-            (Shape::Tri3, _) => Self::Tri3(Tri3::new(first(nodes), x, t, tri3::reference)),
-            (Shape::Quad4, Formulation::Displacement) => {
-                Self::Quad4(Quad4::new(first(nodes), x, t, quad4::reference))
+            (Shape::Tri3, _) => {
+                let nodes = first(nodes);
+                Self::Tri3(Tri3::new(nodes, tri3::reference(&corners(nodes, x), t)))
             }
-            (Shape::Quad4, Formulation::MeanDilatation) => Self::Quad4MeanDilatation(
-                Quad4MeanDilatation::new(first(nodes), x, t, quad4::reference),
-            ),
+            (Shape::Quad4, formulation) => {
+                let nodes = first(nodes);
+                let reference = quad4::reference(&corners(nodes, x), t);
+                match formulation {
+                    Formulation::Displacement => Self::Quad4(Quad4::new(nodes, reference)),
+                    Formulation::MeanDilatation => {
+                        Self::Quad4MeanDilatation(Quad4MeanDilatation::new(nodes, reference))
+                    }
+                }
+            }
         }
     }
 
@@ -69,9 +80,15 @@ impl AnyElement {
         with_element!(self, element => element.nodal_volumes())
     }
 
-    /// Consistent mass per direction, n x n column by column (mass).
+    /// Consistent mass per direction, int rho h_a h_b dOmega, eq. (2.7), n x n column by column (mass).
     pub fn mass(&self, density: f64) -> Vec<f64> {
-        with_element!(self, element => element.mass(density))
+        match self {
+            Self::Tri3(e) => (tri3::mass(e.reference()) * density).as_slice().to_vec(),
+            Self::Quad4(e) => (quad4::mass(e.reference()) * density).as_slice().to_vec(),
+            Self::Quad4MeanDilatation(e) => {
+                (quad4::mass(e.reference()) * density).as_slice().to_vec()
+            }
+        }
     }
 
     /// Internal force with the smallest determinant of the deformation gradient.
@@ -109,7 +126,92 @@ impl AnyElement {
     }
 }
 
+/// A chunk of elements of any type that is swept by blocks.
+pub(super) enum AnyChunk {
+    /// T3, displacement formulation.
+    Tri3(Chunk<3, 1, Triangle>),
+    /// Q4, displacement formulation.
+    Quad4(Chunk<4, 4, Quadrilateral>),
+}
+
+/// Evaluates an expression for the chunk in an [`AnyChunk`], whatever its type.
+macro_rules! with_chunk {
+    ($any:expr, $chunk:ident => $value:expr) => {
+        match $any {
+            AnyChunk::Tri3($chunk) => $value,
+            AnyChunk::Quad4($chunk) => $value,
+        }
+    };
+}
+
+impl AnyChunk {
+    /// Whether elements of a type and law are swept by blocks.
+    pub fn has(element_type: &ElementType, law: &PlaneLaw) -> bool {
+        let triangle = element_type.shape == Shape::Tri3;
+        law.variables() == 0 && (triangle || element_type.formulation == Formulation::Displacement)
+    }
+
+    /// Elements (indices) of the model of one type, law and thickness `t`.
+    pub fn new(model: &Model, elements: &[usize], t: f64, law: PlaneLaw) -> Self {
+        let Mesh {
+            coordinates,
+            elements: all,
+            ..
+        } = &model.mesh;
+        match all[elements[0]].element_type.shape {
+            Shape::Tri3 => {
+                let nodes: Vec<_> = elements.iter().map(|&e| first(&all[e].nodes)).collect();
+                Self::Tri3(Chunk::new(elements.to_vec(), &nodes, coordinates, t, law))
+            }
+            Shape::Quad4 => {
+                let nodes: Vec<_> = elements.iter().map(|&e| first(&all[e].nodes)).collect();
+                Self::Quad4(Chunk::new(elements.to_vec(), &nodes, coordinates, t, law))
+            }
+        }
+    }
+
+    /// The element at a place of the chunk, between its nodes.
+    pub fn element(&self, place: usize, nodes: &[usize]) -> AnyElement {
+        match self {
+            Self::Tri3(chunk) => AnyElement::Tri3(Tri3::new(first(nodes), chunk.reference(place))),
+            Self::Quad4(chunk) => {
+                AnyElement::Quad4(Quad4::new(first(nodes), chunk.reference(place)))
+            }
+        }
+    }
+
+    /// Sums up internal forces. False where an element is turned inside out.
+    pub fn sum_forces(&self, motion: Motion) -> bool {
+        with_chunk!(self, chunk => chunk.sum_forces(motion))
+    }
+
+    /// Adds the sums of the last sweep to a vector over all dofs.
+    pub fn add_sums(&self, total: &mut [f64]) {
+        with_chunk!(self, chunk => chunk.add_sums(total))
+    }
+
+    /// Elements (indices) with strain energy, stress and strain at displacements `u`.
+    pub fn evaluate(&self, u: &[f64]) -> Vec<(usize, ElementResult)> {
+        with_chunk!(self, chunk => chunk.evaluate(u))
+    }
+
+    /// Calls `add(element, k)` with the tangent of every wanted element.
+    pub fn for_each_tangent(
+        &self,
+        sweep: TangentSweep<impl Fn(usize) -> bool + Sync>,
+        space: &mut Vec<BlockTangents>,
+        add: &mut impl FnMut(usize, &[f64]),
+    ) {
+        with_chunk!(self, chunk => chunk.for_each_tangent(sweep, space, add))
+    }
+}
+
 /// The nodes of an element as an array; a model's element has as many as its type.
 fn first<const N: usize>(nodes: &[usize]) -> [usize; N] {
     std::array::from_fn(|a| nodes[a])
+}
+
+/// Coordinates of the nodes of an element, column a for node a.
+fn corners<const N: usize>(nodes: [usize; N], x: &[[f64; 2]]) -> SMatrix<f64, 2, N> {
+    SMatrix::from_fn(|i, a| x[nodes[a]][i])
 }

@@ -16,13 +16,59 @@ pub struct Point<const N: usize> {
     pub volume: f64,
 }
 
+/// The map to one integration point from its natural coordinates r: all that differs between two
+/// elements of a shape.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jacobian {
+    /// (dX/dr)^-1 (1/length).
+    pub inverse: Matrix2<f64>,
+    /// Weight: t det(dX/dr) times the quadrature weight (length^3).
+    pub volume: f64,
+}
+
+/// Shape functions of N nodes at P integration points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShapeFunctions<const N: usize, const P: usize> {
+    /// Shape functions h_a at every point.
+    pub values: [[f64; N]; P],
+    /// Natural derivatives dh_a/dr_i at every point.
+    pub natural: [[[f64; 2]; N]; P],
+    /// Quadrature weight of every point.
+    pub weight: f64,
+}
+
+impl<const N: usize, const P: usize> ShapeFunctions<N, P> {
+    /// dX/dr at every point of an element between nodes at `x` (column a for node a), of thickness `t`.
+    pub fn jacobians(&self, x: &SMatrix<f64, 2, N>, t: f64) -> [Jacobian; P] {
+        self.natural.map(|natural| {
+            let j: Matrix2<f64> = x * SMatrix::<f64, N, 2>::from_fn(|a, i| natural[a][i]);
+            let det = j.determinant();
+            Jacobian {
+                inverse: Matrix2::new(j.m22, -j.m12, -j.m21, j.m11) / det,
+                volume: t * self.weight * det,
+            }
+        })
+    }
+
+    /// The element with these jacobians, dh/dX = dh/dr (dX/dr)^-1.
+    pub fn reference(&self, jacobians: &[Jacobian; P]) -> Reference<N, P> {
+        let point = |p: usize| Point {
+            shape: SVector::from(self.values[p]),
+            gradient: SMatrix::<f64, N, 2>::from_fn(|a, i| self.natural[p][a][i])
+                * jacobians[p].inverse,
+            volume: jacobians[p].volume,
+        };
+        Reference {
+            points: std::array::from_fn(point),
+        }
+    }
+}
+
 /// An element with N nodes and P integration points in the reference configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reference<const N: usize, const P: usize> {
     /// Integration points of stress and internal force.
     pub points: [Point<N>; P],
-    /// Consistent mass per density, int h_a h_b dOmega (length^3).
-    pub mass: SMatrix<f64, N, N>,
 }
 
 impl<const N: usize, const P: usize> Reference<N, P> {

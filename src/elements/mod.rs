@@ -3,11 +3,10 @@
 //! Displacements and forces of an element with N nodes are 2 x N matrices, column a belonging to
 //! node a. Element matrices have D = 2 N rows, row 2 a + i belonging to direction i of node a.
 
+mod all;
 mod damping;
 mod displacement;
 mod element;
-#[allow(clippy::module_inception)] // the elements of all bodies
-mod elements;
 mod formulation;
 mod integration_point;
 mod kinematics;
@@ -15,8 +14,9 @@ mod mean_dilatation;
 mod quad4;
 mod recovery;
 mod solid;
+mod sweep;
 mod tri3;
 
-pub use elements::{Elements, Inverted, Updated};
+pub use all::{Elements, Inverted, Updated};
 pub use recovery::{ElementResult, Strained, most_strained};
 pub use solid::{Increment, Motion, TangentPart};

@@ -21,10 +21,11 @@ pub(super) type ElementVector = [f64; MAX_DOFS];
 pub(super) type ElementMatrix = [f64; MAX_DOFS * MAX_DOFS];
 
 /// An element with N nodes, P integration points and D = 2 N dofs in the formulation F.
+#[derive(Clone, Copy)]
 pub struct Solid<const N: usize, const P: usize, const D: usize, F> {
     /// Node indices, counter-clockwise.
     nodes: [usize; N],
-    /// Integration points and mass.
+    /// Integration points.
     reference: Reference<N, P>,
     formulation: PhantomData<F>,
 }
@@ -69,19 +70,18 @@ impl<'a> Motion<'a> {
 }
 
 impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P, D, F> {
-    /// An element between nodes at the coordinates `x`, with the integration points that `reference`
-    /// makes of the corners (column a for node a) and the thickness `t`.
-    pub fn new(
-        nodes: [usize; N],
-        x: &[[f64; 2]],
-        t: f64,
-        reference: fn(&SMatrix<f64, 2, N>, f64) -> Reference<N, P>,
-    ) -> Self {
+    /// An element between some nodes.
+    pub fn new(nodes: [usize; N], reference: Reference<N, P>) -> Self {
         Solid {
             nodes,
-            reference: reference(&SMatrix::from_fn(|i, a| x[nodes[a]][i]), t),
+            reference,
             formulation: PhantomData,
         }
+    }
+
+    /// Integration points.
+    pub(super) fn reference(&self) -> &Reference<N, P> {
+        &self.reference
     }
 
     /// Node indices, counter-clockwise.
@@ -99,11 +99,6 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
         let mut shares = [0.0; MAX_NODES];
         shares[..N].copy_from_slice(self.reference.nodal_volume().as_slice());
         shares
-    }
-
-    /// Consistent mass per direction, int rho h_a h_b dOmega, eq. (2.7), N x N column by column (mass).
-    pub(super) fn mass(&self, density: f64) -> Vec<f64> {
-        (self.reference.mass * density).as_slice().to_vec()
     }
 
     /// Internal force with the smallest determinant of the deformation gradient.
@@ -174,7 +169,7 @@ const EIGENVALUES: (f64, usize) = (f64::EPSILON, 1000);
 
 /// K+ = sum max(lambda, 0) v v^T over the eigenpairs of a symmetric matrix of size `d`, eq. (4.14), in
 /// its place.
-fn take_positive_part(k: &mut [f64], d: usize) {
+pub(super) fn take_positive_part(k: &mut [f64], d: usize) {
     let whole = DMatrix::from_column_slice(d, d, k);
     let (eps, iterations) = EIGENVALUES;
     let Some(pairs) = SymmetricEigen::try_new(whole, eps, iterations) else {

@@ -1,106 +1,175 @@
 //! Assembly of element matrices into compressed sparse columns, K = sum T_e^T K_e T_e, through
 //! positions computed once. Section 4 of docs/theory.md.
 
-use sprs::{CsMat, CsMatView};
+use std::sync::Arc;
+
+use sprs::{CsMatBase, CsMatView};
 
 use super::Transformation;
 
 /// Marks an entry of an element matrix that equations distribute over several entries.
-const DISTRIBUTED: usize = usize::MAX;
+const DISTRIBUTED: u32 = u32::MAX;
+
+/// A matrix by columns whose copies share its pattern.
+type SharedPattern = CsMatBase<f64, usize, Arc<[usize]>, Arc<[usize]>, Vec<f64>>;
 
 /// A symmetric sparse matrix over unknowns, assembled from element matrices over dofs. Both
-/// triangles are stored by columns; the pattern is built once and refilled in place.
+/// triangles are stored by columns; the pattern is built once, shared by copies, and refilled in place.
 #[derive(Debug, Clone)]
 pub struct Assembled {
-    matrix: CsMat<f64>,
-    /// Position in the values of every entry of every element matrix, column by column.
-    positions: Vec<usize>,
-    /// Start of each element in `positions`.
+    matrix: SharedPattern,
+    positions: Arc<Positions>,
+}
+
+/// Where the entries of the element matrices are added.
+#[derive(Debug)]
+struct Positions {
+    /// Position in the values of the entries of every element matrix, column by column: of every
+    /// entry, or of every other one where the next is added to the next value.
+    positions: Vec<u32>,
+    /// Start of each element in `positions`, and their end.
     starts: Vec<usize>,
     /// Terms of the entries whose dofs follow others, element by element.
     couplings: Vec<Coupling>,
-    /// Start of each element in `couplings`, and their end.
-    coupling_starts: Vec<usize>,
 }
 
 /// A term of T_e^T K_e T_e where a row of T is not one of the identity.
 #[derive(Debug, Clone, Copy)]
 struct Coupling {
+    element: usize,
     /// Entry of the element matrix.
     entry: usize,
     /// Its position in the values.
-    position: usize,
+    position: u32,
     /// Product of the two coefficients.
     coefficient: f64,
 }
 
-impl Assembled {
-    /// Zero matrix over the unknowns of `map`, with the pattern of elements with the given dofs.
-    pub fn new(map: &Transformation, elements: &[Vec<usize>]) -> Self {
-        let n = map.unknowns();
-        let mut entries: Vec<(usize, usize)> = (0..n).map(|i| (i, i)).collect();
-        for dofs in elements {
-            let unknowns = || dofs.iter().flat_map(|&dof| map.row(dof)).map(|term| term.0);
-            for column in unknowns() {
-                entries.extend(unknowns().map(|row| (column, row)));
-            }
-        }
-        entries.sort_unstable();
-        entries.dedup();
-        let mut starts_of_columns = vec![0; n + 1];
-        for &(column, _) in &entries {
-            starts_of_columns[column + 1] += 1;
-        }
-        for column in 0..n {
-            starts_of_columns[column + 1] += starts_of_columns[column];
-        }
-        let rows: Vec<usize> = entries.iter().map(|&(_, row)| row).collect();
-        let values = vec![0.0; rows.len()];
-        let mut assembled = Assembled {
-            matrix: CsMat::new_csc((n, n), starts_of_columns, rows, values),
-            positions: Vec::new(),
-            starts: vec![0],
-            couplings: Vec::new(),
-            coupling_starts: vec![0],
+/// Columns of a matrix by their rows, increasing.
+struct Pattern {
+    starts: Vec<usize>,
+    rows: Vec<usize>,
+}
+
+impl Pattern {
+    /// The pattern over the unknowns of `map` of elements with the given dofs, and of the diagonal.
+    fn new(map: &Transformation, elements: &[Vec<usize>]) -> Self {
+        let unknowns = |element: usize| {
+            let terms = elements[element].iter().flat_map(|&dof| map.row(dof));
+            terms.map(|term| term.0)
         };
-        for dofs in elements {
-            assembled.place(map, dofs);
+        let (starts, of_unknowns) = elements_of(map.unknowns(), || {
+            let all = 0..elements.len();
+            all.flat_map(|element| unknowns(element).map(move |unknown| (unknown, element)))
+        });
+        let mut pattern = Pattern {
+            starts: vec![0],
+            rows: Vec::new(),
+        };
+        let mut column = Vec::new();
+        for unknown in 0..map.unknowns() {
+            column.clear();
+            column.push(unknown);
+            for &element in &of_unknowns[starts[unknown]..starts[unknown + 1]] {
+                column.extend(unknowns(element));
+            }
+            column.sort_unstable();
+            column.dedup();
+            pattern.rows.extend(&column);
+            pattern.starts.push(pattern.rows.len());
         }
-        assembled
+        pattern
     }
 
-    /// Finds the positions of the entries of an element matrix over the given dofs.
-    fn place(&mut self, map: &Transformation, dofs: &[usize]) {
+    /// Position in the values of an entry.
+    fn position(&self, row: usize, column: usize) -> u32 {
+        let start = self.starts[column];
+        let rows = &self.rows[start..self.starts[column + 1]];
+        let position = start + rows.partition_point(|r| *r < row);
+        debug_assert!(position < DISTRIBUTED as usize, "matrices fit into memory");
+        position as u32
+    }
+}
+
+/// Elements of every unknown, one list after the other, and the starts of the lists; `pairs` has
+/// unknowns with their elements.
+fn elements_of<I: Iterator<Item = (usize, usize)>>(
+    unknowns: usize,
+    pairs: impl Fn() -> I,
+) -> (Vec<usize>, Vec<usize>) {
+    let mut starts = vec![0; unknowns + 1];
+    pairs().for_each(|(unknown, _)| starts[unknown + 1] += 1);
+    for unknown in 0..unknowns {
+        starts[unknown + 1] += starts[unknown];
+    }
+    let (mut next, mut elements) = (starts.clone(), vec![0; starts[unknowns]]);
+    for (unknown, element) in pairs() {
+        elements[next[unknown]] = element;
+        next[unknown] += 1;
+    }
+    (starts, elements)
+}
+
+impl Positions {
+    /// Finds the positions of the entries of the next element matrix, over the given dofs.
+    fn place(&mut self, pattern: &Pattern, map: &Transformation, dofs: &[usize]) {
+        let (element, first) = (self.starts.len() - 1, self.positions.len());
         let pairs = dofs
             .iter()
             .flat_map(|column| dofs.iter().map(move |row| (row, column)));
         for (entry, (&row, &column)) in pairs.enumerate() {
             let position = match (map.row(row), map.row(column)) {
-                (&[(row, 1.0)], &[(column, 1.0)]) => self.position(row, column),
+                (&[(row, 1.0)], &[(column, 1.0)]) => pattern.position(row, column),
                 (rows, columns) => {
                     for &(column, c) in columns {
-                        for &(row, r) in rows {
-                            let (position, coefficient) = (self.position(row, column), r * c);
-                            self.couplings.push(Coupling {
-                                entry,
-                                position,
-                                coefficient,
-                            });
-                        }
+                        self.couplings.extend(rows.iter().map(|&(row, r)| Coupling {
+                            element,
+                            entry,
+                            position: pattern.position(row, column),
+                            coefficient: r * c,
+                        }));
                     }
                     DISTRIBUTED
                 }
             };
             self.positions.push(position);
         }
+        let (twos, rest) = self.positions[first..].as_chunks::<2>();
+        if rest.is_empty() && twos.iter().all(|[p, q]| p.checked_add(1) == Some(*q)) {
+            let every_other: Vec<u32> = twos.iter().map(|[p, _]| *p).collect();
+            self.positions.truncate(first);
+            self.positions.extend(every_other);
+        }
         self.starts.push(self.positions.len());
-        self.coupling_starts.push(self.couplings.len());
     }
 
-    /// Position in the values of an entry of the pattern.
-    fn position(&self, row: usize, column: usize) -> usize {
-        let range = self.matrix.indptr().outer_inds_sz(column);
-        range.start + self.matrix.indices()[range].partition_point(|r| *r < row)
+    /// Terms of an element matrix that equations distribute.
+    fn couplings(&self, element: usize) -> &[Coupling] {
+        let first = self.couplings.partition_point(|c| c.element < element);
+        let last = self.couplings.partition_point(|c| c.element <= element);
+        &self.couplings[first..last]
+    }
+}
+
+impl Assembled {
+    /// Zero matrix over the unknowns of `map`, with the pattern of elements with the given dofs.
+    pub fn new(map: &Transformation, elements: &[Vec<usize>]) -> Self {
+        let (n, pattern) = (map.unknowns(), Pattern::new(map, elements));
+        let mut positions = Positions {
+            positions: Vec::new(),
+            starts: vec![0],
+            couplings: Vec::new(),
+        };
+        for dofs in elements {
+            positions.place(&pattern, map, dofs);
+        }
+        positions.positions.shrink_to_fit();
+        let values = vec![0.0; pattern.rows.len()];
+        let (starts, rows) = (pattern.starts.into(), pattern.rows.into());
+        Assembled {
+            matrix: CsMatBase::new_csc((n, n), starts, rows, values),
+            positions: Arc::new(positions),
+        }
     }
 
     /// Sets all values to zero.
@@ -110,18 +179,39 @@ impl Assembled {
 
     /// Adds `factor` times the matrix `k` (column by column) of an element.
     pub fn add(&mut self, element: usize, k: &[f64], factor: f64) {
-        let positions = &self.positions[self.starts[element]..self.starts[element + 1]];
-        debug_assert_eq!(positions.len(), k.len(), "element matrix fits its dofs");
+        let Positions {
+            positions, starts, ..
+        } = &*self.positions;
+        let positions = &positions[starts[element]..starts[element + 1]];
         let values = self.matrix.data_mut();
+        if 2 * positions.len() == k.len() {
+            for (&position, [p, q]) in positions.iter().zip(k.as_chunks::<2>().0) {
+                if let Some([first, second]) = values[position as usize..].first_chunk_mut::<2>() {
+                    *first += factor * p;
+                    *second += factor * q;
+                }
+            }
+            return;
+        }
+        debug_assert_eq!(positions.len(), k.len(), "element matrix fits its dofs");
         for (&position, &value) in positions.iter().zip(k) {
             if position != DISTRIBUTED {
-                values[position] += factor * value;
+                values[position as usize] += factor * value;
             }
         }
-        let couplings = self.coupling_starts[element]..self.coupling_starts[element + 1];
-        for coupling in &self.couplings[couplings] {
-            values[coupling.position] += coupling.coefficient * factor * k[coupling.entry];
+        for coupling in self.positions.couplings(element) {
+            let position = coupling.position as usize;
+            values[position] += coupling.coefficient * factor * k[coupling.entry];
         }
+    }
+
+    /// Whether an element adds to any value.
+    pub fn depends_on(&self, element: usize) -> bool {
+        let Positions {
+            positions, starts, ..
+        } = &*self.positions;
+        let positions = &positions[starts[element]..starts[element + 1]];
+        positions.iter().any(|&p| p != DISTRIBUTED) || !self.positions.couplings(element).is_empty()
     }
 
     /// Adds `factor` times a matrix of the same pattern.

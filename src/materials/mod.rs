@@ -10,7 +10,9 @@
 mod committed;
 mod constitutive_law;
 pub mod energy_momentum;
+pub mod lanes;
 mod law;
+mod law_in_lanes;
 mod neo_hooke;
 mod plane;
 mod saint_venant_kirchhoff;
@@ -22,6 +24,8 @@ pub(crate) mod yielding;
 pub use committed::Committed;
 pub use constitutive_law::{Across, ConstitutiveLaw};
 pub use law::{Law, PlaneLaw};
+pub(crate) use law_in_lanes::in_lanes;
+pub use law_in_lanes::{LawInLanes, OneByOne, StrainChange, TangentLanes};
 pub use neo_hooke::NeoHooke;
 pub use plane::{Plane, SmallStrainModuli};
 pub use saint_venant_kirchhoff::{PlaneSaintVenantKirchhoff, SaintVenantKirchhoff};

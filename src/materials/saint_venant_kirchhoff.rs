@@ -86,6 +86,20 @@ impl SaintVenantKirchhoff {
     }
 }
 
+impl PlaneSaintVenantKirchhoff {
+    /// Elasticity C in Voigt order (force/length^2).
+    #[inline(always)]
+    pub fn elasticity(&self) -> &Matrix3<f64> {
+        &self.c
+    }
+
+    /// -E_zz/(E_xx + E_yy) and S_zz/(S_xx + S_yy).
+    #[inline(always)]
+    pub fn across_ratios(&self) -> [f64; 2] {
+        [self.contraction, self.across]
+    }
+}
+
 impl ConstitutiveLaw for PlaneSaintVenantKirchhoff {
     /// W = E:C:E/2 = S:E/2, eq. (2.13)
     fn stored_energy(&self, e: &Matrix2<f64>, z: &[f64]) -> f64 {

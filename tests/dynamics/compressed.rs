@@ -124,16 +124,21 @@ fn a_block_between_platens_that_alone_hold_it() {
 /// Tangent of all elements, or its positive part, at displacements `u`.
 fn tangent(elements: &Elements, u: &[f64], part: TangentPart) -> DMatrix<f64> {
     let mut k = DMatrix::zeros(u.len(), u.len());
-    elements.for_each_tangent(Motion::at(u, &[]), part, |element, matrix: &[f64]| {
-        let nodes = elements.nodes(element).iter();
-        let dofs: Vec<usize> = nodes.flat_map(|n| [2 * n, 2 * n + 1]).collect();
-        for (k_e, (&row, &column)) in matrix
-            .iter()
-            .zip(dofs.iter().flat_map(|c| dofs.iter().map(move |r| (r, c))))
-        {
-            k[(row, column)] += k_e;
-        }
-    });
+    elements.for_each_tangent(
+        Motion::at(u, &[]),
+        part,
+        |_| true,
+        |element, matrix: &[f64]| {
+            let nodes = elements.nodes(element).iter();
+            let dofs: Vec<usize> = nodes.flat_map(|n| [2 * n, 2 * n + 1]).collect();
+            for (k_e, (&row, &column)) in matrix
+                .iter()
+                .zip(dofs.iter().flat_map(|c| dofs.iter().map(move |r| (r, c))))
+            {
+                k[(row, column)] += k_e;
+            }
+        },
+    );
     k
 }
 

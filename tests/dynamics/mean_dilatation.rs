@@ -28,6 +28,7 @@ fn linear_solution(model: &Model, forces: &[(usize, f64)], held: &[usize]) -> DV
     elements.for_each_tangent(
         Motion::at(&vec![0.0; count], &[]),
         TangentPart::Whole,
+        |_| true,
         |element, matrix| {
             let nodes = elements.nodes(element).iter();
             let dofs: Vec<usize> = nodes.flat_map(|n| [2 * n, 2 * n + 1]).collect();

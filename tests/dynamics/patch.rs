@@ -77,6 +77,7 @@ fn solve_inner(body: &Elements, mut u: Vec<f64>) -> Vec<f64> {
         body.for_each_tangent(
             Motion::at(&u, &[]),
             TangentPart::Whole,
+            |_| true,
             |element, matrix| {
                 let dofs: Vec<usize> = body
                     .nodes(element)

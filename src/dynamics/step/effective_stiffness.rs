@@ -157,7 +157,8 @@ impl EffectiveStiffness {
         let mass = self.m.solver.matrix();
         let k = self.k.solver.matrix_mut();
         k.clear();
-        elements.for_each_tangent(motion, form.part(), |element, tangent| {
+        let free = |element: usize| mass.depends_on(element);
+        elements.for_each_tangent(motion, form.part(), free, |element, tangent| {
             k.add(element, tangent, weights.theta2)
         });
         // K* <- K* + Cd/dt, eq. (4.24)

@@ -24,13 +24,15 @@ impl Mass {
         Mass { nodal }
     }
 
-    /// M v for a vector over all dofs.
+    /// M v for a vector over all dofs; M is symmetric, so that its columns are its rows.
     pub fn times(&self, v: &[f64]) -> Vec<f64> {
-        let mut product = vec![0.0; v.len()];
-        for (column, entries) in self.nodal.matrix().outer_iterator().enumerate() {
-            for (row, m) in entries.iter() {
-                product[2 * row] += m * v[2 * column];
-                product[2 * row + 1] += m * v[2 * column + 1];
+        let (mut product, v) = (vec![0.0; v.len()], v.as_chunks::<2>().0);
+        let columns = self.nodal.matrix();
+        let rows = product.as_chunks_mut::<2>().0.iter_mut();
+        for (row, entries) in rows.zip(columns.outer_iterator()) {
+            for (column, m) in entries.iter() {
+                let [x, y] = v[column];
+                *row = [row[0] + m * x, row[1] + m * y];
             }
         }
         product

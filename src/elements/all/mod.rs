@@ -1,0 +1,8 @@
+//! The elements of all bodies of a model, and what is asked of them together.
+
+mod damped;
+mod elements;
+mod sweeps;
+
+pub use elements::Elements;
+pub use sweeps::{Inverted, Updated};
