@@ -5,8 +5,11 @@ use super::initial_gaps::InitialGap;
 use crate::contact::tolerances::{COORDINATE_ROUND_OFF, PENETRATION_FAULT};
 use crate::contact::{ContactSurfaces, project};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
-use crate::model::{ALL_EXTERIOR, Contact, Model, SurfaceKind};
+use crate::model::{ALL_EXTERIOR, Contact, Model, Surface, SurfaceKind};
 use std::collections::{HashMap, HashSet};
+
+/// Nodes that stand for a slave surface.
+const FEW: usize = 8;
 
 /// Reports slave nodes that start inside the master body: deep ones as errors, shallow ones, which
 /// the first increment pushes out, as warnings. Bodies that lie on the same side of a common face
@@ -51,10 +54,22 @@ fn report_nothing_faced(model: &Model, gaps: &[Vec<InitialGap>], d: &mut Diagnos
             continue;
         }
         let [slave, master] = [contact.slave, contact.master].map(|s| &model.surfaces[s]);
-        let message = format!(
-            "no node of {} faces {} at the start",
-            slave.name, master.name
-        );
+        let (code, message) = match lies_behind(model, slave, master) {
+            true => (
+                Code::FacingAway,
+                format!(
+                    "{} looks away from {} at the start",
+                    master.name, slave.name
+                ),
+            ),
+            false => (
+                Code::NothingFaced,
+                format!(
+                    "no node of {} faces {} at the start",
+                    slave.name, master.name
+                ),
+            ),
+        };
         let help = match master.kind {
             SurfaceKind::Rigid(_) => {
                 "they may meet later; if not, its points are listed in the wrong order: the outside \
@@ -64,9 +79,25 @@ fn report_nothing_faced(model: &Model, gaps: &[Vec<InitialGap>], d: &mut Diagnos
                 "they may meet later; if not, these are the wrong faces: a face looks out of its body"
             }
         };
-        let warning = Diagnostic::warning(Code::NothingFaced, contact.span, message);
+        let warning = Diagnostic::warning(code, contact.span, message);
         d.push(warning.help(help));
     }
+}
+
+/// Whether the nodes of a slave surface lie behind the segments of the master that they project into,
+/// of which there are some; a few nodes stand for all.
+fn lies_behind(model: &Model, slave: &Surface, master: &Surface) -> bool {
+    let x = &model.mesh.coordinates;
+    let (nodes, segments) = (slave.nodes(&model.mesh), master.segments(&model.mesh));
+    let some = nodes.iter().step_by(nodes.len().div_ceil(FEW).max(1));
+    let gaps = some.flat_map(|&node| {
+        let over = segments
+            .iter()
+            .map(move |&[a, b]| project(x[node], x[a], x[b]));
+        over.filter(|p| (0.0..=1.0).contains(&p.xi)).map(|p| p.gap)
+    });
+    let nearest = gaps.fold(f64::NEG_INFINITY, f64::max);
+    nearest.is_finite() && nearest < 0.0
 }
 
 /// The first slave node that lies behind the master surface at a depth that is an error, but in

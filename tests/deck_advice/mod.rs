@@ -383,7 +383,11 @@ fn starts_that_are_told_before_the_run() {
     ];
     let texts = decks.map(|deck| {
         let text = messages(&deck).1;
-        let about = |part: &&str| part.contains("[D410]") || part.contains("[D414]");
+        let about = |part: &&str| {
+            ["[D410]", "[D414]", "[D418]"]
+                .iter()
+                .any(|code| part.contains(code))
+        };
         text.split_inclusive("\n\n")
             .filter(about)
             .collect::<String>()

@@ -70,6 +70,13 @@ fn anything_that_moves_is_something_to_do() {
 fn a_surface_that_looks_away_is_no_penetration() {
     let found = codes(&shared("EBASE, S3", "EBASE, S1"));
     assert!(found.contains(&Code::FacingAway) && !found.contains(&Code::InitialPenetration));
+    // the face is farther away than it is long
+    let Source::Text(low) = shared("EBASE, S3", "EBASE, S1") else {
+        unreachable!("a text")
+    };
+    let far = low.replace("1.1\n", "4.1\n").replace("2.1\n", "5.1\n");
+    let found = codes(&Source::Text(far));
+    assert!(found.contains(&Code::FacingAway) && !found.contains(&Code::NothingFaced));
     let inside = codes(&shared("11, 1., 1.1", "11, 1., 0.99"));
     assert!(!inside.contains(&Code::FacingAway) && inside.contains(&Code::InitialPenetration));
 }
