@@ -11,9 +11,10 @@ const BOTH: Pen = Pen("#8a3fb0", 2.2);
 const OTHER: Pen = Pen("#0b8c8c", 1.4);
 const RIGID: Pen = Pen("#333333", 3.2);
 
-/// Length of a normal and distance between two, in pixels.
+/// Length of a normal, smallest and largest distance between two, in pixels.
 const NORMAL: f64 = 9.0;
 const APART: f64 = 16.0;
+const FAR: f64 = 80.0;
 
 /// Draws the surfaces; the contacts go to the legend.
 pub(super) fn draw(model: &Model, canvas: &mut Canvas, legend: &mut Legend) {
@@ -68,12 +69,15 @@ fn segments(surface: &Surface, model: &Model, pen: Pen, canvas: &mut Canvas) {
     let mut spacing = Spacing::new(APART);
     let mut normals = String::new();
     for [a, b] in segments {
-        let normal = project(x[a], x[a], x[b]).normal;
-        let middle = [0, 1].map(|i| x[a][i] / 2.0 + x[b][i] / 2.0);
-        let [px, py] = canvas.at(middle);
-        if normal.iter().all(|n| n.is_finite()) && spacing.takes([px, py]) {
-            let [dx, dy] = [NORMAL * normal[0], -NORMAL * normal[1]];
-            normals.push_str(&format!("M{px:.1} {py:.1}l{dx:.1} {dy:.1}"));
+        let along = project(x[a], x[a], x[b]);
+        let count = (canvas.pixels(along.length) / FAR).ceil().max(1.0);
+        for k in 0..count as usize {
+            let part = (k as f64 + 0.5) / count;
+            let [px, py] = canvas.at([0, 1].map(|i| x[a][i] + part * (x[b][i] - x[a][i])));
+            if along.normal.iter().all(|n| n.is_finite()) && spacing.takes([px, py]) {
+                let [dx, dy] = [NORMAL * along.normal[0], -NORMAL * along.normal[1]];
+                normals.push_str(&format!("M{px:.1} {py:.1}l{dx:.1} {dy:.1}"));
+            }
         }
     }
     canvas.stroke(&normals, Pen(pen.0, 1.0));
@@ -94,7 +98,10 @@ fn name(surface: &Surface, model: &Model, pen: Pen, canvas: &mut Canvas) {
     let x = &model.mesh.coordinates;
     let segments = surface.segments(&model.mesh);
     let (place, normal) = match segments.get(segments.len() / 2) {
-        Some(&[a, b]) => (x[a], project(x[a], x[a], x[b]).normal),
+        Some(&[a, b]) => {
+            let middle = [0, 1].map(|i| x[a][i] / 2.0 + x[b][i] / 2.0);
+            (middle, project(x[a], x[a], x[b]).normal)
+        }
         None => match surface.nodes(&model.mesh).first() {
             Some(&node) => (x[node], [0.0, 1.0]),
             None => return,
