@@ -113,33 +113,43 @@ def _rows(card: Card, forms: list[dict[str, Any]], units: Units) -> list[list[st
     rows = card.rows
     if not rows and any("default" in (field or ()) for form in forms for field in form["fields"]):
         rows = [[""]]
-    return [_row(card, row, forms, units) for row in rows]
+    return [_row(card, number, row, forms, units) for number, row in enumerate(rows)]
 
 
-def _row(card: Card, row: list[str], forms: list[dict[str, Any]], units: Units) -> list[str]:
+def _row(
+    card: Card, number: int, row: list[str], forms: list[dict[str, Any]], units: Units
+) -> list[str]:
     keyword, line = fields(card.head)[0], ", ".join(row)
-    form = next((form for form in forms if _is_meant(form, card, row)), None)
+    form = next((form for form in forms if is_meant(form, card, number)), None)
     if form is None:
         raise Unscalable(f"a data line of {card.head} cannot be rescaled: {line}")
     new = []
-    for number, (text, measure) in enumerate(zip(row, _measures(form), strict=False), 1):
-        new.append(_scaled(text, measure, units, f"field {number} of {keyword}: {line}"))
+    for field, (text, measure) in enumerate(zip(row, _measures(form), strict=False), 1):
+        new.append(_scaled(text, measure, units, f"field {field} of {keyword}: {line}"))
     if any(row[len(new) :]):
         raise Unscalable(f"field {len(new) + 1} of {keyword} is not known: {line}")
     return new
 
 
 def _measures(form: dict[str, Any]) -> Iterator[Measure]:
-    """What the fields of a data line hold."""
+    """What the fields of a data line hold; the last ones may repeat along the line."""
     measures = form["fields"]
-    return chain.from_iterable(repeat(measures)) if form.get("repeats") else iter(measures)
+    repeating = form.get("repeating", 0)
+    if not repeating:
+        return iter(measures)
+    return chain(measures, chain.from_iterable(repeat(measures[-repeating:])))
 
 
-def _is_meant(form: dict[str, Any], card: Card, row: list[str]) -> bool:
-    """Whether a data line has this form."""
+def is_meant(form: dict[str, Any], card: Card, number: int) -> bool:
+    """Whether the data line of a card with this number, from 0, has this form."""
     name, value = form.get("parameter", (None, None))
-    if name and fold(card.parameters.get(fold(name), "")) != fold(value):
+    if name and fold(name) not in card.parameters:
         return False
+    if value and fold(card.parameters[fold(name)]) != fold(value):
+        return False
+    if form.get("first") and number > 0:
+        return False
+    row = card.rows[number] if number < len(card.rows) else []
     index, words = form.get("word", (None, None))
     return index is None or (index < len(row) and fold(row[index]) in words)
 

@@ -2,6 +2,7 @@
 
 mod deck_advice;
 mod deck_checks;
+mod messages_page;
 
 use std::path::Path;
 use stickslip::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Sources};
@@ -20,6 +21,16 @@ const PAIR: &str = "*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE\nSBOT, 
 enum Source {
     Text(String),
     File(&'static str),
+}
+
+impl Source {
+    /// The lines of the deck.
+    fn text(&self) -> String {
+        match self {
+            Source::Text(text) => text.clone(),
+            Source::File(path) => std::fs::read_to_string(path).expect("a deck"),
+        }
+    }
 }
 
 /// Messages of a deck.
@@ -197,6 +208,15 @@ fn golden_text_of_every_code() {
         assert!(text.contains(code.id()), "{} is not in:\n{text}", code.id());
         insta::assert_snapshot!(code.id(), text);
     }
+}
+
+#[test]
+fn the_catalogue_of_messages_is_up_to_date() {
+    let texts = Code::ALL.iter().map(|&code| {
+        let (deck, (_, message)) = (faulty(code), messages(&faulty(code)));
+        messages_page::entry(code, &deck.text(), &message)
+    });
+    messages_page::check(&texts.collect::<String>());
 }
 
 #[test]

@@ -16,7 +16,6 @@ const MOST_FIELDS: usize = 12;
 /// Lines of the function `passes`, the solution of one increment.
 const PASSES_LINES: usize = 60;
 const FILE_LINES: usize = 400;
-const TABLE_LINES: usize = 600;
 const MOST_FILES: usize = 12;
 
 /// Structs that may have more fields: plain records of results, each with the reason.
@@ -190,26 +189,17 @@ fn is_record(name: &str) -> bool {
     RESULT_RECORDS.iter().any(|(record, _)| *record == name)
 }
 
-fn is_table(path: &str) -> bool {
-    path.rsplit('/')
-        .next()
-        .is_some_and(|name| name.starts_with("table_"))
-}
-
 /// Lines of a file outside of tests.
 fn line_count(source: &Source) -> usize {
     source.text.lines().count() - source.test_lines
 }
 
 fn long_files(sources: &[Source]) -> Vec<String> {
-    let (tables, others): (Vec<_>, Vec<_>) = sources
+    let lengths = sources
         .iter()
         .filter(|source| !source.is_test)
-        .map(|source| (line_count(source), &*source.path, ""))
-        .partition(|(_, path, _)| is_table(path));
-    let mut long = larger(FILE_LINES, others.into_iter());
-    long.extend(larger(TABLE_LINES, tables.into_iter()));
-    long
+        .map(|source| (line_count(source), &*source.path, ""));
+    larger(FILE_LINES, lengths)
 }
 
 /// Folders with too many files; `mod.rs` and files of tests are not counted.
@@ -301,7 +291,7 @@ fn records_of_results_are_plain_and_need_their_exception() {
 
 #[test]
 fn no_file_is_long() {
-    let what = format!("files of more than {FILE_LINES} lines, tables {TABLE_LINES}");
+    let what = format!("files of more than {FILE_LINES} lines");
     assert_none(&what, &long_files(&read_sources()));
 }
 

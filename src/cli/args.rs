@@ -33,6 +33,8 @@ pub(super) enum Command {
     Run(RunArgs),
     /// Read a deck, report every error in it and describe the model, without solving
     Check(CheckArgs),
+    /// Explain a keyword of decks, or the code of a message such as D103
+    Explain(ExplainArgs),
     /// Write a deck with its includes and assembly as one flat deck that reads as the same model
     Flatten(FlattenArgs),
     /// Describe a result file
@@ -127,6 +129,14 @@ pub(super) struct CheckArgs {
     /// earlier picture is replaced
     #[arg(long, value_name = "FILE.svg", value_parser = svg_file)]
     pub picture: Option<PathBuf>,
+}
+
+/// Arguments of `explain`.
+#[derive(Debug, ClapArgs)]
+pub(super) struct ExplainArgs {
+    /// The keyword, with or without its star, or the code
+    #[arg(value_name = "KEYWORD|CODE", required = true)]
+    pub words: Vec<String>,
 }
 
 /// Arguments of `flatten`.

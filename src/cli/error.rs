@@ -53,6 +53,17 @@ pub(super) enum CliError {
         /// Why.
         source: io::Error,
     },
+    /// There is no keyword and no code of this name.
+    #[error(
+        "{word} is neither a keyword nor the code of a message{}",
+        suggestion(meant)
+    )]
+    Unexplained {
+        /// What was asked for.
+        word: String,
+        /// What was probably meant.
+        meant: Option<&'static str>,
+    },
     /// A file that the command makes cannot be written.
     #[error("cannot write {}: {}", path.display(), reason(source))]
     File {
@@ -76,7 +87,7 @@ impl CliError {
     pub fn exit(&self) -> Exit {
         match self {
             CliError::Name(_) | CliError::Output(OutputError::Name(_)) => Exit::Rejected,
-            CliError::Threads { .. } => Exit::Usage,
+            CliError::Threads { .. } | CliError::Unexplained { .. } => Exit::Usage,
             CliError::Deck { .. }
             | CliError::Problem { .. }
             | CliError::File { .. }
@@ -88,6 +99,10 @@ impl CliError {
             | CliError::Summary(_) => Exit::FileSystem,
         }
     }
+}
+
+fn suggestion(meant: &Option<&str>) -> String {
+    meant.map_or(String::new(), |meant| format!("; did you mean {meant}?"))
 }
 
 fn after(kept: &Option<String>) -> String {

@@ -1,4 +1,4 @@
-//! Command line: `run`, `check`, `flatten`, `info` and `lcp`.
+//! Command line: `run`, `check`, `flatten`, `explain`, `info` and `lcp`.
 
 mod args;
 mod commands;
@@ -36,6 +36,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
             .and_then(|interrupt| commands::run(args, &typed(&arguments), &numerics, &interrupt)),
         Command::Flatten(args) => commands::flatten(args),
         Command::Check(args) => commands::check(args, &numerics),
+        Command::Explain(args) => commands::explain(args),
         Command::Info(args) => commands::info(args),
         Command::Lcp(args) => commands::lcp(args),
     };

@@ -11,8 +11,8 @@ mod lines;
 mod read;
 pub use cards::{Card, Deck, Instance, Param, Placement, Row};
 pub use keywords::{
-    Data, Keyword, Parameter, Scope, Status, Takes, Value, dimension_faults, dimensions_json,
-    keyword_reference, keywords,
+    Data, Field, Keyword, Parameter, Quantity, RowForm, Scope, Status, Takes, Value,
+    dimensions_json, find_keyword, keyword_reference, keywords,
 };
 pub use lines::{Name, Text};
 pub use read::{parse_str, read};

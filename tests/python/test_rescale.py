@@ -12,10 +12,11 @@ from compare import scaled_differences
 from conftest import ROOT, Job
 from deck import Card, Deck, fields, fold
 from decks import parse
-from rescale import TABLE, Units, Unscalable, rescale
+from rescale import TABLE, Units, Unscalable, is_meant, rescale
 from results import Results
 
 EVERY_CARD = ROOT / "tests/decks/every_card.inp"
+ASSEMBLY = ROOT / "tests/decks/assembly.inp"
 EXAMPLES = sorted((ROOT / "input").glob("*/*.inp"))
 POWERS_OF_TWO = [Units(length=2.0**7), Units(mass=2.0**-11), Units(time=2.0**5)]
 ALL_AT_ONCE = Units(2.0**-6, 2.0**9, 2.0**-13)
@@ -36,28 +37,24 @@ def measured(measure: Any) -> bool:
     return isinstance(about, str) and about != "unknown"
 
 
-def is_used(form: dict[str, Any], number: int, card: Card) -> bool:
+def is_used(form: dict[str, Any], field: int, card: Card) -> bool:
     """Whether a data line of a card has something in a field of this form."""
-    name, value = form.get("parameter", ("", ""))
-    if name and fold(card.parameters.get(fold(name), "")) != fold(value):
-        return False
-    index, words = form.get("word", (None, None))
-    rows = [row for row in card.rows if index is None or fold(row[index]) in words]
-    return any(number < len(row) and row[number] for row in rows)
+    rows = [row for number, row in enumerate(card.rows) if is_meant(form, card, number)]
+    return any(field < len(row) and row[field] for row in rows)
 
 
 def test_the_deck_uses_every_keyword_that_is_read() -> None:
-    used = {card.keyword for card in Deck.read(EVERY_CARD).cards}
+    used = {card.keyword for path in (EVERY_CARD, ASSEMBLY) for card in Deck.read(path).cards}
     assert "*INCLUDE" in EVERY_CARD.read_text()
     assert read_keywords() - used - {"INCLUDE"} == set()
     assert len(read_keywords()) > 40
 
 
 def test_the_deck_uses_every_number_that_has_a_dimension() -> None:
-    deck = Deck.read(EVERY_CARD)
+    decks = [Deck.read(EVERY_CARD), Deck.read(ASSEMBLY)]
     unused = []
     for keyword, entry in TABLE.items():
-        cards = deck.find(keyword)
+        cards = [card for deck in decks for card in deck.find(keyword)]
         for name, measure in entry["parameters"].items():
             if measured(measure) and not any(name in card.parameters for card in cards):
                 unused.append(f"*{keyword}, {name}=")
@@ -87,6 +84,11 @@ def test_every_card_in_other_units_gives_the_same_bits(units: Units, job: Job) -
         closed = [name for name, contact in results.contacts.items() if contact.closed.any()]
     assert len(closed) >= 2, "the pair and general contact"
     assert scaled_differences(job(deck), job(rescale(deck, units)), units) == []
+
+
+def test_an_assembly_in_other_units_gives_the_same_bits(job: Job) -> None:
+    deck = Deck.read(ASSEMBLY)
+    assert scaled_differences(job(deck), job(rescale(deck, ALL_AT_ONCE)), ALL_AT_ONCE) == []
 
 
 def cut(deck: Deck) -> Deck:
@@ -144,6 +146,26 @@ A, B
     ]
 
 
+def test_the_first_line_of_a_periodic_amplitude_is_another_one(tmp_path: Path) -> None:
+    text = """*AMPLITUDE, NAME=A, DEFINITION=PERIODIC
+1, 2., 3., 0.5
+1., 0.25, 2., 4.
+"""
+    assert small(text, tmp_path, Units(time=4.0))[1:] == ["1, 0.5, 12.0, 0.5", "1., 0.25, 2., 4."]
+
+
+def test_ranges_of_times_and_of_numbers(tmp_path: Path) -> None:
+    text = """*TIME POINTS, NAME=A, GENERATE
+0., 1., 0.5
+*TIME POINTS, NAME=B
+0., 1., 2., 3.
+*NSET, NSET=N, GENERATE
+1, 7, 2
+"""
+    new = small(text, tmp_path, Units(time=4.0))
+    assert new[1::2] == ["0.0, 4.0, 2.0", "0.0, 4.0, 8.0, 12.0", "1, 7, 2"]
+
+
 def test_files_of_data_lines_are_read_in_their_place(tmp_path: Path) -> None:
     (tmp_path / "nodes.txt").write_text("1, 0.5, 1.\n** x\n2, 3., 4.\n")
     text = "*NODE, NSET=ALL, INPUT=nodes.txt\n3, 5., 6.\n"
@@ -164,7 +186,7 @@ def test_files_of_data_lines_are_read_in_their_place(tmp_path: Path) -> None:
         ("*CONTACT PAIR, INTER=D\nA, B\n", "INTER of \\*CONTACT PAIR"),
         ("*NODE\n1, 0., 0., 0., 5.\n", "field 5 of \\*NODE"),
         ("*NODE\n1, abc, 0.\n", "field 2 of \\*NODE.* is no number"),
-        ("*AMPLITUDE, NAME=A, DEFINITION=PERIODIC\n1, 2., 3.\n1., 0.\n", "of \\*AMPLITUDE"),
+        ("*AMPLITUDE, NAME=A, DEFINITION=DECAY\n1., 2., 3., 4., 5.\n", "field 5 of \\*AMPLITUDE"),
         ("*FRICTION\n0.3, 2.1E5\n", "field 2 of \\*FRICTION"),
         ("*SURFACE BEHAVIOR\n0.1\n", "field 1 of \\*SURFACE BEHAVIOR"),
         ("*SURFACE, NAME=S, TYPE=CYLINDER\nA\n", "TYPE of \\*SURFACE"),

@@ -1,6 +1,7 @@
 //! The subcommands.
 
 mod check;
+mod explain;
 mod flatten;
 mod info;
 mod lcp;
@@ -8,6 +9,7 @@ mod overrides;
 mod run;
 
 pub(super) use check::check;
+pub(super) use explain::explain;
 pub(super) use flatten::flatten;
 pub(super) use info::info;
 pub(super) use lcp::lcp;

@@ -143,7 +143,8 @@ impl Collector {
         }
         let rows = match keyword.data {
             Data::None => Rows::Refuse,
-            Data::Rows | Data::Required | Data::Text => Rows::Keep,
+            Data::Rows(_) | Data::Required(_) | Data::Text => Rows::Keep,
+            Data::Words | Data::Skipped => Rows::Skip,
         };
         self.start(keyword, first.text.span, rows);
         self.parameters(rest, d);

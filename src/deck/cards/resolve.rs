@@ -2,7 +2,7 @@
 //! unknown, ignored or refused.
 
 use super::card::{Card, Param};
-use crate::deck::keywords::{Keyword, Parameter, Status, Takes, Value, find, keywords};
+use crate::deck::keywords::{Keyword, Parameter, Status, Takes, Value, find_keyword, keywords};
 use crate::deck::lines::{Match, Text, assignment, word};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span};
 use std::cell::Cell;
@@ -20,7 +20,7 @@ pub(crate) struct Piece<'a> {
 pub(crate) fn keyword(text: Text, d: &mut Diagnostics) -> Option<&'static Keyword> {
     let (starred, span) = (text.text.trim_start_matches('*'), text.span);
     let typed = starred.trim();
-    if let Some(keyword) = find(typed) {
+    if let Some(keyword) = find_keyword(typed) {
         report_keyword(keyword, span, d);
         return Some(keyword);
     }
@@ -30,7 +30,7 @@ pub(crate) fn keyword(text: Text, d: &mut Diagnostics) -> Option<&'static Keywor
         false => word::find_known(typed, names),
     };
     let unknown = || unknown_keyword(starred, span, known);
-    let keyword = known_word(known, unknown, "*", span, d).and_then(find)?;
+    let keyword = known_word(known, unknown, "*", span, d).and_then(find_keyword)?;
     if let Match::Unknown(_) = known {
         return Some(keyword).filter(|keyword| keyword.status == Status::Read);
     }

@@ -1,63 +1,100 @@
-//! Types of the table of dimensions: what the fields and parameters of a keyword measure.
+//! The dimensions of the keyword table as JSON, for programs that change the units of a deck.
 
-use super::keyword::{Parameter, Takes};
+use super::fields::{Quantity, RowForm};
+use super::keyword::{Data, Keyword};
+use super::parameter::{Parameter, Status, Value};
+use super::tables::keywords;
+use std::fmt::Write;
 
-/// What a field or a parameter's value holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
-    /// A word, a label, or a number that is the same in all units.
-    Plain,
-    /// A number of this dimension, written as in the result file: `mass/length^3`.
-    Of(&'static str),
-    /// A number of the given dimension, and its default.
-    OfOr(&'static str, &'static str),
-    /// A number of this dimension or a name.
-    OrName(&'static str),
-    /// A number whose dimension is not known: other codes disagree on it.
-    Unknown,
+/// What the numbers of accepted keywords measure, as JSON: an object with an entry for every
+/// keyword.
+pub fn dimensions_json() -> String {
+    let entries: Vec<String> = keywords().filter_map(entry).collect();
+    format!("{{\n{}\n}}\n", entries.join(",\n"))
 }
 
-/// The fields of a kind of data line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct RowForm {
-    /// Parameter and value of the keyword line that these lines belong to.
-    pub parameter: Option<(&'static str, &'static str)>,
-    /// Number of a field, from 0, and the words that it says on these lines.
-    pub word: Option<(usize, &'static [&'static str])>,
-    /// What the fields hold.
-    pub fields: &'static [Quantity],
-    /// Whether the fields repeat along the line.
-    pub repeats: bool,
-}
-
-/// What the numbers of a keyword measure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Dimensions {
-    /// The keyword.
-    pub keyword: &'static str,
-    /// Kinds of data lines; the first that fits holds.
-    pub rows: &'static [RowForm],
-    /// Parameters that take names or numbers that are the same in all units.
-    pub plain: &'static [&'static str],
-    /// Parameters that take numbers with a dimension.
-    pub measured: &'static [(&'static str, Quantity)],
-    /// Whether the keyword takes any parameters and data, all without dimension.
-    pub anything: bool,
-}
-
-impl Dimensions {
-    /// What the value of a parameter measures; choices of words and flags measure nothing.
-    pub(super) fn of(&self, parameter: &Parameter) -> Option<Quantity> {
-        match parameter.takes {
-            Takes::Nothing | Takes::Choice(_) | Takes::OptionalChoice(_) => Some(Quantity::Plain),
-            Takes::Value | Takes::Optional if self.plain.contains(&parameter.name) => {
-                Some(Quantity::Plain)
-            }
-            Takes::Value | Takes::Optional => {
-                let mut measured = self.measured.iter();
-                let found = measured.find(|(name, _)| *name == parameter.name);
-                found.map(|&(_, quantity)| quantity)
-            }
+/// The entry of a keyword; `None` if what it holds is not known.
+fn entry(keyword: &Keyword) -> Option<String> {
+    let parameters = keyword.parameters.iter();
+    let taken = parameters.filter(|parameter| parameter.status != Status::Refused);
+    let parameters = taken.map(|parameter| {
+        let value = measure(parameter);
+        format!("    \"{}\": {value}", parameter.name)
+    });
+    let content = match keyword.data {
+        Data::Skipped => return None,
+        Data::Words => "  \"anything\": true".to_string(),
+        Data::Text => object("parameters", parameters) + ",\n  \"text\": true",
+        data => {
+            let rows = data.forms().iter().map(row);
+            object("parameters", parameters) + ",\n" + &list("rows", rows)
         }
+    };
+    Some(format!(" \"{}\": {{\n{content}\n }}", keyword.name))
+}
+
+fn measure(parameter: &Parameter) -> String {
+    match parameter.values() {
+        [] => quantity(parameter.holds),
+        values => words(values),
+    }
+}
+
+/// The accepted words of a parameter's values.
+fn words(values: &[Value]) -> String {
+    let taken = values
+        .iter()
+        .filter(|value| value.status != Status::Refused);
+    let words: Vec<String> = taken.map(|value| format!("\"{}\"", value.name)).collect();
+    format!("[{}]", words.join(", "))
+}
+
+fn object(name: &str, lines: impl Iterator<Item = String>) -> String {
+    wrapped(name, lines, ["{", "}"])
+}
+
+fn list(name: &str, lines: impl Iterator<Item = String>) -> String {
+    wrapped(name, lines, ["[", "]"])
+}
+
+fn wrapped(name: &str, lines: impl Iterator<Item = String>, [open, close]: [&str; 2]) -> String {
+    let lines: Vec<String> = lines.collect();
+    match lines.is_empty() {
+        true => format!("  \"{name}\": {open}{close}"),
+        false => format!("  \"{name}\": {open}\n{}\n  {close}", lines.join(",\n")),
+    }
+}
+
+fn row(form: &RowForm) -> String {
+    let mut text = String::from("    {");
+    if let Some((name, value)) = form.parameter {
+        let _ = write!(text, "\"parameter\": [\"{name}\", \"{value}\"], ");
+    }
+    if let Some((index, words)) = form.word {
+        let words: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
+        let _ = write!(text, "\"word\": [{index}, [{}]], ", words.join(", "));
+    }
+    if form.first {
+        text.push_str("\"first\": true, ");
+    }
+    let fields: Vec<String> = form.fields.iter().map(|f| quantity(f.holds)).collect();
+    let _ = write!(text, "\"fields\": [{}]", fields.join(", "));
+    if form.repeating > 0 {
+        let _ = write!(text, ", \"repeating\": {}", form.repeating);
+    }
+    text + "}"
+}
+
+fn quantity(quantity: Quantity) -> String {
+    match quantity {
+        Quantity::Plain => "null".to_string(),
+        Quantity::Of(dimension) => format!("\"{dimension}\""),
+        Quantity::OfOr(dimension, default) => {
+            format!("{{\"dimension\": \"{dimension}\", \"default\": \"{default}\"}}")
+        }
+        Quantity::OrName(dimension) => {
+            format!("{{\"dimension\": \"{dimension}\", \"or_name\": true}}")
+        }
+        Quantity::Unknown => "\"unknown\"".to_string(),
     }
 }

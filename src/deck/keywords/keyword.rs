@@ -1,20 +1,8 @@
-//! Types of the keyword table: keywords, parameters and values with what the program does with
-//! each.
+//! Types of the keyword table: keywords with their place, data lines, sentence and example.
 
+use super::fields::RowForm;
+use super::parameter::{Parameter, Status};
 use crate::deck::lines::word;
-
-/// What the program does with a keyword, a parameter or a value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Status {
-    /// Read and honoured.
-    Read,
-    /// Left out silently: it does not affect the results.
-    Ignored,
-    /// Left out or replaced with a warning.
-    Warned,
-    /// Stops with an error: leaving it out would change the results.
-    Refused,
-}
 
 /// Where a keyword may stand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,51 +24,26 @@ pub enum Scope {
 pub enum Data {
     /// None.
     None,
-    /// Any number of rows.
-    Rows,
+    /// Any number of rows; the first form that fits a row holds.
+    Rows(&'static [RowForm]),
     /// At least one row.
-    Required,
+    Required(&'static [RowForm]),
     /// Free text.
     Text,
+    /// Words that are not looked at.
+    Words,
+    /// Anything, which is not looked at.
+    Skipped,
 }
 
-/// Values of a parameter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Takes {
-    /// None.
-    Nothing,
-    /// A name, number or path.
-    Value,
-    /// A value that may be left out.
-    Optional,
-    /// One of these words.
-    Choice(&'static [Value]),
-    /// One of these words, or nothing.
-    OptionalChoice(&'static [Value]),
-}
-
-/// A word that a parameter can take as its value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Value {
-    /// The word, with blanks.
-    pub name: &'static str,
-    /// What the program does with it.
-    pub status: Status,
-    /// One sentence; empty where the word explains itself.
-    pub text: &'static str,
-}
-
-/// A parameter of a keyword.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Parameter {
-    /// The word before the equals sign, with blanks.
-    pub name: &'static str,
-    /// Its values.
-    pub takes: Takes,
-    /// What the program does with it.
-    pub status: Status,
-    /// One sentence.
-    pub text: &'static str,
+impl Data {
+    /// The kinds of data lines.
+    pub fn forms(self) -> &'static [RowForm] {
+        match self {
+            Data::Rows(forms) | Data::Required(forms) => forms,
+            Data::None | Data::Text | Data::Words | Data::Skipped => &[],
+        }
+    }
 }
 
 /// A known keyword.
@@ -96,8 +59,10 @@ pub struct Keyword {
     pub data: Data,
     /// Its parameters.
     pub parameters: &'static [Parameter],
-    /// One sentence.
+    /// What it says.
     pub text: &'static str,
+    /// Lines of a deck that use it, or what is read in its place; empty if there is nothing.
+    pub example: &'static str,
 }
 
 impl Keyword {
@@ -109,12 +74,14 @@ impl Keyword {
             .find(|p| word::fold(p.name) == folded)
     }
 
-    pub(crate) const fn read(
+    /// A keyword that is read.
+    pub(super) const fn read(
         name: &'static str,
         scope: Scope,
         data: Data,
         parameters: &'static [Parameter],
         text: &'static str,
+        example: &'static str,
     ) -> Keyword {
         Keyword {
             name,
@@ -123,98 +90,42 @@ impl Keyword {
             data,
             parameters,
             text,
+            example,
         }
     }
 
-    pub(crate) const fn other(name: &'static str, status: Status, text: &'static str) -> Keyword {
+    /// A keyword that is left out silently.
+    pub(super) const fn ignored(name: &'static str, text: &'static str) -> Keyword {
+        Keyword::unread(name, Status::Ignored, text)
+    }
+
+    /// A keyword that is left out with a warning.
+    pub(super) const fn warned(name: &'static str, text: &'static str) -> Keyword {
+        Keyword::unread(name, Status::Warned, text)
+    }
+
+    /// A keyword that stops with an error.
+    pub(super) const fn refused(name: &'static str, text: &'static str) -> Keyword {
+        Keyword::unread(name, Status::Refused, text)
+    }
+
+    const fn unread(name: &'static str, status: Status, text: &'static str) -> Keyword {
         Keyword {
-            name,
             status,
-            scope: Scope::Anywhere,
-            data: Data::Rows,
-            parameters: &[],
-            text,
-        }
-    }
-}
-
-impl Parameter {
-    const fn new(name: &'static str, takes: Takes, text: &'static str) -> Parameter {
-        Parameter {
-            name,
-            takes,
-            status: Status::Read,
-            text,
+            ..Keyword::read(name, Scope::Anywhere, Data::Skipped, &[], text, "")
         }
     }
 
-    pub(crate) const fn flag(name: &'static str, text: &'static str) -> Parameter {
-        Parameter::new(name, Takes::Nothing, text)
+    /// The same with lines of a deck that say in another way what it says.
+    pub(super) const fn example(self, example: &'static str) -> Keyword {
+        Keyword { example, ..self }
     }
 
-    pub(crate) const fn value(name: &'static str, text: &'static str) -> Parameter {
-        Parameter::new(name, Takes::Value, text)
-    }
-
-    pub(crate) const fn optional(name: &'static str, text: &'static str) -> Parameter {
-        Parameter::new(name, Takes::Optional, text)
-    }
-
-    pub(crate) const fn choice(
-        name: &'static str,
-        values: &'static [Value],
-        text: &'static str,
-    ) -> Parameter {
-        Parameter::new(name, Takes::Choice(values), text)
-    }
-
-    pub(crate) const fn optional_choice(
-        name: &'static str,
-        values: &'static [Value],
-        text: &'static str,
-    ) -> Parameter {
-        Parameter::new(name, Takes::OptionalChoice(values), text)
-    }
-
-    pub(crate) const fn ignored(self) -> Parameter {
-        self.with(Status::Ignored)
-    }
-
-    pub(crate) const fn warned(self) -> Parameter {
-        self.with(Status::Warned)
-    }
-
-    pub(crate) const fn refused(self) -> Parameter {
-        self.with(Status::Refused)
-    }
-
-    const fn with(self, status: Status) -> Parameter {
-        Parameter { status, ..self }
-    }
-
-    /// The words this parameter can take; empty if it takes anything.
-    pub fn values(&self) -> &'static [Value] {
-        match self.takes {
-            Takes::Choice(values) | Takes::OptionalChoice(values) => values,
-            Takes::Nothing | Takes::Value | Takes::Optional => &[],
+    /// The same with words only in its parameters and data lines.
+    pub(super) const fn of_words(self) -> Keyword {
+        Keyword {
+            data: Data::Words,
+            ..self
         }
-    }
-}
-
-impl Value {
-    pub(crate) const fn read(name: &'static str, text: &'static str) -> Value {
-        Value::new(name, Status::Read, text)
-    }
-
-    pub(crate) const fn warned(name: &'static str, text: &'static str) -> Value {
-        Value::new(name, Status::Warned, text)
-    }
-
-    pub(crate) const fn refused(name: &'static str, text: &'static str) -> Value {
-        Value::new(name, Status::Refused, text)
-    }
-
-    const fn new(name: &'static str, status: Status, text: &'static str) -> Value {
-        Value { name, status, text }
     }
 }

@@ -1,18 +1,17 @@
-//! The table of all keywords, of the dimensions of their fields, and the reference made from it.
+//! The table of all keywords with the dimensions of their fields, and the reference made from it.
 
-mod dimension_reference;
 mod dimensions;
+mod explanation;
+mod fields;
 mod keyword;
+mod parameter;
 mod reference;
-mod table;
-mod table_assembly;
-mod table_dimensions;
-mod table_model;
-mod table_others;
-mod table_steps;
+mod tables;
+mod words;
 
-pub use dimension_reference::{dimension_faults, dimensions_json};
-pub use keyword::{Data, Keyword, Parameter, Scope, Status, Takes, Value};
+pub use dimensions::dimensions_json;
+pub use fields::{Field, Quantity, RowForm};
+pub use keyword::{Data, Keyword, Scope};
+pub use parameter::{Parameter, Status, Takes, Value};
 pub use reference::keyword_reference;
-pub(crate) use table::find;
-pub use table::keywords;
+pub use tables::{find_keyword, keywords};

@@ -1,8 +1,9 @@
 //! The keyword reference, generated from the table the reader uses.
 
-use super::dimension_reference::in_words;
-use super::keyword::{Data, Keyword, Parameter, Scope, Status, Takes};
-use super::table::keywords;
+use super::keyword::Keyword;
+use super::parameter::{Parameter, Status};
+use super::tables::keywords;
+use super::words::{data, form, meaning, place, status, written};
 use std::fmt::Write;
 
 /// Markdown text of the keyword reference.
@@ -26,7 +27,8 @@ pub fn keyword_reference() -> String {
 const HEAD: &str = "\
 # Keywords
 
-Generated from the table that the reader uses (`src/deck/keywords/table_*.rs`); do not edit by hand.
+Generated from the table that the reader uses (`src/deck/keywords/tables/`); do not edit by hand.
+`stickslip explain KEYWORD` prints the same about one keyword.
 
 A deck is a text file. A keyword line begins with `*`, a comment line with `**`; data lines follow
 their keyword, with fields between commas. Case and blanks in keywords, parameters and names do not
@@ -47,29 +49,14 @@ numbers is an error.
 ";
 
 fn push_keyword(text: &mut String, keyword: &Keyword) {
-    let place = match keyword.scope {
-        Scope::Model if keyword.name == "STEP" => "after the keywords of the model".to_string(),
-        Scope::Model => "before the first step".to_string(),
-        Scope::Step => "in a step".to_string(),
-        Scope::Anywhere => "before the first step or in a step".to_string(),
-        Scope::Block(name) => format!("under `*{name}`"),
-        Scope::Assembly => "in assembly decks".to_string(),
-    };
-    let data = match keyword.data {
-        Data::None => "no data lines",
-        Data::Rows => "data lines",
-        Data::Required => "at least one data line",
-        Data::Text => "free text",
-    };
-    let _ = write!(
-        text,
-        "\n### `*{}`\n\n{}\n",
-        keyword.name,
-        plain(keyword.text)
-    );
+    let (name, sentence) = (keyword.name, plain(keyword.text));
+    let _ = write!(text, "\n### `*{name}`\n\n{sentence}\n");
+    let (place, data) = (place(keyword), data(keyword.data));
     let _ = write!(text, "\nStands {place}; {data}.\n");
-    if let Some(words) = in_words(keyword) {
-        let _ = write!(text, "\nDimensions: {words}.\n");
+    let forms = keyword.data.forms().iter();
+    let forms: String = forms.map(|one| format!("\n* {}", form(one))).collect();
+    if !forms.is_empty() {
+        let _ = writeln!(text, "{forms}");
     }
     if !keyword.parameters.is_empty() {
         text.push_str("\n| parameter | | meaning |\n|---|---|---|\n");
@@ -77,19 +64,16 @@ fn push_keyword(text: &mut String, keyword: &Keyword) {
     for parameter in keyword.parameters {
         push_parameter(text, parameter);
     }
+    let _ = write!(text, "\n```\n{}\n```\n", keyword.example);
 }
 
 fn push_parameter(text: &mut String, parameter: &Parameter) {
-    let form = match parameter.takes {
-        Takes::Nothing => parameter.name.to_string(),
-        Takes::Value | Takes::Choice(_) => format!("{}=", parameter.name),
-        Takes::Optional | Takes::OptionalChoice(_) => format!("{}[=]", parameter.name),
-    };
-    let (status, meaning) = (word(parameter.status), plain(parameter.text));
-    let _ = writeln!(text, "| `{form}` | {status} | {meaning} |");
+    let (form, treated) = (written(parameter), status(parameter.status));
+    let meaning = plain(&meaning(parameter));
+    let _ = writeln!(text, "| `{form}` | {treated} | {meaning} |");
     for value in parameter.values() {
-        let (status, name, meaning) = (word(value.status), value.name, plain(value.text));
-        let _ = writeln!(text, "| &nbsp;&nbsp;`{name}` | {status} | {meaning} |");
+        let (treated, name, meaning) = (status(value.status), value.name, plain(value.text));
+        let _ = writeln!(text, "| &nbsp;&nbsp;`{name}` | {treated} | {meaning} |");
     }
 }
 
@@ -103,13 +87,4 @@ fn push_list(text: &mut String, status: Status, title: &str) {
 /// A sentence with its stars escaped for Markdown.
 fn plain(sentence: &str) -> String {
     sentence.replace('*', "\\*")
-}
-
-fn word(status: Status) -> &'static str {
-    match status {
-        Status::Read => "read",
-        Status::Ignored => "silent",
-        Status::Warned => "warning",
-        Status::Refused => "error",
-    }
 }

@@ -74,7 +74,7 @@ impl<'a> Outline<'a> {
     }
 
     fn check_data(&self, card: &Card, cx: &mut Context) {
-        let required = card.keyword.data == Data::Required;
+        let required = matches!(card.keyword.data, Data::Required(_));
         if required && card.rows.is_empty() && !card.faulty && !cx.deck.incomplete {
             let message = format!("{} needs data lines", card.title());
             cx.error(Code::MissingData, card.span, message);

@@ -1,0 +1,39 @@
+//! The subcommand `explain`.
+
+use crate::cli::args::ExplainArgs;
+use crate::cli::error::CliError;
+use crate::cli::exit::Exit;
+use crate::cli::terminal::print;
+use crate::deck::{find_keyword, keywords};
+use crate::diagnostics::{Code, closest};
+
+/// Explains a keyword or the code of a message.
+pub(in crate::cli) fn explain(args: &ExplainArgs) -> Result<Exit, CliError> {
+    let typed = args.words.join(" ");
+    let word = typed.trim_start_matches('*').trim();
+    let code = Code::ALL
+        .iter()
+        .find(|code| code.id().eq_ignore_ascii_case(word));
+    let text = match (code, find_keyword(word)) {
+        (Some(code), _) => explanation(*code),
+        (None, Some(keyword)) => keyword.explanation(),
+        (None, None) => return Err(unknown(&typed, word)),
+    };
+    print(&[text.trim_end().to_string()])?;
+    Ok(Exit::Finished)
+}
+
+fn explanation(code: Code) -> String {
+    let (id, meaning) = (code.id(), code.meaning());
+    format!("{id}: {meaning}\n\n{}\n\n{}", code.cause(), code.cure())
+}
+
+/// The error of a word that is neither a keyword nor a code.
+fn unknown(typed: &str, word: &str) -> CliError {
+    let codes = Code::ALL.iter().map(|code| code.id());
+    let meant = closest(word, keywords().map(|keyword| keyword.name).chain(codes));
+    CliError::Unexplained {
+        word: typed.to_string(),
+        meant,
+    }
+}
