@@ -81,6 +81,9 @@ fn keywords_and_codes_are_explained() {
         "{text}"
     );
     assert!(text.contains("in its place\n  *DYNAMIC"), "{text}");
+    let (_, text, _) = explain(&["d410"]);
+    assert!(text.contains("\n\nMove the mesh"), "{text}");
+    assert!(text.lines().all(|line| line.len() <= 80), "{text}");
     let (_, text, _) = explain(&["d103"]);
     assert!(
         text.starts_with("D103: A keyword that no code knows"),
@@ -170,6 +173,8 @@ fn examples_are_read() {
     std::fs::create_dir_all(&parts).expect("a folder");
     std::fs::copy("tests/decks/parts/brass.inc", parts.join("brass.inc")).expect("a file");
     let with_example = keywords().filter(|keyword| !keyword.example.is_empty());
-    let faults: String = with_example.filter_map(|one| faults(one, &folder)).collect();
+    let faults: String = with_example
+        .filter_map(|one| faults(one, &folder))
+        .collect();
     assert!(faults.is_empty(), "{faults}");
 }

@@ -5,6 +5,7 @@
 
 mod code;
 mod diagnostic;
+mod lines;
 mod list;
 mod number;
 mod render;
@@ -14,6 +15,7 @@ mod suggestion;
 
 pub use code::Code;
 pub use diagnostic::{Diagnostic, Severity};
+pub(crate) use lines::wrapped;
 pub use list::{Diagnostics, Strictness};
 pub use number::shown;
 pub use sources::{Source, Sources};

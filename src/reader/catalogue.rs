@@ -1,6 +1,7 @@
 //! Kinds of the names that a deck defines: sets, surfaces, materials, amplitudes, interactions.
 
 use crate::deck::{Card, Deck};
+use crate::diagnostics::closest;
 use std::collections::BTreeMap;
 
 /// Keyword and parameter that define a name, and the kind of thing it is.
@@ -41,6 +42,16 @@ impl Catalogue {
     pub fn other_kind(&self, name: &str, kind: &str) -> Option<&'static str> {
         let kinds = self.kinds.get(name)?;
         kinds.iter().copied().find(|other| *other != kind)
+    }
+
+    /// An object of another kind than `kind` that a misspelt key probably means, and its kind.
+    pub fn meant(&self, name: &str, kind: &str) -> Option<(&str, &'static str)> {
+        let others = self
+            .kinds
+            .iter()
+            .filter(|(_, kinds)| !kinds.contains(&kind));
+        let meant = closest(name, others.map(|(key, _)| key.as_str()))?;
+        Some((meant, self.other_kind(meant, kind)?))
     }
 }
 

@@ -140,7 +140,8 @@ impl<'a> Context<'a> {
     }
 
     /// Adds a suggestion to the error of an undefined name: an object of another kind, a name with
-    /// a comma missing behind it, a typing error, or else the list of defined names.
+    /// a comma missing behind it, a typing error, one in the name of an object of another kind, or
+    /// else the list of defined names.
     fn with_what_is_meant<'n>(
         &self,
         error: Diagnostic,
@@ -149,18 +150,25 @@ impl<'a> Context<'a> {
         known: impl Iterator<Item = &'n str> + Clone,
     ) -> Diagnostic {
         let catalogue = self.catalogue.get_or_init(|| Catalogue::new(self.deck));
-        if let Some(kind) = catalogue.other_kind(&name.name_key(), what) {
+        let way = |kind, name: &str| {
+            let way = help_for(what, kind, name).map(|way| way + "; ");
+            way.unwrap_or_default() + &list_of(what, known.clone())
+        };
+        let key = name.name_key();
+        if let Some(kind) = catalogue.other_kind(&key, what) {
             let label = format!("{} is {}", name.text, with_article(kind));
-            let way = help_for(what, kind, name.text).map(|way| way + "; ");
-            return error
-                .label(label)
-                .help(way.unwrap_or_default() + &list_of(what, known));
+            return error.label(label).help(way(kind, name.text));
         }
         if let Some(cut) = name_before_blank(name, known.clone()) {
             return error.label(format!("is a comma missing after {cut}?"));
         }
-        match closest(name.text, known.clone()) {
-            Some(meant) => error.suggest(Some(meant)),
+        if let Some(meant) = closest(name.text, known.clone()) {
+            return error.suggest(Some(meant));
+        }
+        match catalogue.meant(&key, what) {
+            Some((meant, kind)) => error
+                .suggest(Some(format!("the {kind} {meant}")))
+                .help(way(kind, meant)),
             None => error.help(list_of(what, known)),
         }
     }

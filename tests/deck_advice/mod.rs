@@ -198,6 +198,9 @@ fn names_of_other_kinds() {
             step("*DSLOAD\nFOOT, P, 1."),
             model("*SURFACE, NAME=S\nTOP"),
             model("*NSET, NSET=N\nTOP"),
+            // misspelt names of other kinds
+            square("FOOT, 1, 2", "RUBER, 1, 2"),
+            step("*DSLOAD\nBDOY, P, 1."),
             // names that nothing has, and a comma that is missing
             square(&format!("{set}=FOOT"), &format!("{set}=WHEEL")),
             square("FOOT, 1, 2", "FOOT 1, 2"),

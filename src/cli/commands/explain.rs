@@ -5,7 +5,7 @@ use crate::cli::error::CliError;
 use crate::cli::exit::Exit;
 use crate::cli::terminal::print;
 use crate::deck::{find_keyword, keywords};
-use crate::diagnostics::{Code, closest};
+use crate::diagnostics::{Code, closest, wrapped};
 
 /// Explains a keyword or the code of a message.
 pub(in crate::cli) fn explain(args: &ExplainArgs) -> Result<Exit, CliError> {
@@ -23,9 +23,11 @@ pub(in crate::cli) fn explain(args: &ExplainArgs) -> Result<Exit, CliError> {
     Ok(Exit::Finished)
 }
 
+/// Meaning, cause and cure of a code.
 fn explanation(code: Code) -> String {
-    let (id, meaning) = (code.id(), code.meaning());
-    format!("{id}: {meaning}\n\n{}\n\n{}", code.cause(), code.cure())
+    let head = format!("{}: {}", code.id(), code.meaning());
+    let texts = [&head, code.cause(), code.cure()];
+    texts.map(|text| wrapped(text, 0)).join("\n")
 }
 
 /// The error of a word that is neither a keyword nor a code.

@@ -3,19 +3,17 @@
 use super::keyword::Keyword;
 use super::parameter::{Parameter, Status};
 use super::words::{data, form, meaning, place, status, written};
+use crate::diagnostics::wrapped;
 use std::fmt::Write;
-
-/// Width of the text.
-const WIDTH: usize = 80;
 
 impl Keyword {
     /// Text for the screen: treatment, meaning, data lines, parameters and an example.
     pub fn explanation(&self) -> String {
         let head = format!("*{}: {}", self.name, treatment(self));
-        let mut text = format!("{}\n{}", wrap(&head, 0), wrap(self.text, 0));
+        let mut text = format!("{}\n{}", wrapped(&head, 0), wrapped(self.text, 0));
         let forms = self.data.forms().iter();
         let forms: String = forms
-            .map(|one| wrap(&form(one).replace('`', ""), 2))
+            .map(|one| wrapped(&format!("  {}", form(one).replace('`', "")), 2))
             .collect();
         push(&mut text, "data lines", &forms);
         let parameters: String = self.parameters.iter().map(parameter).collect();
@@ -57,27 +55,7 @@ fn parameter(parameter: &Parameter) -> String {
     let head = format!("  {} ({treated}) ", written(parameter));
     let values = parameter.values().iter().map(|value| {
         let head = format!("    {} ({}) ", value.name, status(value.status));
-        wrap(&(head + value.text), 6)
+        wrapped(&(head + value.text), 6)
     });
-    wrap(&(head + &meaning(parameter)), 4) + &values.collect::<String>()
-}
-
-/// A text in lines, each but the first behind so many blanks; the first keeps its own.
-fn wrap(text: &str, blanks: usize) -> String {
-    let own = text.len() - text.trim_start().len();
-    let mut lines = " ".repeat(own.max(blanks.min(2)));
-    let mut width = lines.len();
-    for (number, word) in text.split_whitespace().enumerate() {
-        if number > 0 && width + 1 + word.len() > WIDTH {
-            lines.push('\n');
-            lines.push_str(&" ".repeat(blanks));
-            width = blanks;
-        } else if number > 0 {
-            lines.push(' ');
-            width += 1;
-        }
-        lines.push_str(word);
-        width += word.len();
-    }
-    lines + "\n"
+    wrapped(&(head + &meaning(parameter)), 4) + &values.collect::<String>()
 }
