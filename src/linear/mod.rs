@@ -18,7 +18,7 @@ pub use added_blocks::AddedBlocks;
 pub use assembled::Assembled;
 pub use checked::CheckedSolver;
 pub use choice::linear_solver;
-pub use faer_ldl::FaerLdl;
+pub use faer_ldl::{FaerLdl, factor_entries};
 pub use largest::{larger, largest};
 pub use rotation::Rotation;
 pub use solver::{LinearError, LinearSolver};
