@@ -380,6 +380,6 @@ pub(crate) fn largest_forces<'a>(
     forces: impl Iterator<Item = &'a [f64]>,
 ) -> Vec<f64> {
     let each: Vec<Vec<f64>> = forces.map(|force| parts.largest(force)).collect();
-    let of_part = |part: usize| largest(each.iter().map(|force| &force[part]));
+    let of_part = |part: usize| each.iter().map(|force| force[part].abs()).fold(0.0, larger);
     (0..parts.of_parts().len()).map(of_part).collect()
 }
