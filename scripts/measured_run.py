@@ -3,7 +3,9 @@
 import os
 import signal
 import subprocess
+import sys
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -28,6 +30,8 @@ class Run:
     """Whether the limit was reached: the last increment may be a part of one."""
     complaint: str
     """First line of what the program wrote to its standard error."""
+    peak: int
+    """Largest memory resident at a time, in bytes."""
 
     @property
     def status(self) -> Path:
@@ -42,32 +46,46 @@ def check_program(path: Path) -> Path:
     return path.resolve()
 
 
-def run(program: Path, deck: Path, output: Path, limit: float | None = None) -> Run:
+def run(
+    program: Path, deck: Path, output: Path, limit: float | None = None, options: Sequence[str] = ()
+) -> Run:
     """Runs a deck in one thread; asks the run to end when its processor time reaches `limit`."""
     output.mkdir(parents=True, exist_ok=True)
     errors = output / f"{deck.stem}.err"
-    command = [program, "run", deck, "-o", output, "--overwrite", "-q", "--threads", "1"]
+    command = [program, "run", deck, "-o", output, "--overwrite", "-q", "--threads", "1", *options]
     with errors.open("wb") as stream:
         process = subprocess.Popen(
             command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=stream
         )
     try:
         was_stopped = limit is not None and _stop_at(limit, process.pid)
-        seconds = _wait(process)
+        usage = wait(process)
     except BaseException:
         process.kill()
         raise
     lines = errors.read_text(errors="replace").splitlines()
     result = output / f"{deck.stem}.vtkhdf"
     was_stopped = was_stopped and process.returncode != 0
-    return Run(result, process.returncode, seconds, was_stopped, lines[0] if lines else "")
+    complaint = lines[0] if lines else ""
+    return Run(result, process.returncode, usage.seconds, was_stopped, complaint, usage.peak)
 
 
-def _wait(process: subprocess.Popen[bytes]) -> float:
-    """Waits for the end; processor time used."""
+@dataclass(frozen=True)
+class Usage:
+    """What a process has used."""
+
+    seconds: float
+    """Processor time, user and system."""
+    peak: int
+    """Largest memory resident at a time, in bytes."""
+
+
+def wait(process: subprocess.Popen[bytes]) -> Usage:
+    """Waits for the end of a process."""
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
-    return usage.ru_utime + usage.ru_stime
+    unit = 1 if sys.platform == "darwin" else 1024
+    return Usage(usage.ru_utime + usage.ru_stime, usage.ru_maxrss * unit)
 
 
 def _stop_at(limit: float, pid: int) -> bool:

@@ -16,6 +16,9 @@ use tempfile::TempDir;
 /// Tells the second process of this test where to write.
 const FOLDER: &str = "STICKSLIP_TEST_FOLDER";
 
+/// An increment that takes long.
+const LONG_INCREMENT: usize = 30;
+
 fn files(folder: &Path) -> JobFiles {
     JobFiles::new("killed.inp".as_ref(), folder)
 }
@@ -30,10 +33,14 @@ fn endless_writer() {
     model.steps[0].frames = Frames::Increments(3);
     let mut writer = writer(&model, &files(&PathBuf::from(folder)));
     for k in 0.. {
+        if k == LONG_INCREMENT {
+            // What waits in memory is written after a second at most.
+            std::thread::sleep(Duration::from_secs(1));
+        }
         let mut report = report(k);
         report.ends_step = false;
         writer.increment(&report).expect("written");
-        if k == 30 {
+        if k == LONG_INCREMENT {
             println!("ready");
             std::io::stdout().flush().expect("flushed");
         }
@@ -66,7 +73,7 @@ fn a_killed_run_is_readable_up_to_its_last_frame() {
         killed_after(Duration::from_millis(7 * round), folder.path());
         let summary = ResultSummary::read(&files(folder.path()).result).expect("readable");
         assert_eq!(summary.exit_status, -1);
-        assert!(summary.increments >= 30, "{summary:?}");
+        assert!(summary.increments >= LONG_INCREMENT, "{summary:?}");
         assert!(summary.frames.len() >= 11);
         assert!(summary.lines().iter().any(|line| line.contains("killed")));
     }

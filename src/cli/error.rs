@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use super::exit::Exit;
-use crate::output::{NameError, OutputError, SummaryError, reason};
+use crate::output::{MemoryError, NameError, OutputError, SummaryError, reason};
 
 /// Why a command failed.
 #[derive(Debug, Error)]
@@ -22,6 +22,9 @@ pub(super) enum CliError {
     /// A name of the deck is not possible in the result file.
     #[error(transparent)]
     Name(#[from] NameError),
+    /// The run does not fit into the free memory.
+    #[error(transparent)]
+    Memory(#[from] MemoryError),
     /// The files of the job cannot be created.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -90,6 +93,7 @@ impl CliError {
             CliError::Threads { .. } | CliError::Unexplained { .. } => Exit::Usage,
             CliError::Deck { .. }
             | CliError::Problem { .. }
+            | CliError::Memory(_)
             | CliError::File { .. }
             | CliError::Output(_)
             | CliError::Write(_)

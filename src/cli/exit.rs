@@ -15,7 +15,7 @@ pub enum Exit {
     /// The command line is wrong, or asks for threads that cannot be started.
     Usage = 3,
     /// A file or the screen could not be read or written, results exist already, or another run has
-    /// the job.
+    /// the job; the run does not fit into the free memory.
     FileSystem = 4,
     /// The terminal was closed (SIGHUP); the results up to there are valid.
     HungUp = 129,

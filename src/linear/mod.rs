@@ -14,5 +14,5 @@ pub use assembled::Assembled;
 pub use checked::CheckedSolver;
 pub use largest::{larger, largest};
 pub use rotation::Rotation;
-pub use solvers::{FaerLdl, LinearError, LinearSolver, SprsLdl, linear_solver};
+pub use solvers::{FaerLdl, LinearError, LinearSolver, SprsLdl, factor_entries, linear_solver};
 pub use transformation::Transformation;

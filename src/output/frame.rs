@@ -38,21 +38,19 @@ impl Frame {
 #[derive(Default)]
 pub(super) struct LastState {
     pub frame: Frame,
-    /// Whether it is in the file.
+    /// Whether it is a frame.
     pub is_written: bool,
-    /// Time of the last frame in the file.
-    pub written_time: f64,
 }
 
 impl LastState {
-    /// Stores the end of an increment, which is not yet in the file.
+    /// Stores the end of an increment, which is not yet a frame.
     pub fn set(&mut self, report: &IncrementReport) {
         self.frame.set(report);
         self.is_written = false;
     }
 
-    /// Notes that the state is in the file.
+    /// Notes that the state is a frame.
     pub fn set_written(&mut self) {
-        (self.is_written, self.written_time) = (true, self.frame.time);
+        self.is_written = true;
     }
 }

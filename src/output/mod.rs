@@ -1,7 +1,7 @@
 //! Result file, status file, log and screen.
 //!
 //! [`ResultWriter`] observes a run and writes the files of a job ([`JobFiles`]), which are claimed by
-//! one run at a time ([`Claim`]): `JOB.vtkhdf` (`result_file`: `vtkhdf`, `model`, `history`,
+//! one run at a time ([`Claim`]): `JOB.vtkhdf` (`result_file`: `grid`, `model`, `history`,
 //! `record`, `space`), `JOB.sta` (`status`), `JOB.log` (`log`) and the screen (`screen`,
 //! `progress`). `docs/output.md` describes them. [`picture`] draws a model that is not run.
 
@@ -12,6 +12,8 @@ mod frames;
 mod history;
 mod interrupt;
 mod job;
+mod memory;
+mod pace;
 mod picture;
 mod result_file;
 mod summary;
@@ -23,6 +25,7 @@ pub use file::{Claim, RunRecord, UNFINISHED, check_names, contact_names, regular
 pub use frames::{DEFAULT_FRAMES, FrameSchedule};
 pub use interrupt::Interrupt;
 pub use job::JobFiles;
+pub use memory::{MemoryError, check_memory};
 pub use picture::picture;
 pub use summary::{ResultSummary, SummaryError, deck_line, program_lines};
 pub use text::{ModelEcho, Verbosity, frames, solver};

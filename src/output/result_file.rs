@@ -1,7 +1,8 @@
-//! The result file as a whole: all groups of `JOB.vtkhdf`, with disk space secured before each
-//! history row and frame, and a flush after each frame.
+//! The result file as a whole: all groups of `JOB.vtkhdf`. Frames and history rows wait in memory and
+//! are written together, with disk space secured beforehand.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 use std::{fs, io};
 
 use hdf5::{File, FileBuilder};
@@ -10,6 +11,7 @@ use super::error::{at, io_error};
 use super::file::{Fields, Record, RunRecord, Space};
 use super::frame::Frame;
 use super::history::History;
+use super::pace::Pace;
 use crate::dynamics::{IncrementReport, RunSummary};
 use crate::model::Model;
 
@@ -22,6 +24,9 @@ pub(super) struct ResultFile {
     history: History,
     record: Record,
     space: Space,
+    pace: Pace,
+    /// Time of the last frame.
+    frame_time: f64,
     /// Whether the library has failed, so that the content of the file is unknown.
     is_broken: bool,
 }
@@ -42,10 +47,13 @@ impl ResultFile {
         };
         let file = builder().map_err(io_error).map_err(at(path))?;
         let parts = Self::build(&file, model, record);
-        let (fields, history, record) = parts.map_err(io_error).map_err(at(path))?;
+        let (mut fields, mut history, record) = parts.map_err(io_error).map_err(at(path))?;
+        let growth = fields.growth() + history.growth();
         let mut result = ResultFile {
             path: path.to_owned(),
-            space: Space::new(draft, &file).map_err(at(path))?,
+            space: Space::new(draft, growth).map_err(at(path))?,
+            pace: Pace::new(),
+            frame_time: 0.0,
             fields,
             history,
             record,
@@ -69,23 +77,44 @@ impl ResultFile {
         Ok((fields, history, record))
     }
 
-    /// Appends the history row of an increment.
-    pub fn history(&mut self, model: &Model, report: &IncrementReport) -> io::Result<()> {
-        self.room()?;
-        let written = self.history.write(model, report);
-        self.checked(written)
+    /// Appends the history row of an increment, which waits in memory.
+    pub fn history(&mut self, model: &Model, report: &IncrementReport) {
+        self.history.push(model, report);
     }
 
-    /// Appends a frame and writes everything to the disk, so that the file is readable even when
-    /// the program is killed; then reserves space for the next rows.
-    pub fn frame(&mut self, frame: &Frame) -> io::Result<()> {
+    /// Appends a frame, which waits in memory.
+    pub fn frame(&mut self, frame: &Frame) {
+        self.fields.push(frame);
+        self.frame_time = frame.time;
+    }
+
+    /// Writes what waits in memory when it is much, or when the last frames were written some time ago.
+    pub fn write_when_due(&mut self) -> io::Result<()> {
+        let is_much = self.fields.is_full() || self.history.is_full();
+        let is_waiting = self.fields.pending() > 0;
+        match is_much || (is_waiting && self.pace.is_due()) {
+            true => self.write_through(),
+            false => Ok(()),
+        }
+    }
+
+    /// Writes everything to the disk, so that the file is readable even when the program is killed;
+    /// then reserves space for what comes next.
+    fn write_through(&mut self) -> io::Result<()> {
+        let start = Instant::now();
         self.room()?;
-        let written = (self.fields.write(frame))
+        self.write()?;
+        self.space.written();
+        self.pace.written(start);
+        self.room()
+    }
+
+    /// Writes what waits in memory.
+    fn write(&mut self) -> io::Result<()> {
+        let written = (self.fields.flush())
             .and_then(|()| self.history.flush())
             .and_then(|()| self.file.flush());
-        self.checked(written)?;
-        self.space.written();
-        self.room()
+        self.checked(written)
     }
 
     /// Completes the run record.
@@ -96,8 +125,9 @@ impl ResultFile {
         output: f64,
         total: f64,
     ) -> io::Result<()> {
-        let written = (self.history.flush())
-            .and_then(|()| self.record.finish(summary, exit_status, output, total))
+        self.write()?;
+        let written = (self.record)
+            .finish(summary, exit_status, output, total)
             .and_then(|()| self.file.flush());
         self.checked(written)?;
         self.space.release();
@@ -109,17 +139,16 @@ impl ResultFile {
         if self.is_broken {
             return Ok(());
         }
-        let written = (self.history.flush())
-            .and_then(|()| self.record.close(exit_status))
-            .and_then(|()| self.file.flush());
+        self.write()?;
+        let written = (self.record.close(exit_status)).and_then(|()| self.file.flush());
         self.checked(written)?;
         self.space.release();
         Ok(())
     }
 
-    /// Whether the frames written can be read.
-    pub fn is_readable(&self) -> bool {
-        !self.is_broken
+    /// Time of the last frame that can be read once what waits is written; none without any.
+    pub fn readable_time(&self) -> Option<f64> {
+        (self.fields.count() > 0 && !self.is_broken).then_some(self.frame_time)
     }
 
     /// Reserves disk space for the next rows: a file that the library has written only in part is

@@ -75,11 +75,12 @@ impl<'a> ResultWriter<'a> {
 
     /// After an error: up to which time the results can be read.
     pub fn kept(&self) -> Option<String> {
-        let is_kept = self.status.is_some() && self.result.is_readable();
-        is_kept.then(|| {
-            let time = scientific(self.last.written_time, 6);
-            format!("the results up to time {time} are kept")
-        })
+        let time = self
+            .result
+            .readable_time()
+            .filter(|_| self.status.is_some())?;
+        let time = scientific(time, 6);
+        Some(format!("the results up to time {time} are kept"))
     }
 
     /// Error of a failed screen; none for a closed pipe.
@@ -115,6 +116,7 @@ impl<'a> ResultWriter<'a> {
             self.write_last_state()?;
         }
         self.publish()?;
+        self.status.as_mut().map_or(Ok(()), StatusFile::flush)?;
         let exit_status = match &summary.outcome {
             Outcome::Finished if self.console.is_lost() => 4,
             Outcome::Finished => 0,
@@ -144,22 +146,26 @@ impl<'a> ResultWriter<'a> {
         if last.is_written || last.frame.state.u.is_empty() {
             return Ok(());
         }
-        self.result.frame(&last.frame)?;
+        self.result.frame(&last.frame);
         last.set_written();
-        Ok(())
+        self.result.write_when_due()
     }
 
     fn record_increment(&mut self, report: &IncrementReport) -> io::Result<()> {
         let remarks = self.monitor.add(report);
         self.print_remarks(report, &remarks)?;
-        self.result.history(self.model, report)?;
+        self.result.history(self.model, report);
         self.last.set(report);
-        if self.schedule.is_due(report) {
-            self.result.frame(&self.last.frame)?;
-            self.publish()?;
+        let is_frame = self.schedule.is_due(report);
+        if is_frame {
+            self.result.frame(&self.last.frame);
             self.last.set_written();
         }
-        Ok(())
+        self.result.write_when_due()?;
+        match is_frame {
+            true => self.publish(),
+            false => Ok(()),
+        }
     }
 
     fn print_increment(&mut self, report: &IncrementReport) -> io::Result<()> {

@@ -259,6 +259,7 @@ pub fn record() -> RunRecord {
         deck: deck_text(),
         command: "stickslip run 'a b.inp'".into(),
         threads: 2,
+        memory_need: 1 << 20,
     }
 }
 

@@ -10,10 +10,10 @@ use crate::cli::signals;
 use crate::cli::version::{COMMIT, NUMBER, PROFILE};
 use crate::dynamics::{Outcome, RunError};
 use crate::output::{
-    Claim, Interrupt, JobFiles, ModelEcho, ResultWriter, RunRecord, Verbosity, check_names,
-    program_lines,
+    Claim, Interrupt, JobFiles, ModelEcho, ResultWriter, RunRecord, Verbosity, check_memory,
+    check_names, program_lines,
 };
-use crate::prepare::PreparedModel;
+use crate::prepare::{MemoryNeed, PreparedModel};
 
 /// Solves a deck; `command` is the command as typed. The run ends early when `interrupt` requests
 /// it.
@@ -35,9 +35,14 @@ pub(in crate::cli) fn run(
     if interrupt.signal().is_some() {
         return Ok(signals::exit(interrupt));
     }
+    let need = MemoryNeed::new(&model);
+    check_memory(need)?;
     let files = JobFiles::new(&args.deck.path, &args.output);
     let claim = Claim::take(&files, args.overwrite)?;
-    let record = record(command, &loaded, start_threads(args.threads)?);
+    let record = RunRecord {
+        memory_need: need.total(),
+        ..record(command, &loaded, start_threads(args.threads)?)
+    };
     let notes = overrides::apply(args, model.steps_mut());
     let mut writer = ResultWriter::create(model.model(), claim, &record, args.verbosity())?;
     writer.heed(interrupt);
@@ -102,6 +107,7 @@ fn record(command: &str, loaded: &Loaded, threads: usize) -> RunRecord {
         deck: loaded.text.clone(),
         command: command.into(),
         threads,
+        memory_need: 0,
     }
 }
 

@@ -4,6 +4,7 @@
 
 use super::bodies::{BodyMasses, Moving, momentum};
 use super::contact_ledger::ContactLedger;
+use super::energy::Ledger;
 use super::nodal_results::{contact_resultants, nodal_results, node_masses};
 use super::pressure::SlaveFaces;
 use super::rigid_surfaces::RigidSurfaces;
@@ -14,7 +15,6 @@ use crate::dynamics::results::{
     RigidReaction, State,
 };
 use crate::dynamics::step::{Interval, Mass, StepProblem};
-use crate::elements::ElementResult;
 use crate::model::{Contact, Model};
 
 /// Accounts of a run besides the energy ledger: bodies, rigid surfaces and contacts.
@@ -40,13 +40,8 @@ impl Accounts {
         }
     }
 
-    /// Motion at the start with the energies of the elements, without forces.
-    pub fn start(
-        &self,
-        problem: &StepProblem,
-        state: &State,
-        elements: &[ElementResult],
-    ) -> IncrementReport {
+    /// Motion at the start with the energies of the ledger, without forces.
+    pub fn start(&self, problem: &StepProblem, state: &State, ledger: &Ledger) -> IncrementReport {
         let (dofs, nodes) = (state.u.len(), state.u.len() / 2);
         let of_contact = |contact: &Contact| ContactResultant {
             min_gap: f64::NAN,
@@ -69,7 +64,7 @@ impl Accounts {
             },
             contacts: problem.model.contacts.iter().map(of_contact).collect(),
             rigid: vec![RigidReaction::default(); self.rigid.count()],
-            ..self.moving(problem, state, elements)
+            ..self.moving(problem, state, ledger)
         }
     }
 
@@ -79,10 +74,10 @@ impl Accounts {
         problem: &StepProblem,
         (solved, returned): (&Solved, &Returned),
         interval: Interval,
-        elements: &[ElementResult],
+        ledger: &Ledger,
     ) -> IncrementReport {
         self.enter_damping(problem, solved);
-        let mut report = self.moving(problem, &solved.end, elements);
+        let mut report = self.moving(problem, &solved.end, ledger);
         let u = &solved.equilibrium.u_theta;
         let mut contacts = contact_resultants(problem, solved);
         let bodies = &self.bodies.bodies;
@@ -129,13 +124,8 @@ impl Accounts {
     }
 
     /// Momentum and motion of the bodies.
-    fn moving(
-        &self,
-        problem: &StepProblem,
-        state: &State,
-        elements: &[ElementResult],
-    ) -> IncrementReport {
-        let p = &problem.mass.times(&state.v);
+    fn moving(&self, problem: &StepProblem, state: &State, ledger: &Ledger) -> IncrementReport {
+        let (p, elements) = (&ledger.momentum[..], &ledger.elements[..]);
         let State { u, v, .. } = state;
         let moving = Moving { u, v, p, elements };
         IncrementReport {

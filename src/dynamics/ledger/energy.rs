@@ -18,6 +18,8 @@ pub(crate) struct Ledger {
     pub energy: Energy,
     /// Largest kinetic or strain energy of every body so far.
     pub largest: Vec<f64>,
+    /// M V of the state that it stands at.
+    pub momentum: Vec<f64>,
     /// Strain energy, stress and strain of every element.
     pub elements: Arc<[ElementResult]>,
     /// Energy that contact put in in the last increment, if it did.
@@ -31,7 +33,8 @@ pub(crate) struct Ledger {
 impl Ledger {
     /// Opens the ledger at the start of the analysis.
     pub fn new(problem: &StepProblem, start: &State) -> Self {
-        let kinetic = problem.mass.kinetic_energy(&start.v);
+        let momentum = problem.mass.times(&start.v);
+        let kinetic = dot(&start.v, &momentum) / 2.0;
         let elements = problem.elements.evaluate(&start.u, &start.internal);
         let strain = elements.iter().map(|element| element.energy).sum();
         let energy = Energy {
@@ -42,6 +45,7 @@ impl Ledger {
         let mut ledger = Ledger {
             energy,
             largest: vec![0.0; problem.parts.bodies()],
+            momentum,
             scale: larger(kinetic, strain),
             start: kinetic + strain,
             ..Ledger::default()
@@ -54,7 +58,12 @@ impl Ledger {
     /// Takes in the kinetic energy of every body in a state, and the strain energy of every element.
     fn enter_bodies(&mut self, problem: &StepProblem, state: &State, elements: &[ElementResult]) {
         let parts = problem.parts;
-        let kinetic = problem.mass.kinetic_energies(&state.v, parts);
+        let mut kinetic = vec![0.0; parts.bodies()];
+        for (node, &body) in parts.of_nodes().iter().enumerate() {
+            for i in [2 * node, 2 * node + 1] {
+                kinetic[body] += state.v[i] * self.momentum[i] / 2.0;
+            }
+        }
         let mut strains = vec![0.0; parts.bodies()];
         for (element, result) in elements.iter().enumerate() {
             let [node, ..] = problem.elements.nodes(element) else {
@@ -92,12 +101,13 @@ impl Ledger {
             ..
         } = &solved.equilibrium;
         let elements = problem.elements.evaluate(&end.u, &end.internal);
+        self.momentum = problem.mass.times(&end.v);
         self.enter_bodies(problem, end, &elements);
         self.elements = elements.into();
         let e = &mut self.energy;
         let (strain0, contact_work0) = (e.strain, e.normal_contact_work);
         e.strain = self.elements.iter().map(|element| element.energy).sum();
-        e.kinetic = problem.mass.kinetic_energy(&end.v);
+        e.kinetic = dot(&end.v, &self.momentum) / 2.0;
 
         // d.R_theta, and at supports dt V_mid,p (M A)_p + d_p (F - R - B^T P)_p, eq. (9.1), with
         // what equations pass on to them

@@ -235,8 +235,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             solved,
             is_cut,
         } = subincrement;
-        let accounted =
-            (self.accounts).enter(problem, (&solved, &returned), interval, &ledger.elements);
+        let accounted = (self.accounts).enter(problem, (&solved, &returned), interval, &ledger);
         let solver = SolverCounts {
             violation: contact_violation(problem, &self.state, &solved),
             converged: true,
@@ -285,14 +284,14 @@ impl<'m, 'o> Runner<'m, 'o> {
         if let Some(failure) = start_failure(&self.state, &self.ledger, place) {
             return Ok(Some(failure));
         }
-        let (state, elements) = (&self.state, &self.ledger.elements);
+        let (state, ledger) = (&self.state, &self.ledger);
         let report = IncrementReport {
             step: place.number,
             energy: self.ledger.energy,
             solver: SolverCounts::at_start(),
             state: state.clone(),
-            elements: elements.clone(),
-            ..self.accounts.start(problem, state, elements)
+            elements: ledger.elements.clone(),
+            ..self.accounts.start(problem, state, ledger)
         };
         self.observer.increment(&report)?;
         Ok(None)

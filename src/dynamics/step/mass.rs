@@ -1,7 +1,6 @@
 //! Global mass matrices over the nodes and over the unknowns, and kinetic energies. Section 2 of
 //! docs/theory.md.
 
-use super::parts::Parts;
 use super::unknowns::Unknowns;
 use crate::elements::Elements;
 use crate::linear::{Assembled, Transformation};
@@ -43,17 +42,6 @@ impl Mass {
     /// Kinetic energy v.M v/2.
     pub fn kinetic_energy(&self, v: &[f64]) -> f64 {
         dot(v, &self.times(v)) / 2.0
-    }
-
-    /// Kinetic energy of every body.
-    pub fn kinetic_energies(&self, v: &[f64], parts: &Parts) -> Vec<f64> {
-        let (p, mut energies) = (self.times(v), vec![0.0; parts.bodies()]);
-        for (node, &body) in parts.of_nodes().iter().enumerate() {
-            for i in [2 * node, 2 * node + 1] {
-                energies[body] += v[i] * p[i] / 2.0;
-            }
-        }
-        energies
     }
 }
 

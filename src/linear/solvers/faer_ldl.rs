@@ -53,6 +53,13 @@ fn analyse(pattern: &Pattern) -> Result<SymbolicCholesky<usize>, LinearError> {
     .map_err(library)
 }
 
+/// Entries of the factor L of a matrix with one unknown per node, `neighbours` being the other nodes
+/// that each node is coupled with, in increasing order, and itself; 0 where the analysis fails.
+pub fn factor_entries(neighbours: &[Vec<usize>]) -> usize {
+    let pattern = Pattern::of_graph(neighbours);
+    analyse(&pattern).map_or(0, |symbolic| symbolic.len_val())
+}
+
 impl LinearSolver for FaerLdl {
     fn factorize(&mut self, a: CsMatView<'_, f64>) -> Result<(), LinearError> {
         self.substitution.forget_paths();

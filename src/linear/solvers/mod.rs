@@ -10,6 +10,6 @@ mod sprs_ldl;
 mod substitution;
 
 pub use choice::linear_solver;
-pub use faer_ldl::FaerLdl;
+pub use faer_ldl::{FaerLdl, factor_entries};
 pub use solver::{LinearError, LinearSolver};
 pub use sprs_ldl::SprsLdl;

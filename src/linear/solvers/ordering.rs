@@ -32,6 +32,16 @@ impl Pattern {
         }
     }
 
+    /// The pattern whose column k has entries in the rows `neighbours[k]`, in increasing order.
+    pub fn of_graph(neighbours: &[Vec<usize>]) -> Self {
+        let mut starts = vec![0];
+        for rows in neighbours {
+            starts.push(starts[starts.len() - 1] + rows.len());
+        }
+        let rows = neighbours.concat();
+        Pattern { starts, rows }
+    }
+
     /// The pattern in faer's form.
     pub fn symbolic(&self) -> SymbolicSparseColMatRef<'_, usize> {
         let n = self.starts.len().max(1) - 1;

@@ -4,7 +4,7 @@ use hdf5::Group;
 
 use super::body_times::body_times;
 use super::dataset::{Meaning, constant, group, meaning};
-use super::mesh::{connectivity, number};
+use super::grid::{connectivity, number};
 use crate::model::{Bodies, Instance, Model, Set};
 use crate::output::text::element_mass;
 

@@ -6,6 +6,7 @@ use sha2::{Digest, Sha256};
 use super::clock::utc_now;
 use super::dataset::{group, set_attribute, text_attribute};
 use crate::dynamics::{RunSummary, Timings};
+use crate::output::memory::peak_memory;
 
 /// Value of `exit_status` until the run ends.
 pub const UNFINISHED: i64 = -1;
@@ -23,6 +24,8 @@ pub struct RunRecord {
     pub command: String,
     /// Number of threads.
     pub threads: usize,
+    /// Bytes of memory that the run was estimated to need.
+    pub memory_need: u64,
 }
 
 /// Writes the run record.
@@ -45,6 +48,7 @@ impl Record {
         text("finished", "")?;
         set_attribute(&at, "exit_status", UNFINISHED)?;
         set_attribute(&at, "threads", record.threads as i64)?;
+        set_attribute(&at, "memory_need", record.memory_need as i64)?;
         Ok(Record { at })
     }
 
@@ -64,6 +68,9 @@ impl Record {
         set_attribute(&self.at, "increments", summary.increments as i64)?;
         set_attribute(&self.at, "cutbacks", summary.cutbacks as i64)?;
         set_attribute(&self.at, "events", summary.events as i64)?;
+        if let Some(peak) = peak_memory() {
+            set_attribute(&self.at, "peak_memory", peak as i64)?;
+        }
         self.close(exit_status)
     }
 

@@ -1,9 +1,10 @@
 //! Scalar time histories: tables of name, meaning and value, each entry a growing dataset of the
 //! result file.
 
-use hdf5::{Group, H5Type};
+use hdf5::Group;
 
-use super::dataset::{Column, Meaning, meaning};
+use super::column::{Column, Columns, Growing, Value};
+use super::dataset::{Meaning, meaning};
 
 /// A scalar of a report `R`: name, meaning and value.
 pub(crate) type Scalar<R, T> = (&'static str, Meaning, fn(&R) -> T);
@@ -26,7 +27,7 @@ pub(crate) struct Series<R, T> {
     columns: Vec<Shown<R, T>>,
 }
 
-impl<R, T: H5Type + Copy> Series<R, T> {
+impl<R, T: Value> Series<R, T> {
     /// Creates one dataset per scalar.
     pub fn create(at: &Group, scalars: &[Scalar<R, T>]) -> hdf5::Result<Self> {
         let columns = (scalars.iter())
@@ -36,12 +37,21 @@ impl<R, T: H5Type + Copy> Series<R, T> {
     }
 
     /// Appends a row to each.
-    pub fn push(&mut self, report: &R) -> hdf5::Result<()> {
-        (self.columns.iter_mut()).try_for_each(|(column, value)| column.push([value(report)]))
+    pub fn push(&mut self, report: &R) {
+        for (column, value) in &mut self.columns {
+            column.push([value(report)]);
+        }
     }
 
-    /// Writes the buffered rows of each.
-    pub fn flush(&mut self) -> hdf5::Result<()> {
-        (self.columns.iter_mut()).try_for_each(|(column, _)| column.flush())
+    /// Its datasets.
+    pub fn columns<'a>(&'a mut self, all: &mut Columns<'a>) {
+        all.extend(growing(&mut self.columns));
     }
+}
+
+/// The datasets of a table.
+pub(crate) fn growing<'a, T: Value, V>(
+    table: &'a mut [(Column<T>, V)],
+) -> impl Iterator<Item = &'a mut dyn Growing> + use<'a, T, V> {
+    (table.iter_mut()).map(|(column, _)| -> &mut dyn Growing { column })
 }

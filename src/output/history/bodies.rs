@@ -4,7 +4,7 @@ use hdf5::Group;
 
 use crate::dynamics::BodyResult;
 use crate::model::{Bodies, Model};
-use crate::output::file::{Column, meaning};
+use crate::output::file::{Column, Columns, growing, meaning};
 
 /// A vector or a scalar of a body.
 type Vector = fn(&BodyResult) -> [f64; 2];
@@ -69,20 +69,18 @@ impl BodyHistory {
     }
 
     /// Appends a row to each dataset.
-    pub fn push(&mut self, bodies: &[BodyResult]) -> hdf5::Result<()> {
+    pub fn push(&mut self, bodies: &[BodyResult]) {
         for (column, value) in &mut self.vectors {
-            column.push(bodies.iter().flat_map(&*value))?;
+            column.push(bodies.iter().flat_map(&*value));
         }
         for (column, value) in &mut self.scalars {
-            column.push(bodies.iter().map(&*value))?;
+            column.push(bodies.iter().map(&*value));
         }
-        Ok(())
     }
 
-    /// Writes the buffered rows.
-    pub fn flush(&mut self) -> hdf5::Result<()> {
-        let vectors = self.vectors.iter_mut().map(|(column, _)| column);
-        let scalars = self.scalars.iter_mut().map(|(column, _)| column);
-        vectors.chain(scalars).try_for_each(Column::flush)
+    /// Its datasets.
+    pub fn columns<'a>(&'a mut self, all: &mut Columns<'a>) {
+        all.extend(growing(&mut self.vectors));
+        all.extend(growing(&mut self.scalars));
     }
 }

@@ -4,7 +4,9 @@ use hdf5::Group;
 
 use crate::dynamics::{ContactImpulse, ContactResultant, Landing};
 use crate::model::{Bodies, Contact, Model};
-use crate::output::file::{Column, Meaning, Scalar, Series, contact_names, group, meaning, scalar};
+use crate::output::file::{
+    Column, Columns, Growing, Meaning, Scalar, Series, contact_names, group, meaning, scalar,
+};
 
 const RESULTANTS: [Scalar<ContactResultant, f64>; 9] = [
     scalar(
@@ -179,33 +181,33 @@ impl ContactHistory {
     }
 
     /// Appends a row.
-    pub fn push(&mut self, resultant: &ContactResultant) -> hdf5::Result<()> {
-        self.force.push(resultant.force)?;
-        self.resultants.push(resultant)?;
-        self.pairs.push(resultant)?;
-        self.impulse.push(&resultant.impulse)?;
-        self.impulse_sum.push(&resultant.impulse_sum)?;
+    pub fn push(&mut self, resultant: &ContactResultant) {
+        self.force.push(resultant.force);
+        self.resultants.push(resultant);
+        self.pairs.push(resultant);
+        self.impulse.push(&resultant.impulse);
+        self.impulse_sum.push(&resultant.impulse_sum);
         if let Some(moment) = &mut self.reference_moment {
-            moment.push(resultant)?;
+            moment.push(resultant);
         }
         if let Some([force, moment]) = &mut self.bodies {
-            force.push(resultant.bodies.iter().flat_map(|body| body.force))?;
-            moment.push(resultant.bodies.iter().map(|body| body.moment))?;
+            force.push(resultant.bodies.iter().flat_map(|body| body.force));
+            moment.push(resultant.bodies.iter().map(|body| body.moment));
         }
-        Ok(())
     }
 
-    /// Writes the buffered rows.
-    pub fn flush(&mut self) -> hdf5::Result<()> {
-        self.force.flush()?;
-        self.resultants.flush()?;
-        self.pairs.flush()?;
-        self.impulse.flush()?;
-        self.impulse_sum.flush()?;
+    /// Its datasets.
+    pub fn columns<'a>(&'a mut self, all: &mut Columns<'a>) {
+        all.push(&mut self.force);
+        self.resultants.columns(all);
+        self.pairs.columns(all);
+        self.impulse.columns(all);
+        self.impulse_sum.columns(all);
         if let Some(moment) = &mut self.reference_moment {
-            moment.flush()?;
+            moment.columns(all);
         }
-        (self.bodies.iter_mut().flatten()).try_for_each(Column::flush)
+        let bodies = self.bodies.iter_mut().flatten();
+        all.extend(bodies.map(|column| -> &mut dyn Growing { column }));
     }
 }
 
@@ -238,14 +240,14 @@ impl ImpulseHistory {
         })
     }
 
-    fn push(&mut self, impulse: &ContactImpulse) -> hdf5::Result<()> {
-        self.vector.push(impulse.vector)?;
-        self.scalars.push(impulse)
+    fn push(&mut self, impulse: &ContactImpulse) {
+        self.vector.push(impulse.vector);
+        self.scalars.push(impulse);
     }
 
-    fn flush(&mut self) -> hdf5::Result<()> {
-        self.vector.flush()?;
-        self.scalars.flush()
+    fn columns<'a>(&'a mut self, all: &mut Columns<'a>) {
+        all.push(&mut self.vector);
+        self.scalars.columns(all);
     }
 }
 
@@ -295,19 +297,19 @@ impl Impacts {
     }
 
     /// Appends a row.
-    pub fn push(&mut self, model: &Model, increment: usize, landing: &Landing) -> hdf5::Result<()> {
+    pub fn push(&mut self, model: &Model, increment: usize, landing: &Landing) {
         let label = |node: usize| model.mesh.node_labels[node] as i64;
-        self.landings.push(landing)?;
-        self.increment.push([increment as i64])?;
-        self.slave.push([label(landing.slave)])?;
-        self.segment.push(landing.segment.map(label))
+        self.landings.push(landing);
+        self.increment.push([increment as i64]);
+        self.slave.push([label(landing.slave)]);
+        self.segment.push(landing.segment.map(label));
     }
 
-    /// Writes the buffered rows.
-    pub fn flush(&mut self) -> hdf5::Result<()> {
-        self.landings.flush()?;
-        self.increment.flush()?;
-        self.slave.flush()?;
-        self.segment.flush()
+    /// Its datasets.
+    pub fn columns<'a>(&'a mut self, all: &mut Columns<'a>) {
+        self.landings.columns(all);
+        all.push(&mut self.increment);
+        all.push(&mut self.slave);
+        all.push(&mut self.segment);
     }
 }

@@ -9,7 +9,7 @@ use super::rigid_surfaces::{RigidHistory, create_rigid};
 use super::strains::StrainHistory;
 use crate::dynamics::{Energy, IncrementReport, Momentum, SolverCounts};
 use crate::model::Model;
-use crate::output::file::{Column, Scalar, Series, group, meaning, scalar};
+use crate::output::file::{Column, Columns, Scalar, Series, group, meaning, scalar};
 
 /// Writes the history.
 pub(crate) struct History {
@@ -24,13 +24,24 @@ pub(crate) struct History {
     rigid: Vec<RigidHistory>,
     nodes: Vec<NodeHistory>,
     solver: SolverHistory,
+    waiting: Waiting,
 }
+
+/// Rows that wait in memory, and at most.
+struct Waiting {
+    rows: usize,
+    most: usize,
+}
+
+/// Increments, and bytes of their rows, that wait in memory at most.
+const PENDING_ROWS: usize = 256;
+const PENDING_BYTES: usize = 1 << 20;
 
 impl History {
     /// Creates the group without rows.
     pub fn create(root: &Group, model: &Model) -> hdf5::Result<Self> {
         let at = group(root, "history")?;
-        Ok(History {
+        let mut history = History {
             times: Series::create(&at, &TIMES)?,
             step: Series::create(&at, &STEP)?,
             energy: Series::create(&group(&at, "energy")?, &ENERGY)?,
@@ -42,47 +53,78 @@ impl History {
             rigid: create_rigid(&group(&at, "rigid")?, model)?,
             nodes: create_nodes(&group(&at, "nodes")?, model)?,
             solver: SolverHistory::create(&group(&at, "solver")?)?,
-        })
+            waiting: Waiting { rows: 0, most: 1 },
+        };
+        let bytes: usize = history.columns().iter().map(|c| c.row_bytes()).sum();
+        history.waiting.most = (PENDING_BYTES / bytes).clamp(1, PENDING_ROWS);
+        Ok(history)
     }
 
-    /// Appends the row of an increment.
-    pub fn write(&mut self, model: &Model, report: &IncrementReport) -> hdf5::Result<()> {
-        self.times.push(report)?;
-        self.step.push(report)?;
-        self.energy.push(&report.energy)?;
-        self.momentum.push(&report.momentum)?;
-        self.bodies.push(&report.bodies)?;
-        self.strain.push(report)?;
+    /// Appends the row of an increment, which waits in memory.
+    pub fn push(&mut self, model: &Model, report: &IncrementReport) {
+        self.times.push(report);
+        self.step.push(report);
+        self.energy.push(&report.energy);
+        self.momentum.push(&report.momentum);
+        self.bodies.push(&report.bodies);
+        self.strain.push(report);
         for (contact, resultant) in self.contacts.iter_mut().zip(&report.contacts) {
-            contact.push(resultant)?;
+            contact.push(resultant);
         }
         for landing in &report.landings {
-            self.impacts.push(model, report.increment, landing)?;
+            self.impacts.push(model, report.increment, landing);
         }
         for (surface, reaction) in self.rigid.iter_mut().zip(&report.rigid) {
-            surface.push(model, &report.state, reaction)?;
+            surface.push(model, &report.state, reaction);
         }
         for nodes in &mut self.nodes {
-            nodes.push(report)?;
+            nodes.push(report);
         }
-        self.solver.push(&report.solver)
+        self.solver.push(&report.solver);
+        self.waiting.rows += report.landings.len().max(1);
     }
 
-    /// Writes the buffered rows.
+    /// Whether no further row may wait.
+    pub fn is_full(&self) -> bool {
+        self.waiting.rows >= self.waiting.most
+    }
+
+    /// Writes the rows that wait.
     pub fn flush(&mut self) -> hdf5::Result<()> {
-        self.times.flush()?;
-        self.step.flush()?;
-        self.energy.flush()?;
-        self.momentum.flush()?;
-        self.bodies.flush()?;
-        self.strain.flush()?;
-        self.contacts
-            .iter_mut()
-            .try_for_each(ContactHistory::flush)?;
-        self.impacts.flush()?;
-        self.rigid.iter_mut().try_for_each(RigidHistory::flush)?;
-        self.nodes.iter_mut().try_for_each(NodeHistory::flush)?;
-        self.solver.flush()
+        self.waiting.rows = 0;
+        (self.columns().into_iter()).try_for_each(|column| column.flush())
+    }
+
+    /// Bytes by which the file may grow until the rows are written.
+    pub fn growth(&mut self) -> u64 {
+        let rows = self.waiting.most;
+        self.columns()
+            .iter()
+            .map(|column| column.growth(rows))
+            .sum()
+    }
+
+    /// Its datasets.
+    fn columns(&mut self) -> Columns<'_> {
+        let mut all = Columns::new();
+        self.times.columns(&mut all);
+        self.step.columns(&mut all);
+        self.energy.columns(&mut all);
+        self.momentum.columns(&mut all);
+        self.bodies.columns(&mut all);
+        self.strain.columns(&mut all);
+        for contact in &mut self.contacts {
+            contact.columns(&mut all);
+        }
+        self.impacts.columns(&mut all);
+        for surface in &mut self.rigid {
+            surface.columns(&mut all);
+        }
+        for nodes in &mut self.nodes {
+            nodes.columns(&mut all);
+        }
+        self.solver.columns(&mut all);
+        all
     }
 }
 
@@ -199,16 +241,16 @@ impl MomentumHistory {
         })
     }
 
-    fn push(&mut self, momentum: &Momentum) -> hdf5::Result<()> {
-        self.linear.push(momentum.linear)?;
-        self.damped_linear.push(momentum.damped_linear)?;
-        self.angular.push(momentum)
+    fn push(&mut self, momentum: &Momentum) {
+        self.linear.push(momentum.linear);
+        self.damped_linear.push(momentum.damped_linear);
+        self.angular.push(momentum);
     }
 
-    fn flush(&mut self) -> hdf5::Result<()> {
-        self.linear.flush()?;
-        self.damped_linear.flush()?;
-        self.angular.flush()
+    fn columns<'a>(&'a mut self, all: &mut Columns<'a>) {
+        all.push(&mut self.linear);
+        all.push(&mut self.damped_linear);
+        self.angular.columns(all);
     }
 }
 
@@ -301,15 +343,15 @@ impl SolverHistory {
         })
     }
 
-    fn push(&mut self, counts: &SolverCounts) -> hdf5::Result<()> {
-        self.counts.push(counts)?;
-        self.errors.push(counts)?;
-        self.converged.push(counts)
+    fn push(&mut self, counts: &SolverCounts) {
+        self.counts.push(counts);
+        self.errors.push(counts);
+        self.converged.push(counts);
     }
 
-    fn flush(&mut self) -> hdf5::Result<()> {
-        self.counts.flush()?;
-        self.errors.flush()?;
-        self.converged.flush()
+    fn columns<'a>(&'a mut self, all: &mut Columns<'a>) {
+        self.counts.columns(all);
+        self.errors.columns(all);
+        self.converged.columns(all);
     }
 }

@@ -4,7 +4,7 @@ use hdf5::Group;
 
 use crate::dynamics::IncrementReport;
 use crate::model::{HistorySet, Model};
-use crate::output::file::{Column, constant, group, meaning};
+use crate::output::file::{Column, Columns, constant, group, growing, meaning};
 
 /// A vector over the dofs in a report.
 type Vector = fn(&IncrementReport) -> &[f64];
@@ -66,24 +66,24 @@ impl NodeHistory {
     }
 
     /// Appends a row to each dataset.
-    pub fn push(&mut self, report: &IncrementReport) -> hdf5::Result<()> {
+    pub fn push(&mut self, report: &IncrementReport) {
         for (column, vector) in &mut self.each {
-            column.push(pick(&self.nodes, vector(report)).flatten())?;
+            column.push(pick(&self.nodes, vector(report)).flatten());
         }
         for (column, vector) in &mut self.sums {
-            column.push(sum(&self.nodes, vector(report)))?;
+            column.push(sum(&self.nodes, vector(report)));
         }
         let count = self.nodes.len() as f64;
         for (column, vector) in &mut self.means {
-            column.push(sum(&self.nodes, vector(report)).map(|sum| sum / count))?;
+            column.push(sum(&self.nodes, vector(report)).map(|sum| sum / count));
         }
-        Ok(())
     }
 
-    /// Writes the buffered rows.
-    pub fn flush(&mut self) -> hdf5::Result<()> {
-        let all = self.each.iter_mut().chain(&mut self.sums);
-        (all.chain(&mut self.means)).try_for_each(|(column, _)| column.flush())
+    /// Its datasets.
+    pub fn columns<'a>(&'a mut self, all: &mut Columns<'a>) {
+        for table in [&mut self.each, &mut self.sums, &mut self.means] {
+            all.extend(growing(table));
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use hdf5::Group;
 
 use crate::dynamics::{RigidReaction, State};
 use crate::model::{Model, RigidBody};
-use crate::output::file::{Column, Scalar, Series, constant, group, meaning, scalar};
+use crate::output::file::{Column, Columns, Scalar, Series, constant, group, meaning, scalar};
 
 const MOMENT: [Scalar<RigidReaction, f64>; 1] = [scalar(
     "moment",
@@ -45,29 +45,24 @@ impl RigidHistory {
     }
 
     /// Appends a row to each dataset.
-    pub fn push(
-        &mut self,
-        model: &Model,
-        state: &State,
-        reaction: &RigidReaction,
-    ) -> hdf5::Result<()> {
+    pub fn push(&mut self, model: &Model, state: &State, reaction: &RigidReaction) {
         let at = |v: &[f64]| [v[2 * self.reference], v[2 * self.reference + 1]];
         let (x, u) = (model.mesh.coordinates[self.reference], at(&state.u));
         let v = at(&state.v);
-        self.position.push([x[0] + u[0], x[1] + u[1]])?;
-        self.displacement.push(u)?;
-        self.velocity.push(v)?;
-        self.force.push(reaction.force)?;
-        self.moment.push(reaction)
+        self.position.push([x[0] + u[0], x[1] + u[1]]);
+        self.displacement.push(u);
+        self.velocity.push(v);
+        self.force.push(reaction.force);
+        self.moment.push(reaction);
     }
 
-    /// Writes the buffered rows.
-    pub fn flush(&mut self) -> hdf5::Result<()> {
-        self.position.flush()?;
-        self.displacement.flush()?;
-        self.velocity.flush()?;
-        self.force.flush()?;
-        self.moment.flush()
+    /// Its datasets.
+    pub fn columns<'a>(&'a mut self, all: &mut Columns<'a>) {
+        all.push(&mut self.position);
+        all.push(&mut self.displacement);
+        all.push(&mut self.velocity);
+        all.push(&mut self.force);
+        self.moment.columns(all);
     }
 }
 

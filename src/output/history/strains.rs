@@ -4,7 +4,7 @@ use hdf5::Group;
 
 use crate::dynamics::IncrementReport;
 use crate::model::Model;
-use crate::output::file::{Scalar, Series, scalar};
+use crate::output::file::{Columns, Scalar, Series, scalar};
 use crate::output::text::SmallStrainElements;
 
 /// Largest principal strain of all elements, and of those with a law for small strains.
@@ -45,15 +45,15 @@ impl StrainHistory {
     }
 
     /// Appends the row of an increment.
-    pub fn push(&mut self, report: &IncrementReport) -> hdf5::Result<()> {
+    pub fn push(&mut self, report: &IncrementReport) {
         self.series.push(&LargestStrains {
             all: report.strain.strain,
             elastic: self.limited.most_strained(report).strain,
-        })
+        });
     }
 
-    /// Writes the buffered rows.
-    pub fn flush(&mut self) -> hdf5::Result<()> {
-        self.series.flush()
+    /// Its datasets.
+    pub fn columns<'a>(&'a mut self, all: &mut Columns<'a>) {
+        self.series.columns(all);
     }
 }

@@ -54,6 +54,9 @@ pub struct ResultSummary {
     pub finished: String,
     /// Exit status, -1 when the run did not end.
     pub exit_status: i64,
+    /// Most bytes of memory in use at a time; none of a run that did not end, or where the system does not
+    /// tell.
+    pub peak_memory: Option<i64>,
     /// Number of nodes.
     pub nodes: usize,
     /// Number of elements.
@@ -120,6 +123,8 @@ impl ResultSummary {
             started: text(&run, "started")?,
             finished: text(&run, "finished")?,
             exit_status: run.attr("exit_status")?.read_scalar()?,
+            peak_memory: (run.attr("peak_memory").ok())
+                .and_then(|attribute| attribute.read_scalar().ok()),
             nodes: file.dataset("model/node_labels")?.size(),
             elements: file.dataset("model/element_labels")?.size(),
             contacts: read_contacts(&history.group("contact")?)?,
@@ -146,6 +151,9 @@ impl ResultSummary {
             label("command", &self.command),
         ];
         lines.push(label("run", &self.end()));
+        if let Some(peak) = self.peak_memory {
+            lines.push(label("memory", &bytes(peak.unsigned_abs())));
+        }
         let model = [
             counted(self.nodes, "node"),
             counted(self.elements, "element"),

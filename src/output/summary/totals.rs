@@ -2,7 +2,8 @@
 
 use crate::dynamics::{ContactViolation, Outcome, RunSummary, SolverCounts};
 use crate::output::file::phases;
-use crate::output::text::{counted, general, scientific, wrap};
+use crate::output::memory::peak_memory;
+use crate::output::text::{bytes, counted, general, scientific, wrap};
 
 /// Time of the run and the parts of its phases; `output` and `total` are wall-clock times in
 /// seconds.
@@ -23,6 +24,7 @@ pub(crate) fn timing_lines(summary: &RunSummary, output: f64, total: f64) -> Vec
     let phases = phases(&summary.timings);
     pieces.extend(phases.iter().map(|&(name, seconds)| part(name, seconds)));
     pieces.push(part("output", output));
+    pieces.extend(peak_memory().map(|peak| format!("memory {}", bytes(peak))));
     let done = match summary.outcome {
         Outcome::Finished => "done",
         Outcome::Stopped(_) | Outcome::Interrupted => "stopped",

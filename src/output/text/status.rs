@@ -1,8 +1,9 @@
 //! `JOB.sta`: one line per increment in fixed columns.
 
 use std::fs::File;
-use std::io::{self, LineWriter, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use super::format::{scientific, signed};
 use super::screen::{closed, sticking};
@@ -10,6 +11,9 @@ use crate::dynamics::IncrementReport;
 use crate::output::error::at;
 
 const TITLE: &str = "# stickslip status file, format 1";
+
+/// Lines of increments that follow each other faster are written together.
+const PAUSE: Duration = Duration::from_millis(200);
 
 /// Names of the columns with their widths.
 const COLUMNS: [(&str, usize); 13] = [
@@ -37,18 +41,31 @@ fn aligned(values: [String; 13]) -> String {
 
 /// Writes the status file.
 pub(crate) struct StatusFile {
-    file: LineWriter<File>,
+    file: BufWriter<File>,
     path: PathBuf,
+    /// When lines were last written to the disk.
+    written: Instant,
 }
 
 impl StatusFile {
     /// Creates the file, or empties it.
     pub fn create(path: &Path) -> io::Result<Self> {
-        let mut file = LineWriter::new(File::create(path).map_err(at(path))?);
+        let mut file = BufWriter::new(File::create(path).map_err(at(path))?);
         let names = aligned(COLUMNS.map(|(name, _)| name.to_owned()));
         writeln!(file, "{TITLE}\n#{}", &names[1..]).map_err(at(path))?;
-        let path = path.to_owned();
-        Ok(StatusFile { file, path })
+        let mut status = StatusFile {
+            file,
+            path: path.to_owned(),
+            written: Instant::now(),
+        };
+        status.flush()?;
+        Ok(status)
+    }
+
+    /// Writes the lines so far to the disk.
+    pub fn flush(&mut self) -> io::Result<()> {
+        self.written = Instant::now();
+        self.file.flush().map_err(at(&self.path))
     }
 
     /// Writes the line of an increment with the number of its attempts; `error` is the relative
@@ -75,6 +92,10 @@ impl StatusFile {
             solver.pivots.to_string(),
             signed(error, 3),
         ];
-        writeln!(self.file, "{}", aligned(values)).map_err(at(&self.path))
+        writeln!(self.file, "{}", aligned(values)).map_err(at(&self.path))?;
+        match self.written.elapsed() >= PAUSE {
+            true => self.flush(),
+            false => Ok(()),
+        }
     }
 }

@@ -2,8 +2,8 @@
 
 use hdf5::Group;
 
-use super::dataset::{Meaning, constant, meaning};
 use crate::model::{Bodies, Mesh, Model};
+use crate::output::file::dataset::{Meaning, constant, meaning};
 
 const BODY: Meaning = meaning("body of the cell, -1 for rigid segments", "1");
 

@@ -1,0 +1,294 @@
+//! Fields of nodes and cells.
+
+use hdf5::Group;
+use hdf5::types::FixedAscii;
+
+use super::mesh::{write_bodies, write_mesh};
+use super::place::{IN_SPACE, OFFSETS, Offsets, PLANE_TENSOR, Place, SCALAR};
+use super::steps::Steps;
+use crate::dynamics::{NodalResults, State};
+use crate::elements::ElementResult;
+use crate::model::{ContactMass, Model, Step};
+use crate::output::file::column::{Column, Columns, Growing, Mostly};
+use crate::output::file::dataset::{Meaning, group, meaning, set_attribute};
+use crate::output::frame::Frame;
+
+/// Bytes of frames that wait in memory at most, but for one frame.
+const PENDING_BYTES: usize = 1 << 20;
+
+/// Writes the field frames.
+pub(crate) struct Fields {
+    steps: Steps,
+    points: PointFields,
+    cells: CellFields,
+    /// Frames that wait in memory at most.
+    most_pending: usize,
+    pending: usize,
+}
+
+/// Fields of the nodes, group `PointData`.
+struct PointFields {
+    offsets: Offsets,
+    displacement: Column<f64>,
+    velocity: Column<f64>,
+    acceleration: Column<f64>,
+    reaction: Column<f64>,
+    contact_force: Column<f64>,
+    gap: Column<f64>,
+    status: Column<u8>,
+    pressure: Column<f64>,
+    slip: Column<f64>,
+    /// With redistributed mass only.
+    mass: Option<Column<u8>>,
+}
+
+/// Fields of the cells, group `CellData`: elements, then the segments of rigid surfaces.
+struct CellFields {
+    offsets: Offsets,
+    stress: Column<f64>,
+    across: Column<f64>,
+    von_mises: Column<f64>,
+    strain: Column<f64>,
+    /// First row of `BODY`, which is the same in all frames.
+    body_offsets: Column<i64>,
+    /// Number of segments of rigid surfaces.
+    lines: usize,
+}
+
+impl Fields {
+    /// Creates the group with the reference mesh and no frame.
+    pub fn create(root: &Group, model: &Model) -> hdf5::Result<Self> {
+        let grid = group(root, "VTKHDF")?;
+        write_type(&grid)?;
+        let lines = model.rigid_segments();
+        write_mesh(&grid, &model.mesh, &lines)?;
+        let steps = Steps::create(&grid)?;
+        let points = Place::new(&grid, steps.group(), "Point", model.mesh.node_count())?;
+        let cells = model.mesh.elements.len() + lines.len();
+        let cells = Place::new(&grid, steps.group(), "Cell", cells)?;
+        write_bodies(&cells.data, model, lines.len())?;
+        let mut fields = Fields {
+            steps,
+            points: PointFields::create(points, model)?,
+            cells: CellFields::create(cells, lines.len())?,
+            most_pending: 1,
+            pending: 0,
+        };
+        fields.most_pending = (PENDING_BYTES / fields.frame_bytes().max(1)).max(1);
+        Ok(fields)
+    }
+
+    /// Bytes of a frame.
+    fn frame_bytes(&mut self) -> usize {
+        let bytes = |columns: Columns| columns.iter().map(|c| c.row_bytes()).sum::<usize>();
+        let points = self.points.offsets.rows * bytes(self.points.columns());
+        points + self.cells.offsets.rows * bytes(self.cells.columns())
+    }
+
+    /// Appends a frame, which waits in memory.
+    pub fn push(&mut self, frame: &Frame) {
+        self.points.push(&frame.state, &frame.nodal);
+        self.cells.push(&frame.elements);
+        self.steps.push(frame.time);
+        self.pending += 1;
+    }
+
+    /// Frames that wait in memory.
+    pub fn pending(&self) -> usize {
+        self.pending
+    }
+
+    /// Whether no further frame may wait.
+    pub fn is_full(&self) -> bool {
+        self.pending >= self.most_pending
+    }
+
+    /// Writes the frames that wait, the number of steps last.
+    pub fn flush(&mut self) -> hdf5::Result<()> {
+        let Fields { points, cells, .. } = self;
+        for column in points.columns().into_iter().chain(cells.columns()) {
+            column.flush()?;
+        }
+        points.offsets.flush()?;
+        cells.offsets.flush()?;
+        cells.body_offsets.flush()?;
+        self.steps.flush()?;
+        self.pending = 0;
+        Ok(())
+    }
+
+    /// Bytes by which the file may grow until the frames are written.
+    pub fn growth(&mut self) -> u64 {
+        let frames = self.most_pending;
+        let of = |columns: Columns, rows: usize| -> u64 {
+            columns
+                .iter()
+                .map(|column| column.growth(frames * rows))
+                .sum()
+        };
+        let [nodes, elements] = [self.points.offsets.rows, self.cells.offsets.rows];
+        let points = of(self.points.columns(), nodes);
+        let cells = of(self.cells.columns(), elements);
+        let offsets = 3 * self.cells.body_offsets.growth(frames);
+        points + cells + offsets + self.steps.growth(frames)
+    }
+
+    /// Frames appended.
+    pub fn count(&self) -> usize {
+        self.steps.count()
+    }
+}
+
+impl PointFields {
+    fn create(mut at: Place, model: &Model) -> hdf5::Result<Self> {
+        let is_redistributed =
+            |step: &Step| step.settings.contact_mass == ContactMass::Redistributed;
+        let has_mass = model.steps.iter().any(is_redistributed);
+        let mut vector = |name, mostly, text| at.field(name, IN_SPACE, mostly, text);
+        let displacement = vector("U", Mostly::Varied, meaning("displacement", "length"))?;
+        let velocity = vector("V", Mostly::Varied, meaning("velocity", "length/time"))?;
+        let acceleration = vector(
+            "A",
+            Mostly::Varied,
+            meaning("acceleration", "length/time^2"),
+        )?;
+        let reaction = vector("RF", Mostly::Zero, meaning("support reaction", "force"))?;
+        let contact_force = vector("CONTACT_FORCE", Mostly::Zero, CONTACT_FORCE)?;
+        Ok(PointFields {
+            displacement,
+            velocity,
+            acceleration,
+            reaction,
+            contact_force,
+            gap: at.field("GAP", SCALAR, Mostly::Nan, GAP)?,
+            status: at.field("CONTACT_STATUS", SCALAR, Mostly::Zero, STATUS)?,
+            pressure: at.field("CONTACT_PRESSURE", SCALAR, Mostly::Nan, PRESSURE)?,
+            slip: at.field("SLIP", SCALAR, Mostly::Nan, SLIP)?,
+            mass: match has_mass {
+                true => Some(at.field("CONTACT_MASS", SCALAR, Mostly::Zero, MASS)?),
+                false => None,
+            },
+            offsets: at.offsets,
+        })
+    }
+
+    fn push(&mut self, state: &State, nodal: &NodalResults) {
+        self.displacement.push_slice(&state.u);
+        self.velocity.push_slice(&state.v);
+        self.acceleration.push_slice(&state.a);
+        self.reaction.push_slice(&nodal.reaction);
+        self.contact_force.push_slice(&nodal.contact_force);
+        self.gap.push_slice(&nodal.gap);
+        self.status.push(nodal.status.iter().map(|&s| s as u8));
+        self.pressure.push_slice(&nodal.pressure);
+        self.slip.push_slice(&nodal.slip);
+        if let Some(mass) = &mut self.mass {
+            mass.push(nodal.mass.iter().map(|&m| m as u8));
+        }
+        self.offsets.push();
+    }
+
+    /// The datasets with a row per node.
+    fn columns(&mut self) -> Columns<'_> {
+        let mut all: Columns = vec![
+            &mut self.displacement,
+            &mut self.velocity,
+            &mut self.acceleration,
+            &mut self.reaction,
+            &mut self.contact_force,
+            &mut self.gap,
+            &mut self.status,
+            &mut self.pressure,
+            &mut self.slip,
+        ];
+        all.extend(
+            self.mass
+                .iter_mut()
+                .map(|mass| -> &mut dyn Growing { mass }),
+        );
+        all
+    }
+}
+
+impl CellFields {
+    fn create(mut at: Place, lines: usize) -> hdf5::Result<Self> {
+        Ok(CellFields {
+            stress: at.field("S", PLANE_TENSOR, Mostly::Varied, STRESS)?,
+            across: at.field("S33", SCALAR, Mostly::Varied, ACROSS)?,
+            von_mises: at.field("MISES", SCALAR, Mostly::Varied, VON_MISES)?,
+            strain: at.field("E", PLANE_TENSOR, Mostly::Varied, STRAIN)?,
+            body_offsets: Column::series(&at.offsets.group, "BODY", &[], OFFSETS)?,
+            offsets: at.offsets,
+            lines,
+        })
+    }
+
+    /// Appends a frame; rigid segments have NaN for stress and strain.
+    fn push(&mut self, elements: &[ElementResult]) {
+        let of_lines = |components| std::iter::repeat_n(f64::NAN, components * self.lines);
+        let stress = elements.iter().flat_map(|element| element.stress);
+        self.stress.push(stress.chain(of_lines(3)));
+        let across = elements.iter().map(|element| element.across);
+        self.across.push(across.chain(of_lines(1)));
+        let von_mises = elements.iter().map(ElementResult::von_mises);
+        self.von_mises.push(von_mises.chain(of_lines(1)));
+        let strain = elements.iter().flat_map(|element| element.strain);
+        self.strain.push(strain.chain(of_lines(3)));
+        self.body_offsets.push([0]);
+        self.offsets.push();
+    }
+
+    /// The datasets with a row per cell.
+    fn columns(&mut self) -> Columns<'_> {
+        vec![
+            &mut self.stress,
+            &mut self.across,
+            &mut self.von_mises,
+            &mut self.strain,
+        ]
+    }
+}
+
+const CONTACT_FORCE: Meaning = meaning("contact force on the node", "force");
+const GAP: Meaning = meaning(
+    "gap of the slave node to its segment, NaN without candidate",
+    "length",
+);
+const STATUS: Meaning = meaning(
+    "contact status as slave: 0 none, 1 open, 2 stick, 3 slip",
+    "1",
+);
+const PRESSURE: Meaning = meaning(
+    "contact pressure at slave nodes, NaN at others",
+    "force/length^2",
+);
+const SLIP: Meaning = meaning(
+    "slip accumulated since the start at slave nodes, NaN at others",
+    "length",
+);
+const MASS: Meaning = meaning(
+    "mass: 0 own, 1 own at a contact surface, 2 carried by other nodes",
+    "1",
+);
+const ACROSS: Meaning = meaning(
+    "Cauchy stress across the thickness, mean over the element",
+    "force/length^2",
+);
+const VON_MISES: Meaning = meaning("von Mises stress of S and S33", "force/length^2");
+const STRESS: Meaning = meaning(
+    "Cauchy stress xx yy xy, mean over the element",
+    "force/length^2",
+);
+const STRAIN: Meaning = meaning(
+    "Green-Lagrange strain xx yy xy (xy: tensor component), mean over the element",
+    "1",
+);
+
+/// Attributes by which readers know the group.
+fn write_type(grid: &Group) -> hdf5::Result<()> {
+    let version = grid.new_attr::<i64>().shape([2]).create("Version")?;
+    version.write_raw(&[2i64, 3])?;
+    let name = FixedAscii::<16>::from_ascii("UnstructuredGrid")
+        .map_err(|error| hdf5::Error::from(error.to_string()))?;
+    set_attribute(grid, "Type", name)
+}

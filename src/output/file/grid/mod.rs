@@ -1,0 +1,9 @@
+//! Group `/VTKHDF`: the field frames, as a temporal unstructured grid with a fixed mesh.
+
+mod fields;
+mod mesh;
+mod place;
+mod steps;
+
+pub(crate) use fields::Fields;
+pub(super) use mesh::{connectivity, number};

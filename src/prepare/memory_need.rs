@@ -1,0 +1,96 @@
+//! Memory that a run needs, estimated before it from the mesh, the fill of the factors and the pairs that
+//! are near at the start.
+
+use super::PreparedModel;
+use crate::linear::factor_entries;
+use crate::model::Mesh;
+
+/// Bytes of the program before it has read a model.
+const PROGRAM: usize = 20 << 20;
+
+/// Bytes of a number or an index.
+const WORD: usize = 8;
+
+/// Vectors over the dofs that a run holds: deck, states, results, frames, iterates.
+const VECTORS: usize = 60;
+
+/// Matrices of the pattern of the mesh, each with values and indices: K*, M, the sums with contact
+/// stiffness, and the patterns of their factors.
+const MATRICES: usize = 5;
+
+/// Factors: of K* and of M.
+const FACTORS: usize = 2;
+
+/// Dense matrices over the unknowns of the pairs: the compliance of K* and that of M, while they are
+/// computed.
+const COMPLIANCES: usize = 4;
+
+/// Bytes that a run needs, by what they are for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MemoryNeed {
+    /// Mesh, states and results.
+    pub mesh: u64,
+    /// Matrices of the mesh.
+    pub matrices: u64,
+    /// Their factors.
+    pub factors: u64,
+    /// Compliance and complementarity problem of the pairs that are near at the start.
+    pub contact: u64,
+}
+
+impl MemoryNeed {
+    /// Estimates what a run of a model needs.
+    pub fn new(prepared: &PreparedModel) -> Self {
+        let mesh = &prepared.model().mesh;
+        let neighbours = neighbours(mesh);
+        let dofs = mesh.dof_count();
+        // 2 x 2 entries for each pair of nodes
+        let entries = 4 * neighbours.iter().map(Vec::len).sum::<usize>();
+        let factor = 4 * factor_entries(&neighbours);
+        let elements: usize = (mesh.elements.iter())
+            .map(|element| (2 * element.nodes.len()).pow(2))
+            .sum();
+        MemoryNeed {
+            mesh: (PROGRAM + VECTORS * dofs * WORD) as u64,
+            matrices: ((2 * MATRICES * entries + 2 * elements) * WORD) as u64,
+            factors: (FACTORS * factor * WORD) as u64,
+            contact: contact(prepared),
+        }
+    }
+
+    /// All of it.
+    pub fn total(&self) -> u64 {
+        self.mesh + self.matrices + self.factors + self.contact
+    }
+}
+
+/// Compliance over the unknowns of the nodes of near pairs, and Q of the pairs.
+fn contact(prepared: &PreparedModel) -> u64 {
+    let gaps = prepared.initial_gaps().iter().flatten();
+    let near = gaps.filter(|gap| gap.gap.abs() <= gap.edge);
+    let mut nodes = Vec::new();
+    let mut pairs = 0;
+    for gap in near {
+        pairs += 1;
+        nodes.extend([gap.slave, gap.segment[0], gap.segment[1]]);
+    }
+    nodes.sort_unstable();
+    nodes.dedup();
+    let (unknowns, rows) = (2 * nodes.len(), 2 * pairs);
+    (COMPLIANCES * unknowns * unknowns * WORD + 2 * rows * rows * WORD) as u64
+}
+
+/// Nodes that the elements couple each node with, in increasing order, and itself.
+fn neighbours(mesh: &Mesh) -> Vec<Vec<usize>> {
+    let mut neighbours: Vec<Vec<usize>> = (0..mesh.node_count()).map(|node| vec![node]).collect();
+    for element in &mesh.elements {
+        for &node in &element.nodes {
+            neighbours[node].extend_from_slice(&element.nodes);
+        }
+    }
+    for nodes in &mut neighbours {
+        nodes.sort_unstable();
+        nodes.dedup();
+    }
+    neighbours
+}
