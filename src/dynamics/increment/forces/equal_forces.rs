@@ -14,11 +14,13 @@ const ROUND_OFF: f64 = 100.0;
 ///
 /// Forces of pairs that are almost one go on changing at the rate eps/(eps + lambda), lambda being the
 /// compliance of their difference as a part of their own. The weight therefore decreases, until small
-/// corrections grow: then the round-off of the gaps moves the forces, and the first weight holds them.
+/// corrections grow that had the same weight before: then the round-off of the gaps moves the forces, and the first weight holds them.
 pub(crate) struct EqualForces {
     tolerance: f64,
     weight: f64,
     correction: f64,
+    /// Whether the weight is less than in the pass before: a slow mode then moves more.
+    has_decreased: bool,
     holds: bool,
 }
 
@@ -29,6 +31,7 @@ impl EqualForces {
             tolerance,
             weight: FIRST_WEIGHT,
             correction: f64::INFINITY,
+            has_decreased: false,
             holds: false,
         }
     }
@@ -45,17 +48,28 @@ impl EqualForces {
         }
         let grows = correction >= self.correction;
         self.correction = correction;
-        self.holds |= grows && correction < ROUND_OFF * self.tolerance;
-        self.weight = match self.holds {
+        self.holds |= grows && !self.has_decreased && correction < ROUND_OFF * self.tolerance;
+        let weight = match self.holds {
             true => FIRST_WEIGHT,
             false => (DECREASE * self.weight).max(LEAST_WEIGHT),
         };
+        self.has_decreased = weight < self.weight;
+        self.weight = weight;
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn growth_after_a_decrease_is_that_of_a_slow_mode() {
+        let mut rule = EqualForces::new(1e-11);
+        for correction in [1e-10, 2e-10, 1e-10] {
+            rule.take_in(correction, true);
+        }
+        assert_eq!(rule.weight(true), Some(LEAST_WEIGHT));
+    }
 
     #[test]
     fn the_weight_decreases_until_round_off_grows() {
