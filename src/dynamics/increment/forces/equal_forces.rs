@@ -7,6 +7,10 @@ pub(super) const FIRST_WEIGHT: f64 = 1e-5;
 const DECREASE: f64 = 0.1;
 /// Least weight: with a smaller one, the round-off of the gaps moves the forces.
 const LEAST_WEIGHT: f64 = 1e-7;
+/// Rate of corrections that crawl although the weight has its least value: it then falls further.
+const CRAWLING: f64 = 0.7;
+/// Least weight where corrections crawl.
+const LEAST_OF_CRAWLING: f64 = 1e-9;
 /// Correction, in tolerances, below which growth is round-off.
 const ROUND_OFF: f64 = 100.0;
 
@@ -47,11 +51,16 @@ impl EqualForces {
             return;
         }
         let grows = correction >= self.correction;
+        let crawls = !grows && correction > CRAWLING * self.correction;
         self.correction = correction;
         self.holds |= grows && !self.has_decreased && correction < ROUND_OFF * self.tolerance;
+        let least = match crawls && self.weight <= LEAST_WEIGHT {
+            true => LEAST_OF_CRAWLING,
+            false => LEAST_WEIGHT.min(self.weight),
+        };
         let weight = match self.holds {
             true => FIRST_WEIGHT,
-            false => (DECREASE * self.weight).max(LEAST_WEIGHT),
+            false => (DECREASE * self.weight).max(least),
         };
         self.has_decreased = weight < self.weight;
         self.weight = weight;
