@@ -62,7 +62,7 @@ impl EqualForces {
             true => FIRST_WEIGHT,
             false => (DECREASE * self.weight).max(least),
         };
-        self.has_decreased = weight < self.weight;
+        self.has_decreased = weight < 0.5 * self.weight;
         self.weight = weight;
     }
 }
