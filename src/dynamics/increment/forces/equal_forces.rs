@@ -9,8 +9,8 @@ const DECREASE: f64 = 0.1;
 const LEAST_WEIGHT: f64 = 1e-7;
 /// Rate of corrections that crawl although the weight has its least value: it then falls further.
 const CRAWLING: f64 = 0.7;
-/// Least weight where corrections crawl.
-const LEAST_OF_CRAWLING: f64 = 1e-9;
+/// The weight then.
+const WEIGHT_OF_CRAWLING: f64 = 1e-9;
 /// Correction, in tolerances, below which growth is round-off.
 const ROUND_OFF: f64 = 100.0;
 
@@ -54,13 +54,11 @@ impl EqualForces {
         let crawls = !grows && correction > CRAWLING * self.correction;
         self.correction = correction;
         self.holds |= grows && !self.has_decreased && correction < ROUND_OFF * self.tolerance;
-        let least = match crawls && self.weight <= LEAST_WEIGHT {
-            true => LEAST_OF_CRAWLING,
-            false => LEAST_WEIGHT.min(self.weight),
-        };
-        let weight = match self.holds {
-            true => FIRST_WEIGHT,
-            false => (DECREASE * self.weight).max(least),
+        let weight = match self.weight {
+            _ if self.holds => FIRST_WEIGHT,
+            weight if weight > 2.0 * LEAST_WEIGHT => DECREASE * weight,
+            _ if crawls => WEIGHT_OF_CRAWLING,
+            weight => weight,
         };
         self.has_decreased = weight < 0.5 * self.weight;
         self.weight = weight;
