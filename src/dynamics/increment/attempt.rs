@@ -154,7 +154,10 @@ impl<'m> Attempt<'_, 'm> {
         let (problem, u0) = (self.problem, &self.start.u);
         problem.check_segments(u)?;
         let (before, held) = (&last.constraints, start.segments());
-        let constraints = (self.workspace).constraints(problem, [u0, u], before, &held, settled);
+        let mut constraints =
+            (self.workspace).constraints(problem, [u0, u], before, &held, settled);
+        let dt = self.interval.dt;
+        (constraints.iter_mut()).for_each(|constraint| constraint.take_slip_rate(dt));
         Ok(self.set.split(problem, u0, constraints))
     }
 

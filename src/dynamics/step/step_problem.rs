@@ -71,8 +71,8 @@ impl Equilibrium {
 }
 
 impl<'m> StepProblem<'m> {
-    /// The problem of a step that starts with the displacements `u0`.
-    pub fn new(discretization: &'m Discretization<'m>, step: &'m Step, u0: &[f64]) -> Self {
+    /// The problem of a step that starts with these displacements and velocities.
+    pub fn new(discretization: &'m Discretization<'m>, step: &'m Step, start: [&[f64]; 2]) -> Self {
         let Discretization {
             model,
             contacts,
@@ -90,7 +90,7 @@ impl<'m> StepProblem<'m> {
             contacts,
             settings: step.settings,
             weights: Weights::new(step.settings.scheme),
-            unknowns: Unknowns::new(model, elements, step, u0),
+            unknowns: Unknowns::new(model, elements, step, start),
             loads: Loads::new(model, step, redistribution),
         }
     }

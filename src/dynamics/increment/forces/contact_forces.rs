@@ -131,7 +131,7 @@ mod tests {
     use crate::dynamics::step::{FactoredMatrix, Meter, System};
     use crate::lcp::{ContactState, LcpMethod};
     use crate::linear::{Assembled, Transformation};
-    use crate::model::SolverChoice;
+    use crate::model::{Friction, SolverChoice};
 
     const DOFS: usize = 14;
 
@@ -160,7 +160,7 @@ mod tests {
                 target: ContactTarget::face(0),
                 nodes: [0, 1, 2, 2],
                 from: None,
-                friction: mu,
+                friction: Friction::constant(mu),
             },
         }
     }
