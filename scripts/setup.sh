@@ -84,6 +84,15 @@ need_venv() {
     cp "$list" "$stamp"
 }
 
+# The libraries that the Python package gmsh loads, which a machine without a screen lacks.
+need_gmsh() {
+    "$VENV/bin/python" -c 'import gmsh' 2>/dev/null ||
+        debian_install libglu1-mesa libgl1 libgomp1 libfontconfig1 libxcursor1 libxext6 \
+            libxfixes3 libxft2 libxinerama1 libxrender1 ||
+        fail "the Python package gmsh cannot be loaded: install its libraries" \
+            "(Debian: libglu1-mesa libxcursor1 libxft2 libxinerama1)"
+}
+
 # Builds the program, with cargo's progress on a terminal; sets PROGRAM to its path.
 need_program() {
     need_rust

@@ -47,6 +47,7 @@
 //! | Pn, Pt | normal (>= 0) and tangential contact force of a pair |
 //! | Phi, Psi | normal and tangential impact impulse of a pair |
 //! | internal force F | nodal forces of the stresses; R external load, M mass, K tangent |
+//! | chunk, block, lane | elements swept by one thread; those side by side in it; one of these |
 //! | damping force F_d | of viscosity (BETA) and in proportion to the mass (ALPHA); Cd its matrix |
 //! | K* | effective matrix theta2 K + Cd/dt + 2/dt^2 M; Q = G K*^-1 B^T its Delassus matrix |
 //! | compliance W | K*^-1 at the dofs in contact |

@@ -250,7 +250,7 @@ fn what_is_doubtful_before_the_run_is_on_the_screen_and_in_the_log() {
         .replace("BASE, S3", "BASE, S1")
         .replace("DYNAMIC, DIRECT", "DYNAMIC");
     let bench = Bench::new(&wrong_side.replace("2.01", "3.01").replace("1.01", "2.01"));
-    let told = |text: &str| ["D414", "D516"].map(|code| text.contains(code)) == [true, true];
+    let told = |text: &str| ["D418", "D516"].map(|code| text.contains(code)) == [true, true];
     let (code, out, err) = bench.stickslip(&["check", "drop.inp"]);
     assert_eq!(code, 0, "{err}");
     assert!(told(&err) && out.contains("2 warnings"), "{err}{out}");

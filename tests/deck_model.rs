@@ -96,14 +96,14 @@ fn one_surface_on_a_pair_touches_itself() {
 fn general_contact_is_that_of_all_exterior_faces() {
     let general = "*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n";
     let model = contacts(general);
-    assert_eq!(model.contacts[0].interaction.friction, 0.0);
+    assert_eq!(model.contacts[0].interaction.friction.at_rest, 0.0);
     let assigned = format!("{general}*CONTACT PROPERTY ASSIGNMENT\n ,  , DRY\n");
     let model = contacts(&assigned);
     let [contact] = &model.contacts[..] else {
         panic!("{:?}", model.contacts);
     };
     assert!(contact.is_self_contact());
-    assert_eq!(contact.interaction.friction, 0.3);
+    assert_eq!(contact.interaction.friction.at_rest, 0.3);
     assert_eq!(contact_names(&model), [ALL_EXTERIOR]);
     let labels = |[a, b]: [usize; 2]| [a, b].map(|node| model.mesh.node_labels[node]);
     let surface = &model.surfaces[contact.slave];
@@ -224,17 +224,75 @@ fn prescribed_velocities_go_on_from_step_to_step() {
         let ends: Vec<_> = model.steps.iter().flat_map(|s| s.supports.last()).collect();
         ends.iter().map(|s| (s.dof, s.motion)).collect::<Vec<_>>()
     };
-    let ramp = |to| (7, SupportMotion::Ramp { to });
+    let at = |rate, value, amplitude| {
+        let motion = SupportMotion::Rate {
+            rate,
+            value,
+            amplitude,
+        };
+        (7, motion)
+    };
+    let constant = |value| at(Rate::Velocity, value, None);
     let velocity = "*BOUNDARY, TYPE=VELOCITY\n4, 2, 2, 0.25";
-    // both steps last 1
-    assert_eq!(motions(velocity, ""), [ramp(0.25), ramp(0.5)]);
+    assert_eq!(motions(velocity, ""), [constant(0.25), constant(0.25)]);
     let back = "*BOUNDARY, OP=NEW, TYPE=VELOCITY\n4, 2, 2, -0.5";
-    assert_eq!(motions(velocity, back), [ramp(0.25), ramp(-0.25)]);
-    let displacement = "*BOUNDARY\n4, 2, 2, 0.125";
-    assert_eq!(motions(displacement, velocity), [ramp(0.125), ramp(0.375)]);
-    let follow =
-        "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n0., 0., 4., 8.\n*BOUNDARY, AMPLITUDE=A\n4, 2, 2, 3.";
-    assert_eq!(motions(follow, velocity)[1], ramp(6.25));
+    assert_eq!(motions(velocity, back), [constant(0.25), constant(-0.5)]);
+    let curve = |time: &str| format!("*AMPLITUDE, NAME=A{time}\n0., 0., 4., 8.\n");
+    let pushed = "*BOUNDARY, TYPE=ACCELERATION, AMPLITUDE=A\n4, 2, 2, 3.";
+    let acceleration = |value, amplitude| at(Rate::Acceleration, value, amplitude);
+    // the first step lasts 1: the acceleration at its end goes on
+    let follow = motions(&(curve("") + pushed), "");
+    assert_eq!(
+        follow,
+        [acceleration(3.0, Some(0)), acceleration(6.0, None)]
+    );
+    let follow = motions(&(curve(", TIME=TOTAL TIME") + pushed), "");
+    assert_eq!(follow, [acceleration(3.0, Some(0)); 2]);
+    let kept = motions(velocity, "*BOUNDARY, FIXED\n4, 2, 2");
+    assert_eq!(kept, [constant(0.25), constant(0.0)]);
+}
+
+#[test]
+fn friction_may_decay_with_the_slip_rate() {
+    let deck = include_str!("decks/shared.inp");
+    let start = deck.find("*FRICTION").expect("friction");
+    let end = start + deck[start..].find("*CONTACT PAIR").expect("a pair");
+    let decay = "*FRICTION, EXPONENTIAL DECAY\n0.3, 0.2, 1.D-3\n";
+    let (model, messages) = read(&deck.replacen(&deck[start..end], decay, 1));
+    let friction = Friction {
+        at_rest: 0.3,
+        sliding: 0.2,
+        decay: 1e-3,
+    };
+    assert_eq!(model.contacts[0].interaction.friction, friction);
+    assert!(!messages.contains("FRICTION"), "{messages}");
+    assert_eq!([0.0, 1e6].map(|rate| friction.at(rate)), [0.3, 0.2]);
+    assert_eq!(friction.at(-1e3), 0.2 + (0.3 - 0.2) * (-1_f64).exp());
+}
+
+#[test]
+fn elements_move_rigidly_with_a_reference_node() {
+    let step = "*BOUNDARY\n90, 1\n*BOUNDARY, TYPE=VELOCITY\n90, 2, 2, 0.5";
+    let card = "*NODE\n90, 5., 5.\n*RIGID BODY, ELSET=BODY, REF NODE=90";
+    let text = SQUARE.replacen("*BOUNDARY\nFOOT, 1, 2\n", "", 1);
+    assert_ne!(text, SQUARE);
+    let text = text.replacen("*STEP", &format!("{card}\n*STEP"), 1);
+    let (model, _) = read(&text.replacen("*END STEP", &format!("{step}\n*END STEP"), 1));
+    let motion = |dof: usize| {
+        let supports = &model.steps[0].supports;
+        supports.iter().find(|s| s.dof == dof).map(|s| s.motion)
+    };
+    let up = SupportMotion::Rate {
+        rate: Rate::Velocity,
+        value: 0.5,
+        amplitude: None,
+    };
+    assert_eq!(model.steps[0].supports.len(), 10);
+    for node in 0..5 {
+        let motions = [0, 1].map(|i| motion(2 * node + i));
+        assert_eq!(motions, [Some(SupportMotion::Ramp { to: 0.0 }), Some(up)]);
+    }
+    assert!(model.rigid_bodies.is_empty());
 }
 
 #[test]
@@ -644,7 +702,7 @@ fn rigid_surfaces_take_part_in_general_contact() {
     let contact = &with_pair.contacts[2];
     assert_eq!(labels(&contact.left_out), [11, 12]);
     assert!(with_pair.contacts[1].left_out.is_empty());
-    assert_eq!(contact.interaction.friction, 0.3);
+    assert_eq!(contact.interaction.friction.at_rest, 0.3);
     let slaves = &contact_surfaces(&with_pair)[2].slaves;
     assert_eq!(labels(slaves), [1, 2, 3, 6, 5, 4, 13, 14]);
 }

@@ -363,6 +363,159 @@ fn a_contact_given_twice_is_refused() {
     assert!(codes(&d).contains(&Code::SurfaceUse));
 }
 
+/// Every rule of lines as a deck of about three lines, the cards it is read as, and its messages.
+#[test]
+fn rules_of_lines_by_their_cards() {
+    use Code::{
+        Abbreviation, LongLine, NonAscii, RepeatedParameter, UnknownKeyword, UnknownParameter,
+    };
+    let long = format!("*NODE\n1,{}2.", " ".repeat(256));
+    let rules: [(&str, &str, &[&str], &[Code]); 24] = [
+        ("comment", "** a\n*NODE\n1, 2.", &["*NODE[1|2.]"], &[]),
+        (
+            "indented comment",
+            "*NODE\n  ** a\n1, 2.",
+            &["*NODE[1|2.]"],
+            &[],
+        ),
+        (
+            "three stars",
+            "***NODE\n*NODE\n1, 2.",
+            &["*NODE[1|2.]"],
+            &[],
+        ),
+        (
+            "heading of Gmsh",
+            "******* N O D E S *****\n*NODE\n1",
+            &["*NODE[1]"],
+            &[],
+        ),
+        ("indented keyword", "\t *NODE\n1, 2.", &["*NODE[1|2.]"], &[]),
+        (
+            "blanks in words",
+            "*EN DST EP\n*E L SET, EL SET=A",
+            &["*END STEP", "*ELSET"],
+            &[],
+        ),
+        (
+            "case",
+            "*node\n1, 2.\n*eNdStEp",
+            &["*NODE[1|2.]", "*END STEP"],
+            &[],
+        ),
+        ("long line", &long, &["*NODE[1|2.]"], &[LongLine]),
+        (
+            "keyword goes on",
+            "*NODE,\nNSET=A\n1, 2.",
+            &["*NODE[1|2.]"],
+            &[],
+        ),
+        (
+            "after a comment",
+            "*NODE,\n** a\nNSET=A\n1",
+            &["*NODE[1]"],
+            &[],
+        ),
+        (
+            "not into a keyword",
+            "*NODE,\n*NODE\n1",
+            &["*NODE", "*NODE[1]"],
+            &[],
+        ),
+        (
+            "data goes on",
+            "*ELSET, ELSET=A\n1,\n2",
+            &["*ELSET[1][2]"],
+            &[],
+        ),
+        (
+            "last comma",
+            "*ELSET, ELSET=A\n1, 2, \n",
+            &["*ELSET[1|2]"],
+            &[],
+        ),
+        (
+            "lone comma",
+            "*SOLID SECTION\n,",
+            &["*SOLID SECTION[]"],
+            &[],
+        ),
+        ("empty line", "*NODE\n\n1, 2.\n \n", &["*NODE[1|2.]"], &[]),
+        ("empty field", "*NODE\n1,, 2.", &["*NODE[1||2.]"], &[]),
+        ("CRLF", "*NODE\r\n1, 2.\r\n", &["*NODE[1|2.]"], &[]),
+        (
+            "byte order mark",
+            "\u{feff}*NODE\n1, 2.",
+            &["*NODE[1|2.]"],
+            &[],
+        ),
+        ("tabs", "*NODE\n\t1,\t2.\t", &["*NODE[1|2.]"], &[]),
+        (
+            "letters",
+            "** \u{e4}\n*NODE, NSET=\u{e4}\n1",
+            &["*NODE[1]"],
+            &[NonAscii],
+        ),
+        (
+            "beginning of a word",
+            "*ELAS\n1., 0.",
+            &["*ELASTIC[1.|0.]"],
+            &[Abbreviation],
+        ),
+        (
+            "repeated parameter",
+            "*NODE, NSET=A, NSET=B\n1",
+            &["*NODE[1]"],
+            &[RepeatedParameter],
+        ),
+        (
+            "unknown parameter",
+            "*NODE, SET=A\n1",
+            &["*NODE[1]"],
+            &[UnknownParameter],
+        ),
+        (
+            "unknown keyword",
+            "*NODDE\n1",
+            &["*NODE[1]"],
+            &[UnknownKeyword],
+        ),
+    ];
+    for (rule, text, cards, messages) in rules {
+        let (deck, d) = parse(text);
+        assert_eq!(shape(&deck), cards, "{rule}");
+        assert_eq!(codes(&d), messages, "{rule}");
+    }
+}
+
+#[test]
+fn forms_of_numbers() {
+    let forms = [
+        ("1.5D-5", 1.5e-5),
+        ("1.5d-5", 1.5e-5),
+        ("+.5e+3", 500.0),
+        (".5", 0.5),
+        ("1.", 1.0),
+        ("-.5e3", -500.0),
+        ("7", 7.0),
+        ("0.1234567890123456789E-05", 0.123_456_789_012_345_68e-5),
+        ("1.5-5", 1.5e-5),
+        ("1.5+5", 1.5e5),
+    ];
+    for (form, value) in forms {
+        let (deck, mut d) = parse(&format!("*NODE\n1, {form}"));
+        let field = deck.cards[0].rows[0].get(1).expect("a field");
+        assert_eq!(field.real(&mut d), Some(value), "{form}");
+        let letterless = form.contains("5-") || form.contains("5+");
+        let expected: &[Code] = match (letterless, form.len() > 20) {
+            (true, _) => &[Code::FortranNumber],
+            (_, true) => &[Code::LongNumber],
+            _ => &[],
+        };
+        assert_eq!(codes(&d), expected, "{form}");
+    }
+}
+
 /// Small faults that a solver was seen to pass over or to report elsewhere.
 mod faults_that_pass_elsewhere {
     use super::*;

@@ -1,7 +1,9 @@
 //! Contacts with their interactions, rigid bodies and equations.
 
 use super::lines::{Lines, name, named, number, set};
-use crate::model::{ALL_EXTERIOR, Adjust, Contact, Equation, Interaction, Model, RigidBody};
+use crate::model::{
+    ALL_EXTERIOR, Adjust, Contact, Equation, Friction, Interaction, Model, RigidBody,
+};
 
 /// Terms of an equation on a data line.
 const TERMS: usize = 4;
@@ -49,8 +51,18 @@ impl Interactions {
                 [set("NAME", interactions.name(interaction))],
             );
             lines.card("SURFACE BEHAVIOR", [set("PRESSURE-OVERCLOSURE", "HARD")]);
-            lines.card("FRICTION", []);
-            lines.row([number(friction)]);
+            if friction.is_constant() {
+                lines.card("FRICTION", []);
+                lines.row([number(friction.at_rest)]);
+            } else {
+                lines.card("FRICTION", ["EXPONENTIAL DECAY".to_string()]);
+                let Friction {
+                    at_rest,
+                    sliding,
+                    decay,
+                } = friction;
+                lines.row([at_rest, sliding, decay].map(number));
+            }
         }
         interactions
     }

@@ -5,8 +5,8 @@ use super::loads::Loads;
 use super::mesh::first_of_rigid;
 use crate::model::{
     Amplitude, ContactMass, Factorization, Frames, Impact, ImpactTime, Increments, LandingRule,
-    LcpChoice, Model, Procedure, Scheme, Settings, SolverChoice, Step, Support, SupportMotion,
-    TimeBase,
+    LcpChoice, Model, Procedure, Rate, Scheme, Settings, SolverChoice, Step, Support,
+    SupportMotion,
 };
 
 /// Times on a data line.
@@ -162,22 +162,26 @@ fn own_supports(step: &Step, model: &Model) -> Vec<Support> {
     own.copied().collect()
 }
 
-/// Supports that a step leaves to the next one: those that follow an amplitude in step time keep
-/// their last value.
+/// Supports that a step leaves to the next one.
 fn carried(supports: &[Support], step: &Step, amplitudes: &[Amplitude]) -> Vec<Support> {
-    let kept = supports.iter().map(|&Support { dof, motion }| {
-        let motion = match motion {
-            SupportMotion::Amplitude { value, amplitude }
-                if amplitudes[amplitude].time == TimeBase::Step =>
-            {
-                let to = value * amplitudes[amplitude].at(step.increments.period);
-                SupportMotion::Ramp { to }
-            }
-            other => other,
-        };
-        Support { dof, motion }
+    let period = step.increments.period;
+    let kept = supports.iter().map(|&Support { dof, motion }| Support {
+        dof,
+        motion: motion.after_step(period, amplitudes),
     });
     kept.collect()
+}
+
+/// What a card of supports says on its keyword line: the derivative that it prescribes, and the
+/// amplitude.
+fn kind_of(support: &Support) -> (Option<Rate>, Option<usize>) {
+    match support.motion {
+        SupportMotion::Ramp { .. } => (None, None),
+        SupportMotion::Amplitude { amplitude, .. } => (None, Some(amplitude)),
+        SupportMotion::Rate {
+            rate, amplitude, ..
+        } => (Some(rate), amplitude),
+    }
 }
 
 /// Writes the supports of a step, all of them where they are not those of the step before.
@@ -185,25 +189,32 @@ fn write_supports(now: &[Support], carried: &[Support], model: &Model, lines: &m
     if now == carried {
         return;
     }
-    let amplitude_of = |support: &Support| match support.motion {
-        SupportMotion::Ramp { .. } => None,
-        SupportMotion::Amplitude { amplitude, .. } => Some(amplitude),
-    };
-    let all = (0..model.amplitudes.len()).map(Some);
+    let amplitudes = || std::iter::once(None).chain((0..model.amplitudes.len()).map(Some));
+    let rates = [None, Some(Rate::Velocity), Some(Rate::Acceleration)];
+    let kinds = rates
+        .iter()
+        .flat_map(|&rate| amplitudes().map(move |a| (rate, a)));
     let mut operation = (!carried.is_empty()).then(|| set("OP", "NEW"));
     if now.is_empty() {
         lines.card_of("BOUNDARY", operation.as_slice());
     }
-    for amplitude in std::iter::once(None).chain(all) {
-        let of_card: Vec<&Support> = now
-            .iter()
-            .filter(|s| amplitude_of(s) == amplitude)
-            .collect();
+    for (rate, amplitude) in kinds {
+        let is_own = |s: &&Support| kind_of(s) == (rate, amplitude);
+        let of_card: Vec<&Support> = now.iter().filter(is_own).collect();
         if of_card.is_empty() {
             continue;
         }
+        let rate = rate.map(|rate| match rate {
+            Rate::Velocity => set("TYPE", "VELOCITY"),
+            Rate::Acceleration => set("TYPE", "ACCELERATION"),
+        });
         let name = amplitude.map(|index| named("AMPLITUDE", &model.amplitudes[index].name));
-        let parameters: Vec<String> = operation.take().into_iter().chain(name).collect();
+        let parameters: Vec<String> = operation
+            .take()
+            .into_iter()
+            .chain(rate)
+            .chain(name)
+            .collect();
         lines.card_of("BOUNDARY", &parameters);
         let alike = |a: &&Support, b: &&Support| a.dof / 2 == b.dof / 2 && a.motion == b.motion;
         for supports in of_card.chunk_by(alike) {
@@ -217,7 +228,9 @@ fn support_row(supports: &[&Support], model: &Model, lines: &mut Lines) {
     let (Some(first), Some(last)) = (supports.first(), supports.last()) else {
         return;
     };
-    let (SupportMotion::Ramp { to: value } | SupportMotion::Amplitude { value, .. }) = first.motion;
+    let (SupportMotion::Ramp { to: value }
+    | SupportMotion::Amplitude { value, .. }
+    | SupportMotion::Rate { value, .. }) = first.motion;
     let [label, direction] = dof_fields(first.dof, model);
     let [_, to] = dof_fields(last.dof, model);
     lines.row([label, direction, to, number(value)]);

@@ -19,4 +19,6 @@ mod warm_start;
 pub use exchange::{JsonAnswer, solve_json};
 pub use pivots::{LemkeSettings, covering_vector, lemke};
 pub use problems::{ContactState, Counters, FrictionalLcp, Lcp, LcpError, LcpSolution, residual};
-pub use warm_start::{FrictionalSolution, LcpMethod, Method, solve_frictional};
+pub use warm_start::{
+    FrictionalSolution, KeptFactors, LcpMethod, Method, solve_frictional, solve_similar,
+};

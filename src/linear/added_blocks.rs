@@ -6,6 +6,9 @@ use sprs::{CsMat, CsMatView};
 
 use super::Transformation;
 
+/// Places of earlier blocks for each entry at hand.
+const MOST_PLACES: usize = 3;
+
 /// Sum of blocks T_e^T K_e T_e over the unknowns.
 #[derive(Debug, Clone, Default)]
 pub struct AddedBlocks {
@@ -37,6 +40,24 @@ impl AddedBlocks {
     /// Whether there are no entries.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
+    }
+
+    /// Adds zeros at the `places` (column, row) of earlier blocks, and these blocks' to the places: the pattern
+    /// of the sum stays the same as long as it can, and with it its symbolic analysis. Many more places than
+    /// entries are forgotten.
+    pub fn keep_places(&mut self, places: &mut Vec<(usize, usize)>) {
+        if places.len() > MOST_PLACES * self.entries.len() {
+            places.clear();
+        }
+        let own = self.entries.iter().map(|entry| (entry.0, entry.1));
+        let known = places.len();
+        places.extend(own);
+        let zeros = places[..known]
+            .iter()
+            .map(|&(column, row)| (column, row, 0.0));
+        self.entries.extend(zeros);
+        places.sort_unstable();
+        places.dedup();
     }
 
     /// The sum of a matrix and the blocks, with the union of their patterns; by columns.

@@ -1,6 +1,5 @@
-//! Direct solves with an a posteriori check: the residual relative to |b| + |A| |x|, by one
-//! product with the matrix for all right-hand sides together; parts of the inverse by their row
-//! sums.
+//! Direct solves with an a posteriori check: the residual relative to the terms of b and A x; parts of the inverse
+//! by their row sums.
 
 use sprs::{CsMat, CsMatView};
 
@@ -17,7 +16,16 @@ pub struct CheckedSolver {
     matrix: Assembled,
     /// Sum of the matrix and the blocks added to it, if there are any.
     sum: Option<CsMat<f64>>,
+    /// Places of the blocks added before.
+    places: Vec<(usize, usize)>,
     factorized: bool,
+    /// Right-hand side of the last solve.
+    b: Vec<f64>,
+    /// Sizes of the terms that it is the sum of.
+    terms: Vec<f64>,
+    /// Its solution.
+    x: Vec<f64>,
+    is_under_way: bool,
 }
 
 impl CheckedSolver {
@@ -27,7 +35,12 @@ impl CheckedSolver {
             solver,
             matrix,
             sum: None,
+            places: Vec::new(),
             factorized: false,
+            b: Vec::new(),
+            terms: Vec::new(),
+            x: Vec::new(),
+            is_under_way: false,
         }
     }
 
@@ -39,8 +52,9 @@ impl CheckedSolver {
     }
 
     /// Adds blocks to the matrix in place of those added before, until it gets new values.
-    pub fn add_blocks(&mut self, blocks: AddedBlocks) {
+    pub fn add_blocks(&mut self, mut blocks: AddedBlocks) {
         self.factorized = false;
+        blocks.keep_places(&mut self.places);
         self.sum = (!blocks.is_empty()).then(|| blocks.added_to(self.matrix.matrix()));
     }
 
@@ -85,58 +99,121 @@ impl CheckedSolver {
         (self.sum.as_ref()).map_or(self.matrix.matrix(), |sum| sum.view())
     }
 
-    /// Solutions for the columns of `b` (n x k, column by column).
+    /// The solution for the right-hand side `b`.
     ///
     /// # Errors
     /// A solution that is not finite or fails the residual check; a matrix without factors.
     pub fn solve(&mut self, b: &[f64]) -> Result<Vec<f64>, LinearError> {
-        if !self.factorized {
-            return Err(LinearError::NotFactorized);
-        }
-        let n = self.matrix.size();
-        let mut x = b.to_vec();
-        if n == 0 {
-            return Ok(x);
-        }
-        self.solver.solve(&mut x);
-        if x.iter().any(|value| !value.is_finite()) {
-            return Err(LinearError::NotFinite("a solution"));
-        }
-        let residual = relative_residual(self.whole(), &sum(&x, n), &sum(b, n));
-        if residual.is_nan() || residual > RESIDUAL {
-            return Err(LinearError::Residual { residual });
-        }
+        self.begin(b)?;
+        let x = self.end()?.to_vec();
+        self.check()?;
         Ok(x)
     }
 
-    /// The inverse at the rows and columns `unknowns` (distinct), m x m column by column.
+    /// Begins a solve in parts with the right-hand side `b`, see [`LinearSolver`].
+    ///
+    /// # Errors
+    /// A matrix without factors.
+    pub fn begin(&mut self, b: &[f64]) -> Result<(), LinearError> {
+        if !self.factorized {
+            return Err(LinearError::NotFactorized);
+        }
+        self.b.clear();
+        self.b.extend_from_slice(b);
+        self.terms.clear();
+        self.terms.extend(b.iter().map(|b| b.abs()));
+        self.solver.begin(b);
+        self.is_under_way = true;
+        Ok(())
+    }
+
+    /// Writes the solution for the right-hand side so far at some `unknowns` to `values`, in their order.
+    pub fn partial(&mut self, unknowns: &[usize], values: &mut Vec<f64>) {
+        self.solver.watch(unknowns);
+        self.solver.watched(values);
+    }
+
+    /// Adds to the right-hand side at the unknowns of the last partial solution (unknown, value).
+    pub fn add(&mut self, b: &[(usize, f64)]) {
+        b.iter()
+            .for_each(|&(unknown, value)| self.b[unknown] += value);
+        self.solver.add(b);
+    }
+
+    /// Ends a solve and gives the solution, whose residual [`Self::check`] checks.
+    ///
+    /// # Errors
+    /// A solution that is not finite.
+    pub fn end(&mut self) -> Result<&[f64], LinearError> {
+        self.x.resize(self.b.len(), 0.0);
+        self.solver.end(&mut self.x);
+        self.is_under_way = false;
+        match self.x.iter().all(|value| value.is_finite()) {
+            true => Ok(&self.x),
+            false => Err(LinearError::NotFinite("a solution")),
+        }
+    }
+
+    /// Checks the residual of the last solution, relative to the terms it is made of.
+    ///
+    /// # Errors
+    /// A residual that is too large.
+    pub fn check(&self) -> Result<(), LinearError> {
+        let residual = relative_residual(self.whole(), &self.x, [&self.b, &self.terms]);
+        match residual <= RESIDUAL {
+            true => Ok(()),
+            false => Err(LinearError::Residual { residual }),
+        }
+    }
+
+    /// The inverse at the rows and columns of each list of `unknowns` (distinct, of other connected groups
+    /// than those of the other lists), m x m column by column. A solve in parts may go on afterwards.
     ///
     /// # Errors
     /// Values that are not finite, or row sums that disagree with a solve; a matrix without
     /// factors.
-    pub fn inverse_at(&mut self, unknowns: &[usize]) -> Result<Vec<f64>, LinearError> {
-        let (n, m) = (self.matrix.size(), unknowns.len());
+    pub fn inverse_at(&mut self, unknowns: &[&[usize]]) -> Result<Vec<Vec<f64>>, LinearError> {
+        let n = self.matrix.size();
         let mut b = vec![0.0; n];
-        unknowns.iter().for_each(|&unknown| b[unknown] = 1.0);
+        unknowns
+            .iter()
+            .flat_map(|list| *list)
+            .for_each(|&unknown| b[unknown] = 1.0);
+        let is_under_way = self.is_under_way;
+        let interrupted = [&mut self.b, &mut self.terms].map(std::mem::take);
         let x = self.solve(&b)?;
-        let inverse = self.solver.inverse_at(unknowns, n);
-        let sums = sum(&inverse, m);
-        let difference = |(sum, &unknown): (&f64, &usize)| (sum - x[unknown]).abs();
-        let worst = sums.iter().zip(unknowns).map(difference).fold(0.0, larger);
-        let scale = largest(&inverse);
-        if sums.iter().any(|sum| !sum.is_finite()) {
-            return Err(LinearError::NotFinite("an inverse"));
+        let inverse = |list: &&[usize]| {
+            let inverse = self.solver.inverse_at(list, n);
+            check_row_sums(&inverse, list, &x).map(|()| inverse)
+        };
+        let inverses = unknowns.iter().map(inverse).collect();
+        if is_under_way {
+            [self.b, self.terms] = interrupted;
+            self.solver.begin(&self.b);
         }
-        if worst.is_nan() || worst > RESIDUAL * scale * m as f64 {
-            return Err(LinearError::Residual {
-                residual: worst / scale,
-            });
-        }
-        Ok(inverse)
+        self.is_under_way = is_under_way;
+        inverses
     }
 }
 
-/// Sum of columns of length `n`: one product with the matrix checks all of them.
+/// The row sums of an inverse at some unknowns must be those of the solution `x`.
+fn check_row_sums(inverse: &[f64], unknowns: &[usize], x: &[f64]) -> Result<(), LinearError> {
+    let sums = sum(inverse, unknowns.len());
+    let difference = |(sum, &unknown): (&f64, &usize)| (sum - x[unknown]).abs();
+    let worst = sums.iter().zip(unknowns).map(difference).fold(0.0, larger);
+    let scale = largest(inverse);
+    if sums.iter().any(|sum| !sum.is_finite()) {
+        return Err(LinearError::NotFinite("an inverse"));
+    }
+    if worst.is_nan() || worst > RESIDUAL * scale * unknowns.len() as f64 {
+        return Err(LinearError::Residual {
+            residual: worst / scale,
+        });
+    }
+    Ok(())
+}
+
+/// Sum of columns of length `n`.
 fn sum(columns: &[f64], n: usize) -> Vec<f64> {
     let mut sum = vec![0.0; n];
     for column in columns.chunks_exact(n.max(1)) {
@@ -147,23 +224,23 @@ fn sum(columns: &[f64], n: usize) -> Vec<f64> {
     sum
 }
 
-/// max_i |b - A x|_i / max_i (|b| + |A| |x|)_i
-fn relative_residual(a: CsMatView<'_, f64>, x: &[f64], b: &[f64]) -> f64 {
-    let mut residual = b.to_vec();
-    let mut size: Vec<f64> = b.iter().map(|value| value.abs()).collect();
-    for (column, entries) in a.outer_iterator().enumerate() {
-        for (row, value) in entries.iter() {
-            let term = value * x[column];
-            residual[row] -= term;
-            size[row] += term.abs();
+/// max_i |b - A x|_i / max_i (t + |A| |x|)_i, t being the sizes of the terms of b; the rows of the symmetric
+/// A are its columns.
+fn relative_residual(a: CsMatView<'_, f64>, x: &[f64], [b, terms]: [&[f64]; 2]) -> f64 {
+    let (starts, rows, values) = (a.indptr(), a.indices(), a.data());
+    let starts = starts.raw_storage();
+    let (mut error, mut scale) = (0.0, 0.0);
+    for (ends, (b, terms)) in starts.windows(2).zip(b.iter().zip(terms)) {
+        let entries = ends[0]..ends[1];
+        let (mut residual, mut size) = (*b, *terms);
+        for (value, &row) in values[entries.clone()].iter().zip(&rows[entries]) {
+            let term = value * x[row];
+            residual -= term;
+            size += term.abs();
         }
+        (error, scale) = (larger(error, residual.abs()), larger(scale, size));
     }
-    let scale = largest(&size);
-    if scale == 0.0 {
-        0.0
-    } else {
-        largest(&residual) / scale
-    }
+    if scale == 0.0 { 0.0 } else { error / scale }
 }
 
 #[cfg(test)]
@@ -199,9 +276,9 @@ mod tests {
     }
 
     #[test]
-    fn both_solvers_agree_on_several_right_hand_sides() {
+    fn both_solvers_agree() {
         let a = grid(17, 0.01);
-        let b: Vec<f64> = (0..3 * a.size())
+        let b: Vec<f64> = (0..a.size())
             .map(|i| ((i * 31) % 17) as f64 - 8.0)
             .collect();
         let mut solutions = [SolverChoice::Faer, SolverChoice::Sprs].map(|choice| {
@@ -215,6 +292,34 @@ mod tests {
     }
 
     #[test]
+    fn a_solve_in_parts_is_that_of_the_whole_right_hand_side() {
+        let a = grid(17, 0.01);
+        let b: Vec<f64> = (0..a.size())
+            .map(|i| ((i * 31) % 17) as f64 - 8.0)
+            .collect();
+        let unknowns = [280, 3, 77, 76];
+        let near = |x: f64, y: f64| assert!((x - y).abs() < 1e-10, "{x} {y}");
+        for choice in [SolverChoice::Faer, SolverChoice::Sprs] {
+            let mut solver = factorized(choice, a.clone()).unwrap();
+            let (before, mut b_after) = (solver.solve(&b).unwrap(), b.clone());
+            (b_after[77], b_after[280]) = (b[77] + 3.0, b[280] - 5.0);
+            let after = solver.solve(&b_after).unwrap();
+            let mut values = Vec::new();
+            solver.begin(&b).unwrap();
+            solver.partial(&unknowns, &mut values);
+            (values.iter().zip(unknowns)).for_each(|(value, u)| near(*value, before[u]));
+            solver.add(&[(77, 3.0)]);
+            solver.inverse_at(&[&[5, 9]]).unwrap();
+            solver.add(&[(280, -5.0)]);
+            solver.partial(&unknowns, &mut values);
+            (values.iter().zip(unknowns)).for_each(|(value, u)| near(*value, after[u]));
+            let x = solver.end().unwrap().to_vec();
+            solver.check().unwrap();
+            (x.iter().zip(&after)).for_each(|(x, after)| near(*x, *after));
+        }
+    }
+
+    #[test]
     fn parts_of_the_inverse_agree_with_solves() {
         let a = grid(17, 0.01);
         let n = a.size();
@@ -224,7 +329,7 @@ mod tests {
             .collect();
         for choice in [SolverChoice::Faer, SolverChoice::Sprs] {
             let mut solver = factorized(choice, a.clone()).unwrap();
-            let inverse = solver.inverse_at(&unknowns).unwrap();
+            let inverse = solver.inverse_at(&[&unknowns]).unwrap().concat();
             for (j, &column) in unknowns.iter().enumerate() {
                 let mut b = vec![0.0; n];
                 b[column] = 1.0;
@@ -249,7 +354,7 @@ mod tests {
         };
         for choice in [SolverChoice::Faer, SolverChoice::Sprs] {
             let mut solver = factorized(choice, diagonal([2.0, 4.0, 8.0])).unwrap();
-            let inverse = solver.inverse_at(&[2, 0]).unwrap();
+            let inverse = solver.inverse_at(&[&[2, 0]]).unwrap().concat();
             assert_eq!(inverse, [0.125, 0.0, 0.0, 0.5], "{choice:?}");
             let error = factorized(choice, diagonal([2.0, -4.0, 8.0])).err();
             let pivot = LinearError::NotPositiveDefinite {

@@ -4,23 +4,15 @@
 mod added_blocks;
 mod assembled;
 mod checked;
-mod choice;
-mod faer_ldl;
 mod largest;
-mod ordering;
-mod partial_inverse;
 mod rotation;
-mod solver;
-mod sprs_ldl;
+mod solvers;
 mod transformation;
 
 pub use added_blocks::AddedBlocks;
 pub use assembled::Assembled;
 pub use checked::CheckedSolver;
-pub use choice::linear_solver;
-pub use faer_ldl::{FaerLdl, factor_entries};
 pub use largest::{larger, largest};
 pub use rotation::Rotation;
-pub use solver::{LinearError, LinearSolver};
-pub use sprs_ldl::SprsLdl;
+pub use solvers::{FaerLdl, LinearError, LinearSolver, SprsLdl, factor_entries, linear_solver};
 pub use transformation::Transformation;

@@ -32,6 +32,20 @@ impl Rotation {
         }
     }
 
+    /// v <- R v of one node.
+    pub fn turn_node(&self, node: usize, v: &mut [f64; 2]) {
+        if let Some(&[cos, sin]) = self.nodes.get(node) {
+            rotate([cos, sin], v);
+        }
+    }
+
+    /// v <- R^T v of one node.
+    pub fn turn_node_back(&self, node: usize, v: &mut [f64; 2]) {
+        if let Some(&[cos, sin]) = self.nodes.get(node) {
+            rotate([cos, -sin], v);
+        }
+    }
+
     /// row <- row R, `row` over the given dofs: x and y of one node after the other.
     pub fn turn_row(&self, dofs: &[usize], row: &mut [f64]) {
         for (dofs, entries) in dofs.chunks_exact(2).zip(row.chunks_exact_mut(2)) {

@@ -78,6 +78,28 @@ impl Amplitude {
         self.value_and_rate(t)[1]
     }
 
+    /// First and second integral at `t` (time, time^2), from the first point or the start of the signal.
+    pub fn integrals(&self, t: f64) -> [f64; 2] {
+        match &self.curve {
+            Curve::Linear(points) => {
+                integrals_of_table(points, t, |x| [x * x / 2.0, x.powi(3) / 6.0])
+            }
+            Curve::SmoothStep(points) => integrals_of_table(points, t, smooth_step_integrals),
+            Curve::Signal {
+                start,
+                base,
+                signal,
+            } => {
+                let t = t - start;
+                let constant = [base * t, base * t * t / 2.0];
+                match t > 0.0 {
+                    true => added(constant, signal.integrals(t)),
+                    false => constant,
+                }
+            }
+        }
+    }
+
     fn value_and_rate(&self, t: f64) -> [f64; 2] {
         match &self.curve {
             Curve::Linear(points) => in_table(points, t, |x| [x, 1.0]),
@@ -96,6 +118,35 @@ impl Amplitude {
 }
 
 impl Signal {
+    /// First and second integral from 0 to `t >= 0`.
+    fn integrals(&self, t: f64) -> [f64; 2] {
+        match self {
+            Signal::Periodic {
+                frequency,
+                harmonics,
+            } => {
+                let terms = harmonics.iter().zip(1_u32..).map(|(&(a, b), n)| {
+                    let w = f64::from(n) * frequency;
+                    let (cosine, sine) = (cosine_integrals(w, t), sine_integrals(w, t));
+                    [0, 1].map(|i| a * cosine[i] + b * sine[i])
+                });
+                terms.fold([0.0; 2], added)
+            }
+            Signal::Decay { size, time } => {
+                let fallen = -(-t / time).exp_m1();
+                [size * time * fallen, size * time * (t - time * fallen)]
+            }
+            // sin(w1 t) sin(w2 t) = (cos((w1 - w2) t) - cos((w1 + w2) t))/2
+            Signal::Modulated {
+                size,
+                frequencies: [w1, w2],
+            } => {
+                let (slow, fast) = (cosine_integrals(w1 - w2, t), cosine_integrals(w1 + w2, t));
+                [0, 1].map(|i| size * (slow[i] - fast[i]) / 2.0)
+            }
+        }
+    }
+
     /// Value and rate at `t >= 0`.
     fn value_and_rate(&self, t: f64) -> [f64; 2] {
         match self {
@@ -122,6 +173,62 @@ impl Signal {
                 [size * s1 * s2, size * (w1 * c1 * s2 + w2 * s1 * c2)]
             }
         }
+    }
+}
+
+/// First and second integral from 0 to `t` of `cos(w t)`.
+fn cosine_integrals(w: f64, t: f64) -> [f64; 2] {
+    match w {
+        0.0 => [t, t * t / 2.0],
+        _ => [(w * t).sin() / w, 2.0 * ((w * t / 2.0).sin() / w).powi(2)],
+    }
+}
+
+/// First and second integral from 0 to `t` of `sin(w t)`.
+fn sine_integrals(w: f64, t: f64) -> [f64; 2] {
+    match w {
+        0.0 => [0.0; 2],
+        _ => {
+            let half = (w * t / 2.0).sin();
+            [2.0 * half * half / w, (t - (w * t).sin() / w) / w]
+        }
+    }
+}
+
+fn added(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+/// First and second integral of [`smooth_step`] from 0 to `x`.
+fn smooth_step_integrals(x: f64) -> [f64; 2] {
+    [
+        x.powi(4) * (2.5 - 3.0 * x + x * x),
+        x.powi(5) * (0.5 - 0.5 * x + x * x / 7.0),
+    ]
+}
+
+/// First and second integral at `t`, from the first point, of a table whose values between two points
+/// are those of a step with the integrals `step` from 0 to `0 <= x <= 1`; constant outside the table.
+fn integrals_of_table(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
+    let constant = |value: f64, s: f64| [value * s, value * s * s / 2.0];
+    let (first, last) = (points[0], points[points.len() - 1]);
+    if t < first.0 {
+        return constant(first.1, t - first.0);
+    }
+    // to the end of an interval, or to t in it: with J1 and J2 at its start, s from there on,
+    // I1 = J1 + a s + (b - a) h step1, I2 = J2 + J1 s + a s^2/2 + (b - a) h^2 step2
+    let on = |[j1, j2]: [f64; 2], s: f64, value: f64| added([j1, j2 + j1 * s], constant(value, s));
+    let mut integrals = [0.0; 2];
+    for pair in points.windows(2).take_while(|pair| pair[0].0 < t) {
+        let (p, q) = (pair[0], pair[1]);
+        let (s, h) = (t.min(q.0) - p.0, q.0 - p.0);
+        let [first, second] = step(s / h);
+        let rise = [(q.1 - p.1) * h * first, (q.1 - p.1) * h * h * second];
+        integrals = added(on(integrals, s, p.1), rise);
+    }
+    match t > last.0 {
+        true => on(integrals, t - last.0, last.1),
+        false => integrals,
     }
 }
 
@@ -245,6 +352,37 @@ mod tests {
         close(modulated().at(1.25), 2.0 + 1.5 * 2.0_f64.sqrt());
         close(modulated().at(1.0), 2.0);
         close(modulated().rate(1.0), 0.0);
+    }
+
+    #[test]
+    fn values_are_derivatives_of_the_integrals() {
+        let h = 1e-4;
+        let table = amplitude(Curve::Linear(vec![(1.0, 1.0), (2.0, 4.0), (4.0, 0.5)]));
+        for a in [table, smooth(), periodic(), decay(), modulated()] {
+            for t in [0.3, 1.1, 1.3, 1.77, 2.4, 3.9, 5.0] {
+                let [before, at, after] = [t - h, t, t + h].map(|t| a.integrals(t));
+                let first = (after[0] - before[0]) / (2.0 * h);
+                let second = (after[1] - before[1]) / (2.0 * h);
+                assert!((a.at(t) - first).abs() < 1e-6, "{a:?} at {t}: {first}");
+                assert!((at[0] - second).abs() < 1e-6, "{a:?} at {t}: {second}");
+            }
+        }
+    }
+
+    #[test]
+    fn integrals_known_in_closed_form() {
+        let table = amplitude(Curve::Linear(vec![(1.0, 0.0), (2.0, 4.0)]));
+        assert_eq!(table.integrals(2.0), [2.0, 2.0 / 3.0]);
+        assert_eq!(
+            table.integrals(4.0),
+            [10.0, 2.0 / 3.0 + 2.0 * 2.0 + 4.0 * 2.0]
+        );
+        assert_eq!(table.integrals(0.0), [0.0, 0.0]);
+        let step = amplitude(Curve::SmoothStep(vec![(0.0, 0.0), (2.0, 3.0)]));
+        close(step.integrals(2.0)[0], 3.0);
+        close(step.integrals(2.0)[1], 12.0 / 7.0);
+        close(decay().integrals(1.5)[0], 1.0 + 1.5 * (1.0 - 1.0 / E));
+        close(periodic().integrals(3.0)[0], 4.0);
     }
 
     #[test]

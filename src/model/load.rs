@@ -1,7 +1,7 @@
 //! Loads and prescribed displacements of a step, with their variation in time (docs/theory.md,
 //! section 4).
 
-use super::Face;
+use super::{Amplitude, Face, TimeBase};
 
 /// How a load's magnitude follows time within its step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,7 +72,7 @@ pub struct Support {
     pub motion: SupportMotion,
 }
 
-/// Displacement of a support within a step.
+/// Motion of a support within a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SupportMotion {
     /// Linear over the step from the displacement at its start to `to` (length) at its end.
@@ -87,4 +87,54 @@ pub enum SupportMotion {
         /// Index into `Model::amplitudes`.
         amplitude: usize,
     },
+    /// A velocity or an acceleration, which displacement and velocity of the start of the step go on
+    /// with.
+    Rate {
+        /// What is prescribed.
+        rate: Rate,
+        /// Its value, or the factor of the amplitude (length/time, length/time^2).
+        value: f64,
+        /// Index into `Model::amplitudes`; without, the rate is constant.
+        amplitude: Option<usize>,
+    },
+}
+
+impl SupportMotion {
+    /// How a support that no card changes goes on after a step of this duration: what follows an
+    /// amplitude in step time keeps its last value.
+    pub fn after_step(self, period: f64, amplitudes: &[Amplitude]) -> SupportMotion {
+        let last = |index: usize| {
+            let curve = amplitudes.get(index);
+            let curve = curve.filter(|curve| curve.time == TimeBase::Step);
+            curve.map(|curve| curve.at(period))
+        };
+        match self {
+            SupportMotion::Amplitude { value, amplitude } => match last(amplitude) {
+                Some(last) => SupportMotion::Ramp { to: value * last },
+                None => self,
+            },
+            SupportMotion::Rate {
+                rate,
+                value,
+                amplitude,
+            } => match amplitude.and_then(last) {
+                Some(last) => SupportMotion::Rate {
+                    rate,
+                    value: value * last,
+                    amplitude: None,
+                },
+                None => self,
+            },
+            SupportMotion::Ramp { .. } => self,
+        }
+    }
+}
+
+/// The derivative of the displacement that is prescribed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rate {
+    /// The first.
+    Velocity,
+    /// The second.
+    Acceleration,
 }

@@ -21,9 +21,11 @@ pub use crate::materials::Plane;
 pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
 pub use bodies::Bodies;
 pub use constraint::{Equation, RigidBody};
-pub use contact::{Adjust, Contact, Interaction};
+pub use contact::{Adjust, Contact, Friction, Interaction};
 pub use element_type::{ElementType, Formulation, Shape, Topology};
-pub use load::{BodyForce, Load, PointLoad, Pressure, Support, SupportMotion, Traction, Variation};
+pub use load::{
+    BodyForce, Load, PointLoad, Pressure, Rate, Support, SupportMotion, Traction, Variation,
+};
 pub use material::{Damping, Material, Section};
 pub use mesh::{Element, Face, Mesh, Set, SharedSides};
 pub use sets::{HistorySet, Instance, NamedSets, element_name, node_name};

@@ -101,7 +101,7 @@ mod tests {
             free: 1 << 33,
         };
         let text = error.to_string();
-        let told = ["3.30 TB of memory", "8.59 GB are free", "coarser mesh"];
+        let told = ["3.3 TB of memory", "8.59 GB are free", "coarser mesh"];
         assert!(told.iter().all(|part| text.contains(part)), "{text}");
         if free_memory().is_some() {
             assert!(check_memory(need(1 << 60)).is_err());

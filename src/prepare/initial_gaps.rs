@@ -122,12 +122,13 @@ mod tests {
 
     use super::*;
     use crate::contact::Interior;
+    use crate::model::Friction;
     use crate::model::{Element, ElementType, Mesh};
 
     /// Gap of a node at `s` to the roof over the nodes 1, 2, 3 at heights 0, `top`, 0, whose body
     /// is `body`.
     fn gap(top: f64, s: [f64; 2], body: usize) -> Option<f64> {
-        let contact = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]], 0.0);
+        let contact = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]], Friction::default());
         let x = [s, [2.0, 0.0], [0.0, top], [-2.0, 0.0]];
         let found = gaps(&contact, &x, &[0, body, body, body]);
         found.first().map(|found| found.gap)
@@ -159,8 +160,9 @@ mod tests {
             elements: [[1, 2, 5, 4], [2, 3, 6, 5]].map(element).into(),
             ..Mesh::default()
         };
-        let contact = ContactSurfaces::new(vec![0, 5], &[], vec![[1, 2], [2, 3]], 0.0)
-            .with_interior(Arc::new(Interior::new(&mesh)));
+        let contact =
+            ContactSurfaces::new(vec![0, 5], &[], vec![[1, 2], [2, 3]], Friction::default())
+                .with_interior(Arc::new(Interior::new(&mesh)));
         let found = gaps(&contact, &coordinates, &[0; 7]);
         let of = |slave| found.iter().find(|g| g.slave == slave).map(|g| g.gap);
         [of(0), of(5)]
@@ -183,7 +185,7 @@ mod tests {
         };
         let x: Vec<[f64; 2]> = (0..60).map(at).collect();
         let segments = (20..59).map(|i| [i, i + 1]).collect();
-        let contact = ContactSurfaces::new((0..60).collect(), &[], segments, 0.0);
+        let contact = ContactSurfaces::new((0..60).collect(), &[], segments, Friction::default());
         let bodies: Vec<usize> = (0..60).map(|i| usize::from(i > 30)).collect();
         let start = Start {
             contact: &contact,

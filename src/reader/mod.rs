@@ -51,7 +51,7 @@ fn read(cx: &mut Context) -> Model {
     let sets = sets::read(&outline, &mesh_index, cx);
     let mut surfaces = surface::read(&outline, &mesh_index, &sets, cx);
     mesh_index.add_points(&surfaces.rigid_points);
-    let rigid_surfaces = rigid_surface::read(&outline, &mesh_index, &sets, &surfaces, cx);
+    let rigid_bodies = rigid_surface::read(&outline, &mesh_index, &sets, &surfaces, cx);
     let properties = materials::read(&outline, &mesh_index, &sets, cx);
     checks::magnitudes(&mesh_index, &properties, cx);
     let contacts = pairs::read(&outline, &mesh_index, &sets, &mut surfaces, cx);
@@ -61,7 +61,7 @@ fn read(cx: &mut Context) -> Model {
         mesh_index: &mesh_index,
         sets: &sets,
         amplitudes: &amplitudes,
-        rigid_surfaces: &rigid_surfaces,
+        rigid_bodies: &rigid_bodies,
     };
     let guide = checks::crossing_time(&mesh_index.mesh, &properties);
     let steps = step::read(&outline, targets, &surfaces, guide, cx);
@@ -88,7 +88,7 @@ fn read(cx: &mut Context) -> Model {
             .collect(),
         initial_velocity,
         steps: steps.all,
-        rigid_bodies: rigid_surface::bodies(&rigid_surfaces),
+        rigid_bodies: rigid_surface::bodies(&rigid_bodies),
     };
     checks::braked_flight(&model, &properties.damping_spans, cx);
     checks::coincident_nodes(&model, &mesh_index.element_spans, cx);

@@ -98,14 +98,30 @@ fn names_that_are_no_supports() {
 }
 
 #[test]
-fn velocities_that_cannot_be_prescribed() {
-    let velocity = "*BOUNDARY, TYPE=VELOCITY\n4, 2, 2, 0.25\n";
-    let later = format!("*END STEP\n*STEP\n*DYNAMIC, DIRECT\n0.1, 1.\n{velocity}");
-    let curve = "*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n*BOUNDARY, TYPE=VELOCITY, AMPLITUDE=A";
-    insta::assert_snapshot!(texts_of(
-        Code::UnsupportedParameter,
-        &[step(&later), step(&format!("{curve}\n4, 2, 2, 0.25")),],
-    ));
+fn friction_that_cannot_be() {
+    let shared = include_str!("../decks/shared.inp");
+    let friction = "*FRICTION\n0.3, 2.1E5\n";
+    assert!(shared.contains(friction));
+    let texts = [
+        "*FRICTION, EXPONENTIAL DECAY\n0.3, 0.2",
+        "*FRICTION, EXPONENTIAL DECAY\n0.3, 0.2, -1.",
+        "*FRICTION, EXPONENTIAL DECAY\n0.3, 0.2, 1., 4.",
+        "*FRICTION, EXPONENTIAL DECAY, TEST DATA\n0.3, 0.2, 1.",
+        "*FRICTION\n0.3, 0.\n0.2, 100.",
+        "*FRICTION, TAUMAX=10.\n0.3",
+    ];
+    let messages: Vec<String> = texts
+        .iter()
+        .map(|text| {
+            let deck = shared.replacen(friction, &format!("{text}\n"), 1);
+            let (_, messages) = messages(&Source::Text(deck));
+            let errors = messages
+                .split_inclusive("\n\n")
+                .filter(|text| text.starts_with("error"));
+            format!("--- {text}\n{}", errors.collect::<String>())
+        })
+        .collect();
+    insta::assert_snapshot!(messages.concat());
 }
 
 #[test]

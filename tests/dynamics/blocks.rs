@@ -8,9 +8,9 @@ use stickslip::dynamics::{
 };
 use stickslip::materials::Law;
 use stickslip::model::{
-    BodyForce, Contact, Damping, Element, ElementType, Face, Frames, Increments, Interaction, Load,
-    Material, Model, Procedure, Scheme, Section, Settings, Step, Support, SupportMotion, Surface,
-    SurfaceKind, Variation,
+    BodyForce, Contact, Damping, Element, ElementType, Face, Frames, Friction, Increments,
+    Interaction, Load, Material, Model, Procedure, Scheme, Section, Settings, Step, Support,
+    SupportMotion, Surface, SurfaceKind, Variation,
 };
 use stickslip::prepare::PreparedModel;
 
@@ -151,7 +151,9 @@ pub fn add_contact(model: &mut Model, slave: Vec<Face>, master: Vec<Face>, frict
     model.contacts.push(Contact {
         slave: master - 1,
         master,
-        interaction: Interaction { friction },
+        interaction: Interaction {
+            friction: Friction::constant(friction),
+        },
         adjust: None,
         left_out: Vec::new(),
         span: Span::default(),

@@ -2,8 +2,8 @@
 
 use stickslip::dynamics::{IncrementReport, Outcome};
 use stickslip::model::{
-    Amplitude, Curve, Load, Model, Pressure, Scheme, Settings, Support, SupportMotion, TimeBase,
-    Traction, Variation,
+    Amplitude, Curve, Load, Model, Pressure, Rate, Scheme, Settings, Support, SupportMotion,
+    TimeBase, Traction, Variation,
 };
 
 use crate::blocks::{
@@ -204,6 +204,54 @@ fn a_ramped_support_moves_with_the_velocity_of_its_ramp() {
                 assert!((report.state.u[2 * node] - u).abs() < 1e-14);
             }
             assert!((report.energy.kinetic - 0.25).abs() < 1e-14);
+        }
+        balance_closes(&keep.reports);
+    }
+}
+
+#[test]
+fn prescribed_rates_are_integrated_from_the_start_of_the_step() {
+    for scheme in SCHEMES {
+        let (mut model, block) = free_block();
+        model.amplitudes = vec![Amplitude {
+            name: "GROW".into(),
+            time: TimeBase::Total,
+            curve: Curve::Linear(vec![(0.0, 0.0), (0.4, 2.0)]),
+        }];
+        let held = |rate, value, amplitude| -> Vec<Support> {
+            let motion = SupportMotion::Rate {
+                rate,
+                value,
+                amplitude,
+            };
+            let along = block.nodes().map(|n| Support { dof: 2 * n, motion });
+            let across = block.nodes().map(|n| fixed(2 * n + 1));
+            along.chain(across).collect()
+        };
+        model.steps = vec![
+            step(0.1, 6, settings(scheme), held(Rate::Velocity, 0.5, Some(0))),
+            step(
+                0.05,
+                8,
+                settings(scheme),
+                held(Rate::Acceleration, -1.25, None),
+            ),
+            step(0.05, 8, settings(scheme), held(Rate::Velocity, 0.0, None)),
+        ];
+        let (keep, _) = run_to_end(&model);
+        for report in &keep.reports {
+            // 2.5 t up to 0.4, then 1; from 0.6 on 1 - 1.25 s, and 0 from 1.0 on
+            let s = report.step_time;
+            let (v, u) = match (report.step, report.time) {
+                (1, t) if t < 0.4 + 1e-9 => (2.5 * t, 1.25 * t * t),
+                (1, t) => (1.0, 0.2 + t - 0.4),
+                (2, _) => (1.0 - 1.25 * s, 0.4 + s - 0.625 * s * s),
+                _ => (0.0, 0.7),
+            };
+            for node in block.nodes() {
+                let (du, dv) = (report.state.u[2 * node] - u, report.state.v[2 * node] - v);
+                assert!(du.abs().max(dv.abs()) < 1e-14, "{} {du} {dv}", report.time);
+            }
         }
         balance_closes(&keep.reports);
     }

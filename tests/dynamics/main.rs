@@ -12,6 +12,7 @@ mod events;
 mod fast;
 mod finite;
 mod friction;
+mod friction_decay;
 mod halving;
 mod invariants;
 mod landing_return;

@@ -20,9 +20,9 @@ use stickslip::dynamics::{
 use stickslip::elements::{ElementResult, Strained};
 use stickslip::materials::Law;
 use stickslip::model::{
-    Contact, Damping, Element, ElementType, Face, Frames, HistorySet, Increments, Interaction,
-    Material, Mesh, Model, NamedSets, Procedure, Section, Set, Settings, Step, Support,
-    SupportMotion, Surface, SurfaceKind,
+    Contact, Damping, Element, ElementType, Face, Frames, Friction, HistorySet, Increments,
+    Interaction, Material, Mesh, Model, NamedSets, Procedure, Section, Set, Settings, Step,
+    Support, SupportMotion, Surface, SurfaceKind,
 };
 use stickslip::output::{Claim, JobFiles, ResultWriter, RunRecord, Verbosity};
 
@@ -118,7 +118,9 @@ fn contact() -> Contact {
     Contact {
         slave: 0,
         master: 1,
-        interaction: Interaction { friction: 0.3 },
+        interaction: Interaction {
+            friction: Friction::constant(0.3),
+        },
         adjust: None,
         left_out: Vec::new(),
         span: Span::default(),

@@ -69,7 +69,7 @@ pub struct Constraint {
     pub start_gap: f64,
     /// Slip Dt since the start of the increment (length).
     pub slip: f64,
-    /// Coefficient of friction mu.
+    /// Coefficient of friction mu at the slip rate that it was last given, at first at rest.
     pub mu: f64,
     /// Length that gaps are relative to: that of the segment.
     pub scale: f64,
@@ -102,7 +102,7 @@ impl Constraint {
             gap,
             start_gap: gap,
             slip: 0.0,
-            mu: source.friction,
+            mu: source.friction.at_rest,
             scale,
             source,
         };
@@ -113,6 +113,11 @@ impl Constraint {
         let slip = constraint.product(&rows.tangential, d);
         (constraint.start_gap, constraint.slip) = (start_gap, slip);
         constraint
+    }
+
+    /// Takes the coefficient of friction at the slip rate |Dt|/dt of an increment of length `dt`, eq. (3.10).
+    pub fn take_slip_rate(&mut self, dt: f64) {
+        self.mu = self.source.friction.at(self.slip / dt);
     }
 
     /// The same constraint with its force rows as derivative rows, so that Q is symmetric.

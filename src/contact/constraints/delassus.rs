@@ -2,8 +2,9 @@
 //! problem it forms. Section 5 of docs/theory.md (paper eqs 36 to 47).
 
 use nalgebra::{DMatrix, DVector};
+use pulp::Arch;
 
-use super::compliance::Compliance;
+use super::compliance::{Compliance, GroupRows, Response, product};
 use super::constraint::Constraint;
 use crate::lcp::FrictionalLcp;
 
@@ -27,33 +28,61 @@ pub fn frictional_lcp(
     }
 }
 
-/// Q = G W B^T, eq. (5.1), all normal before all tangential rows and columns.
+/// Q = G W B^T, eq. (5.1), all normal before all tangential rows and columns: the sum over the groups of
+/// unknowns, each of which couples the constraints that act on it.
 fn delassus(constraints: &[&Constraint], compliance: &Compliance) -> DMatrix<f64> {
     let n = constraints.len();
-    let entries = |constraint: &&Constraint| compliance.entries(constraint);
-    let rows: Vec<_> = constraints.iter().map(entries).collect();
-    let has_one_kind = |k: usize| constraints[k].other_derivative_rows.is_none();
-    let mut q = DMatrix::zeros(2 * n, 2 * n);
-    for k in 0..n {
-        for l in k..n {
-            let mut product = compliance.between(&rows[k], &rows[l]);
-            let is_symmetric = has_one_kind(k) && has_one_kind(l);
-            if is_symmetric && k == l {
-                product[0][1] = product[1][0]; // but for round-off they are equal
-            }
-            let below = match is_symmetric {
-                true => transpose(product),
-                false => compliance.between(&rows[l], &rows[k]),
-            };
-            for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                q[(k + i * n, l + j * n)] = product[i][j];
-                q[(l + i * n, k + j * n)] = below[i][j];
-            }
+    let mut groups: Vec<GroupRows> = Vec::new();
+    groups.resize_with(compliance.groups(), GroupRows::default);
+    for (k, constraint) in constraints.iter().enumerate() {
+        for entry in compliance.entries(constraint) {
+            groups[entry.group].push(k, entry);
         }
     }
+    let mut q = DMatrix::zeros(2 * n, 2 * n);
+    Arch::new().dispatch(
+        #[inline(always)]
+        || {
+            for (group, rows) in groups.iter().enumerate() {
+                add_group(compliance, (group, rows), q.as_mut_slice());
+            }
+        },
+    );
+    mirror(constraints, &mut q);
     q
 }
 
-fn transpose([[a, b], [c, d]]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
-    [[a, c], [b, d]]
+/// Adds what the unknowns of a group couple to Q, column by column.
+#[inline(always)]
+fn add_group(compliance: &Compliance, (group, rows): (usize, &GroupRows), q: &mut [f64]) {
+    let n = (q.len() / 4).isqrt();
+    let (normal, tangential) = q.split_at_mut(2 * n * n);
+    let mut response = Response::default();
+    for (l, of_l) in rows.iter() {
+        // W (B_l T)^T, then its product with the rows of all
+        let y = compliance.response(group, of_l, &mut response);
+        let column = 2 * n * l..2 * n * (l + 1);
+        let (of_normal, of_tangential) = (&mut normal[column.clone()], &mut tangential[column]);
+        for (k, of_k) in rows.iter() {
+            let [gap, slip] = product(of_k, y);
+            of_normal[k] += gap[0];
+            of_normal[k + n] += slip[0];
+            of_tangential[k] += gap[1];
+            of_tangential[k + n] += slip[1];
+        }
+    }
+}
+
+/// Makes Q symmetric, which it is but for round-off, between constraints with G = B.
+fn mirror(constraints: &[&Constraint], q: &mut DMatrix<f64>) {
+    let n = constraints.len();
+    let has_one_kind: Vec<bool> = constraints
+        .iter()
+        .map(|c| c.other_derivative_rows.is_none())
+        .collect();
+    for column in (0..2 * n).filter(|j| has_one_kind[j % n]) {
+        for row in (column + 1..2 * n).filter(|i| has_one_kind[i % n]) {
+            q[(column, row)] = q[(row, column)];
+        }
+    }
 }

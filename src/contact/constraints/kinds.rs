@@ -20,11 +20,17 @@ impl Constraint {
         if let Some([a, b]) = source.from.take() {
             (source.nodes[1], source.nodes[2], source.nodes[3]) = (a, b, b);
         }
-        Constraint::new(source, start)
+        Constraint {
+            mu: self.mu,
+            ..Constraint::new(source, start)
+        }
     }
 
     /// The same constraint between other configurations.
     pub fn relinearized(&self, at: &Configurations) -> Self {
-        Constraint::new(self.source, at)
+        Constraint {
+            mu: self.mu,
+            ..Constraint::new(self.source, at)
+        }
     }
 }

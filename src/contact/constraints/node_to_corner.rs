@@ -57,6 +57,7 @@ mod tests {
     use super::*;
     use crate::contact::RowForm;
     use crate::contact::targets::ContactTarget;
+    use crate::model::Friction;
 
     /// Corner of a roof, displaced, on which the node 0 has come to lie.
     const ROOF: [[f64; 2]; 4] = [[0.3, 1.1], [2.0, 0.1], [0.3, 1.1], [-0.8, 0.9]];
@@ -75,7 +76,7 @@ mod tests {
             },
             nodes: [0, 1, 2, 3],
             from: None,
-            friction: 0.3,
+            friction: Friction::constant(0.3),
         };
         let (x, u0) = (&ROOF, &[0.0; 8]);
         Constraint::new(source, &Configurations { form, x, u0, u })

@@ -196,6 +196,7 @@ mod tests {
     use super::*;
     use crate::contact::geometry::position;
     use crate::contact::targets::ContactTarget;
+    use crate::model::Friction;
 
     const X: [[f64; 2]; 3] = [[0.7, 0.4], [2.0, 0.1], [-0.5, -0.2]];
     const U0: [f64; 6] = [0.1, -0.05, 0.02, 0.07, -0.03, 0.01];
@@ -207,7 +208,7 @@ mod tests {
             target: ContactTarget::face(0),
             nodes: [0, 1, 2, 2],
             from: None,
-            friction: 0.3,
+            friction: Friction::constant(0.3),
         };
         let x = &X;
         Constraint::new(source, &Configurations { form, x, u0, u })

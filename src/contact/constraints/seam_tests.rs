@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use super::{Compliance, Constraint, ConstraintKey, PerDof, Rows, frictional_lcp};
 use crate::contact::targets::{ContactTarget, PairTarget};
 use crate::linear::{Assembled, CheckedSolver, Transformation, linear_solver};
-use crate::model::SolverChoice;
+use crate::model::{Friction, SolverChoice};
 
 /// Dofs of the made-up constraint.
 const DOFS: usize = 14;
@@ -39,7 +39,7 @@ fn made_up(count: usize, rows: [RowsByDof; 2]) -> Constraint {
             target: ContactTarget::face(0),
             nodes: [0, 1, 2, 2],
             from: None,
-            friction: 0.5,
+            friction: Friction::constant(0.5),
         },
     }
 }

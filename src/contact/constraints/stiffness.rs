@@ -211,6 +211,7 @@ fn products() -> [Matrix4<f64>; 3] {
 mod tests {
     use super::*;
     use crate::contact::targets::{ContactTarget, Corner, PairTarget};
+    use crate::model::Friction;
 
     /// A node at a roof, and the foot of the segment before it.
     const X: [[f64; 2]; 5] = [[0.7, 0.4], [2.0, 0.1], [0.3, 0.9], [-0.8, 0.7], [3.0, -0.6]];
@@ -225,7 +226,7 @@ mod tests {
             target,
             nodes,
             from,
-            friction: 0.3,
+            friction: Friction::constant(0.3),
         }
     }
 

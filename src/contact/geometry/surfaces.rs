@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::interior::Interior;
 use super::projection::project;
-use crate::model::{Contact, Model};
+use crate::model::{Contact, Friction, Model};
 use crate::vectors::{cross, dot};
 
 /// The two sides of a contact of the model, as nodes and segments.
@@ -27,8 +27,8 @@ pub struct ContactSurfaces {
     /// configuration: an angle below 120 degrees. Folded legs of any other corner are a closed
     /// concave corner.
     pub sharp_corners: Vec<bool>,
-    /// Coefficient of friction mu.
-    pub friction: f64,
+    /// Coulomb friction.
+    pub friction: Friction,
     /// Interior of the bodies; behind a segment without an element everything is inside.
     pub interior: Arc<Interior>,
 }
@@ -40,7 +40,7 @@ impl ContactSurfaces {
         slaves: Vec<usize>,
         own: &[[usize; 2]],
         segments: Vec<[usize; 2]>,
-        friction: f64,
+        friction: Friction,
     ) -> Self {
         // node at the other end of the segment that starts or ends at a node
         let following: HashMap<usize, usize> = own.iter().map(|&[a, b]| (a, b)).collect();

@@ -6,6 +6,7 @@ use super::target_selection::ContactTarget;
 use crate::contact::geometry::position;
 use crate::contact::search::{ListedSlave, Search};
 use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED};
+use crate::model::Friction;
 
 /// Which slave node meets which segment, or which corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,8 +20,8 @@ pub struct PairTarget {
     pub nodes: [usize; 4],
     /// Ends of the segment that held the node at the start, where it has slid on from there.
     pub from: Option<[usize; 2]>,
-    /// Coefficient of friction mu.
-    pub friction: f64,
+    /// Coulomb friction.
+    pub friction: Friction,
 }
 
 /// The pairs of all contacts between the displacements `u0` of the start of an increment and `u` of

@@ -150,10 +150,11 @@ impl SlaveNode<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Friction;
 
     #[test]
     fn how_deep_a_node_still_touches_is_a_part_of_the_length_of_the_segment() {
-        let surfaces = ContactSurfaces::new(vec![2], &[], vec![[0, 1]], 0.0);
+        let surfaces = ContactSurfaces::new(vec![2], &[], vec![[0, 1]], Friction::default());
         let was_in_front = |length: f64, depth: f64| {
             // the segment runs from right to left, with the body below it
             let x = [[length, 0.0], [0.0, 0.0], [0.5 * length, -depth * length]];

@@ -11,7 +11,8 @@ use crate::contact::tolerances::PROJECTION_BEYOND_ENDS;
 use crate::contact::{ClosedPairs, Constraint};
 use crate::dynamics::results::{Cause, PassReport, State};
 use crate::dynamics::step::{
-    ClosedConstraints, Equilibrium, Interval, StepProblem, Workspace, difference, sum,
+    ClosedConstraints, Equilibrium, Interval, StartVelocity, StepProblem, Workspace, difference,
+    sum,
 };
 use crate::elements::Updated;
 use crate::linear::LinearError;
@@ -64,6 +65,7 @@ impl<'m> Attempt<'_, 'm> {
         let mut failed = Cause::NotConverged;
         for &rule in FactorRule::order(self.problem.settings.factorization) {
             trace.begin();
+            (self.workspace.search).start(&self.start.v, self.interval.dt);
             let mut factors = Refactorization::new(rule, self.problem.settings.tolerance);
             match self.passes(before, &mut factors, &mut trace) {
                 Ok(solved) => {
@@ -89,7 +91,6 @@ impl<'m> Attempt<'_, 'm> {
         let mut contact = ContactForces::without_constraints(before);
         let mut impulses = Impulses::new(before, self.set);
         let mut equal_forces = EqualForces::new(problem.settings.tolerance);
-        self.workspace.search.start(&start.v, dt);
 
         // the passes start from the rigid motion of the bodies
         let mut d = rigid_predictor(problem, start, self.interval);
@@ -100,7 +101,7 @@ impl<'m> Attempt<'_, 'm> {
             let [constraints, left_out] = self.constraints(&u, &contact, before, settled)?;
 
             // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1)
-            let v0p = impulses.velocity(problem, self.workspace, &constraints, start, dt)?;
+            let v0p = impulses.start_velocity(problem, self.workspace, &constraints, start, dt)?;
 
             // r = R_theta - F(U_theta) - M A, eq. (4.5)
             let equilibrium = self.equilibrium(&v0p, &d)?;
@@ -113,16 +114,17 @@ impl<'m> Attempt<'_, 'm> {
             let may_end = impulses.are_at_rest() && factors.are_near();
             if may_end && self.is_solved(&iterate, [settled, factors.stagnate()], trace)? {
                 contact.add_open(self.outside(left_out, &u));
-                return self.finish(v0p, d, contact, impulses);
+                return self.finish(d, contact, impulses);
             }
 
-            // y = K*^-1 r, K* of eq. (4.6), and d_p at the supports, which takes the force theta2 K d_p
+            // K* of eq. (4.6), and d_p at the supports, which takes the force theta2 K d_p
             self.refresh(factors, [&u, &equilibrium.u_theta], &contact)?;
-            let (y, support_force) = self.without_contact(pass, &r, [&u, &equilibrium.u_theta])?;
+            let [d_p, support_force] = self.supports(pass, [&u, &equilibrium.u_theta]);
 
             // Pn, Pt of the complementarity problem, eq. (5.2);
-            // dU = y + K*^-1 (Bn^T Pn + Bt^T Pt), eq. (4.7)
-            let du = contact.solve(&y, equal_forces.weight(settled), &mut self.k_star())?;
+            // dU = d_p + K*^-1 (r - theta2 K d_p + Bn^T Pn + Bt^T Pt), eq. (4.7)
+            let (load, weight) = (difference(&r, &support_force), equal_forces.weight(settled));
+            let du = contact.solve([&d_p, &load], weight, &mut self.k_star())?;
 
             // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales
             let iterate = Iterate::new(&equilibrium, &contact, [&u, &d]);
@@ -132,7 +134,7 @@ impl<'m> Attempt<'_, 'm> {
             d = sum(&d, &du);
             if impulses.rest(problem, &contact.closed) && has_converged {
                 contact.add_open(self.outside(left_out, &u));
-                return self.finish(v0p, d, contact, impulses);
+                return self.finish(d, contact, impulses);
             }
             equal_forces.take_in(trace.correction(), settled);
             factors.take_in(trace.correction())?;
@@ -152,14 +154,17 @@ impl<'m> Attempt<'_, 'm> {
         let (problem, u0) = (self.problem, &self.start.u);
         problem.check_segments(u)?;
         let (before, held) = (&last.constraints, start.segments());
-        let constraints = (self.workspace).constraints(problem, [u0, u], before, &held, settled);
+        let mut constraints =
+            (self.workspace).constraints(problem, [u0, u], before, &held, settled);
+        let dt = self.interval.dt;
+        (constraints.iter_mut()).for_each(|constraint| constraint.take_slip_rate(dt));
         Ok(self.set.split(problem, u0, constraints))
     }
 
     /// Load, internal force and inertia of the iterate U0 + d.
-    fn equilibrium(&mut self, v0p: &[f64], d: &[f64]) -> Result<Equilibrium, Cause> {
+    fn equilibrium(&mut self, v0p: &StartVelocity, d: &[f64]) -> Result<Equilibrium, Cause> {
         let (problem, start, interval) = (self.problem, self.start, self.interval);
-        (self.workspace).equilibrium(problem, start, [v0p, d], interval)
+        (self.workspace).equilibrium(problem, start, v0p, d, interval)
     }
 
     /// K* with its contact problems.
@@ -171,35 +176,21 @@ impl<'m> Attempt<'_, 'm> {
         }
     }
 
-    /// Correction y of the iterate without contact forces, and the force of the supports' motion.
-    fn without_contact(
-        &mut self,
-        pass: usize,
-        r: &[f64],
-        [u, u_theta]: [&[f64]; 2],
-    ) -> Result<(Vec<f64>, Vec<f64>), Cause> {
-        let d_p = self.prescribed_increment(pass, u);
-        let support_force = self.support_force(&d_p, u, u_theta);
-        let y = (self.k_star()).respond(&d_p, &difference(r, &support_force))?;
-        Ok((y, support_force))
-    }
-
-    /// What the predictor `u` leaves of the prescribed motion, d_p, which the first pass makes; then
-    /// zero.
-    fn prescribed_increment(&self, pass: usize, u: &[f64]) -> Vec<f64> {
-        match pass {
-            0 => (self.problem.unknowns).prescribed_increment(u, self.interval.end),
-            _ => vec![0.0; u.len()],
-        }
-    }
-
-    /// theta2 K d_p, the force of the supports' motion in the predictor.
-    fn support_force(&mut self, d_p: &[f64], u: &[f64], u_theta: &[f64]) -> Vec<f64> {
+    /// What the predictor `u` leaves of the prescribed motion, d_p, which the first pass makes, and its
+    /// force theta2 K d_p; then zero.
+    fn supports(&mut self, pass: usize, [u, u_theta]: [&[f64]; 2]) -> [Vec<f64>; 2] {
         let (problem, weights) = (self.problem, &self.problem.weights);
+        let d_p = match pass {
+            0 => (problem.unknowns).prescribed_increment(u, self.interval.end),
+            _ => vec![0.0; u.len()],
+        };
+        if d_p.iter().all(|d| *d == 0.0) {
+            return [d_p.clone(), d_p];
+        }
         let motion = weights.motion(self.start, u, u_theta);
-        let mut force = (self.workspace).tangent_product(problem, motion, d_p);
+        let mut force = (self.workspace).tangent_product(problem, motion, &d_p);
         force.iter_mut().for_each(|f| *f *= weights.theta2);
-        force
+        [d_p, force]
     }
 
     /// Factorises K* anew when the rules say so, else turns its factors with the bodies.
@@ -247,7 +238,8 @@ impl<'m> Attempt<'_, 'm> {
         Ok(solved.is_some())
     }
 
-    /// Compares residual and correction of a pass with their scales; whether it has converged.
+    /// Compares residual and correction of a pass with their scales; whether it has converged, with a solve
+    /// that passes its check.
     fn measure(&mut self, pass: &Pass, trace: &mut Trace) -> Result<bool, Cause> {
         let (problem, [u, _, du]) = (self.problem, pass.displacements);
         let Workspace {
@@ -265,7 +257,11 @@ impl<'m> Attempt<'_, 'm> {
         trace.worst = scales.worst(&residual, &problem.unknowns.dof, position);
         trace.add(report, pass.contact);
         meter.count_pass(report.residual);
-        Ok(scales.converged(&errors) && scales.closes_gaps(pass.contact, du))
+        let has_converged = scales.converged(&errors) && scales.closes_gaps(pass.contact, du);
+        if has_converged {
+            self.workspace.k().check()?;
+        }
+        Ok(has_converged)
     }
 
     /// The constraints that did not count, without those that a free node past a corner, or at it, is
@@ -283,12 +279,13 @@ impl<'m> Attempt<'_, 'm> {
     /// Motion and forces at the end of a converged increment.
     fn finish(
         &mut self,
-        v0p: Vec<f64>,
         d: Vec<f64>,
         forces: ContactForces,
         impulses: Impulses,
     ) -> Result<Solved, Cause> {
+        let v0p = impulses.velocity(self.problem, self.workspace, self.start)?;
         let equilibrium = self.equilibrium(&v0p, &d)?;
+        let v0p = v0p.v0p;
         // V1 = (2/dt) d - V0+, eq. (4.2); of what is prescribed from the amplitude
         let rate = 2.0 / self.interval.dt;
         let mut v: Vec<f64> = d.iter().zip(&v0p).map(|(d, v0p)| rate * d - v0p).collect();

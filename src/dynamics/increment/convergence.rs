@@ -2,8 +2,8 @@
 //! round-off floor. Section 4 of docs/theory.md, Convergence.
 
 use super::forces::ContactForces;
-use crate::contact::Constraint;
 use crate::contact::tolerances::{SETTLED_OVERLAP, SOLVED_GAP};
+use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::results::{Cause, PassReport, Worst};
 use crate::dynamics::step::{
     EffectiveStiffness, Equilibrium, Parts, StepProblem, check_finite, difference, sum,
@@ -311,10 +311,24 @@ impl<'a> Scales<'a> {
                         ContactState::Stick => constraint.slip.abs(),
                         state => -state.slip_sign() * constraint.slip,
                     };
-                    constraint.gap.abs() <= most && (constraint.mu == 0.0 || slips_along <= most)
+                    constraint.gap.abs() <= most
+                        && (constraint.mu == 0.0 || slips_along <= most)
+                        && self.has_own_friction(constraint, pair)
                 }
             }
         })
+    }
+
+    /// Whether the forces of a pair obey the coefficient of friction of its own slip rate, where that
+    /// depends on it.
+    fn has_own_friction(&self, constraint: &Constraint, pair: &ClosedPair) -> bool {
+        let [pn, pt] = pair.force;
+        let most = constraint.mu * pn;
+        let excess = match pair.state {
+            ContactState::Stick => pt.abs() - most,
+            _ => (pt.abs() - most).abs(),
+        };
+        constraint.source.friction.is_constant() || excess <= self.tolerance * most
     }
 
     /// Whether a pass with the correction dU closes the gaps of its closed pairs, as far as open pairs may
@@ -380,6 +394,6 @@ pub(crate) fn largest_forces<'a>(
     forces: impl Iterator<Item = &'a [f64]>,
 ) -> Vec<f64> {
     let each: Vec<Vec<f64>> = forces.map(|force| parts.largest(force)).collect();
-    let of_part = |part: usize| largest(each.iter().map(|force| &force[part]));
+    let of_part = |part: usize| each.iter().map(|force| force[part].abs()).fold(0.0, larger);
     (0..parts.of_parts().len()).map(of_part).collect()
 }

@@ -47,6 +47,7 @@ fn violation_of_pair(constraint: &Constraint, state: Option<ContactState>) -> Co
 mod tests {
     use super::*;
     use crate::contact::{Configurations, ContactTarget, PairTarget, RowForm};
+    use crate::model::Friction;
 
     /// Violation of a node at 1/4 of a segment of length 2, with the given gap and slip.
     fn violation([gap, slip]: [f64; 2], mu: f64, state: Option<ContactState>) -> ContactViolation {
@@ -55,7 +56,7 @@ mod tests {
             target: ContactTarget::face(0),
             nodes: [0, 1, 2, 2],
             from: None,
-            friction: mu,
+            friction: Friction::constant(mu),
         };
         let mut u = [0.0; 6];
         (u[0], u[1]) = (slip, gap);

@@ -121,9 +121,6 @@ impl Releasing<'_, '_> {
         let mut stiffness = meter.time(|t| &mut t.assembly, || free.stiffness(problem, motion));
         let mut system = System::new(&mut stiffness, meter);
         system.factorize().ok()?;
-        let y = system
-            .respond(&free.map, &difference(&load, &internal))
-            .ok()?;
         let mut forces = ContactForces::default();
         forces.relinearize(constraints);
         let mut contact = ContactSystem {
@@ -131,7 +128,10 @@ impl Releasing<'_, '_> {
             system,
             method: problem.method(),
         };
-        forces.solve(&y, None, &mut contact).ok()
+        let (still, r) = (vec![0.0; u.len()], difference(&load, &internal));
+        let du = forces.solve([&still, &r], None, &mut contact).ok()?;
+        contact.system.check().ok()?;
+        Some(du)
     }
 
     /// Constraints at the displacements `u` that the free nodes can close, those found anew and those of the

@@ -108,7 +108,7 @@ impl<'m, 'o> Runner<'m, 'o> {
 
     /// Runs a step by its procedure; returns how it ends.
     fn step(&mut self, step: &'m Step, place: StepPlace) -> Result<Outcome, RunError> {
-        let problem = StepProblem::new(self.discretization, step, &self.state.u);
+        let problem = StepProblem::new(self.discretization, step, [&self.state.u, &self.state.v]);
         let mut workspace = Workspace::new(&problem);
         let outcome = match step.procedure {
             Procedure::Dynamic => self.dynamic(&problem, &mut workspace, step, place),

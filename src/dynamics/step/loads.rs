@@ -26,6 +26,19 @@ impl TimePoint {
         amplitude.rate(self.of(amplitude.time))
     }
 
+    /// Value of an amplitude, or 1, with its first and second integral since the start of the step
+    /// (time, time^2).
+    pub fn integrals(&self, model: &Model, index: Option<usize>) -> [f64; 3] {
+        let Some(amplitude) = index.map(|index| &model.amplitudes[index]) else {
+            return [1.0, self.step, self.step * self.step / 2.0];
+        };
+        let end = self.of(amplitude.time);
+        let start = end - self.step;
+        let [from, to] = [start, end].map(|t| amplitude.integrals(t));
+        let second = to[1] - from[1] - from[0] * self.step;
+        [amplitude.at(end), to[0] - from[0], second]
+    }
+
     fn of(&self, base: TimeBase) -> f64 {
         match base {
             TimeBase::Step => self.step,

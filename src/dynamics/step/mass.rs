@@ -27,9 +27,11 @@ impl Mass {
     pub fn times(&self, v: &[f64]) -> Vec<f64> {
         let (mut product, v) = (vec![0.0; v.len()], v.as_chunks::<2>().0);
         let columns = self.nodal.matrix();
+        let (starts, nodes, masses) = (columns.indptr(), columns.indices(), columns.data());
         let rows = product.as_chunks_mut::<2>().0.iter_mut();
-        for (row, entries) in rows.zip(columns.outer_iterator()) {
-            for (column, m) in entries.iter() {
+        for (row, ends) in rows.zip(starts.raw_storage().windows(2)) {
+            let entries = ends[0]..ends[1];
+            for (&column, m) in nodes[entries.clone()].iter().zip(&masses[entries]) {
                 let [x, y] = v[column];
                 *row = [row[0] + m * x, row[1] + m * y];
             }

@@ -3,9 +3,9 @@
 
 mod bodies;
 mod discretization;
-mod effective_stiffness;
 mod loads;
 mod mass;
+mod matrices;
 mod meter;
 mod parts;
 mod scheme;
@@ -17,12 +17,14 @@ mod workspace;
 
 pub(crate) use bodies::{Hold, holds};
 pub(crate) use discretization::Discretization;
-pub(crate) use effective_stiffness::{ClosedConstraints, EffectiveStiffness, FactoredMatrix};
 pub(crate) use loads::TimePoint;
 pub(crate) use mass::{Mass, dot};
+pub(crate) use matrices::{ClosedConstraints, EffectiveStiffness, FactoredMatrix, System};
 #[cfg(test)]
 pub(crate) use meter::Meter;
 pub(crate) use parts::Parts;
 pub(crate) use step_place::StepPlace;
-pub(crate) use step_problem::{Equilibrium, Interval, StepProblem, check_finite, difference, sum};
-pub(crate) use workspace::{System, Workspace};
+pub(crate) use step_problem::{
+    Equilibrium, Interval, StartVelocity, StepProblem, check_finite, difference, sum,
+};
+pub(crate) use workspace::Workspace;

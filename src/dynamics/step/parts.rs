@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use crate::linear::{Assembled, larger};
+use crate::linear::{Assembled, larger, largest};
 use crate::model::{Equation, Model};
 
 /// The bodies of a model and their parts, both numbered from 0.
@@ -133,9 +133,12 @@ fn united(mut first: Vec<usize>, equations: &[Equation]) -> Vec<usize> {
 /// Largest absolute value of every group; `group` of the nodes, `values` over all dofs.
 fn largest_of(group: &[usize], count: usize, values: &[f64]) -> Vec<f64> {
     let mut most = vec![0.0; count];
-    for (dof, value) in values.iter().enumerate() {
-        let most = &mut most[group[dof / 2]];
-        *most = larger(*most, value.abs());
+    let mut rest = values;
+    for nodes in group.chunk_by(|a, b| a == b) {
+        let (own, others) = rest.split_at(2 * nodes.len());
+        let most = &mut most[nodes[0]];
+        *most = larger(*most, largest(own));
+        rest = others;
     }
     most
 }

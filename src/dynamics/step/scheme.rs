@@ -44,6 +44,11 @@ impl Weights {
         self.energy_momentum
     }
 
+    /// Whether U_theta depends on V0+.
+    pub fn lags(&self) -> bool {
+        self.theta1 != self.theta2
+    }
+
     /// U_theta = U0 + theta2 d + (theta1 - theta2) dt V0+, d = U - U0, eq. (4.3).
     pub fn displacement(&self, u0: &[f64], d: &[f64], v0p: &[f64], dt: f64) -> Vec<f64> {
         let lag = (self.theta1 - self.theta2) * dt;

@@ -40,6 +40,14 @@ pub(crate) struct Interval {
     pub dt: f64,
 }
 
+/// Velocity at the start of an increment.
+pub(crate) struct StartVelocity {
+    /// V0+, or V0 where the impulses stand beside it.
+    pub v0p: Vec<f64>,
+    /// Impulses J = M (V0+ - V0) that are not in the velocity, over all dofs; else none.
+    pub impulse: Vec<f64>,
+}
+
 /// Load, internal force and inertia of an iterate.
 #[derive(Default)]
 pub(crate) struct Equilibrium {
@@ -63,8 +71,8 @@ impl Equilibrium {
 }
 
 impl<'m> StepProblem<'m> {
-    /// The problem of a step that starts with the displacements `u0`.
-    pub fn new(discretization: &'m Discretization<'m>, step: &'m Step, u0: &[f64]) -> Self {
+    /// The problem of a step that starts with these displacements and velocities.
+    pub fn new(discretization: &'m Discretization<'m>, step: &'m Step, start: [&[f64]; 2]) -> Self {
         let Discretization {
             model,
             contacts,
@@ -82,7 +90,7 @@ impl<'m> StepProblem<'m> {
             contacts,
             settings: step.settings,
             weights: Weights::new(step.settings.scheme),
-            unknowns: Unknowns::new(model, elements, step, u0),
+            unknowns: Unknowns::new(model, elements, step, start),
             loads: Loads::new(model, step, redistribution),
         }
     }
@@ -172,7 +180,7 @@ impl StepProblem<'_> {
     pub fn equilibrium(
         &self,
         start: &State,
-        v0p: &[f64],
+        StartVelocity { v0p, impulse }: &StartVelocity,
         d: &[f64],
         interval: Interval,
     ) -> Result<Equilibrium, Cause> {
@@ -202,7 +210,11 @@ impl StepProblem<'_> {
             .collect();
         self.unknowns
             .prescribe_acceleration(t1, &start.v, dt, &mut acceleration);
-        let inertia = self.mass.times(&acceleration);
+        let mut inertia = self.mass.times(&acceleration);
+        // the part -(2/dt) J of impulses J = M (V0+ - V0) that are not in V0+ yet
+        for (inertia, impulse) in inertia.iter_mut().zip(impulse) {
+            *inertia -= c * dt * impulse;
+        }
         Ok(Equilibrium {
             u_theta,
             load,

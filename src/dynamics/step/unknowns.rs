@@ -28,8 +28,8 @@ pub(crate) struct Unknowns<'m> {
 }
 
 impl<'m> Unknowns<'m> {
-    /// Unknowns of a step that starts at the displacements `u`.
-    pub fn new(model: &'m Model, elements: &Elements, step: &'m Step, u: &[f64]) -> Self {
+    /// Unknowns of a step that starts with the displacements `u` and velocities `v`.
+    pub fn new(model: &'m Model, elements: &Elements, step: &'m Step, [u, v]: [&[f64]; 2]) -> Self {
         let equations = model.equations.as_slice();
         let free = free_dofs(elements, equations, step, u.len());
         let dof: Vec<usize> = (0..u.len()).filter(|&dof| free[dof]).collect();
@@ -42,7 +42,7 @@ impl<'m> Unknowns<'m> {
         Unknowns {
             map: transformation(&dof, equations, u.len()),
             dof,
-            supports: Supports::new(model, step, u),
+            supports: Supports::new(model, step, [u, v]),
             equations,
             constrained,
         }

@@ -1,33 +1,20 @@
 //! Workspace of the increments of a step: effective stiffness with its factors, contact search,
 //! times and counts. Each operation measures its own time. Section 4 of docs/theory.md.
 
-use super::effective_stiffness::{
-    ClosedConstraints, EffectiveStiffness, FactoredMatrix, StiffnessForm,
-};
 use super::loads::TimePoint;
+use super::matrices::{ClosedConstraints, EffectiveStiffness, StiffnessForm, System};
 use super::meter::Meter;
-use super::step_problem::{Equilibrium, Interval, StepProblem, difference, sum};
-use crate::contact::{
-    ClosedPairs, Compliance, Constraint, Penetration, Search, find_penetration, frictional_lcp,
-};
+use super::step_problem::{Equilibrium, Interval, StartVelocity, StepProblem, difference, sum};
+use crate::contact::{ClosedPairs, Constraint, Penetration, Search, find_penetration};
 use crate::dynamics::results::{Cause, State};
 use crate::elements::Motion;
-use crate::lcp::{
-    ContactState, FrictionalLcp, FrictionalSolution, LcpError, LcpMethod, solve_frictional,
-};
-use crate::linear::{LinearError, Rotation, Transformation};
+use crate::linear::LinearError;
 
 /// Matrices, contact search and meter of a step.
 pub(crate) struct Workspace<'m> {
     pub stiffness: EffectiveStiffness,
     pub search: Search<'m>,
     pub meter: Meter,
-}
-
-/// K* or M of a step with the meter of the work that is done with it.
-pub(crate) struct System<'a> {
-    matrix: &'a mut FactoredMatrix,
-    meter: &'a mut Meter,
 }
 
 impl<'m> Workspace<'m> {
@@ -95,10 +82,11 @@ impl<'m> Workspace<'m> {
         &mut self,
         problem: &StepProblem,
         start: &State,
-        [v0p, d]: [&[f64]; 2],
+        jump: &StartVelocity,
+        d: &[f64],
         interval: Interval,
     ) -> Result<Equilibrium, Cause> {
-        let evaluate = || problem.equilibrium(start, v0p, d, interval);
+        let evaluate = || problem.equilibrium(start, jump, d, interval);
         self.meter.time(|t| &mut t.assembly, evaluate)
     }
 
@@ -179,72 +167,5 @@ impl<'m> Workspace<'m> {
             |t| &mut t.contact,
             || find_penetration(search, [u0, u1], closed, unsolved),
         )
-    }
-}
-
-impl<'a> System<'a> {
-    /// A matrix whose work is measured by `meter`.
-    pub fn new(matrix: &'a mut FactoredMatrix, meter: &'a mut Meter) -> Self {
-        System { matrix, meter }
-    }
-
-    /// Whether the factors are those of the current matrix.
-    pub fn is_factorized(&self) -> bool {
-        self.matrix.solver.is_factorized()
-    }
-
-    /// Factorises the matrix.
-    pub fn factorize(&mut self) -> Result<(), LinearError> {
-        let Self { matrix, meter } = self;
-        meter.time(|t| &mut t.factorization, || matrix.factorize())
-    }
-
-    /// The solution for the right-hand side `b`, over the unknowns.
-    pub fn solve(&mut self, b: &[f64]) -> Result<Vec<f64>, LinearError> {
-        let Self { matrix, meter } = self;
-        meter.time(|t| &mut t.solve, || matrix.solver.solve(b))
-    }
-
-    /// R T A^-1 T^T R^T f for the forces `f` over all dofs, A being the matrix and R the rotation of its
-    /// bodies, eq. (4.20).
-    pub fn respond(&mut self, map: &Transformation, f: &[f64]) -> Result<Vec<f64>, LinearError> {
-        let mut turned_back = f.to_vec();
-        self.rotation().turn_back(&mut turned_back);
-        let solution = self.solve(&map.restrict(&turned_back))?;
-        let mut response = vec![0.0; f.len()];
-        map.add(&solution, &mut response);
-        self.rotation().turn(&mut response);
-        Ok(response)
-    }
-
-    fn rotation(&self) -> &Rotation {
-        self.matrix.compliance.rotation()
-    }
-
-    /// The complementarity problem of some constraints with the given gaps and slips without forces.
-    pub fn frictional_lcp(
-        &mut self,
-        constraints: &[&Constraint],
-        gap: Vec<f64>,
-        slip: Vec<f64>,
-    ) -> Result<FrictionalLcp, LinearError> {
-        let Self { matrix, meter } = self;
-        meter.time(|t| &mut t.solve, || matrix.prepare(constraints))?;
-        let compliance: &Compliance = &matrix.compliance;
-        let pose = || frictional_lcp(constraints, compliance, gap, slip);
-        Ok(meter.time(|t| &mut t.contact, pose))
-    }
-
-    /// Solves a complementarity problem, starting from the states `warm`.
-    pub fn solve_lcp(
-        &mut self,
-        problem: &FrictionalLcp,
-        warm: &[ContactState],
-        method: LcpMethod,
-    ) -> Result<FrictionalSolution, LcpError> {
-        let solve = || solve_frictional(problem, Some(warm), method);
-        let solution = self.meter.time(|t| &mut t.lcp, solve)?;
-        self.meter.count_lcp(warm.len(), solution.counters);
-        Ok(solution)
     }
 }

@@ -9,7 +9,7 @@ use crate::elements::element::{AnyChunk, AnyElement};
 use crate::elements::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion, TangentPart};
 use crate::elements::sweep::{BlockTangents, MAX_CHUNK};
 use crate::materials::{Committed, ConstitutiveLaw, PlaneLaw};
-use crate::model::{Element, ElementType, Model};
+use crate::model::{Element, ElementType, Mesh, Model};
 
 /// What the elements of one section and type have in common.
 struct Kind {
@@ -100,7 +100,9 @@ impl Elements {
             all.nodes.extend(&element.nodes);
             all.starts.push(all.nodes.len());
         }
-        for ((section, element_type), of_kind) in by_kind(elements) {
+        let body = model.mesh.bodies();
+        let body = |&element: &usize| body[elements[element].nodes[0]];
+        for ((section, element_type), mut of_kind) in by_kind(elements) {
             let section = &model.sections[section];
             let material = &model.materials[section.material];
             let kind = Kind {
@@ -108,7 +110,17 @@ impl Elements {
                 density: material.density,
                 thickness: section.thickness,
             };
-            all.enter(model, &element_type, kind, &of_kind);
+            of_kind.sort_by_key(body);
+            let bodies = of_kind.chunk_by(|a, b| body(a) == body(b));
+            let chunks = bodies.flat_map(|of_body| of_body.chunks(MAX_CHUNK));
+            if AnyChunk::has(&element_type, &kind.law) {
+                chunks.for_each(|chunk| all.enter_chunk(model, &kind, chunk));
+            } else {
+                of_kind
+                    .iter()
+                    .for_each(|&element| all.enter_part(model, &kind, element));
+            }
+            all.kinds.push(kind);
         }
         for (index, element) in elements.iter().enumerate() {
             let material = &model.materials[model.sections[element.section].material];
@@ -119,32 +131,33 @@ impl Elements {
         all
     }
 
-    /// Takes in all elements of one kind.
-    fn enter(&mut self, model: &Model, element_type: &ElementType, kind: Kind, elements: &[usize]) {
-        let (number, law) = (self.kinds.len() as u32, kind.law);
-        let in_chunks = AnyChunk::has(element_type, &law);
-        for some in elements.chunks(MAX_CHUNK).filter(|_| in_chunks) {
-            let chunk = self.chunks.len() as u32;
-            self.chunks
-                .push(AnyChunk::new(model, some, kind.thickness, law));
-            for (place, &element) in some.iter().enumerate() {
-                self.places[element] = (number, Place::Chunk(chunk, place as u32));
-            }
+    /// Takes in elements of the next kind and of one body, so that a body that rests costs nothing.
+    fn enter_chunk(&mut self, model: &Model, kind: &Kind, elements: &[usize]) {
+        let (number, chunk) = (self.kinds.len() as u32, self.chunks.len() as u32);
+        for (place, &element) in elements.iter().enumerate() {
+            self.places[element] = (number, Place::Chunk(chunk, place as u32));
         }
-        for &index in elements.iter().filter(|_| !in_chunks) {
-            let (mesh, part) = (&model.mesh, self.parts.len() as u32);
-            let element = &mesh.elements[index];
-            let element = AnyElement::new(element, &mesh.coordinates, kind.thickness);
-            let first = self.variable_count();
-            self.parts.push(Part {
-                index,
-                element,
-                law,
-                variables: first..first + element.points() * law.variables(),
-            });
-            self.places[index] = (number, Place::Part(part));
-        }
-        self.kinds.push(kind);
+        let chunk = AnyChunk::new(model, elements, kind.thickness, kind.law);
+        self.chunks.push(chunk);
+    }
+
+    /// Takes in an element of the next kind that is swept on its own.
+    fn enter_part(&mut self, model: &Model, kind: &Kind, index: usize) {
+        let Mesh {
+            coordinates,
+            elements,
+            ..
+        } = &model.mesh;
+        let (number, part) = (self.kinds.len() as u32, self.parts.len() as u32);
+        self.places[index] = (number, Place::Part(part));
+        let element = AnyElement::new(&elements[index], coordinates, kind.thickness);
+        let first = self.variable_count();
+        self.parts.push(Part {
+            index,
+            element,
+            law: kind.law,
+            variables: first..first + element.points() * kind.law.variables(),
+        });
     }
 
     /// Number of internal variables of all points.

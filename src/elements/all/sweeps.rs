@@ -50,10 +50,14 @@ impl Elements {
     /// Strain energy, mean stress and mean strain of every element at displacements `u`, with the
     /// internal variables there.
     pub fn evaluate(&self, u: &[f64], variables: &[f64]) -> Vec<ElementResult> {
-        let chunks = self.chunks.par_iter().map(|chunk| chunk.evaluate(u));
+        let of_chunk = |chunk: &AnyChunk| chunk.evaluate(u);
         let parts = self.parts.par_iter().with_min_len(PARALLEL_CHUNK);
         let parts = parts.map(|part| part.element.evaluate(&part.material(variables), u));
-        let (chunks, parts): (Vec<_>, Vec<_>) = (chunks.collect(), parts.collect());
+        let parts: Vec<ElementResult> = parts.collect();
+        let chunks: Vec<_> = match self.is_worth_threads() {
+            true => self.chunks.par_iter().map(of_chunk).collect(),
+            false => self.chunks.iter().map(of_chunk).collect(),
+        };
         let mut results = vec![ElementResult::default(); self.len()];
         for (element, result) in chunks.into_iter().flatten() {
             results[element] = result;
@@ -101,10 +105,15 @@ impl Elements {
         Ok(())
     }
 
+    /// Whether there are threads, and elements enough for them.
+    fn is_worth_threads(&self) -> bool {
+        rayon::current_num_threads() > 1 && self.len() >= 2 * PARALLEL_CHUNK
+    }
+
     /// Sums up the forces of the elements in chunks. False where one is turned inside out.
     fn sum_chunks(&self, motion: Motion) -> bool {
         let sum = |chunk: &AnyChunk| chunk.sum_forces(motion);
-        if rayon::current_num_threads() > 1 && self.chunks.len() > 1 {
+        if self.is_worth_threads() {
             let sums = self.chunks.par_iter().map(sum);
             sums.reduce(|| true, |all, chunk| all && chunk)
         } else {

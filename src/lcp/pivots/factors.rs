@@ -76,6 +76,11 @@ impl Factors {
         })
     }
 
+    /// Number of rows.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
     /// Overwrites b with the solution of A x = b.
     pub fn solve(&self, b: &mut [f64]) {
         let factor = MatRef::from_column_major_slice(&self.values, self.size, self.size);

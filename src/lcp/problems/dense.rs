@@ -1,8 +1,19 @@
-//! Vector kernels of the inner loops.
+//! Vector kernels of the inner loops, with the vector instructions of the processor. They do the same
+//! operations in the same order on all of them.
+
+use pulp::Arch;
 
 /// Sum of a_i b_i over the shorter length, in eight interleaved partial sums (which the compiler
 /// turns into vector instructions).
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    Arch::new().dispatch(
+        #[inline(always)]
+        || interleaved_dot(a, b),
+    )
+}
+
+#[inline(always)]
+fn interleaved_dot(a: &[f64], b: &[f64]) -> f64 {
     let length = a.len().min(b.len());
     let (a, b) = (&a[..length], &b[..length]);
     let mut sums = [0.0; 8];
@@ -19,7 +30,20 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 /// y += a x.
 pub(crate) fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
     if a != 0.0 {
-        y.iter_mut().zip(x).for_each(|(y, x)| *y += a * x);
+        Arch::new().dispatch(
+            #[inline(always)]
+            || y.iter_mut().zip(x).for_each(|(y, x)| *y += a * x),
+        );
+    }
+}
+
+/// y += |a x|, entry by entry.
+pub(crate) fn add_sizes(a: f64, x: &[f64], y: &mut [f64]) {
+    if a != 0.0 {
+        Arch::new().dispatch(
+            #[inline(always)]
+            || y.iter_mut().zip(x).for_each(|(y, x)| *y += (a * x).abs()),
+        );
     }
 }
 
@@ -43,6 +67,8 @@ mod tests {
         let mut y = b.clone();
         axpy(2.0, &a, &mut y);
         assert_eq!(y[18], 9.0 + 36.0);
+        add_sizes(-2.0, &a, &mut y);
+        assert_eq!(y[18], 9.0 + 72.0);
         assert_eq!(max_abs(&b), 9.0);
         assert_eq!(max_abs(&[]), 0.0);
     }

@@ -3,6 +3,8 @@
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
+use crate::linear::largest;
+
 /// Find z >= 0 with w = M z + q >= 0 and z.w = 0, eq. (8.1).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lcp {
@@ -121,7 +123,7 @@ pub(crate) fn expect_size(
 
 /// Fails unless every number is finite.
 pub(crate) fn expect_finite(values: &[f64]) -> Result<(), LcpError> {
-    if values.iter().all(|v| v.is_finite()) {
+    if largest(values).is_finite() {
         Ok(())
     } else {
         Err(LcpError::NotFinite)

@@ -1,7 +1,7 @@
 //! Primal-dual active set on the contact states: Newton's method on the contact law.
 
 use crate::lcp::problems::{ContactState, Counters, Scaled, max_abs};
-use crate::lcp::warm_start::reduced;
+use crate::lcp::warm_start::reduced::{self, KeptFactors};
 
 /// Solves allowed in one call.
 const ITERATIONS: usize = 25;
@@ -23,13 +23,14 @@ pub(crate) enum Outcome {
 pub(crate) fn active_set(
     scaled: &Scaled,
     mut states: Vec<ContactState>,
+    kept: &mut KeptFactors,
     counters: &mut Counters,
 ) -> Outcome {
     let mut visited: Vec<Vec<ContactState>> = Vec::new();
     let mut last = vec![0.0; scaled.size()];
     while visited.len() < ITERATIONS {
         counters.active_set_iterations += 1;
-        let Some((p, v)) = reduced::forces(scaled, &states) else {
+        let Some((p, v)) = reduced::forces(scaled, &states, kept) else {
             break;
         };
         let next = next_states(scaled, &states, &p, &v);

@@ -10,7 +10,7 @@ use crate::lcp::problems::{
     ContactState, Counters, FrictionalLcp, LcpError, Scaled, TOLERANCE, expect_size,
     frictional_residual,
 };
-use crate::lcp::warm_start::reduced;
+use crate::lcp::warm_start::reduced::{self, KeptFactors};
 
 /// Gauss-Seidel sweeps between two calls of the active set.
 const SWEEPS: [usize; 3] = [10, 40, 160];
@@ -66,6 +66,16 @@ pub fn solve_frictional(
     warm: Option<&[ContactState]>,
     method: LcpMethod,
 ) -> Result<FrictionalSolution, LcpError> {
+    solve_similar(problem, warm, method, &mut KeptFactors::default())
+}
+
+/// Solves a frictional problem of a row of similar ones, between which factors are kept.
+pub fn solve_similar(
+    problem: &FrictionalLcp,
+    warm: Option<&[ContactState]>,
+    method: LcpMethod,
+    kept: &mut KeptFactors,
+) -> Result<FrictionalSolution, LcpError> {
     problem.check()?;
     if let Some(states) = warm {
         expect_size("warm states", problem.len(), states.len())?;
@@ -84,7 +94,7 @@ pub fn solve_frictional(
     }
     let scaled = Scaled::new(problem)?;
     if method == LcpMethod::Hybrid
-        && let Some(solution) = iterate(problem, &scaled, warm, &mut counters)
+        && let Some(solution) = iterate(problem, &scaled, warm, (kept, &mut counters))
     {
         return Ok(solution);
     }
@@ -97,12 +107,12 @@ fn iterate(
     problem: &FrictionalLcp,
     scaled: &Scaled,
     warm: Option<&[ContactState]>,
-    counters: &mut Counters,
+    (kept, counters): (&mut KeptFactors, &mut Counters),
 ) -> Option<FrictionalSolution> {
     let mut states = warm.map_or_else(|| first_states(scaled), |warm| known(scaled, warm));
     let mut rounds = SWEEPS.into_iter();
     loop {
-        let mut p = match active_set(scaled, states, counters) {
+        let mut p = match active_set(scaled, states, kept, counters) {
             Outcome::Converged(states, p) => {
                 let forces = scaled.forces(&admissible(scaled, &states, p.clone()));
                 let solution = finish(problem, &states, forces, Method::ActiveSet, *counters);
@@ -177,11 +187,13 @@ fn follow(
         Err(_) => 0,
     };
     let found = found?;
-    let corrected = match active_set(scaled, found.states.clone(), &mut Counters::default()) {
+    let (kept, unread) = (&mut KeptFactors::default(), &mut Counters::default());
+    let corrected = match active_set(scaled, found.states.clone(), kept, unread) {
         Outcome::Converged(states, p) => Some((states, p)),
         Outcome::Failed(_) => None,
     };
-    let direct = || reduced::forces(scaled, &found.states).map(|(p, _)| (found.states.clone(), p));
+    let direct =
+        || reduced::forces(scaled, &found.states, kept).map(|(p, _)| (found.states.clone(), p));
     let candidates = corrected
         .into_iter()
         .chain(std::iter::once_with(direct).flatten());

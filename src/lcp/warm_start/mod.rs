@@ -5,4 +5,5 @@ mod gauss_seidel;
 mod hybrid;
 mod reduced;
 
-pub use hybrid::{FrictionalSolution, LcpMethod, Method, solve_frictional};
+pub use hybrid::{FrictionalSolution, LcpMethod, Method, solve_frictional, solve_similar};
+pub use reduced::KeptFactors;

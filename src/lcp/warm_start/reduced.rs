@@ -1,4 +1,4 @@
-//! The forces of given contact states: a linear system, solved directly.
+//! The forces of given contact states: a linear system, solved directly, or with the factors of a similar one.
 
 use crate::lcp::pivots::Factors;
 use crate::lcp::problems::{ContactState, Scaled, max_abs};
@@ -13,17 +13,49 @@ const ASYMMETRY: f64 = 1e-9;
 /// by the shifted system.
 const CORRECTIONS: usize = 6;
 
+/// Corrections with the factors of a similar system.
+const SIMILAR_CORRECTIONS: usize = 12;
+
+/// Residual of forces that are as good as those of the own factors, in units of the sum of the terms of
+/// its rows.
+const ACCURATE: f64 = 4.0 * f64::EPSILON;
+
+/// Factors of the system of some states, which serve for similar systems of the same states too: their
+/// corrections by the residual converge.
+#[derive(Default)]
+pub struct KeptFactors {
+    kept: Option<(Vec<ContactState>, Factors)>,
+}
+
+impl KeptFactors {
+    /// Those of a system of the given states and size, if there are any.
+    fn of(&self, states: &[ContactState], size: usize) -> Option<&Factors> {
+        let kept = self.kept.as_ref().filter(|(of, _)| of == states);
+        kept.map(|(_, factors)| factors)
+            .filter(|factors| factors.size() == size)
+    }
+}
+
 /// Solves for the forces p of the given states, and their motion v = Q p + b:
 /// gap = 0 where closed, slip = 0 where sticking, Pt = -+mu Pn where sliding, no force where open.
 /// None when no solution is finite. Where redundant contacts leave the forces undetermined they
 /// share the load.
-pub(crate) fn forces(scaled: &Scaled, states: &[ContactState]) -> Option<(Vec<f64>, Vec<f64>)> {
+pub(crate) fn forces(
+    scaled: &Scaled,
+    states: &[ContactState],
+    kept: &mut KeptFactors,
+) -> Option<(Vec<f64>, Vec<f64>)> {
     let unknowns = unknowns(scaled, states);
     if unknowns.is_empty() {
         return Some((vec![0.0; scaled.size()], scaled.b.clone()));
     }
-    let matrix = || matrix(scaled, states, &unknowns);
     let size = unknowns.len();
+    if let Some(factors) = kept.of(states, size)
+        && let Some(found) = similar(scaled, states, &unknowns, factors)
+    {
+        return Some(found);
+    }
+    let matrix = || matrix(scaled, states, &unknowns);
     let nothing_slides = scaled.owners.iter().all(|i| states[*i].slip_sign() == 0.0);
     let values = matrix();
     let regular = if nothing_slides && is_symmetric(&values, size) {
@@ -31,9 +63,30 @@ pub(crate) fn forces(scaled: &Scaled, states: &[ContactState]) -> Option<(Vec<f6
     } else {
         Factors::lu(values, size)
     };
-    let factors = regular.or_else(|| Factors::lu(shifted(matrix(), size), size))?;
-    let (p, v) = refine(scaled, states, &unknowns, &factors);
-    p.iter().all(|v| v.is_finite()).then_some((p, v))
+    let solution = |factors: &Factors| {
+        let (p, v, _) = refine(scaled, states, &unknowns, (factors, CORRECTIONS));
+        p.iter().all(|v| v.is_finite()).then_some((p, v))
+    };
+    match regular {
+        Some(factors) => {
+            let found = solution(&factors);
+            kept.kept = Some((states.to_vec(), factors));
+            found
+        }
+        None => solution(&Factors::lu(shifted(matrix(), size), size)?),
+    }
+}
+
+/// Forces from the factors of a similar system, if they are as good as those from the own ones.
+fn similar(
+    scaled: &Scaled,
+    states: &[ContactState],
+    unknowns: &[usize],
+    factors: &Factors,
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    let (p, v, error) = refine(scaled, states, unknowns, (factors, SIMILAR_CORRECTIONS));
+    let terms: f64 = (0..p.len()).map(|k| (scaled.q[(k, k)] * p[k]).abs()).sum();
+    (error <= ACCURATE * terms).then_some((p, v))
 }
 
 /// Positions in p of the unknowns, which are also the rows that must vanish.
@@ -90,22 +143,22 @@ fn shifted(mut matrix: Vec<f64>, size: usize) -> Vec<f64> {
     matrix
 }
 
-/// p and v from the factors, corrected by the residual of the unfactored system as long as it
-/// decreases.
+/// p and v from the factors, corrected by the residual of the unfactored system at most the given number
+/// of times, as long as it decreases, and the largest residual.
 fn refine(
     scaled: &Scaled,
     states: &[ContactState],
     unknowns: &[usize],
-    factors: &Factors,
-) -> (Vec<f64>, Vec<f64>) {
+    (factors, corrections): (&Factors, usize),
+) -> (Vec<f64>, Vec<f64>, f64) {
     let mut p = vec![0.0; scaled.size()];
     let mut best = (p.clone(), scaled.b.clone());
     let mut smallest = f64::INFINITY;
-    for _ in 0..=CORRECTIONS {
+    for _ in 0..=corrections {
         let v = scaled.motion(&p);
         let mut residual: Vec<f64> = unknowns.iter().map(|k| -v[*k]).collect();
         let error = max_abs(&residual);
-        if error >= smallest {
+        if error.is_nan() || error >= smallest {
             break;
         }
         let stagnates = error > 0.1 * smallest;
@@ -122,5 +175,6 @@ fn refine(
             }
         }
     }
-    best
+    let (p, v) = best;
+    (p, v, smallest)
 }

@@ -3,7 +3,7 @@
 use super::canvas::{Canvas, Pen, Point, Spacing};
 use super::legend::{Legend, Symbol, fixed, guided};
 use crate::contact::project;
-use crate::model::{Bodies, Face, Model, Step, Support, SupportMotion};
+use crate::model::{Bodies, Face, Model, Rate, Step, Support, SupportMotion};
 use std::collections::{BTreeMap, HashSet};
 
 const SUPPORT: &str = "#222222";
@@ -84,7 +84,7 @@ fn reference_nodes(model: &Model, canvas: &mut Canvas, legend: &mut Legend) {
     }
 }
 
-/// Displacement of a support, the largest of its amplitude's points where it follows one.
+/// Displacement of a support in the first step, the largest of its amplitude's points where it follows one.
 fn way(support: &Support, model: &Model) -> f64 {
     match support.motion {
         SupportMotion::Ramp { to } => to,
@@ -96,6 +96,20 @@ fn way(support: &Support, model: &Model) -> f64 {
                 .find(|a| *a != 0.0)
                 .unwrap_or(1.0);
             value * sign.signum()
+        }
+        SupportMotion::Rate {
+            rate,
+            value,
+            amplitude,
+        } => {
+            let period = model.steps.first().map_or(0.0, |s| s.increments.period);
+            let constant = [period, period * period / 2.0];
+            let integrals = amplitude.map(|index| model.amplitudes[index].integrals(period));
+            let [first, second] = integrals.unwrap_or(constant);
+            match rate {
+                Rate::Velocity => value * first,
+                Rate::Acceleration => value * second,
+            }
         }
     }
 }

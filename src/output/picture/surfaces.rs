@@ -125,6 +125,6 @@ fn contacts(model: &Model, legend: &mut Legend) {
             false => format!("{slave} on {master}"),
         };
         let friction = contact.interaction.friction;
-        legend.add(Symbol::None, &format!("contact {sides}, mu {friction}"));
+        legend.add(Symbol::None, &format!("contact {sides}, {friction}"));
     }
 }

@@ -212,7 +212,7 @@ fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<S
     };
     let pieces = [
         sides,
-        format!("mu {}", general(contact.interaction.friction, 4)),
+        contact.interaction.friction.to_string(),
         smallest_gap(gaps),
     ];
     wrap("contact", &pieces)

@@ -26,7 +26,7 @@ pub(crate) fn motion(model: &Model, cards: &[StepCards], cx: &mut Context) {
 fn has_cause(step: &Step) -> bool {
     let moves = |motion: SupportMotion| match motion {
         SupportMotion::Ramp { to } => to != 0.0,
-        SupportMotion::Amplitude { value, .. } => value != 0.0,
+        SupportMotion::Amplitude { value, .. } | SupportMotion::Rate { value, .. } => value != 0.0,
     };
     step.supports.iter().any(|support| moves(support.motion))
         || acts(&step.point_loads)

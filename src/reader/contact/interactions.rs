@@ -1,8 +1,8 @@
 //! `*SURFACE INTERACTION` with its laws `*SURFACE BEHAVIOR` and `*FRICTION`.
 
-use crate::deck::{Card, Text};
+use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic};
-use crate::model::Interaction;
+use crate::model::{Friction, Interaction};
 use crate::reader::context::Context;
 use crate::reader::mesh::{Block, Outline};
 use crate::reader::names::Names;
@@ -40,8 +40,8 @@ impl Interactions {
     }
 }
 
-/// Coefficient of friction of an interaction; `None` after a reported error.
-fn friction(block: &Block, cx: &mut Context) -> Option<f64> {
+/// Friction of an interaction; `None` after a reported error.
+fn friction(block: &Block, cx: &mut Context) -> Option<Friction> {
     let behaviors = block.parts_of("SURFACE BEHAVIOR");
     cx.only_once(&behaviors);
     behaviors
@@ -51,9 +51,9 @@ fn friction(block: &Block, cx: &mut Context) -> Option<f64> {
     let cards = block.parts_of("FRICTION");
     cx.only_once(&cards);
     match cards.first() {
-        None => Some(0.0),
+        None => Some(Friction::default()),
         Some(card) if card.faulty => None,
-        Some(card) => coefficient(card, cx),
+        Some(card) => law(card, cx),
     }
 }
 
@@ -84,8 +84,8 @@ fn out_of_plane_thickness(head: &Card, cx: &mut Context) {
     }
 }
 
-/// `mu[, ...]`
-fn coefficient(card: &Card, cx: &mut Context) -> Option<f64> {
+/// `mu[, ...]`, or with EXPONENTIAL DECAY `mu at rest, mu sliding, decay`.
+fn law(card: &Card, cx: &mut Context) -> Option<Friction> {
     let Some(row) = card.rows.first() else {
         cx.error(
             Code::MissingData,
@@ -98,18 +98,32 @@ fn coefficient(card: &Card, cx: &mut Context) -> Option<f64> {
         let message = "friction that depends on slip rate, pressure or temperature cannot be used";
         cx.error(Code::UnsupportedParameter, second.span(), message);
     }
-    let field = row.required(0, "the coefficient of friction", cx.d)?;
-    let friction = field.real(cx.d)?;
-    if friction < 0.0 {
-        let message = format!(
-            "the coefficient of friction must not be negative, found {}",
-            field.text
-        );
-        cx.error(Code::FrictionRange, field.span, message);
-        return None;
+    if card.has("EXPONENTIAL DECAY") {
+        row.at_most(3, cx.d);
+        let at_rest = not_negative(row, 0, "the coefficient of friction at rest", cx);
+        let sliding = not_negative(row, 1, "the coefficient of sliding friction", cx);
+        let decay = not_negative(row, 2, "the decay of friction", cx);
+        return Some(Friction {
+            at_rest: at_rest?,
+            sliding: sliding?,
+            decay: decay?,
+        });
     }
+    let friction = not_negative(row, 0, "the coefficient of friction", cx)?;
     let message = "only the coefficient of friction is read here";
     let help = "sticking is exact: it needs no stick slope or slip rate";
     row.without_effect(1, message, help, cx.d);
-    Some(friction)
+    Some(Friction::constant(friction))
+}
+
+/// A field that is not negative; `what` it is.
+fn not_negative(row: &Row, index: usize, what: &str, cx: &mut Context) -> Option<f64> {
+    let field = row.required(index, what, cx.d)?;
+    let value = field.real(cx.d)?;
+    if value < 0.0 {
+        let message = format!("{what} must not be negative, found {}", field.text);
+        cx.error(Code::FrictionRange, field.span, message);
+        return None;
+    }
+    Some(value)
 }

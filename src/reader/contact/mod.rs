@@ -5,4 +5,4 @@ mod interactions;
 pub(crate) mod pairs;
 pub(crate) mod rigid_surface;
 
-pub(crate) use rigid_surface::RigidSurface;
+pub(crate) use rigid_surface::Rigid;

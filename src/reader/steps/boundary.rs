@@ -1,10 +1,10 @@
-//! `*BOUNDARY`: prescribed displacements and velocities.
+//! `*BOUNDARY`: prescribed displacements, velocities and accelerations.
 
 use super::amplitude::Amplitudes;
 use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span, closest};
-use crate::model::{Amplitude, Support, SupportMotion, TimeBase};
-use crate::reader::contact::RigidSurface;
+use crate::model::{Amplitude, Rate, Support, SupportMotion};
+use crate::reader::contact::Rigid;
 use crate::reader::context::Context;
 use crate::reader::mesh::{MeshIndex, Sets};
 use std::collections::BTreeMap;
@@ -18,8 +18,8 @@ pub(crate) struct Targets<'a> {
     pub sets: &'a Sets,
     /// Amplitudes.
     pub amplitudes: &'a Amplitudes,
-    /// Rigid surfaces.
-    pub rigid_surfaces: &'a [RigidSurface],
+    /// Rigid bodies.
+    pub rigid_bodies: &'a [Rigid],
 }
 
 /// A direction of displacement or rotation that the deck names.
@@ -34,17 +34,11 @@ pub(crate) enum Direction {
 #[derive(Default)]
 pub(crate) struct Supports {
     held: BTreeMap<usize, Prescription>,
-    /// Duration of the current step.
-    period: f64,
-    /// Displacements at the end of the last step, of the dofs that it prescribed.
-    ends: BTreeMap<usize, f64>,
 }
 
 #[derive(Clone, Copy)]
 struct Prescription {
     motion: SupportMotion,
-    /// The velocity behind the motion, if that is prescribed.
-    velocity: Option<f64>,
     /// Step that last prescribed it; 0 for model data.
     step: usize,
 }
@@ -54,8 +48,32 @@ struct Prescription {
 enum Quantity {
     /// Displacements, that follow an amplitude or grow over the step.
     Displacement(Option<usize>),
-    /// Constant velocities.
-    Velocity,
+    /// Velocities or accelerations, constant or with an amplitude.
+    Rate(Rate, Option<usize>),
+    /// The displacements of the start of the step.
+    Fixed,
+}
+
+impl Quantity {
+    /// The motion with the value of a row.
+    fn motion(self, value: f64) -> SupportMotion {
+        match self {
+            Quantity::Displacement(Some(amplitude)) => {
+                SupportMotion::Amplitude { value, amplitude }
+            }
+            Quantity::Displacement(None) => SupportMotion::Ramp { to: value },
+            Quantity::Rate(rate, amplitude) => SupportMotion::Rate {
+                rate,
+                value,
+                amplitude,
+            },
+            Quantity::Fixed => SupportMotion::Rate {
+                rate: Rate::Velocity,
+                value: 0.0,
+                amplitude: None,
+            },
+        }
+    }
 }
 
 impl Supports {
@@ -74,40 +92,10 @@ impl Supports {
         self.held.clear();
     }
 
-    /// Begins a step of this duration: prescribed velocities go on.
-    pub fn begin_step(&mut self, period: f64) {
-        self.period = period;
-        for (dof, held) in &mut self.held {
-            if let Some(velocity) = held.velocity {
-                let from = self.ends.get(dof).copied().unwrap_or(0.0);
-                let to = from + velocity * period;
-                held.motion = SupportMotion::Ramp { to };
-            }
-        }
-    }
-
-    /// Ends a step at the total time `total`: supports that follow an amplitude in step time keep
-    /// their last value.
-    pub fn end_step(&mut self, total: f64, amplitudes: &[Amplitude]) {
-        self.ends.clear();
-        for (&dof, held) in &mut self.held {
-            let end = match held.motion {
-                SupportMotion::Ramp { to } => to,
-                SupportMotion::Amplitude { value, amplitude } => {
-                    let Some(curve) = amplitudes.get(amplitude) else {
-                        continue;
-                    };
-                    match curve.time {
-                        TimeBase::Total => value * curve.at(total),
-                        TimeBase::Step => {
-                            let to = value * curve.at(self.period);
-                            held.motion = SupportMotion::Ramp { to };
-                            to
-                        }
-                    }
-                }
-            };
-            self.ends.insert(dof, end);
+    /// Ends a step of this duration: what follows an amplitude in step time keeps its last value.
+    pub fn end_step(&mut self, period: f64, amplitudes: &[Amplitude]) {
+        for held in self.held.values_mut() {
+            held.motion = held.motion.after_step(period, amplitudes);
         }
     }
 
@@ -117,16 +105,11 @@ impl Supports {
             return;
         };
         let quantity = match card.choice("TYPE") {
-            Some("VELOCITY") => Quantity::Velocity,
+            _ if card.has("FIXED") => Quantity::Fixed,
+            Some("VELOCITY") => Quantity::Rate(Rate::Velocity, amplitude),
+            Some("ACCELERATION") => Quantity::Rate(Rate::Acceleration, amplitude),
             _ => Quantity::Displacement(amplitude),
         };
-        if let (Quantity::Velocity, Some(_)) = (quantity, amplitude) {
-            let span = card.span_of("AMPLITUDE");
-            let message = "prescribed velocities cannot follow an amplitude";
-            let error = Diagnostic::error(Code::UnsupportedParameter, span, message);
-            cx.d.push(error.help("prescribe the displacement, the integral of the velocity"));
-            return;
-        }
         for row in &card.rows {
             self.row(row, quantity, step, targets, cx);
         }
@@ -160,66 +143,27 @@ impl Supports {
                 message,
             ));
         }
+        if let (Quantity::Fixed, true) = (quantity, prescribed.value != 0.0) {
+            let help = "FIXED keeps the displacement of the start of the step";
+            row.without_effect(3, "this value has no effect", help, cx.d);
+        }
+        let motion = quantity.motion(prescribed.value);
         for node in nodes.unwrap_or_default() {
             for &direction in &prescribed.directions {
-                let dof = 2 * node + direction;
-                let Some(held) = self.prescription(dof, quantity, prescribed.value, step) else {
-                    return report_free_before(dof, row, targets.mesh_index, cx);
-                };
-                self.hold(dof, held, row.span(), cx);
+                let held = Prescription { motion, step };
+                self.hold(2 * node + direction, held, row.span(), cx);
             }
         }
-    }
-
-    /// The prescription of a dof; `None` for a velocity of a dof that moved freely before.
-    fn prescription(
-        &self,
-        dof: usize,
-        quantity: Quantity,
-        value: f64,
-        step: usize,
-    ) -> Option<Prescription> {
-        let (motion, velocity) = match quantity {
-            Quantity::Displacement(Some(amplitude)) => {
-                (SupportMotion::Amplitude { value, amplitude }, None)
-            }
-            Quantity::Displacement(None) => (SupportMotion::Ramp { to: value }, None),
-            Quantity::Velocity => {
-                let from = match step {
-                    0 | 1 => 0.0,
-                    _ => *self.ends.get(&dof)?,
-                };
-                let to = from + value * self.period;
-                (SupportMotion::Ramp { to }, Some(value))
-            }
-        };
-        Some(Prescription {
-            motion,
-            velocity,
-            step,
-        })
     }
 
     fn hold(&mut self, dof: usize, now: Prescription, span: Span, cx: &mut Context) {
         let earlier = self.held.insert(dof, now);
         if earlier.is_some_and(|held| held.step == now.step && held.motion != now.motion) {
-            let message = "another displacement is prescribed here than before in this step";
+            let message = "another motion is prescribed here than before in this step";
             let warning = Diagnostic::warning(Code::ConflictingSupport, span, message);
             cx.d.push(warning.help("the later one holds"));
         }
     }
-}
-
-fn report_free_before(dof: usize, row: &Row, mesh_index: &MeshIndex, cx: &mut Context) {
-    let message = format!(
-        "node {} moved freely in direction {} in the step before",
-        mesh_index.node_name(dof / 2),
-        dof % 2 + 1
-    );
-    let error = Diagnostic::error(Code::UnsupportedParameter, row.span(), message);
-    cx.d.push(error.help(
-        "velocities can be prescribed from the first step on, or after a prescribed displacement",
-    ));
 }
 
 /// Directions and value of a row of `*BOUNDARY`.

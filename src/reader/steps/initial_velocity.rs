@@ -3,7 +3,7 @@
 use super::boundary::{Targets, row_direction};
 use crate::deck::Row;
 use crate::diagnostics::{Code, Diagnostic, Span};
-use crate::model::Support;
+use crate::model::{Rate, Support, SupportMotion};
 use crate::reader::context::Context;
 use crate::reader::mesh::{MeshIndex, Outline};
 use std::collections::BTreeMap;
@@ -35,6 +35,14 @@ pub(crate) fn read(
     velocity
 }
 
+/// Whether a support has its velocity at the start from what is prescribed; an acceleration leaves it.
+fn is_given(support: &Support) -> bool {
+    let SupportMotion::Rate { rate, .. } = support.motion else {
+        return true;
+    };
+    rate == Rate::Velocity
+}
+
 /// `node or set, direction, velocity`
 fn velocity_row(row: &Row, targets: Targets, cx: &mut Context) -> Vec<(usize, f64)> {
     row.at_most(3, cx.d);
@@ -60,7 +68,11 @@ fn report_supported(
     cx: &mut Context,
 ) {
     let mut rows: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
-    for dof in supports.iter().map(|support| support.dof) {
+    for dof in supports
+        .iter()
+        .filter(|s| is_given(s))
+        .map(|support| support.dof)
+    {
         if let (Some(&value), Some(&span)) = (velocity.get(dof), places.get(&dof))
             && value != 0.0
         {

@@ -96,12 +96,16 @@ impl Reading<'_> {
         };
         let increments = self.procedure(cards, cx);
         let period = increments.map_or(0.0, |increments| increments.period);
-        self.supports.begin_step(period);
         self.own_settings(cards, number, cx);
         self.conditions(cards, context, cx);
         self.requests.cards(&cards.cards, self.targets.sets, cx);
         let mut supports = self.supports.list();
-        rigid_surface::follow(self.targets.rigid_surfaces, number, &mut supports, cx);
+        let Targets {
+            rigid_bodies,
+            mesh_index,
+            ..
+        } = self.targets;
+        rigid_surface::follow(rigid_bodies, mesh_index, number, &mut supports, cx);
         at_start.get_or_insert_with(|| supports.clone());
         let name = cards.head.value("NAME").and_then(|name| name.name(cx.d));
         let step = increments.map(|increments| Step {
@@ -132,7 +136,7 @@ impl Reading<'_> {
     fn end(&mut self, period: f64) {
         self.start += period;
         let Amplitudes { all, .. } = self.targets.amplitudes;
-        self.supports.end_step(self.start, all);
+        self.supports.end_step(period, all);
         self.loads.end_step(period, self.start, all);
     }
 

@@ -206,6 +206,13 @@ pub(super) static CONDITIONS: &[Keyword] = &[
                 plain("node or node set"),
                 plain("first direction"),
                 plain("last direction"),
+                of("acceleration", ACCELERATION),
+            ])
+            .under("TYPE", "ACCELERATION"),
+            row(&[
+                plain("node or node set"),
+                plain("first direction"),
+                plain("last direction"),
                 of("displacement", LENGTH),
             ]),
         ]),
@@ -216,21 +223,18 @@ pub(super) static CONDITIONS: &[Keyword] = &[
                 "TYPE",
                 &[
                     V::read("DISPLACEMENT", "(default)"),
-                    V::read(
-                        "VELOCITY",
-                        "constant, without AMPLITUDE; it goes on in later steps",
-                    ),
-                    V::refused("ACCELERATION", "prescribe the displacement"),
+                    V::read("VELOCITY", "it goes on in later steps"),
+                    V::read("ACCELERATION", "it goes on in later steps"),
                 ],
                 "what is prescribed",
             ),
-            P::flag("FIXED", "prescribe the displacement").refused(),
+            P::flag("FIXED", "the displacement of the start of the step is kept"),
             TIME_DELAY,
             P::value("REGION TYPE", "not supported").refused(),
             P::flag("USER", "not supported").refused(),
         ],
-        "Prescribed displacements or velocities: node or node set, first direction, last direction, \
-         value; or a node set with XSYMM, YSYMM, ZSYMM, XASYMM, YASYMM, ZASYMM, PINNED or ENCASTRE. \
+        "Prescribed displacements, velocities or accelerations: node or node set, first direction, \
+         last direction, value; or a node set with XSYMM, YSYMM, ZSYMM, XASYMM, YASYMM, ZASYMM, PINNED or ENCASTRE. \
          Without amplitude a displacement grows linearly over the step. Directions 3 to 6 may be \
          given with value zero.",
         "*BOUNDARY\n\

@@ -3,7 +3,7 @@
 use super::common::{NAME, OTHER_NUMBERS};
 use crate::deck::keywords::fields::{
     FORCE_PER_VOLUME, LENGTH,
-    Quantity::{OrName, Unknown},
+    Quantity::{Of, OrName, Unknown},
     STRESS, of, plain, row,
 };
 use crate::deck::keywords::keyword::{Data, Keyword, Scope};
@@ -75,7 +75,15 @@ pub(super) static CONTACT: &[Keyword] = &[
     Keyword::read(
         "FRICTION",
         Scope::Block("SURFACE INTERACTION"),
-        Data::Rows(&[row(&[plain("mu"), of("number", Unknown)]).repeating(1)]),
+        Data::Rows(&[
+            row(&[
+                plain("mu at rest"),
+                plain("mu of fast slip"),
+                of("decay", Of("time/length")),
+            ])
+            .under("EXPONENTIAL DECAY", ""),
+            row(&[plain("mu"), of("number", Unknown)]).repeating(1),
+        ]),
         &[
             P::flag("LAGRANGE", "sticking is exact").ignored(),
             P::value("ELASTIC SLIP", "sticking is exact")
@@ -84,7 +92,11 @@ pub(super) static CONTACT: &[Keyword] = &[
             P::value("SLIP TOLERANCE", "sticking is exact").warned(),
             P::flag("ROUGH", "give a large coefficient of friction").refused(),
             P::value("TAUMAX", "shear stress has no limit but Coulomb's").refused(),
-            P::optional("EXPONENTIAL DECAY", "friction does not depend on slip rate").refused(),
+            P::flag(
+                "EXPONENTIAL DECAY",
+                "mu = mu_k + (mu_s - mu_k) exp(-d_c |slip rate|): the row is mu_s, mu_k, d_c",
+            ),
+            P::flag("TEST DATA", "give mu_s, mu_k and d_c").refused(),
             P::flag("ANISOTROPIC", "friction is isotropic").refused(),
             P::flag("USER", "user friction is not supported").refused(),
         ],

@@ -199,9 +199,12 @@ pub(super) static MESH: &[Keyword] = &[
         Scope::Model,
         Data::None,
         &[
-            P::value("ANALYTICAL SURFACE", "surface of TYPE=SEGMENTS; required"),
+            P::value(
+                "ANALYTICAL SURFACE",
+                "surface of TYPE=SEGMENTS; this or ELSET is required",
+            ),
             P::value("REF NODE", "node, or node set of one node; required"),
-            P::value("ELSET", "fix or prescribe all nodes of the elements").refused(),
+            P::value("ELSET", "plane elements, whose nodes all move alike"),
             P::value("NSET", "fix or prescribe all nodes").refused(),
             P::value("PIN NSET", "fix or prescribe all nodes").refused(),
             P::value("TIE NSET", "fix or prescribe all nodes").refused(),
@@ -213,8 +216,8 @@ pub(super) static MESH: &[Keyword] = &[
             .ignored(),
             P::optional("ISOTHERMAL", "there are no temperatures").ignored(),
         ],
-        "Moves a rigid surface with its reference node, whose directions 1 and 2 are prescribed in \
-         every step; it does not turn. Its points become nodes without element, numbered from the \
+        "Moves a rigid surface, or elements, with a reference node, whose directions 1 and 2 are \
+         prescribed in every step; the body does not turn. Points of a rigid surface become nodes without element, numbered from the \
          largest node number of the deck on.",
         "*NODE, NSET=NREF\n\
          100, 0., -5.\n\

@@ -2,6 +2,7 @@
 //! constraints of the iterate. Section 5 of docs/theory.md (paper eqs 36 to 47).
 
 use super::contact_system::{ContactSystem, Guess};
+use super::response::Response;
 use crate::contact::tolerances::SETTLED_OVERLAP;
 use crate::contact::{ClosedPair, ClosedPairs, Constraint};
 use crate::dynamics::results::Cause;
@@ -70,16 +71,17 @@ impl ContactForces {
     }
 
     /// Contact forces of a pass, in place of those of the pass before, and the correction
-    /// dU = y + W (Bn^T Pn + Bt^T Pt), y = W r being the correction without them (all dofs).
+    /// dU = d_p + W (r + Bn^T Pn + Bt^T Pt), d_p being the motion of the supports and r the other forces
+    /// (all dofs).
     ///
-    /// Constraints that were open before (or without any before, that y leaves open) stay out of the
-    /// problem first; those that would overlap with the forces of the others enter afterwards, so
+    /// Constraints that were open before (or without any before, that y = d_p + W r leaves open) stay out
+    /// of the problem first; those that would overlap with the forces of the others enter afterwards, so
     /// that the answer is that of all constraints. With a `weight` of the equal-force rule, which there is
     /// when the passes have settled, they enter only if they would overlap by more than round-off: two
     /// nodes that face each other may carry the same force, and it must not go to and fro between them.
     pub fn solve(
         &mut self,
-        y: &[f64],
+        [d_p, r]: [&[f64]; 2],
         weight: Option<f64>,
         system: &mut ContactSystem,
     ) -> Result<Vec<f64>, Cause> {
@@ -88,34 +90,33 @@ impl ContactForces {
         let overlap = weight.map_or(0.0, |_| SETTLED_OVERLAP);
         let was_closed = |constraint: &Constraint| before.closes(constraint.key);
         let mut inside: Vec<bool> = self.constraints.iter().map(was_closed).collect();
-        let mut du = y.to_vec();
-        let mut entered = inside.contains(&true) || self.enter(&mut inside, &du, overlap);
+        // g + Gn y and Dt + Gt y, eq. (5.2)
+        let mut response = Response::begin(system, [d_p, r], &self.constraints)?;
+        let free = response.gaps_and_slips(system, &self.constraints);
+        let mut entered = inside.contains(&true) || self.enter(&mut inside, &free, overlap);
         while entered {
-            let chosen = self.constraints.iter().zip(&inside);
-            let chosen: Vec<&Constraint> = chosen
-                .filter(|(_, inside)| **inside)
-                .map(|(c, _)| c)
-                .collect();
-            // g + Gn y and Dt + Gt y, eq. (5.2)
-            let gaps = chosen.iter().map(|c| c.gap + c.gap_change(y)).collect();
-            let slips = chosen.iter().map(|c| c.slip + c.slip_change(y)).collect();
+            let chosen = self.constraints.iter().zip(&free).zip(&inside);
+            let chosen = chosen.filter(|(_, inside)| **inside).map(|(c, _)| c);
+            let (chosen, terms): (Vec<&Constraint>, Vec<[f64; 2]>) = chosen.unzip();
+            let terms = [0, 1].map(|i| terms.iter().map(|term| term[i]).collect());
             let guess = Guess::from_pass(&chosen, &before, weight);
-            let solution = system.solve(&chosen, [gaps, slips], &guess)?;
+            let solution = system.solve(&chosen, terms, &guess)?;
             (self.closed, self.problem_size) = (solution.closed, chosen.len());
             self.pivots += solution.pivots;
-            du = system.respond(y, &self.resultant(y.len()))?;
-            entered = self.enter(&mut inside, &du, overlap);
+            response.set_forces(system, self.acting());
+            let after = response.gaps_and_slips(system, &self.constraints);
+            entered = self.enter(&mut inside, &after, overlap);
         }
-        Ok(du)
+        Ok(response.end(system)?)
     }
 
-    /// Lets constraints into the problem that would overlap after the correction `du` by more than the
-    /// part `overlap` of their scales; whether there are any.
-    fn enter(&self, inside: &mut [bool], du: &[f64], overlap: f64) -> bool {
+    /// Lets constraints into the problem that would overlap, with the given gaps after the correction, by
+    /// more than the part `overlap` of their scales; whether there are any.
+    fn enter(&self, inside: &mut [bool], after: &[[f64; 2]], overlap: f64) -> bool {
         let mut entered = false;
-        for (constraint, inside) in self.constraints.iter().zip(inside) {
-            let gap_after = || constraint.gap + constraint.gap_change(du);
-            if !*inside && gap_after() < -overlap * constraint.scale {
+        let constraints = self.constraints.iter().zip(after);
+        for ((constraint, [gap, _]), inside) in constraints.zip(inside) {
+            if !*inside && *gap < -overlap * constraint.scale {
                 (*inside, entered) = (true, true);
             }
         }
@@ -130,7 +131,7 @@ mod tests {
     use crate::dynamics::step::{FactoredMatrix, Meter, System};
     use crate::lcp::{ContactState, LcpMethod};
     use crate::linear::{Assembled, Transformation};
-    use crate::model::SolverChoice;
+    use crate::model::{Friction, SolverChoice};
 
     const DOFS: usize = 14;
 
@@ -159,7 +160,7 @@ mod tests {
                 target: ContactTarget::face(0),
                 nodes: [0, 1, 2, 2],
                 from: None,
-                friction: mu,
+                friction: Friction::constant(mu),
             },
         }
     }
@@ -183,7 +184,7 @@ mod tests {
         };
         let mut forces = ContactForces::default();
         forces.relinearize(vec![wide(mu)]);
-        let solved = forces.solve(&[0.5; DOFS], None, &mut system);
+        let solved = forces.solve([&[0.0; DOFS], &[1.0; DOFS]], None, &mut system);
         let du = solved.expect("solved");
         let pair = forces.closed.iter().next().expect("closed");
         (pair.force, pair.state, du)

@@ -7,6 +7,10 @@ pub(super) const FIRST_WEIGHT: f64 = 1e-5;
 const DECREASE: f64 = 0.1;
 /// Least weight: with a smaller one, the round-off of the gaps moves the forces.
 const LEAST_WEIGHT: f64 = 1e-7;
+/// Rate of corrections that crawl although the weight has its least value: it then falls further.
+const CRAWLING: f64 = 0.7;
+/// The weight then.
+const WEIGHT_OF_CRAWLING: f64 = 1e-9;
 /// Correction, in tolerances, below which growth is round-off.
 const ROUND_OFF: f64 = 100.0;
 
@@ -14,11 +18,13 @@ const ROUND_OFF: f64 = 100.0;
 ///
 /// Forces of pairs that are almost one go on changing at the rate eps/(eps + lambda), lambda being the
 /// compliance of their difference as a part of their own. The weight therefore decreases, until small
-/// corrections grow: then the round-off of the gaps moves the forces, and the first weight holds them.
+/// corrections grow that had the same weight before: then the round-off of the gaps moves the forces, and the first weight holds them.
 pub(crate) struct EqualForces {
     tolerance: f64,
     weight: f64,
     correction: f64,
+    /// Whether the weight is less than in the pass before: a slow mode then moves more.
+    has_decreased: bool,
     holds: bool,
 }
 
@@ -29,6 +35,7 @@ impl EqualForces {
             tolerance,
             weight: FIRST_WEIGHT,
             correction: f64::INFINITY,
+            has_decreased: false,
             holds: false,
         }
     }
@@ -44,18 +51,35 @@ impl EqualForces {
             return;
         }
         let grows = correction >= self.correction;
+        let crawls = !grows && correction > CRAWLING * self.correction;
         self.correction = correction;
-        self.holds |= grows && correction < ROUND_OFF * self.tolerance;
-        self.weight = match self.holds {
-            true => FIRST_WEIGHT,
-            false => (DECREASE * self.weight).max(LEAST_WEIGHT),
+        self.holds |= grows && !self.has_decreased && correction < ROUND_OFF * self.tolerance;
+        let weight = match self.weight {
+            _ if self.holds => FIRST_WEIGHT,
+            weight if weight > 2.0 * LEAST_WEIGHT => DECREASE * weight,
+            _ if crawls => WEIGHT_OF_CRAWLING,
+            weight => weight,
         };
+        self.has_decreased = weight < 0.5 * self.weight;
+        self.weight = weight;
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn growth_after_a_decrease_is_that_of_a_slow_mode() {
+        let mut rule = EqualForces::new(1e-11);
+        for correction in [1e-10, 2e-10, 1e-10] {
+            rule.take_in(correction, true);
+        }
+        assert!(
+            rule.weight(true)
+                .is_some_and(|weight| weight < 2.0 * LEAST_WEIGHT)
+        );
+    }
 
     #[test]
     fn the_weight_decreases_until_round_off_grows() {

@@ -6,7 +6,7 @@ use super::contact_system::{ContactSystem, Guess};
 use crate::contact::{ClosedPairs, Constraint, ConstraintKey};
 use crate::dynamics::increment::ConstraintSet;
 use crate::dynamics::results::{Cause, State};
-use crate::dynamics::step::{StepProblem, Workspace};
+use crate::dynamics::step::{StartVelocity, StepProblem, Workspace};
 use crate::lcp::ContactState;
 use crate::model::Impact;
 
@@ -24,8 +24,8 @@ pub(crate) struct Impulses {
     at_rest: bool,
     /// Constraints of the last pass with nodes without mass, which take no impulse; increasing.
     massless: Vec<ConstraintKey>,
-    /// V0+ of the last pass with the constraints that it is for.
-    last: Option<(Vec<Constraint>, Vec<f64>)>,
+    /// The constraints that the impulses are for.
+    struck: Vec<Constraint>,
     /// Phi, Psi of the last pass.
     pub acting: ContactForces,
 }
@@ -40,22 +40,22 @@ impl Impulses {
             changes: 0,
             at_rest: false,
             massless: Vec::new(),
-            last: None,
+            struck: Vec::new(),
             acting: ContactForces::default(),
         }
     }
 
-    /// Velocity V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1), for the constraints of the iterate.
-    pub fn velocity(
+    /// Impulses Phi, Psi, eq. (6.2), for the constraints of the iterate.
+    fn solve(
         &mut self,
         problem: &StepProblem,
         workspace: &mut Workspace,
         constraints: &[Constraint],
         start: &State,
         dt: f64,
-    ) -> Result<Vec<f64>, Cause> {
+    ) -> Result<(), Cause> {
         if problem.settings.impact == Impact::None {
-            return Ok(start.v.clone());
+            return Ok(());
         }
         // rows of the start do not change with the iterate
         let at_start = problem.weights.impulses_at_start();
@@ -71,21 +71,65 @@ impl Impulses {
             .iter()
             .filter(|constraint| self.strikes(constraint));
         let struck: Vec<Constraint> = struck.map(rows).collect();
-        if let Some((last, v0p)) = &self.last
-            && at_start
-            && *last == struck
-        {
-            return Ok(v0p.clone());
+        if self.struck != struck {
+            let system = mass_system(problem, workspace);
+            let states = struck.iter().map(|c| self.state(c.key)).collect();
+            self.acting = impulses(struck.clone(), states, &start.v, dt, system)?;
+            self.struck = struck;
         }
-        let system = ContactSystem {
-            map: &problem.unknowns.map,
-            system: workspace.m(),
-            method: problem.method(),
+        Ok(())
+    }
+
+    /// What the equilibrium of an iterate with the given constraints needs of the velocity of the start: V0
+    /// with the impulses beside it, so that nothing is solved with M, unless U_theta depends on V0+.
+    pub fn start_velocity(
+        &mut self,
+        problem: &StepProblem,
+        workspace: &mut Workspace,
+        constraints: &[Constraint],
+        start: &State,
+        dt: f64,
+    ) -> Result<StartVelocity, Cause> {
+        self.solve(problem, workspace, constraints, start, dt)?;
+        match problem.weights.lags() {
+            true => self.velocity(problem, workspace, start),
+            false => Ok(StartVelocity {
+                v0p: start.v.clone(),
+                impulse: self.resultant(start.v.len()),
+            }),
+        }
+    }
+
+    /// Velocity V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1).
+    pub fn velocity(
+        &self,
+        problem: &StepProblem,
+        workspace: &mut Workspace,
+        start: &State,
+    ) -> Result<StartVelocity, Cause> {
+        let impulse = self.resultant(start.v.len());
+        let v0p = match impulse.as_slice() {
+            [] => start.v.clone(),
+            impulse => mass_system(problem, workspace).respond(&start.v, impulse)?,
         };
-        let (v0p, acting) = impulses(struck.clone(), &start.v, dt, system)?;
-        self.acting = acting;
-        self.last = Some((struck, v0p.clone()));
-        Ok(v0p)
+        let impulse = Vec::new();
+        Ok(StartVelocity { v0p, impulse })
+    }
+
+    /// State of a pair in the impulses of the pass before; it sticks where it was not among them.
+    fn state(&self, key: ConstraintKey) -> ContactState {
+        match self.struck.binary_search_by_key(&key, |struck| struck.key) {
+            Ok(_) => self.acting.closed.state(key),
+            Err(_) => ContactState::Stick,
+        }
+    }
+
+    /// Bn^T Phi + Bt^T Psi over all dofs; empty where nothing strikes.
+    fn resultant(&self, dofs: usize) -> Vec<f64> {
+        match self.acting.closed.is_empty() {
+            true => Vec::new(),
+            false => self.acting.resultant(dofs),
+        }
     }
 
     /// Whether the set of pairs stayed the same after the last pass.
@@ -124,7 +168,16 @@ impl Impulses {
     }
 }
 
-/// Impact impulses Phi, Psi of constraints at the start of an increment and the velocity after them,
+/// M with its complementarity problems.
+fn mass_system<'a>(problem: &'a StepProblem, workspace: &'a mut Workspace) -> ContactSystem<'a> {
+    ContactSystem {
+        map: &problem.unknowns.map,
+        system: workspace.m(),
+        method: problem.method(),
+    }
+}
+
+/// Impact impulses Phi, Psi of constraints at the start of an increment, for the velocity after them
 /// V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1) (paper eq. 30), posed as eq. (6.2):
 ///
 /// ```text
@@ -132,22 +185,23 @@ impl Impulses {
 /// |Psi| <= mu Phi, Psi opposes Gt V0+
 /// ```
 ///
-/// so that kinetic energy never grows where G = B. Gives the velocity and the impulses.
+/// so that kinetic energy never grows where G = B. The search begins with the given states.
 fn impulses(
     constraints: Vec<Constraint>,
+    states: Vec<ContactState>,
     v0: &[f64],
     dt: f64,
     mut system: ContactSystem,
-) -> Result<(Vec<f64>, ContactForces), Cause> {
+) -> Result<ContactForces, Cause> {
     // Gn V0 + (2/dt) max(g0, 0) and Gt V0, eq. (6.2)
     let approach = |c: &Constraint| c.gap_change(v0) + 2.0 / dt * c.start_gap.max(0.0);
     let approaches: Vec<f64> = constraints.iter().map(approach).collect();
     if approaches.iter().all(|&approach| approach >= 0.0) {
-        return Ok((v0.to_vec(), ContactForces::default()));
+        return Ok(ContactForces::default());
     }
     let slides = constraints.iter().map(|c| c.slip_change(v0)).collect();
     let guess = Guess {
-        states: vec![ContactState::Stick; constraints.len()],
+        states,
         forces: None,
         weight: None,
     };
@@ -156,12 +210,10 @@ fn impulses(
     }
     let all: Vec<&Constraint> = constraints.iter().collect();
     let solution = system.solve(&all, [approaches, slides], &guess)?;
-    let impulses = ContactForces {
+    Ok(ContactForces {
         problem_size: constraints.len(),
         closed: solution.closed,
         pivots: solution.pivots,
         constraints,
-    };
-    let v0p = system.respond(v0, &impulses.resultant(v0.len()))?;
-    Ok((v0p, impulses))
+    })
 }

@@ -4,6 +4,7 @@ mod contact_forces;
 mod contact_system;
 mod equal_forces;
 mod impulses;
+mod response;
 
 pub(crate) use contact_forces::ContactForces;
 pub(crate) use contact_system::ContactSystem;

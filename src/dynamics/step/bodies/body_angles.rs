@@ -87,8 +87,8 @@ mod tests {
     use crate::dynamics::step::{ClosedConstraints, Discretization, Workspace};
     use crate::materials::{Law, SaintVenantKirchhoff};
     use crate::model::{
-        Damping, Element, ElementType, Frames, Increments, Material, Model, Procedure, Section,
-        Settings, Step, Support, SupportMotion,
+        Damping, Element, ElementType, Frames, Friction, Increments, Material, Model, Procedure,
+        Section, Settings, Step, Support, SupportMotion,
     };
     use crate::prepare::PreparedModel;
 
@@ -182,7 +182,7 @@ mod tests {
             target: ContactTarget::face(0),
             nodes: [0; 4],
             from: None,
-            friction: 0.5,
+            friction: Friction::constant(0.5),
         };
         Constraint {
             key: ConstraintKey {
@@ -225,7 +225,7 @@ mod tests {
         let prepared = blocks();
         let discretization = Discretization::new(&prepared);
         let step = step(supports);
-        let problem = StepProblem::new(&discretization, &step, &[0.0; DOFS]);
+        let problem = StepProblem::new(&discretization, &step, [&[0.0; DOFS], &[0.0; DOFS]]);
         let ends = [0.0, increment, angle, angle + increment];
         let [u0, u1, v0, v1] = ends.map(|angle| turned(&prepared, angle));
         let motion = |start, end| Motion {
@@ -271,7 +271,7 @@ mod tests {
         let prepared = blocks();
         let discretization = Discretization::new(&prepared);
         let step = step(&[]);
-        let problem = StepProblem::new(&discretization, &step, &[0.0; DOFS]);
+        let problem = StepProblem::new(&discretization, &step, [&[0.0; DOFS], &[0.0; DOFS]]);
         let angles = BodyAngles::new(&problem);
         for angle in [0.0, 1e-9, -0.4, 3.0] {
             let u = turned(&prepared, angle);

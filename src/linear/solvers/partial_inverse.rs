@@ -34,7 +34,8 @@ pub(super) fn inverse_at(
     positions: &[usize],
 ) -> Vec<f64> {
     let m = positions.len();
-    let supernode_of = supernode_of(factor);
+    let ends = factor.symbolic().supernode_end();
+    let supernode_of = |row: usize| ends.partition_point(|&end| end <= row);
     let mut inverse = Mat::<f64>::zeros(m, m);
     let mut waiting: BTreeMap<usize, Vec<Front>> = BTreeMap::new();
     for (column, &position) in positions.iter().enumerate() {
@@ -44,7 +45,7 @@ pub(super) fn inverse_at(
             values: Mat::from_fn(1, 1, |_, _| 1.0),
         };
         waiting
-            .entry(supernode_of[position])
+            .entry(supernode_of(position))
             .or_default()
             .push(unit);
     }
@@ -95,7 +96,7 @@ pub(super) fn inverse_at(
                 rows: node.pattern().to_vec(),
                 values,
             };
-            waiting.entry(supernode_of[first]).or_default().push(front);
+            waiting.entry(supernode_of(first)).or_default().push(front);
         }
     }
     (0..m)
@@ -132,15 +133,4 @@ fn assemble(rows: Vec<usize>, fronts: &[Front]) -> Front {
         rows,
         values,
     }
-}
-
-/// Supernode of every position in the order of pivots.
-fn supernode_of(factor: SupernodalLdltRef<'_, usize, f64>) -> Vec<usize> {
-    let symbolic = factor.symbolic();
-    let mut supernode_of = vec![0; symbolic.nrows()];
-    for s in 0..symbolic.n_supernodes() {
-        let node = factor.supernode(s);
-        supernode_of[node.start()..node.start() + node.val().ncols()].fill(s);
-    }
-    supernode_of
 }

@@ -32,6 +32,9 @@ pub enum LinearError {
 
 /// A direct solver for symmetric positive definite matrices.
 ///
+/// A solve has parts, so that the solution at some unknowns is known before it ends, and may change its
+/// right-hand side there.
+///
 /// A matrix with the pattern of the last one needs no symbolic analysis.
 pub trait LinearSolver: Send {
     /// Factorises `a` (both triangles, by columns).
@@ -40,9 +43,27 @@ pub trait LinearSolver: Send {
     /// A pivot that is not positive, or a failure of the library.
     fn factorize(&mut self, a: CsMatView<'_, f64>) -> Result<(), LinearError>;
 
-    /// Replaces the columns of `b` (n x k, column by column) by the solutions. Must follow a
-    /// successful `factorize`.
-    fn solve(&mut self, b: &mut [f64]);
+    /// Begins a solve with the right-hand side `b`. Must follow a successful `factorize`.
+    fn begin(&mut self, b: &[f64]);
+
+    /// The unknowns that the following are about, until the next factorisation.
+    fn watch(&mut self, unknowns: &[usize]);
+
+    /// Writes the solution for the right-hand side so far, at the watched unknowns, to `values`, in
+    /// their order.
+    fn watched(&mut self, values: &mut Vec<f64>);
+
+    /// Adds to the right-hand side, at watched unknowns only (unknown, value).
+    fn add(&mut self, b: &[(usize, f64)]);
+
+    /// Ends the solve: writes the solution to `x`.
+    fn end(&mut self, x: &mut [f64]);
+
+    /// Replaces `b` by the solution.
+    fn solve(&mut self, b: &mut [f64]) {
+        self.begin(b);
+        self.end(b);
+    }
 
     /// The inverse at the rows and columns `unknowns` (distinct), m x m column by column. Must
     /// follow a successful `factorize` of a matrix of size `n`.

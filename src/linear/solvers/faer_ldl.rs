@@ -7,15 +7,16 @@ use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::supernodal::SupernodalLdltRef;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
-use faer::{Conj, MatMut, Par, Side, Spec};
+use faer::{Par, Side, Spec};
 use sprs::CsMatView;
 
 use super::ordering::Pattern;
 use super::partial_inverse::inverse_at;
 use super::solver::check_pivots;
+use super::substitution::Substitution;
 use super::{LinearError, LinearSolver};
 
 /// Supernodal LDL^T of faer with an approximate minimum degree order, on one thread (a second one
@@ -26,7 +27,9 @@ pub struct FaerLdl {
     /// Pattern of the symbolic analysis.
     pattern: Pattern,
     values: Vec<f64>,
-    memory: Option<MemBuffer>,
+    substitution: Substitution,
+    /// Unknowns of the paths of the substitution.
+    watched: Vec<usize>,
 }
 
 fn library(error: impl std::fmt::Debug) -> LinearError {
@@ -59,6 +62,7 @@ pub fn factor_entries(neighbours: &[Vec<usize>]) -> usize {
 
 impl LinearSolver for FaerLdl {
     fn factorize(&mut self, a: CsMatView<'_, f64>) -> Result<(), LinearError> {
+        self.substitution.forget_paths();
         let pattern = Pattern::of(a);
         let symbolic = match self.symbolic.take() {
             Some(symbolic) if self.pattern == pattern => symbolic,
@@ -84,44 +88,87 @@ impl LinearSolver for FaerLdl {
         check_pivots(pivots(symbolic, &self.values).into_iter())
     }
 
-    fn solve(&mut self, b: &mut [f64]) {
-        let Some(symbolic) = &self.symbolic else {
-            return;
-        };
-        let n = symbolic.nrows();
-        if n == 0 || b.is_empty() {
+    fn begin(&mut self, b: &[f64]) {
+        let Self {
+            symbolic,
+            values,
+            substitution,
+            ..
+        } = self;
+        if let Some((factor, order)) = factor_and_order(symbolic, values) {
+            substitution.begin(factor, order.pivots.iter().map(|&unknown| b[unknown]));
+        }
+    }
+
+    fn watch(&mut self, unknowns: &[usize]) {
+        if self.substitution.has_paths() && self.watched == unknowns {
             return;
         }
-        let columns = b.len() / n;
-        let scratch = symbolic.solve_in_place_scratch::<f64>(columns, Par::Seq);
-        let memory = match self.memory.take() {
-            Some(memory) if memory.len() >= scratch.unaligned_bytes_required() => memory,
-            _ => MemBuffer::new(scratch),
-        };
-        let memory = self.memory.insert(memory);
-        LdltRef::new(symbolic, &self.values).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(b, n, columns),
-            Par::Seq,
-            MemStack::new(memory),
-        );
+        self.watched.clear();
+        self.watched.extend_from_slice(unknowns);
+        if let Some((factor, order)) = factor_and_order(&self.symbolic, &self.values) {
+            let positions: Vec<usize> = unknowns.iter().map(|&u| order.positions[u]).collect();
+            self.substitution.set_paths(factor, &positions);
+        }
+    }
+
+    fn watched(&mut self, watched: &mut Vec<f64>) {
+        watched.clear();
+        if let Some((factor, order)) = factor_and_order(&self.symbolic, &self.values) {
+            let x = self.substitution.on_paths(factor);
+            watched.extend(
+                self.watched
+                    .iter()
+                    .map(|&unknown| x[order.positions[unknown]]),
+            );
+        }
+    }
+
+    fn add(&mut self, b: &[(usize, f64)]) {
+        if let Some((factor, order)) = factor_and_order(&self.symbolic, &self.values) {
+            let entries = b
+                .iter()
+                .map(|&(unknown, value)| (order.positions[unknown], value));
+            self.substitution.add(factor, entries);
+        }
+    }
+
+    fn end(&mut self, x: &mut [f64]) {
+        if let Some((factor, order)) = factor_and_order(&self.symbolic, &self.values) {
+            let solution = self.substitution.end(factor);
+            for (&unknown, value) in order.pivots.iter().zip(solution) {
+                x[unknown] = *value;
+            }
+        }
     }
 
     fn inverse_at(&mut self, unknowns: &[usize], _n: usize) -> Vec<f64> {
-        let Some((symbolic, factor)) = self
-            .symbolic
-            .as_ref()
-            .and_then(|symbolic| Some((symbolic, supernodal(symbolic, &self.values)?)))
-        else {
+        let Some((factor, order)) = factor_and_order(&self.symbolic, &self.values) else {
             return Vec::new();
         };
-        let position = |&unknown: &usize| match symbolic.perm() {
-            Some(order) => order.arrays().1[unknown],
-            None => unknown,
-        };
-        let positions: Vec<usize> = unknowns.iter().map(position).collect();
+        let positions: Vec<usize> = unknowns.iter().map(|&u| order.positions[u]).collect();
         inverse_at(factor, &positions)
     }
+}
+
+/// The order of pivots.
+#[derive(Clone, Copy)]
+struct Order<'a> {
+    /// Unknown of every pivot.
+    pivots: &'a [usize],
+    /// Pivot of every unknown.
+    positions: &'a [usize],
+}
+
+/// The factors and their order, if there are any.
+fn factor_and_order<'a>(
+    symbolic: &'a Option<SymbolicCholesky<usize>>,
+    values: &'a [f64],
+) -> Option<(SupernodalLdltRef<'a, usize, f64>, Order<'a>)> {
+    let symbolic = symbolic.as_ref()?;
+    let (pivots, positions) = symbolic.perm()?.arrays();
+    let factor = supernodal(symbolic, values)?;
+    Some((factor, Order { pivots, positions }))
 }
 
 /// The factors of a supernodal analysis, which [`analyse`] always asks for.

@@ -18,6 +18,9 @@ pub struct SprsLdl {
     /// The library needs at least two unknowns; the pivot of a single one.
     single: Option<f64>,
     factor: Option<LdlNumeric<f64, usize>>,
+    /// Right-hand side of a solve.
+    b: Vec<f64>,
+    watched: Vec<usize>,
 }
 
 impl LinearSolver for SprsLdl {
@@ -45,15 +48,36 @@ impl LinearSolver for SprsLdl {
         check_pivots(self.order.iter().copied().zip(factor.d().iter().copied()))
     }
 
-    fn solve(&mut self, b: &mut [f64]) {
-        if let Some(pivot) = self.single {
-            b.iter_mut().for_each(|value| *value /= pivot);
-        }
-        let Some(factor) = &self.factor else { return };
-        let n = factor.problem_size();
-        for column in b.chunks_exact_mut(n) {
-            let x = factor.solve(&*column);
-            column.copy_from_slice(&x);
+    fn begin(&mut self, b: &[f64]) {
+        self.b = b.to_vec();
+    }
+
+    fn watch(&mut self, unknowns: &[usize]) {
+        self.watched = unknowns.to_vec();
+    }
+
+    fn watched(&mut self, values: &mut Vec<f64>) {
+        let x = self.solution();
+        values.clear();
+        values.extend(self.watched.iter().map(|&unknown| x[unknown]));
+    }
+
+    fn add(&mut self, b: &[(usize, f64)]) {
+        b.iter()
+            .for_each(|&(unknown, value)| self.b[unknown] += value);
+    }
+
+    fn end(&mut self, x: &mut [f64]) {
+        x.copy_from_slice(&self.solution());
+    }
+}
+
+impl SprsLdl {
+    fn solution(&self) -> Vec<f64> {
+        match (&self.factor, self.single) {
+            (Some(factor), _) => factor.solve(&self.b),
+            (None, Some(pivot)) => self.b.iter().map(|value| value / pivot).collect(),
+            (None, None) => Vec::new(),
         }
     }
 }

@@ -3,12 +3,12 @@
 
 use nalgebra::DMatrix;
 
-use super::bodies::BodyAngles;
-use super::mass::unknown_mass;
-use super::step_problem::StepProblem;
 use crate::contact::{ClosedPair, Compliance, Configurations, Constraint};
+use crate::dynamics::step::bodies::BodyAngles;
+use crate::dynamics::step::mass::unknown_mass;
+use crate::dynamics::step::step_problem::StepProblem;
 use crate::elements::{Motion, TangentPart};
-use crate::lcp::ContactState;
+use crate::lcp::{ContactState, KeptFactors};
 use crate::linear::{
     AddedBlocks, Assembled, CheckedSolver, LinearError, Transformation, larger, linear_solver,
 };
@@ -18,6 +18,8 @@ use crate::model::SolverChoice;
 pub(crate) struct FactoredMatrix {
     pub solver: CheckedSolver,
     pub compliance: Compliance,
+    /// Factors of the last complementarity problem.
+    pub kept: KeptFactors,
 }
 
 impl FactoredMatrix {
@@ -25,7 +27,11 @@ impl FactoredMatrix {
     pub fn new(choice: SolverChoice, matrix: Assembled, map: &Transformation) -> Self {
         let solver = CheckedSolver::new(linear_solver(choice), matrix);
         let compliance = Compliance::new(map.clone(), solver.groups());
-        FactoredMatrix { solver, compliance }
+        FactoredMatrix {
+            solver,
+            compliance,
+            kept: KeptFactors::default(),
+        }
     }
 
     /// Factorises the matrix again.
@@ -184,7 +190,9 @@ impl EffectiveStiffness {
 
     /// Adds the stiffness of the closed constraints to K*, to be factorised next.
     pub fn add_contact(&mut self, contact: &ClosedConstraints, form: StiffnessForm) {
-        let FactoredMatrix { solver, compliance } = &mut self.k;
+        let FactoredMatrix {
+            solver, compliance, ..
+        } = &mut self.k;
         let diagonal: Vec<f64> = solver.matrix().diagonal().collect();
         let map = compliance.map();
         let mut blocks = AddedBlocks::default();

@@ -1,0 +1,114 @@
+//! The correction of a pass while its solve goes on: gaps and slips at the contacts are known before its
+//! end, and contact forces join its right-hand side. Section 5 of docs/theory.md, One solve.
+
+use super::contact_system::ContactSystem;
+use crate::contact::{ClosedPair, Constraint};
+use crate::linear::LinearError;
+
+/// u + W (f + B^T P) of some constraints, W being the inverse of the system matrix: at the nodes of the
+/// constraints at any time, everywhere at the end.
+pub(super) struct Response<'a> {
+    /// Displacements u, over all dofs.
+    start: &'a [f64],
+    /// Nodes of the constraints, increasing.
+    nodes: Vec<usize>,
+    /// What their dofs depend on, increasing.
+    unknowns: Vec<usize>,
+    /// B^T P in the right-hand side (unknown, force).
+    forces: Vec<(usize, f64)>,
+    /// Values at the unknowns.
+    values: Vec<f64>,
+    /// The response at the nodes, over all dofs; elsewhere nothing of meaning.
+    at_nodes: Vec<f64>,
+}
+
+impl<'a> Response<'a> {
+    /// Begins with the forces `f`, over all dofs, and P = 0.
+    ///
+    /// # Errors
+    /// A matrix without factors.
+    pub fn begin(
+        system: &mut ContactSystem,
+        [start, f]: [&'a [f64]; 2],
+        constraints: &[Constraint],
+    ) -> Result<Self, LinearError> {
+        let mut nodes: Vec<usize> = constraints.iter().flat_map(Constraint::nodes).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let dofs = nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]);
+        let terms = dofs.flat_map(|dof| system.map.row(dof));
+        let mut unknowns: Vec<usize> = terms.map(|term| term.0).collect();
+        unknowns.sort_unstable();
+        unknowns.dedup();
+        system.system.begin(system.map, f)?;
+        Ok(Response {
+            start,
+            nodes,
+            unknowns,
+            forces: Vec::new(),
+            values: Vec::new(),
+            at_nodes: vec![0.0; start.len()],
+        })
+    }
+
+    /// g + Gn y and Dt + Gt y of every constraint, y being the response so far.
+    pub fn gaps_and_slips(
+        &mut self,
+        system: &mut ContactSystem,
+        constraints: &[Constraint],
+    ) -> Vec<[f64; 2]> {
+        let Self {
+            start,
+            nodes,
+            unknowns,
+            values,
+            at_nodes: y,
+            ..
+        } = self;
+        system.system.partial(unknowns, values);
+        let value = |unknown: &usize| values[unknowns.partition_point(|u| u < unknown)];
+        for &node in nodes.iter() {
+            let of_dof = |dof: usize| -> f64 {
+                let terms = system.map.row(dof).iter();
+                terms.map(|(unknown, c)| c * value(unknown)).sum()
+            };
+            let mut own = [of_dof(2 * node), of_dof(2 * node + 1)];
+            system.system.rotation().turn_node(node, &mut own);
+            (y[2 * node], y[2 * node + 1]) =
+                (start[2 * node] + own[0], start[2 * node + 1] + own[1]);
+        }
+        let after = |c: &Constraint| [c.gap + c.gap_change(y), c.slip + c.slip_change(y)];
+        constraints.iter().map(after).collect()
+    }
+
+    /// Takes the forces of the given closed constraints into the right-hand side, in place of those
+    /// before.
+    pub fn set_forces<'c>(
+        &mut self,
+        system: &mut ContactSystem,
+        acting: impl Iterator<Item = (&'c Constraint, &'c ClosedPair)>,
+    ) {
+        self.forces.iter_mut().for_each(|force| force.1 = -force.1);
+        let before = self.forces.len();
+        for (constraint, pair) in acting {
+            for (node, mut force) in constraint.nodal_forces(pair.force) {
+                system.system.rotation().turn_node_back(node, &mut force);
+                for (dof, force) in [2 * node, 2 * node + 1].into_iter().zip(force) {
+                    let terms = system.map.row(dof).iter();
+                    self.forces
+                        .extend(terms.map(|&(unknown, c)| (unknown, c * force)));
+                }
+            }
+        }
+        system.system.add(&self.forces);
+        self.forces.drain(..before);
+    }
+
+    /// The response, over all dofs.
+    ///
+    /// # Errors
+    /// A solution that fails its check.
+    pub fn end(self, system: &mut ContactSystem) -> Result<Vec<f64>, LinearError> {
+        system.system.end(system.map, self.start)
+    }
+}

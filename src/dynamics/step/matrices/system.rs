@@ -1,0 +1,125 @@
+//! A system matrix of a step, K* or M, whose work is measured: solves, in one go or in parts, and its
+//! complementarity problems. Sections 4 and 5 of docs/theory.md.
+
+use super::effective_stiffness::FactoredMatrix;
+use crate::contact::{Compliance, Constraint, frictional_lcp};
+use crate::dynamics::step::meter::Meter;
+use crate::lcp::{
+    ContactState, FrictionalLcp, FrictionalSolution, LcpError, LcpMethod, solve_similar,
+};
+use crate::linear::{LinearError, Rotation, Transformation};
+
+/// K* or M of a step with the meter of the work that is done with it.
+pub(crate) struct System<'a> {
+    matrix: &'a mut FactoredMatrix,
+    meter: &'a mut Meter,
+}
+
+impl<'a> System<'a> {
+    /// A matrix whose work is measured by `meter`.
+    pub fn new(matrix: &'a mut FactoredMatrix, meter: &'a mut Meter) -> Self {
+        System { matrix, meter }
+    }
+
+    /// Whether the factors are those of the current matrix.
+    pub fn is_factorized(&self) -> bool {
+        self.matrix.solver.is_factorized()
+    }
+
+    /// Factorises the matrix.
+    pub fn factorize(&mut self) -> Result<(), LinearError> {
+        let Self { matrix, meter } = self;
+        meter.time(|t| &mut t.factorization, || matrix.factorize())
+    }
+
+    /// The solution for the right-hand side `b`, over the unknowns.
+    pub fn solve(&mut self, b: &[f64]) -> Result<Vec<f64>, LinearError> {
+        let Self { matrix, meter } = self;
+        meter.time(|t| &mut t.solve, || matrix.solver.solve(b))
+    }
+
+    /// R T A^-1 T^T R^T f for the forces `f` over all dofs, A being the matrix and R the rotation of its
+    /// bodies, eq. (4.20).
+    pub fn respond(&mut self, map: &Transformation, f: &[f64]) -> Result<Vec<f64>, LinearError> {
+        self.begin(map, f)?;
+        let response = self.end(map, &vec![0.0; f.len()])?;
+        self.check()?;
+        Ok(response)
+    }
+
+    /// Begins the response to the forces `f`, in parts.
+    pub fn begin(&mut self, map: &Transformation, f: &[f64]) -> Result<(), LinearError> {
+        let mut turned_back = f.to_vec();
+        self.rotation().turn_back(&mut turned_back);
+        let b = map.restrict(&turned_back);
+        let Self { matrix, meter } = self;
+        meter.time(|t| &mut t.solve, || matrix.solver.begin(&b))
+    }
+
+    /// Writes A^-1 b for the right-hand side so far, at some unknowns, to `values`.
+    pub fn partial(&mut self, unknowns: &[usize], values: &mut Vec<f64>) {
+        let Self { matrix, meter } = self;
+        meter.time(|t| &mut t.solve, || matrix.solver.partial(unknowns, values));
+    }
+
+    /// Adds to the right-hand side at unknowns of the last part (unknown, value).
+    pub fn add(&mut self, b: &[(usize, f64)]) {
+        let Self { matrix, meter } = self;
+        meter.time(|t| &mut t.solve, || matrix.solver.add(b));
+    }
+
+    /// Ends the response, over all dofs, and adds `start` to it; [`Self::check`] checks the solution.
+    pub fn end(&mut self, map: &Transformation, start: &[f64]) -> Result<Vec<f64>, LinearError> {
+        let Self { matrix, meter } = self;
+        let mut response = vec![0.0; start.len()];
+        let end = || {
+            matrix
+                .solver
+                .end()
+                .map(|solution| map.add(solution, &mut response))
+        };
+        meter.time(|t| &mut t.solve, end)?;
+        self.rotation().turn(&mut response);
+        response.iter_mut().zip(start).for_each(|(r, s)| *r += s);
+        Ok(response)
+    }
+
+    /// Checks the residual of the last solution.
+    pub fn check(&mut self) -> Result<(), LinearError> {
+        let Self { matrix, meter } = self;
+        meter.time(|t| &mut t.solve, || matrix.solver.check())
+    }
+
+    /// R of the bodies since the matrix was factorised.
+    pub fn rotation(&self) -> &Rotation {
+        self.matrix.compliance.rotation()
+    }
+
+    /// The complementarity problem of some constraints with the given gaps and slips without forces.
+    pub fn frictional_lcp(
+        &mut self,
+        constraints: &[&Constraint],
+        gap: Vec<f64>,
+        slip: Vec<f64>,
+    ) -> Result<FrictionalLcp, LinearError> {
+        let Self { matrix, meter } = self;
+        meter.time(|t| &mut t.solve, || matrix.prepare(constraints))?;
+        let compliance: &Compliance = &matrix.compliance;
+        let pose = || frictional_lcp(constraints, compliance, gap, slip);
+        Ok(meter.time(|t| &mut t.contact, pose))
+    }
+
+    /// Solves a complementarity problem, starting from the states `warm`.
+    pub fn solve_lcp(
+        &mut self,
+        problem: &FrictionalLcp,
+        warm: &[ContactState],
+        method: LcpMethod,
+    ) -> Result<FrictionalSolution, LcpError> {
+        let Self { matrix, meter } = self;
+        let solve = || solve_similar(problem, Some(warm), method, &mut matrix.kept);
+        let solution = meter.time(|t| &mut t.lcp, solve)?;
+        self.meter.count_lcp(warm.len(), solution.counters);
+        Ok(solution)
+    }
+}
