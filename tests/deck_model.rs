@@ -417,6 +417,22 @@ fn history_sets_of_both_families() {
     assert_eq!(model.sets.history, [history(1, true), history(0, true)]);
 }
 
+#[test]
+fn monitored_displacements_are_columns_of_the_status_file() {
+    let cards = |text: &str| {
+        let (model, messages) = square("*END STEP", &format!("{text}*END STEP"));
+        (model.sets.monitored, messages)
+    };
+    let (dofs, messages) =
+        cards("*MONITOR, NODE=4, DOF=2\n*MONITOR, NODE=1, DOF=1\n*MONITOR, NODE=4, DOF=2\n");
+    assert_eq!((dofs, messages.as_str()), (vec![7, 0], ""));
+    let (dofs, messages) = cards("*MONITOR, NODE=4, DOF=6\n");
+    assert!(
+        dofs.is_empty() && messages.contains("warning[D515]"),
+        "{messages}"
+    );
+}
+
 fn history(set: usize, each_node: bool) -> HistorySet {
     HistorySet { set, each_node }
 }

@@ -91,7 +91,7 @@ impl<'a> ResultWriter<'a> {
     /// After the first frame, puts the files of the job in place of those of an earlier run.
     fn publish(&mut self) -> io::Result<()> {
         if self.status.is_none() {
-            let status = StatusFile::create(&self.claim.files().status)?;
+            let status = StatusFile::create(&self.claim.files().status, self.model)?;
             self.console.begin_log()?;
             self.claim.publish()?;
             self.status = Some(status);

@@ -76,6 +76,7 @@ fn read(cx: &mut Context) -> Model {
             nodes: sets.nodes,
             elements: plane_sets(sets.elements, &sets.lines),
             history: steps.history,
+            monitored: steps.monitored,
             instances: mesh_index.instances,
         },
         surfaces: surfaces.all,

@@ -226,6 +226,14 @@ fn names_of_other_kinds() {
 }
 
 #[test]
+fn sets_of_several_nodes_where_one_is_meant() {
+    insta::assert_snapshot!(texts_of(
+        Code::BadValue,
+        &[step("*MONITOR, NODE=FOOT, DOF=2")]
+    ));
+}
+
+#[test]
 fn model_cards_after_a_step() {
     let after = |more: &str| square("*END STEP\n", &format!("*END STEP\n{more}\n"));
     for cards in [

@@ -2,6 +2,7 @@
 
 use super::format::{counted, general, grouped, scientific};
 use super::layout::{label, wrap, wrap_words};
+use super::status::monitored;
 use crate::model::{
     Contact, Element, ElementType, Frames, Impact, ImpactTime, LandingRule, Model, Scheme,
     Settings, SolverChoice, Step, SurfaceKind,
@@ -75,6 +76,7 @@ impl ModelEcho {
             lines.extend(contact_lines(model, contact, gaps));
         }
         lines.extend(mass_lines(prepared));
+        lines.extend(monitor_lines(model));
         for (i, step) in model.steps.iter().enumerate() {
             lines.extend(self.step_lines(i, step));
         }
@@ -241,6 +243,15 @@ fn mass_lines(prepared: &PreparedModel) -> Vec<String> {
         text = format!("{text}, {} keep their mass: {names}", grouped(kept.len()));
     }
     wrap_words("mass", &text)
+}
+
+/// Displacements in the status file.
+fn monitor_lines(model: &Model) -> Vec<String> {
+    let names: Vec<String> = monitored(model).into_iter().map(|(name, _)| name).collect();
+    match names.is_empty() {
+        true => Vec::new(),
+        false => wrap("monitor", &names),
+    }
 }
 
 /// The smallest gap at the start.

@@ -34,6 +34,28 @@ impl Sets {
         }
     }
 
+    /// The node that a field names, or the only node of the set; reports other sets with a
+    /// code and a help. A node that is left out is none.
+    pub fn single_node(
+        &self,
+        field: Text,
+        mesh_index: &MeshIndex,
+        (code, help): (Code, &str),
+        cx: &mut Context,
+    ) -> Option<usize> {
+        let errors = cx.errors();
+        match self.nodes_of(field, mesh_index, cx)[..] {
+            [node] => Some(node),
+            _ if cx.errors() > errors || cx.may_lack_cards() || mesh_index.nodes.incomplete => None,
+            [] if cx.is_number(field) => None,
+            ref nodes => {
+                let message = format!("{} holds {} nodes", field.text, nodes.len());
+                cx.d.push(Diagnostic::error(code, field.span, message).help(help));
+                None
+            }
+        }
+    }
+
     /// The element, or the elements of the set, that a field names; reports line elements alone.
     pub fn elements_of(&self, field: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<usize> {
         let (elements, lines) = self.elements_and_lines_of(field, mesh_index, cx);
