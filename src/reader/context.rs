@@ -48,7 +48,7 @@ impl<'a> Context<'a> {
     }
 
     /// Where a point of a part is in the instance of a row (length).
-    pub fn placed(&self, at: [f64; 2], row: &Row) -> [f64; 2] {
+    pub fn placed(&self, at: [f64; 2], row: Row) -> [f64; 2] {
         if self.deck.instances.is_empty() {
             return at;
         }
