@@ -141,6 +141,19 @@ fn damping_that_cannot_be() {
         text
     });
     insta::assert_snapshot!(texts.join("\n"));
+    let card = "*DAMPING, BETA=1.E-5";
+    let (d, text) = messages(&model(&format!("{card}\n{card}")));
+    assert_eq!(
+        d.iter().map(|item| item.code).collect::<Vec<_>>(),
+        [Code::RepeatedCard],
+        "{text}"
+    );
+    let (d, text) = messages(&step(card));
+    assert_eq!(
+        d.iter().map(|item| item.code).collect::<Vec<_>>(),
+        [Code::WrongPlace],
+        "{text}"
+    );
 }
 
 #[test]
