@@ -10,6 +10,7 @@ use crate::model::{
 use crate::output::frames::{DEFAULT_FRAMES, are_dense};
 use crate::prepare::{InitialGap, PreparedModel};
 use crate::vectors::cross;
+use smallvec::SmallVec;
 
 /// Most nodes that are named.
 const MOST_NAMES: usize = 12;
@@ -56,8 +57,8 @@ impl ModelEcho {
     }
 
     fn add(&mut self, model: &Model, element: &Element) {
-        let corners = corners(model, element);
-        let (edge, speed) = (shortest_edge(&corners), wave_speed(model, element));
+        let edge = model.mesh.shortest_side(element);
+        let speed = wave_speed(model, element);
         self.mass += element_mass(model, element);
         self.shortest_edge = self.shortest_edge.min(edge);
         self.wave_speed = self.wave_speed.max(speed);
@@ -284,19 +285,14 @@ fn prescribed(model: &Model) -> usize {
 }
 
 /// Reference coordinates of the nodes of an element.
-pub(crate) fn corners(model: &Model, element: &Element) -> Vec<[f64; 2]> {
+pub(crate) fn corners(model: &Model, element: &Element) -> SmallVec<[[f64; 2]; 4]> {
     let coordinates = |&node: &usize| model.mesh.coordinates[node];
     element.nodes.iter().map(coordinates).collect()
 }
 
-/// Ends of the sides of a polygon.
-fn sides(corners: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
-    let next = corners.iter().cycle().skip(1);
-    corners.iter().zip(next).map(|(a, b)| (*a, *b))
-}
-
 fn area(corners: &[[f64; 2]]) -> f64 {
-    let twice: f64 = sides(corners).map(|(a, b)| cross(a, b)).sum();
+    let next = corners.iter().skip(1).chain(corners.first());
+    let twice: f64 = corners.iter().zip(next).map(|(&a, &b)| cross(a, b)).sum();
     0.5 * twice
 }
 
@@ -305,12 +301,6 @@ pub(crate) fn element_mass(model: &Model, element: &Element) -> f64 {
     let section = &model.sections[element.section];
     let density = model.materials[section.material].density;
     density * section.thickness * area(&corners(model, element))
-}
-
-/// Length of the shortest side of a polygon.
-pub(crate) fn shortest_edge(corners: &[[f64; 2]]) -> f64 {
-    let length = |(a, b): ([f64; 2], [f64; 2])| (b[0] - a[0]).hypot(b[1] - a[1]);
-    sides(corners).map(length).fold(f64::INFINITY, f64::min)
 }
 
 /// Speed of longitudinal waves in an element.
