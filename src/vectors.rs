@@ -24,6 +24,16 @@ pub fn length(p: [f64; 2]) -> f64 {
     dot(p, p).sqrt()
 }
 
+/// Distance of two points, also of those so near or far that its square underflows or overflows.
+#[inline]
+pub fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
+    let d = difference(p, q);
+    match dot(d, d) {
+        square if square.is_normal() => square.sqrt(),
+        _ => d[0].hypot(d[1]),
+    }
+}
+
 /// Angle from p to q, between -pi and pi, positive to the left (rad).
 #[inline]
 pub fn angle(p: [f64; 2], q: [f64; 2]) -> f64 {
@@ -57,5 +67,9 @@ mod tests {
         assert_eq!((length(p), difference(p, q)), (5.0, [-7.0, -1.0]));
         assert_eq!(angle(p, q), std::f64::consts::FRAC_PI_2);
         assert_eq!(angle(q, p), -std::f64::consts::FRAC_PI_2);
+        for scale in [1.0, 1e-200, 1e200] {
+            let [p, q] = [p, q].map(|p| p.map(|x| x * scale));
+            assert_eq!(distance(p, q), 50f64.sqrt() * scale);
+        }
     }
 }

@@ -207,7 +207,8 @@ fn sets_of_instances_need_an_assembly() {
 fn the_blocks_run_and_their_instances_are_in_the_result() {
     let folder = TempDir::new().expect("folder");
     let path = |name: &str| folder.path().join(name);
-    fs::write(path("blocks.inp"), BLOCKS).expect("deck");
+    let deck = BLOCKS.replacen("*End Step", "*Monitor, dof=2, node=Block-2.3\n*End Step", 1);
+    fs::write(path("blocks.inp"), deck).expect("deck");
     let mut command = Command::cargo_bin("stickslip").expect("binary");
     let command = command
         .args(["run", "blocks.inp"])
@@ -215,6 +216,15 @@ fn the_blocks_run_and_their_instances_are_in_the_result() {
     let output = command.output().expect("started");
     let screen = String::from_utf8_lossy(&output.stdout);
     assert_eq!(output.status.code(), Some(0), "{screen}");
+    assert!(screen.contains("\nmonitor  U2(Block-2.3)\n"), "{screen}");
+    let status = fs::read_to_string(path("blocks.sta")).expect("status");
+    assert!(
+        status
+            .lines()
+            .nth(1)
+            .is_some_and(|l| l.ends_with(" U2(Block-2.3)")),
+        "{status}"
+    );
     let summary = ResultSummary::read(&path("blocks.vtkhdf")).expect("result");
     assert_eq!((summary.exit_status, summary.increments), (0, 200));
     let file = hdf5::File::open(path("blocks.vtkhdf")).expect("result");

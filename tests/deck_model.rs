@@ -417,6 +417,45 @@ fn history_sets_of_both_families() {
     assert_eq!(model.sets.history, [history(1, true), history(0, true)]);
 }
 
+#[test]
+fn damping_outside_materials_is_that_of_all_that_have_none() {
+    let card = "*DAMPING, ALPHA=0.5, BETA=1.E-4\n";
+    let betas = |text: &str| {
+        let (model, messages) = read(text);
+        assert_eq!(messages, "");
+        let materials = model.materials.iter();
+        materials
+            .map(|material| material.damping.beta)
+            .collect::<Vec<_>>()
+    };
+    let first = SQUARE.replacen("*NODE,", &format!("{card}*NODE,"), 1);
+    assert_eq!(betas(&first), [1e-4]);
+    let last = SQUARE.replacen("*STEP", &format!("{card}*STEP"), 1);
+    let own = last.replacen("*DENSITY", "*DAMPING, BETA=2.E-4\n*DENSITY", 1);
+    let own = own.replacen(
+        "*BOUNDARY",
+        "*MATERIAL, NAME=OTHER\n*DENSITY\n1.\n*BOUNDARY",
+        1,
+    );
+    assert_eq!((betas(&last), betas(&own)), (vec![1e-4], vec![2e-4, 1e-4]));
+}
+
+#[test]
+fn monitored_displacements_are_columns_of_the_status_file() {
+    let cards = |text: &str| {
+        let (model, messages) = square("*END STEP", &format!("{text}*END STEP"));
+        (model.sets.monitored, messages)
+    };
+    let (dofs, messages) =
+        cards("*MONITOR, NODE=4, DOF=2\n*MONITOR, NODE=1, DOF=1\n*MONITOR, NODE=4, DOF=2\n");
+    assert_eq!((dofs, messages.as_str()), (vec![7, 0], ""));
+    let (dofs, messages) = cards("*MONITOR, NODE=4, DOF=6\n");
+    assert!(
+        dofs.is_empty() && messages.contains("warning[D515]"),
+        "{messages}"
+    );
+}
+
 fn history(set: usize, each_node: bool) -> HistorySet {
     HistorySet { set, each_node }
 }

@@ -420,10 +420,16 @@ fn status_file_has_fixed_columns() {
     assert_eq!(lines[0], "# stickslip status file, format 1");
     assert_eq!(lines.len(), 2 + INCREMENTS);
     let names = lines[1].trim_start_matches('#').split_whitespace();
-    assert_eq!(names.count(), 13);
-    for line in &lines[2..] {
+    let names: Vec<&str> = names.collect();
+    assert_eq!((names.len(), &names[13..]), (15, &["U1(70)", "U2(10)"][..]));
+    for (i, line) in lines[2..].iter().enumerate() {
         assert_eq!(line.len(), lines[1].len(), "{line}");
-        assert_eq!(line.split_whitespace().count(), 13);
+        let values = line.split_whitespace();
+        let values: Vec<f64> = values.map(|v| v.parse().expect("number")).collect();
+        let u = report(i + 1).state.u;
+        for (value, dof) in values[13..].iter().zip([12, 1]) {
+            assert!((value - u[dof]).abs() <= 1e-9 * u[dof].abs(), "{line}");
+        }
     }
 }
 

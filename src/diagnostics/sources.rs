@@ -1,12 +1,13 @@
 //! Texts of the main deck and its included files: access by line, and the chain of includes.
 
 use super::{FileId, Span};
+use std::sync::Arc;
 
 /// One file of a deck.
 #[derive(Debug, Clone)]
 pub struct Source {
     name: String,
-    text: String,
+    text: Arc<str>,
     included_at: Option<Span>,
     line_starts: Vec<usize>,
 }
@@ -20,6 +21,11 @@ impl Source {
     /// Text without byte order mark.
     pub fn text(&self) -> &str {
         &self.text
+    }
+
+    /// The same text, shared.
+    pub fn shared_text(&self) -> Arc<str> {
+        Arc::clone(&self.text)
     }
 
     /// The card that included the file; `None` for the main deck.
@@ -59,7 +65,7 @@ impl Sources {
 
     /// Adds a file.
     pub fn add(&mut self, name: &str, text: &str, included_at: Option<Span>) -> FileId {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text).to_string();
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let starts = text.match_indices('\n').map(|(at, _)| at + 1);
         let line_starts = std::iter::once(0)
             .chain(starts)
@@ -67,7 +73,7 @@ impl Sources {
             .collect();
         self.files.push(Source {
             name: name.to_string(),
-            text,
+            text: text.into(),
             included_at,
             line_starts,
         });

@@ -253,7 +253,7 @@ fn time_points(index: usize, step: &Step, lines: &mut Lines) {
     }
 }
 
-/// When frames are written; sets of the history, in the first step.
+/// When frames are written; sets of the history and dofs in the status file, in the first step.
 fn requests(index: usize, step: &Step, model: &Model, lines: &mut Lines) {
     let when = match &step.frames {
         Frames::Default => None,
@@ -275,5 +275,10 @@ fn requests(index: usize, step: &Step, model: &Model, lines: &mut Lines) {
         let totals = if asked.each_node { "YES" } else { "ONLY" };
         lines.card("NODE PRINT", [name, set("TOTALS", totals)]);
         lines.row(["U", "V", "RF"].map(str::to_owned));
+    }
+    let monitored = &model.sets.monitored;
+    for &dof in monitored.iter().filter(|_| index == 0) {
+        let [node, direction] = dof_fields(dof, model);
+        lines.card("MONITOR", [set("NODE", node), set("DOF", direction)]);
     }
 }

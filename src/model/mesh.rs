@@ -1,9 +1,8 @@
 //! The mesh: nodes, elements with their sides, and sets; connected bodies (union-find over the
 //! nodes of the elements) and exterior faces.
 
-use std::collections::HashMap;
-
 use super::ElementType;
+use crate::vectors::distance;
 
 /// Nodes and elements of a model.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -41,9 +40,16 @@ impl Mesh {
 
     /// Faces that belong to one element only, in the order of the elements.
     pub fn exterior_faces(&self) -> Vec<Face> {
-        let sides = SharedSides::new(self);
+        let at_nodes = ElementsAtNodes::new(self);
         let faces = self.faces();
-        faces.filter(|&face| !sides.contains(face, self)).collect()
+        faces.filter(|&face| !at_nodes.share(face, self)).collect()
+    }
+
+    /// Length of the shortest side of an element.
+    pub fn shortest_side(&self, element: &Element) -> f64 {
+        let ends = |side: [usize; 2]| side.map(|node| self.coordinates[node]);
+        let lengths = element.sides().map(ends).map(|[a, b]| distance(a, b));
+        lengths.fold(f64::INFINITY, f64::min)
     }
 
     /// All sides of all elements.
@@ -54,23 +60,53 @@ impl Mesh {
     }
 }
 
-/// Sides between elements of a mesh: number of elements by the nodes of each side.
-pub struct SharedSides(HashMap<[usize; 2], usize>);
+/// The elements at every node of a mesh, in the order of the deck.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ElementsAtNodes {
+    /// Where those of every node start among all, `N + 1` entries.
+    starts: Vec<u32>,
+    elements: Vec<u32>,
+}
 
-impl SharedSides {
-    /// Counts the elements of every side.
+impl ElementsAtNodes {
+    /// Finds the elements of every node.
     pub fn new(mesh: &Mesh) -> Self {
-        let mut counts = HashMap::new();
-        for face in mesh.faces() {
-            *counts.entry(face.sorted_nodes(mesh)).or_default() += 1;
+        let mut starts = vec![0; mesh.node_count() + 1];
+        for &node in mesh.elements.iter().flat_map(|element| &element.nodes) {
+            starts[node] += 1;
         }
-        SharedSides(counts)
+        let mut end = 0;
+        for start in &mut starts {
+            end += *start;
+            *start = end;
+        }
+        // from the ends back to the starts
+        let mut elements = vec![0; end as usize];
+        for (index, element) in mesh.elements.iter().enumerate().rev() {
+            for &node in &element.nodes {
+                starts[node] -= 1;
+                elements[starts[node] as usize] = index as u32;
+            }
+        }
+        ElementsAtNodes { starts, elements }
+    }
+
+    /// The elements at a node, none at one that the mesh does not have.
+    pub fn of(&self, node: usize) -> impl DoubleEndedIterator<Item = usize> + '_ {
+        let ends = [node, node + 1].map(|i| self.starts.get(i).map(|&start| start as usize));
+        let elements = match ends {
+            [Some(start), Some(end)] => &self.elements[start..end],
+            _ => &[],
+        };
+        elements.iter().map(|&element| element as usize)
     }
 
     /// Whether two elements share a face.
-    pub fn contains(&self, face: Face, mesh: &Mesh) -> bool {
-        let count = self.0.get(&face.sorted_nodes(mesh));
-        count.is_some_and(|&count| count > 1)
+    pub fn share(&self, face: Face, mesh: &Mesh) -> bool {
+        let [a, b] = face.nodes(mesh);
+        let joins = |side: [usize; 2]| side == [a, b] || side == [b, a];
+        let has_side = |&element: &usize| mesh.elements[element].sides().any(joins);
+        self.of(a).filter(has_side).nth(1).is_some()
     }
 }
 
@@ -121,12 +157,6 @@ impl Face {
     /// Node indices [a, b]; the body lies on the left of the direction from a to b.
     pub fn nodes(&self, mesh: &Mesh) -> [usize; 2] {
         mesh.elements[self.element].side(self.side)
-    }
-
-    /// Node indices in increasing order, the same for both elements of a side.
-    fn sorted_nodes(&self, mesh: &Mesh) -> [usize; 2] {
-        let [a, b] = self.nodes(mesh);
-        [a.min(b), a.max(b)]
     }
 }
 

@@ -27,7 +27,7 @@ pub use load::{
     BodyForce, Load, PointLoad, Pressure, Rate, Support, SupportMotion, Traction, Variation,
 };
 pub use material::{Damping, Material, Section};
-pub use mesh::{Element, Face, Mesh, Set, SharedSides};
+pub use mesh::{Element, ElementsAtNodes, Face, Mesh, Set};
 pub use sets::{HistorySet, Instance, NamedSets, element_name, node_name};
 pub use settings::{
     ContactMass, Factorization, Impact, ImpactTime, LandingRule, LcpChoice, Scheme, Settings,

@@ -1,5 +1,5 @@
 //! Named sets of nodes and elements, the node sets of the history output (group `/history/nodes` of
-//! the result file), and instances of parts: which nodes and elements are theirs, and the numbers these
+//! the result file), dofs in the status file, and instances of parts: which nodes and elements are theirs, and the numbers these
 //! have in the part. The numbers of the mesh are then the program's own, each once.
 
 use super::mesh::{Mesh, Set};
@@ -13,6 +13,8 @@ pub struct NamedSets {
     pub elements: Vec<Set>,
     /// Node sets whose motion and reactions go to the history, each at most once.
     pub history: Vec<HistorySet>,
+    /// Dofs whose displacements stand in the status file, each at most once.
+    pub monitored: Vec<usize>,
     /// Instances of parts, in the order of their nodes; none in a flat deck.
     pub instances: Vec<Instance>,
 }

@@ -93,7 +93,7 @@ impl<'a> ResultWriter<'a> {
     fn publish(&mut self) -> io::Result<()> {
         if self.status.is_none() {
             self.claim.publish()?;
-            self.status = Some(StatusFile::create(&self.claim.files().status)?);
+            self.status = Some(StatusFile::create(&self.claim.files().status, self.model)?);
             self.console.begin_log()?;
         }
         Ok(())

@@ -158,6 +158,7 @@ mod tests {
         };
         let mesh = Mesh {
             elements: [[1, 2, 5, 4], [2, 3, 6, 5]].map(element).into(),
+            coordinates: coordinates.clone(),
             ..Mesh::default()
         };
         let contact =

@@ -3,7 +3,7 @@
 
 use super::catalogue::{Catalogue, help_for, list_of, with_article};
 use super::label::{instance_of, label, number_of};
-use crate::deck::{Card, Deck, Name, Text};
+use crate::deck::{Card, Deck, Name, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span, closest};
 use std::cell::OnceCell;
 
@@ -47,9 +47,12 @@ impl<'a> Context<'a> {
         self.d.errors_found()
     }
 
-    /// Where a point of a part is in the instance of a span (length).
-    pub fn placed(&self, at: [f64; 2], span: Span) -> [f64; 2] {
-        let instance = self.deck.instance_of(span);
+    /// Where a point of a part is in the instance of a row (length).
+    pub fn placed(&self, at: [f64; 2], row: &Row) -> [f64; 2] {
+        if self.deck.instances.is_empty() {
+            return at;
+        }
+        let instance = self.deck.instance_of(row.span());
         instance.map_or(at, |instance| instance.placement.of(at))
     }
 

@@ -1,4 +1,6 @@
-//! Labels of nodes and elements: the number in the deck and the instance of a part.
+//! Labels of nodes and elements: the number in the deck and the instance of a part; maps from them.
+
+use std::collections::BTreeMap;
 
 /// Bits of a label that hold the number; those above hold the instance.
 const NUMBER_BITS: u32 = 32;
@@ -17,4 +19,135 @@ pub(super) fn number_of(label: u64) -> u64 {
 /// The instance in a label; 0 outside instances.
 pub(super) fn instance_of(label: u64) -> u32 {
     (label >> NUMBER_BITS) as u32
+}
+
+/// A map from labels, small and fast where they follow each other, as those of meshes do.
+#[derive(Debug, Clone)]
+pub(super) struct LabelMap<T> {
+    /// Runs of successive labels in increasing order: the first label, and where its value is.
+    runs: Vec<(u64, usize)>,
+    /// Values of the labels of all runs.
+    values: Vec<T>,
+    /// Labels added behind larger ones.
+    others: BTreeMap<u64, T>,
+}
+
+impl<T> Default for LabelMap<T> {
+    fn default() -> LabelMap<T> {
+        LabelMap {
+            runs: Vec::new(),
+            values: Vec::new(),
+            others: BTreeMap::new(),
+        }
+    }
+}
+
+impl<T> LabelMap<T> {
+    /// Value of a label.
+    pub fn get(&self, label: u64) -> Option<&T> {
+        match self.place(label) {
+            Some(place) => self.values.get(place),
+            None => self.others.get(&label),
+        }
+    }
+
+    /// Sets the value of a label; returns the one before.
+    pub fn insert(&mut self, label: u64, value: T) -> Option<T> {
+        if let Some(place) = self.place(label) {
+            let slot = self.values.get_mut(place)?;
+            return Some(std::mem::replace(slot, value));
+        }
+        let last = (self.runs.last())
+            .map(|&(first, place)| first + (self.values.len() - place) as u64 - 1);
+        if last.is_some_and(|last| label < last) || self.others.contains_key(&label) {
+            return self.others.insert(label, value);
+        }
+        if last.is_none_or(|last| label > last + 1) {
+            self.runs.push((label, self.values.len()));
+        }
+        self.values.push(value);
+        None
+    }
+
+    /// Index of a label of the runs among the values.
+    fn place(&self, label: u64) -> Option<usize> {
+        let run = self.runs.partition_point(|&(first, _)| first <= label);
+        let &(first, place) = self.runs.get(run.checked_sub(1)?)?;
+        let end = self
+            .runs
+            .get(run)
+            .map_or(self.values.len(), |&(_, next)| next);
+        let place = place + usize::try_from(label - first).ok()?;
+        (place < end).then_some(place)
+    }
+
+    /// All labels with their values, in order.
+    pub fn iter(&self) -> impl Iterator<Item = (u64, &T)> {
+        self.between(0, u64::MAX).into_iter()
+    }
+
+    /// Labels from `first` to `last` with their values, in order.
+    pub fn between(&self, first: u64, last: u64) -> Vec<(u64, &T)> {
+        if last < first {
+            return Vec::new();
+        }
+        let others = self.others.range(first..=last);
+        let mut all: Vec<(u64, &T)> = others.map(|(&label, value)| (label, value)).collect();
+        let is_sorted = all.is_empty();
+        let before = self.runs.partition_point(|&(start, _)| start <= first);
+        let ends = self.runs.iter().skip(1).map(|&(_, place)| place);
+        let ends = ends.chain([self.values.len()]);
+        let runs = self.runs.iter().zip(ends).skip(before.saturating_sub(1));
+        for (&(start, place), end) in runs.take_while(|((start, _), _)| *start <= last) {
+            let values = self.values.get(place..end).unwrap_or_default();
+            let labelled = (start..).zip(values);
+            let skipped = first.saturating_sub(start) as usize;
+            all.extend(
+                labelled
+                    .skip(skipped)
+                    .take_while(|(label, _)| *label <= last),
+            );
+        }
+        if !is_sorted {
+            all.sort_unstable_by_key(|(label, _)| *label);
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_label_map_is_a_map_in_order() {
+        let (mut ours, mut standard) = (LabelMap::default(), BTreeMap::new());
+        let labels = [
+            5,
+            6,
+            7,
+            3,
+            6,
+            9,
+            20,
+            21,
+            8,
+            4,
+            3,
+            label(1, 1),
+            22,
+            label(1, 2),
+        ];
+        for (value, label) in labels.into_iter().enumerate() {
+            assert_eq!(ours.insert(label, value), standard.insert(label, value));
+        }
+        for label in 0..30 {
+            assert_eq!(ours.get(label), standard.get(&label), "{label}");
+        }
+        for (first, last) in [(0, u64::MAX), (6, 20), (4, 4), (10, 19), (21, 22), (23, 30)] {
+            let expected: Vec<_> = standard.range(first..=last).map(|(&l, v)| (l, v)).collect();
+            assert_eq!(ours.between(first, last), expected, "{first} to {last}");
+        }
+        assert!(ours.between(7, 6).is_empty());
+    }
 }

@@ -16,7 +16,7 @@ mod steps;
 
 use crate::deck::{self, Card, Deck};
 use crate::diagnostics::{Diagnostics, Sources};
-use crate::model::{Element, Face, Mesh, Model, NamedSets, Set};
+use crate::model::{ElementsAtNodes, Face, Mesh, Model, NamedSets, Set};
 use contact::{pairs, rigid_surface};
 use context::Context;
 use materials::Properties;
@@ -47,9 +47,10 @@ pub fn build(deck: &Deck, d: &mut Diagnostics) -> Option<Model> {
 fn read(cx: &mut Context) -> Model {
     let outline = Outline::new(cx);
     let mut mesh_index = nodes_elements::read(&outline, cx);
-    checks::mesh(&mesh_index, cx);
+    let at_nodes = ElementsAtNodes::new(&mesh_index.mesh);
+    checks::mesh(&mesh_index, &at_nodes, cx);
     let sets = sets::read(&outline, &mesh_index, cx);
-    let mut surfaces = surface::read(&outline, &mesh_index, &sets, cx);
+    let mut surfaces = surface::read(&outline, &mesh_index, &sets, &at_nodes, cx);
     mesh_index.add_points(&surfaces.rigid_points);
     let rigid_bodies = rigid_surface::read(&outline, &mesh_index, &sets, &surfaces, cx);
     let properties = materials::read(&outline, &mesh_index, &sets, cx);
@@ -75,6 +76,7 @@ fn read(cx: &mut Context) -> Model {
             nodes: sets.nodes,
             elements: plane_sets(sets.elements, &sets.lines),
             history: steps.history,
+            monitored: steps.monitored,
             instances: mesh_index.instances,
         },
         surfaces: surfaces.all,
@@ -115,18 +117,13 @@ fn title(outline: &Outline) -> String {
     lines.collect::<Vec<_>>().join(" ")
 }
 
-fn with_sections(mesh: Mesh, properties: &Properties) -> Mesh {
+fn with_sections(mut mesh: Mesh, properties: &Properties) -> Mesh {
     let sections = properties.section_of.iter().zip(&properties.element_types);
-    let elements = mesh.elements.into_iter().zip(sections);
-    let elements = elements.map(|(element, (section, &element_type))| Element {
-        section: section.unwrap_or(0),
-        element_type,
-        ..element
-    });
-    Mesh {
-        elements: elements.collect(),
-        ..mesh
+    for (element, (section, &element_type)) in mesh.elements.iter_mut().zip(sections) {
+        element.section = section.unwrap_or(0);
+        element.element_type = element_type;
     }
+    mesh
 }
 
 /// Warns about parameters that the reader has not used.

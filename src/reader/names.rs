@@ -2,10 +2,10 @@
 //! indices. Names left undefined by a reported error are not reported again.
 
 use super::context::Context;
-use super::label::{instance_of, label};
+use super::label::{LabelMap, instance_of, label};
 use crate::deck::{Card, Name, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 
 /// The names of one kind of thing, numbered in the order of their definition.
 pub(super) struct Names {
@@ -141,7 +141,7 @@ const LARGEST_LABEL: i64 = 999_999_999;
 pub(super) struct Labels {
     what: &'static str,
     code: Code,
-    index: BTreeMap<u64, Labelled>,
+    index: LabelMap<Labelled>,
     /// Whether some could not be read, which is reported.
     pub incomplete: bool,
 }
@@ -152,7 +152,7 @@ impl Labels {
         Labels {
             what,
             code,
-            index: BTreeMap::new(),
+            index: LabelMap::default(),
             incomplete: false,
         }
     }
@@ -164,7 +164,7 @@ impl Labels {
 
     /// Meaning of a number.
     pub fn get(&self, label: u64) -> Option<Labelled> {
-        self.index.get(&label).copied()
+        self.index.get(label).copied()
     }
 
     /// Index of the node or element with this number; reports one that does not exist.
@@ -220,8 +220,7 @@ impl Labels {
 
     /// Labels from `first` to `last` with their meaning, in order.
     pub fn between(&self, first: u64, last: u64) -> impl Iterator<Item = (u64, Labelled)> {
-        let valid = first <= last;
-        let range = if valid { first..=last } else { 0..=0 };
-        self.index.range(range).map(|(&label, &l)| (label, l))
+        let found = self.index.between(first, last).into_iter();
+        found.map(|(label, &labelled)| (label, labelled))
     }
 }

@@ -141,6 +141,19 @@ fn damping_that_cannot_be() {
         text
     });
     insta::assert_snapshot!(texts.join("\n"));
+    let card = "*DAMPING, BETA=1.E-5";
+    let (d, text) = messages(&model(&format!("{card}\n{card}")));
+    assert_eq!(
+        d.iter().map(|item| item.code).collect::<Vec<_>>(),
+        [Code::RepeatedCard],
+        "{text}"
+    );
+    let (d, text) = messages(&step(card));
+    assert_eq!(
+        d.iter().map(|item| item.code).collect::<Vec<_>>(),
+        [Code::WrongPlace],
+        "{text}"
+    );
 }
 
 #[test]
@@ -222,6 +235,14 @@ fn names_of_other_kinds() {
             square("FOOT, 1, 2", "FOOT 1, 2"),
             step("*BOUNDARY, AMPLITUDE=A\n4, 1"),
         ],
+    ));
+}
+
+#[test]
+fn sets_of_several_nodes_where_one_is_meant() {
+    insta::assert_snapshot!(texts_of(
+        Code::BadValue,
+        &[step("*MONITOR, NODE=FOOT, DOF=2")]
     ));
 }
 

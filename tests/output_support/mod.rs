@@ -43,6 +43,7 @@ pub fn model() -> Model {
             nodes: vec![set("ALL", 0..7), set("TIP", [6]), set("NOTHING", [])],
             elements: vec![set("SQUARES", 0..2)],
             history: vec![asked(1, true), asked(2, true), asked(0, false)],
+            monitored: vec![12, 1],
             instances: Vec::new(),
         },
         surfaces: vec![

@@ -6,19 +6,18 @@
 //! body.
 
 use crate::contact::tolerances::{INSIDE_ROUND_OFF, NEARER_HALF};
-use std::collections::HashMap;
+use smallvec::SmallVec;
 
 use super::projection::project;
-use crate::model::Mesh;
+use crate::model::{Element, ElementsAtNodes, Mesh};
 use crate::vectors::{difference, dot};
 
 /// The elements of a mesh, found by their sides.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Interior {
-    /// Sides [a, b] of every element, the element on their left.
-    sides: Vec<Box<[[usize; 2]]>>,
-    /// Element on the left of the side from a to b.
-    left: HashMap<[usize; 2], usize>,
+    /// Nodes of every element; its sides lead from each to the next, the element on their left.
+    nodes: Vec<SmallVec<[u32; 4]>>,
+    at_nodes: ElementsAtNodes,
 }
 
 /// A line and the elements that it goes through.
@@ -31,14 +30,27 @@ struct Line {
 impl Interior {
     /// The inside of the bodies of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
-        let sides: Vec<Box<[[usize; 2]]>> = (mesh.elements.iter())
-            .map(|element| element.sides().collect())
-            .collect();
-        let mut left = HashMap::with_capacity(4 * sides.len());
-        for (i, sides) in sides.iter().enumerate() {
-            left.extend(sides.iter().map(|&side| (side, i)));
+        let first_nodes = |element: &Element| element.sides().map(|[a, _]| a as u32).collect();
+        Interior {
+            nodes: mesh.elements.iter().map(first_nodes).collect(),
+            at_nodes: ElementsAtNodes::new(mesh),
         }
-        Interior { sides, left }
+    }
+
+    /// Sides [a, b] of an element.
+    fn sides(&self, element: usize) -> impl Iterator<Item = [usize; 2]> + '_ {
+        let nodes = &self.nodes[element];
+        let next = nodes.iter().skip(1).chain(nodes.first());
+        nodes
+            .iter()
+            .zip(next)
+            .map(|(&a, &b)| [a as usize, b as usize])
+    }
+
+    /// Element on the left of the side from a to b.
+    fn left(&self, side: [usize; 2]) -> Option<usize> {
+        let has_side = |&element: &usize| self.sides(element).any(|other| other == side);
+        self.at_nodes.of(side[0]).rfind(has_side)
     }
 
     /// Whether a node behind the line of a segment, at the positions `at`, has penetrated the body
@@ -82,7 +94,7 @@ impl Interior {
         depths: f64,
         at: impl Fn(usize) -> [f64; 2],
     ) -> Option<Line> {
-        let first = *self.left.get(&segment)?;
+        let first = self.left(segment)?;
         let ([a, b], s) = (segment.map(&at), at(node));
         let p = project(s, a, b);
         let xi = p.xi.clamp(0.0, 1.0);
@@ -96,8 +108,8 @@ impl Interior {
         while let Some((element, [_, end])) = parts.pop() {
             line.elements.push(element);
             line.stays |= end >= 1.0;
-            for &[p, q] in &self.sides[element] {
-                if let Some(&next) = self.left.get(&[q, p])
+            for [p, q] in self.sides(element) {
+                if let Some(next) = self.left([q, p])
                     && !line.elements.contains(&next)
                     && parts.iter().all(|(listed, _)| *listed != next)
                     && let Some(part) = self.part(next, from, to, &at)
@@ -119,7 +131,7 @@ impl Interior {
         at: impl Fn(usize) -> [f64; 2],
     ) -> Option<[f64; 2]> {
         let [mut start, mut end] = [0.0_f64, 1.0_f64];
-        for side in &self.sides[element] {
+        for side in self.sides(element) {
             let side = project(from, at(side[0]), at(side[1]));
             // distances outside the side at both ends of the line
             let along = dot(difference(from, to), side.normal);
@@ -143,7 +155,7 @@ impl Interior {
     }
 
     fn has_node(&self, line: &Line, node: usize) -> bool {
-        let has = |&element: &usize| self.sides[element].iter().any(|&[a, _]| a == node);
+        let has = |&element: &usize| self.sides(element).any(|[a, _]| a == node);
         line.elements.iter().any(has)
     }
 }
@@ -151,7 +163,7 @@ impl Interior {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Element, ElementType};
+    use crate::model::ElementType;
 
     /// A strip of two layers, one element each in its half, of the length 1 and the thickness `t`,
     /// as triangles or not; its nodes are 0 to 8, row by row. Node 9 is anywhere.

@@ -2,9 +2,10 @@
 //! is reported with its place.
 
 use crate::deck::keywords::Keyword;
-use crate::deck::lines::{Line, Text, span_in};
+use crate::deck::lines::{Fields, Line, Text, span_in};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, FileId, Span};
 use std::cell::Cell;
+use std::sync::Arc;
 
 /// A keyword line and its data lines.
 #[derive(Debug, Clone)]
@@ -124,43 +125,50 @@ impl Card {
     }
 }
 
-/// A data line.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// A data line: a place in the text of its file, cut into fields when they are asked for.
+#[derive(Debug, Clone)]
 pub struct Row {
-    text: Box<str>,
+    /// Text of the whole file.
+    source: Arc<str>,
+    /// Byte at which the line starts.
+    start: usize,
+    /// Bytes of the line.
+    length: u32,
     file: FileId,
     line: u32,
     instance: u32,
-    fields: Box<[(u32, u32)]>,
 }
 
 impl Row {
-    /// The line cut into `fields`.
-    pub(crate) fn new(line: &Line, fields: Vec<(u32, u32)>) -> Row {
+    /// A line of the file with the text `source`.
+    pub(crate) fn new(line: &Line, source: &Arc<str>) -> Row {
         Row {
-            text: line.text.into(),
+            source: Arc::clone(source),
+            start: line.start,
+            length: line.text.len() as u32,
             file: line.file,
             line: line.number,
             instance: 0,
-            fields: fields.into(),
         }
     }
 
     /// The line as typed.
     pub fn text(&self) -> &str {
-        &self.text
+        let end = self.start + self.length as usize;
+        self.source.get(self.start..end).unwrap_or("")
     }
 
     /// Place of the visible text.
     pub fn span(&self) -> Span {
-        let start = self.text.len() - self.text.trim_start().len();
-        self.span_between(start, self.text.trim_end().len())
+        let text = self.text();
+        let start = text.len() - text.trim_start().len();
+        self.span_between(start, text.trim_end().len())
     }
 
     fn span_between(&self, start: usize, end: usize) -> Span {
         Span {
             instance: self.instance,
-            ..span_in(&self.text, self.file, self.line, start, end)
+            ..span_in(self.text(), self.file, self.line, start, end)
         }
     }
 
@@ -172,9 +180,10 @@ impl Row {
 
     /// All fields in order, empty ones included.
     pub fn fields(&self) -> impl Iterator<Item = Text<'_>> {
-        self.fields.iter().map(|&(start, end)| Text {
-            text: self.text.get(start as usize..end as usize).unwrap_or(""),
-            span: self.span_between(start as usize, end as usize),
+        let text = self.text();
+        Fields::new(text).map(move |(start, end)| Text {
+            text: text.get(start..end).unwrap_or(""),
+            span: self.span_between(start, end),
         })
     }
 

@@ -7,6 +7,7 @@ use crate::deck::keywords::{Data, Keyword, Status};
 use crate::deck::lines::{Line, Text, assignment};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Span};
 use std::collections::HashSet;
+use std::sync::Arc;
 
 /// All cards of a deck.
 #[derive(Debug, Clone, Default)]
@@ -77,8 +78,8 @@ impl Collector {
         }
     }
 
-    /// Adds a data line to the last card.
-    pub fn data(&mut self, line: &Line, d: &mut Diagnostics) {
+    /// Adds a data line of the file with the text `source` to the last card.
+    pub fn data(&mut self, line: &Line, source: &Arc<str>, d: &mut Diagnostics) {
         let text_only = self
             .deck
             .cards
@@ -86,8 +87,12 @@ impl Collector {
             .is_some_and(|c| c.keyword.data == Data::Text);
         match self.rows {
             Rows::Skip => {}
-            Rows::Keep if text_only => self.keep(Row::new(line, Vec::new())),
-            Rows::Keep => self.keep(Row::new(line, line.fields(d))),
+            Rows::Keep => {
+                if !text_only {
+                    line.check_quotes(d);
+                }
+                self.keep(Row::new(line, source));
+            }
             Rows::Stray => self.refuse(line, "a data line before the first keyword".into(), d),
             Rows::Refuse => {
                 let title = self.deck.cards.last().map(Card::title).unwrap_or_default();

@@ -2,9 +2,10 @@
 
 use super::collect::{Collector, Deck, Inclusion};
 use super::resolve::Piece;
-use crate::deck::lines::{Content, Kind, Line, Text};
-use crate::diagnostics::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
+use crate::deck::lines::{Content, Fields, Kind, Line, Text};
+use crate::diagnostics::{Code, Diagnostic, Diagnostics, FileId, Source, Sources, Span};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Deepest nesting of included files.
 const DEEPEST: usize = 20;
@@ -22,7 +23,7 @@ pub fn read(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
         Ok(content) => {
             let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
             let open = vec![(identity(path), folder)];
-            collect(&name, &content, open, sources, d)
+            collect(&name, content, open, sources, d)
         }
         Err(why) => {
             let message = format!("cannot read {name}: {why}");
@@ -40,24 +41,26 @@ pub fn read(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
 
 /// Reads a deck from text; it cannot include files.
 pub fn parse_str(name: &str, text: &str, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
-    collect(name, &Content::new(text), Vec::new(), sources, d)
+    collect(name, Content::new(text), Vec::new(), sources, d)
 }
 
 fn collect(
     name: &str,
-    content: &Content,
+    content: Content,
     open: Vec<(PathBuf, PathBuf)>,
     sources: &mut Sources,
     d: &mut Diagnostics,
 ) -> Deck {
     let file = sources.add(name, &content.text, None);
+    let complaint = content.complaint(file);
+    drop(content);
     let mut reading = Reading {
         sources,
         d,
         collector: Collector::new(),
         open,
     };
-    reading.content(file, content, false);
+    reading.content(file, complaint, false);
     let deck = reading.collector.deck;
     if deck.cards.is_empty() && !d.has_errors() {
         let start = Span {
@@ -85,37 +88,37 @@ struct Reading<'a> {
 
 impl Reading<'_> {
     /// Reads the lines of a file; reports content that is not text of a deck.
-    fn content(&mut self, file: FileId, content: &Content, rows_only: bool) {
-        match content.complaint(file) {
-            Some(complaint) => {
+    fn content(&mut self, file: FileId, complaint: Option<Diagnostic>, rows_only: bool) {
+        let source = self.sources.get(file).map(Source::shared_text);
+        match (complaint, source) {
+            (Some(complaint), _) => {
                 self.collector.deck.incomplete = true;
                 self.d.push(complaint);
             }
-            None => self.lines(file, without_mark(&content.text), rows_only),
+            (None, Some(source)) => self.lines(file, &source, rows_only),
+            (None, None) => {}
         }
     }
 
     /// Feeds the lines of a file to the collector.
-    fn lines(&mut self, file: FileId, text: &str, rows_only: bool) {
-        let lines = numbered(file, text);
-        let mut rest = lines.as_slice();
-        while let Some((line, after)) = rest.split_first() {
-            rest = after;
+    fn lines(&mut self, file: FileId, source: &Arc<str>, rows_only: bool) {
+        let mut rest = Lines::new(file, source);
+        while let Some(line) = rest.next() {
             match line.kind() {
                 Kind::Blank | Kind::Comment => {}
                 Kind::Data => {
-                    self.remark_on_form(line);
-                    self.collector.data(line, self.d);
+                    self.remark_on_form(&line);
+                    self.collector.data(&line, source, self.d);
                 }
-                Kind::Keyword if rows_only => return self.keyword_among_rows(line),
-                Kind::Keyword => rest = self.keyword(line, after),
+                Kind::Keyword if rows_only => return self.keyword_among_rows(&line),
+                Kind::Keyword => self.keyword(&line, &mut rest),
             }
         }
     }
 
-    /// A keyword line with its continuation lines; returns the lines after them.
-    fn keyword<'l>(&mut self, line: &Line<'l>, after: &'l [Line<'l>]) -> &'l [Line<'l>] {
-        let (more, after) = continuation(line, after);
+    /// A keyword line with its continuation lines, which are taken from `rest`.
+    fn keyword(&mut self, line: &Line, rest: &mut Lines) {
+        let more = continuation(line, rest);
         let mut pieces = pieces(line, false, self.d);
         self.remark_on_form(line);
         for line in &more {
@@ -125,7 +128,6 @@ impl Reading<'_> {
         if let Some(inclusion) = self.collector.keyword(&pieces, self.d) {
             self.include(&inclusion);
         }
-        after
     }
 
     fn keyword_among_rows(&mut self, line: &Line) {
@@ -137,6 +139,10 @@ impl Reading<'_> {
     }
 
     fn remark_on_form(&mut self, line: &Line) {
+        let is_ascii = line.text.is_ascii();
+        if is_ascii && line.text.len() <= LONGEST_LINE {
+            return;
+        }
         if line.text.chars().count() > LONGEST_LINE {
             let message = "a line of more than 256 characters";
             self.d.push_once(
@@ -160,7 +166,9 @@ impl Reading<'_> {
                 let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
                 let file = self.sources.add(&name, &content.text, Some(inclusion.span));
                 self.open.push((identity(&path), folder));
-                self.content(file, &content, inclusion.rows_only);
+                let complaint = content.complaint(file);
+                drop(content);
+                self.content(file, complaint, inclusion.rows_only);
                 self.open.pop();
             }
             Err((code, why)) => {
@@ -208,46 +216,76 @@ impl Reading<'_> {
 }
 
 /// The lines of a text, which end with LF or CRLF.
-fn numbered(file: FileId, text: &str) -> Vec<Line<'_>> {
-    let bare = |line: &str| line.len() - usize::from(line.ends_with('\r'));
-    let lines = text.split('\n').zip(1..);
-    lines
-        .map(|(line, number)| Line {
-            file,
-            number,
-            text: line.get(..bare(line)).unwrap_or(line),
-        })
-        .collect()
+#[derive(Clone)]
+struct Lines<'a> {
+    /// The last line so far.
+    last: Line<'a>,
+    /// Lines that follow.
+    rest: std::str::Split<'a, char>,
+    /// Byte at which they start.
+    start: usize,
 }
 
-/// The data lines that continue a keyword line ending with a comma, and the lines after them.
-fn continuation<'l>(first: &Line<'l>, after: &'l [Line<'l>]) -> (Vec<Line<'l>>, &'l [Line<'l>]) {
+impl<'a> Lines<'a> {
+    /// All lines of a text.
+    fn new(file: FileId, text: &'a str) -> Lines<'a> {
+        let before = Line {
+            file,
+            number: 0,
+            start: 0,
+            text: "",
+        };
+        Lines {
+            last: before,
+            rest: text.split('\n'),
+            start: 0,
+        }
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = Line<'a>;
+
+    fn next(&mut self) -> Option<Line<'a>> {
+        let line = self.rest.next()?;
+        self.last = Line {
+            number: self.last.number + 1,
+            start: self.start,
+            text: line.strip_suffix('\r').unwrap_or(line),
+            ..self.last
+        };
+        self.start += line.len() + 1;
+        Some(self.last)
+    }
+}
+
+/// The data lines that continue a keyword line ending with a comma, taken from the lines after it.
+fn continuation<'l>(first: &Line, rest: &mut Lines<'l>) -> Vec<Line<'l>> {
     let mut more = Vec::new();
-    let mut rest = after;
     let mut open = first.ends_with_comma();
     while open {
-        let silent = |line: &&Line| matches!(line.kind(), Kind::Blank | Kind::Comment);
-        let skipped = rest.iter().take_while(silent).count();
-        match rest.get(skipped) {
+        let silent = |line: &Line| matches!(line.kind(), Kind::Blank | Kind::Comment);
+        let mut after = rest.clone();
+        match after.find(|line| !silent(line)) {
             Some(line) if line.kind() == Kind::Data => {
                 open = line.ends_with_comma();
-                more.push(*line);
-                rest = rest.get(skipped + 1..).unwrap_or(&[]);
+                more.push(line);
+                *rest = after;
             }
             _ => open = false,
         }
     }
-    (more, rest)
+    more
 }
 
 /// The pieces of a keyword line between commas.
 fn pieces<'l>(line: &Line<'l>, continued: bool, d: &mut Diagnostics) -> Vec<Piece<'l>> {
-    let fields = line.fields(d).into_iter();
-    fields
+    line.check_quotes(d);
+    Fields::new(line.text)
         .map(|(start, end)| Piece {
             text: Text {
-                text: line.text.get(start as usize..end as usize).unwrap_or(""),
-                span: line.span(start as usize, end as usize),
+                text: line.text.get(start..end).unwrap_or(""),
+                span: line.span(start, end),
             },
             continued,
         })
@@ -277,9 +315,4 @@ fn reason(error: &std::io::Error) -> String {
 /// Canonical path of a file, the same for all paths to it.
 fn identity(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
-}
-
-/// The text without its byte order mark.
-fn without_mark(text: &str) -> &str {
-    text.strip_prefix('\u{feff}').unwrap_or(text)
 }

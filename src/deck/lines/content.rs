@@ -63,6 +63,7 @@ impl Content {
 
     /// Error at the fault that ends the text.
     pub fn complaint(&self, file: FileId) -> Option<Diagnostic> {
+        let fault = self.fault?;
         let last = self.text.rsplit('\n').next().unwrap_or_default();
         let line = 1 + self.text.bytes().filter(|&byte| byte == b'\n').count();
         let span = Span {
@@ -73,7 +74,7 @@ impl Content {
             instance: 0,
         };
         let error = |code, message: String| Diagnostic::error(code, span, message);
-        Some(match self.fault? {
+        Some(match fault {
             Fault::Nul => error(Code::NotText, "a NUL byte: this is not a text".to_string())
                 .help("a deck is plain text, in ASCII or UTF-8"),
             Fault::Endless => {
@@ -86,13 +87,21 @@ impl Content {
 
 /// Number of bytes before the first fault; `length` is that of the line so far.
 fn sound(bytes: &[u8], length: &mut usize) -> usize {
-    for (at, &byte) in bytes.iter().enumerate() {
-        match byte {
-            0 => return at,
-            b'\n' => *length = 0,
-            _ if *length == LONGEST_LINE => return at,
-            _ => *length += 1,
+    let mut start = 0;
+    for line in bytes.split_inclusive(|&byte| byte == b'\n') {
+        let text = line.strip_suffix(b"\n").unwrap_or(line);
+        let most = text.len().min(LONGEST_LINE - *length);
+        let nul = text.iter().take(most).position(|&byte| byte == 0);
+        let used = nul.unwrap_or(most);
+        if used < text.len() {
+            return start + used;
         }
+        *length = if text.len() < line.len() {
+            0
+        } else {
+            *length + used
+        };
+        start += line.len();
     }
     bytes.len()
 }

@@ -14,6 +14,8 @@ pub(crate) struct Line<'a> {
     pub file: FileId,
     /// Its number, from 1.
     pub number: u32,
+    /// Byte of the file at which it starts.
+    pub start: usize,
     /// Its text without the line end.
     pub text: &'a str,
 }
@@ -59,28 +61,10 @@ impl<'a> Line<'a> {
         self.span(start, self.text.trim_end().len())
     }
 
-    /// Byte ranges of the fields between its commas, without blanks around them; an empty last
-    /// field is dropped. Commas between quotation marks do not count.
-    pub fn fields(&self, d: &mut Diagnostics) -> Vec<(u32, u32)> {
-        let mut fields = Vec::new();
-        let mut start = 0;
-        let mut quote = None;
-        for (at, byte) in self.text.bytes().enumerate() {
-            match (byte, quote) {
-                (b'"', None) => quote = Some(at),
-                (b'"', Some(_)) => quote = None,
-                (b',', None) => {
-                    fields.push(trimmed(self.text, start, at));
-                    start = at + 1;
-                }
-                _ => {}
-            }
-        }
-        let last = trimmed(self.text, start, self.text.len());
-        if last.0 < last.1 {
-            fields.push(last);
-        }
-        if let Some(at) = quote {
+    /// Reports a quotation mark that is not closed.
+    pub fn check_quotes(&self, d: &mut Diagnostics) {
+        let mut marks = self.text.match_indices('"');
+        if let (Some((at, _)), 1) = (marks.next_back(), (marks.count() + 1) % 2) {
             let message = "this quotation mark is not closed on its line";
             d.push(Diagnostic::error(
                 Code::OpenQuote,
@@ -88,15 +72,58 @@ impl<'a> Line<'a> {
                 message,
             ));
         }
-        fields
+    }
+}
+
+/// Byte ranges of the fields between the commas of a line, without blanks around them; an empty
+/// last field is dropped. Commas between quotation marks do not count.
+pub(crate) struct Fields<'a> {
+    text: &'a str,
+    /// Where the next field starts; behind the text after the last one.
+    start: usize,
+}
+
+impl<'a> Fields<'a> {
+    /// The fields of a line.
+    pub fn new(text: &'a str) -> Fields<'a> {
+        Fields { text, start: 0 }
+    }
+
+    /// End of the field at `start`: its comma, or the end of the text.
+    fn end(&self, start: usize) -> usize {
+        let mut quoted = false;
+        for (at, &byte) in self.text.as_bytes().iter().enumerate().skip(start) {
+            match byte {
+                b'"' => quoted = !quoted,
+                b',' if !quoted => return at,
+                _ => {}
+            }
+        }
+        self.text.len()
+    }
+}
+
+impl Iterator for Fields<'_> {
+    type Item = (usize, usize);
+
+    fn next(&mut self) -> Option<(usize, usize)> {
+        let start = self.start;
+        if start > self.text.len() {
+            return None;
+        }
+        let end = self.end(start);
+        self.start = end + 1;
+        let field = trimmed(self.text, start, end);
+        (end < self.text.len() || field.0 < field.1).then_some(field)
     }
 }
 
 /// Place of the bytes from `start` to `end` of line `number`.
 pub(crate) fn span_in(text: &str, file: FileId, number: u32, start: usize, end: usize) -> Span {
-    let characters = |range: std::ops::Range<usize>| {
-        let piece = text.get(range).unwrap_or("");
-        piece.chars().count() as u32
+    let is_ascii = text.is_ascii();
+    let characters = |range: std::ops::Range<usize>| match is_ascii {
+        true => range.len() as u32,
+        false => text.get(range).unwrap_or("").chars().count() as u32,
     };
     Span {
         file,
@@ -108,11 +135,17 @@ pub(crate) fn span_in(text: &str, file: FileId, number: u32, start: usize, end: 
 }
 
 /// The bytes from `start` to `end` without blanks around them.
-fn trimmed(text: &str, start: usize, end: usize) -> (u32, u32) {
+fn trimmed(text: &str, start: usize, end: usize) -> (usize, usize) {
+    let bytes = text.as_bytes().get(start..end).unwrap_or_default();
+    let blanks = bytes.iter().take_while(|&&byte| byte == b' ').count();
+    let visible = bytes.get(blanks..).unwrap_or_default();
+    let is_visible = |byte: Option<&u8>| byte.is_some_and(u8::is_ascii_graphic);
+    if is_visible(visible.first()) && is_visible(visible.last()) {
+        return (start + blanks, end);
+    }
     let piece = text.get(start..end).unwrap_or("");
     let first = start + piece.len() - piece.trim_start().len();
-    let last = first + piece.trim().len();
-    (first as u32, last as u32)
+    (first, first + piece.trim().len())
 }
 
 /// Name and value of a parameter, `NAME` or `NAME=value`, with their offsets in bytes.
@@ -133,8 +166,7 @@ pub(crate) fn assignment(text: &str) -> Assignment<'_> {
         .parse(input);
     let piece = |span: LocatedSpan<&'_ str>| -> (usize, usize) {
         let start = span.location_offset();
-        let (first, last) = trimmed(text, start, start + span.fragment().len());
-        (first as usize, last as usize)
+        trimmed(text, start, start + span.fragment().len())
     };
     let cut = |(first, last): (usize, usize)| (text.get(first..last).unwrap_or(""), first);
     match parsed {

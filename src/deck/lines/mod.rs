@@ -8,7 +8,7 @@ mod text;
 pub(crate) mod word;
 
 pub(crate) use content::Content;
-pub(crate) use lexer::{Kind, Line, assignment, span_in};
+pub(crate) use lexer::{Fields, Kind, Line, assignment, span_in};
 pub use name::Name;
 pub use text::Text;
 pub(crate) use word::Match;

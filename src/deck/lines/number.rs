@@ -33,6 +33,9 @@ pub(crate) enum NotANumber {
 
 /// `[+-]digits`
 pub(crate) fn integer(text: &str) -> Result<i64, NotANumber> {
+    if let Some(value) = short_integer(text.as_bytes()) {
+        return Ok(value);
+    }
     let mut number = recognize((opt(one_of("+-")), digit1));
     let parsed: IResult<Input, Input> = number.parse(Input::new(text));
     let digits = whole(text, parsed)?;
@@ -41,6 +44,10 @@ pub(crate) fn integer(text: &str) -> Result<i64, NotANumber> {
 
 /// `[+-]digits[.digits][(E|D)[+-]digits]`, `.5`, `1.`, and `1.5-5` for `1.5E-5`
 pub(crate) fn real(text: &str) -> Result<Real, NotANumber> {
+    if let Some(value) = plain_real(text) {
+        let letterless = false;
+        return Ok(Real { value, letterless });
+    }
     let parsed = (mantissa, opt(exponent)).parse(Input::new(text));
     let (mantissa, exponent) = whole(text, parsed).map_err(|why| match is_exponent(text) {
         true => NotANumber::BareExponent,
@@ -52,6 +59,28 @@ pub(crate) fn real(text: &str) -> Result<Real, NotANumber> {
         Ok(value) if value.is_finite() => Ok(Real { value, letterless }),
         _ => Err(NotANumber::TooLarge),
     }
+}
+
+/// The value of up to 18 digits without a sign, as most numbers of a mesh are.
+fn short_integer(digits: &[u8]) -> Option<i64> {
+    if digits.is_empty() || digits.len() > 18 {
+        return None;
+    }
+    digits.iter().try_fold(0, |value, byte| {
+        let is_digit = byte.is_ascii_digit();
+        is_digit.then(|| 10 * value + i64::from(byte - b'0'))
+    })
+}
+
+/// The value of a number without `D`, whose exponent has its letter: the standard library reads
+/// these as they are. It also reads `inf` and `nan`, and `1.` and `.5`, but not `.`.
+fn plain_real(text: &str) -> Option<f64> {
+    let is_plain = |byte: &u8| matches!(byte, b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E');
+    let value = text
+        .bytes()
+        .all(|byte| is_plain(&byte))
+        .then(|| text.parse().ok());
+    value.flatten().filter(|value: &f64| value.is_finite())
 }
 
 fn mantissa(input: Input) -> IResult<Input, Input> {

@@ -2,7 +2,7 @@
 //! file.
 
 use crate::model::{Bodies, Model};
-use crate::output::text::{corners, shortest_edge, wave_speed};
+use crate::output::text::{corners, wave_speed};
 
 /// Transit times of longitudinal waves in a body: the time scales for the choice of the increment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,7 +20,7 @@ pub(crate) fn body_times(model: &Model, bodies: &Bodies) -> Vec<BodyTimes> {
     let mut range = vec![[[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]]; bodies.count];
     for (element, &body) in model.mesh.elements.iter().zip(&bodies.of_element) {
         let (corners, speed) = (corners(model, element), wave_speed(model, element));
-        edge[body] = edge[body].min(shortest_edge(&corners) / speed);
+        edge[body] = edge[body].min(model.mesh.shortest_side(element) / speed);
         slowest[body] = slowest[body].min(speed);
         let [lower, upper] = &mut range[body];
         for x in corners {

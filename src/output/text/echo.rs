@@ -2,6 +2,7 @@
 
 use super::format::{counted, general, grouped, scientific};
 use super::layout::{label, wrap, wrap_words};
+use super::status::monitored;
 use crate::model::{
     Contact, Element, ElementType, Frames, Impact, ImpactTime, LandingRule, Model, Scheme,
     Settings, SolverChoice, Step, SurfaceKind,
@@ -9,6 +10,7 @@ use crate::model::{
 use crate::output::frames::{DEFAULT_FRAMES, are_dense};
 use crate::prepare::{InitialGap, PreparedModel};
 use crate::vectors::cross;
+use smallvec::SmallVec;
 
 /// Most nodes that are named.
 const MOST_NAMES: usize = 12;
@@ -55,8 +57,8 @@ impl ModelEcho {
     }
 
     fn add(&mut self, model: &Model, element: &Element) {
-        let corners = corners(model, element);
-        let (edge, speed) = (shortest_edge(&corners), wave_speed(model, element));
+        let edge = model.mesh.shortest_side(element);
+        let speed = wave_speed(model, element);
         self.mass += element_mass(model, element);
         self.shortest_edge = self.shortest_edge.min(edge);
         self.wave_speed = self.wave_speed.max(speed);
@@ -74,6 +76,7 @@ impl ModelEcho {
             lines.extend(contact_lines(model, contact, gaps));
         }
         lines.extend(mass_lines(prepared));
+        lines.extend(monitor_lines(model));
         for (i, step) in model.steps.iter().enumerate() {
             lines.extend(self.step_lines(i, step));
         }
@@ -242,6 +245,15 @@ fn mass_lines(prepared: &PreparedModel) -> Vec<String> {
     wrap_words("mass", &text)
 }
 
+/// Displacements in the status file.
+fn monitor_lines(model: &Model) -> Vec<String> {
+    let names: Vec<String> = monitored(model).into_iter().map(|(name, _)| name).collect();
+    match names.is_empty() {
+        true => Vec::new(),
+        false => wrap("monitor", &names),
+    }
+}
+
 /// The smallest gap at the start.
 fn smallest_gap(gaps: &[InitialGap]) -> String {
     match gaps.iter().map(|gap| gap.gap).reduce(f64::min) {
@@ -273,19 +285,14 @@ fn prescribed(model: &Model) -> usize {
 }
 
 /// Reference coordinates of the nodes of an element.
-pub(crate) fn corners(model: &Model, element: &Element) -> Vec<[f64; 2]> {
+pub(crate) fn corners(model: &Model, element: &Element) -> SmallVec<[[f64; 2]; 4]> {
     let coordinates = |&node: &usize| model.mesh.coordinates[node];
     element.nodes.iter().map(coordinates).collect()
 }
 
-/// Ends of the sides of a polygon.
-fn sides(corners: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
-    let next = corners.iter().cycle().skip(1);
-    corners.iter().zip(next).map(|(a, b)| (*a, *b))
-}
-
 fn area(corners: &[[f64; 2]]) -> f64 {
-    let twice: f64 = sides(corners).map(|(a, b)| cross(a, b)).sum();
+    let next = corners.iter().skip(1).chain(corners.first());
+    let twice: f64 = corners.iter().zip(next).map(|(&a, &b)| cross(a, b)).sum();
     0.5 * twice
 }
 
@@ -294,12 +301,6 @@ pub(crate) fn element_mass(model: &Model, element: &Element) -> f64 {
     let section = &model.sections[element.section];
     let density = model.materials[section.material].density;
     density * section.thickness * area(&corners(model, element))
-}
-
-/// Length of the shortest side of a polygon.
-pub(crate) fn shortest_edge(corners: &[[f64; 2]]) -> f64 {
-    let length = |(a, b): ([f64; 2], [f64; 2])| (b[0] - a[0]).hypot(b[1] - a[1]);
-    sides(corners).map(length).fold(f64::INFINITY, f64::min)
 }
 
 /// Speed of longitudinal waves in an element.

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use super::format::{scientific, signed};
 use super::screen::{closed, sticking};
 use crate::dynamics::IncrementReport;
+use crate::model::Model;
 use crate::output::error::at;
 
 const TITLE: &str = "# stickslip status file, format 1";
@@ -39,23 +40,42 @@ fn aligned(values: [String; 13]) -> String {
         .collect()
 }
 
+/// Width of the column of a displacement, unless its name is longer.
+const DISPLACEMENT: usize = 18;
+
+/// Names of the displacements that the deck wants to see, such as `U2(13)`, with their dofs.
+pub(crate) fn monitored(model: &Model) -> Vec<(String, usize)> {
+    let name = |&dof: &usize| format!("U{}({})", dof % 2 + 1, model.node_name(dof / 2));
+    let dofs = model.sets.monitored.iter();
+    dofs.map(|dof| (name(dof), *dof)).collect()
+}
+
 /// Writes the status file.
 pub(crate) struct StatusFile {
     file: BufWriter<File>,
     path: PathBuf,
+    /// Further columns: dofs with the widths of their columns.
+    monitored: Vec<(usize, usize)>,
     /// When lines were last written to the disk.
     written: Instant,
 }
 
 impl StatusFile {
     /// Creates the file, or empties it.
-    pub fn create(path: &Path) -> io::Result<Self> {
+    pub fn create(path: &Path, model: &Model) -> io::Result<Self> {
         let mut file = BufWriter::new(File::create(path).map_err(at(path))?);
-        let names = aligned(COLUMNS.map(|(name, _)| name.to_owned()));
+        let mut names = aligned(COLUMNS.map(|(name, _)| name.to_owned()));
+        let mut columns = Vec::new();
+        for (name, dof) in monitored(model) {
+            let width = DISPLACEMENT.max(name.chars().count() + 1);
+            names.push_str(&format!("{name:>width$}"));
+            columns.push((dof, width));
+        }
         writeln!(file, "{TITLE}\n#{}", &names[1..]).map_err(at(path))?;
         let mut status = StatusFile {
             file,
             path: path.to_owned(),
+            monitored: columns,
             written: Instant::now(),
         };
         status.flush()?;
@@ -92,7 +112,12 @@ impl StatusFile {
             solver.pivots.to_string(),
             signed(error, 3),
         ];
-        writeln!(self.file, "{}", aligned(values)).map_err(at(&self.path))?;
+        let mut line = aligned(values);
+        for &(dof, width) in &self.monitored {
+            let value = scientific(report.state.u[dof], 10);
+            line.push_str(&format!("{value:>width$}"));
+        }
+        writeln!(self.file, "{line}").map_err(at(&self.path))?;
         match self.written.elapsed() >= PAUSE {
             true => self.flush(),
             false => Ok(()),

@@ -3,6 +3,7 @@
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Equation, Mesh, Model};
 use crate::reader::context::Context;
+use crate::vectors::distance;
 use std::collections::BTreeSet;
 
 /// Distance below which nodes lie at the same place, in lengths of the shortest element side: the
@@ -68,46 +69,77 @@ impl Joined {
 
 /// Pairs of nodes of elements at the same place, the smaller index first.
 fn coincident(mesh: &Mesh) -> Vec<[usize; 2]> {
-    let sides = mesh.elements.iter().flat_map(|element| element.sides());
-    let lengths = sides.map(|[a, b]| distance(mesh, a, b));
-    let cell = lengths.fold(f64::INFINITY, f64::min);
+    let sides = mesh.elements.iter().map(|e| mesh.shortest_side(e));
+    let cell = sides.fold(f64::INFINITY, f64::min);
     let mut used = vec![false; mesh.node_count()];
     for &node in mesh.elements.iter().flat_map(|element| &element.nodes) {
         used[node] = true;
     }
-    let nodes = (0..used.len()).filter(|&node| used[node]);
-    let mut entries: Vec<(u64, usize)> = nodes
-        .flat_map(|node| cells(mesh.coordinates[node], cell).map(move |key| (key, node)))
-        .collect();
-    entries.sort_unstable();
-    let mut pairs = BTreeSet::new();
-    for group in entries.chunk_by(|a, b| a.0 == b.0) {
-        for (i, &(_, p)) in group.iter().enumerate() {
-            let others = group[i + 1..].iter().map(|&(_, q)| q);
-            let close = |&q: &usize| p < q && distance(mesh, p, q) <= SAME_PLACE * cell;
-            pairs.extend(others.filter(close).map(|q| [p, q]));
+    let mut grid = Grid::new(cell, used.len());
+    let mut pairs = Vec::new();
+    for q in (0..used.len()).filter(|&node| used[node]) {
+        let at = mesh.coordinates[q];
+        let is_close = |&p: &usize| distance(mesh.coordinates[p], at) <= SAME_PLACE * cell;
+        pairs.extend(grid.beside(at).filter(is_close).map(|p| [p, q]));
+        grid.add(q, at);
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
+}
+
+/// Nodes in the cells of a grid.
+struct Grid {
+    /// Length of a cell's side.
+    cell: f64,
+    /// Last node in the cells of every key; cells may share one.
+    last: Vec<u32>,
+    /// For every node the one before it in its cell.
+    before: Vec<u32>,
+}
+
+impl Grid {
+    /// No node.
+    const NONE: u32 = u32::MAX;
+
+    /// An empty grid for `count` nodes.
+    fn new(cell: f64, count: usize) -> Grid {
+        Grid {
+            cell,
+            last: vec![Grid::NONE; count.next_power_of_two()],
+            before: vec![Grid::NONE; count],
         }
     }
-    pairs.into_iter().collect()
-}
 
-/// Keys of the cells of a grid that hold the place: beside the line between two cells it belongs to
-/// both. Other cells may share a key.
-fn cells(at: [f64; 2], cell: f64) -> impl Iterator<Item = u64> {
-    // The grid is shifted so that the nodes of regular meshes lie off its lines.
-    let numbers = at.map(|x| {
-        let x = x / cell + 0.37;
-        [x - SAME_PLACE, x + SAME_PLACE].map(|x| x.floor() as i64 as u64)
-    });
-    let several = |[low, high]: [u64; 2]| [low].into_iter().chain((low != high).then_some(high));
-    several(numbers[0]).flat_map(move |i| {
+    /// Adds a node to its cell.
+    fn add(&mut self, node: usize, at: [f64; 2]) {
+        let [i, j] = at.map(|x| self.number(x, 0.0));
+        let key = self.key(i, j);
+        self.before[node] = std::mem::replace(&mut self.last[key], node as u32);
+    }
+
+    /// Nodes in the cells at a place: in two or four beside the lines between them.
+    fn beside(&self, at: [f64; 2]) -> impl Iterator<Item = usize> + '_ {
+        let numbers = at.map(|x| [-SAME_PLACE, SAME_PLACE].map(|by| self.number(x, by)));
+        let several =
+            |[low, high]: [u64; 2]| [low].into_iter().chain((low != high).then_some(high));
+        let rows = move |i| several(numbers[1]).map(move |j| self.key(i, j));
+        several(numbers[0]).flat_map(rows).flat_map(move |key| {
+            let known = |node: u32| (node != Grid::NONE).then_some(node as usize);
+            let before = move |&node: &usize| known(self.before[node]);
+            std::iter::successors(known(self.last[key]), before)
+        })
+    }
+
+    /// Number of the column or row of cells that holds a coordinate moved by a part of a cell.
+    fn number(&self, x: f64, by: f64) -> u64 {
+        // The grid is shifted so that the nodes of regular meshes lie off its lines.
+        (x / self.cell + 0.37 + by).floor() as i64 as u64
+    }
+
+    fn key(&self, i: u64, j: u64) -> usize {
         // odd factor of the golden ratio: spreads the columns over the keys
-        let column = i.wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        several(numbers[1]).map(move |j| column ^ j)
-    })
-}
-
-fn distance(mesh: &Mesh, a: usize, b: usize) -> f64 {
-    let (a, b) = (mesh.coordinates[a], mesh.coordinates[b]);
-    (b[0] - a[0]).hypot(b[1] - a[1])
+        let key = i.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ j;
+        key as usize & (self.last.len() - 1)
+    }
 }

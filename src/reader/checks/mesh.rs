@@ -2,22 +2,20 @@
 
 use super::magnitudes::unusable;
 use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::model::{ElementsAtNodes, Mesh};
 use crate::reader::context::Context;
 use crate::reader::mesh::MeshIndex;
-use std::collections::HashMap;
+use crate::vectors::{cross, difference, distance};
+use smallvec::SmallVec;
 
 /// Smallest cross product of two sides, relative to the square of the longest side.
 const FLAT: f64 = 1e-10;
 
 /// Reports elements that are clockwise, degenerate, not convex or defined twice.
-pub(crate) fn mesh(mesh_index: &MeshIndex, cx: &mut Context) {
-    let mut known: HashMap<Vec<usize>, usize> = HashMap::new();
-    let elements = mesh_index.mesh.elements.iter().enumerate();
-    for ((index, element), &span) in elements.zip(&mesh_index.element_spans) {
+pub(crate) fn mesh(mesh_index: &MeshIndex, at_nodes: &ElementsAtNodes, cx: &mut Context) {
+    for (index, &span) in mesh_index.element_spans.iter().enumerate() {
         shape(index, mesh_index, span, cx);
-        let mut nodes = element.nodes.clone();
-        nodes.sort_unstable();
-        if let Some(first) = known.insert(nodes, index) {
+        if let Some(first) = same_nodes(index, &mesh_index.mesh, at_nodes) {
             let [element, first] = [index, first].map(|e| mesh_index.element_name(e));
             let message = format!("element {element} has the nodes of element {first}");
             cx.error(Code::RepeatedElement, span, message);
@@ -25,18 +23,26 @@ pub(crate) fn mesh(mesh_index: &MeshIndex, cx: &mut Context) {
     }
 }
 
+/// The last element before element `index` that has the same nodes.
+fn same_nodes(index: usize, mesh: &Mesh, at_nodes: &ElementsAtNodes) -> Option<usize> {
+    let nodes = &mesh.elements[index].nodes;
+    let is_same = |&other: &usize| {
+        let others = &mesh.elements[other].nodes;
+        others.len() == nodes.len() && others.iter().all(|node| nodes.contains(node))
+    };
+    let before = at_nodes.of(nodes[0]).take_while(|&other| other < index);
+    before.filter(is_same).last()
+}
+
 fn shape(index: usize, mesh_index: &MeshIndex, span: Span, cx: &mut Context) {
     let mesh = &mesh_index.mesh;
     let element = &mesh.elements[index];
-    let at: Vec<[f64; 2]> = element.nodes.iter().map(|&n| mesh.coordinates[n]).collect();
-    let count = at.len();
-    let side = |i: usize| {
-        let (a, b) = (at[i % count], at[(i + 1) % count]);
-        [b[0] - a[0], b[1] - a[1]]
-    };
-    let longest = (0..count)
-        .map(|i| side(i)[0].hypot(side(i)[1]))
-        .fold(0.0, f64::max);
+    let ends = element
+        .sides()
+        .map(|side| side.map(|n| mesh.coordinates[n]));
+    let sides: SmallVec<[[[f64; 2]; 2]; 4]> = ends.collect();
+    let lengths = sides.iter().map(|&[a, b]| distance(a, b));
+    let longest = lengths.fold(0.0, f64::max);
     if !longest.is_finite() {
         let what = format!(
             "the longest side of element {}",
@@ -44,16 +50,18 @@ fn shape(index: usize, mesh_index: &MeshIndex, span: Span, cx: &mut Context) {
         );
         return unusable(&what, longest, span, cx);
     }
-    let turn = |i: usize| {
-        let (s, t) = (side(i), side(i + 1));
-        s[0] / longest * (t[1] / longest) - s[1] / longest * (t[0] / longest)
-    };
-    let left = (0..count).filter(|&i| turn(i) > FLAT).count();
-    let right = (0..count).filter(|&i| turn(i) < -FLAT).count();
-    let label = mesh_index.element_name(index);
-    let (fault, help) = if left == count {
+    let count = sides.len();
+    let scaled = |&[a, b]: &[[f64; 2]; 2]| difference(a, b).map(|x| x / longest);
+    let scaled: SmallVec<[[f64; 2]; 4]> = sides.iter().map(scaled).collect();
+    let next = scaled.iter().skip(1).chain(scaled.first());
+    let turns = scaled.iter().zip(next).map(|(&s, &t)| cross(s, t));
+    let left = turns.clone().filter(|&turn| turn > FLAT).count();
+    if left == count {
         return;
-    } else if right == count {
+    }
+    let right = turns.filter(|&turn| turn < -FLAT).count();
+    let label = mesh_index.element_name(index);
+    let (fault, help) = if right == count {
         (
             format!("element {label} is numbered clockwise"),
             "reverse its node order",

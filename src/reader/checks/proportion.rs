@@ -12,15 +12,10 @@ const MOST_SIDES: f64 = 1e6;
 
 /// Shortest time in which a wave crosses a side of an element.
 pub(crate) fn crossing_time(mesh: &Mesh, properties: &Properties) -> Option<f64> {
-    let length = |[a, b]: [usize; 2]| {
-        let (a, b) = (mesh.coordinates[a], mesh.coordinates[b]);
-        (b[0] - a[0]).hypot(b[1] - a[1])
-    };
     let of_element = |(element, section): (&Element, &Option<usize>)| {
         let material = properties.sections.get((*section)?)?.material;
         let material = properties.materials.get(material)?;
-        let shortest = element.sides().map(length).reduce(f64::min)?;
-        Some(shortest / material.wave_speed(element.element_type.plane))
+        Some(mesh.shortest_side(element) / material.wave_speed(element.element_type.plane))
     };
     let times = mesh.elements.iter().zip(&properties.section_of);
     let shortest = times.filter_map(of_element).reduce(f64::min)?;

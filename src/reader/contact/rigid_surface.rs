@@ -76,8 +76,10 @@ pub(crate) fn read(
 
 fn rigid(card: &Card, named: Named, cx: &mut Context) -> Option<Rigid> {
     let reference = card.required("REF NODE", cx.d);
-    let reference =
-        reference.and_then(|field| reference_node(field, named.mesh_index, named.sets, cx));
+    let reference = reference.and_then(|field| {
+        let other = (Code::RigidSurface, "a rigid surface moves with one node");
+        named.sets.single_node(field, named.mesh_index, other, cx)
+    });
     let (surface, name, nodes) = match card.value("ELSET") {
         Some(field) => of_elements(field, card, named, cx)?,
         None => of_surface(card, named, cx)?,
@@ -126,26 +128,6 @@ fn of_elements(field: Text, card: &Card, named: Named, cx: &mut Context) -> Opti
     let elements = elements.iter().filter_map(|&e| mesh.elements.get(e));
     let nodes: BTreeSet<usize> = elements.flat_map(|e| &e.nodes).copied().collect();
     Some((None, field.text.to_string(), nodes.into_iter().collect()))
-}
-
-/// The node that a field names, or the only node of the set.
-fn reference_node(
-    field: Text,
-    mesh_index: &MeshIndex,
-    sets: &Sets,
-    cx: &mut Context,
-) -> Option<usize> {
-    let errors = cx.errors();
-    match sets.nodes_of(field, mesh_index, cx)[..] {
-        [node] => Some(node),
-        _ if cx.errors() > errors || cx.may_lack_cards() || mesh_index.nodes.incomplete => None,
-        ref nodes => {
-            let message = format!("{} holds {} nodes", field.text, nodes.len());
-            let error = Diagnostic::error(Code::RigidSurface, field.span, message);
-            cx.d.push(error.help("a rigid surface moves with one node"));
-            None
-        }
-    }
 }
 
 /// The rigid surfaces with their reference nodes, as the model holds them; rigid elements are known by

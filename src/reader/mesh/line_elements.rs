@@ -6,12 +6,13 @@ use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Face, Mesh, Plane};
 use crate::reader::context::Context;
 use crate::reader::names::Labelled;
+use smallvec::SmallVec;
 use std::collections::HashMap;
 
 /// A line element as the deck gives it, with the numbers of its nodes.
 pub(super) struct RawLine {
     pub label: u64,
-    pub nodes: Vec<u64>,
+    pub nodes: SmallVec<[u64; 4]>,
     pub span: Span,
 }
 

@@ -1,10 +1,11 @@
 //! The mesh with the node and element numbers of the deck, and the sets named on `*NODE` and
 //! `*ELEMENT`.
 
-use crate::deck::Name;
+use crate::deck::{Name, Row};
 use crate::diagnostics::Span;
 use crate::model::{Element, ElementType, Face, Instance, Mesh, element_name, node_name};
 use crate::reader::names::{Labelled, Labels};
+use smallvec::SmallVec;
 
 /// The mesh, with the numbers and sets that the deck gives to its nodes and elements.
 pub(crate) struct MeshIndex {
@@ -37,16 +38,16 @@ pub(crate) struct Group {
 }
 
 /// A node as the deck gives it.
-pub(in crate::reader) struct RawNode {
+pub(in crate::reader) struct RawNode<'a> {
     pub label: u64,
     pub at: [f64; 3],
-    pub span: Span,
+    pub row: &'a Row,
 }
 
 /// An element as the deck gives it, with the numbers of its nodes.
 pub(in crate::reader) struct RawElement {
     pub label: u64,
-    pub nodes: Vec<u64>,
+    pub nodes: SmallVec<[u64; 4]>,
     pub element_type: ElementType,
     pub span: Span,
 }

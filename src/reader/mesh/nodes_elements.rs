@@ -10,12 +10,14 @@ use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::Mesh;
 use crate::reader::context::Context;
+use crate::reader::label::LabelMap;
 use crate::reader::names::{Labelled, Labels};
-use std::collections::{BTreeSet, HashMap};
+use smallvec::SmallVec;
+use std::collections::BTreeSet;
 
 /// Reads nodes and elements; leaves out nodes of neither an element, a rigid surface nor an
 /// equation.
-pub(crate) fn read(outline: &Outline, cx: &mut Context) -> MeshIndex {
+pub(crate) fn read<'a>(outline: &Outline<'a>, cx: &mut Context<'a>) -> MeshIndex {
     let errors = cx.errors();
     let mut reading = Reading {
         nodes_incomplete: outline.blocks("NODE").next().is_none(),
@@ -41,29 +43,35 @@ pub(crate) fn read(outline: &Outline, cx: &mut Context) -> MeshIndex {
 }
 
 #[derive(Default)]
-struct Reading {
-    nodes: Vec<RawNode>,
-    node_index: HashMap<u64, Option<usize>>,
+struct Reading<'a> {
+    nodes: Vec<RawNode<'a>>,
+    node_index: LabelMap<Option<usize>>,
     elements: Vec<RawElement>,
     lines: Vec<RawLine>,
-    element_index: HashMap<u64, Span>,
+    element_index: LabelMap<Span>,
     node_groups: Vec<Group>,
     element_groups: Vec<Group>,
     nodes_incomplete: bool,
     elements_incomplete: bool,
 }
 
-impl Reading {
-    fn node_card(&mut self, card: &Card, cx: &mut Context) {
+impl<'a> Reading<'a> {
+    fn node_card(&mut self, card: &'a Card, cx: &mut Context) {
         let mut labels = Vec::new();
         for row in &card.rows {
-            row.at_most(4, cx.d);
+            let fields: SmallVec<[Text; 4]> = row.fields().collect();
+            if fields.len() > 4 {
+                row.at_most(4, cx.d);
+            }
             let numbers = Labels::new("node", Code::UndefinedNode);
-            let field = row.required(0, "the node number", cx.d);
+            let field = match fields.first() {
+                Some(field) if !field.is_empty() => Some(*field),
+                _ => row.required(0, "the node number", cx.d),
+            };
             match field.and_then(|field| numbers.label(field, cx)) {
                 Some(label) => {
                     labels.push(label);
-                    self.node(label, row, cx);
+                    self.node(label, row, &fields, cx);
                 }
                 None => self.nodes_incomplete = true,
             }
@@ -71,31 +79,30 @@ impl Reading {
         self.node_groups.extend(group(card, "NSET", labels, cx));
     }
 
-    fn node(&mut self, label: u64, row: &Row, cx: &mut Context) {
-        let coordinate = |i: usize, cx: &mut Context| row.real_or(i, 0.0, cx.d);
-        let at = [1, 2, 3].map(|i| coordinate(i, cx));
+    fn node(&mut self, label: u64, row: &'a Row, fields: &[Text], cx: &mut Context) {
+        let known = self.node_index.get(label).copied();
+        let at = [1, 2, 3].map(|i| match fields.get(i) {
+            Some(field) if !field.is_empty() => field.real(cx.d),
+            _ => Some(0.0),
+        });
         let [Some(x), Some(y), Some(z)] = at else {
-            self.node_index.entry(label).or_insert(None);
+            if known.is_none() {
+                self.node_index.insert(label, None);
+            }
             return;
         };
-        let [x, y] = cx.placed([x, y], row.span());
-        let next = self.nodes.len();
-        let known = *self.node_index.entry(label).or_insert(Some(next));
-        match known.and_then(|index| self.nodes.get(index)) {
-            Some(first) if first.at != [x, y, z] => {
-                let message = format!(
-                    "node {} has other coordinates on line {}",
-                    cx.named(label),
-                    first.span.line
-                );
-                cx.error(Code::RepeatedNode, row.span(), message);
-            }
-            None if known.is_some() => self.nodes.push(RawNode {
-                label,
-                at: [x, y, z],
-                span: row.span(),
-            }),
-            _ => {}
+        let [x, y] = cx.placed([x, y], row);
+        let at = [x, y, z];
+        let Some(known) = known else {
+            self.node_index.insert(label, Some(self.nodes.len()));
+            self.nodes.push(RawNode { label, at, row });
+            return;
+        };
+        let first = known.and_then(|index| self.nodes.get(index));
+        if let Some(first) = first.filter(|first| first.at != at) {
+            let (name, line) = (cx.named(label), first.row.span().line);
+            let message = format!("node {name} has other coordinates on line {line}");
+            cx.error(Code::RepeatedNode, row.span(), message);
         }
     }
 
@@ -124,23 +131,24 @@ impl Reading {
         let corners = kind.nodes();
         let span = rows.first()?.span();
         let numbers = Labels::new("element", Code::UndefinedElement);
-        let fields: Vec<Text> = rows.iter().flat_map(Row::fields).collect();
+        let fields: SmallVec<[Text; 10]> = rows.iter().flat_map(Row::fields).collect();
         let (first, rest) = fields.split_first()?;
         let label = numbers.label(*first, cx)?;
-        let name = cx.named(label);
         if rest.len() < corners && rest.iter().all(|field| field.integer(cx.d).is_some()) {
-            let found = rest.len();
+            let (name, found) = (cx.named(label), rest.len());
             let message = format!("element {name} needs {corners} nodes, found {found}");
             cx.error(Code::MissingField, span, message);
             return None;
         }
         if let Some(extra) = rest.get(corners) {
+            let name = cx.named(label);
             let message = format!("element {name} has {corners} nodes, this is one more");
             cx.error(Code::ExtraField, extra.span, message);
         }
         let nodes = self.element_nodes(label, rest.get(..corners)?, cx)?;
         if let Some(earlier) = self.element_index.insert(label, span) {
-            let message = format!("element {name} is defined on line {} too", earlier.line);
+            let (name, line) = (cx.named(label), earlier.line);
+            let message = format!("element {name} is defined on line {line} too");
             cx.error(Code::RepeatedElement, first.span, message);
             return Some(label);
         }
@@ -157,8 +165,13 @@ impl Reading {
     }
 
     /// Numbers of an element's nodes, which must exist and differ.
-    fn element_nodes(&self, label: u64, fields: &[Text], cx: &mut Context) -> Option<Vec<u64>> {
-        let mut nodes: Vec<u64> = Vec::new();
+    fn element_nodes(
+        &self,
+        label: u64,
+        fields: &[Text],
+        cx: &mut Context,
+    ) -> Option<SmallVec<[u64; 4]>> {
+        let mut nodes = SmallVec::new();
         let mut good = true;
         for field in fields {
             let numbers = Labels::new("node", Code::UndefinedNode);
@@ -172,7 +185,7 @@ impl Reading {
                 cx.error(Code::BadShape, field.span, message);
                 good = false;
             }
-            if !matches!(self.node_index.get(&node), Some(Some(_))) {
+            if !matches!(self.node_index.get(node), Some(Some(_))) {
                 good = false;
                 self.undefined_node(node, field.span, cx);
             }
@@ -182,7 +195,7 @@ impl Reading {
     }
 
     fn undefined_node(&self, node: u64, span: Span, cx: &mut Context) {
-        let known = self.node_index.contains_key(&node);
+        let known = self.node_index.get(node).is_some();
         if !known && !self.nodes_incomplete && !cx.deck.incomplete {
             let message = format!("node {} is not defined", cx.named(node));
             cx.error(Code::UndefinedNode, span, message);
@@ -220,13 +233,13 @@ impl Reading {
         if z.1 - z.0 > 1e-9 * size {
             let off = self.nodes.iter().find(|node| node.at[2] != first.at[2]);
             let message = format!("the mesh is not plane: z runs from {} to {}", z.0, z.1);
-            cx.error(Code::NotPlanar, off.unwrap_or(first).span, message);
+            cx.error(Code::NotPlanar, off.unwrap_or(first).row.span(), message);
         }
     }
 
     fn mesh_index(self, references: &BTreeSet<u64>, cx: &mut Context) -> MeshIndex {
         let mut used = vec![false; self.nodes.len()];
-        let index_of = |label: &u64| self.node_index.get(label).copied().flatten();
+        let index_of = |label: &u64| self.node_index.get(*label).copied().flatten();
         for index in self
             .elements
             .iter()
@@ -249,7 +262,7 @@ impl Reading {
         };
         mesh_index.nodes.incomplete = self.nodes_incomplete;
         mesh_index.elements.incomplete = self.elements_incomplete;
-        for &label in self.node_index.keys() {
+        for (label, _) in self.node_index.iter() {
             mesh_index.nodes.insert(label, Labelled::LeftOut);
         }
         for (node, used) in self.nodes.iter().zip(used) {
@@ -279,7 +292,7 @@ impl Reading {
             1 => format!("node {name} belongs to no element"),
             n => format!("{n} nodes belong to no element, the first is node {name}"),
         };
-        let warning = Diagnostic::warning(Code::UnusedNode, first.span, message);
+        let warning = Diagnostic::warning(Code::UnusedNode, first.row.span(), message);
         cx.d.push(warning.help("left out, together with what the deck says about them"));
     }
 }

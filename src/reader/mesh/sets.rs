@@ -34,6 +34,28 @@ impl Sets {
         }
     }
 
+    /// The node that a field names, or the only node of the set; reports other sets with a
+    /// code and a help. A node that is left out is none.
+    pub fn single_node(
+        &self,
+        field: Text,
+        mesh_index: &MeshIndex,
+        (code, help): (Code, &str),
+        cx: &mut Context,
+    ) -> Option<usize> {
+        let errors = cx.errors();
+        match self.nodes_of(field, mesh_index, cx)[..] {
+            [node] => Some(node),
+            _ if cx.errors() > errors || cx.may_lack_cards() || mesh_index.nodes.incomplete => None,
+            [] if cx.is_number(field) => None,
+            ref nodes => {
+                let message = format!("{} holds {} nodes", field.text, nodes.len());
+                cx.d.push(Diagnostic::error(code, field.span, message).help(help));
+                None
+            }
+        }
+    }
+
     /// The element, or the elements of the set, that a field names; reports line elements alone.
     pub fn elements_of(&self, field: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<usize> {
         let (elements, lines) = self.elements_and_lines_of(field, mesh_index, cx);
@@ -135,7 +157,8 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
 /// A set before the sets it lists are known.
 struct Draft {
     span: Span,
-    members: BTreeSet<usize>,
+    /// In any order, some perhaps several times.
+    members: Vec<usize>,
     children: Vec<usize>,
 }
 
@@ -166,7 +189,7 @@ impl<'a> Family<'a> {
         if index == self.drafts.len() {
             self.drafts.push(Draft {
                 span,
-                members: BTreeSet::new(),
+                members: Vec::new(),
                 children: Vec::new(),
             });
         }
@@ -176,12 +199,9 @@ impl<'a> Family<'a> {
     fn add_groups(&mut self, groups: &[Group]) {
         for group in groups {
             let index = self.open(group.name.clone(), group.span);
-            let found = group
-                .labels
-                .iter()
-                .filter_map(|&label| self.labels.get(label));
-            let members: Vec<usize> = found.filter_map(Labelled::index).collect();
-            self.extend(index, members);
+            let labels = self.labels;
+            let found = group.labels.iter().filter_map(|&label| labels.get(label));
+            self.extend(index, found.filter_map(Labelled::index));
         }
     }
 
@@ -314,9 +334,10 @@ fn resolve(names: &Names, mut drafts: Vec<Draft>, cx: &mut Context) -> Vec<Set> 
     }
     let mut ready: Vec<usize> = (0..drafts.len()).filter(|&i| open[i] == 0).collect();
     while let Some(child) = ready.pop() {
-        let members = drafts[child].members.clone();
+        sort(&mut drafts[child].members);
         for &parent in &parents[child] {
-            drafts[parent].members.extend(&members);
+            let members = drafts[child].members.clone();
+            drafts[parent].members.extend(members);
             open[parent] -= 1;
             if open[parent] == 0 {
                 ready.push(parent);
@@ -333,9 +354,20 @@ fn resolve(names: &Names, mut drafts: Vec<Draft>, cx: &mut Context) -> Vec<Set> 
     }
     let named = names.typed().zip(drafts);
     named
-        .map(|(name, draft)| Set {
-            name: name.to_string(),
-            members: draft.members.into_iter().collect(),
+        .map(|(name, mut draft)| {
+            sort(&mut draft.members);
+            Set {
+                name: name.to_string(),
+                members: draft.members,
+            }
         })
         .collect()
+}
+
+/// Sorts members and leaves out those that appear again.
+fn sort(members: &mut Vec<usize>) {
+    if !members.is_sorted_by(|a, b| a < b) {
+        members.sort_unstable();
+        members.dedup();
+    }
 }

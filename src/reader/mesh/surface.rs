@@ -6,7 +6,7 @@ use super::profile::Profile;
 use super::sets::Sets;
 use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span, closest};
-use crate::model::{Face, Mesh, SharedSides, Surface, SurfaceKind};
+use crate::model::{ElementsAtNodes, Face, Mesh, Surface, SurfaceKind};
 use crate::reader::context::Context;
 use crate::reader::names::Names;
 use std::collections::{BTreeSet, HashSet};
@@ -28,6 +28,7 @@ pub(crate) fn read(
     outline: &Outline,
     mesh_index: &MeshIndex,
     sets: &Sets,
+    at_nodes: &ElementsAtNodes,
     cx: &mut Context,
 ) -> Surfaces {
     let mut surfaces = Surfaces {
@@ -36,7 +37,6 @@ pub(crate) fn read(
         rigid: Vec::new(),
         rigid_points: Vec::new(),
     };
-    let shared = SharedSides::new(&mesh_index.mesh);
     for card in outline.model_cards("SURFACE") {
         let Some(name) = surfaces.names.new_name(card, cx) else {
             continue;
@@ -50,7 +50,7 @@ pub(crate) fn read(
                 surfaces.rigid_points.extend(&profile.points);
                 SurfaceKind::Rigid(profile.segments(first))
             }
-            _ => SurfaceKind::Faces(faces(card, mesh_index, sets, &shared, cx)),
+            _ => SurfaceKind::Faces(faces(card, mesh_index, sets, at_nodes, cx)),
         };
         if card.faulty || cx.errors() > errors {
             surfaces.names.spoil(&name);
@@ -109,7 +109,7 @@ fn faces(
     card: &Card,
     mesh_index: &MeshIndex,
     sets: &Sets,
-    shared: &SharedSides,
+    at_nodes: &ElementsAtNodes,
     cx: &mut Context,
 ) -> Vec<Face> {
     let mut faces = Vec::new();
@@ -124,9 +124,9 @@ fn faces(
                 let elements = sets.elements_of(field, mesh_index, cx);
                 named_faces(&elements, face, mesh_index, cx)
             }
-            None => unnamed_faces(field, (mesh_index, sets), shared, cx),
+            None => unnamed_faces(field, (mesh_index, sets), at_nodes, cx),
         };
-        report_interior(&found, shared, row, mesh_index, cx);
+        report_interior(&found, at_nodes, row, mesh_index, cx);
         let before = faces.len();
         faces.extend(found.iter().copied().filter(|&face| seen.insert(face)));
         if faces.len() - before < found.len() {
@@ -141,11 +141,11 @@ fn faces(
 fn unnamed_faces(
     field: Text,
     (mesh_index, sets): (&MeshIndex, &Sets),
-    shared: &SharedSides,
+    at_nodes: &ElementsAtNodes,
     cx: &mut Context,
 ) -> Vec<Face> {
     let (elements, lines) = sets.elements_and_lines_of(field, mesh_index, cx);
-    let mut faces = exterior_faces(&elements, shared, &mesh_index.mesh);
+    let mut faces = exterior_faces(&elements, at_nodes, &mesh_index.mesh);
     let known: HashSet<Face> = faces.iter().copied().collect();
     faces.extend(lines.into_iter().filter(|face| !known.contains(face)));
     faces
@@ -206,23 +206,23 @@ pub(crate) fn side_count(mesh: &Mesh, element: usize) -> usize {
 }
 
 /// Exterior sides of these elements, in order.
-fn exterior_faces(elements: &[usize], shared: &SharedSides, mesh: &Mesh) -> Vec<Face> {
+fn exterior_faces(elements: &[usize], at_nodes: &ElementsAtNodes, mesh: &Mesh) -> Vec<Face> {
     let sides =
         |&element: &usize| (0..side_count(mesh, element)).map(move |side| Face { element, side });
     let all = elements.iter().flat_map(sides);
-    all.filter(|&face| !shared.contains(face, mesh)).collect()
+    all.filter(|&face| !at_nodes.share(face, mesh)).collect()
 }
 
 /// Warns about faces between two elements.
 fn report_interior(
     faces: &[Face],
-    shared: &SharedSides,
+    at_nodes: &ElementsAtNodes,
     row: &Row,
     mesh_index: &MeshIndex,
     cx: &mut Context,
 ) {
     let mesh = &mesh_index.mesh;
-    let interior = || faces.iter().filter(|&&face| shared.contains(face, mesh));
+    let interior = || faces.iter().filter(|&&face| at_nodes.share(face, mesh));
     let Some(first) = interior().next().filter(|_| !cx.d.has_errors()) else {
         return;
     };

@@ -4,6 +4,7 @@ use crate::deck::Card;
 use crate::diagnostics::{Code, Diagnostic};
 use crate::model::{Amplitude, Load, TimeBase, Variation};
 use crate::reader::context::Context;
+use smallvec::SmallVec;
 use std::collections::BTreeMap;
 
 /// How a load without amplitude reaches its magnitude, and the step it is given in.
@@ -42,7 +43,7 @@ impl Operation {
 
 /// Loads of one kind by their keys.
 pub(crate) struct LoadHistory<K, T> {
-    parts: BTreeMap<K, Vec<Part<T>>>,
+    parts: BTreeMap<K, SmallVec<[Part<T>; 1]>>,
 }
 
 #[derive(Clone, Copy)]
@@ -135,8 +136,8 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
 }
 
 /// Joins constant loads at the same place and in the same direction.
-fn add_up<T: Copy + PartialEq>(parts: &mut Vec<Part<T>>) {
-    let mut sums: Vec<Part<T>> = Vec::new();
+fn add_up<T: Copy + PartialEq>(parts: &mut SmallVec<[Part<T>; 1]>) {
+    let mut sums: SmallVec<[Part<T>; 1]> = SmallVec::new();
     for part in parts.drain(..) {
         let joins = |sum: &&mut Part<T>| {
             let both = [sum.load.variation, part.load.variation];

@@ -6,6 +6,7 @@ pub(crate) mod equation;
 pub(crate) mod initial_velocity;
 mod load_history;
 mod loads;
+mod monitor;
 mod output_requests;
 mod settings;
 mod signal;

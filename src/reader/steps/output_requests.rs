@@ -1,6 +1,9 @@
-//! `*OUTPUT`, `*NODE OUTPUT`, `*NODE FILE`, `*NODE PRINT` and related keywords; `*TIME POINTS`.
+//! `*OUTPUT`, `*NODE OUTPUT`, `*NODE FILE`, `*NODE PRINT` and related keywords; `*TIME POINTS`,
+//! `*MONITOR`.
 
 use super::amplitude::time_base;
+use super::boundary::Targets;
+use super::monitor::monitored;
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic, shown};
 use crate::model::{Frames, HistorySet, TimeBase};
@@ -95,6 +98,8 @@ pub(crate) struct Requests {
     total_times: Option<Vec<f64>>,
     /// Node sets of the history.
     pub history: Vec<HistorySet>,
+    /// Dofs in the status file.
+    pub monitored: Vec<usize>,
 }
 
 impl Requests {
@@ -105,11 +110,13 @@ impl Requests {
             frames: Frames::Default,
             total_times: None,
             history: Vec::new(),
+            monitored: Vec::new(),
         }
     }
 
     /// Reads the output cards of a step.
-    pub fn cards(&mut self, cards: &[&Card], sets: &Sets, cx: &mut Context) {
+    pub fn cards(&mut self, cards: &[&Card], targets: Targets, cx: &mut Context) {
+        let sets = targets.sets;
         let mut in_history = None;
         for card in cards {
             match card.keyword.name {
@@ -126,6 +133,7 @@ impl Requests {
                 }
                 "EL PRINT" | "CONTACT PRINT" | "ENERGY OUTPUT" => {}
                 "RESTART" => restart(card, cx),
+                "MONITOR" => self.monitor(card, targets, cx),
                 _ => continue,
             }
             report_variables(card, cx);
@@ -178,6 +186,11 @@ impl Requests {
             Some(known) => known.each_node |= each_node,
             None => self.history.push(HistorySet { set, each_node }),
         }
+    }
+
+    fn monitor(&mut self, card: &Card, targets: Targets, cx: &mut Context) {
+        let new = monitored(card, targets, cx).filter(|dof| !self.monitored.contains(dof));
+        self.monitored.extend(new);
     }
 
     /// Sets the times of frames, if the card gives any.

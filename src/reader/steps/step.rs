@@ -22,6 +22,8 @@ pub(crate) struct Steps {
     pub all: Vec<Step>,
     /// Node sets of the history.
     pub history: Vec<HistorySet>,
+    /// Dofs in the status file.
+    pub monitored: Vec<usize>,
     /// Supports of the first step.
     pub at_start: Vec<Support>,
 }
@@ -63,6 +65,7 @@ pub(crate) fn read(
     Steps {
         all: steps,
         history: reading.requests.history,
+        monitored: reading.requests.monitored,
         at_start: at_start.unwrap_or_default(),
     }
 }
@@ -98,7 +101,7 @@ impl Reading<'_> {
         let period = increments.map_or(0.0, |increments| increments.period);
         self.own_settings(cards, number, cx);
         self.conditions(cards, context, cx);
-        self.requests.cards(&cards.cards, self.targets.sets, cx);
+        self.requests.cards(&cards.cards, self.targets, cx);
         let mut supports = self.supports.list();
         let Targets {
             rigid_bodies,

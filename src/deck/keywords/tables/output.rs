@@ -53,8 +53,6 @@ const ENERGY_TOTALS: P = P::value(
 .ignored();
 const ALWAYS_WHOLE: &str = "always written for the whole model";
 const UNWRITTEN: &str = "The result file holds everything this program writes.";
-const HISTORY: &str = "*NODE PRINT, NSET=NFIX, TOTALS=ONLY\n\
-         RF";
 
 pub(super) static OUTPUT: &[Keyword] = &[
     Keyword::read(
@@ -282,6 +280,19 @@ pub(super) static OUTPUT: &[Keyword] = &[
         "*TIME POINTS, NAME=SHOTS, GENERATE\n\
          0., 1.E-4, 1.E-5",
     ),
+    Keyword::read(
+        "MONITOR",
+        Scope::Step,
+        Data::None,
+        &[
+            P::value("NODE", "node, or node set of one node; required"),
+            P::value("DOF", "direction, 1 or 2; required"),
+            P::value("FREQUENCY", "the status file holds every increment").ignored(),
+        ],
+        "The displacement of a node as a column of the status file, JOB.sta, in all steps; several \
+         cards give several columns.",
+        "*MONITOR, NODE=13, DOF=2",
+    ),
     Keyword::ignored("FILE FORMAT", HARMLESS).of_words(),
     Keyword::ignored("PRINT", HARMLESS).of_words(),
     Keyword::warned("FILTER", UNWRITTEN),
@@ -301,9 +312,4 @@ pub(super) static OUTPUT: &[Keyword] = &[
     Keyword::warned("ELEMENT MATRIX OUTPUT", UNWRITTEN),
     Keyword::warned("TRACER PARTICLE", UNWRITTEN),
     Keyword::warned("VIEWFACTOR", UNWRITTEN),
-    Keyword::warned(
-        "MONITOR",
-        "Ask for the history of a node set with *NODE PRINT.",
-    )
-    .example(HISTORY),
 ];
