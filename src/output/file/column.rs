@@ -1,6 +1,6 @@
 //! Datasets of the result file that grow by rows, with the rows buffered in memory.
 
-use hdf5::plist::dataset_create::AllocTime;
+use hdf5::plist::dataset_create::{AllocTime, FillTime};
 use hdf5::{Dataset, Extent, Extents, Group, H5Type, Hyperslab, SliceOrIndex};
 use ndarray::{ArrayView, IxDyn};
 
@@ -72,6 +72,8 @@ impl Value for i64 {
 pub(crate) enum Mostly {
     /// Any value.
     Varied,
+    /// Any value, but the first row may come late.
+    Late,
     /// Zero.
     Zero,
     /// NaN.
@@ -129,13 +131,7 @@ impl<T: Value> Column<T> {
         meaning: Meaning,
     ) -> hdf5::Result<Self> {
         let shape = (Row::whole(row), Self::series_rows(row));
-        Self::create(
-            parent,
-            name,
-            shape,
-            (Mostly::Varied, AllocTime::Incr),
-            meaning,
-        )
+        Self::create(parent, name, shape, Mostly::Varied, meaning)
     }
 
     /// A dataset with one row per event. It has its tree of chunks from the start, since the first
@@ -147,13 +143,7 @@ impl<T: Value> Column<T> {
         meaning: Meaning,
     ) -> hdf5::Result<Self> {
         let shape = (Row::whole(row), Self::series_rows(row));
-        Self::create(
-            parent,
-            name,
-            shape,
-            (Mostly::Varied, AllocTime::Early),
-            meaning,
-        )
+        Self::create(parent, name, shape, Mostly::Late, meaning)
     }
 
     /// Rows of a chunk of a dataset that grows row by row.
@@ -172,24 +162,23 @@ impl<T: Value> Column<T> {
     ) -> hdf5::Result<Self> {
         let bytes = row.given_shape().iter().product::<usize>() * size_of::<T>();
         let most = match mostly {
-            Mostly::Varied => CHUNK_BYTES,
+            Mostly::Varied | Mostly::Late => CHUNK_BYTES,
             Mostly::Zero | Mostly::Nan => SPARSE_CHUNK_BYTES,
         };
         let rows = (most / bytes.max(1)).clamp(1, CHUNK_FRAMES * rows.max(1));
-        let storage = (mostly, AllocTime::Incr);
-        Self::create(parent, name, (row, rows), storage, meaning)
+        Self::create(parent, name, (row, rows), mostly, meaning)
     }
 
     fn create(
         parent: &Group,
         name: &str,
         (row, chunk_rows): (Row, usize),
-        (mostly, allocated): (Mostly, AllocTime),
+        mostly: Mostly,
         meaning: Meaning,
     ) -> hdf5::Result<Self> {
-        // The library makes the tree of chunks with the first row, and keeps it.
-        let rows = usize::from(allocated == AllocTime::Early);
-        let mut extents = vec![Extent::resizable(rows)];
+        // The tree of chunks is made with the first row, and stays when that is taken away.
+        let is_late = mostly == Mostly::Late;
+        let mut extents = vec![Extent::resizable(usize::from(is_late))];
         extents.extend(row.shape.iter().map(|&n| Extent::fixed(n)));
         let given = row.given_shape();
         let nan = mostly == Mostly::Nan;
@@ -198,7 +187,16 @@ impl<T: Value> Column<T> {
             .obj_track_times(false)
             .chunk(rows_of(chunk_rows, &given))
             .fill_value(T::left_out(nan))
-            .alloc_time(Some(allocated))
+            .alloc_time(Some(if is_late {
+                AllocTime::Early
+            } else {
+                AllocTime::Incr
+            }))
+            .fill_time(if is_late {
+                FillTime::Never
+            } else {
+                FillTime::IfSet
+            })
             .empty::<T>()
             .shape(Extents::simple(extents))
             .create(name)?;
