@@ -239,6 +239,26 @@ fn names_of_other_kinds() {
 }
 
 #[test]
+fn numbers_of_other_kinds() {
+    let texts = [
+        // an element where a node is meant
+        (Code::UndefinedNode, square("3, 2, 4.", "7, 2, 4.")),
+        (Code::UndefinedNode, square("1, 2\n", "1, 7\n")),
+        // a node where an element is meant
+        (Code::UndefinedElement, step("*DLOAD\n3, P1, 1.")),
+        (Code::UndefinedElement, model("*SURFACE, NAME=S\n4")),
+        (
+            Code::UndefinedElement,
+            model("*ELSET, ELSET=E, GENERATE\n1, 3"),
+        ),
+        // neither
+        (Code::UndefinedNode, square("3, 2, 4.", "8, 2, 4.")),
+    ];
+    let texts = texts.map(|(code, deck)| texts_of(code, &[deck]));
+    insta::assert_snapshot!(texts.join("\n"));
+}
+
+#[test]
 fn sets_of_several_nodes_where_one_is_meant() {
     insta::assert_snapshot!(texts_of(
         Code::BadValue,
