@@ -10,6 +10,7 @@ use stickslip::{deck, reader};
 const SQUARE: &str = include_str!("decks/square.inp");
 const SHARED: &str = include_str!("decks/shared.inp");
 const EXPORTED: &str = include_str!("decks/exported.inp");
+const BLOCKS: &str = include_str!("decks/cae_blocks.inp");
 const STEPS: &str = include_str!("decks/steps.inp");
 
 /// One way to spoil a deck; numbers are taken modulo its size.
@@ -157,7 +158,7 @@ proptest! {
 
     #[test]
     fn spoiled_decks(
-        deck in prop_oneof![Just(SQUARE), Just(SHARED), Just(STEPS), Just(EXPORTED)],
+        deck in prop_oneof![Just(SQUARE), Just(SHARED), Just(STEPS), Just(EXPORTED), Just(BLOCKS)],
         mutations in prop::collection::vec(mutation(), 1..12),
     ) {
         let spoiled = mutations.iter().fold(deck.to_string(), |text, m| apply(&text, m));

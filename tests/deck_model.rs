@@ -418,6 +418,29 @@ fn history_sets_of_both_families() {
 }
 
 #[test]
+fn damping_outside_materials_is_that_of_all_that_have_none() {
+    let card = "*DAMPING, ALPHA=0.5, BETA=1.E-4\n";
+    let betas = |text: &str| {
+        let (model, messages) = read(text);
+        assert_eq!(messages, "");
+        let materials = model.materials.iter();
+        materials
+            .map(|material| material.damping.beta)
+            .collect::<Vec<_>>()
+    };
+    let first = SQUARE.replacen("*NODE,", &format!("{card}*NODE,"), 1);
+    assert_eq!(betas(&first), [1e-4]);
+    let last = SQUARE.replacen("*STEP", &format!("{card}*STEP"), 1);
+    let own = last.replacen("*DENSITY", "*DAMPING, BETA=2.E-4\n*DENSITY", 1);
+    let own = own.replacen(
+        "*BOUNDARY",
+        "*MATERIAL, NAME=OTHER\n*DENSITY\n1.\n*BOUNDARY",
+        1,
+    );
+    assert_eq!((betas(&last), betas(&own)), (vec![1e-4], vec![2e-4, 1e-4]));
+}
+
+#[test]
 fn monitored_displacements_are_columns_of_the_status_file() {
     let cards = |text: &str| {
         let (model, messages) = square("*END STEP", &format!("{text}*END STEP"));

@@ -6,7 +6,7 @@ use std::path::Path;
 use stickslip::deck::{
     self, Keyword, Scope, Status, dimensions_json, find_keyword, keyword_reference, keywords,
 };
-use stickslip::diagnostics::{Diagnostics, Severity, Sources};
+use stickslip::diagnostics::{Code, Diagnostics, Severity, Sources};
 use stickslip::reader;
 
 /// The decks that the examples are parts of.
@@ -83,7 +83,20 @@ fn keywords_and_codes_are_explained() {
     assert!(text.contains("in its place\n  *DYNAMIC"), "{text}");
     let (_, text, _) = explain(&["d410"]);
     assert!(text.contains("\n\nMove the mesh"), "{text}");
-    assert!(text.lines().all(|line| line.len() <= 80), "{text}");
+    let (said, example) = text.split_once("\nexample (").expect("an example");
+    assert!(said.lines().all(|line| line.len() <= 80), "{text}");
+    assert!(
+        example.contains("\n  -11, 1., 1.1\n  +11, 1., 0.99\n"),
+        "{text}"
+    );
+    assert!(
+        example.contains("\n  error[D410]: 1 node of SBOT inside"),
+        "{text}"
+    );
+    for code in Code::ALL {
+        let (_, text, _) = explain(&[code.id()]);
+        assert!(text.contains(&format!("[{}]: ", code.id())), "{text}");
+    }
     let (_, text, _) = explain(&["d103"]);
     assert!(
         text.starts_with("D103: A keyword that no code knows"),

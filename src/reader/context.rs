@@ -111,6 +111,16 @@ impl<'a> Context<'a> {
         Some(label(text.span.instance, number))
     }
 
+    /// Whether a row of a keyword, such as `*NODE`, begins with this label.
+    pub fn defines(&self, keyword: &str, label: u64) -> bool {
+        let cards = self.deck.cards.iter();
+        let rows = cards
+            .filter(|card| card.keyword.name == keyword)
+            .flat_map(|card| &card.rows);
+        let mut labels = rows.filter_map(|row| self.as_label(row.get(0)?));
+        labels.any(|known| known == label)
+    }
+
     /// What the deck calls the node or element with this label.
     pub fn named(&self, label: u64) -> String {
         let index = (instance_of(label) as usize).checked_sub(1);

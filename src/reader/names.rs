@@ -222,17 +222,44 @@ impl Labels {
 
     /// Reports a number that does not exist.
     pub fn undefined(&self, label: u64, span: Span, cx: &mut Context) {
-        if !self.incomplete && !cx.deck.incomplete {
-            let message = format!("{} {} is not defined", self.what, cx.named(label));
-            let error = Diagnostic::error(self.code, span, message);
-            let outside = instance_of(label) == 0;
-            cx.d.push(match cx.deck.instances.first().filter(|_| outside) {
-                Some(instance) => error.help(format!(
-                    "a number in an instance has its name before it, such as {}.{label}",
-                    instance.name
-                )),
-                None => error,
-            });
+        if self.incomplete || cx.deck.incomplete {
+            return;
+        }
+        let message = format!("{} {} is not defined", self.what, cx.named(label));
+        let error = Diagnostic::error(self.code, span, message);
+        // The search for advice takes time: for shown errors only.
+        let error = match cx.d.may_show(&error) {
+            true => self.with_what_is_meant(error, label, cx),
+            false => error,
+        };
+        cx.d.push(error);
+    }
+
+    /// Adds what has this number instead, or how numbers in instances are written.
+    fn with_what_is_meant(&self, error: Diagnostic, label: u64, cx: &Context) -> Diagnostic {
+        let (other, keyword, help) = match self.what {
+            "node" => (
+                "an element",
+                "ELEMENT",
+                "*NSET, NSET=..., ELSET=... makes a node set of the nodes of elements",
+            ),
+            _ => (
+                "a node",
+                "NODE",
+                "nodes stand in *NSET, in *SURFACE with TYPE=NODE, and under *CLOAD",
+            ),
+        };
+        if cx.defines(keyword, label) {
+            let text = format!("{} is {other}", cx.named(label));
+            return error.label(text).help(help);
+        }
+        let outside = instance_of(label) == 0;
+        match cx.deck.instances.first().filter(|_| outside) {
+            Some(instance) => error.help(format!(
+                "a number in an instance has its name before it, such as {}.{label}",
+                instance.name
+            )),
+            None => error,
         }
     }
 

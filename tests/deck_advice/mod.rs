@@ -141,6 +141,19 @@ fn damping_that_cannot_be() {
         text
     });
     insta::assert_snapshot!(texts.join("\n"));
+    let card = "*DAMPING, BETA=1.E-5";
+    let (d, text) = messages(&model(&format!("{card}\n{card}")));
+    assert_eq!(
+        d.iter().map(|item| item.code).collect::<Vec<_>>(),
+        [Code::RepeatedCard],
+        "{text}"
+    );
+    let (d, text) = messages(&step(card));
+    assert_eq!(
+        d.iter().map(|item| item.code).collect::<Vec<_>>(),
+        [Code::WrongPlace],
+        "{text}"
+    );
 }
 
 #[test]
@@ -223,6 +236,26 @@ fn names_of_other_kinds() {
             step("*BOUNDARY, AMPLITUDE=A\n4, 1"),
         ],
     ));
+}
+
+#[test]
+fn numbers_of_other_kinds() {
+    let texts = [
+        // an element where a node is meant
+        (Code::UndefinedNode, square("3, 2, 4.", "7, 2, 4.")),
+        (Code::UndefinedNode, square("1, 2\n", "1, 7\n")),
+        // a node where an element is meant
+        (Code::UndefinedElement, step("*DLOAD\n3, P1, 1.")),
+        (Code::UndefinedElement, model("*SURFACE, NAME=S\n4")),
+        (
+            Code::UndefinedElement,
+            model("*ELSET, ELSET=E, GENERATE\n1, 3"),
+        ),
+        // neither
+        (Code::UndefinedNode, square("3, 2, 4.", "8, 2, 4.")),
+    ];
+    let texts = texts.map(|(code, deck)| texts_of(code, &[deck]));
+    insta::assert_snapshot!(texts.join("\n"));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The page docs/messages.md: every code with its meaning, cause and cure, an example and what the
 //! program says about it. With the environment variable `BLESS` it is written anew.
 
-use super::{SHARED, SQUARE};
+use super::{BLOCKS, SHARED, SQUARE};
 use stickslip::diagnostics::Code;
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/messages.md");
@@ -25,14 +25,15 @@ it. The exit code of a rejected deck is 2.
 D1 is about files, lines and fields, D2 about keywords and where they stand, D3 about the mesh, sets
 and surfaces, D4 about materials, sections and contact, D5 about supports, loads, steps and output.
 
-The examples are changes of two decks: a line with `-` is replaced by those with `+` after it.
+The examples are changes of three decks: a line with `-` is replaced by those with `+` after it.
 ";
 
 /// The page holds these entries; with `BLESS` it is made to.
 pub fn check(entries: &str) {
     let wanted = format!(
         "{HEAD}\n## The deck of one square\n\n```\n{SQUARE}```\n\n\
-         ## The deck of a block on its base\n\n```\n{SHARED}```\n\n## Codes\n{entries}"
+         ## The deck of a block on its base\n\n```\n{SHARED}```\n\n\
+         ## The assembly of two blocks\n\n```\n{BLOCKS}```\n\n## Codes\n{entries}"
     );
     if std::env::var_os("BLESS").is_some() {
         std::fs::write(PAGE, &wanted).expect("the page can be written");
@@ -59,16 +60,20 @@ pub fn entry(code: Code, deck: &str, message: &str) -> String {
     )
 }
 
-/// How a deck differs from the nearer one of the two, or the deck itself.
+/// How a deck differs from the nearest one of the three, or the deck itself.
 fn example(deck: &str) -> String {
-    let bases = [("one square", SQUARE), ("a block on its base", SHARED)];
+    let bases = [
+        ("the deck of one square", SQUARE),
+        ("the deck of a block on its base", SHARED),
+        ("the assembly of two blocks", BLOCKS),
+    ];
     let changes = bases.map(|(name, base)| (name, change(base, deck)));
     let nearest = changes
         .into_iter()
         .min_by_key(|(_, change)| change.lines().count());
     match nearest {
         Some((name, change)) if change.lines().count() < deck.lines().count() => {
-            format!("In the deck of {name}:\n\n```diff\n{change}```\n")
+            format!("In {name}:\n\n```diff\n{change}```\n")
         }
         _ => format!(
             "The deck:\n\n```text\n{}\n```\n",

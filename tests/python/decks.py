@@ -18,6 +18,7 @@ SHAPES = ROOT / "input" / "shapes_in_a_box"
 IMPACT = ROOT / "verification" / "impact"
 COLUMN = ROOT / "input" / "buckling_self_contact"
 CORNERS = ROOT / "input" / "corner_to_corner"
+WEDGES = ROOT / "input" / "folding_wedges"
 BULLET = ROOT / "input" / "fast_bullet"
 BAR = ROOT / "verification" / "elastic_bar"
 

@@ -26,6 +26,7 @@ from decks import (
     PILE,
     RINGS,
     SHAPES,
+    WEDGES,
     shortened,
 )
 from rescale import Units, rescale
@@ -90,7 +91,20 @@ def test_an_animation_is_all_that_is_written(job: Job, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "folder",
-    [BLOCK, CANTILEVERS, BAR, RINGS, PILE, COLUMN, CORNERS, BULLET, SHAPES, IMPACT, DISCS],
+    [
+        BLOCK,
+        CANTILEVERS,
+        BAR,
+        RINGS,
+        PILE,
+        COLUMN,
+        CORNERS,
+        BULLET,
+        SHAPES,
+        IMPACT,
+        DISCS,
+        WEDGES,
+    ],
     ids=lambda path: path.name,
 )
 def test_decks_are_what_their_generator_writes(folder: Path, tmp_path: Path) -> None:

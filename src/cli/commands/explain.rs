@@ -7,6 +7,9 @@ use crate::cli::terminal::print;
 use crate::deck::{find_keyword, keywords};
 use crate::diagnostics::{Code, closest, wrapped};
 
+/// The page that has an example of every code.
+const MESSAGES: &str = include_str!("../../../docs/messages.md");
+
 /// Explains a keyword or the code of a message.
 pub(in crate::cli) fn explain(args: &ExplainArgs) -> Result<Exit, CliError> {
     let typed = args.words.join(" ");
@@ -23,11 +26,25 @@ pub(in crate::cli) fn explain(args: &ExplainArgs) -> Result<Exit, CliError> {
     Ok(Exit::Finished)
 }
 
-/// Meaning, cause and cure of a code.
+/// Meaning, cause, cure and example of a code.
 fn explanation(code: Code) -> String {
     let head = format!("{}: {}", code.id(), code.meaning());
     let texts = [&head, code.cause(), code.cure()];
-    texts.map(|text| wrapped(text, 0)).join("\n")
+    let text = texts.map(|text| wrapped(text, 0)).join("\n");
+    match example(code) {
+        Some(example) => format!("{text}\nexample (docs/messages.md has the decks)\n{example}"),
+        None => text,
+    }
+}
+
+/// The example of a code: a deck, or a change of one, and what the program says about it.
+fn example(code: Code) -> Option<String> {
+    let (_, entry) = MESSAGES.split_once(&format!("\n### {}\n", code.id()))?;
+    let entry = entry.split("\n### ").next()?;
+    // behind the paragraph of the cure
+    let (_, example) = entry.split_once("\n\nCure: ")?.1.split_once("\n\n")?;
+    let lines = example.lines().filter(|line| !line.starts_with("```"));
+    Some(lines.map(|line| format!("  {line}\n")).collect())
 }
 
 /// The error of a word that is neither a keyword nor a code.

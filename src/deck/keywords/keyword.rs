@@ -15,6 +15,8 @@ pub enum Scope {
     Anywhere,
     /// In the block of the model keyword of this name.
     Block(&'static str),
+    /// There, or by itself before the first step.
+    BlockOrModel(&'static str),
     /// Structure of assembly decks.
     Assembly,
 }

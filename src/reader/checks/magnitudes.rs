@@ -7,15 +7,17 @@ use crate::reader::materials::Properties;
 use crate::reader::mesh::MeshIndex;
 use crate::vectors::polygon_area;
 
-/// Reports materials and elements whose wave speed, area, stiffness or mass overflows or vanishes:
+/// Reports materials in use and elements whose wave speed, area, stiffness or mass overflows or vanishes:
 /// nothing can be computed with them.
 pub(crate) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &mut Context) {
     if cx.d.has_errors() {
         return;
     }
-    for (material, &span) in properties.materials.iter().zip(&properties.material_spans) {
+    let materials = properties.materials.iter().zip(&properties.material_spans);
+    for (index, (material, &span)) in materials.enumerate() {
+        let is_used = properties.sections.iter().any(|s| s.material == index);
         let speed = material.wave_speed(Plane::Strain);
-        if material.density > 0.0 && !speed.is_normal() {
+        if is_used && !speed.is_normal() {
             let what = format!("the wave speed of material {}", material.name);
             unusable(&what, speed, span, cx);
         }

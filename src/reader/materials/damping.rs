@@ -1,28 +1,34 @@
-//! `*DAMPING`.
+//! `*DAMPING` of a material, and of all that have none.
 
 use crate::deck::Card;
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::Damping;
 use crate::reader::context::Context;
-use crate::reader::mesh::Block;
+use crate::reader::mesh::{Block, Outline};
 
-/// Damping of a material; none without a card, or where it has an error.
-pub(super) fn read(block: &Block, cx: &mut Context) -> Damping {
-    let cards = block.parts_of("DAMPING");
-    cx.only_once(&cards);
-    cards.first().map_or(Damping::default(), |card| {
-        report_empty(card, cx);
-        Damping {
-            alpha: factor(card, "ALPHA", cx),
-            beta: factor(card, "BETA", cx),
-        }
-    })
+/// Damping with the place of the part in proportion to the mass.
+pub(super) type Placed = (Damping, Span);
+
+/// Damping of a material of its own.
+pub(super) fn own(block: &Block, cx: &mut Context) -> Option<Placed> {
+    only(&block.parts_of("DAMPING"), cx)
 }
 
-/// Place of mass-proportional damping.
-pub(super) fn span(block: &Block) -> Option<Span> {
-    let cards = block.parts_of("DAMPING");
-    cards.first().map(|card| card.span_of("ALPHA"))
+/// Damping of the materials that have none of their own: a card outside materials.
+pub(super) fn general(outline: &Outline, cx: &mut Context) -> Option<Placed> {
+    only(&outline.model_cards("DAMPING"), cx)
+}
+
+/// What a card gives that may appear once.
+fn only(cards: &[&Card], cx: &mut Context) -> Option<Placed> {
+    cx.only_once(cards);
+    let card = cards.first()?;
+    report_empty(card, cx);
+    let damping = Damping {
+        alpha: factor(card, "ALPHA", cx),
+        beta: factor(card, "BETA", cx),
+    };
+    Some((damping, card.span_of("ALPHA")))
 }
 
 /// Reports a card that gives nothing.

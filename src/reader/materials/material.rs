@@ -35,9 +35,10 @@ impl Drafts {
     pub fn read(outline: &Outline, cx: &mut Context) -> Self {
         let mut names = Names::new("material");
         let mut all = Vec::new();
+        let general = damping::general(outline, cx);
         for block in outline.blocks("MATERIAL") {
             if let Some(name) = names.new_name(block.head, cx) {
-                all.push(draft(name.typed.clone(), block, cx));
+                all.push(draft(name.typed.clone(), block, general, cx));
                 names.define(name);
             }
         }
@@ -78,17 +79,20 @@ impl Drafts {
     }
 }
 
-fn draft(name: String, block: &Block, cx: &mut Context) -> Draft {
+/// A material; `general` is the damping of one that has none of its own.
+fn draft(name: String, block: &Block, general: Option<damping::Placed>, cx: &mut Context) -> Draft {
     let density = block.parts_of("DENSITY");
     cx.only_once(&density);
+    let damping = damping::own(block, cx).or(general);
+    let (damping, damping_span) = damping.unwrap_or((Damping::default(), block.head.span));
     Draft {
         name,
         span: block.head.span,
         poisson_span: law::poisson_span(block).unwrap_or(block.head.span),
         law: law::read(block, cx),
         density: constant(&density, density_row, cx),
-        damping: damping::read(block, cx),
-        damping_span: damping::span(block).unwrap_or(block.head.span),
+        damping,
+        damping_span,
     }
 }
 

@@ -86,6 +86,10 @@ impl<'a> Outline<'a> {
             ("STEP", _) => self.begin_step(card, cx),
             ("END STEP", _) => self.end_step(card, cx),
             (_, Scope::Block(head)) => self.place_in_block(card, head, cx),
+            (_, Scope::BlockOrModel(head)) => match self.open_block(head) {
+                Some(block) => block.parts.push(card),
+                None => self.place_in_model(card, cx),
+            },
             (_, Scope::Step) => self.place_in_step(card, cx),
             (_, Scope::Anywhere) if self.open => self.place_in_step(card, cx),
             (_, Scope::Model | Scope::Anywhere | Scope::Assembly) => self.place_in_model(card, cx),
@@ -130,9 +134,14 @@ impl<'a> Outline<'a> {
         self.in_model = false;
     }
 
-    fn place_in_block(&mut self, card: &'a Card, head: &str, cx: &mut Context) {
+    /// The block that the last card stands in, if it begins with this keyword.
+    fn open_block(&mut self, head: &str) -> Option<&mut Block<'a>> {
         let last = self.model.last_mut().filter(|_| self.in_model);
-        match last.filter(|block| block.head.keyword.name == head) {
+        last.filter(|block| block.head.keyword.name == head)
+    }
+
+    fn place_in_block(&mut self, card: &'a Card, head: &str, cx: &mut Context) {
+        match self.open_block(head) {
             Some(block) => block.parts.push(card),
             None => {
                 let help = format!("put it under the *{head} it belongs to");

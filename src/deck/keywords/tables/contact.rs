@@ -139,6 +139,8 @@ pub(super) static CONTACT: &[Keyword] = &[
             P::value("TRACKING", SMOOTHING).warned(),
             P::value("MINIMUM DISTANCE", SMOOTHING).warned(),
             P::value("GEOMETRIC CORRECTION", SMOOTHING).warned(),
+            P::value("SLIDING TRANSITION", SMOOTHING).warned(),
+            P::value("SUPPLEMENTARY CONSTRAINTS", SMOOTHING).warned(),
             P::value("MECHANICAL CONSTRAINT", "contact is enforced exactly").warned(),
             P::value("CPSET", "there are no contact controls").warned(),
             P::value("WEIGHT", "the slave's nodes meet the master's segments").warned(),

@@ -117,7 +117,7 @@ pub(super) static MATERIALS: &[Keyword] = &[
          7.8E-9"),
     Keyword::read(
         "DAMPING",
-        Scope::Block("MATERIAL"),
+        Scope::BlockOrModel("MATERIAL"),
         Data::None,
         &[
             P::value(
@@ -142,7 +142,7 @@ pub(super) static MATERIALS: &[Keyword] = &[
             .refused(),
         ],
         "Damping of a material (Rayleigh): at least one of ALPHA (1/time) and BETA (time), not \
-         negative. What it dissipates is a term of the energy balance.",
+         negative. Outside materials it is that of all that have none of their own. What it dissipates is a term of the energy balance.",
     "*DAMPING, BETA=1.E-7"),
     Keyword::read(
         "SOLID SECTION",

@@ -5,6 +5,7 @@ use crate::deck::keywords::fields::{FORCE, TIME, of, row};
 use crate::deck::keywords::keyword::{Data, Keyword, Scope};
 use crate::deck::keywords::parameter::{Parameter as P, Value as V};
 
+const UNSCALED: &str = "Masses are not scaled: remove it, implicit increments do not need it.";
 const INTEGRATOR: &str = "the time integration is that of *STICKSLIP, SCHEME=";
 const PROCEDURE: &str = "Steps are dynamic: use *DYNAMIC.";
 const DYNAMIC: &str = "*DYNAMIC, DIRECT\n\
@@ -236,8 +237,8 @@ pub(super) static STEPS: &[Keyword] = &[
     Keyword::warned("SOLVER CONTROLS", OTHER_NUMBERS),
     Keyword::warned("DIAGNOSTICS", OTHER_NUMBERS),
     Keyword::warned("BULK VISCOSITY", OTHER_NUMBERS),
-    Keyword::warned("VARIABLE MASS SCALING", "Masses are not scaled."),
-    Keyword::warned("FIXED MASS SCALING", "Masses are not scaled."),
+    Keyword::refused("VARIABLE MASS SCALING", UNSCALED),
+    Keyword::refused("FIXED MASS SCALING", UNSCALED),
     Keyword::warned("ADAPTIVE MESH", "The mesh stays as it is."),
     Keyword::warned("ADAPTIVE MESH CONTROLS", "The mesh stays as it is."),
     Keyword::ignored(
