@@ -116,7 +116,7 @@ impl<'a> Context<'a> {
         let cards = self.deck.cards.iter();
         let rows = cards
             .filter(|card| card.keyword.name == keyword)
-            .flat_map(|card| &card.rows);
+            .flat_map(|card| card.rows.iter());
         let mut labels = rows.filter_map(|row| self.as_label(row.get(0)?));
         labels.any(|known| known == label)
     }
