@@ -1,7 +1,8 @@
 //! Nodes, elements, sets and surfaces.
 
+use super::contact::all_exterior;
 use super::lines::{Lines, name, named, number, set};
-use crate::model::{ALL_EXTERIOR, Element, Face, Mesh, Model, Set, SurfaceKind};
+use crate::model::{Element, Face, Mesh, Model, Set, SurfaceKind};
 
 /// Writes nodes, elements, sets and surfaces.
 pub(super) fn write(model: &Model, lines: &mut Lines) {
@@ -61,11 +62,8 @@ fn sets(keyword: &str, sets: &[Set], label: impl Fn(&usize) -> u64, lines: &mut 
 /// Surfaces but that of general contact, which its card makes.
 fn surfaces(model: &Model, lines: &mut Lines) {
     let mesh = &model.mesh;
-    for surface in model
-        .surfaces
-        .iter()
-        .filter(|surface| surface.name != ALL_EXTERIOR)
-    {
+    let own = all_exterior(model).unwrap_or(model.surfaces.len());
+    for surface in &model.surfaces[..own] {
         let kind = match surface.kind {
             SurfaceKind::Faces(_) => "ELEMENT",
             SurfaceKind::Nodes(_) => "NODE",
