@@ -35,7 +35,7 @@ fn grid(n: usize) -> Model {
         model.mesh.elements.push(Element {
             label: element as u64 + 1,
             element_type: ElementType::CPE4,
-            nodes: vec![first, first + 1, first + n + 2, first + n + 1],
+            nodes: vec![first, first + 1, first + n + 2, first + n + 1].into(),
             section: 0,
         });
     }

@@ -67,7 +67,7 @@ fn row(length: usize) -> Model {
             mesh.elements.push(Element {
                 label: 1,
                 element_type,
-                nodes,
+                nodes: nodes.into(),
                 section,
             });
         }

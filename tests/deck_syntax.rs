@@ -141,7 +141,7 @@ fn trailing_commas_are_no_field() {
 fn a_lone_comma_is_a_row_of_defaults_and_an_empty_line_is_none() {
     let (deck, _) = parse("*SOLID SECTION, ELSET=A, MATERIAL=B\n,\n\n*NODE\n1,,2.\n");
     assert_eq!(shape(&deck), ["*SOLID SECTION[]", "*NODE[1||2.]"]);
-    assert_eq!(deck.cards[0].rows.len(), 1);
+    assert_eq!(deck.cards[0].rows.iter().count(), 1);
     let (model, d) = square("0.5\n", ",\n");
     assert_eq!(
         (model.map(|m| m.sections[0].thickness), codes(&d)),
@@ -504,7 +504,8 @@ fn forms_of_numbers() {
     ];
     for (form, value) in forms {
         let (deck, mut d) = parse(&format!("*NODE\n1, {form}"));
-        let field = deck.cards[0].rows[0].get(1).expect("a field");
+        let row = deck.cards[0].rows.first().expect("a row");
+        let field = row.get(1).expect("a field");
         assert_eq!(field.real(&mut d), Some(value), "{form}");
         let letterless = form.contains("5-") || form.contains("5+");
         let expected: &[Code] = match (letterless, form.len() > 20) {

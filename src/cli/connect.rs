@@ -22,12 +22,8 @@ pub(super) struct Loaded {
     pub errors: usize,
     /// Number of warnings.
     pub warnings: usize,
-    /// Full text, includes in place.
-    pub text: String,
-    /// Number of lines, includes counted.
-    pub lines: usize,
-    /// Number of included files.
-    pub includes: usize,
+    /// The deck and the files it includes.
+    pub sources: Sources,
 }
 
 /// Reads a deck; messages coloured or not.
@@ -64,8 +60,6 @@ fn load(path: &Path, strictness: Strictness, colour: bool) -> Loaded {
         plain_messages: ours.render(&sources, false),
         errors: d.count(Severity::Error),
         warnings: d.count(Severity::Warning),
-        text: sources.full_text(),
-        lines: sources.line_count(),
-        includes: sources.files().len().saturating_sub(1),
+        sources,
     }
 }

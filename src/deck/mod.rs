@@ -9,7 +9,7 @@ mod cards;
 mod keywords;
 mod lines;
 mod read;
-pub use cards::{Card, Deck, Instance, Param, Placement, Row};
+pub use cards::{Card, Deck, Instance, Param, Placement, Row, Rows};
 pub use keywords::{
     Data, Field, Keyword, Parameter, Quantity, RowForm, Scope, Status, Takes, Value,
     dimensions_json, find_keyword, keyword_reference, keywords,

@@ -1,15 +1,20 @@
 //! Texts of the main deck and its included files: access by line, and the chain of includes.
 
 use super::{FileId, Span};
-use std::sync::Arc;
+use memchr::memchr_iter;
+use std::sync::{Arc, OnceLock};
+
+/// Lines between those whose place is kept.
+const STRIDE: usize = 256;
 
 /// One file of a deck.
 #[derive(Debug, Clone)]
 pub struct Source {
     name: String,
-    text: Arc<str>,
+    text: Arc<String>,
     included_at: Option<Span>,
-    line_starts: Vec<usize>,
+    /// Bytes at which every [`STRIDE`]th line starts, found for the first message.
+    line_starts: OnceLock<Vec<usize>>,
 }
 
 impl Source {
@@ -24,7 +29,7 @@ impl Source {
     }
 
     /// The same text, shared.
-    pub fn shared_text(&self) -> Arc<str> {
+    pub fn shared_text(&self) -> Arc<String> {
         Arc::clone(&self.text)
     }
 
@@ -35,16 +40,25 @@ impl Source {
 
     /// Number of lines.
     pub fn line_count(&self) -> usize {
-        self.line_starts.len()
+        let ends = memchr_iter(b'\n', self.text.as_bytes()).count();
+        let is_open = !self.text.is_empty() && !self.text.ends_with('\n');
+        ends + usize::from(is_open)
+    }
+
+    fn line_starts(&self) -> &[usize] {
+        self.line_starts.get_or_init(|| {
+            let ends = memchr_iter(b'\n', self.text.as_bytes());
+            let starts = ends.skip(STRIDE - 1).step_by(STRIDE).map(|at| at + 1);
+            std::iter::once(0).chain(starts).collect()
+        })
     }
 
     /// Line `number`, from 1, without its end.
     pub fn line(&self, number: u32) -> Option<&str> {
         let index = (number as usize).checked_sub(1)?;
-        let start = *self.line_starts.get(index)?;
-        let end = self.line_starts.get(index + 1).copied();
-        let line = self.text.get(start..end.unwrap_or(self.text.len()))?;
-        let line = line.strip_suffix('\n').unwrap_or(line);
+        let start = *self.line_starts().get(index / STRIDE)?;
+        let lines = self.text.get(start..).filter(|text| !text.is_empty())?;
+        let line = lines.split_terminator('\n').nth(index % STRIDE)?;
         Some(line.strip_suffix('\r').unwrap_or(line))
     }
 }
@@ -64,20 +78,29 @@ impl Sources {
     }
 
     /// Adds a file.
-    pub fn add(&mut self, name: &str, text: &str, included_at: Option<Span>) -> FileId {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let starts = text.match_indices('\n').map(|(at, _)| at + 1);
-        let line_starts = std::iter::once(0)
-            .chain(starts)
-            .filter(|&at| at < text.len())
-            .collect();
+    pub fn add(
+        &mut self,
+        name: &str,
+        text: impl Into<String>,
+        included_at: Option<Span>,
+    ) -> FileId {
+        let id = self.next_id();
+        let mut text = text.into();
+        if text.starts_with('\u{feff}') {
+            text.remove(0);
+        }
         self.files.push(Source {
             name: name.to_string(),
-            text: text.into(),
+            text: Arc::new(text),
             included_at,
-            line_starts,
+            line_starts: OnceLock::new(),
         });
-        FileId(self.files.len() as u32 - 1)
+        id
+    }
+
+    /// The id of the file that is added next.
+    pub fn next_id(&self) -> FileId {
+        FileId(self.files.len() as u32)
     }
 
     /// Adds an instance of a part that is placed at `place`; its number is that of spans.

@@ -133,7 +133,7 @@ mod tests {
             model.mesh.elements.push(Element {
                 label: 1,
                 element_type,
-                nodes,
+                nodes: nodes.into(),
                 section: 0,
             });
         }

@@ -127,7 +127,7 @@ mod tests {
         let elements = vec![Element {
             label: 1,
             element_type,
-            nodes: vec![0, 1, 2, 3],
+            nodes: vec![0, 1, 2, 3].into(),
             section: 0,
         }];
         let material = Material {

@@ -48,7 +48,7 @@ mod tests {
         let element = |nodes: [usize; 3]| Element {
             label: 1,
             element_type: ElementType::CPS3,
-            nodes: nodes.to_vec(),
+            nodes: nodes[..].into(),
             section: 0,
         };
         let mesh = Mesh {

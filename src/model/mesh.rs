@@ -2,7 +2,8 @@
 //! nodes of the elements) and exterior faces.
 
 use super::ElementType;
-use crate::vectors::distance;
+use crate::vectors::{difference, distance, dot};
+use smallvec::SmallVec;
 
 /// Nodes and elements of a model.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -47,9 +48,25 @@ impl Mesh {
 
     /// Length of the shortest side of an element.
     pub fn shortest_side(&self, element: &Element) -> f64 {
-        let ends = |side: [usize; 2]| side.map(|node| self.coordinates[node]);
-        let lengths = element.sides().map(ends).map(|[a, b]| distance(a, b));
-        lengths.fold(f64::INFINITY, f64::min)
+        let corners = self.corners(element);
+        let shortest = |of: fn([f64; 2], [f64; 2]) -> f64| {
+            let sides = sides(&corners).map(|[a, b]| of(a, b));
+            sides.fold(f64::INFINITY, f64::min)
+        };
+        let square = |a, b| {
+            let side = difference(a, b);
+            dot(side, side)
+        };
+        match shortest(square) {
+            square if square.is_normal() => square.sqrt(),
+            _ => shortest(distance),
+        }
+    }
+
+    /// Reference coordinates of the nodes of an element (length).
+    pub fn corners(&self, element: &Element) -> SmallVec<[[f64; 2]; 4]> {
+        let nodes = element.nodes.iter();
+        nodes.map(|&node| self.coordinates[node]).collect()
     }
 
     /// All sides of all elements.
@@ -58,6 +75,14 @@ impl Mesh {
         elements
             .flat_map(|(element, e)| (0..e.sides().len()).map(move |side| Face { element, side }))
     }
+}
+
+/// Sides [a, b] of a polygon; the one to the first corner comes first.
+pub(crate) fn sides(corners: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
+    let mut last = corners.last().copied().unwrap_or_default();
+    corners
+        .iter()
+        .map(move |&corner| [std::mem::replace(&mut last, corner), corner])
 }
 
 /// The elements at every node of a mesh, in the order of the deck.
@@ -118,6 +143,9 @@ fn root(parent: &mut [usize], mut node: usize) -> usize {
     node
 }
 
+/// Node indices of an element, in place.
+pub type Nodes = SmallVec<[usize; 4]>;
+
 /// One element.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Element {
@@ -126,7 +154,7 @@ pub struct Element {
     /// Shape, formulation, and plane stress or plane strain.
     pub element_type: ElementType,
     /// Node indices, counter-clockwise; as many as the type has.
-    pub nodes: Vec<usize>,
+    pub nodes: Nodes,
     /// Index into `Model::sections`.
     pub section: usize,
 }

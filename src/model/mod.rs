@@ -27,7 +27,8 @@ pub use load::{
     BodyForce, Load, PointLoad, Pressure, Rate, Support, SupportMotion, Traction, Variation,
 };
 pub use material::{Damping, Material, Section};
-pub use mesh::{Element, ElementsAtNodes, Face, Mesh, Set};
+pub(crate) use mesh::sides;
+pub use mesh::{Element, ElementsAtNodes, Face, Mesh, Nodes, Set};
 pub use sets::{HistorySet, Instance, NamedSets, element_name, node_name};
 pub use settings::{
     ContactMass, Factorization, Impact, ImpactTime, LandingRule, LcpChoice, Scheme, Settings,

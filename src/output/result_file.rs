@@ -109,12 +109,23 @@ impl ResultFile {
         self.room()
     }
 
-    /// Writes what waits in memory.
+    /// Writes what waits in memory: the number of frames, by which readers go, after everything else.
     fn write(&mut self) -> io::Result<()> {
-        let written = (self.fields.flush())
-            .and_then(|()| self.history.flush())
-            .and_then(|()| self.file.flush());
-        self.checked(written)
+        let written = (self.fields.flush()).and_then(|()| self.history.flush());
+        self.checked(written)?;
+        self.flush()?;
+        let counted = self.fields.note_count();
+        self.checked(counted)?;
+        self.flush()
+    }
+
+    /// Writes what the library holds. It notes the end of the file last: until then the end stands
+    /// ahead of all that it may write, since a file with addresses beyond its end cannot be read.
+    fn flush(&mut self) -> io::Result<()> {
+        let end = self.space.move_end_ahead().map_err(at(&self.path))?;
+        let flushed = self.file.flush();
+        self.checked(flushed)?;
+        self.space.settle_end(end).map_err(at(&self.path))
     }
 
     /// Completes the run record.
@@ -126,10 +137,9 @@ impl ResultFile {
         total: f64,
     ) -> io::Result<()> {
         self.write()?;
-        let written = (self.record)
-            .finish(summary, exit_status, output, total)
-            .and_then(|()| self.file.flush());
+        let written = (self.record).finish(summary, exit_status, output, total);
         self.checked(written)?;
+        self.flush()?;
         self.space.release();
         Ok(())
     }
@@ -140,8 +150,9 @@ impl ResultFile {
             return Ok(());
         }
         self.write()?;
-        let written = (self.record.close(exit_status)).and_then(|()| self.file.flush());
+        let written = self.record.close(exit_status);
         self.checked(written)?;
+        self.flush()?;
         self.space.release();
         Ok(())
     }

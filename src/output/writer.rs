@@ -88,13 +88,13 @@ impl<'a> ResultWriter<'a> {
         self.console.lost()
     }
 
-    /// After the first frame, puts the files of the job in place of those of an earlier run.
+    /// After the first frame, puts the files of the job in place of those of an earlier run: the result
+    /// first, since the others without it would stand in the way of the next run.
     fn publish(&mut self) -> io::Result<()> {
         if self.status.is_none() {
-            let status = StatusFile::create(&self.claim.files().status, self.model)?;
-            self.console.begin_log()?;
             self.claim.publish()?;
-            self.status = Some(status);
+            self.status = Some(StatusFile::create(&self.claim.files().status, self.model)?);
+            self.console.begin_log()?;
         }
         Ok(())
     }

@@ -157,7 +157,7 @@ mod tests {
         let element = Element {
             label: 1,
             element_type: ElementType::CPS4,
-            nodes: vec![0, 1, 2, 3],
+            nodes: vec![0, 1, 2, 3].into(),
             section: 0,
         };
         is_spoiled(&element, &before, &after)

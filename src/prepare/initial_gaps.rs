@@ -153,7 +153,7 @@ mod tests {
         let element = |nodes: [usize; 4]| Element {
             label: 1,
             element_type: ElementType::CPS4,
-            nodes: nodes.to_vec(),
+            nodes: nodes.into(),
             section: 0,
         };
         let mesh = Mesh {

@@ -48,7 +48,7 @@ impl<'a> Context<'a> {
     }
 
     /// Where a point of a part is in the instance of a row (length).
-    pub fn placed(&self, at: [f64; 2], row: &Row) -> [f64; 2] {
+    pub fn placed(&self, at: [f64; 2], row: Row) -> [f64; 2] {
         if self.deck.instances.is_empty() {
             return at;
         }
@@ -116,7 +116,7 @@ impl<'a> Context<'a> {
         let cards = self.deck.cards.iter();
         let rows = cards
             .filter(|card| card.keyword.name == keyword)
-            .flat_map(|card| &card.rows);
+            .flat_map(|card| card.rows.iter());
         let mut labels = rows.filter_map(|row| self.as_label(row.get(0)?));
         labels.any(|known| known == label)
     }

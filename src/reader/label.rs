@@ -69,6 +69,11 @@ impl<T> LabelMap<T> {
         None
     }
 
+    /// All values in any order.
+    pub fn values_mut(&mut self) -> impl Iterator<Item = &mut T> {
+        self.values.iter_mut().chain(self.others.values_mut())
+    }
+
     /// Index of a label of the runs among the values.
     fn place(&self, label: u64) -> Option<usize> {
         let run = self.runs.partition_point(|&(first, _)| first <= label);
@@ -79,11 +84,6 @@ impl<T> LabelMap<T> {
             .map_or(self.values.len(), |&(_, next)| next);
         let place = place + usize::try_from(label - first).ok()?;
         (place < end).then_some(place)
-    }
-
-    /// All labels with their values, in order.
-    pub fn iter(&self) -> impl Iterator<Item = (u64, &T)> {
-        self.between(0, u64::MAX).into_iter()
     }
 
     /// Labels from `first` to `last` with their values, in order.

@@ -112,7 +112,7 @@ fn title(outline: &Outline) -> String {
     let cards = outline.model_cards("HEADING");
     let lines = cards
         .iter()
-        .flat_map(|card| &card.rows)
+        .flat_map(|card| card.rows.iter())
         .map(|row| row.text().trim());
     lines.collect::<Vec<_>>().join(" ")
 }

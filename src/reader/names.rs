@@ -117,16 +117,21 @@ impl Names {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Labelled {
     /// The node or element of this index.
-    Index(usize),
+    Index(u32),
     /// One that is left out, which is reported.
     LeftOut,
 }
 
 impl Labelled {
+    /// The node or element of this index.
+    pub fn new(index: usize) -> Labelled {
+        Labelled::Index(index as u32)
+    }
+
     /// The index, unless it is left out.
     pub fn index(self) -> Option<usize> {
         match self {
-            Labelled::Index(index) => Some(index),
+            Labelled::Index(index) => Some(index as usize),
             Labelled::LeftOut => None,
         }
     }
@@ -162,6 +167,14 @@ impl Labels {
         self.index.insert(label, labelled);
     }
 
+    /// Gives new indices, none to what is left out from here on.
+    pub fn renumber(&mut self, numbers: &[Option<usize>]) {
+        for labelled in self.index.values_mut() {
+            let number = labelled.index().and_then(|index| numbers[index]);
+            *labelled = number.map_or(Labelled::LeftOut, Labelled::new);
+        }
+    }
+
     /// Meaning of a number.
     pub fn get(&self, label: u64) -> Option<Labelled> {
         self.index.get(label).copied()
@@ -171,8 +184,7 @@ impl Labels {
     pub fn find(&self, text: Text, cx: &mut Context) -> Option<usize> {
         let label = self.label(text, cx)?;
         match self.get(label) {
-            Some(Labelled::Index(index)) => Some(index),
-            Some(Labelled::LeftOut) => None,
+            Some(labelled) => labelled.index(),
             None => {
                 self.undefined(label, text.span, cx);
                 None
@@ -185,6 +197,12 @@ impl Labels {
         let text = cx.in_instance(text);
         let number = self.number(text, cx)?;
         Some(label(text.span.instance, number))
+    }
+
+    /// The label of a number in an instance, if it is from 1 to the largest allowed.
+    pub fn plain_label(&self, number: u64, instance: u32) -> Option<u64> {
+        let allowed = 1..=LARGEST_LABEL as u64;
+        allowed.contains(&number).then(|| label(instance, number))
     }
 
     /// The number in `text`, from 1 to the largest allowed.

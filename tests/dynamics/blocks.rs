@@ -120,7 +120,7 @@ pub fn add_block(
             mesh.elements.push(Element {
                 label,
                 element_type: ElementType::CPS4,
-                nodes: nodes.to_vec(),
+                nodes: nodes.into(),
                 section: 0,
             });
         }

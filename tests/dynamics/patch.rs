@@ -56,7 +56,7 @@ fn patch(element_type: ElementType) -> Model {
     let element = |(i, nodes)| Element {
         label: i as u64,
         element_type,
-        nodes,
+        nodes: Vec::into(nodes),
         section: 0,
     };
     model.mesh.elements = nodes.into_iter().enumerate().map(element).collect();

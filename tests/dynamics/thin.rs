@@ -61,7 +61,7 @@ fn split(model: &mut Model, faces: &[Face]) -> Vec<Face> {
             model.mesh.elements.push(stickslip::model::Element {
                 label,
                 element_type: ElementType::CPS3,
-                nodes: nodes.to_vec(),
+                nodes: nodes[..].into(),
                 ..element.clone()
             });
         }

@@ -73,7 +73,7 @@ fn mesh() -> Mesh {
     let element = |label, element_type, nodes: &[usize]| Element {
         label,
         element_type,
-        nodes: nodes.to_vec(),
+        nodes: nodes.into(),
         section: 0,
     };
     Mesh {

@@ -58,8 +58,8 @@ pub(super) fn complain_of(messages: &str) {
 pub(super) fn deck_line_of(deck: &Path, loaded: &Loaded, log: Option<&Path>) -> String {
     deck_line(
         deck,
-        loaded.includes,
-        loaded.lines,
+        loaded.sources.files().len().saturating_sub(1),
+        loaded.sources.line_count(),
         loaded.errors,
         loaded.warnings,
         log,

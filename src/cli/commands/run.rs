@@ -104,7 +104,7 @@ fn record(command: &str, loaded: &Loaded, threads: usize) -> RunRecord {
     RunRecord {
         version: NUMBER.into(),
         commit: COMMIT.into(),
-        deck: loaded.text.clone(),
+        deck: loaded.sources.full_text(),
         command: command.into(),
         threads,
         memory_need: 0,

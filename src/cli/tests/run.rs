@@ -13,6 +13,7 @@ use crate::cli::commands::run;
 use crate::cli::connect::{Loaded, Numerics};
 use crate::cli::error::CliError;
 use crate::cli::exit::Exit;
+use crate::diagnostics::Sources;
 use crate::dynamics::{
     Cause, Cutback, FailedLcp, Failure, IncrementReport, NodalResults, NodeStatus, Observer,
     Outcome, PassReport, RunError, RunSummary, SolverCounts, State, Timings, Worst,
@@ -36,7 +37,7 @@ fn square() -> Model {
             elements: vec![Element {
                 label: 8,
                 element_type: ElementType::CPS4,
-                nodes: vec![0, 1, 2, 3],
+                nodes: vec![0, 1, 2, 3].into(),
                 section: 0,
             }],
         },
@@ -72,12 +73,13 @@ fn square() -> Model {
 }
 
 fn loaded(model: Option<Model>) -> Loaded {
+    let mut sources = Sources::new();
+    sources.add("deck.inp", "*HEADING\n", None);
     Loaded {
         errors: usize::from(model.is_none()),
         model: model.map(PreparedModel::new),
         plain_messages: "warning: this is a test".into(),
-        text: "*HEADING\n".into(),
-        lines: 1,
+        sources,
         ..Loaded::default()
     }
 }

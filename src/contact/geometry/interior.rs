@@ -178,7 +178,7 @@ mod tests {
             mesh.elements.push(Element {
                 label: 1,
                 element_type,
-                nodes: nodes.to_vec(),
+                nodes: nodes.into(),
                 section: 0,
             });
         };
@@ -248,7 +248,7 @@ mod tests {
         mesh.elements.push(Element {
             label: 1,
             element_type: ElementType::CPS4,
-            nodes: vec![first, first + 1, first + 3, first + 2],
+            nodes: vec![first, first + 1, first + 3, first + 2].into(),
             section: 0,
         });
         mesh.coordinates[9] = [0.3, 0.25];

@@ -23,7 +23,7 @@ pub(super) fn read(card: &Card, d: &mut Diagnostics) -> Placement {
 }
 
 /// `tx, ty, tz`
-fn translation(row: &Row, d: &mut Diagnostics) -> [f64; 2] {
+fn translation(row: Row, d: &mut Diagnostics) -> [f64; 2] {
     row.at_most(3, d);
     let [x, y, z] = [0, 1, 2].map(|i| row.real_or(i, 0.0, d).unwrap_or(0.0));
     if z != 0.0 {
@@ -34,7 +34,7 @@ fn translation(row: &Row, d: &mut Diagnostics) -> [f64; 2] {
 }
 
 /// `x1, y1, z1, x2, y2, z2, angle`: centre, and cosine and sine of the angle.
-fn rotation(row: &Row, d: &mut Diagnostics) -> Option<([f64; 2], [f64; 2])> {
+fn rotation(row: Row, d: &mut Diagnostics) -> Option<([f64; 2], [f64; 2])> {
     row.at_most(7, d);
     let point = |first: usize, d: &mut Diagnostics| {
         [0, 1, 2].map(|i| row.real_or(first + i, 0.0, d).unwrap_or(0.0))

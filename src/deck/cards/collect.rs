@@ -1,10 +1,11 @@
 //! Collects the lines of a deck into cards; cards with a reported error are left out.
 
-use super::card::{Card, Row};
+use super::card::Card;
 use super::instance::Instance;
 use super::resolve::{self, Piece};
+use super::rows::Rows;
 use crate::deck::keywords::{Data, Keyword, Status};
-use crate::deck::lines::{Line, Text, assignment};
+use crate::deck::lines::{Lines, Text, assignment};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Span};
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -51,7 +52,7 @@ pub(crate) struct Inclusion {
 
 /// What happens to data lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Rows {
+enum RowRule {
     /// No keyword yet.
     Stray,
     /// They belong to the last card.
@@ -66,7 +67,7 @@ enum Rows {
 pub(crate) struct Collector {
     /// The cards so far.
     pub deck: Deck,
-    rows: Rows,
+    rows: RowRule,
 }
 
 impl Collector {
@@ -74,30 +75,25 @@ impl Collector {
     pub fn new() -> Collector {
         Collector {
             deck: Deck::default(),
-            rows: Rows::Stray,
+            rows: RowRule::Stray,
         }
     }
 
-    /// Adds a data line of the file with the text `source` to the last card.
-    pub fn data(&mut self, line: &Line, source: &Arc<str>, d: &mut Diagnostics) {
-        let text_only = self
-            .deck
-            .cards
-            .last()
-            .is_some_and(|c| c.keyword.data == Data::Text);
-        match self.rows {
-            Rows::Skip => {}
-            Rows::Keep => {
-                if !text_only {
-                    line.check_quotes(d);
+    /// Adds data lines of the file with the text `source` to the last card.
+    pub fn data(&mut self, lines: Lines, source: &Arc<String>, d: &mut Diagnostics) {
+        match (self.rows, self.deck.cards.last_mut()) {
+            (RowRule::Skip, _) => {}
+            (RowRule::Keep, Some(card)) => {
+                if card.keyword.data != Data::Text && lines.text().contains('"') {
+                    lines.data().for_each(|line| line.check_quotes(d));
                 }
-                self.keep(Row::new(line, source));
+                card.rows.add(lines, source);
             }
-            Rows::Stray => self.refuse(line, "a data line before the first keyword".into(), d),
-            Rows::Refuse => {
-                let title = self.deck.cards.last().map(Card::title).unwrap_or_default();
-                self.refuse(line, format!("{title} takes no data lines"), d);
+            (RowRule::Refuse, Some(card)) => {
+                let message = format!("{} takes no data lines", card.title());
+                self.refuse(lines, message, d);
             }
+            (_, _) => self.refuse(lines, "a data line before the first keyword".into(), d),
         }
     }
 
@@ -108,22 +104,16 @@ impl Collector {
             .cards
             .last()
             .is_some_and(|c| c.keyword.data == Data::Text);
-        self.rows == Rows::Skip || (self.rows == Rows::Keep && text)
+        self.rows == RowRule::Skip || (self.rows == RowRule::Keep && text)
     }
 
-    fn keep(&mut self, row: Row) {
-        if let Some(card) = self.deck.cards.last_mut() {
-            card.rows.push(row);
+    /// Reports the first of the lines.
+    fn refuse(&mut self, lines: Lines, message: String, d: &mut Diagnostics) {
+        if let Some(line) = lines.data().next() {
+            let span = line.visible_span();
+            d.push(Diagnostic::error(Code::StrayData, span, message));
         }
-    }
-
-    fn refuse(&mut self, line: &Line, message: String, d: &mut Diagnostics) {
-        d.push(Diagnostic::error(
-            Code::StrayData,
-            line.visible_span(),
-            message,
-        ));
-        self.rows = Rows::Skip;
+        self.rows = RowRule::Skip;
     }
 
     /// Adds a keyword line; returns the file that it names.
@@ -133,36 +123,36 @@ impl Collector {
             if !d.is_lenient() {
                 self.drop_card(rest);
             }
-            self.rows = Rows::Skip;
+            self.rows = RowRule::Skip;
             return None;
         };
         if keyword.status != Status::Read {
             if keyword.status == Status::Refused {
                 self.drop_card(rest);
             }
-            self.start(keyword, first.text.span, Rows::Skip);
+            self.start(keyword, first.text.span, RowRule::Skip);
             return None;
         }
         if keyword.name == "INCLUDE" {
             return self.inclusion(keyword, first, rest, d);
         }
         let rows = match keyword.data {
-            Data::None => Rows::Refuse,
-            Data::Rows(_) | Data::Required(_) | Data::Text => Rows::Keep,
-            Data::Words | Data::Skipped => Rows::Skip,
+            Data::None => RowRule::Refuse,
+            Data::Rows(_) | Data::Required(_) | Data::Text => RowRule::Keep,
+            Data::Words | Data::Skipped => RowRule::Skip,
         };
         self.start(keyword, first.text.span, rows);
         self.parameters(rest, d);
         self.input()
     }
 
-    fn start(&mut self, keyword: &'static Keyword, span: Span, rows: Rows) {
+    fn start(&mut self, keyword: &'static Keyword, span: Span, rows: RowRule) {
         self.rows = rows;
         self.deck.cards.push(Card {
             keyword,
             span,
             faulty: false,
-            rows: Vec::new(),
+            rows: Rows::default(),
             params: Vec::new(),
         });
     }

@@ -4,9 +4,11 @@ mod card;
 mod collect;
 mod instance;
 mod resolve;
+mod rows;
 mod source;
 
-pub use card::{Card, Param, Row};
+pub use card::{Card, Param};
 pub use collect::Deck;
 pub use instance::{Instance, Placement};
+pub use rows::{Row, Rows};
 pub(super) use source::{parse_str, read};

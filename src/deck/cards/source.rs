@@ -2,7 +2,7 @@
 
 use super::collect::{Collector, Deck, Inclusion};
 use super::resolve::Piece;
-use crate::deck::lines::{Content, Fields, Kind, Line, Text};
+use crate::deck::lines::{Content, Fields, Kind, Line, Lines, Text};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, FileId, Source, Sources, Span};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -51,9 +51,7 @@ fn collect(
     sources: &mut Sources,
     d: &mut Diagnostics,
 ) -> Deck {
-    let file = sources.add(name, &content.text, None);
-    let complaint = content.complaint(file);
-    drop(content);
+    let (file, complaint) = add(sources, name, content, None);
     let mut reading = Reading {
         sources,
         d,
@@ -75,6 +73,18 @@ fn collect(
         d.push(error.help("a keyword line begins with one star, such as *NODE"));
     }
     deck
+}
+
+/// Adds a file with its content, about which there may be a complaint.
+fn add(
+    sources: &mut Sources,
+    name: &str,
+    content: Content,
+    included_at: Option<Span>,
+) -> (FileId, Option<Diagnostic>) {
+    let complaint = content.complaint(sources.next_id());
+    let file = sources.add(name, content.text, included_at);
+    (file, complaint)
 }
 
 /// A deck being read.
@@ -101,14 +111,15 @@ impl Reading<'_> {
     }
 
     /// Feeds the lines of a file to the collector.
-    fn lines(&mut self, file: FileId, source: &Arc<str>, rows_only: bool) {
+    fn lines(&mut self, file: FileId, source: &Arc<String>, rows_only: bool) {
         let mut rest = Lines::new(file, source);
         while let Some(line) = rest.next() {
             match line.kind() {
                 Kind::Blank | Kind::Comment => {}
                 Kind::Data => {
-                    self.remark_on_form(&line);
-                    self.collector.data(&line, source, self.d);
+                    let block = rest.take_block(&line);
+                    self.remark_on_block(block);
+                    self.collector.data(block, source, self.d);
                 }
                 Kind::Keyword if rows_only => return self.keyword_among_rows(&line),
                 Kind::Keyword => self.keyword(&line, &mut rest),
@@ -138,6 +149,12 @@ impl Reading<'_> {
             .push(Diagnostic::error(Code::WrongPlace, span, message).help(help));
     }
 
+    fn remark_on_block(&mut self, block: Lines) {
+        if !block.text().is_ascii() || !block.fit(LONGEST_LINE) {
+            block.data().for_each(|line| self.remark_on_form(&line));
+        }
+    }
+
     fn remark_on_form(&mut self, line: &Line) {
         let is_ascii = line.text.is_ascii();
         if is_ascii && line.text.len() <= LONGEST_LINE {
@@ -164,10 +181,9 @@ impl Reading<'_> {
         match self.open_included(inclusion) {
             Ok((name, path, content)) => {
                 let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
-                let file = self.sources.add(&name, &content.text, Some(inclusion.span));
+                let span = Some(inclusion.span);
+                let (file, complaint) = add(self.sources, &name, content, span);
                 self.open.push((identity(&path), folder));
-                let complaint = content.complaint(file);
-                drop(content);
                 self.content(file, complaint, inclusion.rows_only);
                 self.open.pop();
             }
@@ -215,57 +231,13 @@ impl Reading<'_> {
     }
 }
 
-/// The lines of a text, which end with LF or CRLF.
-#[derive(Clone)]
-struct Lines<'a> {
-    /// The last line so far.
-    last: Line<'a>,
-    /// Lines that follow.
-    rest: std::str::Split<'a, char>,
-    /// Byte at which they start.
-    start: usize,
-}
-
-impl<'a> Lines<'a> {
-    /// All lines of a text.
-    fn new(file: FileId, text: &'a str) -> Lines<'a> {
-        let before = Line {
-            file,
-            number: 0,
-            start: 0,
-            text: "",
-        };
-        Lines {
-            last: before,
-            rest: text.split('\n'),
-            start: 0,
-        }
-    }
-}
-
-impl<'a> Iterator for Lines<'a> {
-    type Item = Line<'a>;
-
-    fn next(&mut self) -> Option<Line<'a>> {
-        let line = self.rest.next()?;
-        self.last = Line {
-            number: self.last.number + 1,
-            start: self.start,
-            text: line.strip_suffix('\r').unwrap_or(line),
-            ..self.last
-        };
-        self.start += line.len() + 1;
-        Some(self.last)
-    }
-}
-
 /// The data lines that continue a keyword line ending with a comma, taken from the lines after it.
 fn continuation<'l>(first: &Line, rest: &mut Lines<'l>) -> Vec<Line<'l>> {
     let mut more = Vec::new();
     let mut open = first.ends_with_comma();
     while open {
         let silent = |line: &Line| matches!(line.kind(), Kind::Blank | Kind::Comment);
-        let mut after = rest.clone();
+        let mut after = *rest;
         match after.find(|line| !silent(line)) {
             Some(line) if line.kind() == Kind::Data => {
                 open = line.ends_with_comma();

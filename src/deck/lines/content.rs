@@ -1,6 +1,7 @@
 //! Text of a deck file, read up to the first NUL byte or overlong line.
 
 use crate::diagnostics::{Code, Diagnostic, FileId, Span};
+use memchr::{memchr, memrchr};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::Path;
@@ -87,23 +88,21 @@ impl Content {
 
 /// Number of bytes before the first fault; `length` is that of the line so far.
 fn sound(bytes: &[u8], length: &mut usize) -> usize {
+    let text = memchr(0, bytes).map_or(bytes, |nul| bytes.split_at(nul).0);
     let mut start = 0;
-    for line in bytes.split_inclusive(|&byte| byte == b'\n') {
-        let text = line.strip_suffix(b"\n").unwrap_or(line);
-        let most = text.len().min(LONGEST_LINE - *length);
-        let nul = text.iter().take(most).position(|&byte| byte == 0);
-        let used = nul.unwrap_or(most);
-        if used < text.len() {
-            return start + used;
+    loop {
+        // the last line end that the line so far may reach
+        let rest = text.get(start..).unwrap_or_default();
+        let most = LONGEST_LINE - *length;
+        match memrchr(b'\n', rest.get(..=most).unwrap_or(rest)) {
+            Some(end) => (start, *length) = (start + end + 1, 0),
+            None if rest.len() > most => return start + most,
+            None => {
+                *length += rest.len();
+                return text.len();
+            }
         }
-        *length = if text.len() < line.len() {
-            0
-        } else {
-            *length + used
-        };
-        start += line.len();
     }
-    bytes.len()
 }
 
 #[cfg(test)]

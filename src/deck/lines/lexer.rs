@@ -36,13 +36,7 @@ pub(crate) enum Kind {
 impl<'a> Line<'a> {
     /// What it is.
     pub fn kind(&self) -> Kind {
-        let text = self.text.trim_start();
-        match text {
-            "" => Kind::Blank,
-            _ if text.starts_with("**") => Kind::Comment,
-            _ if text.starts_with('*') => Kind::Keyword,
-            _ => Kind::Data,
-        }
+        kind_of(self.text)
     }
 
     /// Whether its last visible character is a comma.
@@ -72,6 +66,17 @@ impl<'a> Line<'a> {
                 message,
             ));
         }
+    }
+}
+
+/// What a line with this text is.
+pub(super) fn kind_of(line: &str) -> Kind {
+    let text = line.trim_start();
+    match text {
+        "" => Kind::Blank,
+        _ if text.starts_with("**") => Kind::Comment,
+        _ if text.starts_with('*') => Kind::Keyword,
+        _ => Kind::Data,
     }
 }
 

@@ -2,13 +2,16 @@
 
 mod content;
 mod lexer;
+mod lines_of_file;
 mod name;
 mod number;
+pub(crate) mod plain;
 mod text;
 pub(crate) mod word;
 
 pub(crate) use content::Content;
 pub(crate) use lexer::{Fields, Kind, Line, assignment, span_in};
+pub(crate) use lines_of_file::Lines;
 pub use name::Name;
 pub use text::Text;
 pub(crate) use word::Match;

@@ -73,14 +73,10 @@ fn short_integer(digits: &[u8]) -> Option<i64> {
 }
 
 /// The value of a number without `D`, whose exponent has its letter: the standard library reads
-/// these as they are. It also reads `inf` and `nan`, and `1.` and `.5`, but not `.`.
-fn plain_real(text: &str) -> Option<f64> {
-    let is_plain = |byte: &u8| matches!(byte, b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E');
-    let value = text
-        .bytes()
-        .all(|byte| is_plain(&byte))
-        .then(|| text.parse().ok());
-    value.flatten().filter(|value: &f64| value.is_finite())
+/// these as they are. What it reads besides them is not finite: `inf` and `nan`.
+pub(super) fn plain_real(text: &str) -> Option<f64> {
+    let value: Option<f64> = text.parse().ok();
+    value.filter(|value| value.is_finite())
 }
 
 fn mantissa(input: Input) -> IResult<Input, Input> {

@@ -10,7 +10,7 @@ use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span};
 const LONGEST_NAME: usize = 80;
 
 /// Longest number other codes read.
-const LONGEST_NUMBER: usize = 20;
+pub(super) const LONGEST_NUMBER: usize = 20;
 
 /// A field or a parameter's value: its text and its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

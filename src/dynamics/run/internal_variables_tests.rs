@@ -41,7 +41,7 @@ fn block(rate: f64) -> Model {
             model.mesh.elements.push(Element {
                 label: node as u64 + 1,
                 element_type: ElementType::CPE4,
-                nodes: vec![node, node + 1, node + 1 + SIDE, node + SIDE],
+                nodes: vec![node, node + 1, node + 1 + SIDE, node + SIDE].into(),
                 section: 0,
             });
         }

@@ -245,7 +245,7 @@ mod tests {
             mesh.elements.push(Element {
                 label: 1,
                 element_type,
-                nodes,
+                nodes: nodes.into(),
                 section: 0,
             });
         }

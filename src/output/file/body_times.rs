@@ -2,7 +2,7 @@
 //! file.
 
 use crate::model::{Bodies, Model};
-use crate::output::text::{corners, wave_speed};
+use crate::output::text::wave_speed;
 
 /// Transit times of longitudinal waves in a body: the time scales for the choice of the increment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,7 +19,7 @@ pub(crate) fn body_times(model: &Model, bodies: &Bodies) -> Vec<BodyTimes> {
     let mut slowest = vec![f64::INFINITY; bodies.count];
     let mut range = vec![[[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]]; bodies.count];
     for (element, &body) in model.mesh.elements.iter().zip(&bodies.of_element) {
-        let (corners, speed) = (corners(model, element), wave_speed(model, element));
+        let (corners, speed) = (model.mesh.corners(element), wave_speed(model, element));
         edge[body] = edge[body].min(model.mesh.shortest_side(element) / speed);
         slowest[body] = slowest[body].min(speed);
         let [lower, upper] = &mut range[body];

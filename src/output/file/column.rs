@@ -1,5 +1,6 @@
 //! Datasets of the result file that grow by rows, with the rows buffered in memory.
 
+use hdf5::plist::dataset_create::{AllocTime, FillTime};
 use hdf5::{Dataset, Extent, Extents, Group, H5Type, Hyperslab, SliceOrIndex};
 use ndarray::{ArrayView, IxDyn};
 
@@ -71,6 +72,8 @@ impl Value for i64 {
 pub(crate) enum Mostly {
     /// Any value.
     Varied,
+    /// Any value, but the first row may come late.
+    Late,
     /// Zero.
     Zero,
     /// NaN.
@@ -120,22 +123,33 @@ pub(crate) struct Column<T> {
 }
 
 impl<T: Value> Column<T> {
-    /// A dataset with one row per increment (or per event).
+    /// A dataset with one row per increment.
     pub fn series(
         parent: &Group,
         name: &str,
         row: &[usize],
         meaning: Meaning,
     ) -> hdf5::Result<Self> {
+        let shape = (Row::whole(row), Self::series_rows(row));
+        Self::create(parent, name, shape, Mostly::Varied, meaning)
+    }
+
+    /// A dataset with one row per event. It has its tree of chunks from the start, since the first
+    /// event can come late.
+    pub fn events(
+        parent: &Group,
+        name: &str,
+        row: &[usize],
+        meaning: Meaning,
+    ) -> hdf5::Result<Self> {
+        let shape = (Row::whole(row), Self::series_rows(row));
+        Self::create(parent, name, shape, Mostly::Late, meaning)
+    }
+
+    /// Rows of a chunk of a dataset that grows row by row.
+    fn series_rows(row: &[usize]) -> usize {
         let bytes = row.iter().product::<usize>() * size_of::<T>();
-        let rows = (CHUNK_BYTES / bytes.max(1)).clamp(1, CHUNK_ROWS);
-        Self::create(
-            parent,
-            name,
-            (Row::whole(row), rows),
-            Mostly::Varied,
-            meaning,
-        )
+        (CHUNK_BYTES / bytes.max(1)).clamp(1, CHUNK_ROWS)
     }
 
     /// A dataset to which whole frames of `rows` rows are appended.
@@ -148,7 +162,7 @@ impl<T: Value> Column<T> {
     ) -> hdf5::Result<Self> {
         let bytes = row.given_shape().iter().product::<usize>() * size_of::<T>();
         let most = match mostly {
-            Mostly::Varied => CHUNK_BYTES,
+            Mostly::Varied | Mostly::Late => CHUNK_BYTES,
             Mostly::Zero | Mostly::Nan => SPARSE_CHUNK_BYTES,
         };
         let rows = (most / bytes.max(1)).clamp(1, CHUNK_FRAMES * rows.max(1));
@@ -162,7 +176,9 @@ impl<T: Value> Column<T> {
         mostly: Mostly,
         meaning: Meaning,
     ) -> hdf5::Result<Self> {
-        let mut extents = vec![Extent::resizable(0)];
+        // The tree of chunks is made with the first row, and stays when that is taken away.
+        let is_late = mostly == Mostly::Late;
+        let mut extents = vec![Extent::resizable(usize::from(is_late))];
         extents.extend(row.shape.iter().map(|&n| Extent::fixed(n)));
         let given = row.given_shape();
         let nan = mostly == Mostly::Nan;
@@ -171,9 +187,20 @@ impl<T: Value> Column<T> {
             .obj_track_times(false)
             .chunk(rows_of(chunk_rows, &given))
             .fill_value(T::left_out(nan))
+            .alloc_time(Some(if is_late {
+                AllocTime::Early
+            } else {
+                AllocTime::Incr
+            }))
+            .fill_time(if is_late {
+                FillTime::Never
+            } else {
+                FillTime::IfSet
+            })
             .empty::<T>()
             .shape(Extents::simple(extents))
             .create(name)?;
+        dataset.resize(rows_of(0, row.shape))?;
         describe(&dataset, meaning)?;
         Ok(Column {
             dataset,
@@ -196,13 +223,15 @@ impl<T: Value> Column<T> {
         self.pending.extend_from_slice(values);
     }
 
-    /// The next rows from `first` on, up to the border of a chunk, that are not left out.
+    /// The next rows from `first` on, up to the border of a chunk, that are not left out. The first
+    /// chunk never is: with it the dataset gets its tree of chunks, to which its header then points
+    /// before frames are there that a run killed in the middle of a write could make unreadable.
     fn next_block(&self, first: usize) -> Option<[usize; 2]> {
         let end = self.written + self.pending_rows();
         let border = |row: usize| ((row / self.chunk_rows + 1) * self.chunk_rows).min(end);
         let is_left_out = |start: usize, stop: usize| {
             let mut values = self.values(start, stop).iter();
-            values.all(|value| value.is_left_out(self.nan))
+            start > 0 && values.all(|value| value.is_left_out(self.nan))
         };
         let mut start = first;
         while start < end && is_left_out(start, border(start)) {

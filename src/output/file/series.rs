@@ -22,7 +22,7 @@ pub(crate) const fn scalar<R, T>(
 /// A dataset and the value of a report `R` that it holds.
 type Shown<R, T> = (Column<T>, fn(&R) -> T);
 
-/// Datasets with one scalar of a report `R` each, a row per increment.
+/// Datasets with one scalar of a report `R` each, a row per increment or event.
 pub(crate) struct Series<R, T> {
     columns: Vec<Shown<R, T>>,
 }
@@ -32,6 +32,14 @@ impl<R, T: Value> Series<R, T> {
     pub fn create(at: &Group, scalars: &[Scalar<R, T>]) -> hdf5::Result<Self> {
         let columns = (scalars.iter())
             .map(|&(name, text, value)| Ok((Column::series(at, name, &[], text)?, value)))
+            .collect::<hdf5::Result<_>>()?;
+        Ok(Series { columns })
+    }
+
+    /// Creates one dataset per scalar, with a row per event.
+    pub fn of_events(at: &Group, scalars: &[Scalar<R, T>]) -> hdf5::Result<Self> {
+        let columns = (scalars.iter())
+            .map(|&(name, text, value)| Ok((Column::events(at, name, &[], text)?, value)))
             .collect::<hdf5::Result<_>>()?;
         Ok(Series { columns })
     }

@@ -287,9 +287,9 @@ impl Impacts {
     /// Creates the datasets.
     pub fn create(at: &Group) -> hdf5::Result<Self> {
         let column =
-            |name, row: &[usize], text| Column::<i64>::series(at, name, row, meaning(text, "1"));
+            |name, row: &[usize], text| Column::<i64>::events(at, name, row, meaning(text, "1"));
         Ok(Impacts {
-            landings: Series::create(at, &LANDINGS)?,
+            landings: Series::of_events(at, &LANDINGS)?,
             increment: column("increment", &[], "increment of the landing")?,
             slave: column("slave", &[], "node number of the slave node")?,
             segment: column("segment", &[2], "node numbers of the segment's ends")?,

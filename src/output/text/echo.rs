@@ -10,7 +10,6 @@ use crate::model::{
 use crate::output::frames::{DEFAULT_FRAMES, are_dense};
 use crate::prepare::{InitialGap, PreparedModel};
 use crate::vectors::cross;
-use smallvec::SmallVec;
 
 /// Most nodes that are named.
 const MOST_NAMES: usize = 12;
@@ -284,12 +283,6 @@ fn prescribed(model: &Model) -> usize {
     dofs.len()
 }
 
-/// Reference coordinates of the nodes of an element.
-pub(crate) fn corners(model: &Model, element: &Element) -> SmallVec<[[f64; 2]; 4]> {
-    let coordinates = |&node: &usize| model.mesh.coordinates[node];
-    element.nodes.iter().map(coordinates).collect()
-}
-
 fn area(corners: &[[f64; 2]]) -> f64 {
     let next = corners.iter().skip(1).chain(corners.first());
     let twice: f64 = corners.iter().zip(next).map(|(&a, &b)| cross(a, b)).sum();
@@ -300,7 +293,7 @@ fn area(corners: &[[f64; 2]]) -> f64 {
 pub(crate) fn element_mass(model: &Model, element: &Element) -> f64 {
     let section = &model.sections[element.section];
     let density = model.materials[section.material].density;
-    density * section.thickness * area(&corners(model, element))
+    density * section.thickness * area(&model.mesh.corners(element))
 }
 
 /// Speed of longitudinal waves in an element.

@@ -194,7 +194,7 @@ mod tests {
             .map(|k| Element {
                 label: 10 * (k as u64 + 1),
                 element_type: ElementType::CPE3,
-                nodes: vec![k, k + 1, k + 2],
+                nodes: vec![k, k + 1, k + 2].into(),
                 section: 0,
             })
             .collect();

@@ -15,7 +15,7 @@ mod strain;
 pub(crate) use console::Console;
 pub use console::Verbosity;
 pub use echo::{ModelEcho, frames, solver};
-pub(crate) use echo::{corners, element_mass, wave_speed};
+pub(crate) use echo::{element_mass, wave_speed};
 pub(crate) use failure::failure_lines;
 pub(crate) use format::{bytes, counted, general, scientific};
 pub(crate) use layout::{label, wrap, wrap_words};

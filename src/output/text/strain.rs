@@ -159,7 +159,7 @@ mod tests {
             model.mesh.elements.push(Element {
                 label: index as u64 + 1,
                 element_type: ElementType::CPE4,
-                nodes: vec![0, 1, 2, 3],
+                nodes: vec![0, 1, 2, 3].into(),
                 section: index,
             });
         }

@@ -42,7 +42,7 @@ pub(crate) fn block(
                 3 => ElementType::CPE3,
                 _ => ElementType::CPE4,
             },
-            nodes,
+            nodes: nodes.into(),
             section: 0,
         }));
     }

@@ -79,9 +79,10 @@ fn coincident(mesh: &Mesh) -> Vec<[usize; 2]> {
     let mut pairs = Vec::new();
     for q in (0..used.len()).filter(|&node| used[node]) {
         let at = mesh.coordinates[q];
+        let cells = at.map(|x| grid.cells(x));
         let is_close = |&p: &usize| distance(mesh.coordinates[p], at) <= SAME_PLACE * cell;
-        pairs.extend(grid.beside(at).filter(is_close).map(|p| [p, q]));
-        grid.add(q, at);
+        pairs.extend(grid.nodes(cells).filter(is_close).map(|p| [p, q]));
+        grid.add(q, cells);
     }
     pairs.sort_unstable();
     pairs.dedup();
@@ -111,30 +112,36 @@ impl Grid {
         }
     }
 
-    /// Adds a node to its cell.
-    fn add(&mut self, node: usize, at: [f64; 2]) {
-        let [i, j] = at.map(|x| self.number(x, 0.0));
+    /// Adds a node to the first of these cells.
+    fn add(&mut self, node: usize, [[i, _], [j, _]]: [[u64; 2]; 2]) {
         let key = self.key(i, j);
         self.before[node] = std::mem::replace(&mut self.last[key], node as u32);
     }
 
-    /// Nodes in the cells at a place: in two or four beside the lines between them.
-    fn beside(&self, at: [f64; 2]) -> impl Iterator<Item = usize> + '_ {
-        let numbers = at.map(|x| [-SAME_PLACE, SAME_PLACE].map(|by| self.number(x, by)));
+    /// Nodes in cells of these columns and rows.
+    fn nodes(&self, [columns, rows]: [[u64; 2]; 2]) -> impl Iterator<Item = usize> + '_ {
         let several =
-            |[low, high]: [u64; 2]| [low].into_iter().chain((low != high).then_some(high));
-        let rows = move |i| several(numbers[1]).map(move |j| self.key(i, j));
-        several(numbers[0]).flat_map(rows).flat_map(move |key| {
+            |[first, other]: [u64; 2]| [first].into_iter().chain((other != first).then_some(other));
+        let keys = move |i| several(rows).map(move |j| self.key(i, j));
+        several(columns).flat_map(keys).flat_map(move |key| {
             let known = |node: u32| (node != Grid::NONE).then_some(node as usize);
             let before = move |&node: &usize| known(self.before[node]);
             std::iter::successors(known(self.last[key]), before)
         })
     }
 
-    /// Number of the column or row of cells that holds a coordinate moved by a part of a cell.
-    fn number(&self, x: f64, by: f64) -> u64 {
+    /// Numbers of the column or row of cells that holds a coordinate, and of the one beside it where
+    /// the line between them is near.
+    fn cells(&self, x: f64) -> [u64; 2] {
         // The grid is shifted so that the nodes of regular meshes lie off its lines.
-        (x / self.cell + 0.37 + by).floor() as i64 as u64
+        let at = x / self.cell + 0.37;
+        let (own, part) = (at.floor(), at - at.floor());
+        let other = match part {
+            part if part < SAME_PLACE => own - 1.0,
+            part if part > 1.0 - SAME_PLACE => own + 1.0,
+            _ => own,
+        };
+        [own, other].map(|number| number as i64 as u64)
     }
 
     fn key(&self, i: u64, j: u64) -> usize {

@@ -2,10 +2,10 @@
 
 use super::magnitudes::unusable;
 use crate::diagnostics::{Code, Diagnostic, Span};
-use crate::model::{ElementsAtNodes, Mesh};
+use crate::model::{ElementsAtNodes, Mesh, sides};
 use crate::reader::context::Context;
 use crate::reader::mesh::MeshIndex;
-use crate::vectors::{cross, difference, distance};
+use crate::vectors::{cross, difference, distance, dot};
 use smallvec::SmallVec;
 
 /// Smallest cross product of two sides, relative to the square of the longest side.
@@ -35,31 +35,34 @@ fn same_nodes(index: usize, mesh: &Mesh, at_nodes: &ElementsAtNodes) -> Option<u
 }
 
 fn shape(index: usize, mesh_index: &MeshIndex, span: Span, cx: &mut Context) {
-    let mesh = &mesh_index.mesh;
-    let element = &mesh.elements[index];
-    let ends = element
-        .sides()
-        .map(|side| side.map(|n| mesh.coordinates[n]));
-    let sides: SmallVec<[[[f64; 2]; 2]; 4]> = ends.collect();
-    let lengths = sides.iter().map(|&[a, b]| distance(a, b));
-    let longest = lengths.fold(0.0, f64::max);
-    if !longest.is_finite() {
-        let what = format!(
-            "the longest side of element {}",
-            mesh_index.element_name(index)
-        );
-        return unusable(&what, longest, span, cx);
+    let corners = mesh_index.mesh.corners(&mesh_index.mesh.elements[index]);
+    let vectors = sides(&corners).map(|[a, b]| difference(a, b));
+    let mut vectors: SmallVec<[[f64; 2]; 4]> = vectors.collect();
+    let square = vectors.iter().map(|&s| dot(s, s)).fold(0.0, f64::max);
+    let mut flat = FLAT * square;
+    if !square.is_normal() {
+        let lengths = vectors.iter().map(|&side| distance([0.0; 2], side));
+        let longest = lengths.fold(0.0, f64::max);
+        if !longest.is_finite() {
+            let name = mesh_index.element_name(index);
+            let what = format!("the longest side of element {name}");
+            return unusable(&what, longest, span, cx);
+        }
+        for x in vectors.as_flattened_mut() {
+            *x /= longest;
+        }
+        flat = FLAT;
     }
-    let count = sides.len();
-    let scaled = |&[a, b]: &[[f64; 2]; 2]| difference(a, b).map(|x| x / longest);
-    let scaled: SmallVec<[[f64; 2]; 4]> = sides.iter().map(scaled).collect();
-    let next = scaled.iter().skip(1).chain(scaled.first());
-    let turns = scaled.iter().zip(next).map(|(&s, &t)| cross(s, t));
-    let left = turns.clone().filter(|&turn| turn > FLAT).count();
+    let (mut left, mut right) = (0, 0);
+    for [s, t] in sides(&vectors) {
+        let turn = cross(s, t);
+        left += usize::from(turn > flat);
+        right += usize::from(turn < -flat);
+    }
+    let count = corners.len();
     if left == count {
         return;
     }
-    let right = turns.filter(|&turn| turn < -FLAT).count();
     let label = mesh_index.element_name(index);
     let (fault, help) = if right == count {
         (

@@ -126,7 +126,7 @@ fn assignment(
 ) -> Result<Interaction, ()> {
     let mut assigned = Ok(Interaction::default());
     for card in block.parts_of("CONTACT PROPERTY ASSIGNMENT") {
-        for row in &card.rows {
+        for row in card.rows.iter() {
             assigned = assigned_in(row, interactions, cx).ok_or(());
         }
     }
@@ -134,7 +134,7 @@ fn assignment(
 }
 
 /// `, , interaction`
-fn assigned_in(row: &Row, interactions: &Interactions, cx: &mut Context) -> Option<Interaction> {
+fn assigned_in(row: Row, interactions: &Interactions, cx: &mut Context) -> Option<Interaction> {
     row.at_most(3, cx.d);
     let mut named = (0..2).filter_map(|i| row.get(i));
     if let Some(field) = named.find(|field| field.name_key() != "ALLEXTERIOR") {

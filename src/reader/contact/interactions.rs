@@ -117,7 +117,7 @@ fn law(card: &Card, cx: &mut Context) -> Option<Friction> {
 }
 
 /// A field that is not negative; `what` it is.
-fn not_negative(row: &Row, index: usize, what: &str, cx: &mut Context) -> Option<f64> {
+fn not_negative(row: Row, index: usize, what: &str, cx: &mut Context) -> Option<f64> {
     let field = row.required(index, what, cx.d)?;
     let value = field.real(cx.d)?;
     if value < 0.0 {

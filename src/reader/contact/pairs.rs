@@ -23,7 +23,7 @@ pub(crate) fn read(
         let name = card.required("INTERACTION", cx.d);
         let interaction = name.and_then(|name| interactions.find(name, cx));
         let adjust = adjust(card, sets, cx);
-        for row in &card.rows {
+        for row in card.rows.iter() {
             let contact = contact(row, interaction, surfaces, cx);
             report_adjusted_self_contact(contact.as_ref(), card, cx);
             contacts.extend(contact.map(|contact| Contact { adjust, ..contact }));
@@ -78,7 +78,7 @@ fn report_repeated(contacts: &[Contact], cx: &mut Context) {
 
 /// `slave, master`; a single surface is in contact with itself.
 fn contact(
-    row: &Row,
+    row: Row,
     interaction: Option<Interaction>,
     surfaces: &Surfaces,
     cx: &mut Context,
@@ -103,7 +103,7 @@ fn contact(
 }
 
 /// Reports surfaces that cannot be slave or master.
-fn check_use(row: &Row, slave: Found, master: Found, cx: &mut Context) -> Option<()> {
+fn check_use(row: Row, slave: Found, master: Found, cx: &mut Context) -> Option<()> {
     let once = row.get(1).is_none();
     let name = &master.1.name;
     let is_of_nodes = matches!(master.1.kind, SurfaceKind::Nodes(_));

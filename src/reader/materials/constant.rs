@@ -25,14 +25,14 @@ impl<T> Constant<T> {
 /// The constant that all rows of a card agree on.
 pub(super) fn constant<T: PartialEq + Copy>(
     cards: &[&Card],
-    read: fn(&Row, &mut Context) -> Option<T>,
+    read: fn(Row, &mut Context) -> Option<T>,
     cx: &mut Context,
 ) -> Constant<T> {
     let Some(card) = cards.first() else {
         return Constant::Missing;
     };
     let mut found = Constant::Wrong;
-    for row in &card.rows {
+    for row in card.rows.iter() {
         match (read(row, cx), found) {
             (None, _) => return Constant::Wrong,
             (Some(value), Constant::Given(first)) if value != first => {
@@ -46,7 +46,7 @@ pub(super) fn constant<T: PartialEq + Copy>(
 }
 
 /// A temperature in field `index`: one row serves all of them.
-pub(super) fn temperature(row: &Row, index: usize, cx: &mut Context) -> Option<()> {
+pub(super) fn temperature(row: Row, index: usize, cx: &mut Context) -> Option<()> {
     row.real_or(index, 0.0, cx.d)?;
     let message = "this temperature has no effect";
     row.without_effect(index, message, "there are no temperatures", cx.d);
@@ -54,7 +54,7 @@ pub(super) fn temperature(row: &Row, index: usize, cx: &mut Context) -> Option<(
 }
 
 /// Reports the number in a field, if it is there.
-pub(super) fn out_of_range(rule: &str, row: &Row, index: usize, cx: &mut Context) {
+pub(super) fn out_of_range(rule: &str, row: Row, index: usize, cx: &mut Context) {
     if let Some(field) = row.get(index) {
         let message = format!("{rule}, found {}", field.text);
         cx.error(Code::MaterialRange, field.span, message);

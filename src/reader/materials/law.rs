@@ -45,7 +45,7 @@ fn report_second(first: &Card, card: &Card, cx: &mut Context) {
 }
 
 /// `E, nu[, T]`
-fn elastic_row(row: &Row, cx: &mut Context) -> Option<Law> {
+fn elastic_row(row: Row, cx: &mut Context) -> Option<Law> {
     row.at_most(3, cx.d);
     let young = row.real(0, "Young's modulus", cx.d);
     let poisson = row.real_or(1, 0.0, cx.d);
@@ -80,7 +80,7 @@ fn hyperelastic(card: &Card, cx: &mut Context) -> Constant<Law> {
 }
 
 /// `C10, D1[, T]`
-fn neo_hooke_row(row: &Row, cx: &mut Context) -> Option<Law> {
+fn neo_hooke_row(row: Row, cx: &mut Context) -> Option<Law> {
     row.at_most(3, cx.d);
     let c10 = row.real(0, "C10", cx.d);
     let d1 = row.real_or(1, 0.0, cx.d);
@@ -98,7 +98,7 @@ fn neo_hooke_row(row: &Row, cx: &mut Context) -> Option<Law> {
 }
 
 /// Reports a D1 that is missing, zero or negative.
-fn report_d1(d1: f64, row: &Row, cx: &mut Context) {
+fn report_d1(d1: f64, row: Row, cx: &mut Context) {
     let given = row.get(1).filter(|field| !field.text.is_empty());
     let (code, span, message) = match given {
         None => (

@@ -97,7 +97,7 @@ fn draft(name: String, block: &Block, general: Option<damping::Placed>, cx: &mut
 }
 
 /// `rho[, T]`
-fn density_row(row: &Row, cx: &mut Context) -> Option<f64> {
+fn density_row(row: Row, cx: &mut Context) -> Option<f64> {
     row.at_most(2, cx.d);
     let density = row.real(0, "the density", cx.d);
     temperature(row, 1, cx)?;

@@ -8,6 +8,9 @@ use crate::reader::label::{instance_of, number_of};
 /// Replaces the labels of nodes and elements by numbers; those of instances follow the largest one
 /// of the others.
 pub(super) fn number(mesh: &mut Mesh, cx: &Context) -> Vec<Instance> {
+    if cx.deck.instances.is_empty() {
+        return Vec::new();
+    }
     let mut instances: Vec<Instance> = Vec::new();
     for instance in &cx.deck.instances {
         instances.push(Instance {

@@ -3,34 +3,34 @@
 
 use super::mesh_index::MeshIndex;
 use crate::diagnostics::{Code, Diagnostic, Span};
-use crate::model::{Face, Mesh, Plane};
+use crate::model::{Face, Mesh, Nodes, Plane};
 use crate::reader::context::Context;
 use crate::reader::names::Labelled;
-use smallvec::SmallVec;
 use std::collections::HashMap;
 
-/// A line element as the deck gives it, with the numbers of its nodes.
+/// A line element as the deck gives it.
 pub(super) struct RawLine {
     pub label: u64,
-    pub nodes: SmallVec<[u64; 4]>,
+    pub nodes: Nodes,
     pub span: Span,
 }
 
-/// Numbers the line elements after the plane ones; leaves out those that are no side.
-pub(super) fn add(lines: &[RawLine], mesh_index: &mut MeshIndex, cx: &mut Context) {
+/// Numbers the line elements after the plane ones; leaves out those that are no side. `used` tells
+/// which nodes are not left out.
+pub(super) fn add(lines: &[RawLine], used: &[bool], mesh_index: &mut MeshIndex, cx: &mut Context) {
     if lines.is_empty() {
         return;
     }
     let faces = faces_by_nodes(&mesh_index.mesh);
     let mut strays = Vec::new();
     for line in lines {
-        let index = |label: &u64| mesh_index.nodes.get(*label).and_then(Labelled::index);
-        let mut nodes: Vec<usize> = line.nodes.iter().filter_map(index).collect();
+        let mut nodes = line.nodes.clone();
+        nodes.retain(|node| used[*node]);
         nodes.sort_unstable();
-        let labelled = match faces.get(nodes.as_slice()) {
+        let labelled = match faces.get(&nodes) {
             Some(&face) => {
                 mesh_index.lines.push(face);
-                Labelled::Index(mesh_index.mesh.elements.len() + mesh_index.lines.len() - 1)
+                Labelled::new(mesh_index.mesh.elements.len() + mesh_index.lines.len() - 1)
             }
             None => {
                 strays.push(line);
@@ -46,11 +46,11 @@ pub(super) fn add(lines: &[RawLine], mesh_index: &mut MeshIndex, cx: &mut Contex
 }
 
 /// A face for the nodes of every side, in increasing order; the first of two elements.
-fn faces_by_nodes(mesh: &Mesh) -> HashMap<Vec<usize>, Face> {
+fn faces_by_nodes(mesh: &Mesh) -> HashMap<Nodes, Face> {
     let mut faces = HashMap::new();
     for (element, e) in mesh.elements.iter().enumerate() {
         for (side, nodes) in e.sides().enumerate() {
-            let mut nodes = nodes.to_vec();
+            let mut nodes = Nodes::from_slice(&nodes);
             nodes.sort_unstable();
             faces.entry(nodes).or_insert(Face { element, side });
         }

@@ -1,11 +1,10 @@
 //! The mesh with the node and element numbers of the deck, and the sets named on `*NODE` and
 //! `*ELEMENT`.
 
-use crate::deck::{Name, Row};
-use crate::diagnostics::Span;
-use crate::model::{Element, ElementType, Face, Instance, Mesh, element_name, node_name};
-use crate::reader::names::{Labelled, Labels};
-use smallvec::SmallVec;
+use crate::deck::Name;
+use crate::diagnostics::{Code, Span};
+use crate::model::{Face, Instance, Mesh, element_name, node_name};
+use crate::reader::names::Labels;
 
 /// The mesh, with the numbers and sets that the deck gives to its nodes and elements.
 pub(crate) struct MeshIndex {
@@ -37,19 +36,19 @@ pub(crate) struct Group {
     pub labels: Vec<u64>,
 }
 
-/// A node as the deck gives it.
-pub(in crate::reader) struct RawNode<'a> {
-    pub label: u64,
-    pub at: [f64; 3],
-    pub row: &'a Row,
-}
-
-/// An element as the deck gives it, with the numbers of its nodes.
-pub(in crate::reader) struct RawElement {
-    pub label: u64,
-    pub nodes: SmallVec<[u64; 4]>,
-    pub element_type: ElementType,
-    pub span: Span,
+impl Default for MeshIndex {
+    fn default() -> MeshIndex {
+        MeshIndex {
+            mesh: Mesh::default(),
+            instances: Vec::new(),
+            nodes: Labels::new("node", Code::UndefinedNode),
+            elements: Labels::new("element", Code::UndefinedElement),
+            lines: Vec::new(),
+            element_spans: Vec::new(),
+            node_groups: Vec::new(),
+            element_groups: Vec::new(),
+        }
+    }
 }
 
 impl MeshIndex {
@@ -71,31 +70,23 @@ impl MeshIndex {
         self.mesh.coordinates.extend(points);
     }
 
-    /// Adds a node.
-    pub fn add_node(&mut self, node: &RawNode) {
-        let [x, y, _] = node.at;
-        self.nodes
-            .insert(node.label, Labelled::Index(self.mesh.node_count()));
-        self.mesh.node_labels.push(node.label);
-        self.mesh.coordinates.push([x, y]);
-    }
-
-    /// Adds an element whose nodes have been added.
-    pub fn add_element(&mut self, element: &RawElement) {
-        let index = |label: &u64| match self.nodes.get(*label) {
-            Some(Labelled::Index(index)) => Some(index),
-            _ => None,
-        };
-        let nodes: Option<Vec<usize>> = element.nodes.iter().map(index).collect();
-        let Some(nodes) = nodes else { return };
-        let next = self.mesh.elements.len();
-        self.elements.insert(element.label, Labelled::Index(next));
-        self.element_spans.push(element.span);
-        self.mesh.elements.push(Element {
-            label: element.label,
-            element_type: element.element_type,
-            nodes,
-            section: 0,
+    /// Takes out the nodes that are not used and numbers the others anew.
+    pub fn keep_nodes(&mut self, used: &[bool]) {
+        let mut count = 0;
+        let numbers = used.iter().map(|&used| {
+            count += usize::from(used);
+            used.then(|| count - 1)
         });
+        let numbers: Vec<Option<usize>> = numbers.collect();
+        self.nodes.renumber(&numbers);
+        for element in &mut self.mesh.elements {
+            for node in &mut element.nodes {
+                *node = numbers[*node].unwrap_or(*node);
+            }
+        }
+        let mut kept = used.iter();
+        self.mesh.node_labels.retain(|_| kept.next() == Some(&true));
+        let mut kept = used.iter();
+        self.mesh.coordinates.retain(|_| kept.next() == Some(&true));
     }
 }

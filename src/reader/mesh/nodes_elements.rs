@@ -3,27 +3,29 @@
 use super::element_type::{self, Kind};
 use super::instances;
 use super::line_elements::{self, RawLine};
-use super::mesh_index::{Group, MeshIndex, RawElement, RawNode};
+use super::mesh_index::{Group, MeshIndex};
 use super::outline::Outline;
 use super::references;
 use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
-use crate::model::Mesh;
+use crate::model::{Element, Nodes};
 use crate::reader::context::Context;
 use crate::reader::label::LabelMap;
-use crate::reader::names::{Labelled, Labels};
+use crate::reader::names::Labelled;
 use smallvec::SmallVec;
 use std::collections::BTreeSet;
+use std::iter::Peekable;
 
 /// Reads nodes and elements; leaves out nodes of neither an element, a rigid surface nor an
 /// equation.
 pub(crate) fn read<'a>(outline: &Outline<'a>, cx: &mut Context<'a>) -> MeshIndex {
     let errors = cx.errors();
-    let mut reading = Reading {
-        nodes_incomplete: outline.blocks("NODE").next().is_none(),
-        elements_incomplete: outline.blocks("ELEMENT").next().is_none(),
-        ..Reading::default()
-    };
+    let mut reading = Reading::default();
+    let MeshIndex {
+        nodes, elements, ..
+    } = &mut reading.mesh_index;
+    nodes.incomplete = outline.blocks("NODE").next().is_none();
+    elements.incomplete = outline.blocks("ELEMENT").next().is_none();
     for card in outline.model_cards("NODE") {
         reading.node_card(card, cx);
     }
@@ -33,107 +35,158 @@ pub(crate) fn read<'a>(outline: &Outline<'a>, cx: &mut Context<'a>) -> MeshIndex
     if cx.errors() == errors && !cx.may_lack_cards() {
         reading.report_empty(outline, cx);
     }
-    reading.report_not_planar(cx);
-    let groups = reading.node_groups.iter();
+    reading.report_not_planar(outline, cx);
+    let groups = reading.mesh_index.node_groups.iter();
     let groups: Vec<_> = groups
         .map(|group| (group.name.key.as_str(), group.labels.as_slice()))
         .collect();
     let references = references::labels(outline, &groups, cx);
-    reading.mesh_index(&references, cx)
+    reading.finish(&references, outline, cx)
 }
 
 #[derive(Default)]
-struct Reading<'a> {
-    nodes: Vec<RawNode<'a>>,
-    node_index: LabelMap<Option<usize>>,
-    elements: Vec<RawElement>,
+struct Reading {
+    /// The mesh so far, with all nodes and without line elements.
+    mesh_index: MeshIndex,
+    /// Third coordinates (length) of the nodes up to the last one off the plane z = 0.
+    heights: Vec<f64>,
+    /// Lines that define the nodes.
+    node_lines: Vec<u32>,
+    /// Lines that define the elements, line elements included.
+    element_lines: LabelMap<u32>,
     lines: Vec<RawLine>,
-    element_index: LabelMap<Span>,
-    node_groups: Vec<Group>,
-    element_groups: Vec<Group>,
-    nodes_incomplete: bool,
-    elements_incomplete: bool,
 }
 
-impl<'a> Reading<'a> {
-    fn node_card(&mut self, card: &'a Card, cx: &mut Context) {
+impl Reading {
+    fn node_card(&mut self, card: &Card, cx: &mut Context) {
         let mut labels = Vec::new();
-        for row in &card.rows {
-            let fields: SmallVec<[Text; 4]> = row.fields().collect();
-            if fields.len() > 4 {
-                row.at_most(4, cx.d);
-            }
-            let numbers = Labels::new("node", Code::UndefinedNode);
-            let field = match fields.first() {
-                Some(field) if !field.is_empty() => Some(*field),
-                _ => row.required(0, "the node number", cx.d),
-            };
-            match field.and_then(|field| numbers.label(field, cx)) {
-                Some(label) => {
-                    labels.push(label);
-                    self.node(label, row, &fields, cx);
-                }
-                None => self.nodes_incomplete = true,
+        for row in card.rows.iter() {
+            match self.plain_node(row, cx).or_else(|| self.node(row, cx)) {
+                Some(label) => labels.push(label),
+                None => self.mesh_index.nodes.incomplete = true,
             }
         }
-        self.node_groups.extend(group(card, "NSET", labels, cx));
+        let group = group(card, "NSET", labels, cx);
+        self.mesh_index.node_groups.extend(group);
     }
 
-    fn node(&mut self, label: u64, row: &'a Row, fields: &[Text], cx: &mut Context) {
-        let known = self.node_index.get(label).copied();
+    /// Adds the new node of a row of plain numbers; returns its number.
+    fn plain_node(&mut self, row: Row, cx: &Context) -> Option<u64> {
+        let (number, [x, y, z]) = row.point()?;
+        let nodes = &self.mesh_index.nodes;
+        let label = nodes.plain_label(number, row.instance())?;
+        if nodes.get(label).is_some() {
+            return None;
+        }
+        self.add_node(label, cx.placed([x, y], row), z, row);
+        Some(label)
+    }
+
+    /// Reads the node of any row; returns its number.
+    fn node(&mut self, row: Row, cx: &mut Context) -> Option<u64> {
+        let fields: SmallVec<[Text; 4]> = row.fields().collect();
+        row.at_most(4, cx.d);
+        let number = row.required(0, "the node number", cx.d)?;
+        let label = self.mesh_index.nodes.label(number, cx)?;
+        let known = self.mesh_index.nodes.get(label);
         let at = [1, 2, 3].map(|i| match fields.get(i) {
             Some(field) if !field.is_empty() => field.real(cx.d),
             _ => Some(0.0),
         });
         let [Some(x), Some(y), Some(z)] = at else {
             if known.is_none() {
-                self.node_index.insert(label, None);
+                self.mesh_index.nodes.insert(label, Labelled::LeftOut);
             }
-            return;
+            return Some(label);
         };
-        let [x, y] = cx.placed([x, y], row);
-        let at = [x, y, z];
+        let at = cx.placed([x, y], row);
         let Some(known) = known else {
-            self.node_index.insert(label, Some(self.nodes.len()));
-            self.nodes.push(RawNode { label, at, row });
-            return;
+            self.add_node(label, at, z, row);
+            return Some(label);
         };
-        let first = known.and_then(|index| self.nodes.get(index));
-        if let Some(first) = first.filter(|first| first.at != at) {
-            let (name, line) = (cx.named(label), first.row.span().line);
+        let mesh = &self.mesh_index.mesh;
+        let differs = |&i: &usize| mesh.coordinates[i] != at || self.height(i) != z;
+        if let Some(first) = known.index().filter(differs) {
+            let (name, line) = (cx.named(label), self.node_lines[first]);
             let message = format!("node {name} has other coordinates on line {line}");
             cx.error(Code::RepeatedNode, row.span(), message);
         }
+        Some(label)
+    }
+
+    fn add_node(&mut self, label: u64, at: [f64; 2], height: f64, row: Row) {
+        self.node_lines.push(row.line());
+        let MeshIndex { mesh, nodes, .. } = &mut self.mesh_index;
+        let index = mesh.node_count();
+        nodes.insert(label, Labelled::new(index));
+        mesh.node_labels.push(label);
+        mesh.coordinates.push(at);
+        if height != 0.0 {
+            self.heights.resize(index, 0.0);
+            self.heights.push(height);
+        }
+    }
+
+    fn height(&self, node: usize) -> f64 {
+        self.heights.get(node).copied().unwrap_or(0.0)
     }
 
     fn element_card(&mut self, card: &Card, cx: &mut Context) {
         let kind = card
             .required("TYPE", cx.d)
             .and_then(|name| element_type::read(name, cx));
-        let Some(kind) = kind else {
-            self.elements_incomplete = true;
-            self.element_groups
-                .extend(group(card, "ELSET", Vec::new(), cx));
-            return;
-        };
         let mut labels = Vec::new();
-        for rows in element_rows(&card.rows, kind.nodes() + 1) {
-            match self.element(rows, kind, cx) {
-                Some(label) => labels.push(label),
-                None => self.elements_incomplete = true,
+        if let Some(kind) = kind {
+            let mut rows = card.rows.iter().peekable();
+            while let Some(row) = rows.next() {
+                let label = self.plain_element(row, kind).or_else(|| {
+                    let fields = element_fields(row, &mut rows, kind.nodes() + 1);
+                    self.element(row.span(), &fields, kind, cx)
+                });
+                match label {
+                    Some(label) => labels.push(label),
+                    None => self.mesh_index.elements.incomplete = true,
+                }
             }
+        } else {
+            self.mesh_index.elements.incomplete = true;
         }
-        self.element_groups.extend(group(card, "ELSET", labels, cx));
+        let group = group(card, "ELSET", labels, cx);
+        self.mesh_index.element_groups.extend(group);
     }
 
-    /// Reads one element; returns its number.
-    fn element(&mut self, rows: &[Row], kind: Kind, cx: &mut Context) -> Option<u64> {
+    /// Adds the new element of a row of plain numbers, whose nodes exist and differ; returns its
+    /// number.
+    fn plain_element(&mut self, row: Row, kind: Kind) -> Option<u64> {
+        let numbers = row.integers()?;
+        let (&number, corners) = numbers.split_first()?;
+        let MeshIndex {
+            nodes, elements, ..
+        } = &self.mesh_index;
+        let label = elements.plain_label(number, row.instance())?;
+        let index = |&node: &u64| nodes.get(nodes.plain_label(node, row.instance())?)?.index();
+        let corners: Option<Nodes> = corners.iter().map(index).collect();
+        let corners = corners.filter(|corners| corners.len() == kind.nodes())?;
+        let differs = |(i, node): (usize, &usize)| !corners[..i].contains(node);
+        if !corners.iter().enumerate().all(differs) || self.element_lines.get(label).is_some() {
+            return None;
+        }
+        self.element_lines.insert(label, row.line());
+        self.add_element(label, corners, kind, row.span());
+        Some(label)
+    }
+
+    /// Reads one element at the place `span`; returns its number.
+    fn element(
+        &mut self,
+        span: Span,
+        fields: &[Text],
+        kind: Kind,
+        cx: &mut Context,
+    ) -> Option<u64> {
         let corners = kind.nodes();
-        let span = rows.first()?.span();
-        let numbers = Labels::new("element", Code::UndefinedElement);
-        let fields: SmallVec<[Text; 10]> = rows.iter().flat_map(Row::fields).collect();
         let (first, rest) = fields.split_first()?;
-        let label = numbers.label(*first, cx)?;
+        let label = self.mesh_index.elements.label(*first, cx)?;
         if rest.len() < corners && rest.iter().all(|field| field.integer(cx.d).is_some()) {
             let (name, found) = (cx.named(label), rest.len());
             let message = format!("element {name} needs {corners} nodes, found {found}");
@@ -146,57 +199,64 @@ impl<'a> Reading<'a> {
             cx.error(Code::ExtraField, extra.span, message);
         }
         let nodes = self.element_nodes(label, rest.get(..corners)?, cx)?;
-        if let Some(earlier) = self.element_index.insert(label, span) {
-            let (name, line) = (cx.named(label), earlier.line);
+        if let Some(line) = self.element_lines.insert(label, span.line) {
+            let name = cx.named(label);
             let message = format!("element {name} is defined on line {line} too");
             cx.error(Code::RepeatedElement, first.span, message);
             return Some(label);
         }
-        match kind {
-            Kind::Plane(element_type) => self.elements.push(RawElement {
-                label,
-                nodes,
-                element_type,
-                span,
-            }),
-            Kind::Line => self.lines.push(RawLine { label, nodes, span }),
-        }
+        self.add_element(label, nodes, kind, span);
         Some(label)
     }
 
-    /// Numbers of an element's nodes, which must exist and differ.
-    fn element_nodes(
-        &self,
-        label: u64,
-        fields: &[Text],
-        cx: &mut Context,
-    ) -> Option<SmallVec<[u64; 4]>> {
-        let mut nodes = SmallVec::new();
-        let mut good = true;
+    fn add_element(&mut self, label: u64, nodes: Nodes, kind: Kind, span: Span) {
+        let MeshIndex {
+            mesh,
+            elements,
+            element_spans,
+            ..
+        } = &mut self.mesh_index;
+        match kind {
+            Kind::Plane(element_type) => {
+                elements.insert(label, Labelled::new(mesh.elements.len()));
+                element_spans.push(span);
+                mesh.elements.push(Element {
+                    label,
+                    element_type,
+                    nodes,
+                    section: 0,
+                });
+            }
+            Kind::Line => self.lines.push(RawLine { label, nodes, span }),
+        }
+    }
+
+    /// Indices of an element's nodes, which must exist and differ.
+    fn element_nodes(&self, element: u64, fields: &[Text], cx: &mut Context) -> Option<Nodes> {
+        let mut labels: SmallVec<[u64; 4]> = SmallVec::new();
+        let mut nodes = Nodes::new();
         for field in fields {
-            let numbers = Labels::new("node", Code::UndefinedNode);
-            let Some(node) = numbers.label(*field, cx) else {
-                good = false;
+            let Some(node) = self.mesh_index.nodes.label(*field, cx) else {
                 continue;
             };
-            if nodes.contains(&node) {
-                let [element, node] = [label, node].map(|label| cx.named(label));
+            let differs = !labels.contains(&node);
+            if !differs {
+                let [element, node] = [element, node].map(|label| cx.named(label));
                 let message = format!("element {element} has node {node} twice");
                 cx.error(Code::BadShape, field.span, message);
-                good = false;
             }
-            if !matches!(self.node_index.get(node), Some(Some(_))) {
-                good = false;
-                self.undefined_node(node, field.span, cx);
+            match self.mesh_index.nodes.get(node) {
+                Some(Labelled::Index(index)) if differs => nodes.push(index as usize),
+                Some(_) => {}
+                None => self.undefined_node(node, field.span, cx),
             }
-            nodes.push(node);
+            labels.push(node);
         }
-        good.then_some(nodes)
+        (nodes.len() == fields.len()).then_some(nodes)
     }
 
     fn undefined_node(&self, node: u64, span: Span, cx: &mut Context) {
-        let known = self.node_index.get(node).is_some();
-        if !known && !self.nodes_incomplete && !cx.deck.incomplete {
+        if !self.mesh_index.nodes.incomplete && !cx.deck.incomplete {
             let message = format!("node {} is not defined", cx.named(node));
             cx.error(Code::UndefinedNode, span, message);
         }
@@ -205,7 +265,8 @@ impl<'a> Reading<'a> {
     /// Reports a mesh without nodes or elements at their card, or else where it should stand:
     /// elements after the last nodes, nodes at the first keyword of the deck.
     fn report_empty(&self, outline: &Outline, cx: &mut Context) {
-        let (keyword, before) = match (self.nodes.is_empty(), self.elements.is_empty()) {
+        let mesh = &self.mesh_index.mesh;
+        let (keyword, before) = match (mesh.node_count() == 0, mesh.elements.is_empty()) {
             (true, _) => ("NODE", None),
             (false, true) => ("ELEMENT", outline.model_cards("NODE").pop()),
             (false, false) => return,
@@ -219,82 +280,78 @@ impl<'a> Reading<'a> {
     }
 
     /// Reports nodes whose z differ by more than a small fraction of the model's size.
-    fn report_not_planar(&self, cx: &mut Context) {
-        let range = |i: usize| {
-            let values = self.nodes.iter().map(|node| node.at[i]);
-            let low = values.clone().fold(f64::INFINITY, f64::min);
-            (low, values.fold(f64::NEG_INFINITY, f64::max))
-        };
-        let [x, y, z] = [0, 1, 2].map(range);
-        let size = (x.1 - x.0).max(y.1 - y.0);
-        let Some(first) = self.nodes.first() else {
+    fn report_not_planar(&self, outline: &Outline, cx: &mut Context) {
+        if self.heights.is_empty() {
             return;
+        }
+        let mesh = &self.mesh_index.mesh;
+        let range = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                (low.min(value), high.max(value))
+            })
         };
+        let [x, y] = [0, 1].map(|i| range(&mut mesh.coordinates.iter().map(|at| at[i])));
+        let z = range(&mut (0..mesh.node_count()).map(|node| self.height(node)));
+        let size = (x.1 - x.0).max(y.1 - y.0);
         if z.1 - z.0 > 1e-9 * size {
-            let off = self.nodes.iter().find(|node| node.at[2] != first.at[2]);
+            let is_off = |&node: &usize| self.height(node) != self.height(0);
+            let off = (0..mesh.node_count()).find(is_off).unwrap_or(0);
             let message = format!("the mesh is not plane: z runs from {} to {}", z.0, z.1);
-            cx.error(Code::NotPlanar, off.unwrap_or(first).row.span(), message);
+            if let Some(row) = row_of(mesh.node_labels[off], outline, cx) {
+                cx.error(Code::NotPlanar, row.span(), message);
+            }
         }
     }
 
-    fn mesh_index(self, references: &BTreeSet<u64>, cx: &mut Context) -> MeshIndex {
-        let mut used = vec![false; self.nodes.len()];
-        let index_of = |label: &u64| self.node_index.get(*label).copied().flatten();
-        for index in self
-            .elements
-            .iter()
-            .flat_map(|e| &e.nodes)
-            .chain(references)
-            .filter_map(index_of)
-        {
-            used[index] = true;
+    /// The mesh without unused nodes and with line elements; nodes of `references` are used too.
+    fn finish(self, references: &BTreeSet<u64>, outline: &Outline, cx: &mut Context) -> MeshIndex {
+        let MeshIndex { mesh, nodes, .. } = &self.mesh_index;
+        let mut used = vec![false; mesh.node_count()];
+        for &node in mesh.elements.iter().flat_map(|element| &element.nodes) {
+            used[node] = true;
         }
-        self.report_unused(&used, cx);
-        let mut mesh_index = MeshIndex {
-            mesh: Mesh::default(),
-            instances: Vec::new(),
-            nodes: Labels::new("node", Code::UndefinedNode),
-            elements: Labels::new("element", Code::UndefinedElement),
-            lines: Vec::new(),
-            element_spans: Vec::new(),
-            node_groups: self.node_groups,
-            element_groups: self.element_groups,
-        };
-        mesh_index.nodes.incomplete = self.nodes_incomplete;
-        mesh_index.elements.incomplete = self.elements_incomplete;
-        for (label, _) in self.node_index.iter() {
-            mesh_index.nodes.insert(label, Labelled::LeftOut);
+        let index = |label: &u64| nodes.get(*label).and_then(Labelled::index);
+        for node in references.iter().filter_map(index) {
+            used[node] = true;
         }
-        for (node, used) in self.nodes.iter().zip(used) {
-            if used {
-                mesh_index.add_node(node);
-            }
+        if used.contains(&false) {
+            self.report_unused(&used, outline, cx);
         }
-        for element in &self.elements {
-            mesh_index.add_element(element);
+        let mut mesh_index = self.mesh_index;
+        line_elements::add(&self.lines, &used, &mut mesh_index, cx);
+        if used.contains(&false) {
+            mesh_index.keep_nodes(&used);
         }
-        line_elements::add(&self.lines, &mut mesh_index, cx);
         mesh_index.instances = instances::number(&mut mesh_index.mesh, cx);
         mesh_index
     }
 
     /// Warns about nodes of no element.
-    fn report_unused(&self, used: &[bool], cx: &mut Context) {
-        let unused = || self.nodes.iter().zip(used).filter(|(_, used)| !**used);
-        let Some((first, _)) = unused().next() else {
-            return;
-        };
-        if self.elements_incomplete || self.elements.is_empty() || cx.deck.incomplete {
+    fn report_unused(&self, used: &[bool], outline: &Outline, cx: &mut Context) {
+        let MeshIndex { mesh, elements, .. } = &self.mesh_index;
+        if elements.incomplete || mesh.elements.is_empty() || cx.deck.incomplete {
             return;
         }
-        let name = cx.named(first.label);
-        let message = match unused().count() {
+        let labels = mesh.node_labels.iter().zip(used);
+        let mut unused = labels.filter(|(_, used)| !**used).map(|(label, _)| *label);
+        let Some(first) = unused.next() else { return };
+        let name = cx.named(first);
+        let message = match 1 + unused.count() {
             1 => format!("node {name} belongs to no element"),
             n => format!("{n} nodes belong to no element, the first is node {name}"),
         };
-        let warning = Diagnostic::warning(Code::UnusedNode, first.row.span(), message);
-        cx.d.push(warning.help("left out, together with what the deck says about them"));
+        if let Some(row) = row_of(first, outline, cx) {
+            let warning = Diagnostic::warning(Code::UnusedNode, row.span(), message);
+            cx.d.push(warning.help("left out, together with what the deck says about them"));
+        }
     }
+}
+
+/// The row that defines a node, searched for a message.
+fn row_of<'a>(label: u64, outline: &Outline<'a>, cx: &Context) -> Option<Row<'a>> {
+    let cards = outline.model_cards("NODE").into_iter();
+    let mut rows = cards.flat_map(|card| card.rows.iter());
+    rows.find(|row| row.get(0).and_then(|field| cx.as_label(field)) == Some(label))
 }
 
 /// The set that a card names.
@@ -309,22 +366,20 @@ fn group(card: &Card, parameter: &str, labels: Vec<u64>, cx: &mut Context) -> Op
     })
 }
 
-/// Groups rows by element: an element takes rows until it has `count` fields or the next row would
-/// exceed them.
-fn element_rows(rows: &[Row], count: usize) -> Vec<&[Row]> {
-    let mut elements = Vec::new();
-    let mut rest = rows;
-    while !rest.is_empty() {
-        let mut fields = 0;
-        let fits = |row: &&Row| {
-            let before = fields;
-            fields += row.fields().count();
-            before == 0 || (before < count && fields <= count)
+/// Fields of the element that starts in row `first`: it takes rows until it has `count` fields or
+/// the next row would exceed them.
+fn element_fields<'a>(
+    first: Row<'a>,
+    rest: &mut Peekable<impl Iterator<Item = Row<'a>>>,
+    count: usize,
+) -> SmallVec<[Text<'a>; 5]> {
+    let mut fields: SmallVec<[Text; 5]> = first.fields().collect();
+    while fields.len() < count {
+        let missing = count - fields.len();
+        let Some(row) = rest.next_if(|row| row.fields().count() <= missing) else {
+            break;
         };
-        let taken = rest.iter().take_while(fits).count().max(1);
-        let (element, after) = rest.split_at(taken);
-        elements.push(element);
-        rest = after;
+        fields.extend(row.fields());
     }
-    elements
+    fields
 }

@@ -29,7 +29,7 @@ impl Profile {
     /// Reads the rows of a card up to the first that has an error.
     pub fn read(card: &Card, cx: &mut Context) -> Profile {
         let mut profile = Profile::default();
-        for row in &card.rows {
+        for row in card.rows.iter() {
             if profile.row(row, cx).is_none() {
                 return profile;
             }
@@ -53,7 +53,7 @@ impl Profile {
         sides.map(|[from, to]| [first + to, first + from]).collect()
     }
 
-    fn row(&mut self, row: &Row, cx: &mut Context) -> Option<()> {
+    fn row(&mut self, row: Row, cx: &mut Context) -> Option<()> {
         let word = row.required(0, "START, LINE or CIRCL", cx.d)?;
         let kind = word.name_key();
         match kind.as_str() {
@@ -121,7 +121,7 @@ impl Profile {
     }
 
     /// Equal chords of at most [`CHORD`] on the shorter arc about a centre.
-    fn arc(&mut self, to: [f64; 2], centre: [f64; 2], row: &Row, cx: &mut Context) -> Option<()> {
+    fn arc(&mut self, to: [f64; 2], centre: [f64; 2], row: Row, cx: &mut Context) -> Option<()> {
         let from = *self.points.get(self.end)?;
         let [p, q] = [from, to].map(|x| difference(centre, x));
         let [r, s] = [p, q].map(|[x, y]| x.hypot(y));
@@ -156,7 +156,7 @@ impl Profile {
 }
 
 /// The point in the fields `index` and the next, of `count` fields.
-fn point(row: &Row, index: usize, count: usize, cx: &mut Context) -> Option<[f64; 2]> {
+fn point(row: Row, index: usize, count: usize, cx: &mut Context) -> Option<[f64; 2]> {
     if index == 1 {
         row.at_most(count, cx.d);
     }

@@ -35,7 +35,7 @@ fn fields<'a>(outline: &Outline<'a>) -> Vec<Text<'a>> {
     let bodies = outline.model_cards("RIGID BODY").into_iter();
     let equations = outline.model_cards("EQUATION").into_iter();
     // a line of one field is the number of terms
-    let rows = equations.flat_map(|card| &card.rows);
+    let rows = equations.flat_map(|card| card.rows.iter());
     let terms = rows.filter(|row| row.get(1).is_some());
     bodies
         .filter_map(|card| card.value("REF NODE"))

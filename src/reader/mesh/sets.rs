@@ -238,7 +238,7 @@ impl<'a> Family<'a> {
             {
                 self.from_elements.push((index, source));
             }
-            for row in &card.rows {
+            for row in card.rows.iter() {
                 match generate {
                     true => self.range(index, row, cx),
                     false => self.list(index, row, cx),
@@ -247,7 +247,7 @@ impl<'a> Family<'a> {
         }
     }
 
-    fn list(&mut self, index: usize, row: &'a Row, cx: &mut Context) {
+    fn list(&mut self, index: usize, row: Row<'a>, cx: &mut Context) {
         for field in row.fields().filter(|field| !field.is_empty()) {
             if cx.is_number(field) {
                 let member = self.labels.find(field, cx);
@@ -261,7 +261,7 @@ impl<'a> Family<'a> {
     }
 
     /// `first, last[, increment]`
-    fn range(&mut self, index: usize, row: &Row, cx: &mut Context) {
+    fn range(&mut self, index: usize, row: Row, cx: &mut Context) {
         row.at_most(3, cx.d);
         let first = row.required(0, "the first number", cx.d);
         let first = first.and_then(|field| self.labels.label(field, cx));
@@ -278,7 +278,7 @@ impl<'a> Family<'a> {
         }
     }
 
-    fn check_range(&self, first: u64, last: u64, step: u64, row: &Row, cx: &mut Context) {
+    fn check_range(&self, first: u64, last: u64, step: u64, row: Row, cx: &mut Context) {
         let [start, stop] = [first, last].map(|label| cx.named(label));
         if last < first {
             let message = format!("the range from {start} to {stop} runs backwards");
@@ -292,14 +292,7 @@ impl<'a> Family<'a> {
     }
 
     /// Members of a range; reports the first number that does not exist.
-    fn in_range(
-        &self,
-        first: u64,
-        last: u64,
-        step: u64,
-        row: &Row,
-        cx: &mut Context,
-    ) -> Vec<usize> {
+    fn in_range(&self, first: u64, last: u64, step: u64, row: Row, cx: &mut Context) -> Vec<usize> {
         let in_step = |label: u64| (label - first).is_multiple_of(step);
         let found = self
             .labels

@@ -88,7 +88,7 @@ fn report_empty(kind: &SurfaceKind, card: &Card, cx: &mut Context) {
 fn nodes(card: &Card, mesh_index: &MeshIndex, sets: &Sets, cx: &mut Context) -> Vec<usize> {
     let mut nodes = Vec::new();
     let mut seen = HashSet::new();
-    for row in &card.rows {
+    for row in card.rows.iter() {
         row.at_most(2, cx.d);
         let Some(field) = row.required(0, "a node or node set", cx.d) else {
             continue;
@@ -114,7 +114,7 @@ fn faces(
 ) -> Vec<Face> {
     let mut faces = Vec::new();
     let mut seen = BTreeSet::new();
-    for row in &card.rows {
+    for row in card.rows.iter() {
         row.at_most(2, cx.d);
         let Some(field) = row.required(0, "an element or element set", cx.d) else {
             continue;
@@ -217,7 +217,7 @@ fn exterior_faces(elements: &[usize], at_nodes: &ElementsAtNodes, mesh: &Mesh) -
 fn report_interior(
     faces: &[Face],
     at_nodes: &ElementsAtNodes,
-    row: &Row,
+    row: Row,
     mesh_index: &MeshIndex,
     cx: &mut Context,
 ) {

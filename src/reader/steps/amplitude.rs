@@ -105,7 +105,7 @@ fn points(given: Vec<Given>, axes: Axes, cx: &mut Context) -> Option<Vec<(f64, f
 /// `time, value, time, value, ...`
 fn tabulated<'a>(card: &'a Card, cx: &mut Context) -> Vec<Given<'a>> {
     let mut given = Vec::new();
-    for row in &card.rows {
+    for row in card.rows.iter() {
         given.extend(pairs(row, cx));
     }
     given
@@ -132,7 +132,7 @@ fn equally_spaced<'a>(card: &'a Card, cx: &mut Context) -> Vec<Given<'a>> {
 }
 
 /// Times and values of a row.
-fn pairs<'a>(row: &'a Row, cx: &mut Context) -> Vec<Given<'a>> {
+fn pairs<'a>(row: Row<'a>, cx: &mut Context) -> Vec<Given<'a>> {
     let mut pairs = Vec::new();
     let count = row.fields().count();
     for index in (0..count).step_by(2) {

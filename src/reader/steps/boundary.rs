@@ -110,7 +110,7 @@ impl Supports {
             Some("ACCELERATION") => Quantity::Rate(Rate::Acceleration, amplitude),
             _ => Quantity::Displacement(amplitude),
         };
-        for row in &card.rows {
+        for row in card.rows.iter() {
             self.row(row, quantity, step, targets, cx);
         }
     }
@@ -118,7 +118,7 @@ impl Supports {
     /// `node or set, first[, last[, value]]` or `set, name`
     fn row(
         &mut self,
-        row: &Row,
+        row: Row,
         quantity: Quantity,
         step: usize,
         targets: Targets,
@@ -173,7 +173,7 @@ struct Prescribed {
     span: Span,
 }
 
-fn prescribed(row: &Row, cx: &mut Context) -> Option<Prescribed> {
+fn prescribed(row: Row, cx: &mut Context) -> Option<Prescribed> {
     let first = row.required(1, "the first direction", cx.d)?;
     if first.text.starts_with(|c: char| c.is_ascii_alphabetic()) {
         let directions = named_directions(first, cx)?;
@@ -254,7 +254,7 @@ pub(crate) fn direction(field: Text, cx: &mut Context) -> Option<Direction> {
 }
 
 /// The direction of a row whose value acts there; out of the plane it must be zero.
-pub(crate) fn row_direction(row: &Row, value: f64, cx: &mut Context) -> Option<usize> {
+pub(crate) fn row_direction(row: Row, value: f64, cx: &mut Context) -> Option<usize> {
     let field = row.required(1, "the direction", cx.d)?;
     match direction(field, cx)? {
         Direction::Plane(direction) => Some(direction),

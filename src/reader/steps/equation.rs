@@ -62,8 +62,8 @@ pub(crate) fn read(
 /// unclear where the next equation begins.
 fn terms<'r>(
     card: &Card,
-    head: &Row,
-    rows: &mut impl Iterator<Item = &'r Row>,
+    head: Row,
+    rows: &mut impl Iterator<Item = Row<'r>>,
     targets: Targets,
     cx: &mut Context,
 ) -> Option<Vec<Option<Term>>> {
@@ -89,7 +89,7 @@ fn terms<'r>(
 }
 
 /// `number of terms`
-fn number_of_terms(row: &Row, cx: &mut Context) -> Option<usize> {
+fn number_of_terms(row: Row, cx: &mut Context) -> Option<usize> {
     row.at_most(1, cx.d);
     let field = row.required(0, "the number of terms", cx.d)?;
     let count = field.integer(cx.d)?;
@@ -103,7 +103,7 @@ fn number_of_terms(row: &Row, cx: &mut Context) -> Option<usize> {
 }
 
 /// `node or set, direction, coefficient`, from field `first` on.
-fn term(row: &Row, first: usize, targets: Targets, cx: &mut Context) -> Option<Term> {
+fn term(row: Row, first: usize, targets: Targets, cx: &mut Context) -> Option<Term> {
     let target = row.required(first, "a node or node set", cx.d);
     let nodes = target.and_then(|field| nodes(field, targets, cx));
     let field = row.required(first + 1, "the direction", cx.d);

@@ -22,7 +22,7 @@ pub(crate) fn read(
         if card.choice("TYPE") != Some("VELOCITY") {
             continue;
         }
-        for row in &card.rows {
+        for row in card.rows.iter() {
             for (dof, value) in velocity_row(row, targets, cx) {
                 if let Some(entry) = velocity.get_mut(dof) {
                     *entry = value;
@@ -44,7 +44,7 @@ fn is_given(support: &Support) -> bool {
 }
 
 /// `node or set, direction, velocity`
-fn velocity_row(row: &Row, targets: Targets, cx: &mut Context) -> Vec<(usize, f64)> {
+fn velocity_row(row: Row, targets: Targets, cx: &mut Context) -> Vec<(usize, f64)> {
     row.at_most(3, cx.d);
     let target = row.required(0, "a node or node set", cx.d);
     let nodes = target.map(|field| targets.sets.nodes_of(field, targets.mesh_index, cx));

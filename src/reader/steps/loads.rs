@@ -61,7 +61,7 @@ impl Loads {
             targets,
             surfaces,
         };
-        for row in &card.rows {
+        for row in card.rows.iter() {
             match card.keyword.name {
                 "CLOAD" => self.point_row(row, source, cx),
                 "DLOAD" => self.element_row(row, source, cx),
@@ -94,7 +94,7 @@ impl Loads {
     }
 
     /// `node or set, direction, force`
-    fn point_row(&mut self, row: &Row, source: Source, cx: &mut Context) -> Option<()> {
+    fn point_row(&mut self, row: Row, source: Source, cx: &mut Context) -> Option<()> {
         row.at_most(3, cx.d);
         let Targets {
             mesh_index, sets, ..
@@ -114,7 +114,7 @@ impl Loads {
     }
 
     /// `element or set, kind, magnitude[, dx, dy[, dz]]`; no set is all elements
-    fn element_row(&mut self, row: &Row, source: Source, cx: &mut Context) -> Option<()> {
+    fn element_row(&mut self, row: Row, source: Source, cx: &mut Context) -> Option<()> {
         let Targets {
             mesh_index, sets, ..
         } = source.targets;
@@ -146,7 +146,7 @@ impl Loads {
 
     fn body_row(
         &mut self,
-        row: &Row,
+        row: Row,
         body: Body,
         elements: &[usize],
         source: Source,
@@ -179,7 +179,7 @@ impl Loads {
     /// A pressure, or a traction with its direction, on one side of each element.
     fn face_row(
         &mut self,
-        row: &Row,
+        row: Row,
         (side, direction): (usize, Option<[f64; 2]>),
         elements: &[usize],
         source: Source,
@@ -215,7 +215,7 @@ impl Loads {
     }
 
     /// `surface, P, p` or `surface, TRVEC, t, dx, dy[, dz]`
-    fn surface_row(&mut self, row: &Row, source: Source, cx: &mut Context) -> Option<()> {
+    fn surface_row(&mut self, row: Row, source: Source, cx: &mut Context) -> Option<()> {
         let field = row.required(0, "a surface", cx.d);
         let surface = field.and_then(|field| surface::find(source.surfaces, field, cx));
         let kind = row.required(1, "the kind of load", cx.d)?;
@@ -304,7 +304,7 @@ fn loaded_side(kind: &str) -> Option<(usize, bool)> {
     Some((side, is_traction))
 }
 
-fn gravity_direction(row: &Row, magnitude: f64, cx: &mut Context) -> Option<[f64; 2]> {
+fn gravity_direction(row: Row, magnitude: f64, cx: &mut Context) -> Option<[f64; 2]> {
     let direction = unit_direction(row, cx)?;
     warn_unless_unit(row, cx);
     if magnitude != 0.0 {
@@ -314,7 +314,7 @@ fn gravity_direction(row: &Row, magnitude: f64, cx: &mut Context) -> Option<[f64
 }
 
 /// Notes a gravity that hints at mixed units.
-fn hint_at_units(row: &Row, magnitude: f64, cx: &mut Context) {
+fn hint_at_units(row: Row, magnitude: f64, cx: &mut Context) {
     let usual = [9.81, 981.0, 9810.0, 32.2, 386.0];
     let near = |g: &f64| (magnitude.abs() / g - 1.0).abs() < 0.02;
     if let (false, Some(field)) = (usual.iter().any(near), row.get(2)) {
@@ -326,7 +326,7 @@ fn hint_at_units(row: &Row, magnitude: f64, cx: &mut Context) {
 }
 
 /// Fields 3 to 5: dx, dy, dz with dz = 0, made a unit vector.
-fn unit_direction(row: &Row, cx: &mut Context) -> Option<[f64; 2]> {
+fn unit_direction(row: Row, cx: &mut Context) -> Option<[f64; 2]> {
     let components = [3, 4, 5].map(|i| row.real_or(i, 0.0, cx.d));
     let [Some(x), Some(y), Some(z)] = components else {
         return None;
@@ -349,7 +349,7 @@ fn unit_direction(row: &Row, cx: &mut Context) -> Option<[f64; 2]> {
 }
 
 /// CalculiX multiplies an acceleration by the length of its direction.
-fn warn_unless_unit(row: &Row, cx: &mut Context) {
+fn warn_unless_unit(row: Row, cx: &mut Context) {
     let component = |i: usize| row.get(i).and_then(|field| field.as_real());
     let length = component(3)
         .unwrap_or(0.0)
@@ -371,7 +371,7 @@ fn warn_that_pressure_follows(card: &Card, cx: &mut Context) {
 }
 
 /// Direction of a TRVEC, which must not follow the face.
-fn dead_direction(kind: Text, row: &Row, card: &Card, cx: &mut Context) -> Option<[f64; 2]> {
+fn dead_direction(kind: Text, row: Row, card: &Card, cx: &mut Context) -> Option<[f64; 2]> {
     row.at_most(6, cx.d);
     if card.choice("FOLLOWER") != Some("NO") {
         let span: Span = kind.span;

@@ -46,7 +46,7 @@ pub(crate) fn time_points(cx: &mut Context) -> TimePoints {
         let errors = cx.errors();
         let generate = card.has("GENERATE");
         let mut times = Vec::new();
-        for row in &card.rows {
+        for row in card.rows.iter() {
             match generate {
                 true => times.extend(generated(row, cx)),
                 false => times.extend(row.fields().filter_map(|field| field.real(cx.d))),
@@ -65,7 +65,7 @@ pub(crate) fn time_points(cx: &mut Context) -> TimePoints {
 }
 
 /// `first, last, increment`
-fn generated(row: &Row, cx: &mut Context) -> Vec<f64> {
+fn generated(row: Row, cx: &mut Context) -> Vec<f64> {
     row.at_most(3, cx.d);
     let first = row.real(0, "the first time", cx.d);
     let last = row.real(1, "the last time", cx.d);

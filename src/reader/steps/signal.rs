@@ -41,13 +41,14 @@ pub(super) fn read(definition: &str, card: &Card, axes: Axes, cx: &mut Context) 
         cx.error(Code::AmplitudeTable, span, "SCALEX must be positive");
         return None;
     }
-    let (row, more) = card.rows.split_first()?;
+    let mut more = card.rows.iter();
+    let row = more.next()?;
     let (start, base, signal) = match definition {
-        "PERIODIC" => periodic(row, more, axes, cx)?,
+        "PERIODIC" => periodic(row, &mut more, axes, cx)?,
         "DECAY" => decay(row, axes, cx)?,
         _ => modulated(row, axes, cx)?,
     };
-    if let Some(extra) = more.first().filter(|_| definition != "PERIODIC") {
+    if let Some(extra) = more.next().filter(|_| definition != "PERIODIC") {
         let message = format!("DEFINITION={definition} has one data line");
         cx.error(Code::StrayData, extra.span(), message);
     }
@@ -67,7 +68,12 @@ pub(super) fn read(definition: &str, card: &Card, axes: Axes, cx: &mut Context) 
 }
 
 /// `N, w, t0, A0`, and `A1, B1, A2, B2, ...` on further lines; returns t0, A0 and the signal.
-fn periodic(row: &Row, more: &[Row], axes: Axes, cx: &mut Context) -> Option<(f64, f64, Signal)> {
+fn periodic<'a>(
+    row: Row,
+    more: &mut impl Iterator<Item = Row<'a>>,
+    axes: Axes,
+    cx: &mut Context,
+) -> Option<(f64, f64, Signal)> {
     row.at_most(4, cx.d);
     let count = row.required(0, "the number of harmonics", cx.d)?;
     let wanted = count.integer(cx.d)?;
@@ -96,7 +102,7 @@ fn periodic(row: &Row, more: &[Row], axes: Axes, cx: &mut Context) -> Option<(f6
 }
 
 /// `A0, A, t0, td`; returns t0, A0 and the signal.
-fn decay(row: &Row, axes: Axes, cx: &mut Context) -> Option<(f64, f64, Signal)> {
+fn decay(row: Row, axes: Axes, cx: &mut Context) -> Option<(f64, f64, Signal)> {
     row.at_most(4, cx.d);
     let [base, size, start] = first_three(row, cx)?;
     let time = row.required(3, "the time of decay", cx.d)?;
@@ -108,7 +114,7 @@ fn decay(row: &Row, axes: Axes, cx: &mut Context) -> Option<(f64, f64, Signal)> 
 }
 
 /// `A0, A, t0, w1, w2`; returns t0, A0 and the signal.
-fn modulated(row: &Row, axes: Axes, cx: &mut Context) -> Option<(f64, f64, Signal)> {
+fn modulated(row: Row, axes: Axes, cx: &mut Context) -> Option<(f64, f64, Signal)> {
     row.at_most(5, cx.d);
     let [base, size, start] = first_three(row, cx)?;
     let mut frequency = |index: usize| {
@@ -123,7 +129,7 @@ fn modulated(row: &Row, axes: Axes, cx: &mut Context) -> Option<(f64, f64, Signa
 }
 
 /// `A0, A, t0`
-fn first_three(row: &Row, cx: &mut Context) -> Option<[f64; 3]> {
+fn first_three(row: Row, cx: &mut Context) -> Option<[f64; 3]> {
     let [base, size, start] = [0, 1, 2].map(|index| row.real_or(index, 0.0, cx.d));
     Some([base?, size?, start?])
 }

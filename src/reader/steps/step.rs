@@ -241,7 +241,7 @@ fn increments(card: &Card, guide: Option<f64>, cx: &mut Context) -> Option<Incre
     })
 }
 
-fn first_increment(row: &Row, guide: Option<f64>, cx: &mut Context) -> Option<f64> {
+fn first_increment(row: Row, guide: Option<f64>, cx: &mut Context) -> Option<f64> {
     match row.get(0) {
         Some(field) => field.real(cx.d),
         None => {
@@ -259,7 +259,7 @@ fn first_increment(row: &Row, guide: Option<f64>, cx: &mut Context) -> Option<f6
 }
 
 fn check_times(
-    row: &Row,
+    row: Row,
     dt: f64,
     period: f64,
     dt_min: f64,
@@ -300,7 +300,7 @@ fn check_times(
 }
 
 /// Warns that increments do not grow, as those of other codes do.
-fn warn_that_increments_stay(row: &Row, cx: &mut Context) {
+fn warn_that_increments_stay(row: Row, cx: &mut Context) {
     let [first, largest] = [0, 3].map(|i| row.get(i));
     let span = largest.or(first).map_or(row.span(), |field| field.span);
     let message = "increments do not grow: none is longer than the first";
@@ -313,7 +313,7 @@ fn warn_that_increments_stay(row: &Row, cx: &mut Context) {
 }
 
 /// Notes that the duration is not a multiple of the increment.
-fn note_short_end(row: &Row, dt: f64, period: f64, cx: &mut Context) {
+fn note_short_end(row: Row, dt: f64, period: f64, cx: &mut Context) {
     let count = period / dt;
     if (count - count.round()).abs() > 1e-6 * count.clamp(1.0, 1e5) {
         let span = row.get(1).map_or(row.span(), |field| field.span);

@@ -103,7 +103,7 @@ impl Fields {
         self.pending >= self.most_pending
     }
 
-    /// Writes the frames that wait, the number of steps last.
+    /// Writes the frames that wait, but not their number.
     pub fn flush(&mut self) -> hdf5::Result<()> {
         let Fields { points, cells, .. } = self;
         for column in points.columns().into_iter().chain(cells.columns()) {
@@ -115,6 +115,11 @@ impl Fields {
         self.steps.flush()?;
         self.pending = 0;
         Ok(())
+    }
+
+    /// Writes the number of frames.
+    pub fn note_count(&self) -> hdf5::Result<()> {
+        self.steps.note_count()
     }
 
     /// Bytes by which the file may grow until the frames are written.

@@ -59,11 +59,15 @@ impl Steps {
         self.values.push([time]);
     }
 
-    /// Writes the frames that wait; their number is written last.
+    /// Writes the frames that wait, but not their number.
     pub fn flush(&mut self) -> hdf5::Result<()> {
         self.zeros.iter_mut().try_for_each(Growing::flush)?;
         self.parts.flush()?;
-        self.values.flush()?;
+        self.values.flush()
+    }
+
+    /// Writes the number of frames.
+    pub fn note_count(&self) -> hdf5::Result<()> {
         self.count.write_scalar(&(self.count() as i64))
     }
 

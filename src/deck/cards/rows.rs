@@ -1,0 +1,217 @@
+//! The data lines of a card: blocks of the texts of its files, cut into rows and fields when they are
+//! asked for.
+
+use crate::deck::lines::{Fields, Line, Lines, Text, plain, span_in};
+use crate::diagnostics::{Code, Diagnostic, Diagnostics, FileId, Span};
+use smallvec::SmallVec;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The data lines of a card.
+#[derive(Debug, Clone, Default)]
+pub struct Rows {
+    blocks: Vec<Block>,
+    instance: u32,
+}
+
+/// Lines one after the other in a file, among which are no keyword lines.
+#[derive(Debug, Clone)]
+struct Block {
+    /// Text of the whole file.
+    source: Arc<String>,
+    /// Bytes of the lines.
+    bytes: Range<usize>,
+    file: FileId,
+    /// Number of the line before them.
+    before: u32,
+    is_ascii: bool,
+}
+
+impl Rows {
+    /// Adds lines of the file with the text `source`.
+    pub(crate) fn add(&mut self, lines: Lines, source: &Arc<String>) {
+        self.blocks.push(Block {
+            source: Arc::clone(source),
+            bytes: lines.bytes(),
+            file: lines.file(),
+            before: lines.before(),
+            is_ascii: lines.text().is_ascii(),
+        });
+    }
+
+    /// Makes the names and numbers in the rows those of an instance of a part.
+    pub(super) fn set_instance(&mut self, instance: u32) {
+        self.instance = instance;
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.first().is_none()
+    }
+
+    /// The first row.
+    pub fn first(&self) -> Option<Row<'_>> {
+        self.iter().next()
+    }
+
+    /// Row `index`, from 0.
+    pub fn get(&self, index: usize) -> Option<Row<'_>> {
+        self.iter().nth(index)
+    }
+
+    /// All rows in order.
+    pub fn iter(&self) -> impl Iterator<Item = Row<'_>> {
+        self.blocks.iter().flat_map(move |block| {
+            let row = |line| Row::new(line, block.is_ascii, self.instance);
+            block.lines().data().map(row)
+        })
+    }
+}
+
+impl Block {
+    fn lines(&self) -> Lines<'_> {
+        Lines::between(self.file, &self.source, self.bytes.clone(), self.before)
+    }
+}
+
+/// A data line.
+#[derive(Debug, Clone, Copy)]
+pub struct Row<'a> {
+    text: &'a str,
+    file: FileId,
+    line: u32,
+    instance: u32,
+    is_ascii: bool,
+}
+
+impl<'a> Row<'a> {
+    fn new(line: Line<'a>, is_ascii: bool, instance: u32) -> Row<'a> {
+        Row {
+            text: line.text,
+            file: line.file,
+            line: line.number,
+            instance,
+            is_ascii,
+        }
+    }
+
+    /// The line as typed.
+    pub fn text(self) -> &'a str {
+        self.text
+    }
+
+    /// Number of the line in its file, from 1.
+    pub fn line(self) -> u32 {
+        self.line
+    }
+
+    /// Instance of a part to which its names and numbers belong, from 1; 0 for none.
+    pub fn instance(self) -> u32 {
+        self.instance
+    }
+
+    /// Its numbers, if it holds integers without sign only.
+    pub fn integers(self) -> Option<SmallVec<[u64; 5]>> {
+        plain::integers(self.text)
+    }
+
+    /// The label and the coordinates that it gives, if they are plain numbers; those that are missing
+    /// are 0.
+    pub fn point(self) -> Option<(u64, [f64; 3])> {
+        plain::point(self.text)
+    }
+
+    /// Place of the visible text.
+    pub fn span(self) -> Span {
+        let start = self.text.len() - self.text.trim_start().len();
+        self.span_between(start, self.text.trim_end().len())
+    }
+
+    /// Place of the bytes from `start` to `end`.
+    fn span_between(self, start: usize, end: usize) -> Span {
+        let span = match self.is_ascii {
+            true => Span {
+                file: self.file,
+                line: self.line,
+                column: start as u32 + 1,
+                length: ((end - start) as u32).max(1),
+                instance: 0,
+            },
+            false => span_in(self.text, self.file, self.line, start, end),
+        };
+        Span {
+            instance: self.instance,
+            ..span
+        }
+    }
+
+    /// All fields in order, empty ones included.
+    pub fn fields(self) -> impl Iterator<Item = Text<'a>> {
+        Fields::new(self.text).map(move |(start, end)| Text {
+            text: self.text.get(start..end).unwrap_or(""),
+            span: self.span_between(start, end),
+        })
+    }
+
+    /// Field `index`, from 0; `None` where it is blank.
+    pub fn get(self, index: usize) -> Option<Text<'a>> {
+        self.fields().nth(index).filter(|field| !field.is_empty())
+    }
+
+    /// Field `index`; reports that `what` is missing where it is blank.
+    pub fn required(self, index: usize, what: &str, d: &mut Diagnostics) -> Option<Text<'a>> {
+        let field = self.get(index);
+        if field.is_none() {
+            let empty = self.fields().nth(index).map(|field| field.span);
+            let message = format!("field {} is missing: {what}", index + 1);
+            let place = empty.unwrap_or(self.span());
+            d.push(Diagnostic::error(Code::MissingField, place, message));
+        }
+        field
+    }
+
+    /// The number in field `index`; reports that `what` is missing where it is blank.
+    pub fn real(self, index: usize, what: &str, d: &mut Diagnostics) -> Option<f64> {
+        self.required(index, what, d)?.real(d)
+    }
+
+    /// The number in field `index`, or `default` where it is blank.
+    pub fn real_or(self, index: usize, default: f64, d: &mut Diagnostics) -> Option<f64> {
+        match self.get(index) {
+            Some(field) => field.real(d),
+            None => Some(default),
+        }
+    }
+
+    /// Reports fields beyond the first `count`.
+    pub fn at_most(self, count: usize, d: &mut Diagnostics) {
+        if let Some(extra) = self.fields().skip(count).find(|field| !field.is_empty()) {
+            let fields = if count == 1 { "field is" } else { "fields are" };
+            let message = format!("only {count} {fields} read on this line");
+            let error = Diagnostic::error(Code::ExtraField, extra.span, message);
+            d.push(match self.has_decimal_comma() {
+                true => error.help(
+                    "a comma ends a field: write a decimal point where a decimal comma is meant",
+                ),
+                false => error,
+            });
+        }
+    }
+
+    /// Whether the line may have a decimal comma: two fields of digits one after the other, such as
+    /// `0,25`, after the first.
+    fn has_decimal_comma(self) -> bool {
+        let fields: Vec<Text> = self.fields().skip(1).collect();
+        fields
+            .windows(2)
+            .any(|pair| pair.iter().all(Text::is_digits))
+    }
+
+    /// Warns that the first field from `count` on that is not blank has no effect.
+    pub fn without_effect(self, count: usize, message: &str, help: &str, d: &mut Diagnostics) {
+        if let Some(field) = self.fields().skip(count).find(|field| !field.is_empty()) {
+            let warning = Diagnostic::warning(Code::IgnoredParameter, field.span, message);
+            d.push_once(warning.help(help));
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! The lines of a file one after the other, and blocks of data lines among them.
+
+use super::lexer::{Kind, Line, kind_of};
+use crate::diagnostics::FileId;
+use memchr::{memchr, memchr_iter, memrchr};
+use std::ops::Range;
+
+/// The lines of a text, which end with LF or CRLF.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Lines<'a> {
+    file: FileId,
+    /// The text up to the end of the last line.
+    text: &'a str,
+    /// Byte at which the next line starts.
+    start: usize,
+    /// Number of the line before it.
+    number: u32,
+}
+
+impl<'a> Lines<'a> {
+    /// All lines of a text.
+    pub fn new(file: FileId, text: &'a str) -> Lines<'a> {
+        Lines {
+            file,
+            text,
+            start: 0,
+            number: 0,
+        }
+    }
+
+    /// The lines in some bytes of a text, which follow line `before`.
+    pub fn between(file: FileId, text: &'a str, bytes: Range<usize>, before: u32) -> Lines<'a> {
+        Lines {
+            file,
+            text: text.get(..bytes.end).unwrap_or(text),
+            start: bytes.start,
+            number: before,
+        }
+    }
+
+    /// Their file.
+    pub fn file(&self) -> FileId {
+        self.file
+    }
+
+    /// Their bytes.
+    pub fn bytes(&self) -> Range<usize> {
+        self.start..self.text.len()
+    }
+
+    /// Number of the line before them.
+    pub fn before(&self) -> u32 {
+        self.number
+    }
+
+    /// The text of these lines.
+    pub fn text(&self) -> &'a str {
+        self.text.get(self.start..).unwrap_or("")
+    }
+
+    /// Those among them that are data lines.
+    pub fn data(self) -> impl Iterator<Item = Line<'a>> {
+        self.filter(|line| line.kind() == Kind::Data)
+    }
+
+    /// Whether none is longer than `most` bytes; a line that ends with CRLF may be said to be.
+    pub fn fit(&self, most: usize) -> bool {
+        let mut rest = self.text().as_bytes();
+        while rest.len() > most {
+            match memrchr(b'\n', rest.get(..=most).unwrap_or(rest)) {
+                Some(end) => rest = rest.get(end + 1..).unwrap_or_default(),
+                None => return false,
+            }
+        }
+        true
+    }
+
+    /// Takes the lines before the next keyword line; `first`, the last line taken, comes before
+    /// them.
+    pub fn take_block(&mut self, first: &Line) -> Lines<'a> {
+        let rest = self.text();
+        let length = before_keyword(rest);
+        let end = self.start + length;
+        let block = Lines {
+            text: self.text.get(..end).unwrap_or(self.text),
+            start: first.start,
+            number: first.number - 1,
+            ..*self
+        };
+        let taken = rest.as_bytes().get(..length).unwrap_or_default();
+        self.start = end;
+        self.number += memchr_iter(b'\n', taken).count() as u32;
+        block
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = Line<'a>;
+
+    fn next(&mut self) -> Option<Line<'a>> {
+        let rest = self.text();
+        if rest.is_empty() {
+            return None;
+        }
+        let end = memchr(b'\n', rest.as_bytes());
+        let line = rest.get(..end.unwrap_or(rest.len())).unwrap_or(rest);
+        let start = self.start;
+        self.start += line.len() + usize::from(end.is_some());
+        self.number += 1;
+        Some(Line {
+            file: self.file,
+            number: self.number,
+            start,
+            text: line.strip_suffix('\r').unwrap_or(line),
+        })
+    }
+}
+
+/// Bytes before the first keyword line of a text that begins with a line: a line that holds a star
+/// may be one.
+fn before_keyword(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let mut start = 0;
+    while let Some(star) = bytes.get(start..).and_then(|rest| memchr(b'*', rest)) {
+        let (before, after) = bytes.split_at(start + star);
+        start = memrchr(b'\n', before).map_or(0, |end| end + 1);
+        let end = memchr(b'\n', after).map_or(bytes.len(), |end| before.len() + end);
+        if kind_of(text.get(start..end).unwrap_or("")) == Kind::Keyword {
+            return start;
+        }
+        start = end;
+    }
+    bytes.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_block_ends_before_the_next_keyword_line() {
+        let text = "1, 2\r\n\n** 3\n 4*5 \n\u{a0}*NODE\n6";
+        let mut lines = Lines::new(FileId(0), text);
+        let first = lines.next().expect("a line");
+        let block = lines.take_block(&first);
+        let found: Vec<_> = block.data().map(|line| (line.number, line.text)).collect();
+        assert_eq!(found, [(1, "1, 2"), (4, " 4*5 ")]);
+        let rest: Vec<_> = lines.map(|line| (line.number, line.text)).collect();
+        assert_eq!(rest, [(5, "\u{a0}*NODE"), (6, "6")]);
+    }
+
+    #[test]
+    fn lines_fit_up_to_the_limit() {
+        let fit = |text| Lines::new(FileId(0), text).fit(3);
+        assert!(fit("") && fit("abc") && fit("abc\nabc\n") && fit("\n\n\n\n\n"));
+        assert!(!fit("abcd") && !fit("abcd\n") && !fit("abc\nabcd\na"));
+    }
+}
