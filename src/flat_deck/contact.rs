@@ -1,10 +1,8 @@
 //! Contacts with their interactions, rigid bodies and equations.
 
 use super::lines::{Lines, name, named, number, set};
-use super::mesh::first_of_rigid;
-use crate::model::{
-    ALL_EXTERIOR, Adjust, Contact, Element, Equation, Friction, Interaction, Model, RigidBody,
-};
+use super::mesh::{all_exterior, first_of_rigid};
+use crate::model::{Adjust, Contact, Element, Equation, Friction, Interaction, Model, RigidBody};
 
 /// Terms of an equation on a data line.
 const TERMS: usize = 4;
@@ -33,14 +31,6 @@ pub(super) fn write(model: &Model, lines: &mut Lines) {
     for equation in &model.equations {
         write_equation(equation, model, lines);
     }
-}
-
-/// The surface of general contact: the last one, by its name, which touches itself.
-pub(super) fn all_exterior(model: &Model) -> Option<usize> {
-    let last = model.surfaces.len().checked_sub(1)?;
-    let touches_itself = |contact: &Contact| contact.slave == last && contact.master == last;
-    let is_named = model.surfaces[last].name == ALL_EXTERIOR;
-    (is_named && model.contacts.iter().any(touches_itself)).then_some(last)
 }
 
 /// Rigid bodies of elements whose reference node belongs to nothing else. The model knows them by

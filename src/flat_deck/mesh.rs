@@ -1,8 +1,7 @@
 //! Nodes, elements, sets and surfaces.
 
-use super::contact::all_exterior;
 use super::lines::{Lines, name, named, number, set};
-use crate::model::{Element, Face, Mesh, Model, Set, SurfaceKind};
+use crate::model::{ALL_EXTERIOR, Contact, Element, Face, Mesh, Model, Set, SurfaceKind};
 
 /// Writes nodes, elements, sets and surfaces.
 pub(super) fn write(model: &Model, lines: &mut Lines) {
@@ -25,6 +24,14 @@ pub(super) fn write(model: &Model, lines: &mut Lines) {
 pub(super) fn first_of_rigid(model: &Model) -> usize {
     let nodes = model.rigid_segments().into_iter().flatten();
     nodes.min().unwrap_or(model.mesh.node_count())
+}
+
+/// The surface of general contact: the last one, by its name, which touches itself.
+pub(super) fn all_exterior(model: &Model) -> Option<usize> {
+    let last = model.surfaces.len().checked_sub(1)?;
+    let touches_itself = |contact: &Contact| contact.slave == last && contact.master == last;
+    let is_named = model.surfaces[last].name == ALL_EXTERIOR;
+    (is_named && model.contacts.iter().any(touches_itself)).then_some(last)
 }
 
 fn nodes(model: &Model, lines: &mut Lines) {
