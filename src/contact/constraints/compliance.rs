@@ -2,6 +2,9 @@
 //! Q = G T W T^T B^T needs, W being K*^-1 in a pass and M^-1 for impulses. Sections 5 and 6 of
 //! docs/theory.md.
 
+use pulp::Simd;
+use smallvec::SmallVec;
+
 use super::constraint::{Constraint, Rows};
 use crate::linear::{CheckedSolver, LinearError, Rotation, Transformation};
 
@@ -201,55 +204,87 @@ impl Compliance {
         self.blocks.len()
     }
 
-    /// W (B_q T)^T of eq. (5.1) in the rows of a group: what normal and tangential force of q do to its
-    /// unknowns.
+    /// W (B_l T)^T of eq. (5.1) of some constraints l in the rows of a group: what their normal and
+    /// tangential forces do to its unknowns.
     #[inline(always)]
-    pub(super) fn response<'r>(
+    pub(super) fn respond<'q, S: Simd>(
         &self,
+        simd: S,
         group: usize,
-        q: &[UnknownEntry],
-        response: &'r mut Response,
-    ) -> &'r [[f64; 2]] {
+        constraints: impl ExactSizeIterator<Item = &'q [UnknownEntry]>,
+        responses: &mut Responses,
+    ) {
         let Block { unknowns, inverse } = &self.blocks[group];
-        let size = unknowns.len();
-        let Response { to_forces, both } = response;
-        for y in to_forces.iter_mut() {
-            y.clear();
-            y.resize(size, 0.0);
-        }
-        for entry in q {
-            let column = &inverse[entry.place * size..(entry.place + 1) * size];
-            for (y, force) in to_forces.iter_mut().zip(entry.force) {
-                y.iter_mut().zip(column).for_each(|(y, w)| *y += force * w);
+        let (size, count) = (unknowns.len(), constraints.len());
+        let Responses { rows, width, sums } = responses;
+        *width = 2 * count;
+        rows.resize(size * *width, 0.0);
+        for (l, entries) in constraints.enumerate() {
+            let column = |place: usize| &inverse[place * size..(place + 1) * size];
+            let terms = entries.iter().map(|e| (column(e.place), e.force));
+            combine(simd, &terms.collect::<Terms>(), (size, sums));
+            let [normal, tangential] = sums;
+            let both = normal.iter().zip(tangential.iter());
+            for (row, (normal, tangential)) in rows.chunks_exact_mut(*width).zip(both) {
+                row[l] = *normal;
+                row[count + l] = *tangential;
             }
         }
-        let [n, t] = to_forces;
-        both.clear();
-        both.extend(n.iter().zip(t).map(|(n, t)| [*n, *t]));
-        both
     }
 }
 
-/// What a normal and a tangential force do to the unknowns of a group.
+/// What the forces of some constraints do to the unknowns of a group.
 #[derive(Default)]
-pub(super) struct Response {
-    /// To each of the two forces.
-    to_forces: [Vec<f64>; 2],
-    /// The same, side by side.
-    both: Vec<[f64; 2]>,
+pub(super) struct Responses {
+    /// A row for every unknown: all normal forces, then all tangential ones.
+    rows: Vec<f64>,
+    /// Entries of a row.
+    width: usize,
+    /// What normal and tangential force of one constraint do.
+    sums: [Vec<f64>; 2],
 }
 
-/// (G_p T) y of eq. (5.1) in the rows of a group: what normal (first column) and tangential force add to gap (first
-/// row) and slip of p.
+/// (G_k T) Y of eq. (5.1) in the rows of a group: what the forces add to gap and slip of k.
 #[inline(always)]
-pub(super) fn product(p: &[UnknownEntry], y: &[[f64; 2]]) -> [[f64; 2]; 2] {
-    let mut product = [[0.0; 2]; 2];
-    for entry in p {
-        let y = y[entry.place];
-        for (product, g) in product.iter_mut().zip(entry.derivative) {
-            product[0] += g * y[0];
-            product[1] += g * y[1];
+pub(super) fn product<S: Simd>(
+    simd: S,
+    k: &[UnknownEntry],
+    responses: &Responses,
+    sums: &mut [Vec<f64>; 2],
+) {
+    let Responses { rows, width, .. } = responses;
+    let row = |place: usize| &rows[place * width..(place + 1) * width];
+    let terms = k.iter().map(|e| (row(e.place), e.derivative));
+    combine(simd, &terms.collect::<Terms>(), (*width, sums));
+}
+
+/// Vectors of one length, each with two factors.
+type Terms<'a> = SmallVec<[(&'a [f64], [f64; 2]); 8]>;
+
+/// The two sums of vectors times their factors.
+#[inline(always)]
+fn combine<S: Simd>(simd: S, terms: &Terms, (length, sums): (usize, &mut [Vec<f64>; 2])) {
+    sums.iter_mut().for_each(|sum| sum.resize(length, 0.0));
+    let [first, second] = sums.each_mut().map(|sum| S::as_mut_simd_f64s(sum));
+    let heads = terms.iter().map(|(vector, [a, b])| {
+        let head = &S::as_simd_f64s(vector).0[..first.0.len()];
+        (head, simd.splat_f64s(*a), simd.splat_f64s(*b))
+    });
+    let heads: SmallVec<[_; 8]> = heads.collect();
+    for (i, (first, second)) in first.0.iter_mut().zip(second.0).enumerate() {
+        let [mut sum_a, mut sum_b] = [simd.splat_f64s(0.0); 2];
+        for &(head, a, b) in &heads {
+            sum_a = simd.mul_add_e_f64s(a, head[i], sum_a);
+            sum_b = simd.mul_add_e_f64s(b, head[i], sum_b);
+        }
+        (*first, *second) = (sum_a, sum_b);
+    }
+    let whole = length - first.1.len();
+    for (i, (first, second)) in first.1.iter_mut().zip(second.1).enumerate() {
+        (*first, *second) = (0.0, 0.0);
+        for (vector, [a, b]) in terms {
+            *first += a * vector[whole + i];
+            *second += b * vector[whole + i];
         }
     }
-    product
 }
