@@ -254,7 +254,7 @@ impl<'m> Attempt<'_, 'm> {
         let errors = Errors::new(problem.parts, &residual, &problem.unknowns.dof, du);
         let report = scales.report(&errors, pass.contact);
         let position = |node| problem.position(u, node);
-        trace.worst = scales.worst(&residual, &problem.unknowns.dof, position);
+        trace.worst = scales.worst(&errors, &residual, &problem.unknowns.dof, position);
         trace.add(report, pass.contact);
         meter.count_pass(report.residual);
         let has_converged = scales.converged(&errors) && scales.closes_gaps(pass.contact, du);

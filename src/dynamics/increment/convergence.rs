@@ -77,7 +77,7 @@ impl Pass<'_> {
         };
         let diagonals = (stiffness.stiffness.as_slice(), stiffness.inertia.as_slice());
         let forces = forces.map(|force| problem.unknowns.magnitudes(force));
-        let force = largest_forces(parts, forces.iter().map(|force| force.as_ref()));
+        let force = parts.largest_of_all(forces.iter().map(|force| force.as_ref()));
         Scales::new(parts, force, diagonals, lengths, problem.settings.tolerance)
     }
 
@@ -355,25 +355,29 @@ impl<'a> Scales<'a> {
     }
 
     /// The node with the largest relative residual, if there is any; `residual` over the unknowns, whose
-    /// dofs are given.
+    /// dofs are given, with its largest value of every part.
     pub fn worst(
         &self,
+        errors: &Errors,
         residual: &[f64],
         dof_of: &[usize],
         position: impl Fn(usize) -> [f64; 2],
     ) -> Option<Worst> {
-        let at = |unknown: usize| {
-            let part = self.parts.part(dof_of[unknown]);
-            self.relative(residual[unknown].abs(), self.force[part], self.noise[part])
+        let of_part = |part: &usize| self.residual(errors, *part);
+        let larger = |a: &usize, b: &usize| of_part(a).total_cmp(&of_part(b));
+        let part = (0..self.force.len()).max_by(larger)?;
+        let value = of_part(&part);
+        let most = errors.residual[part];
+        let is_worst = |(dof, residual): (&usize, &f64)| {
+            residual.abs() == most && self.parts.part(*dof) == part
         };
-        let larger = |a: &usize, b: &usize| at(*a).total_cmp(&at(*b));
-        let unknown = (0..residual.len()).max_by(larger)?;
+        let unknown = dof_of.iter().zip(residual).position(is_worst)?;
         let node = dof_of[unknown] / 2;
-        (at(unknown) != 0.0).then(|| Worst {
+        (value != 0.0).then(|| Worst {
             node,
             position: position(node),
             quantity: "force residual",
-            value: at(unknown),
+            value,
         })
     }
 
@@ -386,14 +390,4 @@ impl<'a> Scales<'a> {
         let scale = larger(scale, floor / self.tolerance);
         if scale == 0.0 { value } else { value / scale }
     }
-}
-
-/// Largest of some forces (over all dofs) in every part.
-pub(crate) fn largest_forces<'a>(
-    parts: &Parts,
-    forces: impl Iterator<Item = &'a [f64]>,
-) -> Vec<f64> {
-    let each: Vec<Vec<f64>> = forces.map(|force| parts.largest(force)).collect();
-    let of_part = |part: usize| each.iter().map(|force| force[part].abs()).fold(0.0, larger);
-    (0..parts.of_parts().len()).map(of_part).collect()
 }

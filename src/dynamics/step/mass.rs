@@ -31,10 +31,12 @@ impl Mass {
         let rows = product.as_chunks_mut::<2>().0.iter_mut();
         for (row, ends) in rows.zip(starts.raw_storage().windows(2)) {
             let entries = ends[0]..ends[1];
+            let [mut x, mut y] = [0.0; 2];
             for (&column, m) in nodes[entries.clone()].iter().zip(&masses[entries]) {
-                let [x, y] = v[column];
-                *row = [row[0] + m * x, row[1] + m * y];
+                x += m * v[column][0];
+                y += m * v[column][1];
             }
+            *row = [x, y];
         }
         product
     }

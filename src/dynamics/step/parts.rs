@@ -73,6 +73,13 @@ impl Parts {
         largest_of(&self.part, self.body_of.len(), values)
     }
 
+    /// Largest absolute value of some quantities in every part, each over all dofs.
+    pub fn largest_of_all<'a>(&self, quantities: impl Iterator<Item = &'a [f64]>) -> Vec<f64> {
+        let each: Vec<Vec<f64>> = quantities.map(|values| self.largest(values)).collect();
+        let of_part = |part: usize| each.iter().map(|most| most[part]).fold(0.0, larger);
+        (0..self.body_of.len()).map(of_part).collect()
+    }
+
     /// Largest absolute value of every body; `values` over all dofs.
     pub fn largest_of_bodies(&self, values: &[f64]) -> Vec<f64> {
         largest_of(&self.body, self.bodies, values)

@@ -15,6 +15,7 @@ use crate::contact::{
 use crate::dynamics::results::{Cause, State};
 use crate::elements::Elements;
 use crate::lcp::LcpMethod;
+use crate::linear::largest;
 use crate::model::{Model, Settings, Step};
 use crate::prepare::Redistribution;
 
@@ -231,7 +232,9 @@ impl StepProblem<'_> {
 /// [`Cause::NotFinite`] with the first quantity and node that is not.
 pub(crate) fn check_finite(quantities: &[(&'static str, &Vec<f64>)]) -> Result<(), Cause> {
     for &(what, values) in quantities {
-        if let Some(dof) = values.iter().position(|value| !value.is_finite()) {
+        if !largest(values).is_finite()
+            && let Some(dof) = values.iter().position(|value| !value.is_finite())
+        {
             let node = dof / 2;
             return Err(Cause::NotFinite { what, node });
         }

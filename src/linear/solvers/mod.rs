@@ -8,6 +8,7 @@ mod partial_inverse;
 mod solver;
 mod sprs_ldl;
 mod substitution;
+mod supernode;
 
 pub use choice::linear_solver;
 pub use faer_ldl::{FaerLdl, factor_entries};

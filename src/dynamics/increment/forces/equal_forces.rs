@@ -11,14 +11,15 @@ const LEAST_WEIGHT: f64 = 1e-7;
 const CRAWLING: f64 = 0.7;
 /// The weight then.
 const WEIGHT_OF_CRAWLING: f64 = 1e-9;
-/// Correction, in tolerances, below which growth is round-off.
+/// Correction, in tolerances, that is round-off where it does not become smaller.
 const ROUND_OFF: f64 = 100.0;
 
 /// Weight eps of eq. (5.3) from pass to pass.
 ///
 /// Forces of pairs that are almost one go on changing at the rate eps/(eps + lambda), lambda being the
 /// compliance of their difference as a part of their own. The weight therefore decreases, until small
-/// corrections grow that had the same weight before: then the round-off of the gaps moves the forces, and the first weight holds them.
+/// corrections stay as large as they were with the same weight: then the round-off of the gaps moves the
+/// forces, and the first weight holds them.
 pub(crate) struct EqualForces {
     tolerance: f64,
     weight: f64,
@@ -53,7 +54,8 @@ impl EqualForces {
         let grows = correction >= self.correction;
         let crawls = !grows && correction > CRAWLING * self.correction;
         self.correction = correction;
-        self.holds |= grows && !self.has_decreased && correction < ROUND_OFF * self.tolerance;
+        let stays = (grows || crawls) && !self.has_decreased;
+        self.holds |= stays && correction < ROUND_OFF * self.tolerance;
         let weight = match self.weight {
             _ if self.holds => FIRST_WEIGHT,
             weight if weight > 2.0 * LEAST_WEIGHT => DECREASE * weight,
@@ -79,6 +81,17 @@ mod tests {
             rule.weight(true)
                 .is_some_and(|weight| weight < 2.0 * LEAST_WEIGHT)
         );
+    }
+
+    #[test]
+    fn crawling_needs_a_smaller_weight_unless_it_is_round_off() {
+        for (correction, expected) in [(1e-8, WEIGHT_OF_CRAWLING), (1e-10, FIRST_WEIGHT)] {
+            let mut rule = EqualForces::new(1e-11);
+            for part in [4.0, 2.0, 1.0, 0.99] {
+                rule.take_in(part * correction, true);
+            }
+            assert_eq!(rule.weight(true), Some(expected), "{correction:e}");
+        }
     }
 
     #[test]
