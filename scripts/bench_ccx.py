@@ -1,7 +1,7 @@
 """Decks of CalculiX for the same meshes: two blocks pressed and sheared, without friction."""
 
 from cards import card, elastic
-from quads import Grid
+from quads import facing_blocks
 
 STIFFNESS = 1e6
 """Pressure over penetration: a hundred times Young's modulus over the height of the blocks."""
@@ -13,10 +13,7 @@ def two_blocks(size: int) -> str:
     It is quasi-static: with inertia CalculiX cuts the second increment until it gives up. Matrices and
     iterations are those of a dynamic increment.
     """
-    h = 1.0 / size
-    upper = Grid("UPPER", size, size // 2, lambda i, j: (0.1 + i * h, 0.5001 + j * h))
-    labels = upper.next_node, upper.next_element
-    lower = Grid("LOWER", size, size // 2, lambda i, j: (i * h, j * h), *labels)
+    upper, lower = facing_blocks(size, 0.1)
     return "".join(
         [
             card("HEADING", ("two blocks pressed and sheared; without friction",)),

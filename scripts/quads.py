@@ -138,6 +138,15 @@ def outline(*names: str) -> str:
     return "".join(card(f"SURFACE, NAME={name}", (name,)) for name in names)
 
 
+def facing_blocks(elements: int, left: float) -> tuple[Grid, Grid]:
+    """UPPER, 1e-4 above LOWER and `left` to the right of it: blocks 1 x 0.5, `elements` along each."""
+    size = 1.0 / elements
+    count = elements, elements // 2
+    upper = Grid("UPPER", *count, lambda i, j: (left + i * size, 0.5001 + j * size))
+    labels = upper.next_node, upper.next_element
+    return upper, Grid("LOWER", *count, lambda i, j: (i * size, j * size), *labels)
+
+
 def ring(
     name: str,
     centre: tuple[float, float],

@@ -272,6 +272,35 @@ fn constraints_and_contacts() {
 }
 
 #[test]
+fn surfaces_called_as_that_of_general_contact() {
+    for deck in [
+        SHARED.replace("STOP", "ALL_EXTERIOR"),
+        SHARED.replace("SBOT", "ALL_EXTERIOR"),
+        square("*SURFACE, NAME=ALL_EXTERIOR\nBODY\n", ""),
+    ] {
+        round_trip(read(&deck));
+    }
+}
+
+#[test]
+fn rigid_elements_with_a_reference_node_apart() {
+    let cards = "*NODE\n100, 0., -5.\n*RIGID BODY, ELSET=EBASE, REF NODE=100\n*AMPLITUDE, NAME=A\n\
+                 0., 0., 1., 1.\n*BOUNDARY\n100, 1, 2";
+    let deck = SHARED.replacen("*BOUNDARY\nNFIX, 1, 2", cards, 1);
+    round_trip(read(&deck));
+    let moved = "*BOUNDARY, AMPLITUDE=A\n100, 1, 1, 0.3\n*DLOAD";
+    round_trip(read(&deck.replacen("*DLOAD", moved, 1)));
+}
+
+#[test]
+fn friction_that_decays() {
+    for decay in ["0.3, 0.1, 5.", "0.3, 0.3, 5.", "0.3, 0.1, 0."] {
+        let card = format!("*FRICTION, EXPONENTIAL DECAY\n{decay}");
+        round_trip(read(&SHARED.replacen("*FRICTION\n0.3, 2.1E5", &card, 1)));
+    }
+}
+
+#[test]
 fn materials_of_every_kind() {
     let more = "*MATERIAL, NAME=EMPTY\n*MATERIAL, NAME=HARD\n*ELASTIC\n1.e5, 0.3\n*DENSITY\n2.\n\
                 *DAMPING, ALPHA=0.1, BETA=1.e-7\n*ELSET, ELSET=NONE\n*NSET, NSET=NO\n";

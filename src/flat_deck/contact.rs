@@ -1,9 +1,8 @@
 //! Contacts with their interactions, rigid bodies and equations.
 
 use super::lines::{Lines, name, named, number, set};
-use crate::model::{
-    ALL_EXTERIOR, Adjust, Contact, Equation, Friction, Interaction, Model, RigidBody,
-};
+use super::mesh::{all_exterior, first_of_rigid};
+use crate::model::{Adjust, Contact, Element, Equation, Friction, Interaction, Model, RigidBody};
 
 /// Terms of an equation on a data line.
 const TERMS: usize = 4;
@@ -11,7 +10,8 @@ const TERMS: usize = 4;
 /// Writes contacts, rigid bodies and equations.
 pub(super) fn write(model: &Model, lines: &mut Lines) {
     let interactions = Interactions::write(&model.contacts, lines);
-    let is_general = |contact: &&Contact| model.surfaces[contact.slave].name == ALL_EXTERIOR;
+    let all_exterior = all_exterior(model);
+    let is_general = |contact: &&Contact| Some(contact.slave) == all_exterior;
     for contact in model.contacts.iter().filter(|contact| !is_general(contact)) {
         pair(contact, &interactions, model, lines);
     }
@@ -27,9 +27,55 @@ pub(super) fn write(model: &Model, lines: &mut Lines) {
         let label = model.mesh.node_labels[reference];
         lines.card("RIGID BODY", [surface, set("REF NODE", label)]);
     }
+    rigid_elements(model, lines);
     for equation in &model.equations {
         write_equation(equation, model, lines);
     }
+}
+
+/// Rigid bodies of elements whose reference node belongs to nothing else. The model knows them by
+/// their supports alone: one element that moves with the node keeps the node in the deck.
+fn rigid_elements(model: &Model, lines: &mut Lines) {
+    let mut is_kept = vec![false; first_of_rigid(model)];
+    let of_elements = model.mesh.elements.iter().flat_map(|e| &e.nodes).copied();
+    let of_surfaces = model.rigid_bodies.iter().map(|body| body.reference);
+    let of_equations = model.equations.iter().flat_map(Equation::dofs);
+    for node in of_elements
+        .chain(of_surfaces)
+        .chain(of_equations.map(|dof| dof / 2))
+    {
+        is_kept[node] = true;
+    }
+    let alone = is_kept.iter().enumerate().filter(|(_, kept)| !**kept);
+    for (reference, _) in alone {
+        let follows = |element: &&Element| {
+            let mut nodes = element.nodes.iter();
+            nodes.all(|&node| moves_with(node, reference, model))
+        };
+        if let Some(element) = model.mesh.elements.iter().find(follows) {
+            let label = model.mesh.node_labels[reference];
+            lines.card(
+                "RIGID BODY",
+                [set("ELSET", element.label), set("REF NODE", label)],
+            );
+        }
+    }
+}
+
+/// Whether two nodes are prescribed alike in all steps.
+fn moves_with(node: usize, other: usize, model: &Model) -> bool {
+    model.steps.iter().all(|step| {
+        let motion = |dof: usize| {
+            let found = step
+                .supports
+                .binary_search_by_key(&dof, |support| support.dof);
+            found.ok().map(|index| step.supports[index].motion)
+        };
+        (0..2).all(|i| {
+            let both = [node, other].map(|node| motion(2 * node + i));
+            both[0].is_some() && both[0] == both[1]
+        })
+    })
 }
 
 /// The different interactions in the order of the contacts.
@@ -51,7 +97,7 @@ impl Interactions {
                 [set("NAME", interactions.name(interaction))],
             );
             lines.card("SURFACE BEHAVIOR", [set("PRESSURE-OVERCLOSURE", "HARD")]);
-            if friction.is_constant() {
+            if friction == Friction::constant(friction.at_rest) {
                 lines.card("FRICTION", []);
                 lines.row([number(friction.at_rest)]);
             } else {

@@ -1,7 +1,7 @@
 //! Nodes, elements, sets and surfaces.
 
 use super::lines::{Lines, name, named, number, set};
-use crate::model::{ALL_EXTERIOR, Element, Face, Mesh, Model, Set, SurfaceKind};
+use crate::model::{ALL_EXTERIOR, Contact, Element, Face, Mesh, Model, Set, SurfaceKind};
 
 /// Writes nodes, elements, sets and surfaces.
 pub(super) fn write(model: &Model, lines: &mut Lines) {
@@ -24,6 +24,14 @@ pub(super) fn write(model: &Model, lines: &mut Lines) {
 pub(super) fn first_of_rigid(model: &Model) -> usize {
     let nodes = model.rigid_segments().into_iter().flatten();
     nodes.min().unwrap_or(model.mesh.node_count())
+}
+
+/// The surface of general contact: the last one, by its name, which touches itself.
+pub(super) fn all_exterior(model: &Model) -> Option<usize> {
+    let last = model.surfaces.len().checked_sub(1)?;
+    let touches_itself = |contact: &Contact| contact.slave == last && contact.master == last;
+    let is_named = model.surfaces[last].name == ALL_EXTERIOR;
+    (is_named && model.contacts.iter().any(touches_itself)).then_some(last)
 }
 
 fn nodes(model: &Model, lines: &mut Lines) {
@@ -61,11 +69,8 @@ fn sets(keyword: &str, sets: &[Set], label: impl Fn(&usize) -> u64, lines: &mut 
 /// Surfaces but that of general contact, which its card makes.
 fn surfaces(model: &Model, lines: &mut Lines) {
     let mesh = &model.mesh;
-    for surface in model
-        .surfaces
-        .iter()
-        .filter(|surface| surface.name != ALL_EXTERIOR)
-    {
+    let own = all_exterior(model).unwrap_or(model.surfaces.len());
+    for surface in &model.surfaces[..own] {
         let kind = match surface.kind {
             SurfaceKind::Faces(_) => "ELEMENT",
             SurfaceKind::Nodes(_) => "NODE",

@@ -1,7 +1,7 @@
 """Elastic bodies that are pressed on each other: sheared blocks, blocks at rest, a long bar."""
 
 from cards import card, dry, elastic, step
-from quads import Grid, outline
+from quads import Grid, facing_blocks, outline
 from settings import ramp, settings
 
 
@@ -20,11 +20,7 @@ def two_blocks(
     segments; without it the upper block stands 0.1 to the right. The surfaces are whole skins.
     """
     size = 1.0 / elements
-    left = 0.1 if offset is None else offset * size
-    count = elements, elements // 2
-    upper = Grid("UPPER", *count, lambda i, j: (left + i * size, 0.5001 + j * size))
-    labels = upper.next_node, upper.next_element
-    lower = Grid("LOWER", *count, lambda i, j: (i * size, j * size), *labels)
+    upper, lower = facing_blocks(elements, 0.1 if offset is None else offset * size)
     pairs = [("UPPER", "LOWER"), ("LOWER", "UPPER")][:passes]
     shear = 0.02 if segments is None else 10.0 * segments * size
     return "".join(

@@ -25,7 +25,10 @@ pub(in crate::cli) fn flatten(args: &FlattenArgs) -> Result<Exit, CliError> {
     };
     let text = flat_deck(&model);
     if !reads_as(&text, &model) {
-        complain("error: this deck cannot be written as a flat deck that reads as the same model");
+        complain(
+            "error: this deck cannot be written as a flat deck that reads as the same model: where \
+             steps have AMPLITUDE=RAMP, several loads at one place fade or grow apart",
+        );
         return Ok(Exit::Rejected);
     }
     match &args.output {

@@ -56,7 +56,10 @@ fn unusable(name: Text, folded: &str, cx: &mut Context) -> Option<ElementType> {
 fn reason(folded: &str) -> Option<&'static str> {
     let starts = |prefixes: &[&str]| prefixes.iter().any(|prefix| folded.starts_with(prefix));
     if starts(&["CPE4R", "CPS4R"]) && folded.len() == 5 {
-        Some("elements with one integration point are not supported: write CPE4 or CPS4")
+        Some(
+            "elements with one integration point are not supported: write CPE4 or CPS4; --lenient takes \
+             them as these",
+        )
     } else if starts(&["CPE4", "CPS4", "CPE3", "CPS3"]) && folded.len() > 4 {
         Some("write CPE3, CPS3, CPE4 or CPS4: other formulations are not supported")
     } else if starts(&["CPE6", "CPS6", "CPE8", "CPS8"]) {
