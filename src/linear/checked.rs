@@ -148,7 +148,7 @@ impl CheckedSolver {
         self.x.resize(self.b.len(), 0.0);
         self.solver.end(&mut self.x);
         self.is_under_way = false;
-        match self.x.iter().all(|value| value.is_finite()) {
+        match largest(&self.x).is_finite() {
             true => Ok(&self.x),
             false => Err(LinearError::NotFinite("a solution")),
         }

@@ -1,25 +1,36 @@
 //! Largest values, NaN where one of the values is.
 
-/// Largest absolute value, 0 without values; NaN when one is. In eight interleaved parts, which the compiler
-/// turns into vector instructions.
+use pulp::{Arch, Simd, WithSimd};
+
+/// Largest absolute value, 0 without values; NaN when one is.
 pub fn largest(values: &[f64]) -> f64 {
-    let (mut most, mut zeros) = ([0.0_f64; 8], [0.0_f64; 8]);
-    let chunks = values.chunks_exact(8);
-    let rest = chunks.remainder();
-    for chunk in chunks {
-        for ((most, zero), value) in most.iter_mut().zip(&mut zeros).zip(chunk) {
-            let value = value.abs();
-            *most = if value > *most { value } else { *most };
-            *zero += 0.0 * value;
+    Arch::new().dispatch(Largest(values)).unwrap_or_else(|| {
+        let larger = |most, value: &f64| larger(most, value.abs());
+        values.iter().fold(0.0, larger)
+    })
+}
+
+/// Largest absolute value, none where a value is not finite.
+struct Largest<'a>(&'a [f64]);
+
+impl WithSimd for Largest<'_> {
+    type Output = Option<f64>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Option<f64> {
+        let (vectors, rest) = S::as_simd_f64s(self.0);
+        let zero = simd.splat_f64s(0.0);
+        let (mut most, mut zeros) = (zero, zero);
+        for &value in vectors {
+            let value = simd.abs_f64s(value);
+            most = simd.max_f64s(value, most);
+            // stays zero as long as values are finite
+            zeros = simd.mul_add_e_f64s(zero, value, zeros);
         }
-    }
-    // a part that is not zero tells of a value that is not finite
-    let finite = most.into_iter().chain(rest.iter().map(|value| value.abs()));
-    match zeros == [0.0; 8] {
-        true => finite.fold(0.0, larger),
-        false => values
-            .iter()
-            .fold(0.0, |most, value| larger(most, value.abs())),
+        let rest_zero: f64 = rest.iter().map(|value| 0.0 * value).sum();
+        let rest = rest.iter().map(|value| value.abs());
+        let most = rest.fold(simd.reduce_max_f64s(most), f64::max);
+        (simd.reduce_sum_f64s(zeros) + rest_zero == 0.0).then_some(most)
     }
 }
 

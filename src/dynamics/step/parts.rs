@@ -2,6 +2,7 @@
 //! (section 4 of docs/theory.md, Convergence).
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use crate::linear::{Assembled, larger, largest};
 use crate::model::{Equation, Model};
@@ -20,6 +21,31 @@ pub(crate) struct Parts {
     /// Body of every part.
     body_of: Vec<usize>,
     bodies: usize,
+    /// Dofs of one body after the other, and of one part after the other.
+    runs_of_bodies: Vec<Run>,
+    runs_of_parts: Vec<Run>,
+}
+
+/// Dofs of consecutive nodes of a body or part.
+struct Run {
+    group: usize,
+    dofs: Range<usize>,
+}
+
+impl Run {
+    /// The runs of all nodes, whose groups are given.
+    fn all(groups: &[usize]) -> Vec<Run> {
+        let mut end = 0;
+        let run = |nodes: &[usize]| {
+            let start = end;
+            end += 2 * nodes.len();
+            Run {
+                group: nodes[0],
+                dofs: start..end,
+            }
+        };
+        groups.chunk_by(|a, b| a == b).map(run).collect()
+    }
 }
 
 impl Parts {
@@ -41,6 +67,8 @@ impl Parts {
             }
         }
         Parts {
+            runs_of_bodies: Run::all(&body),
+            runs_of_parts: Run::all(&part),
             body,
             part,
             body_of,
@@ -70,7 +98,7 @@ impl Parts {
 
     /// Largest absolute value of every part; `values` over all dofs.
     pub fn largest(&self, values: &[f64]) -> Vec<f64> {
-        largest_of(&self.part, self.body_of.len(), values)
+        largest_of(&self.runs_of_parts, self.body_of.len(), values)
     }
 
     /// Largest absolute value of some quantities in every part, each over all dofs.
@@ -82,7 +110,7 @@ impl Parts {
 
     /// Largest absolute value of every body; `values` over all dofs.
     pub fn largest_of_bodies(&self, values: &[f64]) -> Vec<f64> {
-        largest_of(&self.body, self.bodies, values)
+        largest_of(&self.runs_of_bodies, self.bodies, values)
     }
 
     /// Largest diagonal entry of every part; the matrix is over unknowns, whose dofs are given.
@@ -137,15 +165,11 @@ fn united(mut first: Vec<usize>, equations: &[Equation]) -> Vec<usize> {
     (0..first.len()).map(|node| own(&first, node)).collect()
 }
 
-/// Largest absolute value of every group; `group` of the nodes, `values` over all dofs.
-fn largest_of(group: &[usize], count: usize, values: &[f64]) -> Vec<f64> {
+/// Largest absolute value of every group, given by its runs; `values` over all dofs.
+fn largest_of(runs: &[Run], count: usize, values: &[f64]) -> Vec<f64> {
     let mut most = vec![0.0; count];
-    let mut rest = values;
-    for nodes in group.chunk_by(|a, b| a == b) {
-        let (own, others) = rest.split_at(2 * nodes.len());
-        let most = &mut most[nodes[0]];
-        *most = larger(*most, largest(own));
-        rest = others;
+    for Run { group, dofs } in runs {
+        most[*group] = larger(most[*group], largest(&values[dofs.clone()]));
     }
     most
 }
