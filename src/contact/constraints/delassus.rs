@@ -4,24 +4,24 @@
 use nalgebra::{DMatrix, DVector};
 use pulp::Arch;
 
-use super::compliance::{Compliance, GroupRows, Response, product};
+use super::compliance::{Compliance, GroupRows, Response, Scope, product};
 use super::constraint::Constraint;
 use crate::lcp::FrictionalLcp;
 
 /// The complementarity problem of some constraints: Q = G W B^T, eq. (5.1), with the compliance W,
 /// derivative rows G and force rows B, and the given constant terms of gap and slip of every one.
 ///
-/// Every constraint must have been prepared in the compliance. Q is symmetric where G = B.
+/// Every constraint must have been prepared in the scope of the compliance. Q is symmetric where G = B.
 pub fn frictional_lcp(
     constraints: &[&Constraint],
-    compliance: &Compliance,
+    (compliance, scope): (&Compliance, &Scope),
     normal: Vec<f64>,
     tangential: Vec<f64>,
 ) -> FrictionalLcp {
     let n = constraints.len();
     let mu = constraints.iter().map(|constraint| constraint.mu);
     FrictionalLcp {
-        q: delassus(constraints, compliance),
+        q: delassus(constraints, compliance, scope),
         gap: DVector::from_vec(normal),
         slip: DVector::from_vec(tangential),
         mu: DVector::from_iterator(n, mu),
@@ -30,21 +30,21 @@ pub fn frictional_lcp(
 
 /// Q = G W B^T, eq. (5.1), all normal before all tangential rows and columns: the sum over the groups of
 /// unknowns, each of which couples the constraints that act on it.
-fn delassus(constraints: &[&Constraint], compliance: &Compliance) -> DMatrix<f64> {
+fn delassus(constraints: &[&Constraint], compliance: &Compliance, scope: &Scope) -> DMatrix<f64> {
     let n = constraints.len();
     let mut groups: Vec<GroupRows> = Vec::new();
-    groups.resize_with(compliance.groups(), GroupRows::default);
+    groups.resize_with(compliance.block_count(scope), GroupRows::default);
     for (k, constraint) in constraints.iter().enumerate() {
-        for entry in compliance.entries(constraint) {
-            groups[entry.group].push(k, entry);
+        for entry in compliance.entries(scope, constraint) {
+            groups[entry.block].push(k, entry);
         }
     }
     let mut q = DMatrix::zeros(2 * n, 2 * n);
     Arch::new().dispatch(
         #[inline(always)]
         || {
-            for (group, rows) in groups.iter().enumerate() {
-                add_group(compliance, (group, rows), q.as_mut_slice());
+            for (block, rows) in groups.iter().enumerate() {
+                add_group(compliance, (scope, block), rows, q.as_mut_slice());
             }
         },
     );
@@ -54,13 +54,13 @@ fn delassus(constraints: &[&Constraint], compliance: &Compliance) -> DMatrix<f64
 
 /// Adds what the unknowns of a group couple to Q, column by column.
 #[inline(always)]
-fn add_group(compliance: &Compliance, (group, rows): (usize, &GroupRows), q: &mut [f64]) {
+fn add_group(compliance: &Compliance, block: (&Scope, usize), rows: &GroupRows, q: &mut [f64]) {
     let n = (q.len() / 4).isqrt();
     let (normal, tangential) = q.split_at_mut(2 * n * n);
     let mut response = Response::default();
     for (l, of_l) in rows.iter() {
         // W (B_l T)^T, then its product with the rows of all
-        let y = compliance.response(group, of_l, &mut response);
+        let y = compliance.response(block, of_l, &mut response);
         let column = 2 * n * l..2 * n * (l + 1);
         let (of_normal, of_tangential) = (&mut normal[column.clone()], &mut tangential[column]);
         for (k, of_k) in rows.iter() {
