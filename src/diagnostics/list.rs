@@ -26,7 +26,7 @@ pub struct Diagnostics {
     counts: [usize; 3],
     /// Places of the first diagnostics of each severity, as many as are shown.
     first: [BinaryHeap<Option<Span>>; 3],
-    said: HashSet<(Code, String)>,
+    said: HashMap<Code, HashSet<String>>,
     /// Instance in which a line of a part was reported, by code and place.
     in_parts: HashMap<(Code, Span), u32>,
     /// Errors found, those of the same line of a part in further instances included.
@@ -95,12 +95,16 @@ impl Diagnostics {
 
     /// Adds a diagnostic unless one with the same code and message was added this way before.
     pub fn push_once(&mut self, diagnostic: Diagnostic) {
-        if self
-            .said
-            .insert((diagnostic.code, diagnostic.message.clone()))
-        {
+        let said = self.said.entry(diagnostic.code).or_default();
+        if said.insert(diagnostic.message.clone()) {
             self.push(diagnostic);
         }
+    }
+
+    /// Whether this code and message was added by [`Self::push_once`].
+    pub fn has_said(&self, code: Code, message: &str) -> bool {
+        let said = self.said.get(&code);
+        said.is_some_and(|said| said.contains(message))
     }
 
     fn judge(&self, diagnostic: &Diagnostic) -> Severity {

@@ -65,8 +65,11 @@ impl Mesh {
 
     /// Reference coordinates of the nodes of an element (length).
     pub fn corners(&self, element: &Element) -> SmallVec<[[f64; 2]; 4]> {
-        let nodes = element.nodes.iter();
-        nodes.map(|&node| self.coordinates[node]).collect()
+        let at = |node: usize| self.coordinates[node];
+        match *element.nodes.as_slice() {
+            [a, b, c, d] => SmallVec::from_buf([a, b, c, d].map(at)),
+            ref nodes => nodes.iter().map(|&node| at(node)).collect(),
+        }
     }
 
     /// All sides of all elements.

@@ -69,6 +69,11 @@ impl<T> LabelMap<T> {
         None
     }
 
+    /// Makes room for so many labels more.
+    pub fn reserve(&mut self, count: usize) {
+        self.values.reserve(count);
+    }
+
     /// All values in any order.
     pub fn values_mut(&mut self) -> impl Iterator<Item = &mut T> {
         self.values.iter_mut().chain(self.others.values_mut())

@@ -51,6 +51,7 @@ fn read(cx: &mut Context) -> Model {
     checks::mesh(&mesh_index, &at_nodes, cx);
     let sets = sets::read(&outline, &mesh_index, cx);
     let mut surfaces = surface::read(&outline, &mesh_index, &sets, &at_nodes, cx);
+    drop(at_nodes);
     mesh_index.add_points(&surfaces.rigid_points);
     let rigid_bodies = rigid_surface::read(&outline, &mesh_index, &sets, &surfaces, cx);
     let properties = materials::read(&outline, &mesh_index, &sets, cx);

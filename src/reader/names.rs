@@ -167,6 +167,11 @@ impl Labels {
         self.index.insert(label, labelled);
     }
 
+    /// Makes room for so many numbers more.
+    pub fn reserve(&mut self, count: usize) {
+        self.index.reserve(count);
+    }
+
     /// Gives new indices, none to what is left out from here on.
     pub fn renumber(&mut self, numbers: &[Option<usize>]) {
         for labelled in self.index.values_mut() {

@@ -4,24 +4,24 @@
 use nalgebra::{DMatrix, DVector};
 use pulp::{Arch, Simd, WithSimd};
 
-use super::compliance::{Compliance, GroupRows, Responses, UnknownEntry, product};
+use super::compliance::{Compliance, GroupRows, Responses, Scope, UnknownEntry, product};
 use super::constraint::Constraint;
 use crate::lcp::FrictionalLcp;
 
 /// The complementarity problem of some constraints: Q = G W B^T, eq. (5.1), with the compliance W,
 /// derivative rows G and force rows B, and the given constant terms of gap and slip of every one.
 ///
-/// Every constraint must have been prepared in the compliance. Q is symmetric where G = B.
+/// Every constraint must have been prepared in the scope of the compliance. Q is symmetric where G = B.
 pub fn frictional_lcp(
     constraints: &[&Constraint],
-    compliance: &Compliance,
+    (compliance, scope): (&Compliance, &Scope),
     normal: Vec<f64>,
     tangential: Vec<f64>,
 ) -> FrictionalLcp {
     let n = constraints.len();
     let mu = constraints.iter().map(|constraint| constraint.mu);
     FrictionalLcp {
-        q: delassus(constraints, compliance),
+        q: delassus(constraints, compliance, scope),
         gap: DVector::from_vec(normal),
         slip: DVector::from_vec(tangential),
         mu: DVector::from_iterator(n, mu),
@@ -33,21 +33,21 @@ const PANEL: usize = 128;
 
 /// Q = G W B^T, eq. (5.1), all normal before all tangential rows and columns: the sum over the groups of
 /// unknowns, each of which couples the constraints that act on it.
-fn delassus(constraints: &[&Constraint], compliance: &Compliance) -> DMatrix<f64> {
+fn delassus(constraints: &[&Constraint], compliance: &Compliance, scope: &Scope) -> DMatrix<f64> {
     let n = constraints.len();
     let mut groups: Vec<GroupRows> = Vec::new();
-    groups.resize_with(compliance.groups(), GroupRows::default);
+    groups.resize_with(compliance.block_count(scope), GroupRows::default);
     for (k, constraint) in constraints.iter().enumerate() {
-        for entry in compliance.entries(constraint) {
-            groups[entry.group].push(k, entry);
+        for entry in compliance.entries(scope, constraint) {
+            groups[entry.block].push(k, entry);
         }
     }
     let mut q = DMatrix::zeros(2 * n, 2 * n);
     let mut responses = Responses::default();
-    for (group, rows) in groups.iter().enumerate() {
+    for (block, rows) in groups.iter().enumerate() {
         Arch::new().dispatch(GroupSum {
             compliance,
-            group,
+            block: (scope, block),
             rows,
             responses: &mut responses,
             q: q.as_mut_slice(),
@@ -60,7 +60,7 @@ fn delassus(constraints: &[&Constraint], compliance: &Compliance) -> DMatrix<f64
 /// Adds what the unknowns of a group couple to Q^T, column by column.
 struct GroupSum<'a> {
     compliance: &'a Compliance,
-    group: usize,
+    block: (&'a Scope, usize),
     rows: &'a GroupRows,
     responses: &'a mut Responses,
     q: &'a mut [f64],
@@ -78,7 +78,7 @@ impl WithSimd for GroupSum<'_> {
         for panel in members.chunks(PANEL) {
             // Y = W (B T)^T of the panel, then its products with the rows of all
             let of_panel = panel.iter().map(|member| member.1);
-            (self.compliance).respond(simd, self.group, of_panel, responses);
+            (self.compliance).respond(simd, self.block, of_panel, responses);
             for &(k, of_k) in &members {
                 product(simd, of_k, responses, &mut sums);
                 for (row, sum) in [k, n + k].into_iter().zip(&sums) {

@@ -60,11 +60,28 @@ impl Rows {
     }
 
     /// All rows in order.
-    pub fn iter(&self) -> impl Iterator<Item = Row<'_>> {
-        self.blocks.iter().flat_map(move |block| {
-            let row = |line| Row::new(line, block.is_ascii, self.instance);
-            block.lines().data().map(row)
+    pub fn iter(&self) -> impl Iterator<Item = Row<'_>> + Clone {
+        let mut blocks = self.blocks.iter();
+        let mut open: Option<(Lines, bool)> = None;
+        std::iter::from_fn(move || {
+            loop {
+                if let Some((lines, is_ascii)) = &mut open
+                    && let Some(line) = lines.next_data()
+                {
+                    return Some(Row::new(line, *is_ascii, self.instance));
+                }
+                let block = blocks.next()?;
+                open = Some((block.lines(), block.is_ascii));
+            }
         })
+    }
+
+    /// Number of lines, not all of which may hold a row.
+    pub fn line_count(&self) -> usize {
+        self.blocks
+            .iter()
+            .map(|block| block.lines().line_count())
+            .sum()
     }
 }
 

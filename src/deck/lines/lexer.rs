@@ -71,6 +71,10 @@ impl<'a> Line<'a> {
 
 /// What a line with this text is.
 pub(super) fn kind_of(line: &str) -> Kind {
+    // the first character of most lines
+    if let Some(b'0'..=b'9') = line.as_bytes().first() {
+        return Kind::Data;
+    }
     let text = line.trim_start();
     match text {
         "" => Kind::Blank,

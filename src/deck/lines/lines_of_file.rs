@@ -59,8 +59,18 @@ impl<'a> Lines<'a> {
     }
 
     /// Those among them that are data lines.
-    pub fn data(self) -> impl Iterator<Item = Line<'a>> {
-        self.filter(|line| line.kind() == Kind::Data)
+    pub fn data(mut self) -> impl Iterator<Item = Line<'a>> {
+        std::iter::from_fn(move || self.next_data())
+    }
+
+    /// Takes the lines up to the next data line.
+    pub fn next_data(&mut self) -> Option<Line<'a>> {
+        self.find(|line| line.kind() == Kind::Data)
+    }
+
+    /// Number of lines.
+    pub fn line_count(&self) -> usize {
+        1 + memchr_iter(b'\n', self.text().as_bytes()).count()
     }
 
     /// Whether none is longer than `most` bytes; a line that ends with CRLF may be said to be.

@@ -18,6 +18,18 @@ pub(crate) struct Real {
     pub letterless: bool,
 }
 
+/// Digits that a 64-bit integer holds whatever they are.
+const MOST_DIGITS: usize = 18;
+
+/// Largest whole number up to which all are stored exactly.
+const MOST_EXACT: u64 = 1 << 53;
+
+/// Powers of ten that are stored exactly.
+const POWERS_OF_TEN: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
+    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+];
+
 /// Why a field is not a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NotANumber {
@@ -44,7 +56,7 @@ pub(crate) fn integer(text: &str) -> Result<i64, NotANumber> {
 
 /// `[+-]digits[.digits][(E|D)[+-]digits]`, `.5`, `1.`, and `1.5-5` for `1.5E-5`
 pub(crate) fn real(text: &str) -> Result<Real, NotANumber> {
-    if let Some(value) = plain_real(text) {
+    if let Some(value) = plain_real(text.as_bytes()) {
         let letterless = false;
         return Ok(Real { value, letterless });
     }
@@ -74,9 +86,46 @@ fn short_integer(digits: &[u8]) -> Option<i64> {
 
 /// The value of a number without `D`, whose exponent has its letter: the standard library reads
 /// these as they are. What it reads besides them is not finite: `inf` and `nan`.
-pub(super) fn plain_real(text: &str) -> Option<f64> {
-    let value: Option<f64> = text.parse().ok();
+pub(super) fn plain_real(text: &[u8]) -> Option<f64> {
+    let of_standard = || std::str::from_utf8(text).ok()?.parse().ok();
+    let value: Option<f64> = decimal(text).or_else(of_standard);
     value.filter(|value| value.is_finite())
+}
+
+/// The value of `[-]digits[.digits]` with few digits: without the point they are a whole number that
+/// is stored exactly, as is the power of ten that divides it, so that one division rounds once
+/// (Clinger, 1990).
+fn decimal(text: &[u8]) -> Option<f64> {
+    let number = text.strip_prefix(b"-").unwrap_or(text);
+    let (whole, rest) = digits(0, number);
+    let after = rest.strip_prefix(b".").unwrap_or(rest);
+    let (digits, rest) = digits(whole, after);
+    let count = number.len().checked_sub(1)?;
+    let divisor = POWERS_OF_TEN.get(after.len())?;
+    if !rest.is_empty() || count > MOST_DIGITS || digits > MOST_EXACT || whole_is_missing(number) {
+        return None;
+    }
+    let value = digits as f64 / divisor;
+    Some(if number.len() < text.len() {
+        -value
+    } else {
+        value
+    })
+}
+
+/// Whether a number does not begin with a digit.
+fn whole_is_missing(number: &[u8]) -> bool {
+    !number.first().is_some_and(u8::is_ascii_digit)
+}
+
+/// `value` with the digits at the start of a text added behind it, and what follows them; wrong
+/// beyond 19 digits.
+pub(super) fn digits(mut value: u64, mut text: &[u8]) -> (u64, &[u8]) {
+    while let [digit @ b'0'..=b'9', rest @ ..] = text {
+        value = value.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
+        text = rest;
+    }
+    (value, text)
 }
 
 fn mantissa(input: Input) -> IResult<Input, Input> {
@@ -153,6 +202,42 @@ mod tests {
             letterless: true,
         };
         assert_eq!(real("1.5-5"), Ok(fortran));
+    }
+
+    #[test]
+    fn decimals_are_read_as_by_the_standard_library() {
+        let mut state = 1u64;
+        for _ in 0..20_000 {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            let (digits, decimals) = (state >> (state % 60), (state >> 32) as usize % 20);
+            let text = format!("{:.decimals$}", digits as f64 * 1e-9 - 1e3);
+            let value = text.parse().ok();
+            assert_eq!(plain_real(text.as_bytes()), value, "{text}");
+            let read = decimal(text.as_bytes());
+            assert!(read.is_none() || read == value, "{text}: {read:?}");
+        }
+        for (text, value) in [
+            ("0.1", 0.1),
+            ("-0.0", 0.0),
+            ("9007199254740992", 9_007_199_254_740_992.0),
+            ("3.", 3.0),
+        ] {
+            assert_eq!(decimal(text.as_bytes()), Some(value));
+        }
+        for text in [
+            "",
+            "-",
+            ".",
+            "-.5",
+            "1e3",
+            "+1",
+            "9007199254740993",
+            "1.2.3",
+        ] {
+            assert_eq!(decimal(text.as_bytes()), None, "{text}");
+        }
     }
 
     #[test]

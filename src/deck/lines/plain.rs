@@ -8,44 +8,50 @@ use smallvec::SmallVec;
 /// Digits of a plain integer at most.
 const MOST_DIGITS: usize = 18;
 
-/// The numbers of a row that holds integers without sign only.
+/// The numbers of a row that holds integers without sign only, with nothing but blanks between them
+/// and the commas.
 pub(crate) fn integers(row: &str) -> Option<SmallVec<[u64; 5]>> {
     let mut numbers = SmallVec::new();
-    let mut rest = row;
+    let mut text = after_blanks(row.as_bytes());
     loop {
-        let (number, after) = integer(rest)?;
+        let (number, rest) = integer(text)?;
         numbers.push(number);
-        rest = after.strip_prefix(',').unwrap_or(after).trim_ascii_start();
-        if rest.is_empty() {
+        text = match after_blanks(rest) {
+            [] => return Some(numbers),
+            [b',', rest @ ..] => after_blanks(rest),
+            _ => return None,
+        };
+        if text.is_empty() {
             return Some(numbers);
-        }
-        if rest.len() == after.len() {
-            return None;
         }
     }
 }
 
 /// The integer without sign and the one to three numbers of a row; numbers that are missing are 0.
 pub(crate) fn point(row: &str) -> Option<(u64, [f64; 3])> {
-    let (label, rest) = integer(row)?;
-    let mut fields = rest.strip_prefix(',')?.split(',');
+    let (label, rest) = integer(after_blanks(row.as_bytes()))?;
+    let rest = after_blanks(rest).strip_prefix(b",")?;
+    let mut fields = rest.split(|&byte| byte == b',');
     let mut at = [0.0; 3];
     for (x, field) in at.iter_mut().zip(&mut fields) {
-        let field = field.trim_ascii();
+        let field = after_blanks(field).trim_ascii_end();
         *x = number::plain_real(field).filter(|_| field.len() <= LONGEST_NUMBER)?;
     }
     fields.next().is_none().then_some((label, at))
 }
 
-/// The integer without sign at the start of a text, and what follows it and blanks.
-fn integer(text: &str) -> Option<(u64, &str)> {
-    let text = text.trim_ascii_start();
-    let digits = text.bytes().take(MOST_DIGITS + 1);
-    let count = digits.take_while(u8::is_ascii_digit).count();
-    let (digits, rest) = text.split_at(count);
-    let value = |sum: u64, byte: u8| 10 * sum + u64::from(byte - b'0');
-    let is_plain = (1..=MOST_DIGITS).contains(&count);
-    is_plain.then(|| (digits.bytes().fold(0, value), rest.trim_ascii_start()))
+/// The integer without sign at the start of a text, and what follows it.
+fn integer(text: &[u8]) -> Option<(u64, &[u8])> {
+    let (value, rest) = number::digits(0, text);
+    let count = text.len() - rest.len();
+    (1..=MOST_DIGITS).contains(&count).then_some((value, rest))
+}
+
+fn after_blanks(mut text: &[u8]) -> &[u8] {
+    while let [b' ', rest @ ..] = text {
+        text = rest;
+    }
+    text
 }
 
 #[cfg(test)]
@@ -58,7 +64,8 @@ mod tests {
         let rows = [
             "1, 2, 3",
             "1,2,3,",
-            " 7 ,\t8 , ",
+            " 7 , 8 , ",
+            "7,\t8",
             "12",
             "1,,2",
             ",",

@@ -59,16 +59,17 @@ impl<'a> Text<'a> {
         }
     }
 
+    /// Warns of forms of numbers that other codes read differently, of each once in a deck.
     fn remark_on_form(&self, letterless: bool, d: &mut Diagnostics) {
-        if letterless {
-            let message = "an exponent without its letter E";
+        let message = "an exponent without its letter E";
+        if letterless && !d.has_said(Code::FortranNumber, message) {
             d.push_once(
                 Diagnostic::warning(Code::FortranNumber, self.span, message)
                     .label("read as a power of ten"),
             );
         }
-        if self.text.len() > LONGEST_NUMBER {
-            let message = "a number of more than 20 characters";
+        let message = "a number of more than 20 characters";
+        if self.text.len() > LONGEST_NUMBER && !d.has_said(Code::LongNumber, message) {
             d.push_once(
                 Diagnostic::note(Code::LongNumber, self.span, message)
                     .help("all of it is read here; CalculiX reads the first 20 characters only"),

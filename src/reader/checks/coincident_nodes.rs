@@ -80,8 +80,11 @@ fn coincident(mesh: &Mesh) -> Vec<[usize; 2]> {
     for q in (0..used.len()).filter(|&node| used[node]) {
         let at = mesh.coordinates[q];
         let cells = at.map(|x| grid.cells(x));
-        let is_close = |&p: &usize| distance(mesh.coordinates[p], at) <= SAME_PLACE * cell;
-        pairs.extend(grid.nodes(cells).filter(is_close).map(|p| [p, q]));
+        grid.visit(cells, |p| {
+            if distance(mesh.coordinates[p], at) <= SAME_PLACE * cell {
+                pairs.push([p, q]);
+            }
+        });
         grid.add(q, cells);
     }
     pairs.sort_unstable();
@@ -118,16 +121,18 @@ impl Grid {
         self.before[node] = std::mem::replace(&mut self.last[key], node as u32);
     }
 
-    /// Nodes in cells of these columns and rows.
-    fn nodes(&self, [columns, rows]: [[u64; 2]; 2]) -> impl Iterator<Item = usize> + '_ {
-        let several =
-            |[first, other]: [u64; 2]| [first].into_iter().chain((other != first).then_some(other));
-        let keys = move |i| several(rows).map(move |j| self.key(i, j));
-        several(columns).flat_map(keys).flat_map(move |key| {
-            let known = |node: u32| (node != Grid::NONE).then_some(node as usize);
-            let before = move |&node: &usize| known(self.before[node]);
-            std::iter::successors(known(self.last[key]), before)
-        })
+    /// Visits the nodes in cells of these columns and rows.
+    fn visit(&self, [columns, rows]: [[u64; 2]; 2], mut visit: impl FnMut(usize)) {
+        let count = |[first, other]: [u64; 2]| if first == other { 1 } else { 2 };
+        for &i in &columns[..count(columns)] {
+            for &j in &rows[..count(rows)] {
+                let mut node = self.last[self.key(i, j)];
+                while node != Grid::NONE {
+                    visit(node as usize);
+                    node = self.before[node as usize];
+                }
+            }
+        }
     }
 
     /// Numbers of the column or row of cells that holds a coordinate, and of the one beside it where

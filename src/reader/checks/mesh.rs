@@ -28,7 +28,7 @@ fn same_nodes(index: usize, mesh: &Mesh, at_nodes: &ElementsAtNodes) -> Option<u
     let nodes = &mesh.elements[index].nodes;
     let is_same = |&other: &usize| {
         let others = &mesh.elements[other].nodes;
-        others.len() == nodes.len() && others.iter().all(|node| nodes.contains(node))
+        others.len() == nodes.len() && nodes[1..].iter().all(|node| others.contains(node))
     };
     let before = at_nodes.of(nodes[0]).take_while(|&other| other < index);
     before.filter(is_same).last()
@@ -36,8 +36,10 @@ fn same_nodes(index: usize, mesh: &Mesh, at_nodes: &ElementsAtNodes) -> Option<u
 
 fn shape(index: usize, mesh_index: &MeshIndex, span: Span, cx: &mut Context) {
     let corners = mesh_index.mesh.corners(&mesh_index.mesh.elements[index]);
-    let vectors = sides(&corners).map(|[a, b]| difference(a, b));
-    let mut vectors: SmallVec<[[f64; 2]; 4]> = vectors.collect();
+    let mut vectors: SmallVec<[[f64; 2]; 4]> = SmallVec::from_slice(&corners);
+    for (vector, [a, b]) in vectors.iter_mut().zip(sides(&corners)) {
+        *vector = difference(a, b);
+    }
     let square = vectors.iter().map(|&s| dot(s, s)).fold(0.0, f64::max);
     let mut flat = FLAT * square;
     if !square.is_normal() {

@@ -70,6 +70,20 @@ impl MeshIndex {
         self.mesh.coordinates.extend(points);
     }
 
+    /// Makes room for so many nodes more.
+    pub fn reserve_nodes(&mut self, count: usize) {
+        self.nodes.reserve(count);
+        self.mesh.node_labels.reserve(count);
+        self.mesh.coordinates.reserve(count);
+    }
+
+    /// Makes room for so many elements more.
+    pub fn reserve_elements(&mut self, count: usize) {
+        self.elements.reserve(count);
+        self.mesh.elements.reserve(count);
+        self.element_spans.reserve(count);
+    }
+
     /// Takes out the nodes that are not used and numbers the others anew.
     pub fn keep_nodes(&mut self, used: &[bool]) {
         let mut count = 0;

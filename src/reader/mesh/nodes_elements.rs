@@ -14,7 +14,6 @@ use crate::reader::label::LabelMap;
 use crate::reader::names::Labelled;
 use smallvec::SmallVec;
 use std::collections::BTreeSet;
-use std::iter::Peekable;
 
 /// Reads nodes and elements; leaves out nodes of neither an element, a rigid surface nor an
 /// equation.
@@ -59,7 +58,10 @@ struct Reading {
 
 impl Reading {
     fn node_card(&mut self, card: &Card, cx: &mut Context) {
-        let mut labels = Vec::new();
+        let count = card.rows.line_count();
+        let mut labels = Vec::with_capacity(count);
+        self.mesh_index.reserve_nodes(count);
+        self.node_lines.reserve(count);
         for row in card.rows.iter() {
             match self.plain_node(row, cx).or_else(|| self.node(row, cx)) {
                 Some(label) => labels.push(label),
@@ -137,7 +139,11 @@ impl Reading {
             .and_then(|name| element_type::read(name, cx));
         let mut labels = Vec::new();
         if let Some(kind) = kind {
-            let mut rows = card.rows.iter().peekable();
+            let count = card.rows.line_count();
+            labels.reserve(count);
+            self.mesh_index.reserve_elements(count);
+            self.element_lines.reserve(count);
+            let mut rows = card.rows.iter();
             while let Some(row) = rows.next() {
                 let label = self.plain_element(row, kind).or_else(|| {
                     let fields = element_fields(row, &mut rows, kind.nodes() + 1);
@@ -164,15 +170,17 @@ impl Reading {
             nodes, elements, ..
         } = &self.mesh_index;
         let label = elements.plain_label(number, row.instance())?;
-        let index = |&node: &u64| nodes.get(nodes.plain_label(node, row.instance())?)?.index();
-        let corners: Option<Nodes> = corners.iter().map(index).collect();
-        let corners = corners.filter(|corners| corners.len() == kind.nodes())?;
-        let differs = |(i, node): (usize, &usize)| !corners[..i].contains(node);
-        if !corners.iter().enumerate().all(differs) || self.element_lines.get(label).is_some() {
+        let mut indices = Nodes::new();
+        for &node in corners {
+            let node = nodes.plain_label(node, row.instance())?;
+            let index = nodes.get(node)?.index();
+            indices.push(index.filter(|index| !indices.contains(index))?);
+        }
+        if indices.len() != kind.nodes() || self.element_lines.get(label).is_some() {
             return None;
         }
         self.element_lines.insert(label, row.line());
-        self.add_element(label, corners, kind, row.span());
+        self.add_element(label, indices, kind, row.span());
         Some(label)
     }
 
@@ -370,16 +378,17 @@ fn group(card: &Card, parameter: &str, labels: Vec<u64>, cx: &mut Context) -> Op
 /// the next row would exceed them.
 fn element_fields<'a>(
     first: Row<'a>,
-    rest: &mut Peekable<impl Iterator<Item = Row<'a>>>,
+    rest: &mut (impl Iterator<Item = Row<'a>> + Clone),
     count: usize,
 ) -> SmallVec<[Text<'a>; 5]> {
     let mut fields: SmallVec<[Text; 5]> = first.fields().collect();
     while fields.len() < count {
-        let missing = count - fields.len();
-        let Some(row) = rest.next_if(|row| row.fields().count() <= missing) else {
-            break;
-        };
-        fields.extend(row.fields());
+        let (missing, mut after) = (count - fields.len(), rest.clone());
+        match after.next() {
+            Some(row) if row.fields().count() <= missing => fields.extend(row.fields()),
+            _ => break,
+        }
+        *rest = after;
     }
     fields
 }

@@ -92,6 +92,9 @@ fn report_lines(field: Text, cx: &mut Context) {
 
 /// Plane elements, and the faces that line elements name.
 fn split(members: Vec<usize>, mesh_index: &MeshIndex) -> (Vec<usize>, Vec<Face>) {
+    if mesh_index.lines.is_empty() {
+        return (members, Vec::new());
+    }
     let count = mesh_index.mesh.elements.len();
     let (elements, lines): (Vec<_>, Vec<_>) = members.into_iter().partition(|&m| m < count);
     let faces = lines.iter().filter_map(|m| mesh_index.lines.get(m - count));
@@ -201,7 +204,10 @@ impl<'a> Family<'a> {
             let index = self.open(group.name.clone(), group.span);
             let labels = self.labels;
             let found = group.labels.iter().filter_map(|&label| labels.get(label));
-            self.extend(index, found.filter_map(Labelled::index));
+            if let Some(draft) = self.drafts.get_mut(index) {
+                draft.members.reserve(group.labels.len());
+                draft.members.extend(found.filter_map(Labelled::index));
+            }
         }
     }
 

@@ -4,7 +4,7 @@ use crate::deck::Card;
 use crate::diagnostics::{Code, Diagnostic};
 use crate::model::{Amplitude, Load, TimeBase, Variation};
 use crate::reader::context::Context;
-use smallvec::SmallVec;
+use smallvec::{SmallVec, smallvec};
 use std::collections::BTreeMap;
 
 /// How a load without amplitude reaches its magnitude, and the step it is given in.
@@ -66,11 +66,9 @@ impl<K, T> Default for LoadHistory<K, T> {
 impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
     /// All loads of the current step.
     pub fn list(&self) -> Vec<Load<T>> {
-        self.parts
-            .values()
-            .flatten()
-            .map(|part| part.load)
-            .collect()
+        let mut list = Vec::with_capacity(self.parts.len());
+        list.extend(self.parts.values().flatten().map(|part| part.load));
+        list
     }
 
     /// Removes all loads; where loads ramp they fade out over the step.
@@ -105,21 +103,27 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         } else {
             parts.retain(|part| part.step == context.step);
         }
-        let variation = match amplitude {
-            Some(index) => Variation::Amplitude(index),
-            None if context.ramp => Variation::Ramp { from },
-            None => Variation::Constant,
-        };
-        let load = Load {
-            at,
-            magnitude,
-            variation,
-        };
-        parts.push(Part {
-            load,
-            step: context.step,
-            end: 0.0,
-        });
+        let part = Part::new(at, magnitude, amplitude, context);
+        parts.push(part.rising_from(from));
+    }
+
+    /// Adds a load under each key, as [`Self::add`]; no key may appear twice.
+    pub fn add_all(
+        &mut self,
+        loads: impl Iterator<Item = (K, T)>,
+        magnitude: f64,
+        amplitude: Option<usize>,
+        context: StepContext,
+    ) {
+        if self.parts.is_empty() {
+            let part = |at| Part::new(at, magnitude, amplitude, context);
+            let parts = loads.map(|(key, at)| (key, smallvec![part(at)]));
+            self.parts = parts.collect();
+            return;
+        }
+        for (key, at) in loads {
+            self.add(key, at, magnitude, amplitude, context);
+        }
     }
 
     /// Ends a step: loads keep the magnitude they have reached, unless they follow the total time.
@@ -155,6 +159,33 @@ fn add_up<T: Copy + PartialEq>(parts: &mut SmallVec<[Part<T>; 1]>) {
 }
 
 impl<T> Part<T> {
+    /// A load that reaches its magnitude from zero where it ramps.
+    fn new(at: T, magnitude: f64, amplitude: Option<usize>, context: StepContext) -> Part<T> {
+        let variation = match amplitude {
+            Some(index) => Variation::Amplitude(index),
+            None if context.ramp => Variation::Ramp { from: 0.0 },
+            None => Variation::Constant,
+        };
+        let load = Load {
+            at,
+            magnitude,
+            variation,
+        };
+        Part {
+            load,
+            step: context.step,
+            end: 0.0,
+        }
+    }
+
+    /// The same load, from another magnitude where it ramps.
+    fn rising_from(mut self, from: f64) -> Part<T> {
+        if let Variation::Ramp { .. } = self.load.variation {
+            self.load.variation = Variation::Ramp { from };
+        }
+        self
+    }
+
     fn fade(&mut self) {
         self.load.magnitude = 0.0;
         self.load.variation = Variation::Ramp { from: self.end };

@@ -159,20 +159,16 @@ impl Loads {
             Body::Y => [0.0, 1.0],
         };
         row.at_most(if body == Body::Gravity { 6 } else { 3 }, cx.d);
-        for &element in elements {
+        let loads = elements.iter().map(|&element| {
             let at = BodyForce {
                 element,
                 direction,
                 per_mass: body == Body::Gravity,
             };
-            self.bodies.add(
-                (element, body),
-                at,
-                magnitude,
-                source.amplitude,
-                source.context,
-            );
-        }
+            ((element, body), at)
+        });
+        self.bodies
+            .add_all(loads, magnitude, source.amplitude, source.context);
         Some(())
     }
 
