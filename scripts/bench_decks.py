@@ -110,11 +110,11 @@ def block_at(left: float, size: float) -> Callable[[int, int], tuple[float, floa
     return lambda i, j: (left + i * size, (j + 1e-5) * size)
 
 
-def strip_and_blocks(blocks: int, across: int) -> Bench:
+def strip_and_blocks(blocks: int, across: int, *, is_rigid: bool = False) -> Bench:
     """A strip with a surface of 10 000 segments, on which blocks lie that close 2000 pairs in all.
 
     Each of the `blocks` is `across` segments of the strip long and 4 elements high, its nodes amid
-    the segments.
+    the segments. All nodes of a rigid strip are fixed, else those at its bottom.
     """
     segments, size = 10_000, 0.01
 
@@ -138,12 +138,13 @@ def strip_and_blocks(blocks: int, across: int) -> Bench:
                 elastic(1e4, 0.3, 1.0, "STRIP", *names),
                 dry(0.3),
                 card("CONTACT PAIR, INTERACTION=DRY", ("SOLES", "ROAD")),
-                card("BOUNDARY", ("BASE", 1, 2)),
+                card("BOUNDARY", ("STRIP" if is_rigid else "BASE", 1, 2)),
                 step(0.001, 20, card("DLOAD", *((name, *GRAVITY[1:]) for name in names))),
             ]
         )
 
-    return Bench(f"strip_{blocks}_blocks", text)
+    kind = "rigid_strip" if is_rigid else "strip"
+    return Bench(f"{kind}_{blocks}_blocks", text)
 
 
 def group(name: str, scheme: str, sizes: tuple[int, ...]) -> list[Bench]:
@@ -152,7 +153,11 @@ def group(name: str, scheme: str, sizes: tuple[int, ...]) -> list[Bench]:
         "examples": lambda: [example(deck) for deck in EXAMPLES],
         "blocks": lambda: [two_blocks(size, scheme) for size in sizes],
         "scale": lambda: [large_blocks(), large_block()],
-        "many": lambda: [strip_and_blocks(200, 9), strip_and_blocks(10, 199)],
+        "many": lambda: [
+            strip_and_blocks(200, 9, is_rigid=True),
+            strip_and_blocks(200, 9),
+            strip_and_blocks(10, 199),
+        ],
     }
     return groups[name]()
 

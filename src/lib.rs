@@ -51,6 +51,7 @@
 //! | damping force F_d | of viscosity (BETA) and in proportion to the mass (ALPHA); Cd its matrix |
 //! | K* | effective matrix theta2 K + Cd/dt + 2/dt^2 M; Q = G K*^-1 B^T its Delassus matrix |
 //! | compliance W | K*^-1 at the dofs in contact |
+//! | scope | constraints between the same bodies, or all: those whose compliance is computed together |
 //! | residual, correction | errors of a pass: out-of-balance force, last change of displacement |
 //! | acceptance | checks that a converged increment passes before it is entered in the ledger |
 //! | ledger | energies, impulses and works summed over the run, and their balance |

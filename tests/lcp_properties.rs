@@ -3,7 +3,7 @@
 mod lcp_support;
 
 use lcp_support::block::block_delassus;
-use lcp_support::problems::{drawn, duplicated, states};
+use lcp_support::problems::{drawn, duplicated, states, unique};
 use lcp_support::random::Random;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -111,18 +111,6 @@ fn problem(case: &Case, random: &mut Random) -> FrictionalLcp {
     problem.gap *= length;
     problem.slip *= length;
     problem
-}
-
-/// mu^2 lmax((Q^-1)nn) lmax(Qtt) < 4: the forces are unique (with a margin for round-off).
-fn unique(problem: &FrictionalLcp) -> bool {
-    let n = problem.len();
-    let Some(inverse) = problem.q.clone().cholesky().map(|c| c.inverse()) else {
-        return false;
-    };
-    let largest = |m: DMatrix<f64>| m.symmetric_eigenvalues().max();
-    let normal = largest(inverse.view((0, 0), (n, n)).into_owned());
-    let tangential = largest(problem.q.view((n, n), (n, n)).into_owned());
-    problem.mu.amax().powi(2) * normal * tangential < 3.9
 }
 
 fn close(a: &DVector<f64>, b: &DVector<f64>, scale: f64) -> bool {

@@ -11,7 +11,7 @@ mod tunnelling;
 
 pub use constraints::{
     ClosedPair, ClosedPairs, Compliance, Configurations, Constraint, ConstraintKey, PerDof,
-    RowForm, Rows, frictional_lcp,
+    RowForm, Rows, Scope, frictional_lcp,
 };
 pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
 pub(crate) use geometry::position;

@@ -6,16 +6,18 @@
 //! The frictional problem ([`FrictionalLcp`]): unilateral contacts with Coulomb friction, coupled
 //! by a symmetric matrix Q; solved by [`solve_frictional`] on the states open, stick, slip+ and
 //! slip-: a warm active set first, Gauss-Seidel sweeps when it cycles, Lemke when nothing else
-//! succeeds. Every answer is checked by a residual that shares nothing with the method.
+//! succeeds. Many contacts are solved by blocks ([`BlockIteration`]). Every answer is checked by a residual that shares nothing with the method.
 //!
 //! All methods work on a problem scaled by powers of two, so that the answer of a problem whose
 //! lengths or forces are multiplied by powers of two is the same to the last bit.
 
+mod blocks;
 mod exchange;
 mod pivots;
 mod problems;
 mod warm_start;
 
+pub use blocks::{BlockIteration, BlockSolution, BlockStart, LcpBlock, Progress};
 pub use exchange::{JsonAnswer, solve_json};
 pub use pivots::{LemkeSettings, covering_vector, lemke};
 pub use problems::{ContactState, Counters, FrictionalLcp, Lcp, LcpError, LcpSolution, residual};

@@ -94,6 +94,11 @@ impl CheckedSolver {
         groups(self.whole())
     }
 
+    /// The same of the matrix without the added blocks.
+    pub fn own_groups(&self) -> Vec<usize> {
+        groups(self.matrix.matrix())
+    }
+
     /// The matrix with the added blocks.
     fn whole(&self) -> CsMatView<'_, f64> {
         (self.sum.as_ref()).map_or(self.matrix.matrix(), |sum| sum.view())
@@ -173,8 +178,7 @@ impl CheckedSolver {
     /// Values that are not finite, or row sums that disagree with a solve; a matrix without
     /// factors.
     pub fn inverse_at(&mut self, unknowns: &[&[usize]]) -> Result<Vec<Vec<f64>>, LinearError> {
-        let n = self.matrix.size();
-        let mut b = vec![0.0; n];
+        let mut b = vec![0.0; self.matrix.size()];
         unknowns
             .iter()
             .flat_map(|list| *list)
@@ -182,16 +186,24 @@ impl CheckedSolver {
         let is_under_way = self.is_under_way;
         let interrupted = [&mut self.b, &mut self.terms].map(std::mem::take);
         let x = self.solve(&b)?;
-        let inverse = |list: &&[usize]| {
-            let inverse = self.solver.inverse_at(list, n);
-            check_row_sums(&inverse, list, &x).map(|()| inverse)
-        };
+        [self.b, self.terms] = interrupted;
+        self.is_under_way = is_under_way;
+        let inverses = self.unchecked_inverse_at(unknowns);
+        for (inverse, list) in inverses.iter().zip(unknowns) {
+            check_row_sums(inverse, list, &x)?;
+        }
+        Ok(inverses)
+    }
+
+    /// The inverse at the rows and columns of each list of `unknowns` (distinct), m x m column by column, of a
+    /// factorised matrix. A solve in parts may go on afterwards.
+    pub fn unchecked_inverse_at(&mut self, unknowns: &[&[usize]]) -> Vec<Vec<f64>> {
+        let n = self.matrix.size();
+        let inverse = |list: &&[usize]| self.solver.inverse_at(list, n);
         let inverses = unknowns.iter().map(inverse).collect();
-        if is_under_way {
-            [self.b, self.terms] = interrupted;
+        if self.is_under_way {
             self.solver.begin(&self.b);
         }
-        self.is_under_way = is_under_way;
         inverses
     }
 }

@@ -1,9 +1,11 @@
 //! Memory that a run needs, estimated before it from the mesh, the fill of the factors and the pairs that
 //! are near at the start.
 
-use super::PreparedModel;
+use std::collections::BTreeMap;
+
+use super::{InitialGap, PreparedModel};
 use crate::linear::factor_entries;
-use crate::model::Mesh;
+use crate::model::{Bodies, Mesh};
 
 /// Bytes of the program before it has read a model.
 const PROGRAM: usize = 20 << 20;
@@ -64,20 +66,46 @@ impl MemoryNeed {
     }
 }
 
-/// Compliance over the unknowns of the nodes of near pairs, and Q of the pairs.
-fn contact(prepared: &PreparedModel) -> u64 {
-    let gaps = prepared.initial_gaps().iter().flatten();
-    let near = gaps.filter(|gap| gap.gap.abs() <= gap.edge);
-    let mut nodes = Vec::new();
-    let mut pairs = 0;
-    for gap in near {
-        pairs += 1;
-        nodes.extend([gap.slave, gap.segment[0], gap.segment[1]]);
+/// Near pairs between the same bodies.
+#[derive(Default)]
+struct NearPairs {
+    nodes: Vec<usize>,
+    pairs: usize,
+}
+
+impl NearPairs {
+    fn add(&mut self, gap: &InitialGap) {
+        self.pairs += 1;
+        self.nodes
+            .extend([gap.slave, gap.segment[0], gap.segment[1]]);
     }
-    nodes.sort_unstable();
-    nodes.dedup();
-    let (unknowns, rows) = (2 * nodes.len(), 2 * pairs);
-    (COMPLIANCES * unknowns * unknowns * WORD + 2 * rows * rows * WORD) as u64
+
+    /// Compliance over the unknowns of the nodes, and Q of the pairs.
+    fn bytes(mut self) -> u64 {
+        self.nodes.sort_unstable();
+        self.nodes.dedup();
+        let (unknowns, rows) = (2 * self.nodes.len(), 2 * self.pairs);
+        (COMPLIANCES * unknowns * unknowns * WORD + 2 * rows * rows * WORD) as u64
+    }
+}
+
+/// What near pairs need: all of them, or, where that is much less, those between the same bodies, whose
+/// problems are then solved by blocks.
+fn contact(prepared: &PreparedModel) -> u64 {
+    let bodies = Bodies::new(&prepared.model().mesh).of_node;
+    let gaps = prepared.initial_gaps().iter().flatten();
+    let (mut all, mut blocks) = (NearPairs::default(), BTreeMap::new());
+    for gap in gaps.filter(|gap| gap.gap.abs() <= gap.edge) {
+        all.add(gap);
+        let between = [bodies[gap.slave], bodies[gap.segment[0]]];
+        let block: &mut NearPairs = blocks.entry(between).or_default();
+        block.add(gap);
+    }
+    let (all, blocks) = (
+        all.bytes(),
+        blocks.into_values().map(NearPairs::bytes).sum(),
+    );
+    if blocks <= all / 4 { blocks } else { all }
 }
 
 /// Nodes that the elements couple each node with, in increasing order, and itself.

@@ -1,8 +1,8 @@
 //! The hybrid and Lemke's method at every pass give the same motion.
 
-use stickslip::model::{LcpChoice, Settings};
+use stickslip::model::{LcpChoice, Model, Settings};
 
-use crate::blocks::run_to_end;
+use crate::blocks::{Block, Keep, add_block, add_contact, fixed, model, run_to_end, step, throw};
 use crate::invariants::oblique_impact;
 
 #[test]
@@ -15,7 +15,12 @@ fn hybrid_and_lemke_give_the_same_histories() {
     let (hybrid, counts) = run(LcpChoice::Hybrid);
     let (lemke, lemke_counts) = run(LcpChoice::Lemke);
     assert!(lemke_counts.solver.lemke_calls > counts.solver.lemke_calls);
-    for (a, b) in hybrid.reports.iter().zip(&lemke.reports) {
+    assert_same_motion(&hybrid, &lemke);
+}
+
+/// The same states of pairs, and displacements that differ by 1e-9 of the largest.
+fn assert_same_motion(run: &Keep, other: &Keep) {
+    for (a, b) in run.reports.iter().zip(&other.reports) {
         assert_eq!(
             (a.contacts[0].closed, a.contacts[0].sticking),
             (b.contacts[0].closed, b.contacts[0].sticking)
@@ -24,5 +29,51 @@ fn hybrid_and_lemke_give_the_same_histories() {
         for (u, w) in a.state.u.iter().zip(&b.state.u) {
             assert!((u - w).abs() <= 1e-9 * size, "t {}: {u} and {w}", a.time);
         }
+    }
+}
+
+/// Fourteen blocks in a row that land on a base, each with nine nodes and another velocity along it. All nodes of
+/// a rigid base are fixed, else those at its bottom.
+fn row_of_blocks(is_rigid: bool, lcp: LcpChoice) -> Model {
+    const COUNT: usize = 14;
+    let mut model = model(1e3, 0.3, 1.0);
+    let length = 1.2 * COUNT as f64;
+    let base = add_block(&mut model, [0.0, -0.3], [length, 0.3], (12 * COUNT, 3), 0.0);
+    let origin = |k: usize| [1.2 * k as f64 + 0.25, 1e-3];
+    let add = |k| add_block(&mut model, origin(k), [0.8, 0.3], (8, 3), 0.0);
+    let blocks: Vec<Block> = (0..COUNT).map(add).collect();
+    for (k, block) in blocks.iter().enumerate() {
+        let along = 0.1 * (k as f64 - 6.0);
+        throw(&mut model, block, [along, -1.0], 0.0, origin(k));
+    }
+    let soles = blocks.iter().flat_map(|block| block.faces(0)).collect();
+    add_contact(&mut model, soles, base.faces(2), 0.2);
+    let bottom = (0..=base.nx).map(|i| base.node(i, 0));
+    let held: Vec<usize> = match is_rigid {
+        true => base.nodes().collect(),
+        false => bottom.collect(),
+    };
+    let supports = held.into_iter().flat_map(|n| [2 * n, 2 * n + 1]);
+    let settings = Settings {
+        lcp,
+        ..Settings::default()
+    };
+    model.steps = vec![step(0.02, 4, settings, supports.map(fixed).collect())];
+    model
+}
+
+#[test]
+fn many_pairs_of_many_bodies_are_solved_by_blocks() {
+    for is_rigid in [true, false] {
+        let (blocks, counts) = run_to_end(&row_of_blocks(is_rigid, LcpChoice::Hybrid));
+        let (lemke, _) = run_to_end(&row_of_blocks(is_rigid, LcpChoice::Lemke));
+        let solver = counts.solver;
+        assert!(solver.lcp_size > 100, "{solver:?}");
+        assert_eq!(solver.lemke_calls, 0);
+        assert!(
+            solver.active_set_iterations >= 14 * solver.lcps / 2,
+            "the problems have blocks: {solver:?}"
+        );
+        assert_same_motion(&blocks, &lemke);
     }
 }

@@ -79,3 +79,15 @@ pub fn duplicated(problem: &FrictionalLcp) -> FrictionalLcp {
         mu: twice(&problem.mu),
     }
 }
+
+/// mu^2 lmax((Q^-1)nn) lmax(Qtt) < 4: the forces are unique (with a margin for round-off).
+pub fn unique(problem: &FrictionalLcp) -> bool {
+    let n = problem.len();
+    let Some(inverse) = problem.q.clone().cholesky().map(|c| c.inverse()) else {
+        return false;
+    };
+    let largest = |m: DMatrix<f64>| m.symmetric_eigenvalues().max();
+    let normal = largest(inverse.view((0, 0), (n, n)).into_owned());
+    let tangential = largest(problem.q.view((n, n), (n, n)).into_owned());
+    problem.mu.amax().powi(2) * normal * tangential < 3.9
+}

@@ -2,87 +2,125 @@
 //! problem it forms. Section 5 of docs/theory.md (paper eqs 36 to 47).
 
 use nalgebra::{DMatrix, DVector};
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 
-use super::compliance::{Compliance, GroupRows, Response, product};
+use super::compliance::{Compliance, GroupRows, Responses, Scope, UnknownEntry, product};
 use super::constraint::Constraint;
 use crate::lcp::FrictionalLcp;
 
 /// The complementarity problem of some constraints: Q = G W B^T, eq. (5.1), with the compliance W,
 /// derivative rows G and force rows B, and the given constant terms of gap and slip of every one.
 ///
-/// Every constraint must have been prepared in the compliance. Q is symmetric where G = B.
+/// Every constraint must have been prepared in the scope of the compliance. Q is symmetric where G = B.
 pub fn frictional_lcp(
     constraints: &[&Constraint],
-    compliance: &Compliance,
+    (compliance, scope): (&Compliance, &Scope),
     normal: Vec<f64>,
     tangential: Vec<f64>,
 ) -> FrictionalLcp {
     let n = constraints.len();
     let mu = constraints.iter().map(|constraint| constraint.mu);
     FrictionalLcp {
-        q: delassus(constraints, compliance),
+        q: delassus(constraints, compliance, scope),
         gap: DVector::from_vec(normal),
         slip: DVector::from_vec(tangential),
         mu: DVector::from_iterator(n, mu),
     }
 }
 
+/// Constraints whose responses are computed together.
+const PANEL: usize = 128;
+
 /// Q = G W B^T, eq. (5.1), all normal before all tangential rows and columns: the sum over the groups of
 /// unknowns, each of which couples the constraints that act on it.
-fn delassus(constraints: &[&Constraint], compliance: &Compliance) -> DMatrix<f64> {
+fn delassus(constraints: &[&Constraint], compliance: &Compliance, scope: &Scope) -> DMatrix<f64> {
     let n = constraints.len();
     let mut groups: Vec<GroupRows> = Vec::new();
-    groups.resize_with(compliance.groups(), GroupRows::default);
+    groups.resize_with(compliance.block_count(scope), GroupRows::default);
     for (k, constraint) in constraints.iter().enumerate() {
-        for entry in compliance.entries(constraint) {
-            groups[entry.group].push(k, entry);
+        for entry in compliance.entries(scope, constraint) {
+            groups[entry.block].push(k, entry);
         }
     }
     let mut q = DMatrix::zeros(2 * n, 2 * n);
-    Arch::new().dispatch(
-        #[inline(always)]
-        || {
-            for (group, rows) in groups.iter().enumerate() {
-                add_group(compliance, (group, rows), q.as_mut_slice());
-            }
-        },
-    );
-    mirror(constraints, &mut q);
+    let mut responses = Responses::default();
+    for (block, rows) in groups.iter().enumerate() {
+        Arch::new().dispatch(GroupSum {
+            compliance,
+            block: (scope, block),
+            rows,
+            responses: &mut responses,
+            q: q.as_mut_slice(),
+        });
+    }
+    transpose(constraints, &mut q);
     q
 }
 
-/// Adds what the unknowns of a group couple to Q, column by column.
-#[inline(always)]
-fn add_group(compliance: &Compliance, (group, rows): (usize, &GroupRows), q: &mut [f64]) {
-    let n = (q.len() / 4).isqrt();
-    let (normal, tangential) = q.split_at_mut(2 * n * n);
-    let mut response = Response::default();
-    for (l, of_l) in rows.iter() {
-        // W (B_l T)^T, then its product with the rows of all
-        let y = compliance.response(group, of_l, &mut response);
-        let column = 2 * n * l..2 * n * (l + 1);
-        let (of_normal, of_tangential) = (&mut normal[column.clone()], &mut tangential[column]);
-        for (k, of_k) in rows.iter() {
-            let [gap, slip] = product(of_k, y);
-            of_normal[k] += gap[0];
-            of_normal[k + n] += slip[0];
-            of_tangential[k] += gap[1];
-            of_tangential[k + n] += slip[1];
+/// Adds what the unknowns of a group couple to Q^T, column by column.
+struct GroupSum<'a> {
+    compliance: &'a Compliance,
+    block: (&'a Scope, usize),
+    rows: &'a GroupRows,
+    responses: &'a mut Responses,
+    q: &'a mut [f64],
+}
+
+impl WithSimd for GroupSum<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { q, responses, .. } = self;
+        let n = (q.len() / 4).isqrt();
+        let members: Vec<(usize, &[UnknownEntry])> = self.rows.iter().collect();
+        let mut sums = [Vec::new(), Vec::new()];
+        for panel in members.chunks(PANEL) {
+            // Y = W (B T)^T of the panel, then its products with the rows of all
+            let of_panel = panel.iter().map(|member| member.1);
+            (self.compliance).respond(simd, self.block, of_panel, responses);
+            for &(k, of_k) in &members {
+                product(simd, of_k, responses, &mut sums);
+                for (row, sum) in [k, n + k].into_iter().zip(&sums) {
+                    let (normal, tangential) = q[2 * n * row..2 * n * (row + 1)].split_at_mut(n);
+                    let (to_normal, to_tangential) = sum.split_at(panel.len());
+                    add(normal, panel, to_normal);
+                    add(tangential, panel, to_tangential);
+                }
+            }
         }
     }
 }
 
-/// Makes Q symmetric, which it is but for round-off, between constraints with G = B.
-fn mirror(constraints: &[&Constraint], q: &mut DMatrix<f64>) {
-    let n = constraints.len();
-    let has_one_kind: Vec<bool> = constraints
-        .iter()
-        .map(|c| c.other_derivative_rows.is_none())
-        .collect();
-    for column in (0..2 * n).filter(|j| has_one_kind[j % n]) {
-        for row in (column + 1..2 * n).filter(|i| has_one_kind[i % n]) {
-            q[(column, row)] = q[(row, column)];
+/// Adds values for the constraints of a panel to those of all.
+#[inline(always)]
+fn add(all: &mut [f64], panel: &[(usize, &[UnknownEntry])], values: &[f64]) {
+    match panel {
+        [(first, _), .., (last, _)] if last - first + 1 == panel.len() => {
+            let all = &mut all[*first..=*last];
+            all.iter_mut().zip(values).for_each(|(sum, v)| *sum += v);
+        }
+        _ => panel
+            .iter()
+            .zip(values)
+            .for_each(|((l, _), v)| all[*l] += v),
+    }
+}
+
+/// Q from Q^T; symmetric, as it is but for round-off, between constraints with G = B.
+fn transpose(constraints: &[&Constraint], q: &mut DMatrix<f64>) {
+    let size = q.nrows();
+    let one_kind = (constraints.iter()).map(|c| c.other_derivative_rows.is_none());
+    let one_kind: Vec<bool> = one_kind.clone().chain(one_kind).collect();
+    for k in 1..size {
+        let (before, column) = q.as_mut_slice().split_at_mut(k * size);
+        let rows = before.chunks_exact_mut(size).map(|column| &mut column[k]);
+        for ((above, below), other) in column.iter_mut().zip(rows).zip(&one_kind) {
+            let entry = *above;
+            if !(one_kind[k] && *other) {
+                *above = *below;
+            }
+            *below = entry;
         }
     }
 }

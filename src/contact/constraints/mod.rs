@@ -12,7 +12,7 @@ mod node_to_segment;
 mod stiffness;
 
 pub use closed_pairs::{ClosedPair, ClosedPairs};
-pub use compliance::Compliance;
+pub use compliance::{Compliance, Scope};
 pub use configurations::{Configurations, RowForm};
 pub use constraint::{Constraint, ConstraintKey, PerDof, Rows};
 pub use delassus::frictional_lcp;

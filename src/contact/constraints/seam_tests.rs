@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Compliance, Constraint, ConstraintKey, PerDof, Rows, frictional_lcp};
+use super::{Compliance, Constraint, ConstraintKey, PerDof, Rows, Scope, frictional_lcp};
 use crate::contact::targets::{ContactTarget, PairTarget};
 use crate::linear::{Assembled, CheckedSolver, Transformation, linear_solver};
 use crate::model::{Friction, SolverChoice};
@@ -76,9 +76,14 @@ fn delassus_entries_are_derivative_rows_times_compliance_times_force_rows() {
     let map = Transformation::identity(DOFS);
     let mut compliance = Compliance::new(map, vec![0; DOFS]);
     compliance
-        .prepare(&constraints, &mut solver)
+        .prepare(&Scope::All, &constraints, &mut solver)
         .expect("solved");
-    let problem = frictional_lcp(&constraints, &compliance, vec![0.0; 2], vec![0.0; 2]);
+    let problem = frictional_lcp(
+        &constraints,
+        (&compliance, &Scope::All),
+        vec![0.0; 2],
+        vec![0.0; 2],
+    );
 
     // all rows over all dofs, normal before tangential
     let stacked = |rows: fn(&Constraint) -> &Rows| {

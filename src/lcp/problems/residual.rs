@@ -57,20 +57,26 @@ pub(crate) fn frictional_residual(problem: &FrictionalLcp, pn: &[f64], pt: &[f64
     } else {
         1.0
     };
+    let contact = |i: usize| {
+        let motion = [motion[i] + problem.gap[i], motion[n + i] + problem.slip[i]];
+        (motion, [pn[i], pt[i]], problem.mu[i])
+    };
+    law_residual((0..n).map(contact), compliance, length)
+}
+
+/// Residual of the contact law, eq. (3.6), given gap and slip, Pn and Pt, and mu of every contact, in units of
+/// `length` and that over `compliance`.
+pub(crate) fn law_residual(
+    contacts: impl Iterator<Item = ([f64; 2], [f64; 2], f64)>,
+    compliance: f64,
+    length: f64,
+) -> f64 {
     let mut error = 0.0_f64;
-    for i in 0..n {
-        let gap = motion[i] + problem.gap[i];
-        let slip = motion[n + i] + problem.slip[i];
-        let limit = problem.mu[i] * pn[i];
-        error = worse(error, smaller(compliance * pn[i], gap));
-        error = worse(
-            error,
-            smaller(compliance * 0.5 * (limit + pt[i]), part(slip)),
-        );
-        error = worse(
-            error,
-            smaller(compliance * 0.5 * (limit - pt[i]), part(-slip)),
-        );
+    for ([gap, slip], [pn, pt], mu) in contacts {
+        let limit = mu * pn;
+        error = worse(error, smaller(compliance * pn, gap));
+        error = worse(error, smaller(compliance * 0.5 * (limit + pt), part(slip)));
+        error = worse(error, smaller(compliance * 0.5 * (limit - pt), part(-slip)));
     }
     relative(error, length)
 }

@@ -7,7 +7,11 @@ use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::prelude::{Reborrow, ReborrowMut};
 use faer::sparse::linalg::cholesky::supernodal::SupernodalLdltRef;
-use faer::{Accum, Mat, Par};
+use faer::{Accum, Mat, MatRef, Par};
+
+/// A column of L^-1 E whose entries above are all smaller than this ends there: what it would add to the
+/// inverse is below round-off, see section 5 of docs/theory.md. The unit vectors have no dimension.
+const NEGLIGIBLE: f64 = 1e-25;
 
 /// Contributions of the supernodes below to one above: unfinished rows of L^-1 E.
 struct Front {
@@ -28,7 +32,7 @@ struct Front {
 /// ```
 ///
 /// Column j of Y is nonzero only on the path from its position to the root of the elimination tree,
-/// so that the supernodes off these paths are never visited.
+/// so that the supernodes off these paths are never visited, nor those where it has died away.
 pub(super) fn inverse_at(
     factor: SupernodalLdltRef<'_, usize, f64>,
     positions: &[usize],
@@ -90,19 +94,29 @@ pub(super) fn inverse_at(
         }
 
         if let Some(&first) = node.pattern().first() {
-            let values = below.to_owned();
-            let front = Front {
-                columns,
-                rows: node.pattern().to_vec(),
-                values,
-            };
-            waiting.entry(supernode_of(first)).or_default().push(front);
+            let front = without_negligible(columns, node.pattern(), below.rb());
+            if !front.columns.is_empty() {
+                waiting.entry(supernode_of(first)).or_default().push(front);
+            }
         }
     }
     (0..m)
         .flat_map(|j| (0..m).map(move |i| (i, j)))
         .map(|(i, j)| inverse[(i, j)])
         .collect()
+}
+
+/// The front of the columns that are not negligible.
+fn without_negligible(columns: Vec<usize>, rows: &[usize], values: MatRef<f64>) -> Front {
+    let is_negligible = |value: f64| value.abs() <= NEGLIGIBLE;
+    let matters = |j: &usize| !(0..rows.len()).all(|i| is_negligible(values[(i, *j)]));
+    let kept: Vec<usize> = (0..columns.len()).filter(matters).collect();
+    let of_kept = |i: usize, j: usize| values[(i, kept[j])];
+    Front {
+        values: Mat::from_fn(rows.len(), kept.len(), of_kept),
+        columns: kept.iter().map(|&j| columns[j]).collect(),
+        rows: rows.to_vec(),
+    }
 }
 
 /// Adds up fronts on the given rows.

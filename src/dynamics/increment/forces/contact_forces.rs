@@ -1,6 +1,7 @@
 //! Contact forces of a pass, the solution of a frictional complementarity problem of the
 //! constraints of the iterate. Section 5 of docs/theory.md (paper eqs 36 to 47).
 
+use super::by_bodies::Chosen;
 use super::contact_system::{ContactSystem, Guess};
 use super::response::Response;
 use crate::contact::tolerances::SETTLED_OVERLAP;
@@ -95,15 +96,25 @@ impl ContactForces {
         let free = response.gaps_and_slips(system, &self.constraints);
         let mut entered = inside.contains(&true) || self.enter(&mut inside, &free, overlap);
         while entered {
-            let chosen = self.constraints.iter().zip(&free).zip(&inside);
-            let chosen = chosen.filter(|(_, inside)| **inside).map(|(c, _)| c);
-            let (chosen, terms): (Vec<&Constraint>, Vec<[f64; 2]>) = chosen.unzip();
-            let terms = [0, 1].map(|i| terms.iter().map(|term| term[i]).collect());
-            let guess = Guess::from_pass(&chosen, &before, weight);
-            let solution = system.solve(&chosen, terms, &guess)?;
-            (self.closed, self.problem_size) = (solution.closed, chosen.len());
+            let chosen = Chosen {
+                all: &self.constraints,
+                places: (0..inside.len()).filter(|&k| inside[k]).collect(),
+            };
+            let guess = Guess::from_pass(&chosen.constraints(), &before, weight);
+            let by_bodies = system.solve_by_bodies(&mut response, &chosen, &free, &guess)?;
+            let solution = match by_bodies {
+                Some(solution) => solution,
+                None => {
+                    let terms = |i: usize| chosen.places.iter().map(|&k| free[k][i]).collect();
+                    system.solve(&chosen.constraints(), [terms(0), terms(1)], &guess)?
+                }
+            };
+            (self.closed, self.problem_size) = (solution.closed, chosen.places.len());
             self.pivots += solution.pivots;
-            response.set_forces(system, self.acting());
+            let acting = self
+                .acting()
+                .map(|(constraint, pair)| (constraint, pair.force));
+            response.set_forces(system, acting);
             let after = response.gaps_and_slips(system, &self.constraints);
             entered = self.enter(&mut inside, &after, overlap);
         }

@@ -2,7 +2,7 @@
 //! contact forces of a pass, M for the impulses. Sections 5 and 6 of docs/theory.md.
 
 use super::equal_forces::FIRST_WEIGHT;
-use crate::contact::{ClosedPair, ClosedPairs, Constraint};
+use crate::contact::{ClosedPair, ClosedPairs, Constraint, Scope};
 use crate::dynamics::results::{Cause, FailedLcp};
 use crate::dynamics::step::{System, sum};
 use crate::lcp::{ContactState, FrictionalLcp, FrictionalSolution, LcpMethod};
@@ -109,13 +109,13 @@ impl ContactSystem<'_> {
         [gaps, slips]: [Vec<f64>; 2],
         guess: &Guess,
     ) -> Result<ContactSolution, Cause> {
-        let mut problem = self.system.frictional_lcp(constraints, gaps, slips)?;
+        let mut problem = (self.system).frictional_lcp(&Scope::All, constraints, gaps, slips)?;
         if let (Some(forces), Some(weight)) = (&guess.forces, guess.weight) {
             add_proximal_term(&mut problem, forces, weight);
         }
         match self.system.solve_lcp(&problem, &guess.states, self.method) {
             Ok(solution) => Ok(ContactSolution {
-                closed: closed_of(constraints, &solution),
+                closed: closed_of(constraints, &forces_of(&solution), &solution.state),
                 pivots: solution.counters.pivots,
             }),
             Err(error) => {
@@ -132,13 +132,23 @@ impl ContactSystem<'_> {
     }
 }
 
+/// Pn and Pt of every constraint.
+fn forces_of(solution: &FrictionalSolution) -> Vec<[f64; 2]> {
+    let forces = solution.pn.iter().zip(&solution.pt);
+    forces.map(|(&pn, &pt)| [pn, pt]).collect()
+}
+
 /// The constraints that carry a force.
-fn closed_of(constraints: &[&Constraint], solution: &FrictionalSolution) -> ClosedPairs {
-    let pair = |(k, constraint): (usize, &&Constraint)| {
-        let force = [solution.pn[k], solution.pt[k]];
-        (force[0] > 0.0).then(|| ClosedPair::new(constraint, force, solution.state[k]))
-    };
-    constraints.iter().enumerate().filter_map(pair).collect()
+pub(super) fn closed_of(
+    constraints: &[&Constraint],
+    forces: &[[f64; 2]],
+    states: &[ContactState],
+) -> ClosedPairs {
+    let of_constraint = constraints.iter().zip(forces).zip(states);
+    of_constraint
+        .filter(|((_, force), _)| force[0] > 0.0)
+        .map(|((constraint, force), state)| ClosedPair::new(constraint, *force, *state))
+        .collect()
 }
 
 /// Equal-force rule, eq. (5.3): adds eps Q_kk (P_k - P_k^0) to gaps and slips, P^0 being the forces of

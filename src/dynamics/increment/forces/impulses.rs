@@ -1,8 +1,10 @@
 //! Velocity jump at the start of an increment: the set of pairs that take impact impulses,
 //! iterated along with the passes. Section 6 of docs/theory.md (paper eq. 30).
 
+use super::by_bodies::{Chosen, is_large};
 use super::contact_forces::ContactForces;
-use super::contact_system::{ContactSystem, Guess};
+use super::contact_system::{ContactSolution, ContactSystem, Guess};
+use super::response::Response;
 use crate::contact::{ClosedPairs, Constraint, ConstraintKey};
 use crate::dynamics::increment::ConstraintSet;
 use crate::dynamics::results::{Cause, State};
@@ -177,6 +179,34 @@ fn mass_system<'a>(problem: &'a StepProblem, workspace: &'a mut Workspace) -> Co
     }
 }
 
+/// Impulses of many constraints by blocks, if that is how they are solved, from what is given of gaps and slips
+/// without impulses: the constraints take these as their own, so that the round-off of V0 stays out of
+/// what impulses add.
+fn by_bodies(
+    constraints: &[Constraint],
+    given: [&[f64]; 2],
+    dofs: usize,
+    (guess, system): (&Guess, &mut ContactSystem),
+) -> Result<Option<ContactSolution>, Cause> {
+    if !is_large(constraints.len()) {
+        return Ok(None);
+    }
+    let posed = |(k, constraint): (usize, &Constraint)| Constraint {
+        gap: given[0][k],
+        slip: given[1][k],
+        ..constraint.clone()
+    };
+    let posed: Vec<Constraint> = constraints.iter().enumerate().map(posed).collect();
+    let chosen = Chosen {
+        all: &posed,
+        places: (0..posed.len()).collect(),
+    };
+    let nothing = vec![0.0; dofs];
+    let mut response = Response::begin(system, [&nothing, &nothing], &posed)?;
+    let free = response.gaps_and_slips(system, &posed);
+    system.solve_by_bodies(&mut response, &chosen, &free, guess)
+}
+
 /// Impact impulses Phi, Psi of constraints at the start of an increment, for the velocity after them
 /// V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1) (paper eq. 30), posed as eq. (6.2):
 ///
@@ -199,7 +229,7 @@ fn impulses(
     if approaches.iter().all(|&approach| approach >= 0.0) {
         return Ok(ContactForces::default());
     }
-    let slides = constraints.iter().map(|c| c.slip_change(v0)).collect();
+    let slides: Vec<f64> = constraints.iter().map(|c| c.slip_change(v0)).collect();
     let guess = Guess {
         states,
         forces: None,
@@ -208,8 +238,14 @@ fn impulses(
     if !system.system.is_factorized() {
         system.system.factorize()?;
     }
-    let all: Vec<&Constraint> = constraints.iter().collect();
-    let solution = system.solve(&all, [approaches, slides], &guess)?;
+    let given = [approaches.as_slice(), &slides];
+    let solution = match by_bodies(&constraints, given, v0.len(), (&guess, &mut system))? {
+        Some(solution) => solution,
+        None => {
+            let all: Vec<&Constraint> = constraints.iter().collect();
+            system.solve(&all, [approaches, slides], &guess)?
+        }
+    };
     Ok(ContactForces {
         problem_size: constraints.len(),
         closed: solution.closed,

@@ -1,5 +1,6 @@
 //! Contact forces of the passes, impulses, and their complementarity problems.
 
+mod by_bodies;
 mod contact_forces;
 mod contact_system;
 mod equal_forces;

@@ -2,7 +2,7 @@
 //! end, and contact forces join its right-hand side. Section 5 of docs/theory.md, One solve.
 
 use super::contact_system::ContactSystem;
-use crate::contact::{ClosedPair, Constraint};
+use crate::contact::Constraint;
 use crate::linear::LinearError;
 
 /// u + W (f + B^T P) of some constraints, W being the inverse of the system matrix: at the nodes of the
@@ -81,17 +81,17 @@ impl<'a> Response<'a> {
         constraints.iter().map(after).collect()
     }
 
-    /// Takes the forces of the given closed constraints into the right-hand side, in place of those
-    /// before.
+    /// Takes forces of the given constraints into the right-hand side, in place of those
+    /// before; gaps and slips without them must have been asked for.
     pub fn set_forces<'c>(
         &mut self,
         system: &mut ContactSystem,
-        acting: impl Iterator<Item = (&'c Constraint, &'c ClosedPair)>,
+        acting: impl Iterator<Item = (&'c Constraint, [f64; 2])>,
     ) {
         self.forces.iter_mut().for_each(|force| force.1 = -force.1);
         let before = self.forces.len();
-        for (constraint, pair) in acting {
-            for (node, mut force) in constraint.nodal_forces(pair.force) {
+        for (constraint, force) in acting {
+            for (node, mut force) in constraint.nodal_forces(force) {
                 system.system.rotation().turn_node_back(node, &mut force);
                 for (dof, force) in [2 * node, 2 * node + 1].into_iter().zip(force) {
                     let terms = system.map.row(dof).iter();

@@ -83,7 +83,9 @@ fn centres(problem: &StepProblem, mass: &[f64]) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Constraint, ConstraintKey, ContactTarget, PairTarget, PerDof, Rows};
+    use crate::contact::{
+        Constraint, ConstraintKey, ContactTarget, PairTarget, PerDof, Rows, Scope,
+    };
     use crate::dynamics::step::{ClosedConstraints, Discretization, Workspace};
     use crate::materials::{Law, SaintVenantKirchhoff};
     use crate::model::{
@@ -213,7 +215,7 @@ mod tests {
             all.extend(response.expect("solved"));
         }
         let constraint = constraint();
-        let lcp = (workspace.k()).frictional_lcp(&[&constraint], vec![0.0], vec![0.0]);
+        let lcp = (workspace.k()).frictional_lcp(&Scope::All, &[&constraint], vec![0.0], vec![0.0]);
         all.extend(lcp.expect("prepared").q.iter());
         all
     }

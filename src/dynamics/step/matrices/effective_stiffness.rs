@@ -1,9 +1,11 @@
 //! System matrices of a step with their factors and compliances at the contacts: the effective
 //! stiffness K* of the passes and the mass of the impulses. Sections 4 and 6 of docs/theory.md.
 
+use std::collections::BTreeMap;
+
 use nalgebra::DMatrix;
 
-use crate::contact::{ClosedPair, Compliance, Configurations, Constraint};
+use crate::contact::{ClosedPair, Compliance, Configurations, Constraint, Scope};
 use crate::dynamics::step::bodies::BodyAngles;
 use crate::dynamics::step::mass::unknown_mass;
 use crate::dynamics::step::step_problem::StepProblem;
@@ -18,19 +20,19 @@ use crate::model::SolverChoice;
 pub(crate) struct FactoredMatrix {
     pub solver: CheckedSolver,
     pub compliance: Compliance,
-    /// Factors of the last complementarity problem.
-    pub kept: KeptFactors,
+    /// Factors of the last complementarity problems.
+    pub kept: BTreeMap<Scope, KeptFactors>,
 }
 
 impl FactoredMatrix {
     /// A matrix over the unknowns of a map, without factors.
     pub fn new(choice: SolverChoice, matrix: Assembled, map: &Transformation) -> Self {
         let solver = CheckedSolver::new(linear_solver(choice), matrix);
-        let compliance = Compliance::new(map.clone(), solver.groups());
+        let compliance = Compliance::new(map.clone(), solver.own_groups());
         FactoredMatrix {
             solver,
             compliance,
-            kept: KeptFactors::default(),
+            kept: BTreeMap::new(),
         }
     }
 
@@ -41,8 +43,15 @@ impl FactoredMatrix {
     }
 
     /// Solves for the columns of the compliance that `constraints` need.
-    pub fn prepare(&mut self, constraints: &[&Constraint]) -> Result<(), LinearError> {
-        self.compliance.prepare(constraints, &mut self.solver)
+    pub fn prepare(
+        &mut self,
+        scope: &Scope,
+        constraints: &[&Constraint],
+    ) -> Result<(), LinearError> {
+        let Self {
+            solver, compliance, ..
+        } = self;
+        compliance.prepare(scope, constraints, solver)
     }
 }
 

@@ -2,10 +2,11 @@
 //! complementarity problems. Sections 4 and 5 of docs/theory.md.
 
 use super::effective_stiffness::FactoredMatrix;
-use crate::contact::{Compliance, Constraint, frictional_lcp};
+use crate::contact::{Compliance, Constraint, Scope, frictional_lcp};
 use crate::dynamics::step::meter::Meter;
 use crate::lcp::{
-    ContactState, FrictionalLcp, FrictionalSolution, LcpError, LcpMethod, solve_similar,
+    BlockIteration, ContactState, Counters, FrictionalLcp, FrictionalSolution, KeptFactors,
+    LcpError, LcpMethod, solve_similar,
 };
 use crate::linear::{LinearError, Rotation, Transformation};
 
@@ -95,17 +96,23 @@ impl<'a> System<'a> {
         self.matrix.compliance.rotation()
     }
 
-    /// The complementarity problem of some constraints with the given gaps and slips without forces.
+    /// The bodies that a constraint acts on.
+    pub fn scope_of(&self, constraint: &Constraint) -> Scope {
+        self.matrix.compliance.scope_of(constraint)
+    }
+
+    /// The complementarity problem of constraints of a scope with the given gaps and slips without forces.
     pub fn frictional_lcp(
         &mut self,
+        scope: &Scope,
         constraints: &[&Constraint],
         gap: Vec<f64>,
         slip: Vec<f64>,
     ) -> Result<FrictionalLcp, LinearError> {
         let Self { matrix, meter } = self;
-        meter.time(|t| &mut t.solve, || matrix.prepare(constraints))?;
+        meter.time(|t| &mut t.solve, || matrix.prepare(scope, constraints))?;
         let compliance: &Compliance = &matrix.compliance;
-        let pose = || frictional_lcp(constraints, compliance, gap, slip);
+        let pose = || frictional_lcp(constraints, (compliance, scope), gap, slip);
         Ok(meter.time(|t| &mut t.contact, pose))
     }
 
@@ -117,9 +124,34 @@ impl<'a> System<'a> {
         method: LcpMethod,
     ) -> Result<FrictionalSolution, LcpError> {
         let Self { matrix, meter } = self;
-        let solve = || solve_similar(problem, Some(warm), method, &mut matrix.kept);
+        let kept = matrix.kept.entry(Scope::All).or_default();
+        let solve = || solve_similar(problem, Some(warm), method, kept);
         let solution = meter.time(|t| &mut t.lcp, solve)?;
         self.meter.count_lcp(warm.len(), solution.counters);
         Ok(solution)
+    }
+
+    /// Solves the blocks of an iteration: the forces of all its contacts.
+    pub fn solve_blocks(
+        &mut self,
+        iteration: &mut BlockIteration,
+    ) -> Result<Vec<[f64; 2]>, LcpError> {
+        let solve = || iteration.forces().map(<[_]>::to_vec);
+        self.meter.time(|t| &mut t.lcp, solve)
+    }
+
+    /// Counts a complementarity problem that was solved by blocks.
+    pub fn count_lcp(&mut self, size: usize, work: Counters) {
+        self.meter.count_lcp(size, work);
+    }
+
+    /// Takes the factors of the last complementarity problem of a scope.
+    pub fn take_kept(&mut self, scope: &Scope) -> KeptFactors {
+        self.matrix.kept.remove(scope).unwrap_or_default()
+    }
+
+    /// Keeps the factors of the last complementarity problem of a scope.
+    pub fn keep(&mut self, scope: Scope, kept: KeptFactors) {
+        self.matrix.kept.insert(scope, kept);
     }
 }
