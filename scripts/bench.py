@@ -15,6 +15,7 @@ from pathlib import Path
 from statistics import median
 
 import bench_ccx
+import bench_reader
 import numpy as np
 from bench_decks import GROUPS, SIZES, Bench, group
 from bench_runs import PHASES, CcxRun, Measured, bandwidth, measure, run_ccx
@@ -157,7 +158,7 @@ def parse() -> argparse.Namespace:
     add("program", type=Path, nargs="?", metavar="PROGRAM", help="instead of the release build")
     add("--against", type=Path, metavar="OTHER", help="program to compare with in the same run")
     help_ = "which decks (default examples blocks)"
-    add("--groups", nargs="+", choices=GROUPS, default=["examples", "blocks"], help=help_)
+    add("--groups", nargs="+", choices=(*GROUPS, "read"), default=["examples", "blocks"], help=help_)
     help_ = f"elements along the two blocks (default {' '.join(map(str, SIZES))})"
     add("--sizes", type=positive_integer, nargs="+", default=SIZES, metavar="N", help=help_)
     help_ = "scheme of the two blocks (default the energy-momentum scheme)"
@@ -171,18 +172,29 @@ def parse() -> argparse.Namespace:
     return parser.parse_args()
 
 
+def run_tables(arguments: argparse.Namespace, name: str) -> str:
+    """Measures the decks of a group."""
+    rows = []
+    for bench in group(name, arguments.scheme, tuple(arguments.sizes)):
+        with tempfile.TemporaryDirectory(prefix="bench_") as folder:
+            rows.append(run_all(arguments, bench, Path(folder)))
+        print("  ".join(cell for cell in rows[-1].cells() if cell), flush=True)
+    return tables(rows)
+
+
+def reader_table(arguments: argparse.Namespace) -> str:
+    """Measures the reading of decks."""
+    table = bench_reader.table(arguments.program, arguments.repeat, arguments.instructions)
+    return f"{machine()}.\n\n{table}"
+
+
 def main() -> int:
     """Measures, prints a line for each deck and the tables."""
     arguments = parse()
     arguments.program = check_program(arguments.program or binary())
     arguments.against = check_program(arguments.against) if arguments.against else None
     for name in arguments.groups:
-        rows = []
-        for bench in group(name, arguments.scheme, tuple(arguments.sizes)):
-            with tempfile.TemporaryDirectory(prefix="bench_") as folder:
-                rows.append(run_all(arguments, bench, Path(folder)))
-            print("  ".join(cell for cell in rows[-1].cells() if cell), flush=True)
-        text = tables(rows)
+        text = reader_table(arguments) if name == "read" else run_tables(arguments, name)
         print(f"\n{text}")
         if arguments.write:
             write_page(name, text)

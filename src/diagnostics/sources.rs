@@ -4,8 +4,8 @@ use super::{FileId, Span};
 use memchr::memchr_iter;
 use std::sync::{Arc, OnceLock};
 
-/// Lines between those whose place is kept.
-const STRIDE: usize = 256;
+/// Bytes of a piece of a text whose lines are counted together.
+const PIECE: usize = 1 << 12;
 
 /// One file of a deck.
 #[derive(Debug, Clone)]
@@ -13,8 +13,8 @@ pub struct Source {
     name: String,
     text: Arc<String>,
     included_at: Option<Span>,
-    /// Bytes at which every [`STRIDE`]th line starts, found for the first message.
-    line_starts: OnceLock<Vec<usize>>,
+    /// Number of lines that end before every piece of the text, counted for the first message.
+    ends_before: OnceLock<Vec<usize>>,
 }
 
 impl Source {
@@ -45,20 +45,37 @@ impl Source {
         ends + usize::from(is_open)
     }
 
-    fn line_starts(&self) -> &[usize] {
-        self.line_starts.get_or_init(|| {
-            let ends = memchr_iter(b'\n', self.text.as_bytes());
-            let starts = ends.skip(STRIDE - 1).step_by(STRIDE).map(|at| at + 1);
-            std::iter::once(0).chain(starts).collect()
+    fn ends_before(&self) -> &[usize] {
+        self.ends_before.get_or_init(|| {
+            let pieces = self.text.as_bytes().chunks(PIECE);
+            let counts = pieces.map(|piece| memchr_iter(b'\n', piece).count());
+            let mut ends = 0;
+            let before = counts.map(|count| {
+                ends += count;
+                ends - count
+            });
+            before.collect()
         })
+    }
+
+    /// Byte at which a line starts that has `before` lines before it.
+    fn start(&self, before: usize) -> Option<usize> {
+        if before == 0 {
+            return Some(0);
+        }
+        // the piece in which the line before it ends
+        let ends = self.ends_before();
+        let piece = ends.partition_point(|&ends| ends < before).checked_sub(1)?;
+        let text = self.text.as_bytes().get(piece * PIECE..)?;
+        let end = memchr_iter(b'\n', text).nth(before - 1 - ends.get(piece)?)?;
+        Some(piece * PIECE + end + 1)
     }
 
     /// Line `number`, from 1, without its end.
     pub fn line(&self, number: u32) -> Option<&str> {
-        let index = (number as usize).checked_sub(1)?;
-        let start = *self.line_starts().get(index / STRIDE)?;
-        let lines = self.text.get(start..).filter(|text| !text.is_empty())?;
-        let line = lines.split_terminator('\n').nth(index % STRIDE)?;
+        let start = self.start((number as usize).checked_sub(1)?)?;
+        let rest = self.text.get(start..).filter(|rest| !rest.is_empty())?;
+        let line = rest.split('\n').next()?;
         Some(line.strip_suffix('\r').unwrap_or(line))
     }
 }
@@ -93,7 +110,7 @@ impl Sources {
             name: name.to_string(),
             text: Arc::new(text),
             included_at,
-            line_starts: OnceLock::new(),
+            ends_before: OnceLock::new(),
         });
         id
     }
@@ -150,5 +167,25 @@ impl Sources {
     pub fn include_chain(&self, span: Span) -> Vec<Span> {
         let parent = |span: &Span| self.get(span.file).and_then(Source::included_at);
         std::iter::successors(parent(&span), parent).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_those_of_the_text() {
+        let lines: Vec<String> = (0..3000).map(|i| "x".repeat(i % 7)).collect();
+        for end in ["\n", "\r\n"] {
+            let mut sources = Sources::new();
+            let file = sources.add("deck.inp", lines.join(end) + end, None);
+            let source = sources.get(file).expect("a file");
+            for (line, number) in lines.iter().zip(1..) {
+                assert_eq!(source.line(number), Some(line.as_str()));
+            }
+            assert_eq!((source.line(0), source.line(3001)), (None, None));
+            assert_eq!(source.line_count(), lines.len());
+        }
     }
 }

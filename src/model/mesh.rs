@@ -49,18 +49,16 @@ impl Mesh {
     /// Length of the shortest side of an element.
     pub fn shortest_side(&self, element: &Element) -> f64 {
         let corners = self.corners(element);
-        let shortest = |of: fn([f64; 2], [f64; 2]) -> f64| {
-            let sides = sides(&corners).map(|[a, b]| of(a, b));
-            sides.fold(f64::INFINITY, f64::min)
-        };
-        let square = |a, b| {
+        let squares = sides(&corners).map(|[a, b]| {
             let side = difference(a, b);
             dot(side, side)
-        };
-        match shortest(square) {
-            square if square.is_normal() => square.sqrt(),
-            _ => shortest(distance),
+        });
+        let square = squares.fold(f64::INFINITY, f64::min);
+        if square.is_normal() {
+            return square.sqrt();
         }
+        let lengths = sides(&corners).map(|[a, b]| distance(a, b));
+        lengths.fold(f64::INFINITY, f64::min)
     }
 
     /// Reference coordinates of the nodes of an element (length).

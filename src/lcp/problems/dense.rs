@@ -47,6 +47,17 @@ pub(crate) fn add_sizes(a: f64, x: &[f64], y: &mut [f64]) {
     }
 }
 
+/// Appends v_i (w_i c) to `out`.
+pub(crate) fn extend_scaled(out: &mut Vec<f64>, v: &[f64], w: &[f64], c: f64) {
+    let start = out.len();
+    out.extend_from_slice(v);
+    let scaled = &mut out[start..];
+    Arch::new().dispatch(
+        #[inline(always)]
+        || scaled.iter_mut().zip(w).for_each(|(v, w)| *v *= w * c),
+    );
+}
+
 /// Largest absolute value, 0 for an empty slice.
 pub(crate) fn max_abs(values: &[f64]) -> f64 {
     values

@@ -3,7 +3,7 @@
 
 use nalgebra::DMatrix;
 
-use super::dense::axpy;
+use super::dense::{axpy, extend_scaled};
 use super::frictional::FrictionalLcp;
 use super::general::{LcpError, expect_finite};
 use super::scaling::power_of_two;
@@ -50,10 +50,16 @@ impl Scaled {
         let inverses: Vec<f64> = weights.iter().map(|w| 1.0 / w).collect();
         let gather = |column: &[f64], unit: f64, out: &mut Vec<f64>| {
             let factor = 1.0 / unit;
-            let normal = column[..n].iter().zip(&inverses);
-            out.extend(normal.map(|(v, w)| v * (w * factor)));
-            let tangential = owners.iter().map(|i| (column[n + i], inverses[*i]));
-            out.extend(tangential.map(|(v, w)| v * (w * factor)));
+            let (normal, tangential) = column.split_at(n);
+            extend_scaled(out, normal, &inverses, factor);
+            match owners.len() == n {
+                true => extend_scaled(out, tangential, &inverses, factor),
+                false => out.extend(
+                    owners
+                        .iter()
+                        .map(|&i| tangential[i] * (inverses[i] * factor)),
+                ),
+            }
         };
         let size = n + owners.len();
         let mut q = Vec::with_capacity(size * size);
