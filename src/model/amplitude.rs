@@ -159,7 +159,7 @@ impl Signal {
                     let (sin, cos) = (w * t).sin_cos();
                     [a * cos + b * sin, w * (b * cos - a * sin)]
                 });
-                terms.fold([0.0; 2], |sum, term| [sum[0] + term[0], sum[1] + term[1]])
+                terms.fold([0.0; 2], added)
             }
             Signal::Decay { size, time } => {
                 let value = size * (-t / time).exp();

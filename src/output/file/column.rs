@@ -130,8 +130,7 @@ impl<T: Value> Column<T> {
         row: &[usize],
         meaning: Meaning,
     ) -> hdf5::Result<Self> {
-        let shape = (Row::whole(row), Self::series_rows(row));
-        Self::create(parent, name, shape, Mostly::Varied, meaning)
+        Self::row_by_row(parent, name, row, Mostly::Varied, meaning)
     }
 
     /// A dataset with one row per event. It has its tree of chunks from the start, since the first
@@ -142,14 +141,19 @@ impl<T: Value> Column<T> {
         row: &[usize],
         meaning: Meaning,
     ) -> hdf5::Result<Self> {
-        let shape = (Row::whole(row), Self::series_rows(row));
-        Self::create(parent, name, shape, Mostly::Late, meaning)
+        Self::row_by_row(parent, name, row, Mostly::Late, meaning)
     }
 
-    /// Rows of a chunk of a dataset that grows row by row.
-    fn series_rows(row: &[usize]) -> usize {
+    fn row_by_row(
+        parent: &Group,
+        name: &str,
+        row: &[usize],
+        mostly: Mostly,
+        meaning: Meaning,
+    ) -> hdf5::Result<Self> {
         let bytes = row.iter().product::<usize>() * size_of::<T>();
-        (CHUNK_BYTES / bytes.max(1)).clamp(1, CHUNK_ROWS)
+        let rows = (CHUNK_BYTES / bytes.max(1)).clamp(1, CHUNK_ROWS);
+        Self::create(parent, name, (Row::whole(row), rows), mostly, meaning)
     }
 
     /// A dataset to which whole frames of `rows` rows are appended.
