@@ -215,7 +215,8 @@ mod tests {
             all.extend(response.expect("solved"));
         }
         let constraint = constraint();
-        let lcp = (workspace.k()).frictional_lcp(&Scope::All, &[&constraint], vec![0.0], vec![0.0]);
+        let lcp =
+            (workspace.k()).frictional_lcp(&Scope::All, &[&constraint], [vec![0.0], vec![0.0]]);
         all.extend(lcp.expect("prepared").q.iter());
         all
     }

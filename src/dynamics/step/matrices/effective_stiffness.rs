@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
-use crate::contact::{ClosedPair, Compliance, Configurations, Constraint, Scope};
+use crate::contact::{ClosedPair, Compliance, Configurations, Constraint, DelassusSpace, Scope};
 use crate::dynamics::step::bodies::BodyAngles;
 use crate::dynamics::step::mass::unknown_mass;
 use crate::dynamics::step::step_problem::StepProblem;
@@ -22,6 +22,8 @@ pub(crate) struct FactoredMatrix {
     pub compliance: Compliance,
     /// Factors of the last complementarity problems.
     pub kept: BTreeMap<Scope, KeptFactors>,
+    /// Memory of its Delassus operators.
+    pub space: DelassusSpace,
 }
 
 impl FactoredMatrix {
@@ -33,6 +35,7 @@ impl FactoredMatrix {
             solver,
             compliance,
             kept: BTreeMap::new(),
+            space: DelassusSpace::default(),
         }
     }
 

@@ -2,7 +2,7 @@
 //! complementarity problems. Sections 4 and 5 of docs/theory.md.
 
 use super::effective_stiffness::FactoredMatrix;
-use crate::contact::{Compliance, Constraint, Scope, frictional_lcp};
+use crate::contact::{Constraint, Scope, frictional_lcp};
 use crate::dynamics::step::meter::Meter;
 use crate::lcp::{
     BlockIteration, ContactState, Counters, FrictionalLcp, FrictionalSolution, KeptFactors,
@@ -106,13 +106,14 @@ impl<'a> System<'a> {
         &mut self,
         scope: &Scope,
         constraints: &[&Constraint],
-        gap: Vec<f64>,
-        slip: Vec<f64>,
+        constant_terms: [Vec<f64>; 2],
     ) -> Result<FrictionalLcp, LinearError> {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.prepare(scope, constraints))?;
-        let compliance: &Compliance = &matrix.compliance;
-        let pose = || frictional_lcp(constraints, (compliance, scope), gap, slip);
+        let FactoredMatrix {
+            compliance, space, ..
+        } = &mut **matrix;
+        let pose = || frictional_lcp(constraints, (compliance, scope), constant_terms, space);
         Ok(meter.time(|t| &mut t.contact, pose))
     }
 
@@ -129,6 +130,11 @@ impl<'a> System<'a> {
         let solution = meter.time(|t| &mut t.lcp, solve)?;
         self.meter.count_lcp(warm.len(), solution.counters);
         Ok(solution)
+    }
+
+    /// Takes the memory of a complementarity problem that is not needed any more.
+    pub fn take_back(&mut self, problem: FrictionalLcp) {
+        self.matrix.space.take(problem);
     }
 
     /// Solves the blocks of an iteration: the forces of all its contacts.
