@@ -2,8 +2,8 @@
 //! Section 4 of docs/theory.md (paper eqs 27, 29 and 36 to 49).
 
 use super::active_constraints::ConstraintSet;
-use super::convergence::{Errors, Iterate, Pass};
 use super::forces::{ContactForces, ContactSystem, EqualForces, Impulses};
+use super::pass::{Iterate, Pass, Residual};
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::rigid_predictor::rigid_predictor;
 use super::trace::{Failed, Trace};
@@ -11,8 +11,8 @@ use crate::contact::tolerances::PROJECTION_BEYOND_ENDS;
 use crate::contact::{ClosedPairs, Constraint};
 use crate::dynamics::results::{Cause, PassReport, State};
 use crate::dynamics::step::{
-    ClosedConstraints, Equilibrium, Interval, StartVelocity, StepProblem, Workspace, difference,
-    sum,
+    ClosedConstraints, Equilibrium, Interval, StartVelocity, StepProblem, Workspace, sum,
+    write_difference, write_sum,
 };
 use crate::elements::Updated;
 use crate::linear::LinearError;
@@ -47,6 +47,24 @@ impl Solved {
         both.map(|(d, v0p)| 2.0 / (dt * dt) * (d - dt * v0p))
             .collect()
     }
+}
+
+/// Vectors of the passes of an increment.
+#[derive(Default)]
+struct Vectors {
+    /// Forces of the iterate.
+    equilibrium: Equilibrium,
+    /// Displacement U of the iterate.
+    u: Vec<f64>,
+    /// What the predictor leaves of the supports' motion, d_p.
+    d_p: Vec<f64>,
+    /// Its force theta2 K d_p.
+    support_force: Vec<f64>,
+    /// r - theta2 K d_p
+    load: Vec<f64>,
+    /// Correction dU.
+    du: Vec<f64>,
+    residual: Residual,
 }
 
 /// An attempt at one increment.
@@ -92,48 +110,62 @@ impl<'m> Attempt<'_, 'm> {
         let mut impulses = Impulses::new(before, self.set);
         let mut equal_forces = EqualForces::new(problem.settings.tolerance);
 
+        let mut vectors = Vectors::default();
+        let Vectors {
+            equilibrium,
+            u,
+            d_p,
+            support_force,
+            load,
+            du,
+            residual,
+        } = &mut vectors;
+
         // the passes start from the rigid motion of the bodies
         let mut d = rigid_predictor(problem, start, self.interval);
         for pass in 0..problem.settings.max_passes {
             // g, Dt and their rows in the iterate U = U0 + d
-            let u = sum(&start.u, &d);
+            write_sum(&start.u, &d, u);
             let settled = pass >= SEARCHING_PASSES;
-            let [constraints, left_out] = self.constraints(&u, &contact, before, settled)?;
+            let [constraints, left_out] = self.constraints(u, &contact, before, settled)?;
 
             // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1)
             let v0p = impulses.start_velocity(problem, self.workspace, &constraints, start, dt)?;
 
             // r = R_theta - F(U_theta) - M A, eq. (4.5)
-            let equilibrium = self.equilibrium(&v0p, &d)?;
-            let r = equilibrium.out_of_balance();
-            trace.balance(&problem.unknowns.restrict(&r));
+            self.equilibrium(&v0p, [u, &d], equilibrium)?;
+            trace.balance(residual.restricted(problem, &equilibrium.out_of_balance));
 
             // the forces at hand may balance r and close the gaps of the iterate
             contact.relinearize(constraints);
-            let iterate = Iterate::new(&equilibrium, &contact, [&u, &d]);
+            let iterate = Iterate::new(equilibrium, &contact, [u, &d]);
             let may_end = impulses.are_at_rest() && factors.are_near();
-            if may_end && self.is_solved(&iterate, [settled, factors.stagnate()], trace)? {
-                contact.add_open(self.outside(left_out, &u));
+            let state = [settled, factors.stagnate()];
+            if may_end && self.is_solved(&iterate, state, residual, trace)? {
+                contact.add_open(self.outside(left_out, u));
                 return self.finish(d, contact, impulses);
             }
 
             // K* of eq. (4.6), and d_p at the supports, which takes the force theta2 K d_p
-            self.refresh(factors, [&u, &equilibrium.u_theta], &contact)?;
-            let [d_p, support_force] = self.supports(pass, [&u, &equilibrium.u_theta]);
+            let at = [u.as_slice(), &equilibrium.u_theta];
+            self.refresh(factors, at, &contact)?;
+            self.supports(pass, at, [d_p, support_force]);
 
             // Pn, Pt of the complementarity problem, eq. (5.2);
             // dU = d_p + K*^-1 (r - theta2 K d_p + Bn^T Pn + Bt^T Pt), eq. (4.7)
-            let (load, weight) = (difference(&r, &support_force), equal_forces.weight(settled));
-            let du = contact.solve([&d_p, &load], weight, &mut self.k_star())?;
+            write_difference(&equilibrium.out_of_balance, support_force, load);
+            let weight = equal_forces.weight(settled);
+            contact.solve([d_p, load], weight, &mut self.k_star(), du)?;
 
             // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales
-            let iterate = Iterate::new(&equilibrium, &contact, [&u, &d]);
-            let has_converged = self.measure(&iterate.pass(&support_force, &du), trace)?;
+            let iterate = Iterate::new(equilibrium, &contact, [u, &d]);
+            let pass = iterate.pass(support_force, du);
+            let has_converged = self.measure(&pass, residual, trace)?;
 
             // d <- d + dU, eq. (4.7)
-            d = sum(&d, &du);
+            d.iter_mut().zip(&*du).for_each(|(d, du)| *d += du);
             if impulses.rest(problem, &contact.closed) && has_converged {
-                contact.add_open(self.outside(left_out, &u));
+                contact.add_open(self.outside(left_out, u));
                 return self.finish(d, contact, impulses);
             }
             equal_forces.take_in(trace.correction(), settled);
@@ -161,10 +193,16 @@ impl<'m> Attempt<'_, 'm> {
         Ok(self.set.split(problem, u0, constraints))
     }
 
-    /// Load, internal force and inertia of the iterate U0 + d.
-    fn equilibrium(&mut self, v0p: &StartVelocity, d: &[f64]) -> Result<Equilibrium, Cause> {
+    /// Writes load, internal force and inertia of the iterate U = U0 + d.
+    fn equilibrium(
+        &mut self,
+        v0p: &StartVelocity,
+        iterate: [&[f64]; 2],
+        equilibrium: &mut Equilibrium,
+    ) -> Result<(), Cause> {
         let (problem, start, interval) = (self.problem, self.start, self.interval);
-        (self.workspace).equilibrium(problem, start, v0p, d, interval)
+        let evaluate = || problem.equilibrium(start, v0p, iterate, interval, equilibrium);
+        (self.workspace.meter).time(|t| &mut t.assembly, evaluate)
     }
 
     /// K* with its contact problems.
@@ -176,21 +214,27 @@ impl<'m> Attempt<'_, 'm> {
         }
     }
 
-    /// What the predictor `u` leaves of the prescribed motion, d_p, which the first pass makes, and its
-    /// force theta2 K d_p; then zero.
-    fn supports(&mut self, pass: usize, [u, u_theta]: [&[f64]; 2]) -> [Vec<f64>; 2] {
+    /// Writes what the predictor `u` leaves of the prescribed motion, d_p, which the first pass makes, and
+    /// its force theta2 K d_p; then zero.
+    fn supports(
+        &mut self,
+        pass: usize,
+        [u, u_theta]: [&[f64]; 2],
+        [d_p, force]: [&mut Vec<f64>; 2],
+    ) {
         let (problem, weights) = (self.problem, &self.problem.weights);
-        let d_p = match pass {
-            0 => (problem.unknowns).prescribed_increment(u, self.interval.end),
-            _ => vec![0.0; u.len()],
-        };
-        if d_p.iter().all(|d| *d == 0.0) {
-            return [d_p.clone(), d_p];
+        match pass {
+            0 => *d_p = (problem.unknowns).prescribed_increment(u, self.interval.end),
+            1 => d_p.fill(0.0),
+            _ => return,
         }
-        let motion = weights.motion(self.start, u, u_theta);
-        let mut force = (self.workspace).tangent_product(problem, motion, &d_p);
-        force.iter_mut().for_each(|f| *f *= weights.theta2);
-        [d_p, force]
+        force.clear();
+        force.resize(u.len(), 0.0);
+        if d_p.iter().any(|d| *d != 0.0) {
+            let motion = weights.motion(self.start, u, u_theta);
+            let product = (self.workspace).tangent_product(problem, motion, d_p);
+            (force.iter_mut().zip(&product)).for_each(|(f, k)| *f = weights.theta2 * k);
+        }
     }
 
     /// Factorises K* anew when the rules say so, else turns its factors with the bodies.
@@ -227,10 +271,11 @@ impl<'m> Attempt<'_, 'm> {
         &mut self,
         iterate: &Iterate,
         state: [bool; 2],
+        residual: &mut Residual,
         trace: &mut Trace,
     ) -> Result<bool, Cause> {
         let (problem, stiffness) = (self.problem, &self.workspace.stiffness);
-        let solved = iterate.residual(problem, stiffness, state)?;
+        let solved = iterate.residual(problem, stiffness, state, residual)?;
         if let Some(residual) = solved {
             trace.solved(residual);
             self.workspace.meter.counts.residual = residual;
@@ -240,21 +285,20 @@ impl<'m> Attempt<'_, 'm> {
 
     /// Compares residual and correction of a pass with their scales; whether it has converged, with a solve
     /// that passes its check.
-    fn measure(&mut self, pass: &Pass, trace: &mut Trace) -> Result<bool, Cause> {
+    fn measure(
+        &mut self,
+        pass: &Pass,
+        residual: &mut Residual,
+        trace: &mut Trace,
+    ) -> Result<bool, Cause> {
         let (problem, [u, _, du]) = (self.problem, pass.displacements);
         let Workspace {
             stiffness, meter, ..
         } = &mut *self.workspace;
-        let contact_force = pass.contact.resultant(u.len());
-        pass.check_finite(&contact_force)?;
-        let residual = problem
-            .unknowns
-            .restrict(&sum(&pass.out_of_balance(), &contact_force));
-        let scales = pass.scales(problem, stiffness, &contact_force);
-        let errors = Errors::new(problem.parts, &residual, &problem.unknowns.dof, du);
+        let (scales, errors) = pass.measure(problem, stiffness, residual)?;
         let report = scales.report(&errors, pass.contact);
-        let position = |node| problem.position(u, node);
-        trace.worst = scales.worst(&errors, &residual, &problem.unknowns.dof, position);
+        let (position, dof_of) = (|node| problem.position(u, node), &problem.unknowns.dof);
+        trace.worst = scales.worst(&errors, &residual.values, dof_of, position);
         trace.add(report, pass.contact);
         meter.count_pass(report.residual);
         let has_converged = scales.converged(&errors) && scales.closes_gaps(pass.contact, du);
@@ -284,12 +328,13 @@ impl<'m> Attempt<'_, 'm> {
         impulses: Impulses,
     ) -> Result<Solved, Cause> {
         let v0p = impulses.velocity(self.problem, self.workspace, self.start)?;
-        let equilibrium = self.equilibrium(&v0p, &d)?;
-        let v0p = v0p.v0p;
+        let mut u = sum(&self.start.u, &d);
+        let mut equilibrium = Equilibrium::default();
+        self.equilibrium(&v0p, [&u, &d], &mut equilibrium)?;
+        let v0p = v0p.v0p.into_owned();
         // V1 = (2/dt) d - V0+, eq. (4.2); of what is prescribed from the amplitude
         let rate = 2.0 / self.interval.dt;
         let mut v: Vec<f64> = d.iter().zip(&v0p).map(|(d, v0p)| rate * d - v0p).collect();
-        let mut u = sum(&self.start.u, &d);
         (self.problem.unknowns).prescribe(self.interval.end, &mut u, &mut v);
         let Updated {
             variables: internal,

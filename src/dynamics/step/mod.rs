@@ -26,5 +26,6 @@ pub(crate) use parts::Parts;
 pub(crate) use step_place::StepPlace;
 pub(crate) use step_problem::{
     Equilibrium, Interval, StartVelocity, StepProblem, check_finite, difference, sum,
+    write_difference, write_sum,
 };
 pub(crate) use workspace::Workspace;

@@ -24,6 +24,19 @@ pub(crate) struct FactoredMatrix {
     pub kept: BTreeMap<Scope, KeptFactors>,
     /// Memory of its Delassus operators.
     pub space: DelassusSpace,
+    /// Memory of its solves.
+    pub vectors: SolveVectors,
+}
+
+/// Vectors of a solve in parts, used again by the next.
+#[derive(Default)]
+pub(crate) struct SolveVectors {
+    /// Forces turned back, over all dofs.
+    pub forces: Vec<f64>,
+    /// Right-hand side, over the unknowns.
+    pub b: Vec<f64>,
+    /// The response at some nodes, over all dofs.
+    pub at_nodes: Vec<f64>,
 }
 
 impl FactoredMatrix {
@@ -36,6 +49,7 @@ impl FactoredMatrix {
             compliance,
             kept: BTreeMap::new(),
             space: DelassusSpace::default(),
+            vectors: SolveVectors::default(),
         }
     }
 
