@@ -80,12 +80,13 @@ impl<'m> Attempt<'_, 'm> {
     /// Solves the increment; `before` are the pairs closed in the last one.
     pub fn solve(mut self, before: &ClosedPairs) -> Result<Solved, Failed> {
         let mut trace = Trace::default();
+        let mut vectors = Vectors::default();
         let mut failed = Cause::NotConverged;
         for &rule in FactorRule::order(self.problem.settings.factorization) {
             trace.begin();
             (self.workspace.search).start(&self.start.v, self.interval.dt);
             let mut factors = Refactorization::new(rule, self.problem.settings.tolerance);
-            match self.passes(before, &mut factors, &mut trace) {
+            match self.passes(before, &mut factors, &mut trace, &mut vectors) {
                 Ok(solved) => {
                     return Ok(Solved {
                         passes: trace.passes,
@@ -104,69 +105,55 @@ impl<'m> Attempt<'_, 'm> {
         before: &ClosedPairs,
         factors: &mut Refactorization,
         trace: &mut Trace,
+        v: &mut Vectors,
     ) -> Result<Solved, Cause> {
         let (problem, start, dt) = (self.problem, self.start, self.interval.dt);
         let mut contact = ContactForces::without_constraints(before);
         let mut impulses = Impulses::new(before, self.set);
         let mut equal_forces = EqualForces::new(problem.settings.tolerance);
 
-        let mut vectors = Vectors::default();
-        let Vectors {
-            equilibrium,
-            u,
-            d_p,
-            support_force,
-            load,
-            du,
-            residual,
-        } = &mut vectors;
-
         // the passes start from the rigid motion of the bodies
         let mut d = rigid_predictor(problem, start, self.interval);
         for pass in 0..problem.settings.max_passes {
             // g, Dt and their rows in the iterate U = U0 + d
-            write_sum(&start.u, &d, u);
+            write_sum(&start.u, &d, &mut v.u);
             let settled = pass >= SEARCHING_PASSES;
-            let [constraints, left_out] = self.constraints(u, &contact, before, settled)?;
+            let [constraints, left_out] = self.constraints(&v.u, &contact, before, settled)?;
 
             // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1)
             let v0p = impulses.start_velocity(problem, self.workspace, &constraints, start, dt)?;
 
             // r = R_theta - F(U_theta) - M A, eq. (4.5)
-            self.equilibrium(&v0p, [u, &d], equilibrium)?;
-            trace.balance(residual.restricted(problem, &equilibrium.out_of_balance));
+            self.equilibrium(&v0p, [&v.u, &d], &mut v.equilibrium)?;
+            trace.balance((v.residual).restricted(problem, &v.equilibrium.out_of_balance));
 
             // the forces at hand may balance r and close the gaps of the iterate
             contact.relinearize(constraints);
-            let iterate = Iterate::new(equilibrium, &contact, [u, &d]);
-            let may_end = impulses.are_at_rest() && factors.are_near();
+            let iterate = Iterate::new(&v.equilibrium, &contact, [&v.u, &d]);
             let state = [settled, factors.stagnate()];
-            if may_end && self.is_solved(&iterate, state, residual, trace)? {
-                contact.add_open(self.outside(left_out, u));
-                return self.finish(d, contact, impulses);
+            let may_end = impulses.are_at_rest() && factors.are_near();
+            if may_end && self.is_solved(&iterate, state, &mut v.residual, trace)? {
+                return self.finish([&v.u, &d], contact, left_out, impulses);
             }
 
             // K* of eq. (4.6), and d_p at the supports, which takes the force theta2 K d_p
-            let at = [u.as_slice(), &equilibrium.u_theta];
-            self.refresh(factors, at, &contact)?;
-            self.supports(pass, at, [d_p, support_force]);
+            self.refresh(factors, v, &contact)?;
+            self.supports(pass, v);
 
             // Pn, Pt of the complementarity problem, eq. (5.2);
             // dU = d_p + K*^-1 (r - theta2 K d_p + Bn^T Pn + Bt^T Pt), eq. (4.7)
-            write_difference(&equilibrium.out_of_balance, support_force, load);
             let weight = equal_forces.weight(settled);
-            contact.solve([d_p, load], weight, &mut self.k_star(), du)?;
+            contact.solve([&v.d_p, &v.load], weight, &mut self.k_star(), &mut v.du)?;
 
             // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales
-            let iterate = Iterate::new(equilibrium, &contact, [u, &d]);
-            let pass = iterate.pass(support_force, du);
-            let has_converged = self.measure(&pass, residual, trace)?;
+            let iterate = Iterate::new(&v.equilibrium, &contact, [&v.u, &d]);
+            let pass = iterate.pass(&v.support_force, &v.du);
+            let has_converged = self.measure(&pass, &mut v.residual, trace)?;
 
             // d <- d + dU, eq. (4.7)
-            d.iter_mut().zip(&*du).for_each(|(d, du)| *d += du);
+            d.iter_mut().zip(&v.du).for_each(|(d, du)| *d += du);
             if impulses.rest(problem, &contact.closed) && has_converged {
-                contact.add_open(self.outside(left_out, u));
-                return self.finish(d, contact, impulses);
+                return self.finish([&v.u, &d], contact, left_out, impulses);
             }
             equal_forces.take_in(trace.correction(), settled);
             factors.take_in(trace.correction())?;
@@ -214,15 +201,29 @@ impl<'m> Attempt<'_, 'm> {
         }
     }
 
-    /// Writes what the predictor `u` leaves of the prescribed motion, d_p, which the first pass makes, and
-    /// its force theta2 K d_p; then zero.
-    fn supports(
-        &mut self,
-        pass: usize,
-        [u, u_theta]: [&[f64]; 2],
-        [d_p, force]: [&mut Vec<f64>; 2],
-    ) {
+    /// Writes what the predictor leaves of the prescribed motion, d_p, which the first pass makes, and its
+    /// force theta2 K d_p, then zero; and r - theta2 K d_p.
+    fn supports(&mut self, pass: usize, vectors: &mut Vectors) {
+        self.move_supports(pass, vectors);
+        let Vectors {
+            equilibrium,
+            support_force,
+            load,
+            ..
+        } = vectors;
+        write_difference(&equilibrium.out_of_balance, support_force, load);
+    }
+
+    /// Writes d_p and theta2 K d_p.
+    fn move_supports(&mut self, pass: usize, vectors: &mut Vectors) {
         let (problem, weights) = (self.problem, &self.problem.weights);
+        let Vectors {
+            equilibrium: Equilibrium { u_theta, .. },
+            u,
+            d_p,
+            support_force: force,
+            ..
+        } = vectors;
         match pass {
             0 => *d_p = (problem.unknowns).prescribed_increment(u, self.interval.end),
             1 => d_p.fill(0.0),
@@ -241,12 +242,12 @@ impl<'m> Attempt<'_, 'm> {
     fn refresh(
         &mut self,
         factors: &mut Refactorization,
-        [u, u_theta]: [&[f64]; 2],
+        Vectors { u, equilibrium, .. }: &Vectors,
         contact: &ContactForces,
     ) -> Result<(), Cause> {
         let (problem, dt) = (self.problem, self.interval.dt);
         let fits = (self.workspace.stiffness).fits(dt, self.set.length_tolerance());
-        let motion = (problem.weights).motion(self.start, u, u_theta);
+        let motion = (problem.weights).motion(self.start, u, &equilibrium.u_theta);
         if fits && !factors.are_worn() {
             self.workspace.turn(problem, motion);
             return Ok(());
@@ -320,17 +321,20 @@ impl<'m> Attempt<'_, 'm> {
         left_out.filter(|c| c.gap >= 0.0 || is_over(c)).collect()
     }
 
-    /// Motion and forces at the end of a converged increment.
+    /// Motion and forces at the end of a converged increment whose last iterate is U, with the increment d
+    /// and the constraints that did not count.
     fn finish(
         &mut self,
-        d: Vec<f64>,
-        forces: ContactForces,
+        [u, d]: [&[f64]; 2],
+        mut forces: ContactForces,
+        left_out: Vec<Constraint>,
         impulses: Impulses,
     ) -> Result<Solved, Cause> {
+        forces.add_open(self.outside(left_out, u));
         let v0p = impulses.velocity(self.problem, self.workspace, self.start)?;
-        let mut u = sum(&self.start.u, &d);
+        let mut u = sum(&self.start.u, d);
         let mut equilibrium = Equilibrium::default();
-        self.equilibrium(&v0p, [&u, &d], &mut equilibrium)?;
+        self.equilibrium(&v0p, [&u, d], &mut equilibrium)?;
         let v0p = v0p.v0p.into_owned();
         // V1 = (2/dt) d - V0+, eq. (4.2); of what is prescribed from the amplitude
         let rate = 2.0 / self.interval.dt;
@@ -348,7 +352,7 @@ impl<'m> Attempt<'_, 'm> {
         };
         end.check_finite()?;
         Ok(Solved {
-            d,
+            d: d.to_vec(),
             v0p,
             equilibrium,
             forces,

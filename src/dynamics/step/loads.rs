@@ -1,7 +1,6 @@
 //! External loads at a time point and their consistent nodal forces: concentrated loads, body
 //! forces, tractions and follower pressures. Section 4 of docs/theory.md (R_theta).
 
-use super::step_problem::Interval;
 use crate::elements::Elements;
 use crate::model::{Load, Model, Pressure, Step, TimeBase, Variation};
 use crate::prepare::Redistribution;
@@ -54,6 +53,14 @@ impl TimePoint {
             Variation::Amplitude(index) => load.magnitude * self.amplitude(model, index),
         }
     }
+}
+
+/// Times of an increment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Interval {
+    pub start: TimePoint,
+    pub end: TimePoint,
+    pub dt: f64,
 }
 
 /// Loads of one step.

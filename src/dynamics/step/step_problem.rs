@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use super::discretization::Discretization;
-use super::loads::{Loads, TimePoint};
+use super::loads::{Interval, Loads};
 use super::mass::Mass;
 use super::parts::Parts;
 use super::scheme::Weights;
@@ -33,14 +33,6 @@ pub(crate) struct StepProblem<'m> {
     pub weights: Weights,
     pub unknowns: Unknowns<'m>,
     pub loads: Loads<'m>,
-}
-
-/// Times of an increment.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Interval {
-    pub start: TimePoint,
-    pub end: TimePoint,
-    pub dt: f64,
 }
 
 /// Velocity at the start of an increment.
