@@ -340,10 +340,21 @@ fn output_requests_of_both_families_are_silent() {
         "*NODE FILE, OUTPUT=2D, GLOBAL=YES, CONTACT ELEMENTS, LAST ITERATIONS\nU, RF",
         "*CONTACT FILE, LAST ITERATIONS\nCDIS, CSTR",
         "*NODE PRINT, NSET=FOOT, SUMMARY=NO, GLOBAL=NO\nRF",
-        "*EL PRINT, ELSET=BODY, TOTALS=ONLY, SUMMARY=YES, POSITION=CENTROIDAL\nELSE",
+        "*EL PRINT, FREQUENCY=0",
+        "*NODE PRINT, FREQUENCY=0",
         "*CONTACT PRINT, TOTALS=YES\nCF",
     ] {
         same("*END STEP", &format!("{request}\n*END STEP"));
+    }
+    let history = "*EL PRINT, ELSET=BODY, TOTALS=ONLY, SUMMARY=YES, POSITION=CENTROIDAL\nELSE\n";
+    assert_eq!(faults("*END STEP", &format!("{history}*END STEP")), []);
+}
+
+#[test]
+fn histories_of_everything_are_not_written() {
+    for request in ["*EL PRINT\nELSE", "*NODE PRINT\nU"] {
+        let found = faults("*END STEP", &format!("{request}\n*END STEP"));
+        assert_eq!(found, [Code::IgnoredVariable], "{request}");
     }
 }
 

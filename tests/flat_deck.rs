@@ -232,7 +232,8 @@ fn settings_and_times_of_every_kind() {
         assert_ne!(model.steps[2].frames, Frames::Default);
         round_trip(model);
     }
-    let totals = "*NODE PRINT, NSET=ALL, TOTALS=ONLY\nU\n";
+    let totals =
+        "*NODE PRINT, NSET=ALL, TOTALS=ONLY\nU\n*EL PRINT, ELSET=BODY, TOTALS=ONLY\nELSE\n";
     round_trip(read(&square("", totals)));
     round_trip(read(
         &SQUARE.replace("DYNAMIC, DIRECT\n0.1, 1.", "DYNAMIC\n0.1, 1., 1.e-5"),
