@@ -359,6 +359,7 @@ fn settings_are_read_and_kept() {
         solver: SolverChoice::Sprs,
         tolerance: 1e-9,
         max_passes: 9,
+        is_check_only: false,
     };
     assert_eq!(model.steps[0].settings, settings);
     let second = Settings {

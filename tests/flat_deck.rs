@@ -235,6 +235,7 @@ fn settings_and_times_of_every_kind() {
     let totals =
         "*NODE PRINT, NSET=ALL, TOTALS=ONLY\nU\n*EL PRINT, ELSET=BODY, TOTALS=ONLY\nELSE\n";
     round_trip(read(&square("", totals)));
+    assert!(round_trip(read(&square("", "*NO ANALYSIS\n"))).contains("*NO ANALYSIS"));
     round_trip(read(
         &SQUARE.replace("DYNAMIC, DIRECT\n0.1, 1.", "DYNAMIC\n0.1, 1., 1.e-5"),
     ));

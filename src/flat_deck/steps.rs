@@ -82,8 +82,12 @@ fn settings(settings: &Settings, lines: &mut Lines) {
         impact,
         impact_time,
         landing,
+        is_check_only,
         ..
     } = *settings;
+    if is_check_only {
+        lines.card("NO ANALYSIS", []);
+    }
     let mut parameters = match scheme {
         Scheme::EnergyMomentum => vec![set("SCHEME", "ENERGY-MOMENTUM")],
         Scheme::Ss22 { theta1, theta2 } => vec![
@@ -125,6 +129,7 @@ fn solver_settings(settings: &Settings) -> [String; 6] {
         solver,
         tolerance,
         max_passes,
+        is_check_only: _,
     } = *settings;
     let contact_mass = match contact_mass {
         ContactMass::Consistent => "CONSISTENT",

@@ -52,6 +52,7 @@ pub(crate) fn read(
         }
         reading.supports.card(card, 0, targets, cx);
     }
+    reading.settings.is_check_only = !outline.model_cards("NO ANALYSIS").is_empty();
     for card in outline.model_cards("RESTART") {
         restart(card, cx);
     }
@@ -178,6 +179,7 @@ impl Reading<'_> {
             let now = self.settings.contact_mass;
             settings::check_contact_mass(card, [before, now], number, cx);
         }
+        self.settings.is_check_only |= !named(cards, "NO ANALYSIS").is_empty();
     }
 
     fn conditions(&mut self, cards: &StepCards, context: StepContext, cx: &mut Context) {

@@ -206,11 +206,11 @@ fn time_interval(card: &Card, cx: &mut Context) -> Option<Frames> {
 pub(crate) fn restart(card: &Card, cx: &mut Context) {
     let off = card.integer("FREQUENCY", cx.d) == Some(0);
     if card.has("WRITE") && !off {
-        let message = "*RESTART, WRITE is left out: a run cannot be continued yet";
-        cx.d.push_once(Diagnostic::warning(
-            Code::IgnoredKeyword,
-            card.span,
-            message,
+        let message = "*RESTART, WRITE is left out: there are no restart files";
+        let warning = Diagnostic::warning(Code::IgnoredKeyword, card.span, message);
+        cx.d.push_once(warning.help(
+            "a run that ends early leaves its frames, the last good state among them; to go on from there, run \
+             the deck with all its steps again",
         ));
     }
 }

@@ -5,7 +5,7 @@ use crate::diagnostics::{Code, shown};
 use crate::model::TimeBase;
 use crate::reader::context::Context;
 use crate::reader::names::Names;
-use crate::reader::steps::amplitude::time_base;
+use crate::reader::steps::amplitude::{report_long_rows, time_base};
 
 /// Largest number of frames a deck may generate.
 const MOST_TIMES: f64 = 1e6;
@@ -41,6 +41,9 @@ pub(super) fn time_points(cx: &mut Context) -> TimePoints {
         };
         let errors = cx.errors();
         let generate = card.has("GENERATE");
+        if !generate {
+            report_long_rows(card, cx);
+        }
         let mut times = Vec::new();
         for row in card.rows.iter() {
             match generate {
