@@ -147,13 +147,17 @@ impl Compliance {
         &self.map
     }
 
-    /// Entries of the rows of a constraint, turned back with R^T, that are not all zero; it must have
-    /// been prepared in the scope.
-    pub(super) fn entries(&self, scope: &Scope, constraint: &Constraint) -> Vec<UnknownEntry> {
+    /// Calls `add` with the entries of the rows of a constraint, turned back with R^T, that are not all
+    /// zero; it must have been prepared in the scope.
+    pub(super) fn for_each_entry(
+        &self,
+        scope: &Scope,
+        constraint: &Constraint,
+        mut add: impl FnMut(UnknownEntry),
+    ) {
         let rows = [&constraint.force_rows, constraint.derivative_rows()];
         let rows = rows.map(|rows| self.turned_back(&constraint.dofs, rows));
         let blocks = self.blocks(scope);
-        let mut entries = Vec::with_capacity(constraint.dofs.len());
         for (k, &dof) in constraint.dofs.iter().enumerate() {
             let [force, derivative] =
                 (rows.each_ref()).map(|rows| [rows.normal[k], rows.tangential[k]]);
@@ -164,7 +168,7 @@ impl Compliance {
                 if let Some((at, block)) = Block::of(blocks, self.groups[unknown])
                     && let Some(place) = block.place(unknown)
                 {
-                    entries.push(UnknownEntry {
+                    add(UnknownEntry {
                         place,
                         block: at,
                         force: force.map(|entry| c * entry),
@@ -173,7 +177,6 @@ impl Compliance {
                 }
             }
         }
-        entries
     }
 
     /// Rows times R, over the dofs of a constraint, eq. (4.20).

@@ -67,9 +67,9 @@ fn delassus(
     groups.resize_with(compliance.block_count(scope), GroupRows::default);
     groups.iter_mut().for_each(GroupRows::clear);
     for (k, constraint) in constraints.iter().enumerate() {
-        for entry in compliance.entries(scope, constraint) {
+        compliance.for_each_entry(scope, constraint, |entry| {
             groups[entry.block].push(k, entry);
-        }
+        });
     }
     let mut q = std::mem::take(q);
     q.resize(4 * n * n, 0.0);

@@ -88,6 +88,12 @@ impl<'a> Scales<'a> {
         }
     }
 
+    /// Whether all forces, and all corrections, are finite.
+    pub fn are_finite(&self, errors: &Errors) -> bool {
+        let mut values = self.force.iter().chain(&errors.correction);
+        values.all(|value| value.is_finite())
+    }
+
     /// A part of the tolerance, and no allowance for the round-off of residuals: as long as corrections
     /// become smaller it has not been reached.
     pub fn strict(mut self) -> Self {

@@ -53,7 +53,6 @@ impl Pass<'_> {
             ..
         } = residual;
         self.contact.write_resultant(u.len(), contact_force);
-        self.check_finite(contact_force)?;
         let scales = self.scales(problem, stiffness, contact_force);
         // r - theta2 K d_p + Bn^T Pn + Bt^T Pt, eq. (4.7)
         let forces = (self.support_force.iter()).zip(&*contact_force);
@@ -65,6 +64,9 @@ impl Pass<'_> {
             residual: residual.largest(problem.parts, &problem.unknowns.dof),
             correction: problem.parts.largest_of_bodies(du),
         };
+        if !scales.are_finite(&errors) {
+            self.check_finite(&residual.contact_force)?;
+        }
         Ok((scales, errors))
     }
 

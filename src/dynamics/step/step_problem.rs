@@ -20,6 +20,7 @@ use crate::lcp::LcpMethod;
 use crate::linear::largest;
 use crate::model::{Model, Settings, Step};
 use crate::prepare::Redistribution;
+use crate::vectors::distance;
 
 /// The equation of motion of a step.
 pub(crate) struct StepProblem<'m> {
@@ -154,7 +155,7 @@ impl StepProblem<'_> {
     /// [`Cause::Collapsed`] with the first segment that has almost no length.
     pub fn check_segments(&self, u: &[f64]) -> Result<(), Cause> {
         let x = &self.model.mesh.coordinates;
-        let length = |[p, q]: [[f64; 2]; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
+        let length = |[p, q]: [[f64; 2]; 2]| distance(p, q);
         let has_collapsed = |segment: &&[usize; 2]| {
             let now = length(segment.map(|node| self.position(u, node)));
             let least = COLLAPSED_LENGTH * length(segment.map(|node| x[node]));
