@@ -3,6 +3,7 @@
 A name is the path of a dataset below /history (see docs/output.md). After a colon stands the
 component of a vector, from 1. After the name of a node set may stand the number of one of its
 nodes in brackets; without it displacements and velocities are means over the set, reactions sums.
+The same holds of element sets, `elements/BLOCK[7]/S:1`: means of stresses and strains, sums of energies.
 Of the histories of bodies, `bodies/velocity[0]:1`, the number in brackets is that of the body.
 """
 
@@ -14,7 +15,11 @@ from command import Fault
 from results import Array, Results
 
 NAME = re.compile(r"(?P<path>[^:]*)(?::(?P<component>\d+))?")
-NODES = re.compile(r"nodes/(?P<set>.+?)(?:\[(?P<node>-?\d+)\])?/(?P<field>\w+)")
+SETS = re.compile(
+    r"(?P<kind>node|element)s/(?P<set>[^/]+?)(?:\[(?P<member>-?\d+)\])?/(?P<field>\w+)"
+)
+SUMS = ("RF", "ELSE", "ELKE")
+"""Histories of the members of a set that are added up."""
 BODIES = re.compile(r"(?P<path>.+)\[(?P<body>\d+)\]")
 
 PER_BODY = re.compile(r"bodies/\w+|contact/.+/body_\w+")
@@ -76,7 +81,8 @@ def listed(results: Results) -> list[str]:
     names = []
     for path, data in results.histories.items():
         each = "[BODY]" if PER_BODY.fullmatch(path) else ""
-        plain = data.ndim == (2 if each else 1)
+        columns = each or path.startswith("elements/") and "/sum/" not in path
+        plain = data.ndim == (2 if columns else 1)
         names.append(f"{path}{each}" if plain else f"{path}{each}:1 to :{data.shape[-1]}")
     return sorted(names)
 
@@ -85,36 +91,37 @@ def _selected(results: Results, path: str) -> tuple[Array, str]:
     """Values [I] or [I, components] of a path with its brackets, and what they are."""
     if path not in results.histories:
         plain = re.sub(r"\[-?\d+\]", "", path)
-        for pattern, select in ((NODES, _of_node), (BODIES, _of_body)):
+        for pattern, select in ((SETS, _of_member), (BODIES, _of_body)):
             matched = pattern.fullmatch(path)
             if matched and plain in results.histories:
                 return select(results, plain, matched)
         raise Fault(f"{results.path} has no history {path}: {_alternatives(results, path)}")
-    matched, data = NODES.fullmatch(path), results.history(path)
-    if matched and data.ndim == 3:
+    matched, data = SETS.fullmatch(path), results.history(path)
+    if matched and data.ndim > 1:
         return _of_set(data, _description(results, path), matched)
     place = path.rpartition("/")[0].partition("/")[2]
     return data, ", ".join(filter(None, (_description(results, path), place)))
 
 
 def _of_set(data: Array, what: str, matched: re.Match[str]) -> tuple[Array, str]:
-    """Mean of a node set, or the sum for forces."""
+    """Mean of a set, or the sum for forces and energies."""
     name = matched["set"]
     if data.shape[1] == 1:
         return data[:, 0], f"{what} of {name}"
-    if matched["field"] == "RF":
+    if matched["field"] in SUMS:
         return data.sum(axis=1), f"{what}, sum over {name}"
     return data.mean(axis=1), f"{what}, mean over {name}"
 
 
-def _of_node(results: Results, path: str, matched: re.Match[str]) -> tuple[Array, str]:
-    """One node of a set."""
-    labels = results.read(f"history/nodes/{matched['set']}/labels")
-    at = np.flatnonzero(labels == int(matched["node"]))
+def _of_member(results: Results, path: str, matched: re.Match[str]) -> tuple[Array, str]:
+    """One node or element of a set."""
+    kind, member = matched["kind"], matched["member"]
+    labels = results.read(f"history/{kind}s/{matched['set']}/labels")
+    at = np.flatnonzero(labels == int(member))
     if len(at) == 0:
-        raise Fault(f"node {matched['node']} is not in {matched['set']}: {_few(labels)}")
+        raise Fault(f"{kind} {member} is not in {matched['set']}: {_few(labels)}")
     what = _description(results, path)
-    return results.history(path)[:, at[0]], f"{what} of node {matched['node']}"
+    return results.history(path)[:, at[0]], f"{what} of {kind} {member}"
 
 
 def _of_body(results: Results, path: str, matched: re.Match[str]) -> tuple[Array, str]:

@@ -171,13 +171,13 @@ class Results:
     def histories(self) -> dict[str, h5py.Dataset]:
         """All histories by their paths below /history, such as `energy/kinetic`.
 
-        The landings (impacts) and node numbers of the deck are none: they have other rows.
+        The landings (impacts), numbers of the deck and volumes are none: they have other rows.
         """
         found: dict[str, h5py.Dataset] = {}
 
         def visit(name: str, item: object) -> None:
             last = name.rpartition("/")[2]
-            other = name.startswith("impacts/") or last in ("labels", "node")
+            other = name.startswith("impacts/") or last in ("labels", "node", "EVOL")
             if isinstance(item, h5py.Dataset) and item.ndim > 0 and not other:
                 found[name] = item
 

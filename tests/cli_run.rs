@@ -138,6 +138,24 @@ fn a_deck_with_errors_touches_no_result() {
 }
 
 #[test]
+fn a_deck_without_analysis_is_checked_only() {
+    let step = DROP.replacen("*END STEP", "*NO ANALYSIS\n*END STEP", 1);
+    for deck in [step, DROP.replacen("*STEP", "*NO ANALYSIS\n*STEP", 1)] {
+        let bench = Bench::new(&deck);
+        let (code, out, err) = bench.stickslip(&["run", "drop.inp"]);
+        assert_eq!((code, err.as_str()), (0, ""), "{out}");
+        assert!(out.contains("0 errors") && out.contains("extents"), "{out}");
+        let last = out.lines().last().expect("a line");
+        assert!(last.ends_with("the deck has *NO ANALYSIS"), "{out}");
+        let (code, out, err) = bench.stickslip(&["run", "-q", "drop.inp"]);
+        assert_eq!((code, out.as_str(), err.as_str()), (0, "", ""));
+        assert!(!bench.path("drop.vtkhdf").exists() && !bench.path("drop.log").exists());
+        let faulty = Bench::new(&deck.replacen("*END STEP", "*BONDARY\n*END STEP", 1));
+        assert_eq!(faulty.stickslip(&["run", "drop.inp"]).0, 2);
+    }
+}
+
+#[test]
 fn check_describes_the_model_and_solves_nothing() {
     let bench = Bench::new(DROP);
     let (code, out, _) = bench.stickslip(&["check", "drop.inp"]);

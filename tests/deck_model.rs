@@ -359,6 +359,7 @@ fn settings_are_read_and_kept() {
         solver: SolverChoice::Sprs,
         tolerance: 1e-9,
         max_passes: 9,
+        is_check_only: false,
     };
     assert_eq!(model.steps[0].settings, settings);
     let second = Settings {
@@ -456,8 +457,8 @@ fn monitored_displacements_are_columns_of_the_status_file() {
     );
 }
 
-fn history(set: usize, each_node: bool) -> HistorySet {
-    HistorySet { set, each_node }
+fn history(set: usize, each_member: bool) -> HistorySet {
+    HistorySet { set, each_member }
 }
 
 #[test]
@@ -469,6 +470,33 @@ fn totals_only_leaves_out_the_nodes_unless_another_card_wants_them() {
     assert_eq!(asked(yes), [history(1, true), history(0, true)]);
     let both = format!("{only}\n*OUTPUT, HISTORY\n*NODE OUTPUT, NSET=ALL\nU");
     assert_eq!(asked(&both), [history(1, true), history(0, true)]);
+}
+
+#[test]
+fn element_histories_of_sets() {
+    let asked = |text| with("", text).sets.element_history;
+    assert_eq!(asked("*OUTPUT, FIELD\n*ELEMENT OUTPUT, ELSET=BODY\nS"), []);
+    assert_eq!(
+        asked("*OUTPUT, HISTORY\n*ELEMENT OUTPUT, ELSET=BODY\nS"),
+        [history(0, true)]
+    );
+    assert_eq!(
+        asked("*EL PRINT, ELSET=BODY, TOTALS=ONLY\nELSE"),
+        [history(0, false)]
+    );
+    assert_eq!(asked("*EL PRINT, ELSET=BODY, FREQUENCY=0\n"), []);
+    assert_eq!(asked("*EL PRINT, FREQUENCY=0\n"), []);
+}
+
+#[test]
+fn element_histories_where_sets_of_line_elements_come_first() {
+    let lines = "*ELEMENT, TYPE=T3D2, ELSET=EDGE\n50, 1, 2\n*ELSET, ELSET=LAST\n7\n";
+    let asked = "*EL PRINT, ELSET=LAST\nS\n*EL PRINT, ELSET=EDGE\nS";
+    let sets = with(lines, asked).sets;
+    let [HistorySet { set, .. }] = sets.element_history[..] else {
+        panic!("{:?}", sets.element_history)
+    };
+    assert_eq!(sets.elements[set].name, "LAST");
 }
 
 #[test]

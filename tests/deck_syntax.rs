@@ -3,7 +3,7 @@
 
 use stickslip::deck::{self, Card, Deck};
 use stickslip::diagnostics::{Code, Diagnostics, Severity, Sources, Strictness};
-use stickslip::model::Model;
+use stickslip::model::{Curve, Model};
 use stickslip::reader;
 
 const SQUARE: &str = include_str!("decks/square.inp");
@@ -340,10 +340,42 @@ fn output_requests_of_both_families_are_silent() {
         "*NODE FILE, OUTPUT=2D, GLOBAL=YES, CONTACT ELEMENTS, LAST ITERATIONS\nU, RF",
         "*CONTACT FILE, LAST ITERATIONS\nCDIS, CSTR",
         "*NODE PRINT, NSET=FOOT, SUMMARY=NO, GLOBAL=NO\nRF",
-        "*EL PRINT, ELSET=BODY, TOTALS=ONLY, SUMMARY=YES, POSITION=CENTROIDAL\nELSE",
+        "*EL PRINT, FREQUENCY=0",
+        "*NODE PRINT, FREQUENCY=0",
         "*CONTACT PRINT, TOTALS=YES\nCF",
     ] {
         same("*END STEP", &format!("{request}\n*END STEP"));
+    }
+    let history = "*EL PRINT, ELSET=BODY, TOTALS=ONLY, SUMMARY=YES, POSITION=CENTROIDAL\nELSE\n";
+    assert_eq!(faults("*END STEP", &format!("{history}*END STEP")), []);
+}
+
+#[test]
+fn numbers_beyond_the_eighth_of_a_line_are_read_with_a_warning() {
+    let line = |card: &str, count: usize| {
+        let numbers: Vec<String> = (0..count).map(|i| format!("{i}.")).collect();
+        let card = format!("{card}\n{}\n*STEP", numbers.join(", "));
+        let (model, d) = square("*STEP", &card);
+        let amplitude = model.and_then(|model| model.amplitudes.first().cloned());
+        (codes(&d), amplitude.map(|amplitude| amplitude.curve))
+    };
+    let spaced = "*AMPLITUDE, NAME=A, DEFINITION=EQUALLY SPACED, FIXED INTERVAL=1.";
+    for card in ["*AMPLITUDE, NAME=A", spaced, "*TIME POINTS, NAME=A"] {
+        assert_eq!(line(card, 8).0, [], "{card}");
+        assert_eq!(line(card, 10).0, [Code::LongLine], "{card}");
+    }
+    let five = (0..5).map(|i| f64::from(2 * i)).map(|t| (t, t + 1.0));
+    assert_eq!(
+        line("*AMPLITUDE, NAME=A", 10).1,
+        Some(Curve::Linear(five.collect()))
+    );
+}
+
+#[test]
+fn histories_of_everything_are_not_written() {
+    for request in ["*EL PRINT\nELSE", "*NODE PRINT\nU"] {
+        let found = faults("*END STEP", &format!("{request}\n*END STEP"));
+        assert_eq!(found, [Code::IgnoredVariable], "{request}");
     }
 }
 

@@ -195,6 +195,51 @@ fn loads_that_ramp() {
     }
 }
 
+/// Loads on one face by *DLOAD and by *DSLOAD, two of these with directions.
+const ON_A_FACE: [&str; 9] = [
+    "",
+    "*DLOAD\nBODY, P3, 3.\n",
+    "*DLOAD, OP=NEW\n",
+    "*DSLOAD\nTOP, P, 5.\n",
+    "*DSLOAD, OP=NEW\n",
+    "*DSLOAD\nTOP, P, 1.\n*DLOAD\nBODY, P3, 2.\n",
+    "*DSLOAD, FOLLOWER=NO\nTOP, TRVEC, 2., 1., 0.\n",
+    "*DLOAD, FOLLOWER=NO\nBODY, TRVEC3, 2., 1., 0.\n",
+    "*DLOAD, FOLLOWER=NO\nBODY, TRVEC3, 3., 0., 1.\n",
+];
+
+#[test]
+fn several_loads_on_a_face_that_fade_and_grow() {
+    let heads = ["", ", AMPLITUDE=RAMP"];
+    let before = ON_A_FACE.concat();
+    for (first, second) in pairs(&ON_A_FACE) {
+        for (head, next) in pairs(&heads) {
+            round_trip(steps([[head, &before], [next, first], [heads[1], second]]));
+            round_trip(steps([[head, first], [heads[1], second], [next, &before]]));
+        }
+    }
+}
+
+#[test]
+fn loads_on_a_face_that_follow_amplitudes_while_others_fade() {
+    let ramp = ", AMPLITUDE=RAMP";
+    let both = "*DLOAD\nBODY, P3, 3.\n*DSLOAD, AMPLITUDE=T\nTOP, P, 2.\n";
+    for more in ["", "*DSLOAD, OP=NEW\n", "*DSLOAD\nTOP, P, 1.\n"] {
+        round_trip(steps([["", both], [ramp, more], ["", ""]]));
+    }
+    let apart = "*DLOAD, FOLLOWER=NO\nBODY, TRVEC3, 2., 1., 0.\n\
+                 *DSLOAD, FOLLOWER=NO, AMPLITUDE=T\nTOP, TRVEC, 3., 0., 1.\n";
+    round_trip(steps([["", apart], [ramp, "*DLOAD, OP=NEW\n"], ["", ""]]));
+    // one that follows the total time, and one that fades in the same direction: no card leaves the first alone
+    let model = steps([["", both], [ramp, "*DLOAD, OP=NEW\n"], ["", ""]]);
+    assert!(!reads_as(&flat_deck(&model), &model));
+}
+
+fn pairs<'a>(all: &'a [&'a str]) -> impl Iterator<Item = (&'a str, &'a str)> {
+    let of = move |&first: &&'a str| all.iter().map(move |&second| (first, second));
+    all.iter().flat_map(of)
+}
+
 #[test]
 fn supports_from_step_to_step() {
     let moves = "*BOUNDARY, AMPLITUDE=S\n4, 1, 1, 0.1\n*BOUNDARY, AMPLITUDE=T\n3, 1, 1, 0.1\n\
@@ -232,8 +277,10 @@ fn settings_and_times_of_every_kind() {
         assert_ne!(model.steps[2].frames, Frames::Default);
         round_trip(model);
     }
-    let totals = "*NODE PRINT, NSET=ALL, TOTALS=ONLY\nU\n";
+    let totals =
+        "*NODE PRINT, NSET=ALL, TOTALS=ONLY\nU\n*EL PRINT, ELSET=BODY, TOTALS=ONLY\nELSE\n";
     round_trip(read(&square("", totals)));
+    assert!(round_trip(read(&square("", "*NO ANALYSIS\n"))).contains("*NO ANALYSIS"));
     round_trip(read(
         &SQUARE.replace("DYNAMIC, DIRECT\n0.1, 1.", "DYNAMIC\n0.1, 1., 1.e-5"),
     ));

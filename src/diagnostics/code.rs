@@ -96,7 +96,8 @@ codes! {
         "Everything behind it would belong to the name."
         "Close it."
     LongLine "D116" "A line is longer than other codes read."
-        "Abaqus reads 256 characters, and CalculiX cuts a line."
+        "Abaqus reads 256 characters, and CalculiX cuts a line; both read eight numbers of a line of \
+         *AMPLITUDE or *TIME POINTS and leave out what follows."
         "Cut it behind a comma; a keyword line continues on the next line."
     FortranNumber "D117" "A real number has an exponent without its letter."
         "1.+3 is read as 1.E+3, as Fortran programs do; Abaqus refuses it."

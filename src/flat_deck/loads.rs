@@ -59,7 +59,7 @@ impl Loads {
             let operation = is_new.then(|| set("OP", "NEW"));
             let entries = match is_new {
                 true => now.clone(),
-                false => without_carried(now, carried),
+                false => at_changed_places(now, carried),
             };
             write_cards(keyword, operation, &grouped(entries, model), model, lines);
         }
@@ -188,24 +188,23 @@ fn add(entry: Entry, entries: &mut Vec<Entry>) {
     }
 }
 
-/// The loads that are not those of the step before.
-fn without_carried(entries: &[Entry], carried: &[Entry]) -> Vec<Entry> {
+/// All loads of the places where they are not those of the step before: a load that ramps takes the place
+/// of all that were there.
+fn at_changed_places(entries: &[Entry], carried: &[Entry]) -> Vec<Entry> {
+    let (now, before) = (by_key(entries), by_key(carried));
+    let is_changed = |entry: &&Entry| {
+        let key = entry.key();
+        now.get(&key) != before.get(&key)
+    };
+    entries.iter().filter(is_changed).cloned().collect()
+}
+
+fn by_key(entries: &[Entry]) -> HashMap<Key<'_>, Vec<&Entry>> {
     let mut by_key: HashMap<Key, Vec<&Entry>> = HashMap::new();
-    for entry in carried {
+    for entry in entries {
         by_key.entry(entry.key()).or_default().push(entry);
     }
-    let mut rest = Vec::new();
-    for entry in entries {
-        let of_key = by_key.get_mut(&entry.key());
-        let found = of_key.and_then(|of_key| {
-            let index = of_key.iter().position(|known| *known == entry)?;
-            Some(of_key.remove(index))
-        });
-        if found.is_none() {
-            rest.push(entry.clone());
-        }
-    }
-    rest
+    by_key
 }
 
 /// Loads with body forces that are alike in one entry, where they act on all elements or on a set.

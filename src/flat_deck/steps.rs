@@ -4,9 +4,9 @@ use super::lines::{Lines, named, number, set};
 use super::loads::Loads;
 use super::mesh::first_of_rigid;
 use crate::model::{
-    Amplitude, ContactMass, Factorization, Frames, Impact, ImpactTime, Increments, LandingRule,
-    LcpChoice, Model, Procedure, Rate, Scheme, Settings, SolverChoice, Step, Support,
-    SupportMotion,
+    Amplitude, ContactMass, Factorization, Frames, HistorySet, Impact, ImpactTime, Increments,
+    LandingRule, LcpChoice, Model, NamedSets, Procedure, Rate, Scheme, Settings, SolverChoice,
+    Step, Support, SupportMotion,
 };
 
 /// Times on a data line.
@@ -82,8 +82,12 @@ fn settings(settings: &Settings, lines: &mut Lines) {
         impact,
         impact_time,
         landing,
+        is_check_only,
         ..
     } = *settings;
+    if is_check_only {
+        lines.card("NO ANALYSIS", []);
+    }
     let mut parameters = match scheme {
         Scheme::EnergyMomentum => vec![set("SCHEME", "ENERGY-MOMENTUM")],
         Scheme::Ss22 { theta1, theta2 } => vec![
@@ -125,6 +129,7 @@ fn solver_settings(settings: &Settings) -> [String; 6] {
         solver,
         tolerance,
         max_passes,
+        is_check_only: _,
     } = *settings;
     let contact_mass = match contact_mass {
         ContactMass::Consistent => "CONSISTENT",
@@ -265,20 +270,25 @@ fn requests(index: usize, step: &Step, model: &Model, lines: &mut Lines) {
     if let Some(when) = when {
         lines.card("OUTPUT", ["FIELD".to_owned(), when]);
     }
-    let history = if index == 0 {
-        &model.sets.history[..]
-    } else {
-        &[]
-    };
-    for asked in history {
-        let name = named("NSET", &model.sets.nodes[asked.set].name);
-        let totals = if asked.each_node { "YES" } else { "ONLY" };
-        lines.card("NODE PRINT", [name, set("TOTALS", totals)]);
+    if index == 0 {
+        histories(&model.sets, lines);
+        for &dof in &model.sets.monitored {
+            let [node, direction] = dof_fields(dof, model);
+            lines.card("MONITOR", [set("NODE", node), set("DOF", direction)]);
+        }
+    }
+}
+
+fn histories(sets: &NamedSets, lines: &mut Lines) {
+    let totals = |asked: &HistorySet| set("TOTALS", if asked.each_member { "YES" } else { "ONLY" });
+    for asked in &sets.history {
+        let name = named("NSET", &sets.nodes[asked.set].name);
+        lines.card("NODE PRINT", [name, totals(asked)]);
         lines.row(["U", "V", "RF"].map(str::to_owned));
     }
-    let monitored = &model.sets.monitored;
-    for &dof in monitored.iter().filter(|_| index == 0) {
-        let [node, direction] = dof_fields(dof, model);
-        lines.card("MONITOR", [set("NODE", node), set("DOF", direction)]);
+    for asked in &sets.element_history {
+        let name = named("ELSET", &sets.elements[asked.set].name);
+        lines.card("EL PRINT", [name, totals(asked)]);
+        lines.row(["S", "E", "ENER", "ELSE", "ELKE", "EVOL"].map(str::to_owned));
     }
 }

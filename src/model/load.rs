@@ -28,6 +28,30 @@ pub struct Load<T> {
     pub variation: Variation,
 }
 
+impl<T> Load<T> {
+    /// Magnitudes at start and end of the step; none where an amplitude gives them.
+    pub fn ends(&self) -> Option<[f64; 2]> {
+        match self.variation {
+            Variation::Constant => Some([self.magnitude; 2]),
+            Variation::Ramp { from } => Some([from, self.magnitude]),
+            Variation::Amplitude(_) => None,
+        }
+    }
+
+    /// The load with these magnitudes at start and end of the step, linear in between.
+    pub fn between(self, [from, magnitude]: [f64; 2]) -> Self {
+        let variation = match from == magnitude {
+            true => Variation::Constant,
+            false => Variation::Ramp { from },
+        };
+        Load {
+            magnitude,
+            variation,
+            ..self
+        }
+    }
+}
+
 /// Concentrated force (magnitude: force) on one dof, `2 node + direction`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointLoad {

@@ -77,6 +77,11 @@ impl Model {
         element_name(element, &self.mesh, &self.sets.instances)
     }
 
+    /// Whether the deck shall be read and checked only (`*NO ANALYSIS`).
+    pub fn is_check_only(&self) -> bool {
+        self.steps.iter().any(|step| step.settings.is_check_only)
+    }
+
     /// Segments [a, b] of all rigid surfaces.
     pub fn rigid_segments(&self) -> Vec<[usize; 2]> {
         let segments = self.surfaces.iter().map(|surface| match &surface.kind {

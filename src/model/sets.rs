@@ -1,6 +1,7 @@
-//! Named sets of nodes and elements, the node sets of the history output (group `/history/nodes` of
-//! the result file), dofs in the status file, and instances of parts: which nodes and elements are theirs, and the numbers these
-//! have in the part. The numbers of the mesh are then the program's own, each once.
+//! Named sets of nodes and elements, those of the history output (groups `/history/nodes` and
+//! `/history/elements` of the result file), dofs in the status file, and instances of parts: which nodes
+//! and elements are theirs, and the numbers these have in the part. The numbers of the mesh are then the
+//! program's own, each once.
 
 use super::mesh::{Mesh, Set};
 
@@ -13,19 +14,21 @@ pub struct NamedSets {
     pub elements: Vec<Set>,
     /// Node sets whose motion and reactions go to the history, each at most once.
     pub history: Vec<HistorySet>,
+    /// Element sets whose stresses, strains and energies go to the history, each at most once.
+    pub element_history: Vec<HistorySet>,
     /// Dofs whose displacements stand in the status file, each at most once.
     pub monitored: Vec<usize>,
     /// Instances of parts, in the order of their nodes; none in a flat deck.
     pub instances: Vec<Instance>,
 }
 
-/// A node set in the history: sums and means over the set are always written.
+/// A set in the history: sums over the set, and means over nodes, are always written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct HistorySet {
-    /// Index into `NamedSets::nodes`.
+    /// Index into `NamedSets::nodes` or `NamedSets::elements`.
     pub set: usize,
-    /// Whether motion and reactions of every node of the set are written too.
-    pub each_node: bool,
+    /// Whether the values of every member are written too.
+    pub each_member: bool,
 }
 
 /// An instance of a part. Its nodes and elements follow one another in the mesh.

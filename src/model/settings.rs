@@ -1,7 +1,7 @@
 //! Solver settings of a step: time integration and convergence (docs/theory.md, section 4), impacts
-//! (section 6), complementarity solver (section 8), sparse factorisation.
+//! (section 6), complementarity solver (section 8), sparse factorisation; whether to solve at all.
 
-/// Settings of `*STICKSLIP` for one step.
+/// Settings of `*STICKSLIP` and `*NO ANALYSIS` for one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Time integration.
@@ -24,6 +24,8 @@ pub struct Settings {
     pub tolerance: f64,
     /// Largest number of passes of an increment.
     pub max_passes: usize,
+    /// Whether the deck shall be read and checked only (`*NO ANALYSIS`).
+    pub is_check_only: bool,
 }
 
 impl Default for Settings {
@@ -39,6 +41,7 @@ impl Default for Settings {
             solver: SolverChoice::Faer,
             tolerance: 1e-11,
             max_passes: 25,
+            is_check_only: false,
         }
     }
 }

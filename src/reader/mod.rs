@@ -16,13 +16,14 @@ mod steps;
 
 use crate::deck::{self, Card, Deck};
 use crate::diagnostics::{Diagnostics, Sources};
-use crate::model::{ElementsAtNodes, Face, Mesh, Model, NamedSets, Set};
+use crate::model::{ElementsAtNodes, Instance, Mesh, Model, NamedSets};
 use contact::{pairs, rigid_surface};
 use context::Context;
 use materials::Properties;
-use mesh::{Outline, nodes_elements, sets, surface};
+use mesh::{Outline, Sets, nodes_elements, sets, surface};
 use std::path::Path;
 use steps::boundary::Targets;
+use steps::output::Histories;
 use steps::{amplitude, equation, initial_velocity, step};
 
 /// Reads a deck file into a model; `None` if there are errors.
@@ -73,13 +74,7 @@ fn read(cx: &mut Context) -> Model {
     let model = Model {
         title: title(&outline),
         mesh: with_sections(mesh_index.mesh, &properties),
-        sets: NamedSets {
-            nodes: sets.nodes,
-            elements: plane_sets(sets.elements, &sets.lines),
-            history: steps.history,
-            monitored: steps.monitored,
-            instances: mesh_index.instances,
-        },
+        sets: named_sets(sets, steps.histories, mesh_index.instances),
         surfaces: surfaces.all,
         materials: properties.materials,
         sections: properties.sections,
@@ -101,11 +96,25 @@ fn read(cx: &mut Context) -> Model {
     model
 }
 
-/// Element sets without those that hold line elements only.
-fn plane_sets(sets: Vec<Set>, lines: &[Vec<Face>]) -> Vec<Set> {
-    let sets = sets.into_iter().zip(lines);
-    let kept = sets.filter(|(set, lines)| !set.members.is_empty() || lines.is_empty());
-    kept.map(|(set, _)| set).collect()
+/// The sets of the model: element sets without those that hold line elements only.
+fn named_sets(sets: Sets, histories: Histories, instances: Vec<Instance>) -> NamedSets {
+    let is_kept = |&set: &usize| !sets.holds_lines_only(set);
+    let kept: Vec<usize> = (0..sets.elements.len()).filter(is_kept).collect();
+    let mut element_history = histories.elements;
+    for asked in &mut element_history {
+        asked.set = kept.partition_point(|&set| set < asked.set);
+    }
+    let mut elements = sets.elements;
+    NamedSets {
+        nodes: sets.nodes,
+        elements: (kept.into_iter())
+            .map(|set| std::mem::take(&mut elements[set]))
+            .collect(),
+        history: histories.nodes,
+        element_history,
+        monitored: histories.monitored,
+        instances,
+    }
 }
 
 /// Text under `*HEADING`, lines joined by a blank.

@@ -43,6 +43,7 @@ pub fn model() -> Model {
             nodes: vec![set("ALL", 0..7), set("TIP", [6]), set("NOTHING", [])],
             elements: vec![set("SQUARES", 0..2)],
             history: vec![asked(1, true), asked(2, true), asked(0, false)],
+            element_history: vec![asked(0, true)],
             monitored: vec![12, 1],
             instances: Vec::new(),
         },
@@ -102,8 +103,8 @@ fn set(name: &str, members: impl IntoIterator<Item = usize>) -> Set {
     }
 }
 
-fn asked(set: usize, each_node: bool) -> HistorySet {
-    HistorySet { set, each_node }
+fn asked(set: usize, each_member: bool) -> HistorySet {
+    HistorySet { set, each_member }
 }
 
 fn surface(name: &str, kind: SurfaceKind) -> Surface {

@@ -9,19 +9,17 @@ use crate::cli::error::CliError;
 use crate::cli::exit::Exit;
 use crate::cli::terminal::{coloured, complain, print};
 use crate::output::{ModelEcho, check_names, deck_line, picture, regular_file};
+use crate::prepare::PreparedModel;
 
 /// Reads a deck and describes its model.
 pub(in crate::cli) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exit, CliError> {
     let loaded = load(&args.deck, numerics)?;
     complain_of(&loaded.all_messages);
-    print(&[deck_line_of(&args.deck.path, &loaded, None)])?;
     let Some(model) = &loaded.model else {
+        print(&[deck_line_of(&args.deck.path, &loaded, None)])?;
         return Ok(Exit::Rejected);
     };
-    check_names(model.model())?;
-    let echo = ModelEcho::new(model.model());
-    print(&echo.lines(model))?;
-    print(&echo.guide())?;
+    describe(&args.deck, &loaded, model)?;
     if let Some(path) = &args.picture {
         let written = fs::write(path, picture(model.model()));
         written.map_err(|source| CliError::File {
@@ -30,6 +28,19 @@ pub(in crate::cli) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exi
         })?;
     }
     Ok(Exit::Finished)
+}
+
+/// Prints what a deck holds and what it says about the increment.
+pub(super) fn describe(
+    deck: &DeckArgs,
+    loaded: &Loaded,
+    model: &PreparedModel,
+) -> Result<(), CliError> {
+    print(&[deck_line_of(&deck.path, loaded, None)])?;
+    check_names(model.model())?;
+    let echo = ModelEcho::new(model.model());
+    print(&echo.lines(model))?;
+    print(&echo.guide())
 }
 
 /// Reads a deck; a deck that cannot be opened is an error of the file system.

@@ -26,8 +26,8 @@ pub(in crate::cli) fn flatten(args: &FlattenArgs) -> Result<Exit, CliError> {
     let text = flat_deck(&model);
     if !reads_as(&text, &model) {
         complain(
-            "error: this deck cannot be written as a flat deck that reads as the same model: where \
-             steps have AMPLITUDE=RAMP, several loads at one place fade or grow apart",
+            "error: this deck cannot be written as a flat deck that reads as the same model: in a step with \
+             AMPLITUDE=RAMP a load on a face ramps while another there, in the same direction, follows an amplitude",
         );
         return Ok(Exit::Rejected);
     }

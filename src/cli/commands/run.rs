@@ -1,12 +1,13 @@
 //! The subcommand `run`: from the deck to the finished result files, however the run ends.
 
-use super::check::{complain_of, deck_line_of, load};
+use super::check::{complain_of, deck_line_of, describe, load};
 use super::overrides;
 use crate::cli::args::RunArgs;
 use crate::cli::connect::{Loaded, Numerics};
 use crate::cli::error::CliError;
 use crate::cli::exit::Exit;
 use crate::cli::signals;
+use crate::cli::terminal::print;
 use crate::cli::version::{COMMIT, NUMBER, PROFILE};
 use crate::dynamics::{Outcome, RunError};
 use crate::output::{
@@ -30,6 +31,9 @@ pub(in crate::cli) fn run(
     };
     if args.verbosity() != Verbosity::Quiet {
         complain_of(&loaded.messages);
+    }
+    if model.model().is_check_only() {
+        return check_only(args, &loaded, &model);
     }
     check_names(model.model())?;
     if interrupt.signal().is_some() {
@@ -61,6 +65,18 @@ pub(in crate::cli) fn run(
         Some(error) if exit == Exit::Finished => Err(CliError::Screen(error)),
         _ => Ok(exit),
     }
+}
+
+/// Describes the model of a deck that shall not be solved; no file is touched.
+fn check_only(args: &RunArgs, loaded: &Loaded, model: &PreparedModel) -> Result<Exit, CliError> {
+    if args.verbosity() == Verbosity::Quiet {
+        check_names(model.model())?;
+        return Ok(Exit::Finished);
+    }
+    describe(&args.deck, loaded, model)?;
+    let line = "run      nothing was solved and no file written: the deck has *NO ANALYSIS";
+    print(&[line.to_owned()])?;
+    Ok(Exit::Finished)
 }
 
 /// Solves the model and completes the results.

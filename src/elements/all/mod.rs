@@ -2,7 +2,9 @@
 
 mod damped;
 mod elements;
+mod inertia;
 mod sweeps;
 
 pub use elements::Elements;
+pub use inertia::ElementInertia;
 pub use sweeps::{Inverted, Updated};

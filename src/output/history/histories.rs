@@ -4,8 +4,8 @@ use hdf5::Group;
 
 use super::bodies::BodyHistory;
 use super::contacts::{ContactHistory, Impacts, create_contacts};
-use super::nodes::{NodeHistory, create_nodes};
 use super::rigid_surfaces::{RigidHistory, create_rigid};
+use super::sets::SetHistories;
 use super::strains::StrainHistory;
 use crate::dynamics::{Energy, IncrementReport, Momentum, SolverCounts};
 use crate::model::Model;
@@ -22,7 +22,7 @@ pub(crate) struct History {
     contacts: Vec<ContactHistory>,
     impacts: Impacts,
     rigid: Vec<RigidHistory>,
-    nodes: Vec<NodeHistory>,
+    sets: SetHistories,
     solver: SolverHistory,
     waiting: Waiting,
 }
@@ -51,7 +51,7 @@ impl History {
             contacts: create_contacts(&group(&at, "contact")?, model)?,
             impacts: Impacts::create(&group(&at, "impacts")?)?,
             rigid: create_rigid(&group(&at, "rigid")?, model)?,
-            nodes: create_nodes(&group(&at, "nodes")?, model)?,
+            sets: SetHistories::create(&at, model)?,
             solver: SolverHistory::create(&group(&at, "solver")?)?,
             waiting: Waiting { rows: 0, most: 1 },
         };
@@ -77,9 +77,7 @@ impl History {
         for (surface, reaction) in self.rigid.iter_mut().zip(&report.rigid) {
             surface.push(model, &report.state, reaction);
         }
-        for nodes in &mut self.nodes {
-            nodes.push(report);
-        }
+        self.sets.push(report);
         self.solver.push(&report.solver);
         self.waiting.rows += report.landings.len().max(1);
     }
@@ -120,9 +118,7 @@ impl History {
         for surface in &mut self.rigid {
             surface.columns(&mut all);
         }
-        for nodes in &mut self.nodes {
-            nodes.columns(&mut all);
-        }
+        self.sets.columns(&mut all);
         self.solver.columns(&mut all);
         all
     }

@@ -55,7 +55,7 @@ impl NodeHistory {
         let text = meaning("node numbers of the deck", "1");
         constant(at, "labels", &[labels.len()], &labels, text)?;
         Ok(NodeHistory {
-            each: match asked.each_node {
+            each: match asked.each_member {
                 true => columns(at, &[nodes.len(), 2], &EACH)?,
                 false => Vec::new(),
             },

@@ -27,6 +27,14 @@ pub(crate) struct Sets {
 }
 
 impl Sets {
+    /// Whether an element set holds line elements and no others.
+    pub fn holds_lines_only(&self, set: usize) -> bool {
+        let lines = self.lines.get(set);
+        let elements = self.elements.get(set);
+        lines.is_some_and(|lines| !lines.is_empty())
+            && elements.is_some_and(|set| set.members.is_empty())
+    }
+
     /// The node, or the nodes of the set, that a field names.
     pub fn nodes_of(&self, field: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<usize> {
         match cx.is_number(field) {

@@ -2,7 +2,7 @@
 
 use super::signal::{self, Axes, positive};
 use crate::deck::{Card, Row, Text};
-use crate::diagnostics::Code;
+use crate::diagnostics::{Code, Diagnostic};
 use crate::model::{Amplitude, Curve, TimeBase};
 use crate::reader::context::Context;
 use crate::reader::names::Names;
@@ -102,8 +102,26 @@ fn points(given: Vec<Given>, axes: Axes, cx: &mut Context) -> Option<Vec<(f64, f
     (!points.is_empty()).then_some(points)
 }
 
+/// Numbers that other codes read of a line of a table.
+const NUMBERS: usize = 8;
+
+/// Warns about the first line that has more numbers than other codes read.
+pub(super) fn report_long_rows(card: &Card, cx: &mut Context) {
+    let mut rows = card.rows.iter();
+    let long = rows.find_map(|row| row.fields().nth(NUMBERS));
+    if let Some(field) = long {
+        let message = format!("more than {NUMBERS} numbers on a line of {}", card.title());
+        let warning = Diagnostic::warning(Code::LongLine, field.span, message);
+        cx.d.push(
+            warning
+                .help("all are read here; Abaqus and CalculiX leave out those beyond the eighth"),
+        );
+    }
+}
+
 /// `time, value, time, value, ...`
 fn tabulated<'a>(card: &'a Card, cx: &mut Context) -> Vec<Given<'a>> {
+    report_long_rows(card, cx);
     let mut given = Vec::new();
     for row in card.rows.iter() {
         given.extend(pairs(row, cx));
@@ -113,6 +131,7 @@ fn tabulated<'a>(card: &'a Card, cx: &mut Context) -> Vec<Given<'a>> {
 
 /// `value, value, ...` at BEGIN and every FIXED INTERVAL after it.
 fn equally_spaced<'a>(card: &'a Card, cx: &mut Context) -> Vec<Given<'a>> {
+    report_long_rows(card, cx);
     let interval = card.required("FIXED INTERVAL", cx.d);
     let begin = card.real("BEGIN", cx.d).unwrap_or(0.0);
     let Some(interval) = interval.and_then(|field| positive(field, "the interval", cx)) else {

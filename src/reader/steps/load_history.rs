@@ -2,7 +2,7 @@
 
 use crate::deck::Card;
 use crate::diagnostics::{Code, Diagnostic};
-use crate::model::{Amplitude, Load, TimeBase, Variation};
+use crate::model::{Amplitude, Face, Load, TimeBase, Variation};
 use crate::reader::context::Context;
 
 /// How a load without amplitude reaches its magnitude, and the step it is given in.
@@ -71,7 +71,9 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
     pub fn list(&mut self) -> Vec<Load<T>> {
         self.sort();
         let mut list = Vec::with_capacity(self.parts.len());
-        list.extend(self.parts.iter().map(|(_, part)| part.load));
+        let as_simple = |load: Load<T>| load.ends().map_or(load, |ends| load.between(ends));
+        let parts = self.parts.iter();
+        list.extend(parts.map(|(_, part)| as_simple(part.load)));
         list
     }
 
@@ -146,6 +148,28 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         self.parts.retain(|(_, part)| acts(part));
         self.sorted = self.parts.len();
     }
+}
+
+/// Loads on faces in the order of the faces, on each those without amplitude first, which are one load where
+/// they have one direction.
+pub(super) fn joined<T: Copy + PartialEq>(
+    mut loads: Vec<Load<T>>,
+    face: fn(&Load<T>) -> Face,
+) -> Vec<Load<T>> {
+    loads.sort_by_key(|load| (face(load), load.ends().is_none()));
+    let mut all: Vec<Load<T>> = Vec::with_capacity(loads.len());
+    for load in loads {
+        let before = all.iter_mut().rev();
+        let mut on_face = before.take_while(|known| face(known) == face(&load));
+        let same = on_face.find(|known| known.at == load.at && known.ends().is_some());
+        match same.and_then(|known| Some((known.ends()?, load.ends()?, known))) {
+            Some(([from, to], [more, end], known)) => {
+                *known = known.between([from + more, to + end]);
+            }
+            None => all.push(load),
+        }
+    }
+    all
 }
 
 /// Joins constant loads at the same place and in the same direction.

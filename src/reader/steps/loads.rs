@@ -1,7 +1,7 @@
 //! `*CLOAD`, `*DLOAD` and `*DSLOAD`.
 
 use super::boundary::{Targets, row_direction};
-use super::load_history::{LoadHistory, Operation, StepContext};
+use super::load_history::{LoadHistory, Operation, StepContext, joined};
 use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Amplitude, BodyForce, Face, PointLoad, Pressure, Step, SurfaceKind, Traction};
@@ -260,16 +260,16 @@ impl Loads {
         }
     }
 
-    /// Writes the loads of the current step; those of faces in the order of the faces.
+    /// Writes the loads of the current step.
     pub fn fill(&mut self, step: &mut Step) {
         step.point_loads = self.points.list();
         step.body_forces = self.bodies.list();
-        step.pressures = self.pressures.list();
-        step.pressures.extend(self.surface_pressures.list());
-        step.pressures.sort_by_key(|load| load.at.face);
-        step.tractions = self.face_tractions.list();
-        step.tractions.extend(self.tractions.list());
-        step.tractions.sort_by_key(|load| load.at.face);
+        let mut pressures = self.pressures.list();
+        pressures.extend(self.surface_pressures.list());
+        step.pressures = joined(pressures, |load| load.at.face);
+        let mut tractions = self.face_tractions.list();
+        tractions.extend(self.tractions.list());
+        step.tractions = joined(tractions, |load| load.at.face);
     }
 
     /// Ends a step of duration `period` at total time `total`.

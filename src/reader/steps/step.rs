@@ -4,10 +4,10 @@ use super::amplitude::Amplitudes;
 use super::boundary::{Supports, Targets};
 use super::load_history::{Operation, StepContext};
 use super::loads::Loads;
-use super::output_requests::{Requests, restart, time_points};
+use super::output::{Histories, Requests, restart};
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic};
-use crate::model::{HistorySet, Impact, Increments, Procedure, Settings, Step, Support};
+use crate::model::{Impact, Increments, Procedure, Settings, Step, Support};
 use crate::reader::contact::rigid_surface;
 use crate::reader::context::Context;
 use crate::reader::mesh::{Outline, StepCards, Surfaces};
@@ -20,10 +20,8 @@ const MOST_INCREMENTS: f64 = 1e12;
 pub(crate) struct Steps {
     /// Steps in order.
     pub all: Vec<Step>,
-    /// Node sets of the history.
-    pub history: Vec<HistorySet>,
-    /// Dofs in the status file.
-    pub monitored: Vec<usize>,
+    /// What the histories and the status file show.
+    pub histories: Histories,
     /// Supports of the first step.
     pub at_start: Vec<Support>,
 }
@@ -44,7 +42,7 @@ pub(crate) fn read(
         supports: Supports::default(),
         support_operation: Operation::default(),
         loads: Loads::default(),
-        requests: Requests::new(time_points(cx)),
+        requests: Requests::new(cx),
         nonlinear: false,
         start: 0.0,
     };
@@ -54,6 +52,7 @@ pub(crate) fn read(
         }
         reading.supports.card(card, 0, targets, cx);
     }
+    reading.settings.is_check_only = !outline.model_cards("NO ANALYSIS").is_empty();
     for card in outline.model_cards("RESTART") {
         restart(card, cx);
     }
@@ -64,8 +63,7 @@ pub(crate) fn read(
     }
     Steps {
         all: steps,
-        history: reading.requests.history,
-        monitored: reading.requests.monitored,
+        histories: reading.requests.histories,
         at_start: at_start.unwrap_or_default(),
     }
 }
@@ -181,6 +179,7 @@ impl Reading<'_> {
             let now = self.settings.contact_mass;
             settings::check_contact_mass(card, [before, now], number, cx);
         }
+        self.settings.is_check_only |= !named(cards, "NO ANALYSIS").is_empty();
     }
 
     fn conditions(&mut self, cards: &StepCards, context: StepContext, cx: &mut Context) {

@@ -17,7 +17,7 @@ const FREQUENCY_F: P = P::value("FREQUENCYF", "contact elements are not written"
 const EVERYWHERE: P = P::value("NSET", "fields are written on the whole mesh").ignored();
 const ALL_ELEMENTS: P = P::value("ELSET", "fields are written on the whole mesh").ignored();
 const ALL_VARIABLES: P = P::value("VARIABLE", "all variables are written").ignored();
-const POSITION: P = P::value("POSITION", "stresses are written at element centres").ignored();
+const POSITION: P = P::value("POSITION", "stresses are means over elements").ignored();
 const DIRECTIONS: P = P::choice(
     "DIRECTIONS",
     YES_NO,
@@ -32,25 +32,24 @@ const LAST_ITERATIONS: P =
 const HISTORY_TIMES: P = P::value("TIME POINTS", "histories hold every increment").ignored();
 const SLAVE: P = P::value("SLAVE", "all contacts are written").ignored();
 const MASTER: P = P::value("MASTER", "all contacts are written").ignored();
-const HISTORY_EVERY: P = P::value("FREQUENCY", "histories hold every increment").ignored();
+const HISTORY_EVERY: P = P::value(
+    "FREQUENCY",
+    "0: no history; else without effect, histories hold every increment",
+);
+const CONTACT_EVERY: P = P::value("FREQUENCY", "histories hold every increment").ignored();
 const TOTALS: P = P::choice(
     "TOTALS",
     &[
-        V::read("NO", "motion and reactions of every node too (default)"),
+        V::read("NO", "the values of every node or element too (default)"),
         V::read("YES", "the same"),
         V::read(
             "ONLY",
-            "sums and means only, unless another card asks for all",
+            "sums (and means over nodes) only, unless another card asks for all",
         ),
     ],
     "sums over the set are always in the history",
 );
 const CONTACT_TOTALS: P = P::value("TOTALS", "sums are always written").ignored();
-const ENERGY_TOTALS: P = P::value(
-    "TOTALS",
-    "energies of the model and of every body are always written",
-)
-.ignored();
 const ALWAYS_WHOLE: &str = "always written for the whole model";
 const UNWRITTEN: &str = "The result file holds everything this program writes.";
 
@@ -127,7 +126,11 @@ pub(super) static OUTPUT: &[Keyword] = &[
         &[
             FREQUENCY,
             TIME_POINTS,
-            ALL_ELEMENTS,
+            P::value(
+                "ELSET",
+                "under *OUTPUT, HISTORY: element set of the history; else without effect, fields are \
+                 written on the whole mesh",
+            ),
             POSITION,
             OUTPUT_2D,
             GLOBAL,
@@ -136,10 +139,11 @@ pub(super) static OUTPUT: &[Keyword] = &[
             CONTACT_ELEMENTS,
             LAST_ITERATIONS,
         ],
-        "Fields on elements in frames; all are always written on the whole mesh.",
-        "*OUTPUT, FIELD, NUMBER INTERVAL=50\n\
-         *ELEMENT OUTPUT\n\
-         S, E",
+        "Under *OUTPUT, HISTORY the history of an element set; else fields on elements in frames, which are \
+         always all written on the whole mesh. Both hold means over elements.",
+        "*OUTPUT, HISTORY\n\
+         *ELEMENT OUTPUT, ELSET=EBLOCK\n\
+         S, ENER",
     ),
     Keyword::read(
         "EL FILE",
@@ -157,7 +161,7 @@ pub(super) static OUTPUT: &[Keyword] = &[
             CONTACT_ELEMENTS,
             LAST_ITERATIONS,
         ],
-        "The same as *ELEMENT OUTPUT.",
+        "Fields on elements in frames; all are always written on the whole mesh.",
         "*EL FILE, FREQUENCY=10\n\
          S",
     ),
@@ -202,7 +206,7 @@ pub(super) static OUTPUT: &[Keyword] = &[
         Scope::Step,
         Data::Rows(&[row(&[plain("variable")]).repeating(1)]),
         &[
-            P::value("NSET", "node set of the history; required"),
+            P::value("NSET", "node set of the history"),
             HISTORY_EVERY,
             HISTORY_TIMES,
             TOTALS,
@@ -218,16 +222,17 @@ pub(super) static OUTPUT: &[Keyword] = &[
         Scope::Step,
         Data::Rows(&[row(&[plain("variable")]).repeating(1)]),
         &[
-            ALL_ELEMENTS,
+            P::value("ELSET", "element set of the history"),
             HISTORY_EVERY,
             HISTORY_TIMES,
-            ENERGY_TOTALS,
+            TOTALS,
             GLOBAL,
             POSITION,
             SUMMARY,
         ],
-        "Energies of the model and of every body are always in the history; stresses are in the frames.",
-        "*EL PRINT, ELSET=EBLOCK\n\
+        "The history of an element set: sums of energies, and every element with its mean stresses and \
+         strains, energies and volume. Energies of the model and of every body are always in the history.",
+        "*EL PRINT, ELSET=EBLOCK, TOTALS=ONLY\n\
          ELSE, ELKE",
     ),
     Keyword::read(
@@ -237,7 +242,7 @@ pub(super) static OUTPUT: &[Keyword] = &[
         &[
             SLAVE,
             MASTER,
-            HISTORY_EVERY,
+            CONTACT_EVERY,
             HISTORY_TIMES,
             CONTACT_TOTALS,
             SUMMARY,

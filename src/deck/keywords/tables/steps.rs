@@ -218,19 +218,35 @@ pub(super) static STEPS: &[Keyword] = &[
         "*STICKSLIP, IMPACT TIME=EVENT, LANDING=RETURN, TOLERANCE=1.E-10",
     ),
     Keyword::read(
+        "NO ANALYSIS",
+        Scope::Anywhere,
+        Data::None,
+        &[],
+        "The deck is read and checked only, as by the command check: no step of it is solved.",
+        "*NO ANALYSIS",
+    ),
+    Keyword::read(
         "RESTART",
         Scope::Anywhere,
         Data::None,
         &[
-            P::flag("WRITE", "not available yet: left out with a warning"),
-            P::flag("READ", "a run cannot be continued yet").refused(),
+            P::flag(
+                "WRITE",
+                "left out with a warning; the result file keeps all frames",
+            ),
+            P::flag(
+                "READ",
+                "a run cannot be continued: give all steps in one deck",
+            )
+            .refused(),
             P::value("FREQUENCY", "0 switches restart files off"),
-            P::value("NUMBER INTERVAL", "restart frames are not written yet").ignored(),
-            P::value("STEP", "a run cannot be continued yet").ignored(),
-            P::value("INC", "a run cannot be continued yet").ignored(),
-            P::flag("OVERLAY", "restart frames are not written yet").ignored(),
+            P::value("NUMBER INTERVAL", "there are no restart files").ignored(),
+            P::value("STEP", "a run cannot be continued").ignored(),
+            P::value("INC", "a run cannot be continued").ignored(),
+            P::flag("OVERLAY", "there are no restart files").ignored(),
         ],
-        "Restart frames, which are not written yet; FREQUENCY=0 is accepted silently.",
+        "There are no restart files: a run goes from the first step to the last. One that ends early leaves \
+         its frames, the last good state among them. FREQUENCY=0 is accepted silently.",
         "*RESTART, WRITE, FREQUENCY=0",
     ),
     Keyword::warned("CONTROLS", OTHER_NUMBERS),
@@ -241,11 +257,6 @@ pub(super) static STEPS: &[Keyword] = &[
     Keyword::refused("FIXED MASS SCALING", UNSCALED),
     Keyword::warned("ADAPTIVE MESH", "The mesh stays as it is."),
     Keyword::warned("ADAPTIVE MESH CONTROLS", "The mesh stays as it is."),
-    Keyword::ignored(
-        "NO ANALYSIS",
-        "Use the program's check command to read a deck without running it.",
-    )
-    .of_words(),
     Keyword::refused("STATIC", PROCEDURE).example(DYNAMIC),
     Keyword::refused("VISCO", PROCEDURE).example(DYNAMIC),
     Keyword::refused("FREQUENCY", PROCEDURE).example(DYNAMIC),

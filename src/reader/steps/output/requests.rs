@@ -1,18 +1,12 @@
-//! `*OUTPUT`, `*NODE OUTPUT`, `*NODE FILE`, `*NODE PRINT` and related keywords; `*TIME POINTS`,
-//! `*MONITOR`.
+//! `*OUTPUT`, `*NODE OUTPUT`, `*NODE FILE`, `*NODE PRINT` and related keywords; `*RESTART`.
 
-use super::amplitude::time_base;
-use super::boundary::Targets;
-use super::monitor::monitored;
+use super::histories::{Family, Histories};
+use super::time_points::{TimePoints, time_points};
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic, shown};
-use crate::model::{Frames, HistorySet, TimeBase};
+use crate::model::{Frames, TimeBase};
 use crate::reader::context::Context;
-use crate::reader::mesh::Sets;
-use crate::reader::names::Names;
-
-/// Largest number of frames a deck may generate.
-const MOST_TIMES: f64 = 1e6;
+use crate::reader::steps::boundary::Targets;
 
 /// Variables that the result file holds.
 const WRITTEN: &[&str] = &[
@@ -22,73 +16,6 @@ const WRITTEN: &[&str] = &[
     "CSHEAR1", "COPEN", "CSLIP1", "ALLKE", "ALLSE", "ALLIE", "ALLWK", "ALLFD", "ALLVD", "ETOTAL",
 ];
 
-/// Named lists of times.
-pub(crate) struct TimePoints {
-    names: Names,
-    all: Vec<(TimeBase, Vec<f64>)>,
-}
-
-/// Reads all `*TIME POINTS`.
-pub(crate) fn time_points(cx: &mut Context) -> TimePoints {
-    let mut points = TimePoints {
-        names: Names::new("list of time points"),
-        all: Vec::new(),
-    };
-    let deck = cx.deck;
-    for card in deck
-        .cards
-        .iter()
-        .filter(|card| card.keyword.name == "TIME POINTS")
-    {
-        let Some(name) = points.names.new_name(card, cx) else {
-            continue;
-        };
-        let errors = cx.errors();
-        let generate = card.has("GENERATE");
-        let mut times = Vec::new();
-        for row in card.rows.iter() {
-            match generate {
-                true => times.extend(generated(row, cx)),
-                false => times.extend(row.fields().filter_map(|field| field.real(cx.d))),
-            }
-        }
-        if cx.errors() > errors || card.faulty {
-            points.names.spoil(&name);
-            continue;
-        }
-        times.sort_by(f64::total_cmp);
-        times.dedup();
-        points.all.push((time_base(card), times));
-        points.names.define(name);
-    }
-    points
-}
-
-/// `first, last, increment`
-fn generated(row: Row, cx: &mut Context) -> Vec<f64> {
-    row.at_most(3, cx.d);
-    let first = row.real(0, "the first time", cx.d);
-    let last = row.real(1, "the last time", cx.d);
-    let step = row.real(2, "the increment", cx.d);
-    let (Some(first), Some(last), Some(step)) = (first, last, step) else {
-        return Vec::new();
-    };
-    let count = ((last - first) / step + 1e-9).floor();
-    if step <= 0.0 || !(0.0..=MOST_TIMES).contains(&count) {
-        let message = format!(
-            "no times run from {} to {} in steps of {}",
-            shown(first),
-            shown(last),
-            shown(step)
-        );
-        cx.error(Code::OutputTimes, row.span(), message);
-        return Vec::new();
-    }
-    (0..=count as usize)
-        .map(|i| first + i as f64 * step)
-        .collect()
-}
-
 /// Output requests of the deck so far.
 pub(crate) struct Requests {
     points: TimePoints,
@@ -96,44 +23,44 @@ pub(crate) struct Requests {
     frames: Frames,
     /// Time points in total time: those of each step are selected when it is built.
     total_times: Option<Vec<f64>>,
-    /// Node sets of the history.
-    pub history: Vec<HistorySet>,
-    /// Dofs in the status file.
-    pub monitored: Vec<usize>,
+    /// What the histories and the status file show.
+    pub histories: Histories,
 }
 
 impl Requests {
     /// Nothing yet.
-    pub fn new(points: TimePoints) -> Requests {
+    pub fn new(cx: &mut Context) -> Requests {
         Requests {
-            points,
+            points: time_points(cx),
             frames: Frames::Default,
             total_times: None,
-            history: Vec::new(),
-            monitored: Vec::new(),
+            histories: Histories::default(),
         }
     }
 
     /// Reads the output cards of a step.
     pub fn cards(&mut self, cards: &[&Card], targets: Targets, cx: &mut Context) {
-        let sets = targets.sets;
         let mut in_history = None;
         for card in cards {
-            match card.keyword.name {
-                "OUTPUT" => in_history = self.output(card, cx),
-                "NODE PRINT" => self.history(card, true, sets, cx),
-                "NODE OUTPUT" if in_history == Some(true) => self.history(card, false, sets, cx),
-                "NODE OUTPUT" | "ELEMENT OUTPUT" | "CONTACT OUTPUT" if in_history.is_some() => {
-                    card.value("NSET");
+            match (card.keyword.name, in_history) {
+                ("OUTPUT", _) => in_history = self.output(card, cx),
+                ("NODE PRINT", _) | ("NODE OUTPUT", Some(true)) => {
+                    self.history(card, Family::Nodes, targets, cx);
                 }
-                "NODE OUTPUT" | "ELEMENT OUTPUT" | "CONTACT OUTPUT" | "NODE FILE" | "EL FILE"
-                | "CONTACT FILE" => {
-                    card.value("NSET");
+                ("EL PRINT", _) | ("ELEMENT OUTPUT", Some(true)) => {
+                    self.history(card, Family::Elements, targets, cx);
+                }
+                ("NODE OUTPUT" | "ELEMENT OUTPUT" | "CONTACT OUTPUT", Some(_)) => {
+                    skip_sets(card);
+                }
+                ("NODE OUTPUT" | "ELEMENT OUTPUT" | "CONTACT OUTPUT", None)
+                | ("NODE FILE" | "EL FILE" | "CONTACT FILE", _) => {
+                    skip_sets(card);
                     self.when(card, cx);
                 }
-                "EL PRINT" | "CONTACT PRINT" | "ENERGY OUTPUT" => {}
-                "RESTART" => restart(card, cx),
-                "MONITOR" => self.monitor(card, targets, cx),
+                ("CONTACT PRINT" | "ENERGY OUTPUT", _) => {}
+                ("RESTART", _) => restart(card, cx),
+                ("MONITOR", _) => self.histories.monitor(card, targets, cx),
                 _ => continue,
             }
             report_variables(card, cx);
@@ -163,34 +90,10 @@ impl Requests {
         }
     }
 
-    /// Adds the node set of a card to the history.
-    fn history(&mut self, card: &Card, required: bool, sets: &Sets, cx: &mut Context) {
-        let name = match required {
-            true => card.required("NSET", cx.d),
-            false => card.value("NSET"),
-        };
+    /// Adds the set of a card to the history.
+    fn history(&mut self, card: &Card, family: Family, targets: Targets, cx: &mut Context) {
         self.check_when(card, cx);
-        let Some(name) = name else {
-            if !required {
-                let message = "the history of all nodes is not written";
-                let warning = Diagnostic::warning(Code::IgnoredVariable, card.span, message);
-                cx.d.push(warning.help("name a node set with NSET="));
-            }
-            return;
-        };
-        let each_node = card.choice("TOTALS") != Some("ONLY");
-        let Some(set) = sets.node_names.find(name, cx) else {
-            return;
-        };
-        match self.history.iter_mut().find(|known| known.set == set) {
-            Some(known) => known.each_node |= each_node,
-            None => self.history.push(HistorySet { set, each_node }),
-        }
-    }
-
-    fn monitor(&mut self, card: &Card, targets: Targets, cx: &mut Context) {
-        let new = monitored(card, targets, cx).filter(|dof| !self.monitored.contains(dof));
-        self.monitored.extend(new);
+        self.histories.card(card, family, targets.sets, cx);
     }
 
     /// Sets the times of frames, if the card gives any.
@@ -233,8 +136,7 @@ impl Requests {
 
     fn at_time_points(&self, card: &Card, cx: &mut Context) -> Option<(Frames, Option<Vec<f64>>)> {
         let name = card.value("TIME POINTS")?;
-        let index = self.points.names.find(name, cx)?;
-        let (base, times) = self.points.all.get(index)?;
+        let (base, times) = self.points.find(name, cx)?;
         let total_times = (*base == TimeBase::Total).then(|| times.clone());
         Some((Frames::Times(times.clone()), total_times))
     }
@@ -253,6 +155,12 @@ impl Requests {
             (None, frames) => frames.clone(),
         }
     }
+}
+
+/// Sets that fields are asked for on, which are written on the whole mesh.
+fn skip_sets(card: &Card) {
+    card.value("NSET");
+    card.value("ELSET");
 }
 
 const WHEN: [&str; 4] = [
@@ -298,11 +206,11 @@ fn time_interval(card: &Card, cx: &mut Context) -> Option<Frames> {
 pub(crate) fn restart(card: &Card, cx: &mut Context) {
     let off = card.integer("FREQUENCY", cx.d) == Some(0);
     if card.has("WRITE") && !off {
-        let message = "*RESTART, WRITE is left out: a run cannot be continued yet";
-        cx.d.push_once(Diagnostic::warning(
-            Code::IgnoredKeyword,
-            card.span,
-            message,
+        let message = "*RESTART, WRITE is left out: there are no restart files";
+        let warning = Diagnostic::warning(Code::IgnoredKeyword, card.span, message);
+        cx.d.push_once(warning.help(
+            "a run that ends early leaves its frames, the last good state among them; to go on from there, run \
+             the deck with all its steps again",
         ));
     }
 }

@@ -1,9 +1,9 @@
 //! `*MONITOR`: displacements of nodes as columns of the status file.
 
-use super::boundary::{Direction, Targets, direction};
 use crate::deck::Card;
 use crate::diagnostics::{Code, Diagnostic};
 use crate::reader::context::Context;
+use crate::reader::steps::boundary::{Direction, Targets, direction};
 
 /// The dof that a card names.
 pub(super) fn monitored(card: &Card, targets: Targets, cx: &mut Context) -> Option<usize> {
