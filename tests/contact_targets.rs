@@ -45,7 +45,7 @@ fn targets_of(
         slave: 0,
         held_by: &[],
     };
-    node.targets(all_segments(surfaces))
+    node.targets(all_segments(surfaces)).into_vec()
 }
 
 fn segments(targets: &[ContactTarget]) -> Vec<usize> {

@@ -10,8 +10,8 @@ pub(crate) mod tolerances;
 mod tunnelling;
 
 pub use constraints::{
-    ClosedPair, ClosedPairs, Compliance, Configurations, Constraint, ConstraintKey, PerDof,
-    RowForm, Rows, Scope, frictional_lcp,
+    ClosedPair, ClosedPairs, Compliance, Configurations, Constraint, ConstraintKey, DelassusSpace,
+    PerDof, RowForm, Rows, Scope, frictional_lcp,
 };
 pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
 pub(crate) use geometry::position;

@@ -70,17 +70,25 @@ impl Transformation {
 
     /// T^T v over the unknowns for a vector v over all dofs.
     pub fn restrict(&self, v: &[f64]) -> Vec<f64> {
+        let mut restricted = Vec::new();
+        self.write_restricted(v, &mut restricted);
+        restricted
+    }
+
+    /// Writes [`Self::restrict`].
+    pub fn write_restricted(&self, v: &[f64], restricted: &mut Vec<f64>) {
+        restricted.clear();
         if let Some(selected) = &self.selected {
-            return selected.iter().map(|&dof| v[dof]).collect();
+            restricted.extend(selected.iter().map(|&dof| v[dof]));
+            return;
         }
         // adding to -0.0 keeps every value, the sign of a zero included
-        let mut restricted = vec![-0.0; self.unknowns];
+        restricted.resize(self.unknowns, -0.0);
         for (row, value) in self.rows().zip(v) {
             for &(unknown, c) in row {
                 restricted[unknown] += c * value;
             }
         }
-        restricted
     }
 
     /// Adds T q to a vector v over all dofs.

@@ -31,12 +31,21 @@ impl Mesh {
     pub fn bodies(&self) -> Vec<usize> {
         let mut parent: Vec<usize> = (0..self.node_count()).collect();
         for element in &self.elements {
-            for pair in element.nodes.windows(2) {
-                let [p, q] = [root(&mut parent, pair[0]), root(&mut parent, pair[1])];
+            let Some((&first, others)) = element.nodes.split_first() else {
+                continue;
+            };
+            let mut p = root(&mut parent, first);
+            for &other in others {
+                let q = root(&mut parent, other);
                 parent[p.max(q)] = p.min(q);
+                p = p.min(q);
             }
         }
-        (0..parent.len()).map(|n| root(&mut parent, n)).collect()
+        // no parent comes behind its child
+        for node in 0..parent.len() {
+            parent[node] = parent[parent[node]];
+        }
+        parent
     }
 
     /// Faces that belong to one element only, in the order of the elements.
@@ -46,17 +55,45 @@ impl Mesh {
         faces.filter(|&face| !at_nodes.share(face, self)).collect()
     }
 
+    /// Length of the shortest side in each of `count` groups of elements, to which `group` assigns
+    /// them by their index; infinite where there is none.
+    pub fn shortest_sides(
+        &self,
+        count: usize,
+        group: impl Fn(usize, &Element) -> usize,
+    ) -> Vec<f64> {
+        let (mut squares, mut lengths) = (vec![f64::INFINITY; count], vec![f64::INFINITY; count]);
+        for (index, element) in self.elements.iter().enumerate() {
+            let group = group(index, element);
+            let square = self.shortest_square(element);
+            match square.is_normal() {
+                true => squares[group] = squares[group].min(square),
+                false => lengths[group] = lengths[group].min(self.shortest_side(element)),
+            }
+        }
+        let sides = squares.iter().zip(lengths);
+        sides
+            .map(|(square, length)| square.sqrt().min(length))
+            .collect()
+    }
+
+    /// Square of the length of the shortest side of an element.
+    fn shortest_square(&self, element: &Element) -> f64 {
+        let at = |node: usize| self.coordinates[node];
+        match *element.nodes.as_slice() {
+            [a, b, c] => shortest_square(&[a, b, c].map(at)),
+            [a, b, c, d] => shortest_square(&[a, b, c, d].map(at)),
+            ref nodes => shortest_square(&nodes.iter().map(|&node| at(node)).collect::<Vec<_>>()),
+        }
+    }
+
     /// Length of the shortest side of an element.
     pub fn shortest_side(&self, element: &Element) -> f64 {
-        let corners = self.corners(element);
-        let squares = sides(&corners).map(|[a, b]| {
-            let side = difference(a, b);
-            dot(side, side)
-        });
-        let square = squares.fold(f64::INFINITY, f64::min);
+        let square = self.shortest_square(element);
         if square.is_normal() {
             return square.sqrt();
         }
+        let corners = self.corners(element);
         let lengths = sides(&corners).map(|[a, b]| distance(a, b));
         lengths.fold(f64::INFINITY, f64::min)
     }
@@ -76,6 +113,15 @@ impl Mesh {
         elements
             .flat_map(|(element, e)| (0..e.sides().len()).map(move |side| Face { element, side }))
     }
+}
+
+#[inline]
+fn shortest_square(corners: &[[f64; 2]]) -> f64 {
+    let squares = sides(corners).map(|[a, b]| {
+        let side = difference(a, b);
+        dot(side, side)
+    });
+    squares.fold(f64::INFINITY, f64::min)
 }
 
 /// Sides [a, b] of a polygon; the one to the first corner comes first.

@@ -49,10 +49,8 @@ impl<'a> Context<'a> {
 
     /// Where a point of a part is in the instance of a row (length).
     pub fn placed(&self, at: [f64; 2], row: Row) -> [f64; 2] {
-        if self.deck.instances.is_empty() {
-            return at;
-        }
-        let instance = self.deck.instance_of(row.span());
+        let index = (row.instance() as usize).checked_sub(1);
+        let instance = index.and_then(|index| self.deck.instances.get(index));
         instance.map_or(at, |instance| instance.placement.of(at))
     }
 

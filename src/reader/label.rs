@@ -28,6 +28,8 @@ pub(super) struct LabelMap<T> {
     runs: Vec<(u64, usize)>,
     /// Values of the labels of all runs.
     values: Vec<T>,
+    /// The label after the largest one of the runs.
+    next: u64,
     /// Labels added behind larger ones.
     others: BTreeMap<u64, T>,
 }
@@ -37,6 +39,7 @@ impl<T> Default for LabelMap<T> {
         LabelMap {
             runs: Vec::new(),
             values: Vec::new(),
+            next: 0,
             others: BTreeMap::new(),
         }
     }
@@ -47,25 +50,24 @@ impl<T> LabelMap<T> {
     pub fn get(&self, label: u64) -> Option<&T> {
         match self.place(label) {
             Some(place) => self.values.get(place),
+            None if self.others.is_empty() => None,
             None => self.others.get(&label),
         }
     }
 
     /// Sets the value of a label; returns the one before.
     pub fn insert(&mut self, label: u64, value: T) -> Option<T> {
-        if let Some(place) = self.place(label) {
-            let slot = self.values.get_mut(place)?;
-            return Some(std::mem::replace(slot, value));
+        if label < self.next {
+            return match self.place(label) {
+                Some(place) => Some(std::mem::replace(self.values.get_mut(place)?, value)),
+                None => self.others.insert(label, value),
+            };
         }
-        let last = (self.runs.last())
-            .map(|&(first, place)| first + (self.values.len() - place) as u64 - 1);
-        if last.is_some_and(|last| label < last) || self.others.contains_key(&label) {
-            return self.others.insert(label, value);
-        }
-        if last.is_none_or(|last| label > last + 1) {
+        if label > self.next || self.runs.is_empty() {
             self.runs.push((label, self.values.len()));
         }
         self.values.push(value);
+        self.next = label + 1;
         None
     }
 
@@ -81,6 +83,9 @@ impl<T> LabelMap<T> {
 
     /// Index of a label of the runs among the values.
     fn place(&self, label: u64) -> Option<usize> {
+        if label >= self.next {
+            return None;
+        }
         let run = self.runs.partition_point(|&(first, _)| first <= label);
         let &(first, place) = self.runs.get(run.checked_sub(1)?)?;
         let end = self
@@ -120,9 +125,46 @@ impl<T> LabelMap<T> {
     }
 }
 
+/// Labels in any order, small where they follow each other.
+#[derive(Debug, Clone, Default)]
+pub(super) struct LabelList {
+    /// Runs of successive labels: the first one and how many.
+    runs: Vec<(u64, u64)>,
+}
+
+impl LabelList {
+    /// Adds a label at the end.
+    pub fn push(&mut self, label: u64) {
+        match self.runs.last_mut() {
+            Some((first, count)) if *first + *count == label => *count += 1,
+            _ => self.runs.push((label, 1)),
+        }
+    }
+
+    /// All labels in order.
+    pub fn iter(&self) -> impl Iterator<Item = u64> + '_ {
+        let runs = self.runs.iter();
+        runs.flat_map(|&(first, count)| first..first + count)
+    }
+
+    /// Number of labels.
+    pub fn len(&self) -> usize {
+        self.runs.iter().map(|(_, count)| *count as usize).sum()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_label_list_keeps_its_order() {
+        let labels = [3, 4, 5, 9, 8, 7, 8, label(2, 1), label(2, 2)];
+        let mut list = LabelList::default();
+        labels.iter().for_each(|&label| list.push(label));
+        assert!(list.iter().eq(labels) && list.len() == labels.len());
+        assert_eq!(list.runs.len(), 5);
+    }
 
     #[test]
     fn a_label_map_is_a_map_in_order() {

@@ -66,7 +66,7 @@ fn read(cx: &mut Context) -> Model {
         amplitudes: &amplitudes,
         rigid_bodies: &rigid_bodies,
     };
-    let guide = checks::crossing_time(&mesh_index.mesh, &properties);
+    let checks::Shortest { side, time: guide } = checks::shortest(&mesh_index.mesh, &properties);
     let steps = step::read(&outline, targets, &surfaces, guide, cx);
     let equations = equation::read(&outline, targets, &steps.all, cx);
     let initial_velocity = initial_velocity::read(&outline, targets, &steps.at_start, cx);
@@ -89,7 +89,7 @@ fn read(cx: &mut Context) -> Model {
         rigid_bodies: rigid_surface::bodies(&rigid_bodies),
     };
     checks::braked_flight(&model, &properties.damping_spans, cx);
-    checks::coincident_nodes(&model, &mesh_index.element_spans, cx);
+    checks::coincident_nodes(&model, side, &mesh_index.places, cx);
     checks::fixed_slaves(&model, cx);
     checks::proportion(&model.steps, &outline.steps, guide, cx);
     checks::motion(&model, &outline.steps, cx);
@@ -129,9 +129,9 @@ fn title(outline: &Outline) -> String {
 }
 
 fn with_sections(mut mesh: Mesh, properties: &Properties) -> Mesh {
-    let sections = properties.section_of.iter().zip(&properties.element_types);
-    for (element, (section, &element_type)) in mesh.elements.iter_mut().zip(sections) {
-        element.section = section.unwrap_or(0);
+    let types = properties.element_types.iter().enumerate();
+    for (element, (index, &element_type)) in mesh.elements.iter_mut().zip(types) {
+        element.section = properties.section_of(index).unwrap_or(0);
         element.element_type = element_type;
     }
     mesh

@@ -113,27 +113,22 @@ impl Names {
     }
 }
 
-/// Meaning of a node or element number of the deck.
+/// Meaning of a node or element number of the deck: an index, or none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Labelled {
-    /// The node or element of this index.
-    Index(u32),
-    /// One that is left out, which is reported.
-    LeftOut,
-}
+pub(super) struct Labelled(u32);
 
 impl Labelled {
+    /// A node or element that is left out, which is reported.
+    pub const LEFT_OUT: Labelled = Labelled(u32::MAX);
+
     /// The node or element of this index.
     pub fn new(index: usize) -> Labelled {
-        Labelled::Index(index as u32)
+        Labelled(index as u32)
     }
 
     /// The index, unless it is left out.
     pub fn index(self) -> Option<usize> {
-        match self {
-            Labelled::Index(index) => Some(index as usize),
-            Labelled::LeftOut => None,
-        }
+        (self != Labelled::LEFT_OUT).then_some(self.0 as usize)
     }
 }
 
@@ -176,7 +171,7 @@ impl Labels {
     pub fn renumber(&mut self, numbers: &[Option<usize>]) {
         for labelled in self.index.values_mut() {
             let number = labelled.index().and_then(|index| numbers[index]);
-            *labelled = number.map_or(Labelled::LeftOut, Labelled::new);
+            *labelled = number.map_or(Labelled::LEFT_OUT, Labelled::new);
         }
     }
 

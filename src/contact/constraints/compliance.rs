@@ -4,10 +4,8 @@
 
 use std::collections::BTreeMap;
 
-use pulp::Simd;
-use smallvec::SmallVec;
-
 use super::constraint::{Constraint, Rows};
+use super::responses::UnknownEntry;
 use crate::linear::{CheckedSolver, LinearError, Rotation, Transformation};
 
 /// The inverse of a factorised matrix at the unknowns that constraints act on, a block for each connected
@@ -58,50 +56,6 @@ impl Block {
     /// Row of an unknown.
     fn place(&self, unknown: usize) -> Option<usize> {
         self.unknowns.binary_search(&unknown).ok()
-    }
-}
-
-/// The rows of a constraint at one unknown.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct UnknownEntry {
-    /// Row of the inverse, in its block.
-    place: usize,
-    /// Its block, that of the group of the unknown.
-    pub block: usize,
-    /// Entries of Bn T and Bt T.
-    force: [f64; 2],
-    /// Entries of Gn T and Gt T.
-    derivative: [f64; 2],
-}
-
-/// The rows of some constraints at the unknowns of one block.
-#[derive(Default)]
-pub(super) struct GroupRows {
-    /// The constraints, increasing, each with the end of its entries.
-    pub members: Vec<(usize, usize)>,
-    entries: Vec<UnknownEntry>,
-}
-
-impl GroupRows {
-    /// Adds an entry of a constraint, which is the last one or comes after it.
-    pub fn push(&mut self, constraint: usize, entry: UnknownEntry) {
-        self.entries.push(entry);
-        let end = self.entries.len();
-        match self.members.last_mut() {
-            Some((last, at)) if *last == constraint => *at = end,
-            _ => self.members.push((constraint, end)),
-        }
-    }
-
-    /// Entries of the constraints with their numbers, one constraint after the other.
-    #[inline(always)]
-    pub fn iter(&self) -> impl Iterator<Item = (usize, &[UnknownEntry])> {
-        let mut start = 0;
-        self.members.iter().map(move |&(constraint, end)| {
-            let entries = &self.entries[start..end];
-            start = end;
-            (constraint, entries)
-        })
     }
 }
 
@@ -193,13 +147,17 @@ impl Compliance {
         &self.map
     }
 
-    /// Entries of the rows of a constraint, turned back with R^T, that are not all zero; it must have
-    /// been prepared in the scope.
-    pub(super) fn entries(&self, scope: &Scope, constraint: &Constraint) -> Vec<UnknownEntry> {
+    /// Calls `add` with the entries of the rows of a constraint, turned back with R^T, that are not all
+    /// zero; it must have been prepared in the scope.
+    pub(super) fn for_each_entry(
+        &self,
+        scope: &Scope,
+        constraint: &Constraint,
+        mut add: impl FnMut(UnknownEntry),
+    ) {
         let rows = [&constraint.force_rows, constraint.derivative_rows()];
         let rows = rows.map(|rows| self.turned_back(&constraint.dofs, rows));
         let blocks = self.blocks(scope);
-        let mut entries = Vec::with_capacity(constraint.dofs.len());
         for (k, &dof) in constraint.dofs.iter().enumerate() {
             let [force, derivative] =
                 (rows.each_ref()).map(|rows| [rows.normal[k], rows.tangential[k]]);
@@ -210,7 +168,7 @@ impl Compliance {
                 if let Some((at, block)) = Block::of(blocks, self.groups[unknown])
                     && let Some(place) = block.place(unknown)
                 {
-                    entries.push(UnknownEntry {
+                    add(UnknownEntry {
                         place,
                         block: at,
                         force: force.map(|entry| c * entry),
@@ -219,7 +177,6 @@ impl Compliance {
                 }
             }
         }
-        entries
     }
 
     /// Rows times R, over the dofs of a constraint, eq. (4.20).
@@ -240,34 +197,10 @@ impl Compliance {
         self.blocks(scope).len()
     }
 
-    /// W (B_l T)^T of eq. (5.1) of some constraints l in the rows of a block: what their normal and
-    /// tangential forces do to its unknowns.
-    #[inline(always)]
-    pub(super) fn respond<'q, S: Simd>(
-        &self,
-        simd: S,
-        (scope, block): (&Scope, usize),
-        constraints: impl ExactSizeIterator<Item = &'q [UnknownEntry]>,
-        responses: &mut Responses,
-    ) {
-        let Block {
-            unknowns, inverse, ..
-        } = &self.blocks(scope)[block];
-        let (size, count) = (unknowns.len(), constraints.len());
-        let Responses { rows, width, sums } = responses;
-        *width = 2 * count;
-        rows.resize(size * *width, 0.0);
-        for (l, entries) in constraints.enumerate() {
-            let column = |place: usize| &inverse[place * size..(place + 1) * size];
-            let terms = entries.iter().map(|e| (column(e.place), e.force));
-            combine(simd, &terms.collect::<Terms>(), (size, sums));
-            let [normal, tangential] = sums;
-            let both = normal.iter().zip(tangential.iter());
-            for (row, (normal, tangential)) in rows.chunks_exact_mut(*width).zip(both) {
-                row[l] = *normal;
-                row[count + l] = *tangential;
-            }
-        }
+    /// The inverse at the unknowns of a block of a scope, column by column, and their number.
+    pub(super) fn inverse(&self, scope: &Scope, block: usize) -> (&[f64], usize) {
+        let block = &self.blocks(scope)[block];
+        (&block.inverse, block.unknowns.len())
     }
 }
 
@@ -295,60 +228,4 @@ fn add_unknowns(blocks: &mut Vec<Block>, missing: &[(usize, usize)]) -> Vec<usiz
     }
     let places = groups.into_iter().filter_map(|g| Block::of(blocks, g));
     places.map(|(at, _)| at).collect()
-}
-
-/// What the forces of some constraints do to the unknowns of a block.
-#[derive(Default)]
-pub(super) struct Responses {
-    /// A row for every unknown: all normal forces, then all tangential ones.
-    rows: Vec<f64>,
-    /// Entries of a row.
-    width: usize,
-    /// What normal and tangential force of one constraint do.
-    sums: [Vec<f64>; 2],
-}
-
-/// (G_k T) Y of eq. (5.1) in the rows of a block: what the forces add to gap and slip of k.
-#[inline(always)]
-pub(super) fn product<S: Simd>(
-    simd: S,
-    k: &[UnknownEntry],
-    responses: &Responses,
-    sums: &mut [Vec<f64>; 2],
-) {
-    let Responses { rows, width, .. } = responses;
-    let row = |place: usize| &rows[place * width..(place + 1) * width];
-    let terms = k.iter().map(|e| (row(e.place), e.derivative));
-    combine(simd, &terms.collect::<Terms>(), (*width, sums));
-}
-
-/// Vectors of one length, each with two factors.
-type Terms<'a> = SmallVec<[(&'a [f64], [f64; 2]); 8]>;
-
-/// The two sums of vectors times their factors.
-#[inline(always)]
-fn combine<S: Simd>(simd: S, terms: &Terms, (length, sums): (usize, &mut [Vec<f64>; 2])) {
-    sums.iter_mut().for_each(|sum| sum.resize(length, 0.0));
-    let [first, second] = sums.each_mut().map(|sum| S::as_mut_simd_f64s(sum));
-    let heads = terms.iter().map(|(vector, [a, b])| {
-        let head = &S::as_simd_f64s(vector).0[..first.0.len()];
-        (head, simd.splat_f64s(*a), simd.splat_f64s(*b))
-    });
-    let heads: SmallVec<[_; 8]> = heads.collect();
-    for (i, (first, second)) in first.0.iter_mut().zip(second.0).enumerate() {
-        let [mut sum_a, mut sum_b] = [simd.splat_f64s(0.0); 2];
-        for &(head, a, b) in &heads {
-            sum_a = simd.mul_add_e_f64s(a, head[i], sum_a);
-            sum_b = simd.mul_add_e_f64s(b, head[i], sum_b);
-        }
-        (*first, *second) = (sum_a, sum_b);
-    }
-    let whole = length - first.1.len();
-    for (i, (first, second)) in first.1.iter_mut().zip(second.1).enumerate() {
-        (*first, *second) = (0.0, 0.0);
-        for (vector, [a, b]) in terms {
-            *first += a * vector[whole + i];
-            *second += b * vector[whole + i];
-        }
-    }
 }

@@ -123,8 +123,10 @@ impl Constraint {
     /// The same constraint with its force rows as derivative rows, so that Q is symmetric.
     pub fn with_force_rows(&self) -> Self {
         Constraint {
+            dofs: self.dofs.clone(),
+            force_rows: self.force_rows.clone(),
             other_derivative_rows: None,
-            ..self.clone()
+            ..*self
         }
     }
 

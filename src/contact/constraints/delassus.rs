@@ -4,9 +4,27 @@
 use nalgebra::{DMatrix, DVector};
 use pulp::{Arch, Simd, WithSimd};
 
-use super::compliance::{Compliance, GroupRows, Responses, Scope, UnknownEntry, product};
+use super::compliance::{Compliance, Scope};
 use super::constraint::Constraint;
+use super::responses::{GroupRows, Responses, UnknownEntry, resized};
 use crate::lcp::FrictionalLcp;
+
+/// Memory of the Delassus operators of a matrix, used again by the next one.
+#[derive(Debug, Default)]
+pub struct DelassusSpace {
+    /// Entries of Q.
+    q: Vec<f64>,
+    groups: Vec<GroupRows>,
+    responses: Responses,
+    sums: [Vec<f64>; 2],
+}
+
+impl DelassusSpace {
+    /// Takes the memory of a problem that is not needed any more.
+    pub fn take(&mut self, problem: FrictionalLcp) {
+        self.q = problem.q.data.into();
+    }
+}
 
 /// The complementarity problem of some constraints: Q = G W B^T, eq. (5.1), with the compliance W,
 /// derivative rows G and force rows B, and the given constant terms of gap and slip of every one.
@@ -15,13 +33,13 @@ use crate::lcp::FrictionalLcp;
 pub fn frictional_lcp(
     constraints: &[&Constraint],
     (compliance, scope): (&Compliance, &Scope),
-    normal: Vec<f64>,
-    tangential: Vec<f64>,
+    [normal, tangential]: [Vec<f64>; 2],
+    space: &mut DelassusSpace,
 ) -> FrictionalLcp {
     let n = constraints.len();
     let mu = constraints.iter().map(|constraint| constraint.mu);
     FrictionalLcp {
-        q: delassus(constraints, compliance, scope),
+        q: delassus(constraints, compliance, scope, space),
         gap: DVector::from_vec(normal),
         slip: DVector::from_vec(tangential),
         mu: DVector::from_iterator(n, mu),
@@ -33,36 +51,56 @@ const PANEL: usize = 128;
 
 /// Q = G W B^T, eq. (5.1), all normal before all tangential rows and columns: the sum over the groups of
 /// unknowns, each of which couples the constraints that act on it.
-fn delassus(constraints: &[&Constraint], compliance: &Compliance, scope: &Scope) -> DMatrix<f64> {
+fn delassus(
+    constraints: &[&Constraint],
+    compliance: &Compliance,
+    scope: &Scope,
+    space: &mut DelassusSpace,
+) -> DMatrix<f64> {
     let n = constraints.len();
-    let mut groups: Vec<GroupRows> = Vec::new();
+    let DelassusSpace {
+        q,
+        groups,
+        responses,
+        sums,
+    } = space;
     groups.resize_with(compliance.block_count(scope), GroupRows::default);
+    groups.iter_mut().for_each(GroupRows::clear);
     for (k, constraint) in constraints.iter().enumerate() {
-        for entry in compliance.entries(scope, constraint) {
+        compliance.for_each_entry(scope, constraint, |entry| {
             groups[entry.block].push(k, entry);
-        }
-    }
-    let mut q = DMatrix::zeros(2 * n, 2 * n);
-    let mut responses = Responses::default();
-    for (block, rows) in groups.iter().enumerate() {
-        Arch::new().dispatch(GroupSum {
-            compliance,
-            block: (scope, block),
-            rows,
-            responses: &mut responses,
-            q: q.as_mut_slice(),
         });
     }
+    let mut q = std::mem::take(q);
+    q.resize(4 * n * n, 0.0);
+    let is_whole = |rows: &GroupRows| n <= PANEL && rows.members.len() == n;
+    if !groups.first().is_some_and(is_whole) {
+        q.fill(0.0);
+    }
+    for (block, rows) in groups.iter().enumerate() {
+        Arch::new().dispatch(GroupSum {
+            inverse: compliance.inverse(scope, block),
+            members: rows.iter().collect(),
+            responses,
+            sums,
+            adds: block > 0 || !is_whole(rows),
+            q: &mut q,
+        });
+    }
+    let mut q = DMatrix::from_vec(2 * n, 2 * n, q);
     transpose(constraints, &mut q);
     q
 }
 
-/// Adds what the unknowns of a group couple to Q^T, column by column.
+/// Adds what the unknowns of a group couple to Q^T, column by column, or writes it.
 struct GroupSum<'a> {
-    compliance: &'a Compliance,
-    block: (&'a Scope, usize),
-    rows: &'a GroupRows,
+    /// The inverse at its unknowns, and their number.
+    inverse: (&'a [f64], usize),
+    /// The constraints that act on it, with their rows.
+    members: Vec<(usize, &'a [UnknownEntry])>,
     responses: &'a mut Responses,
+    sums: &'a mut [Vec<f64>; 2],
+    adds: bool,
     q: &'a mut [f64],
 }
 
@@ -71,18 +109,27 @@ impl WithSimd for GroupSum<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { q, responses, .. } = self;
-        let n = (q.len() / 4).isqrt();
-        let members: Vec<(usize, &[UnknownEntry])> = self.rows.iter().collect();
-        let mut sums = [Vec::new(), Vec::new()];
+        let Self {
+            responses,
+            members,
+            sums,
+            ..
+        } = self;
+        let n = (self.q.len() / 4).isqrt();
+        let (normals, tangentials) = self.q.split_at_mut(2 * n * n);
         for panel in members.chunks(PANEL) {
             // Y = W (B T)^T of the panel, then its products with the rows of all
-            let of_panel = panel.iter().map(|member| member.1);
-            (self.compliance).respond(simd, self.block, of_panel, responses);
+            responses.set(simd, self.inverse, panel);
             for &(k, of_k) in &members {
-                product(simd, of_k, responses, &mut sums);
-                for (row, sum) in [k, n + k].into_iter().zip(&sums) {
-                    let (normal, tangential) = q[2 * n * row..2 * n * (row + 1)].split_at_mut(n);
+                let columns = [&mut *normals, &mut *tangentials];
+                let columns = columns.map(|all| &mut all[2 * n * k..2 * n * (k + 1)]);
+                if panel.len() == n {
+                    responses.product(simd, of_k, columns, self.adds);
+                    continue;
+                }
+                responses.product(simd, of_k, resized(sums, 2 * panel.len()), false);
+                for (column, sum) in columns.into_iter().zip(&*sums) {
+                    let (normal, tangential) = column.split_at_mut(n);
                     let (to_normal, to_tangential) = sum.split_at(panel.len());
                     add(normal, panel, to_normal);
                     add(tangential, panel, to_tangential);
@@ -95,15 +142,8 @@ impl WithSimd for GroupSum<'_> {
 /// Adds values for the constraints of a panel to those of all.
 #[inline(always)]
 fn add(all: &mut [f64], panel: &[(usize, &[UnknownEntry])], values: &[f64]) {
-    match panel {
-        [(first, _), .., (last, _)] if last - first + 1 == panel.len() => {
-            let all = &mut all[*first..=*last];
-            all.iter_mut().zip(values).for_each(|(sum, v)| *sum += v);
-        }
-        _ => panel
-            .iter()
-            .zip(values)
-            .for_each(|((l, _), v)| all[*l] += v),
+    for ((l, _), value) in panel.iter().zip(values) {
+        all[*l] += value;
     }
 }
 

@@ -9,13 +9,14 @@ mod delassus;
 mod kinds;
 mod node_to_corner;
 mod node_to_segment;
+mod responses;
 mod stiffness;
 
 pub use closed_pairs::{ClosedPair, ClosedPairs};
 pub use compliance::{Compliance, Scope};
 pub use configurations::{Configurations, RowForm};
 pub use constraint::{Constraint, ConstraintKey, PerDof, Rows};
-pub use delassus::frictional_lcp;
+pub use delassus::{DelassusSpace, frictional_lcp};
 
 #[cfg(test)]
 mod seam_tests;

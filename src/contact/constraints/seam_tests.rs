@@ -3,7 +3,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Compliance, Constraint, ConstraintKey, PerDof, Rows, Scope, frictional_lcp};
+use super::{
+    Compliance, Constraint, ConstraintKey, DelassusSpace, PerDof, Rows, Scope, frictional_lcp,
+};
 use crate::contact::targets::{ContactTarget, PairTarget};
 use crate::linear::{Assembled, CheckedSolver, Transformation, linear_solver};
 use crate::model::{Friction, SolverChoice};
@@ -81,8 +83,8 @@ fn delassus_entries_are_derivative_rows_times_compliance_times_force_rows() {
     let problem = frictional_lcp(
         &constraints,
         (&compliance, &Scope::All),
-        vec![0.0; 2],
-        vec![0.0; 2],
+        [vec![0.0; 2], vec![0.0; 2]],
+        &mut DelassusSpace::default(),
     );
 
     // all rows over all dofs, normal before tangential

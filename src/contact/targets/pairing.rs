@@ -2,7 +2,7 @@
 //! search and the pairs of the pass before. Section 10 of docs/theory.md, Targets.
 
 use super::slave_node::SlaveNode;
-use super::target_selection::ContactTarget;
+use super::target_selection::{ContactTarget, Targets};
 use crate::contact::geometry::position;
 use crate::contact::search::{ListedSlave, Search};
 use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED};
@@ -67,16 +67,11 @@ pub fn find_targets(
 }
 
 /// Targets of a slave node, of which some of the pass before are kept.
-fn with_kept(
-    node: &SlaveNode,
-    found: Vec<ContactTarget>,
-    before: &[PairTarget],
-    settled: bool,
-) -> Vec<ContactTarget> {
+fn with_kept(node: &SlaveNode, found: Targets, before: &[PairTarget], settled: bool) -> Targets {
     if before.is_empty() || (!settled && !found.is_empty()) {
         return found;
     }
-    let mut targets: Vec<ContactTarget> = before.iter().map(|pair| pair.target).collect();
+    let mut targets: Targets = before.iter().map(|pair| pair.target).collect();
     let beyond = if settled {
         KEPT_WHEN_SETTLED
     } else {

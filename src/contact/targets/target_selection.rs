@@ -1,6 +1,8 @@
 //! Selection of contact targets: the segments and convex corners that constrain a slave node, with
 //! rules for convex and concave corners and for thin bodies. Section 10 of docs/theory.md, Targets.
 
+use smallvec::{SmallVec, smallvec};
+
 use super::corner::{Corner, common_normal};
 use super::slave_node::SlaveNode;
 use crate::contact::geometry::{Along, project};
@@ -39,6 +41,12 @@ impl ContactTarget {
     }
 }
 
+/// The targets of a node, mostly one.
+pub type Targets = SmallVec<[ContactTarget; 4]>;
+
+/// Segments near a node, mostly few.
+type Segments = SmallVec<[usize; 8]>;
+
 /// Gap at the start of the segment that a node has slid on to, above what it counts as: the gap of the
 /// segment that the node came from, and no overlap.
 pub fn rise(gap: f64, gap_before: f64) -> f64 {
@@ -54,12 +62,12 @@ pub fn rise(gap: f64, gap_before: f64) -> f64 {
 impl SlaveNode<'_> {
     /// The targets of the node in the order of their segments; the candidates must come in this
     /// order.
-    pub fn targets(&self, candidates: impl Iterator<Item = Candidate>) -> Vec<ContactTarget> {
+    pub fn targets(&self, candidates: impl Iterator<Item = Candidate>) -> Targets {
         let faced = self.faced(candidates);
+        let mut targets = Targets::new();
         if faced.is_empty() {
-            return Vec::new();
+            return targets;
         }
-        let mut targets = Vec::new();
         for run in self.runs(&faced) {
             if let Some(target) = self.slid_on(&run) {
                 targets.push(target);
@@ -112,8 +120,8 @@ impl SlaveNode<'_> {
 
     /// Segments into which the node projects, and the two at a corner where it projects into
     /// neither.
-    fn faced(&self, candidates: impl Iterator<Item = Candidate>) -> Vec<usize> {
-        let mut faced = Vec::new();
+    fn faced(&self, candidates: impl Iterator<Item = Candidate>) -> Segments {
+        let mut faced = Segments::new();
         for Candidate { segment: i, reach } in candidates {
             let xi = self.xi(i);
             if xi < -PROJECTION_BEYOND_ENDS || self.is_own(i) {
@@ -148,9 +156,9 @@ impl SlaveNode<'_> {
     }
 
     /// The faced segments as runs of neighbours with straight or convex corners between them.
-    fn runs(&self, faced: &[usize]) -> Vec<Vec<usize>> {
+    fn runs(&self, faced: &[usize]) -> SmallVec<[Segments; 2]> {
         if faced.len() == 1 {
-            return vec![faced.to_vec()];
+            return smallvec![Segments::from_slice(faced)];
         }
         let is_faced = |i: &usize| faced.binary_search(i).is_ok();
         let next = |i: usize| {
@@ -160,12 +168,12 @@ impl SlaveNode<'_> {
         let has_previous = |i: &usize| {
             self.surfaces.previous[*i].is_some_and(|h| next(h) == Some(*i) && is_faced(&h))
         };
-        let mut seen = vec![false; faced.len()];
-        let mut runs = Vec::new();
+        let mut seen: SmallVec<[bool; 8]> = smallvec![false; faced.len()];
+        let mut runs = SmallVec::new();
         // first the runs with a head, then those all around a body
         let heads = faced.iter().filter(|i| !has_previous(i));
         for &head in heads.chain(faced) {
-            let mut run = Vec::new();
+            let mut run = Segments::new();
             let mut following = Some(head);
             while let Some(i) = following
                 && let Ok(k) = faced.binary_search(&i)

@@ -50,6 +50,15 @@ pub(crate) struct Inclusion {
     pub rows_only: bool,
 }
 
+/// The text of a file.
+#[derive(Clone, Copy)]
+pub(crate) struct FileText<'a> {
+    /// The whole text.
+    pub source: &'a Arc<String>,
+    /// Whether it is [plain](crate::deck::lines::Content::is_plain).
+    pub is_plain: bool,
+}
+
 /// What happens to data lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum RowRule {
@@ -79,15 +88,17 @@ impl Collector {
         }
     }
 
-    /// Adds data lines of the file with the text `source` to the last card.
-    pub fn data(&mut self, lines: Lines, source: &Arc<String>, d: &mut Diagnostics) {
+    /// Adds data lines of a file to the last card.
+    pub fn data(&mut self, lines: Lines, file: FileText, d: &mut Diagnostics) {
         match (self.rows, self.deck.cards.last_mut()) {
             (RowRule::Skip, _) => {}
             (RowRule::Keep, Some(card)) => {
-                if card.keyword.data != Data::Text && lines.text().contains('"') {
+                let may_hold_quotes = !file.is_plain && card.keyword.data != Data::Text;
+                if may_hold_quotes && lines.text().contains('"') {
                     lines.data().for_each(|line| line.check_quotes(d));
                 }
-                card.rows.add(lines, source);
+                let is_ascii = file.is_plain || lines.text().is_ascii();
+                card.rows.add(lines, file.source, is_ascii);
             }
             (RowRule::Refuse, Some(card)) => {
                 let message = format!("{} takes no data lines", card.title());

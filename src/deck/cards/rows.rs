@@ -1,9 +1,9 @@
 //! The data lines of a card: blocks of the texts of its files, cut into rows and fields when they are
 //! asked for.
 
-use crate::deck::lines::{Fields, Line, Lines, Text, plain, span_in};
+use crate::deck::lines::plain::{self, Integers, Point};
+use crate::deck::lines::{Fields, Line, Lines, Text, span_in, trimmed};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, FileId, Span};
-use smallvec::SmallVec;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -22,20 +22,20 @@ struct Block {
     /// Bytes of the lines.
     bytes: Range<usize>,
     file: FileId,
-    /// Number of the line before them.
-    before: u32,
+    /// Numbers of the lines.
+    numbers: Range<u32>,
     is_ascii: bool,
 }
 
 impl Rows {
     /// Adds lines of the file with the text `source`.
-    pub(crate) fn add(&mut self, lines: Lines, source: &Arc<String>) {
+    pub(crate) fn add(&mut self, lines: Lines, source: &Arc<String>, is_ascii: bool) {
         self.blocks.push(Block {
             source: Arc::clone(source),
             bytes: lines.bytes(),
             file: lines.file(),
-            before: lines.before(),
-            is_ascii: lines.text().is_ascii(),
+            numbers: lines.numbers(),
+            is_ascii,
         });
     }
 
@@ -60,34 +60,75 @@ impl Rows {
     }
 
     /// All rows in order.
-    pub fn iter(&self) -> impl Iterator<Item = Row<'_>> + Clone {
-        let mut blocks = self.blocks.iter();
-        let mut open: Option<(Lines, bool)> = None;
-        std::iter::from_fn(move || {
-            loop {
-                if let Some((lines, is_ascii)) = &mut open
-                    && let Some(line) = lines.next_data()
-                {
-                    return Some(Row::new(line, *is_ascii, self.instance));
-                }
-                let block = blocks.next()?;
-                open = Some((block.lines(), block.is_ascii));
-            }
-        })
+    pub fn iter(&self) -> RowsInOrder<'_> {
+        RowsInOrder {
+            blocks: self.blocks.iter(),
+            open: None,
+            instance: self.instance,
+        }
     }
 
     /// Number of lines, not all of which may hold a row.
     pub fn line_count(&self) -> usize {
-        self.blocks
-            .iter()
-            .map(|block| block.lines().line_count())
-            .sum()
+        self.blocks.iter().map(|block| block.numbers.len()).sum()
+    }
+}
+
+/// The rows of a card one after the other.
+#[derive(Debug, Clone)]
+pub struct RowsInOrder<'a> {
+    blocks: std::slice::Iter<'a, Block>,
+    /// Lines of the block that is read, and whether they are ASCII.
+    open: Option<(Lines<'a>, bool)>,
+    instance: u32,
+}
+
+impl<'a> RowsInOrder<'a> {
+    /// The next row and its numbers, if it holds integers without sign only.
+    pub fn next_integers(&mut self) -> Option<(Row<'a>, Option<Integers>)> {
+        self.next_read(plain::integers)
+    }
+
+    /// The next row with the label and the coordinates that it gives, if they are plain numbers;
+    /// those that are missing are 0.
+    pub fn next_point(&mut self) -> Option<(Row<'a>, Option<Point>)> {
+        self.next_read(plain::point)
+    }
+
+    /// The next row and what `read` takes from it, as [`Lines::next_read`].
+    fn next_read<T>(
+        &mut self,
+        read: impl FnOnce(&[u8]) -> Option<(T, &[u8])>,
+    ) -> Option<(Row<'a>, Option<T>)> {
+        if let Some((lines, is_ascii)) = &mut self.open
+            && let Some((line, value)) = lines.next_read(read)
+        {
+            return Some((Row::new(line, *is_ascii, self.instance), Some(value)));
+        }
+        self.next().map(|row| (row, None))
+    }
+}
+
+impl<'a> Iterator for RowsInOrder<'a> {
+    type Item = Row<'a>;
+
+    fn next(&mut self) -> Option<Row<'a>> {
+        loop {
+            if let Some((lines, is_ascii)) = &mut self.open
+                && let Some(line) = lines.next_data()
+            {
+                return Some(Row::new(line, *is_ascii, self.instance));
+            }
+            let block = self.blocks.next()?;
+            self.open = Some((block.lines(), block.is_ascii));
+        }
     }
 }
 
 impl Block {
     fn lines(&self) -> Lines<'_> {
-        Lines::between(self.file, &self.source, self.bytes.clone(), self.before)
+        let (bytes, numbers) = (self.bytes.clone(), self.numbers.clone());
+        Lines::between(self.file, &self.source, bytes, numbers)
     }
 }
 
@@ -127,21 +168,10 @@ impl<'a> Row<'a> {
         self.instance
     }
 
-    /// Its numbers, if it holds integers without sign only.
-    pub fn integers(self) -> Option<SmallVec<[u64; 5]>> {
-        plain::integers(self.text)
-    }
-
-    /// The label and the coordinates that it gives, if they are plain numbers; those that are missing
-    /// are 0.
-    pub fn point(self) -> Option<(u64, [f64; 3])> {
-        plain::point(self.text)
-    }
-
     /// Place of the visible text.
     pub fn span(self) -> Span {
-        let start = self.text.len() - self.text.trim_start().len();
-        self.span_between(start, self.text.trim_end().len())
+        let (start, end) = trimmed(self.text, 0, self.text.len());
+        self.span_between(start, end)
     }
 
     /// Place of the bytes from `start` to `end`.

@@ -1,20 +1,16 @@
 //! Files of a deck: reading them, finding included ones, and cutting them into logical lines.
 
-use super::collect::{Collector, Deck, Inclusion};
+use super::collect::{Collector, Deck, FileText, Inclusion};
 use super::resolve::Piece;
-use crate::deck::lines::{Content, Fields, Kind, Line, Lines, Text};
+use crate::deck::lines::{Content, Fields, Kind, LONGEST_USUAL_LINE, Line, Lines, Text};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, FileId, Source, Sources, Span};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// Deepest nesting of included files.
 const DEEPEST: usize = 20;
 
 /// Most files of one deck.
 const MOST_FILES: usize = 1000;
-
-/// Longest line that other codes read.
-const LONGEST_LINE: usize = 256;
 
 /// Reads a deck and the files it includes.
 pub fn read(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
@@ -51,14 +47,15 @@ fn collect(
     sources: &mut Sources,
     d: &mut Diagnostics,
 ) -> Deck {
-    let (file, complaint) = add(sources, name, content, None);
+    let added = add(sources, name, content, None);
+    let file = added.file;
     let mut reading = Reading {
         sources,
         d,
         collector: Collector::new(),
         open,
     };
-    reading.content(file, complaint, false);
+    reading.content(added, false);
     let deck = reading.collector.deck;
     if deck.cards.is_empty() && !d.has_errors() {
         let start = Span {
@@ -75,16 +72,22 @@ fn collect(
     deck
 }
 
-/// Adds a file with its content, about which there may be a complaint.
-fn add(
-    sources: &mut Sources,
-    name: &str,
-    content: Content,
-    included_at: Option<Span>,
-) -> (FileId, Option<Diagnostic>) {
-    let complaint = content.complaint(sources.next_id());
-    let file = sources.add(name, content.text, included_at);
-    (file, complaint)
+/// A file that is added to the sources.
+struct Added {
+    file: FileId,
+    /// What is wrong with its content.
+    complaint: Option<Diagnostic>,
+    /// Whether its content is plain.
+    is_plain: bool,
+}
+
+/// Adds a file with its content.
+fn add(sources: &mut Sources, name: &str, content: Content, included_at: Option<Span>) -> Added {
+    Added {
+        complaint: content.complaint(sources.next_id()),
+        is_plain: content.is_plain,
+        file: sources.add(name, content.text, included_at),
+    }
 }
 
 /// A deck being read.
@@ -98,28 +101,36 @@ struct Reading<'a> {
 
 impl Reading<'_> {
     /// Reads the lines of a file; reports content that is not text of a deck.
-    fn content(&mut self, file: FileId, complaint: Option<Diagnostic>, rows_only: bool) {
-        let source = self.sources.get(file).map(Source::shared_text);
-        match (complaint, source) {
+    fn content(&mut self, added: Added, rows_only: bool) {
+        let source = self.sources.get(added.file).map(Source::shared_text);
+        match (added.complaint, source) {
             (Some(complaint), _) => {
                 self.collector.deck.incomplete = true;
                 self.d.push(complaint);
             }
-            (None, Some(source)) => self.lines(file, &source, rows_only),
+            (None, Some(source)) => {
+                let text = FileText {
+                    source: &source,
+                    is_plain: added.is_plain,
+                };
+                self.lines(added.file, text, rows_only);
+            }
             (None, None) => {}
         }
     }
 
     /// Feeds the lines of a file to the collector.
-    fn lines(&mut self, file: FileId, source: &Arc<String>, rows_only: bool) {
-        let mut rest = Lines::new(file, source);
+    fn lines(&mut self, file: FileId, text: FileText, rows_only: bool) {
+        let mut rest = Lines::new(file, text.source);
         while let Some(line) = rest.next() {
             match line.kind() {
                 Kind::Blank | Kind::Comment => {}
                 Kind::Data => {
                     let block = rest.take_block(&line);
-                    self.remark_on_block(block);
-                    self.collector.data(block, source, self.d);
+                    if !text.is_plain {
+                        self.remark_on_block(block);
+                    }
+                    self.collector.data(block, text, self.d);
                 }
                 Kind::Keyword if rows_only => return self.keyword_among_rows(&line),
                 Kind::Keyword => self.keyword(&line, &mut rest),
@@ -150,17 +161,17 @@ impl Reading<'_> {
     }
 
     fn remark_on_block(&mut self, block: Lines) {
-        if !block.text().is_ascii() || !block.fit(LONGEST_LINE) {
+        if !block.text().is_ascii() || !block.fit(LONGEST_USUAL_LINE) {
             block.data().for_each(|line| self.remark_on_form(&line));
         }
     }
 
     fn remark_on_form(&mut self, line: &Line) {
         let is_ascii = line.text.is_ascii();
-        if is_ascii && line.text.len() <= LONGEST_LINE {
+        if is_ascii && line.text.len() <= LONGEST_USUAL_LINE {
             return;
         }
-        if line.text.chars().count() > LONGEST_LINE {
+        if line.text.chars().count() > LONGEST_USUAL_LINE {
             let message = "a line of more than 256 characters";
             self.d.push_once(
                 Diagnostic::warning(Code::LongLine, line.span(0, 1), message)
@@ -182,9 +193,9 @@ impl Reading<'_> {
             Ok((name, path, content)) => {
                 let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
                 let span = Some(inclusion.span);
-                let (file, complaint) = add(self.sources, &name, content, span);
+                let added = add(self.sources, &name, content, span);
                 self.open.push((identity(&path), folder));
-                self.content(file, complaint, inclusion.rows_only);
+                self.content(added, inclusion.rows_only);
                 self.open.pop();
             }
             Err((code, why)) => {

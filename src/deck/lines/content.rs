@@ -9,6 +9,9 @@ use std::path::Path;
 /// Longest line, in bytes.
 pub(crate) const LONGEST_LINE: usize = 1 << 16;
 
+/// Longest line that other codes read.
+pub(crate) const LONGEST_USUAL_LINE: usize = 256;
+
 /// Content that shows that a file is not a deck.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Fault {
@@ -22,6 +25,8 @@ enum Fault {
 pub(crate) struct Content {
     /// The text, up to the fault if there is one.
     pub text: String,
+    /// Whether it holds nothing but ASCII without quotation marks, in lines that all codes read.
+    pub is_plain: bool,
     fault: Option<Fault>,
 }
 
@@ -34,23 +39,31 @@ impl Content {
     /// Reads to the end or to the first fault.
     fn read(mut input: impl BufRead) -> io::Result<Content> {
         let (mut bytes, mut fault, mut length) = (Vec::new(), None, 0);
+        let mut is_plain = true;
         while fault.is_none() {
             let more = input.fill_buf()?;
             if more.is_empty() {
                 break;
             }
+            let before = length;
             let used = sound(more, &mut length);
             fault = more.get(used).map(|&byte| match byte {
                 0 => Fault::Nul,
                 _ => Fault::Endless,
             });
-            bytes.extend_from_slice(more.get(..used).unwrap_or_default());
+            let sound = more.get(..used).unwrap_or_default();
+            is_plain &= are_plain(sound, before);
+            bytes.extend_from_slice(sound);
             let used = more.len();
             input.consume(used);
         }
         let text = String::from_utf8(bytes)
             .unwrap_or_else(|bytes| String::from_utf8_lossy(bytes.as_bytes()).into_owned());
-        Ok(Content { text, fault })
+        Ok(Content {
+            text,
+            is_plain,
+            fault,
+        })
     }
 
     /// Content given as text.
@@ -58,6 +71,7 @@ impl Content {
         // Reading from memory cannot fail.
         Content::read(text.as_bytes()).unwrap_or(Content {
             text: String::new(),
+            is_plain: true,
             fault: None,
         })
     }
@@ -84,6 +98,28 @@ impl Content {
             }
         })
     }
+}
+
+/// Whether bytes are ASCII without quotation marks, in lines that all codes read; the first one
+/// continues a line of `before` bytes.
+fn are_plain(bytes: &[u8], before: usize) -> bool {
+    bytes.is_ascii()
+        && memchr(b'"', bytes).is_none()
+        && lines_fit(bytes, before, LONGEST_USUAL_LINE)
+}
+
+/// Whether no line is longer than `most` bytes, of which the first one has `before` already; a line
+/// that ends with CRLF may be said to be.
+pub(super) fn lines_fit(bytes: &[u8], before: usize, most: usize) -> bool {
+    let (mut rest, mut begun) = (bytes, before);
+    while begun + rest.len() > most {
+        let room = most.checked_sub(begun).and_then(|room| rest.get(..=room));
+        match memrchr(b'\n', room.unwrap_or_default()) {
+            Some(end) => (rest, begun) = (rest.get(end + 1..).unwrap_or_default(), 0),
+            None => return false,
+        }
+    }
+    true
 }
 
 /// Number of bytes before the first fault; `length` is that of the line so far.

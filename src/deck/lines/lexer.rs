@@ -144,7 +144,7 @@ pub(crate) fn span_in(text: &str, file: FileId, number: u32, start: usize, end: 
 }
 
 /// The bytes from `start` to `end` without blanks around them.
-fn trimmed(text: &str, start: usize, end: usize) -> (usize, usize) {
+pub(crate) fn trimmed(text: &str, start: usize, end: usize) -> (usize, usize) {
     let bytes = text.as_bytes().get(start..end).unwrap_or_default();
     let blanks = bytes.iter().take_while(|&&byte| byte == b' ').count();
     let visible = bytes.get(blanks..).unwrap_or_default();

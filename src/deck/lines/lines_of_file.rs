@@ -1,5 +1,6 @@
 //! The lines of a file one after the other, and blocks of data lines among them.
 
+use super::content::lines_fit;
 use super::lexer::{Kind, Line, kind_of};
 use crate::diagnostics::FileId;
 use memchr::{memchr, memchr_iter, memrchr};
@@ -15,6 +16,8 @@ pub(crate) struct Lines<'a> {
     start: usize,
     /// Number of the line before it.
     number: u32,
+    /// Number of the last line, where it is known.
+    last: Option<u32>,
 }
 
 impl<'a> Lines<'a> {
@@ -25,16 +28,23 @@ impl<'a> Lines<'a> {
             text,
             start: 0,
             number: 0,
+            last: None,
         }
     }
 
-    /// The lines in some bytes of a text, which follow line `before`.
-    pub fn between(file: FileId, text: &'a str, bytes: Range<usize>, before: u32) -> Lines<'a> {
+    /// The lines in some bytes of a text, the numbers of which are those from `numbers.start` on.
+    pub fn between(
+        file: FileId,
+        text: &'a str,
+        bytes: Range<usize>,
+        numbers: Range<u32>,
+    ) -> Lines<'a> {
         Lines {
             file,
             text: text.get(..bytes.end).unwrap_or(text),
             start: bytes.start,
-            number: before,
+            number: numbers.start.saturating_sub(1),
+            last: Some(numbers.end.saturating_sub(1)),
         }
     }
 
@@ -48,9 +58,14 @@ impl<'a> Lines<'a> {
         self.start..self.text.len()
     }
 
-    /// Number of the line before them.
-    pub fn before(&self) -> u32 {
-        self.number
+    /// Their numbers.
+    pub fn numbers(&self) -> Range<u32> {
+        let last = self.last.unwrap_or_else(|| {
+            let ends = memchr_iter(b'\n', self.text().as_bytes()).count();
+            let is_open = !self.text.is_empty() && !self.text.ends_with('\n');
+            self.number + ends as u32 + u32::from(is_open)
+        });
+        self.number + 1..last + 1
     }
 
     /// The text of these lines.
@@ -68,21 +83,34 @@ impl<'a> Lines<'a> {
         self.find(|line| line.kind() == Kind::Data)
     }
 
-    /// Number of lines.
-    pub fn line_count(&self) -> usize {
-        1 + memchr_iter(b'\n', self.text().as_bytes()).count()
+    /// Takes the next line, if it is one that `read` takes: a data line of which it says what it
+    /// holds, and what follows it from its end on.
+    pub fn next_read<T>(
+        &mut self,
+        read: impl FnOnce(&[u8]) -> Option<(T, &[u8])>,
+    ) -> Option<(Line<'a>, T)> {
+        let text = self.text();
+        let (value, after) = read(text.as_bytes())?;
+        let length = text.len() - after.len();
+        let end = match after {
+            [b'\r', b'\n', ..] => 2,
+            rest => rest.len().min(1),
+        };
+        let start = self.start;
+        self.start += length + end;
+        self.number += 1;
+        let line = Line {
+            file: self.file,
+            number: self.number,
+            start,
+            text: text.get(..length)?,
+        };
+        Some((line, value))
     }
 
     /// Whether none is longer than `most` bytes; a line that ends with CRLF may be said to be.
     pub fn fit(&self, most: usize) -> bool {
-        let mut rest = self.text().as_bytes();
-        while rest.len() > most {
-            match memrchr(b'\n', rest.get(..=most).unwrap_or(rest)) {
-                Some(end) => rest = rest.get(end + 1..).unwrap_or_default(),
-                None => return false,
-            }
-        }
-        true
+        lines_fit(self.text().as_bytes(), 0, most)
     }
 
     /// Takes the lines before the next keyword line; `first`, the last line taken, comes before
@@ -91,16 +119,18 @@ impl<'a> Lines<'a> {
         let rest = self.text();
         let length = before_keyword(rest);
         let end = self.start + length;
-        let block = Lines {
+        let taken = rest.as_bytes().get(..length).unwrap_or_default();
+        let is_open = taken.last().is_some_and(|&byte| byte != b'\n');
+        let count = memchr_iter(b'\n', taken).count() as u32 + u32::from(is_open);
+        self.start = end;
+        self.number += count;
+        Lines {
             text: self.text.get(..end).unwrap_or(self.text),
             start: first.start,
             number: first.number - 1,
+            last: Some(self.number),
             ..*self
-        };
-        let taken = rest.as_bytes().get(..length).unwrap_or_default();
-        self.start = end;
-        self.number += memchr_iter(b'\n', taken).count() as u32;
-        block
+        }
     }
 }
 
@@ -155,6 +185,7 @@ mod tests {
         let block = lines.take_block(&first);
         let found: Vec<_> = block.data().map(|line| (line.number, line.text)).collect();
         assert_eq!(found, [(1, "1, 2"), (4, " 4*5 ")]);
+        assert_eq!(block.numbers(), 1..5);
         let rest: Vec<_> = lines.map(|line| (line.number, line.text)).collect();
         assert_eq!(rest, [(5, "\u{a0}*NODE"), (6, "6")]);
     }

@@ -9,8 +9,8 @@ pub(crate) mod plain;
 mod text;
 pub(crate) mod word;
 
-pub(crate) use content::Content;
-pub(crate) use lexer::{Fields, Kind, Line, assignment, span_in};
+pub(crate) use content::{Content, LONGEST_USUAL_LINE};
+pub(crate) use lexer::{Fields, Kind, Line, assignment, span_in, trimmed};
 pub(crate) use lines_of_file::Lines;
 pub use name::Name;
 pub use text::Text;

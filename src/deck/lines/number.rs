@@ -30,6 +30,22 @@ const POWERS_OF_TEN: [f64; 23] = [
     1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
+/// Powers of ten up to that of eight digits.
+const WHOLE_POWERS_OF_TEN: [u64; 9] = [
+    1,
+    10,
+    100,
+    1000,
+    10_000,
+    100_000,
+    1_000_000,
+    10_000_000,
+    100_000_000,
+];
+
+/// A word of bytes 1.
+const EACH_BYTE: u64 = 0x0101_0101_0101_0101;
+
 /// Why a field is not a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NotANumber {
@@ -92,40 +108,73 @@ pub(super) fn plain_real(text: &[u8]) -> Option<f64> {
     value.filter(|value| value.is_finite())
 }
 
-/// The value of `[-]digits[.digits]` with few digits: without the point they are a whole number that
-/// is stored exactly, as is the power of ten that divides it, so that one division rounds once
-/// (Clinger, 1990).
+/// The value of `[-]digits[.digits]` with few digits.
 fn decimal(text: &[u8]) -> Option<f64> {
-    let number = text.strip_prefix(b"-").unwrap_or(text);
-    let (whole, rest) = digits(0, number);
-    let after = rest.strip_prefix(b".").unwrap_or(rest);
-    let (digits, rest) = digits(whole, after);
-    let count = number.len().checked_sub(1)?;
-    let divisor = POWERS_OF_TEN.get(after.len())?;
-    if !rest.is_empty() || count > MOST_DIGITS || digits > MOST_EXACT || whole_is_missing(number) {
-        return None;
-    }
-    let value = digits as f64 / divisor;
-    Some(if number.len() < text.len() {
-        -value
-    } else {
-        value
-    })
+    let (value, rest) = leading_decimal(text)?;
+    rest.is_empty().then_some(value)
 }
 
-/// Whether a number does not begin with a digit.
-fn whole_is_missing(number: &[u8]) -> bool {
-    !number.first().is_some_and(u8::is_ascii_digit)
+/// The value of `[-]digits[.digits]` with few digits at the start of a text, and what follows it:
+/// without the point they are a whole number that is stored exactly, as is the power of ten that
+/// divides it, so that one division rounds once (Clinger, 1990).
+pub(super) fn leading_decimal(text: &[u8]) -> Option<(f64, &[u8])> {
+    let number = text.strip_prefix(b"-").unwrap_or(text);
+    let (whole, mut rest) = digits(0, number);
+    let (mut all, mut count, mut decimals) = (whole, number.len() - rest.len(), 0);
+    if let (1.., [b'.', after @ ..]) = (count, rest) {
+        (all, rest) = digits(whole, after);
+        decimals = after.len() - rest.len();
+        count += decimals;
+    }
+    let divisor = POWERS_OF_TEN.get(decimals)?;
+    if count == 0 || count > MOST_DIGITS || all > MOST_EXACT {
+        return None;
+    }
+    let value = all as f64 / divisor;
+    let is_negative = number.len() < text.len();
+    Some((if is_negative { -value } else { value }, rest))
 }
 
 /// `value` with the digits at the start of a text added behind it, and what follows them; wrong
 /// beyond 19 digits.
 pub(super) fn digits(mut value: u64, mut text: &[u8]) -> (u64, &[u8]) {
-    while let [digit @ b'0'..=b'9', rest @ ..] = text {
-        value = value.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
-        text = rest;
+    loop {
+        let (count, next) = up_to_eight_digits(text);
+        value = value
+            .wrapping_mul(WHOLE_POWERS_OF_TEN[count])
+            .wrapping_add(next);
+        text = text.get(count..).unwrap_or_default();
+        if count < 8 {
+            return (value, text);
+        }
     }
-    (value, text)
+}
+
+/// Number and value of the digits at the start of a text, of the first eight of them at most: all
+/// bytes of a word at once (Lemire, 2021).
+fn up_to_eight_digits(text: &[u8]) -> (usize, u64) {
+    let bytes = text.first_chunk().copied().unwrap_or_else(|| {
+        let mut bytes = [0; 8];
+        bytes
+            .iter_mut()
+            .zip(text)
+            .for_each(|(to, from)| *to = *from);
+        bytes
+    });
+    // the digits, in bytes from the lowest on
+    let digits = u64::from_le_bytes(bytes) ^ (EACH_BYTE * u64::from(b'0'));
+    // the highest bit of the first byte that is above 9 is set, and of none before it
+    let others = (digits.wrapping_add(EACH_BYTE * (0x80 - 10)) | digits) & (EACH_BYTE * 0x80);
+    let count = others.trailing_zeros() as usize / 8;
+    if count == 0 {
+        return (0, 0);
+    }
+    // zeros before them, then numbers of two, four and eight digits
+    let ones = digits << (64 - 8 * count);
+    let twos = (10 * ones).wrapping_add(ones >> 8) & 0x00FF_00FF_00FF_00FF;
+    let fours = (100 * twos).wrapping_add(twos >> 16) & 0x0000_FFFF_0000_FFFF;
+    let eight = (10_000 * fours).wrapping_add(fours >> 32) & 0xFFFF_FFFF;
+    (count, eight)
 }
 
 fn mantissa(input: Input) -> IResult<Input, Input> {
@@ -238,6 +287,23 @@ mod tests {
         ] {
             assert_eq!(decimal(text.as_bytes()), None, "{text}");
         }
+    }
+
+    #[test]
+    fn digits_are_read_in_words() {
+        let all = "0123456789012345678";
+        for count in 0..=19 {
+            for rest in ["", ",", "/1234567", ":", " 12", "\u{e9}\u{80}", "\0", "e5"] {
+                let text = format!("{}{rest}", &all[..count]);
+                let value = all[..count].parse().unwrap_or(0);
+                assert_eq!(
+                    digits(0, text.as_bytes()),
+                    (value, rest.as_bytes()),
+                    "{text}"
+                );
+            }
+        }
+        assert_eq!(digits(12, b"34."), (1234, &b"."[..]));
     }
 
     #[test]

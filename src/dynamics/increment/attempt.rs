@@ -2,8 +2,8 @@
 //! Section 4 of docs/theory.md (paper eqs 27, 29 and 36 to 49).
 
 use super::active_constraints::ConstraintSet;
-use super::convergence::{Errors, Iterate, Pass};
 use super::forces::{ContactForces, ContactSystem, EqualForces, Impulses};
+use super::pass::{Iterate, Pass, Residual};
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::rigid_predictor::rigid_predictor;
 use super::trace::{Failed, Trace};
@@ -11,8 +11,8 @@ use crate::contact::tolerances::PROJECTION_BEYOND_ENDS;
 use crate::contact::{ClosedPairs, Constraint};
 use crate::dynamics::results::{Cause, PassReport, State};
 use crate::dynamics::step::{
-    ClosedConstraints, Equilibrium, Interval, StartVelocity, StepProblem, Workspace, difference,
-    sum,
+    ClosedConstraints, Equilibrium, Interval, StartVelocity, StepProblem, Workspace, sum,
+    write_difference, write_sum,
 };
 use crate::elements::Updated;
 use crate::linear::LinearError;
@@ -49,6 +49,24 @@ impl Solved {
     }
 }
 
+/// Vectors of the passes of an increment.
+#[derive(Default)]
+struct Vectors {
+    /// Forces of the iterate.
+    equilibrium: Equilibrium,
+    /// Displacement U of the iterate.
+    u: Vec<f64>,
+    /// What the predictor leaves of the supports' motion, d_p.
+    d_p: Vec<f64>,
+    /// Its force theta2 K d_p.
+    support_force: Vec<f64>,
+    /// r - theta2 K d_p
+    load: Vec<f64>,
+    /// Correction dU.
+    du: Vec<f64>,
+    residual: Residual,
+}
+
 /// An attempt at one increment.
 pub(crate) struct Attempt<'a, 'm> {
     pub problem: &'a StepProblem<'m>,
@@ -62,12 +80,13 @@ impl<'m> Attempt<'_, 'm> {
     /// Solves the increment; `before` are the pairs closed in the last one.
     pub fn solve(mut self, before: &ClosedPairs) -> Result<Solved, Failed> {
         let mut trace = Trace::default();
+        let mut vectors = Vectors::default();
         let mut failed = Cause::NotConverged;
         for &rule in FactorRule::order(self.problem.settings.factorization) {
             trace.begin();
             (self.workspace.search).start(&self.start.v, self.interval.dt);
             let mut factors = Refactorization::new(rule, self.problem.settings.tolerance);
-            match self.passes(before, &mut factors, &mut trace) {
+            match self.passes(before, &mut factors, &mut trace, &mut vectors) {
                 Ok(solved) => {
                     return Ok(Solved {
                         passes: trace.passes,
@@ -86,6 +105,7 @@ impl<'m> Attempt<'_, 'm> {
         before: &ClosedPairs,
         factors: &mut Refactorization,
         trace: &mut Trace,
+        v: &mut Vectors,
     ) -> Result<Solved, Cause> {
         let (problem, start, dt) = (self.problem, self.start, self.interval.dt);
         let mut contact = ContactForces::without_constraints(before);
@@ -96,45 +116,44 @@ impl<'m> Attempt<'_, 'm> {
         let mut d = rigid_predictor(problem, start, self.interval);
         for pass in 0..problem.settings.max_passes {
             // g, Dt and their rows in the iterate U = U0 + d
-            let u = sum(&start.u, &d);
+            write_sum(&start.u, &d, &mut v.u);
             let settled = pass >= SEARCHING_PASSES;
-            let [constraints, left_out] = self.constraints(&u, &contact, before, settled)?;
+            let [constraints, left_out] = self.constraints(&v.u, &contact, before, settled)?;
 
             // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1)
             let v0p = impulses.start_velocity(problem, self.workspace, &constraints, start, dt)?;
 
             // r = R_theta - F(U_theta) - M A, eq. (4.5)
-            let equilibrium = self.equilibrium(&v0p, &d)?;
-            let r = equilibrium.out_of_balance();
-            trace.balance(&problem.unknowns.restrict(&r));
+            self.equilibrium(&v0p, [&v.u, &d], &mut v.equilibrium)?;
+            trace.balance((v.residual).restricted(problem, &v.equilibrium.out_of_balance));
 
             // the forces at hand may balance r and close the gaps of the iterate
             contact.relinearize(constraints);
-            let iterate = Iterate::new(&equilibrium, &contact, [&u, &d]);
+            let iterate = Iterate::new(&v.equilibrium, &contact, [&v.u, &d]);
+            let state = [settled, factors.stagnate()];
             let may_end = impulses.are_at_rest() && factors.are_near();
-            if may_end && self.is_solved(&iterate, [settled, factors.stagnate()], trace)? {
-                contact.add_open(self.outside(left_out, &u));
-                return self.finish(d, contact, impulses);
+            if may_end && self.is_solved(&iterate, state, &mut v.residual, trace)? {
+                return self.finish([&v.u, &d], contact, left_out, impulses);
             }
 
             // K* of eq. (4.6), and d_p at the supports, which takes the force theta2 K d_p
-            self.refresh(factors, [&u, &equilibrium.u_theta], &contact)?;
-            let [d_p, support_force] = self.supports(pass, [&u, &equilibrium.u_theta]);
+            self.refresh(factors, v, &contact)?;
+            self.supports(pass, v);
 
             // Pn, Pt of the complementarity problem, eq. (5.2);
             // dU = d_p + K*^-1 (r - theta2 K d_p + Bn^T Pn + Bt^T Pt), eq. (4.7)
-            let (load, weight) = (difference(&r, &support_force), equal_forces.weight(settled));
-            let du = contact.solve([&d_p, &load], weight, &mut self.k_star())?;
+            let weight = equal_forces.weight(settled);
+            contact.solve([&v.d_p, &v.load], weight, &mut self.k_star(), &mut v.du)?;
 
             // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales
-            let iterate = Iterate::new(&equilibrium, &contact, [&u, &d]);
-            let has_converged = self.measure(&iterate.pass(&support_force, &du), trace)?;
+            let iterate = Iterate::new(&v.equilibrium, &contact, [&v.u, &d]);
+            let pass = iterate.pass(&v.support_force, &v.du);
+            let has_converged = self.measure(&pass, &mut v.residual, trace)?;
 
             // d <- d + dU, eq. (4.7)
-            d = sum(&d, &du);
+            d.iter_mut().zip(&v.du).for_each(|(d, du)| *d += du);
             if impulses.rest(problem, &contact.closed) && has_converged {
-                contact.add_open(self.outside(left_out, &u));
-                return self.finish(d, contact, impulses);
+                return self.finish([&v.u, &d], contact, left_out, impulses);
             }
             equal_forces.take_in(trace.correction(), settled);
             factors.take_in(trace.correction())?;
@@ -161,10 +180,16 @@ impl<'m> Attempt<'_, 'm> {
         Ok(self.set.split(problem, u0, constraints))
     }
 
-    /// Load, internal force and inertia of the iterate U0 + d.
-    fn equilibrium(&mut self, v0p: &StartVelocity, d: &[f64]) -> Result<Equilibrium, Cause> {
+    /// Writes load, internal force and inertia of the iterate U = U0 + d.
+    fn equilibrium(
+        &mut self,
+        v0p: &StartVelocity,
+        iterate: [&[f64]; 2],
+        equilibrium: &mut Equilibrium,
+    ) -> Result<(), Cause> {
         let (problem, start, interval) = (self.problem, self.start, self.interval);
-        (self.workspace).equilibrium(problem, start, v0p, d, interval)
+        let evaluate = || problem.equilibrium(start, v0p, iterate, interval, equilibrium);
+        (self.workspace.meter).time(|t| &mut t.assembly, evaluate)
     }
 
     /// K* with its contact problems.
@@ -176,33 +201,53 @@ impl<'m> Attempt<'_, 'm> {
         }
     }
 
-    /// What the predictor `u` leaves of the prescribed motion, d_p, which the first pass makes, and its
-    /// force theta2 K d_p; then zero.
-    fn supports(&mut self, pass: usize, [u, u_theta]: [&[f64]; 2]) -> [Vec<f64>; 2] {
+    /// Writes what the predictor leaves of the prescribed motion, d_p, which the first pass makes, and its
+    /// force theta2 K d_p, then zero; and r - theta2 K d_p.
+    fn supports(&mut self, pass: usize, vectors: &mut Vectors) {
+        self.move_supports(pass, vectors);
+        let Vectors {
+            equilibrium,
+            support_force,
+            load,
+            ..
+        } = vectors;
+        write_difference(&equilibrium.out_of_balance, support_force, load);
+    }
+
+    /// Writes d_p and theta2 K d_p.
+    fn move_supports(&mut self, pass: usize, vectors: &mut Vectors) {
         let (problem, weights) = (self.problem, &self.problem.weights);
-        let d_p = match pass {
-            0 => (problem.unknowns).prescribed_increment(u, self.interval.end),
-            _ => vec![0.0; u.len()],
-        };
-        if d_p.iter().all(|d| *d == 0.0) {
-            return [d_p.clone(), d_p];
+        let Vectors {
+            equilibrium: Equilibrium { u_theta, .. },
+            u,
+            d_p,
+            support_force: force,
+            ..
+        } = vectors;
+        match pass {
+            0 => *d_p = (problem.unknowns).prescribed_increment(u, self.interval.end),
+            1 => d_p.fill(0.0),
+            _ => return,
         }
-        let motion = weights.motion(self.start, u, u_theta);
-        let mut force = (self.workspace).tangent_product(problem, motion, &d_p);
-        force.iter_mut().for_each(|f| *f *= weights.theta2);
-        [d_p, force]
+        force.clear();
+        force.resize(u.len(), 0.0);
+        if d_p.iter().any(|d| *d != 0.0) {
+            let motion = weights.motion(self.start, u, u_theta);
+            let product = (self.workspace).tangent_product(problem, motion, d_p);
+            (force.iter_mut().zip(&product)).for_each(|(f, k)| *f = weights.theta2 * k);
+        }
     }
 
     /// Factorises K* anew when the rules say so, else turns its factors with the bodies.
     fn refresh(
         &mut self,
         factors: &mut Refactorization,
-        [u, u_theta]: [&[f64]; 2],
+        Vectors { u, equilibrium, .. }: &Vectors,
         contact: &ContactForces,
     ) -> Result<(), Cause> {
         let (problem, dt) = (self.problem, self.interval.dt);
         let fits = (self.workspace.stiffness).fits(dt, self.set.length_tolerance());
-        let motion = (problem.weights).motion(self.start, u, u_theta);
+        let motion = (problem.weights).motion(self.start, u, &equilibrium.u_theta);
         if fits && !factors.are_worn() {
             self.workspace.turn(problem, motion);
             return Ok(());
@@ -227,10 +272,11 @@ impl<'m> Attempt<'_, 'm> {
         &mut self,
         iterate: &Iterate,
         state: [bool; 2],
+        residual: &mut Residual,
         trace: &mut Trace,
     ) -> Result<bool, Cause> {
         let (problem, stiffness) = (self.problem, &self.workspace.stiffness);
-        let solved = iterate.residual(problem, stiffness, state)?;
+        let solved = iterate.residual(problem, stiffness, state, residual)?;
         if let Some(residual) = solved {
             trace.solved(residual);
             self.workspace.meter.counts.residual = residual;
@@ -240,21 +286,20 @@ impl<'m> Attempt<'_, 'm> {
 
     /// Compares residual and correction of a pass with their scales; whether it has converged, with a solve
     /// that passes its check.
-    fn measure(&mut self, pass: &Pass, trace: &mut Trace) -> Result<bool, Cause> {
+    fn measure(
+        &mut self,
+        pass: &Pass,
+        residual: &mut Residual,
+        trace: &mut Trace,
+    ) -> Result<bool, Cause> {
         let (problem, [u, _, du]) = (self.problem, pass.displacements);
         let Workspace {
             stiffness, meter, ..
         } = &mut *self.workspace;
-        let contact_force = pass.contact.resultant(u.len());
-        pass.check_finite(&contact_force)?;
-        let residual = problem
-            .unknowns
-            .restrict(&sum(&pass.out_of_balance(), &contact_force));
-        let scales = pass.scales(problem, stiffness, &contact_force);
-        let errors = Errors::new(problem.parts, &residual, &problem.unknowns.dof, du);
+        let (scales, errors) = pass.measure(problem, stiffness, residual)?;
         let report = scales.report(&errors, pass.contact);
-        let position = |node| problem.position(u, node);
-        trace.worst = scales.worst(&errors, &residual, &problem.unknowns.dof, position);
+        let (position, dof_of) = (|node| problem.position(u, node), &problem.unknowns.dof);
+        trace.worst = scales.worst(&errors, &residual.values, dof_of, position);
         trace.add(report, pass.contact);
         meter.count_pass(report.residual);
         let has_converged = scales.converged(&errors) && scales.closes_gaps(pass.contact, du);
@@ -276,20 +321,24 @@ impl<'m> Attempt<'_, 'm> {
         left_out.filter(|c| c.gap >= 0.0 || is_over(c)).collect()
     }
 
-    /// Motion and forces at the end of a converged increment.
+    /// Motion and forces at the end of a converged increment whose last iterate is U, with the increment d
+    /// and the constraints that did not count.
     fn finish(
         &mut self,
-        d: Vec<f64>,
-        forces: ContactForces,
+        [u, d]: [&[f64]; 2],
+        mut forces: ContactForces,
+        left_out: Vec<Constraint>,
         impulses: Impulses,
     ) -> Result<Solved, Cause> {
+        forces.add_open(self.outside(left_out, u));
         let v0p = impulses.velocity(self.problem, self.workspace, self.start)?;
-        let equilibrium = self.equilibrium(&v0p, &d)?;
-        let v0p = v0p.v0p;
+        let mut u = sum(&self.start.u, d);
+        let mut equilibrium = Equilibrium::default();
+        self.equilibrium(&v0p, [&u, d], &mut equilibrium)?;
+        let v0p = v0p.v0p.into_owned();
         // V1 = (2/dt) d - V0+, eq. (4.2); of what is prescribed from the amplitude
         let rate = 2.0 / self.interval.dt;
         let mut v: Vec<f64> = d.iter().zip(&v0p).map(|(d, v0p)| rate * d - v0p).collect();
-        let mut u = sum(&self.start.u, &d);
         (self.problem.unknowns).prescribe(self.interval.end, &mut u, &mut v);
         let Updated {
             variables: internal,
@@ -303,7 +352,7 @@ impl<'m> Attempt<'_, 'm> {
         };
         end.check_finite()?;
         Ok(Solved {
-            d,
+            d: d.to_vec(),
             v0p,
             equilibrium,
             forces,

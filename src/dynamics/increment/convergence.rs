@@ -4,12 +4,10 @@
 use super::forces::ContactForces;
 use crate::contact::tolerances::{SETTLED_OVERLAP, SOLVED_GAP};
 use crate::contact::{ClosedPair, Constraint};
-use crate::dynamics::results::{Cause, PassReport, Worst};
-use crate::dynamics::step::{
-    EffectiveStiffness, Equilibrium, Parts, StepProblem, check_finite, difference, sum,
-};
+use crate::dynamics::results::{PassReport, Worst};
+use crate::dynamics::step::Parts;
 use crate::lcp::ContactState;
-use crate::linear::{larger, largest};
+use crate::linear::larger;
 
 /// Round-off of a sum of some terms, in units of its largest term.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
@@ -20,146 +18,6 @@ const BALANCED: f64 = 0.1;
 /// Round-off of the residual of an iterate whose corrections become hardly smaller, in units of eq. (4.10):
 /// a row of K has about as much beside its diagonal entry as the others have together.
 const STAGNANT_NOISE: f64 = 4.0;
-
-/// Forces and displacements of a pass, over all dofs.
-pub(crate) struct Pass<'a> {
-    /// Load, internal force and inertia of the iterate.
-    pub equilibrium: &'a Equilibrium,
-    /// Force of the supports' motion.
-    pub support_force: &'a Vec<f64>,
-    /// Constraints and their forces.
-    pub contact: &'a ContactForces,
-    /// Displacement U of the iterate, increment d = U - U0 and correction dU.
-    pub displacements: [&'a Vec<f64>; 3],
-}
-
-impl Pass<'_> {
-    /// Out-of-balance force without contact.
-    pub fn out_of_balance(&self) -> Vec<f64> {
-        difference(&self.equilibrium.out_of_balance(), self.support_force)
-    }
-
-    /// All forces and the correction must be finite.
-    ///
-    /// # Errors
-    /// [`Cause::NotFinite`] with the first quantity that is not.
-    pub fn check_finite(&self, contact_force: &Vec<f64>) -> Result<(), Cause> {
-        check_finite(&[
-            ("the load", &self.equilibrium.load),
-            ("the internal force", &self.equilibrium.internal),
-            ("the inertia force", &self.equilibrium.inertia),
-            ("the contact force", contact_force),
-            ("the force of the supports", self.support_force),
-            ("the displacement correction", self.displacements[2]),
-        ])
-    }
-
-    /// What residual and correction of the pass are measured against.
-    pub fn scales<'m>(
-        &self,
-        problem: &StepProblem<'m>,
-        stiffness: &EffectiveStiffness,
-        contact_force: &[f64],
-    ) -> Scales<'m> {
-        let parts = problem.parts;
-        let Equilibrium {
-            load,
-            internal,
-            inertia,
-            ..
-        } = self.equilibrium;
-        let forces = [load, internal, inertia, contact_force, self.support_force];
-        let [u, d, du] = self.displacements.map(|u| parts.largest_of_bodies(u));
-        let lengths = Lengths {
-            displacement: u,
-            increment: d.into_iter().zip(du).map(|(d, du)| larger(d, du)).collect(),
-            position: parts.largest_of_bodies(&self.contact_positions(problem)),
-        };
-        let diagonals = (stiffness.stiffness.as_slice(), stiffness.inertia.as_slice());
-        let forces = forces.map(|force| problem.unknowns.magnitudes(force));
-        let force = parts.largest_of_all(forces.iter().map(|force| force.as_ref()));
-        Scales::new(parts, force, diagonals, lengths, problem.settings.tolerance)
-    }
-
-    /// At the dofs of every closed constraint the largest coordinate of its nodes, elsewhere zero.
-    fn contact_positions(&self, problem: &StepProblem) -> Vec<f64> {
-        let [u, ..] = self.displacements;
-        let mut positions = vec![0.0; u.len()];
-        for (constraint, _) in self.contact.acting() {
-            let of_node = |node: usize| largest(&problem.position(u, node));
-            let most = constraint.nodes().map(of_node).fold(0.0, larger);
-            for &dof in &constraint.dofs {
-                positions[dof] = larger(positions[dof], most);
-            }
-        }
-        positions
-    }
-}
-
-/// An iterate with the contact forces of the pass before, linearised at it.
-pub(crate) struct Iterate<'a> {
-    pub equilibrium: &'a Equilibrium,
-    /// Constraints of the iterate and the forces at hand.
-    pub contact: &'a ContactForces,
-    /// Displacement U and increment d = U - U0.
-    pub displacements: [&'a Vec<f64>; 2],
-}
-
-impl<'a> Iterate<'a> {
-    /// An iterate U = U0 + d.
-    pub fn new(
-        equilibrium: &'a Equilibrium,
-        contact: &'a ContactForces,
-        displacements: [&'a Vec<f64>; 2],
-    ) -> Self {
-        Iterate {
-            equilibrium,
-            contact,
-            displacements,
-        }
-    }
-
-    /// The pass that makes the correction dU of the iterate.
-    pub fn pass<'p>(&'p self, support_force: &'p Vec<f64>, du: &'p Vec<f64>) -> Pass<'p> {
-        let [u, d] = self.displacements;
-        Pass {
-            equilibrium: self.equilibrium,
-            support_force,
-            contact: self.contact,
-            displacements: [u, d, du],
-        }
-    }
-
-    /// The relative residual, if the iterate is solved: residual, gaps and slips are below the tolerance,
-    /// or round-off.
-    pub fn residual(
-        &self,
-        problem: &StepProblem,
-        stiffness: &EffectiveStiffness,
-        [settled, stagnates]: [bool; 2],
-    ) -> Result<Option<f64>, Cause> {
-        if !self.contact.all_have_constraints() {
-            return Ok(None);
-        }
-        let none = vec![0.0; self.displacements[0].len()];
-        let pass = self.pass(&none, &none);
-        let contact_force = self.contact.resultant(none.len());
-        pass.check_finite(&contact_force)?;
-        let scales = pass.scales(problem, stiffness, &contact_force);
-        let scales = match stagnates {
-            true => scales.stagnant(),
-            false => scales.strict(),
-        };
-        let residual = problem
-            .unknowns
-            .restrict(&sum(&pass.out_of_balance(), &contact_force));
-        let errors = Errors::new(problem.parts, &residual, &problem.unknowns.dof, &none);
-        if !scales.converged(&errors) || !scales.obeys_contact_law(self.contact, settled) {
-            return Ok(None);
-        }
-        Ok(Some(scales.report(&errors, self.contact).residual))
-    }
-}
 
 /// What residual and correction of a pass are measured against: computed scales, so that the
 /// answer does not depend on the system of units, of every part and body its own, so that a light one
@@ -189,22 +47,8 @@ pub(crate) struct Lengths {
 
 /// Residual of every part and correction of every body in a pass (force; length).
 pub(crate) struct Errors {
-    residual: Vec<f64>,
-    correction: Vec<f64>,
-}
-
-impl Errors {
-    /// `residual` over the unknowns, whose dofs are given, `du` over all dofs.
-    pub fn new(parts: &Parts, residual: &[f64], dof_of: &[usize], du: &[f64]) -> Self {
-        let mut all = vec![0.0; du.len()];
-        for (&dof, value) in dof_of.iter().zip(residual) {
-            all[dof] = *value;
-        }
-        Errors {
-            residual: parts.largest(&all),
-            correction: parts.largest_of_bodies(du),
-        }
-    }
+    pub residual: Vec<f64>,
+    pub correction: Vec<f64>,
 }
 
 impl<'a> Scales<'a> {
@@ -242,6 +86,12 @@ impl<'a> Scales<'a> {
             increment,
             tolerance,
         }
+    }
+
+    /// Whether all forces, and all corrections, are finite.
+    pub fn are_finite(&self, errors: &Errors) -> bool {
+        let mut values = self.force.iter().chain(&errors.correction);
+        values.all(|value| value.is_finite())
     }
 
     /// A part of the tolerance, and no allowance for the round-off of residuals: as long as corrections

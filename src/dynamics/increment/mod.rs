@@ -5,6 +5,7 @@ mod alternation;
 mod attempt;
 mod convergence;
 mod forces;
+mod pass;
 mod refactorization;
 mod returned;
 mod rigid_predictor;

@@ -66,13 +66,12 @@ fn motions(
     interval: Interval,
 ) -> Vec<RigidMotion> {
     let body_of = problem.parts.of_nodes();
-    let share = problem.mass.times(&vec![1.0; start.u.len()]);
     let mut motions = vec![RigidMotion::default(); holds.len()];
     let mut rates = start.v.clone();
     let prescribed = (problem.unknowns).prescribed_increment(&start.u, interval.end);
     for (node, &body) in body_of.iter().enumerate() {
         let motion = &mut motions[body];
-        let (m, x) = (share[2 * node], problem.position(&start.u, node));
+        let (m, x) = (problem.mass.shares[node], problem.position(&start.u, node));
         motion.mass += m;
         for (i, x) in x.into_iter().enumerate() {
             motion.pole[i] += m * x;

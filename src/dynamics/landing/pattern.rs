@@ -57,11 +57,10 @@ impl RigidBodies {
     /// The bodies at the displacements `u`.
     fn new(problem: &StepProblem, u: &[f64]) -> Self {
         let is_free: Vec<bool> = holds(problem).iter().map(|&h| h == Hold::Free).collect();
-        let (body_of, dofs) = (problem.parts.of_nodes(), u.len());
-        let share = problem.mass.times(&vec![1.0; dofs]);
+        let body_of = problem.parts.of_nodes();
         let mut sums = vec![[0.0; 3]; is_free.len()];
         for (node, &body) in body_of.iter().enumerate() {
-            let (m, [x, y]) = (share[2 * node], problem.position(u, node));
+            let (m, [x, y]) = (problem.mass.shares[node], problem.position(u, node));
             add(&mut sums[body], [m, m * x, m * y]);
         }
         let arm = |(node, &body): (usize, &usize)| match (is_free[body], sums[body]) {

@@ -26,8 +26,7 @@ impl BodyMasses {
     /// Masses of the bodies of a model.
     pub fn new(model: &Model, mass: &Mass) -> Self {
         let bodies = Bodies::new(&model.mesh);
-        let ones = mass.times(&vec![1.0; model.mesh.dof_count()]);
-        let share: Vec<f64> = ones.iter().step_by(2).copied().collect();
+        let share = mass.shares.clone();
         let mut of_body = vec![0.0; bodies.count];
         for (share, body) in share.iter().zip(&bodies.of_node) {
             if let Some(body) = *body {

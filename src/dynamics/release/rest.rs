@@ -115,7 +115,7 @@ impl Releasing<'_, '_> {
         let (problem, end) = (self.problem, self.interval.end);
         let motion = Motion::at(u, &self.end.internal);
         let internal = problem.elements.internal_force(motion).ok()?;
-        let load = (problem.loads).weighted(problem.elements, 1.0, end, end, u);
+        let load = (problem.loads).at(problem.elements, end, u);
         let constraints = self.constraints(u);
         let (free, meter) = (&self.free, &mut self.workspace.meter);
         let mut stiffness = meter.time(|t| &mut t.assembly, || free.stiffness(problem, motion));
@@ -129,7 +129,8 @@ impl Releasing<'_, '_> {
             method: problem.method(),
         };
         let (still, r) = (vec![0.0; u.len()], difference(&load, &internal));
-        let du = forces.solve([&still, &r], None, &mut contact).ok()?;
+        let mut du = Vec::new();
+        (forces.solve([&still, &r], None, &mut contact, &mut du)).ok()?;
         contact.system.check().ok()?;
         Some(du)
     }
@@ -169,7 +170,7 @@ impl Releasing<'_, '_> {
         let both = before.iter().zip(&after);
         let taken: f64 = both.map(|(b, a)| b.energy - a.energy).sum();
         let strain: f64 = before.iter().map(|element| element.energy).sum();
-        let load = (self.problem.loads).weighted(elements, 1.0, end, end, u);
+        let load = (self.problem.loads).at(elements, end, u);
         let load_work = dot(&load, &difference(u, &self.end.u));
         let loss = taken + load_work;
         (loss >= -ROUND_OFF * strain).then(|| Release {

@@ -55,6 +55,14 @@ impl TimePoint {
     }
 }
 
+/// Times of an increment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Interval {
+    pub start: TimePoint,
+    pub end: TimePoint,
+    pub dt: f64,
+}
+
 /// Loads of one step.
 pub(crate) struct Loads<'m> {
     model: &'m Model,
@@ -73,17 +81,23 @@ impl<'m> Loads<'m> {
 
     /// External load R_theta = (1 - theta1) R(t0) + theta1 R(t1), eq. (4.4), follower pressures in the
     /// configuration of displacements `u` (2 N entries, force).
-    pub fn weighted(
+    pub fn write_weighted(
         &self,
         elements: &Elements,
         theta1: f64,
-        start: TimePoint,
-        end: TimePoint,
+        interval: Interval,
         u: &[f64],
-    ) -> Vec<f64> {
+        r: &mut [f64],
+    ) {
+        r.fill(0.0);
+        self.add(elements, 1.0 - theta1, interval.start, u, r);
+        self.add(elements, theta1, interval.end, u, r);
+    }
+
+    /// External load R at a time, pressures as in [`Self::write_weighted`].
+    pub fn at(&self, elements: &Elements, now: TimePoint, u: &[f64]) -> Vec<f64> {
         let mut r = vec![0.0; u.len()];
-        self.add(elements, 1.0 - theta1, start, u, &mut r);
-        self.add(elements, theta1, end, u, &mut r);
+        self.add(elements, 1.0, now, u, &mut r);
         r
     }
 

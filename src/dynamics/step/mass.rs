@@ -10,6 +10,8 @@ use crate::prepare::Redistribution;
 /// Stored over the nodes.
 pub(crate) struct Mass {
     nodal: Assembled,
+    /// M 1: the mass that every node carries.
+    pub shares: Vec<f64>,
 }
 
 impl Mass {
@@ -20,12 +22,25 @@ impl Mass {
         for (list, m) in &masses.of_elements {
             nodal.add(*list, m, 1.0);
         }
-        Mass { nodal }
+        let mut mass = Mass {
+            nodal,
+            shares: Vec::new(),
+        };
+        let shares = mass.times(&vec![1.0; 2 * nodes]);
+        mass.shares = shares.into_iter().step_by(2).collect();
+        mass
     }
 
-    /// M v for a vector over all dofs; M is symmetric, so that its columns are its rows.
+    /// M v for a vector over all dofs.
     pub fn times(&self, v: &[f64]) -> Vec<f64> {
-        let (mut product, v) = (vec![0.0; v.len()], v.as_chunks::<2>().0);
+        let mut product = vec![0.0; v.len()];
+        self.write_product(v, &mut product);
+        product
+    }
+
+    /// Writes M v for a vector over all dofs; M is symmetric, so that its columns are its rows.
+    pub fn write_product(&self, v: &[f64], product: &mut [f64]) {
+        let v = v.as_chunks::<2>().0;
         let columns = self.nodal.matrix();
         let (starts, nodes, masses) = (columns.indptr(), columns.indices(), columns.data());
         let rows = product.as_chunks_mut::<2>().0.iter_mut();
@@ -38,7 +53,6 @@ impl Mass {
             }
             *row = [x, y];
         }
-        product
     }
 
     /// Kinetic energy v.M v/2.

@@ -17,7 +17,7 @@ mod workspace;
 
 pub(crate) use bodies::{Hold, holds};
 pub(crate) use discretization::Discretization;
-pub(crate) use loads::TimePoint;
+pub(crate) use loads::{Interval, TimePoint};
 pub(crate) use mass::{Mass, dot};
 pub(crate) use matrices::{ClosedConstraints, EffectiveStiffness, FactoredMatrix, System};
 #[cfg(test)]
@@ -25,6 +25,7 @@ pub(crate) use meter::Meter;
 pub(crate) use parts::Parts;
 pub(crate) use step_place::StepPlace;
 pub(crate) use step_problem::{
-    Equilibrium, Interval, StartVelocity, StepProblem, check_finite, difference, sum,
+    Equilibrium, StartVelocity, StepProblem, check_finite, difference, sum, write_difference,
+    write_sum,
 };
 pub(crate) use workspace::Workspace;

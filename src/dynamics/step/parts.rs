@@ -103,9 +103,9 @@ impl Parts {
 
     /// Largest absolute value of some quantities in every part, each over all dofs.
     pub fn largest_of_all<'a>(&self, quantities: impl Iterator<Item = &'a [f64]>) -> Vec<f64> {
-        let each: Vec<Vec<f64>> = quantities.map(|values| self.largest(values)).collect();
-        let of_part = |part: usize| each.iter().map(|most| most[part]).fold(0.0, larger);
-        (0..self.body_of.len()).map(of_part).collect()
+        let mut most = vec![0.0; self.body_of.len()];
+        quantities.for_each(|values| enlarge(&mut most, &self.runs_of_parts, values));
+        most
     }
 
     /// Largest absolute value of every body; `values` over all dofs.
@@ -168,8 +168,13 @@ fn united(mut first: Vec<usize>, equations: &[Equation]) -> Vec<usize> {
 /// Largest absolute value of every group, given by its runs; `values` over all dofs.
 fn largest_of(runs: &[Run], count: usize, values: &[f64]) -> Vec<f64> {
     let mut most = vec![0.0; count];
+    enlarge(&mut most, runs, values);
+    most
+}
+
+/// Makes the value of every group at least the largest absolute value that it has among `values`.
+fn enlarge(most: &mut [f64], runs: &[Run], values: &[f64]) {
     for Run { group, dofs } in runs {
         most[*group] = larger(most[*group], largest(&values[dofs.clone()]));
     }
-    most
 }

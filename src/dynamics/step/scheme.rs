@@ -3,7 +3,7 @@
 
 use crate::contact::RowForm;
 use crate::dynamics::results::State;
-use crate::elements::{Elements, Inverted, Motion};
+use crate::elements::Motion;
 use crate::model::Scheme;
 
 /// The single-step scheme SS22 with its weights, or the energy-momentum form of its mid-point rule.
@@ -50,25 +50,15 @@ impl Weights {
     }
 
     /// U_theta = U0 + theta2 d + (theta1 - theta2) dt V0+, d = U - U0, eq. (4.3).
-    pub fn displacement(&self, u0: &[f64], d: &[f64], v0p: &[f64], dt: f64) -> Vec<f64> {
+    pub fn write_displacement(&self, [u0, d, v0p]: [&[f64]; 3], dt: f64, u_theta: &mut [f64]) {
         let lag = (self.theta1 - self.theta2) * dt;
-        (0..u0.len())
-            .map(|i| u0[i] + self.theta2 * d[i] + lag * v0p[i])
-            .collect()
+        for (u_theta, ((u0, d), v0p)) in u_theta.iter_mut().zip(u0.iter().zip(d).zip(v0p)) {
+            *u_theta = u0 + self.theta2 * d + lag * v0p;
+        }
     }
 
-    /// Internal force F(U_theta), in the energy-momentum form that between U0 and U1.
-    pub fn internal_force(
-        &self,
-        elements: &Elements,
-        start: &State,
-        u1: &[f64],
-        u_theta: &[f64],
-    ) -> Result<Vec<f64>, Inverted> {
-        elements.internal_force(self.motion(start, u1, u_theta))
-    }
-
-    /// The motion at which internal force and tangent are evaluated.
+    /// The motion at which internal force and tangent are evaluated: U_theta, in the energy-momentum form
+    /// from U0 to U1.
     pub fn motion<'a>(&self, start: &'a State, u1: &'a [f64], u_theta: &'a [f64]) -> Motion<'a> {
         let increment = Some([start.u.as_slice(), u1]);
         match self.energy_momentum {

@@ -1,8 +1,10 @@
 //! Equation of motion of a step, eq. (3.1) (paper eq. 21), evaluated at an iterate: loads, internal and
 //! inertia forces, and contact pairs. Sections 3 and 4 of docs/theory.md.
 
+use std::borrow::Cow;
+
 use super::discretization::Discretization;
-use super::loads::{Loads, TimePoint};
+use super::loads::{Interval, Loads};
 use super::mass::Mass;
 use super::parts::Parts;
 use super::scheme::Weights;
@@ -18,6 +20,7 @@ use crate::lcp::LcpMethod;
 use crate::linear::largest;
 use crate::model::{Model, Settings, Step};
 use crate::prepare::Redistribution;
+use crate::vectors::distance;
 
 /// The equation of motion of a step.
 pub(crate) struct StepProblem<'m> {
@@ -33,24 +36,16 @@ pub(crate) struct StepProblem<'m> {
     pub loads: Loads<'m>,
 }
 
-/// Times of an increment.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Interval {
-    pub start: TimePoint,
-    pub end: TimePoint,
-    pub dt: f64,
-}
-
 /// Velocity at the start of an increment.
-pub(crate) struct StartVelocity {
+pub(crate) struct StartVelocity<'a> {
     /// V0+, or V0 where the impulses stand beside it.
-    pub v0p: Vec<f64>,
+    pub v0p: Cow<'a, [f64]>,
     /// Impulses J = M (V0+ - V0) that are not in the velocity, over all dofs; else none.
-    pub impulse: Vec<f64>,
+    pub impulse: &'a [f64],
 }
 
 /// Load, internal force and inertia of an iterate.
-#[derive(Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Equilibrium {
     /// Displacement U_theta.
     pub u_theta: Vec<f64>,
@@ -62,12 +57,39 @@ pub(crate) struct Equilibrium {
     pub acceleration: Vec<f64>,
     /// Inertia force M A.
     pub inertia: Vec<f64>,
+    /// Out-of-balance force r without contact.
+    pub out_of_balance: Vec<f64>,
 }
 
 impl Equilibrium {
+    /// Vectors over so many dofs.
+    fn resize(&mut self, dofs: usize) {
+        let Self {
+            u_theta,
+            load,
+            internal,
+            acceleration,
+            inertia,
+            out_of_balance,
+        } = self;
+        for vector in [
+            u_theta,
+            load,
+            internal,
+            acceleration,
+            inertia,
+            out_of_balance,
+        ] {
+            vector.resize(dofs, 0.0);
+        }
+    }
+
     /// r = R_theta - F(U_theta) - M A, eq. (4.5).
-    pub fn out_of_balance(&self) -> Vec<f64> {
-        difference(&difference(&self.load, &self.internal), &self.inertia)
+    fn set_out_of_balance(&mut self) {
+        let forces = self.load.iter().zip(&self.internal).zip(&self.inertia);
+        for (r, ((load, internal), inertia)) in self.out_of_balance.iter_mut().zip(forces) {
+            *r = load - internal - inertia;
+        }
     }
 }
 
@@ -133,7 +155,7 @@ impl StepProblem<'_> {
     /// [`Cause::Collapsed`] with the first segment that has almost no length.
     pub fn check_segments(&self, u: &[f64]) -> Result<(), Cause> {
         let x = &self.model.mesh.coordinates;
-        let length = |[p, q]: [[f64; 2]; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
+        let length = |[p, q]: [[f64; 2]; 2]| distance(p, q);
         let has_collapsed = |segment: &&[usize; 2]| {
             let now = length(segment.map(|node| self.position(u, node)));
             let least = COLLAPSED_LENGTH * length(segment.map(|node| x[node]));
@@ -177,52 +199,46 @@ impl StepProblem<'_> {
         }
     }
 
-    /// Load, internal force and inertia of the iterate U0 + d.
+    /// Writes load, internal force and inertia of the iterate U = U0 + d.
     pub fn equilibrium(
         &self,
         start: &State,
         StartVelocity { v0p, impulse }: &StartVelocity,
-        d: &[f64],
+        [u, d]: [&[f64]; 2],
         interval: Interval,
-    ) -> Result<Equilibrium, Cause> {
-        let Interval {
-            start: t0,
-            end: t1,
-            dt,
-        } = interval;
-        let u = sum(&start.u, d);
-        let u_theta = self.weights.displacement(&start.u, d, v0p, dt);
-        let mut internal = self
-            .weights
-            .internal_force(self.elements, start, &u, &u_theta)?;
-        if self.elements.has_damping() {
-            let damping = self.elements.damping_force([&start.u, &u], d, dt);
-            internal = sum(&internal, &damping);
-        }
-        let load = self
-            .loads
-            .weighted(self.elements, self.weights.theta1, t0, t1, &u_theta);
-        // A = (2/dt²) (d - dt V0+), eq. (4.1); at supports (V1 - V0)/dt, eq. (4.9)
-        let c = 2.0 / (dt * dt);
-        let mut acceleration: Vec<f64> = d
-            .iter()
-            .zip(v0p)
-            .map(|(d, v0p)| c * (d - dt * v0p))
-            .collect();
-        self.unknowns
-            .prescribe_acceleration(t1, &start.v, dt, &mut acceleration);
-        let mut inertia = self.mass.times(&acceleration);
-        // the part -(2/dt) J of impulses J = M (V0+ - V0) that are not in V0+ yet
-        for (inertia, impulse) in inertia.iter_mut().zip(impulse) {
-            *inertia -= c * dt * impulse;
-        }
-        Ok(Equilibrium {
+        equilibrium: &mut Equilibrium,
+    ) -> Result<(), Cause> {
+        equilibrium.resize(u.len());
+        let Equilibrium {
             u_theta,
             load,
             internal,
             acceleration,
             inertia,
-        })
+            ..
+        } = equilibrium;
+        (self.weights).write_displacement([&start.u, d, v0p], interval.dt, u_theta);
+        let motion = self.weights.motion(start, u, u_theta);
+        self.elements.write_internal_force(motion, internal)?;
+        if self.elements.has_damping() {
+            let damping = (self.elements).damping_force([&start.u, u], d, interval.dt);
+            internal.iter_mut().zip(&damping).for_each(|(f, c)| *f += c);
+        }
+        (self.loads).write_weighted(self.elements, self.weights.theta1, interval, u_theta, load);
+        // A = (2/dt²) (d - dt V0+), eq. (4.1); at supports (V1 - V0)/dt, eq. (4.9)
+        let dt = interval.dt;
+        let c = 2.0 / (dt * dt);
+        for (a, (d, v0p)) in acceleration.iter_mut().zip(d.iter().zip(v0p.iter())) {
+            *a = c * (d - dt * v0p);
+        }
+        (self.unknowns).prescribe_acceleration(interval.end, &start.v, dt, acceleration);
+        self.mass.write_product(acceleration, inertia);
+        // the part -(2/dt) J of impulses J = M (V0+ - V0) that are not in V0+ yet
+        for (inertia, impulse) in inertia.iter_mut().zip(*impulse) {
+            *inertia -= c * dt * impulse;
+        }
+        equilibrium.set_out_of_balance();
+        Ok(())
     }
 }
 
@@ -254,6 +270,18 @@ impl State {
             ("the acceleration", &self.a),
         ])
     }
+}
+
+/// sum = a + b
+pub(crate) fn write_sum(a: &[f64], b: &[f64], sum: &mut Vec<f64>) {
+    sum.clear();
+    sum.extend(a.iter().zip(b).map(|(a, b)| a + b));
+}
+
+/// difference = a - b
+pub(crate) fn write_difference(a: &[f64], b: &[f64], difference: &mut Vec<f64>) {
+    difference.clear();
+    difference.extend(a.iter().zip(b).map(|(a, b)| a - b));
 }
 
 /// a + b

@@ -80,6 +80,11 @@ impl<'m> Unknowns<'m> {
         self.map.restrict(v)
     }
 
+    /// Writes [`Self::restrict`].
+    pub fn write_restricted(&self, v: &[f64], restricted: &mut Vec<f64>) {
+        self.map.write_restricted(v, restricted);
+    }
+
     /// Adds T q to a vector over all dofs.
     pub fn add(&self, q: &[f64], v: &mut [f64]) {
         self.map.add(q, v);

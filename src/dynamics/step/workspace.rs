@@ -4,9 +4,9 @@
 use super::loads::TimePoint;
 use super::matrices::{ClosedConstraints, EffectiveStiffness, StiffnessForm, System};
 use super::meter::Meter;
-use super::step_problem::{Equilibrium, Interval, StartVelocity, StepProblem, difference, sum};
+use super::step_problem::{StepProblem, difference, sum};
 use crate::contact::{ClosedPairs, Constraint, Penetration, Search, find_penetration};
-use crate::dynamics::results::{Cause, State};
+use crate::dynamics::results::State;
 use crate::elements::Motion;
 use crate::linear::LinearError;
 
@@ -77,19 +77,6 @@ impl<'m> Workspace<'m> {
         meter.time(|t| &mut t.solve, || stiffness.turn(problem, motion));
     }
 
-    /// Load, internal force and inertia of the iterate U0 + d.
-    pub fn equilibrium(
-        &mut self,
-        problem: &StepProblem,
-        start: &State,
-        jump: &StartVelocity,
-        d: &[f64],
-        interval: Interval,
-    ) -> Result<Equilibrium, Cause> {
-        let evaluate = || problem.equilibrium(start, jump, d, interval);
-        self.meter.time(|t| &mut t.assembly, evaluate)
-    }
-
     /// (K + Cd/(theta2 dt)) x in the configuration of a motion, K being the tangent, Cd the damping matrix
     /// and dt that of K*.
     pub fn tangent_product(
@@ -141,7 +128,7 @@ impl<'m> Workspace<'m> {
         let Ok(internal) = problem.elements.internal_force(motion) else {
             return a;
         };
-        let load = (problem.loads).weighted(problem.elements, 1.0, now, now, &start.u);
+        let load = (problem.loads).at(problem.elements, now, &start.u);
         let mut r = difference(&load, &internal);
         problem.redistribution.hand_on(&mut r);
         let r = problem.unknowns.restrict(&r);

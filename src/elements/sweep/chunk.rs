@@ -6,6 +6,7 @@ use std::marker::PhantomData;
 use std::sync::{Mutex, PoisonError};
 
 use nalgebra::SMatrix;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::block::{Block, BlockMotion, NodalLanes};
@@ -96,12 +97,12 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
         if !self.is_strained(motion) {
             return true;
         }
-        let positive = in_lanes!(&self.law, law => match motion.start {
-            None => self.sweep(&mut sums, law, |block| self.at(block, motion.end)),
-            Some(start) => {
-                self.sweep(&mut sums, law, |block| self.between(block, [start, motion.end]))
-            }
-        });
+        let positive = in_lanes!(&self.law, law => Arch::new().dispatch(ForceSweep {
+            chunk: self,
+            law,
+            motion,
+            sums: &mut sums,
+        }));
         positive.everywhere()
     }
 
@@ -242,6 +243,34 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
             values[1][a] = Lanes([p[1], q[1]]);
         }
         values
+    }
+}
+
+/// A sweep over internal forces with the vector instructions of the processor.
+struct ForceSweep<'a, const N: usize, const P: usize, S, L> {
+    chunk: &'a Chunk<N, P, S>,
+    law: &'a L,
+    motion: Motion<'a>,
+    sums: &'a mut [[f64; 2]],
+}
+
+impl<const N: usize, const P: usize, S, L> WithSimd for ForceSweep<'_, N, P, S, L>
+where
+    S: Shape<N, P> + Sync,
+    L: LawInLanes,
+{
+    type Output = Positive;
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) -> Positive {
+        let Self {
+            chunk, law, sums, ..
+        } = self;
+        let end = self.motion.end;
+        match self.motion.start {
+            None => chunk.sweep(sums, law, |block| chunk.at(block, end)),
+            Some(start) => chunk.sweep(sums, law, |block| chunk.between(block, [start, end])),
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use super::format::{counted, general, grouped, scientific};
 use super::layout::{label, wrap, wrap_words};
 use super::status::monitored;
 use crate::model::{
-    Contact, Element, ElementType, Frames, Impact, ImpactTime, LandingRule, Model, Scheme,
+    Contact, Element, ElementType, Frames, Impact, ImpactTime, LandingRule, Model, Plane, Scheme,
     Settings, SolverChoice, Step, SurfaceKind,
 };
 use crate::output::frames::{DEFAULT_FRAMES, are_dense};
@@ -49,19 +49,36 @@ impl ModelEcho {
             echo.lower = [echo.lower[0].min(x[0]), echo.lower[1].min(x[1])];
             echo.upper = [echo.upper[0].max(x[0]), echo.upper[1].max(x[1])];
         }
-        for element in &model.mesh.elements {
-            echo.add(model, element);
-        }
+        echo.mass = model
+            .mesh
+            .elements
+            .iter()
+            .fold(0.0, |mass, element| mass + element_mass(model, element));
+        echo.measure_edges(model);
         echo
     }
 
-    fn add(&mut self, model: &Model, element: &Element) {
-        let edge = model.mesh.shortest_side(element);
-        let speed = wave_speed(model, element);
-        self.mass += element_mass(model, element);
-        self.shortest_edge = self.shortest_edge.min(edge);
-        self.wave_speed = self.wave_speed.max(speed);
-        self.edge_time = self.edge_time.min(edge / speed);
+    /// Sets edge, wave speed and their transit time.
+    fn measure_edges(&mut self, model: &Model) {
+        // elements of a section in plane stress and in plane strain
+        let planes = [Plane::Stress, Plane::Strain];
+        let group = |_, element: &Element| {
+            planes.len() * element.section + element.element_type.plane as usize
+        };
+        let edges = (model.mesh).shortest_sides(planes.len() * model.sections.len(), group);
+        let speeds = model.sections.iter().flat_map(|section| {
+            let material = &model.materials[section.material];
+            planes.map(|plane| material.wave_speed(plane))
+        });
+        for (edge, speed) in edges
+            .into_iter()
+            .zip(speeds)
+            .filter(|(edge, _)| edge.is_finite())
+        {
+            self.shortest_edge = self.shortest_edge.min(edge);
+            self.wave_speed = self.wave_speed.max(speed);
+            self.edge_time = self.edge_time.min(edge / speed);
+        }
     }
 
     /// The lines of the echo.
@@ -293,7 +310,12 @@ fn area(corners: &[[f64; 2]]) -> f64 {
 pub(crate) fn element_mass(model: &Model, element: &Element) -> f64 {
     let section = &model.sections[element.section];
     let density = model.materials[section.material].density;
-    density * section.thickness * area(&model.mesh.corners(element))
+    let at = |node: usize| model.mesh.coordinates[node];
+    let area = match *element.nodes.as_slice() {
+        [a, b, c, d] => area(&[a, b, c, d].map(at)),
+        _ => area(&model.mesh.corners(element)),
+    };
+    density * section.thickness * area
 }
 
 /// Speed of longitudinal waves in an element.

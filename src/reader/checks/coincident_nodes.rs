@@ -1,8 +1,9 @@
 //! Nodes at the same place that nothing joins.
 
-use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::diagnostics::{Code, Diagnostic};
 use crate::model::{Equation, Mesh, Model};
 use crate::reader::context::Context;
+use crate::reader::mesh::Places;
 use crate::vectors::distance;
 use std::collections::BTreeSet;
 
@@ -10,13 +11,16 @@ use std::collections::BTreeSet;
 /// digits that mesh generators write.
 const SAME_PLACE: f64 = 1e-6;
 
+/// Numbers up to which whole ones keep their value as integers.
+const MOST_WHOLE: f64 = (1_u64 << 52) as f64;
+
 /// Warns about nodes of elements that lie at the same place although neither contact nor an
-/// equation acts between them; `spans` are the places of the elements.
-pub(crate) fn coincident_nodes(model: &Model, spans: &[Span], cx: &mut Context) {
+/// equation acts between them; `shortest` is the length of the shortest side of an element.
+pub(crate) fn coincident_nodes(model: &Model, shortest: f64, places: &Places, cx: &mut Context) {
     if cx.d.has_errors() {
         return;
     }
-    let mut pairs = coincident(&model.mesh);
+    let mut pairs = coincident(&model.mesh, shortest);
     if pairs.is_empty() {
         return;
     }
@@ -25,8 +29,8 @@ pub(crate) fn coincident_nodes(model: &Model, spans: &[Span], cx: &mut Context) 
     let Some(&[p, q]) = pairs.first() else {
         return;
     };
-    let mut places = model.mesh.elements.iter().zip(spans);
-    let Some((_, &span)) = places.find(|(element, _)| element.nodes.contains(&q)) else {
+    let mut elements = model.mesh.elements.iter();
+    let Some(element) = elements.position(|element| element.nodes.contains(&q)) else {
         return;
     };
     let [a, b] = [p, q].map(|node| model.node_name(node));
@@ -36,12 +40,22 @@ pub(crate) fn coincident_nodes(model: &Model, spans: &[Span], cx: &mut Context) 
             "{n} pairs of nodes lie at the same place and nothing joins them, the first are {a} and {b}"
         ),
     };
-    let warning = Diagnostic::warning(Code::CoincidentNodes, span, message);
+    let warning = Diagnostic::warning(Code::CoincidentNodes, places.get(element), message);
     cx.d.push(
         warning.help(
             "the elements part there: merge the nodes, or define contact between the surfaces",
         ),
     );
+}
+
+/// The largest whole number up to x. The processors that the program is built for have no
+/// instruction for it, but one that cuts off what stands behind the point.
+fn floor(x: f64) -> f64 {
+    if x.abs() > MOST_WHOLE {
+        return x.floor();
+    }
+    let cut = x as i64 as f64;
+    if cut > x { cut - 1.0 } else { cut }
 }
 
 /// Sets of nodes that contacts and equations act on.
@@ -67,10 +81,9 @@ impl Joined {
     }
 }
 
-/// Pairs of nodes of elements at the same place, the smaller index first.
-fn coincident(mesh: &Mesh) -> Vec<[usize; 2]> {
-    let sides = mesh.elements.iter().map(|e| mesh.shortest_side(e));
-    let cell = sides.fold(f64::INFINITY, f64::min);
+/// Pairs of nodes of elements at the same place, the smaller index first; `cell` is the length of the
+/// shortest side.
+fn coincident(mesh: &Mesh, cell: f64) -> Vec<[usize; 2]> {
     let mut used = vec![false; mesh.node_count()];
     for &node in mesh.elements.iter().flat_map(|element| &element.nodes) {
         used[node] = true;
@@ -140,7 +153,8 @@ impl Grid {
     fn cells(&self, x: f64) -> [u64; 2] {
         // The grid is shifted so that the nodes of regular meshes lie off its lines.
         let at = x / self.cell + 0.37;
-        let (own, part) = (at.floor(), at - at.floor());
+        let own = floor(at);
+        let part = at - own;
         let other = match part {
             part if part < SAME_PLACE => own - 1.0,
             part if part > 1.0 - SAME_PLACE => own + 1.0,

@@ -23,18 +23,29 @@ pub(crate) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &m
         }
     }
     let mut total = 0.0;
-    let places = mesh_index.element_spans.iter().zip(&properties.section_of);
-    let elements = mesh_index.mesh.elements.iter().enumerate();
-    for ((index, element), (&span, section)) in elements.zip(places) {
-        let section = section.and_then(|s| properties.sections.get(s));
-        let material = section.and_then(|s| properties.materials.get(s.material));
-        let (Some(section), Some(material)) = (section, material) else {
+    // mass per area, and stiffness
+    let of_sections = properties.sections.iter().map(|section| {
+        let material = properties.materials.get(section.material)?;
+        let stiffness = material.law.small_strain().young * section.thickness;
+        Some((material.density * section.thickness, stiffness))
+    });
+    let of_sections: Vec<Option<(f64, f64)>> = of_sections.collect();
+    for (index, element) in mesh_index.mesh.elements.iter().enumerate() {
+        let section = properties
+            .section_of(index)
+            .and_then(|s| of_sections.get(s));
+        let Some(&Some((density, stiffness))) = section else {
             continue;
         };
         let area = area(element, &mesh_index.mesh);
-        let mass = material.density * section.thickness * area;
-        let stiffness = material.law.small_strain().young * section.thickness;
+        let mass = density * area;
         total += mass;
+        if [area, stiffness, mass, total]
+            .iter()
+            .all(|value| value.is_normal())
+        {
+            continue;
+        }
         let magnitudes = [
             ("area of", area),
             ("stiffness E t of", stiffness),
@@ -43,7 +54,7 @@ pub(crate) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &m
         ];
         if let Some((what, value)) = magnitudes.iter().find(|(_, value)| !value.is_normal()) {
             let what = format!("the {what} element {}", mesh_index.element_name(index));
-            return unusable(&what, *value, span, cx);
+            return unusable(&what, *value, mesh_index.places.get(index), cx);
         }
     }
 }
@@ -57,5 +68,9 @@ pub(super) fn unusable(what: &str, value: f64, span: Span, cx: &mut Context) {
 
 /// Area of an element.
 fn area(element: &Element, mesh: &Mesh) -> f64 {
-    polygon_area(element.nodes.iter().map(|&node| mesh.coordinates[node]))
+    let at = |node: usize| mesh.coordinates[node];
+    match *element.nodes.as_slice() {
+        [a, b, c, d] => polygon_area([a, b, c, d].map(at)),
+        ref nodes => polygon_area(nodes.iter().map(|&node| at(node))),
+    }
 }

@@ -16,5 +16,5 @@ pub(super) use fixed_slaves::fixed_slaves;
 pub(super) use magnitudes::magnitudes;
 pub(super) use mesh::mesh;
 pub(super) use motion::motion;
-pub(super) use proportion::{crossing_time, proportion};
+pub(super) use proportion::{Shortest, proportion, shortest};
 pub(super) use thickness::thickness;

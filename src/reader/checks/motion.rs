@@ -10,8 +10,8 @@ pub(crate) fn motion(model: &Model, cards: &[StepCards], cx: &mut Context) {
     let Some(first) = cards.first().filter(|_| !cx.d.has_errors()) else {
         return;
     };
-    let moves = model.initial_velocity.iter().any(|v| *v != 0.0);
-    if moves || model.steps.iter().any(has_cause) {
+    let moves = || model.initial_velocity.iter().any(|v| *v != 0.0);
+    if model.steps.iter().any(has_cause) || moves() {
         return;
     }
     let message = "nothing moves: there is no load, no velocity and no prescribed motion";

@@ -1,7 +1,7 @@
 //! Increment and duration of the steps against the time that waves take.
 
 use crate::diagnostics::{Code, Diagnostic};
-use crate::model::{Element, Mesh, Step};
+use crate::model::{Element, Mesh, Plane, Step};
 use crate::reader::context::Context;
 use crate::reader::materials::Properties;
 use crate::reader::mesh::StepCards;
@@ -10,20 +10,44 @@ use crate::reader::mesh::StepCards;
 /// increments of slow motions reach some thousands.
 const MOST_SIDES: f64 = 1e6;
 
-/// Shortest time in which a wave crosses a side of an element.
-pub(crate) fn crossing_time(mesh: &Mesh, properties: &Properties) -> Option<f64> {
-    let of_element = |(element, section): (&Element, &Option<usize>)| {
-        let material = properties.sections.get((*section)?)?.material;
-        let material = properties.materials.get(material)?;
-        Some(mesh.shortest_side(element) / material.wave_speed(element.element_type.plane))
+/// The shortest side of an element, and the shortest time in which a wave crosses a side.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shortest {
+    /// Length; infinite without elements.
+    pub side: f64,
+    /// Time; none without a material.
+    pub time: Option<f64>,
+}
+
+/// The shortest side, and the shortest time in which a wave crosses one.
+pub(crate) fn shortest(mesh: &Mesh, properties: &Properties) -> Shortest {
+    // elements of a section in plane stress and in plane strain; at last those without section
+    let planes = [Plane::Stress, Plane::Strain];
+    let last = planes.len() * properties.sections.len();
+    let group = |index: usize, element: &Element| {
+        let section = properties.section_of(index);
+        section
+            .map_or(last, |s| {
+                planes.len() * s + element.element_type.plane as usize
+            })
+            .min(last)
     };
-    let times = mesh.elements.iter().zip(&properties.section_of);
-    let shortest = times.filter_map(of_element).reduce(f64::min)?;
-    Some(shortest).filter(|time| time.is_finite() && *time > 0.0)
+    let sides = mesh.shortest_sides(last + 1, group);
+    let speeds = properties.sections.iter().flat_map(|section| {
+        let material = properties.materials.get(section.material);
+        planes.map(|plane| material.map(|material| material.wave_speed(plane)))
+    });
+    let times = sides.iter().zip(speeds);
+    let times = times.filter_map(|(side, speed)| Some(side / speed?));
+    let time = times.reduce(f64::min);
+    Shortest {
+        side: sides.iter().copied().fold(f64::INFINITY, f64::min),
+        time: time.filter(|time| time.is_finite() && *time > 0.0),
+    }
 }
 
 /// Warns about steps that end before a wave has crossed the shortest side of an element, and about
-/// increments in which it crosses more than a million of them; `guide` is its [`crossing_time`].
+/// increments in which it crosses more than a million of them; `guide` is the [`shortest`] time.
 pub(crate) fn proportion(
     steps: &[Step],
     cards: &[StepCards],

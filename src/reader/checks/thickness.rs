@@ -34,10 +34,11 @@ fn range_of_thickness(
     let SurfaceKind::Faces(faces) = &surfaces.all.get(surface)?.kind else {
         return None;
     };
-    let section = |element: usize| properties.section_of.get(element).copied().flatten();
-    let all = faces
-        .iter()
-        .filter_map(|face| properties.sections.get(section(face.element)?));
+    let all = faces.iter().filter_map(|face| {
+        properties
+            .sections
+            .get(properties.section_of(face.element)?)
+    });
     let all: Vec<f64> = all.map(|section| section.thickness).collect();
     let low = all.iter().copied().reduce(f64::min)?;
     Some((low, all.iter().copied().fold(low, f64::max)))

@@ -7,6 +7,7 @@ use crate::model::{Element, ElementType, Formulation, Material, Section};
 use crate::reader::context::Context;
 use crate::reader::mesh::{MeshIndex, Outline, Sets};
 use crate::reader::names::Names;
+use std::num::NonZeroU32;
 
 /// Materials and sections.
 pub(crate) struct Properties {
@@ -14,8 +15,8 @@ pub(crate) struct Properties {
     pub materials: Vec<Material>,
     /// Sections.
     pub sections: Vec<Section>,
-    /// Section of each element.
-    pub section_of: Vec<Option<usize>>,
+    /// Section of each element, counted from 1.
+    section_of: Vec<Option<NonZeroU32>>,
     /// Type of each element, in the formulation of its section.
     pub element_types: Vec<ElementType>,
     /// Places of the materials.
@@ -59,6 +60,12 @@ impl Properties {
         }
     }
 
+    /// Section of an element.
+    pub fn section_of(&self, element: usize) -> Option<usize> {
+        let section = self.section_of.get(element).copied().flatten();
+        section.map(|number| number.get() as usize - 1)
+    }
+
     /// Reads the sections and gives them to their elements.
     pub(super) fn read_sections(
         &mut self,
@@ -98,10 +105,10 @@ impl Properties {
         let index = self.sections.len();
         self.sections.extend(section);
         let mut taken = Vec::new();
-        for &element in &elements {
+        for &element in elements.iter() {
             match self.section_of.get_mut(element) {
                 Some(Some(_)) => taken.push(element),
-                Some(free) => *free = Some(index),
+                Some(free) => *free = NonZeroU32::new(index as u32 + 1),
                 None => {}
             }
         }
@@ -157,12 +164,12 @@ impl Properties {
             return;
         };
         let name = mesh_index.element_name(first);
-        let span = mesh_index.element_spans.get(first);
-        if let (Some(&span), false) = (span, cx.may_lack_cards()) {
+        if !cx.may_lack_cards() {
             let message = match bare().count() {
                 1 => format!("element {name} has no section"),
                 n => format!("{n} elements have no section, the first is {name}"),
             };
+            let span = mesh_index.places.get(first);
             let error = Diagnostic::error(Code::NoSection, span, message);
             cx.d.push(error.help("give them a material and a thickness with *SOLID SECTION"));
         }

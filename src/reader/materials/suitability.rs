@@ -14,14 +14,11 @@ const LOCKING: f64 = 0.45;
 impl Properties {
     /// Reports materials in plane stress elements that are for plane strain only.
     pub(super) fn report_plane_stress(&self, mesh_index: &MeshIndex, cx: &mut Context) {
-        let places = mesh_index.element_spans.iter().zip(&self.section_of);
-        for (index, (&span, section)) in places.enumerate() {
-            let Some(element) = mesh_index.mesh.elements.get(index) else {
-                return;
-            };
-            let section = section.and_then(|s| self.sections.get(s));
+        let types = self.element_types.iter().enumerate();
+        for (index, _) in types.filter(|(_, of)| of.plane == Plane::Stress) {
+            let section = self.section_of(index).and_then(|s| self.sections.get(s));
             let material = section.and_then(|s| self.materials.get(s.material));
-            if let (Plane::Stress, Some(material)) = (element.element_type.plane, material)
+            if let Some(material) = material
                 && !material.law.has_plane_stress()
             {
                 let message = format!(
@@ -29,6 +26,7 @@ impl Properties {
                     mesh_index.element_name(index),
                     material.name
                 );
+                let span = mesh_index.places.get(index);
                 let error = Diagnostic::error(Code::PlaneStrainOnly, span, message);
                 cx.d.push(error.help("take CPE elements, or *ELASTIC"));
                 return;
@@ -40,8 +38,8 @@ impl Properties {
     /// plane stress the thickness gives way and nothing locks.
     pub(super) fn report_locking(&self, poisson_spans: &[Span], cx: &mut Context) {
         let mut locks = vec![false; self.materials.len()];
-        for (element_type, section) in self.element_types.iter().zip(&self.section_of) {
-            let section = section.and_then(|s| self.sections.get(s));
+        for (index, element_type) in self.element_types.iter().enumerate() {
+            let section = self.section_of(index).and_then(|s| self.sections.get(s));
             let locks = section.and_then(|s| locks.get_mut(s.material));
             if let (Plane::Strain, Formulation::Displacement, Some(locks)) =
                 (element_type.plane, element_type.formulation, locks)

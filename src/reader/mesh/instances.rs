@@ -18,38 +18,46 @@ pub(super) fn number(mesh: &mut Mesh, cx: &Context) -> Vec<Instance> {
             ..Instance::default()
         });
     }
-    for (index, label, first) in renumbered(&mut mesh.node_labels.iter_mut().collect::<Vec<_>>()) {
-        if let Some(instance) = instances.get_mut(index) {
+    let first = first_number(mesh.node_labels.iter());
+    let labels = mesh.node_labels.iter_mut();
+    for (index, instance, number) in renumbered(labels, first) {
+        if let Some(instance) = instances.get_mut(instance) {
             if instance.node_numbers.is_empty() {
-                instance.first_node = first;
+                instance.first_node = index;
             }
-            instance.node_numbers.push(label);
+            instance.node_numbers.push(number);
         }
     }
-    let mut labels: Vec<&mut u64> = mesh.elements.iter_mut().map(|e| &mut e.label).collect();
-    for (index, label, first) in renumbered(&mut labels) {
-        if let Some(instance) = instances.get_mut(index) {
+    let first = first_number(mesh.elements.iter().map(|element| &element.label));
+    let labels = mesh.elements.iter_mut().map(|element| &mut element.label);
+    for (index, instance, number) in renumbered(labels, first) {
+        if let Some(instance) = instances.get_mut(instance) {
             if instance.element_numbers.is_empty() {
-                instance.first_element = first;
+                instance.first_element = index;
             }
-            instance.element_numbers.push(label);
+            instance.element_numbers.push(number);
         }
     }
     instances
 }
 
-/// Gives those of instances numbers of their own; returns instance, number in the part and index of
-/// each.
-fn renumbered(labels: &mut [&mut u64]) -> Vec<(usize, u64, usize)> {
-    let others = labels.iter().filter(|label| instance_of(***label) == 0);
-    let mut next = others.map(|label| **label).max().unwrap_or(0);
-    let mut found = Vec::new();
-    for (index, label) in labels.iter_mut().enumerate() {
-        if let Some(instance) = instance_of(**label).checked_sub(1) {
-            found.push((instance as usize, number_of(**label), index));
-            next += 1;
-            **label = next;
-        }
-    }
-    found
+/// The number after the largest one outside instances.
+fn first_number<'l>(labels: impl Iterator<Item = &'l u64>) -> u64 {
+    let others = labels.filter(|label| instance_of(**label) == 0);
+    1 + others.max().copied().unwrap_or(0)
+}
+
+/// Gives those of instances numbers of their own from `next` on; returns index, instance and number
+/// in the part of each.
+fn renumbered<'l>(
+    labels: impl Iterator<Item = &'l mut u64>,
+    mut next: u64,
+) -> impl Iterator<Item = (usize, usize, u64)> {
+    labels.enumerate().filter_map(move |(index, label)| {
+        let instance = instance_of(*label).checked_sub(1)?;
+        let number = number_of(*label);
+        *label = next;
+        next += 1;
+        Some((index, instance as usize, number))
+    })
 }

@@ -34,7 +34,7 @@ pub(super) fn add(lines: &[RawLine], used: &[bool], mesh_index: &mut MeshIndex, 
             }
             None => {
                 strays.push(line);
-                Labelled::LeftOut
+                Labelled::LEFT_OUT
             }
         };
         mesh_index.elements.insert(line.label, labelled);
@@ -71,11 +71,11 @@ fn report_strays(strays: &[&RawLine], cx: &mut Context) {
 
 /// Notes that a mesh generator's triangles and quadrilaterals are in plane stress.
 fn report_plane_stress(mesh_index: &MeshIndex, cx: &mut Context) {
-    let elements = mesh_index.mesh.elements.iter();
-    let mut places = elements.zip(&mesh_index.element_spans);
-    let found = places.find(|(element, _)| element.element_type.plane == Plane::Stress);
-    if let Some((element, &span)) = found {
-        let name = element.element_type.name();
+    let mut elements = mesh_index.mesh.elements.iter();
+    let found = elements.position(|element| element.element_type.plane == Plane::Stress);
+    if let Some(index) = found {
+        let name = mesh_index.mesh.elements[index].element_type.name();
+        let span = mesh_index.places.get(index);
         let message = format!("{name} elements are in plane stress");
         let note = Diagnostic::note(Code::LineElement, span, message);
         cx.d.push(note.help(

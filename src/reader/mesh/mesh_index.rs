@@ -1,9 +1,12 @@
 //! The mesh with the node and element numbers of the deck, and the sets named on `*NODE` and
 //! `*ELEMENT`.
 
-use crate::deck::Name;
+use super::places::Places;
+use crate::deck::{Card, Name};
 use crate::diagnostics::{Code, Span};
 use crate::model::{Face, Instance, Mesh, element_name, node_name};
+use crate::reader::context::Context;
+use crate::reader::label::LabelList;
 use crate::reader::names::Labels;
 
 /// The mesh, with the numbers and sets that the deck gives to its nodes and elements.
@@ -18,8 +21,8 @@ pub(crate) struct MeshIndex {
     pub elements: Labels,
     /// Faces of the plane elements that the line elements name.
     pub lines: Vec<Face>,
-    /// Places of the elements.
-    pub element_spans: Vec<Span>,
+    /// Places of the plane elements.
+    pub places: Places,
     /// Node sets named on `*NODE`.
     pub node_groups: Vec<Group>,
     /// Element sets named on `*ELEMENT`.
@@ -33,7 +36,26 @@ pub(crate) struct Group {
     /// Where it is named.
     pub span: Span,
     /// Labels of its members.
-    pub labels: Vec<u64>,
+    pub labels: LabelList,
+}
+
+impl Group {
+    /// The set that a parameter of a card names.
+    pub fn named_by(
+        card: &Card,
+        parameter: &str,
+        labels: LabelList,
+        cx: &mut Context,
+    ) -> Option<Group> {
+        let text = card.value(parameter)?;
+        Some(Group {
+            name: text
+                .name(cx.d)
+                .map(|name| cx.of_instance(name, text.span))?,
+            span: text.span,
+            labels,
+        })
+    }
 }
 
 impl Default for MeshIndex {
@@ -44,7 +66,7 @@ impl Default for MeshIndex {
             nodes: Labels::new("node", Code::UndefinedNode),
             elements: Labels::new("element", Code::UndefinedElement),
             lines: Vec::new(),
-            element_spans: Vec::new(),
+            places: Places::default(),
             node_groups: Vec::new(),
             element_groups: Vec::new(),
         }
@@ -81,7 +103,7 @@ impl MeshIndex {
     pub fn reserve_elements(&mut self, count: usize) {
         self.elements.reserve(count);
         self.mesh.elements.reserve(count);
-        self.element_spans.reserve(count);
+        self.places.reserve(count);
     }
 
     /// Takes out the nodes that are not used and numbers the others anew.

@@ -6,6 +6,7 @@ mod line_elements;
 mod mesh_index;
 pub(crate) mod nodes_elements;
 mod outline;
+mod places;
 mod profile;
 mod references;
 pub(crate) mod sets;
@@ -13,5 +14,6 @@ pub(crate) mod surface;
 
 pub(crate) use mesh_index::MeshIndex;
 pub(crate) use outline::{Block, Outline, StepCards};
+pub(crate) use places::Places;
 pub(crate) use sets::Sets;
 pub(crate) use surface::{Found, Surfaces, side_count};

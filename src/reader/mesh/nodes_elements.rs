@@ -10,7 +10,7 @@ use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Element, Nodes};
 use crate::reader::context::Context;
-use crate::reader::label::LabelMap;
+use crate::reader::label::{LabelList, LabelMap};
 use crate::reader::names::Labelled;
 use smallvec::SmallVec;
 use std::collections::BTreeSet;
@@ -37,7 +37,7 @@ pub(crate) fn read<'a>(outline: &Outline<'a>, cx: &mut Context<'a>) -> MeshIndex
     reading.report_not_planar(outline, cx);
     let groups = reading.mesh_index.node_groups.iter();
     let groups: Vec<_> = groups
-        .map(|group| (group.name.key.as_str(), group.labels.as_slice()))
+        .map(|group| (group.name.key.as_str(), &group.labels))
         .collect();
     let references = references::labels(outline, &groups, cx);
     reading.finish(&references, outline, cx)
@@ -51,30 +51,36 @@ struct Reading {
     heights: Vec<f64>,
     /// Lines that define the nodes.
     node_lines: Vec<u32>,
-    /// Lines that define the elements, line elements included.
-    element_lines: LabelMap<u32>,
+    /// Last lines of line elements, and of plane ones that are defined again.
+    other_lines: LabelMap<u32>,
     lines: Vec<RawLine>,
 }
 
 impl Reading {
     fn node_card(&mut self, card: &Card, cx: &mut Context) {
         let count = card.rows.line_count();
-        let mut labels = Vec::with_capacity(count);
+        let mut labels = LabelList::default();
         self.mesh_index.reserve_nodes(count);
         self.node_lines.reserve(count);
-        for row in card.rows.iter() {
-            match self.plain_node(row, cx).or_else(|| self.node(row, cx)) {
+        let mut rows = card.rows.iter();
+        while let Some((row, point)) = rows.next_point() {
+            let label = point.and_then(|point| self.plain_node(point, row, cx));
+            match label.or_else(|| self.node(row, cx)) {
                 Some(label) => labels.push(label),
                 None => self.mesh_index.nodes.incomplete = true,
             }
         }
-        let group = group(card, "NSET", labels, cx);
+        let group = Group::named_by(card, "NSET", labels, cx);
         self.mesh_index.node_groups.extend(group);
     }
 
     /// Adds the new node of a row of plain numbers; returns its number.
-    fn plain_node(&mut self, row: Row, cx: &Context) -> Option<u64> {
-        let (number, [x, y, z]) = row.point()?;
+    fn plain_node(
+        &mut self,
+        (number, [x, y, z]): (u64, [f64; 3]),
+        row: Row,
+        cx: &Context,
+    ) -> Option<u64> {
         let nodes = &self.mesh_index.nodes;
         let label = nodes.plain_label(number, row.instance())?;
         if nodes.get(label).is_some() {
@@ -97,7 +103,7 @@ impl Reading {
         });
         let [Some(x), Some(y), Some(z)] = at else {
             if known.is_none() {
-                self.mesh_index.nodes.insert(label, Labelled::LeftOut);
+                self.mesh_index.nodes.insert(label, Labelled::LEFT_OUT);
             }
             return Some(label);
         };
@@ -137,15 +143,13 @@ impl Reading {
         let kind = card
             .required("TYPE", cx.d)
             .and_then(|name| element_type::read(name, cx));
-        let mut labels = Vec::new();
+        let mut labels = LabelList::default();
         if let Some(kind) = kind {
-            let count = card.rows.line_count();
-            labels.reserve(count);
-            self.mesh_index.reserve_elements(count);
-            self.element_lines.reserve(count);
+            self.mesh_index.reserve_elements(card.rows.line_count());
             let mut rows = card.rows.iter();
-            while let Some(row) = rows.next() {
-                let label = self.plain_element(row, kind).or_else(|| {
+            while let Some((row, numbers)) = rows.next_integers() {
+                let label = numbers.and_then(|numbers| self.plain_element(&numbers, row, kind));
+                let label = label.or_else(|| {
                     let fields = element_fields(row, &mut rows, kind.nodes() + 1);
                     self.element(row.span(), &fields, kind, cx)
                 });
@@ -157,14 +161,13 @@ impl Reading {
         } else {
             self.mesh_index.elements.incomplete = true;
         }
-        let group = group(card, "ELSET", labels, cx);
+        let group = Group::named_by(card, "ELSET", labels, cx);
         self.mesh_index.element_groups.extend(group);
     }
 
     /// Adds the new element of a row of plain numbers, whose nodes exist and differ; returns its
     /// number.
-    fn plain_element(&mut self, row: Row, kind: Kind) -> Option<u64> {
-        let numbers = row.integers()?;
+    fn plain_element(&mut self, numbers: &[u64], row: Row, kind: Kind) -> Option<u64> {
         let (&number, corners) = numbers.split_first()?;
         let MeshIndex {
             nodes, elements, ..
@@ -176,10 +179,9 @@ impl Reading {
             let index = nodes.get(node)?.index();
             indices.push(index.filter(|index| !indices.contains(index))?);
         }
-        if indices.len() != kind.nodes() || self.element_lines.get(label).is_some() {
+        if indices.len() != kind.nodes() || self.line_of(label).is_some() {
             return None;
         }
-        self.element_lines.insert(label, row.line());
         self.add_element(label, indices, kind, row.span());
         Some(label)
     }
@@ -207,7 +209,8 @@ impl Reading {
             cx.error(Code::ExtraField, extra.span, message);
         }
         let nodes = self.element_nodes(label, rest.get(..corners)?, cx)?;
-        if let Some(line) = self.element_lines.insert(label, span.line) {
+        if let Some(line) = self.line_of(label) {
+            self.other_lines.insert(label, span.line);
             let name = cx.named(label);
             let message = format!("element {name} is defined on line {line} too");
             cx.error(Code::RepeatedElement, first.span, message);
@@ -217,17 +220,25 @@ impl Reading {
         Some(label)
     }
 
+    /// The last line that defines an element.
+    fn line_of(&self, element: u64) -> Option<u32> {
+        self.other_lines.get(element).copied().or_else(|| {
+            let index = self.mesh_index.elements.get(element)?.index()?;
+            Some(self.mesh_index.places.get(index).line)
+        })
+    }
+
     fn add_element(&mut self, label: u64, nodes: Nodes, kind: Kind, span: Span) {
         let MeshIndex {
             mesh,
             elements,
-            element_spans,
+            places,
             ..
         } = &mut self.mesh_index;
         match kind {
             Kind::Plane(element_type) => {
                 elements.insert(label, Labelled::new(mesh.elements.len()));
-                element_spans.push(span);
+                places.push(span);
                 mesh.elements.push(Element {
                     label,
                     element_type,
@@ -235,7 +246,10 @@ impl Reading {
                     section: 0,
                 });
             }
-            Kind::Line => self.lines.push(RawLine { label, nodes, span }),
+            Kind::Line => {
+                self.other_lines.insert(label, span.line);
+                self.lines.push(RawLine { label, nodes, span });
+            }
         }
     }
 
@@ -254,8 +268,7 @@ impl Reading {
                 cx.error(Code::BadShape, field.span, message);
             }
             match self.mesh_index.nodes.get(node) {
-                Some(Labelled::Index(index)) if differs => nodes.push(index as usize),
-                Some(_) => {}
+                Some(known) => nodes.extend(known.index().filter(|_| differs)),
                 None => self.undefined_node(node, field.span, cx),
             }
             labels.push(node);
@@ -360,18 +373,6 @@ fn row_of<'a>(label: u64, outline: &Outline<'a>, cx: &Context) -> Option<Row<'a>
     let cards = outline.model_cards("NODE").into_iter();
     let mut rows = cards.flat_map(|card| card.rows.iter());
     rows.find(|row| row.get(0).and_then(|field| cx.as_label(field)) == Some(label))
-}
-
-/// The set that a card names.
-fn group(card: &Card, parameter: &str, labels: Vec<u64>, cx: &mut Context) -> Option<Group> {
-    let text = card.value(parameter)?;
-    Some(Group {
-        name: text
-            .name(cx.d)
-            .map(|name| cx.of_instance(name, text.span))?,
-        span: text.span,
-        labels,
-    })
 }
 
 /// Fields of the element that starts in row `first`: it takes rows until it has `count` fields or

@@ -3,11 +3,16 @@
 use super::outline::Outline;
 use crate::deck::{Card, Text};
 use crate::reader::context::Context;
+use crate::reader::label::LabelList;
 use std::collections::BTreeSet;
 
 /// Labels that may be those of reference nodes or of nodes of equations; `groups` are the node
 /// sets of `*NODE` by their names, as compared, with the labels of their members.
-pub(super) fn labels(outline: &Outline, groups: &[(&str, &[u64])], cx: &Context) -> BTreeSet<u64> {
+pub(super) fn labels(
+    outline: &Outline,
+    groups: &[(&str, &LabelList)],
+    cx: &Context,
+) -> BTreeSet<u64> {
     let (mut labels, mut names) = (BTreeSet::new(), BTreeSet::new());
     for field in fields(outline) {
         match cx.is_number(field) {
@@ -16,7 +21,7 @@ pub(super) fn labels(outline: &Outline, groups: &[(&str, &[u64])], cx: &Context)
         }
     }
     for (_, members) in groups.iter().filter(|(name, _)| names.contains(*name)) {
-        labels.extend(*members);
+        labels.extend(members.iter());
     }
     let is_meant = |set: &&Card| {
         let name = set.value("NSET");

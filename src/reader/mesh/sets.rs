@@ -7,6 +7,7 @@ use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Face, Set};
 use crate::reader::context::Context;
 use crate::reader::names::{Labelled, Labels, Names};
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 /// All node sets and element sets.
@@ -38,7 +39,7 @@ impl Sets {
     pub fn nodes_of(&self, field: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<usize> {
         match cx.is_number(field) {
             true => mesh_index.nodes.find(field, cx).into_iter().collect(),
-            false => members(&self.nodes, self.node_names.find(field, cx)),
+            false => members(&self.nodes, self.node_names.find(field, cx)).to_vec(),
         }
     }
 
@@ -65,7 +66,12 @@ impl Sets {
     }
 
     /// The element, or the elements of the set, that a field names; reports line elements alone.
-    pub fn elements_of(&self, field: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<usize> {
+    pub fn elements_of(
+        &self,
+        field: Text,
+        mesh_index: &MeshIndex,
+        cx: &mut Context,
+    ) -> Cow<'_, [usize]> {
         let (elements, lines) = self.elements_and_lines_of(field, mesh_index, cx);
         if elements.is_empty() && !lines.is_empty() {
             report_lines(field, cx);
@@ -80,14 +86,16 @@ impl Sets {
         field: Text,
         mesh_index: &MeshIndex,
         cx: &mut Context,
-    ) -> (Vec<usize>, Vec<Face>) {
+    ) -> (Cow<'_, [usize]>, Vec<Face>) {
         if cx.is_number(field) {
             let found = mesh_index.elements.find(field, cx);
-            return split(found.into_iter().collect(), mesh_index);
+            let (elements, lines) = split(found.into_iter().collect(), mesh_index);
+            return (Cow::Owned(elements), lines);
         }
         let set = self.element_names.find(field, cx);
         let lines = set.and_then(|index| self.lines.get(index)).cloned();
-        (members(&self.elements, set), lines.unwrap_or_default())
+        let elements = members(&self.elements, set);
+        (Cow::Borrowed(elements), lines.unwrap_or_default())
     }
 }
 
@@ -118,9 +126,9 @@ fn split_sets(sets: Vec<Set>, mesh_index: &MeshIndex) -> (Vec<Set>, Vec<Vec<Face
     split.unzip()
 }
 
-fn members(sets: &[Set], index: Option<usize>) -> Vec<usize> {
+fn members(sets: &[Set], index: Option<usize>) -> &[usize] {
     let set = index.and_then(|index| sets.get(index));
-    set.map(|set| set.members.clone()).unwrap_or_default()
+    set.map(|set| set.members.as_slice()).unwrap_or_default()
 }
 
 /// Reads all sets; a set may list sets that are defined later.
@@ -211,7 +219,7 @@ impl<'a> Family<'a> {
         for group in groups {
             let index = self.open(group.name.clone(), group.span);
             let labels = self.labels;
-            let found = group.labels.iter().filter_map(|&label| labels.get(label));
+            let found = group.labels.iter().filter_map(|label| labels.get(label));
             if let Some(draft) = self.drafts.get_mut(index) {
                 draft.members.reserve(group.labels.len());
                 draft.members.extend(found.filter_map(Labelled::index));

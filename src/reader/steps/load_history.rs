@@ -4,8 +4,6 @@ use crate::deck::Card;
 use crate::diagnostics::{Code, Diagnostic};
 use crate::model::{Amplitude, Face, Load, TimeBase, Variation};
 use crate::reader::context::Context;
-use smallvec::{SmallVec, smallvec};
-use std::collections::BTreeMap;
 
 /// How a load without amplitude reaches its magnitude, and the step it is given in.
 #[derive(Debug, Clone, Copy)]
@@ -43,44 +41,55 @@ impl Operation {
 
 /// Loads of one kind by their keys.
 pub(crate) struct LoadHistory<K, T> {
-    parts: BTreeMap<K, SmallVec<[Part<T>; 1]>>,
+    /// The first ones, `sorted` of them, in the order of their keys; then those added since.
+    parts: Vec<(K, Part<T>)>,
+    sorted: usize,
 }
 
 #[derive(Clone, Copy)]
 struct Part<T> {
     load: Load<T>,
-    /// Step that gave it.
-    step: usize,
     /// Magnitude at the end of the step before.
     end: f64,
+    /// Step that gave it.
+    step: u32,
+    /// Whether another one has taken its place.
+    replaced: bool,
 }
 
 impl<K, T> Default for LoadHistory<K, T> {
     fn default() -> Self {
         LoadHistory {
-            parts: BTreeMap::new(),
+            parts: Vec::new(),
+            sorted: 0,
         }
     }
 }
 
 impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
-    /// All loads of the current step.
-    pub fn list(&self) -> Vec<Load<T>> {
+    /// All loads of the current step, in the order of their keys.
+    pub fn list(&mut self) -> Vec<Load<T>> {
+        self.sort();
         let mut list = Vec::with_capacity(self.parts.len());
         let as_simple = |load: Load<T>| load.ends().map_or(load, |ends| load.between(ends));
-        let parts = self.parts.values().flatten();
-        list.extend(parts.map(|part| as_simple(part.load)));
+        let parts = self.parts.iter();
+        list.extend(parts.map(|(_, part)| as_simple(part.load)));
         list
     }
 
     /// Removes all loads; where loads ramp they fade out over the step.
     pub fn clear(&mut self, context: StepContext) {
         if !context.ramp {
-            self.parts.clear();
+            *self = LoadHistory::default();
         }
-        for part in self.parts.values_mut().flatten() {
+        for (_, part) in &mut self.parts {
             part.fade();
         }
+    }
+
+    /// Makes room for so many loads more.
+    pub fn reserve(&mut self, count: usize) {
+        self.parts.reserve(count);
     }
 
     /// Adds a load; it replaces those of earlier steps under the same key.
@@ -92,52 +101,52 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         amplitude: Option<usize>,
         context: StepContext,
     ) {
-        let parts = self.parts.entry(key).or_default();
         let mut from = 0.0;
-        if context.ramp && amplitude.is_none() {
-            for part in parts.iter_mut().filter(|part| part.step < context.step) {
-                match part.load.at == at {
-                    true => from += part.end,
-                    false => part.fade(),
-                }
+        let ramps = context.ramp && amplitude.is_none();
+        for part in self.earlier(key, context) {
+            if ramps && part.load.at != at {
+                part.fade();
+            } else {
+                from += part.end;
+                part.replaced = true;
             }
-            parts.retain(|part| part.step == context.step || part.load.at != at);
-        } else {
-            parts.retain(|part| part.step == context.step);
         }
         let part = Part::new(at, magnitude, amplitude, context);
-        parts.push(part.rising_from(from));
+        self.parts.push((key, part.rising_from(from)));
     }
 
-    /// Adds a load under each key, as [`Self::add`]; no key may appear twice.
-    pub fn add_all(
-        &mut self,
-        loads: impl Iterator<Item = (K, T)>,
-        magnitude: f64,
-        amplitude: Option<usize>,
-        context: StepContext,
-    ) {
-        if self.parts.is_empty() {
-            let part = |at| Part::new(at, magnitude, amplitude, context);
-            let parts = loads.map(|(key, at)| (key, smallvec![part(at)]));
-            self.parts = parts.collect();
-            return;
+    /// Parts of earlier steps under a key.
+    fn earlier(&mut self, key: K, context: StepContext) -> impl Iterator<Item = &mut Part<T>> {
+        let sorted = self.parts.get(..self.sorted).unwrap_or_default();
+        let first = sorted.partition_point(|(known, _)| *known < key);
+        let parts = self.parts.iter_mut().skip(first);
+        parts
+            .take_while(move |(known, _)| *known == key)
+            .map(|(_, part)| part)
+            .filter(move |part| (part.step as usize) < context.step && !part.replaced)
+    }
+
+    /// Leaves out parts that are replaced, and puts the others in the order of their keys.
+    fn sort(&mut self) {
+        self.parts.retain(|(_, part)| !part.replaced);
+        if !self.parts.is_sorted_by_key(|(key, _)| *key) {
+            self.parts.sort_by_key(|(key, _)| *key);
         }
-        for (key, at) in loads {
-            self.add(key, at, magnitude, amplitude, context);
-        }
+        self.sorted = self.parts.len();
     }
 
     /// Ends a step: loads keep the magnitude they have reached, unless they follow the total time.
     pub fn end_step(&mut self, period: f64, total: f64, amplitudes: &[Amplitude]) {
-        for part in self.parts.values_mut().flatten() {
+        self.sort();
+        for (_, part) in &mut self.parts {
             part.end_step(period, total, amplitudes);
         }
-        self.parts.retain(|_, parts| {
+        for parts in self.parts.chunk_by_mut(|(a, _), (b, _)| a == b) {
             add_up(parts);
-            parts.retain(|part| part.load.magnitude != 0.0);
-            !parts.is_empty()
-        });
+        }
+        let acts = |part: &Part<T>| !part.replaced && part.load.magnitude != 0.0;
+        self.parts.retain(|(_, part)| acts(part));
+        self.sorted = self.parts.len();
     }
 }
 
@@ -164,22 +173,23 @@ pub(super) fn joined<T: Copy + PartialEq>(
 }
 
 /// Joins constant loads at the same place and in the same direction.
-fn add_up<T: Copy + PartialEq>(parts: &mut SmallVec<[Part<T>; 1]>) {
-    let mut sums: SmallVec<[Part<T>; 1]> = SmallVec::new();
-    for part in parts.drain(..) {
-        let joins = |sum: &&mut Part<T>| {
+fn add_up<K, T: Copy + PartialEq>(parts: &mut [(K, Part<T>)]) {
+    for index in 1..parts.len() {
+        let (before, after) = parts.split_at_mut(index);
+        let Some((_, part)) = after.first_mut() else {
+            return;
+        };
+        let joins = |sum: &Part<T>| {
             let both = [sum.load.variation, part.load.variation];
             sum.load.at == part.load.at && both == [Variation::Constant; 2]
         };
-        match sums.iter_mut().find(joins) {
-            Some(sum) => {
-                sum.load.magnitude += part.load.magnitude;
-                sum.end += part.end;
-            }
-            None => sums.push(part),
+        let mut sums = before.iter_mut().map(|(_, sum)| sum);
+        if let Some(sum) = sums.find(|sum| !sum.replaced && joins(sum)) {
+            sum.load.magnitude += part.load.magnitude;
+            sum.end += part.end;
+            part.replaced = true;
         }
     }
-    *parts = sums;
 }
 
 impl<T> Part<T> {
@@ -197,8 +207,9 @@ impl<T> Part<T> {
         };
         Part {
             load,
-            step: context.step,
             end: 0.0,
+            step: context.step as u32,
+            replaced: false,
         }
     }
 

@@ -7,12 +7,13 @@ use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Amplitude, BodyForce, Face, PointLoad, Pressure, Step, SurfaceKind, Traction};
 use crate::reader::context::Context;
 use crate::reader::mesh::{Surfaces, side_count, surface};
+use std::borrow::Cow;
 
 /// All loads, as they are carried from step to step.
 #[derive(Default)]
 pub(crate) struct Loads {
     points: LoadHistory<usize, PointLoad>,
-    bodies: LoadHistory<(usize, Body), BodyForce>,
+    bodies: LoadHistory<(u32, Body), BodyForce>,
     pressures: LoadHistory<Face, Pressure>,
     face_tractions: LoadHistory<Face, Traction>,
     surface_pressures: LoadHistory<(usize, Face), Pressure>,
@@ -120,7 +121,7 @@ impl Loads {
         } = source.targets;
         let elements = match row.get(0) {
             Some(field) => sets.elements_of(field, mesh_index, cx),
-            None => (0..mesh_index.mesh.elements.len()).collect(),
+            None => Cow::Owned((0..mesh_index.mesh.elements.len()).collect()),
         };
         let kind = row.required(1, "the kind of load", cx.d)?;
         let key = kind.name_key();
@@ -159,16 +160,17 @@ impl Loads {
             Body::Y => [0.0, 1.0],
         };
         row.at_most(if body == Body::Gravity { 6 } else { 3 }, cx.d);
-        let loads = elements.iter().map(|&element| {
+        let (amplitude, context) = (source.amplitude, source.context);
+        self.bodies.reserve(elements.len());
+        for &element in elements {
             let at = BodyForce {
                 element,
                 direction,
                 per_mass: body == Body::Gravity,
             };
-            ((element, body), at)
-        });
-        self.bodies
-            .add_all(loads, magnitude, source.amplitude, source.context);
+            let key = (element as u32, body);
+            self.bodies.add(key, at, magnitude, amplitude, context);
+        }
         Some(())
     }
 
@@ -259,7 +261,7 @@ impl Loads {
     }
 
     /// Writes the loads of the current step.
-    pub fn fill(&self, step: &mut Step) {
+    pub fn fill(&mut self, step: &mut Step) {
         step.point_loads = self.points.list();
         step.body_forces = self.bodies.list();
         let mut pressures = self.pressures.list();

@@ -117,7 +117,7 @@ impl Reading<'_> {
         step
     }
 
-    fn build(&self, name: Option<String>, increments: Increments) -> Step {
+    fn build(&mut self, name: Option<String>, increments: Increments) -> Step {
         let mut step = Step {
             name,
             procedure: Procedure::Dynamic,

@@ -140,7 +140,9 @@ impl ContactSystem<'_> {
             let constraints: Vec<&Constraint> = contacts.iter().map(|&k| all[k]).collect();
             let n = constraints.len();
             let [gap, slip] = [vec![0.0; n], vec![0.0; n]];
-            let mut problem = self.system.frictional_lcp(scope, &constraints, gap, slip)?;
+            let mut problem = self
+                .system
+                .frictional_lcp(scope, &constraints, [gap, slip])?;
             for (k, &contact) in contacts.iter().enumerate() {
                 held[contact] = [k, k + n].map(|i| {
                     let part = guess.weight.unwrap_or(0.0) * problem.q[(i, i)];

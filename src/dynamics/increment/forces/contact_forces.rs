@@ -64,14 +64,21 @@ impl ContactForces {
 
     /// Contact force Bn^T Pn + Bt^T Pt of eq. (3.1), over all dofs.
     pub fn resultant(&self, dofs: usize) -> Vec<f64> {
-        let mut force = vec![0.0; dofs];
-        for (constraint, pair) in self.acting() {
-            constraint.add_force(pair.force, &mut force);
-        }
+        let mut force = Vec::new();
+        self.write_resultant(dofs, &mut force);
         force
     }
 
-    /// Contact forces of a pass, in place of those of the pass before, and the correction
+    /// Writes [`Self::resultant`].
+    pub fn write_resultant(&self, dofs: usize, force: &mut Vec<f64>) {
+        force.clear();
+        force.resize(dofs, 0.0);
+        for (constraint, pair) in self.acting() {
+            constraint.add_force(pair.force, force);
+        }
+    }
+
+    /// Contact forces of a pass, in place of those of the pass before; writes the correction
     /// dU = d_p + W (r + Bn^T Pn + Bt^T Pt), d_p being the motion of the supports and r the other forces
     /// (all dofs).
     ///
@@ -85,7 +92,8 @@ impl ContactForces {
         [d_p, r]: [&[f64]; 2],
         weight: Option<f64>,
         system: &mut ContactSystem,
-    ) -> Result<Vec<f64>, Cause> {
+        du: &mut Vec<f64>,
+    ) -> Result<(), Cause> {
         let before = std::mem::take(&mut self.closed);
         (self.problem_size, self.pivots) = (0, 0);
         let overlap = weight.map_or(0.0, |_| SETTLED_OVERLAP);
@@ -118,7 +126,7 @@ impl ContactForces {
             let after = response.gaps_and_slips(system, &self.constraints);
             entered = self.enter(&mut inside, &after, overlap);
         }
-        Ok(response.end(system)?)
+        Ok(response.end(system, du)?)
     }
 
     /// Lets constraints into the problem that would overlap, with the given gaps after the correction, by
@@ -195,8 +203,9 @@ mod tests {
         };
         let mut forces = ContactForces::default();
         forces.relinearize(vec![wide(mu)]);
-        let solved = forces.solve([&[0.0; DOFS], &[1.0; DOFS]], None, &mut system);
-        let du = solved.expect("solved");
+        let mut du = Vec::new();
+        let solved = forces.solve([&[0.0; DOFS], &[1.0; DOFS]], None, &mut system, &mut du);
+        solved.expect("solved");
         let pair = forces.closed.iter().next().expect("closed");
         (pair.force, pair.state, du)
     }

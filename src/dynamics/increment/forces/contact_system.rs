@@ -106,18 +106,21 @@ impl ContactSystem<'_> {
     fn solve_once(
         &mut self,
         constraints: &[&Constraint],
-        [gaps, slips]: [Vec<f64>; 2],
+        constant_terms: [Vec<f64>; 2],
         guess: &Guess,
     ) -> Result<ContactSolution, Cause> {
-        let mut problem = (self.system).frictional_lcp(&Scope::All, constraints, gaps, slips)?;
+        let mut problem = (self.system).frictional_lcp(&Scope::All, constraints, constant_terms)?;
         if let (Some(forces), Some(weight)) = (&guess.forces, guess.weight) {
             add_proximal_term(&mut problem, forces, weight);
         }
         match self.system.solve_lcp(&problem, &guess.states, self.method) {
-            Ok(solution) => Ok(ContactSolution {
-                closed: closed_of(constraints, &forces_of(&solution), &solution.state),
-                pivots: solution.counters.pivots,
-            }),
+            Ok(solution) => {
+                self.system.take_back(problem);
+                Ok(ContactSolution {
+                    closed: closed_of(constraints, &forces_of(&solution), &solution.state),
+                    pivots: solution.counters.pivots,
+                })
+            }
             Err(error) => {
                 let failed = FailedLcp::new(error, problem, constraints);
                 Err(Cause::Lcp(Box::new(failed)))

@@ -1,6 +1,8 @@
 //! Velocity jump at the start of an increment: the set of pairs that take impact impulses,
 //! iterated along with the passes. Section 6 of docs/theory.md (paper eq. 30).
 
+use std::borrow::Cow;
+
 use super::by_bodies::{Chosen, is_large};
 use super::contact_forces::ContactForces;
 use super::contact_system::{ContactSolution, ContactSystem, Guess};
@@ -30,6 +32,8 @@ pub(crate) struct Impulses {
     struck: Vec<Constraint>,
     /// Phi, Psi of the last pass.
     pub acting: ContactForces,
+    /// J = Bn^T Phi + Bt^T Psi over all dofs; empty where nothing strikes.
+    resultant: Vec<f64>,
 }
 
 impl Impulses {
@@ -44,6 +48,7 @@ impl Impulses {
             massless: Vec::new(),
             struck: Vec::new(),
             acting: ContactForces::default(),
+            resultant: Vec::new(),
         }
     }
 
@@ -78,44 +83,46 @@ impl Impulses {
             let states = struck.iter().map(|c| self.state(c.key)).collect();
             self.acting = impulses(struck.clone(), states, &start.v, dt, system)?;
             self.struck = struck;
+            match self.acting.closed.is_empty() {
+                true => self.resultant.clear(),
+                false => (self.acting).write_resultant(start.v.len(), &mut self.resultant),
+            }
         }
         Ok(())
     }
 
     /// What the equilibrium of an iterate with the given constraints needs of the velocity of the start: V0
     /// with the impulses beside it, so that nothing is solved with M, unless U_theta depends on V0+.
-    pub fn start_velocity(
-        &mut self,
+    pub fn start_velocity<'a>(
+        &'a mut self,
         problem: &StepProblem,
         workspace: &mut Workspace,
         constraints: &[Constraint],
-        start: &State,
+        start: &'a State,
         dt: f64,
-    ) -> Result<StartVelocity, Cause> {
+    ) -> Result<StartVelocity<'a>, Cause> {
         self.solve(problem, workspace, constraints, start, dt)?;
         match problem.weights.lags() {
             true => self.velocity(problem, workspace, start),
             false => Ok(StartVelocity {
-                v0p: start.v.clone(),
-                impulse: self.resultant(start.v.len()),
+                v0p: Cow::Borrowed(&start.v),
+                impulse: &self.resultant,
             }),
         }
     }
 
     /// Velocity V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1).
-    pub fn velocity(
+    pub fn velocity<'a>(
         &self,
         problem: &StepProblem,
         workspace: &mut Workspace,
-        start: &State,
-    ) -> Result<StartVelocity, Cause> {
-        let impulse = self.resultant(start.v.len());
-        let v0p = match impulse.as_slice() {
-            [] => start.v.clone(),
-            impulse => mass_system(problem, workspace).respond(&start.v, impulse)?,
+        start: &'a State,
+    ) -> Result<StartVelocity<'a>, Cause> {
+        let v0p = match self.resultant.as_slice() {
+            [] => Cow::Borrowed(start.v.as_slice()),
+            impulse => Cow::Owned(mass_system(problem, workspace).respond(&start.v, impulse)?),
         };
-        let impulse = Vec::new();
-        Ok(StartVelocity { v0p, impulse })
+        Ok(StartVelocity { v0p, impulse: &[] })
     }
 
     /// State of a pair in the impulses of the pass before; it sticks where it was not among them.
@@ -123,14 +130,6 @@ impl Impulses {
         match self.struck.binary_search_by_key(&key, |struck| struck.key) {
             Ok(_) => self.acting.closed.state(key),
             Err(_) => ContactState::Stick,
-        }
-    }
-
-    /// Bn^T Phi + Bt^T Psi over all dofs; empty where nothing strikes.
-    fn resultant(&self, dofs: usize) -> Vec<f64> {
-        match self.acting.closed.is_empty() {
-            true => Vec::new(),
-            false => self.acting.resultant(dofs),
         }
     }
 

@@ -41,13 +41,15 @@ impl<'a> Response<'a> {
         unknowns.sort_unstable();
         unknowns.dedup();
         system.system.begin(system.map, f)?;
+        let mut at_nodes = system.system.take_at_nodes();
+        at_nodes.resize(start.len(), 0.0);
         Ok(Response {
             start,
             nodes,
             unknowns,
             forces: Vec::new(),
             values: Vec::new(),
-            at_nodes: vec![0.0; start.len()],
+            at_nodes,
         })
     }
 
@@ -104,11 +106,16 @@ impl<'a> Response<'a> {
         self.forces.drain(..before);
     }
 
-    /// The response, over all dofs.
+    /// Writes the response, over all dofs.
     ///
     /// # Errors
-    /// A solution that fails its check.
-    pub fn end(self, system: &mut ContactSystem) -> Result<Vec<f64>, LinearError> {
-        system.system.end(system.map, self.start)
+    /// A solution that is not finite.
+    pub fn end(
+        self,
+        system: &mut ContactSystem,
+        response: &mut Vec<f64>,
+    ) -> Result<(), LinearError> {
+        system.system.give_back(self.at_nodes);
+        system.system.end(system.map, self.start, response)
     }
 }

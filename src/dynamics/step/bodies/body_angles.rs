@@ -21,13 +21,13 @@ impl BodyAngles {
     /// The bodies of a step, at the angle 0.
     pub fn new(problem: &StepProblem) -> Self {
         let (x, body_of) = (&problem.model.mesh.coordinates, problem.parts.of_nodes());
-        let mass = problem.mass.times(&vec![1.0; 2 * x.len()]);
-        let centres = centres(problem, &mass);
+        let mass = &problem.mass.shares;
+        let centres = centres(problem, mass);
         let holds = holds(problem);
         let arm = |(node, &body): (usize, &usize)| match holds[body] {
             Hold::Held => [0.0; 2],
-            _ if mass[2 * node] == 0.0 => [0.0; 2],
-            _ => difference(centres[body], x[node]).map(|r| mass[2 * node] * r),
+            _ if mass[node] == 0.0 => [0.0; 2],
+            _ => difference(centres[body], x[node]).map(|r| mass[node] * r),
         };
         BodyAngles {
             arms: body_of.iter().enumerate().map(arm).collect(),
@@ -71,7 +71,7 @@ impl BodyAngles {
 fn centres(problem: &StepProblem, mass: &[f64]) -> Vec<[f64; 2]> {
     let mut sums = vec![[0.0; 3]; problem.parts.bodies()];
     for (node, &body) in problem.parts.of_nodes().iter().enumerate() {
-        let (m, [x, y]) = (mass[2 * node], problem.model.mesh.coordinates[node]);
+        let (m, [x, y]) = (mass[node], problem.model.mesh.coordinates[node]);
         for (sum, term) in sums[body].iter_mut().zip([m, m * x, m * y]) {
             *sum += term;
         }
@@ -215,7 +215,8 @@ mod tests {
             all.extend(response.expect("solved"));
         }
         let constraint = constraint();
-        let lcp = (workspace.k()).frictional_lcp(&Scope::All, &[&constraint], vec![0.0], vec![0.0]);
+        let lcp =
+            (workspace.k()).frictional_lcp(&Scope::All, &[&constraint], [vec![0.0], vec![0.0]]);
         all.extend(lcp.expect("prepared").q.iter());
         all
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
-use crate::contact::{ClosedPair, Compliance, Configurations, Constraint, Scope};
+use crate::contact::{ClosedPair, Compliance, Configurations, Constraint, DelassusSpace, Scope};
 use crate::dynamics::step::bodies::BodyAngles;
 use crate::dynamics::step::mass::unknown_mass;
 use crate::dynamics::step::step_problem::StepProblem;
@@ -22,6 +22,21 @@ pub(crate) struct FactoredMatrix {
     pub compliance: Compliance,
     /// Factors of the last complementarity problems.
     pub kept: BTreeMap<Scope, KeptFactors>,
+    /// Memory of its Delassus operators.
+    pub space: DelassusSpace,
+    /// Memory of its solves.
+    pub vectors: SolveVectors,
+}
+
+/// Vectors of a solve in parts, used again by the next.
+#[derive(Default)]
+pub(crate) struct SolveVectors {
+    /// Forces turned back, over all dofs.
+    pub forces: Vec<f64>,
+    /// Right-hand side, over the unknowns.
+    pub b: Vec<f64>,
+    /// The response at some nodes, over all dofs.
+    pub at_nodes: Vec<f64>,
 }
 
 impl FactoredMatrix {
@@ -33,6 +48,8 @@ impl FactoredMatrix {
             solver,
             compliance,
             kept: BTreeMap::new(),
+            space: DelassusSpace::default(),
+            vectors: SolveVectors::default(),
         }
     }
 

@@ -1,8 +1,8 @@
 //! A system matrix of a step, K* or M, whose work is measured: solves, in one go or in parts, and its
 //! complementarity problems. Sections 4 and 5 of docs/theory.md.
 
-use super::effective_stiffness::FactoredMatrix;
-use crate::contact::{Compliance, Constraint, Scope, frictional_lcp};
+use super::effective_stiffness::{FactoredMatrix, SolveVectors};
+use crate::contact::{Constraint, Scope, frictional_lcp};
 use crate::dynamics::step::meter::Meter;
 use crate::lcp::{
     BlockIteration, ContactState, Counters, FrictionalLcp, FrictionalSolution, KeptFactors,
@@ -43,18 +43,27 @@ impl<'a> System<'a> {
     /// bodies, eq. (4.20).
     pub fn respond(&mut self, map: &Transformation, f: &[f64]) -> Result<Vec<f64>, LinearError> {
         self.begin(map, f)?;
-        let response = self.end(map, &vec![0.0; f.len()])?;
+        let mut response = Vec::new();
+        self.end(map, &vec![0.0; f.len()], &mut response)?;
         self.check()?;
         Ok(response)
     }
 
     /// Begins the response to the forces `f`, in parts.
     pub fn begin(&mut self, map: &Transformation, f: &[f64]) -> Result<(), LinearError> {
-        let mut turned_back = f.to_vec();
-        self.rotation().turn_back(&mut turned_back);
-        let b = map.restrict(&turned_back);
         let Self { matrix, meter } = self;
-        meter.time(|t| &mut t.solve, || matrix.solver.begin(&b))
+        let FactoredMatrix {
+            solver,
+            compliance,
+            vectors,
+            ..
+        } = &mut **matrix;
+        let SolveVectors { forces, b, .. } = vectors;
+        forces.clear();
+        forces.extend_from_slice(f);
+        compliance.rotation().turn_back(forces);
+        map.write_restricted(forces, b);
+        meter.time(|t| &mut t.solve, || solver.begin(b))
     }
 
     /// Writes A^-1 b for the right-hand side so far, at some unknowns, to `values`.
@@ -69,20 +78,32 @@ impl<'a> System<'a> {
         meter.time(|t| &mut t.solve, || matrix.solver.add(b));
     }
 
-    /// Ends the response, over all dofs, and adds `start` to it; [`Self::check`] checks the solution.
-    pub fn end(&mut self, map: &Transformation, start: &[f64]) -> Result<Vec<f64>, LinearError> {
+    /// Ends the response and writes it, over all dofs, with `start` added to it; [`Self::check`] checks the
+    /// solution.
+    pub fn end(
+        &mut self,
+        map: &Transformation,
+        start: &[f64],
+        response: &mut Vec<f64>,
+    ) -> Result<(), LinearError> {
         let Self { matrix, meter } = self;
-        let mut response = vec![0.0; start.len()];
-        let end = || {
-            matrix
-                .solver
-                .end()
-                .map(|solution| map.add(solution, &mut response))
-        };
+        response.clear();
+        response.resize(start.len(), 0.0);
+        let end = || matrix.solver.end().map(|q| map.add(q, response));
         meter.time(|t| &mut t.solve, end)?;
-        self.rotation().turn(&mut response);
+        self.rotation().turn(response);
         response.iter_mut().zip(start).for_each(|(r, s)| *r += s);
-        Ok(response)
+        Ok(())
+    }
+
+    /// Memory for the response at some nodes, which [`Self::give_back`] gives back.
+    pub fn take_at_nodes(&mut self) -> Vec<f64> {
+        std::mem::take(&mut self.matrix.vectors.at_nodes)
+    }
+
+    /// Gives memory back.
+    pub fn give_back(&mut self, at_nodes: Vec<f64>) {
+        self.matrix.vectors.at_nodes = at_nodes;
     }
 
     /// Checks the residual of the last solution.
@@ -106,13 +127,14 @@ impl<'a> System<'a> {
         &mut self,
         scope: &Scope,
         constraints: &[&Constraint],
-        gap: Vec<f64>,
-        slip: Vec<f64>,
+        constant_terms: [Vec<f64>; 2],
     ) -> Result<FrictionalLcp, LinearError> {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.prepare(scope, constraints))?;
-        let compliance: &Compliance = &matrix.compliance;
-        let pose = || frictional_lcp(constraints, (compliance, scope), gap, slip);
+        let FactoredMatrix {
+            compliance, space, ..
+        } = &mut **matrix;
+        let pose = || frictional_lcp(constraints, (compliance, scope), constant_terms, space);
         Ok(meter.time(|t| &mut t.contact, pose))
     }
 
@@ -129,6 +151,11 @@ impl<'a> System<'a> {
         let solution = meter.time(|t| &mut t.lcp, solve)?;
         self.meter.count_lcp(warm.len(), solution.counters);
         Ok(solution)
+    }
+
+    /// Takes the memory of a complementarity problem that is not needed any more.
+    pub fn take_back(&mut self, problem: FrictionalLcp) {
+        self.matrix.space.take(problem);
     }
 
     /// Solves the blocks of an iteration: the forces of all its contacts.

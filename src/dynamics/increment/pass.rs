@@ -1,0 +1,207 @@
+//! Forces and displacements of a pass, and its residual beside its scales. Section 4 of docs/theory.md,
+//! Convergence.
+
+use super::convergence::{Errors, Lengths, Scales};
+use super::forces::ContactForces;
+use crate::dynamics::results::Cause;
+use crate::dynamics::step::{EffectiveStiffness, Equilibrium, Parts, StepProblem, check_finite};
+use crate::linear::{larger, largest};
+
+/// Forces and displacements of a pass, over all dofs.
+pub(crate) struct Pass<'a> {
+    /// Load, internal force and inertia of the iterate.
+    pub equilibrium: &'a Equilibrium,
+    /// Force of the supports' motion.
+    pub support_force: &'a Vec<f64>,
+    /// Constraints and their forces.
+    pub contact: &'a ContactForces,
+    /// Displacement U of the iterate, increment d = U - U0 and correction dU.
+    pub displacements: [&'a Vec<f64>; 3],
+}
+
+impl Pass<'_> {
+    /// All forces and the correction must be finite.
+    ///
+    /// # Errors
+    /// [`Cause::NotFinite`] with the first quantity that is not.
+    pub fn check_finite(&self, contact_force: &Vec<f64>) -> Result<(), Cause> {
+        check_finite(&[
+            ("the load", &self.equilibrium.load),
+            ("the internal force", &self.equilibrium.internal),
+            ("the inertia force", &self.equilibrium.inertia),
+            ("the contact force", contact_force),
+            ("the force of the supports", self.support_force),
+            ("the displacement correction", self.displacements[2]),
+        ])
+    }
+
+    /// Residual and correction of the pass, and what they are measured against; writes the residual.
+    ///
+    /// # Errors
+    /// [`Cause::NotFinite`] with the first quantity that is not.
+    pub fn measure<'m>(
+        &self,
+        problem: &StepProblem<'m>,
+        stiffness: &EffectiveStiffness,
+        residual: &mut Residual,
+    ) -> Result<(Scales<'m>, Errors), Cause> {
+        let [u, _, du] = self.displacements;
+        let Residual {
+            contact_force,
+            all,
+            values,
+            ..
+        } = residual;
+        self.contact.write_resultant(u.len(), contact_force);
+        let scales = self.scales(problem, stiffness, contact_force);
+        // r - theta2 K d_p + Bn^T Pn + Bt^T Pt, eq. (4.7)
+        let forces = (self.support_force.iter()).zip(&*contact_force);
+        all.clear();
+        let out_of_balance = self.equilibrium.out_of_balance.iter();
+        all.extend(out_of_balance.zip(forces).map(|(r, (s, c))| r - s + c));
+        problem.unknowns.write_restricted(all, values);
+        let errors = Errors {
+            residual: residual.largest(problem.parts, &problem.unknowns.dof),
+            correction: problem.parts.largest_of_bodies(du),
+        };
+        if !scales.are_finite(&errors) {
+            self.check_finite(&residual.contact_force)?;
+        }
+        Ok((scales, errors))
+    }
+
+    /// What residual and correction of the pass are measured against.
+    fn scales<'m>(
+        &self,
+        problem: &StepProblem<'m>,
+        stiffness: &EffectiveStiffness,
+        contact_force: &[f64],
+    ) -> Scales<'m> {
+        let parts = problem.parts;
+        let Equilibrium {
+            load,
+            internal,
+            inertia,
+            ..
+        } = self.equilibrium;
+        let forces = [load, internal, inertia, contact_force, self.support_force];
+        let [u, d, du] = self.displacements.map(|u| parts.largest_of_bodies(u));
+        let lengths = Lengths {
+            displacement: u,
+            increment: d.into_iter().zip(du).map(|(d, du)| larger(d, du)).collect(),
+            position: self.contact_positions(problem),
+        };
+        let diagonals = (stiffness.stiffness.as_slice(), stiffness.inertia.as_slice());
+        let forces = forces.map(|force| problem.unknowns.magnitudes(force));
+        let force = parts.largest_of_all(forces.iter().map(|force| force.as_ref()));
+        Scales::new(parts, force, diagonals, lengths, problem.settings.tolerance)
+    }
+
+    /// The largest coordinate of the nodes of closed constraints with every body.
+    fn contact_positions(&self, problem: &StepProblem) -> Vec<f64> {
+        let [u, ..] = self.displacements;
+        let mut positions = vec![0.0; problem.parts.bodies()];
+        for (constraint, _) in self.contact.acting() {
+            let of_node = |node: usize| largest(&problem.position(u, node));
+            let most = constraint.nodes().map(of_node).fold(0.0, larger);
+            for node in constraint.nodes() {
+                let position = &mut positions[problem.parts.of_nodes()[node]];
+                *position = larger(*position, most);
+            }
+        }
+        positions
+    }
+}
+
+/// The residual of a pass, in memory that the next one uses again.
+#[derive(Default)]
+pub(crate) struct Residual {
+    /// Contact force over all dofs.
+    contact_force: Vec<f64>,
+    /// Sum of all forces over all dofs.
+    all: Vec<f64>,
+    /// The same over the unknowns.
+    pub values: Vec<f64>,
+    /// The same at the dofs of the unknowns, zero at the others.
+    at_dofs: Vec<f64>,
+    /// Zero at all dofs.
+    none: Vec<f64>,
+}
+
+impl Residual {
+    /// The forces `f`, over all dofs, over the unknowns.
+    pub fn restricted(&mut self, problem: &StepProblem, f: &[f64]) -> &[f64] {
+        problem.unknowns.write_restricted(f, &mut self.values);
+        &self.values
+    }
+
+    /// Largest absolute value in every part; `dof_of` are the dofs of the unknowns.
+    fn largest(&mut self, parts: &Parts, dof_of: &[usize]) -> Vec<f64> {
+        self.at_dofs.resize(self.all.len(), 0.0);
+        for (&dof, value) in dof_of.iter().zip(&self.values) {
+            self.at_dofs[dof] = *value;
+        }
+        parts.largest(&self.at_dofs)
+    }
+}
+
+/// An iterate with the contact forces of the pass before, linearised at it.
+pub(crate) struct Iterate<'a> {
+    pub equilibrium: &'a Equilibrium,
+    /// Constraints of the iterate and the forces at hand.
+    pub contact: &'a ContactForces,
+    /// Displacement U and increment d = U - U0.
+    pub displacements: [&'a Vec<f64>; 2],
+}
+
+impl<'a> Iterate<'a> {
+    /// An iterate U = U0 + d.
+    pub fn new(
+        equilibrium: &'a Equilibrium,
+        contact: &'a ContactForces,
+        displacements: [&'a Vec<f64>; 2],
+    ) -> Self {
+        Iterate {
+            equilibrium,
+            contact,
+            displacements,
+        }
+    }
+
+    /// The pass that makes the correction dU of the iterate.
+    pub fn pass<'p>(&'p self, support_force: &'p Vec<f64>, du: &'p Vec<f64>) -> Pass<'p> {
+        let [u, d] = self.displacements;
+        Pass {
+            equilibrium: self.equilibrium,
+            support_force,
+            contact: self.contact,
+            displacements: [u, d, du],
+        }
+    }
+
+    /// The relative residual, if the iterate is solved: residual, gaps and slips are below the tolerance,
+    /// or round-off.
+    pub fn residual(
+        &self,
+        problem: &StepProblem,
+        stiffness: &EffectiveStiffness,
+        [settled, stagnates]: [bool; 2],
+        residual: &mut Residual,
+    ) -> Result<Option<f64>, Cause> {
+        if !self.contact.all_have_constraints() {
+            return Ok(None);
+        }
+        let mut none = std::mem::take(&mut residual.none);
+        none.resize(self.displacements[0].len(), 0.0);
+        let (scales, errors) = (self.pass(&none, &none)).measure(problem, stiffness, residual)?;
+        residual.none = none;
+        let scales = match stagnates {
+            true => scales.stagnant(),
+            false => scales.strict(),
+        };
+        if !scales.converged(&errors) || !scales.obeys_contact_law(self.contact, settled) {
+            return Ok(None);
+        }
+        Ok(Some(scales.report(&errors, self.contact).residual))
+    }
+}
