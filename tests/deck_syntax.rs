@@ -333,7 +333,7 @@ fn a_missing_increment_comes_with_a_guide_wherever_the_mesh_lies() {
 #[test]
 fn output_requests_of_both_families_are_silent() {
     for request in [
-        "*Output, field, variable=PRESELECT, time marks=NO\n*Element Output, directions=YES\nLE, S",
+        "*Output, field, variable=PRESELECT, time marks=NO\n*Element Output, directions=YES\nE, S11",
         "*Output, history, variable=PRESELECT\n*Energy Output\nALLKE,",
         "*Output, field\n*Contact Output, slave=TOP, master=TOP\nCSTRESS,",
         "*EL FILE, DIRECTIONS=NO, POSITION=CENTROIDAL\nS",
@@ -369,6 +369,32 @@ fn numbers_beyond_the_eighth_of_a_line_are_read_with_a_warning() {
         line("*AMPLITUDE, NAME=A", 10).1,
         Some(Curve::Linear(five.collect()))
     );
+}
+
+#[test]
+fn fields_on_request() {
+    let fields = |request: &str| {
+        let (model, d) = square("*END STEP", &format!("{request}\n*END STEP"));
+        assert_eq!(codes(&d), [], "{request}");
+        let asked = model.map(|model| model.sets.fields);
+        asked.map(|asked| {
+            [
+                asked.concentrated_load,
+                asked.energy_density,
+                asked.logarithmic_strain,
+            ]
+        })
+    };
+    let elements = "*OUTPUT, FIELD\n*ELEMENT OUTPUT\nS, ENER, LE\n";
+    assert_eq!(fields(elements), Some([false, true, true]));
+    assert_eq!(fields("*NODE FILE\nU, CF"), Some([true, false, false]));
+    assert_eq!(fields("*CONTACT FILE\nCF"), Some([false; 3]));
+    let history = "*OUTPUT, HISTORY\n*ELEMENT OUTPUT, ELSET=BODY\nLE";
+    assert_eq!(fields(history), Some([false; 3]));
+    for unwritten in ["*CONTACT FILE\nCSHEAR1", "*CONTACT PRINT\nCAREA"] {
+        let found = faults("*END STEP", &format!("{unwritten}\n*END STEP"));
+        assert_eq!(found, [Code::IgnoredVariable]);
+    }
 }
 
 #[test]

@@ -280,6 +280,13 @@ fn settings_and_times_of_every_kind() {
     let totals =
         "*NODE PRINT, NSET=ALL, TOTALS=ONLY\nU\n*EL PRINT, ELSET=BODY, TOTALS=ONLY\nELSE\n";
     round_trip(read(&square("", totals)));
+    for fields in [
+        "*NODE FILE\nCF\n",
+        "*EL FILE\nLE\n*NODE FILE\nU, CF\n",
+        "*EL FILE\nS, ENER\n",
+    ] {
+        round_trip(read(&square("", fields)));
+    }
     assert!(round_trip(read(&square("", "*NO ANALYSIS\n"))).contains("*NO ANALYSIS"));
     round_trip(read(
         &SQUARE.replace("DYNAMIC, DIRECT\n0.1, 1.", "DYNAMIC\n0.1, 1., 1.e-5"),

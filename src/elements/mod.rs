@@ -17,6 +17,6 @@ mod solid;
 mod sweep;
 mod tri3;
 
-pub use all::{ElementInertia, Elements, Inverted, Updated};
+pub use all::{ElementInertia, Elements, Inverted, MeanGradient, Updated};
 pub use recovery::{ElementResult, Strained, most_strained};
 pub use solid::{Increment, Motion, TangentPart};

@@ -258,7 +258,8 @@ fn time_points(index: usize, step: &Step, lines: &mut Lines) {
     }
 }
 
-/// When frames are written; sets of the history and dofs in the status file, in the first step.
+/// When frames are written; in the first step fields on request, sets of the history and dofs in the status
+/// file.
 fn requests(index: usize, step: &Step, model: &Model, lines: &mut Lines) {
     let when = match &step.frames {
         Frames::Default => None,
@@ -280,6 +281,21 @@ fn requests(index: usize, step: &Step, model: &Model, lines: &mut Lines) {
 }
 
 fn histories(sets: &NamedSets, lines: &mut Lines) {
+    let asked = sets.fields;
+    if asked.concentrated_load {
+        lines.card("NODE FILE", []);
+        lines.row(["CF".to_owned()]);
+    }
+    let of_elements = [
+        (asked.energy_density, "ENER"),
+        (asked.logarithmic_strain, "LE"),
+    ];
+    let of_elements = of_elements.iter().filter(|(is_asked, _)| *is_asked);
+    let names: Vec<String> = of_elements.map(|(_, name)| (*name).to_owned()).collect();
+    if !names.is_empty() {
+        lines.card("EL FILE", []);
+        lines.row(names);
+    }
     let totals = |asked: &HistorySet| set("TOTALS", if asked.each_member { "YES" } else { "ONLY" });
     for asked in &sets.history {
         let name = named("NSET", &sets.nodes[asked.set].name);

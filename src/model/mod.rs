@@ -29,7 +29,7 @@ pub use load::{
 pub use material::{Damping, Material, Section};
 pub(crate) use mesh::sides;
 pub use mesh::{Element, ElementsAtNodes, Face, Mesh, Nodes, Set};
-pub use sets::{HistorySet, Instance, NamedSets, element_name, node_name};
+pub use sets::{HistorySet, Instance, NamedSets, RequestedFields, element_name, node_name};
 pub use settings::{
     ContactMass, Factorization, Impact, ImpactTime, LandingRule, LcpChoice, Scheme, Settings,
     SolverChoice,

@@ -1,5 +1,5 @@
 //! Named sets of nodes and elements, those of the history output (groups `/history/nodes` and
-//! `/history/elements` of the result file), dofs in the status file, and instances of parts: which nodes
+//! `/history/elements` of the result file), fields on request, dofs in the status file, and instances of parts: which nodes
 //! and elements are theirs, and the numbers these have in the part. The numbers of the mesh are then the
 //! program's own, each once.
 
@@ -16,10 +16,23 @@ pub struct NamedSets {
     pub history: Vec<HistorySet>,
     /// Element sets whose stresses, strains and energies go to the history, each at most once.
     pub element_history: Vec<HistorySet>,
+    /// Fields of the frames that are written on request only.
+    pub fields: RequestedFields,
     /// Dofs whose displacements stand in the status file, each at most once.
     pub monitored: Vec<usize>,
     /// Instances of parts, in the order of their nodes; none in a flat deck.
     pub instances: Vec<Instance>,
+}
+
+/// Fields of the frames that a deck has to ask for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct RequestedFields {
+    /// Concentrated loads (`CF`).
+    pub concentrated_load: bool,
+    /// Strain energy over volume (`ENER`).
+    pub energy_density: bool,
+    /// Logarithmic strain (`LE`).
+    pub logarithmic_strain: bool,
 }
 
 /// A set in the history: sums over the set, and means over nodes, are always written.

@@ -112,6 +112,7 @@ fn named_sets(sets: Sets, histories: Histories, instances: Vec<Instance>) -> Nam
             .collect(),
         history: histories.nodes,
         element_history,
+        fields: histories.fields,
         monitored: histories.monitored,
         instances,
     }

@@ -337,8 +337,6 @@ fn fields_without_effect() {
             law("*SURFACE BEHAVIOR\n, 0.1"),
             model("*SURFACE INTERACTION, NAME=I\n0.5"),
             model("*SURFACE, NAME=S, TYPE=NODE\nFOOT, 0.5"),
-            square("1000., 0.3", "1000., 0.3, 20."),
-            square("*DENSITY\n1.", "*DENSITY\n1., 20."),
             square("0.1, 1.", "0.1, 1., 1.e-3, 0.2"),
         ],
     ));
@@ -347,6 +345,8 @@ fn fields_without_effect() {
         model("*SURFACE INTERACTION, NAME=I\n1.,"),
         model("*SURFACE, NAME=S, TYPE=NODE\nFOOT, 1."),
         square("0.1, 1.", "0.1, 1., 1.e-3"),
+        square("1000., 0.3", "1000., 0.3, 20.\n1000., 0.3, 100."),
+        square("*DENSITY\n1.", "*DENSITY\n1., 20."),
     ];
     for deck in silent {
         assert_eq!(messages(&deck).1, "");

@@ -21,8 +21,8 @@ use stickslip::elements::{ElementResult, Strained};
 use stickslip::materials::Law;
 use stickslip::model::{
     Contact, Damping, Element, ElementType, Face, Frames, Friction, HistorySet, Increments,
-    Interaction, Material, Mesh, Model, NamedSets, Procedure, Section, Set, Settings, Step,
-    Support, SupportMotion, Surface, SurfaceKind,
+    Interaction, Material, Mesh, Model, NamedSets, Procedure, RequestedFields, Section, Set,
+    Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
 };
 use stickslip::output::{Claim, JobFiles, ResultWriter, RunRecord, Verbosity};
 
@@ -44,6 +44,11 @@ pub fn model() -> Model {
             elements: vec![set("SQUARES", 0..2)],
             history: vec![asked(1, true), asked(2, true), asked(0, false)],
             element_history: vec![asked(0, true)],
+            fields: RequestedFields {
+                concentrated_load: true,
+                energy_density: true,
+                logarithmic_strain: true,
+            },
             monitored: vec![12, 1],
             instances: Vec::new(),
         },

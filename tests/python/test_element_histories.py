@@ -38,6 +38,12 @@ LEFT, 1
 RIGHT, 1, 1, 0.4
 *EL PRINT, ELSET=BODY
 S, E, ENER, ELSE, ELKE, EVOL
+*CLOAD
+4, 2, 3.
+*NODE FILE
+CF
+*EL FILE
+ENER, LE
 *END STEP
 """
 
@@ -48,6 +54,8 @@ def test_a_stretched_element(tmp_path: Path, job: Job) -> None:
         group = file["history/elements/BODY"]
         total = {name: data[:] for name, data in group["sum"].items()}
         body = {name: group[name][:] for name in group if name != "sum"}
+        fields = {name: file["VTKHDF/CellData"][name][:] for name in ("ENER", "LE")}
+        loads = file["VTKHDF/PointData/CF"][:]
     assert body["labels"] == [7]
     assert np.allclose(body["EVOL"], [1.0], rtol=1e-14)
     cauchy = np.array([26.4 * 1.2, 8.8 / 1.2, 0.0])
@@ -61,6 +69,11 @@ def test_a_stretched_element(tmp_path: Path, job: Job) -> None:
     assert np.allclose(body["ELSE"][-1], density, rtol=1e-12)
     # v = 0.4 x/2 along the bar: 3 * 0.4^2/6
     assert np.allclose(body["ELKE"][1:], 0.08, rtol=1e-9)
+    strain = [np.log(1.2), 0.0, 0.0]
+    assert np.allclose(body["LE"][-1, 0], strain, rtol=1e-12, atol=1e-13)
+    assert np.allclose(fields["LE"][-1], strain, rtol=1e-12, atol=1e-13)
+    assert np.allclose(fields["ENER"][-1], density, rtol=1e-12)
+    assert np.array_equal(loads[-4:], [[0.0] * 3] * 3 + [[0.0, 3.0, 0.0]])
     for energy in ("ELSE", "ELKE"):
         assert np.array_equal(total[energy], body[energy][:, 0])
 

@@ -18,7 +18,7 @@ pub use claim::Claim;
 pub(crate) use clock::utc_now;
 pub(crate) use column::{Column, Columns, Growing};
 pub(crate) use dataset::{Meaning, constant, group, meaning};
-pub(crate) use grid::Fields;
+pub(crate) use grid::{ENERGY_DENSITY, Fields, LOGARITHMIC_STRAIN};
 pub use names::{check_names, contact_names};
 pub(crate) use record::{Record, phases};
 pub use record::{RunRecord, UNFINISHED};

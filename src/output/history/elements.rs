@@ -3,9 +3,11 @@
 use hdf5::Group;
 
 use crate::dynamics::IncrementReport;
-use crate::elements::{ElementInertia, ElementResult};
+use crate::elements::{ElementInertia, ElementResult, MeanGradient};
 use crate::model::{HistorySet, Model};
-use crate::output::file::{Column, Columns, constant, group, growing, meaning};
+use crate::output::file::{
+    Column, Columns, ENERGY_DENSITY, LOGARITHMIC_STRAIN, constant, group, growing, meaning,
+};
 
 /// A tensor or a scalar of an element.
 type Tensor = fn(&ElementResult) -> [f64; 3];
@@ -58,8 +60,10 @@ pub(crate) struct ElementHistory {
 struct EachElement {
     tensors: Vec<(Column<f64>, Tensor)>,
     scalars: Vec<(Column<f64>, Scalar)>,
+    logarithmic_strain: Column<f64>,
     energy_density: Column<f64>,
     kinetic_energy: Column<f64>,
+    gradients: Vec<MeanGradient>,
 }
 
 impl ElementHistory {
@@ -70,8 +74,7 @@ impl ElementHistory {
         write_constants(at, model, &elements, &inertia)?;
         let sum = group(at, "sum")?;
         let energy = |name, text| Column::series(&sum, name, &[], meaning(text, "energy"));
-        let count = elements.len();
-        let each = (asked.each_member).then(|| EachElement::create(at, count));
+        let each = (asked.each_member).then(|| EachElement::create(at, model, &elements));
         Ok(ElementHistory {
             each: each.transpose()?,
             strain_energy: energy("ELSE", "strain energy of the set")?,
@@ -92,6 +95,9 @@ impl ElementHistory {
         self.kinetic_energy.push([kinetic.iter().sum()]);
         if let Some(each) = &mut self.each {
             each.push(&results, &self.inertia, kinetic);
+            let strain = each.gradients.iter();
+            let strain = strain.flat_map(|mean| mean.logarithmic_strain(&report.state.u));
+            each.logarithmic_strain.push(strain);
         }
     }
 
@@ -102,6 +108,7 @@ impl ElementHistory {
         if let Some(each) = &mut self.each {
             all.extend(growing(&mut each.tensors));
             all.extend(growing(&mut each.scalars));
+            all.push(&mut each.logarithmic_strain);
             all.push(&mut each.energy_density);
             all.push(&mut each.kinetic_energy);
         }
@@ -109,7 +116,8 @@ impl ElementHistory {
 }
 
 impl EachElement {
-    fn create(at: &Group, count: usize) -> hdf5::Result<Self> {
+    fn create(at: &Group, model: &Model, elements: &[usize]) -> hdf5::Result<Self> {
+        let count = elements.len();
         let column = |name, row: &[usize], text, dimension| {
             Column::series(at, name, row, meaning(text, dimension))
         };
@@ -119,15 +127,16 @@ impl EachElement {
         let scalar = |&(name, text, dimension, value): &(_, _, _, Scalar)| {
             Ok((column(name, &[count], text, dimension)?, value))
         };
-        let (density, kinetic) = (
-            "strain energy over the volume of the undeformed element",
-            "kinetic energy of the element with its consistent mass",
-        );
+        let kinetic = "kinetic energy of the element with its consistent mass";
+        let mesh = &model.mesh;
+        let gradient = |&element: &usize| MeanGradient::new(mesh, &mesh.elements[element]);
         Ok(EachElement {
             tensors: TENSORS.iter().map(tensor).collect::<hdf5::Result<_>>()?,
             scalars: SCALARS.iter().map(scalar).collect::<hdf5::Result<_>>()?,
-            energy_density: column("ENER", &[count], density, "energy/length^3")?,
+            logarithmic_strain: Column::series(at, "LE", &[count, 3], LOGARITHMIC_STRAIN)?,
+            energy_density: Column::series(at, "ENER", &[count], ENERGY_DENSITY)?,
             kinetic_energy: column("ELKE", &[count], kinetic, "energy")?,
+            gradients: elements.iter().map(gradient).collect(),
         })
     }
 

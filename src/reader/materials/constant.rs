@@ -45,12 +45,9 @@ pub(super) fn constant<T: PartialEq + Copy>(
     found
 }
 
-/// A temperature in field `index`: one row serves all of them.
+/// A temperature in field `index`, which may be any: the rows of all temperatures are alike.
 pub(super) fn temperature(row: Row, index: usize, cx: &mut Context) -> Option<()> {
-    row.real_or(index, 0.0, cx.d)?;
-    let message = "this temperature has no effect";
-    row.without_effect(index, message, "there are no temperatures", cx.d);
-    Some(())
+    row.real_or(index, 0.0, cx.d).map(|_| ())
 }
 
 /// Reports the number in a field, if it is there.

@@ -29,14 +29,14 @@ const CONTACT_ELEMENTS: P =
     P::flag("CONTACT ELEMENTS", "contact elements are not written").ignored();
 const LAST_ITERATIONS: P =
     P::flag("LAST ITERATIONS", "frames hold accepted increments only").ignored();
-const HISTORY_TIMES: P = P::value("TIME POINTS", "histories hold every increment").ignored();
+const HISTORY_TIMES: P = P::value("TIME POINTS", "histories hold every increment");
 const SLAVE: P = P::value("SLAVE", "all contacts are written").ignored();
 const MASTER: P = P::value("MASTER", "all contacts are written").ignored();
 const HISTORY_EVERY: P = P::value(
     "FREQUENCY",
     "0: no history; else without effect, histories hold every increment",
 );
-const CONTACT_EVERY: P = P::value("FREQUENCY", "histories hold every increment").ignored();
+const CONTACT_EVERY: P = P::value("FREQUENCY", "histories hold every increment");
 const TOTALS: P = P::choice(
     "TOTALS",
     &[
@@ -115,7 +115,7 @@ pub(super) static OUTPUT: &[Keyword] = &[
             CONTACT_ELEMENTS,
             LAST_ITERATIONS,
         ],
-        "Fields on nodes in frames; all are always written on the whole mesh.",
+        "Fields on nodes in frames, on the whole mesh: CF where it is named, all others always.",
         "*NODE FILE, FREQUENCY=10\n\
          U, V, RF",
     ),
@@ -139,8 +139,8 @@ pub(super) static OUTPUT: &[Keyword] = &[
             CONTACT_ELEMENTS,
             LAST_ITERATIONS,
         ],
-        "Under *OUTPUT, HISTORY the history of an element set; else fields on elements in frames, which are \
-         always all written on the whole mesh. Both hold means over elements.",
+        "Under *OUTPUT, HISTORY the history of an element set; else the same as *EL FILE. Both hold means over \
+         elements.",
         "*OUTPUT, HISTORY\n\
          *ELEMENT OUTPUT, ELSET=EBLOCK\n\
          S, ENER",
@@ -161,7 +161,7 @@ pub(super) static OUTPUT: &[Keyword] = &[
             CONTACT_ELEMENTS,
             LAST_ITERATIONS,
         ],
-        "Fields on elements in frames; all are always written on the whole mesh.",
+        "Fields on elements in frames, on the whole mesh: ENER and LE where they are named, all others always.",
         "*EL FILE, FREQUENCY=10\n\
          S",
     ),

@@ -5,6 +5,7 @@ use hdf5::types::FixedAscii;
 
 use super::mesh::{write_bodies, write_mesh};
 use super::place::{IN_SPACE, OFFSETS, Offsets, PLANE_TENSOR, Place, SCALAR};
+use super::requested::RequestedFields;
 use super::steps::Steps;
 use crate::dynamics::{NodalResults, State};
 use crate::elements::ElementResult;
@@ -38,6 +39,8 @@ struct PointFields {
     status: Column<u8>,
     pressure: Column<f64>,
     slip: Column<f64>,
+    /// On request only.
+    concentrated: Option<Column<f64>>,
     /// With redistributed mass only.
     mass: Option<Column<u8>>,
 }
@@ -49,6 +52,7 @@ struct CellFields {
     across: Column<f64>,
     von_mises: Column<f64>,
     strain: Column<f64>,
+    requested: RequestedFields,
     /// First row of `BODY`, which is the same in all frames.
     body_offsets: Column<i64>,
     /// Number of segments of rigid surfaces.
@@ -70,7 +74,7 @@ impl Fields {
         let mut fields = Fields {
             steps,
             points: PointFields::create(points, model)?,
-            cells: CellFields::create(cells, lines.len())?,
+            cells: CellFields::create(cells, model, lines.len())?,
             most_pending: 1,
             pending: 0,
         };
@@ -88,7 +92,7 @@ impl Fields {
     /// Appends a frame, which waits in memory.
     pub fn push(&mut self, frame: &Frame) {
         self.points.push(&frame.state, &frame.nodal);
-        self.cells.push(&frame.elements);
+        self.cells.push(&frame.elements, &frame.state.u);
         self.steps.push(frame.time);
         self.pending += 1;
     }
@@ -159,12 +163,15 @@ impl PointFields {
         )?;
         let reaction = vector("RF", Mostly::Zero, meaning("support reaction", "force"))?;
         let contact_force = vector("CONTACT_FORCE", Mostly::Zero, CONTACT_FORCE)?;
+        let is_asked = model.sets.fields.concentrated_load;
+        let concentrated = is_asked.then(|| vector("CF", Mostly::Zero, CONCENTRATED));
         Ok(PointFields {
             displacement,
             velocity,
             acceleration,
             reaction,
             contact_force,
+            concentrated: concentrated.transpose()?,
             gap: at.field("GAP", SCALAR, Mostly::Nan, GAP)?,
             status: at.field("CONTACT_STATUS", SCALAR, Mostly::Zero, STATUS)?,
             pressure: at.field("CONTACT_PRESSURE", SCALAR, Mostly::Nan, PRESSURE)?,
@@ -187,6 +194,9 @@ impl PointFields {
         self.status.push(nodal.status.iter().map(|&s| s as u8));
         self.pressure.push_slice(&nodal.pressure);
         self.slip.push_slice(&nodal.slip);
+        if let Some(concentrated) = &mut self.concentrated {
+            concentrated.push_slice(&nodal.concentrated);
+        }
         if let Some(mass) = &mut self.mass {
             mass.push(nodal.mass.iter().map(|&m| m as u8));
         }
@@ -207,6 +217,11 @@ impl PointFields {
             &mut self.slip,
         ];
         all.extend(
+            self.concentrated
+                .iter_mut()
+                .map(|loads| -> &mut dyn Growing { loads }),
+        );
+        all.extend(
             self.mass
                 .iter_mut()
                 .map(|mass| -> &mut dyn Growing { mass }),
@@ -216,12 +231,13 @@ impl PointFields {
 }
 
 impl CellFields {
-    fn create(mut at: Place, lines: usize) -> hdf5::Result<Self> {
+    fn create(mut at: Place, model: &Model, lines: usize) -> hdf5::Result<Self> {
         Ok(CellFields {
             stress: at.field("S", PLANE_TENSOR, Mostly::Varied, STRESS)?,
             across: at.field("S33", SCALAR, Mostly::Varied, ACROSS)?,
             von_mises: at.field("MISES", SCALAR, Mostly::Varied, VON_MISES)?,
             strain: at.field("E", PLANE_TENSOR, Mostly::Varied, STRAIN)?,
+            requested: RequestedFields::create(&mut at, model, lines)?,
             body_offsets: Column::series(&at.offsets.group, "BODY", &[], OFFSETS)?,
             offsets: at.offsets,
             lines,
@@ -229,7 +245,7 @@ impl CellFields {
     }
 
     /// Appends a frame; rigid segments have NaN for stress and strain.
-    fn push(&mut self, elements: &[ElementResult]) {
+    fn push(&mut self, elements: &[ElementResult], u: &[f64]) {
         let of_lines = |components| std::iter::repeat_n(f64::NAN, components * self.lines);
         let stress = elements.iter().flat_map(|element| element.stress);
         self.stress.push(stress.chain(of_lines(3)));
@@ -239,21 +255,25 @@ impl CellFields {
         self.von_mises.push(von_mises.chain(of_lines(1)));
         let strain = elements.iter().flat_map(|element| element.strain);
         self.strain.push(strain.chain(of_lines(3)));
+        self.requested.push(elements, u);
         self.body_offsets.push([0]);
         self.offsets.push();
     }
 
     /// The datasets with a row per cell.
     fn columns(&mut self) -> Columns<'_> {
-        vec![
+        let mut all: Columns = vec![
             &mut self.stress,
             &mut self.across,
             &mut self.von_mises,
             &mut self.strain,
-        ]
+        ];
+        all.extend(self.requested.columns());
+        all
     }
 }
 
+const CONCENTRATED: Meaning = meaning("concentrated loads on the node", "force");
 const CONTACT_FORCE: Meaning = meaning("contact force on the node", "force");
 const GAP: Meaning = meaning(
     "gap of the slave node to its segment, NaN without candidate",

@@ -3,7 +3,9 @@
 mod fields;
 mod mesh;
 mod place;
+mod requested;
 mod steps;
 
 pub(crate) use fields::Fields;
 pub(super) use mesh::{connectivity, number};
+pub(crate) use requested::{ENERGY_DENSITY, LOGARITHMIC_STRAIN};

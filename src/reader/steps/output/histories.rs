@@ -1,9 +1,9 @@
-//! Sets of the histories, and dofs in the status file.
+//! Sets of the histories, fields on request, and dofs in the status file.
 
 use super::monitor::monitored;
-use crate::deck::{Card, Text};
+use crate::deck::{Card, Row, Text};
 use crate::diagnostics::{Code, Diagnostic};
-use crate::model::HistorySet;
+use crate::model::{HistorySet, RequestedFields};
 use crate::reader::context::Context;
 use crate::reader::mesh::Sets;
 use crate::reader::steps::boundary::Targets;
@@ -15,6 +15,8 @@ pub(crate) struct Histories {
     pub nodes: Vec<HistorySet>,
     /// Element sets.
     pub elements: Vec<HistorySet>,
+    /// Fields on request.
+    pub fields: RequestedFields,
     /// Dofs in the status file.
     pub monitored: Vec<usize>,
 }
@@ -73,6 +75,21 @@ impl Histories {
         match known.iter_mut().find(|known| known.set == asked.set) {
             Some(known) => known.each_member |= asked.each_member,
             None => known.push(asked),
+        }
+    }
+
+    /// Adds the fields of nodes or elements that a card names and that are written on request only.
+    pub(super) fn fields(&mut self, card: &Card) {
+        if card.keyword.name.starts_with("CONTACT") {
+            return;
+        }
+        for field in card.rows.iter().flat_map(Row::fields) {
+            match field.name_key().as_str() {
+                "CF" => self.fields.concentrated_load = true,
+                "ENER" => self.fields.energy_density = true,
+                "LE" => self.fields.logarithmic_strain = true,
+                _ => {}
+            }
         }
     }
 

@@ -10,10 +10,11 @@ use crate::reader::steps::boundary::Targets;
 
 /// Variables that the result file holds.
 const WRITTEN: &[&str] = &[
-    "U", "V", "A", "RF", "CF", "U1", "U2", "V1", "V2", "A1", "A2", "RF1", "RF2", "CF1", "CF2", "S",
-    "E", "LE", "ENER", "ELSE", "ELKE", "EVOL", "CSTRESS", "CDISP", "CFORCE", "CSTATUS", "CDIS",
-    "CSTR", "CELS", "CF", "CFN", "CFS", "CFT", "CAREA", "CNUM", "CFNM", "CFSM", "CFTM", "CPRESS",
-    "CSHEAR1", "COPEN", "CSLIP1", "ALLKE", "ALLSE", "ALLIE", "ALLWK", "ALLFD", "ALLVD", "ETOTAL",
+    "U", "V", "A", "RF", "CF", "UT", "VT", "AT", "S11", "S22", "S33", "S12", "MISES", "E11", "E22",
+    "E12", "LE11", "LE22", "LE12", "U1", "U2", "V1", "V2", "A1", "A2", "RF1", "RF2", "CF1", "CF2",
+    "S", "E", "LE", "ENER", "ELSE", "ELKE", "EVOL", "CSTRESS", "CDISP", "CFORCE", "CSTATUS",
+    "CDIS", "CSTR", "CELS", "CF", "CFN", "CFS", "CFT", "CNUM", "CFNM", "CFSM", "CFTM", "CPRESS",
+    "COPEN", "CSLIP1", "ALLKE", "ALLSE", "ALLIE", "ALLWK", "ALLFD", "ALLVD", "ETOTAL",
 ];
 
 /// Output requests of the deck so far.
@@ -50,15 +51,19 @@ impl Requests {
                 ("EL PRINT", _) | ("ELEMENT OUTPUT", Some(true)) => {
                     self.history(card, Family::Elements, targets, cx);
                 }
-                ("NODE OUTPUT" | "ELEMENT OUTPUT" | "CONTACT OUTPUT", Some(_)) => {
+                ("CONTACT OUTPUT", Some(true)) => skip_sets(card),
+                ("NODE OUTPUT" | "ELEMENT OUTPUT" | "CONTACT OUTPUT", Some(false)) => {
                     skip_sets(card);
+                    self.histories.fields(card);
                 }
                 ("NODE OUTPUT" | "ELEMENT OUTPUT" | "CONTACT OUTPUT", None)
                 | ("NODE FILE" | "EL FILE" | "CONTACT FILE", _) => {
                     skip_sets(card);
+                    self.histories.fields(card);
                     self.when(card, cx);
                 }
-                ("CONTACT PRINT" | "ENERGY OUTPUT", _) => {}
+                ("CONTACT PRINT", _) => self.check_when(card, cx),
+                ("ENERGY OUTPUT", _) => {}
                 ("RESTART", _) => restart(card, cx),
                 ("MONITOR", _) => self.histories.monitor(card, targets, cx),
                 _ => continue,

@@ -1,0 +1,127 @@
+//! Mean displacement gradient of an element and the logarithmic strain that it gives.
+
+use nalgebra::Matrix2;
+use smallvec::SmallVec;
+
+use crate::model::{Element, Mesh, Nodes};
+
+/// Weights of the nodes of an element in its mean displacement gradient.
+pub struct MeanGradient {
+    nodes: Nodes,
+    /// Mean gradient of the shape function of each node (1/length).
+    weights: SmallVec<[[f64; 2]; 4]>,
+    /// Area of the undeformed element (length^2).
+    pub area: f64,
+}
+
+impl MeanGradient {
+    /// That of an element with straight sides. With N the normal of the boundary and p, q the nodes before
+    /// and after a:
+    ///
+    /// ```text
+    /// 1/A int dN_a/dX dA = 1/A int N_a N ds = (Y_q - Y_p, X_p - X_q) / (2 A)
+    /// ```
+    pub fn new(mesh: &Mesh, element: &Element) -> Self {
+        let x = mesh.corners(element);
+        let count = x.len();
+        let around = |a: usize| (x[(a + count - 1) % count], x[(a + 1) % count]);
+        let normals = (0..count).map(|a| {
+            let (p, q) = around(a);
+            [q[1] - p[1], p[0] - q[0]]
+        });
+        let twice: SmallVec<[[f64; 2]; 4]> = normals.collect();
+        let area = x.iter().zip(&twice).map(|(x, n)| x[0] * n[0]).sum::<f64>() / 2.0;
+        MeanGradient {
+            nodes: element.nodes.clone(),
+            weights: twice.iter().map(|n| n.map(|n| n / (2.0 * area))).collect(),
+            area,
+        }
+    }
+
+    /// Logarithmic strain xx, yy, xy (tensor shear) in the deformed configuration, ln V with V^2 = F F^T of the
+    /// mean deformation gradient F = I + H, at displacements `u`, 2 N entries (length):
+    ///
+    /// ```text
+    /// F F^T = B = I + G,   G = H + H^T + H H^T,   m = tr B/2,   D = B - m I,   d = sqrt(-det D)
+    /// ln V = 1/2 (ln det F I + artanh(d/m)/d D)
+    /// ```
+    ///
+    /// NaN where F turns the element inside out.
+    pub fn logarithmic_strain(&self, u: &[f64]) -> [f64; 3] {
+        let mut h = Matrix2::zeros();
+        for (&node, w) in self.nodes.iter().zip(&self.weights) {
+            let [x, y] = [u[2 * node], u[2 * node + 1]];
+            h += Matrix2::new(x * w[0], x * w[1], y * w[0], y * w[1]);
+        }
+        let g = h + h.transpose() + h * h.transpose();
+        let m = 1.0 + g.trace() / 2.0;
+        let half = (g.m11 - g.m22) / 2.0;
+        let d = half.hypot(g.m12);
+        let factor = if d == 0.0 {
+            1.0 / m
+        } else {
+            (d / m).atanh() / d
+        };
+        let mean = (h.trace() + h.determinant()).ln_1p() / 2.0;
+        [
+            mean + factor * half / 2.0,
+            mean - factor * half / 2.0,
+            factor * g.m12 / 2.0,
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::ElementType;
+
+    /// Displacements of a distorted quadrilateral under the deformation gradient `f`.
+    fn deformed(f: Matrix2<f64>) -> (MeanGradient, Vec<f64>) {
+        let coordinates = vec![[0.0, 0.0], [2.0, 0.1], [2.3, 1.4], [-0.2, 1.0]];
+        let element = Element {
+            label: 1,
+            element_type: ElementType::CPE4,
+            nodes: vec![0, 1, 2, 3].into(),
+            section: 0,
+        };
+        let h = f - Matrix2::identity();
+        let moved = |x: &[f64; 2]| [h.m11 * x[0] + h.m12 * x[1], h.m21 * x[0] + h.m22 * x[1]];
+        let u = coordinates.iter().flat_map(moved).collect();
+        let mesh = Mesh {
+            coordinates,
+            ..Mesh::default()
+        };
+        (MeanGradient::new(&mesh, &element), u)
+    }
+
+    #[test]
+    fn stretches_that_are_turned() {
+        // V = R diag(1.5, 0.8) R^T, F = V Q
+        for (turn, spin) in [(0.0, 0.0_f64), (0.4, 1.1), (1.2, -2.0)] {
+            let turn = nalgebra::Rotation2::new(turn).into_inner();
+            let spin = nalgebra::Rotation2::new(spin).into_inner();
+            let stretch = Matrix2::new(1.5, 0.0, 0.0, 0.8);
+            let (element, u) = deformed(turn * stretch * turn.transpose() * spin);
+            let exact = Matrix2::new(1.5_f64.ln(), 0.0, 0.0, 0.8_f64.ln());
+            let exact = turn * exact * turn.transpose();
+            let found = element.logarithmic_strain(&u);
+            for (a, b) in found.iter().zip([exact.m11, exact.m22, exact.m12]) {
+                assert!((a - b).abs() < 1e-14, "{found:?} {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn area_and_small_strains() {
+        let (element, u) = deformed(Matrix2::new(1.0 + 1e-9, 2e-9, 0.0, 1.0));
+        // shoelace by hand: 2 1.4 - 2.3 0.1 + 2.3 - (-0.2) 1.4 over 2
+        assert!((element.area - (2.8 - 0.23 + 2.3 + 0.28) / 2.0).abs() < 1e-15);
+        let found = element.logarithmic_strain(&u);
+        for (a, b) in found.iter().zip([1e-9, 0.0, 1e-9]) {
+            assert!((a - b).abs() < 1e-16, "{found:?}");
+        }
+        let (element, u) = deformed(Matrix2::new(1.0, 0.0, 0.0, -1.0));
+        assert!(element.logarithmic_strain(&u)[0].is_nan());
+    }
+}
