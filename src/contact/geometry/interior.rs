@@ -37,7 +37,7 @@ impl Interior {
     pub fn new(mesh: &Mesh, is_of: impl Fn(&Element) -> bool) -> Self {
         let elements = mesh.elements.iter().filter(|element| is_of(element));
         let corners: Vec<Corners> = elements.map(corners).collect();
-        let nodes = corners.iter().map(|corners| nodes_of(corners));
+        let nodes = corners.iter().map(nodes_of);
         Interior {
             at_nodes: ElementsAtNodes::of_nodes(nodes, mesh.node_count()),
             corners,
