@@ -279,20 +279,59 @@ fn what_is_doubtful_before_the_run_is_on_the_screen_and_in_the_log() {
     assert_eq!(strict.0, 2, "{}", strict.2);
 }
 
+/// [`DROP`] with n x n elements in the square and in the base, for three increments.
+fn fine_drop(n: usize) -> String {
+    let mut deck = String::from("*HEADING\nsquares\n");
+    let row = |body: usize, j: usize| body * (n + 1) * (n + 1) + j * (n + 1) + 1;
+    for (body, name) in ["BASE", "SQUARE"].into_iter().enumerate() {
+        deck += &format!("*NODE, NSET={name}\n");
+        for (i, j) in (0..(n + 1) * (n + 1)).map(|k| (k % (n + 1), k / (n + 1))) {
+            let [x, y] = [i, j].map(|k| k as f64 / n as f64);
+            deck += &format!("{}, {x}, {}\n", row(body, j) + i, y + 1.001 * body as f64);
+        }
+        deck += &format!("*ELEMENT, TYPE=CPS4, ELSET={name}\n");
+        for (i, j) in (0..n * n).map(|k| (k % n, k / n)) {
+            let (a, b) = (row(body, j) + i, row(body, j + 1) + i);
+            let element = body * n * n + j * n + i + 1;
+            deck += &format!("{element}, {a}, {}, {}, {b}\n", a + 1, b + 1);
+        }
+    }
+    let sets = [
+        ("*ELSET, ELSET=HIGHEST", [n * n - n + 1, n * n]),
+        ("*ELSET, ELSET=LOWEST", [n * n + 1, n * n + n]),
+        ("*NSET, NSET=FIXED", [1, n + 1]),
+    ];
+    for (set, [first, last]) in sets {
+        deck += &format!("{set}, GENERATE\n{first}, {last}\n");
+    }
+    let rest = &DROP[DROP.find("*MATERIAL").unwrap()..];
+    let rest = rest
+        .replace("SQUARE, S1", "LOWEST, S1")
+        .replace("BASE, S3", "HIGHEST, S3");
+    deck + &rest.replace("0.002, 0.1\n", "0.002, 0.006\n")
+}
+
 #[test]
 fn threads_do_not_change_the_results() {
-    let bench = Bench::new(DROP);
-    for threads in ["1", "2"] {
-        let folder = format!("t{threads}");
-        let arguments = ["run", "drop.inp", "-q", "-o", &folder, "--threads", threads];
-        assert_eq!(bench.stickslip(&arguments).0, 0);
-    }
-    assert_eq!(bench.read("t1/drop.sta"), bench.read("t2/drop.sta"));
-    let mut diff = std::process::Command::new("h5diff");
-    diff.args(["--exclude-path", "/run", "t1/drop.vtkhdf", "t2/drop.vtkhdf"]);
-    match diff.current_dir(bench.folder.path()).output() {
-        Ok(output) => assert!(output.status.success(), "{output:?}"),
-        Err(_) => eprintln!("h5diff is not installed: not compared"),
+    for deck in [DROP.into(), fine_drop(50)] {
+        let bench = Bench::new(&deck);
+        for threads in ["1", "2", "4"] {
+            let folder = format!("t{threads}");
+            let arguments = ["run", "drop.inp", "-q", "-o", &folder, "--threads", threads];
+            assert_eq!(bench.stickslip(&arguments).0, 0);
+        }
+        for threads in ["2", "4"] {
+            let [one, more] = ["1", threads].map(|threads| format!("t{threads}/drop"));
+            let status = [&one, &more].map(|file| bench.read(&format!("{file}.sta")));
+            assert_eq!(status[0], status[1]);
+            let mut diff = std::process::Command::new("h5diff");
+            diff.args(["--exclude-path", "/run"]);
+            diff.args([one, more].map(|file| format!("{file}.vtkhdf")));
+            match diff.current_dir(bench.folder.path()).output() {
+                Ok(output) => assert!(output.status.success(), "{output:?}"),
+                Err(_) => eprintln!("h5diff is not installed: not compared"),
+            }
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Direct solves with an a posteriori check: the residual relative to the terms of b and A x; parts of the inverse
 //! by their row sums.
 
+use rayon::prelude::*;
 use sprs::{CsMat, CsMatView};
 
 use super::assembled::groups;
@@ -198,9 +199,7 @@ impl CheckedSolver {
     /// The inverse at the rows and columns of each list of `unknowns` (distinct), m x m column by column, of a
     /// factorised matrix. A solve in parts may go on afterwards.
     pub fn unchecked_inverse_at(&mut self, unknowns: &[&[usize]]) -> Vec<Vec<f64>> {
-        let n = self.matrix.size();
-        let inverse = |list: &&[usize]| self.solver.inverse_at(list, n);
-        let inverses = unknowns.iter().map(inverse).collect();
+        let inverses = self.solver.inverse_at(unknowns, self.matrix.size());
         if self.is_under_way {
             self.solver.begin(&self.b);
         }
@@ -236,11 +235,32 @@ fn sum(columns: &[f64], n: usize) -> Vec<f64> {
     sum
 }
 
+/// Rows whose residual is one piece of work for a thread.
+const ROWS: usize = 16_384;
+
 /// max_i |b - A x|_i / max_i (t + |A| |x|)_i, t being the sizes of the terms of b; the rows of the symmetric
 /// A are its columns.
 fn relative_residual(a: CsMatView<'_, f64>, x: &[f64], [b, terms]: [&[f64]; 2]) -> f64 {
+    let of_rows =
+        |(k, (b, terms)): (usize, (&[f64], &[f64]))| residual_and_size(a, x, (k * ROWS, b, terms));
+    let both =
+        |one: [f64; 2], other: [f64; 2]| [larger(one[0], other[0]), larger(one[1], other[1])];
+    let rows = b.par_chunks(ROWS).zip(terms.par_chunks(ROWS)).enumerate();
+    let [error, scale] = match b.len() > ROWS && rayon::current_num_threads() > 1 {
+        true => rows.map(of_rows).reduce(|| [0.0; 2], both),
+        false => residual_and_size(a, x, (0, b, terms)),
+    };
+    if scale == 0.0 { 0.0 } else { error / scale }
+}
+
+/// The largest |b - A x| and t + |A| |x| in the rows from `first` on, which `b` and `terms` are of.
+fn residual_and_size(
+    a: CsMatView<'_, f64>,
+    x: &[f64],
+    (first, b, terms): (usize, &[f64], &[f64]),
+) -> [f64; 2] {
     let (starts, rows, values) = (a.indptr(), a.indices(), a.data());
-    let starts = starts.raw_storage();
+    let starts = &starts.raw_storage()[first..];
     let (mut error, mut scale) = (0.0, 0.0);
     for (ends, (b, terms)) in starts.windows(2).zip(b.iter().zip(terms)) {
         let entries = ends[0]..ends[1];
@@ -252,7 +272,7 @@ fn relative_residual(a: CsMatView<'_, f64>, x: &[f64], [b, terms]: [&[f64]; 2]) 
         }
         (error, scale) = (larger(error, residual.abs()), larger(scale, size));
     }
-    if scale == 0.0 { 0.0 } else { error / scale }
+    [error, scale]
 }
 
 #[cfg(test)]

@@ -104,14 +104,14 @@ fn solve(
     }
 }
 
-/// Starts the threads of the program and returns their number.
+/// Starts the threads of the program, this one being the first, and returns their number.
 fn start_threads(wanted: Option<usize>) -> Result<usize, CliError> {
-    if let Some(threads) = wanted {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        pool.build_global().map_err(|error| CliError::Threads {
-            threads,
-            reason: error.to_string(),
-        })?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(wanted.unwrap_or(0));
+    let built = pool.use_current_thread().build_global();
+    // Where none are asked for, those that run already will do.
+    if let (Some(threads), Err(error)) = (wanted, built) {
+        let reason = error.to_string();
+        return Err(CliError::Threads { threads, reason });
     }
     Ok(rayon::current_num_threads())
 }

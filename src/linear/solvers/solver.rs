@@ -65,17 +65,21 @@ pub trait LinearSolver: Send {
         self.end(b);
     }
 
-    /// The inverse at the rows and columns `unknowns` (distinct), m x m column by column. Must
+    /// The inverse at the rows and columns of each list of `unknowns` (distinct), m x m column by column. Must
     /// follow a successful `factorize` of a matrix of size `n`.
-    fn inverse_at(&mut self, unknowns: &[usize], n: usize) -> Vec<f64> {
-        let mut inverse = Vec::with_capacity(unknowns.len() * unknowns.len());
-        for &column in unknowns {
+    fn inverse_at(&mut self, unknowns: &[&[usize]], n: usize) -> Vec<Vec<f64>> {
+        let mut column = |&column: &usize| {
             let mut x = vec![0.0; n];
             x[column] = 1.0;
             self.solve(&mut x);
-            inverse.extend(unknowns.iter().map(|&row| x[row]));
-        }
-        inverse
+            x
+        };
+        let mut of_list = |list: &&[usize]| {
+            let columns = list.iter().map(&mut column);
+            let of_rows = |x: Vec<f64>| list.iter().map(move |&row| x[row]);
+            columns.flat_map(of_rows).collect()
+        };
+        unknowns.iter().map(&mut of_list).collect()
     }
 }
 

@@ -34,7 +34,7 @@ impl LinearSolver for SprsLdl {
         match &mut self.factor {
             Some(factor) if self.pattern == pattern => factor.update(a).map_err(library)?,
             _ => {
-                self.order = minimum_degree(a)?;
+                self.order = minimum_degree(&pattern)?;
                 let permutation = PermOwned::new(self.order.clone());
                 let check = SymmetryCheck::DontCheckSymmetry;
                 let symbolic = LdlSymbolic::new_perm(a, permutation, check);

@@ -6,15 +6,16 @@ use std::collections::BTreeMap;
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::prelude::{Reborrow, ReborrowMut};
-use faer::sparse::linalg::cholesky::supernodal::SupernodalLdltRef;
 use faer::{Accum, Mat, MatRef, Par};
+
+use super::factor::{Factor, Place};
 
 /// A column of L^-1 E whose entries above are all smaller than this ends there: what it would add to the
 /// inverse is below round-off, see section 5 of docs/theory.md. The unit vectors have no dimension.
 const NEGLIGIBLE: f64 = 1e-25;
 
 /// Contributions of the supernodes below to one above: unfinished rows of L^-1 E.
-struct Front {
+struct Rows {
     /// Columns (positions in the list of unknowns) that are not zero, increasing.
     columns: Vec<usize>,
     /// Rows in the order of pivots, increasing.
@@ -33,41 +34,35 @@ struct Front {
 ///
 /// Column j of Y is nonzero only on the path from its position to the root of the elimination tree,
 /// so that the supernodes off these paths are never visited, nor those where it has died away.
-pub(super) fn inverse_at(
-    factor: SupernodalLdltRef<'_, usize, f64>,
-    positions: &[usize],
-) -> Vec<f64> {
-    let m = positions.len();
-    let ends = factor.symbolic().supernode_end();
-    let supernode_of = |row: usize| ends.partition_point(|&end| end <= row);
+pub fn inverse_at(factor: &Factor, unknowns: &[usize]) -> Vec<f64> {
+    let m = unknowns.len();
     let mut inverse = Mat::<f64>::zeros(m, m);
-    let mut waiting: BTreeMap<usize, Vec<Front>> = BTreeMap::new();
-    for (column, &position) in positions.iter().enumerate() {
-        let unit = Front {
+    let mut waiting: BTreeMap<(usize, usize), Vec<Rows>> = BTreeMap::new();
+    for (column, &unknown) in unknowns.iter().enumerate() {
+        let Place { limb, row } = factor.places[unknown];
+        let unit = Rows {
             columns: vec![column],
-            rows: vec![position],
+            rows: vec![row],
             values: Mat::from_fn(1, 1, |_, _| 1.0),
         };
-        waiting
-            .entry(supernode_of(position))
-            .or_default()
-            .push(unit);
+        let s = factor.limbs[limb].supernode_of(row);
+        waiting.entry((limb, s)).or_default().push(unit);
     }
-    // Children come before their parents in the order of pivots.
-    while let Some((s, fronts)) = waiting.pop_first() {
-        let node = factor.supernode(s);
-        let size = node.val().ncols();
-        let rows: Vec<usize> = (node.start()..node.start() + size)
-            .chain(node.pattern().iter().copied())
-            .collect();
-        let Front {
+    let (mut l, mut scaled, mut product) = (Mat::new(), Mat::new(), Mat::new());
+    // Children come before their parents in their limb, and branches before the trunks.
+    while let Some(((number, s), rows)) = waiting.pop_first() {
+        let limb = &factor.limbs[number];
+        let node = limb.supernode(s);
+        let all: Vec<usize> = node.columns().chain(node.rows_below()).collect();
+        let Rows {
             columns,
             mut values,
             ..
-        } = assemble(rows, &fronts);
+        } = assemble(all, &rows);
 
-        let (l_top, l_below) = node.val().split_at_row(size);
-        let (mut top, mut below) = values.as_mut().split_at_row_mut(size);
+        node.write_to(&mut l);
+        let (l_top, l_below) = l.as_ref().split_at_row(node.size);
+        let (mut top, mut below) = values.as_mut().split_at_row_mut(node.size);
         solve_unit_lower_triangular_in_place(l_top, top.rb_mut(), Par::Seq);
         matmul(
             below.rb_mut(),
@@ -77,8 +72,10 @@ pub(super) fn inverse_at(
             -1.0,
             Par::Seq,
         );
-        let scaled = Mat::from_fn(size, columns.len(), |i, j| top[(i, j)] / l_top[(i, i)]);
-        let mut product = Mat::<f64>::zeros(columns.len(), columns.len());
+        let pivots = &limb.pivots[node.columns()];
+        scaled.resize_with(0, 0, |_, _| 0.0);
+        scaled.resize_with(node.size, columns.len(), |i, j| top[(i, j)] / pivots[i]);
+        product.resize_with(columns.len(), columns.len(), |_, _| 0.0);
         matmul(
             product.as_mut(),
             Accum::Replace,
@@ -93,10 +90,26 @@ pub(super) fn inverse_at(
             }
         }
 
-        if let Some(&first) = node.pattern().first() {
-            let front = without_negligible(columns, node.pattern(), below.rb());
-            if !front.columns.is_empty() {
-                waiting.entry(supernode_of(first)).or_default().push(front);
+        let mut rows: Vec<usize> = node.rows_below().collect();
+        if let Some(&first) = rows.first() {
+            let (own, mut place) = (
+                limb.unknowns.len(),
+                Place {
+                    limb: number,
+                    row: first,
+                },
+            );
+            if let Some(trunk) = limb.trunk.filter(|_| first >= own) {
+                rows.iter_mut().for_each(|row| *row -= own);
+                place = Place {
+                    limb: trunk,
+                    row: rows[0],
+                };
+            }
+            let rows = without_negligible(columns, rows, below.rb());
+            if !rows.columns.is_empty() {
+                let s = factor.limbs[place.limb].supernode_of(place.row);
+                waiting.entry((place.limb, s)).or_default().push(rows);
             }
         }
     }
@@ -107,20 +120,20 @@ pub(super) fn inverse_at(
 }
 
 /// The front of the columns that are not negligible.
-fn without_negligible(columns: Vec<usize>, rows: &[usize], values: MatRef<f64>) -> Front {
+fn without_negligible(columns: Vec<usize>, rows: Vec<usize>, values: MatRef<f64>) -> Rows {
     let is_negligible = |value: f64| value.abs() <= NEGLIGIBLE;
     let matters = |j: &usize| !(0..rows.len()).all(|i| is_negligible(values[(i, *j)]));
     let kept: Vec<usize> = (0..columns.len()).filter(matters).collect();
     let of_kept = |i: usize, j: usize| values[(i, kept[j])];
-    Front {
+    Rows {
         values: Mat::from_fn(rows.len(), kept.len(), of_kept),
         columns: kept.iter().map(|&j| columns[j]).collect(),
-        rows: rows.to_vec(),
+        rows,
     }
 }
 
 /// Adds up fronts on the given rows.
-fn assemble(rows: Vec<usize>, fronts: &[Front]) -> Front {
+fn assemble(rows: Vec<usize>, fronts: &[Rows]) -> Rows {
     let mut columns: Vec<usize> = fronts
         .iter()
         .flat_map(|f| f.columns.iter().copied())
@@ -142,7 +155,7 @@ fn assemble(rows: Vec<usize>, fronts: &[Front]) -> Front {
             }
         }
     }
-    Front {
+    Rows {
         columns,
         rows,
         values,

@@ -1,0 +1,252 @@
+//! LDL^T factors limb by limb, packed in the order in which substitutions read them. Section 5 of
+//! docs/theory.md, Branches.
+
+use super::limbs::{Limb, cut};
+use super::supernode::{Layout, Supernode};
+use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
+
+/// Least entries of L for which a factorisation and a substitution are worth threads.
+const FACTORISATION: usize = 200_000;
+const SUBSTITUTION: usize = 800_000;
+
+/// Bytes of a line of the cache, and numbers in it.
+const LINE: usize = 64;
+const NUMBERS: usize = LINE / size_of::<f64>();
+
+/// Where the unknown of a pivot is.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Place {
+    /// Its limb.
+    pub limb: usize,
+    /// Its row there.
+    pub row: usize,
+}
+
+/// Where a supernode of a limb is.
+#[derive(Debug, Clone, Copy)]
+struct Spot {
+    start: u32,
+    size: u32,
+    is_of_twos: bool,
+    /// Its first entry in the rows of the limb.
+    rows: usize,
+    /// Its first entry in the values of the limb.
+    values: usize,
+}
+
+/// Columns of L and D of a branch or a trunk. Its rows are its own, then those of the trunk it stands on.
+#[derive(Debug, Default)]
+pub struct LimbFactor {
+    /// Unknowns of its own rows.
+    pub unknowns: Vec<usize>,
+    /// The trunk, by its number among the limbs.
+    pub trunk: Option<usize>,
+    /// Number of rows, own and of the trunk.
+    pub length: usize,
+    /// Rows of its longest supernode.
+    pub longest: usize,
+    spots: Vec<Spot>,
+    rows: Vec<u32>,
+    /// Number of entries of L.
+    entries: usize,
+    /// L from `first` on, which begins a line of the cache.
+    values: Vec<f64>,
+    first: usize,
+    /// D
+    pub pivots: Vec<f64>,
+}
+
+/// Factors of a matrix.
+#[derive(Debug, Default)]
+pub struct Factor {
+    /// Branches, then trunks.
+    pub limbs: Vec<LimbFactor>,
+    /// Number of branches.
+    pub branches: usize,
+    /// Place of every unknown.
+    pub places: Vec<Place>,
+    /// Number of entries of L.
+    entries: usize,
+}
+
+/// Places of pivots in the limbs, in their order.
+struct Places {
+    of_pivots: Vec<Place>,
+    /// Number of own rows of every limb.
+    sizes: Vec<usize>,
+}
+
+type Symbolic = SymbolicSupernodalCholesky<usize>;
+
+impl Factor {
+    /// Room for the factors of an analysed matrix; `unknowns` has the unknown of every pivot.
+    pub fn new(symbolic: &Symbolic, unknowns: &[usize]) -> Self {
+        let starts = symbolic.col_ptr_for_val();
+        let work: Vec<usize> = starts.windows(2).map(|ends| ends[1] - ends[0]).collect();
+        let (limbs, branches) = cut(&parents(symbolic), &work);
+        let in_limbs = Places::new(symbolic, &limbs, unknowns.len());
+        let mut places = vec![Place::default(); unknowns.len()];
+        for (&unknown, place) in unknowns.iter().zip(&in_limbs.of_pivots) {
+            places[unknown] = *place;
+        }
+        let all = 0..limbs.len();
+        Factor {
+            limbs: all
+                .map(|number| in_limbs.factor(symbolic, unknowns, (number, &limbs)))
+                .collect(),
+            branches,
+            places,
+            entries: symbolic.len_val(),
+        }
+    }
+
+    /// Whether there are threads, and entries enough for them in a factorisation.
+    pub fn is_factorised_on_threads(&self) -> bool {
+        self.is_worth_threads(FACTORISATION)
+    }
+
+    /// Whether there are threads, and entries enough for them in a substitution.
+    pub fn is_substituted_on_threads(&self) -> bool {
+        self.is_worth_threads(SUBSTITUTION)
+    }
+
+    fn is_worth_threads(&self, least: usize) -> bool {
+        self.entries >= least && self.branches > 1 && rayon::current_num_threads() > 1
+    }
+
+    /// D with the unknowns it belongs to.
+    pub fn pivots(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.limbs.iter().flat_map(|limb| {
+            let pivots = limb.unknowns.iter().zip(&limb.pivots);
+            pivots.map(|(&unknown, &pivot)| (unknown, pivot))
+        })
+    }
+}
+
+/// The supernode of the first row below each.
+fn parents(symbolic: &Symbolic) -> Vec<Option<usize>> {
+    let ends = symbolic.supernode_end();
+    let of_row = |row: &usize| ends.partition_point(|end| end <= row);
+    let parent = |s: usize| symbolic.supernode(s).pattern().first().map(of_row);
+    (0..symbolic.n_supernodes()).map(parent).collect()
+}
+
+impl Places {
+    fn new(symbolic: &Symbolic, limbs: &[Limb], unknowns: usize) -> Self {
+        let mut of_pivots = vec![Place::default(); unknowns];
+        let mut sizes = Vec::new();
+        for (number, limb) in limbs.iter().enumerate() {
+            let mut rows = 0..;
+            for &s in &limb.supernodes {
+                let columns = symbolic.supernode_begin()[s]..symbolic.supernode_end()[s];
+                for (place, row) in of_pivots[columns].iter_mut().zip(&mut rows) {
+                    *place = Place { limb: number, row };
+                }
+            }
+            sizes.push(rows.start);
+        }
+        Places { of_pivots, sizes }
+    }
+
+    /// Room for the factors of a limb.
+    fn factor(
+        &self,
+        symbolic: &Symbolic,
+        unknowns: &[usize],
+        (number, limbs): (usize, &[Limb]),
+    ) -> LimbFactor {
+        let (limb, own) = (&limbs[number], self.sizes[number]);
+        let mut factor = LimbFactor {
+            trunk: limb.trunk,
+            length: own + limb.trunk.map_or(0, |trunk| self.sizes[trunk]),
+            ..LimbFactor::default()
+        };
+        let row = |&pivot: &usize| match self.of_pivots[pivot] {
+            Place { limb, row } if limb == number => row,
+            Place { row, .. } => own + row,
+        };
+        for &s in &limb.supernodes {
+            let columns = symbolic.supernode_begin()[s]..symbolic.supernode_end()[s];
+            let rows: Vec<usize> = symbolic.supernode(s).pattern().iter().map(row).collect();
+            factor.push(columns.len(), &rows);
+            factor.unknowns.extend_from_slice(&unknowns[columns]);
+        }
+        factor.make_room();
+        factor
+    }
+}
+
+impl LimbFactor {
+    /// Room for a supernode with its number of columns and the rows below.
+    fn push(&mut self, size: usize, rows: &[usize]) {
+        let (twos, rest) = rows.as_chunks::<2>();
+        let is_of_twos = rest.is_empty() && twos.iter().all(|[p, q]| p + 1 == *q);
+        self.spots.push(Spot {
+            start: self.unknowns.len() as u32,
+            size: size as u32,
+            is_of_twos,
+            rows: self.rows.len(),
+            values: self.entries,
+        });
+        match is_of_twos {
+            true => self.rows.extend(twos.iter().map(|[p, _]| *p as u32)),
+            false => self.rows.extend(rows.iter().map(|&row| row as u32)),
+        }
+        let length = size + rows.len();
+        self.longest = self.longest.max(length);
+        self.entries += Layout::of_processor().supernode(size, length);
+    }
+
+    /// A supernode, by its number in the limb.
+    #[inline(always)]
+    pub fn supernode(&self, k: usize) -> Supernode<'_> {
+        let spot = self.spots[k];
+        let (rows, values) = match self.spots.get(k + 1) {
+            Some(next) => (next.rows, next.values),
+            None => (self.rows.len(), self.entries),
+        };
+        Supernode {
+            start: spot.start as usize,
+            size: spot.size as usize,
+            rows: &self.rows[spot.rows..rows],
+            is_of_twos: spot.is_of_twos,
+            values: &self.values[self.first + spot.values..self.first + values],
+        }
+    }
+
+    /// Number of supernodes.
+    pub fn supernodes(&self) -> usize {
+        self.spots.len()
+    }
+
+    /// The supernode that has a row among its columns.
+    pub fn supernode_of(&self, row: usize) -> usize {
+        self.spots
+            .partition_point(|spot| spot.start as usize <= row)
+            - 1
+    }
+
+    /// Takes the entries of `b`, over the unknowns, to its own rows.
+    pub fn take(&self, b: &[f64], rows: &mut [f64]) {
+        for (row, &unknown) in rows.iter_mut().zip(&self.unknowns) {
+            *row = b[unknown];
+        }
+    }
+
+    /// Room for L and D.
+    fn make_room(&mut self) {
+        self.values = vec![0.0; self.entries + NUMBERS];
+        self.first = self.values.as_ptr().align_offset(LINE).min(NUMBERS);
+        self.pivots = vec![0.0; self.unknowns.len()];
+    }
+
+    /// L and D of a supernode.
+    #[inline(always)]
+    pub fn columns_mut(&mut self, k: usize) -> (&mut [f64], &mut [f64]) {
+        let (spot, next) = (self.spots[k], self.spots.get(k + 1));
+        let start = spot.start as usize;
+        let values = self.first + spot.values..self.first + next.map_or(self.entries, |n| n.values);
+        let columns = start..start + spot.size as usize;
+        (&mut self.values[values], &mut self.pivots[columns])
+    }
+}

@@ -1,0 +1,16 @@
+//! Multifrontal LDL^T factorisation (Duff & Reid 1983), substitutions and parts of the inverse, branch by branch of the
+//! elimination forest. Section 5 of docs/theory.md, One solve and Branches.
+
+mod assembly;
+mod elimination;
+mod factor;
+mod front;
+mod limbs;
+mod partial_inverse;
+mod substitution;
+mod supernode;
+
+pub use elimination::Elimination;
+pub use factor::Factor;
+pub use partial_inverse::inverse_at;
+pub use substitution::Substitution;
