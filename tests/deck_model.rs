@@ -770,7 +770,7 @@ fn rigid_surfaces_take_part_in_general_contact() {
     assert_eq!(labels(&contact.left_out), [11, 12]);
     assert!(with_pair.contacts[1].left_out.is_empty());
     assert_eq!(contact.interaction.friction.at_rest, 0.3);
-    let slaves = &contact_surfaces(&with_pair)[2].slaves;
+    let slaves = &contact_surfaces(&with_pair, &with_pair.mesh.bodies())[2].slaves;
     assert_eq!(labels(slaves), [1, 2, 3, 6, 5, 4, 13, 14]);
 }
 

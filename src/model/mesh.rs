@@ -143,8 +143,18 @@ pub struct ElementsAtNodes {
 impl ElementsAtNodes {
     /// Finds the elements of every node.
     pub fn new(mesh: &Mesh) -> Self {
-        let mut starts = vec![0; mesh.node_count() + 1];
-        for &node in mesh.elements.iter().flat_map(|element| &element.nodes) {
+        let elements = mesh.elements.iter();
+        let nodes = elements.map(|element| element.nodes.iter().copied());
+        ElementsAtNodes::of_nodes(nodes, mesh.node_count())
+    }
+
+    /// Finds the elements of `count` nodes from the nodes of each element.
+    pub fn of_nodes<N: IntoIterator<Item = usize>>(
+        elements: impl DoubleEndedIterator<Item = N> + ExactSizeIterator + Clone,
+        count: usize,
+    ) -> Self {
+        let mut starts = vec![0; count + 1];
+        for node in elements.clone().flatten() {
             starts[node] += 1;
         }
         let mut end = 0;
@@ -153,14 +163,17 @@ impl ElementsAtNodes {
             *start = end;
         }
         // from the ends back to the starts
-        let mut elements = vec![0; end as usize];
-        for (index, element) in mesh.elements.iter().enumerate().rev() {
-            for &node in &element.nodes {
+        let mut at_nodes = vec![0; end as usize];
+        for (index, nodes) in elements.enumerate().rev() {
+            for node in nodes {
                 starts[node] -= 1;
-                elements[starts[node] as usize] = index as u32;
+                at_nodes[starts[node] as usize] = index as u32;
             }
         }
-        ElementsAtNodes { starts, elements }
+        ElementsAtNodes {
+            starts,
+            elements: at_nodes,
+        }
     }
 
     /// The elements at a node, none at one that the mesh does not have.

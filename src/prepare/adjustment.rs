@@ -206,7 +206,7 @@ mod tests {
             left_out: Vec::new(),
             span: Span::default(),
         });
-        let surfaces = contact_surfaces(&model);
+        let surfaces = contact_surfaces(&model, &model.mesh.bodies());
         let adjusted = adjust(&mut model, &surfaces);
         adjusted.iter().map(|moved| moved.count).sum()
     }

@@ -163,7 +163,7 @@ mod tests {
         };
         let contact =
             ContactSurfaces::new(vec![0, 5], &[], vec![[1, 2], [2, 3]], Friction::default())
-                .with_interior(Arc::new(Interior::new(&mesh)));
+                .with_interior(Arc::new(Interior::new(&mesh, |_| true)));
         let found = gaps(&contact, &coordinates, &[0; 7]);
         let of = |slave| found.iter().find(|g| g.slave == slave).map(|g| g.gap);
         [of(0), of(5)]

@@ -34,14 +34,14 @@ pub fn prepare(model: Model, d: &mut Diagnostics) -> Option<PreparedModel> {
 impl PreparedModel {
     /// Prepares a model without the checks that [`prepare`] makes.
     pub fn new(mut model: Model) -> Self {
-        let mut surfaces = contact_surfaces(&model);
+        let bodies = model.mesh.bodies();
+        let mut surfaces = contact_surfaces(&model, &bodies);
         let adjusted = adjust(&mut model, &surfaces);
         let x = &model.mesh.coordinates;
         if !adjusted.is_empty() {
             let moved = surfaces.into_iter();
             surfaces = moved.map(|contact| contact.with_sharp_corners(x)).collect();
         }
-        let bodies = model.mesh.bodies();
         let is_redistributed =
             |step: &Step| step.settings.contact_mass == ContactMass::Redistributed;
         let redistribution = match model.steps.iter().any(is_redistributed) {

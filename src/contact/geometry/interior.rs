@@ -6,19 +6,24 @@
 //! body.
 
 use crate::contact::tolerances::{INSIDE_ROUND_OFF, NEARER_HALF};
-use smallvec::SmallVec;
 
 use super::projection::project;
 use crate::model::{Element, ElementsAtNodes, Mesh};
 use crate::vectors::{difference, dot};
 
-/// The elements of a mesh, found by their sides.
+/// Elements of a mesh, found by their sides.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Interior {
     /// Nodes of every element; its sides lead from each to the next, the element on their left.
-    nodes: Vec<SmallVec<[u32; 4]>>,
+    corners: Vec<Corners>,
     at_nodes: ElementsAtNodes,
 }
+
+/// Nodes of an element, at the end [`NO_NODE`] where it has fewer.
+type Corners = [u32; 4];
+
+/// No node.
+const NO_NODE: u32 = u32::MAX;
 
 /// A line and the elements that it goes through.
 struct Line {
@@ -28,23 +33,22 @@ struct Line {
 }
 
 impl Interior {
-    /// The inside of the bodies of a mesh.
-    pub fn new(mesh: &Mesh) -> Self {
-        let first_nodes = |element: &Element| element.sides().map(|[a, _]| a as u32).collect();
+    /// The inside of those bodies of a mesh of whose elements `is_of` holds.
+    pub fn new(mesh: &Mesh, is_of: impl Fn(&Element) -> bool) -> Self {
+        let elements = mesh.elements.iter().filter(|element| is_of(element));
+        let corners: Vec<Corners> = elements.map(corners).collect();
+        let nodes = corners.iter().map(nodes_of);
         Interior {
-            nodes: mesh.elements.iter().map(first_nodes).collect(),
-            at_nodes: ElementsAtNodes::new(mesh),
+            at_nodes: ElementsAtNodes::of_nodes(nodes, mesh.node_count()),
+            corners,
         }
     }
 
     /// Sides [a, b] of an element.
     fn sides(&self, element: usize) -> impl Iterator<Item = [usize; 2]> + '_ {
-        let nodes = &self.nodes[element];
-        let next = nodes.iter().skip(1).chain(nodes.first());
-        nodes
-            .iter()
-            .zip(next)
-            .map(|(&a, &b)| [a as usize, b as usize])
+        let nodes = nodes_of(&self.corners[element]);
+        let next = nodes.clone().skip(1).chain(nodes.clone().take(1));
+        nodes.zip(next).map(|(a, b)| [a, b])
     }
 
     /// Element on the left of the side from a to b.
@@ -160,6 +164,20 @@ impl Interior {
     }
 }
 
+/// The first nodes of the sides of an element.
+fn corners(element: &Element) -> Corners {
+    let mut corners = [NO_NODE; 4];
+    for (corner, [a, _]) in corners.iter_mut().zip(element.sides()) {
+        *corner = a as u32;
+    }
+    corners
+}
+
+fn nodes_of(corners: &Corners) -> impl Iterator<Item = usize> + Clone + '_ {
+    let nodes = corners.iter().take_while(|&&node| node != NO_NODE);
+    nodes.map(|&node| node as usize)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -199,7 +217,7 @@ mod tests {
         for t in [1.0, 1e-2, 1e-3, 1e-5] {
             for triangles in [false, true] {
                 let mesh = strip(t, triangles);
-                let inside = Interior::new(&mesh);
+                let inside = Interior::new(&mesh, |_| true);
                 let at = |n: usize| mesh.coordinates[n];
                 for node in [3, 5, 6, 7, 8] {
                     for segment in [[0, 1], [1, 2]] {
@@ -224,7 +242,7 @@ mod tests {
             let mut mesh = strip(t, triangles);
             let mut place = |depth: f64| {
                 mesh.coordinates[9] = [0.3, t * depth];
-                let inside = Interior::new(&mesh);
+                let inside = Interior::new(&mesh, |_| true);
                 let at = |n: usize| mesh.coordinates[n];
                 assert!(!inside.joins([0, 1], 9, at));
                 let takes = inside.takes_in([0, 1], 9, at);
@@ -252,7 +270,7 @@ mod tests {
             section: 0,
         });
         mesh.coordinates[9] = [0.3, 0.25];
-        let inside = Interior::new(&mesh);
+        let inside = Interior::new(&mesh, |_| true);
         let at = |n: usize| mesh.coordinates[n];
         assert!(!inside.contains([0, 1], 9, at) && !inside.joins([0, 1], first, at));
         assert!(inside.contains([first, first + 1], 9, at));

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::interior::Interior;
 use super::projection::project;
-use crate::model::{Contact, Friction, Model};
+use crate::model::{Contact, Element, Friction, Model};
 use crate::vectors::{cross, dot};
 
 /// The two sides of a contact of the model, as nodes and segments.
@@ -125,12 +125,20 @@ impl ContactSurfaces {
     }
 }
 
-/// The contacts of a model.
-pub fn contact_surfaces(model: &Model) -> Vec<ContactSurfaces> {
+/// The contacts of a model; `bodies` holds the body of every node.
+pub fn contact_surfaces(model: &Model, bodies: &[usize]) -> Vec<ContactSurfaces> {
     if model.contacts.is_empty() {
         return Vec::new();
     }
-    let interior = Arc::new(Interior::new(&model.mesh));
+    let mut has_segments = vec![false; bodies.len()];
+    for contact in &model.contacts {
+        let segments = model.surfaces[contact.master].segments(&model.mesh);
+        segments
+            .iter()
+            .for_each(|&[a, _]| has_segments[bodies[a]] = true);
+    }
+    let is_behind = |element: &Element| has_segments[bodies[element.nodes[0]]];
+    let interior = Arc::new(Interior::new(&model.mesh, is_behind));
     let of_contact = |contact: &Contact| {
         let [slave, master] = [contact.slave, contact.master].map(|i| &model.surfaces[i]);
         let mut slaves = slave.nodes(&model.mesh);

@@ -84,9 +84,10 @@ pub struct RowsInOrder<'a> {
 }
 
 impl<'a> RowsInOrder<'a> {
-    /// The next row and its numbers, if it holds integers without sign only.
-    pub fn next_integers(&mut self) -> Option<(Row<'a>, Option<Integers>)> {
-        self.next_read(plain::integers)
+    /// The next row and whether it holds integers without sign only: `numbers` are these then.
+    pub fn next_integers(&mut self, numbers: &mut Integers) -> Option<(Row<'a>, bool)> {
+        let (row, read) = self.next_read(|text| Some(((), plain::integers(text, numbers)?)))?;
+        Some((row, read.is_some()))
     }
 
     /// The next row with the label and the coordinates that it gives, if they are plain numbers;

@@ -10,15 +10,15 @@ use smallvec::SmallVec;
 const MOST_DIGITS: usize = 18;
 
 /// The numbers of a row of integers.
-pub(crate) type Integers = SmallVec<[u64; 5]>;
+pub type Integers = SmallVec<[u64; 5]>;
 
 /// The number and the coordinates of a row.
 pub(crate) type Point = (u64, [f64; 3]);
 
-/// The numbers of the row at the start of a text and what follows it, if the row holds integers
-/// without sign only, with nothing but blanks between them and the commas.
-pub(crate) fn integers(text: &[u8]) -> Option<(Integers, &[u8])> {
-    let mut numbers = Integers::new();
+/// Reads the numbers of the row at the start of a text, if it holds integers without sign only, with
+/// nothing but blanks between them and the commas; returns what follows it.
+pub(crate) fn integers<'t>(text: &'t [u8], numbers: &mut Integers) -> Option<&'t [u8]> {
+    numbers.clear();
     let mut text = after_blanks(text);
     loop {
         let (number, rest) = integer(text)?;
@@ -30,7 +30,7 @@ pub(crate) fn integers(text: &[u8]) -> Option<(Integers, &[u8])> {
                 continue;
             }
         }
-        return ends(text).then_some((numbers, text));
+        return ends(text).then_some(text);
     }
 }
 
@@ -110,7 +110,8 @@ mod tests {
         let fields: Option<Vec<u64>> = (fields(text).iter())
             .map(|field| u64::try_from(number::integer(field).ok()?).ok())
             .collect();
-        if let Some((found, after)) = integers(text.as_bytes()) {
+        let mut found = Integers::new();
+        if let Some(after) = integers(text.as_bytes(), &mut found) {
             assert_eq!(
                 (Some(found.to_vec()), after),
                 (fields, rest(text)),
@@ -170,7 +171,9 @@ mod tests {
             "1, 2\r",
         ];
         rows.iter().for_each(|row| assert_integers_are_fields(row));
-        let plain = rows.iter().filter(|row| integers(row.as_bytes()).is_some());
+        let plain = rows
+            .iter()
+            .filter(|row| integers(row.as_bytes(), &mut Integers::new()).is_some());
         assert_eq!(plain.count(), 5);
     }
 

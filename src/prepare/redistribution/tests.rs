@@ -73,7 +73,7 @@ pub(crate) fn block(
 
 /// Redistribution of a model.
 pub(crate) fn redistribution(model: &Model) -> Redistribution {
-    Redistribution::new(model, &contact_surfaces(model))
+    Redistribution::new(model, &contact_surfaces(model, &model.mesh.bodies()))
 }
 
 fn massless(model: &Model) -> Vec<usize> {

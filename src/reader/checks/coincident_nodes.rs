@@ -14,6 +14,9 @@ const SAME_PLACE: f64 = 1e-6;
 /// Numbers up to which whole ones keep their value as integers.
 const MOST_WHOLE: f64 = (1_u64 << 52) as f64;
 
+/// Cells along a square of cells.
+const SQUARE: u64 = 8;
+
 /// Warns about nodes of elements that lie at the same place although neither contact nor an
 /// equation acts between them; `shortest` is the length of the shortest side of an element.
 pub(crate) fn coincident_nodes(model: &Model, shortest: f64, places: &Places, cx: &mut Context) {
@@ -164,8 +167,11 @@ impl Grid {
     }
 
     fn key(&self, i: u64, j: u64) -> usize {
-        // odd factor of the golden ratio: spreads the columns over the keys
-        let key = i.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ j;
+        // squares of cells lie together, as do the nodes that follow each other in most decks; the
+        // odd factor of the golden ratio spreads the squares over the keys
+        let square = (i / SQUARE).wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ (j / SQUARE);
+        let cell = i % SQUARE * SQUARE + j % SQUARE;
+        let key = square.wrapping_mul(SQUARE * SQUARE) | cell;
         key as usize & (self.last.len() - 1)
     }
 }

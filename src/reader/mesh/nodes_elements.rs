@@ -147,9 +147,10 @@ impl Reading {
         if let Some(kind) = kind {
             self.mesh_index.reserve_elements(card.rows.line_count());
             let mut rows = card.rows.iter();
-            while let Some((row, numbers)) = rows.next_integers() {
-                let label = numbers.and_then(|numbers| self.plain_element(&numbers, row, kind));
-                let label = label.or_else(|| {
+            let mut numbers = SmallVec::new();
+            while let Some((row, is_plain)) = rows.next_integers(&mut numbers) {
+                let plain = is_plain.then(|| self.plain_element(&numbers, row, kind));
+                let label = plain.flatten().or_else(|| {
                     let fields = element_fields(row, &mut rows, kind.nodes() + 1);
                     self.element(row.span(), &fields, kind, cx)
                 });

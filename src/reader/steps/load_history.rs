@@ -67,14 +67,22 @@ impl<K, T> Default for LoadHistory<K, T> {
 }
 
 impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
-    /// All loads of the current step, in the order of their keys.
-    pub fn list(&mut self) -> Vec<Load<T>> {
+    /// All loads of the current step, in the order of their keys; nothing remains after the last
+    /// step.
+    pub fn list(&mut self, is_last: bool) -> Vec<Load<T>> {
         self.sort();
-        let mut list = Vec::with_capacity(self.parts.len());
-        let as_simple = |load: Load<T>| load.ends().map_or(load, |ends| load.between(ends));
-        let parts = self.parts.iter();
-        list.extend(parts.map(|(_, part)| as_simple(part.load)));
-        list
+        let simple = |part: &Part<T>| {
+            let load = part.load;
+            load.ends().map_or(load, |ends| load.between(ends))
+        };
+        match is_last {
+            // within the same memory
+            true => {
+                let parts = std::mem::take(self).parts.into_iter();
+                parts.map(|(_, part)| simple(&part)).collect()
+            }
+            false => self.parts.iter().map(|(_, part)| simple(part)).collect(),
+        }
     }
 
     /// Removes all loads; where loads ramp they fade out over the step.

@@ -260,15 +260,15 @@ impl Loads {
         }
     }
 
-    /// Writes the loads of the current step.
-    pub fn fill(&mut self, step: &mut Step) {
-        step.point_loads = self.points.list();
-        step.body_forces = self.bodies.list();
-        let mut pressures = self.pressures.list();
-        pressures.extend(self.surface_pressures.list());
+    /// Writes the loads of the current step; those of the last one are not carried further.
+    pub fn fill(&mut self, step: &mut Step, is_last: bool) {
+        step.point_loads = self.points.list(is_last);
+        step.body_forces = self.bodies.list(is_last);
+        let mut pressures = self.pressures.list(is_last);
+        pressures.extend(self.surface_pressures.list(is_last));
         step.pressures = joined(pressures, |load| load.at.face);
-        let mut tractions = self.face_tractions.list();
-        tractions.extend(self.tractions.list());
+        let mut tractions = self.face_tractions.list(is_last);
+        tractions.extend(self.tractions.list(is_last));
         step.tractions = joined(tractions, |load| load.at.face);
     }
 

@@ -45,6 +45,7 @@ pub(crate) fn read(
         requests: Requests::new(cx),
         nonlinear: false,
         start: 0.0,
+        last: outline.steps.len(),
     };
     for card in outline.model_cards("BOUNDARY") {
         if card.choice("OP") == Some("NEW") {
@@ -80,6 +81,8 @@ struct Reading<'a> {
     requests: Requests,
     nonlinear: bool,
     start: f64,
+    /// Number of the last step.
+    last: usize,
 }
 
 impl Reading<'_> {
@@ -111,13 +114,15 @@ impl Reading<'_> {
         let name = cards.head.value("NAME").and_then(|name| name.name(cx.d));
         let step = increments.map(|increments| Step {
             supports,
-            ..self.build(name.map(|n| n.typed), increments)
+            ..self.build(name.map(|n| n.typed), increments, number == self.last)
         });
-        self.end(period);
+        if number < self.last {
+            self.end(period);
+        }
         step
     }
 
-    fn build(&mut self, name: Option<String>, increments: Increments) -> Step {
+    fn build(&mut self, name: Option<String>, increments: Increments, is_last: bool) -> Step {
         let mut step = Step {
             name,
             procedure: Procedure::Dynamic,
@@ -130,7 +135,7 @@ impl Reading<'_> {
             tractions: Vec::new(),
             frames: self.requests.frames(self.start, increments.period),
         };
-        self.loads.fill(&mut step);
+        self.loads.fill(&mut step, is_last);
         step
     }
 
