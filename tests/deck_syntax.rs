@@ -122,6 +122,12 @@ fn keyword_lines_continue_after_a_comma() {
 }
 
 #[test]
+fn numbers_that_a_comma_draws_into_a_keyword_line_are_one_error() {
+    let card = "*ELEMENT, TYPE=CPS4, ELSET=BODY";
+    assert_eq!(faults(card, &format!("{card},")), [Code::UnknownParameter]);
+}
+
+#[test]
 fn element_lines_continue_until_complete() {
     same("7, 1, 2, 3, 4", "7, 1,\n2, 3,\n4");
     same("7, 1, 2, 3, 4", "7, 1\n2, 3\n4");

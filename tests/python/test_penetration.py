@@ -307,5 +307,9 @@ def test_command_line(job: Job) -> None:
     command = [sys.executable, str(ROOT / "scripts" / "penetration.py"), str(result), "--all"]
     done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.count("no node inside") == 5
+    # pairs in contact have a gap that is zero but for round-off
+    lines = [line for line in done.stdout.splitlines() if "frame " in line]
+    clear = ("no node inside", "; 0 nodes deeper than 1e-09")
+    assert len(lines) == 5
+    assert all(any(words in line for words in clear) for line in lines), done.stdout
     assert Path(penetration.__file__) == ROOT / "scripts" / "penetration.py"

@@ -224,6 +224,10 @@ impl Collector {
                 None if faulty => self.suspect(std::slice::from_ref(piece)),
                 None => {}
             }
+            // numbers of a data line that a comma has drawn in: one message is enough
+            if faulty && piece.continued && begins_as_a_number(piece.text) {
+                return;
+            }
         }
     }
 }
@@ -234,4 +238,9 @@ fn inclusion(path: Text, rows_only: bool) -> Inclusion {
         span: path.span,
         rows_only,
     }
+}
+
+fn begins_as_a_number(text: Text) -> bool {
+    let first = text.text.trim_start().chars().next();
+    first.is_some_and(|c| c.is_ascii_digit() || "+-.".contains(c))
 }

@@ -293,8 +293,11 @@ impl Reading {
             (false, true) => ("ELEMENT", outline.model_cards("NODE").pop()),
             (false, false) => return,
         };
-        let card = outline.model_cards(keyword).first().copied();
-        if let Some(card) = card.or(before).or(cx.deck.cards.first()) {
+        let cards = outline.model_cards(keyword);
+        let is_left_out = |card: &&Card| card.faulty && card.rows.first().is_none();
+        let said = cards.iter().any(is_left_out);
+        let first = cards.first().copied().or(before);
+        if let Some(card) = first.or(cx.deck.cards.first()).filter(|_| !said) {
             let message = format!("the deck has no {}s", keyword.to_lowercase());
             let error = Diagnostic::error(Code::EmptyMesh, card.span, message);
             cx.d.push(error.help(format!("give them with *{keyword}")));

@@ -138,7 +138,8 @@ pub(super) static CONDITIONS: &[Keyword] = &[
             P::value("SMOOTH", "corners are not smoothed").warned(),
         ],
         "A function of time: time, value, time, value, ..., or as DEFINITION says. CalculiX reads \
-         tables only.",
+         tables only: it takes the data of every other DEFINITION for a table, with a warning, and the \
+         loads are wrong there.",
         "*AMPLITUDE, NAME=PUSH, DEFINITION=SMOOTH STEP\n\
          0., 0., 1.E-5, 1., 5.E-5, 0.",
     ),
