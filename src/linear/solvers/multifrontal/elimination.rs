@@ -31,10 +31,13 @@ impl Elimination {
     /// For a factor of matrices with the pattern of `a`.
     pub fn new(factor: &Factor, a: CsMatView<'_, f64>) -> Self {
         let limbs = 0..factor.limbs.len();
-        let assemblies = limbs.clone().map(|limb| Assembly::new(factor, limb, a));
+        let assembly = |limb| Assembly::new(factor, limb, a);
         Elimination {
-            assemblies: assemblies.collect(),
-            fronts: limbs.map(|_| Fronts::default()).collect(),
+            fronts: limbs.clone().map(|_| Fronts::default()).collect(),
+            assemblies: match factor.is_factorised_on_threads() {
+                true => limbs.into_par_iter().map(assembly).collect(),
+                false => limbs.map(assembly).collect(),
+            },
         }
     }
 

@@ -1,9 +1,11 @@
 //! LDL^T factors limb by limb, packed in the order in which substitutions read them. Section 5 of
 //! docs/theory.md, Branches.
 
+use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
+use rayon::prelude::*;
+
 use super::limbs::{Limb, cut};
 use super::supernode::{Layout, Supernode};
-use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 
 /// Least entries of L for which a factorisation and a substitution are worth threads.
 const FACTORISATION: usize = 200_000;
@@ -89,15 +91,19 @@ impl Factor {
         for (&unknown, place) in unknowns.iter().zip(&in_limbs.of_pivots) {
             places[unknown] = *place;
         }
-        let all = 0..limbs.len();
-        Factor {
-            limbs: all
-                .map(|number| in_limbs.factor(symbolic, unknowns, (number, &limbs)))
-                .collect(),
+        let mut factor = Factor {
+            limbs: Vec::new(),
             branches,
             places,
             entries: symbolic.len_val(),
-        }
+        };
+        let of_limb = |number| in_limbs.factor(symbolic, unknowns, (number, &limbs));
+        let all = 0..limbs.len();
+        factor.limbs = match factor.is_factorised_on_threads() {
+            true => all.into_par_iter().map(of_limb).collect(),
+            false => all.map(of_limb).collect(),
+        };
+        factor
     }
 
     /// Whether there are threads, and entries enough for them in a factorisation.
