@@ -20,8 +20,9 @@ const VECTORS: usize = 60;
 /// stiffness, and the patterns of their factors.
 const MATRICES: usize = 5;
 
-/// Factors: of K* and of M.
-const FACTORS: usize = 2;
+/// Factors: of K* and of M, and the lists, fronts and rests that their factorisations go through, which
+/// take as much as one of them.
+const FACTORS: usize = 3;
 
 /// Dense matrices over the unknowns of the pairs: the compliance of K* and that of M, while they are
 /// computed.
