@@ -169,7 +169,7 @@ pub(super) struct LcpArgs {
 /// Names of the sparse factorisations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Solver {
-    /// faer, supernodal LDL^T
+    /// multifrontal LDL^T in faer's order
     Faer,
     /// sprs-ldl with an AMD permutation
     Sprs,

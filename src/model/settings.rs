@@ -117,7 +117,7 @@ pub enum Factorization {
 /// Sparse factorisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SolverChoice {
-    /// faer, supernodal LDL^T.
+    /// Multifrontal LDL^T in faer's order.
     Faer,
     /// sprs-ldl with an AMD permutation.
     Sprs,

@@ -64,21 +64,13 @@ pub(crate) struct Equilibrium {
 impl Equilibrium {
     /// Vectors over so many dofs.
     fn resize(&mut self, dofs: usize) {
-        let Self {
-            u_theta,
-            load,
-            internal,
-            acceleration,
-            inertia,
-            out_of_balance,
-        } = self;
         for vector in [
-            u_theta,
-            load,
-            internal,
-            acceleration,
-            inertia,
-            out_of_balance,
+            &mut self.u_theta,
+            &mut self.load,
+            &mut self.internal,
+            &mut self.acceleration,
+            &mut self.inertia,
+            &mut self.out_of_balance,
         ] {
             vector.resize(dofs, 0.0);
         }

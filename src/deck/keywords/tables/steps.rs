@@ -203,7 +203,7 @@ pub(super) static STEPS: &[Keyword] = &[
             P::choice(
                 "SOLVER",
                 &[
-                    V::read("FAER", "supernodal LDL^T (default)"),
+                    V::read("FAER", "multifrontal LDL^T (default)"),
                     V::read("SPRS", "sprs-ldl with an AMD permutation"),
                 ],
                 "sparse factorisation",

@@ -10,6 +10,9 @@ use super::factor::{Factor, LimbFactor};
 use super::front::Front;
 use super::supernode::Layout;
 
+/// A limb with its part of L.
+type OwnFactor<'a> = (&'a mut LimbFactor, &'a mut [f64]);
+
 /// What the factorisation of matrices of one pattern goes through.
 #[derive(Debug, Default)]
 pub struct Elimination {
@@ -45,7 +48,8 @@ impl Elimination {
     pub fn eliminate(&mut self, a: &[f64], factor: &mut Factor) {
         let (threads, branches) = (factor.is_factorised_on_threads(), factor.branches);
         let (of_branches, of_trunks) = self.fronts.split_at_mut(branches);
-        let (branch, trunk) = factor.limbs.split_at_mut(branches);
+        let mut limbs = factor.limbs_mut();
+        let (branch, trunk) = limbs.split_at_mut(branches);
         let (for_branches, for_trunks) = self.assemblies.split_at(branches);
         eliminate(threads, (branch, for_branches, of_branches), (&[], a));
         eliminate(threads, (trunk, for_trunks, of_trunks), (of_branches, a));
@@ -55,12 +59,14 @@ impl Elimination {
 /// Factorises some limbs, on threads if it is worth them; `below` are the fronts of the branches.
 fn eliminate(
     threads: bool,
-    (limbs, assemblies, fronts): (&mut [LimbFactor], &[Assembly], &mut [Fronts]),
+    (limbs, assemblies, fronts): (&mut [OwnFactor], &[Assembly], &mut [Fronts]),
     (below, a): (&[Fronts], &[f64]),
 ) {
-    let of_limb = |((limb, assembly), fronts)| {
+    let of_limb = |((own, assembly), fronts): ((&mut OwnFactor, &Assembly), &mut Fronts)| {
+        let (limb, l) = own;
         Arch::new().dispatch(OfLimb {
             limb,
+            l,
             assembly,
             fronts,
             below,
@@ -82,6 +88,8 @@ fn eliminate(
 /// The factorisation of a limb.
 struct OfLimb<'a> {
     limb: &'a mut LimbFactor,
+    /// L of the limb.
+    l: &'a mut [f64],
     assembly: &'a Assembly,
     fronts: &'a mut Fronts,
     /// Those of the branches, for a trunk.
@@ -97,6 +105,7 @@ impl WithSimd for OfLimb<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Self {
             limb,
+            l,
             assembly,
             fronts,
             below,
@@ -122,7 +131,7 @@ impl WithSimd for OfLimb<'_> {
                     }
                 }
             }
-            let (values, pivots) = limb.columns_mut(s);
+            let [values, pivots] = limb.columns_mut(s, l);
             fronts.front.eliminate(simd, size, values, pivots);
             if size < length {
                 let mut rest = fronts.spare.pop().unwrap_or_default();

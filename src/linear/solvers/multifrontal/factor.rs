@@ -4,16 +4,13 @@
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use rayon::prelude::*;
 
+use super::entries::{Entries, LINE};
 use super::limbs::{Limb, cut};
 use super::supernode::{Layout, Supernode};
 
 /// Least entries of L for which a factorisation and a substitution are worth threads.
 const FACTORISATION: usize = 200_000;
 const SUBSTITUTION: usize = 800_000;
-
-/// Bytes of a line of the cache, and numbers in it.
-const LINE: usize = 64;
-const NUMBERS: usize = LINE / size_of::<f64>();
 
 /// Where the unknown of a pivot is.
 #[derive(Debug, Clone, Copy, Default)]
@@ -32,8 +29,8 @@ struct Spot {
     is_of_twos: bool,
     /// Its first entry in the rows of the limb.
     rows: usize,
-    /// Its first entry in the values of the limb.
-    values: usize,
+    /// Its first entry among those of the limb.
+    entries: usize,
 }
 
 /// Columns of L and D of a branch or a trunk. Its rows are its own, then those of the trunk it stands on.
@@ -49,10 +46,8 @@ pub struct LimbFactor {
     pub longest: usize,
     spots: Vec<Spot>,
     rows: Vec<u32>,
-    /// Number of entries of L.
+    /// Number of entries of L, and the first among those of all limbs, which begins a line of the cache.
     entries: usize,
-    /// L from `first` on, which begins a line of the cache.
-    values: Vec<f64>,
     first: usize,
     /// D
     pub pivots: Vec<f64>,
@@ -69,6 +64,8 @@ pub struct Factor {
     pub places: Vec<Place>,
     /// Number of entries of L.
     entries: usize,
+    /// L, limb by limb.
+    values: Entries,
 }
 
 /// Places of pivots in the limbs, in their order.
@@ -96,6 +93,7 @@ impl Factor {
             branches,
             places,
             entries: symbolic.len_val(),
+            values: Entries::default(),
         };
         let of_limb = |number| in_limbs.factor(symbolic, unknowns, (number, &limbs));
         let all = 0..limbs.len();
@@ -103,7 +101,29 @@ impl Factor {
             true => all.into_par_iter().map(of_limb).collect(),
             false => all.map(of_limb).collect(),
         };
+        let mut entries = 0;
+        for limb in &mut factor.limbs {
+            limb.first = entries;
+            entries += limb.entries.next_multiple_of(LINE);
+        }
+        factor.values = Entries::zeros(entries);
         factor
+    }
+
+    /// L of all limbs, for their supernodes.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The limbs, each with its part of L.
+    pub fn limbs_mut(&mut self) -> Vec<(&mut LimbFactor, &mut [f64])> {
+        let (mut of_limbs, mut rest) = (Vec::new(), &mut *self.values);
+        for limb in &mut self.limbs {
+            let own;
+            (own, rest) = rest.split_at_mut(limb.entries.next_multiple_of(LINE));
+            of_limbs.push((limb, own));
+        }
+        of_limbs
     }
 
     /// Whether there are threads, and entries enough for them in a factorisation.
@@ -177,7 +197,7 @@ impl Places {
             factor.push(columns.len(), &rows);
             factor.unknowns.extend_from_slice(&unknowns[columns]);
         }
-        factor.make_room();
+        factor.pivots = vec![0.0; factor.unknowns.len()];
         factor
     }
 }
@@ -192,7 +212,7 @@ impl LimbFactor {
             size: size as u32,
             is_of_twos,
             rows: self.rows.len(),
-            values: self.entries,
+            entries: self.entries,
         });
         match is_of_twos {
             true => self.rows.extend(twos.iter().map(|[p, _]| *p as u32)),
@@ -207,8 +227,8 @@ impl LimbFactor {
     #[inline(always)]
     pub fn supernode(&self, k: usize) -> Supernode<'_> {
         let spot = self.spots[k];
-        let (rows, values) = match self.spots.get(k + 1) {
-            Some(next) => (next.rows, next.values),
+        let (rows, entries) = match self.spots.get(k + 1) {
+            Some(next) => (next.rows, next.entries),
             None => (self.rows.len(), self.entries),
         };
         Supernode {
@@ -216,7 +236,7 @@ impl LimbFactor {
             size: spot.size as usize,
             rows: &self.rows[spot.rows..rows],
             is_of_twos: spot.is_of_twos,
-            values: &self.values[self.first + spot.values..self.first + values],
+            entries: [self.first + spot.entries, self.first + entries],
         }
     }
 
@@ -239,20 +259,13 @@ impl LimbFactor {
         }
     }
 
-    /// Room for L and D.
-    fn make_room(&mut self) {
-        self.values = vec![0.0; self.entries + NUMBERS];
-        self.first = self.values.as_ptr().align_offset(LINE).min(NUMBERS);
-        self.pivots = vec![0.0; self.unknowns.len()];
-    }
-
-    /// L and D of a supernode.
+    /// L and D of a supernode, given L of the limb.
     #[inline(always)]
-    pub fn columns_mut(&mut self, k: usize) -> (&mut [f64], &mut [f64]) {
+    pub fn columns_mut<'a>(&'a mut self, k: usize, l: &'a mut [f64]) -> [&'a mut [f64]; 2] {
         let (spot, next) = (self.spots[k], self.spots.get(k + 1));
         let start = spot.start as usize;
-        let values = self.first + spot.values..self.first + next.map_or(self.entries, |n| n.values);
+        let entries = spot.entries..next.map_or(self.entries, |next| next.entries);
         let columns = start..start + spot.size as usize;
-        (&mut self.values[values], &mut self.pivots[columns])
+        [&mut l[entries], &mut self.pivots[columns]]
     }
 }

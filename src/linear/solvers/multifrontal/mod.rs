@@ -3,6 +3,7 @@
 
 mod assembly;
 mod elimination;
+mod entries;
 mod factor;
 mod front;
 mod limbs;

@@ -1,4 +1,4 @@
-//! Selected entries of the inverse from supernodal LDL^T factors: multifrontal forward
+//! Selected entries of the inverse from packed LDL^T factors: multifrontal forward
 //! substitution along the paths of the elimination tree. Section 5 of docs/theory.md.
 
 use std::collections::BTreeMap;
@@ -16,23 +16,22 @@ const NEGLIGIBLE: f64 = 1e-25;
 
 /// Contributions of the supernodes below to one above: unfinished rows of L^-1 E.
 struct Rows {
-    /// Columns (positions in the list of unknowns) that are not zero, increasing.
+    /// Columns (places in the list of unknowns) that are not zero, increasing.
     columns: Vec<usize>,
-    /// Rows in the order of pivots, increasing.
+    /// Rows of the limb, increasing.
     rows: Vec<usize>,
     /// Values, rows x columns.
     values: Mat<f64>,
 }
 
-/// The inverse of P^T L D L^T P at some unknowns, given by their `positions` in the order of
-/// pivots, m x m column by column:
+/// The inverse of P^T L D L^T P at m `unknowns`, m x m column by column:
 ///
 /// ```text
-/// Y = L^-1 E,   E the unit vectors of the positions
+/// Y = L^-1 P E,   E the unit vectors of the unknowns
 /// inverse = Y^T D^-1 Y
 /// ```
 ///
-/// Column j of Y is nonzero only on the path from its position to the root of the elimination tree,
+/// Column j of Y is nonzero only on the path from its unknown to the root of the elimination tree,
 /// so that the supernodes off these paths are never visited, nor those where it has died away.
 pub fn inverse_at(factor: &Factor, unknowns: &[usize]) -> Vec<f64> {
     let m = unknowns.len();
@@ -60,7 +59,7 @@ pub fn inverse_at(factor: &Factor, unknowns: &[usize]) -> Vec<f64> {
             ..
         } = assemble(all, &rows);
 
-        node.write_to(&mut l);
+        node.write_to(factor.values(), &mut l);
         let (l_top, l_below) = l.as_ref().split_at_row(node.size);
         let (mut top, mut below) = values.as_mut().split_at_row_mut(node.size);
         solve_unit_lower_triangular_in_place(l_top, top.rb_mut(), Par::Seq);

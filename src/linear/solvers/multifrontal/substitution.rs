@@ -105,7 +105,7 @@ impl Substitution {
         for_each(threads, limbs, of_branches, |_, limb, side| {
             side.z[limb.unknowns.len()..].fill(0.0);
             limb.take(b, &mut side.z);
-            side.forward(limb);
+            side.forward(limb, factor.values());
         });
         let trunks = &factor.limbs[branches..];
         for_each(threads, trunks, of_trunks, |number, trunk, side| {
@@ -115,7 +115,7 @@ impl Substitution {
                     add(&mut side.z, &of_limb.z[limb.unknowns.len()..]);
                 }
             }
-            side.forward(trunk);
+            side.forward(trunk, factor.values());
         });
     }
 
@@ -134,7 +134,7 @@ impl Substitution {
                     add(&mut side.x, &of_branch.x[branch.unknowns.len()..]);
                 }
             }
-            side.forward_on_path(limb);
+            side.forward_on_path(limb, factor.values());
             side.take_path(limb);
         }
     }
@@ -146,7 +146,7 @@ impl Substitution {
             let side = &mut before[number];
             if !side.path.is_empty() {
                 side.stand_on(limb, trunks, number + 1);
-                side.backward_on_path(limb);
+                side.backward_on_path(limb, factor.values());
             }
         }
     }
@@ -162,12 +162,12 @@ impl Substitution {
         let (of_branches, of_trunks) = self.limbs.split_at_mut(branches);
         let trunks = &factor.limbs[branches..];
         for_each(threads, trunks, of_trunks, |_, trunk, side| {
-            side.backward(trunk)
+            side.backward(trunk, factor.values())
         });
         let limbs = &factor.limbs[..branches];
         for_each(threads, limbs, of_branches, |_, limb, side| {
             side.stand_on(limb, of_trunks, branches);
-            side.backward(limb);
+            side.backward(limb, factor.values());
         });
         for (limb, side) in factor.limbs.iter().zip(&self.limbs) {
             for (&unknown, value) in limb.unknowns.iter().zip(&side.x) {
@@ -184,11 +184,12 @@ fn add(x: &mut [f64], y: &[f64]) {
 
 impl Side {
     /// z <- L^-1 z
-    fn forward(&mut self, limb: &LimbFactor) {
+    fn forward(&mut self, limb: &LimbFactor, values: &[f64]) {
         let Self { z: x, work, .. } = self;
         let supernodes = 0..limb.supernodes();
         Arch::new().dispatch(Forward {
             limb,
+            values,
             supernodes,
             x,
             work,
@@ -196,11 +197,12 @@ impl Side {
     }
 
     /// x <- L^-1 x on the path.
-    fn forward_on_path(&mut self, limb: &LimbFactor) {
+    fn forward_on_path(&mut self, limb: &LimbFactor, values: &[f64]) {
         let Self { x, work, path, .. } = self;
         let supernodes = path.iter().copied();
         Arch::new().dispatch(Forward {
             limb,
+            values,
             supernodes,
             x,
             work,
@@ -208,11 +210,12 @@ impl Side {
     }
 
     /// x = L^-T D^-1 z
-    fn backward(&mut self, limb: &LimbFactor) {
+    fn backward(&mut self, limb: &LimbFactor, values: &[f64]) {
         let Self { z, x, work, .. } = self;
         let supernodes = 0..limb.supernodes();
         Arch::new().dispatch(Backward {
             limb,
+            values,
             supernodes,
             z,
             x,
@@ -221,13 +224,14 @@ impl Side {
     }
 
     /// x = L^-T D^-1 z on the path.
-    fn backward_on_path(&mut self, limb: &LimbFactor) {
+    fn backward_on_path(&mut self, limb: &LimbFactor, values: &[f64]) {
         let Self {
             z, x, work, path, ..
         } = self;
         let supernodes = path.iter().copied();
         Arch::new().dispatch(Backward {
             limb,
+            values,
             supernodes,
             z,
             x,
@@ -265,6 +269,8 @@ impl Side {
 /// ```
 struct Forward<'a, I> {
     limb: &'a LimbFactor,
+    /// L
+    values: &'a [f64],
     supernodes: I,
     x: &'a mut [f64],
     work: &'a mut [f64],
@@ -275,14 +281,16 @@ impl<I: Iterator<Item = usize>> WithSimd for Forward<'_, I> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { x, work, .. } = self;
+        let Self {
+            values, x, work, ..
+        } = self;
         for s in self.supernodes {
             let node = self.limb.supernode(s);
             let w = &mut work[..node.length() + S::F64_LANES];
             let (own, below) = w.split_at_mut(node.size);
             own.copy_from_slice(&x[node.columns()]);
             below.fill(0.0);
-            node.eliminate(simd, w);
+            node.eliminate(simd, values, w);
             let (own, below) = w.split_at(node.size);
             x[node.columns()].copy_from_slice(own);
             node.scatter(below, x);
@@ -297,6 +305,8 @@ impl<I: Iterator<Item = usize>> WithSimd for Forward<'_, I> {
 /// ```
 struct Backward<'a, I> {
     limb: &'a LimbFactor,
+    /// L
+    values: &'a [f64],
     supernodes: I,
     z: &'a [f64],
     x: &'a mut [f64],
@@ -308,7 +318,9 @@ impl<I: DoubleEndedIterator<Item = usize>> WithSimd for Backward<'_, I> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { z, x, work, .. } = self;
+        let Self {
+            values, z, x, work, ..
+        } = self;
         for s in self.supernodes.rev() {
             let node = self.limb.supernode(s);
             let w = &mut work[..node.length() + S::F64_LANES];
@@ -320,7 +332,7 @@ impl<I: DoubleEndedIterator<Item = usize>> WithSimd for Backward<'_, I> {
             let (rows, pad) = below.split_at_mut(below.len() - S::F64_LANES);
             pad.fill(0.0);
             node.gather(x, rows);
-            node.resolve(simd, w);
+            node.resolve(simd, values, w);
             x[node.columns()].copy_from_slice(&w[..node.size]);
         }
     }

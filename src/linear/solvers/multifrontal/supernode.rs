@@ -34,11 +34,11 @@ pub struct Supernode<'a> {
     pub rows: &'a [u32],
     /// Whether rows come in twos.
     pub is_of_twos: bool,
-    /// L, panel by panel: see [`Layout`].
-    pub values: &'a [f64],
+    /// Where its entries begin and end in L of all limbs.
+    pub entries: [usize; 2],
 }
 
-/// Where the entries of a supernode are: each panel has those between its own columns, column by
+/// How the entries of a supernode lie: each panel has those between its own columns, column by
 /// column, then the rows below these, in tiles of as many rows as a vector register holds numbers. A tile has one column
 /// after the other. Both are filled up with zeros to whole registers.
 #[derive(Clone, Copy)]
@@ -148,12 +148,19 @@ impl Supernode<'_> {
         }
     }
 
-    /// Writes L, of all its rows, to `l`.
-    pub fn write_to(self, l: &mut Mat<f64>) {
+    /// Its part of L, panel by panel: see [`Layout`].
+    #[inline(always)]
+    fn own<'l>(&self, values: &'l [f64]) -> &'l [f64] {
+        let [start, end] = self.entries;
+        &values[start..end]
+    }
+
+    /// Writes its part of L, of all its rows, to `l`.
+    pub fn write_to(self, values: &[f64], l: &mut Mat<f64>) {
         let layout = Layout::of_processor();
         let (lanes, length) = (layout.lanes, self.length());
         l.resize_with(length, self.size, |_, _| 0.0);
-        let mut rest = self.values;
+        let mut rest = self.own(values);
         for (first, width) in panels(self.size) {
             let panel;
             (panel, rest) = rest.split_at(layout.panel(width, length - first - width));
@@ -176,11 +183,11 @@ impl Supernode<'_> {
     /// w_i <- w_i - L_ij w_j, i > j, for all its columns j; w in own rows, then in those below, and a
     /// register more.
     #[inline(always)]
-    pub fn eliminate<S: Simd>(self, simd: S, w: &mut [f64]) {
+    pub fn eliminate<S: Simd>(self, simd: S, values: &[f64], w: &mut [f64]) {
         let layout = Layout {
             lanes: S::F64_LANES,
         };
-        let (mut rest, length) = (self.values, self.length());
+        let (mut rest, length) = (self.own(values), self.length());
         for (first, width) in panels(self.size) {
             let panel;
             (panel, rest) = rest.split_at(layout.panel(width, length - first - width));
@@ -196,11 +203,11 @@ impl Supernode<'_> {
 
     /// w_j <- w_j - L_ij w_i, i > j, for all its columns j, the last one first.
     #[inline(always)]
-    pub fn resolve<S: Simd>(self, simd: S, w: &mut [f64]) {
+    pub fn resolve<S: Simd>(self, simd: S, values: &[f64], w: &mut [f64]) {
         let layout = Layout {
             lanes: S::F64_LANES,
         };
-        let (mut rest, length) = (self.values, self.length());
+        let (mut rest, length) = (self.own(values), self.length());
         for (first, width) in panels(self.size).rev() {
             let entries = layout.panel(width, length - first - width);
             let panel;
