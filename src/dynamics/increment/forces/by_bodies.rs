@@ -34,6 +34,11 @@ impl<'a> Chosen<'a> {
         self.places.iter().map(|&place| &self.all[place]).collect()
     }
 
+    /// Whether their problem is to be solved by blocks.
+    pub fn are_by_bodies(&self, system: &ContactSystem) -> bool {
+        self.by_bodies(system).is_some()
+    }
+
     /// Their positions by the bodies that they are between, if their problem is to be solved by blocks.
     fn by_bodies(&self, system: &ContactSystem) -> Option<BTreeMap<Scope, Vec<usize>>> {
         if !is_large(self.places.len()) || system.method != LcpMethod::Hybrid {

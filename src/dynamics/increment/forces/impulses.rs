@@ -187,7 +187,12 @@ fn by_bodies(
     dofs: usize,
     (guess, system): (&Guess, &mut ContactSystem),
 ) -> Result<Option<ContactSolution>, Cause> {
-    if !is_large(constraints.len()) {
+    let places = 0..constraints.len();
+    let chosen = |all| Chosen {
+        all,
+        places: places.clone().collect(),
+    };
+    if !is_large(constraints.len()) || !chosen(constraints).are_by_bodies(system) {
         return Ok(None);
     }
     let posed = |(k, constraint): (usize, &Constraint)| Constraint {
@@ -196,10 +201,7 @@ fn by_bodies(
         ..constraint.clone()
     };
     let posed: Vec<Constraint> = constraints.iter().enumerate().map(posed).collect();
-    let chosen = Chosen {
-        all: &posed,
-        places: (0..posed.len()).collect(),
-    };
+    let chosen = chosen(&posed);
     let nothing = vec![0.0; dofs];
     let mut response = Response::begin(system, [&nothing, &nothing], &posed)?;
     let free = response.gaps_and_slips(system, &posed);
