@@ -6,13 +6,17 @@ use std::collections::BTreeMap;
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::prelude::{Reborrow, ReborrowMut};
-use faer::{Accum, Mat, MatRef, Par};
+use faer::{Accum, Mat, MatMut, MatRef, Par};
+use rayon::prelude::*;
 
-use super::factor::{Factor, Place};
+use super::factor::{Factor, LimbFactor, Place};
 
 /// A column of L^-1 E whose entries above are all smaller than this ends there: what it would add to the
 /// inverse is below round-off, see section 5 of docs/theory.md. The unit vectors have no dimension.
 const NEGLIGIBLE: f64 = 1e-25;
+
+/// Columns that are handled together, on one thread.
+const CHUNK: usize = 96;
 
 /// Contributions of the supernodes below to one above: unfinished rows of L^-1 E.
 struct Rows {
@@ -22,6 +26,17 @@ struct Rows {
     rows: Vec<usize>,
     /// Values, rows x columns.
     values: Mat<f64>,
+}
+
+/// Finished rows of Y = L^-1 P E that have the same columns: supernodes one above the other, near the root.
+#[derive(Default)]
+struct Finished {
+    /// Columns that are not zero, increasing.
+    columns: Vec<usize>,
+    /// Y^T, row by row.
+    y: Vec<f64>,
+    /// D of the rows.
+    pivots: Vec<f64>,
 }
 
 /// The inverse of P^T L D L^T P at m `unknowns`, m x m column by column:
@@ -35,19 +50,10 @@ struct Rows {
 /// so that the supernodes off these paths are never visited, nor those where it has died away.
 pub fn inverse_at(factor: &Factor, unknowns: &[usize]) -> Vec<f64> {
     let m = unknowns.len();
-    let mut inverse = Mat::<f64>::zeros(m, m);
-    let mut waiting: BTreeMap<(usize, usize), Vec<Rows>> = BTreeMap::new();
-    for (column, &unknown) in unknowns.iter().enumerate() {
-        let Place { limb, row } = factor.places[unknown];
-        let unit = Rows {
-            columns: vec![column],
-            rows: vec![row],
-            values: Mat::from_fn(1, 1, |_, _| 1.0),
-        };
-        let s = factor.limbs[limb].supernode_of(row);
-        waiting.entry((limb, s)).or_default().push(unit);
-    }
-    let (mut l, mut scaled, mut product) = (Mat::new(), Mat::new(), Mat::new());
+    let mut inverse = vec![0.0; m * m];
+    let mut finished = Finished::default();
+    let mut waiting = units(factor, unknowns);
+    let mut l = Mat::new();
     // Children come before their parents in their limb, and branches before the trunks.
     while let Some(((number, s), rows)) = waiting.pop_first() {
         let limb = &factor.limbs[number];
@@ -61,61 +67,131 @@ pub fn inverse_at(factor: &Factor, unknowns: &[usize]) -> Vec<f64> {
 
         node.write_to(factor.values(), &mut l);
         let (l_top, l_below) = l.as_ref().split_at_row(node.size);
-        let (mut top, mut below) = values.as_mut().split_at_row_mut(node.size);
-        solve_unit_lower_triangular_in_place(l_top, top.rb_mut(), Par::Seq);
-        matmul(
-            below.rb_mut(),
-            Accum::Add,
-            l_below,
-            top.rb(),
-            -1.0,
-            Par::Seq,
-        );
-        let pivots = &limb.pivots[node.columns()];
-        scaled.resize_with(0, 0, |_, _| 0.0);
-        scaled.resize_with(node.size, columns.len(), |i, j| top[(i, j)] / pivots[i]);
-        product.resize_with(columns.len(), columns.len(), |_, _| 0.0);
-        matmul(
-            product.as_mut(),
-            Accum::Replace,
-            top.rb().transpose(),
-            &scaled,
-            1.0,
-            Par::Seq,
-        );
-        for (j, &column) in columns.iter().enumerate() {
-            for (i, &row) in columns.iter().enumerate() {
-                inverse[(row, column)] += product[(i, j)];
-            }
+        for_chunks(chunks(values.as_mut()), |of_chunk| {
+            let (mut top, below) = of_chunk.split_at_row_mut(node.size);
+            solve_unit_lower_triangular_in_place(l_top, top.rb_mut(), Par::Seq);
+            matmul(below, Accum::Add, l_below, top.rb(), -1.0, Par::Seq);
+        });
+        let (top, below) = values.as_ref().split_at_row(node.size);
+        if finished.columns != columns {
+            finished.add_to(&mut inverse, m);
+            finished = Finished {
+                columns: columns.clone(),
+                ..Finished::default()
+            };
         }
+        finished.push(top, &limb.pivots[node.columns()]);
 
-        let mut rows: Vec<usize> = node.rows_below().collect();
-        if let Some(&first) = rows.first() {
-            let (own, mut place) = (
-                limb.unknowns.len(),
-                Place {
-                    limb: number,
-                    row: first,
-                },
-            );
-            if let Some(trunk) = limb.trunk.filter(|_| first >= own) {
-                rows.iter_mut().for_each(|row| *row -= own);
-                place = Place {
-                    limb: trunk,
-                    row: rows[0],
-                };
-            }
-            let rows = without_negligible(columns, rows, below.rb());
+        if let Some((place, rows)) = above(limb, number, node.rows_below().collect()) {
+            let rows = without_negligible(columns, rows, below);
             if !rows.columns.is_empty() {
                 let s = factor.limbs[place.limb].supernode_of(place.row);
                 waiting.entry((place.limb, s)).or_default().push(rows);
             }
         }
     }
-    (0..m)
-        .flat_map(|j| (0..m).map(move |i| (i, j)))
-        .map(|(i, j)| inverse[(i, j)])
-        .collect()
+    finished.add_to(&mut inverse, m);
+    for j in 0..m {
+        for i in j + 1..m {
+            inverse[i * m + j] = inverse[j * m + i];
+        }
+    }
+    inverse
+}
+
+/// The unit vectors of the unknowns, by limb and supernode.
+fn units(factor: &Factor, unknowns: &[usize]) -> BTreeMap<(usize, usize), Vec<Rows>> {
+    let mut units: BTreeMap<(usize, usize), Vec<Rows>> = BTreeMap::new();
+    for (column, &unknown) in unknowns.iter().enumerate() {
+        let Place { limb, row } = factor.places[unknown];
+        let unit = Rows {
+            columns: vec![column],
+            rows: vec![row],
+            values: Mat::from_fn(1, 1, |_, _| 1.0),
+        };
+        let s = factor.limbs[limb].supernode_of(row);
+        units.entry((limb, s)).or_default().push(unit);
+    }
+    units
+}
+
+/// The rows below a supernode of a limb as those of the limb of the first one, and where that is; none below a root.
+fn above(limb: &LimbFactor, number: usize, mut rows: Vec<usize>) -> Option<(Place, Vec<usize>)> {
+    let (&first, own) = (rows.first()?, limb.unknowns.len());
+    let limb = match limb.trunk.filter(|_| first >= own) {
+        Some(trunk) => {
+            rows.iter_mut().for_each(|row| *row -= own);
+            trunk
+        }
+        None => number,
+    };
+    let row = rows[0];
+    Some((Place { limb, row }, rows))
+}
+
+/// Chunks of the columns of a matrix.
+fn chunks(mut matrix: MatMut<f64>) -> Vec<MatMut<f64>> {
+    let mut chunks = Vec::new();
+    while matrix.ncols() > CHUNK {
+        let chunk;
+        (chunk, matrix) = matrix.split_at_col_mut(CHUNK);
+        chunks.push(chunk);
+    }
+    chunks.push(matrix);
+    chunks
+}
+
+/// Does something with all chunks, on threads if there are several.
+fn for_chunks<T: Send>(chunks: Vec<T>, action: impl Fn(T) + Sync + Send) {
+    if chunks.len() > 1 && rayon::current_num_threads() > 1 {
+        chunks.into_par_iter().with_max_len(1).for_each(action);
+        return;
+    }
+    chunks.into_iter().for_each(action);
+}
+
+impl Finished {
+    /// Adds rows with the same columns, and D of these.
+    fn push(&mut self, rows: MatRef<f64>, pivots: &[f64]) {
+        for row in rows.row_iter() {
+            self.y.extend(row.iter());
+        }
+        self.pivots.extend_from_slice(pivots);
+    }
+
+    /// Adds the lower triangle of Y^T D^-1 Y of these rows to the inverse at m unknowns.
+    fn add_to(&self, inverse: &mut [f64], m: usize) {
+        let (columns, n) = (&self.columns, self.columns.len());
+        if n == 0 {
+            return;
+        }
+        let transposed = MatRef::from_column_major_slice(&self.y, n, self.pivots.len());
+        let scaled: Vec<f64> = (self.y.chunks_exact(n).zip(&self.pivots))
+            .flat_map(|(row, pivot)| row.iter().map(move |y| y / pivot))
+            .collect();
+        let scaled = MatRef::from_column_major_slice(&scaled, n, self.pivots.len());
+        let (mut parts, mut rest, mut start) = (Vec::new(), inverse, 0);
+        for (of_chunk, first) in columns.chunks(CHUNK).zip((0..).step_by(CHUNK)) {
+            let end = of_chunk.last().map_or(start, |last| last + 1);
+            let own;
+            (own, rest) = rest.split_at_mut((end - start) * m);
+            parts.push((first, of_chunk, start, own));
+            start = end;
+        }
+        for_chunks(parts, |(first, of_chunk, start, own)| {
+            let mut product = Mat::zeros(n - first, of_chunk.len());
+            let left = transposed.subrows(first, n - first);
+            let right = scaled.subrows(first, of_chunk.len()).transpose();
+            matmul(product.as_mut(), Accum::Replace, left, right, 1.0, Par::Seq);
+            for (j, &column) in of_chunk.iter().enumerate() {
+                let to = &mut own[(column - start) * m..(column - start + 1) * m];
+                let from = &product.col_as_slice(j)[j..];
+                for (&row, value) in columns[first + j..].iter().zip(from) {
+                    to[row] += value;
+                }
+            }
+        });
+    }
 }
 
 /// The front of the columns that are not negligible.
