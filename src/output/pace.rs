@@ -5,36 +5,43 @@ use std::time::{Duration, Instant};
 /// Longest time for which results wait in memory while a run goes on.
 const LONGEST: Duration = Duration::from_secs(1);
 
-/// Pause between two writes, as a multiple of the time that one takes: writing takes at most about
-/// this part of the run's time.
-const MULTIPLE: u32 = 25;
+/// Time of a run as a multiple of that which its writes may take.
+const MULTIPLE: u32 = 30;
 
-/// Decides when to write: after a pause that is long against the time a write takes. Increments that
-/// take long find it over and are written at once.
+/// Decides when to write: when all writes so far and another like the last one are short against the time of the run.
+/// Increments that take long are written at once.
 pub(super) struct Pace {
+    start: Instant,
     /// End of the last write.
     last: Option<Instant>,
-    pause: Duration,
+    /// Time of the run from which on the next write is due.
+    due: Duration,
+    /// Time that all writes have taken.
+    spent: Duration,
 }
 
 impl Pace {
     /// The first write is due at once.
     pub fn new() -> Self {
         Pace {
+            start: Instant::now(),
             last: None,
-            pause: Duration::ZERO,
+            due: Duration::ZERO,
+            spent: Duration::ZERO,
         }
     }
 
-    /// Whether the pause is over.
+    /// Whether a write is due.
     pub fn is_due(&self) -> bool {
-        self.last.is_none_or(|last| last.elapsed() >= self.pause)
+        self.start.elapsed() >= self.due || self.last.is_some_and(|last| last.elapsed() >= LONGEST)
     }
 
     /// Notes a write that began at `start` and has just ended.
     pub fn written(&mut self, start: Instant) {
         let end = Instant::now();
-        self.pause = (MULTIPLE * (end - start)).min(LONGEST);
+        let write = end - start;
+        self.spent += write;
+        self.due = MULTIPLE * (self.spent + write);
         self.last = Some(end);
     }
 }
@@ -43,16 +50,24 @@ impl Pace {
 mod tests {
     use super::*;
 
+    fn before(milliseconds: u64) -> Instant {
+        let time = Instant::now().checked_sub(Duration::from_millis(milliseconds));
+        time.expect("some time ago")
+    }
+
     #[test]
-    fn the_pause_grows_with_the_time_of_a_write_up_to_a_limit() {
+    fn writes_are_short_against_the_run_but_none_waits_for_long() {
         let mut pace = Pace::new();
         assert!(pace.is_due(), "the first");
-        let before = |time| Instant::now().checked_sub(Duration::from_millis(time));
-        pace.written(before(5).expect("some time ago"));
-        assert!(!pace.is_due() && pace.pause >= 5 * MULTIPLE * Duration::from_millis(1));
-        pace.written(before(2000).expect("some time ago"));
-        assert_eq!(pace.pause, LONGEST);
-        pace.last = before(1001);
-        assert!(pace.is_due());
+        pace.written(before(5));
+        assert!(!pace.is_due());
+        pace.start = before(5 * 2 * u64::from(MULTIPLE) - 100);
+        assert!(!pace.is_due(), "a second like the first");
+        pace.start = before(5 * 2 * u64::from(MULTIPLE) + 100);
+        assert!(pace.is_due(), "long enough a run for two");
+        pace.written(before(2000));
+        assert!(!pace.is_due());
+        pace.last = Some(before(1001));
+        assert!(pace.is_due(), "a second");
     }
 }
