@@ -13,7 +13,7 @@ use std::time::Duration;
 use contact_support::{DISC, lattice};
 use criterion::{BenchmarkId, Criterion, Throughput};
 use stickslip::contact::{
-    ClosedPairs, Search, SlaveNode, all_segments, find_penetration, find_targets,
+    ClosedPairs, Positions, Search, SlaveNode, all_segments, find_penetration, find_targets,
 };
 
 /// Segments searched in one go: in many small scenes, or few large ones. Only so do caches and
@@ -62,10 +62,12 @@ fn main() {
         });
         group.throughput(Throughput::Elements(n as u64));
         search.cover(&u);
+        let mut pairs = Vec::new();
         group.bench_function(BenchmarkId::new("pairs", n), |bencher| {
             bencher.iter(|| {
                 search.cover(black_box(&u));
-                find_targets(&search, [&u, &u], &[], &[], false).len()
+                find_targets(&search, [&u, &u], [], (&[], false), &mut pairs);
+                pairs.len()
             });
         });
         let moved: Vec<f64> = (0..u.len()).map(|i| 1e-3 * (i as f64).sin()).collect();
@@ -83,8 +85,8 @@ fn main() {
                 let targets = |slave: usize| {
                     let node = SlaveNode {
                         surfaces,
-                        start: &x,
-                        now: black_box(&x),
+                        start: Positions::new(&x, &u),
+                        now: Positions::new(&x, black_box(&u)),
                         slave,
                         held_by: &[],
                     };

@@ -1,23 +1,43 @@
-//! Sweeps over the elements take no memory after the first.
+//! What takes memory from the system: no sweep over the elements after the first, and little in a pass after the
+//! first increment.
 
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::cell::Cell;
+use std::io;
 
+use stickslip::dynamics::{Cutback, IncrementReport, Observer};
 use stickslip::elements::{Elements, Motion, TangentPart};
 use stickslip::linear::{Assembled, Transformation};
 use stickslip::materials::{Law, NeoHooke};
-use stickslip::model::{Damping, Element, ElementType, Formulation, Material, Model, Section};
+use stickslip::model::{
+    Damping, Element, ElementType, Formulation, Material, Model, Scheme, Section, Settings,
+    Support, SupportMotion,
+};
 
-/// The allocator of the system, which counts what is asked of it.
+#[allow(dead_code)]
+#[path = "dynamics/blocks.rs"]
+mod blocks;
+
+/// Most allocations of a pass.
+const OF_A_PASS: f64 = 160.0;
+
+/// The allocator of the system, which counts what each thread asks of it.
 struct Counting;
 
-static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
+thread_local! {
+    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+}
 
 // SAFETY: all is passed on to the allocator of the system.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
         unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        unsafe { System.realloc(memory, layout, size) }
     }
 
     unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
@@ -77,9 +97,9 @@ fn row(length: usize) -> Model {
 
 /// Allocations while some work runs.
 fn allocations(work: &mut dyn FnMut()) -> usize {
-    let before = ALLOCATIONS.load(Ordering::Relaxed);
+    let before = ALLOCATIONS.get();
     work();
-    ALLOCATIONS.load(Ordering::Relaxed) - before
+    ALLOCATIONS.get() - before
 }
 
 /// Allocations of the first sweep of force, tangents and refill, and of the next, in one thread.
@@ -92,9 +112,12 @@ fn of_sweeps(elements: &Elements, motion: Motion, matrix: &mut Assembled) -> [us
         let add = |element: usize, k: &[f64]| matrix.add(element, k, 0.5);
         elements.for_each_tangent(motion, TangentPart::Whole, |_| true, add);
     };
+    one_thread().install(|| [(); 2].map(|()| allocations(&mut sweep)))
+}
+
+fn one_thread() -> rayon::ThreadPool {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    let pool = pool.expect("a thread");
-    pool.install(|| [(); 2].map(|()| allocations(&mut sweep)))
+    pool.expect("a thread")
 }
 
 #[test]
@@ -117,4 +140,66 @@ fn a_sweep_takes_no_memory_after_the_first() {
     assert!(first > 0, "the first one makes room, or nothing is counted");
     assert_eq!(next, 0);
     assert_eq!(of_sweeps(&elements, at, &mut matrix)[1], 0);
+}
+
+/// Two blocks, the lower one held below, the upper one pressed on it and then sheared, with friction.
+fn pressed_and_sheared(tolerance: f64) -> Model {
+    let mut model = blocks::model(1e3, 0.3, 1.0);
+    let lower = blocks::add_block(&mut model, [0.0, 0.0], [2.0, 0.5], (16, 4), 0.0);
+    let upper = blocks::add_block(&mut model, [0.23, 0.5001], [1.5, 0.5], (13, 4), 0.0);
+    blocks::add_contact(&mut model, upper.faces(0), lower.faces(2), 0.3);
+    let held = (0..=lower.nx).flat_map(|i| [0, 1].map(|k| (2 * lower.node(i, 0) + k, 0.0)));
+    let top = (0..=upper.nx).map(|i| upper.node(i, upper.ny));
+    let moved = top.flat_map(|node| [(2 * node, 0.02), (2 * node + 1, -0.01)]);
+    let support = |(dof, to)| Support {
+        dof,
+        motion: SupportMotion::Ramp { to },
+    };
+    let settings = Settings {
+        tolerance,
+        scheme: Scheme::EnergyMomentum,
+        ..Settings::default()
+    };
+    let supports = held.chain(moved).map(support).collect();
+    model.steps = vec![blocks::step(0.01, 20, settings, supports)];
+    model
+}
+
+/// What an increment took: allocations, passes, factorisations.
+struct Counts(Vec<[usize; 3]>);
+
+impl Observer for Counts {
+    fn increment(&mut self, report: &IncrementReport) -> io::Result<()> {
+        let solver = &report.solver;
+        self.0
+            .push([ALLOCATIONS.get(), solver.passes, solver.factorizations]);
+        Ok(())
+    }
+
+    fn cutback(&mut self, _: &Cutback) -> io::Result<()> {
+        Err(io::Error::other("an increment was cut back"))
+    }
+}
+
+/// Allocations, passes and factorisations of every increment but the first.
+fn of_increments(tolerance: f64) -> Vec<[usize; 3]> {
+    let model = pressed_and_sheared(tolerance);
+    one_thread().install(|| {
+        let mut counts = Counts(Vec::with_capacity(100));
+        let _ = blocks::run(&model, &mut counts).expect("runs");
+        let pairs = counts.0[1..].windows(2);
+        pairs
+            .map(|p| [p[1][0] - p[0][0], p[1][1], p[1][2]])
+            .collect()
+    })
+}
+
+#[test]
+fn passes_take_little_memory_after_the_first_increment() {
+    let (few, many) = (of_increments(1e-6), of_increments(1e-12));
+    for ([least, passes, _], [most, more_passes, factorized]) in few.into_iter().zip(many) {
+        assert!(more_passes > passes && factorized == 0);
+        let of_pass = most.saturating_sub(least) as f64 / (more_passes - passes) as f64;
+        assert!(of_pass <= OF_A_PASS, "{of_pass}");
+    }
 }

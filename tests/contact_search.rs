@@ -4,7 +4,7 @@ mod contact_support;
 
 use contact_support::{Body, lattice, scene};
 use proptest::prelude::*;
-use stickslip::contact::{Candidate, ContactSurfaces, Search, SlaveNode, project};
+use stickslip::contact::{Candidate, ContactSurfaces, Positions, Search, SlaveNode, project};
 
 fn bodies() -> impl Strategy<Value = Vec<Body>> {
     let body = (
@@ -39,11 +39,6 @@ fn distance(s: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
 /// Every slave node finds the same targets among its candidates as among all segments.
 fn finds_all(search: &Search, surfaces: &ContactSurfaces, x: &[[f64; 2]], [u0, u]: [&[f64]; 2]) {
     let territory = &search.territories()[0];
-    let positions = |u: &[f64]| -> Vec<[f64; 2]> {
-        let at = |n: usize| [x[n][0] + u[2 * n], x[n][1] + u[2 * n + 1]];
-        (0..x.len()).map(at).collect()
-    };
-    let (start, now) = (positions(u0), positions(u));
     for slave in 0..surfaces.slaves.len() {
         let all = (0..surfaces.segments.len()).map(|segment| Candidate {
             segment,
@@ -51,8 +46,8 @@ fn finds_all(search: &Search, surfaces: &ContactSurfaces, x: &[[f64; 2]], [u0, u
         });
         let node = SlaveNode {
             surfaces,
-            start: &start,
-            now: &now,
+            start: Positions::new(x, u0),
+            now: Positions::new(x, u),
             slave,
             held_by: &[],
         };

@@ -1,6 +1,6 @@
 //! Segments and corners that are selected as targets of a slave node.
 
-use stickslip::contact::{ContactSurfaces, ContactTarget, SlaveNode, all_segments};
+use stickslip::contact::{ContactSurfaces, ContactTarget, Positions, SlaveNode, all_segments};
 use stickslip::model::Friction;
 
 /// A closed or open chain of master segments over `points`, the body on their left.
@@ -38,10 +38,11 @@ fn targets_of(
     start: &[[f64; 2]],
     now: &[[f64; 2]],
 ) -> Vec<ContactTarget> {
+    let still = vec![0.0; 2 * start.len()];
     let node = SlaveNode {
         surfaces,
-        start,
-        now,
+        start: Positions::new(start, &still),
+        now: Positions::new(now, &still),
         slave: 0,
         held_by: &[],
     };

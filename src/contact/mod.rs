@@ -15,7 +15,9 @@ pub use constraints::{
 };
 pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
 pub(crate) use geometry::position;
-pub use geometry::{Along, ContactSurfaces, Interior, Projection, contact_surfaces, project};
+pub use geometry::{
+    Along, ContactSurfaces, Interior, Positions, Projection, contact_surfaces, project,
+};
 pub use search::{Candidate, ListedSlave, Search, Territory, all_segments};
 pub(crate) use search::{Circle, CircleTree};
 pub use targets::{ContactTarget, Corner, PairTarget, SlaveNode, common_normal, find_targets};

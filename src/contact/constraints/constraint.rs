@@ -3,6 +3,8 @@
 //! forces, impulses, convergence and the ledger know of contact. Sections 3 and 5 of
 //! docs/theory.md.
 
+use std::array::from_fn;
+
 use smallvec::SmallVec;
 
 use super::configurations::Configurations;
@@ -33,12 +35,38 @@ pub struct Rows {
 
 impl Rows {
     /// Rows of two slices of the same length.
+    #[inline]
     pub fn new(normal: &[f64], tangential: &[f64]) -> Self {
         Rows {
             normal: SmallVec::from_slice(normal),
             tangential: SmallVec::from_slice(tangential),
         }
     }
+}
+
+/// Normal and tangential row over N dofs, eight at most.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct RowPair<const N: usize> {
+    pub normal: [f64; N],
+    pub tangential: [f64; N],
+}
+
+impl<const N: usize> RowPair<N> {
+    #[inline]
+    fn rows(&self) -> Rows {
+        Rows {
+            normal: in_place(self.normal),
+            tangential: in_place(self.tangential),
+        }
+    }
+}
+
+/// The values of N dofs, eight at most.
+#[inline]
+fn in_place<T: Copy + Default, const N: usize>(values: [T; N]) -> PerDof<T> {
+    let mut all = [T::default(); 8];
+    all[..N].copy_from_slice(&values);
+    PerDof::from_buf_and_len(all, N)
 }
 
 /// A constraint g >= 0 with Coulomb friction, linearised at the current iterate.
@@ -62,7 +90,7 @@ pub struct Constraint {
     /// Force rows Bn and Bt (dimensionless).
     pub force_rows: Rows,
     /// Derivative rows Gn and Gt (dimensionless), where they are others than the force rows.
-    pub other_derivative_rows: Option<Box<Rows>>,
+    pub other_derivative_rows: Option<Rows>,
     /// Gap g of the iterate (length), positive when open.
     pub gap: f64,
     /// Gap of the start in the sense of the force rows, g - Bn d (length).
@@ -79,40 +107,35 @@ pub struct Constraint {
 }
 
 impl Constraint {
-    /// The constraint of one slave node and the given others, with its force rows and derivative rows;
-    /// its slip is Bt d.
-    pub(super) fn of_nodes(
+    /// The constraint at the first nodes of its source, the slave node before the others, with its force rows
+    /// and derivative rows over their N dofs; its slip is Bt d.
+    #[inline]
+    pub(super) fn of_nodes<const N: usize>(
         source: PairTarget,
-        nodes: &[usize],
-        [force_rows, derivative_rows]: [Rows; 2],
+        [force, derivative]: [RowPair<N>; 2],
         (gap, scale): (f64, f64),
         at: &Configurations,
     ) -> Self {
-        let dofs: PerDof<usize> = nodes.iter().flat_map(|n| [2 * n, 2 * n + 1]).collect();
-        let mut constraint = Constraint {
+        let dofs: [usize; N] = from_fn(|k| 2 * source.nodes[k / 2] + k % 2);
+        // g0 = g - Bn d; Dt = Bt d, eq. (3.5); d = U - U0
+        let d = dofs.map(|dof| at.u[dof] - at.u0[dof]);
+        let product = |row: &[f64; N]| -> f64 { row.iter().zip(&d).map(|(b, d)| b * d).sum() };
+        Constraint {
             key: ConstraintKey {
                 slave_index: source.slave_index,
                 segment: source.target.segment,
             },
-            dofs,
+            dofs: in_place(dofs),
             slave_dofs: 2,
-            other_derivative_rows: (derivative_rows != force_rows)
-                .then(|| Box::new(derivative_rows)),
-            force_rows,
+            force_rows: force.rows(),
+            other_derivative_rows: (derivative != force).then(|| derivative.rows()),
             gap,
-            start_gap: gap,
-            slip: 0.0,
+            start_gap: gap - product(&force.normal),
+            slip: product(&force.tangential),
             mu: source.friction.at_rest,
             scale,
             source,
-        };
-        // g0 = g - Bn d; Dt = Bt d, eq. (3.5); d = U - U0
-        let d = |dof: usize| at.u[dof] - at.u0[dof];
-        let rows = &constraint.force_rows;
-        let start_gap = gap - constraint.product(&rows.normal, d);
-        let slip = constraint.product(&rows.tangential, d);
-        (constraint.start_gap, constraint.slip) = (start_gap, slip);
-        constraint
+        }
     }
 
     /// Takes the coefficient of friction at the slip rate |Dt|/dt of an increment of length `dt`, eq. (3.10).
@@ -132,7 +155,7 @@ impl Constraint {
 
     /// Derivative rows G.
     pub fn derivative_rows(&self) -> &Rows {
-        let other = self.other_derivative_rows.as_deref();
+        let other = self.other_derivative_rows.as_ref();
         other.unwrap_or(&self.force_rows)
     }
 

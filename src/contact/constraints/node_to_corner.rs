@@ -2,8 +2,8 @@
 //! Section 10 of docs/theory.md, Node against node.
 
 use super::configurations::Configurations;
-use super::constraint::{Constraint, Rows};
-use super::node_to_segment::{RowPair, segment_rows};
+use super::constraint::{Constraint, RowPair};
+use super::node_to_segment::segment_rows;
 use crate::contact::targets::{Corner, PairTarget};
 
 /// The constraint at the corner b between the segments from a to b and from b to c; nodes s, a, b, c.
@@ -28,18 +28,16 @@ pub(super) fn constraint(source: PairTarget, corner: Corner, at: &Configurations
         let (row, next) = (at_first_nodes(row), at_last_nodes(next));
         std::array::from_fn(|k| corner.blend(row[k], next[k]) / m)
     };
-    let both = |p: RowPair, q: RowPair| {
-        Rows::new(
-            &blend(p.normal, q.normal),
-            &blend(p.tangential, q.tangential),
-        )
+    let both = |p: RowPair<6>, q: RowPair<6>| RowPair {
+        normal: blend(p.normal, q.normal),
+        tangential: blend(p.tangential, q.tangential),
     };
     let rows = [
         both(before.force, behind.force),
         both(before.derivative, behind.derivative),
     ];
     let gap = corner.blend(p.gap, q.gap) / m;
-    Constraint::of_nodes(source, &source.nodes, rows, (gap, p.length), at)
+    Constraint::of_nodes(source, rows, (gap, p.length), at)
 }
 
 /// A row at s, a, b as one at s, a, b, c.

@@ -2,23 +2,16 @@
 //! (section 3 of docs/theory.md) or as discrete gradients (section 7), and derivative rows.
 
 use super::configurations::{Configurations, RowForm};
-use super::constraint::{Constraint, Rows};
+use super::constraint::{Constraint, RowPair};
 use crate::contact::geometry::{Projection, project};
 use crate::contact::targets::{PairTarget, rise};
 use crate::vectors::{cross, difference, dot};
 
-/// Normal and tangential row at s, a and b.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct RowPair {
-    pub normal: [f64; 6],
-    pub tangential: [f64; 6],
-}
-
 /// A node on a segment, with its force rows and derivative rows.
 pub(super) struct SegmentRows {
     pub projection: Projection,
-    pub force: RowPair,
-    pub derivative: RowPair,
+    pub force: RowPair<6>,
+    pub derivative: RowPair<6>,
 }
 
 /// Start and end of the increment: r = x_s - x_a, e = x_b - x_a and what follows from them.
@@ -44,9 +37,8 @@ pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint 
     if let Some(from) = source.from.filter(|_| at.form == RowForm::DiscreteGradient) {
         tilt(&mut force, [s, a, b], from, at);
     }
-    let rows = [force, derivative].map(|rows| Rows::new(&rows.normal, &rows.tangential));
     let gap_and_scale = (projection.gap, projection.length);
-    Constraint::of_nodes(source, &[s, a, b], rows, gap_and_scale, at)
+    Constraint::of_nodes(source, [force, derivative], gap_and_scale, at)
 }
 
 /// Tilts the force rows of a node that has slid on from segment i, eq. (7.6):
@@ -56,7 +48,7 @@ pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint 
 /// ```
 ///
 /// Then Bn d = g1 - h0, so that contact puts no energy in.
-fn tilt(rows: &mut RowPair, nodes: [usize; 3], [a, b]: [usize; 2], at: &Configurations) {
+fn tilt(rows: &mut RowPair<6>, nodes: [usize; 3], [a, b]: [usize; 2], at: &Configurations) {
     let [start, end] = [at.start(nodes), at.iterate(nodes)].map(Arms::new);
     let [p, q] = at.start([a, b]);
     let [s] = at.start([nodes[0]]);
@@ -93,7 +85,7 @@ pub(super) fn segment_rows(nodes: [usize; 3], at: &Configurations) -> SegmentRow
 /// Force rows of the end configuration, eq. (3.4): e_n at s, -(1 - xi) e_n at a, -xi e_n at b; the
 /// same with e_t. The normal row is the derivative of the gap; the slip e_t.w has the derivative of
 /// eq. (3.9).
-fn end_rows(p: &Projection, start: [[f64; 2]; 3], end: [[f64; 2]; 3]) -> (RowPair, RowPair) {
+fn end_rows(p: &Projection, start: [[f64; 2]; 3], end: [[f64; 2]; 3]) -> (RowPair<6>, RowPair<6>) {
     let weights = [1.0, -(1.0 - p.xi), -p.xi];
     let row = |e: [f64; 2]| -> [f64; 6] { std::array::from_fn(|k| weights[k / 2] * e[k % 2]) };
     let (normal, tangential) = (row(p.normal), row(p.tangent));
@@ -124,7 +116,7 @@ fn end_rows(p: &Projection, start: [[f64; 2]; 3], end: [[f64; 2]; 3]) -> (RowPai
 /// The gap g = pi2/sqrt(pi3) and the projection xi = pi1/pi3 are functions of pi1 = r.e,
 /// pi2 = r x e, pi3 = e.e, eq. (7.1), quadratic in the positions: their gradients at the mid
 /// configuration are exact difference quotients.
-fn discrete_gradient_rows(start: &Arms, end: &Arms) -> RowPair {
+fn discrete_gradient_rows(start: &Arms, end: &Arms) -> RowPair<6> {
     let mean = |p: [f64; 2], q: [f64; 2]| [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0];
     let (l0, l1) = (start.length, end.length);
     let [pi1, pi2, pi3] = gradients(mean(start.r, end.r), mean(start.e, end.e));
@@ -146,7 +138,7 @@ fn discrete_gradient_rows(start: &Arms, end: &Arms) -> RowPair {
 }
 
 /// Derivatives of the gap g1 and the slip L (xi1 - xi0) with respect to the end.
-fn derivatives_of_differences(start: &Arms, end: &Arms) -> RowPair {
+fn derivatives_of_differences(start: &Arms, end: &Arms) -> RowPair<6> {
     let (l0, l1) = (start.length, end.length);
     let [pi1, pi2, pi3] = gradients(end.r, end.e);
     // Gn = grad pi2/l1 - pi2_1/(2 l1³) grad pi3, eq. (7.4)
@@ -194,6 +186,7 @@ fn nodal(r: [f64; 2], e: [f64; 2]) -> [f64; 6] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::constraints::Rows;
     use crate::contact::geometry::position;
     use crate::contact::targets::ContactTarget;
     use crate::model::Friction;

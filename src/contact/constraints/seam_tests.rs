@@ -29,7 +29,7 @@ fn made_up(count: usize, rows: [RowsByDof; 2]) -> Constraint {
         },
         dofs: (0..count).collect::<PerDof<usize>>(),
         slave_dofs: 6,
-        other_derivative_rows: (force != derivative).then(|| Box::new(derivative)),
+        other_derivative_rows: (force != derivative).then_some(derivative),
         force_rows: force,
         gap: -7.0,
         start_gap: 0.0,

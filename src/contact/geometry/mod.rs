@@ -7,5 +7,5 @@ mod surfaces;
 
 pub use interior::Interior;
 pub(crate) use projection::position;
-pub use projection::{Projection, project};
+pub use projection::{Positions, Projection, project};
 pub use surfaces::{Along, ContactSurfaces, contact_surfaces};

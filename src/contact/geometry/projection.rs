@@ -24,6 +24,7 @@ pub struct Projection {
 /// e_t = (x_b - x_a)/l,  e_n = (e_t,y, -e_t,x),  l = |x_b - x_a|    eq. (3.2)
 /// xi = r.e_t/l,  g = r.e_n,  r = x_s - x_a                         eq. (3.3)
 /// ```
+#[inline]
 pub fn project(s: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Projection {
     let e = difference(a, b);
     let length = length(e);
@@ -36,6 +37,28 @@ pub fn project(s: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Projection {
         length,
         tangent,
         normal,
+    }
+}
+
+/// Positions of all nodes in a configuration: reference coordinates plus displacements.
+#[derive(Debug, Clone, Copy)]
+pub struct Positions<'a> {
+    x: &'a [[f64; 2]],
+    u: &'a [[f64; 2]],
+}
+
+impl<'a> Positions<'a> {
+    /// Reference coordinates of the nodes and displacements over all dofs (length).
+    pub fn new(x: &'a [[f64; 2]], u: &'a [f64]) -> Self {
+        let u = u.as_chunks().0;
+        Positions { x, u }
+    }
+
+    /// Position of a node.
+    #[inline]
+    pub fn of(&self, node: usize) -> [f64; 2] {
+        let ([x, y], [u, v]) = (self.x[node], self.u[node]);
+        [x + u, y + v]
     }
 }
 

@@ -295,7 +295,8 @@ impl Side {
                     let d = difference(p, q);
                     dot(d, d) <= left * left
                 };
-                left >= 0.0 && is_near(0) && is_near(1)
+                let [a, b] = self.ends[i];
+                left >= 0.0 && is_near(0) && (a == b || is_near(1))
             })
     }
 

@@ -1,9 +1,11 @@
 //! Pairing: the contact targets of all slave nodes at an iterate, from the candidates of the
 //! search and the pairs of the pass before. Section 10 of docs/theory.md, Targets.
 
+use smallvec::SmallVec;
+
 use super::slave_node::SlaveNode;
 use super::target_selection::{ContactTarget, Targets};
-use crate::contact::geometry::position;
+use crate::contact::geometry::Positions;
 use crate::contact::search::{ListedSlave, Search};
 use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED};
 use crate::model::Friction;
@@ -24,71 +26,62 @@ pub struct PairTarget {
     pub friction: Friction,
 }
 
-/// The pairs of all contacts between the displacements `u0` of the start of an increment and `u` of
-/// an iterate, which the search covers; increasing by slave index and segment, as those `before`,
+/// Writes the pairs of all contacts between the displacements `u0` of the start of an increment and `u`
+/// of an iterate, which the search covers; increasing by slave index and segment, as those `before`,
 /// of the last pass. `held` are slave index and segment of the pairs closed at the start, increasing.
 /// Where the passes have `settled`, targets are kept even if others hold the node
 /// now: passes that go to and fro across a corner come to rest with it.
 ///
 /// A node that has just left its segment by a little and finds no other keeps it: whether it has
 /// slid off is decided by the end of the increment, not by one of its passes.
-pub fn find_targets(
+pub fn find_targets<'p>(
     search: &Search,
     [u0, u]: [&[f64]; 2],
-    before: &[PairTarget],
-    held: &[[usize; 2]],
-    settled: bool,
-) -> Vec<PairTarget> {
-    let x = search.coordinates();
-    let positions =
-        |u: &[f64]| -> Vec<[f64; 2]> { (0..x.len()).map(|n| position(x, u, n)).collect() };
-    let (start, now) = (positions(u0), positions(u));
-    let mut pairs: Vec<PairTarget> = Vec::new();
-    let (mut old, mut held) = (before, held);
+    before: impl IntoIterator<Item = &'p PairTarget>,
+    (held, settled): (&[[usize; 2]], bool),
+    pairs: &mut Vec<PairTarget>,
+) {
+    let [start, now] = [u0, u].map(|u| Positions::new(search.coordinates(), u));
+    let (mut before, mut held) = (before.into_iter().peekable(), held);
+    pairs.clear();
     for listed in search.slaves() {
-        let of_node = |[slave, _]: &[usize; 2]| *slave <= listed.slave_index;
-        let (held_by, rest) = held.split_at(held.partition_point(of_node));
+        let index = listed.slave_index;
+        let others = |[slave, _]: &[usize; 2]| *slave > index;
+        let (held_by, rest) = held.split_at(held.iter().position(others).unwrap_or(held.len()));
         held = rest;
         let node = SlaveNode {
             surfaces: listed.surfaces,
-            start: &start,
-            now: &now,
+            start,
+            now,
             slave: listed.slave,
             held_by,
         };
-        let is_own = |pair: &PairTarget| pair.slave_index <= listed.slave_index;
-        let (own, rest) = old.split_at(old.partition_point(is_own));
-        old = rest;
-        let found = node.targets(listed.candidates());
-        let targets = with_kept(&node, found, own, settled);
-        pairs.extend(targets.iter().map(|&target| pair_target(&listed, target)));
+        let mut targets = node.targets(listed.candidates());
+        let mut own = Targets::new();
+        while let Some(pair) = before.next_if(|pair| pair.slave_index <= index) {
+            own.push(pair.target);
+        }
+        if !own.is_empty() && (settled || targets.is_empty()) {
+            keep(&node, own, settled, &mut targets);
+        }
+        for target in targets {
+            pairs.push(pair_target(&listed, target));
+        }
     }
-    without_twins(pairs)
+    remove_twins(pairs);
 }
 
-/// Targets of a slave node, of which some of the pass before are kept.
-fn with_kept(node: &SlaveNode, found: Targets, before: &[PairTarget], settled: bool) -> Targets {
-    if before.is_empty() || (!settled && !found.is_empty()) {
-        return found;
-    }
-    let mut targets: Targets = before.iter().map(|pair| pair.target).collect();
+/// Keeps some of the targets that a slave node had `before`, in the pass before.
+fn keep(node: &SlaveNode, mut before: Targets, settled: bool, targets: &mut Targets) {
     let beyond = if settled {
         KEPT_WHEN_SETTLED
     } else {
         KEPT_BEYOND_ENDS
     };
-    targets.retain(|target| node.is_over(target, beyond));
-    let kept = targets.len();
-    for target in found {
-        if !targets[..kept]
-            .iter()
-            .any(|old| node.is_same_face(old, &target))
-        {
-            targets.push(target);
-        }
-    }
+    before.retain(|target| node.is_over(target, beyond));
+    targets.retain(|found| !before.iter().any(|old| node.is_same_face(old, found)));
+    targets.insert_many(0, before);
     targets.sort_by_key(|target| target.segment);
-    targets
 }
 
 fn pair_target(listed: &ListedSlave, target: ContactTarget) -> PairTarget {
@@ -105,15 +98,12 @@ fn pair_target(listed: &ListedSlave, target: ContactTarget) -> PairTarget {
 }
 
 /// Two nodes that are each other's corner are one pair.
-fn without_twins(mut pairs: Vec<PairTarget>) -> Vec<PairTarget> {
-    let corners: Vec<[usize; 2]> = pairs
-        .iter()
-        .filter(|pair| pair.target.corner.is_some())
-        .map(|pair| [pair.nodes[0], pair.nodes[2]])
-        .collect();
+fn remove_twins(pairs: &mut Vec<PairTarget>) {
+    let with_corner = pairs.iter().filter(|pair| pair.target.corner.is_some());
+    let corners = with_corner.map(|pair| [pair.nodes[0], pair.nodes[2]]);
+    let corners: SmallVec<[[usize; 2]; 8]> = corners.collect();
     pairs.retain(|pair| {
         let [s, _, v, _] = pair.nodes;
         pair.target.corner.is_none() || s < v || !corners.contains(&[v, s])
     });
-    pairs
 }

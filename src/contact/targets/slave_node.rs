@@ -3,9 +3,9 @@
 //! Targets.
 
 use crate::contact::crossing::{Crossing, Direction, Motion, crossings};
-use crate::contact::geometry::{ContactSurfaces, Projection, project};
+use crate::contact::geometry::{ContactSurfaces, Positions, Projection, project};
 use crate::contact::tolerances::{
-    CLOSED_GAP, CORNER_ZONE, FACING_SINE, FOLDED_CORNER_SINE, INITIAL_DEPTH,
+    CLOSED_GAP, CORNER_ZONE, FACING_SINE, FOLDED_CORNER_SINE, GENTLE_SINE, INITIAL_DEPTH,
 };
 use crate::vectors::{cross, difference, dot};
 
@@ -15,10 +15,10 @@ use crate::vectors::{cross, difference, dot};
 pub struct SlaveNode<'a> {
     /// Surfaces of the contact.
     pub surfaces: &'a ContactSurfaces,
-    /// Positions of all nodes at the start (length).
-    pub start: &'a [[f64; 2]],
-    /// Positions of all nodes in the iterate (length).
-    pub now: &'a [[f64; 2]],
+    /// Positions of all nodes at the start.
+    pub start: Positions<'a>,
+    /// Positions of all nodes in the iterate.
+    pub now: Positions<'a>,
     /// Index of the slave node in its contact.
     pub slave: usize,
     /// Slave index and segment of the pairs of the node that were closed at the start.
@@ -29,8 +29,8 @@ impl SlaveNode<'_> {
     /// Whether the node enters the body through the segment on its straight path.
     pub(crate) fn enters(&self, segment: usize) -> bool {
         let [a, b] = self.surfaces.segments[segment];
-        let motions = [self.surfaces.slaves[self.slave], a, b]
-            .map(|node| Motion::straight(self.start[node], self.now[node]));
+        let motions = [self.node(), a, b]
+            .map(|node| Motion::straight(self.start.of(node), self.now.of(node)));
         let is_entering = |c: &Crossing| c.direction == Direction::Entering;
         crossings(&motions, 1.0).iter().any(is_entering)
     }
@@ -39,17 +39,18 @@ impl SlaveNode<'_> {
     /// matter.
     pub(crate) fn is_far(&self, segment: usize) -> bool {
         let p = self.project(segment);
-        p.gap > p.length && p.gap > 2.0 * self.relative_displacement(segment)
+        p.gap > p.length && p.gap > 2.0 * self.displacement_at(segment, &p)
     }
 
     /// Whether the node's own surface faces the segment: it lies in front of the parallel to the
     /// segment through the node. None for a node without neighbours.
     pub(crate) fn is_opposite(&self, segment: usize) -> Option<bool> {
-        let node = self.surfaces.slaves[self.slave];
+        let node = self.node();
         let normal = self.project(segment).normal;
         let is_in_front = |&adjacent: &usize| {
-            let r = difference(self.now[node], self.now[adjacent]);
-            dot(r, normal) >= -FACING_SINE * r[0].hypot(r[1])
+            let r = difference(self.now.of(node), self.now.of(adjacent));
+            let (height, least) = (dot(r, normal), r[0].abs().max(r[1].abs()));
+            height >= -FACING_SINE * least || height >= -FACING_SINE * r[0].hypot(r[1])
         };
         let adjacent = self.surfaces.adjacent[self.slave]?;
         Some(adjacent.iter().all(is_in_front))
@@ -66,38 +67,42 @@ impl SlaveNode<'_> {
         let p = self.project_at_start(segment);
         let is_shallow = p.gap >= -INITIAL_DEPTH * p.length
             && (-CORNER_ZONE..=1.0 + CORNER_ZONE).contains(&p.xi);
-        let (surfaces, start) = (self.surfaces, |node: usize| self.start[node]);
-        let node = surfaces.slaves[self.slave];
+        let (surfaces, start) = (self.surfaces, |node: usize| self.start.of(node));
+        let node = self.node();
         is_shallow && (surfaces.interior).takes_in(surfaces.segments[segment], node, start)
     }
 
     /// Whether the node belongs to the body behind the segment: it is on the far side of a thin
     /// body.
     pub(crate) fn was_far_side(&self, segment: usize) -> bool {
-        let (surfaces, start) = (self.surfaces, |node: usize| self.start[node]);
-        let node = surfaces.slaves[self.slave];
+        let (surfaces, start) = (self.surfaces, |node: usize| self.start.of(node));
+        let node = self.node();
         (surfaces.interior).joins(surfaces.segments[segment], node, start)
     }
 
     /// Whether the node is an end of the segment.
     pub(crate) fn is_own(&self, segment: usize) -> bool {
-        let node = self.surfaces.slaves[self.slave];
+        let node = self.node();
         self.surfaces.segments[segment].contains(&node)
     }
 
-    /// Distance from the end of a segment within which the other segment of a concave corner counts
-    /// (length).
-    pub(crate) fn corner_reach(&self, segment: usize) -> f64 {
-        CORNER_ZONE * self.project(segment).length + 2.0 * self.relative_displacement(segment)
+    /// Distance from the end of a segment with the projection `p` within which the other segment of a
+    /// concave corner counts (length).
+    pub(crate) fn corner_reach(&self, segment: usize, p: &Projection) -> f64 {
+        CORNER_ZONE * p.length + 2.0 * self.displacement_at(segment, p)
     }
 
     /// Displacement of the node relative to a segment since the start (length).
     pub(crate) fn relative_displacement(&self, segment: usize) -> f64 {
+        self.displacement_at(segment, &self.project(segment))
+    }
+
+    /// Displacement relative to the projection `p` on a segment (length).
+    fn displacement_at(&self, segment: usize, p: &Projection) -> f64 {
         let [a, b] = self.surfaces.segments[segment];
-        let xi = self.project(segment).xi.clamp(0.0, 1.0);
-        let node = self.surfaces.slaves[self.slave];
-        let d = |n: usize, i: usize| self.now[n][i] - self.start[n][i];
-        let relative = |i: usize| d(node, i) - (1.0 - xi) * d(a, i) - xi * d(b, i);
+        let xi = p.xi.clamp(0.0, 1.0);
+        let [s, a, b] = [self.node(), a, b].map(|n| difference(self.start.of(n), self.now.of(n)));
+        let relative = |i: usize| s[i] - (1.0 - xi) * a[i] - xi * b[i];
         (relative(0).powi(2) + relative(1).powi(2)).sqrt()
     }
 
@@ -105,7 +110,7 @@ impl SlaveNode<'_> {
     /// negative at a concave one; 1 or -1 beyond a right angle.
     pub(crate) fn corner_sine(&self, i: usize, j: usize) -> f64 {
         let [e, f] = [i, j].map(|i| {
-            let [a, b] = self.surfaces.segments[i].map(|n| self.now[n]);
+            let [a, b] = self.surfaces.segments[i].map(|n| self.now.of(n));
             project(a, a, b).tangent
         });
         let [sin, cos] = [cross(e, f), dot(e, f)];
@@ -120,13 +125,35 @@ impl SlaveNode<'_> {
         }
     }
 
+    /// Whether there is a concave corner between two segments that is not of gentle turn.
+    pub(crate) fn is_concave(&self, i: usize, j: usize) -> bool {
+        let [e, f] = [i, j].map(|i| {
+            let [a, b] = self.surfaces.segments[i].map(|n| self.now.of(n));
+            difference(a, b)
+        });
+        // |sin| <= |tan|: mostly there is no need for the sine
+        let has_gentle_tangent = cross(e, f) > -0.5 * GENTLE_SINE * dot(e, f);
+        !(has_gentle_tangent && dot(e, f) > 0.0) && self.corner_sine(i, j) < -GENTLE_SINE
+    }
+
     /// Coordinate xi of the projection on a segment in the iterate.
     #[inline]
     pub(crate) fn xi(&self, segment: usize) -> f64 {
-        let [a, b] = self.surfaces.segments[segment].map(|n| self.now[n]);
-        let s = self.now[self.surfaces.slaves[self.slave]];
+        self.xi_of(self.position(), segment)
+    }
+
+    /// The same with the position of the node.
+    #[inline(always)]
+    pub(crate) fn xi_of(&self, s: [f64; 2], segment: usize) -> f64 {
+        let [a, b] = self.surfaces.segments[segment].map(|n| self.now.of(n));
         let [r, e] = [difference(a, s), difference(a, b)];
         dot(r, e) / dot(e, e)
+    }
+
+    /// Position of the node in the iterate.
+    #[inline]
+    pub(crate) fn position(&self) -> [f64; 2] {
+        self.now.of(self.node())
     }
 
     /// Projection on a segment in the iterate.
@@ -141,9 +168,14 @@ impl SlaveNode<'_> {
     }
 
     #[inline]
-    fn project_at(&self, at: &[[f64; 2]], segment: usize) -> Projection {
+    fn project_at(&self, at: Positions, segment: usize) -> Projection {
         let [a, b] = self.surfaces.segments[segment];
-        project(at[self.surfaces.slaves[self.slave]], at[a], at[b])
+        project(at.of(self.node()), at.of(a), at.of(b))
+    }
+
+    #[inline]
+    fn node(&self) -> usize {
+        self.surfaces.slaves[self.slave]
     }
 }
 
@@ -158,10 +190,11 @@ mod tests {
         let was_in_front = |length: f64, depth: f64| {
             // the segment runs from right to left, with the body below it
             let x = [[length, 0.0], [0.0, 0.0], [0.5 * length, -depth * length]];
+            let at = Positions::new(&x, &[0.0; 6]);
             let node = SlaveNode {
                 surfaces: &surfaces,
-                start: &x,
-                now: &x,
+                start: at,
+                now: at,
                 slave: 0,
                 held_by: &[],
             };

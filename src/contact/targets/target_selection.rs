@@ -63,38 +63,45 @@ impl SlaveNode<'_> {
     /// The targets of the node in the order of their segments; the candidates must come in this
     /// order.
     pub fn targets(&self, candidates: impl Iterator<Item = Candidate>) -> Targets {
-        let faced = self.faced(candidates);
         let mut targets = Targets::new();
-        if faced.is_empty() {
-            return targets;
-        }
-        for run in self.runs(&faced) {
-            if let Some(target) = self.slid_on(&run) {
-                targets.push(target);
-                let across = self.across_concave_corners(target.segment);
-                targets.extend(across.map(ContactTarget::face));
-                continue;
+        let mut faced = Segments::new();
+        self.list_faced(candidates, &mut faced);
+        match faced.as_slice() {
+            [] => {}
+            [_] => self.add_targets(&faced, &mut targets),
+            _ => {
+                let runs = self.runs(&faced);
+                runs.iter()
+                    .for_each(|run| self.add_targets(run, &mut targets));
             }
-            let Some(segment) = self.choose(&run) else {
-                continue;
+        }
+        if targets.len() > 1 {
+            targets.sort_by_key(|target| target.segment);
+            targets.dedup_by_key(|target| target.segment);
+        }
+        targets
+    }
+
+    /// Adds the target in a run of segments, and those across concave corners near it.
+    fn add_targets(&self, run: &[usize], targets: &mut Targets) {
+        let (segment, target) = if let Some(target) = self.slid_on(run) {
+            (target.segment, target)
+        } else {
+            let Some(segment) = self.choose(run) else {
+                return;
             };
             if self.is_far(segment) {
                 targets.push(ContactTarget::face(segment));
-                continue;
+                return;
             }
             let segment = self.adjacent_to_faced_away(segment).unwrap_or(segment);
-            targets.push(
-                self.corner_target(segment)
-                    .unwrap_or(ContactTarget::face(segment)),
-            );
-            targets.extend(
-                self.across_concave_corners(segment)
-                    .map(ContactTarget::face),
-            );
+            let corner = self.corner_target(segment);
+            (segment, corner.unwrap_or(ContactTarget::face(segment)))
+        };
+        targets.push(target);
+        for across in self.across_concave_corners(segment) {
+            targets.push(ContactTarget::face(across));
         }
-        targets.sort_by_key(|target| target.segment);
-        targets.dedup_by_key(|target| target.segment);
-        targets
     }
 
     /// Whether the node still projects on a target of an earlier pass, beyond its ends by `beyond`
@@ -118,12 +125,12 @@ impl SlaveNode<'_> {
         })
     }
 
-    /// Segments into which the node projects, and the two at a corner where it projects into
+    /// Lists the segments into which the node projects, and the two at a corner where it projects into
     /// neither.
-    fn faced(&self, candidates: impl Iterator<Item = Candidate>) -> Segments {
-        let mut faced = Segments::new();
+    fn list_faced(&self, candidates: impl Iterator<Item = Candidate>, faced: &mut Segments) {
+        let s = self.position();
         for Candidate { segment: i, reach } in candidates {
-            let xi = self.xi(i);
+            let xi = self.xi_of(s, i);
             if xi < -PROJECTION_BEYOND_ENDS || self.is_own(i) {
                 continue;
             }
@@ -133,13 +140,13 @@ impl SlaveNode<'_> {
                     faced.push(i);
                 }
             } else if let Some(j) = self.surfaces.next[i]
-                && self.xi(j) < 0.0
+                && self.xi_of(s, j) < 0.0
                 && !self.is_own(j)
             {
                 let p = self.project(i);
                 // the zone between the segments of a concave corner lies in the body
                 let near = match self.corner_sine(i, j) < 0.0 {
-                    true => reach.min(self.corner_reach(i)),
+                    true => reach.min(self.corner_reach(i, &p)),
                     false => reach,
                 };
                 let beyond = (p.xi - 1.0) * p.length;
@@ -152,14 +159,10 @@ impl SlaveNode<'_> {
             faced.sort_unstable();
             faced.dedup();
         }
-        faced
     }
 
     /// The faced segments as runs of neighbours with straight or convex corners between them.
     fn runs(&self, faced: &[usize]) -> SmallVec<[Segments; 2]> {
-        if faced.len() == 1 {
-            return smallvec![Segments::from_slice(faced)];
-        }
         let is_faced = |i: &usize| faced.binary_search(i).is_ok();
         let next = |i: usize| {
             let j = self.surfaces.next[i].filter(is_faced)?;
@@ -239,8 +242,8 @@ impl SlaveNode<'_> {
                 ..ContactTarget::face(j)
             })
         };
-        let was_behind = run.iter().all(|&j| !self.was_in_front(j));
-        let came = || self.came_from(run).filter(|_| was_behind);
+        let was_behind = || run.iter().all(|&j| !self.was_in_front(j));
+        let came = || was_behind().then(|| self.came_from(run)).flatten();
         held.clone()
             .find_map(slid_from)
             .or_else(|| came().and_then(slid_from))
@@ -286,7 +289,8 @@ impl SlaveNode<'_> {
         if self.is_opposite(i)? {
             return None;
         }
-        let (p, near) = (self.project(i), self.corner_reach(i));
+        let p = self.project(i);
+        let near = self.corner_reach(i, &p);
         let before = self.surfaces.previous[i]
             .filter(|&h| p.xi * p.length <= near && self.corner_sine(h, i) > STRAIGHT_SINE);
         let after = self.surfaces.next[i]
@@ -336,16 +340,14 @@ impl SlaveNode<'_> {
 
     /// The other segments of the concave corners at the ends of a segment that the node is near.
     fn across_concave_corners(&self, i: usize) -> impl Iterator<Item = usize> {
-        let p = self.project(i);
-        let near = self.corner_reach(i);
-        let at_a = self.surfaces.previous[i].filter(|&h| {
-            p.xi * p.length <= near
-                && self.corner_sine(h, i) < -GENTLE_SINE
-                && self.project(h).xi >= 0.0
-        });
+        let is_near = |from_end: &dyn Fn(f64) -> f64| {
+            let p = self.project(i);
+            from_end(p.xi) * p.length <= self.corner_reach(i, &p)
+        };
+        let at_a = self.surfaces.previous[i]
+            .filter(|&h| self.is_concave(h, i) && is_near(&|xi| xi) && self.project(h).xi >= 0.0);
         let at_b = self.surfaces.next[i].filter(|&j| {
-            let is_near = (1.0 - p.xi) * p.length <= near;
-            is_near && self.corner_sine(i, j) < -GENTLE_SINE && self.project(j).xi <= 1.0
+            self.is_concave(i, j) && is_near(&|xi| 1.0 - xi) && self.project(j).xi <= 1.0
         });
         [at_a, at_b]
             .map(|j| j.filter(|&j| !self.is_own(j) && self.was_in_front(j)))
@@ -374,7 +376,7 @@ impl SlaveNode<'_> {
         }
         let node = self.surfaces.slaves[self.slave];
         let [before, after] = self.surfaces.adjacent[self.slave]?;
-        let at = |n: usize| self.now[n];
+        let at = |n: usize| self.now.of(n);
         let own = [[before, node], [node, after]].map(|[a, b]| project(at(a), at(a), at(b)).normal);
         let corner = Corner {
             next: j,

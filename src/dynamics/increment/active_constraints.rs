@@ -22,16 +22,18 @@ pub(crate) enum ConstraintSet<'a> {
 }
 
 impl ConstraintSet<'_> {
-    /// The constraints that count, and the others.
+    /// Leaves the constraints that count; writes the others.
     pub fn split(
         self,
         problem: &StepProblem,
         u0: &[f64],
-        constraints: Vec<Constraint>,
-    ) -> [Vec<Constraint>; 2] {
-        match self {
-            ConstraintSet::All => [constraints, Vec::new()],
-            ConstraintSet::Active(active) => active.split(problem, u0, constraints),
+        constraints: &mut Vec<Constraint>,
+        left_out: &mut Vec<Constraint>,
+    ) {
+        left_out.clear();
+        if let ConstraintSet::Active(active) = self {
+            let is_free = |constraint: &mut Constraint| !active.is_held(problem, u0, constraint);
+            left_out.extend(constraints.extract_if(.., is_free));
         }
     }
 
@@ -109,19 +111,12 @@ impl ActiveConstraints {
         !own.is_empty() && (is_behind || own.iter().any(faces_alike))
     }
 
-    fn split(
-        &self,
-        problem: &StepProblem,
-        u0: &[f64],
-        constraints: Vec<Constraint>,
-    ) -> [Vec<Constraint>; 2] {
-        let (held, free) = constraints.into_iter().partition(|constraint| {
-            let source = &constraint.source;
-            let [s, a, b, c] = source.nodes;
-            let is_held = |nodes| self.holds(source.slave_index, &problem.place(u0, nodes));
-            is_held([s, a, b]) || (source.target.corner.is_some() && is_held([s, b, c]))
-        });
-        [held, free]
+    /// Whether the slave node of a constraint is kept out of its segment, or of one of those at its corner.
+    fn is_held(&self, problem: &StepProblem, u0: &[f64], constraint: &Constraint) -> bool {
+        let source = &constraint.source;
+        let [s, a, b, c] = source.nodes;
+        let is_held = |nodes| self.holds(source.slave_index, &problem.place(u0, nodes));
+        is_held([s, a, b]) || (source.target.corner.is_some() && is_held([s, b, c]))
     }
 
     /// Adds a pair that touches with the given normal.

@@ -24,12 +24,18 @@ struct Touch {
 
 /// Closed pairs after each of the last passes.
 #[derive(Debug, Default)]
-pub(super) struct ContactHistory(VecDeque<Vec<Touch>>);
+pub(super) struct ContactHistory {
+    /// Those of one pass after the other.
+    touches: Vec<Touch>,
+    /// Their number in every pass.
+    counts: VecDeque<usize>,
+}
 
 impl ContactHistory {
     /// Forgets the passes so far.
     pub fn clear(&mut self) {
-        self.0.clear();
+        self.touches.clear();
+        self.counts.clear();
     }
 
     /// Takes in the pairs after a pass.
@@ -46,19 +52,42 @@ impl ContactHistory {
                 },
             }
         };
-        self.push(contact.acting().map(touch).collect());
+        self.push(contact.acting().map(touch));
     }
 
-    fn push(&mut self, touches: Vec<Touch>) {
-        if self.0.len() == PASSES {
-            self.0.pop_front();
+    fn push(&mut self, touches: impl Iterator<Item = Touch>) {
+        if self.counts.len() == PASSES
+            && let Some(oldest) = self.counts.pop_front()
+        {
+            self.touches.drain(..oldest);
         }
-        self.0.push_back(touches);
+        let before = self.touches.len();
+        self.touches.extend(touches);
+        self.counts.push_back(self.touches.len() - before);
+        self.make_room();
+    }
+
+    /// Room for as many pairs in all passes as in the last.
+    fn make_room(&mut self) {
+        let of_pass = self.counts.back().copied().unwrap_or(0);
+        let passes = PASSES - self.counts.len();
+        self.touches.reserve(of_pass * passes);
+        self.counts.reserve(passes);
+    }
+
+    /// Pairs of one pass after the other.
+    fn passes(&self) -> impl Iterator<Item = &[Touch]> {
+        let mut rest = self.touches.as_slice();
+        self.counts.iter().map(move |&count| {
+            let (pass, others) = rest.split_at(count);
+            rest = others;
+            pass
+        })
     }
 
     /// The slave nodes that went to and fro, with increasing slave indices.
     pub fn alternations(&self) -> Vec<Alternation> {
-        let all = self.0.iter().flatten().map(|touch| touch.slave_index);
+        let all = self.touches.iter().map(|touch| touch.slave_index);
         let mut slaves: Vec<usize> = all.collect();
         slaves.sort_unstable();
         slaves.dedup();
@@ -70,11 +99,11 @@ impl ContactHistory {
 
     /// The two states between which a slave node went to and fro, if it did.
     fn of_slave(&self, slave_index: usize) -> Option<Alternation> {
-        let own = |touches: &Vec<Touch>| -> Vec<Touch> {
+        let own = |touches: &[Touch]| -> Vec<Touch> {
             let is_own = |touch: &&Touch| touch.slave_index == slave_index;
             touches.iter().filter(is_own).copied().collect()
         };
-        let states: Vec<Vec<Touch>> = self.0.iter().map(own).collect();
+        let states: Vec<Vec<Touch>> = self.passes().map(own).collect();
         let recent = &states[states.len().saturating_sub(RECENT)..];
         if recent.windows(2).all(|pair| pair[0] == pair[1]) {
             return None;
@@ -125,7 +154,7 @@ mod tests {
         let mut history = ContactHistory::default();
         passes
             .iter()
-            .for_each(|touches| history.push(touches.to_vec()));
+            .for_each(|touches| history.push(touches.iter().copied()));
         history.alternations()
     }
 

@@ -56,6 +56,12 @@ struct Vectors {
     equilibrium: Equilibrium,
     /// Displacement U of the iterate.
     u: Vec<f64>,
+    /// Slave index and segment of the pairs closed at the start.
+    held: Vec<[usize; 2]>,
+    /// Its constraints until the contact forces take them over, then those of the pass before.
+    found: Vec<Constraint>,
+    /// Its constraints that do not count.
+    left_out: Vec<Constraint>,
     /// What the predictor leaves of the supports' motion, d_p.
     d_p: Vec<f64>,
     /// Its force theta2 K d_p.
@@ -79,8 +85,11 @@ pub(crate) struct Attempt<'a, 'm> {
 impl<'m> Attempt<'_, 'm> {
     /// Solves the increment; `before` are the pairs closed in the last one.
     pub fn solve(mut self, before: &ClosedPairs) -> Result<Solved, Failed> {
-        let mut trace = Trace::default();
-        let mut vectors = Vectors::default();
+        let mut trace = Trace::new(self.problem.settings.max_passes);
+        let mut vectors = Vectors {
+            held: before.segments(),
+            ..Vectors::default()
+        };
         let mut failed = Cause::NotConverged;
         for &rule in FactorRule::order(self.problem.settings.factorization) {
             trace.begin();
@@ -118,22 +127,22 @@ impl<'m> Attempt<'_, 'm> {
             // g, Dt and their rows in the iterate U = U0 + d
             write_sum(&start.u, &d, &mut v.u);
             let settled = pass >= SEARCHING_PASSES;
-            let [constraints, left_out] = self.constraints(&v.u, &contact, before, settled)?;
+            self.constraints(v, &contact, settled)?;
 
             // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1)
-            let v0p = impulses.start_velocity(problem, self.workspace, &constraints, start, dt)?;
+            let v0p = impulses.start_velocity(problem, self.workspace, &v.found, start, dt)?;
 
             // r = R_theta - F(U_theta) - M A, eq. (4.5)
             self.equilibrium(&v0p, [&v.u, &d], &mut v.equilibrium)?;
             trace.balance((v.residual).restricted(problem, &v.equilibrium.out_of_balance));
 
             // the forces at hand may balance r and close the gaps of the iterate
-            contact.relinearize(constraints);
+            contact.relinearize(&mut v.found);
             let iterate = Iterate::new(&v.equilibrium, &contact, [&v.u, &d]);
             let state = [settled, factors.stagnate()];
             let may_end = impulses.are_at_rest() && factors.are_near();
             if may_end && self.is_solved(&iterate, state, &mut v.residual, trace)? {
-                return self.finish([&v.u, &d], contact, left_out, impulses);
+                return self.finish([&v.u, &d], contact, &v.left_out, impulses);
             }
 
             // K* of eq. (4.6), and d_p at the supports, which takes the force theta2 K d_p
@@ -153,7 +162,7 @@ impl<'m> Attempt<'_, 'm> {
             // d <- d + dU, eq. (4.7)
             d.iter_mut().zip(&v.du).for_each(|(d, du)| *d += du);
             if impulses.rest(problem, &contact.closed) && has_converged {
-                return self.finish([&v.u, &d], contact, left_out, impulses);
+                return self.finish([&v.u, &d], contact, &v.left_out, impulses);
             }
             equal_forces.take_in(trace.correction(), settled);
             factors.take_in(trace.correction())?;
@@ -161,23 +170,21 @@ impl<'m> Attempt<'_, 'm> {
         Err(Cause::NotConverged)
     }
 
-    /// Constraints of the iterate `u`, `last` being those of the pass before and `start` the pairs closed
-    /// at the start: those that count, and the others.
+    /// Writes the constraints of the iterate, `last` being those of the pass before: those that count, and the
+    /// others.
     fn constraints(
         &mut self,
-        u: &[f64],
+        v: &mut Vectors,
         last: &ContactForces,
-        start: &ClosedPairs,
         settled: bool,
-    ) -> Result<[Vec<Constraint>; 2], Cause> {
-        let (problem, u0) = (self.problem, &self.start.u);
+    ) -> Result<(), Cause> {
+        let (problem, u0, u) = (self.problem, &self.start.u, &v.u);
         problem.check_segments(u)?;
-        let (before, held) = (&last.constraints, start.segments());
-        let mut constraints =
-            (self.workspace).constraints(problem, [u0, u], before, &held, settled);
-        let dt = self.interval.dt;
-        (constraints.iter_mut()).for_each(|constraint| constraint.take_slip_rate(dt));
-        Ok(self.set.split(problem, u0, constraints))
+        let (before, dt) = (&last.constraints, self.interval.dt);
+        (self.workspace).constraints(problem, [u0, u], before, (&v.held, settled), &mut v.found);
+        (v.found.iter_mut()).for_each(|constraint| constraint.take_slip_rate(dt));
+        (self.set).split(problem, u0, &mut v.found, &mut v.left_out);
+        Ok(())
     }
 
     /// Writes load, internal force and inertia of the iterate U = U0 + d.
@@ -311,14 +318,17 @@ impl<'m> Attempt<'_, 'm> {
 
     /// The constraints that did not count, without those that a free node past a corner, or at it, is
     /// behind: the line of the segment that it came from.
-    fn outside(&self, left_out: Vec<Constraint>, u: &[f64]) -> Vec<Constraint> {
-        let is_over = |constraint: &Constraint| {
+    fn outside<'c>(
+        &self,
+        left_out: &'c [Constraint],
+        u: &[f64],
+    ) -> impl Iterator<Item = &'c Constraint> {
+        let is_over = move |constraint: &Constraint| {
             let [s, a, b, _] = constraint.source.nodes;
             let xi = self.problem.place(u, [s, a, b]).xi;
             xi.min(1.0 - xi) > PROJECTION_BEYOND_ENDS
         };
-        let left_out = left_out.into_iter();
-        left_out.filter(|c| c.gap >= 0.0 || is_over(c)).collect()
+        left_out.iter().filter(move |c| c.gap >= 0.0 || is_over(c))
     }
 
     /// Motion and forces at the end of a converged increment whose last iterate is U, with the increment d
@@ -327,10 +337,10 @@ impl<'m> Attempt<'_, 'm> {
         &mut self,
         [u, d]: [&[f64]; 2],
         mut forces: ContactForces,
-        left_out: Vec<Constraint>,
+        left_out: &[Constraint],
         impulses: Impulses,
     ) -> Result<Solved, Cause> {
-        forces.add_open(self.outside(left_out, u));
+        forces.add_open(self.outside(left_out, u).cloned());
         let v0p = impulses.velocity(self.problem, self.workspace, self.start)?;
         let mut u = sum(&self.start.u, d);
         let mut equilibrium = Equilibrium::default();

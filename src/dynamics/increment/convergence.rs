@@ -1,11 +1,13 @@
 //! Convergence criterion of the passes: relative residual and correction with local scales and a
 //! round-off floor. Section 4 of docs/theory.md, Convergence.
 
+use smallvec::{SmallVec, smallvec};
+
 use super::forces::ContactForces;
 use crate::contact::tolerances::{SETTLED_OVERLAP, SOLVED_GAP};
 use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::results::{PassReport, Worst};
-use crate::dynamics::step::Parts;
+use crate::dynamics::step::{Parts, PerBody};
 use crate::lcp::ContactState;
 use crate::linear::larger;
 
@@ -25,30 +27,30 @@ const STAGNANT_NOISE: f64 = 4.0;
 pub(crate) struct Scales<'a> {
     parts: &'a Parts,
     /// Largest of the forces in equilibrium, of every part.
-    force: Vec<f64>,
+    force: PerBody,
     /// Round-off of the residual, of every part.
-    noise: Vec<f64>,
+    noise: PerBody,
     /// Largest displacement increment of every body.
-    increment: Vec<f64>,
+    increment: PerBody,
     /// Round-off of the displacements of every body.
-    resolution: Vec<f64>,
+    resolution: PerBody,
     tolerance: f64,
 }
 
 /// Lengths of every body.
 pub(crate) struct Lengths {
     /// Largest displacement U.
-    pub displacement: Vec<f64>,
+    pub displacement: PerBody,
     /// Largest displacement increment d.
-    pub increment: Vec<f64>,
+    pub increment: PerBody,
     /// Largest coordinate of a pair in contact.
-    pub position: Vec<f64>,
+    pub position: PerBody,
 }
 
 /// Residual of every part and correction of every body in a pass (force; length).
 pub(crate) struct Errors {
-    pub residual: Vec<f64>,
-    pub correction: Vec<f64>,
+    pub residual: PerBody,
+    pub correction: PerBody,
 }
 
 impl<'a> Scales<'a> {
@@ -60,7 +62,7 @@ impl<'a> Scales<'a> {
     /// not measured finer than that. Displacements that close a gap carry the round-off of x.
     pub fn new(
         parts: &'a Parts,
-        force: Vec<f64>,
+        force: PerBody,
         (stiffness, inertia): (&[f64], &[f64]),
         lengths: Lengths,
         tolerance: f64,
@@ -132,7 +134,7 @@ impl<'a> Scales<'a> {
     /// Whether residual and correction of every part and body are below the tolerance, or round-off.
     /// A residual that is all round-off says the same of the correction that follows from it.
     pub fn converged(&self, errors: &Errors) -> bool {
-        let mut is_noise = vec![true; self.increment.len()];
+        let mut is_noise: SmallVec<[bool; 8]> = smallvec![true; self.increment.len()];
         for (part, &body) in self.parts.of_parts().iter().enumerate() {
             let residual = errors.residual[part];
             let most = larger(self.tolerance * self.force[part], self.noise[part]);

@@ -1,10 +1,14 @@
 //! Forces and displacements of a pass, and its residual beside its scales. Section 4 of docs/theory.md,
 //! Convergence.
 
+use smallvec::smallvec;
+
 use super::convergence::{Errors, Lengths, Scales};
 use super::forces::ContactForces;
 use crate::dynamics::results::Cause;
-use crate::dynamics::step::{EffectiveStiffness, Equilibrium, Parts, StepProblem, check_finite};
+use crate::dynamics::step::{
+    EffectiveStiffness, Equilibrium, Parts, PerBody, StepProblem, check_finite,
+};
 use crate::linear::{larger, largest};
 
 /// Forces and displacements of a pass, over all dofs.
@@ -98,9 +102,9 @@ impl Pass<'_> {
     }
 
     /// The largest coordinate of the nodes of closed constraints with every body.
-    fn contact_positions(&self, problem: &StepProblem) -> Vec<f64> {
+    fn contact_positions(&self, problem: &StepProblem) -> PerBody {
         let [u, ..] = self.displacements;
-        let mut positions = vec![0.0; problem.parts.bodies()];
+        let mut positions: PerBody = smallvec![0.0; problem.parts.bodies()];
         for (constraint, _) in self.contact.acting() {
             let of_node = |node: usize| largest(&problem.position(u, node));
             let most = constraint.nodes().map(of_node).fold(0.0, larger);
@@ -136,7 +140,7 @@ impl Residual {
     }
 
     /// Largest absolute value in every part; `dof_of` are the dofs of the unknowns.
-    fn largest(&mut self, parts: &Parts, dof_of: &[usize]) -> Vec<f64> {
+    fn largest(&mut self, parts: &Parts, dof_of: &[usize]) -> PerBody {
         self.at_dofs.resize(self.all.len(), 0.0);
         for (&dof, value) in dof_of.iter().zip(&self.values) {
             self.at_dofs[dof] = *value;

@@ -10,6 +10,8 @@ const LAST: usize = 4;
 /// Growth of the corrections from their smallest to the last, or of the forces to be balanced from the
 /// first to the last, from which on passes diverged.
 const GROWTH: f64 = 10.0;
+/// Passes for which there is room at the start.
+const ROOM: usize = 100;
 /// Mean rate from which on the corrections count as not falling.
 const STALLED: f64 = 0.9;
 
@@ -34,6 +36,14 @@ pub(super) struct Trace {
 }
 
 impl Trace {
+    /// The trace of passes, of which there may be as many as given.
+    pub fn new(most_passes: usize) -> Self {
+        Trace {
+            passes: Vec::with_capacity(most_passes.min(ROOM)),
+            ..Trace::default()
+        }
+    }
+
     /// The passes begin with the predictor, perhaps anew.
     pub fn begin(&mut self) {
         self.earlier = self.passes.len();

@@ -116,13 +116,13 @@ impl Releasing<'_, '_> {
         let motion = Motion::at(u, &self.end.internal);
         let internal = problem.elements.internal_force(motion).ok()?;
         let load = (problem.loads).at(problem.elements, end, u);
-        let constraints = self.constraints(u);
+        let mut constraints = self.constraints(u);
         let (free, meter) = (&self.free, &mut self.workspace.meter);
         let mut stiffness = meter.time(|t| &mut t.assembly, || free.stiffness(problem, motion));
         let mut system = System::new(&mut stiffness, meter);
         system.factorize().ok()?;
         let mut forces = ContactForces::default();
-        forces.relinearize(constraints);
+        forces.relinearize(&mut constraints);
         let mut contact = ContactSystem {
             map: &free.map,
             system,
@@ -139,7 +139,8 @@ impl Releasing<'_, '_> {
     /// last pass, without friction, their gaps above what they may be.
     fn constraints(&mut self, u: &[f64]) -> Vec<Constraint> {
         let (start, held) = (&self.end.u, self.held.segments());
-        let found = (self.workspace).constraints(self.problem, [start, u], &[], &held, false);
+        let (way, mut found) = ([start.as_slice(), u], Vec::new());
+        (self.workspace).constraints(self.problem, way, &[], (&held, false), &mut found);
         let opens = |constraint: &Constraint| self.free.open(constraint);
         let above_least = |constraint: Constraint| Constraint {
             gap: constraint.gap - constraint.start_gap.min(0.0),

@@ -19,10 +19,12 @@ pub(crate) use bodies::{Hold, holds};
 pub(crate) use discretization::Discretization;
 pub(crate) use loads::{Interval, TimePoint};
 pub(crate) use mass::{Mass, dot};
-pub(crate) use matrices::{ClosedConstraints, EffectiveStiffness, FactoredMatrix, System};
+pub(crate) use matrices::{
+    ClosedConstraints, EffectiveStiffness, FactoredMatrix, ResponseVectors, System,
+};
 #[cfg(test)]
 pub(crate) use meter::Meter;
-pub(crate) use parts::Parts;
+pub(crate) use parts::{Parts, PerBody};
 pub(crate) use step_place::StepPlace;
 pub(crate) use step_problem::{
     Equilibrium, StartVelocity, StepProblem, check_finite, difference, sum, write_difference,

@@ -4,6 +4,8 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use smallvec::{SmallVec, smallvec};
+
 use crate::linear::{Assembled, larger, largest};
 use crate::model::{Equation, Model};
 
@@ -25,6 +27,9 @@ pub(crate) struct Parts {
     runs_of_bodies: Vec<Run>,
     runs_of_parts: Vec<Run>,
 }
+
+/// A value of every body, or part: up to eight are stored in place.
+pub(crate) type PerBody = SmallVec<[f64; 8]>;
 
 /// Dofs of consecutive nodes of a body or part.
 struct Run {
@@ -97,19 +102,19 @@ impl Parts {
     }
 
     /// Largest absolute value of every part; `values` over all dofs.
-    pub fn largest(&self, values: &[f64]) -> Vec<f64> {
+    pub fn largest(&self, values: &[f64]) -> PerBody {
         largest_of(&self.runs_of_parts, self.body_of.len(), values)
     }
 
     /// Largest absolute value of some quantities in every part, each over all dofs.
-    pub fn largest_of_all<'a>(&self, quantities: impl Iterator<Item = &'a [f64]>) -> Vec<f64> {
-        let mut most = vec![0.0; self.body_of.len()];
+    pub fn largest_of_all<'a>(&self, quantities: impl Iterator<Item = &'a [f64]>) -> PerBody {
+        let mut most: PerBody = smallvec![0.0; self.body_of.len()];
         quantities.for_each(|values| enlarge(&mut most, &self.runs_of_parts, values));
         most
     }
 
     /// Largest absolute value of every body; `values` over all dofs.
-    pub fn largest_of_bodies(&self, values: &[f64]) -> Vec<f64> {
+    pub fn largest_of_bodies(&self, values: &[f64]) -> PerBody {
         largest_of(&self.runs_of_bodies, self.bodies, values)
     }
 
@@ -166,8 +171,8 @@ fn united(mut first: Vec<usize>, equations: &[Equation]) -> Vec<usize> {
 }
 
 /// Largest absolute value of every group, given by its runs; `values` over all dofs.
-fn largest_of(runs: &[Run], count: usize, values: &[f64]) -> Vec<f64> {
-    let mut most = vec![0.0; count];
+fn largest_of(runs: &[Run], count: usize, values: &[f64]) -> PerBody {
+    let mut most = smallvec![0.0; count];
     enlarge(&mut most, runs, values);
     most
 }

@@ -11,8 +11,7 @@ use super::scheme::Weights;
 use super::unknowns::Unknowns;
 use crate::contact::tolerances::COLLAPSED_LENGTH;
 use crate::contact::{
-    Configurations, Constraint, ContactSurfaces, PairTarget, Projection, Search, find_targets,
-    position, project,
+    Configurations, Constraint, ContactSurfaces, PairTarget, Projection, position, project,
 };
 use crate::dynamics::results::{Cause, State};
 use crate::elements::Elements;
@@ -160,25 +159,19 @@ impl StepProblem<'_> {
         }
     }
 
-    /// Constraints between the displacements `u0` and `u` of an increment, which the search covers,
-    /// `before` being those of the last pass; rigid surfaces have none among themselves. Where the
-    /// passes have `settled`, slave nodes keep their targets.
+    /// Writes the constraints of pairs between the displacements `u0` and `u` of an increment; rigid
+    /// surfaces have none among themselves.
     pub fn constraints(
         &self,
-        search: &Search,
+        pairs: &[PairTarget],
         [u0, u]: [&[f64]; 2],
-        before: &[Constraint],
-        held: &[[usize; 2]],
-        settled: bool,
-    ) -> Vec<Constraint> {
-        let before: Vec<PairTarget> = before.iter().map(|c| c.source).collect();
+        constraints: &mut Vec<Constraint>,
+    ) {
         let configurations = self.configurations(u0, u);
-        find_targets(search, [u0, u], &before, held, settled)
-            .into_iter()
-            .filter(|source| self.unknowns.moves(&source.nodes))
-            .map(|source| Constraint::new(source, &configurations))
-            .filter(|constraint| self.unknowns.opens(constraint))
-            .collect()
+        let moving = (pairs.iter()).filter(|source| self.unknowns.moves(&source.nodes));
+        let all = moving.map(|source| Constraint::new(*source, &configurations));
+        constraints.clear();
+        constraints.extend(all.filter(|constraint| self.unknowns.opens(constraint)));
     }
 
     /// The configurations between which constraints of the scheme are linearised.

@@ -5,7 +5,9 @@ use super::loads::TimePoint;
 use super::matrices::{ClosedConstraints, EffectiveStiffness, StiffnessForm, System};
 use super::meter::Meter;
 use super::step_problem::{StepProblem, difference, sum};
-use crate::contact::{ClosedPairs, Constraint, Penetration, Search, find_penetration};
+use crate::contact::{
+    ClosedPairs, Constraint, PairTarget, Penetration, Search, find_penetration, find_targets,
+};
 use crate::dynamics::results::State;
 use crate::elements::Motion;
 use crate::linear::LinearError;
@@ -15,6 +17,8 @@ pub(crate) struct Workspace<'m> {
     pub stiffness: EffectiveStiffness,
     pub search: Search<'m>,
     pub meter: Meter,
+    /// The pairs of the last pass.
+    pairs: Vec<PairTarget>,
 }
 
 impl<'m> Workspace<'m> {
@@ -25,6 +29,7 @@ impl<'m> Workspace<'m> {
             stiffness: EffectiveStiffness::new(problem),
             search: Search::new(problem.contacts, x),
             meter: Meter::default(),
+            pairs: Vec::new(),
         }
     }
 
@@ -98,21 +103,30 @@ impl<'m> Workspace<'m> {
         self.meter.time(|t| &mut t.assembly, product)
     }
 
-    /// Constraints between the displacements `u0` and `u`, see [`StepProblem::constraints`].
+    /// Writes the constraints between the displacements `u0` and `u` of an increment, `before` being those of
+    /// the last pass and `held` slave index and segment of the pairs closed at the start. Where the
+    /// passes have `settled`, slave nodes keep their targets.
     pub fn constraints(
         &mut self,
         problem: &StepProblem,
-        [u0, u]: [&[f64]; 2],
+        increment: [&[f64]; 2],
         before: &[Constraint],
-        held: &[[usize; 2]],
-        settled: bool,
-    ) -> Vec<Constraint> {
-        let Workspace { search, meter, .. } = self;
-        meter.time(|t| &mut t.search, || search.cover(u));
-        meter.time(
-            |t| &mut t.contact,
-            || problem.constraints(search, [u0, u], before, held, settled),
-        )
+        (held, settled): (&[[usize; 2]], bool),
+        constraints: &mut Vec<Constraint>,
+    ) {
+        let Workspace {
+            search,
+            meter,
+            pairs,
+            ..
+        } = self;
+        meter.time(|t| &mut t.search, || search.cover(increment[1]));
+        let before = before.iter().map(|constraint| &constraint.source);
+        let write = || {
+            find_targets(search, increment, before, (held, settled), pairs);
+            problem.constraints(pairs, increment, constraints);
+        };
+        meter.time(|t| &mut t.contact, write);
     }
 
     /// Acceleration at the start of the analysis, M A = R - F, the supports being at rest; forces on nodes

@@ -25,7 +25,7 @@ pub(super) fn is_large(count: usize) -> bool {
 /// The constraints that enter a problem, by their places among all.
 pub(super) struct Chosen<'a> {
     pub all: &'a [Constraint],
-    pub places: Vec<usize>,
+    pub places: &'a [usize],
 }
 
 impl<'a> Chosen<'a> {
@@ -71,7 +71,8 @@ impl Motion<'_, '_> {
         let acting = self.chosen.constraints().into_iter();
         self.response
             .set_forces(system, acting.zip(forces.iter().copied()));
-        let all = self.response.gaps_and_slips(system, self.chosen.all);
+        let mut all = Vec::new();
+        (self.response).gaps_and_slips(system, self.chosen.all, &mut all);
         let of = |(k, &place): (usize, &usize)| {
             let held = |i: usize| self.held[k][i] * (forces[k][i] - self.near[k][i]);
             [0, 1].map(|i| all[place][i] + held(i))

@@ -19,6 +19,20 @@ pub(crate) struct ContactForces {
     pub problem_size: usize,
     /// Pivots of its solution.
     pub pivots: usize,
+    pub(super) choice: Choice,
+}
+
+/// Which constraints are in the complementarity problem of a pass, in memory that the next one uses again.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Choice {
+    /// Whether each of them is.
+    inside: Vec<bool>,
+    /// Their places.
+    places: Vec<usize>,
+    /// Gaps and slips without forces.
+    free: Vec<[f64; 2]>,
+    /// Gaps and slips with them.
+    after: Vec<[f64; 2]>,
 }
 
 impl ContactForces {
@@ -30,9 +44,10 @@ impl ContactForces {
         }
     }
 
-    /// Takes over the constraints of the next iterate, with the forces at hand.
-    pub fn relinearize(&mut self, constraints: Vec<Constraint>) {
-        self.constraints = constraints;
+    /// Takes over the constraints of the next iterate, with the forces at hand, in exchange for those of the
+    /// last.
+    pub fn relinearize(&mut self, constraints: &mut Vec<Constraint>) {
+        std::mem::swap(&mut self.constraints, constraints);
     }
 
     /// Whether every force at hand belongs to a constraint of the iterate.
@@ -41,7 +56,7 @@ impl ContactForces {
     }
 
     /// Adds constraints that carry no force.
-    pub fn add_open(&mut self, constraints: Vec<Constraint>) {
+    pub fn add_open(&mut self, constraints: impl IntoIterator<Item = Constraint>) {
         self.constraints.extend(constraints);
     }
 
@@ -98,23 +113,32 @@ impl ContactForces {
         (self.problem_size, self.pivots) = (0, 0);
         let overlap = weight.map_or(0.0, |_| SETTLED_OVERLAP);
         let was_closed = |constraint: &Constraint| before.closes(constraint.key);
-        let mut inside: Vec<bool> = self.constraints.iter().map(was_closed).collect();
+        let mut choice = std::mem::take(&mut self.choice);
+        let Choice {
+            inside,
+            places,
+            free,
+            after,
+        } = &mut choice;
+        inside.clear();
+        inside.extend(self.constraints.iter().map(was_closed));
         // g + Gn y and Dt + Gt y, eq. (5.2)
         let mut response = Response::begin(system, [d_p, r], &self.constraints)?;
-        let free = response.gaps_and_slips(system, &self.constraints);
-        let mut entered = inside.contains(&true) || self.enter(&mut inside, &free, overlap);
+        response.gaps_and_slips(system, &self.constraints, free);
+        let mut entered = inside.contains(&true) || self.enter(inside, free, overlap);
         while entered {
-            let chosen = Chosen {
-                all: &self.constraints,
-                places: (0..inside.len()).filter(|&k| inside[k]).collect(),
-            };
-            let guess = Guess::from_pass(&chosen.constraints(), &before, weight);
-            let by_bodies = system.solve_by_bodies(&mut response, &chosen, &free, &guess)?;
+            places.clear();
+            places.extend((0..inside.len()).filter(|&k| inside[k]));
+            let all = &self.constraints;
+            let chosen = Chosen { all, places };
+            let constraints = chosen.constraints();
+            let guess = Guess::from_pass(&constraints, &before, weight);
+            let by_bodies = system.solve_by_bodies(&mut response, &chosen, free, &guess)?;
             let solution = match by_bodies {
                 Some(solution) => solution,
                 None => {
                     let terms = |i: usize| chosen.places.iter().map(|&k| free[k][i]).collect();
-                    system.solve(&chosen.constraints(), [terms(0), terms(1)], &guess)?
+                    system.solve(&constraints, [terms(0), terms(1)], &guess)?
                 }
             };
             (self.closed, self.problem_size) = (solution.closed, chosen.places.len());
@@ -123,9 +147,10 @@ impl ContactForces {
                 .acting()
                 .map(|(constraint, pair)| (constraint, pair.force));
             response.set_forces(system, acting);
-            let after = response.gaps_and_slips(system, &self.constraints);
-            entered = self.enter(&mut inside, &after, overlap);
+            response.gaps_and_slips(system, &self.constraints, after);
+            entered = self.enter(inside, after, overlap);
         }
+        self.choice = choice;
         Ok(response.end(system, du)?)
     }
 
@@ -168,7 +193,7 @@ mod tests {
             dofs: (0..DOFS).collect(),
             slave_dofs: 6,
             force_rows: Rows::new(&row(&|_| 1.0), &row(&sign)),
-            other_derivative_rows: Some(Box::new(derivative)),
+            other_derivative_rows: Some(derivative),
             gap: -7.0,
             start_gap: 0.0,
             slip: 0.5,
@@ -202,7 +227,7 @@ mod tests {
             method,
         };
         let mut forces = ContactForces::default();
-        forces.relinearize(vec![wide(mu)]);
+        forces.relinearize(&mut vec![wide(mu)]);
         let mut du = Vec::new();
         let solved = forces.solve([&[0.0; DOFS], &[1.0; DOFS]], None, &mut system, &mut du);
         solved.expect("solved");

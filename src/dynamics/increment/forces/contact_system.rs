@@ -148,10 +148,12 @@ pub(super) fn closed_of(
     states: &[ContactState],
 ) -> ClosedPairs {
     let of_constraint = constraints.iter().zip(forces).zip(states);
-    of_constraint
-        .filter(|((_, force), _)| force[0] > 0.0)
-        .map(|((constraint, force), state)| ClosedPair::new(constraint, *force, *state))
-        .collect()
+    let closed = of_constraint.filter(|((_, force), _)| force[0] > 0.0);
+    let pairs =
+        closed.map(|((constraint, force), state)| ClosedPair::new(constraint, *force, *state));
+    let mut all = Vec::with_capacity(constraints.len());
+    all.extend(pairs);
+    all.into_iter().collect()
 }
 
 /// Equal-force rule, eq. (5.3): adds eps Q_kk (P_k - P_k^0) to gaps and slips, P^0 being the forces of

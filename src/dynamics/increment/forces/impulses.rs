@@ -187,12 +187,15 @@ fn by_bodies(
     dofs: usize,
     (guess, system): (&Guess, &mut ContactSystem),
 ) -> Result<Option<ContactSolution>, Cause> {
-    let places = 0..constraints.len();
+    if !is_large(constraints.len()) {
+        return Ok(None);
+    }
+    let places: Vec<usize> = (0..constraints.len()).collect();
     let chosen = |all| Chosen {
         all,
-        places: places.clone().collect(),
+        places: &places,
     };
-    if !is_large(constraints.len()) || !chosen(constraints).are_by_bodies(system) {
+    if !chosen(constraints).are_by_bodies(system) {
         return Ok(None);
     }
     let posed = |(k, constraint): (usize, &Constraint)| Constraint {
@@ -204,7 +207,8 @@ fn by_bodies(
     let chosen = chosen(&posed);
     let nothing = vec![0.0; dofs];
     let mut response = Response::begin(system, [&nothing, &nothing], &posed)?;
-    let free = response.gaps_and_slips(system, &posed);
+    let mut free = Vec::new();
+    response.gaps_and_slips(system, &posed, &mut free);
     system.solve_by_bodies(&mut response, &chosen, &free, guess)
 }
 
@@ -252,5 +256,6 @@ fn impulses(
         closed: solution.closed,
         pivots: solution.pivots,
         constraints,
+        ..ContactForces::default()
     })
 }

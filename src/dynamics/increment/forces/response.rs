@@ -3,6 +3,7 @@
 
 use super::contact_system::ContactSystem;
 use crate::contact::Constraint;
+use crate::dynamics::step::ResponseVectors;
 use crate::linear::LinearError;
 
 /// u + W (f + B^T P) of some constraints, W being the inverse of the system matrix: at the nodes of the
@@ -10,16 +11,7 @@ use crate::linear::LinearError;
 pub(super) struct Response<'a> {
     /// Displacements u, over all dofs.
     start: &'a [f64],
-    /// Nodes of the constraints, increasing.
-    nodes: Vec<usize>,
-    /// What their dofs depend on, increasing.
-    unknowns: Vec<usize>,
-    /// B^T P in the right-hand side (unknown, force).
-    forces: Vec<(usize, f64)>,
-    /// Values at the unknowns.
-    values: Vec<f64>,
-    /// The response at the nodes, over all dofs; elsewhere nothing of meaning.
-    at_nodes: Vec<f64>,
+    vectors: ResponseVectors,
 }
 
 impl<'a> Response<'a> {
@@ -32,41 +24,39 @@ impl<'a> Response<'a> {
         [start, f]: [&'a [f64]; 2],
         constraints: &[Constraint],
     ) -> Result<Self, LinearError> {
-        let mut nodes: Vec<usize> = constraints.iter().flat_map(Constraint::nodes).collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        let dofs = nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]);
-        let terms = dofs.flat_map(|dof| system.map.row(dof));
-        let mut unknowns: Vec<usize> = terms.map(|term| term.0).collect();
-        unknowns.sort_unstable();
-        unknowns.dedup();
-        system.system.begin(system.map, f)?;
-        let mut at_nodes = system.system.take_at_nodes();
-        at_nodes.resize(start.len(), 0.0);
-        Ok(Response {
-            start,
+        let mut vectors = system.system.take_vectors();
+        let ResponseVectors {
             nodes,
             unknowns,
-            forces: Vec::new(),
-            values: Vec::new(),
+            forces,
             at_nodes,
-        })
+            ..
+        } = &mut vectors;
+        replace(nodes, constraints.iter().flat_map(Constraint::nodes));
+        let dofs = nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]);
+        let terms = dofs.flat_map(|dof| system.map.row(dof));
+        replace(unknowns, terms.map(|term| term.0));
+        forces.clear();
+        at_nodes.resize(start.len(), 0.0);
+        system.system.begin(system.map, f)?;
+        Ok(Response { start, vectors })
     }
 
-    /// g + Gn y and Dt + Gt y of every constraint, y being the response so far.
+    /// Writes g + Gn y and Dt + Gt y of every constraint, y being the response so far.
     pub fn gaps_and_slips(
         &mut self,
         system: &mut ContactSystem,
         constraints: &[Constraint],
-    ) -> Vec<[f64; 2]> {
-        let Self {
-            start,
+        found: &mut Vec<[f64; 2]>,
+    ) {
+        let start = self.start;
+        let ResponseVectors {
             nodes,
             unknowns,
             values,
             at_nodes: y,
             ..
-        } = self;
+        } = &mut self.vectors;
         system.system.partial(unknowns, values);
         let value = |unknown: &usize| values[unknowns.partition_point(|u| u < unknown)];
         for &node in nodes.iter() {
@@ -80,7 +70,8 @@ impl<'a> Response<'a> {
                 (start[2 * node] + own[0], start[2 * node + 1] + own[1]);
         }
         let after = |c: &Constraint| [c.gap + c.gap_change(y), c.slip + c.slip_change(y)];
-        constraints.iter().map(after).collect()
+        found.clear();
+        found.extend(constraints.iter().map(after));
     }
 
     /// Takes forces of the given constraints into the right-hand side, in place of those
@@ -90,20 +81,20 @@ impl<'a> Response<'a> {
         system: &mut ContactSystem,
         acting: impl Iterator<Item = (&'c Constraint, [f64; 2])>,
     ) {
-        self.forces.iter_mut().for_each(|force| force.1 = -force.1);
-        let before = self.forces.len();
+        let forces = &mut self.vectors.forces;
+        forces.iter_mut().for_each(|force| force.1 = -force.1);
+        let before = forces.len();
         for (constraint, force) in acting {
             for (node, mut force) in constraint.nodal_forces(force) {
                 system.system.rotation().turn_node_back(node, &mut force);
                 for (dof, force) in [2 * node, 2 * node + 1].into_iter().zip(force) {
                     let terms = system.map.row(dof).iter();
-                    self.forces
-                        .extend(terms.map(|&(unknown, c)| (unknown, c * force)));
+                    forces.extend(terms.map(|&(unknown, c)| (unknown, c * force)));
                 }
             }
         }
-        system.system.add(&self.forces);
-        self.forces.drain(..before);
+        system.system.add(forces);
+        forces.drain(..before);
     }
 
     /// Writes the response, over all dofs.
@@ -115,7 +106,15 @@ impl<'a> Response<'a> {
         system: &mut ContactSystem,
         response: &mut Vec<f64>,
     ) -> Result<(), LinearError> {
-        system.system.give_back(self.at_nodes);
+        system.system.give_back(self.vectors);
         system.system.end(system.map, self.start, response)
     }
+}
+
+/// Puts numbers in place of those in a list: increasing, each once.
+fn replace(list: &mut Vec<usize>, numbers: impl Iterator<Item = usize>) {
+    list.clear();
+    list.extend(numbers);
+    list.sort_unstable();
+    list.dedup();
 }

@@ -194,7 +194,7 @@ mod tests {
             dofs: CONSTRAINED.into_iter().collect::<PerDof<usize>>(),
             slave_dofs: 2,
             force_rows: rows(0.0),
-            other_derivative_rows: Some(Box::new(rows(0.3))),
+            other_derivative_rows: Some(rows(0.3)),
             gap: 0.0,
             start_gap: 0.0,
             slip: 0.0,

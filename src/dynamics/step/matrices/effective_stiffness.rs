@@ -35,7 +35,22 @@ pub(crate) struct SolveVectors {
     pub forces: Vec<f64>,
     /// Right-hand side, over the unknowns.
     pub b: Vec<f64>,
-    /// The response at some nodes, over all dofs.
+    /// Those of the response at the nodes of constraints.
+    pub response: ResponseVectors,
+}
+
+/// Vectors of the response at the nodes of some constraints.
+#[derive(Default)]
+pub(crate) struct ResponseVectors {
+    /// The nodes, increasing.
+    pub nodes: Vec<usize>,
+    /// What their dofs depend on, increasing.
+    pub unknowns: Vec<usize>,
+    /// Forces of the constraints in the right-hand side (unknown, force).
+    pub forces: Vec<(usize, f64)>,
+    /// Values at the unknowns.
+    pub values: Vec<f64>,
+    /// The response at the nodes, over all dofs; elsewhere nothing of meaning.
     pub at_nodes: Vec<f64>,
 }
 

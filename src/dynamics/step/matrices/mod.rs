@@ -5,6 +5,6 @@ mod effective_stiffness;
 mod system;
 
 pub(crate) use effective_stiffness::{
-    ClosedConstraints, EffectiveStiffness, FactoredMatrix, StiffnessForm,
+    ClosedConstraints, EffectiveStiffness, FactoredMatrix, ResponseVectors, StiffnessForm,
 };
 pub(crate) use system::System;

@@ -1,7 +1,7 @@
 //! A system matrix of a step, K* or M, whose work is measured: solves, in one go or in parts, and its
 //! complementarity problems. Sections 4 and 5 of docs/theory.md.
 
-use super::effective_stiffness::{FactoredMatrix, SolveVectors};
+use super::effective_stiffness::{FactoredMatrix, ResponseVectors, SolveVectors};
 use crate::contact::{Constraint, Scope, frictional_lcp};
 use crate::dynamics::step::meter::Meter;
 use crate::lcp::{
@@ -97,13 +97,13 @@ impl<'a> System<'a> {
     }
 
     /// Memory for the response at some nodes, which [`Self::give_back`] gives back.
-    pub fn take_at_nodes(&mut self) -> Vec<f64> {
-        std::mem::take(&mut self.matrix.vectors.at_nodes)
+    pub fn take_vectors(&mut self) -> ResponseVectors {
+        std::mem::take(&mut self.matrix.vectors.response)
     }
 
     /// Gives memory back.
-    pub fn give_back(&mut self, at_nodes: Vec<f64>) {
-        self.matrix.vectors.at_nodes = at_nodes;
+    pub fn give_back(&mut self, response: ResponseVectors) {
+        self.matrix.vectors.response = response;
     }
 
     /// Checks the residual of the last solution.
