@@ -126,29 +126,40 @@ impl Substitution {
             side.clear_path(limb);
         }
         f.for_each(|(place, value)| self.limbs[place.limb].x[place.row] += value);
-        for (limb, number) in limbs.iter().zip(0..) {
-            let (before, rest) = self.limbs.split_at_mut(number);
-            let side = &mut rest[0];
-            for (branch, of_branch) in limbs.iter().zip(before) {
-                if branch.trunk == Some(number) && !of_branch.path.is_empty() {
-                    add(&mut side.x, &of_branch.x[branch.unknowns.len()..]);
-                }
-            }
+        let (threads, branches) = (factor.is_substituted_on_threads(), factor.branches);
+        let (of_branches, of_trunks) = self.limbs.split_at_mut(branches);
+        let limbs = &factor.limbs[..branches];
+        for_each(threads, limbs, of_branches, |_, limb, side| {
             side.forward_on_path(limb, factor.values());
             side.take_path(limb);
-        }
+        });
+        let trunks = &factor.limbs[branches..];
+        for_each(threads, trunks, of_trunks, |number, trunk, side| {
+            for (limb, of_limb) in limbs.iter().zip(&*of_branches) {
+                if limb.trunk == Some(branches + number) && !of_limb.path.is_empty() {
+                    add(&mut side.x, &of_limb.x[limb.unknowns.len()..]);
+                }
+            }
+            side.forward_on_path(trunk, factor.values());
+            side.take_path(trunk);
+        });
     }
 
     /// x = L^-T D^-1 z on the paths.
     pub fn on_paths(&mut self, factor: &Factor) {
-        for (number, limb) in factor.limbs.iter().enumerate().rev() {
-            let (before, trunks) = self.limbs.split_at_mut(number + 1);
-            let side = &mut before[number];
+        let (threads, branches) = (factor.is_substituted_on_threads(), factor.branches);
+        let (of_branches, of_trunks) = self.limbs.split_at_mut(branches);
+        let trunks = &factor.limbs[branches..];
+        for_each(threads, trunks, of_trunks, |_, trunk, side| {
+            side.backward_on_path(trunk, factor.values())
+        });
+        let limbs = &factor.limbs[..branches];
+        for_each(threads, limbs, of_branches, |_, limb, side| {
             if !side.path.is_empty() {
-                side.stand_on(limb, trunks, number + 1);
+                side.stand_on(limb, of_trunks, branches);
                 side.backward_on_path(limb, factor.values());
             }
-        }
+        });
     }
 
     /// x at a place of the paths.
