@@ -1,6 +1,8 @@
 //! Rotations of bodies as block diagonal matrices over the dofs. Section 4 of docs/theory.md, Turned
 //! factors.
 
+use smallvec::SmallVec;
+
 /// R: turns x and y of every node by the angle of its body. W is the inverse of a matrix, R W R^T
 /// that of the matrix turned with the bodies.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -12,10 +14,18 @@ pub struct Rotation {
 impl Rotation {
     /// The rotation of bodies by the given angles (rad); `body_of` of every node.
     pub fn new(angles: &[f64], body_of: &[usize]) -> Self {
-        let of_bodies: Vec<[f64; 2]> = angles.iter().map(|a| [a.cos(), a.sin()]).collect();
-        Rotation {
-            nodes: body_of.iter().map(|&body| of_bodies[body]).collect(),
-        }
+        let mut rotation = Rotation::default();
+        rotation.set(angles, body_of);
+        rotation
+    }
+
+    /// Becomes another one, in the same memory.
+    pub fn set(&mut self, angles: &[f64], body_of: &[usize]) {
+        let of_bodies = angles.iter().map(|a| [a.cos(), a.sin()]);
+        let of_bodies: SmallVec<[[f64; 2]; 8]> = of_bodies.collect();
+        self.nodes.clear();
+        self.nodes
+            .extend(body_of.iter().map(|&body| of_bodies[body]));
     }
 
     /// v <- R v, `v` over all dofs.

@@ -79,9 +79,9 @@ impl Compliance {
         self.inverses.clear();
     }
 
-    /// Turns W with the bodies, to R W R^T, since the matrix was factorised.
-    pub fn turn(&mut self, rotation: Rotation) {
-        self.rotation = rotation;
+    /// Turns W with the bodies, to R W R^T, by their angles since the matrix was factorised (rad).
+    pub fn turn(&mut self, angles: &[f64], body_of: &[usize]) {
+        self.rotation.set(angles, body_of);
     }
 
     /// R of the bodies since the matrix was factorised.

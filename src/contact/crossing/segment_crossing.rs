@@ -3,7 +3,7 @@
 //! (paper eq. 50 without its frozen normal).
 
 use super::quartic::{Quartic, Zero, Zeros};
-use crate::contact::tolerances::{CROSS_ROUND_OFF, CROSSING_BEYOND_ENDS};
+use crate::contact::tolerances::{CLEAR_CROSS, CROSS_ROUND_OFF, CROSSING_BEYOND_ENDS};
 use crate::vectors::{cross, difference, dot};
 
 /// Motion of a node: x + v t + a t^2/2.
@@ -69,6 +69,9 @@ pub struct Crossing {
 /// For motion of second order r x e is a quartic in time with the sign of the gap. A node that
 /// moves along the line of the segment meets it once, when it reaches one of its ends.
 pub fn crossings(nodes: &[Motion; 3], dt: f64) -> Vec<Crossing> {
+    if stays_on_one_side(nodes, dt) {
+        return Vec::new();
+    }
     let mut found = line_crossings(nodes, dt);
     found.retain_mut(|crossing| {
         let is_on = (-CROSSING_BEYOND_ENDS..=1.0 + CROSSING_BEYOND_ENDS).contains(&crossing.xi);
@@ -76,6 +79,28 @@ pub fn crossings(nodes: &[Motion; 3], dt: f64) -> Vec<Crossing> {
         is_on
     });
     found
+}
+
+/// Whether a node on a straight path is clearly on one side of the line of the segment all the time.
+///
+/// r x e is quadratic then: there is no zero where its Bernstein coefficients r0 x e0,
+/// (r0 x e1 + r1 x e0)/2 and r1 x e1 have one sign.
+fn stays_on_one_side(nodes: &[Motion; 3], dt: f64) -> bool {
+    if nodes.iter().any(|node| node.acceleration != [0.0; 2]) {
+        return false;
+    }
+    let [s, a, b] = nodes;
+    let [start, end] = [0.0, dt].map(|t| {
+        let at = |node: &Motion| [0, 1].map(|i| node.position[i] + node.velocity[i] * t);
+        let a = at(a);
+        [difference(a, at(s)), difference(a, at(b))]
+    });
+    let [[r, e], [r1, e1]] = [start, end];
+    let middle = (cross(r, e1) + cross(r1, e)) / 2.0;
+    let sum = |p: [f64; 2], q: [f64; 2]| p[0].abs() + p[1].abs() + q[0].abs() + q[1].abs();
+    let clear = CLEAR_CROSS * sum(r, r1) * sum(e, e1);
+    let crosses = [cross(r, e), middle, cross(r1, e1)];
+    crosses.iter().all(|c| *c > clear) || crosses.iter().all(|c| *c < -clear)
 }
 
 /// The same for the infinite line through the segment.

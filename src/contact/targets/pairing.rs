@@ -56,31 +56,38 @@ pub fn find_targets<'p>(
             slave: listed.slave,
             held_by,
         };
-        let mut targets = node.targets(listed.candidates());
+        let found = node.targets(listed.candidates());
         let mut own = Targets::new();
         while let Some(pair) = before.next_if(|pair| pair.slave_index <= index) {
             own.push(pair.target);
         }
-        if !own.is_empty() && (settled || targets.is_empty()) {
-            keep(&node, own, settled, &mut targets);
+        let keeps = !own.is_empty() && (settled || found.is_empty());
+        if keeps {
+            keep(&node, &found, settled, &mut own);
         }
-        for target in targets {
+        for &target in if keeps { &own } else { &found } {
             pairs.push(pair_target(&listed, target));
         }
     }
     remove_twins(pairs);
 }
 
-/// Keeps some of the targets that a slave node had `before`, in the pass before.
-fn keep(node: &SlaveNode, mut before: Targets, settled: bool, targets: &mut Targets) {
+/// Leaves those of the targets that a slave node had in the pass before which it keeps, and adds what is
+/// found beside them.
+fn keep(node: &SlaveNode, found: &Targets, settled: bool, targets: &mut Targets) {
     let beyond = if settled {
         KEPT_WHEN_SETTLED
     } else {
         KEPT_BEYOND_ENDS
     };
-    before.retain(|target| node.is_over(target, beyond));
-    targets.retain(|found| !before.iter().any(|old| node.is_same_face(old, found)));
-    targets.insert_many(0, before);
+    targets.retain(|target| node.is_over(target, beyond));
+    let kept = targets.len();
+    for target in found {
+        let mut old = targets[..kept].iter();
+        if !old.any(|old| node.is_same_face(old, target)) {
+            targets.push(*target);
+        }
+    }
     targets.sort_by_key(|target| target.segment);
 }
 

@@ -116,13 +116,14 @@ impl SlaveNode<'_> {
     /// Whether two targets belong to one run of segments round convex corners, of which one is
     /// enough.
     pub fn is_same_face(&self, one: &ContactTarget, other: &ContactTarget) -> bool {
-        one.segments().any(|i| {
-            other.segments().any(|j| {
-                i == j
-                    || (self.surfaces.next[i] == Some(j) && self.corner_sine(i, j) >= 0.0)
-                    || (self.surfaces.next[j] == Some(i) && self.corner_sine(j, i) >= 0.0)
+        one.segment == other.segment
+            || one.segments().any(|i| {
+                other.segments().any(|j| {
+                    i == j
+                        || (self.surfaces.next[i] == Some(j) && self.corner_sine(i, j) >= 0.0)
+                        || (self.surfaces.next[j] == Some(i) && self.corner_sine(j, i) >= 0.0)
+                })
             })
-        })
     }
 
     /// Lists the segments into which the node projects, and the two at a corner where it projects into

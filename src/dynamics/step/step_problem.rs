@@ -168,10 +168,13 @@ impl StepProblem<'_> {
         constraints: &mut Vec<Constraint>,
     ) {
         let configurations = self.configurations(u0, u);
-        let moving = (pairs.iter()).filter(|source| self.unknowns.moves(&source.nodes));
-        let all = moving.map(|source| Constraint::new(*source, &configurations));
         constraints.clear();
-        constraints.extend(all.filter(|constraint| self.unknowns.opens(constraint)));
+        for source in pairs.iter().filter(|pair| self.unknowns.moves(&pair.nodes)) {
+            let constraint = Constraint::new(*source, &configurations);
+            if self.unknowns.opens(&constraint) {
+                constraints.push(constraint);
+            }
+        }
     }
 
     /// The configurations between which constraints of the scheme are linearised.

@@ -1,10 +1,12 @@
 //! Angles of bodies, by which the factors of K* turn with them. Section 4 of docs/theory.md, Turned
 //! factors.
 
+use smallvec::{SmallVec, smallvec};
+
 use super::hold::{Hold, holds};
+use crate::dynamics::step::PerBody;
 use crate::dynamics::step::step_problem::StepProblem;
 use crate::elements::Motion;
-use crate::linear::Rotation;
 use crate::vectors::{cross, difference, dot};
 
 /// Angles of the bodies that are free or turn about one node, in the configuration in which K* was
@@ -14,7 +16,7 @@ pub(crate) struct BodyAngles {
     /// bodies that are held.
     arms: Vec<[f64; 2]>,
     /// Angle of every body (rad).
-    assembled: Vec<f64>,
+    assembled: PerBody,
 }
 
 impl BodyAngles {
@@ -31,7 +33,7 @@ impl BodyAngles {
         };
         BodyAngles {
             arms: body_of.iter().enumerate().map(arm).collect(),
-            assembled: vec![0.0; holds.len()],
+            assembled: smallvec![0.0; holds.len()],
         }
     }
 
@@ -40,24 +42,24 @@ impl BodyAngles {
         self.assembled = self.angles(problem, motion);
     }
 
-    /// The rotation from the configuration in which K* was assembled to that of a motion.
-    pub fn rotation(&self, problem: &StepProblem, motion: Motion) -> Rotation {
+    /// Angles of the bodies from the configuration in which K* was assembled to that of a motion (rad).
+    pub fn since_assembly(&self, problem: &StepProblem, motion: Motion) -> PerBody {
         let angles = self.angles(problem, motion);
         let since = angles.iter().zip(&self.assembled).map(|(a, b)| a - b);
-        Rotation::new(&since.collect::<Vec<_>>(), problem.parts.of_nodes())
+        since.collect()
     }
 
     /// Mean rotation of every body in the configuration of a motion (rad), in the energy-momentum form
     /// that halfway:
     ///
     /// phi = atan2(sum m r0 x r, sum m r0.r), eq. (4.21), r from any point, since sum m r0 = 0
-    fn angles(&self, problem: &StepProblem, motion: Motion) -> Vec<f64> {
+    fn angles(&self, problem: &StepProblem, motion: Motion) -> PerBody {
         let u = |dof: usize| match motion.start {
             Some(start) => (start[dof] + motion.end[dof]) / 2.0,
             None => motion.end[dof],
         };
         let x = &problem.model.mesh.coordinates;
-        let mut sums = vec![[0.0; 2]; self.assembled.len()];
+        let mut sums: SmallVec<[[f64; 2]; 8]> = smallvec![[0.0; 2]; self.assembled.len()];
         for (node, &body) in problem.parts.of_nodes().iter().enumerate() {
             let r = [x[node][0] + u(2 * node), x[node][1] + u(2 * node + 1)];
             sums[body][0] += cross(self.arms[node], r);

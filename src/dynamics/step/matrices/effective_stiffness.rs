@@ -225,8 +225,8 @@ impl EffectiveStiffness {
 
     /// Turns the factors of K* with the bodies, to the configuration of a motion, eq. (4.20).
     pub fn turn(&mut self, problem: &StepProblem, motion: Motion) {
-        let rotation = self.angles.rotation(problem, motion);
-        self.k.compliance.turn(rotation);
+        let angles = self.angles.since_assembly(problem, motion);
+        (self.k.compliance).turn(&angles, problem.parts.of_nodes());
     }
 
     /// Adds the stiffness of the closed constraints to K*, to be factorised next.
