@@ -1,6 +1,8 @@
 //! Symmetric blocks that are added to an assembled matrix beyond its pattern: what couples unknowns
 //! that no element connects. Section 4 of docs/theory.md.
 
+use std::ops::Range;
+
 use nalgebra::DMatrix;
 use sprs::{CsMat, CsMatView};
 
@@ -69,24 +71,47 @@ impl AddedBlocks {
             rows: Vec::with_capacity(matrix.nnz() + self.entries.len()),
             values: Vec::with_capacity(matrix.nnz() + self.entries.len()),
         };
-        let mut added = self.entries.into_iter().peekable();
-        for (column, own) in matrix.outer_iterator().enumerate() {
-            for (row, &value) in own.iter() {
-                while let Some(entry) = added.next_if(|e| (e.0, e.1) < (column, row)) {
-                    sum.push(entry.1, entry.2);
-                }
-                sum.push(row, value);
-            }
-            while let Some(entry) = added.next_if(|e| e.0 == column) {
-                sum.push(entry.1, entry.2);
-            }
-            sum.starts.push(sum.rows.len());
+        let mut next = 0;
+        for added in self.entries.chunk_by(|one, other| one.0 == other.0) {
+            let column = added[0].0;
+            sum.take(matrix, next..column);
+            sum.merge(matrix, column, added);
+            next = column + 1;
         }
+        sum.take(matrix, next..n);
         CsMat::new_csc((n, n), sum.starts, sum.rows, sum.values)
     }
 }
 
 impl Columns {
+    /// Takes over columns of a matrix as they are.
+    fn take(&mut self, matrix: CsMatView<'_, f64>, columns: Range<usize>) {
+        let starts = matrix.indptr();
+        let ends = &starts.raw_storage()[columns.start..=columns.end];
+        let entries = ends[0]..ends[columns.len()];
+        let first = self.rows.len();
+        self.starts
+            .extend(ends[1..].iter().map(|end| end - ends[0] + first));
+        self.rows
+            .extend_from_slice(&matrix.indices()[entries.clone()]);
+        self.values.extend_from_slice(&matrix.data()[entries]);
+    }
+
+    /// Adds the next column: that of a matrix and entries of it, in the order of their rows.
+    fn merge(&mut self, matrix: CsMatView<'_, f64>, column: usize, added: &[(usize, usize, f64)]) {
+        let entries = matrix.indptr().outer_inds_sz(column);
+        let own = (matrix.indices()[entries.clone()].iter()).zip(&matrix.data()[entries]);
+        let mut added = added.iter().peekable();
+        for (&row, &value) in own {
+            while let Some(entry) = added.next_if(|entry| entry.1 < row) {
+                self.push(entry.1, entry.2);
+            }
+            self.push(row, value);
+        }
+        added.for_each(|entry| self.push(entry.1, entry.2));
+        self.starts.push(self.rows.len());
+    }
+
     /// Adds an entry to the last column, whose rows come in increasing order.
     fn push(&mut self, row: usize, value: f64) {
         let first = self.starts[self.starts.len() - 1];

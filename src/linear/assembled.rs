@@ -29,6 +29,8 @@ struct Positions {
     positions: Vec<u32>,
     /// Start of each element in `positions`, and their end.
     starts: Vec<usize>,
+    /// Position of every entry of the diagonal.
+    diagonal: Vec<u32>,
     /// Terms of the entries whose dofs follow others, element by element.
     couplings: Vec<Coupling>,
 }
@@ -67,14 +69,20 @@ impl Pattern {
             rows: Vec::new(),
         };
         let mut column = Vec::new();
+        let mut last: &[usize] = &[];
         for unknown in 0..map.unknowns() {
-            column.clear();
-            column.push(unknown);
-            for &element in &of_unknowns[starts[unknown]..starts[unknown + 1]] {
-                column.extend(unknowns(element));
+            let elements = &of_unknowns[starts[unknown]..starts[unknown + 1]];
+            // both dofs of a node have the same elements, and columns
+            if elements.is_empty() || elements != last {
+                column.clear();
+                column.push(unknown);
+                for &element in elements {
+                    column.extend(unknowns(element));
+                }
+                column.sort_unstable();
+                column.dedup();
             }
-            column.sort_unstable();
-            column.dedup();
+            last = elements;
             pattern.rows.extend(&column);
             pattern.starts.push(pattern.rows.len());
         }
@@ -83,9 +91,18 @@ impl Pattern {
 
     /// Position in the values of an entry.
     fn position(&self, row: usize, column: usize) -> u32 {
+        self.position_near(row, column, 0)
+    }
+
+    /// The same, which may be just after that of another entry.
+    fn position_near(&self, row: usize, column: usize, other: u32) -> u32 {
         let start = self.starts[column];
         let rows = &self.rows[start..self.starts[column + 1]];
-        let position = start + rows.partition_point(|r| *r < row);
+        let next = (other as usize + 1).wrapping_sub(start);
+        let position = match rows.get(next) {
+            Some(r) if *r == row => start + next,
+            _ => start + rows.partition_point(|r| *r < row),
+        };
         debug_assert!(position < DISTRIBUTED as usize, "matrices fit into memory");
         position as u32
     }
@@ -117,9 +134,13 @@ impl Positions {
         let pairs = dofs
             .iter()
             .flat_map(|column| dofs.iter().map(move |row| (row, column)));
+        let mut last = 0;
         for (entry, (&row, &column)) in pairs.enumerate() {
             let position = match (map.row(row), map.row(column)) {
-                (&[(row, 1.0)], &[(column, 1.0)]) => pattern.position(row, column),
+                (&[(row, 1.0)], &[(column, 1.0)]) => {
+                    last = pattern.position_near(row, column, last);
+                    last
+                }
                 (rows, columns) => {
                     for &(column, c) in columns {
                         self.couplings.extend(rows.iter().map(|&(row, r)| Coupling {
@@ -158,6 +179,7 @@ impl Assembled {
         let mut positions = Positions {
             positions: Vec::new(),
             starts: vec![0],
+            diagonal: (0..n).map(|i| pattern.position(i, i)).collect(),
             couplings: Vec::new(),
         };
         for dofs in elements {
@@ -240,7 +262,8 @@ impl Assembled {
 
     /// The entries of the diagonal.
     pub fn diagonal(&self) -> impl Iterator<Item = f64> {
-        (0..self.size()).map(|i| self.matrix.get(i, i).copied().unwrap_or(0.0))
+        let (diagonal, values) = (&self.positions.diagonal, self.matrix.data());
+        diagonal.iter().map(|&position| values[position as usize])
     }
 }
 

@@ -264,12 +264,21 @@ fn residual_and_size(
     let (mut error, mut scale) = (0.0, 0.0);
     for (ends, (b, terms)) in starts.windows(2).zip(b.iter().zip(terms)) {
         let entries = ends[0]..ends[1];
-        let (mut residual, mut size) = (*b, *terms);
-        for (value, &row) in values[entries.clone()].iter().zip(&rows[entries]) {
+        let (mut residual, mut size) = ([*b, 0.0], [*terms, 0.0]);
+        let mut take = |side: usize, value: f64, row: usize| {
             let term = value * x[row];
-            residual -= term;
-            size += term.abs();
+            residual[side] -= term;
+            size[side] += term.abs();
+        };
+        // the terms of x and y side by side
+        let (twos, rest) = values[entries.clone()].as_chunks::<2>();
+        let (rows_of_twos, rows_of_rest) = rows[entries].as_chunks::<2>();
+        for ([p, q], [i, j]) in twos.iter().zip(rows_of_twos) {
+            take(0, *p, *i);
+            take(1, *q, *j);
         }
+        (rest.iter().zip(rows_of_rest)).for_each(|(value, row)| take(0, *value, *row));
+        let [residual, size] = [residual[0] + residual[1], size[0] + size[1]];
         (error, scale) = (larger(error, residual.abs()), larger(scale, size));
     }
     [error, scale]

@@ -7,7 +7,7 @@ use smallvec::SmallVec;
 /// that of the matrix turned with the bodies.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Rotation {
-    /// Cosine and sine of the angle of every node; none where no body is turned.
+    /// Cosine and sine of the angle of every node; none where no body is turned, so that it costs nothing.
     nodes: Vec<[f64; 2]>,
 }
 
@@ -21,11 +21,19 @@ impl Rotation {
 
     /// Becomes another one, in the same memory.
     pub fn set(&mut self, angles: &[f64], body_of: &[usize]) {
+        self.nodes.clear();
+        if angles.iter().all(|&angle| angle == 0.0) {
+            return;
+        }
         let of_bodies = angles.iter().map(|a| [a.cos(), a.sin()]);
         let of_bodies: SmallVec<[[f64; 2]; 8]> = of_bodies.collect();
-        self.nodes.clear();
         self.nodes
             .extend(body_of.iter().map(|&body| of_bodies[body]));
+    }
+
+    /// Whether no body is turned.
+    pub fn is_identity(&self) -> bool {
+        self.nodes.is_empty()
     }
 
     /// v <- R v, `v` over all dofs.
@@ -110,8 +118,10 @@ mod tests {
     fn without_turned_bodies_no_bit_changes() {
         let mut v = [-0.0, 0.1, f64::MIN_POSITIVE, 3.0];
         let bits = v.map(f64::to_bits);
-        Rotation::default().turn(&mut v);
-        Rotation::default().turn_row(&[0, 1, 2, 3], &mut v);
+        let r = Rotation::new(&[0.0, -0.0], &[1, 0]);
+        r.turn(&mut v);
+        r.turn_row(&[0, 1, 2, 3], &mut v);
         assert_eq!(v.map(f64::to_bits), bits);
+        assert!(r.is_identity() && !Rotation::new(&[0.0, 0.1], &[1, 0]).is_identity());
     }
 }

@@ -1,6 +1,8 @@
 //! Linear map T from unknowns q to degrees of freedom u, sparse by rows. Section 3 of
 //! docs/theory.md (u = T q + g).
 
+use std::ops::Range;
+
 /// The matrix T of u = T q + g: every dof is a sum of terms c q_k.
 ///
 /// A free dof has a row of the identity, a prescribed one an empty row, one that follows others by
@@ -12,8 +14,8 @@ pub struct Transformation {
     starts: Vec<usize>,
     /// Unknown and coefficient of every term, row by row.
     terms: Vec<(usize, f64)>,
-    /// Dof of every unknown, where all rows are empty or of the identity.
-    selected: Option<Vec<usize>>,
+    /// Dofs of the unknowns one after the other, where all rows are empty or of the identity.
+    selected: Option<Vec<Range<usize>>>,
 }
 
 impl Transformation {
@@ -34,17 +36,21 @@ impl Transformation {
         map
     }
 
-    /// Dof of every unknown, if each is that of one dof.
-    fn selection(&self) -> Option<Vec<usize>> {
-        let mut selected = Vec::with_capacity(self.unknowns);
+    /// Dofs of the unknowns in ranges, if each unknown is that of one dof, in their order.
+    fn selection(&self) -> Option<Vec<Range<usize>>> {
+        let (mut selected, mut count) = (Vec::<Range<usize>>::new(), 0);
         for (dof, row) in self.rows().enumerate() {
             match row {
-                [] => {}
-                [(unknown, c)] if *unknown == selected.len() && *c == 1.0 => selected.push(dof),
+                [] => continue,
+                [(unknown, c)] if *unknown == count && *c == 1.0 => count += 1,
                 _ => return None,
             }
+            match selected.last_mut() {
+                Some(range) if range.end == dof => range.end += 1,
+                _ => selected.push(dof..dof + 1),
+            }
         }
-        (selected.len() == self.unknowns).then_some(selected)
+        (count == self.unknowns).then_some(selected)
     }
 
     /// The identity of size `n`.
@@ -79,7 +85,9 @@ impl Transformation {
     pub fn write_restricted(&self, v: &[f64], restricted: &mut Vec<f64>) {
         restricted.clear();
         if let Some(selected) = &self.selected {
-            restricted.extend(selected.iter().map(|&dof| v[dof]));
+            for dofs in selected {
+                restricted.extend_from_slice(&v[dofs.clone()]);
+            }
             return;
         }
         // adding to -0.0 keeps every value, the sign of a zero included
@@ -94,7 +102,12 @@ impl Transformation {
     /// Adds T q to a vector v over all dofs.
     pub fn add(&self, q: &[f64], v: &mut [f64]) {
         if let Some(selected) = &self.selected {
-            selected.iter().zip(q).for_each(|(&dof, q)| v[dof] += q);
+            let mut rest = q;
+            for dofs in selected {
+                let (q, after) = rest.split_at(dofs.len());
+                v[dofs.clone()].iter_mut().zip(q).for_each(|(v, q)| *v += q);
+                rest = after;
+            }
             return;
         }
         for (row, value) in self.rows().zip(v) {
@@ -128,6 +141,36 @@ mod tests {
             let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
             prop_assert!((dot(&v, &u) - dot(&t.restrict(&v), &q)).abs() < 1e-9);
         }
+    }
+
+    #[test]
+    fn prescribed_dofs_are_left_out_and_stay() {
+        let row = |dof: usize, unknown: usize| match dof % 5 {
+            0 | 3 => vec![],
+            _ => vec![(unknown, 1.0)],
+        };
+        let mut unknowns = 0;
+        let next = |dof: usize| {
+            let row = row(dof, unknowns);
+            unknowns += row.len();
+            row
+        };
+        let rows: Vec<_> = (0..14).map(next).collect();
+        let t = Transformation::new(unknowns, rows);
+        let v: Vec<f64> = (0..14).map(f64::from).collect();
+        let free = [1.0, 2.0, 4.0, 6.0, 7.0, 9.0, 11.0, 12.0];
+        assert_eq!(t.restrict(&v), free);
+        let mut u = v.clone();
+        t.add(&free, &mut u);
+        let of_dof = |(dof, u): (usize, &f64)| {
+            *u == v[dof]
+                * if [0, 3].contains(&(dof % 5)) {
+                    1.0
+                } else {
+                    2.0
+                }
+        };
+        assert!(u.iter().enumerate().all(of_dof), "{u:?}");
     }
 
     #[test]

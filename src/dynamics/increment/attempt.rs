@@ -142,7 +142,7 @@ impl<'m> Attempt<'_, 'm> {
             let state = [settled, factors.stagnate()];
             let may_end = impulses.are_at_rest() && factors.are_near();
             if may_end && self.is_solved(&iterate, state, &mut v.residual, trace)? {
-                return self.finish([&v.u, &d], contact, &v.left_out, impulses);
+                return self.finish(&d, contact, impulses, v, true);
             }
 
             // K* of eq. (4.6), and d_p at the supports, which takes the force theta2 K d_p
@@ -162,7 +162,7 @@ impl<'m> Attempt<'_, 'm> {
             // d <- d + dU, eq. (4.7)
             d.iter_mut().zip(&v.du).for_each(|(d, du)| *d += du);
             if impulses.rest(problem, &contact.closed) && has_converged {
-                return self.finish([&v.u, &d], contact, &v.left_out, impulses);
+                return self.finish(&d, contact, impulses, v, false);
             }
             equal_forces.take_in(trace.correction(), settled);
             factors.take_in(trace.correction())?;
@@ -331,20 +331,26 @@ impl<'m> Attempt<'_, 'm> {
         left_out.iter().filter(move |c| c.gap >= 0.0 || is_over(c))
     }
 
-    /// Motion and forces at the end of a converged increment whose last iterate is U, with the increment d
-    /// and the constraints that did not count.
+    /// Motion and forces at the end of a converged increment d from the vectors of its last pass; whether their
+    /// equilibrium is that of U0 + d.
     fn finish(
         &mut self,
-        [u, d]: [&[f64]; 2],
+        d: &[f64],
         mut forces: ContactForces,
-        left_out: &[Constraint],
         impulses: Impulses,
+        v: &mut Vectors,
+        is_balanced: bool,
     ) -> Result<Solved, Cause> {
-        forces.add_open(self.outside(left_out, u).cloned());
+        forces.add_open(self.outside(&v.left_out, &v.u).cloned());
         let v0p = impulses.velocity(self.problem, self.workspace, self.start)?;
         let mut u = sum(&self.start.u, d);
-        let mut equilibrium = Equilibrium::default();
-        self.equilibrium(&v0p, [&u, d], &mut equilibrium)?;
+        let mut equilibrium = std::mem::take(&mut v.equilibrium);
+        if is_balanced {
+            // its impulses may have stood beside V0
+            (self.problem).inertia(self.start, &v0p, d, self.interval, &mut equilibrium);
+        } else {
+            self.equilibrium(&v0p, [&u, d], &mut equilibrium)?;
+        }
         let v0p = v0p.v0p.into_owned();
         // V1 = (2/dt) d - V0+, eq. (4.2); of what is prescribed from the amplitude
         let rate = 2.0 / self.interval.dt;

@@ -6,10 +6,8 @@ use smallvec::smallvec;
 use super::convergence::{Errors, Lengths, Scales};
 use super::forces::ContactForces;
 use crate::dynamics::results::Cause;
-use crate::dynamics::step::{
-    EffectiveStiffness, Equilibrium, Parts, PerBody, StepProblem, check_finite,
-};
-use crate::linear::{larger, largest};
+use crate::dynamics::step::{EffectiveStiffness, Equilibrium, PerBody, StepProblem, check_finite};
+use crate::linear::larger;
 
 /// Forces and displacements of a pass, over all dofs.
 pub(crate) struct Pass<'a> {
@@ -65,7 +63,7 @@ impl Pass<'_> {
         all.extend(out_of_balance.zip(forces).map(|(r, (s, c))| r - s + c));
         problem.unknowns.write_restricted(all, values);
         let errors = Errors {
-            residual: residual.largest(problem.parts, &problem.unknowns.dof),
+            residual: (problem.parts).largest_of_unknowns(&problem.parts_of_unknowns, values),
             correction: problem.parts.largest_of_bodies(du),
         };
         if !scales.are_finite(&errors) {
@@ -106,8 +104,9 @@ impl Pass<'_> {
         let [u, ..] = self.displacements;
         let mut positions: PerBody = smallvec![0.0; problem.parts.bodies()];
         for (constraint, _) in self.contact.acting() {
-            let of_node = |node: usize| largest(&problem.position(u, node));
-            let most = constraint.nodes().map(of_node).fold(0.0, larger);
+            let of_node = |node: usize| problem.position(u, node);
+            let coordinates = constraint.nodes().flat_map(of_node).map(f64::abs);
+            let most = coordinates.fold(0.0, larger);
             for node in constraint.nodes() {
                 let position = &mut positions[problem.parts.of_nodes()[node]];
                 *position = larger(*position, most);
@@ -126,8 +125,6 @@ pub(crate) struct Residual {
     all: Vec<f64>,
     /// The same over the unknowns.
     pub values: Vec<f64>,
-    /// The same at the dofs of the unknowns, zero at the others.
-    at_dofs: Vec<f64>,
     /// Zero at all dofs.
     none: Vec<f64>,
 }
@@ -137,15 +134,6 @@ impl Residual {
     pub fn restricted(&mut self, problem: &StepProblem, f: &[f64]) -> &[f64] {
         problem.unknowns.write_restricted(f, &mut self.values);
         &self.values
-    }
-
-    /// Largest absolute value in every part; `dof_of` are the dofs of the unknowns.
-    fn largest(&mut self, parts: &Parts, dof_of: &[usize]) -> PerBody {
-        self.at_dofs.resize(self.all.len(), 0.0);
-        for (&dof, value) in dof_of.iter().zip(&self.values) {
-            self.at_dofs[dof] = *value;
-        }
-        parts.largest(&self.at_dofs)
     }
 }
 

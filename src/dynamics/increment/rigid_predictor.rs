@@ -33,11 +33,12 @@ pub(super) fn rigid_predictor(
     interval: Interval,
 ) -> Vec<f64> {
     let mut d = vec![0.0; start.u.len()];
-    if start.v.iter().all(|&v| v == 0.0) {
+    let holds = holds(problem);
+    let all_are_held = holds.iter().all(|&hold| hold == Hold::Held);
+    if all_are_held || start.v.iter().all(|&v| v == 0.0) {
         return d;
     }
     let (body_of, dt) = (problem.parts.of_nodes(), interval.dt);
-    let holds = holds(problem);
     let motions = motions(problem, &holds, start, interval);
     for (node, &body) in body_of.iter().enumerate() {
         let RigidMotion {

@@ -100,8 +100,16 @@ impl Ledger {
             inertia,
             ..
         } = &solved.equilibrium;
+        // T(V0) - T(V0+), eq. (9.4), the momentum being that of V0
+        if v0p != &start.v {
+            let [before, after] = [
+                dot(&start.v, &self.momentum) / 2.0,
+                problem.mass.kinetic_energy(v0p),
+            ];
+            self.energy.impact_loss += before - after;
+        }
         let elements = problem.elements.evaluate(&end.u, &end.internal);
-        self.momentum = problem.mass.times(&end.v);
+        problem.mass.write_product(&end.v, &mut self.momentum);
         self.enter_bodies(problem, end, &elements);
         self.elements = elements.into();
         let e = &mut self.energy;
@@ -125,11 +133,6 @@ impl Ledger {
             let [pn, pt] = pair.force;
             e.normal_contact_work += pn * constraint.normal_motion(d);
             e.friction_dissipation -= pt * constraint.tangential_motion(d);
-        }
-        // T(V0) - T(V0+), eq. (9.4)
-        if v0p != &start.v {
-            let kinetic = |v| problem.mass.kinetic_energy(v);
-            e.impact_loss += kinetic(&start.v) - kinetic(v0p);
         }
         // what landings and releases are given back, R and the work of the loads on the way to rest,
         // eq. (6.11)

@@ -3,13 +3,13 @@
 
 use super::unknowns::Unknowns;
 use crate::elements::Elements;
-use crate::linear::{Assembled, Transformation};
+use crate::linear::{Assembled, NodalMatrix, Transformation};
 use crate::prepare::Redistribution;
 
 /// Mass matrix M, the same for both directions: consistent, or redistributed at contact surfaces.
 /// Stored over the nodes.
 pub(crate) struct Mass {
-    nodal: Assembled,
+    nodal: NodalMatrix,
     /// M 1: the mass that every node carries.
     pub shares: Vec<f64>,
 }
@@ -17,13 +17,9 @@ pub(crate) struct Mass {
 impl Mass {
     /// Mass of all elements of a model with `nodes` nodes.
     pub fn new(elements: &Elements, redistribution: &Redistribution, nodes: usize) -> Self {
-        let masses = ElementMasses::new(elements, redistribution);
-        let mut nodal = Assembled::new(&Transformation::identity(nodes), &masses.nodes);
-        for (list, m) in &masses.of_elements {
-            nodal.add(*list, m, 1.0);
-        }
+        let nodal = nodal_mass(elements, redistribution, nodes);
         let mut mass = Mass {
-            nodal,
+            nodal: NodalMatrix::new(nodal.matrix()),
             shares: Vec::new(),
         };
         let shares = mass.times(&vec![1.0; 2 * nodes]);
@@ -38,27 +34,25 @@ impl Mass {
         product
     }
 
-    /// Writes M v for a vector over all dofs; M is symmetric, so that its columns are its rows.
+    /// Writes M v for a vector over all dofs.
     pub fn write_product(&self, v: &[f64], product: &mut [f64]) {
-        let v = v.as_chunks::<2>().0;
-        let columns = self.nodal.matrix();
-        let (starts, nodes, masses) = (columns.indptr(), columns.indices(), columns.data());
-        let rows = product.as_chunks_mut::<2>().0.iter_mut();
-        for (row, ends) in rows.zip(starts.raw_storage().windows(2)) {
-            let entries = ends[0]..ends[1];
-            let [mut x, mut y] = [0.0; 2];
-            for (&column, m) in nodes[entries.clone()].iter().zip(&masses[entries]) {
-                x += m * v[column][0];
-                y += m * v[column][1];
-            }
-            *row = [x, y];
-        }
+        self.nodal.write_product(v, product);
     }
 
     /// Kinetic energy v.M v/2.
     pub fn kinetic_energy(&self, v: &[f64]) -> f64 {
         dot(v, &self.times(v)) / 2.0
     }
+}
+
+/// M of a model with `nodes` nodes, over the nodes.
+fn nodal_mass(elements: &Elements, redistribution: &Redistribution, nodes: usize) -> Assembled {
+    let masses = ElementMasses::new(elements, redistribution);
+    let mut nodal = Assembled::new(&Transformation::identity(nodes), &masses.nodes);
+    for (list, m) in &masses.of_elements {
+        nodal.add(*list, m, 1.0);
+    }
+    nodal
 }
 
 /// Scalar product.
@@ -165,8 +159,9 @@ mod tests {
         let model = block([10, 9], is_triangular, has);
         let (elements, nodes) = (Elements::new(&model), model.mesh.node_count());
         let masses = [Redistribution::default(), redistribution(&model)].map(|redistribution| {
-            let mass = Mass::new(&elements, &redistribution, nodes);
-            let dense = mass.nodal.matrix().to_dense();
+            let dense = nodal_mass(&elements, &redistribution, nodes)
+                .matrix()
+                .to_dense();
             DMatrix::from_fn(nodes, nodes, |i, j| dense[[i, j]])
         });
         (masses, model.mesh.coordinates)

@@ -31,22 +31,22 @@ pub(crate) struct Parts {
 /// A value of every body, or part: up to eight are stored in place.
 pub(crate) type PerBody = SmallVec<[f64; 8]>;
 
-/// Dofs of consecutive nodes of a body or part.
-struct Run {
+/// Consecutive dofs or unknowns of a body or part.
+pub(crate) struct Run {
     group: usize,
-    dofs: Range<usize>,
+    places: Range<usize>,
 }
 
 impl Run {
-    /// The runs of all nodes, whose groups are given.
-    fn all(groups: &[usize]) -> Vec<Run> {
+    /// The runs of all nodes or unknowns, whose groups are given, with so many values each.
+    fn all(groups: &[usize], values: usize) -> Vec<Run> {
         let mut end = 0;
-        let run = |nodes: &[usize]| {
+        let run = |of_group: &[usize]| {
             let start = end;
-            end += 2 * nodes.len();
+            end += values * of_group.len();
             Run {
-                group: nodes[0],
-                dofs: start..end,
+                group: of_group[0],
+                places: start..end,
             }
         };
         groups.chunk_by(|a, b| a == b).map(run).collect()
@@ -72,8 +72,8 @@ impl Parts {
             }
         }
         Parts {
-            runs_of_bodies: Run::all(&body),
-            runs_of_parts: Run::all(&part),
+            runs_of_bodies: Run::all(&body, 2),
+            runs_of_parts: Run::all(&part, 2),
             body,
             part,
             body_of,
@@ -101,9 +101,15 @@ impl Parts {
         self.part[dof / 2]
     }
 
-    /// Largest absolute value of every part; `values` over all dofs.
-    pub fn largest(&self, values: &[f64]) -> PerBody {
-        largest_of(&self.runs_of_parts, self.body_of.len(), values)
+    /// Unknowns of one part after the other; their dofs are given.
+    pub fn of_unknowns(&self, dof_of: &[usize]) -> Vec<Run> {
+        let parts: Vec<usize> = dof_of.iter().map(|&dof| self.part(dof)).collect();
+        Run::all(&parts, 1)
+    }
+
+    /// Largest absolute value of every part; `values` over the unknowns, of which the runs are.
+    pub fn largest_of_unknowns(&self, runs: &[Run], values: &[f64]) -> PerBody {
+        largest_of(runs, self.body_of.len(), values)
     }
 
     /// Largest absolute value of some quantities in every part, each over all dofs.
@@ -179,7 +185,7 @@ fn largest_of(runs: &[Run], count: usize, values: &[f64]) -> PerBody {
 
 /// Makes the value of every group at least the largest absolute value that it has among `values`.
 fn enlarge(most: &mut [f64], runs: &[Run], values: &[f64]) {
-    for Run { group, dofs } in runs {
-        most[*group] = larger(most[*group], largest(&values[dofs.clone()]));
+    for Run { group, places } in runs {
+        most[*group] = larger(most[*group], largest(&values[places.clone()]));
     }
 }

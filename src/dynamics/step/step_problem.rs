@@ -6,7 +6,7 @@ use std::borrow::Cow;
 use super::discretization::Discretization;
 use super::loads::{Interval, Loads};
 use super::mass::Mass;
-use super::parts::Parts;
+use super::parts::{Parts, Run};
 use super::scheme::Weights;
 use super::unknowns::Unknowns;
 use crate::contact::tolerances::COLLAPSED_LENGTH;
@@ -32,6 +32,8 @@ pub(crate) struct StepProblem<'m> {
     pub settings: Settings,
     pub weights: Weights,
     pub unknowns: Unknowns<'m>,
+    /// Unknowns of the parts.
+    pub parts_of_unknowns: Vec<Run>,
     pub loads: Loads<'m>,
 }
 
@@ -95,6 +97,7 @@ impl<'m> StepProblem<'m> {
             redistribution,
             parts,
         } = discretization;
+        let unknowns = Unknowns::new(model, elements, step, start);
         StepProblem {
             model,
             elements,
@@ -104,7 +107,8 @@ impl<'m> StepProblem<'m> {
             contacts,
             settings: step.settings,
             weights: Weights::new(step.settings.scheme),
-            unknowns: Unknowns::new(model, elements, step, start),
+            parts_of_unknowns: parts.of_unknowns(&unknowns.dof),
+            unknowns,
             loads: Loads::new(model, step, redistribution),
         }
     }
@@ -191,7 +195,21 @@ impl StepProblem<'_> {
     pub fn equilibrium(
         &self,
         start: &State,
-        StartVelocity { v0p, impulse }: &StartVelocity,
+        velocity: &StartVelocity,
+        [u, d]: [&[f64]; 2],
+        interval: Interval,
+        equilibrium: &mut Equilibrium,
+    ) -> Result<(), Cause> {
+        self.load_and_internal_force(start, &velocity.v0p, [u, d], interval, equilibrium)?;
+        self.inertia(start, velocity, d, interval, equilibrium);
+        Ok(())
+    }
+
+    /// Writes load and internal force of the iterate U = U0 + d. They depend on V0+ only where U_theta does.
+    fn load_and_internal_force(
+        &self,
+        start: &State,
+        v0p: &[f64],
         [u, d]: [&[f64]; 2],
         interval: Interval,
         equilibrium: &mut Equilibrium,
@@ -201,8 +219,6 @@ impl StepProblem<'_> {
             u_theta,
             load,
             internal,
-            acceleration,
-            inertia,
             ..
         } = equilibrium;
         (self.weights).write_displacement([&start.u, d, v0p], interval.dt, u_theta);
@@ -213,6 +229,24 @@ impl StepProblem<'_> {
             internal.iter_mut().zip(&damping).for_each(|(f, c)| *f += c);
         }
         (self.loads).write_weighted(self.elements, self.weights.theta1, interval, u_theta, load);
+        Ok(())
+    }
+
+    /// Writes the inertia of the iterate U = U0 + d, and the out-of-balance force with the load and internal
+    /// force at hand.
+    pub fn inertia(
+        &self,
+        start: &State,
+        StartVelocity { v0p, impulse }: &StartVelocity,
+        d: &[f64],
+        interval: Interval,
+        equilibrium: &mut Equilibrium,
+    ) {
+        let Equilibrium {
+            acceleration,
+            inertia,
+            ..
+        } = equilibrium;
         // A = (2/dt²) (d - dt V0+), eq. (4.1); at supports (V1 - V0)/dt, eq. (4.9)
         let dt = interval.dt;
         let c = 2.0 / (dt * dt);
@@ -226,7 +260,6 @@ impl StepProblem<'_> {
             *inertia -= c * dt * impulse;
         }
         equilibrium.set_out_of_balance();
-        Ok(())
     }
 }
 

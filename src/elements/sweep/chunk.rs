@@ -118,13 +118,7 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
 
     /// Elements (indices) with strain energy, stress and strain at displacements `u`.
     pub fn evaluate(&self, u: &[f64]) -> Vec<(usize, ElementResult)> {
-        let mut results = Vec::with_capacity(self.elements.len());
-        for (block, elements) in self.blocks.iter().zip(self.elements.chunks(LANES)) {
-            let of_block =
-                in_lanes!(&self.law, law => block.evaluate::<S>(law, &self.at(block, u)));
-            results.extend(elements.iter().copied().zip(of_block));
-        }
-        results
+        in_lanes!(&self.law, law => Arch::new().dispatch(Evaluation { chunk: self, law, u }))
     }
 
     /// Calls `add(element, k)` with the tangent of every element that is wanted or in a block with one, D x
@@ -173,16 +167,15 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
         tangents: &mut BlockTangents,
     ) {
         let block = &self.blocks[number];
-        let mut k = [[[[Lanes::ZERO; 2]; 2]; N]; N];
-        in_lanes!(&self.law, law => match motion.start {
-            None => block.add_tangent::<S>(law, &self.at(block, motion.end), &mut k),
-            Some(start) => {
-                block.add_tangent::<S>(law, &self.between(block, [start, motion.end]), &mut k)
-            }
-        });
-        for (lane, matrix) in tangents.iter_mut().enumerate() {
-            write_matrix(lane, &k, matrix);
-            if part == TangentPart::Positive {
+        in_lanes!(&self.law, law => Arch::new().dispatch(Tangents {
+            chunk: self,
+            law,
+            block,
+            motion,
+            tangents,
+        }));
+        if part == TangentPart::Positive {
+            for matrix in tangents {
                 take_positive_part(&mut matrix[..4 * N * N], 2 * N);
             }
         }
@@ -238,9 +231,9 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
         let u = u.as_chunks::<2>().0;
         let mut values = [[Lanes::ZERO; N]; 2];
         for (a, places) in block.nodes.iter().enumerate() {
-            let [p, q] = places.map(|place| u[self.nodes[usize::from(place)]]);
-            values[0][a] = Lanes([p[0], q[0]]);
-            values[1][a] = Lanes([p[1], q[1]]);
+            let u = places.map(|place| u[self.nodes[usize::from(place)]]);
+            values[0][a] = Lanes(u.map(|[x, _]| x));
+            values[1][a] = Lanes(u.map(|[_, y]| y));
         }
         values
     }
@@ -270,6 +263,64 @@ where
         match self.motion.start {
             None => chunk.sweep(sums, law, |block| chunk.at(block, end)),
             Some(start) => chunk.sweep(sums, law, |block| chunk.between(block, [start, end])),
+        }
+    }
+}
+
+/// Results of all elements with the vector instructions of the processor.
+struct Evaluation<'a, const N: usize, const P: usize, S, L> {
+    chunk: &'a Chunk<N, P, S>,
+    law: &'a L,
+    u: &'a [f64],
+}
+
+impl<const N: usize, const P: usize, S, L> WithSimd for Evaluation<'_, N, P, S, L>
+where
+    S: Shape<N, P> + Sync,
+    L: LawInLanes,
+{
+    type Output = Vec<(usize, ElementResult)>;
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) -> Self::Output {
+        let Self { chunk, law, u } = self;
+        let mut results = Vec::with_capacity(chunk.elements.len());
+        for (block, elements) in chunk.blocks.iter().zip(chunk.elements.chunks(LANES)) {
+            let of_block = block.evaluate::<S>(law, &chunk.at(block, u));
+            results.extend(elements.iter().copied().zip(of_block));
+        }
+        results
+    }
+}
+
+/// Tangents of a block with the vector instructions of the processor.
+struct Tangents<'a, const N: usize, const P: usize, S, L> {
+    chunk: &'a Chunk<N, P, S>,
+    law: &'a L,
+    block: &'a Block<N, P>,
+    motion: Motion<'a>,
+    tangents: &'a mut BlockTangents,
+}
+
+impl<const N: usize, const P: usize, S, L> WithSimd for Tangents<'_, N, P, S, L>
+where
+    S: Shape<N, P> + Sync,
+    L: LawInLanes,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) {
+        let Self {
+            chunk, law, block, ..
+        } = self;
+        let (mut k, end) = ([[[[Lanes::ZERO; 2]; 2]; N]; N], self.motion.end);
+        match self.motion.start {
+            None => block.add_tangent::<S>(law, &chunk.at(block, end), &mut k),
+            Some(start) => block.add_tangent::<S>(law, &chunk.between(block, [start, end]), &mut k),
+        }
+        for (lane, matrix) in self.tangents.iter_mut().enumerate() {
+            write_matrix(lane, &k, matrix);
         }
     }
 }

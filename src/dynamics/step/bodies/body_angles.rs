@@ -12,9 +12,9 @@ use crate::vectors::{cross, difference, dot};
 /// Angles of the bodies that are free or turn about one node, in the configuration in which K* was
 /// assembled. Other bodies have the angle 0: their supports do not turn with them.
 pub(crate) struct BodyAngles {
-    /// Arm r0 of every node from the centre of mass of its body, times its mass (mass length); zero in
-    /// bodies that are held.
-    arms: Vec<[f64; 2]>,
+    /// Nodes of the bodies that turn, and arm r0 of each from the centre of mass of its body, times its mass
+    /// (mass length).
+    arms: Vec<(usize, [f64; 2])>,
     /// Angle of every body (rad).
     assembled: PerBody,
 }
@@ -26,13 +26,13 @@ impl BodyAngles {
         let mass = &problem.mass.shares;
         let centres = centres(problem, mass);
         let holds = holds(problem);
-        let arm = |(node, &body): (usize, &usize)| match holds[body] {
-            Hold::Held => [0.0; 2],
-            _ if mass[node] == 0.0 => [0.0; 2],
-            _ => difference(centres[body], x[node]).map(|r| mass[node] * r),
+        let arm = |(node, &body): (usize, &usize)| {
+            let turns = holds[body] != Hold::Held && mass[node] != 0.0;
+            let r0 = difference(centres[body], x[node]);
+            turns.then(|| (node, r0.map(|r| mass[node] * r)))
         };
         BodyAngles {
-            arms: body_of.iter().enumerate().map(arm).collect(),
+            arms: body_of.iter().enumerate().filter_map(arm).collect(),
             assembled: smallvec![0.0; holds.len()],
         }
     }
@@ -58,12 +58,13 @@ impl BodyAngles {
             Some(start) => (start[dof] + motion.end[dof]) / 2.0,
             None => motion.end[dof],
         };
-        let x = &problem.model.mesh.coordinates;
+        let (x, body_of) = (&problem.model.mesh.coordinates, problem.parts.of_nodes());
         let mut sums: SmallVec<[[f64; 2]; 8]> = smallvec![[0.0; 2]; self.assembled.len()];
-        for (node, &body) in problem.parts.of_nodes().iter().enumerate() {
+        for &(node, arm) in &self.arms {
             let r = [x[node][0] + u(2 * node), x[node][1] + u(2 * node + 1)];
-            sums[body][0] += cross(self.arms[node], r);
-            sums[body][1] += dot(self.arms[node], r);
+            let sum = &mut sums[body_of[node]];
+            sum[0] += cross(arm, r);
+            sum[1] += dot(arm, r);
         }
         sums.iter().map(|[sin, cos]| sin.atan2(*cos)).collect()
     }

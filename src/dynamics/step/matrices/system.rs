@@ -59,10 +59,15 @@ impl<'a> System<'a> {
             ..
         } = &mut **matrix;
         let SolveVectors { forces, b, .. } = vectors;
-        forces.clear();
-        forces.extend_from_slice(f);
-        compliance.rotation().turn_back(forces);
-        map.write_restricted(forces, b);
+        let rotation = compliance.rotation();
+        if rotation.is_identity() {
+            map.write_restricted(f, b);
+        } else {
+            forces.clear();
+            forces.extend_from_slice(f);
+            rotation.turn_back(forces);
+            map.write_restricted(forces, b);
+        }
         meter.time(|t| &mut t.solve, || solver.begin(b))
     }
 
@@ -87,13 +92,23 @@ impl<'a> System<'a> {
         response: &mut Vec<f64>,
     ) -> Result<(), LinearError> {
         let Self { matrix, meter } = self;
-        response.clear();
-        response.resize(start.len(), 0.0);
-        let end = || matrix.solver.end().map(|q| map.add(q, response));
-        meter.time(|t| &mut t.solve, end)?;
-        self.rotation().turn(response);
-        response.iter_mut().zip(start).for_each(|(r, s)| *r += s);
-        Ok(())
+        let FactoredMatrix {
+            solver, compliance, ..
+        } = &mut **matrix;
+        let rotation = compliance.rotation();
+        let write = |q: &[f64]| {
+            response.clear();
+            if rotation.is_identity() {
+                response.extend_from_slice(start);
+                map.add(q, response);
+            } else {
+                response.resize(start.len(), 0.0);
+                map.add(q, response);
+                rotation.turn(response);
+                response.iter_mut().zip(start).for_each(|(r, s)| *r += s);
+            }
+        };
+        meter.time(|t| &mut t.solve, || solver.end().map(write))
     }
 
     /// Memory for the response at some nodes, which [`Self::give_back`] gives back.
