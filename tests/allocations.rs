@@ -19,7 +19,7 @@ use stickslip::model::{
 mod blocks;
 
 /// Most allocations of a pass: lists over the pairs in contact, of the complementarity problem nearly all.
-const OF_A_PASS: f64 = 130.0;
+const OF_A_PASS: f64 = 150.0;
 /// Least bytes of an allocation that is counted as large: fewer than those of a vector over all dofs of the blocks.
 const LARGE: usize = 16_000;
 

@@ -82,8 +82,8 @@ pub(crate) const SOLVED_GAP: f64 = 1e-12;
 
 /// Round-off of a cross product, in units of the products that make it.
 pub(crate) const CROSS_ROUND_OFF: f64 = 32.0 * f64::EPSILON;
-/// A cross product above this, in the same units, is not zero beyond all doubt.
-pub(crate) const CLEAR_CROSS: f64 = 1e-9;
+/// A cross or scalar product above this, in the same units, is positive beyond all doubt.
+pub(crate) const CLEAR_PRODUCT: f64 = 1e-9;
 /// Overrun beyond the ends of a moving segment at which a node still crosses it: no node slips
 /// between two segments by round-off.
 pub(crate) const CROSSING_BEYOND_ENDS: f64 = 1e-9;

@@ -3,7 +3,7 @@
 //! (paper eq. 50 without its frozen normal).
 
 use super::quartic::{Quartic, Zero, Zeros};
-use crate::contact::tolerances::{CLEAR_CROSS, CROSS_ROUND_OFF, CROSSING_BEYOND_ENDS};
+use crate::contact::tolerances::{CLEAR_PRODUCT, CROSS_ROUND_OFF, CROSSING_BEYOND_ENDS};
 use crate::vectors::{cross, difference, dot};
 
 /// Motion of a node: x + v t + a t^2/2.
@@ -69,7 +69,7 @@ pub struct Crossing {
 /// For motion of second order r x e is a quartic in time with the sign of the gap. A node that
 /// moves along the line of the segment meets it once, when it reaches one of its ends.
 pub fn crossings(nodes: &[Motion; 3], dt: f64) -> Vec<Crossing> {
-    if stays_on_one_side(nodes, dt) {
+    if is_clear(nodes, dt) {
         return Vec::new();
     }
     let mut found = line_crossings(nodes, dt);
@@ -81,26 +81,34 @@ pub fn crossings(nodes: &[Motion; 3], dt: f64) -> Vec<Crossing> {
     found
 }
 
-/// Whether a node on a straight path is clearly on one side of the line of the segment all the time.
+/// Whether a node on a straight path is clearly on one side of the line of the segment all the time, or before
+/// its end a, or beyond b.
 ///
-/// r x e is quadratic then: there is no zero where its Bernstein coefficients r0 x e0,
-/// (r0 x e1 + r1 x e0)/2 and r1 x e1 have one sign.
-fn stays_on_one_side(nodes: &[Motion; 3], dt: f64) -> bool {
+/// r x e, -r.e and (r - e).e are quadratic then. Each is positive where its Bernstein coefficients are: for r
+/// and e these are r0 x e0, (r0 x e1 + r1 x e0)/2 and r1 x e1.
+fn is_clear(nodes: &[Motion; 3], dt: f64) -> bool {
     if nodes.iter().any(|node| node.acceleration != [0.0; 2]) {
         return false;
     }
-    let [s, a, b] = nodes;
-    let [start, end] = [0.0, dt].map(|t| {
-        let at = |node: &Motion| [0, 1].map(|i| node.position[i] + node.velocity[i] * t);
-        let a = at(a);
-        [difference(a, at(s)), difference(a, at(b))]
-    });
-    let [[r, e], [r1, e1]] = [start, end];
-    let middle = (cross(r, e1) + cross(r1, e)) / 2.0;
-    let sum = |p: [f64; 2], q: [f64; 2]| p[0].abs() + p[1].abs() + q[0].abs() + q[1].abs();
-    let clear = CLEAR_CROSS * sum(r, r1) * sum(e, e1);
-    let crosses = [cross(r, e), middle, cross(r1, e1)];
-    crosses.iter().all(|c| *c > clear) || crosses.iter().all(|c| *c < -clear)
+    let ends = nodes
+        .map(|node| [0.0, dt].map(|t| [0, 1].map(|i| node.position[i] + node.velocity[i] * t)));
+    let [r, e, beyond] = [(1, 0), (1, 2), (2, 0)]
+        .map(|(from, to)| [0, 1].map(|end| difference(ends[from][end], ends[to][end])));
+    let size = |p: [[f64; 2]; 2]| p.as_flattened().iter().map(|x| x.abs()).sum::<f64>();
+    let clear = CLEAR_PRODUCT * (size(r) + size(e)) * size(e);
+    let least = |sign: f64, of: fn([f64; 2], [f64; 2]) -> f64, p: [[f64; 2]; 2]| {
+        let middle = (of(p[0], e[1]) + of(p[1], e[0])) / 2.0;
+        let [first, last] = [of(p[0], e[0]), of(p[1], e[1])];
+        (sign * first).min(sign * middle).min(sign * last)
+    };
+    let mut all = [
+        least(1.0, cross, r),
+        least(-1.0, cross, r),
+        least(-1.0, dot, r),
+        least(1.0, dot, beyond),
+    ]
+    .into_iter();
+    all.any(|least| least > clear)
 }
 
 /// The same for the infinite line through the segment.
