@@ -157,6 +157,7 @@ def group(name: str, scheme: str, sizes: tuple[int, ...]) -> list[Bench]:
             strip_and_blocks(200, 9, is_rigid=True),
             strip_and_blocks(200, 9),
             strip_and_blocks(10, 199),
+            strip_and_blocks(1, 1999),
         ],
     }
     return groups[name]()

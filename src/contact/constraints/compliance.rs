@@ -53,9 +53,12 @@ impl Block {
         at.ok().map(|at| (at, &blocks[at]))
     }
 
-    /// Row of an unknown.
-    fn place(&self, unknown: usize) -> Option<usize> {
-        self.unknowns.binary_search(&unknown).ok()
+    /// Row of an unknown, which may be the `next` one.
+    fn place(&self, unknown: usize, next: usize) -> Option<usize> {
+        match self.unknowns.get(next) {
+            Some(&of_next) if of_next == unknown => Some(next),
+            _ => self.unknowns.binary_search(&unknown).ok(),
+        }
     }
 }
 
@@ -115,13 +118,18 @@ impl Compliance {
         let Some(blocks) = self.inverses.get_mut(scope) else {
             return Ok(());
         };
-        let dofs = constraints.iter().flat_map(|constraint| &constraint.dofs);
-        let terms = dofs.flat_map(|&dof| self.map.row(dof));
-        let unknowns = terms.map(|&(unknown, _)| (self.groups[unknown], unknown));
-        let is_missing = |&(group, unknown): &(usize, usize)| {
-            Block::of(blocks, group).is_none_or(|(_, block)| block.place(unknown).is_none())
-        };
-        let mut missing: Vec<(usize, usize)> = unknowns.filter(is_missing).collect();
+        let mut missing: Vec<(usize, usize)> = Vec::new();
+        let mut place = 0;
+        for &dof in constraints.iter().flat_map(|constraint| &constraint.dofs) {
+            for &(unknown, _) in self.map.row(dof) {
+                let group = self.groups[unknown];
+                let found = Block::of(blocks, group).and_then(|(_, b)| b.place(unknown, place + 1));
+                match found {
+                    Some(found) => place = found,
+                    None => missing.push((group, unknown)),
+                }
+            }
+        }
         missing.sort_unstable();
         missing.dedup();
         let renewed = add_unknowns(blocks, &missing);
@@ -155,36 +163,47 @@ impl Compliance {
         constraint: &Constraint,
         mut add: impl FnMut(UnknownEntry),
     ) {
-        let rows = [&constraint.force_rows, constraint.derivative_rows()];
-        let rows = rows.map(|rows| self.turned_back(&constraint.dofs, rows));
+        let (force_rows, derivative_rows) = (&constraint.force_rows, constraint.derivative_rows());
+        let have_other = constraint.other_derivative_rows.is_some();
         let blocks = self.blocks(scope);
-        for (k, &dof) in constraint.dofs.iter().enumerate() {
-            let [force, derivative] =
-                (rows.each_ref()).map(|rows| [rows.normal[k], rows.tangential[k]]);
-            if force == [0.0; 2] && derivative == [0.0; 2] {
-                continue;
-            }
-            for &(unknown, c) in self.map.row(dof) {
-                if let Some((at, block)) = Block::of(blocks, self.groups[unknown])
-                    && let Some(place) = block.place(unknown)
-                {
-                    add(UnknownEntry {
-                        place,
-                        block: at,
-                        force: force.map(|entry| c * entry),
-                        derivative: derivative.map(|entry| c * entry),
-                    });
+        let mut place = 0;
+        for (node, dofs) in constraint.dofs.chunks_exact(2).enumerate() {
+            let of_force = self.turned_back(dofs, force_rows, node);
+            let of_derivative = match have_other {
+                true => self.turned_back(dofs, derivative_rows, node),
+                false => of_force,
+            };
+            for (i, &dof) in dofs.iter().enumerate() {
+                let force = [of_force[0][i], of_force[1][i]];
+                let derivative = [of_derivative[0][i], of_derivative[1][i]];
+                if force == [0.0; 2] && derivative == [0.0; 2] {
+                    continue;
+                }
+                for &(unknown, c) in self.map.row(dof) {
+                    if let Some((at, block)) = Block::of(blocks, self.groups[unknown])
+                        && let Some(found) = block.place(unknown, place + 1)
+                    {
+                        place = found;
+                        add(UnknownEntry {
+                            place,
+                            block: at,
+                            force: force.map(|entry| c * entry),
+                            derivative: derivative.map(|entry| c * entry),
+                        });
+                    }
                 }
             }
         }
     }
 
-    /// Rows times R, over the dofs of a constraint, eq. (4.20).
-    fn turned_back(&self, dofs: &[usize], rows: &Rows) -> Rows {
-        let mut turned = rows.clone();
-        self.rotation.turn_row(dofs, &mut turned.normal);
-        self.rotation.turn_row(dofs, &mut turned.tangential);
-        turned
+    /// Entries of normal and tangential row at the dofs of a node, times R, eq. (4.20).
+    fn turned_back(&self, dofs: &[usize], rows: &Rows, node: usize) -> [[f64; 2]; 2] {
+        let Rows { normal, tangential } = rows;
+        let mut normal = [normal[2 * node], normal[2 * node + 1]];
+        let mut tangential = [tangential[2 * node], tangential[2 * node + 1]];
+        self.rotation.turn_row(dofs, &mut normal);
+        self.rotation.turn_row(dofs, &mut tangential);
+        [normal, tangential]
     }
 
     /// The blocks of a scope.

@@ -88,11 +88,17 @@ fn delassus(
         });
     }
     let mut q = DMatrix::from_vec(2 * n, 2 * n, q);
-    transpose(constraints, &mut q);
+    if n > 0
+        && constraints
+            .iter()
+            .all(|c| c.other_derivative_rows.is_none())
+    {
+        mirror(&mut q);
+    }
     q
 }
 
-/// Adds what the unknowns of a group couple to Q^T, column by column, or writes it.
+/// Adds what the unknowns of a group couple to Q, column by column, or writes it.
 struct GroupSum<'a> {
     /// The inverse at its unknowns, and their number.
     inverse: (&'a [f64], usize),
@@ -118,16 +124,16 @@ impl WithSimd for GroupSum<'_> {
         let n = (self.q.len() / 4).isqrt();
         let (normals, tangentials) = self.q.split_at_mut(2 * n * n);
         for panel in members.chunks(PANEL) {
-            // Y = W (B T)^T of the panel, then its products with the rows of all
+            // Y = W (G T)^T of the panel, then its products with the force rows of all
             responses.set(simd, self.inverse, panel);
-            for &(k, of_k) in &members {
+            for &(l, of_l) in &members {
                 let columns = [&mut *normals, &mut *tangentials];
-                let columns = columns.map(|all| &mut all[2 * n * k..2 * n * (k + 1)]);
+                let columns = columns.map(|all| &mut all[2 * n * l..2 * n * (l + 1)]);
                 if panel.len() == n {
-                    responses.product(simd, of_k, columns, self.adds);
+                    responses.product(simd, of_l, columns, self.adds);
                     continue;
                 }
-                responses.product(simd, of_k, resized(sums, 2 * panel.len()), false);
+                responses.product(simd, of_l, resized(sums, 2 * panel.len()), false);
                 for (column, sum) in columns.into_iter().zip(&*sums) {
                     let (normal, tangential) = column.split_at_mut(n);
                     let (to_normal, to_tangential) = sum.split_at(panel.len());
@@ -147,20 +153,12 @@ fn add(all: &mut [f64], panel: &[(usize, &[UnknownEntry])], values: &[f64]) {
     }
 }
 
-/// Q from Q^T; symmetric, as it is but for round-off, between constraints with G = B.
-fn transpose(constraints: &[&Constraint], q: &mut DMatrix<f64>) {
+/// Makes Q symmetric, as it is but for round-off where G = B.
+fn mirror(q: &mut DMatrix<f64>) {
     let size = q.nrows();
-    let one_kind = (constraints.iter()).map(|c| c.other_derivative_rows.is_none());
-    let one_kind: Vec<bool> = one_kind.clone().chain(one_kind).collect();
     for k in 1..size {
         let (before, column) = q.as_mut_slice().split_at_mut(k * size);
-        let rows = before.chunks_exact_mut(size).map(|column| &mut column[k]);
-        for ((above, below), other) in column.iter_mut().zip(rows).zip(&one_kind) {
-            let entry = *above;
-            if !(one_kind[k] && *other) {
-                *above = *below;
-            }
-            *below = entry;
-        }
+        let rows = before.chunks_exact(size).map(|column| column[k]);
+        (column.iter_mut().zip(rows)).for_each(|(above, below)| *above = below);
     }
 }

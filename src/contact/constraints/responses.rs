@@ -1,10 +1,9 @@
-//! What the forces of constraints do to the unknowns of one block of the compliance, and that to gaps and
-//! slips: the two products of the Delassus operator, eq. (5.1). Section 5 of docs/theory.md.
+//! What gaps and slips of constraints take from forces at the unknowns of one block of the compliance, and
+//! that of contact forces: the two products of the Delassus operator, eq. (5.1). Section 5 of docs/theory.md.
 
 use std::array::from_fn;
 
 use pulp::Simd;
-use smallvec::SmallVec;
 
 /// The rows of a constraint at one unknown.
 #[derive(Debug, Clone, Copy)]
@@ -56,14 +55,14 @@ impl GroupRows {
     }
 }
 
-/// What the forces of some constraints do to the unknowns of a block.
+/// What forces at the unknowns of a block do to gaps and slips of some constraints.
 #[derive(Debug, Default)]
 pub(super) struct Responses {
-    /// A row for every unknown: all normal forces, then all tangential ones.
+    /// A row for every unknown: all gaps, then all slips.
     rows: Vec<f64>,
     /// Entries of a row.
     width: usize,
-    /// What normal and tangential force of some constraints do.
+    /// Gap and slip of some constraints, over the unknowns.
     columns: [[Vec<f64>; 2]; TOGETHER],
 }
 
@@ -71,8 +70,8 @@ pub(super) struct Responses {
 const TOGETHER: usize = 4;
 
 impl Responses {
-    /// W (B_l T)^T of eq. (5.1) of some constraints l, in the rows of a block: what their normal and
-    /// tangential forces do to its unknowns. The `inverse` has `size` rows and columns.
+    /// W^T (G_k T)^T of eq. (5.1) of some constraints k, in the rows of a block, with W = W^T. The `inverse`
+    /// has `size` rows and columns.
     #[inline(always)]
     pub fn set<S: Simd>(
         &mut self,
@@ -83,12 +82,14 @@ impl Responses {
         let count = constraints.len();
         self.width = 2 * count;
         self.rows.resize(size * self.width, 0.0);
-        let column = |place: usize| &inverse[place * size..(place + 1) * size];
+        let terms = Terms {
+            vectors: inverse,
+            length: size,
+            factors: |entry| entry.derivative,
+        };
         for (number, together) in constraints.chunks(TOGETHER).enumerate() {
             for ((_, entries), sums) in together.iter().zip(&mut self.columns) {
-                let terms = entries.iter().map(|e| (column(e.place), e.force));
-                let terms: Terms = terms.collect();
-                combine(simd, &terms, resized(sums, size), false);
+                terms.combine(simd, entries, resized(sums, size), false);
             }
             let first = number * TOGETHER;
             self.write_rows(first, [together.len(), count]);
@@ -98,27 +99,45 @@ impl Responses {
     /// Writes the columns of so many constraints to the places from `first` on, of so many in all.
     #[inline(always)]
     fn write_rows(&mut self, first: usize, [together, count]: [usize; 2]) {
-        let columns: [[&[f64]; 2]; TOGETHER] =
-            (self.columns.each_ref()).map(|column| column.each_ref().map(Vec::as_slice));
-        for (unknown, row) in self.rows.chunks_exact_mut(self.width).enumerate() {
-            let (normal, tangential) = row.split_at_mut(count);
-            for (i, row) in [normal, tangential].into_iter().enumerate() {
-                match row[first..first + together].first_chunk_mut() {
-                    Some(all) => *all = from_fn::<f64, TOGETHER, _>(|l| columns[l][i][unknown]),
-                    None => (row[first..].iter_mut().zip(&columns))
-                        .for_each(|(row, column)| *row = column[i][unknown]),
+        let size = self.rows.len() / self.width;
+        for i in 0..2 {
+            let columns: [&[f64]; TOGETHER] = from_fn(|l| self.columns[l][i].as_slice());
+            let at = i * count + first;
+            if together < TOGETHER {
+                for (unknown, row) in self.rows.chunks_exact_mut(self.width).enumerate() {
+                    let row = &mut row[at..at + together];
+                    (row.iter_mut().zip(&columns)).for_each(|(row, column)| *row = column[unknown]);
                 }
+                continue;
+            }
+            let tiles = columns.map(|column| column[..size].as_chunks::<TOGETHER>());
+            let mut rows = self.rows.chunks_exact_mut(self.width);
+            for tile in 0..size / TOGETHER {
+                let tile: [[f64; TOGETHER]; TOGETHER] = from_fn(|l| tiles[l].0[tile]);
+                for unknown in 0..TOGETHER {
+                    if let Some(row) = rows.next() {
+                        let row = &mut row[at..at + TOGETHER];
+                        row.copy_from_slice(&tile.map(|column| column[unknown]));
+                    }
+                }
+            }
+            for (unknown, row) in rows.enumerate() {
+                let row = &mut row[at..at + TOGETHER];
+                row.copy_from_slice(&tiles.map(|tile| tile.1[unknown]));
             }
         }
     }
 
-    /// (G_k T) Y of eq. (5.1), Y being the rows: what the forces add to gap and slip of k; added to what there
-    /// is, or written.
+    /// (B_l T) Y of eq. (5.1), Y being the rows: what normal and tangential force of l add to gaps and slips of
+    /// the constraints; added to what there is, or written.
     #[inline(always)]
-    pub fn product<S: Simd>(&self, simd: S, k: &[UnknownEntry], sums: [&mut [f64]; 2], adds: bool) {
-        let row = |place: usize| &self.rows[place * self.width..(place + 1) * self.width];
-        let terms = k.iter().map(|e| (row(e.place), e.derivative));
-        combine(simd, &terms.collect::<Terms>(), sums, adds);
+    pub fn product<S: Simd>(&self, simd: S, l: &[UnknownEntry], sums: [&mut [f64]; 2], adds: bool) {
+        let terms = Terms {
+            vectors: &self.rows,
+            length: self.width,
+            factors: |entry| entry.force,
+        };
+        terms.combine(simd, l, sums, adds);
     }
 }
 
@@ -131,64 +150,77 @@ pub(super) fn resized(vectors: &mut [Vec<f64>; 2], length: usize) -> [&mut [f64]
     })
 }
 
-/// A vector with two factors.
-type Term<'a> = (&'a [f64], [f64; 2]);
-
-/// Vectors of one length.
-type Terms<'a> = SmallVec<[Term<'a>; 8]>;
-
-/// The two sums of vectors times their factors, added to what there is, or written.
-#[inline(always)]
-fn combine<S: Simd>(simd: S, terms: &[Term], [first, second]: [&mut [f64]; 2], mut adds: bool) {
-    let (fours, rest) = terms.as_chunks::<4>();
-    for four in fours {
-        combine_some(simd, four, [first, second], adds);
-        adds = true;
-    }
-    match rest {
-        [a] => combine_some(simd, &[*a], [first, second], adds),
-        [a, b] => combine_some(simd, &[*a, *b], [first, second], adds),
-        [a, b, c] => combine_some(simd, &[*a, *b, *c], [first, second], adds),
-        _ if adds => {}
-        _ => [first, second].into_iter().for_each(|sum| sum.fill(0.0)),
-    }
+/// Vectors of one length, one after the other, and the two factors that an entry has for the vector of its place.
+struct Terms<'a, F: Fn(&UnknownEntry) -> [f64; 2]> {
+    vectors: &'a [f64],
+    length: usize,
+    factors: F,
 }
 
-/// [`combine`] for N vectors.
-#[inline(always)]
-fn combine_some<S: Simd, const N: usize>(
-    simd: S,
-    terms: &[Term; N],
-    [first, second]: [&mut [f64]; 2],
-    adds: bool,
-) {
-    let length = first.len();
-    let factors = |i: usize| -> [_; N] { from_fn(|k| simd.splat_f64s(terms[k].1[i])) };
-    let (a, b) = (factors(0), factors(1));
-    let vectors = terms.map(|term| S::as_simd_f64s(&term.0[..length]));
-    let zero = simd.splat_f64s(0.0);
-    let (first, first_rest) = S::as_mut_simd_f64s(first);
-    let (second, second_rest) = S::as_mut_simd_f64s(&mut second[..length]);
-    let heads = vectors.map(|vector| &vector.0[..first.len()]);
-    for (i, (first, second)) in first.iter_mut().zip(second).enumerate() {
-        let mut sums = if adds { [*first, *second] } else { [zero; 2] };
-        for k in 0..N {
-            sums[0] = simd.mul_add_e_f64s(a[k], heads[k][i], sums[0]);
-            sums[1] = simd.mul_add_e_f64s(b[k], heads[k][i], sums[1]);
+impl<F: Fn(&UnknownEntry) -> [f64; 2]> Terms<'_, F> {
+    /// The two sums of the vectors of some entries times their factors, added to what there is, or written.
+    #[inline(always)]
+    fn combine<S: Simd>(
+        &self,
+        simd: S,
+        entries: &[UnknownEntry],
+        [first, second]: [&mut [f64]; 2],
+        mut adds: bool,
+    ) {
+        let (fours, rest) = entries.as_chunks::<4>();
+        for four in fours {
+            self.combine_some(simd, four, [first, second], adds);
+            adds = true;
         }
-        [*first, *second] = sums;
+        match rest {
+            [a] => self.combine_some(simd, &[*a], [first, second], adds),
+            [a, b] => self.combine_some(simd, &[*a, *b], [first, second], adds),
+            [a, b, c] => self.combine_some(simd, &[*a, *b, *c], [first, second], adds),
+            _ if adds => {}
+            _ => [first, second].into_iter().for_each(|sum| sum.fill(0.0)),
+        }
     }
-    if !first_rest.is_empty() {
-        let mut sums = match adds {
-            true => [&*first_rest, &*second_rest].map(|rest| simd.partial_load_f64s(rest)),
-            false => [zero; 2],
-        };
-        for (k, vector) in vectors.iter().enumerate() {
-            let rest = simd.partial_load_f64s(vector.1);
-            sums[0] = simd.mul_add_e_f64s(a[k], rest, sums[0]);
-            sums[1] = simd.mul_add_e_f64s(b[k], rest, sums[1]);
+
+    /// [`Self::combine`] for N entries.
+    #[inline(always)]
+    fn combine_some<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        entries: &[UnknownEntry; N],
+        [first, second]: [&mut [f64]; 2],
+        adds: bool,
+    ) {
+        let length = self.length;
+        let mut factors = [[simd.splat_f64s(0.0); 2]; N];
+        let mut vectors = [S::as_simd_f64s(&[]); N];
+        for ((entry, factors), vector) in entries.iter().zip(&mut factors).zip(&mut vectors) {
+            let [a, b] = (self.factors)(entry);
+            *factors = [simd.splat_f64s(a), simd.splat_f64s(b)];
+            *vector = S::as_simd_f64s(&self.vectors[entry.place * length..][..length]);
         }
-        simd.partial_store_f64s(first_rest, sums[0]);
-        simd.partial_store_f64s(second_rest, sums[1]);
+        let (first, first_rest) = S::as_mut_simd_f64s(&mut first[..length]);
+        let (second, second_rest) = S::as_mut_simd_f64s(&mut second[..length]);
+        let zero = simd.splat_f64s(0.0);
+        for (i, (first, second)) in first.iter_mut().zip(second).enumerate() {
+            let mut sums = if adds { [*first, *second] } else { [zero; 2] };
+            for ([a, b], vector) in factors.iter().zip(&vectors) {
+                sums[0] = simd.mul_add_e_f64s(*a, vector.0[i], sums[0]);
+                sums[1] = simd.mul_add_e_f64s(*b, vector.0[i], sums[1]);
+            }
+            [*first, *second] = sums;
+        }
+        if !first_rest.is_empty() {
+            let mut sums = match adds {
+                true => [&*first_rest, &*second_rest].map(|rest| simd.partial_load_f64s(rest)),
+                false => [zero; 2],
+            };
+            for ([a, b], vector) in factors.iter().zip(&vectors) {
+                let rest = simd.partial_load_f64s(vector.1);
+                sums[0] = simd.mul_add_e_f64s(*a, rest, sums[0]);
+                sums[1] = simd.mul_add_e_f64s(*b, rest, sums[1]);
+            }
+            simd.partial_store_f64s(first_rest, sums[0]);
+            simd.partial_store_f64s(second_rest, sums[1]);
+        }
     }
 }

@@ -2,7 +2,7 @@
 //! Section 4 of docs/theory.md (paper eqs 27, 29 and 36 to 49).
 
 use super::active_constraints::ConstraintSet;
-use super::forces::{ContactForces, ContactSystem, EqualForces, Impulses};
+use super::forces::{Before, ContactForces, ContactSystem, EqualForces, Impulses};
 use super::pass::{Iterate, Pass, Residual};
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::rigid_predictor::rigid_predictor;
@@ -120,7 +120,6 @@ impl<'m> Attempt<'_, 'm> {
         let mut contact = ContactForces::without_constraints(before);
         let mut impulses = Impulses::new(before, self.set);
         let mut equal_forces = EqualForces::new(problem.settings.tolerance);
-
         // the passes start from the rigid motion of the bodies
         let mut d = rigid_predictor(problem, start, self.interval);
         for pass in 0..problem.settings.max_passes {
@@ -130,7 +129,8 @@ impl<'m> Attempt<'_, 'm> {
             self.constraints(v, &contact, settled)?;
 
             // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1)
-            let v0p = impulses.start_velocity(problem, self.workspace, &v.found, start, dt)?;
+            let last = Before::new(&v.equilibrium, trace.correction(), dt);
+            let v0p = impulses.start_velocity(problem, self.workspace, &v.found, start, &last)?;
 
             // r = R_theta - F(U_theta) - M A, eq. (4.5)
             self.equilibrium(&v0p, [&v.u, &d], &mut v.equilibrium)?;

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::dense::axpy;
+use super::dense::add_product;
 use super::general::{Lcp, LcpError, expect_finite, expect_non_negative, expect_size};
 
 /// Coulomb friction of n coupled contacts, eq. (8.2) with the law of eq. (3.6). Find Pn, Pt with
@@ -56,13 +56,8 @@ impl FrictionalLcp {
     pub fn motion(&self, pn: &DVector<f64>, pt: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
         let n = self.len();
         let mut motion: Vec<f64> = self.gap.iter().chain(&self.slip).copied().collect();
-        for (force, column) in pn
-            .iter()
-            .chain(pt)
-            .zip(self.q.as_slice().chunks_exact((2 * n).max(1)))
-        {
-            axpy(*force, column, &mut motion);
-        }
+        let forces: Vec<f64> = pn.iter().chain(pt).copied().collect();
+        add_product(self.q.as_slice(), &forces, &mut motion);
         (
             DVector::from_column_slice(&motion[..n]),
             DVector::from_column_slice(&motion[n..]),

@@ -8,7 +8,7 @@ mod scaled;
 mod scaling;
 mod state;
 
-pub(crate) use dense::{add_sizes, axpy, dot, max_abs};
+pub(crate) use dense::{add_sizes, axpy, combine, dot, max_abs};
 pub use frictional::FrictionalLcp;
 pub use general::{Lcp, LcpError, LcpSolution};
 pub(crate) use general::{expect_finite, expect_non_negative, expect_size};

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::dense::{add_sizes, axpy, max_abs};
+use super::dense::{add_product_and_sizes, max_abs};
 use super::frictional::FrictionalLcp;
 use super::general::Lcp;
 use super::scaling::Equilibration;
@@ -44,11 +44,8 @@ pub fn residual(lcp: &Lcp, z: &DVector<f64>) -> f64 {
 pub(crate) fn frictional_residual(problem: &FrictionalLcp, pn: &[f64], pt: &[f64]) -> f64 {
     let n = problem.gap.len();
     let (mut motion, mut terms) = (vec![0.0; 2 * n], vec![0.0; 2 * n]);
-    let columns = problem.q.as_slice().chunks_exact((2 * n).max(1));
-    for (force, column) in pn.iter().chain(pt).zip(columns) {
-        axpy(*force, column, &mut motion);
-        add_sizes(*force, column, &mut terms);
-    }
+    let forces: Vec<f64> = pn.iter().chain(pt).copied().collect();
+    add_product_and_sizes(problem.q.as_slice(), &forces, &mut motion, &mut terms);
     let length = problem.gap.iter().fold(0.0_f64, |l, g| l.max(-g)) + ROUNDING * max_abs(&terms);
 
     let mean = (0..n).map(|i| problem.q[(i, i)]).sum::<f64>() / n as f64;

@@ -3,7 +3,7 @@
 
 use nalgebra::DMatrix;
 
-use super::dense::{axpy, extend_scaled};
+use super::dense::{add_product, extend_scaled};
 use super::frictional::FrictionalLcp;
 use super::general::{LcpError, expect_finite};
 use super::scaling::power_of_two;
@@ -28,6 +28,10 @@ pub(crate) struct Scaled {
     pub b: Vec<f64>,
     /// Friction coefficients (length n).
     pub mu: Vec<f64>,
+    /// Weights of the contacts (length n).
+    pub weights: Vec<f64>,
+    /// Unit of the compliances.
+    pub compliance: f64,
     /// Unit of the forces of each contact (length n).
     units: Vec<f64>,
 }
@@ -84,6 +88,8 @@ impl Scaled {
             q,
             b,
             mu,
+            weights,
+            compliance,
             units,
         })
     }
@@ -102,9 +108,7 @@ impl Scaled {
     /// Q p + b.
     pub fn motion(&self, p: &[f64]) -> Vec<f64> {
         let mut v = self.b.clone();
-        for (k, force) in p.iter().enumerate() {
-            axpy(*force, self.column(k), &mut v);
-        }
+        add_product(self.q.as_slice(), p, &mut v);
         v
     }
 

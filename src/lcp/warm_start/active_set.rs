@@ -1,7 +1,7 @@
 //! Primal-dual active set on the contact states: Newton's method on the contact law.
 
 use crate::lcp::problems::{ContactState, Counters, Scaled, max_abs};
-use crate::lcp::warm_start::reduced::{self, KeptFactors};
+use crate::lcp::warm_start::{kept_factors::KeptFactors, reduced};
 
 /// Solves allowed in one call.
 const ITERATIONS: usize = 25;

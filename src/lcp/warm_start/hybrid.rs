@@ -10,7 +10,7 @@ use crate::lcp::problems::{
     ContactState, Counters, FrictionalLcp, LcpError, Scaled, TOLERANCE, expect_size,
     frictional_residual,
 };
-use crate::lcp::warm_start::reduced::{self, KeptFactors};
+use crate::lcp::warm_start::{kept_factors::KeptFactors, reduced};
 
 /// Gauss-Seidel sweeps between two calls of the active set.
 const SWEEPS: [usize; 3] = [10, 40, 160];

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 
-use super::contact_system::{ContactSolution, ContactSystem, Guess, closed_of};
+use super::contact_system::{ContactSolution, ContactSystem, Guess, closed_of, names};
 use super::response::Response;
 use crate::contact::{Constraint, Scope};
 use crate::dynamics::results::Cause;
@@ -156,10 +156,12 @@ impl ContactSystem<'_> {
                     part
                 });
             }
+            let mut kept = self.system.take_kept(scope);
+            kept.name_contacts(names(&constraints));
             blocks.push(LcpBlock {
                 contacts: contacts.clone(),
                 problem,
-                kept: self.system.take_kept(scope),
+                kept,
             });
         }
         Ok((blocks, held))

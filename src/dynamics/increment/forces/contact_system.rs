@@ -113,6 +113,9 @@ impl ContactSystem<'_> {
         if let (Some(forces), Some(weight)) = (&guess.forces, guess.weight) {
             add_proximal_term(&mut problem, forces, weight);
         }
+        let mut kept = self.system.take_kept(&Scope::All);
+        kept.name_contacts(names(constraints));
+        self.system.keep(Scope::All, kept);
         match self.system.solve_lcp(&problem, &guess.states, self.method) {
             Ok(solution) => {
                 self.system.take_back(problem);
@@ -133,6 +136,12 @@ impl ContactSystem<'_> {
         let response = self.system.respond(self.map, load)?;
         Ok(sum(y, &response))
     }
+}
+
+/// What tells constraints from others in a row of complementarity problems.
+pub(super) fn names(constraints: &[&Constraint]) -> impl Iterator<Item = [usize; 2]> {
+    let keys = constraints.iter().map(|constraint| constraint.key);
+    keys.map(|key| [key.slave_index, key.segment])
 }
 
 /// Pn and Pt of every constraint.

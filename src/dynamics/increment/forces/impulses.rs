@@ -7,11 +7,13 @@ use super::by_bodies::{Chosen, is_large};
 use super::contact_forces::ContactForces;
 use super::contact_system::{ContactSolution, ContactSystem, Guess};
 use super::response::Response;
+use super::steady::{Before, Steady, approach};
 use crate::contact::{ClosedPairs, Constraint, ConstraintKey};
 use crate::dynamics::increment::ConstraintSet;
 use crate::dynamics::results::{Cause, State};
 use crate::dynamics::step::{StartVelocity, StepProblem, Workspace};
 use crate::lcp::ContactState;
+use crate::linear::larger;
 use crate::model::Impact;
 
 /// Changes of the set of pairs with impulses after which it is kept.
@@ -32,6 +34,8 @@ pub(crate) struct Impulses {
     struck: Vec<Constraint>,
     /// Phi, Psi of the last pass.
     pub acting: ContactForces,
+    /// Whether they are those of the rows of the iterate, as an increment may end with.
+    are_exact: bool,
     /// J = Bn^T Phi + Bt^T Psi over all dofs; empty where nothing strikes.
     resultant: Vec<f64>,
 }
@@ -48,19 +52,22 @@ impl Impulses {
             massless: Vec::new(),
             struck: Vec::new(),
             acting: ContactForces::default(),
+            are_exact: true,
             resultant: Vec::new(),
         }
     }
 
-    /// Impulses Phi, Psi, eq. (6.2), for the constraints of the iterate.
+    /// Impulses Phi, Psi, eq. (6.2), for the constraints of the iterate, unless those at hand are near enough
+    /// to theirs after the pass `before`.
     fn solve(
         &mut self,
         problem: &StepProblem,
         workspace: &mut Workspace,
         constraints: &[Constraint],
         start: &State,
-        dt: f64,
+        before: &Before,
     ) -> Result<(), Cause> {
+        let dt = before.dt;
         if problem.settings.impact == Impact::None {
             return Ok(());
         }
@@ -78,17 +85,44 @@ impl Impulses {
             .iter()
             .filter(|constraint| self.strikes(constraint));
         let struck: Vec<Constraint> = struck.map(rows).collect();
-        if self.struck != struck {
-            let system = mass_system(problem, workspace);
-            let states = struck.iter().map(|c| self.state(c.key)).collect();
-            self.acting = impulses(struck.clone(), states, &start.v, dt, system)?;
-            self.struck = struck;
-            match self.acting.closed.is_empty() {
-                true => self.resultant.clear(),
-                false => (self.acting).write_resultant(start.v.len(), &mut self.resultant),
-            }
+        let steady = Steady {
+            problem,
+            inertia: workspace.stiffness.inertia.as_slice(),
+            before,
+            v0: &start.v,
+        };
+        let [steady_part, exact_part] = steady.tolerances();
+        let part = self.part_of_change(&struck, &steady);
+        self.are_exact = part <= exact_part;
+        if part <= steady_part {
+            return Ok(());
+        }
+        self.are_exact = true;
+        let system = mass_system(problem, workspace);
+        let states = struck.iter().map(|c| self.state(c, &start.v, dt)).collect();
+        self.acting = impulses(struck.clone(), states, &start.v, dt, system)?;
+        self.struck = struck;
+        match self.acting.closed.is_empty() {
+            true => self.resultant.clear(),
+            false => (self.acting).write_resultant(start.v.len(), &mut self.resultant),
         }
         Ok(())
+    }
+
+    /// By which part of the largest forces the impulses with the rows of the given constraints differ from those at
+    /// hand: any where these are for others.
+    fn part_of_change(&self, struck: &[Constraint], steady: &Steady) -> f64 {
+        let same_set = (self.struck.iter().map(|c| c.key)).eq(struck.iter().map(|c| c.key));
+        if !same_set {
+            return f64::INFINITY;
+        }
+        let largest = steady.largest_forces(struck);
+        let both = self.struck.iter().zip(struck);
+        both.map(|(before, now)| {
+            let state = self.acting.closed.state(now.key);
+            steady.part([before, now], state, &largest)
+        })
+        .fold(0.0, larger)
     }
 
     /// What the equilibrium of an iterate with the given constraints needs of the velocity of the start: V0
@@ -99,9 +133,9 @@ impl Impulses {
         workspace: &mut Workspace,
         constraints: &[Constraint],
         start: &'a State,
-        dt: f64,
+        before: &Before,
     ) -> Result<StartVelocity<'a>, Cause> {
-        self.solve(problem, workspace, constraints, start, dt)?;
+        self.solve(problem, workspace, constraints, start, before)?;
         match problem.weights.lags() {
             true => self.velocity(problem, workspace, start),
             false => Ok(StartVelocity {
@@ -125,20 +159,22 @@ impl Impulses {
         Ok(StartVelocity { v0p, impulse: &[] })
     }
 
-    /// State of a pair in the impulses of the pass before; it sticks where it was not among them.
-    fn state(&self, key: ConstraintKey) -> ContactState {
+    /// State of a pair in the impulses before; where it was not among them, it sticks if it approaches.
+    fn state(&self, constraint: &Constraint, v0: &[f64], dt: f64) -> ContactState {
+        let key = constraint.key;
         match self.struck.binary_search_by_key(&key, |struck| struck.key) {
             Ok(_) => self.acting.closed.state(key),
-            Err(_) => ContactState::Stick,
+            Err(_) if approach(constraint, v0, dt) < 0.0 => ContactState::Stick,
+            Err(_) => ContactState::Open,
         }
     }
 
-    /// Whether the set of pairs stayed the same after the last pass.
+    /// Whether the set of pairs stayed the same after the last pass, and its impulses are those of the iterate.
     pub fn are_at_rest(&self) -> bool {
-        self.at_rest
+        self.at_rest && self.are_exact
     }
 
-    /// Takes over the pairs in contact after a pass; whether they are the same as before. After
+    /// Takes over the pairs in contact after a pass; whether they are the same as before, and the impulses theirs. After
     /// some changes the set is kept: impulses of any set take energy, never give it.
     pub fn rest(&mut self, problem: &StepProblem, closed: &ClosedPairs) -> bool {
         let rest = problem.settings.impact == Impact::None
@@ -149,7 +185,7 @@ impl Impulses {
             self.closed.clone_from(closed);
             self.changes += 1;
         }
-        rest
+        self.are_at_rest()
     }
 
     /// Keys of the pairs that have impulses only because they are closed.
@@ -229,8 +265,7 @@ fn impulses(
     mut system: ContactSystem,
 ) -> Result<ContactForces, Cause> {
     // Gn V0 + (2/dt) max(g0, 0) and Gt V0, eq. (6.2)
-    let approach = |c: &Constraint| c.gap_change(v0) + 2.0 / dt * c.start_gap.max(0.0);
-    let approaches: Vec<f64> = constraints.iter().map(approach).collect();
+    let approaches: Vec<f64> = constraints.iter().map(|c| approach(c, v0, dt)).collect();
     if approaches.iter().all(|&approach| approach >= 0.0) {
         return Ok(ContactForces::default());
     }

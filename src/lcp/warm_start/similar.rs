@@ -1,0 +1,365 @@
+//! Solves of a system with the factors of a similar one, to which the contacts whose states differ add a border.
+//! Section 8 of docs/theory.md, The hybrid.
+
+use super::kept_factors::{Kept, KeptFactors, System};
+use crate::lcp::pivots::Factors;
+use crate::lcp::problems::{ContactState, Scaled, dot, max_abs};
+
+/// Unknowns of the kept factors for one of the border: with fewer, new factors are not dearer.
+const UNKNOWNS_PER_BORDER: usize = 8;
+
+/// Solves of a system by factors of another, A, and a border:
+///
+/// ```text
+/// [ A  B ] [ x ]   [ r ]      x = A^-1 (r - B y)
+/// [ C  D ] [ y ] = [ s ],     (D - C A^-1 B) y = s - C A^-1 r,     eq. (8.7)
+/// ```
+///
+/// A contact that closes, or begins to stick, brings its force as a y with its row of Q; one that opens, or
+/// begins to slide, brings what its row is then let off as a y, with Pn = 0 or Pt = -+mu Pn as its row.
+pub(super) struct Similar<'a> {
+    factors: &'a Factors,
+    /// Factors of rows and columns that bring A to the units of the system.
+    units: [Vec<f64>; 2],
+    /// For every row of A, and every row of the border, the unknown of the system whose row it is.
+    rows: [Vec<Option<usize>>; 2],
+    /// Every unknown of the system as a sum of (place among x and y, factor).
+    sums: Vec<Sum>,
+    /// A^-1 B, column by column.
+    inverse_of_columns: Vec<f64>,
+    /// C, row by row.
+    border_rows: Vec<f64>,
+    /// Factors of D - C A^-1 B, if there is a border.
+    complement: Option<Factors>,
+}
+
+/// A sum of (place, factor), of one term where the second factor is zero.
+type Sum = [(usize, f64); 2];
+
+/// No term.
+const NONE: (usize, f64) = (0, 0.0);
+
+/// One row and column of a border.
+struct Border {
+    column: Column,
+    row: Row,
+}
+
+/// Column of a border.
+enum Column {
+    /// Q e_k + factor Q e_t.
+    Force(usize, Option<(usize, f64)>),
+    /// e_u, u being an unknown of A.
+    Release(usize),
+}
+
+/// Row of a border.
+enum Row {
+    /// Row k of Q.
+    Motion(usize),
+    /// x_u - factor x_n = 0, of unknowns of A.
+    Tie(usize, Option<(usize, f64)>),
+    /// y - factor x_n = 0.
+    Slide(usize, f64),
+}
+
+/// How the unknowns of a system follow from those of the kept one.
+struct Change<'a> {
+    kept: &'a Kept,
+    scaled: &'a Scaled,
+    /// Contact in the system of every contact of the kept one.
+    places: Vec<Option<usize>>,
+    /// Unknowns of A that are Pn and Pt of every contact of the system.
+    unknowns: Vec<[Option<usize>; 2]>,
+    /// Pt = slide Pn within A, of every contact of the system.
+    slides: Vec<f64>,
+    borders: Vec<Border>,
+    /// For every force of the system its sum.
+    sums: Vec<Sum>,
+}
+
+impl<'a> Change<'a> {
+    /// From the kept system to another one; None where A has slides that are no part of it.
+    fn new(kept: &'a Kept, system: &System, scaled: &'a Scaled) -> Option<Self> {
+        let places = kept.of.places_in(system);
+        let mut unknowns = vec![[None; 2]; scaled.contacts];
+        let mut slides = vec![0.0; scaled.contacts];
+        for (j, place) in places.iter().enumerate() {
+            if let Some(i) = *place {
+                slides[i] = kept.of.slides[j];
+                if slides[i] != 0.0 && scaled.tangents[i].is_none() {
+                    return None;
+                }
+            }
+        }
+        for (u, (j, is_tangential)) in kept.unknowns.iter().enumerate() {
+            if let Some(i) = places[*j] {
+                unknowns[i][usize::from(*is_tangential)] = Some(u);
+            }
+        }
+        let mut change = Change {
+            kept,
+            scaled,
+            places,
+            unknowns,
+            slides,
+            borders: Vec::new(),
+            sums: vec![[NONE; 2]; scaled.size()],
+        };
+        for (u, (j, _)) in kept.unknowns.iter().enumerate() {
+            if change.places[*j].is_none() {
+                change.remove(u);
+            }
+        }
+        for i in 0..scaled.contacts {
+            change.enter(i, system.states[i], system.slides[i]);
+        }
+        Some(change)
+    }
+
+    /// Makes an unknown of A zero.
+    fn remove(&mut self, u: usize) {
+        self.borders.push(Border {
+            column: Column::Release(u),
+            row: Row::Tie(u, None),
+        });
+    }
+
+    /// Adds a border with the column, and returns the place of its y.
+    fn add(&mut self, column: Column, row: Row) -> usize {
+        self.borders.push(Border { column, row });
+        self.kept.unknowns.len() + self.borders.len() - 1
+    }
+
+    /// Contact i with its state and slide.
+    fn enter(&mut self, i: usize, state: ContactState, slide: f64) {
+        let [normal, tangential] = self.unknowns[i];
+        let tangent = self.scaled.tangents[i];
+        let sticks = tangent.filter(|_| state == ContactState::Stick);
+        match (normal, state.is_closed()) {
+            (None, false) => {}
+            (_, false) => [normal, tangential]
+                .into_iter()
+                .flatten()
+                .for_each(|u| self.remove(u)),
+            (None, true) => {
+                let with_friction = tangent.filter(|_| slide != 0.0).map(|t| (t, slide));
+                let y = self.add(Column::Force(i, with_friction), Row::Motion(i));
+                self.sums[i] = [(y, 1.0), NONE];
+                if let Some(t) = sticks {
+                    let y = self.add(Column::Force(t, None), Row::Motion(t));
+                    self.sums[t] = [(y, 1.0), NONE];
+                }
+            }
+            (Some(normal), true) => {
+                self.sums[i] = [(normal, 1.0), NONE];
+                self.go_on(i, normal, (sticks, slide));
+            }
+        }
+    }
+
+    /// The tangential force of contact i, which was closed with the given unknown and is so still.
+    fn go_on(&mut self, i: usize, normal: usize, (sticks, slide): (Option<usize>, f64)) {
+        let before = self.slides[i];
+        match (self.unknowns[i][1], sticks, self.scaled.tangents[i]) {
+            (Some(u), Some(t), _) => self.sums[t] = [(u, 1.0), NONE],
+            (Some(u), None, _) => {
+                let tie = (slide != 0.0).then_some((normal, slide));
+                self.add(Column::Release(u), Row::Tie(u, tie));
+            }
+            (None, Some(t), _) => {
+                let y = self.add(Column::Force(t, None), Row::Motion(t));
+                self.sums[t] = [(y, 1.0), (normal, before)];
+            }
+            (None, None, Some(t)) if slide != before => {
+                self.add(Column::Force(t, None), Row::Slide(normal, slide - before));
+            }
+            _ => {}
+        }
+    }
+
+    /// Place in p of an unknown of A, if the system has it.
+    fn position(&self, u: usize) -> Option<usize> {
+        let (j, is_tangential) = self.kept.unknowns[u];
+        let i = self.places[j]?;
+        match is_tangential {
+            true => self.scaled.tangents[i],
+            false => Some(i),
+        }
+    }
+
+    /// Q e_k + factor Q e_t over all of p.
+    fn force_column(&self, k: usize, tangent: Option<(usize, f64)>) -> Vec<f64> {
+        let mut column = self.scaled.column(k).to_vec();
+        if let Some((t, factor)) = tangent {
+            let tangent = self.scaled.column(t);
+            (column.iter_mut().zip(tangent)).for_each(|(c, t)| *c += factor * t);
+        }
+        column
+    }
+
+    /// Row of a border over the unknowns of A.
+    fn row(&self, row: &Row) -> Vec<f64> {
+        let size = self.kept.unknowns.len();
+        let mut values = vec![0.0; size];
+        match *row {
+            Row::Motion(k) => {
+                for (u, value) in values.iter_mut().enumerate() {
+                    let Some(position) = self.position(u) else {
+                        continue;
+                    };
+                    *value = self.scaled.q[(k, position)];
+                    if position < self.scaled.contacts
+                        && self.slides[position] != 0.0
+                        && let Some(t) = self.scaled.tangents[position]
+                    {
+                        *value += self.slides[position] * self.scaled.q[(k, t)];
+                    }
+                }
+            }
+            Row::Tie(u, tie) => {
+                values[u] = 1.0;
+                if let Some((normal, factor)) = tie {
+                    values[normal] = -factor;
+                }
+            }
+            Row::Slide(normal, factor) => values[normal] = -factor,
+        }
+        values
+    }
+}
+
+impl<'a> Similar<'a> {
+    /// Solves of the system of the given states, with its unknowns, by the kept factors; None where there are none that
+    /// serve, or the border is too large or singular.
+    pub fn of(
+        kept: &'a KeptFactors,
+        scaled: &Scaled,
+        states: &[ContactState],
+        unknowns: &[usize],
+    ) -> Option<Self> {
+        let (kept, system) = kept.serving(scaled, states)?;
+        let system = &system;
+        let change = Change::new(kept, system, scaled)?;
+        let (size, count) = (kept.unknowns.len(), change.borders.len());
+        if count * UNKNOWNS_PER_BORDER > size {
+            return None;
+        }
+        let mut at = vec![None; scaled.size()];
+        unknowns
+            .iter()
+            .zip(0..)
+            .for_each(|(k, place)| at[*k] = Some(place));
+        let row = |border: &Border| match border.row {
+            Row::Motion(k) => at[k],
+            _ => None,
+        };
+        let of_kept = (0..size).map(|u| change.position(u).and_then(|k| at[k]));
+        let mut similar = Similar {
+            factors: &kept.factors,
+            units: units(kept, system, &change),
+            rows: [of_kept.collect(), change.borders.iter().map(row).collect()],
+            sums: unknowns.iter().map(|k| change.sums[*k]).collect(),
+            inverse_of_columns: Vec::new(),
+            border_rows: Vec::new(),
+            complement: None,
+        };
+        if count > 0 {
+            similar.add_border(&change)?;
+        }
+        Some(similar)
+    }
+
+    /// Computes A^-1 B and D - C A^-1 B.
+    fn add_border(&mut self, change: &Change) -> Option<()> {
+        let (size, count) = (change.kept.unknowns.len(), change.borders.len());
+        let mut complement = vec![0.0; count * count];
+        for (m, border) in change.borders.iter().enumerate() {
+            match border.column {
+                Column::Release(u) => {
+                    let unit = (0..size).map(|k| f64::from(k == u));
+                    self.inverse_of_columns.extend(unit);
+                }
+                Column::Force(k, tangent) => {
+                    let column = change.force_column(k, tangent);
+                    let entries = (0..size).map(|u| change.position(u).map_or(0.0, |k| column[k]));
+                    self.inverse_of_columns.extend(entries);
+                    for (l, of_l) in change.borders.iter().enumerate() {
+                        complement[l + m * count] = match of_l.row {
+                            Row::Motion(k) => column[k],
+                            Row::Slide(..) if l == m => 1.0,
+                            _ => 0.0,
+                        };
+                    }
+                }
+            }
+            self.border_rows.extend(change.row(&border.row));
+        }
+        let compliance = max_abs(&complement);
+        let [rows, columns] = &self.units;
+        let scale = |values: &mut [f64], units: &[f64]| {
+            for column in values.chunks_exact_mut(size) {
+                column
+                    .iter_mut()
+                    .zip(units)
+                    .for_each(|(v, unit)| *v *= unit);
+            }
+        };
+        scale(&mut self.inverse_of_columns, rows);
+        self.factors.solve_columns(&mut self.inverse_of_columns);
+        scale(&mut self.inverse_of_columns, columns);
+        for (m, column) in self.inverse_of_columns.chunks_exact(size).enumerate() {
+            for (l, row) in self.border_rows.chunks_exact(size).enumerate() {
+                complement[l + m * count] -= dot(row, column);
+            }
+        }
+        // forces that others determine leave nothing of their compliance
+        let factors = Factors::lu(complement, count)?;
+        self.complement = Some(factors).filter(|factors| factors.are_regular_beside(compliance));
+        self.complement.as_ref().map(|_| ())
+    }
+
+    /// Overwrites the right-hand side, over the unknowns of the system, with the solution.
+    pub fn solve(&self, b: &mut [f64]) {
+        let [rows, columns] = &self.units;
+        let [of_kept, of_border] = &self.rows;
+        let entry = |row: &Option<usize>| row.map_or(0.0, |row| b[row]);
+        // x = A^-1 r
+        let mut x: Vec<f64> = of_kept
+            .iter()
+            .zip(rows)
+            .map(|(row, unit)| entry(row) * unit)
+            .collect();
+        self.factors.solve(&mut x);
+        x.iter_mut().zip(columns).for_each(|(x, unit)| *x *= unit);
+        let size = x.len();
+        if let Some(complement) = &self.complement {
+            // y, and x - A^-1 B y, eq. (8.7)
+            let of_rows = of_border.iter().zip(self.border_rows.chunks_exact(size));
+            let mut y: Vec<f64> = of_rows.map(|(row, c)| entry(row) - dot(c, &x)).collect();
+            complement.solve(&mut y);
+            for (y, column) in y.iter().zip(self.inverse_of_columns.chunks_exact(size)) {
+                x.iter_mut()
+                    .zip(column)
+                    .for_each(|(x, column)| *x -= y * column);
+            }
+            x.extend(y);
+        }
+        for (b, terms) in b.iter_mut().zip(&self.sums) {
+            let [first, second] = terms.map(|(place, factor)| factor * x[place]);
+            *b = first + second;
+        }
+    }
+}
+
+/// Factors of rows and columns from the units of the kept factors to those of a system, powers of two. Q_kl is in units of
+/// w_k w_l, w the weights, and of the compliance.
+fn units(kept: &Kept, system: &System, change: &Change) -> [Vec<f64>; 2] {
+    let weight = |(j, _): &(usize, bool)| {
+        change.places[*j].map_or(1.0, |i| system.weights[i] / kept.of.weights[*j])
+    };
+    let rows: Vec<f64> = kept.unknowns.iter().map(weight).collect();
+    let compliance = system.compliance / kept.of.compliance;
+    let columns = rows.iter().map(|weight| weight * compliance).collect();
+    [rows, columns]
+}
