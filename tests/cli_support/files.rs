@@ -155,9 +155,9 @@ fn an_ignored_signal_stays_ignored() {
 
 #[test]
 fn a_full_disk_is_told_in_one_line_and_leaves_what_is_readable() {
-    let bench = Bench::new(&DROP.replace("0.1\n", "20.\n"));
+    let bench = Bench::new(&DROP.replace("0.1\n", "40.\n"));
     let mut with_results = 0;
-    for blocks in [1, 60, 400, 1000, 2000, 3000, 4000, 5000] {
+    for blocks in [1, 60, 400, 1000, 2000, 4000, 6000, 7000, 8000] {
         let output = format!("d{blocks}");
         let line = format!("ulimit -f {blocks}; \"$0\" run drop.inp -q -o {output}");
         let (code, err) = bench.shell(&line);

@@ -34,7 +34,7 @@ struct Waiting {
 }
 
 /// Increments, and bytes of their rows, that wait in memory at most.
-const PENDING_ROWS: usize = 1024;
+const PENDING_ROWS: usize = 512;
 const PENDING_BYTES: usize = 1 << 20;
 
 impl History {

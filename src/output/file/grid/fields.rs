@@ -15,7 +15,7 @@ use crate::output::file::dataset::{Meaning, group, meaning, set_attribute};
 use crate::output::frame::Frame;
 
 /// Bytes of frames that wait in memory at most, but for one frame.
-const PENDING_BYTES: usize = 8 << 20;
+const PENDING_BYTES: usize = 2 << 20;
 
 /// Writes the field frames.
 pub(crate) struct Fields {
