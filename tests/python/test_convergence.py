@@ -75,12 +75,12 @@ def test_two_programs_stand_side_by_side(deck: Path, tmp_path: Path) -> None:
 
 
 def test_runs_that_are_cut_short_are_counted_as_far_as_both_go(tmp_path: Path) -> None:
-    path = shortened(CANTILEVERS / "A_mu04.inp", 3000).write(tmp_path / "long.inp")
+    path = shortened(CANTILEVERS / "A_mu04.inp", 300_000).write(tmp_path / "long.inp")
     code, text = compare("convergence.py", *[program.binary()] * 2, path, "--limit", 0.5)
     assert code == 0, text
     line = text.splitlines()[1]
-    found = re.search(r"^ *(\d+) / (\d+) .*\(to time \S+ of 45: (OLD|NEW) at the limit\)$", line)
-    assert found and found[1] == found[2] and 10 < int(found[1]) < 3000, text
+    found = re.search(r"^ *(\d+) / (\d+) .*\(to time \S+ of 4500: (OLD|NEW) at the limit\)$", line)
+    assert found and found[1] == found[2] and 10 < int(found[1]) < 300_000, text
 
 
 def test_a_deck_without_results_is_told(deck: Path, tmp_path: Path) -> None:
