@@ -90,9 +90,10 @@ impl Factors {
         self.size
     }
 
-    /// Whether no pivot is negligible against the given size of what was factorised.
-    pub fn are_regular_beside(&self, size: f64) -> bool {
-        (0..self.size).all(|i| self.values[i + i * self.size].abs() > SINGULAR * size)
+    /// Size of the smallest pivot.
+    pub fn smallest_pivot(&self) -> f64 {
+        let pivots = (0..self.size).map(|i| self.values[i + i * self.size].abs());
+        pivots.fold(f64::INFINITY, f64::min)
     }
 
     /// Overwrites b with the solution of A x = b.

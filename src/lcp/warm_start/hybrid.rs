@@ -101,8 +101,8 @@ pub fn solve_similar(
     lemke(problem, &scaled, &mut counters)
 }
 
-/// The active set from the warm states, then from the states after ever more Gauss-Seidel sweeps,
-/// which break its cycles.
+/// The active set from the warm states, with factors of its own where it fails with kept ones, whose round-off moves
+/// contacts that are nearly one; then from the states after ever more Gauss-Seidel sweeps, which break its cycles.
 fn iterate(
     problem: &FrictionalLcp,
     scaled: &Scaled,
@@ -112,7 +112,7 @@ fn iterate(
     let mut states = warm.map_or_else(|| first_states(scaled), |warm| known(scaled, warm));
     let mut rounds = SWEEPS.into_iter();
     loop {
-        let mut p = match active_set(scaled, states, kept, counters) {
+        let mut p = match active_set(scaled, states.clone(), kept, counters) {
             Outcome::Converged(states, p) => {
                 let forces = scaled.forces(&admissible(scaled, &states, p.clone()));
                 let solution = finish(problem, &states, forces, Method::ActiveSet, *counters);
@@ -123,6 +123,9 @@ fn iterate(
             }
             Outcome::Failed(p) => p,
         };
+        if kept.forget() {
+            continue;
+        }
         project(scaled, &mut p);
         states = gauss_seidel(scaled, &mut p, rounds.next()?, counters);
     }

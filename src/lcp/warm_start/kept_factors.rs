@@ -56,6 +56,12 @@ impl KeptFactors {
         self.names.extend(names);
     }
 
+    /// Forgets factors and names, so that other systems have factors of their own; whether there were names.
+    pub(super) fn forget(&mut self) -> bool {
+        self.kept = None;
+        !std::mem::take(&mut self.names).is_empty()
+    }
+
     /// The system of states of the next problem.
     fn system(&self, scaled: &Scaled, states: &[ContactState]) -> System {
         let n = scaled.contacts;

@@ -8,6 +8,10 @@ use crate::lcp::problems::{ContactState, Scaled, dot, max_abs};
 /// Unknowns of the kept factors for one of the border: with fewer, new factors are not dearer.
 const UNKNOWNS_PER_BORDER: usize = 8;
 
+/// Contacts are too nearly one for a border where it has compliances, or forces, in such a ratio: its round-off would
+/// decide which of them carry force.
+const LARGEST: f64 = 1e3;
+
 /// Solves of a system by factors of another, A, and a border:
 ///
 /// ```text
@@ -313,10 +317,12 @@ impl<'a> Similar<'a> {
                 complement[l + m * count] -= dot(row, column);
             }
         }
-        // forces that others determine leave nothing of their compliance
+        // forces that others nearly determine leave little of their compliance, or take much of others' forces
         let factors = Factors::lu(complement, count)?;
-        self.complement = Some(factors).filter(|factors| factors.are_regular_beside(compliance));
-        self.complement.as_ref().map(|_| ())
+        let is_clear = compliance <= LARGEST * factors.smallest_pivot()
+            && max_abs(&self.inverse_of_columns) <= LARGEST;
+        self.complement = is_clear.then_some(factors);
+        is_clear.then_some(())
     }
 
     /// Overwrites the right-hand side, over the unknowns of the system, with the solution.
