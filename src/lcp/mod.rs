@@ -22,5 +22,6 @@ pub use exchange::{JsonAnswer, solve_json};
 pub use pivots::{LemkeSettings, covering_vector, lemke};
 pub use problems::{ContactState, Counters, FrictionalLcp, Lcp, LcpError, LcpSolution, residual};
 pub use warm_start::{
-    FrictionalSolution, KeptFactors, LcpMethod, Method, solve_frictional, solve_similar,
+    ContactName, FrictionalSolution, KeptFactors, LcpMethod, Method, solve_frictional,
+    solve_similar,
 };

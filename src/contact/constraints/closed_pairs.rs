@@ -54,13 +54,25 @@ pub struct ClosedPairs(Vec<ClosedPair>);
 /// The pairs must come with increasing keys.
 impl FromIterator<ClosedPair> for ClosedPairs {
     fn from_iter<T: IntoIterator<Item = ClosedPair>>(pairs: T) -> Self {
-        let pairs: Vec<ClosedPair> = pairs.into_iter().collect();
-        debug_assert!(pairs.is_sorted_by(|p, q| p.key < q.key), "increasing keys");
-        ClosedPairs(pairs)
+        let mut all = ClosedPairs::default();
+        all.set(pairs.into_iter());
+        all
     }
 }
 
 impl ClosedPairs {
+    /// Takes over other pairs, with increasing keys.
+    pub fn set(&mut self, pairs: impl Iterator<Item = ClosedPair>) {
+        self.0.clear();
+        self.0.extend(pairs);
+        debug_assert!(self.0.is_sorted_by(|p, q| p.key < q.key), "increasing keys");
+    }
+
+    /// Removes all pairs.
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+
     /// The pairs with increasing keys.
     pub fn iter(&self) -> impl Iterator<Item = &ClosedPair> + Clone {
         self.0.iter()

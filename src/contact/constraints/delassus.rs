@@ -3,6 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use pulp::{Arch, Simd, WithSimd};
+use smallvec::SmallVec;
 
 use super::compliance::{Compliance, Scope};
 use super::constraint::Constraint;
@@ -14,6 +15,8 @@ use crate::lcp::FrictionalLcp;
 pub struct DelassusSpace {
     /// Entries of Q.
     q: Vec<f64>,
+    /// Gaps, slips and friction coefficients.
+    vectors: [Vec<f64>; 3],
     groups: Vec<GroupRows>,
     responses: Responses,
     sums: [Vec<f64>; 2],
@@ -23,26 +26,31 @@ impl DelassusSpace {
     /// Takes the memory of a problem that is not needed any more.
     pub fn take(&mut self, problem: FrictionalLcp) {
         self.q = problem.q.data.into();
+        self.vectors = [problem.gap, problem.slip, problem.mu].map(|vector| vector.data.into());
     }
 }
 
 /// The complementarity problem of some constraints: Q = G W B^T, eq. (5.1), with the compliance W,
-/// derivative rows G and force rows B, and the given constant terms of gap and slip of every one.
+/// derivative rows G and force rows B, and the given constant terms, of gap and slip of every one.
 ///
 /// Every constraint must have been prepared in the scope of the compliance. Q is symmetric where G = B.
 pub fn frictional_lcp(
     constraints: &[&Constraint],
     (compliance, scope): (&Compliance, &Scope),
-    [normal, tangential]: [Vec<f64>; 2],
+    constant_terms: &[[f64; 2]],
     space: &mut DelassusSpace,
 ) -> FrictionalLcp {
-    let n = constraints.len();
-    let mu = constraints.iter().map(|constraint| constraint.mu);
+    let mut vector = |i: usize, values: &mut dyn Iterator<Item = f64>| {
+        let mut vector = std::mem::take(&mut space.vectors[i]);
+        vector.clear();
+        vector.extend(values);
+        DVector::from_vec(vector)
+    };
     FrictionalLcp {
+        gap: vector(0, &mut constant_terms.iter().map(|term| term[0])),
+        slip: vector(1, &mut constant_terms.iter().map(|term| term[1])),
+        mu: vector(2, &mut constraints.iter().map(|constraint| constraint.mu)),
         q: delassus(constraints, compliance, scope, space),
-        gap: DVector::from_vec(normal),
-        slip: DVector::from_vec(tangential),
-        mu: DVector::from_iterator(n, mu),
     }
 }
 
@@ -63,6 +71,7 @@ fn delassus(
         groups,
         responses,
         sums,
+        ..
     } = space;
     groups.resize_with(compliance.block_count(scope), GroupRows::default);
     groups.iter_mut().for_each(GroupRows::clear);
@@ -103,7 +112,7 @@ struct GroupSum<'a> {
     /// The inverse at its unknowns, and their number.
     inverse: (&'a [f64], usize),
     /// The constraints that act on it, with their rows.
-    members: Vec<(usize, &'a [UnknownEntry])>,
+    members: SmallVec<[(usize, &'a [UnknownEntry]); PANEL]>,
     responses: &'a mut Responses,
     sums: &'a mut [Vec<f64>; 2],
     adds: bool,

@@ -83,7 +83,7 @@ fn delassus_entries_are_derivative_rows_times_compliance_times_force_rows() {
     let problem = frictional_lcp(
         &constraints,
         (&compliance, &Scope::All),
-        [vec![0.0; 2], vec![0.0; 2]],
+        &[[0.0; 2]; 2],
         &mut DelassusSpace::default(),
     );
 

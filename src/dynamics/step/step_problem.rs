@@ -173,6 +173,7 @@ impl StepProblem<'_> {
     ) {
         let configurations = self.configurations(u0, u);
         constraints.clear();
+        constraints.reserve(pairs.len());
         for source in pairs.iter().filter(|pair| self.unknowns.moves(&pair.nodes)) {
             let constraint = Constraint::new(*source, &configurations);
             if self.unknowns.opens(&constraint) {

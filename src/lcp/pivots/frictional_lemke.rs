@@ -23,7 +23,7 @@ pub(crate) struct LemkeForces {
 /// The tangent of a contact that would slip in the negative direction is reversed (`signs`), so
 /// that q is negative at penetrations only and open contacts need no pivots.
 struct FrictionalMatrix<'a> {
-    scaled: &'a Scaled,
+    scaled: &'a Scaled<'a>,
     /// 1 or -1 for each tangential unknown.
     signs: Vec<f64>,
     /// Transposed Q: its rows one after the other.
@@ -74,8 +74,8 @@ pub(crate) fn lemke_forces(
 }
 
 impl<'a> FrictionalMatrix<'a> {
-    fn new(scaled: &'a Scaled, signs: Vec<f64>) -> Self {
-        let rows = scaled.q.transpose();
+    fn new(scaled: &'a Scaled<'a>, signs: Vec<f64>) -> Self {
+        let rows = scaled.q().transpose();
         FrictionalMatrix {
             scaled,
             signs,
@@ -180,6 +180,8 @@ impl PivotMatrix for FrictionalMatrix<'_> {
 
 #[cfg(test)]
 mod tests {
+    use bumpalo::Bump;
+
     use super::*;
     use crate::lcp::problems::FrictionalLcp;
 
@@ -194,7 +196,8 @@ mod tests {
             slip: vec![0.25, 0.5, -0.75].into(),
             mu: vec![0.5, 0.0, 0.25].into(),
         };
-        let scaled = Scaled::new(&problem).expect("finite");
+        let arena = Bump::new();
+        let scaled = Scaled::new(&problem, &arena).expect("finite");
         let signs = vec![1.0, -1.0];
         let matrix = FrictionalMatrix::new(&scaled, signs);
         for j in 0..matrix.size() {

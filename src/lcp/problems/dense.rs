@@ -3,6 +3,8 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
+use super::arena::List;
+
 /// Sum of a_i b_i over the shorter length, in eight interleaved partial sums (which the compiler
 /// turns into vector instructions).
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -152,9 +154,9 @@ pub(crate) fn add_sizes(a: f64, x: &[f64], y: &mut [f64]) {
 }
 
 /// Appends v_i (w_i c) to `out`.
-pub(crate) fn extend_scaled(out: &mut Vec<f64>, v: &[f64], w: &[f64], c: f64) {
+pub(crate) fn extend_scaled(out: &mut List<f64>, v: &[f64], w: &[f64], c: f64) {
     let start = out.len();
-    out.extend_from_slice(v);
+    out.extend_from_slice_copy(v);
     let scaled = &mut out[start..];
     Arch::new().dispatch(
         #[inline(always)]

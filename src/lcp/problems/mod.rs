@@ -1,5 +1,6 @@
 //! The complementarity problems, general and frictional, their scaling and residuals.
 
+mod arena;
 mod dense;
 mod frictional;
 mod general;
@@ -8,6 +9,7 @@ mod scaled;
 mod scaling;
 mod state;
 
+pub(crate) use arena::{List, copy, filled, list};
 pub(crate) use dense::{add_sizes, axpy, combine, dot, max_abs};
 pub use frictional::FrictionalLcp;
 pub use general::{Lcp, LcpError, LcpSolution};

@@ -1,7 +1,9 @@
 //! The check of a solution: recomputed from the data, independent of every method.
 
+use bumpalo::Bump;
 use nalgebra::DVector;
 
+use super::arena::{List, filled, list};
 use super::dense::{add_product_and_sizes, max_abs};
 use super::frictional::FrictionalLcp;
 use super::general::Lcp;
@@ -35,16 +37,21 @@ pub fn residual(lcp: &Lcp, z: &DVector<f64>) -> f64 {
     relative(error, scale)
 }
 
-/// Residual of the forces (pn, pt) of a frictional problem, zero for a solution.
+/// Residual of the forces (pn, pt) of a frictional problem, zero for a solution, and gaps and slips under them.
 ///
 /// The law of eq. (3.6) as r = max over contacts of |min(Pn, g)|, |min(T+, Dt+)|, |min(T-, Dt-)|
 /// with T+- = (mu Pn +- Pt)/2 and Dt+- the positive and negative part of the slip; lengths in units
 /// of the deepest penetration plus 1e-6 of the terms of Q P, forces in that unit over mean diag
 /// Qnn.
-pub(crate) fn frictional_residual(problem: &FrictionalLcp, pn: &[f64], pt: &[f64]) -> f64 {
+pub(crate) fn frictional_residual<'a>(
+    problem: &FrictionalLcp,
+    [pn, pt]: [&[f64]; 2],
+    arena: &'a Bump,
+) -> (f64, List<'a, f64>) {
     let n = problem.gap.len();
-    let (mut motion, mut terms) = (vec![0.0; 2 * n], vec![0.0; 2 * n]);
-    let forces: Vec<f64> = pn.iter().chain(pt).copied().collect();
+    let mut motion = list(arena, problem.gap.iter().chain(&problem.slip).copied());
+    let mut terms = filled(arena, 0.0, 2 * n);
+    let forces = list(arena, pn.iter().chain(pt).copied());
     add_product_and_sizes(problem.q.as_slice(), &forces, &mut motion, &mut terms);
     let length = problem.gap.iter().fold(0.0_f64, |l, g| l.max(-g)) + ROUNDING * max_abs(&terms);
 
@@ -54,11 +61,9 @@ pub(crate) fn frictional_residual(problem: &FrictionalLcp, pn: &[f64], pt: &[f64
     } else {
         1.0
     };
-    let contact = |i: usize| {
-        let motion = [motion[i] + problem.gap[i], motion[n + i] + problem.slip[i]];
-        (motion, [pn[i], pt[i]], problem.mu[i])
-    };
-    law_residual((0..n).map(contact), compliance, length)
+    let contact = |i: usize| ([motion[i], motion[n + i]], [pn[i], pt[i]], problem.mu[i]);
+    let residual = law_residual((0..n).map(contact), compliance, length);
+    (residual, motion)
 }
 
 /// Residual of the contact law, eq. (3.6), given gap and slip, Pn and Pt, and mu of every contact, in units of
@@ -139,27 +144,19 @@ mod tests {
             slip: DVector::from_element(1, 2.0),
             mu: DVector::from_element(1, 0.5),
         };
+        let residual_of = |forces| frictional_residual(&problem, forces, &Bump::new()).0;
         // Sliding: Pn = 1, Pt = -mu Pn, slip 1.5 > 0.
-        assert_eq!(frictional_residual(&problem, &[1.0], &[-0.5]), 0.0);
+        assert_eq!(residual_of([&[1.0], &[-0.5]]), 0.0);
         assert!(
-            frictional_residual(&problem, &[1.0], &[0.5]) > 0.1,
+            residual_of([&[1.0], &[0.5]]) > 0.1,
             "friction drives the slip"
         );
         assert!(
-            frictional_residual(&problem, &[1.0], &[0.0]) > 0.1,
+            residual_of([&[1.0], &[0.0]]) > 0.1,
             "below the limit yet slides"
         );
-        assert!(
-            frictional_residual(&problem, &[1.0], &[-0.7]) > 0.05,
-            "above the limit"
-        );
-        assert!(
-            frictional_residual(&problem, &[0.5], &[-0.25]) > 0.1,
-            "penetrates"
-        );
-        assert!(
-            frictional_residual(&problem, &[2.0], &[-1.0]) > 0.1,
-            "pushes at a distance"
-        );
+        assert!(residual_of([&[1.0], &[-0.7]]) > 0.05, "above the limit");
+        assert!(residual_of([&[0.5], &[-0.25]]) > 0.1, "penetrates");
+        assert!(residual_of([&[2.0], &[-1.0]]) > 0.1, "pushes at a distance");
     }
 }

@@ -1,6 +1,6 @@
 //! Primal-dual active set on the contact states: Newton's method on the contact law.
 
-use crate::lcp::problems::{ContactState, Counters, Scaled, max_abs};
+use crate::lcp::problems::{ContactState, Counters, List, Scaled, filled, list, max_abs};
 use crate::lcp::warm_start::{kept_factors::KeptFactors, reduced};
 
 /// Solves allowed in one call.
@@ -11,23 +11,23 @@ const ITERATIONS: usize = 25;
 const TOLERANCE: f64 = 1e-12;
 
 /// Result of a call.
-pub(crate) enum Outcome {
+pub(crate) enum Outcome<'a> {
     /// The states and their forces satisfy every condition.
-    Converged(Vec<ContactState>, Vec<f64>),
+    Converged(List<'a, ContactState>, List<'a, f64>),
     /// The states repeat or have no forces; the last forces found.
-    Failed(Vec<f64>),
+    Failed(List<'a, f64>),
 }
 
 /// Solves for the forces of the states and changes the states that forces and motion contradict,
 /// until none changes. Repeated states mean failure.
-pub(crate) fn active_set(
-    scaled: &Scaled,
-    mut states: Vec<ContactState>,
+pub(crate) fn active_set<'a>(
+    scaled: &Scaled<'a>,
+    mut states: List<'a, ContactState>,
     kept: &mut KeptFactors,
     counters: &mut Counters,
-) -> Outcome {
-    let mut visited: Vec<Vec<ContactState>> = Vec::new();
-    let mut last = vec![0.0; scaled.size()];
+) -> Outcome<'a> {
+    let mut visited: List<List<ContactState>> = List::new_in(scaled.arena);
+    let mut last = filled(scaled.arena, 0.0, scaled.size());
     while visited.len() < ITERATIONS {
         counters.active_set_iterations += 1;
         let Some((p, v)) = reduced::forces(scaled, &states, kept) else {
@@ -47,16 +47,15 @@ pub(crate) fn active_set(
 }
 
 /// The states that follow from the forces p of `states` and their motion v.
-fn next_states(
-    scaled: &Scaled,
+fn next_states<'a>(
+    scaled: &Scaled<'a>,
     states: &[ContactState],
     p: &[f64],
     v: &[f64],
-) -> Vec<ContactState> {
+) -> List<'a, ContactState> {
     let tolerance = TOLERANCE * max_abs(p).max(1.0);
-    (0..scaled.contacts)
-        .map(|i| next_state(scaled, states[i], i, p, v, tolerance))
-        .collect()
+    let next = (0..scaled.contacts).map(|i| next_state(scaled, states[i], i, p, v, tolerance));
+    list(scaled.arena, next)
 }
 
 /// The next state of contact i.
@@ -90,7 +89,7 @@ fn next_state(
         (Stick, _) if p[t] < -limit - tolerance => SlipPlus,
         (SlipPlus | SlipMinus, _) if state.slip_sign() * v[t] < -tolerance => {
             // The force that stops the slip comes on top of the friction that drove it.
-            if v[t].abs() / scaled.q[(t, t)] <= 2.0 * limit {
+            if v[t].abs() / scaled.q()[(t, t)] <= 2.0 * limit {
                 Stick
             } else {
                 ContactState::sliding(v[t])
@@ -103,8 +102,8 @@ fn next_state(
 /// State of contact i that closes with motion v: it sticks when the force that would stop its slip
 /// is within the limit of the force that would stop its penetration.
 fn landing(scaled: &Scaled, i: usize, t: usize, v: &[f64]) -> ContactState {
-    let normal = -v[i] / scaled.q[(i, i)];
-    let tangential = -v[t] / scaled.q[(t, t)];
+    let normal = -v[i] / scaled.q()[(i, i)];
+    let tangential = -v[t] / scaled.q()[(t, t)];
     if tangential.abs() <= scaled.mu[i] * normal {
         ContactState::Stick
     } else {
@@ -113,13 +112,15 @@ fn landing(scaled: &Scaled, i: usize, t: usize, v: &[f64]) -> ContactState {
 }
 
 /// Initial states when none are known: those that follow from the motion without forces.
-pub(crate) fn first_states(scaled: &Scaled) -> Vec<ContactState> {
-    let open = vec![ContactState::Open; scaled.contacts];
-    next_states(scaled, &open, &vec![0.0; scaled.size()], &scaled.b)
+pub(crate) fn first_states<'a>(scaled: &Scaled<'a>) -> List<'a, ContactState> {
+    let open = filled(scaled.arena, ContactState::Open, scaled.contacts);
+    let none = filled(scaled.arena, 0.0, scaled.size());
+    next_states(scaled, &open, &none, &scaled.b)
 }
 
 #[cfg(test)]
 mod tests {
+    use bumpalo::Bump;
     use nalgebra::DMatrix;
 
     use super::*;
@@ -133,7 +134,8 @@ mod tests {
             slip: vec![2.0].into(),
             mu: vec![0.5].into(),
         };
-        let scaled = Scaled::new(&problem).expect("finite");
+        let arena = Bump::new();
+        let scaled = Scaled::new(&problem, &arena).expect("finite");
         let next = |pt: f64| {
             let p = [1.0, pt];
             next_state(&scaled, ContactState::Stick, 0, &p, &[0.0; 2], 1e-12)

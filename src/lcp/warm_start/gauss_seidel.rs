@@ -1,19 +1,19 @@
 //! Non-smooth Gauss-Seidel: each contact in turn is solved exactly, with the forces of all others
 //! fixed. Section 8 of docs/theory.md.
 
-use crate::lcp::problems::{ContactState, Counters, Scaled, axpy};
+use crate::lcp::problems::{ContactState, Counters, List, Scaled, axpy, filled};
 
 /// A sweep that changes no force by more than this part of the largest ends the iteration.
 const TOLERANCE: f64 = 1e-13;
 
 /// At most `sweeps` sweeps from forces `p`, which they improve; returns the states they arrive at.
-pub(crate) fn gauss_seidel(
-    scaled: &Scaled,
+pub(crate) fn gauss_seidel<'a>(
+    scaled: &Scaled<'a>,
     p: &mut [f64],
     sweeps: usize,
     counters: &mut Counters,
-) -> Vec<ContactState> {
-    let mut states = vec![ContactState::Open; scaled.contacts];
+) -> List<'a, ContactState> {
+    let mut states = filled(scaled.arena, ContactState::Open, scaled.contacts);
     let mut v = scaled.motion(p);
     for _ in 0..sweeps {
         counters.gauss_seidel_sweeps += 1;
@@ -45,13 +45,14 @@ fn update(scaled: &Scaled, k: usize, force: f64, p: &mut [f64], v: &mut [f64]) -
 /// State and forces of contact i alone, from its 2 x 2 block of Q and the motion b due to the other
 /// contacts: g = a Pn + c Pt + b_n, Dt = f Pn + e Pt + b_t.
 fn local(scaled: &Scaled, i: usize, p: &[f64], v: &[f64]) -> (ContactState, f64, f64) {
-    let a = scaled.q[(i, i)];
+    let q = scaled.q();
+    let a = q[(i, i)];
     let Some(t) = scaled.tangents[i] else {
         let pn = -(v[i] - a * p[i]) / a;
         return closed_or_open(ContactState::SlipPlus, pn, 0.0);
     };
-    let (c, f) = (scaled.q[(i, t)], scaled.q[(t, i)]);
-    let (e, mu) = (scaled.q[(t, t)], scaled.mu[i]);
+    let (c, f) = (q[(i, t)], q[(t, i)]);
+    let (e, mu) = (q[(t, t)], scaled.mu[i]);
     let b_n = v[i] - a * p[i] - c * p[t];
     let b_t = v[t] - f * p[i] - e * p[t];
     if b_n >= 0.0 {
@@ -89,6 +90,7 @@ fn closed_or_open(state: ContactState, pn: f64, pt: f64) -> (ContactState, f64, 
 
 #[cfg(test)]
 mod tests {
+    use bumpalo::Bump;
     use nalgebra::DMatrix;
 
     use super::*;
@@ -103,7 +105,8 @@ mod tests {
             slip: vec![2.0, 2.0, -0.25].into(),
             mu: vec![0.5; 3].into(),
         };
-        let scaled = Scaled::new(&problem).expect("finite");
+        let arena = Bump::new();
+        let scaled = Scaled::new(&problem, &arena).expect("finite");
         let mut p = vec![0.0; 6];
         let states = gauss_seidel(&scaled, &mut p, 1, &mut Counters::default());
         assert_eq!(

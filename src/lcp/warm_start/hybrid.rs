@@ -1,14 +1,15 @@
 //! Solves a frictional problem: the order of the methods, and the check of each answer. Section 8 of
 //! docs/theory.md.
 
-use nalgebra::DVector;
+use bumpalo::Bump;
 
 use super::active_set::{Outcome, active_set, first_states};
 use super::gauss_seidel::gauss_seidel;
+use super::solution::{FrictionalSolution, Method, Spare};
 use crate::lcp::pivots::{LemkeSettings, lemke_forces, perturbation};
 use crate::lcp::problems::{
-    ContactState, Counters, FrictionalLcp, LcpError, Scaled, TOLERANCE, expect_size,
-    frictional_residual,
+    ContactState, Counters, FrictionalLcp, LcpError, List, Scaled, TOLERANCE, copy, expect_size,
+    filled, frictional_residual, list,
 };
 use crate::lcp::warm_start::{kept_factors::KeptFactors, reduced};
 
@@ -26,38 +27,6 @@ pub enum LcpMethod {
     Hybrid,
     /// Lemke's method from the start.
     Lemke,
-}
-
-/// The method that produced a solution.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Method {
-    /// No contact penetrates: no forces.
-    Trivial,
-    /// Active set on the contact states.
-    ActiveSet,
-    /// Lemke's method.
-    Lemke,
-}
-
-/// Solution of a [`FrictionalLcp`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct FrictionalSolution {
-    /// Normal forces, zero where open.
-    pub pn: DVector<f64>,
-    /// Tangential forces, exactly -+mu Pn where sliding.
-    pub pt: DVector<f64>,
-    /// Gaps under these forces.
-    pub gap: DVector<f64>,
-    /// Slips under these forces.
-    pub slip: DVector<f64>,
-    /// States of the contacts.
-    pub state: Vec<ContactState>,
-    /// Scaled residual of the contact conditions.
-    pub residual: f64,
-    /// The method that found the states.
-    pub method: Method,
-    /// Work done, by all methods tried.
-    pub counters: Counters,
 }
 
 /// Solves a frictional problem, from the states of a similar one when `warm` is given.
@@ -80,19 +49,29 @@ pub fn solve_similar(
     if let Some(states) = warm {
         expect_size("warm states", problem.len(), states.len())?;
     }
+    let mut arena = std::mem::take(&mut kept.arena);
+    let solved = solve_in(problem, warm, method, (kept, &arena));
+    arena.reset();
+    kept.arena = arena;
+    solved
+}
+
+/// Solves a frictional problem with its lists in an arena.
+fn solve_in(
+    problem: &FrictionalLcp,
+    warm: Option<&[ContactState]>,
+    method: LcpMethod,
+    (kept, arena): (&mut KeptFactors, &Bump),
+) -> Result<FrictionalSolution, LcpError> {
     let mut counters = Counters::default();
     if problem.gap.iter().all(|g| *g >= 0.0) {
-        let states = vec![ContactState::Open; problem.len()];
-        let none = vec![0.0; problem.len()];
-        return Ok(finish(
-            problem,
-            &states,
-            (none.clone(), none),
-            Method::Trivial,
-            counters,
-        ));
+        let states = filled(arena, ContactState::Open, problem.len());
+        let forces = [(); 2].map(|()| filled(arena, 0.0, problem.len()));
+        let found = (&*states, forces);
+        let spare = &mut kept.spare;
+        return Ok(finish(problem, found, (Method::Trivial, counters), spare));
     }
-    let scaled = Scaled::new(problem)?;
+    let scaled = Scaled::new(problem, arena)?;
     if method == LcpMethod::Hybrid
         && let Some(solution) = iterate(problem, &scaled, warm, (kept, &mut counters))
     {
@@ -114,8 +93,9 @@ fn iterate(
     loop {
         let mut p = match active_set(scaled, states.clone(), kept, counters) {
             Outcome::Converged(states, p) => {
-                let forces = scaled.forces(&admissible(scaled, &states, p.clone()));
-                let solution = finish(problem, &states, forces, Method::ActiveSet, *counters);
+                let forces = scaled.forces(&admissible(scaled, &states, &p));
+                let (found, how) = ((&*states, forces), (Method::ActiveSet, *counters));
+                let solution = finish(problem, found, how, &mut kept.spare);
                 if solution.residual <= TOLERANCE {
                     return Some(solution);
                 }
@@ -132,12 +112,12 @@ fn iterate(
 }
 
 /// Warm states, in which frictionless contacts have one closed state only.
-fn known(scaled: &Scaled, warm: &[ContactState]) -> Vec<ContactState> {
+fn known<'a>(scaled: &Scaled<'a>, warm: &[ContactState]) -> List<'a, ContactState> {
     let state = |(state, tangent): (&ContactState, &Option<usize>)| match tangent {
         None if state.is_closed() => ContactState::SlipPlus,
         _ => *state,
     };
-    warm.iter().zip(&scaled.tangents).map(state).collect()
+    list(scaled.arena, warm.iter().zip(&scaled.tangents).map(state))
 }
 
 /// Brings forces into the friction cone.
@@ -191,20 +171,25 @@ fn follow(
     };
     let found = found?;
     let (kept, unread) = (&mut KeptFactors::default(), &mut Counters::default());
-    let corrected = match active_set(scaled, found.states.clone(), kept, unread) {
+    let corrected = match active_set(scaled, copy(scaled.arena, &found.states), kept, unread) {
         Outcome::Converged(states, p) => Some((states, p)),
         Outcome::Failed(_) => None,
     };
-    let direct =
-        || reduced::forces(scaled, &found.states, kept).map(|(p, _)| (found.states.clone(), p));
+    let own = || copy(scaled.arena, &found.states);
+    let direct = || reduced::forces(scaled, &found.states, kept).map(|(p, _)| (own(), p));
     let candidates = corrected
         .into_iter()
         .chain(std::iter::once_with(direct).flatten());
-    let own = (found.states.clone(), found.p);
-    accept(candidates.chain([own]).map(|(states, p)| {
-        let forces = scaled.forces(&admissible(scaled, &states, p));
-        finish(problem, &states, forces, Method::Lemke, *counters)
-    }))
+    let found_forces = copy(scaled.arena, &found.p);
+    accept(
+        candidates
+            .chain([(own(), found_forces)])
+            .map(|(states, p)| {
+                let forces = scaled.forces(&admissible(scaled, &states, &p));
+                let (found, how) = ((&*states, forces), (Method::Lemke, *counters));
+                finish(problem, found, how, &mut Spare::default())
+            }),
+    )
 }
 
 /// The first solution whose residual is small enough.
@@ -225,7 +210,8 @@ fn accept(
 }
 
 /// Forces moved into the friction cone where round-off left them outside: Pn >= 0, |Pt| <= mu Pn.
-fn admissible(scaled: &Scaled, states: &[ContactState], mut p: Vec<f64>) -> Vec<f64> {
+fn admissible<'a>(scaled: &Scaled<'a>, states: &[ContactState], p: &[f64]) -> List<'a, f64> {
+    let mut p = copy(scaled.arena, p);
     for i in 0..scaled.contacts {
         p[i] = if states[i].is_closed() {
             p[i].max(0.0)
@@ -246,25 +232,26 @@ fn admissible(scaled: &Scaled, states: &[ContactState], mut p: Vec<f64>) -> Vec<
 /// The solution with motion and residual recomputed from the problem.
 fn finish(
     problem: &FrictionalLcp,
-    states: &[ContactState],
-    (pn, pt): (Vec<f64>, Vec<f64>),
-    method: Method,
-    counters: Counters,
+    (states, [pn, pt]): (&[ContactState], [List<f64>; 2]),
+    (method, counters): (Method, Counters),
+    spare: &mut Spare,
 ) -> FrictionalSolution {
-    let residual = frictional_residual(problem, &pn, &pt);
-    let (pn, pt) = (DVector::from_vec(pn), DVector::from_vec(pt));
-    let (gap, slip) = problem.motion(&pn, &pt);
+    let (residual, motion) = frictional_residual(problem, [&pn, &pt], pn.bump());
+    let (gap, slip) = motion.split_at(problem.len());
     // Without friction the solution leaves the direction of slip open: take it from the slip.
-    let state = (0..problem.len()).map(|i| match states[i] {
+    let states = (0..problem.len()).map(|i| match states[i] {
         closed if closed.is_closed() && problem.mu[i] == 0.0 => ContactState::sliding(slip[i]),
         other => other,
     });
+    let mut state = std::mem::take(&mut spare.states);
+    state.clear();
+    state.extend(states);
     FrictionalSolution {
-        state: state.collect(),
-        pn,
-        pt,
-        gap,
-        slip,
+        state,
+        pn: spare.vector(0, &pn),
+        pt: spare.vector(1, &pt),
+        gap: spare.vector(2, gap),
+        slip: spare.vector(3, slip),
         residual,
         method,
         counters,

@@ -6,6 +6,8 @@ mod hybrid;
 mod kept_factors;
 mod reduced;
 mod similar;
+mod solution;
 
-pub use hybrid::{FrictionalSolution, LcpMethod, Method, solve_frictional, solve_similar};
-pub use kept_factors::KeptFactors;
+pub use hybrid::{LcpMethod, solve_frictional, solve_similar};
+pub use kept_factors::{ContactName, KeptFactors};
+pub use solution::{FrictionalSolution, Method};

@@ -3,7 +3,7 @@
 use super::kept_factors::{KeptFactors, slide};
 use super::similar::Similar;
 use crate::lcp::pivots::Factors;
-use crate::lcp::problems::{ContactState, Scaled, max_abs};
+use crate::lcp::problems::{ContactState, List, Scaled, copy, filled, list, max_abs};
 
 /// Shift of the diagonal, relative to its entries, that makes a singular system solvable.
 const SHIFT: f64 = 1e-10;
@@ -39,6 +39,9 @@ const SIMILAR_SOLVES: usize = 13;
 /// Unknowns for one such solve.
 const UNKNOWNS_PER_SOLVE: usize = 24;
 
+/// Forces p and their motion v.
+type Solution<'a> = (List<'a, f64>, List<'a, f64>);
+
 impl Corrections {
     /// With the factors of a similar system of the given size: as long as the residual falls to round-off.
     fn similar(size: usize) -> Self {
@@ -54,14 +57,15 @@ impl Corrections {
 /// gap = 0 where closed, slip = 0 where sticking, Pt = -+mu Pn where sliding, no force where open.
 /// None when no solution is finite. Where redundant contacts leave the forces undetermined they
 /// share the load.
-pub(crate) fn forces(
-    scaled: &Scaled,
+pub(crate) fn forces<'a>(
+    scaled: &Scaled<'a>,
     states: &[ContactState],
     kept: &mut KeptFactors,
-) -> Option<(Vec<f64>, Vec<f64>)> {
+) -> Option<Solution<'a>> {
     let unknowns = unknowns(scaled, states);
     if unknowns.is_empty() {
-        return Some((vec![0.0; scaled.size()], scaled.b.clone()));
+        let arena = scaled.arena;
+        return Some((filled(arena, 0.0, scaled.size()), copy(arena, &scaled.b)));
     }
     let size = unknowns.len();
     if let Some(found) = from_kept(scaled, states, &unknowns, kept) {
@@ -91,12 +95,12 @@ pub(crate) fn forces(
 }
 
 /// Forces from kept factors, if these serve.
-fn from_kept(
-    scaled: &Scaled,
+fn from_kept<'a>(
+    scaled: &Scaled<'a>,
     states: &[ContactState],
     unknowns: &[usize],
     kept: &KeptFactors,
-) -> Option<(Vec<f64>, Vec<f64>)> {
+) -> Option<Solution<'a>> {
     if let Some(factors) = kept
         .same(scaled, states)
         .filter(|f| f.size() == unknowns.len())
@@ -108,12 +112,12 @@ fn from_kept(
 }
 
 /// Forces from solves of a similar system, if they are as good as those from the own factors.
-fn from_similar(
-    scaled: &Scaled,
+fn from_similar<'a>(
+    scaled: &Scaled<'a>,
     states: &[ContactState],
     unknowns: &[usize],
     solve: impl Fn(&mut [f64]),
-) -> Option<(Vec<f64>, Vec<f64>)> {
+) -> Option<Solution<'a>> {
     let corrections = Corrections::similar(unknowns.len());
     let (p, v, error) = refine(scaled, states, unknowns, (&corrections, solve));
     (error <= ACCURATE * terms(scaled, &p)).then_some((p, v))
@@ -121,17 +125,18 @@ fn from_similar(
 
 /// Sum of the sizes of the diagonal terms of Q p.
 fn terms(scaled: &Scaled, p: &[f64]) -> f64 {
-    (0..p.len()).map(|k| (scaled.q[(k, k)] * p[k]).abs()).sum()
+    let q = scaled.q();
+    (0..p.len()).map(|k| (q[(k, k)] * p[k]).abs()).sum()
 }
 
 /// Positions in p of the unknowns, which are also the rows that must vanish.
-fn unknowns(scaled: &Scaled, states: &[ContactState]) -> Vec<usize> {
+fn unknowns<'a>(scaled: &Scaled<'a>, states: &[ContactState]) -> List<'a, usize> {
     let closed = (0..scaled.contacts).filter(|i| states[*i].is_closed());
     let tangents = scaled.owners.iter().zip(scaled.contacts..);
     let stick = tangents
         .filter(|(i, _)| states[**i] == ContactState::Stick)
         .map(|(_, k)| k);
-    closed.chain(stick).collect()
+    list(scaled.arena, closed.chain(stick))
 }
 
 /// The matrix of the system by columns: Q on the unknowns; the column of a sliding Pn is
@@ -180,20 +185,21 @@ fn shifted(mut matrix: Vec<f64>, size: usize) -> Vec<f64> {
 
 /// p and v from solves with some factors, corrected by the residual of the system itself as long as that falls and is
 /// not yet round-off, and the largest residual.
-fn refine(
-    scaled: &Scaled,
+fn refine<'a>(
+    scaled: &Scaled<'a>,
     states: &[ContactState],
     unknowns: &[usize],
     (corrections, solve): (&Corrections, impl Fn(&mut [f64])),
-) -> (Vec<f64>, Vec<f64>, f64) {
-    let mut p = vec![0.0; scaled.size()];
-    let (mut best, mut motion) = (p.clone(), Vec::new());
-    let mut residual = Vec::with_capacity(unknowns.len());
+) -> (List<'a, f64>, List<'a, f64>, f64) {
+    let arena = scaled.arena;
+    let [mut p, mut best] = [(); 2].map(|()| filled(arena, 0.0, scaled.size()));
+    let mut motion = List::new_in(arena);
+    let mut residual = List::with_capacity_in(unknowns.len(), arena);
     let mut smallest = f64::INFINITY;
     let [least, most] = corrections.solves;
     for solves in 0..=most {
         let v = match solves {
-            0 => scaled.b.clone(),
+            0 => copy(arena, &scaled.b),
             _ => scaled.motion(&p),
         };
         residual.clear();
@@ -222,6 +228,7 @@ fn refine(
 
 #[cfg(test)]
 mod tests {
+    use bumpalo::Bump;
     use nalgebra::{DMatrix, DVector};
 
     use super::*;
@@ -256,8 +263,8 @@ mod tests {
     }
 
     /// A system of named contacts.
-    fn scaled(names: &[usize], compliance: f64) -> Scaled {
-        Scaled::new(&problem(names, compliance)).expect("finite")
+    fn scaled<'a>(names: &[usize], compliance: f64, arena: &'a Bump) -> Scaled<'a> {
+        Scaled::new(&problem(names, compliance), arena).expect("finite")
     }
 
     /// Factors kept of the system of all contacts with every state.
@@ -267,7 +274,8 @@ mod tests {
         let states: Vec<ContactState> = states.collect();
         let mut kept = KeptFactors::default();
         kept.name_contacts(names.iter().map(|&name| [name, 0]));
-        forces(&scaled(&names, 1.0), &states, &mut kept).expect("regular");
+        let arena = Bump::new();
+        forces(&scaled(&names, 1.0, &arena), &states, &mut kept).expect("regular");
         (kept, names, states)
     }
 
@@ -279,7 +287,8 @@ mod tests {
         compliance: f64,
     ) -> Option<f64> {
         kept.name_contacts(names.iter().map(|&name| [name, 0]));
-        let scaled = scaled(names, compliance);
+        let arena = Bump::new();
+        let scaled = scaled(names, compliance, &arena);
         let unknowns = unknowns(&scaled, states);
         let own = Factors::lu(matrix(&scaled, states, &unknowns), unknowns.len())?;
         let mut expected: Vec<f64> = (0..unknowns.len()).map(|k| 1.0 + (k % 7) as f64).collect();
@@ -327,7 +336,8 @@ mod tests {
     fn forces_by_kept_factors_are_those_by_own_ones() {
         let (mut kept, names, mut states) = kept();
         (states[3], states[4], states[12]) = (Stick, SlipPlus, Stick);
-        let scaled = scaled(&names, 1.0001);
+        let arena = Bump::new();
+        let scaled = scaled(&names, 1.0001, &arena);
         let unknowns = unknowns(&scaled, &states);
         let similar = Similar::of(&kept, &scaled, &states, &unknowns).expect("a border");
         let found = from_similar(&scaled, &states, &unknowns, |b| similar.solve(b));
@@ -342,6 +352,7 @@ mod tests {
                     .all(|(a, b)| (a - b).abs() < 1e-12 * most)
             );
         }
+        drop(similar);
         let before = forces(&scaled, &states, &mut kept);
         assert!(before.is_some(), "the kept factors serve again");
     }
@@ -354,11 +365,13 @@ mod tests {
         assert_eq!(differs(&mut kept, &names, &all, 1.0), None);
         // Q is another one: corrections by the residual do not converge
         let far: Vec<usize> = names.iter().map(|name| 50 * name).collect();
-        let other = scaled(&far, 1.0);
+        let arena = Bump::new();
+        let other = scaled(&far, 1.0, &arena);
         kept.name_contacts(names.iter().map(|&name| [name, 0]));
         let unknowns = unknowns(&other, &states);
         let similar = Similar::of(&kept, &other, &states, &unknowns).expect("the same states");
         assert!(from_similar(&other, &states, &unknowns, |b| similar.solve(b)).is_none());
+        drop(similar);
         let (p, v) = forces(&other, &states, &mut kept).expect("own factors");
         assert!(unknowns.iter().all(|k| v[*k].abs() < 1e-13 * max_abs(&p)));
     }
@@ -369,7 +382,8 @@ mod tests {
         // a contact that is there twice
         names.insert(1, names[0]);
         states.insert(1, Stick);
-        let twice = scaled(&names, 1.0);
+        let arena = Bump::new();
+        let twice = scaled(&names, 1.0, &arena);
         kept.name_contacts((0..names.len()).map(|i| [i.max(1) - 1, usize::from(i == 1)]));
         let (p, v) = forces(&twice, &states, &mut kept).expect("shared");
         let closed = (0..names.len()).filter(|i| states[*i].is_closed());

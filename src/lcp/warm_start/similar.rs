@@ -1,9 +1,11 @@
 //! Solves of a system with the factors of a similar one, to which the contacts whose states differ add a border.
 //! Section 8 of docs/theory.md, The hybrid.
 
+use bumpalo::Bump;
+
 use super::kept_factors::{Kept, KeptFactors, System};
 use crate::lcp::pivots::Factors;
-use crate::lcp::problems::{ContactState, Scaled, dot, max_abs};
+use crate::lcp::problems::{ContactState, List, Scaled, copy, dot, filled, list, max_abs};
 
 /// Unknowns of the kept factors for one of the border: with fewer, new factors are not dearer.
 const UNKNOWNS_PER_BORDER: usize = 8;
@@ -22,17 +24,18 @@ const LARGEST: f64 = 1e3;
 /// A contact that closes, or begins to stick, brings its force as a y with its row of Q; one that opens, or
 /// begins to slide, brings what its row is then let off as a y, with Pn = 0 or Pt = -+mu Pn as its row.
 pub(super) struct Similar<'a> {
+    arena: &'a Bump,
     factors: &'a Factors,
     /// Factors of rows and columns that bring A to the units of the system.
-    units: [Vec<f64>; 2],
+    units: [List<'a, f64>; 2],
     /// For every row of A, and every row of the border, the unknown of the system whose row it is.
-    rows: [Vec<Option<usize>>; 2],
+    rows: [List<'a, Option<usize>>; 2],
     /// Every unknown of the system as a sum of (place among x and y, factor).
-    sums: Vec<Sum>,
+    sums: List<'a, Sum>,
     /// A^-1 B, column by column.
-    inverse_of_columns: Vec<f64>,
+    inverse_of_columns: List<'a, f64>,
     /// C, row by row.
-    border_rows: Vec<f64>,
+    border_rows: List<'a, f64>,
     /// Factors of D - C A^-1 B, if there is a border.
     complement: Option<Factors>,
 }
@@ -70,27 +73,28 @@ enum Row {
 /// How the unknowns of a system follow from those of the kept one.
 struct Change<'a> {
     kept: &'a Kept,
-    scaled: &'a Scaled,
+    scaled: &'a Scaled<'a>,
     /// Contact in the system of every contact of the kept one.
-    places: Vec<Option<usize>>,
+    places: List<'a, Option<usize>>,
     /// Unknowns of A that are Pn and Pt of every contact of the system.
-    unknowns: Vec<[Option<usize>; 2]>,
+    unknowns: List<'a, [Option<usize>; 2]>,
     /// Pt = slide Pn within A, of every contact of the system.
-    slides: Vec<f64>,
-    borders: Vec<Border>,
+    slides: List<'a, f64>,
+    borders: List<'a, Border>,
     /// For every force of the system its sum.
-    sums: Vec<Sum>,
+    sums: List<'a, Sum>,
 }
 
 impl<'a> Change<'a> {
     /// From the kept system to another one; None where A has slides that are no part of it.
-    fn new(kept: &'a Kept, system: &System, scaled: &'a Scaled) -> Option<Self> {
-        let places = kept.of.places_in(system);
-        let mut unknowns = vec![[None; 2]; scaled.contacts];
-        let mut slides = vec![0.0; scaled.contacts];
+    fn new(kept: &'a Kept, system: &System, scaled: &'a Scaled<'a>) -> Option<Self> {
+        let arena = scaled.arena;
+        let places = kept.of().places_in(system, arena);
+        let mut unknowns = filled(arena, [None; 2], scaled.contacts);
+        let mut slides = filled(arena, 0.0, scaled.contacts);
         for (j, place) in places.iter().enumerate() {
             if let Some(i) = *place {
-                slides[i] = kept.of.slides[j];
+                slides[i] = kept.of().slides[j];
                 if slides[i] != 0.0 && scaled.tangents[i].is_none() {
                     return None;
                 }
@@ -107,8 +111,8 @@ impl<'a> Change<'a> {
             places,
             unknowns,
             slides,
-            borders: Vec::new(),
-            sums: vec![[NONE; 2]; scaled.size()],
+            borders: List::new_in(arena),
+            sums: filled(arena, [NONE; 2], scaled.size()),
         };
         for (u, (j, _)) in kept.unknowns.iter().enumerate() {
             if change.places[*j].is_none() {
@@ -193,8 +197,8 @@ impl<'a> Change<'a> {
     }
 
     /// Q e_k + factor Q e_t over all of p.
-    fn force_column(&self, k: usize, tangent: Option<(usize, f64)>) -> Vec<f64> {
-        let mut column = self.scaled.column(k).to_vec();
+    fn force_column(&self, k: usize, tangent: Option<(usize, f64)>) -> List<'a, f64> {
+        let mut column = copy(self.scaled.arena, self.scaled.column(k));
         if let Some((t, factor)) = tangent {
             let tangent = self.scaled.column(t);
             (column.iter_mut().zip(tangent)).for_each(|(c, t)| *c += factor * t);
@@ -203,21 +207,21 @@ impl<'a> Change<'a> {
     }
 
     /// Row of a border over the unknowns of A.
-    fn row(&self, row: &Row) -> Vec<f64> {
-        let size = self.kept.unknowns.len();
-        let mut values = vec![0.0; size];
+    fn row(&self, row: &Row) -> List<'a, f64> {
+        let (size, q) = (self.kept.unknowns.len(), self.scaled.q());
+        let mut values = filled(self.scaled.arena, 0.0, size);
         match *row {
             Row::Motion(k) => {
                 for (u, value) in values.iter_mut().enumerate() {
                     let Some(position) = self.position(u) else {
                         continue;
                     };
-                    *value = self.scaled.q[(k, position)];
+                    *value = q[(k, position)];
                     if position < self.scaled.contacts
                         && self.slides[position] != 0.0
                         && let Some(t) = self.scaled.tangents[position]
                     {
-                        *value += self.slides[position] * self.scaled.q[(k, t)];
+                        *value += self.slides[position] * q[(k, t)];
                     }
                 }
             }
@@ -238,18 +242,18 @@ impl<'a> Similar<'a> {
     /// serve, or the border is too large or singular.
     pub fn of(
         kept: &'a KeptFactors,
-        scaled: &Scaled,
-        states: &[ContactState],
+        scaled: &'a Scaled<'a>,
+        states: &'a [ContactState],
         unknowns: &[usize],
     ) -> Option<Self> {
         let (kept, system) = kept.serving(scaled, states)?;
-        let system = &system;
+        let (system, arena) = (&system, scaled.arena);
         let change = Change::new(kept, system, scaled)?;
         let (size, count) = (kept.unknowns.len(), change.borders.len());
         if count * UNKNOWNS_PER_BORDER > size {
             return None;
         }
-        let mut at = vec![None; scaled.size()];
+        let mut at = filled(arena, None, scaled.size());
         unknowns
             .iter()
             .zip(0..)
@@ -259,13 +263,15 @@ impl<'a> Similar<'a> {
             _ => None,
         };
         let of_kept = (0..size).map(|u| change.position(u).and_then(|k| at[k]));
+        let rows_of_border = list(arena, change.borders.iter().map(row));
         let mut similar = Similar {
+            arena,
             factors: &kept.factors,
-            units: units(kept, system, &change),
-            rows: [of_kept.collect(), change.borders.iter().map(row).collect()],
-            sums: unknowns.iter().map(|k| change.sums[*k]).collect(),
-            inverse_of_columns: Vec::new(),
-            border_rows: Vec::new(),
+            units: units(kept, system, &change, arena),
+            rows: [list(arena, of_kept), rows_of_border],
+            sums: list(arena, unknowns.iter().map(|k| change.sums[*k])),
+            inverse_of_columns: List::with_capacity_in(size * count, arena),
+            border_rows: List::with_capacity_in(size * count, arena),
             complement: None,
         };
         if count > 0 {
@@ -331,18 +337,15 @@ impl<'a> Similar<'a> {
         let [of_kept, of_border] = &self.rows;
         let entry = |row: &Option<usize>| row.map_or(0.0, |row| b[row]);
         // x = A^-1 r
-        let mut x: Vec<f64> = of_kept
-            .iter()
-            .zip(rows)
-            .map(|(row, unit)| entry(row) * unit)
-            .collect();
+        let mut x = List::with_capacity_in(of_kept.len() + of_border.len(), self.arena);
+        x.extend((of_kept.iter().zip(rows)).map(|(row, unit)| entry(row) * unit));
         self.factors.solve(&mut x);
         x.iter_mut().zip(columns).for_each(|(x, unit)| *x *= unit);
         let size = x.len();
         if let Some(complement) = &self.complement {
             // y, and x - A^-1 B y, eq. (8.7)
             let of_rows = of_border.iter().zip(self.border_rows.chunks_exact(size));
-            let mut y: Vec<f64> = of_rows.map(|(row, c)| entry(row) - dot(c, &x)).collect();
+            let mut y = list(self.arena, of_rows.map(|(row, c)| entry(row) - dot(c, &x)));
             complement.solve(&mut y);
             for (y, column) in y.iter().zip(self.inverse_of_columns.chunks_exact(size)) {
                 x.iter_mut()
@@ -360,12 +363,13 @@ impl<'a> Similar<'a> {
 
 /// Factors of rows and columns from the units of the kept factors to those of a system, powers of two. Q_kl is in units of
 /// w_k w_l, w the weights, and of the compliance.
-fn units(kept: &Kept, system: &System, change: &Change) -> [Vec<f64>; 2] {
+fn units<'a>(kept: &Kept, system: &System, change: &Change, arena: &'a Bump) -> [List<'a, f64>; 2] {
+    let of = kept.of();
     let weight = |(j, _): &(usize, bool)| {
-        change.places[*j].map_or(1.0, |i| system.weights[i] / kept.of.weights[*j])
+        change.places[*j].map_or(1.0, |i| system.weights[i] / of.weights[*j])
     };
-    let rows: Vec<f64> = kept.unknowns.iter().map(weight).collect();
-    let compliance = system.compliance / kept.of.compliance;
-    let columns = rows.iter().map(|weight| weight * compliance).collect();
+    let rows = list(arena, kept.unknowns.iter().map(weight));
+    let compliance = system.compliance / of.compliance;
+    let columns = list(arena, rows.iter().map(|weight| weight * compliance));
     [rows, columns]
 }

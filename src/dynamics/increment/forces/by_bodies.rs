@@ -4,15 +4,20 @@
 
 use std::collections::BTreeMap;
 
-use super::contact_system::{ContactSolution, ContactSystem, Guess, closed_of, names};
+use smallvec::SmallVec;
+
+use super::contact_system::{ContactSystem, Guess, closed_of, names};
 use super::response::Response;
-use crate::contact::{Constraint, Scope};
+use crate::contact::{ClosedPairs, Constraint, Scope};
 use crate::dynamics::results::Cause;
 use crate::lcp::{BlockIteration, BlockStart, LcpBlock, LcpMethod, Progress};
 use crate::linear::LinearError;
 
 /// Constraints from which on their problem is solved by blocks.
 const LEAST: usize = 100;
+
+/// Constraints whose list takes no memory from the system.
+const FEW: usize = 128;
 
 /// Part of the entries of Q within the blocks at most, or blocks gain nothing.
 const WITHIN: f64 = 0.25;
@@ -30,7 +35,7 @@ pub(super) struct Chosen<'a> {
 
 impl<'a> Chosen<'a> {
     /// The constraints that enter.
-    pub fn constraints(&self) -> Vec<&'a Constraint> {
+    pub fn constraints(&self) -> SmallVec<[&'a Constraint; FEW]> {
         self.places.iter().map(|&place| &self.all[place]).collect()
     }
 
@@ -83,14 +88,16 @@ impl Motion<'_, '_> {
 
 impl ContactSystem<'_> {
     /// Forces of the chosen constraints by blocks, `free` being gaps and slips of all constraints without
-    /// them; none where blocks gain nothing or are coupled too strongly.
+    /// them: the pairs that carry one are `closed`. The pivots that it took; none where blocks gain nothing or are
+    /// coupled too strongly.
     pub(super) fn solve_by_bodies(
         &mut self,
         response: &mut Response,
         chosen: &Chosen,
         free: &[[f64; 2]],
         guess: &Guess,
-    ) -> Result<Option<ContactSolution>, Cause> {
+        closed: &mut ClosedPairs,
+    ) -> Result<Option<usize>, Cause> {
         let Some(by_bodies) = chosen.by_bodies(self) else {
             return Ok(None);
         };
@@ -126,10 +133,12 @@ impl ContactSystem<'_> {
             self.system.keep(scope, block.kept);
         }
         self.system.count_lcp(count, solution.counters);
-        Ok((progress == Progress::Solved).then(|| ContactSolution {
-            closed: closed_of(&chosen.constraints(), &solution.forces, &solution.states),
-            pivots: solution.counters.pivots,
-        }))
+        if progress != Progress::Solved {
+            return Ok(None);
+        }
+        let forces = solution.forces.into_iter();
+        closed.set(closed_of(&chosen.constraints(), forces, &solution.states));
+        Ok(Some(solution.counters.pivots))
     }
 
     /// The blocks, with eps Q_kk of all constraints.
@@ -145,10 +154,8 @@ impl ContactSystem<'_> {
         for (scope, contacts) in by_bodies {
             let constraints: Vec<&Constraint> = contacts.iter().map(|&k| all[k]).collect();
             let n = constraints.len();
-            let [gap, slip] = [vec![0.0; n], vec![0.0; n]];
-            let mut problem = self
-                .system
-                .frictional_lcp(scope, &constraints, [gap, slip])?;
+            let terms = vec![[0.0; 2]; n];
+            let mut problem = self.system.frictional_lcp(scope, &constraints, &terms)?;
             for (k, &contact) in contacts.iter().enumerate() {
                 held[contact] = [k, k + n].map(|i| {
                     let part = guess.weight.unwrap_or(0.0) * problem.q[(i, i)];

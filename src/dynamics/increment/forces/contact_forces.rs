@@ -33,6 +33,11 @@ pub(super) struct Choice {
     free: Vec<[f64; 2]>,
     /// Gaps and slips with them.
     after: Vec<[f64; 2]>,
+    /// Gaps and slips without forces of those in the problem.
+    terms: Vec<[f64; 2]>,
+    guess: Guess,
+    /// The pairs closed before.
+    before: ClosedPairs,
 }
 
 impl ContactForces {
@@ -109,17 +114,21 @@ impl ContactForces {
         system: &mut ContactSystem,
         du: &mut Vec<f64>,
     ) -> Result<(), Cause> {
-        let before = std::mem::take(&mut self.closed);
         (self.problem_size, self.pivots) = (0, 0);
         let overlap = weight.map_or(0.0, |_| SETTLED_OVERLAP);
-        let was_closed = |constraint: &Constraint| before.closes(constraint.key);
         let mut choice = std::mem::take(&mut self.choice);
         let Choice {
             inside,
             places,
             free,
             after,
+            terms,
+            guess,
+            before,
         } = &mut choice;
+        std::mem::swap(before, &mut self.closed);
+        self.closed.clear();
+        let was_closed = |constraint: &Constraint| before.closes(constraint.key);
         inside.clear();
         inside.extend(self.constraints.iter().map(was_closed));
         // g + Gn y and Dt + Gt y, eq. (5.2)
@@ -132,17 +141,18 @@ impl ContactForces {
             let all = &self.constraints;
             let chosen = Chosen { all, places };
             let constraints = chosen.constraints();
-            let guess = Guess::from_pass(&constraints, &before, weight);
-            let by_bodies = system.solve_by_bodies(&mut response, &chosen, free, &guess)?;
-            let solution = match by_bodies {
-                Some(solution) => solution,
+            guess.take_over(&constraints, before, weight);
+            let closed = &mut self.closed;
+            let by_bodies = system.solve_by_bodies(&mut response, &chosen, free, guess, closed)?;
+            self.pivots += match by_bodies {
+                Some(pivots) => pivots,
                 None => {
-                    let terms = |i: usize| chosen.places.iter().map(|&k| free[k][i]).collect();
-                    system.solve(&constraints, [terms(0), terms(1)], &guess)?
+                    terms.clear();
+                    terms.extend(chosen.places.iter().map(|&k| free[k]));
+                    system.solve(&constraints, terms, guess, closed)?
                 }
             };
-            (self.closed, self.problem_size) = (solution.closed, chosen.places.len());
-            self.pivots += solution.pivots;
+            self.problem_size = chosen.places.len();
             let acting = self
                 .acting()
                 .map(|(constraint, pair)| (constraint, pair.force));

@@ -5,7 +5,7 @@ use super::equal_forces::FIRST_WEIGHT;
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, Scope};
 use crate::dynamics::results::{Cause, FailedLcp};
 use crate::dynamics::step::{System, sum};
-use crate::lcp::{ContactState, FrictionalLcp, FrictionalSolution, LcpMethod};
+use crate::lcp::{ContactState, FrictionalLcp, LcpMethod};
 use crate::linear::{LinearError, Transformation};
 
 /// A system matrix with what its complementarity problems need.
@@ -17,7 +17,7 @@ pub(crate) struct ContactSystem<'a> {
 }
 
 /// What a complementarity problem starts from.
-#[derive(Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Guess {
     /// State of every constraint.
     pub states: Vec<ContactState>,
@@ -27,39 +27,40 @@ pub(crate) struct Guess {
     pub weight: Option<f64>,
 }
 
-/// What is closed, and the pivots that it took.
-pub(crate) struct ContactSolution {
-    pub closed: ClosedPairs,
-    pub pivots: usize,
-}
-
 impl Guess {
-    /// States and forces of the pairs closed `before`, near which the answer lies with a weight.
-    pub fn from_pass(
+    /// Takes over states and forces of the pairs closed `before`, near which the answer lies with a weight.
+    pub fn take_over(
+        &mut self,
         constraints: &[&Constraint],
         before: &ClosedPairs,
         weight: Option<f64>,
-    ) -> Self {
-        let forces = constraints.iter().map(|c| before.force(c.key));
-        Guess {
-            states: constraints.iter().map(|c| before.state(c.key)).collect(),
-            forces: Some(forces.collect()),
-            weight,
-        }
+    ) {
+        let forces = self.forces.get_or_insert_default();
+        forces.clear();
+        forces.extend(constraints.iter().map(|c| before.force(c.key)));
+        self.states.clear();
+        self.states
+            .extend(constraints.iter().map(|c| before.state(c.key)));
+        self.weight = weight;
+    }
+
+    /// Whether an answer near the forces before is another one.
+    fn has_forces_only(&self) -> bool {
+        self.forces.is_some() && self.weight.is_none()
     }
 
     /// The same, with an answer near the forces before.
-    fn near(&self) -> Option<Self> {
-        let is_other = self.forces.is_some() && self.weight.is_none();
-        is_other.then(|| Guess {
+    fn near(&self) -> Self {
+        Guess {
             weight: Some(FIRST_WEIGHT),
             ..self.clone()
-        })
+        }
     }
 }
 
 impl ContactSystem<'_> {
-    /// Forces of the given constraints from the constant terms of their gaps and slips.
+    /// Forces of the given constraints from the constant terms of their gaps and slips: the pairs that carry one are
+    /// `closed`; returns the pivots that it took.
     ///
     /// Where a problem with derivative rows has no solution, that with the force rows in their place is
     /// solved: Q is then symmetric and the theorem of section 8 holds, so that a ray says that pairs
@@ -68,13 +69,15 @@ impl ContactSystem<'_> {
     pub fn solve(
         &mut self,
         constraints: &[&Constraint],
-        constant_terms: [Vec<f64>; 2],
+        constant_terms: &[[f64; 2]],
         guess: &Guess,
-    ) -> Result<ContactSolution, Cause> {
-        let solved = self.solve_with_rows(constraints, &constant_terms, guess);
-        match (&solved, guess.near()) {
-            (Err(Cause::Lcp(failed)), Some(near)) if !failed.is_contradiction() => {
-                let found = self.solve_with_rows(constraints, &constant_terms, &near);
+        closed: &mut ClosedPairs,
+    ) -> Result<usize, Cause> {
+        let solved = self.solve_with_rows(constraints, constant_terms, guess, closed);
+        match &solved {
+            Err(Cause::Lcp(failed)) if guess.has_forces_only() && !failed.is_contradiction() => {
+                let near = guess.near();
+                let found = self.solve_with_rows(constraints, constant_terms, &near, closed);
                 found.or(solved)
             }
             _ => solved,
@@ -85,10 +88,11 @@ impl ContactSystem<'_> {
     fn solve_with_rows(
         &mut self,
         constraints: &[&Constraint],
-        constant_terms: &[Vec<f64>; 2],
+        constant_terms: &[[f64; 2]],
         guess: &Guess,
-    ) -> Result<ContactSolution, Cause> {
-        let with_derivatives = self.solve_once(constraints, constant_terms.clone(), guess);
+        closed: &mut ClosedPairs,
+    ) -> Result<usize, Cause> {
+        let with_derivatives = self.solve_once(constraints, constant_terms, guess, closed);
         let are_other = constraints
             .iter()
             .any(|c| c.other_derivative_rows.is_some());
@@ -97,7 +101,7 @@ impl ContactSystem<'_> {
                 let symmetric: Vec<Constraint> =
                     constraints.iter().map(|c| c.with_force_rows()).collect();
                 let symmetric: Vec<&Constraint> = symmetric.iter().collect();
-                self.solve_once(&symmetric, constant_terms.clone(), guess)
+                self.solve_once(&symmetric, constant_terms, guess, closed)
             }
             solved => solved,
         }
@@ -106,23 +110,24 @@ impl ContactSystem<'_> {
     fn solve_once(
         &mut self,
         constraints: &[&Constraint],
-        constant_terms: [Vec<f64>; 2],
+        constant_terms: &[[f64; 2]],
         guess: &Guess,
-    ) -> Result<ContactSolution, Cause> {
+        closed: &mut ClosedPairs,
+    ) -> Result<usize, Cause> {
         let mut problem = (self.system).frictional_lcp(&Scope::All, constraints, constant_terms)?;
         if let (Some(forces), Some(weight)) = (&guess.forces, guess.weight) {
             add_proximal_term(&mut problem, forces, weight);
         }
-        let mut kept = self.system.take_kept(&Scope::All);
-        kept.name_contacts(names(constraints));
-        self.system.keep(Scope::All, kept);
+        self.system.name_contacts(names(constraints));
         match self.system.solve_lcp(&problem, &guess.states, self.method) {
             Ok(solution) => {
                 self.system.take_back(problem);
-                Ok(ContactSolution {
-                    closed: closed_of(constraints, &forces_of(&solution), &solution.state),
-                    pivots: solution.counters.pivots,
-                })
+                let forces = solution.pn.iter().zip(&solution.pt);
+                let forces = forces.map(|(&pn, &pt)| [pn, pt]);
+                closed.set(closed_of(constraints, forces, &solution.state));
+                let pivots = solution.counters.pivots;
+                self.system.take_back_solution(solution);
+                Ok(pivots)
             }
             Err(error) => {
                 let failed = FailedLcp::new(error, problem, constraints);
@@ -144,25 +149,15 @@ pub(super) fn names(constraints: &[&Constraint]) -> impl Iterator<Item = [usize;
     keys.map(|key| [key.slave_index, key.segment])
 }
 
-/// Pn and Pt of every constraint.
-fn forces_of(solution: &FrictionalSolution) -> Vec<[f64; 2]> {
-    let forces = solution.pn.iter().zip(&solution.pt);
-    forces.map(|(&pn, &pt)| [pn, pt]).collect()
-}
-
 /// The constraints that carry a force.
-pub(super) fn closed_of(
-    constraints: &[&Constraint],
-    forces: &[[f64; 2]],
-    states: &[ContactState],
-) -> ClosedPairs {
+pub(super) fn closed_of<'a>(
+    constraints: &'a [&Constraint],
+    forces: impl Iterator<Item = [f64; 2]> + 'a,
+    states: &'a [ContactState],
+) -> impl Iterator<Item = ClosedPair> + 'a {
     let of_constraint = constraints.iter().zip(forces).zip(states);
     let closed = of_constraint.filter(|((_, force), _)| force[0] > 0.0);
-    let pairs =
-        closed.map(|((constraint, force), state)| ClosedPair::new(constraint, *force, *state));
-    let mut all = Vec::with_capacity(constraints.len());
-    all.extend(pairs);
-    all.into_iter().collect()
+    closed.map(|((constraint, force), state)| ClosedPair::new(constraint, force, *state))
 }
 
 /// Equal-force rule, eq. (5.3): adds eps Q_kk (P_k - P_k^0) to gaps and slips, P^0 being the forces of

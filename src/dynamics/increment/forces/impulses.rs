@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use super::by_bodies::{Chosen, is_large};
 use super::contact_forces::ContactForces;
-use super::contact_system::{ContactSolution, ContactSystem, Guess};
+use super::contact_system::{ContactSystem, Guess};
 use super::response::Response;
 use super::steady::{Before, Steady, approach};
 use crate::contact::{ClosedPairs, Constraint, ConstraintKey};
@@ -32,6 +32,8 @@ pub(crate) struct Impulses {
     massless: Vec<ConstraintKey>,
     /// The constraints that the impulses are for.
     struck: Vec<Constraint>,
+    /// Those of the iterate.
+    of_iterate: Vec<Constraint>,
     /// Phi, Psi of the last pass.
     pub acting: ContactForces,
     /// Whether they are those of the rows of the iterate, as an increment may end with.
@@ -51,6 +53,7 @@ impl Impulses {
             at_rest: false,
             massless: Vec::new(),
             struck: Vec::new(),
+            of_iterate: Vec::new(),
             acting: ContactForces::default(),
             are_exact: true,
             resultant: Vec::new(),
@@ -80,11 +83,13 @@ impl Impulses {
         };
         let is_massless = |node| problem.redistribution.is_massless(node);
         let without_mass = constraints.iter().filter(|c| c.nodes().any(is_massless));
-        self.massless = without_mass.map(|constraint| constraint.key).collect();
-        let struck = constraints
-            .iter()
-            .filter(|constraint| self.strikes(constraint));
-        let struck: Vec<Constraint> = struck.map(rows).collect();
+        self.massless.clear();
+        (self.massless).extend(without_mass.map(|constraint| constraint.key));
+        let mut struck = std::mem::take(&mut self.of_iterate);
+        struck.clear();
+        struck.reserve(constraints.len());
+        struck.extend((constraints.iter()).filter(|c| self.strikes(c)).map(rows));
+        self.of_iterate = struck;
         let steady = Steady {
             problem,
             inertia: workspace.stiffness.inertia.as_slice(),
@@ -92,16 +97,17 @@ impl Impulses {
             v0: &start.v,
         };
         let [steady_part, exact_part] = steady.tolerances();
-        let part = self.part_of_change(&struck, &steady);
+        let part = self.part_of_change(&steady);
         self.are_exact = part <= exact_part;
         if part <= steady_part {
             return Ok(());
         }
         self.are_exact = true;
         let system = mass_system(problem, workspace);
-        let states = struck.iter().map(|c| self.state(c, &start.v, dt)).collect();
-        self.acting = impulses(struck.clone(), states, &start.v, dt, system)?;
-        self.struck = struck;
+        let states = (self.of_iterate.iter()).map(|c| self.state(c, &start.v, dt));
+        let states = states.collect();
+        self.acting = impulses(self.of_iterate.clone(), states, &start.v, dt, system)?;
+        std::mem::swap(&mut self.struck, &mut self.of_iterate);
         match self.acting.closed.is_empty() {
             true => self.resultant.clear(),
             false => (self.acting).write_resultant(start.v.len(), &mut self.resultant),
@@ -109,9 +115,10 @@ impl Impulses {
         Ok(())
     }
 
-    /// By which part of the largest forces the impulses with the rows of the given constraints differ from those at
-    /// hand: any where these are for others.
-    fn part_of_change(&self, struck: &[Constraint], steady: &Steady) -> f64 {
+    /// By which part of the largest forces the impulses with the rows of the iterate differ from those at hand: any
+    /// where these are for others.
+    fn part_of_change(&self, steady: &Steady) -> f64 {
+        let struck = &self.of_iterate;
         let same_set = (self.struck.iter().map(|c| c.key)).eq(struck.iter().map(|c| c.key));
         if !same_set {
             return f64::INFINITY;
@@ -219,10 +226,11 @@ fn mass_system<'a>(problem: &'a StepProblem, workspace: &'a mut Workspace) -> Co
 /// what impulses add.
 fn by_bodies(
     constraints: &[Constraint],
-    given: [&[f64]; 2],
+    given: &[[f64; 2]],
     dofs: usize,
     (guess, system): (&Guess, &mut ContactSystem),
-) -> Result<Option<ContactSolution>, Cause> {
+    closed: &mut ClosedPairs,
+) -> Result<Option<usize>, Cause> {
     if !is_large(constraints.len()) {
         return Ok(None);
     }
@@ -234,18 +242,18 @@ fn by_bodies(
     if !chosen(constraints).are_by_bodies(system) {
         return Ok(None);
     }
-    let posed = |(k, constraint): (usize, &Constraint)| Constraint {
-        gap: given[0][k],
-        slip: given[1][k],
+    let posed = |(constraint, &[gap, slip]): (&Constraint, &[f64; 2])| Constraint {
+        gap,
+        slip,
         ..constraint.clone()
     };
-    let posed: Vec<Constraint> = constraints.iter().enumerate().map(posed).collect();
+    let posed: Vec<Constraint> = constraints.iter().zip(given).map(posed).collect();
     let chosen = chosen(&posed);
     let nothing = vec![0.0; dofs];
     let mut response = Response::begin(system, [&nothing, &nothing], &posed)?;
     let mut free = Vec::new();
     response.gaps_and_slips(system, &posed, &mut free);
-    system.solve_by_bodies(&mut response, &chosen, &free, guess)
+    system.solve_by_bodies(&mut response, &chosen, &free, guess, closed)
 }
 
 /// Impact impulses Phi, Psi of constraints at the start of an increment, for the velocity after them
@@ -265,11 +273,11 @@ fn impulses(
     mut system: ContactSystem,
 ) -> Result<ContactForces, Cause> {
     // Gn V0 + (2/dt) max(g0, 0) and Gt V0, eq. (6.2)
-    let approaches: Vec<f64> = constraints.iter().map(|c| approach(c, v0, dt)).collect();
-    if approaches.iter().all(|&approach| approach >= 0.0) {
+    let rates = constraints.iter();
+    let given: Vec<[f64; 2]> = (rates.map(|c| [approach(c, v0, dt), c.slip_change(v0)])).collect();
+    if given.iter().all(|[approach, _]| *approach >= 0.0) {
         return Ok(ContactForces::default());
     }
-    let slides: Vec<f64> = constraints.iter().map(|c| c.slip_change(v0)).collect();
     let guess = Guess {
         states,
         forces: None,
@@ -278,18 +286,25 @@ fn impulses(
     if !system.system.is_factorized() {
         system.system.factorize()?;
     }
-    let given = [approaches.as_slice(), &slides];
-    let solution = match by_bodies(&constraints, given, v0.len(), (&guess, &mut system))? {
-        Some(solution) => solution,
+    let mut closed = ClosedPairs::default();
+    let dofs = v0.len();
+    let pivots = match by_bodies(
+        &constraints,
+        &given,
+        dofs,
+        (&guess, &mut system),
+        &mut closed,
+    )? {
+        Some(pivots) => pivots,
         None => {
             let all: Vec<&Constraint> = constraints.iter().collect();
-            system.solve(&all, [approaches, slides], &guess)?
+            system.solve(&all, &given, &guess, &mut closed)?
         }
     };
     Ok(ContactForces {
         problem_size: constraints.len(),
-        closed: solution.closed,
-        pivots: solution.pivots,
+        closed,
+        pivots,
         constraints,
         ..ContactForces::default()
     })

@@ -1,6 +1,8 @@
 //! Whether the rows of an iterate are so near those that impulses were solved with that these may stay. Section 6 of
 //! docs/theory.md.
 
+use smallvec::{SmallVec, smallvec};
+
 use crate::contact::{Constraint, Rows};
 use crate::dynamics::step::{Equilibrium, StepProblem};
 use crate::lcp::ContactState;
@@ -51,14 +53,14 @@ pub(super) struct Steady<'a> {
 
 impl Steady<'_> {
     /// The largest force at the dofs of some constraints, of every part.
-    pub fn largest_forces(&self, constraints: &[Constraint]) -> Vec<f64> {
+    pub fn largest_forces(&self, constraints: &[Constraint]) -> SmallVec<[f64; 16]> {
         let Equilibrium {
             load,
             internal,
             inertia,
             ..
         } = self.before.forces;
-        let mut most = vec![0.0; self.inertia.len()];
+        let mut most = smallvec![0.0; self.inertia.len()];
         for &dof in constraints.iter().flat_map(|constraint| &constraint.dofs) {
             let most = &mut most[self.problem.parts.part(dof)];
             for force in [load, internal, inertia] {

@@ -218,8 +218,7 @@ mod tests {
             all.extend(response.expect("solved"));
         }
         let constraint = constraint();
-        let lcp =
-            (workspace.k()).frictional_lcp(&Scope::All, &[&constraint], [vec![0.0], vec![0.0]]);
+        let lcp = (workspace.k()).frictional_lcp(&Scope::All, &[&constraint], &[[0.0; 2]]);
         all.extend(lcp.expect("prepared").q.iter());
         all
     }

@@ -5,8 +5,8 @@ use super::effective_stiffness::{FactoredMatrix, ResponseVectors, SolveVectors};
 use crate::contact::{Constraint, Scope, frictional_lcp};
 use crate::dynamics::step::meter::Meter;
 use crate::lcp::{
-    BlockIteration, ContactState, Counters, FrictionalLcp, FrictionalSolution, KeptFactors,
-    LcpError, LcpMethod, solve_similar,
+    BlockIteration, ContactName, ContactState, Counters, FrictionalLcp, FrictionalSolution,
+    KeptFactors, LcpError, LcpMethod, solve_similar,
 };
 use crate::linear::{LinearError, Rotation, Transformation};
 
@@ -142,7 +142,7 @@ impl<'a> System<'a> {
         &mut self,
         scope: &Scope,
         constraints: &[&Constraint],
-        constant_terms: [Vec<f64>; 2],
+        constant_terms: &[[f64; 2]],
     ) -> Result<FrictionalLcp, LinearError> {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.prepare(scope, constraints))?;
@@ -173,6 +173,12 @@ impl<'a> System<'a> {
         self.matrix.space.take(problem);
     }
 
+    /// Takes the memory of a solution that is not needed any more.
+    pub fn take_back_solution(&mut self, solution: FrictionalSolution) {
+        let kept = self.matrix.kept.entry(Scope::All).or_default();
+        kept.take(solution);
+    }
+
     /// Solves the blocks of an iteration: the forces of all its contacts.
     pub fn solve_blocks(
         &mut self,
@@ -185,6 +191,12 @@ impl<'a> System<'a> {
     /// Counts a complementarity problem that was solved by blocks.
     pub fn count_lcp(&mut self, size: usize, work: Counters) {
         self.meter.count_lcp(size, work);
+    }
+
+    /// Names the constraints of the next complementarity problem, each differently.
+    pub fn name_contacts(&mut self, names: impl Iterator<Item = ContactName>) {
+        let kept = self.matrix.kept.entry(Scope::All).or_default();
+        kept.name_contacts(names);
     }
 
     /// Takes the factors of the last complementarity problem of a scope.
