@@ -1,6 +1,8 @@
 //! The direct solver: order and symbolic analysis by faer, once for each pattern, numeric factors and what is done
 //! with them.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use faer::Side;
 use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
@@ -16,13 +18,35 @@ use super::ordering::{Pattern, minimum_degree};
 use super::solver::check_pivots;
 use super::{LinearError, LinearSolver};
 
+/// What matrices of one pattern have in common.
+#[derive(Default)]
+struct Analysis {
+    pattern: Pattern,
+    /// Room for their factors.
+    factor: Factor,
+    elimination: Elimination,
+}
+
+impl Analysis {
+    /// The same, as yet without factors.
+    fn again(&self) -> Self {
+        Analysis {
+            pattern: self.pattern.clone(),
+            factor: self.factor.without_values(),
+            elimination: self.elimination.again(),
+        }
+    }
+}
+
+/// Place where the first of two solvers that analyses a pattern leaves the analysis for the other.
+type Handover = Arc<Mutex<Option<Analysis>>>;
+
 /// Multifrontal LDL^T with an approximate minimum degree order and the supernodes of faer's analysis.
 #[derive(Default)]
 pub struct FaerLdl {
-    /// Pattern of the analysis.
-    pattern: Pattern,
-    factor: Factor,
-    elimination: Elimination,
+    analysis: Analysis,
+    /// Until it has been used.
+    handover: Option<Handover>,
     substitution: Substitution,
     /// Unknowns of the paths of the substitution.
     watched: Vec<usize>,
@@ -57,38 +81,77 @@ pub fn factor_entries(neighbours: &[Vec<usize>]) -> usize {
     analyse(&pattern).map_or(0, |symbolic| symbolic.len_val())
 }
 
+impl Analysis {
+    /// Analyses the pattern of a matrix; the room for its factors has no memory yet.
+    fn new(a: CsMatView<'_, f64>) -> Result<Self, LinearError> {
+        let pattern = Pattern::of(a);
+        let symbolic = analyse(&pattern)?;
+        let factor = match (symbolic.raw(), symbolic.perm()) {
+            (SymbolicCholeskyRaw::Supernodal(raw), Some(order)) => {
+                Factor::new(raw, order.arrays().0)
+            }
+            _ if pattern.size() == 0 => Factor::default(),
+            _ => return Err(LinearError::Library("analysis without supernodes".into())),
+        };
+        Ok(Analysis {
+            elimination: Elimination::new(&factor, a),
+            factor,
+            pattern,
+        })
+    }
+}
+
 impl FaerLdl {
+    /// Two solvers, one of which takes over the analysis of the other where both begin with the same pattern.
+    pub fn two() -> [Self; 2] {
+        let handover = Handover::default();
+        [(); 2].map(|()| FaerLdl {
+            handover: Some(Arc::clone(&handover)),
+            ..FaerLdl::default()
+        })
+    }
+
     /// Analyses the pattern of a matrix.
     fn analyse(&mut self, a: CsMatView<'_, f64>) -> Result<(), LinearError> {
         // The factors of another pattern go first: two take much memory.
-        (self.factor, self.pattern) = (Factor::default(), Pattern::default());
-        let pattern = Pattern::of(a);
-        let symbolic = analyse(&pattern)?;
-        match (symbolic.raw(), symbolic.perm()) {
-            (SymbolicCholeskyRaw::Supernodal(raw), Some(order)) => {
-                self.factor = Factor::new(raw, order.arrays().0);
+        self.analysis = Analysis::default();
+        self.analysis = match self.handover.take() {
+            None => Analysis::new(a)?,
+            Some(handover) => {
+                let mut left = handover.lock().unwrap_or_else(PoisonError::into_inner);
+                match left.take().filter(|left| left.pattern.is_of(a)) {
+                    Some(left) => left,
+                    None => {
+                        let analysis = Analysis::new(a)?;
+                        let is_awaited = Arc::strong_count(&handover) > 1;
+                        *left = is_awaited.then(|| analysis.again());
+                        analysis
+                    }
+                }
             }
-            _ if pattern.size() == 0 => {}
-            _ => return Err(LinearError::Library("analysis without supernodes".into())),
-        }
-        self.elimination = Elimination::new(&self.factor, a);
-        self.pattern = pattern;
+        };
+        self.analysis.factor.make_room();
         Ok(())
     }
 }
 
 impl LinearSolver for FaerLdl {
     fn factorize(&mut self, a: CsMatView<'_, f64>) -> Result<(), LinearError> {
-        if !self.pattern.is_of(a) {
+        if !self.analysis.pattern.is_of(a) {
             self.analyse(a)?;
         }
-        self.elimination.eliminate(a.data(), &mut self.factor);
-        self.substitution.adapt(&self.factor);
-        check_pivots(self.factor.pivots())
+        let Analysis {
+            factor,
+            elimination,
+            ..
+        } = &mut self.analysis;
+        elimination.eliminate(a.data(), factor);
+        self.substitution.adapt(factor);
+        check_pivots(factor.pivots())
     }
 
     fn begin(&mut self, b: &[f64]) {
-        self.substitution.begin(&self.factor, b);
+        self.substitution.begin(&self.analysis.factor, b);
     }
 
     fn watch(&mut self, unknowns: &[usize]) {
@@ -97,29 +160,31 @@ impl LinearSolver for FaerLdl {
         }
         self.watched.clear();
         self.watched.extend_from_slice(unknowns);
-        let places = unknowns.iter().map(|&unknown| self.factor.places[unknown]);
-        self.substitution.set_paths(&self.factor, places);
+        let places = unknowns
+            .iter()
+            .map(|&unknown| self.analysis.factor.places[unknown]);
+        self.substitution.set_paths(&self.analysis.factor, places);
     }
 
     fn watched(&mut self, watched: &mut Vec<f64>) {
-        self.substitution.on_paths(&self.factor);
-        let places = self.watched.iter().map(|&u| self.factor.places[u]);
+        self.substitution.on_paths(&self.analysis.factor);
+        let places = self.watched.iter().map(|&u| self.analysis.factor.places[u]);
         watched.clear();
         watched.extend(places.map(|place| self.substitution.x(place)));
     }
 
     fn add(&mut self, b: &[(usize, f64)]) {
-        let places = &self.factor.places;
+        let places = &self.analysis.factor.places;
         let entries = b.iter().map(|&(unknown, value)| (places[unknown], value));
-        self.substitution.add(&self.factor, entries);
+        self.substitution.add(&self.analysis.factor, entries);
     }
 
     fn end(&mut self, x: &mut [f64]) {
-        self.substitution.end(&self.factor, x);
+        self.substitution.end(&self.analysis.factor, x);
     }
 
     fn inverse_at(&mut self, unknowns: &[&[usize]], _n: usize) -> Vec<Vec<f64>> {
-        let factor = &self.factor;
+        let factor = &self.analysis.factor;
         match factor.is_factorised_on_threads() {
             true => (unknowns.par_iter().map(|list| inverse_at(factor, list))).collect(),
             false => (unknowns.iter().map(|list| inverse_at(factor, list))).collect(),

@@ -34,7 +34,7 @@ struct Spot {
 }
 
 /// Columns of L and D of a branch or a trunk. Its rows are its own, then those of the trunk it stands on.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone)]
 pub struct LimbFactor {
     /// Unknowns of its own rows.
     pub unknowns: Vec<usize>,
@@ -78,7 +78,7 @@ struct Places {
 type Symbolic = SymbolicSupernodalCholesky<usize>;
 
 impl Factor {
-    /// Room for the factors of an analysed matrix; `unknowns` has the unknown of every pivot.
+    /// For the factors of an analysed matrix, whose memory [`Self::make_room`] takes; `unknowns` has the unknown of every pivot.
     pub fn new(symbolic: &Symbolic, unknowns: &[usize]) -> Self {
         let starts = symbolic.col_ptr_for_val();
         let work: Vec<usize> = starts.windows(2).map(|ends| ends[1] - ends[0]).collect();
@@ -106,8 +106,23 @@ impl Factor {
             limb.first = entries;
             entries += limb.entries.next_multiple_of(LINE);
         }
-        factor.values = Entries::zeros(entries);
         factor
+    }
+
+    /// The same without L and its memory.
+    pub fn without_values(&self) -> Self {
+        Factor {
+            limbs: self.limbs.clone(),
+            places: self.places.clone(),
+            values: Entries::default(),
+            ..*self
+        }
+    }
+
+    /// Takes memory for L.
+    pub fn make_room(&mut self) {
+        let of_limb = |limb: &LimbFactor| limb.entries.next_multiple_of(LINE);
+        self.values = Entries::zeros(self.limbs.iter().map(of_limb).sum());
     }
 
     /// L of all limbs, for their supernodes.
