@@ -5,16 +5,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use faer::Side;
 use faer::perm::PermRef;
-use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky,
+    CholeskySymbolicParams, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
 };
+use faer::sparse::linalg::{SupernodalThreshold, SymbolicSupernodalParams};
 use rayon::prelude::*;
 use sprs::CsMatView;
 
-use super::multifrontal::{Elimination, Factor, Substitution, inverse_at};
-use super::ordering::{Pattern, minimum_degree};
+use super::multifrontal::{
+    Elimination, Factor, InverseSpace, Substitution, Supernodes, inverse_at,
+};
+use super::ordering::{Groups, Pattern};
 use super::solver::check_pivots;
 use super::{LinearError, LinearSolver};
 
@@ -50,49 +51,72 @@ pub struct FaerLdl {
     substitution: Substitution,
     /// Unknowns of the paths of the substitution.
     watched: Vec<usize>,
+    inverse_space: InverseSpace,
 }
 
 fn library(error: impl std::fmt::Debug) -> LinearError {
     LinearError::Library(format!("{error:?}"))
 }
 
+/// Two supernodes one above the other with at most so many groups of unknowns are merged where less than this part of
+/// their entries is zero: as faer does it, with a group, which is mostly a node, for two unknowns.
+const MERGED: [(usize, f64); 4] = [(2, 1.0), (8, 0.8), (24, 0.1), (usize::MAX, 0.05)];
+
+/// Supernodes of the factors of a matrix, and the unknown of every pivot. Unknowns with the same entries, as those of a
+/// node, are analysed as one.
+///
 /// Supernodal at every size: the automatic choice prefers the slower simplicial form below some
 /// ten thousand unknowns, and the library's own threshold for all still leaves it diagonal matrices,
 /// whose factorisation takes no operations.
-fn analyse(pattern: &Pattern) -> Result<SymbolicCholesky<usize>, LinearError> {
+fn analyse(pattern: &Pattern) -> Result<(Supernodes, Vec<usize>), LinearError> {
+    if pattern.size() == 0 {
+        return Ok((Supernodes::default(), Vec::new()));
+    }
     let parameters = CholeskySymbolicParams {
         supernodal_flop_ratio_threshold: SupernodalThreshold(-1.0),
+        supernodal_params: SymbolicSupernodalParams {
+            relax: Some(&MERGED),
+        },
         ..Default::default()
     };
-    let pivots = minimum_degree(pattern)?;
+    let groups = Groups::of(pattern);
+    let pivots = groups.minimum_degree()?;
     let mut positions = vec![0; pivots.len()];
-    for (position, &unknown) in pivots.iter().enumerate() {
-        positions[unknown] = position;
+    for (position, &group) in pivots.iter().enumerate() {
+        positions[group] = position;
     }
     let order = PermRef::new_checked(&pivots, &positions, pivots.len());
     let order = SymmetricOrdering::Custom(order);
-    factorize_symbolic_cholesky(pattern.symbolic(), Side::Lower, order, parameters).map_err(library)
+    let pattern = groups.pattern.symbolic();
+    let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, order, parameters);
+    let symbolic = symbolic.map_err(library)?;
+    match (symbolic.raw(), symbolic.perm()) {
+        (SymbolicCholeskyRaw::Supernodal(raw), Some(order)) => {
+            let order = order.arrays().0;
+            let supernodes = Supernodes::of_groups(raw, &groups.offsets(order));
+            Ok((supernodes, groups.unknowns(order).collect()))
+        }
+        _ => Err(LinearError::Library("analysis without supernodes".into())),
+    }
 }
 
 /// Entries of the factor L of a matrix with one unknown per node, `neighbours` being the other nodes
 /// that each node is coupled with, in increasing order, and itself; 0 where the analysis fails.
 pub fn factor_entries(neighbours: &[Vec<usize>]) -> usize {
     let pattern = Pattern::of_graph(neighbours);
-    analyse(&pattern).map_or(0, |symbolic| symbolic.len_val())
+    let entries = |supernodes: Supernodes| {
+        let all = 0..supernodes.count();
+        all.map(|s| supernodes.entries(s)).sum()
+    };
+    analyse(&pattern).map_or(0, |(supernodes, _)| entries(supernodes))
 }
 
 impl Analysis {
     /// Analyses the pattern of a matrix; the room for its factors has no memory yet.
     fn new(a: CsMatView<'_, f64>) -> Result<Self, LinearError> {
         let pattern = Pattern::of(a);
-        let symbolic = analyse(&pattern)?;
-        let factor = match (symbolic.raw(), symbolic.perm()) {
-            (SymbolicCholeskyRaw::Supernodal(raw), Some(order)) => {
-                Factor::new(raw, order.arrays().0)
-            }
-            _ if pattern.size() == 0 => Factor::default(),
-            _ => return Err(LinearError::Library("analysis without supernodes".into())),
-        };
+        let (supernodes, unknowns) = analyse(&pattern)?;
+        let factor = Factor::new(&supernodes, &unknowns);
         Ok(Analysis {
             elimination: Elimination::new(&factor, a),
             factor,
@@ -184,10 +208,12 @@ impl LinearSolver for FaerLdl {
     }
 
     fn inverse_at(&mut self, unknowns: &[&[usize]], _n: usize) -> Vec<Vec<f64>> {
-        let factor = &self.analysis.factor;
-        match factor.is_factorised_on_threads() {
-            true => (unknowns.par_iter().map(|list| inverse_at(factor, list))).collect(),
-            false => (unknowns.iter().map(|list| inverse_at(factor, list))).collect(),
+        let (factor, space) = (&self.analysis.factor, &mut self.inverse_space);
+        if unknowns.len() > 1 && factor.is_factorised_on_threads() {
+            let of_list = |list: &&[usize]| inverse_at(factor, list, &mut InverseSpace::default());
+            return unknowns.par_iter().map(of_list).collect();
         }
+        let lists = unknowns.iter();
+        lists.map(|list| inverse_at(factor, list, space)).collect()
     }
 }

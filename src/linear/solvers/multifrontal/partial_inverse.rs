@@ -46,15 +46,16 @@ struct Finished {
     scaled: Vec<f64>,
 }
 
-/// Memory in which an inverse is computed.
-struct Space {
+/// Memory in which inverses are computed, used again by the next.
+#[derive(Default)]
+pub struct InverseSpace {
     /// Place of every column in a front.
     places: Vec<usize>,
     /// Values of former fronts.
     spare: Vec<Vec<f64>>,
 }
 
-impl Space {
+impl InverseSpace {
     /// Room for so many values, whatever they are: the smallest that is enough.
     fn room(&mut self, count: usize) -> Vec<f64> {
         let spare = self.spare.iter().enumerate();
@@ -112,13 +113,10 @@ impl Space {
 ///
 /// Column j of Y is nonzero only on the path from its unknown to the root of the elimination tree,
 /// so that the supernodes off these paths are never visited, nor those where it has died away.
-pub fn inverse_at(factor: &Factor, unknowns: &[usize]) -> Vec<f64> {
+pub fn inverse_at(factor: &Factor, unknowns: &[usize], space: &mut InverseSpace) -> Vec<f64> {
     let m = unknowns.len();
     let mut inverse = vec![0.0; m * m];
-    let mut space = Space {
-        places: vec![0; m],
-        spare: Vec::new(),
-    };
+    space.places.resize(m, 0);
     let (mut finished, mut l) = (Finished::default(), Vec::new());
     let mut waiting = units(factor, unknowns);
     // Children come before their parents in their limb, and branches before the trunks.
@@ -135,7 +133,7 @@ pub fn inverse_at(factor: &Factor, unknowns: &[usize]) -> Vec<f64> {
             eliminate(l, [node.size, all.len()], chunk)
         });
         if finished.columns != columns {
-            finished.add_to(&mut inverse, m, &mut space);
+            finished.add_to(&mut inverse, m, space);
             finished.begin(&columns);
         }
         let pivots = &limb.pivots[node.columns()];
@@ -156,7 +154,7 @@ pub fn inverse_at(factor: &Factor, unknowns: &[usize]) -> Vec<f64> {
             _ => space.spare.push(values),
         }
     }
-    finished.add_to(&mut inverse, m, &mut space);
+    finished.add_to(&mut inverse, m, space);
     for j in 0..m {
         for i in j + 1..m {
             inverse[i * m + j] = inverse[j * m + i];
@@ -256,7 +254,7 @@ impl Finished {
     }
 
     /// Adds the lower triangle of Y^T D^-1 Y of these rows to the inverse at m unknowns.
-    fn add_to(&mut self, inverse: &mut [f64], m: usize, space: &mut Space) {
+    fn add_to(&mut self, inverse: &mut [f64], m: usize, space: &mut InverseSpace) {
         let Self {
             columns,
             y,
