@@ -137,8 +137,12 @@ impl FaerLdl {
 
     /// Analyses the pattern of a matrix.
     fn analyse(&mut self, a: CsMatView<'_, f64>) -> Result<(), LinearError> {
-        // The factors of another pattern go first: two take much memory.
-        self.analysis = Analysis::default();
+        // The factors of another pattern go first, but for their memory.
+        let former = std::mem::take(&mut self.analysis);
+        let (memory, fronts) = (
+            former.factor.into_memory(),
+            former.elimination.into_fronts(),
+        );
         self.analysis = match self.handover.take() {
             None => Analysis::new(a)?,
             Some(handover) => {
@@ -154,7 +158,8 @@ impl FaerLdl {
                 }
             }
         };
-        self.analysis.factor.make_room();
+        self.analysis.factor.make_room(memory);
+        self.analysis.elimination.use_fronts(fronts);
         Ok(())
     }
 }

@@ -17,14 +17,25 @@ pub struct Assembly {
     /// End of the children of every supernode.
     child_ends: Vec<usize>,
     runs: Vec<Run>,
+    rests: Rests,
+}
+
+/// Places of what eliminating the supernodes of a limb leaves, in its memory: a stack, from which a supernode takes
+/// its children before it leaves its own rest.
+#[derive(Debug, Default, Clone)]
+pub struct Rests {
+    /// First entry of the rest of every supernode.
+    starts: Vec<usize>,
+    /// Entries of the highest stack.
+    height: usize,
 }
 
 /// A supernode whose rest goes to a front.
 #[derive(Debug, Clone, Copy)]
 pub struct Child {
     pub limb: usize,
-    /// Its number in the limb.
-    pub supernode: usize,
+    /// First entry of its rest in the memory of the limb.
+    pub rest: usize,
     /// End of its runs, which begin where those of the child before end.
     end: usize,
 }
@@ -39,11 +50,15 @@ pub struct Run {
 }
 
 impl Assembly {
-    /// For a limb of a factor of matrices with the pattern of `a`.
-    pub fn new(factor: &Factor, number: usize, a: CsMatView<'_, f64>) -> Self {
+    /// For a limb of a factor of matrices with the pattern of `a`; `rests` are those of all limbs.
+    pub fn new(factor: &Factor, number: usize, a: CsMatView<'_, f64>, rests: &[Rests]) -> Self {
         let limb = &factor.limbs[number];
         let layout = Layout::of_processor();
-        let (mut assembly, mut at) = (Assembly::default(), vec![None; limb.length]);
+        let mut assembly = Assembly {
+            rests: rests[number].clone(),
+            ..Assembly::default()
+        };
+        let mut at = vec![None; limb.length];
         let columns = limb
             .unknowns
             .iter()
@@ -69,7 +84,8 @@ impl Assembly {
             }
             assembly.entry_ends.push(assembly.entries.len());
             for (limb, supernode) in children {
-                assembly.push(factor, [number, limb, supernode], &at);
+                let rest = rests[limb].starts[supernode];
+                assembly.push(factor, [number, limb, supernode], rest, &at);
             }
             assembly.child_ends.push(assembly.children.len());
             rows.iter().for_each(|&row| at[row] = None);
@@ -77,8 +93,14 @@ impl Assembly {
         assembly
     }
 
-    /// Adds a child of a supernode of limb `own` whose rows are `at` these places of the front.
-    fn push(&mut self, factor: &Factor, [own, limb, supernode]: [usize; 3], at: &[Option<usize>]) {
+    /// Adds a child, with its rest, of a supernode of limb `own` whose rows are `at` these places of the front.
+    fn push(
+        &mut self,
+        factor: &Factor,
+        [own, limb, supernode]: [usize; 3],
+        rest: usize,
+        at: &[Option<usize>],
+    ) {
         let of_child = &factor.limbs[limb];
         let skipped = if own == limb {
             0
@@ -96,16 +118,22 @@ impl Assembly {
             }
         }
         let end = self.runs.len();
-        self.children.push(Child {
-            limb,
-            supernode,
-            end,
-        });
+        self.children.push(Child { limb, rest, end });
     }
 
     /// Entries of the matrix for a supernode: place there and in the front.
     pub fn entries(&self, s: usize) -> &[[u32; 2]] {
         &self.entries[start(&self.entry_ends, s)..self.entry_ends[s]]
+    }
+
+    /// First entry of the rest of a supernode.
+    pub fn rest(&self, s: usize) -> usize {
+        self.rests.starts[s]
+    }
+
+    /// Entries of the memory for rests.
+    pub fn height_of_rests(&self) -> usize {
+        self.rests.height
     }
 
     /// Children of a supernode with their runs.
@@ -116,6 +144,27 @@ impl Assembly {
             let child = self.children[k];
             (child, &self.runs[start..child.end])
         })
+    }
+}
+
+impl Rests {
+    /// Those of a limb.
+    pub fn new(limb: &LimbFactor) -> Self {
+        let (mut rests, mut stack) = (Rests::default(), Vec::<(Option<usize>, usize)>::new());
+        for s in 0..limb.supernodes() {
+            while stack.last().is_some_and(|(parent, _)| *parent == Some(s)) {
+                stack.pop();
+            }
+            let node = limb.supernode(s);
+            let start = stack.last().map_or(0, |(_, end)| *end);
+            let (first, length) = (node.rows_below().next(), node.length() - node.size);
+            let own = first.filter(|&row| row < limb.unknowns.len());
+            let end = start + length * (length + 1) / 2;
+            rests.starts.push(start);
+            rests.height = rests.height.max(end);
+            stack.push((own.map(|row| limb.supernode_of(row)), end));
+        }
+        rests
     }
 }
 

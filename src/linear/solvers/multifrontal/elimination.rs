@@ -5,7 +5,8 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use sprs::CsMatView;
 
-use super::assembly::{Assembly, Run};
+use super::assembly::{Assembly, Rests, Run};
+use super::entries::Entries;
 use super::factor::{Factor, LimbFactor};
 use super::front::Front;
 use super::supernode::Layout;
@@ -22,21 +23,21 @@ pub struct Elimination {
 
 /// Space for the fronts of a limb.
 #[derive(Debug, Default)]
-struct Fronts {
+pub struct Fronts {
     front: Front,
-    /// What eliminating each supernode has left in the rows below, for its parent: the lower triangle, column by column.
-    rests: Vec<Vec<f64>>,
-    /// Space of former ones.
-    spare: Vec<Vec<f64>>,
+    /// What eliminating supernodes has left in the rows below, for their parents: the lower triangles, column by
+    /// column, at the places of [`Rests`].
+    rests: Entries,
 }
 
 impl Elimination {
     /// For a factor of matrices with the pattern of `a`.
     pub fn new(factor: &Factor, a: CsMatView<'_, f64>) -> Self {
         let limbs = 0..factor.limbs.len();
-        let assembly = |limb| Assembly::new(factor, limb, a);
+        let rests: Vec<Rests> = factor.limbs.iter().map(Rests::new).collect();
+        let assembly = |limb| Assembly::new(factor, limb, a, &rests);
         Elimination {
-            fronts: limbs.clone().map(|_| Fronts::default()).collect(),
+            fronts: Vec::new(),
             assemblies: match factor.is_factorised_on_threads() {
                 true => limbs.into_par_iter().map(assembly).collect(),
                 false => limbs.map(assembly).collect(),
@@ -44,22 +45,46 @@ impl Elimination {
         }
     }
 
+    /// The memory of its fronts.
+    pub fn into_fronts(self) -> Vec<Fronts> {
+        self.fronts
+    }
+
+    /// Uses the memory of former fronts, as far as it is enough.
+    pub fn use_fronts(&mut self, fronts: Vec<Fronts>) {
+        self.fronts = fronts;
+    }
+
+    /// Makes room for the fronts of all limbs.
+    fn make_room(&mut self, factor: &Factor) {
+        (self.fronts).resize_with(factor.limbs.len(), Fronts::default);
+        let of_limbs = factor.limbs.iter().zip(&self.assemblies);
+        for (fronts, (limb, assembly)) in self.fronts.iter_mut().zip(of_limbs) {
+            fronts.front.make_room(limb.longest);
+            fronts.rests.make_room(assembly.height_of_rests());
+        }
+    }
+
     /// The same with memory of its own.
     pub fn again(&self) -> Self {
         Elimination {
             assemblies: self.assemblies.clone(),
-            fronts: self.fronts.iter().map(|_| Fronts::default()).collect(),
+            fronts: Vec::new(),
         }
     }
 
     /// Writes the factors of a matrix of the pattern with the given entries.
     pub fn eliminate(&mut self, a: &[f64], factor: &mut Factor) {
+        self.make_room(factor);
         let (threads, branches) = (factor.is_factorised_on_threads(), factor.branches);
         let (of_branches, of_trunks) = self.fronts.split_at_mut(branches);
         let mut limbs = factor.limbs_mut();
         let (branch, trunk) = limbs.split_at_mut(branches);
         let (for_branches, for_trunks) = self.assemblies.split_at(branches);
         eliminate(threads, (branch, for_branches, of_branches), (&[], a));
+        for fronts in &mut *of_trunks {
+            fronts.front.on_threads = threads;
+        }
         eliminate(threads, (trunk, for_trunks, of_trunks), (of_branches, a));
     }
 }
@@ -122,7 +147,6 @@ impl WithSimd for OfLimb<'_> {
         let layout = Layout {
             lanes: S::F64_LANES,
         };
-        fronts.rests.resize_with(limb.supernodes(), Vec::new);
         for s in 0..limb.supernodes() {
             let (size, length) = (limb.supernode(s).size, limb.supernode(s).length());
             fronts.front.clear(layout, length);
@@ -130,25 +154,14 @@ impl WithSimd for OfLimb<'_> {
                 fronts.front.values[place as usize] = a[entry as usize];
             }
             for (child, runs) in assembly.children(s) {
-                match below.get(child.limb) {
-                    Some(branch) => fronts.front.add(&branch.rests[child.supernode], runs),
-                    None => {
-                        let rest = std::mem::take(&mut fronts.rests[child.supernode]);
-                        fronts.front.add(&rest, runs);
-                        fronts.spare.push(rest);
-                    }
-                }
+                let rests = below.get(child.limb).map_or(&fronts.rests, |f| &f.rests);
+                fronts.front.add(&rests[child.rest..], runs);
             }
             let [values, pivots] = limb.columns_mut(s, l);
             fronts.front.eliminate(simd, size, values, pivots);
-            if size < length {
-                let mut rest = fronts.spare.pop().unwrap_or_default();
-                fronts.front.rest(size, &mut rest);
-                let before = std::mem::replace(&mut fronts.rests[s], rest);
-                fronts
-                    .spare
-                    .extend((before.capacity() > 0).then_some(before));
-            }
+            fronts
+                .front
+                .rest(size, &mut fronts.rests[assembly.rest(s)..]);
         }
     }
 }
@@ -175,12 +188,12 @@ impl Front {
         }
     }
 
-    /// Takes the rows and columns from `size` on.
-    fn rest(&self, size: usize, rest: &mut Vec<f64>) {
-        rest.clear();
+    /// Writes the rows and columns from `size` on.
+    fn rest(&self, size: usize, mut rest: &mut [f64]) {
         for column in size..self.length {
-            let start = column * self.stride;
-            rest.extend_from_slice(&self.values[start + column..start + self.length]);
+            let own = &self.values[column * self.stride..][column..self.length];
+            rest[..own.len()].copy_from_slice(own);
+            rest = &mut rest[own.len()..];
         }
     }
 }

@@ -33,6 +33,20 @@ impl Entries {
     }
 }
 
+/// Part of the entries asked for by which there is more room, so that a few more do not take other memory: the
+/// system gives memory for what is written only.
+const SPARE: usize = 8;
+
+impl Entries {
+    /// Room for so many entries at least, in the memory at hand where it is enough; of any value.
+    pub fn make_room(&mut self, count: usize) {
+        if self.len() < count {
+            *self = Entries::default();
+            *self = Entries::zeros(count + count / SPARE);
+        }
+    }
+}
+
 /// Asks for large pages: without them all is as it was.
 #[cfg(target_os = "linux")]
 fn in_large_pages(memory: MmapMut) -> MmapMut {

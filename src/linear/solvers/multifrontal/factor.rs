@@ -117,10 +117,16 @@ impl Factor {
         }
     }
 
-    /// Takes memory for L.
-    pub fn make_room(&mut self) {
+    /// Takes memory for L: that of former factors, as far as it is enough.
+    pub fn make_room(&mut self, memory: Entries) {
         let of_limb = |limb: &LimbFactor| limb.entries.next_multiple_of(LINE);
-        self.values = Entries::zeros(self.limbs.iter().map(of_limb).sum());
+        self.values = memory;
+        self.values.make_room(self.limbs.iter().map(of_limb).sum());
+    }
+
+    /// The memory of L.
+    pub fn into_memory(self) -> Entries {
+        self.values
     }
 
     /// L of all limbs, for their supernodes.

@@ -3,8 +3,10 @@
 
 use std::ops::Range;
 
-use pulp::Simd;
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
 
+use super::entries::Entries;
 use super::supernode::{Layout, panels};
 
 /// Panels of full width whose columns are eliminated before the columns right of them change.
@@ -13,11 +15,17 @@ const BLOCK: usize = 6;
 /// Columns that change side by side.
 const SIDE: usize = 4;
 
+/// Columns whose change is one piece of work for a thread, and the least operations that are worth threads.
+const PIECE: usize = 8 * SIDE;
+const OPERATIONS: usize = 500_000;
+
 /// Rows and columns of a supernode and of those below it, which eliminating them fills: the lower triangle,
 /// column by column. Beyond its rows and columns there is room for whole registers.
 #[derive(Debug, Default)]
 pub struct Front {
-    pub values: Vec<f64>,
+    pub values: Entries,
+    /// Whether its columns may change on several threads.
+    pub on_threads: bool,
     /// Rows, and columns.
     pub length: usize,
     /// From the start of a column to that of the next.
@@ -71,12 +79,16 @@ impl PanelSpot {
 }
 
 impl Front {
-    /// Room for a front, with zeros in the lower triangle.
+    /// Room for fronts of so many rows.
+    pub fn make_room(&mut self, length: usize) {
+        let stride = Layout::of_processor().stride(length);
+        self.values.make_room(stride * (length + SIDE));
+    }
+
+    /// A front of so many rows, for which there must be room, with zeros in the lower triangle.
     pub fn clear(&mut self, layout: Layout, length: usize) {
         self.length = length;
         self.stride = layout.stride(length);
-        let room = self.stride * (length + SIDE);
-        self.values.resize(self.values.len().max(room), 0.0);
         let columns = self.values.chunks_exact_mut(self.stride).take(length);
         for (k, column) in columns.enumerate() {
             column[k..].fill(0.0);
@@ -143,51 +155,37 @@ impl Front {
         let Some(last) = spots.last() else {
             return;
         };
-        match last.width {
-            8 => self.change_by::<S, 8>(simd, spots, values, columns),
-            4 => self.change_by::<S, 4>(simd, spots, values, columns),
-            2 => self.change_by::<S, 2>(simd, spots, values, columns),
-            _ => self.change_by::<S, 1>(simd, spots, values, columns),
-        }
-    }
-
-    #[inline(always)]
-    fn change_by<S: Simd, const N: usize>(
-        &mut self,
-        simd: S,
-        spots: &[PanelSpot],
-        values: &[f64],
-        columns: Range<usize>,
-    ) {
         let Self {
             values: front,
+            on_threads,
             length,
             stride,
             scaled,
         } = self;
-        let lanes = S::F64_LANES;
-        for column in columns.step_by(SIDE) {
-            let mut panels = [Panel::default(); BLOCK];
-            for (panel, spot) in panels.iter_mut().zip(spots) {
-                *panel = spot.panel::<N>(lanes, column, [values, scaled]);
-            }
-            let panels = &panels[..spots.len()];
-            // Rows of the tile that has the diagonal, and those below.
-            let phase = (column - spots[0].first - N) % lanes;
-            let rows = column - phase..*length;
-            let side = &mut front[column * *stride..(column + SIDE) * *stride];
-            for row in rows.step_by(2 * lanes) {
-                let products = Products {
-                    simd,
-                    row,
-                    stride: *stride,
-                };
-                match row + lanes < *length {
-                    true => products.take::<2, N>(side, panels),
-                    false => products.take::<1, N>(side, panels),
-                }
-            }
+        let change = Change {
+            spots,
+            values,
+            scaled,
+            length: *length,
+            stride: *stride,
+        };
+        let end = columns.start + columns.len().next_multiple_of(SIDE);
+        let front = &mut front[columns.start * *stride..end * *stride];
+        let depth = spots.len() * last.width;
+        let operations = columns.len() * (*length - columns.start) / 2 * depth;
+        if *on_threads && operations > OPERATIONS {
+            let pieces = front.par_chunks_mut(PIECE * *stride).enumerate();
+            pieces.with_max_len(1).for_each(|(k, front)| {
+                let first = columns.start + k * PIECE;
+                Arch::new().dispatch(Piece {
+                    change: &change,
+                    first,
+                    front,
+                });
+            });
+            return;
         }
+        change.take(simd, columns.start, front);
     }
 
     /// Eliminates the columns of a panel, given what all panels before have left of them.
@@ -244,6 +242,68 @@ impl Front {
                 }
                 scaled[k] = entry;
                 tile[k] = simd.mul_f64s(entry, inverse[k]);
+            }
+        }
+    }
+}
+
+/// What eliminated panels take from columns of a front.
+struct Change<'a> {
+    spots: &'a [PanelSpot],
+    /// L of the supernode.
+    values: &'a [f64],
+    scaled: &'a [f64],
+    length: usize,
+    stride: usize,
+}
+
+/// Some columns of a front, from the `first` on, for a thread.
+struct Piece<'a> {
+    change: &'a Change<'a>,
+    first: usize,
+    front: &'a mut [f64],
+}
+
+impl WithSimd for Piece<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.change.take(simd, self.first, self.front);
+    }
+}
+
+impl Change<'_> {
+    /// Takes the products from columns of a front, from the `first` on.
+    #[inline(always)]
+    fn take<S: Simd>(&self, simd: S, first: usize, front: &mut [f64]) {
+        match self.spots[0].width {
+            8 => self.take_by::<S, 8>(simd, first, front),
+            4 => self.take_by::<S, 4>(simd, first, front),
+            2 => self.take_by::<S, 2>(simd, first, front),
+            _ => self.take_by::<S, 1>(simd, first, front),
+        }
+    }
+
+    #[inline(always)]
+    fn take_by<S: Simd, const N: usize>(&self, simd: S, first: usize, front: &mut [f64]) {
+        let (lanes, stride) = (S::F64_LANES, self.stride);
+        let sides = front.chunks_exact_mut(SIDE * stride);
+        for (side, column) in sides.zip((first..).step_by(SIDE)) {
+            let mut panels = [Panel::default(); BLOCK];
+            for (panel, spot) in panels.iter_mut().zip(self.spots) {
+                *panel = spot.panel::<N>(lanes, column, [self.values, self.scaled]);
+            }
+            let panels = &panels[..self.spots.len()];
+            // Rows of the tile that has the diagonal, and those below.
+            let phase = (column - self.spots[0].first - N) % lanes;
+            let rows = column - phase..self.length;
+            for row in rows.step_by(2 * lanes) {
+                let products = Products { simd, row, stride };
+                match row + lanes < self.length {
+                    true => products.take::<2, N>(side, panels),
+                    false => products.take::<1, N>(side, panels),
+                }
             }
         }
     }
