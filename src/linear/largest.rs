@@ -1,9 +1,21 @@
 //! Largest values, NaN where one of the values is.
 
 use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+/// Values that are one piece of work for a thread.
+const PIECE: usize = 32_768;
 
 /// Largest absolute value, 0 without values; NaN when one is.
 pub fn largest(values: &[f64]) -> f64 {
+    match values.len() > PIECE && rayon::current_num_threads() > 1 {
+        true => (values.par_chunks(PIECE).map(largest_of)).reduce(|| 0.0, larger),
+        false => largest_of(values),
+    }
+}
+
+/// The same on one thread.
+fn largest_of(values: &[f64]) -> f64 {
     Arch::new().dispatch(Largest(values)).unwrap_or_else(|| {
         let larger = |most, value: &f64| larger(most, value.abs());
         values.iter().fold(0.0, larger)

@@ -3,11 +3,12 @@
 
 use nalgebra::{DMatrix, DVector};
 use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
 use smallvec::SmallVec;
 
 use super::compliance::{Compliance, Scope};
 use super::constraint::Constraint;
-use super::responses::{GroupRows, Responses, UnknownEntry, resized};
+use super::responses::{GroupRows, Responses, UnknownEntry};
 use crate::lcp::FrictionalLcp;
 
 /// Memory of the Delassus operators of a matrix, used again by the next one.
@@ -18,8 +19,8 @@ pub struct DelassusSpace {
     /// Gaps, slips and friction coefficients.
     vectors: [Vec<f64>; 3],
     groups: Vec<GroupRows>,
-    responses: Responses,
-    sums: [Vec<f64>; 2],
+    /// Of the constraints of every panel.
+    responses: Vec<Responses>,
 }
 
 impl DelassusSpace {
@@ -57,6 +58,10 @@ pub fn frictional_lcp(
 /// Constraints whose responses are computed together.
 const PANEL: usize = 128;
 
+/// Constraints whose columns of Q are one piece of work for a thread, and the least constraints that are worth threads.
+const PIECE: usize = 16;
+const THREADS: usize = 64;
+
 /// Q = G W B^T, eq. (5.1), all normal before all tangential rows and columns: the sum over the groups of
 /// unknowns, each of which couples the constraints that act on it.
 fn delassus(
@@ -70,7 +75,6 @@ fn delassus(
         q,
         groups,
         responses,
-        sums,
         ..
     } = space;
     groups.resize_with(compliance.block_count(scope), GroupRows::default);
@@ -87,14 +91,15 @@ fn delassus(
         q.fill(0.0);
     }
     for (block, rows) in groups.iter().enumerate() {
-        Arch::new().dispatch(GroupSum {
-            inverse: compliance.inverse(scope, block),
-            members: rows.iter().collect(),
+        let members: SmallVec<[Member; PANEL]> = rows.iter().collect();
+        set_responses(&members, compliance.inverse(scope, block), responses);
+        let sum = GroupSum {
+            members: &members,
             responses,
-            sums,
+            n,
             adds: block > 0 || !is_whole(rows),
-            q: &mut q,
-        });
+        };
+        sum.write_to(&mut q);
     }
     let mut q = DMatrix::from_vec(2 * n, 2 * n, q);
     if n > 0
@@ -107,47 +112,123 @@ fn delassus(
     q
 }
 
-/// Adds what the unknowns of a group couple to Q, column by column, or writes it.
-struct GroupSum<'a> {
-    /// The inverse at its unknowns, and their number.
-    inverse: (&'a [f64], usize),
-    /// The constraints that act on it, with their rows.
-    members: SmallVec<[(usize, &'a [UnknownEntry]); PANEL]>,
-    responses: &'a mut Responses,
-    sums: &'a mut [Vec<f64>; 2],
-    adds: bool,
-    q: &'a mut [f64],
+/// A constraint that acts on a group, with its rows.
+type Member<'a> = (usize, &'a [UnknownEntry]);
+
+/// Whether there are threads, and constraints enough for them.
+fn is_worth_threads(constraints: usize) -> bool {
+    constraints >= THREADS && rayon::current_num_threads() > 1
 }
 
-impl WithSimd for GroupSum<'_> {
+/// Y = W (G T)^T of the members of a group, panel by panel.
+fn set_responses(members: &[Member], inverse: (&[f64], usize), responses: &mut Vec<Responses>) {
+    let panels = members.chunks(PANEL).len();
+    responses.resize_with(panels.max(responses.len()), Responses::default);
+    let set = |(panel, responses): (&[Member], &mut Responses)| {
+        Arch::new().dispatch(PanelResponses {
+            inverse,
+            panel,
+            responses,
+        });
+    };
+    match panels > 1 && is_worth_threads(members.len()) {
+        true => members.par_chunks(PANEL).zip(responses).for_each(set),
+        false => members.chunks(PANEL).zip(responses).for_each(set),
+    }
+}
+
+/// The responses of the constraints of a panel.
+struct PanelResponses<'a> {
+    inverse: (&'a [f64], usize),
+    panel: &'a [Member<'a>],
+    responses: &'a mut Responses,
+}
+
+impl WithSimd for PanelResponses<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.responses.set(simd, self.inverse, self.panel);
+    }
+}
+
+/// What the unknowns of a group couple.
+#[derive(Clone, Copy)]
+struct GroupSum<'a> {
+    /// The constraints that act on it.
+    members: &'a [Member<'a>],
+    /// Their responses, panel by panel.
+    responses: &'a [Responses],
+    /// Number of all constraints.
+    n: usize,
+    /// Whether it is added to Q, or written.
+    adds: bool,
+}
+
+impl GroupSum<'_> {
+    /// Takes the sum to Q, column by column.
+    fn write_to(self, q: &mut [f64]) {
+        let on_threads = is_worth_threads(self.members.len());
+        let piece = if on_threads { PIECE } else { self.n.max(1) };
+        let (normals, tangentials) = q.split_at_mut(q.len() / 2);
+        let write = |(k, (normals, tangentials))| {
+            Arch::new().dispatch(Columns {
+                sum: self,
+                first: k * piece,
+                columns: [normals, tangentials],
+            });
+        };
+        let entries = 2 * self.n.max(1) * piece;
+        if on_threads {
+            let pieces = (normals.par_chunks_mut(entries)).zip(tangentials.par_chunks_mut(entries));
+            pieces.enumerate().for_each(write);
+            return;
+        }
+        let pieces = (normals.chunks_mut(entries)).zip(tangentials.chunks_mut(entries));
+        pieces.enumerate().for_each(write);
+    }
+}
+
+/// The columns of Q of the constraints from the `first` on, normal and tangential.
+struct Columns<'a> {
+    sum: GroupSum<'a>,
+    first: usize,
+    columns: [&'a mut [f64]; 2],
+}
+
+impl WithSimd for Columns<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self {
-            responses,
-            members,
-            sums,
-            ..
+            sum,
+            first,
+            columns: [normals, tangentials],
         } = self;
-        let n = (self.q.len() / 4).isqrt();
-        let (normals, tangentials) = self.q.split_at_mut(2 * n * n);
-        for panel in members.chunks(PANEL) {
-            // Y = W (G T)^T of the panel, then its products with the force rows of all
-            responses.set(simd, self.inverse, panel);
-            for &(l, of_l) in &members {
-                let columns = [&mut *normals, &mut *tangentials];
-                let columns = columns.map(|all| &mut all[2 * n * l..2 * n * (l + 1)]);
+        let (members, n) = (sum.members, sum.n);
+        let end = first + normals.len() / (2 * n);
+        let [first_member, end_member] =
+            [first, end].map(|k| members.partition_point(|(l, _)| *l < k));
+        let mut sums = [[0.0; 2 * PANEL]; 2];
+        for (panel, responses) in members.chunks(PANEL).zip(sum.responses) {
+            // products of the responses of the panel with the force rows of the columns
+            for &(l, of_l) in &members[first_member..end_member] {
+                let start = 2 * n * (l - first);
+                let columns =
+                    [&mut *normals, &mut *tangentials].map(|all| &mut all[start..start + 2 * n]);
                 if panel.len() == n {
-                    responses.product(simd, of_l, columns, self.adds);
+                    responses.product(simd, of_l, columns, sum.adds);
                     continue;
                 }
-                responses.product(simd, of_l, resized(sums, 2 * panel.len()), false);
-                for (column, sum) in columns.into_iter().zip(&*sums) {
+                let of_panel = (sums.each_mut()).map(|sums| &mut sums[..2 * panel.len()]);
+                responses.product(simd, of_l, of_panel, false);
+                for (column, sum) in columns.into_iter().zip(&sums) {
                     let (normal, tangential) = column.split_at_mut(n);
-                    let (to_normal, to_tangential) = sum.split_at(panel.len());
+                    let (to_normal, rest) = sum.split_at(panel.len());
                     add(normal, panel, to_normal);
-                    add(tangential, panel, to_tangential);
+                    add(tangential, panel, rest);
                 }
             }
         }
@@ -156,7 +237,7 @@ impl WithSimd for GroupSum<'_> {
 
 /// Adds values for the constraints of a panel to those of all.
 #[inline(always)]
-fn add(all: &mut [f64], panel: &[(usize, &[UnknownEntry])], values: &[f64]) {
+fn add(all: &mut [f64], panel: &[Member], values: &[f64]) {
     for ((l, _), value) in panel.iter().zip(values) {
         all[*l] += value;
     }

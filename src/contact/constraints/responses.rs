@@ -143,7 +143,7 @@ impl Responses {
 
 /// Two vectors of the given length.
 #[inline(always)]
-pub(super) fn resized(vectors: &mut [Vec<f64>; 2], length: usize) -> [&mut [f64]; 2] {
+fn resized(vectors: &mut [Vec<f64>; 2], length: usize) -> [&mut [f64]; 2] {
     vectors.each_mut().map(|vector| {
         vector.resize(length, 0.0);
         vector.as_mut_slice()

@@ -58,8 +58,8 @@ fn matrix() -> CheckedSolver {
     CheckedSolver::new(linear_solver(SolverChoice::Faer), matrix)
 }
 
-#[test]
-fn delassus_entries_are_derivative_rows_times_compliance_times_force_rows() {
+/// Two constraints of different shape, of which the wide one has derivative rows of its own.
+fn narrow_and_wide() -> [Constraint; 2] {
     let alternating = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
     let wide = made_up(
         DOFS,
@@ -71,15 +71,48 @@ fn delassus_entries_are_derivative_rows_times_compliance_times_force_rows() {
     let narrow_rows: RowsByDof = [|k| (k as f64).cos(), |k| 0.1 * k as f64];
     let narrow = made_up(6, [narrow_rows; 2]);
     assert!(narrow.other_derivative_rows.is_none());
-    let constraints = [&narrow, &wide];
+    [narrow, wide]
+}
 
-    let mut solver = matrix();
+/// The compliance of constraints in the matrix.
+fn compliance_of(constraints: &[&Constraint], solver: &mut CheckedSolver) -> Compliance {
     solver.factorize().expect("positive definite");
     let map = Transformation::identity(DOFS);
     let mut compliance = Compliance::new(map, vec![0; DOFS]);
+    let prepared = compliance.prepare(&Scope::All, constraints, solver);
+    prepared.expect("solved");
     compliance
-        .prepare(&Scope::All, &constraints, &mut solver)
-        .expect("solved");
+}
+
+#[test]
+fn delassus_entries_of_many_constraints_are_those_of_a_few_with_the_same_bits_on_any_number_of_threads()
+ {
+    let [narrow, wide] = narrow_and_wide();
+    let few = [&narrow, &wide];
+    let many: Vec<&Constraint> = (0..300).map(|k| few[k % 2]).collect();
+    let compliance = compliance_of(&few, &mut matrix());
+    let q = |constraints: &[&Constraint], threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let terms = vec![[0.0; 2]; constraints.len()];
+        let of = (&compliance, &Scope::All);
+        let mut space = DelassusSpace::default();
+        pool.expect("threads")
+            .install(|| frictional_lcp(constraints, of, &terms, &mut space).q)
+    };
+    let (of_few, of_many) = (q(&few, 1), q(&many, 1));
+    for (i, j) in (0..600).flat_map(|i| (0..600).map(move |j| (i, j))) {
+        let place = |k: usize| k / 300 * 2 + k % 2;
+        assert!((of_many[(i, j)] - of_few[(place(i), place(j))]).abs() < 1e-12);
+    }
+    assert!(q(&many, 2) == of_many && q(&many, 3) == of_many);
+}
+
+#[test]
+fn delassus_entries_are_derivative_rows_times_compliance_times_force_rows() {
+    let [narrow, wide] = narrow_and_wide();
+    let constraints = [&narrow, &wide];
+    let mut solver = matrix();
+    let compliance = compliance_of(&constraints, &mut solver);
     let problem = frictional_lcp(
         &constraints,
         (&compliance, &Scope::All),
