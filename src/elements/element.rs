@@ -190,6 +190,11 @@ impl AnyChunk {
         with_chunk!(self, chunk => chunk.add_sums(total))
     }
 
+    /// As [`Chunk::clear_sums`].
+    pub fn clear_sums(&self) {
+        with_chunk!(self, chunk => chunk.clear_sums())
+    }
+
     /// Elements (indices) with strain energy, stress and strain at displacements `u`.
     pub fn evaluate(&self, u: &[f64]) -> Vec<(usize, ElementResult)> {
         with_chunk!(self, chunk => chunk.evaluate(u))

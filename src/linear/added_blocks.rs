@@ -1,8 +1,6 @@
 //! Symmetric blocks that are added to an assembled matrix beyond its pattern: what couples unknowns
 //! that no element connects. Section 4 of docs/theory.md.
 
-use std::ops::Range;
-
 use nalgebra::DMatrix;
 use sprs::{CsMat, CsMatView};
 
@@ -16,13 +14,6 @@ const MOST_PLACES: usize = 3;
 pub struct AddedBlocks {
     /// Column, row and value of every entry, in any order; entries of one place add up.
     entries: Vec<(usize, usize, f64)>,
-}
-
-/// Columns of a matrix as they grow.
-struct Columns {
-    starts: Vec<usize>,
-    rows: Vec<usize>,
-    values: Vec<f64>,
 }
 
 impl AddedBlocks {
@@ -44,84 +35,115 @@ impl AddedBlocks {
         self.entries.is_empty()
     }
 
-    /// Adds zeros at the `places` (column, row) of earlier blocks, and these blocks' to the places: the pattern
-    /// of the sum stays the same as long as it can, and with it its symbolic analysis. Many more places than
-    /// entries are forgotten.
-    pub fn keep_places(&mut self, places: &mut Vec<(usize, usize)>) {
-        if places.len() > MOST_PLACES * self.entries.len() {
-            places.clear();
-        }
-        let own = self.entries.iter().map(|entry| (entry.0, entry.1));
-        let known = places.len();
-        places.extend(own);
-        let zeros = places[..known]
-            .iter()
-            .map(|&(column, row)| (column, row, 0.0));
-        self.entries.extend(zeros);
+    /// Places (column, row) of these blocks and of earlier ones, increasing: the pattern of the sum stays the same as
+    /// long as it can, and with it its symbolic analysis. Many more places than entries are forgotten.
+    pub(super) fn places(&self, earlier: &[(usize, usize)]) -> Vec<(usize, usize)> {
+        let forgets = earlier.len() > MOST_PLACES * self.entries.len();
+        let mut places = if forgets {
+            Vec::new()
+        } else {
+            earlier.to_vec()
+        };
+        places.extend(self.entries.iter().map(|entry| (entry.0, entry.1)));
         places.sort_unstable();
         places.dedup();
-    }
-
-    /// The sum of a matrix and the blocks, with the union of their patterns; by columns.
-    pub fn added_to(mut self, matrix: CsMatView<'_, f64>) -> CsMat<f64> {
-        self.entries.sort_by_key(|&(column, row, _)| (column, row));
-        let n = matrix.cols();
-        let mut sum = Columns {
-            starts: vec![0],
-            rows: Vec::with_capacity(matrix.nnz() + self.entries.len()),
-            values: Vec::with_capacity(matrix.nnz() + self.entries.len()),
-        };
-        let mut next = 0;
-        for added in self.entries.chunk_by(|one, other| one.0 == other.0) {
-            let column = added[0].0;
-            sum.take(matrix, next..column);
-            sum.merge(matrix, column, added);
-            next = column + 1;
-        }
-        sum.take(matrix, next..n);
-        CsMat::new_csc((n, n), sum.starts, sum.rows, sum.values)
+        places
     }
 }
 
-impl Columns {
-    /// Takes over columns of a matrix as they are.
-    fn take(&mut self, matrix: CsMatView<'_, f64>, columns: Range<usize>) {
-        let starts = matrix.indptr();
-        let ends = &starts.raw_storage()[columns.start..=columns.end];
-        let entries = ends[0]..ends[columns.len()];
-        let first = self.rows.len();
-        self.starts
-            .extend(ends[1..].iter().map(|end| end - ends[0] + first));
-        self.rows
-            .extend_from_slice(&matrix.indices()[entries.clone()]);
-        self.values.extend_from_slice(&matrix.data()[entries]);
+/// The sum of a matrix and added blocks, with the union of their patterns; by columns. It takes new values as long as
+/// the pattern of the matrix and the places of the blocks stay.
+#[derive(Debug)]
+pub(super) struct BlockSum {
+    sum: CsMat<f64>,
+    /// Places (column, row) of the blocks, increasing.
+    places: Vec<(usize, usize)>,
+    /// Their positions among the values.
+    positions: Vec<usize>,
+    /// Values of the matrix that are next to each other in the sum, too.
+    runs: Vec<Run>,
+}
+
+/// Consecutive values of a matrix in a sum.
+#[derive(Debug)]
+struct Run {
+    /// The first of them in the matrix, and in the sum.
+    from: usize,
+    to: usize,
+    length: usize,
+}
+
+impl BlockSum {
+    /// Room for the sum of a matrix and blocks with entries at some places (column, row), increasing.
+    pub fn new(matrix: CsMatView<'_, f64>, places: Vec<(usize, usize)>) -> Self {
+        let (n, ends, all_rows) = (matrix.cols(), matrix.indptr(), matrix.indices());
+        let ends = ends.raw_storage();
+        let mut starts = Vec::with_capacity(n + 1);
+        let mut rows = Vec::with_capacity(matrix.nnz() + places.len());
+        let (mut positions, mut runs) = (Vec::with_capacity(places.len()), Vec::<Run>::new());
+        let mut taken = 0;
+        let mut take_until = |end: usize, rows: &mut Vec<usize>| {
+            match runs.last_mut() {
+                Some(run) if run.to + run.length == rows.len() => run.length += end - taken,
+                _ => runs.push(Run {
+                    from: taken,
+                    to: rows.len(),
+                    length: end - taken,
+                }),
+            }
+            rows.extend_from_slice(&all_rows[taken..end]);
+            taken = end;
+            rows.len() - end
+        };
+        let mut added = 0;
+        for of_column in places.chunk_by(|one, other| one.0 == other.0) {
+            let column = of_column[0].0;
+            starts.extend(ends[starts.len()..=column].iter().map(|end| end + added));
+            let entries = ends[column]..ends[column + 1];
+            for &(_, row) in of_column {
+                let own = &all_rows[entries.clone()];
+                let at = entries.start + own.partition_point(|r| *r < row);
+                take_until(at, &mut rows);
+                positions.push(rows.len());
+                if !all_rows[at..entries.end].starts_with(&[row]) {
+                    rows.push(row);
+                }
+            }
+            added = take_until(entries.end, &mut rows);
+        }
+        take_until(all_rows.len(), &mut rows);
+        starts.extend(ends[starts.len()..].iter().map(|end| end + added));
+        let values = vec![0.0; rows.len()];
+        BlockSum {
+            sum: CsMat::new_csc((n, n), starts, rows, values),
+            places,
+            positions,
+            runs,
+        }
     }
 
-    /// Adds the next column: that of a matrix and entries of it, in the order of their rows.
-    fn merge(&mut self, matrix: CsMatView<'_, f64>, column: usize, added: &[(usize, usize, f64)]) {
-        let entries = matrix.indptr().outer_inds_sz(column);
-        let own = (matrix.indices()[entries.clone()].iter()).zip(&matrix.data()[entries]);
-        let mut added = added.iter().peekable();
-        for (&row, &value) in own {
-            while let Some(entry) = added.next_if(|entry| entry.1 < row) {
-                self.push(entry.1, entry.2);
-            }
-            self.push(row, value);
-        }
-        added.for_each(|entry| self.push(entry.1, entry.2));
-        self.starts.push(self.rows.len());
+    /// Places (column, row) of the blocks, increasing.
+    pub fn places(&self) -> &[(usize, usize)] {
+        &self.places
     }
 
-    /// Adds an entry to the last column, whose rows come in increasing order.
-    fn push(&mut self, row: usize, value: f64) {
-        let first = self.starts[self.starts.len() - 1];
-        match self.values.last_mut() {
-            Some(last) if self.rows[first..].last() == Some(&row) => *last += value,
-            _ => {
-                self.rows.push(row);
-                self.values.push(value);
+    /// Sets the values to the sum of the matrix and blocks with entries at the places.
+    pub fn fill(&mut self, matrix: CsMatView<'_, f64>, blocks: &AddedBlocks) {
+        let (values, own) = (self.sum.data_mut(), matrix.data());
+        self.positions.iter().for_each(|&at| values[at] = 0.0);
+        for Run { from, to, length } in &self.runs {
+            values[*to..to + length].copy_from_slice(&own[*from..from + length]);
+        }
+        for &(column, row, value) in &blocks.entries {
+            if let Ok(at) = self.places.binary_search(&(column, row)) {
+                values[self.positions[at]] += value;
             }
         }
+    }
+
+    /// The sum.
+    pub fn view(&self) -> CsMatView<'_, f64> {
+        self.sum.view()
     }
 }
 
@@ -129,6 +151,14 @@ impl Columns {
 mod tests {
     use super::*;
     use crate::linear::Assembled;
+
+    impl BlockSum {
+        fn of(matrix: &Assembled, blocks: &AddedBlocks) -> Self {
+            let mut sum = BlockSum::new(matrix.matrix(), blocks.places(&[]));
+            sum.fill(matrix.matrix(), blocks);
+            sum
+        }
+    }
 
     #[test]
     fn blocks_add_to_entries_and_enlarge_the_pattern() {
@@ -143,7 +173,8 @@ mod tests {
         let k = DMatrix::from_row_slice(3, 3, &[1.0, 3.0, 9.0, 3.0, 0.0, 9.0, 9.0, 9.0, 9.0]);
         blocks.add(&map, &[1, 3, 4], &k);
         blocks.add(&map, &[2], &DMatrix::from_element(1, 1, 0.5));
-        let sum = blocks.added_to(matrix.matrix());
+        let sum = BlockSum::of(&matrix, &blocks);
+        let sum = sum.view();
         let expected = [[9.0, 0.0, 6.0], [0.0, 7.5, -1.0], [6.0, -1.0, 8.0]];
         for (i, row) in expected.iter().enumerate() {
             for (j, value) in row.iter().enumerate() {
@@ -156,11 +187,43 @@ mod tests {
     }
 
     #[test]
+    fn other_blocks_at_some_of_the_places_take_their_turn() {
+        let mut matrix = Assembled::new(&Transformation::identity(5), &[vec![0, 2], vec![2, 4]]);
+        matrix.add(0, &[2.0, 1.0, 1.0, 3.0], 1.0);
+        matrix.add(1, &[4.0, 1.0, 1.0, 5.0], 1.0);
+        let blocks = |dofs: [usize; 2]| {
+            let mut blocks = AddedBlocks::default();
+            let k = DMatrix::from_element(2, 2, 7.0);
+            blocks.add(&Transformation::identity(5), &dofs, &k);
+            blocks
+        };
+        let places = blocks([2, 1]).places(&blocks([0, 4]).places(&[]));
+        assert_eq!(places.len(), 8);
+        let mut both = BlockSum::new(matrix.matrix(), places);
+        for dofs in [[0, 4], [2, 1]] {
+            both.fill(matrix.matrix(), &blocks(dofs));
+            let alone = BlockSum::of(&matrix, &blocks(dofs));
+            for (i, j) in (0..5).flat_map(|i| (0..5).map(move |j| (i, j))) {
+                let at = |sum: &BlockSum| sum.view().get(i, j).copied().unwrap_or(0.0);
+                assert_eq!(at(&both), at(&alone), "({i}, {j})");
+            }
+        }
+        // many more places than entries are forgotten
+        assert_eq!(
+            AddedBlocks {
+                entries: vec![(3, 3, 1.0)]
+            }
+            .places(both.places()),
+            [(3, 3)]
+        );
+    }
+
+    #[test]
     fn without_entries_the_matrix_is_the_same() {
         let mut matrix = Assembled::new(&Transformation::identity(3), &[vec![0, 2]]);
         matrix.add(0, &[2.0, 1.0, 1.0, 3.0], 1.0);
         let blocks = AddedBlocks::default();
         assert!(blocks.is_empty());
-        assert_eq!(blocks.added_to(matrix.matrix()).view(), matrix.matrix());
+        assert_eq!(BlockSum::of(&matrix, &blocks).view(), matrix.matrix());
     }
 }

@@ -1,14 +1,21 @@
 //! Assembly of element matrices into compressed sparse columns, K = sum T_e^T K_e T_e, through
 //! positions computed once. Section 4 of docs/theory.md.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
+use smallvec::SmallVec;
 use sprs::{CsMatBase, CsMatView};
 
 use super::Transformation;
 
 /// Marks an entry of an element matrix that equations distribute over several entries.
 const DISTRIBUTED: u32 = u32::MAX;
+
+/// Rows of a column for each element that its unknown is of, in a mesh of quadrilaterals or triangles.
+const ROWS: usize = 5;
+
+/// Dofs of an element whose places need no memory of their own.
+const DOFS: usize = 16;
 
 /// A matrix by columns whose copies share its pattern.
 type SharedPattern = CsMatBase<f64, usize, Arc<[usize]>, Arc<[usize]>, Vec<f64>>;
@@ -33,6 +40,8 @@ struct Positions {
     diagonal: Vec<u32>,
     /// Terms of the entries whose dofs follow others, element by element.
     couplings: Vec<Coupling>,
+    /// Connected group of every unknown.
+    groups: OnceLock<Vec<usize>>,
 }
 
 /// A term of T_e^T K_e T_e where a row of T is not one of the identity.
@@ -65,25 +74,33 @@ impl Pattern {
             all.flat_map(|element| unknowns(element).map(move |unknown| (unknown, element)))
         });
         let mut pattern = Pattern {
-            starts: vec![0],
-            rows: Vec::new(),
+            starts: Vec::with_capacity(map.unknowns() + 1),
+            rows: Vec::with_capacity(of_unknowns.len() * ROWS),
         };
+        pattern.starts.push(0);
         let mut column = Vec::new();
         let mut last: &[usize] = &[];
+        // the last column that has an unknown
+        let mut in_column = vec![usize::MAX; map.unknowns()];
         for unknown in 0..map.unknowns() {
             let elements = &of_unknowns[starts[unknown]..starts[unknown + 1]];
             // both dofs of a node have the same elements, and columns
             if elements.is_empty() || elements != last {
                 column.clear();
                 column.push(unknown);
+                in_column[unknown] = unknown;
                 for &element in elements {
-                    column.extend(unknowns(element));
+                    for row in unknowns(element) {
+                        if in_column[row] != unknown {
+                            in_column[row] = unknown;
+                            column.push(row);
+                        }
+                    }
                 }
                 column.sort_unstable();
-                column.dedup();
             }
             last = elements;
-            pattern.rows.extend(&column);
+            pattern.rows.extend_from_slice(&column);
             pattern.starts.push(pattern.rows.len());
         }
         pattern
@@ -91,18 +108,9 @@ impl Pattern {
 
     /// Position in the values of an entry.
     fn position(&self, row: usize, column: usize) -> u32 {
-        self.position_near(row, column, 0)
-    }
-
-    /// The same, which may be just after that of another entry.
-    fn position_near(&self, row: usize, column: usize, other: u32) -> u32 {
         let start = self.starts[column];
         let rows = &self.rows[start..self.starts[column + 1]];
-        let next = (other as usize + 1).wrapping_sub(start);
-        let position = match rows.get(next) {
-            Some(r) if *r == row => start + next,
-            _ => start + rows.partition_point(|r| *r < row),
-        };
+        let position = start + rows.partition_point(|r| *r < row);
         debug_assert!(position < DISTRIBUTED as usize, "matrices fit into memory");
         position as u32
     }
@@ -130,17 +138,54 @@ fn elements_of<I: Iterator<Item = (usize, usize)>>(
 impl Positions {
     /// Finds the positions of the entries of the next element matrix, over the given dofs.
     fn place(&mut self, pattern: &Pattern, map: &Transformation, dofs: &[usize]) {
-        let (element, first) = (self.starts.len() - 1, self.positions.len());
+        let mut unknowns: SmallVec<[usize; DOFS]> = SmallVec::new();
+        for &dof in dofs {
+            match map.row(dof) {
+                &[(unknown, 1.0)] => unknowns.push(unknown),
+                _ => break,
+            }
+        }
+        match unknowns.len() == dofs.len() {
+            true => self.place_unknowns(pattern, &unknowns),
+            false => self.place_dofs(pattern, map, dofs),
+        }
+        self.starts.push(self.positions.len());
+    }
+
+    /// The same where every dof is an unknown.
+    fn place_unknowns(&mut self, pattern: &Pattern, unknowns: &[usize]) {
+        let twos = unknowns.as_chunks::<2>();
+        let are_twos = twos.1.is_empty() && twos.0.iter().all(|[p, q]| p + 1 == *q);
+        let step = if are_twos { 2 } else { 1 };
+        let rows = || unknowns.iter().step_by(step);
+        let mut last: &[usize] = &[];
+        let mut places: SmallVec<[u32; DOFS]> = SmallVec::new();
+        for &column in unknowns {
+            let start = pattern.starts[column];
+            let of_column = &pattern.rows[start..pattern.starts[column + 1]];
+            // both dofs of a node have the same rows
+            if last != of_column {
+                places.clear();
+                for row in rows() {
+                    places.push(of_column.partition_point(|r| r < row) as u32);
+                }
+                last = of_column;
+            }
+            let start = start as u32;
+            self.positions
+                .extend(places.iter().map(|place| start + place));
+        }
+    }
+
+    /// The same where some dofs are prescribed or follow others.
+    fn place_dofs(&mut self, pattern: &Pattern, map: &Transformation, dofs: &[usize]) {
+        let element = self.starts.len() - 1;
         let pairs = dofs
             .iter()
             .flat_map(|column| dofs.iter().map(move |row| (row, column)));
-        let mut last = 0;
         for (entry, (&row, &column)) in pairs.enumerate() {
             let position = match (map.row(row), map.row(column)) {
-                (&[(row, 1.0)], &[(column, 1.0)]) => {
-                    last = pattern.position_near(row, column, last);
-                    last
-                }
+                (&[(row, 1.0)], &[(column, 1.0)]) => pattern.position(row, column),
                 (rows, columns) => {
                     for &(column, c) in columns {
                         self.couplings.extend(rows.iter().map(|&(row, r)| Coupling {
@@ -155,13 +200,6 @@ impl Positions {
             };
             self.positions.push(position);
         }
-        let (twos, rest) = self.positions[first..].as_chunks::<2>();
-        if rest.is_empty() && twos.iter().all(|[p, q]| p.checked_add(1) == Some(*q)) {
-            let every_other: Vec<u32> = twos.iter().map(|[p, _]| *p).collect();
-            self.positions.truncate(first);
-            self.positions.extend(every_other);
-        }
-        self.starts.push(self.positions.len());
     }
 
     /// Terms of an element matrix that equations distribute.
@@ -176,12 +214,15 @@ impl Assembled {
     /// Zero matrix over the unknowns of `map`, with the pattern of elements with the given dofs.
     pub fn new(map: &Transformation, elements: &[Vec<usize>]) -> Self {
         let (n, pattern) = (map.unknowns(), Pattern::new(map, elements));
+        let entries: usize = elements.iter().map(|dofs| dofs.len().pow(2)).sum();
         let mut positions = Positions {
-            positions: Vec::new(),
-            starts: vec![0],
+            positions: Vec::with_capacity(entries),
+            starts: Vec::with_capacity(elements.len() + 1),
             diagonal: (0..n).map(|i| pattern.position(i, i)).collect(),
             couplings: Vec::new(),
+            groups: OnceLock::new(),
         };
+        positions.starts.push(0);
         for dofs in elements {
             positions.place(&pattern, map, dofs);
         }
@@ -260,6 +301,12 @@ impl Assembled {
         self.matrix.cols()
     }
 
+    /// Connected group of every unknown, numbered from 0: the inverse has no entries between different groups.
+    pub fn groups(&self) -> &[usize] {
+        let groups = || groups(self.matrix());
+        self.positions.groups.get_or_init(groups)
+    }
+
     /// The entries of the diagonal.
     pub fn diagonal(&self) -> impl Iterator<Item = f64> {
         let (diagonal, values) = (&self.positions.diagonal, self.matrix.data());
@@ -267,9 +314,8 @@ impl Assembled {
     }
 }
 
-/// Connected group of every unknown of a matrix, numbered from 0: the inverse has no entries between
-/// different groups.
-pub(super) fn groups(matrix: CsMatView<'_, f64>) -> Vec<usize> {
+/// Connected group of every unknown of a matrix, numbered from 0 in the order of their first unknowns.
+fn groups(matrix: CsMatView<'_, f64>) -> Vec<usize> {
     let n = matrix.cols();
     let (mut group, mut count) = (vec![usize::MAX; n], 0);
     for first in 0..n {
@@ -289,6 +335,31 @@ pub(super) fn groups(matrix: CsMatView<'_, f64>) -> Vec<usize> {
         count += 1;
     }
     group
+}
+
+/// The groups after entries at some places (column, row) have connected them.
+pub(super) fn united(groups: &[usize], places: &[(usize, usize)]) -> Vec<usize> {
+    let count = groups.iter().max().map_or(0, |last| last + 1);
+    let mut first: Vec<usize> = (0..count).collect();
+    let own = |first: &[usize], mut group: usize| {
+        while first[group] != group {
+            group = first[group];
+        }
+        group
+    };
+    for &(column, row) in places {
+        let [a, b] = [column, row].map(|unknown| own(&first, groups[unknown]));
+        first[a.max(b)] = a.min(b);
+    }
+    let mut number = vec![0; count];
+    let mut numbers = 0..;
+    for group in 0..count {
+        number[group] = match own(&first, group) {
+            root if root < group => number[root],
+            _ => numbers.next().unwrap_or(group),
+        };
+    }
+    groups.iter().map(|&group| number[group]).collect()
 }
 
 #[cfg(test)]
@@ -323,7 +394,7 @@ mod tests {
         let a = two_elements(&Transformation::new(3, rows));
         assert_entries(&a, [[0.0, 6.0, 0.0], [2.0, 8.0, 30.0], [0.0, 10.0, 40.0]]);
         assert_eq!(a.diagonal().collect::<Vec<_>>(), [0.0, 8.0, 40.0]);
-        assert_eq!(groups(a.matrix()), [0, 0, 0]);
+        assert_eq!(a.groups(), [0, 0, 0]);
     }
 
     #[test]
@@ -368,9 +439,12 @@ mod tests {
     fn groups_are_what_elements_and_equations_connect() {
         let elements = [vec![0, 1], vec![2, 3]];
         let apart = Assembled::new(&Transformation::identity(4), &elements);
-        assert_eq!(groups(apart.matrix()), [0, 0, 1, 1]);
+        assert_eq!(apart.groups(), [0, 0, 1, 1]);
+        assert_eq!(united(apart.groups(), &[(0, 1), (2, 2)]), [0, 0, 1, 1]);
+        assert_eq!(united(apart.groups(), &[(3, 1)]), [0, 0, 0, 0]);
+        assert_eq!(united(&[0, 1, 2, 3, 2], &[(3, 1), (4, 2)]), [0, 1, 2, 1, 2]);
         let rows = [0, 1, 0, 2].map(|unknown| vec![(unknown, 1.0)]);
         let tied = Assembled::new(&Transformation::new(3, rows), &elements);
-        assert_eq!(groups(tied.matrix()), [0, 0, 0]);
+        assert_eq!(tied.groups(), [0, 0, 0]);
     }
 }

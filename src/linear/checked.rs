@@ -2,9 +2,10 @@
 //! by their row sums.
 
 use rayon::prelude::*;
-use sprs::{CsMat, CsMatView};
+use sprs::CsMatView;
 
-use super::assembled::groups;
+use super::added_blocks::BlockSum;
+use super::assembled::united;
 use super::{AddedBlocks, Assembled, LinearError, LinearSolver, larger, largest};
 
 /// Largest residual of a solve, relative to the terms it is made of. A backward stable solve stays
@@ -15,15 +16,15 @@ const RESIDUAL: f64 = 1e-9;
 pub struct CheckedSolver {
     solver: Box<dyn LinearSolver>,
     matrix: Assembled,
-    /// Sum of the matrix and the blocks added to it, if there are any.
-    sum: Option<CsMat<f64>>,
-    /// Places of the blocks added before.
-    places: Vec<(usize, usize)>,
+    /// Sum of the matrix and the last blocks that were added to it.
+    sum: Option<BlockSum>,
+    /// Whether these are part of the matrix at present.
+    has_blocks: bool,
     factorized: bool,
-    /// Right-hand side of the last solve.
+    /// Right-hand side that the last solve began with.
     b: Vec<f64>,
-    /// Sizes of the terms that it is the sum of.
-    terms: Vec<f64>,
+    /// What was added to it (unknown, value).
+    added: Vec<(usize, f64)>,
     /// Its solution.
     x: Vec<f64>,
     is_under_way: bool,
@@ -36,10 +37,10 @@ impl CheckedSolver {
             solver,
             matrix,
             sum: None,
-            places: Vec::new(),
+            has_blocks: false,
             factorized: false,
             b: Vec::new(),
-            terms: Vec::new(),
+            added: Vec::new(),
             x: Vec::new(),
             is_under_way: false,
         }
@@ -47,16 +48,22 @@ impl CheckedSolver {
 
     /// The matrix, to set new values; solves use them after [`Self::factorize`].
     pub fn matrix_mut(&mut self) -> &mut Assembled {
-        self.factorized = false;
-        self.sum = None;
+        (self.factorized, self.has_blocks) = (false, false);
         &mut self.matrix
     }
 
     /// Adds blocks to the matrix in place of those added before, until it gets new values.
-    pub fn add_blocks(&mut self, mut blocks: AddedBlocks) {
-        self.factorized = false;
-        blocks.keep_places(&mut self.places);
-        self.sum = (!blocks.is_empty()).then(|| blocks.added_to(self.matrix.matrix()));
+    pub fn add_blocks(&mut self, blocks: AddedBlocks) {
+        (self.factorized, self.has_blocks) = (false, !blocks.is_empty());
+        let sum = self.sum.take().filter(|_| self.has_blocks);
+        if self.has_blocks {
+            let earlier = sum.as_ref().map_or(&[][..], BlockSum::places);
+            let (matrix, places) = (self.matrix.matrix(), blocks.places(earlier));
+            let sum = sum.filter(|sum| sum.places() == places);
+            let mut sum = sum.unwrap_or_else(|| BlockSum::new(matrix, places));
+            sum.fill(matrix, &blocks);
+            self.sum = Some(sum);
+        }
     }
 
     /// Factorises the matrix with the added blocks.
@@ -68,9 +75,11 @@ impl CheckedSolver {
             solver,
             matrix,
             sum,
+            has_blocks,
             ..
         } = self;
-        let whole = sum.as_ref().map_or(matrix.matrix(), |sum| sum.view());
+        let sum = sum.as_ref().filter(|_| *has_blocks);
+        let whole = sum.map_or(matrix.matrix(), BlockSum::view);
         if whole.data().iter().any(|value| !value.is_finite()) {
             return Err(LinearError::NotFinite("the matrix"));
         }
@@ -92,17 +101,19 @@ impl CheckedSolver {
     /// Connected group of every unknown of the matrix with the added blocks, numbered from 0: the
     /// inverse has no entries between different groups.
     pub fn groups(&self) -> Vec<usize> {
-        groups(self.whole())
+        let own = self.matrix.groups();
+        self.sum()
+            .map_or_else(|| own.to_vec(), |sum| united(own, sum.places()))
     }
 
-    /// The same of the matrix without the added blocks.
-    pub fn own_groups(&self) -> Vec<usize> {
-        groups(self.matrix.matrix())
+    /// The sum with the added blocks, if there are any.
+    fn sum(&self) -> Option<&BlockSum> {
+        self.sum.as_ref().filter(|_| self.has_blocks)
     }
 
     /// The matrix with the added blocks.
     fn whole(&self) -> CsMatView<'_, f64> {
-        (self.sum.as_ref()).map_or(self.matrix.matrix(), |sum| sum.view())
+        self.sum().map_or(self.matrix.matrix(), BlockSum::view)
     }
 
     /// The solution for the right-hand side `b`.
@@ -110,25 +121,24 @@ impl CheckedSolver {
     /// # Errors
     /// A solution that is not finite or fails the residual check; a matrix without factors.
     pub fn solve(&mut self, b: &[f64]) -> Result<Vec<f64>, LinearError> {
-        self.begin(b)?;
+        self.begin(|own| b.clone_into(own))?;
         let x = self.end()?.to_vec();
         self.check()?;
         Ok(x)
     }
 
-    /// Begins a solve in parts with the right-hand side `b`, see [`LinearSolver`].
+    /// Begins a solve in parts with a right-hand side that `write` puts in place of the last one, see
+    /// [`LinearSolver`].
     ///
     /// # Errors
     /// A matrix without factors.
-    pub fn begin(&mut self, b: &[f64]) -> Result<(), LinearError> {
+    pub fn begin(&mut self, write: impl FnOnce(&mut Vec<f64>)) -> Result<(), LinearError> {
         if !self.factorized {
             return Err(LinearError::NotFactorized);
         }
-        self.b.clear();
-        self.b.extend_from_slice(b);
-        self.terms.clear();
-        self.terms.extend(b.iter().map(|b| b.abs()));
-        self.solver.begin(b);
+        write(&mut self.b);
+        self.added.clear();
+        self.solver.begin(&self.b);
         self.is_under_way = true;
         Ok(())
     }
@@ -141,9 +151,17 @@ impl CheckedSolver {
 
     /// Adds to the right-hand side at the unknowns of the last partial solution (unknown, value).
     pub fn add(&mut self, b: &[(usize, f64)]) {
-        b.iter()
-            .for_each(|&(unknown, value)| self.b[unknown] += value);
+        self.added.extend_from_slice(b);
         self.solver.add(b);
+    }
+
+    /// The right-hand side with what was added to it.
+    fn right_hand_side(&self) -> Vec<f64> {
+        let mut b = self.b.clone();
+        self.added
+            .iter()
+            .for_each(|&(unknown, value)| b[unknown] += value);
+        b
     }
 
     /// Ends a solve and gives the solution, whose residual [`Self::check`] checks.
@@ -165,7 +183,8 @@ impl CheckedSolver {
     /// # Errors
     /// A residual that is too large.
     pub fn check(&self) -> Result<(), LinearError> {
-        let residual = relative_residual(self.whole(), &self.x, [&self.b, &self.terms]);
+        let b = self.right_hand_side();
+        let residual = relative_residual(self.whole(), &self.x, [&b, &self.b]);
         match residual <= RESIDUAL {
             true => Ok(()),
             false => Err(LinearError::Residual { residual }),
@@ -185,9 +204,9 @@ impl CheckedSolver {
             .flat_map(|list| *list)
             .for_each(|&unknown| b[unknown] = 1.0);
         let is_under_way = self.is_under_way;
-        let interrupted = [&mut self.b, &mut self.terms].map(std::mem::take);
+        let interrupted = (std::mem::take(&mut self.b), std::mem::take(&mut self.added));
         let x = self.solve(&b)?;
-        [self.b, self.terms] = interrupted;
+        (self.b, self.added) = interrupted;
         self.is_under_way = is_under_way;
         let inverses = self.unchecked_inverse_at(unknowns);
         for (inverse, list) in inverses.iter().zip(unknowns) {
@@ -201,7 +220,7 @@ impl CheckedSolver {
     pub fn unchecked_inverse_at(&mut self, unknowns: &[&[usize]]) -> Vec<Vec<f64>> {
         let inverses = self.solver.inverse_at(unknowns, self.matrix.size());
         if self.is_under_way {
-            self.solver.begin(&self.b);
+            self.solver.begin(&self.right_hand_side());
         }
         inverses
     }
@@ -238,33 +257,33 @@ fn sum(columns: &[f64], n: usize) -> Vec<f64> {
 /// Rows whose residual is one piece of work for a thread.
 const ROWS: usize = 16_384;
 
-/// max_i |b - A x|_i / max_i (t + |A| |x|)_i, t being the sizes of the terms of b; the rows of the symmetric
+/// max_i |b - A x|_i / max_i (|b0| + |A| |x|)_i, b0 being what the solve began with; the rows of the symmetric
 /// A are its columns.
-fn relative_residual(a: CsMatView<'_, f64>, x: &[f64], [b, terms]: [&[f64]; 2]) -> f64 {
+fn relative_residual(a: CsMatView<'_, f64>, x: &[f64], [b, b0]: [&[f64]; 2]) -> f64 {
     let of_rows =
-        |(k, (b, terms)): (usize, (&[f64], &[f64]))| residual_and_size(a, x, (k * ROWS, b, terms));
+        |(k, (b, b0)): (usize, (&[f64], &[f64]))| residual_and_size(a, x, (k * ROWS, b, b0));
     let both =
         |one: [f64; 2], other: [f64; 2]| [larger(one[0], other[0]), larger(one[1], other[1])];
-    let rows = b.par_chunks(ROWS).zip(terms.par_chunks(ROWS)).enumerate();
+    let rows = b.par_chunks(ROWS).zip(b0.par_chunks(ROWS)).enumerate();
     let [error, scale] = match b.len() > ROWS && rayon::current_num_threads() > 1 {
         true => rows.map(of_rows).reduce(|| [0.0; 2], both),
-        false => residual_and_size(a, x, (0, b, terms)),
+        false => residual_and_size(a, x, (0, b, b0)),
     };
     if scale == 0.0 { 0.0 } else { error / scale }
 }
 
-/// The largest |b - A x| and t + |A| |x| in the rows from `first` on, which `b` and `terms` are of.
+/// The largest |b - A x| and |b0| + |A| |x| in the rows from `first` on, which `b` and `b0` are of.
 fn residual_and_size(
     a: CsMatView<'_, f64>,
     x: &[f64],
-    (first, b, terms): (usize, &[f64], &[f64]),
+    (first, b, b0): (usize, &[f64], &[f64]),
 ) -> [f64; 2] {
     let (starts, rows, values) = (a.indptr(), a.indices(), a.data());
     let starts = &starts.raw_storage()[first..];
     let (mut error, mut scale) = (0.0, 0.0);
-    for (ends, (b, terms)) in starts.windows(2).zip(b.iter().zip(terms)) {
+    for (ends, (b, b0)) in starts.windows(2).zip(b.iter().zip(b0)) {
         let entries = ends[0]..ends[1];
-        let (mut residual, mut size) = ([*b, 0.0], [*terms, 0.0]);
+        let (mut residual, mut size) = ([*b, 0.0], [b0.abs(), 0.0]);
         let mut take = |side: usize, value: f64, row: usize| {
             let term = value * x[row];
             residual[side] -= term;
@@ -346,7 +365,7 @@ mod tests {
             (b_after[77], b_after[280]) = (b[77] + 3.0, b[280] - 5.0);
             let after = solver.solve(&b_after).unwrap();
             let mut values = Vec::new();
-            solver.begin(&b).unwrap();
+            solver.begin(|own| own.clone_from(&b)).unwrap();
             solver.partial(&unknowns, &mut values);
             (values.iter().zip(unknowns)).for_each(|(value, u)| near(*value, before[u]));
             solver.add(&[(77, 3.0)]);

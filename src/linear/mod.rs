@@ -16,5 +16,7 @@ pub use checked::CheckedSolver;
 pub use largest::{larger, largest};
 pub use nodal_matrix::NodalMatrix;
 pub use rotation::Rotation;
-pub use solvers::{FaerLdl, LinearError, LinearSolver, SprsLdl, factor_entries, linear_solver};
+pub use solvers::{
+    FaerLdl, LinearError, LinearSolver, SprsLdl, factor_entries, linear_solver, two_linear_solvers,
+};
 pub use transformation::Transformation;

@@ -3,6 +3,8 @@
 
 use std::ops::Range;
 
+use super::{larger, largest};
+
 /// The matrix T of u = T q + g: every dof is a sum of terms c q_k.
 ///
 /// A free dof has a row of the identity, a prescribed one an empty row, one that follows others by
@@ -84,6 +86,7 @@ impl Transformation {
     /// Writes [`Self::restrict`].
     pub fn write_restricted(&self, v: &[f64], restricted: &mut Vec<f64>) {
         restricted.clear();
+        restricted.reserve(self.unknowns);
         if let Some(selected) = &self.selected {
             for dofs in selected {
                 restricted.extend_from_slice(&v[dofs.clone()]);
@@ -97,6 +100,54 @@ impl Transformation {
                 restricted[unknown] += c * value;
             }
         }
+    }
+
+    /// Writes [`Self::restrict`] of the vector whose values at some dofs `extend` adds to a list.
+    pub fn write_restricted_by(
+        &self,
+        extend: impl Fn(Range<usize>, &mut Vec<f64>),
+        restricted: &mut Vec<f64>,
+    ) {
+        if let Some(selected) = &self.selected {
+            restricted.clear();
+            restricted.reserve(self.unknowns);
+            let ranges = selected.iter().cloned();
+            ranges.for_each(|dofs| extend(dofs, restricted));
+            return;
+        }
+        let mut all = Vec::new();
+        extend(0..self.starts.len() - 1, &mut all);
+        self.write_restricted(&all, restricted);
+    }
+
+    /// The largest absolute value of T^T v, NaN where one is.
+    pub fn largest_restricted(&self, v: &[f64]) -> f64 {
+        match &self.selected {
+            Some(selected) => {
+                let of_range = |dofs: &Range<usize>| largest(&v[dofs.clone()]);
+                selected.iter().map(of_range).fold(0.0, larger)
+            }
+            None => largest(&self.restrict(v)),
+        }
+    }
+
+    /// Writes v + T q, v over all dofs.
+    pub fn write_sum(&self, v: &[f64], q: &[f64], sum: &mut Vec<f64>) {
+        sum.clear();
+        let Some(selected) = &self.selected else {
+            sum.extend_from_slice(v);
+            self.add(q, sum);
+            return;
+        };
+        sum.reserve(v.len());
+        let mut rest = q;
+        for dofs in selected {
+            let (q, after) = rest.split_at(dofs.len());
+            sum.extend_from_slice(&v[sum.len()..dofs.start]);
+            sum.extend(v[dofs.clone()].iter().zip(q).map(|(v, q)| v + q));
+            rest = after;
+        }
+        sum.extend_from_slice(&v[sum.len()..]);
     }
 
     /// Adds T q to a vector v over all dofs.
@@ -160,6 +211,13 @@ mod tests {
         let v: Vec<f64> = (0..14).map(f64::from).collect();
         let free = [1.0, 2.0, 4.0, 6.0, 7.0, 9.0, 11.0, 12.0];
         assert_eq!(t.restrict(&v), free);
+        assert_eq!(t.largest_restricted(&v), 12.0);
+        let mut restricted = Vec::new();
+        let of_range = |dofs: Range<usize>, to: &mut Vec<f64>| to.extend_from_slice(&v[dofs]);
+        t.write_restricted_by(of_range, &mut restricted);
+        assert_eq!(restricted, free);
+        let mut sum = Vec::new();
+        t.write_sum(&v, &free, &mut sum);
         let mut u = v.clone();
         t.add(&free, &mut u);
         let of_dof = |(dof, u): (usize, &f64)| {
@@ -171,6 +229,7 @@ mod tests {
                 }
         };
         assert!(u.iter().enumerate().all(of_dof), "{u:?}");
+        assert_eq!(sum, u);
     }
 
     #[test]

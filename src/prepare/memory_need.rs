@@ -28,6 +28,9 @@ const FACTORS: usize = 3;
 /// computed.
 const COMPLIANCES: usize = 4;
 
+/// Nodes of an element at most.
+const MOST_NODES: usize = 4;
+
 /// Bytes that a run needs, by what they are for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MemoryNeed {
@@ -111,7 +114,13 @@ fn contact(prepared: &PreparedModel) -> u64 {
 
 /// Nodes that the elements couple each node with, in increasing order, and itself.
 fn neighbours(mesh: &Mesh) -> Vec<Vec<usize>> {
-    let mut neighbours: Vec<Vec<usize>> = (0..mesh.node_count()).map(|node| vec![node]).collect();
+    let mut counts = vec![1; mesh.node_count()];
+    let nodes = mesh.elements.iter().flat_map(|element| &element.nodes);
+    nodes.for_each(|&node| counts[node] += MOST_NODES);
+    let mut neighbours: Vec<Vec<usize>> = counts.into_iter().map(Vec::with_capacity).collect();
+    for (node, neighbours) in neighbours.iter_mut().enumerate() {
+        neighbours.push(node);
+    }
     for element in &mesh.elements {
         for &node in &element.nodes {
             neighbours[node].extend_from_slice(&element.nodes);

@@ -134,7 +134,7 @@ impl<'m> Attempt<'_, 'm> {
 
             // r = R_theta - F(U_theta) - M A, eq. (4.5)
             self.equilibrium(&v0p, [&v.u, &d], &mut v.equilibrium)?;
-            trace.balance((v.residual).restricted(problem, &v.equilibrium.out_of_balance));
+            trace.balance((problem.unknowns).largest_restricted(&v.equilibrium.out_of_balance));
 
             // the forces at hand may balance r and close the gaps of the iterate
             contact.relinearize(&mut v.found);

@@ -1,6 +1,8 @@
 //! Forces and displacements of a pass, and its residual beside its scales. Section 4 of docs/theory.md,
 //! Convergence.
 
+use std::ops::Range;
+
 use smallvec::smallvec;
 
 use super::convergence::{Errors, Lengths, Scales};
@@ -49,25 +51,26 @@ impl Pass<'_> {
     ) -> Result<(Scales<'m>, Errors), Cause> {
         let [u, _, du] = self.displacements;
         let Residual {
-            contact_force,
-            all,
+            contact_force: contact,
             values,
             ..
         } = residual;
-        self.contact.write_resultant(u.len(), contact_force);
-        let scales = self.scales(problem, stiffness, contact_force);
+        contact.write(self.contact, u.len());
+        let scales = self.scales(problem, stiffness, &contact.values);
         // r - theta2 K d_p + Bn^T Pn + Bt^T Pt, eq. (4.7)
-        let forces = (self.support_force.iter()).zip(&*contact_force);
-        all.clear();
-        let out_of_balance = self.equilibrium.out_of_balance.iter();
-        all.extend(out_of_balance.zip(forces).map(|(r, (s, c))| r - s + c));
-        problem.unknowns.write_restricted(all, values);
+        let sum = |dofs: Range<usize>, to: &mut Vec<f64>| {
+            let r = &self.equilibrium.out_of_balance[dofs.clone()];
+            let forces = [&self.support_force[..], &contact.values].map(|all| &all[dofs.clone()]);
+            let all = r.iter().zip(forces[0]).zip(forces[1]);
+            to.extend(all.map(|((r, s), c)| r - s + c));
+        };
+        problem.unknowns.map.write_restricted_by(sum, values);
         let errors = Errors {
             residual: (problem.parts).largest_of_unknowns(&problem.parts_of_unknowns, values),
             correction: problem.parts.largest_of_bodies(du),
         };
         if !scales.are_finite(&errors) {
-            self.check_finite(&residual.contact_force)?;
+            self.check_finite(&residual.contact_force.values)?;
         }
         Ok((scales, errors))
     }
@@ -119,21 +122,31 @@ impl Pass<'_> {
 /// The residual of a pass, in memory that the next one uses again.
 #[derive(Default)]
 pub(crate) struct Residual {
-    /// Contact force over all dofs.
-    contact_force: Vec<f64>,
-    /// Sum of all forces over all dofs.
-    all: Vec<f64>,
-    /// The same over the unknowns.
+    contact_force: ContactForce,
+    /// Sum of all forces over the unknowns.
     pub values: Vec<f64>,
     /// Zero at all dofs.
     none: Vec<f64>,
 }
 
-impl Residual {
-    /// The forces `f`, over all dofs, over the unknowns.
-    pub fn restricted(&mut self, problem: &StepProblem, f: &[f64]) -> &[f64] {
-        problem.unknowns.write_restricted(f, &mut self.values);
-        &self.values
+/// A contact force over all dofs.
+#[derive(Default)]
+struct ContactForce {
+    values: Vec<f64>,
+    /// Where it may not be zero.
+    dofs: Vec<usize>,
+}
+
+impl ContactForce {
+    /// Writes Bn^T Pn + Bt^T Pt of eq. (3.1) in place of the force before, over so many dofs.
+    fn write(&mut self, contact: &ContactForces, dofs: usize) {
+        let Self { values, dofs: own } = self;
+        own.drain(..).for_each(|dof| values[dof] = 0.0);
+        values.resize(dofs, 0.0);
+        for (constraint, pair) in contact.acting() {
+            constraint.add_force(pair.force, values);
+            own.extend_from_slice(&constraint.dofs);
+        }
     }
 }
 

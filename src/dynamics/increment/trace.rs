@@ -3,7 +3,6 @@
 use super::alternation::ContactHistory;
 use super::forces::ContactForces;
 use crate::dynamics::results::{Cause, Course, PassReport, Worst};
-use crate::linear::largest;
 
 /// Corrections whose mean rate counts at the end of an attempt.
 const LAST: usize = 4;
@@ -50,9 +49,8 @@ impl Trace {
         self.contact.clear();
     }
 
-    /// Takes in the force that a pass is to balance.
-    pub fn balance(&mut self, force: &[f64]) {
-        let force = largest(force);
+    /// Takes in the largest force that a pass is to balance.
+    pub fn balance(&mut self, force: f64) {
         let [first, _] = self.unbalanced.unwrap_or([force; 2]);
         self.unbalanced = Some([first, force]);
     }
@@ -203,9 +201,7 @@ mod tests {
     fn an_indefinite_matrix_of_a_wrecked_iterate_is_divergence() {
         let cause = |last: f64| {
             let mut trace = Trace::default();
-            [1.0, last]
-                .iter()
-                .for_each(|force| trace.balance(&[*force]));
+            [1.0, last].iter().for_each(|force| trace.balance(*force));
             trace.failed(Cause::Indefinite { node: 3 }, 1e-10).cause
         };
         assert_eq!(cause(2.0), Cause::Indefinite { node: 3 });

@@ -8,7 +8,7 @@ use crate::contact::{ClosedPair, Constraint, Corner, PairTarget};
 use crate::dynamics::increment::Solved;
 use crate::dynamics::step::{FactoredMatrix, StepProblem};
 use crate::elements::Motion;
-use crate::linear::{Assembled, Transformation};
+use crate::linear::{Assembled, Transformation, linear_solver};
 
 /// The free nodes without mass of some bodies.
 pub(super) struct FreeNodes {
@@ -56,7 +56,7 @@ impl FreeNodes {
         for (list, &element) in self.elements.iter().enumerate() {
             k.add(list, &problem.elements.tangent(element, motion), 1.0);
         }
-        FactoredMatrix::new(problem.settings.solver, k, &self.map)
+        FactoredMatrix::new(linear_solver(problem.settings.solver), k, &self.map)
     }
 
     /// Whether the gap of a constraint depends on them.

@@ -79,6 +79,21 @@ impl<'m> Loads<'m> {
         }
     }
 
+    /// Whether the step has no loads.
+    pub fn are_none(&self) -> bool {
+        let Step {
+            point_loads,
+            body_forces,
+            tractions,
+            pressures,
+            ..
+        } = self.step;
+        point_loads.is_empty()
+            && body_forces.is_empty()
+            && tractions.is_empty()
+            && pressures.is_empty()
+    }
+
     /// External load R_theta = (1 - theta1) R(t0) + theta1 R(t1), eq. (4.4), follower pressures in the
     /// configuration of displacements `u` (2 N entries, force).
     pub fn write_weighted(

@@ -229,7 +229,11 @@ impl StepProblem<'_> {
             let damping = (self.elements).damping_force([&start.u, u], d, interval.dt);
             internal.iter_mut().zip(&damping).for_each(|(f, c)| *f += c);
         }
-        (self.loads).write_weighted(self.elements, self.weights.theta1, interval, u_theta, load);
+        // without loads it is zero as it was made
+        if !self.loads.are_none() {
+            let theta1 = self.weights.theta1;
+            (self.loads).write_weighted(self.elements, theta1, interval, u_theta, load);
+        }
         Ok(())
     }
 

@@ -80,9 +80,9 @@ impl<'m> Unknowns<'m> {
         self.map.restrict(v)
     }
 
-    /// Writes [`Self::restrict`].
-    pub fn write_restricted(&self, v: &[f64], restricted: &mut Vec<f64>) {
-        self.map.write_restricted(v, restricted);
+    /// The largest absolute value of T^T v, NaN where one is.
+    pub fn largest_restricted(&self, v: &[f64]) -> f64 {
+        self.map.largest_restricted(v)
     }
 
     /// Adds T q to a vector over all dofs.

@@ -86,6 +86,7 @@ impl Elements {
     pub fn write_internal_force(&self, motion: Motion, total: &mut [f64]) -> Result<(), Inverted> {
         let Space { forces, .. } = &mut *self.space();
         if !self.sum_chunks(motion) {
+            self.chunks.iter().for_each(AnyChunk::clear_sums);
             return Err(self.inverted(motion));
         }
         let parts = self.parts.par_iter().with_min_len(PARALLEL_CHUNK);

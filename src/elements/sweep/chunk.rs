@@ -45,7 +45,8 @@ pub struct Chunk<const N: usize, const P: usize, S> {
     /// Blocks; places of the last that no element fills have the last element with no volume.
     blocks: Vec<Block<N, P>>,
     law: PlaneLaw,
-    /// Sums of the last sweep over the nodes, locked by the thread that makes or reads them.
+    /// Sums of the last sweep over the nodes, zero once they have been read; locked by the thread that makes or reads
+    /// them.
     sums: Mutex<Vec<[f64; 2]>>,
     shape: PhantomData<S>,
 }
@@ -89,11 +90,10 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
         S::FUNCTIONS.reference(&block.jacobians(place % LANES))
     }
 
-    /// Sums up the internal forces of the elements at the end of a motion, or in its energy-momentum
-    /// form. False where an element is turned inside out.
+    /// Adds the internal forces of the elements at the end of a motion, or in its energy-momentum form, to the
+    /// sums. False where an element is turned inside out.
     pub fn sum_forces(&self, motion: Motion) -> bool {
         let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
-        sums.fill([0.0; 2]);
         if !self.is_strained(motion) {
             return true;
         }
@@ -106,14 +106,21 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
         positive.everywhere()
     }
 
-    /// Adds the sums of the last sweep to a vector over all dofs.
+    /// Adds the sums to a vector over all dofs, and makes them zero.
     pub fn add_sums(&self, total: &mut [f64]) {
-        let sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
         let total = total.as_chunks_mut::<2>().0;
-        for (&node, [x, y]) in self.nodes.iter().zip(sums.iter()) {
+        for (&node, sum) in self.nodes.iter().zip(sums.iter_mut()) {
+            let [x, y] = std::mem::take(sum);
             total[node][0] += x;
             total[node][1] += y;
         }
+    }
+
+    /// Makes the sums zero.
+    pub fn clear_sums(&self) {
+        let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
+        sums.fill([0.0; 2]);
     }
 
     /// Elements (indices) with strain energy, stress and strain at displacements `u`.

@@ -34,7 +34,7 @@ const OWN: Corrections = Corrections {
 
 /// Solves with the factors of a similar system in place of factors of its own: so many, or, of a large system, that
 /// take a part of the operations of these.
-const SIMILAR_SOLVES: usize = 13;
+const SIMILAR_SOLVES: usize = 6;
 
 /// Unknowns for one such solve.
 const UNKNOWNS_PER_SOLVE: usize = 24;

@@ -10,3 +10,11 @@ pub fn linear_solver(choice: SolverChoice) -> Box<dyn LinearSolver> {
         SolverChoice::Sprs => Box::new(SprsLdl::default()),
     }
 }
+
+/// Two of them, for matrices whose patterns may be the same: one takes over the analysis of the other.
+pub fn two_linear_solvers(choice: SolverChoice) -> [Box<dyn LinearSolver>; 2] {
+    match choice {
+        SolverChoice::Faer => FaerLdl::two().map(|solver| Box::new(solver) as _),
+        SolverChoice::Sprs => [(); 2].map(|()| linear_solver(choice)),
+    }
+}

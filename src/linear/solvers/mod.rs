@@ -8,7 +8,7 @@ mod ordering;
 mod solver;
 mod sprs_ldl;
 
-pub use choice::linear_solver;
+pub use choice::{linear_solver, two_linear_solvers};
 pub use faer_ldl::{FaerLdl, factor_entries};
 pub use solver::{LinearError, LinearSolver};
 pub use sprs_ldl::SprsLdl;

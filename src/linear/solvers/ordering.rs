@@ -1,5 +1,7 @@
 //! Fill-reducing ordering: approximate minimum degree (Amestoy, Davis & Duff 1996) by faer.
 
+use std::ops::Range;
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
@@ -92,22 +94,65 @@ impl Pattern {
     }
 }
 
-/// Approximate minimum degree order of a symmetric pattern: entry k is the unknown of pivot k. Unknowns next to each
-/// other with the same entries, as those of a node, are ordered as one, and stay next to each other.
+/// Groups of unknowns next to each other with the same entries, as those of a node, which are ordered as one.
+pub(super) struct Groups {
+    /// First unknown of every group, and the number of unknowns.
+    starts: Vec<usize>,
+    /// The pattern between them.
+    pub pattern: Pattern,
+}
+
+impl Groups {
+    /// The groups of a pattern.
+    pub fn of(pattern: &Pattern) -> Self {
+        let starts = pattern.starts_of_groups();
+        Groups {
+            pattern: pattern.quotient(&starts),
+            starts,
+        }
+    }
+
+    /// Approximate minimum degree order: entry k is the group of pivot k.
+    pub fn minimum_degree(&self) -> Result<Vec<usize>, LinearError> {
+        let count = self.starts.len() - 1;
+        let (mut order, mut inverse) = (vec![0; count], vec![0; count]);
+        let scratch = amd::order_scratch::<usize>(count, self.pattern.rows.len());
+        amd::order(
+            &mut order,
+            &mut inverse,
+            self.pattern.symbolic(),
+            amd::Control::default(),
+            MemStack::new(&mut MemBuffer::new(scratch)),
+        )
+        .map_err(|error| LinearError::Library(format!("{error:?}")))?;
+        Ok(order)
+    }
+
+    fn unknowns_of(&self, group: usize) -> Range<usize> {
+        self.starts[group]..self.starts[group + 1]
+    }
+
+    /// The unknowns of groups in an order.
+    pub fn unknowns(&self, order: &[usize]) -> impl Iterator<Item = usize> {
+        order.iter().flat_map(|&group| self.unknowns_of(group))
+    }
+
+    /// Place of the first unknown of every group in an order, and the number of unknowns.
+    pub fn offsets(&self, order: &[usize]) -> Vec<usize> {
+        let mut offsets = vec![0];
+        let mut end = 0;
+        offsets.extend(order.iter().map(|&group| {
+            end += self.unknowns_of(group).len();
+            end
+        }));
+        offsets
+    }
+}
+
+/// Approximate minimum degree order of a symmetric pattern: entry k is the unknown of pivot k. The unknowns of a group
+/// stay next to each other.
 pub(super) fn minimum_degree(pattern: &Pattern) -> Result<Vec<usize>, LinearError> {
-    let starts = pattern.starts_of_groups();
-    let quotient = pattern.quotient(&starts);
-    let groups = starts.len() - 1;
-    let (mut order, mut inverse) = (vec![0; groups], vec![0; groups]);
-    let scratch = amd::order_scratch::<usize>(groups, quotient.rows.len());
-    amd::order(
-        &mut order,
-        &mut inverse,
-        quotient.symbolic(),
-        amd::Control::default(),
-        MemStack::new(&mut MemBuffer::new(scratch)),
-    )
-    .map_err(|error| LinearError::Library(format!("{error:?}")))?;
-    let unknowns = |group: usize| starts[group]..starts[group + 1];
-    Ok(order.into_iter().flat_map(unknowns).collect())
+    let groups = Groups::of(pattern);
+    let order = groups.minimum_degree()?;
+    Ok(groups.unknowns(&order).collect())
 }

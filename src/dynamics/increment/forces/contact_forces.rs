@@ -184,7 +184,7 @@ mod tests {
     use crate::contact::{ConstraintKey, ContactTarget, PairTarget, Rows};
     use crate::dynamics::step::{FactoredMatrix, Meter, System};
     use crate::lcp::{ContactState, LcpMethod};
-    use crate::linear::{Assembled, Transformation};
+    use crate::linear::{Assembled, Transformation, linear_solver};
     use crate::model::{Friction, SolverChoice};
 
     const DOFS: usize = 14;
@@ -228,7 +228,7 @@ mod tests {
         let elements: Vec<Vec<usize>> = (0..DOFS).map(|dof| vec![dof, (dof + 1) % DOFS]).collect();
         let mut stiffness = Assembled::new(&map, &elements);
         (0..DOFS).for_each(|dof| stiffness.add(dof, &[1.0, 0.0, 0.0, 1.0], 1.0));
-        let mut matrix = FactoredMatrix::new(SolverChoice::Faer, stiffness, &map);
+        let mut matrix = FactoredMatrix::new(linear_solver(SolverChoice::Faer), stiffness, &map);
         matrix.factorize().expect("positive definite");
         let mut meter = Meter::default();
         let mut system = ContactSystem {

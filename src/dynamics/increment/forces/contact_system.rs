@@ -4,7 +4,7 @@
 use super::equal_forces::FIRST_WEIGHT;
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, Scope};
 use crate::dynamics::results::{Cause, FailedLcp};
-use crate::dynamics::step::{System, sum};
+use crate::dynamics::step::System;
 use crate::lcp::{ContactState, FrictionalLcp, LcpMethod};
 use crate::linear::{LinearError, Transformation};
 
@@ -138,8 +138,11 @@ impl ContactSystem<'_> {
 
     /// y + W load, both over all dofs, W being the inverse of the matrix.
     pub fn respond(&mut self, y: &[f64], load: &[f64]) -> Result<Vec<f64>, LinearError> {
-        let response = self.system.respond(self.map, load)?;
-        Ok(sum(y, &response))
+        self.system.begin(self.map, load)?;
+        let mut response = Vec::new();
+        self.system.end(self.map, y, &mut response)?;
+        self.system.check()?;
+        Ok(response)
     }
 }
 

@@ -12,9 +12,9 @@ use crate::dynamics::step::step_problem::StepProblem;
 use crate::elements::{Motion, TangentPart};
 use crate::lcp::{ContactState, KeptFactors};
 use crate::linear::{
-    AddedBlocks, Assembled, CheckedSolver, LinearError, Transformation, larger, linear_solver,
+    AddedBlocks, Assembled, CheckedSolver, LinearError, LinearSolver, Transformation, larger,
+    two_linear_solvers,
 };
-use crate::model::SolverChoice;
 
 /// A symmetric matrix over the unknowns, factorised, with its compliance at the contacts.
 pub(crate) struct FactoredMatrix {
@@ -33,8 +33,6 @@ pub(crate) struct FactoredMatrix {
 pub(crate) struct SolveVectors {
     /// Forces turned back, over all dofs.
     pub forces: Vec<f64>,
-    /// Right-hand side, over the unknowns.
-    pub b: Vec<f64>,
     /// Those of the response at the nodes of constraints.
     pub response: ResponseVectors,
 }
@@ -56,9 +54,9 @@ pub(crate) struct ResponseVectors {
 
 impl FactoredMatrix {
     /// A matrix over the unknowns of a map, without factors.
-    pub fn new(choice: SolverChoice, matrix: Assembled, map: &Transformation) -> Self {
-        let solver = CheckedSolver::new(linear_solver(choice), matrix);
-        let compliance = Compliance::new(map.clone(), solver.own_groups());
+    pub fn new(solver: Box<dyn LinearSolver>, matrix: Assembled, map: &Transformation) -> Self {
+        let solver = CheckedSolver::new(solver, matrix);
+        let compliance = Compliance::new(map.clone(), solver.groups());
         FactoredMatrix {
             solver,
             compliance,
@@ -157,11 +155,11 @@ impl EffectiveStiffness {
             settings,
             ..
         } = problem;
-        let choice = settings.solver;
         let mass = unknown_mass(elements, redistribution, unknowns);
         let massless = diagonal_of_massless(problem, &mass);
-        let k = FactoredMatrix::new(choice, mass.zeros(), &unknowns.map);
-        let mut m = FactoredMatrix::new(choice, mass, &unknowns.map);
+        let [of_k, of_m] = two_linear_solvers(settings.solver);
+        let k = FactoredMatrix::new(of_k, mass.zeros(), &unknowns.map);
+        let mut m = FactoredMatrix::new(of_m, mass, &unknowns.map);
         m.solver.add_blocks(massless);
         EffectiveStiffness {
             k,

@@ -58,17 +58,19 @@ impl<'a> System<'a> {
             vectors,
             ..
         } = &mut **matrix;
-        let SolveVectors { forces, b, .. } = vectors;
+        let SolveVectors { forces, .. } = vectors;
         let rotation = compliance.rotation();
-        if rotation.is_identity() {
-            map.write_restricted(f, b);
-        } else {
-            forces.clear();
-            forces.extend_from_slice(f);
-            rotation.turn_back(forces);
-            map.write_restricted(forces, b);
-        }
-        meter.time(|t| &mut t.solve, || solver.begin(b))
+        let write = |b: &mut Vec<f64>| {
+            if rotation.is_identity() {
+                map.write_restricted(f, b);
+            } else {
+                forces.clear();
+                forces.extend_from_slice(f);
+                rotation.turn_back(forces);
+                map.write_restricted(forces, b);
+            }
+        };
+        meter.time(|t| &mut t.solve, || solver.begin(write))
     }
 
     /// Writes A^-1 b for the right-hand side so far, at some unknowns, to `values`.
@@ -97,11 +99,10 @@ impl<'a> System<'a> {
         } = &mut **matrix;
         let rotation = compliance.rotation();
         let write = |q: &[f64]| {
-            response.clear();
             if rotation.is_identity() {
-                response.extend_from_slice(start);
-                map.add(q, response);
+                map.write_sum(start, q, response);
             } else {
+                response.clear();
                 response.resize(start.len(), 0.0);
                 map.add(q, response);
                 rotation.turn(response);

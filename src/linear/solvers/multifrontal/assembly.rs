@@ -7,7 +7,7 @@ use super::factor::{Factor, LimbFactor, Place};
 use super::supernode::Layout;
 
 /// What goes into the fronts of the supernodes of a limb.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone)]
 pub struct Assembly {
     /// Of every entry of the matrix its place there and that in the front; supernode by supernode.
     entries: Vec<[u32; 2]>,
@@ -44,6 +44,11 @@ impl Assembly {
         let limb = &factor.limbs[number];
         let layout = Layout::of_processor();
         let (mut assembly, mut at) = (Assembly::default(), vec![None; limb.length]);
+        let columns = limb
+            .unknowns
+            .iter()
+            .map(|&unknown| a.indptr().nnz_in_outer_sz(unknown));
+        assembly.entries.reserve(columns.sum());
         for (s, children) in children(factor, number).into_iter().enumerate() {
             let node = limb.supernode(s);
             let rows: Vec<usize> = node.columns().chain(node.rows_below()).collect();

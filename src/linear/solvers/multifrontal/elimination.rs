@@ -44,6 +44,14 @@ impl Elimination {
         }
     }
 
+    /// The same with memory of its own.
+    pub fn again(&self) -> Self {
+        Elimination {
+            assemblies: self.assemblies.clone(),
+            fronts: self.fronts.iter().map(|_| Fronts::default()).collect(),
+        }
+    }
+
     /// Writes the factors of a matrix of the pattern with the given entries.
     pub fn eliminate(&mut self, a: &[f64], factor: &mut Factor) {
         let (threads, branches) = (factor.is_factorised_on_threads(), factor.branches);

@@ -1,12 +1,12 @@
 //! LDL^T factors limb by limb, packed in the order in which substitutions read them. Section 5 of
 //! docs/theory.md, Branches.
 
-use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use rayon::prelude::*;
 
 use super::entries::{Entries, LINE};
 use super::limbs::{Limb, cut};
 use super::supernode::{Layout, Supernode};
+use super::supernodes::Supernodes;
 
 /// Least entries of L for which a factorisation and a substitution are worth threads.
 const FACTORISATION: usize = 200_000;
@@ -34,7 +34,7 @@ struct Spot {
 }
 
 /// Columns of L and D of a branch or a trunk. Its rows are its own, then those of the trunk it stands on.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone)]
 pub struct LimbFactor {
     /// Unknowns of its own rows.
     pub unknowns: Vec<usize>,
@@ -75,15 +75,13 @@ struct Places {
     sizes: Vec<usize>,
 }
 
-type Symbolic = SymbolicSupernodalCholesky<usize>;
-
 impl Factor {
-    /// Room for the factors of an analysed matrix; `unknowns` has the unknown of every pivot.
-    pub fn new(symbolic: &Symbolic, unknowns: &[usize]) -> Self {
-        let starts = symbolic.col_ptr_for_val();
-        let work: Vec<usize> = starts.windows(2).map(|ends| ends[1] - ends[0]).collect();
-        let (limbs, branches) = cut(&parents(symbolic), &work);
-        let in_limbs = Places::new(symbolic, &limbs, unknowns.len());
+    /// For the factors of an analysed matrix, whose memory [`Self::make_room`] takes; `unknowns` has the unknown of every pivot.
+    pub fn new(supernodes: &Supernodes, unknowns: &[usize]) -> Self {
+        let all = 0..supernodes.count();
+        let work: Vec<usize> = all.map(|s| supernodes.entries(s)).collect();
+        let (limbs, branches) = cut(&supernodes.parents(), &work);
+        let in_limbs = Places::new(supernodes, &limbs, unknowns.len());
         let mut places = vec![Place::default(); unknowns.len()];
         for (&unknown, place) in unknowns.iter().zip(&in_limbs.of_pivots) {
             places[unknown] = *place;
@@ -92,10 +90,10 @@ impl Factor {
             limbs: Vec::new(),
             branches,
             places,
-            entries: symbolic.len_val(),
+            entries: work.iter().sum(),
             values: Entries::default(),
         };
-        let of_limb = |number| in_limbs.factor(symbolic, unknowns, (number, &limbs));
+        let of_limb = |number| in_limbs.factor(supernodes, unknowns, (number, &limbs));
         let all = 0..limbs.len();
         factor.limbs = match factor.is_factorised_on_threads() {
             true => all.into_par_iter().map(of_limb).collect(),
@@ -106,8 +104,23 @@ impl Factor {
             limb.first = entries;
             entries += limb.entries.next_multiple_of(LINE);
         }
-        factor.values = Entries::zeros(entries);
         factor
+    }
+
+    /// The same without L and its memory.
+    pub fn without_values(&self) -> Self {
+        Factor {
+            limbs: self.limbs.clone(),
+            places: self.places.clone(),
+            values: Entries::default(),
+            ..*self
+        }
+    }
+
+    /// Takes memory for L.
+    pub fn make_room(&mut self) {
+        let of_limb = |limb: &LimbFactor| limb.entries.next_multiple_of(LINE);
+        self.values = Entries::zeros(self.limbs.iter().map(of_limb).sum());
     }
 
     /// L of all limbs, for their supernodes.
@@ -149,23 +162,14 @@ impl Factor {
     }
 }
 
-/// The supernode of the first row below each.
-fn parents(symbolic: &Symbolic) -> Vec<Option<usize>> {
-    let ends = symbolic.supernode_end();
-    let of_row = |row: &usize| ends.partition_point(|end| end <= row);
-    let parent = |s: usize| symbolic.supernode(s).pattern().first().map(of_row);
-    (0..symbolic.n_supernodes()).map(parent).collect()
-}
-
 impl Places {
-    fn new(symbolic: &Symbolic, limbs: &[Limb], unknowns: usize) -> Self {
+    fn new(supernodes: &Supernodes, limbs: &[Limb], unknowns: usize) -> Self {
         let mut of_pivots = vec![Place::default(); unknowns];
         let mut sizes = Vec::new();
         for (number, limb) in limbs.iter().enumerate() {
             let mut rows = 0..;
             for &s in &limb.supernodes {
-                let columns = symbolic.supernode_begin()[s]..symbolic.supernode_end()[s];
-                for (place, row) in of_pivots[columns].iter_mut().zip(&mut rows) {
+                for (place, row) in of_pivots[supernodes.columns(s)].iter_mut().zip(&mut rows) {
                     *place = Place { limb: number, row };
                 }
             }
@@ -177,7 +181,7 @@ impl Places {
     /// Room for the factors of a limb.
     fn factor(
         &self,
-        symbolic: &Symbolic,
+        supernodes: &Supernodes,
         unknowns: &[usize],
         (number, limbs): (usize, &[Limb]),
     ) -> LimbFactor {
@@ -192,8 +196,8 @@ impl Places {
             Place { row, .. } => own + row,
         };
         for &s in &limb.supernodes {
-            let columns = symbolic.supernode_begin()[s]..symbolic.supernode_end()[s];
-            let rows: Vec<usize> = symbolic.supernode(s).pattern().iter().map(row).collect();
+            let columns = supernodes.columns(s);
+            let rows: Vec<usize> = supernodes.rows(s).iter().map(row).collect();
             factor.push(columns.len(), &rows);
             factor.unknowns.extend_from_slice(&unknowns[columns]);
         }

@@ -10,8 +10,10 @@ mod limbs;
 mod partial_inverse;
 mod substitution;
 mod supernode;
+mod supernodes;
 
 pub use elimination::Elimination;
 pub use factor::Factor;
-pub use partial_inverse::inverse_at;
+pub use partial_inverse::{InverseSpace, inverse_at};
 pub use substitution::Substitution;
+pub use supernodes::Supernodes;

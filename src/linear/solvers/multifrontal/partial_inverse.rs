@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::prelude::{Reborrow, ReborrowMut};
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use faer::{Accum, MatMut, MatRef, Par};
 use rayon::prelude::*;
 
 use super::factor::{Factor, LimbFactor, Place};
@@ -18,14 +18,19 @@ const NEGLIGIBLE: f64 = 1e-25;
 /// Columns that are handled together, on one thread.
 const CHUNK: usize = 96;
 
+/// Columns of a supernode that are eliminated one by one: for few of them that is less work than in blocks.
+const SMALL: usize = 16;
+
 /// Contributions of the supernodes below to one above: unfinished rows of L^-1 E.
 struct Rows {
-    /// Columns (places in the list of unknowns) that are not zero, increasing.
-    columns: Vec<usize>,
+    /// Columns (places in the list of unknowns) that are not zero, increasing, with their places in the values.
+    columns: Vec<[usize; 2]>,
     /// Rows of the limb, increasing.
     rows: Vec<usize>,
-    /// Values, rows x columns.
-    values: Mat<f64>,
+    /// Values, column by column.
+    values: Vec<f64>,
+    /// From the start of a column to that of the next; the rows are its last ones.
+    stride: usize,
 }
 
 /// Finished rows of Y = L^-1 P E that have the same columns: supernodes one above the other, near the root.
@@ -37,6 +42,66 @@ struct Finished {
     y: Vec<f64>,
     /// D of the rows.
     pivots: Vec<f64>,
+    /// D^-1 Y
+    scaled: Vec<f64>,
+}
+
+/// Memory in which inverses are computed, used again by the next.
+#[derive(Default)]
+pub struct InverseSpace {
+    /// Place of every column in a front.
+    places: Vec<usize>,
+    /// Values of former fronts.
+    spare: Vec<Vec<f64>>,
+}
+
+impl InverseSpace {
+    /// Room for so many values, whatever they are: the smallest that is enough.
+    fn room(&mut self, count: usize) -> Vec<f64> {
+        let spare = self.spare.iter().enumerate();
+        let enough = spare.filter(|(_, values)| values.capacity() >= count);
+        let mut values = match enough.min_by_key(|(_, values)| values.capacity()) {
+            Some((at, _)) => self.spare.swap_remove(at),
+            None => Vec::with_capacity(count),
+        };
+        values.resize(count, 0.0);
+        values
+    }
+
+    /// Adds up fronts on the given rows: their columns, and the values column by column.
+    fn assemble(&mut self, all: &[usize], fronts: Vec<Rows>) -> (Vec<usize>, Vec<f64>) {
+        let of_fronts = fronts.iter().flat_map(|front| &front.columns);
+        let mut columns: Vec<usize> = of_fronts.map(|column| column[0]).collect();
+        if fronts.len() > 1 {
+            columns.sort_unstable();
+            columns.dedup();
+        }
+        let mut values = self.room(all.len() * columns.len());
+        let of_columns = values.chunks_exact_mut(all.len());
+        for (place, (&column, values)) in columns.iter().zip(of_columns).enumerate() {
+            self.places[column] = place;
+            values.fill(0.0);
+        }
+        for front in fronts {
+            // the rows of the supernode hold those of the front; both increase
+            let mut next = 0;
+            let place = |row: &usize| {
+                next += all[next..].partition_point(|r| r < row);
+                next
+            };
+            let at: Vec<usize> = front.rows.iter().map(place).collect();
+            for &[column, of_front] in &front.columns {
+                let to = &mut values[self.places[column] * all.len()..][..all.len()];
+                let end = (of_front + 1) * front.stride;
+                let from = &front.values[end - at.len()..end];
+                at.iter().zip(from).for_each(|(&i, value)| to[i] += value);
+            }
+            // there is one of a single value for every unknown
+            self.spare
+                .extend((front.stride > 1).then_some(front.values));
+        }
+        (columns, values)
+    }
 }
 
 /// The inverse of P^T L D L^T P at m `unknowns`, m x m column by column:
@@ -48,49 +113,48 @@ struct Finished {
 ///
 /// Column j of Y is nonzero only on the path from its unknown to the root of the elimination tree,
 /// so that the supernodes off these paths are never visited, nor those where it has died away.
-pub fn inverse_at(factor: &Factor, unknowns: &[usize]) -> Vec<f64> {
+pub fn inverse_at(factor: &Factor, unknowns: &[usize], space: &mut InverseSpace) -> Vec<f64> {
     let m = unknowns.len();
     let mut inverse = vec![0.0; m * m];
-    let mut finished = Finished::default();
+    space.places.resize(m, 0);
+    let (mut finished, mut l) = (Finished::default(), Vec::new());
     let mut waiting = units(factor, unknowns);
-    let mut l = Mat::new();
     // Children come before their parents in their limb, and branches before the trunks.
-    while let Some(((number, s), rows)) = waiting.pop_first() {
+    while let Some(((number, s), fronts)) = waiting.pop_first() {
         let limb = &factor.limbs[number];
         let node = limb.supernode(s);
         let all: Vec<usize> = node.columns().chain(node.rows_below()).collect();
-        let Rows {
-            columns,
-            mut values,
-            ..
-        } = assemble(all, &rows);
+        let (columns, mut values) = space.assemble(&all, fronts);
 
         node.write_to(factor.values(), &mut l);
-        let (l_top, l_below) = l.as_ref().split_at_row(node.size);
-        for_chunks(chunks(values.as_mut()), |of_chunk| {
-            let (mut top, below) = of_chunk.split_at_row_mut(node.size);
-            solve_unit_lower_triangular_in_place(l_top, top.rb_mut(), Par::Seq);
-            matmul(below, Accum::Add, l_below, top.rb(), -1.0, Par::Seq);
+        let l = &l[..all.len() * node.size];
+        let mut chunks: Vec<&mut [f64]> = values.chunks_mut(CHUNK * all.len()).collect();
+        for_chunks(&mut chunks, |chunk| {
+            eliminate(l, [node.size, all.len()], chunk)
         });
-        let (top, below) = values.as_ref().split_at_row(node.size);
         if finished.columns != columns {
-            finished.add_to(&mut inverse, m);
-            finished = Finished {
-                columns: columns.clone(),
-                ..Finished::default()
-            };
+            finished.add_to(&mut inverse, m, space);
+            finished.begin(&columns);
         }
-        finished.push(top, &limb.pivots[node.columns()]);
+        let pivots = &limb.pivots[node.columns()];
+        finished.push(&values, all.len(), pivots);
 
-        if let Some((place, rows)) = above(limb, number, node.rows_below().collect()) {
-            let rows = without_negligible(columns, rows, below);
-            if !rows.columns.is_empty() {
+        let kept = without_negligible(&columns, &values, [node.size, all.len()]);
+        match above(limb, number, node.rows_below().collect()) {
+            Some((place, rows)) if !kept.is_empty() => {
                 let s = factor.limbs[place.limb].supernode_of(place.row);
-                waiting.entry((place.limb, s)).or_default().push(rows);
+                let fronts = waiting.entry((place.limb, s)).or_default();
+                fronts.push(Rows {
+                    columns: kept,
+                    rows,
+                    values,
+                    stride: all.len(),
+                });
             }
+            _ => space.spare.push(values),
         }
     }
-    finished.add_to(&mut inverse, m);
+    finished.add_to(&mut inverse, m, space);
     for j in 0..m {
         for i in j + 1..m {
             inverse[i * m + j] = inverse[j * m + i];
@@ -99,15 +163,37 @@ pub fn inverse_at(factor: &Factor, unknowns: &[usize]) -> Vec<f64> {
     inverse
 }
 
+/// x_i <- x_i - L_ij x_j, i > j, for all columns j of a supernode of a size and length, in vectors x of that length.
+fn eliminate(l: &[f64], [size, length]: [usize; 2], x: &mut [f64]) {
+    if size <= SMALL {
+        for x in x.chunks_exact_mut(length) {
+            for (k, column) in l.chunks_exact(length).enumerate() {
+                let (own, below) = x[..size].split_at_mut(k + 1);
+                let of_column = below.iter_mut().zip(&column[k + 1..size]);
+                of_column.for_each(|(x, l)| *x -= l * own[k]);
+            }
+        }
+    }
+    let count = x.len() / length;
+    let (l_top, l_below) = MatRef::from_column_major_slice(l, length, size).split_at_row(size);
+    let x = MatMut::from_column_major_slice_mut(x, length, count);
+    let (mut top, below) = x.split_at_row_mut(size);
+    if size > SMALL {
+        solve_unit_lower_triangular_in_place(l_top, top.rb_mut(), Par::Seq);
+    }
+    matmul(below, Accum::Add, l_below, top.rb(), -1.0, Par::Seq);
+}
+
 /// The unit vectors of the unknowns, by limb and supernode.
 fn units(factor: &Factor, unknowns: &[usize]) -> BTreeMap<(usize, usize), Vec<Rows>> {
     let mut units: BTreeMap<(usize, usize), Vec<Rows>> = BTreeMap::new();
     for (column, &unknown) in unknowns.iter().enumerate() {
         let Place { limb, row } = factor.places[unknown];
         let unit = Rows {
-            columns: vec![column],
+            columns: vec![[column, 0]],
             rows: vec![row],
-            values: Mat::from_fn(1, 1, |_, _| 1.0),
+            values: vec![1.0],
+            stride: 1,
         };
         let s = factor.limbs[limb].supernode_of(row);
         units.entry((limb, s)).or_default().push(unit);
@@ -129,110 +215,107 @@ fn above(limb: &LimbFactor, number: usize, mut rows: Vec<usize>) -> Option<(Plac
     Some((Place { limb, row }, rows))
 }
 
-/// Chunks of the columns of a matrix.
-fn chunks(mut matrix: MatMut<f64>) -> Vec<MatMut<f64>> {
-    let mut chunks = Vec::new();
-    while matrix.ncols() > CHUNK {
-        let chunk;
-        (chunk, matrix) = matrix.split_at_col_mut(CHUNK);
-        chunks.push(chunk);
-    }
-    chunks.push(matrix);
-    chunks
-}
-
 /// Does something with all chunks, on threads if there are several.
-fn for_chunks<T: Send>(chunks: Vec<T>, action: impl Fn(T) + Sync + Send) {
+fn for_chunks<T: Send>(chunks: &mut [T], action: impl Fn(&mut T) + Sync + Send) {
     if chunks.len() > 1 && rayon::current_num_threads() > 1 {
-        chunks.into_par_iter().with_max_len(1).for_each(action);
+        chunks.par_iter_mut().with_max_len(1).for_each(action);
         return;
     }
-    chunks.into_iter().for_each(action);
+    chunks.iter_mut().for_each(action);
+}
+
+/// Columns of the inverse that are handled together.
+struct Part<'a> {
+    /// Place of the first column among those that are not zero, and these.
+    first: usize,
+    columns: &'a [usize],
+    /// The columns of the inverse from that of the part before on, and the first of them.
+    inverse: &'a mut [f64],
+    start: usize,
+    product: Vec<f64>,
 }
 
 impl Finished {
-    /// Adds rows with the same columns, and D of these.
-    fn push(&mut self, rows: MatRef<f64>, pivots: &[f64]) {
-        for row in rows.row_iter() {
-            self.y.extend(row.iter());
+    /// Begins anew with rows of the given columns.
+    fn begin(&mut self, columns: &[usize]) {
+        self.columns.clear();
+        self.columns.extend_from_slice(columns);
+        self.y.clear();
+        self.pivots.clear();
+    }
+
+    /// Adds the first rows of values in columns of the given length, and D of these.
+    fn push(&mut self, values: &[f64], length: usize, pivots: &[f64]) {
+        for row in 0..pivots.len() {
+            self.y
+                .extend(values.chunks_exact(length).map(|column| column[row]));
         }
         self.pivots.extend_from_slice(pivots);
     }
 
     /// Adds the lower triangle of Y^T D^-1 Y of these rows to the inverse at m unknowns.
-    fn add_to(&self, inverse: &mut [f64], m: usize) {
-        let (columns, n) = (&self.columns, self.columns.len());
+    fn add_to(&mut self, inverse: &mut [f64], m: usize, space: &mut InverseSpace) {
+        let Self {
+            columns,
+            y,
+            pivots,
+            scaled,
+        } = self;
+        let n = columns.len();
         if n == 0 {
             return;
         }
-        let transposed = MatRef::from_column_major_slice(&self.y, n, self.pivots.len());
-        let scaled: Vec<f64> = (self.y.chunks_exact(n).zip(&self.pivots))
-            .flat_map(|(row, pivot)| row.iter().map(move |y| y / pivot))
-            .collect();
-        let scaled = MatRef::from_column_major_slice(&scaled, n, self.pivots.len());
+        scaled.clear();
+        for (row, pivot) in y.chunks_exact(n).zip(&*pivots) {
+            scaled.extend(row.iter().map(|y| y / pivot));
+        }
+        let [y, scaled] =
+            [y, scaled].map(|all| MatRef::from_column_major_slice(all, n, pivots.len()));
         let (mut parts, mut rest, mut start) = (Vec::new(), inverse, 0);
-        for (of_chunk, first) in columns.chunks(CHUNK).zip((0..).step_by(CHUNK)) {
-            let end = of_chunk.last().map_or(start, |last| last + 1);
+        for (columns, first) in columns.chunks(CHUNK).zip((0..).step_by(CHUNK)) {
+            let end = columns.last().map_or(start, |last| last + 1);
             let own;
             (own, rest) = rest.split_at_mut((end - start) * m);
-            parts.push((first, of_chunk, start, own));
+            parts.push(Part {
+                first,
+                columns,
+                inverse: own,
+                start,
+                product: space.room((n - first) * columns.len()),
+            });
             start = end;
         }
-        for_chunks(parts, |(first, of_chunk, start, own)| {
-            let mut product = Mat::zeros(n - first, of_chunk.len());
-            let left = transposed.subrows(first, n - first);
-            let right = scaled.subrows(first, of_chunk.len()).transpose();
-            matmul(product.as_mut(), Accum::Replace, left, right, 1.0, Par::Seq);
-            for (j, &column) in of_chunk.iter().enumerate() {
-                let to = &mut own[(column - start) * m..(column - start + 1) * m];
-                let from = &product.col_as_slice(j)[j..];
-                for (&row, value) in columns[first + j..].iter().zip(from) {
+        for_chunks(&mut parts, |part| {
+            let (rows, count) = (n - part.first, part.columns.len());
+            let product = MatMut::from_column_major_slice_mut(&mut part.product, rows, count);
+            let left = y.subrows(part.first, rows);
+            let right = scaled.subrows(part.first, count).transpose();
+            matmul(product, Accum::Replace, left, right, 1.0, Par::Seq);
+            for (j, &column) in part.columns.iter().enumerate() {
+                let to = &mut part.inverse[(column - part.start) * m..][..m];
+                let from = &part.product[j * rows + j..(j + 1) * rows];
+                for (&row, value) in columns[part.first + j..].iter().zip(from) {
                     to[row] += value;
                 }
             }
         });
+        space
+            .spare
+            .extend(parts.into_iter().map(|part| part.product));
     }
 }
 
-/// The front of the columns that are not negligible.
-fn without_negligible(columns: Vec<usize>, rows: Vec<usize>, values: MatRef<f64>) -> Rows {
-    let is_negligible = |value: f64| value.abs() <= NEGLIGIBLE;
-    let matters = |j: &usize| !(0..rows.len()).all(|i| is_negligible(values[(i, *j)]));
-    let kept: Vec<usize> = (0..columns.len()).filter(matters).collect();
-    let of_kept = |i: usize, j: usize| values[(i, kept[j])];
-    Rows {
-        values: Mat::from_fn(rows.len(), kept.len(), of_kept),
-        columns: kept.iter().map(|&j| columns[j]).collect(),
-        rows,
-    }
-}
-
-/// Adds up fronts on the given rows.
-fn assemble(rows: Vec<usize>, fronts: &[Rows]) -> Rows {
-    let mut columns: Vec<usize> = fronts
-        .iter()
-        .flat_map(|f| f.columns.iter().copied())
-        .collect();
-    columns.sort_unstable();
-    columns.dedup();
-    let mut values = Mat::<f64>::zeros(rows.len(), columns.len());
-    for front in fronts {
-        // `rows` holds the supernode's own rows, then its pattern, both increasing.
-        let at: Vec<usize> = front
-            .rows
-            .iter()
-            .map(|row| rows.partition_point(|r| r < row))
-            .collect();
-        for (j, column) in front.columns.iter().enumerate() {
-            let to = columns.partition_point(|c| c < column);
-            for (i, &row) in at.iter().enumerate() {
-                values[(row, to)] += front.values[(i, j)];
-            }
-        }
-    }
-    Rows {
-        columns,
-        rows,
-        values,
-    }
+/// The columns, with their places, that are not negligible below their first `size` rows; values in columns of the
+/// given length.
+fn without_negligible(
+    columns: &[usize],
+    values: &[f64],
+    [size, length]: [usize; 2],
+) -> Vec<[usize; 2]> {
+    let matters = |(place, _): &(usize, &usize)| {
+        let below = &values[place * length + size..(place + 1) * length];
+        !below.iter().all(|value| value.abs() <= NEGLIGIBLE)
+    };
+    let kept = columns.iter().enumerate().filter(matters);
+    kept.map(|(place, &column)| [column, place]).collect()
 }

@@ -378,7 +378,7 @@ mod tests {
             solver.factorize().unwrap();
             let b: Vec<f64> = (0..a.size()).map(|i| (i * 31 % 17) as f64 - 8.0).collect();
             let (n, mut values) = (a.size(), Vec::new());
-            solver.begin(&b).unwrap();
+            solver.begin(|own| own.clone_from(&b)).unwrap();
             solver.partial(&[n - 1, 3, n / 2, n / 2 + 1], &mut values);
             solver.add(&[(3, values[0]), (n / 2, 5.0)]);
             let x = solver.end().unwrap().to_vec();

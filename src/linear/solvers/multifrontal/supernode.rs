@@ -5,7 +5,6 @@
 use std::array::from_fn;
 use std::ops::Range;
 
-use faer::Mat;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Columns of the widest panel.
@@ -155,11 +154,11 @@ impl Supernode<'_> {
         &values[start..end]
     }
 
-    /// Writes its part of L, of all its rows, to `l`.
-    pub fn write_to(self, values: &[f64], l: &mut Mat<f64>) {
+    /// Writes its part of L, of all its rows, to the lower triangle of `l`, column by column.
+    pub fn write_to(self, values: &[f64], l: &mut Vec<f64>) {
         let layout = Layout::of_processor();
         let (lanes, length) = (layout.lanes, self.length());
-        l.resize_with(length, self.size, |_, _| 0.0);
+        l.resize(l.len().max(length * self.size), 0.0);
         let mut rest = self.own(values);
         for (first, width) in panels(self.size) {
             let panel;
@@ -167,7 +166,7 @@ impl Supernode<'_> {
             let (triangle, tiles) = panel.split_at(layout.triangle(width));
             let mut triangle = triangle.iter();
             for k in 0..width {
-                let column = &mut l.col_as_slice_mut(first + k)[first + k..];
+                let column = &mut l[(first + k) * length..][first + k..length];
                 let (own, below) = column[1..].split_at_mut(width - k - 1);
                 own.iter_mut()
                     .zip(&mut triangle)
