@@ -92,6 +92,23 @@ fn multiples(first: usize, end: f64, time: impl Fn(usize) -> f64) -> usize {
     k
 }
 
+/// About how many frames a run writes, when no increment is cut back.
+pub(super) fn expected_frames(model: &Model) -> usize {
+    let of_step = |step: &Step| {
+        let increments = (step.increments.period / step.increments.dt).ceil() as usize;
+        let frames = match &step.frames {
+            Frames::Default => DEFAULT_FRAMES,
+            Frames::Count(count) => *count,
+            Frames::Every(interval) => (step.increments.period / interval) as usize,
+            Frames::Increments(every) => increments / (*every).max(1),
+            Frames::Times(times) => times.len() + 1,
+        };
+        frames.clamp(1, increments.max(1))
+    };
+    let frames = model.steps.iter().map(of_step);
+    frames.fold(1, usize::saturating_add)
+}
+
 /// Whether the deck requests frames at intervals shorter than the increments of a step, so that
 /// each increment writes one.
 pub(super) fn are_dense(step: &Step) -> bool {

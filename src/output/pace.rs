@@ -33,7 +33,12 @@ impl Pace {
 
     /// Whether a write is due.
     pub fn is_due(&self) -> bool {
-        self.start.elapsed() >= self.due || self.last.is_some_and(|last| last.elapsed() >= LONGEST)
+        self.start.elapsed() >= self.due
+    }
+
+    /// Whether the last write was some time ago.
+    pub fn is_late(&self) -> bool {
+        self.last.is_some_and(|last| last.elapsed() >= LONGEST)
     }
 
     /// Notes a write that began at `start` and has just ended.
@@ -67,7 +72,8 @@ mod tests {
         assert!(pace.is_due(), "long enough a run for two");
         pace.written(before(2000));
         assert!(!pace.is_due());
+        assert!(!pace.is_late());
         pace.last = Some(before(1001));
-        assert!(pace.is_due(), "a second");
+        assert!(pace.is_late(), "a second");
     }
 }

@@ -15,6 +15,13 @@ use super::pace::Pace;
 use crate::dynamics::{IncrementReport, RunSummary};
 use crate::model::Model;
 
+/// Bytes of frames that wait in memory at most, but for one frame: the more, the fewer writes. Disk space
+/// for them is reserved beforehand; where there is less, the second number.
+const WAITING_BYTES: [usize; 2] = [8 << 20, 2 << 20];
+
+/// Bytes of frames per byte of history rows that may wait.
+const FRAMES_TO_HISTORY: usize = 4;
+
 /// `JOB.vtkhdf` while it is being written.
 pub(super) struct ResultFile {
     /// Its final path.
@@ -47,11 +54,10 @@ impl ResultFile {
         };
         let file = builder().map_err(io_error).map_err(at(path))?;
         let parts = Self::build(&file, model, record);
-        let (mut fields, mut history, record) = parts.map_err(io_error).map_err(at(path))?;
-        let growth = fields.growth() + history.growth();
+        let (fields, history, record) = parts.map_err(io_error).map_err(at(path))?;
         let mut result = ResultFile {
             path: path.to_owned(),
-            space: Space::new(draft, growth).map_err(at(path))?,
+            space: Space::new(draft).map_err(at(path))?,
             pace: Pace::new(),
             frame_time: 0.0,
             fields,
@@ -60,7 +66,7 @@ impl ResultFile {
             file,
             is_broken: false,
         };
-        result.room()?;
+        result.room_for_more()?;
         Ok(result)
     }
 
@@ -88,11 +94,12 @@ impl ResultFile {
         self.frame_time = frame.time;
     }
 
-    /// Writes what waits in memory when it is much, or when the last frames were written some time ago.
+    /// Writes what waits in memory when it is much, when writing a frame is short against the run, or when
+    /// the last write was some time ago.
     pub fn write_when_due(&mut self) -> io::Result<()> {
         let is_much = self.fields.is_full() || self.history.is_full();
-        let is_waiting = self.fields.pending() > 0;
-        match is_much || (is_waiting && self.pace.is_due()) {
+        let has_frame = self.fields.pending() > 0;
+        match is_much || (has_frame && self.pace.is_due()) || self.pace.is_late() {
             true => self.write_through(),
             false => Ok(()),
         }
@@ -106,11 +113,11 @@ impl ResultFile {
         self.write()?;
         self.space.written();
         self.pace.written(start);
-        self.room()
+        self.room_for_more()
     }
 
     /// Writes what waits in memory: the number of frames, by which readers go, after everything else.
-    fn write(&mut self) -> io::Result<()> {
+    pub fn write(&mut self) -> io::Result<()> {
         let written = (self.fields.flush()).and_then(|()| self.history.flush());
         self.checked(written)?;
         self.flush()?;
@@ -128,7 +135,7 @@ impl ResultFile {
         self.space.settle_end(end).map_err(at(&self.path))
     }
 
-    /// Completes the run record.
+    /// Completes the run record, after everything else.
     pub fn finish(
         &mut self,
         summary: &RunSummary,
@@ -136,7 +143,6 @@ impl ResultFile {
         output: f64,
         total: f64,
     ) -> io::Result<()> {
-        self.write()?;
         let written = (self.record).finish(summary, exit_status, output, total);
         self.checked(written)?;
         self.flush()?;
@@ -162,10 +168,27 @@ impl ResultFile {
         (self.fields.count() > 0 && !self.is_broken).then_some(self.frame_time)
     }
 
-    /// Reserves disk space for the next rows: a file that the library has written only in part is
+    /// Reserves disk space for the rows that may wait next: many, or fewer where the disk is nearly full.
+    fn room_for_more(&mut self) -> io::Result<()> {
+        let [many, few] = WAITING_BYTES;
+        self.let_wait(many);
+        self.room().or_else(|_| {
+            self.space.release();
+            self.let_wait(few);
+            self.room()
+        })
+    }
+
+    fn let_wait(&mut self, bytes: usize) {
+        self.fields.let_wait(bytes);
+        self.history.let_wait(bytes / FRAMES_TO_HISTORY);
+    }
+
+    /// Reserves disk space for all that may wait: a file that the library has written only in part is
     /// lost as a whole.
     fn room(&mut self) -> io::Result<()> {
-        self.space.ensure().map_err(at(&self.path))
+        let growth = self.fields.growth() + self.history.growth();
+        self.space.ensure(growth).map_err(at(&self.path))
     }
 
     fn checked(&mut self, done: hdf5::Result<()>) -> io::Result<()> {

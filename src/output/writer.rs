@@ -50,6 +50,7 @@ impl<'a> ResultWriter<'a> {
         record: &RunRecord,
         verbosity: Verbosity,
     ) -> Result<Self, OutputError> {
+        let started = Instant::now();
         check_names(model)?;
         let log = Log::new(claim.log()?, &claim.files().log);
         let result = ResultFile::create(&claim.draft()?, &claim.files().result, model, record)?;
@@ -61,8 +62,8 @@ impl<'a> ResultWriter<'a> {
             schedule: FrameSchedule::new(model),
             monitor: Monitor::new(model),
             last: LastState::default(),
-            started: Instant::now(),
-            spent: Duration::ZERO,
+            started,
+            spent: started.elapsed(),
             interrupt: Interrupt::default(),
             claim,
         })
@@ -111,10 +112,12 @@ impl<'a> ResultWriter<'a> {
 
     /// Ends the run: the last good state of a stopped run, the record and the closing lines.
     pub fn finish(&mut self, summary: &RunSummary) -> io::Result<()> {
+        let start = Instant::now();
         self.console.finish();
         if summary.outcome != Outcome::Finished {
             self.write_last_state()?;
         }
+        self.result.write()?;
         self.publish()?;
         self.status.as_mut().map_or(Ok(()), StatusFile::flush)?;
         let exit_status = match &summary.outcome {
@@ -129,6 +132,7 @@ impl<'a> ResultWriter<'a> {
                 self.interrupt.exit_status()
             }
         };
+        self.spent += start.elapsed();
         let (output, total) = (self.spent, self.started.elapsed());
         let (output, total) = (output.as_secs_f64(), total.as_secs_f64());
         self.result.finish(summary, exit_status, output, total)?;
@@ -148,7 +152,7 @@ impl<'a> ResultWriter<'a> {
         }
         self.result.frame(&last.frame);
         last.set_written();
-        self.result.write_when_due()
+        Ok(())
     }
 
     fn record_increment(&mut self, report: &IncrementReport) -> io::Result<()> {

@@ -6,8 +6,8 @@ use ndarray::{ArrayView, IxDyn};
 
 use super::dataset::{Meaning, describe};
 
-/// Rows of a chunk of a dataset that grows by one row per increment.
-const CHUNK_ROWS: usize = 64;
+/// Rows of a chunk of a dataset that grows by one row per increment: each chunk costs a call of the system.
+const CHUNK_ROWS: usize = 256;
 
 /// Largest chunk in bytes: well inside the library's chunk cache.
 const CHUNK_BYTES: usize = 1 << 16;
@@ -16,8 +16,10 @@ const CHUNK_BYTES: usize = 1 << 16;
 /// with that value only are left out.
 const SPARSE_CHUNK_BYTES: usize = 1 << 11;
 
-/// Frames of a small model in a chunk.
-const CHUNK_FRAMES: usize = 4;
+/// Largest chunk in bytes of such a field in a small model, whose frames are not larger than the second
+/// number: there the number of chunks counts.
+const SMALL_CHUNK_BYTES: usize = 1 << 14;
+const SMALL_FRAME_BYTES: usize = 1 << 12;
 
 /// Bytes by which the index of a dataset may grow when rows are appended: a node of the library's
 /// tree of chunks and one for each of the levels above it (3.1 kB each with three dimensions).
@@ -105,6 +107,14 @@ impl<'a> Row<'a> {
     }
 }
 
+/// Chunks of a dataset.
+struct Chunks {
+    rows: usize,
+    /// Whether the library keeps them in its memory until it is flushed. What is written once, in large
+    /// pieces, it need not copy.
+    kept: bool,
+}
+
 /// A dataset that grows by rows, which are kept in memory until [`Growing::flush`].
 pub(crate) struct Column<T> {
     dataset: Dataset,
@@ -153,30 +163,35 @@ impl<T: Value> Column<T> {
     ) -> hdf5::Result<Self> {
         let bytes = row.iter().product::<usize>() * size_of::<T>();
         let rows = (CHUNK_BYTES / bytes.max(1)).clamp(1, CHUNK_ROWS);
-        Self::create(parent, name, (Row::whole(row), rows), mostly, meaning)
+        let chunks = Chunks { rows, kept: true };
+        Self::create(parent, name, (Row::whole(row), chunks), mostly, meaning)
     }
 
-    /// A dataset to which whole frames of `rows` rows are appended.
+    /// A dataset to which frames of `rows` rows are appended, up to `frames` of them in a chunk.
     pub fn frames(
         parent: &Group,
         name: &str,
-        (row, rows): (Row, usize),
+        (row, [rows, frames]): (Row, [usize; 2]),
         mostly: Mostly,
         meaning: Meaning,
     ) -> hdf5::Result<Self> {
         let bytes = row.given_shape().iter().product::<usize>() * size_of::<T>();
         let most = match mostly {
             Mostly::Varied | Mostly::Late => CHUNK_BYTES,
+            _ if rows * bytes <= SMALL_FRAME_BYTES => SMALL_CHUNK_BYTES,
             Mostly::Zero | Mostly::Nan => SPARSE_CHUNK_BYTES,
         };
-        let rows = (most / bytes.max(1)).clamp(1, CHUNK_FRAMES * rows.max(1));
-        Self::create(parent, name, (row, rows), mostly, meaning)
+        let chunks = Chunks {
+            rows: (most / bytes.max(1)).clamp(1, (frames * rows).max(1)),
+            kept: false,
+        };
+        Self::create(parent, name, (row, chunks), mostly, meaning)
     }
 
     fn create(
         parent: &Group,
         name: &str,
-        (row, chunk_rows): (Row, usize),
+        (row, chunks): (Row, Chunks),
         mostly: Mostly,
         meaning: Meaning,
     ) -> hdf5::Result<Self> {
@@ -186,10 +201,13 @@ impl<T: Value> Column<T> {
         extents.extend(row.shape.iter().map(|&n| Extent::fixed(n)));
         let given = row.given_shape();
         let nan = mostly == Mostly::Nan;
-        let dataset = parent
-            .new_dataset_builder()
+        let mut builder = parent.new_dataset_builder();
+        if !chunks.kept {
+            builder = builder.chunk_cache(1, 0, 1.0);
+        }
+        let dataset = builder
             .obj_track_times(false)
-            .chunk(rows_of(chunk_rows, &given))
+            .chunk(rows_of(chunks.rows, &given))
             .fill_value(T::left_out(nan))
             .alloc_time(Some(if is_late {
                 AllocTime::Early
@@ -210,7 +228,7 @@ impl<T: Value> Column<T> {
             dataset,
             row: row.shape.to_vec(),
             given,
-            chunk_rows,
+            chunk_rows: chunks.rows,
             nan,
             written: 0,
             pending: Vec::new(),

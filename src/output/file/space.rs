@@ -29,29 +29,28 @@ pub(crate) struct End {
 /// Reserves disk space for the rows to be written next, and fails beforehand when there is none.
 pub(crate) struct Space {
     file: File,
-    /// Bytes by which the file may grow until what waits in memory and the record are written.
-    room: u64,
     /// End of the reserved part of the file.
     kept: u64,
 }
 
 impl Space {
-    /// For a result file without rows that may grow by `growth` bytes until it is written through.
-    pub fn new(path: &Path, growth: u64) -> io::Result<Self> {
+    /// For a result file without rows.
+    pub fn new(path: &Path) -> io::Result<Self> {
         Ok(Space {
             file: File::options().read(true).write(true).open(path)?,
-            room: growth + CLOSING,
             kept: 0,
         })
     }
 
-    /// Reserves the space.
+    /// Reserves the space for a file that may grow by `growth` bytes, and by the record, until it is
+    /// written through.
     ///
     /// # Errors
     /// The disk is full, or the file would become larger than it may.
-    pub fn ensure(&mut self) -> io::Result<()> {
+    pub fn ensure(&mut self, growth: u64) -> io::Result<()> {
         let size = self.file.metadata()?.len();
-        let end = size + self.room;
+        let room = growth + CLOSING;
+        let end = size + room;
         if end <= self.kept {
             return Ok(());
         }
@@ -61,9 +60,9 @@ impl Space {
         {
             return Err(ErrorKind::FileTooLarge.into());
         }
-        match fallocate(&self.file, FallocateFlags::KEEP_SIZE, size, self.room) {
+        match fallocate(&self.file, FallocateFlags::KEEP_SIZE, size, room) {
             Err(full @ (Errno::NOSPC | Errno::DQUOT | Errno::FBIG)) => return Err(full.into()),
-            Err(_) => self.ask()?,
+            Err(_) => self.ask(room)?,
             Ok(()) => {}
         }
         self.kept = end;
@@ -71,9 +70,9 @@ impl Space {
     }
 
     /// Where the file system cannot reserve space: checks that enough is free now.
-    fn ask(&self) -> io::Result<()> {
+    fn ask(&self, room: u64) -> io::Result<()> {
         match fstatvfs(&self.file) {
-            Ok(disk) if disk.f_bavail.saturating_mul(disk.f_frsize) < self.room => {
+            Ok(disk) if disk.f_bavail.saturating_mul(disk.f_frsize) < room => {
                 Err(ErrorKind::StorageFull.into())
             }
             _ => Ok(()),

@@ -31,11 +31,9 @@ pub(crate) struct History {
 struct Waiting {
     rows: usize,
     most: usize,
+    /// Bytes of a row.
+    row_bytes: usize,
 }
-
-/// Increments, and bytes of their rows, that wait in memory at most.
-const PENDING_ROWS: usize = 512;
-const PENDING_BYTES: usize = 1 << 20;
 
 impl History {
     /// Creates the group without rows.
@@ -53,11 +51,19 @@ impl History {
             rigid: create_rigid(&group(&at, "rigid")?, model)?,
             sets: SetHistories::create(&at, model)?,
             solver: SolverHistory::create(&group(&at, "solver")?)?,
-            waiting: Waiting { rows: 0, most: 1 },
+            waiting: Waiting {
+                rows: 0,
+                most: 1,
+                row_bytes: 0,
+            },
         };
-        let bytes: usize = history.columns().iter().map(|c| c.row_bytes()).sum();
-        history.waiting.most = (PENDING_BYTES / bytes).clamp(1, PENDING_ROWS);
+        history.waiting.row_bytes = history.columns().iter().map(|c| c.row_bytes()).sum();
         Ok(history)
+    }
+
+    /// Lets rows of up to `bytes` bytes wait in memory, or one.
+    pub fn let_wait(&mut self, bytes: usize) {
+        self.waiting.most = (bytes / self.waiting.row_bytes).max(1);
     }
 
     /// Appends the row of an increment, which waits in memory.

@@ -1,32 +1,51 @@
 //! Numbers as text.
 
+use std::fmt::Write;
+
 /// `x` in scientific notation with at least two digits of the exponent, such as `1.00e-05`.
 pub(crate) fn scientific(x: f64, decimals: usize) -> String {
+    let mut text = String::new();
+    push_scientific(&mut text, x, decimals);
+    text
+}
+
+/// Appends `x` as [`scientific`] has it.
+pub(crate) fn push_scientific(text: &mut String, x: f64, decimals: usize) {
+    // Writing to a string does not fail.
     if !x.is_finite() {
-        return if x.is_nan() {
-            "nan".into()
-        } else {
-            format!("{x}")
+        let _ = match x.is_nan() {
+            true => write!(text, "nan"),
+            false => write!(text, "{x}"),
         };
+        return;
     }
-    let text = format!("{x:.decimals$e}");
-    let Some((mantissa, exponent)) = text.split_once('e') else {
-        return text;
+    let _ = write!(text, "{x:.decimals$e}");
+    let Some(letter) = text.rfind('e') else {
+        return;
     };
-    let (sign, digits) = match exponent.strip_prefix('-') {
-        Some(digits) => ('-', digits),
-        None => ('+', exponent),
-    };
-    format!("{mantissa}e{sign}{digits:0>2}")
+    let mut digits = letter + 1;
+    if !text[digits..].starts_with('-') {
+        text.insert(digits, '+');
+    }
+    digits += 1;
+    if text.len() < digits + 2 {
+        text.insert(digits, '0');
+    }
 }
 
 /// `x` in scientific notation with its sign, such as `+2.1e-14`.
 pub(crate) fn signed(x: f64, decimals: usize) -> String {
-    let text = scientific(x, decimals);
-    if text.starts_with('-') || x.is_nan() {
-        text
-    } else {
-        format!("+{text}")
+    let mut text = String::new();
+    push_signed(&mut text, x, decimals);
+    text
+}
+
+/// Appends `x` as [`signed`] has it.
+pub(crate) fn push_signed(text: &mut String, x: f64, decimals: usize) {
+    let start = text.len();
+    push_scientific(text, x, decimals);
+    if !text[start..].starts_with('-') && !x.is_nan() {
+        text.insert(start, '+');
     }
 }
 

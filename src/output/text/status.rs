@@ -1,11 +1,12 @@
 //! `JOB.sta`: one line per increment in fixed columns.
 
+use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use super::format::{scientific, signed};
+use super::format::{push_scientific, push_signed};
 use super::screen::{closed, sticking};
 use crate::dynamics::IncrementReport;
 use crate::model::Model;
@@ -33,11 +34,33 @@ const COLUMNS: [(&str, usize); 13] = [
     ("energy_error", 13),
 ];
 
-/// Values right-aligned in their columns.
-fn aligned(values: [String; 13]) -> String {
-    (COLUMNS.iter().zip(values))
-        .map(|(&(_, width), value)| format!("{value:>width$}"))
-        .collect()
+/// A value of a line.
+enum Value {
+    Count(usize),
+    /// A number with its decimals.
+    Number(f64, usize),
+    /// The same with its sign.
+    Signed(f64, usize),
+}
+
+/// A line of values right-aligned in columns. Its memory is kept: there is one for each increment.
+#[derive(Default)]
+struct Line {
+    text: String,
+    value: String,
+}
+
+impl Line {
+    fn put(&mut self, value: &Value, width: usize) {
+        self.value.clear();
+        match *value {
+            Value::Count(count) => self.value.push_str(&count.to_string()),
+            Value::Number(x, decimals) => push_scientific(&mut self.value, x, decimals),
+            Value::Signed(x, decimals) => push_signed(&mut self.value, x, decimals),
+        }
+        // Writing to a string does not fail.
+        let _ = write!(self.text, "{:>width$}", self.value);
+    }
 }
 
 /// Width of the column of a displacement, unless its name is longer.
@@ -56,6 +79,7 @@ pub(crate) struct StatusFile {
     path: PathBuf,
     /// Further columns: dofs with the widths of their columns.
     monitored: Vec<(usize, usize)>,
+    line: Line,
     /// When lines were last written to the disk.
     written: Instant,
 }
@@ -64,7 +88,9 @@ impl StatusFile {
     /// Creates the file, or empties it.
     pub fn create(path: &Path, model: &Model) -> io::Result<Self> {
         let mut file = BufWriter::new(File::create(path).map_err(at(path))?);
-        let mut names = aligned(COLUMNS.map(|(name, _)| name.to_owned()));
+        let mut names: String = (COLUMNS.iter())
+            .map(|(name, width)| format!("{name:>width$}"))
+            .collect();
         let mut columns = Vec::new();
         for (name, dof) in monitored(model) {
             let width = DISPLACEMENT.max(name.chars().count() + 1);
@@ -76,6 +102,7 @@ impl StatusFile {
             file,
             path: path.to_owned(),
             monitored: columns,
+            line: Line::default(),
             written: Instant::now(),
         };
         status.flush()?;
@@ -98,26 +125,31 @@ impl StatusFile {
     ) -> io::Result<()> {
         let solver = &report.solver;
         let values = [
-            report.step.to_string(),
-            report.increment.to_string(),
-            attempts.to_string(),
-            solver.passes.to_string(),
-            closed(report).to_string(),
-            sticking(report).to_string(),
-            scientific(report.time, 10),
-            scientific(report.step_time, 10),
-            scientific(report.dt, 10),
-            scientific(solver.residual, 2),
-            solver.lcp_size.to_string(),
-            solver.pivots.to_string(),
-            signed(error, 3),
+            Value::Count(report.step),
+            Value::Count(report.increment),
+            Value::Count(attempts),
+            Value::Count(solver.passes),
+            Value::Count(closed(report)),
+            Value::Count(sticking(report)),
+            Value::Number(report.time, 10),
+            Value::Number(report.step_time, 10),
+            Value::Number(report.dt, 10),
+            Value::Number(solver.residual, 2),
+            Value::Count(solver.lcp_size),
+            Value::Count(solver.pivots),
+            Value::Signed(error, 3),
         ];
-        let mut line = aligned(values);
-        for &(dof, width) in &self.monitored {
-            let value = scientific(report.state.u[dof], 10);
-            line.push_str(&format!("{value:>width$}"));
+        self.line.text.clear();
+        for (value, (_, width)) in values.iter().zip(COLUMNS) {
+            self.line.put(value, width);
         }
-        writeln!(self.file, "{line}").map_err(at(&self.path))?;
+        for &(dof, width) in &self.monitored {
+            self.line
+                .put(&Value::Number(report.state.u[dof], 10), width);
+        }
+        self.line.text.push('\n');
+        let text = self.line.text.as_bytes();
+        self.file.write_all(text).map_err(at(&self.path))?;
         match self.written.elapsed() >= PAUSE {
             true => self.flush(),
             false => Ok(()),

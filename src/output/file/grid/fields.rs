@@ -13,15 +13,15 @@ use crate::model::{ContactMass, Model, Step};
 use crate::output::file::column::{Column, Columns, Growing, Mostly};
 use crate::output::file::dataset::{Meaning, group, meaning, set_attribute};
 use crate::output::frame::Frame;
-
-/// Bytes of frames that wait in memory at most, but for one frame.
-const PENDING_BYTES: usize = 2 << 20;
+use crate::output::frames::expected_frames;
 
 /// Writes the field frames.
 pub(crate) struct Fields {
     steps: Steps,
     points: PointFields,
     cells: CellFields,
+    /// Bytes of a frame.
+    frame_bytes: usize,
     /// Frames that wait in memory at most.
     most_pending: usize,
     pending: usize,
@@ -67,26 +67,29 @@ impl Fields {
         let lines = model.rigid_segments();
         write_mesh(&grid, &model.mesh, &lines)?;
         let steps = Steps::create(&grid)?;
-        let points = Place::new(&grid, steps.group(), "Point", model.mesh.node_count())?;
+        let frames = expected_frames(model);
+        let groups = [&grid, steps.group()];
+        let points = Place::new(groups, "Point", model.mesh.node_count(), frames)?;
         let cells = model.mesh.elements.len() + lines.len();
-        let cells = Place::new(&grid, steps.group(), "Cell", cells)?;
+        let cells = Place::new(groups, "Cell", cells, frames)?;
         write_bodies(&cells.data, model, lines.len())?;
         let mut fields = Fields {
             steps,
             points: PointFields::create(points, model)?,
             cells: CellFields::create(cells, model, lines.len())?,
+            frame_bytes: 0,
             most_pending: 1,
             pending: 0,
         };
-        fields.most_pending = (PENDING_BYTES / fields.frame_bytes().max(1)).max(1);
+        let bytes = |columns: Columns| columns.iter().map(|c| c.row_bytes()).sum::<usize>();
+        let points = fields.points.offsets.rows * bytes(fields.points.columns());
+        fields.frame_bytes = points + fields.cells.offsets.rows * bytes(fields.cells.columns());
         Ok(fields)
     }
 
-    /// Bytes of a frame.
-    fn frame_bytes(&mut self) -> usize {
-        let bytes = |columns: Columns| columns.iter().map(|c| c.row_bytes()).sum::<usize>();
-        let points = self.points.offsets.rows * bytes(self.points.columns());
-        points + self.cells.offsets.rows * bytes(self.cells.columns())
+    /// Lets frames of up to `bytes` bytes wait in memory, or one.
+    pub fn let_wait(&mut self, bytes: usize) {
+        self.most_pending = (bytes / self.frame_bytes.max(1)).max(1);
     }
 
     /// Appends a frame, which waits in memory.

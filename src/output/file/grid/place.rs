@@ -23,6 +23,9 @@ pub(super) const IN_SPACE: Row = Row {
 
 pub(super) const OFFSETS: Meaning = meaning("first row of the frame", "1");
 
+/// Most frames of a chunk: each chunk costs a call of the system.
+const CHUNK_FRAMES: usize = 32;
+
 /// The groups of one kind of fields: `PointData` or `CellData`.
 pub(super) struct Place {
     pub data: Group,
@@ -36,6 +39,8 @@ pub(super) struct Offsets {
     column: Option<(String, Column<i64>)>,
     /// Rows of a frame.
     pub rows: usize,
+    /// Frames of a chunk of the fields, where these are short.
+    chunk: usize,
 }
 
 impl Offsets {
@@ -65,13 +70,20 @@ impl Offsets {
 }
 
 impl Place {
-    pub fn new(grid: &Group, steps: &Group, kind: &str, rows: usize) -> hdf5::Result<Self> {
+    /// The groups for about `frames` frames of `rows` rows.
+    pub fn new(
+        [grid, steps]: [&Group; 2],
+        kind: &str,
+        rows: usize,
+        frames: usize,
+    ) -> hdf5::Result<Self> {
         Ok(Place {
             data: group(grid, &format!("{kind}Data"))?,
             offsets: Offsets {
                 group: group(steps, &format!("{kind}DataOffsets"))?,
                 column: None,
                 rows,
+                chunk: even_part(frames, CHUNK_FRAMES),
             },
         })
     }
@@ -85,6 +97,13 @@ impl Place {
         text: Meaning,
     ) -> hdf5::Result<Column<T>> {
         self.offsets.add(name)?;
-        Column::frames(&self.data, name, (row, self.offsets.rows), mostly, text)
+        let Offsets { rows, chunk, .. } = self.offsets;
+        Column::frames(&self.data, name, (row, [rows, chunk]), mostly, text)
     }
+}
+
+/// Size of each part when `count` is divided evenly into as few parts as there can be of up to `most`.
+fn even_part(count: usize, most: usize) -> usize {
+    let parts = count.div_ceil(most).max(1);
+    count.div_ceil(parts).max(1)
 }
