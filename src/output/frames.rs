@@ -187,6 +187,29 @@ mod tests {
     }
 
     #[test]
+    fn about_as_many_frames_are_expected_as_become_due() {
+        let frames = [
+            Frames::Default,
+            Frames::Count(5),
+            Frames::Count(0),
+            Frames::Every(0.3),
+            Frames::Every(0.0),
+            Frames::Increments(4),
+            Frames::Times(vec![0.35, 0.8]),
+        ];
+        for frames in frames {
+            for increments in [10, 1000] {
+                let written = due(frames.clone(), increments, 2).len();
+                let expected = expected_frames(&model(frames.clone(), 0.1 * increments as f64));
+                assert!(
+                    expected.abs_diff(written) <= 2,
+                    "{frames:?} {increments}: {expected} {written}"
+                );
+            }
+        }
+    }
+
+    #[test]
     fn intervals_count_from_the_start_of_the_step() {
         assert_eq!(
             due(Frames::Every(0.3), 10, 2),

@@ -107,3 +107,16 @@ fn even_part(count: usize, most: usize) -> usize {
     let parts = count.div_ceil(most).max(1);
     count.div_ceil(parts).max(1)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::even_part;
+
+    #[test]
+    fn frames_are_divided_evenly_into_few_chunks() {
+        let cases = [(0, 1), (1, 1), (32, 32), (33, 17), (101, 26), (1001, 32)];
+        for (frames, expected) in cases {
+            assert_eq!(even_part(frames, 32), expected, "{frames}");
+        }
+    }
+}
