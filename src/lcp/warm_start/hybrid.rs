@@ -16,6 +16,9 @@ use crate::lcp::warm_start::{kept_factors::KeptFactors, reduced};
 /// Gauss-Seidel sweeps between two calls of the active set.
 const SWEEPS: [usize; 3] = [10, 40, 160];
 
+/// Largest arena that is kept for the next problem: what a larger one holds takes longer than its memory.
+const KEPT_BYTES: usize = 1 << 24;
+
 /// Paths of Lemke's method that are tried.
 const PATHS: usize = 4;
 
@@ -51,8 +54,10 @@ pub fn solve_similar(
     }
     let mut arena = std::mem::take(&mut kept.arena);
     let solved = solve_in(problem, warm, method, (kept, &arena));
-    arena.reset();
-    kept.arena = arena;
+    if arena.allocated_bytes() <= KEPT_BYTES {
+        arena.reset();
+        kept.arena = arena;
+    }
     solved
 }
 
