@@ -11,13 +11,22 @@ use criterion::{BenchmarkId, Criterion};
 use nalgebra::DVector;
 use stickslip::lcp::{ContactState, FrictionalLcp, Lcp, LcpMethod, solve_frictional};
 
-#[path = "../tests/lcp_support/mod.rs"]
-mod lcp_support;
+#[path = "../tests/lcp/block.rs"]
+mod block;
+#[path = "../tests/lcp/problems.rs"]
+#[allow(dead_code)] // shared with the tests
+mod problems;
+#[path = "../tests/lcp/random.rs"]
+#[allow(dead_code)] // shared with the tests
+mod random;
+#[path = "../tests/lcp/tableau.rs"]
+#[allow(dead_code)] // shared with the tests
+mod tableau;
 
-use lcp_support::block::block_delassus;
-use lcp_support::problems::{planted, states};
-use lcp_support::random::Random;
-use lcp_support::tableau::tableau_lemke;
+use block::block_delassus;
+use problems::{planted, states};
+use random::Random;
+use tableau::tableau_lemke;
 
 const MU: f64 = 0.3;
 

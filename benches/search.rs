@@ -4,14 +4,14 @@
 //! themselves: a new search, pairing with valid lists, the penetration check of an
 //! increment, and the search among all segments.
 
-#[path = "../tests/contact_support/mod.rs"]
-mod contact_support;
+#[path = "../tests/contact/scenes.rs"]
+mod scenes;
 
 use std::hint::black_box;
 use std::time::Duration;
 
-use contact_support::{DISC, lattice};
 use criterion::{BenchmarkId, Criterion, Throughput};
+use scenes::{DISC, lattice};
 use stickslip::contact::{
     ClosedPairs, Positions, Search, SlaveNode, all_segments, find_penetration, find_targets,
 };

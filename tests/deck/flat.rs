@@ -1,0 +1,372 @@
+//! The model written back as a flat deck reads as the identical model, and is written the same again.
+
+use std::path::{Path, PathBuf};
+
+use stickslip::diagnostics::{Diagnostics, Sources, Span};
+use stickslip::flat_deck::{flat_deck, reads_as};
+use stickslip::model::{Frames, Model, Variation};
+use stickslip::{deck, reader};
+
+/// The model of a text, which must have no errors.
+fn read(text: &str) -> Model {
+    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+    let deck = deck::parse_str("flat.inp", text, &mut sources, &mut d);
+    let model = reader::build(&deck, &mut d);
+    model.unwrap_or_else(|| panic!("{}\n{text}", d.render(&sources, false)))
+}
+
+/// A model without the places of its contacts in the deck and the instances of parts.
+fn flat(mut model: Model) -> Model {
+    model.sets.instances.clear();
+    for contact in &mut model.contacts {
+        contact.span = Span::default();
+    }
+    model
+}
+
+/// Writes a model, reads it and writes it again; returns the text.
+#[track_caller]
+fn round_trip(model: Model) -> String {
+    let text = flat_deck(&model);
+    let again = read(&text);
+    assert_eq!(flat_deck(&again), text);
+    assert!(reads_as(&text, &model));
+    assert_eq!(flat(again), flat(model), "{text}");
+    text
+}
+
+/// All decks under a folder.
+fn decks(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    let mut paths: Vec<PathBuf> = entries
+        .map(|entry| entry.expect("an entry").path())
+        .collect();
+    paths.sort();
+    let found = paths.into_iter().flat_map(|path| match path.is_dir() {
+        true => decks(&path),
+        false => vec![path],
+    });
+    found
+        .filter(|path| path.extension().is_some_and(|e| e == "inp"))
+        .collect()
+}
+
+#[test]
+fn every_deck_of_the_repository() {
+    let mut count = 0;
+    for folder in ["input", "verification", "tests/decks"] {
+        for path in decks(Path::new(folder)) {
+            let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+            let Some(model) = reader::read_model(&path, &mut sources, &mut d) else {
+                continue;
+            };
+            println!("{}", path.display());
+            round_trip(model);
+            count += 1;
+        }
+    }
+    assert!(count >= 40, "{count} decks");
+}
+
+const SQUARE: &str = include_str!("../decks/square.inp");
+const SHARED: &str = include_str!("../decks/shared.inp");
+
+/// The square with further model cards and step cards.
+fn square(model: &str, step: &str) -> String {
+    let text = SQUARE.replacen("*STEP", &format!("{model}*STEP"), 1);
+    text.replacen("*END STEP", &format!("{step}*END STEP"), 1)
+}
+
+#[test]
+fn a_deck_by_hand() {
+    insta::assert_snapshot!(round_trip(read(SHARED)));
+}
+
+#[test]
+fn titles_of_any_length() {
+    let long = "a title  of many words, *one with a star ".repeat(9);
+    for title in [
+        long.trim(),
+        "x",
+        &"y".repeat(300),
+        &"two  blanks".repeat(20),
+    ] {
+        round_trip(read(&SQUARE.replacen("one square", title, 1)));
+    }
+    round_trip(read(&SQUARE.replacen("*HEADING\none square\n", "", 1)));
+}
+
+#[test]
+fn names_with_blanks_and_signs() {
+    for name in [
+        "\"a,b\"",
+        "\"12\"",
+        "My Foot",
+        "\" x\"",
+        "_Foot-1.2",
+        "\"1e5\"",
+    ] {
+        let text = square("", "*BOUNDARY\nFOOT, 1\n").replace("FOOT", name);
+        let model = round_trip(read(&text));
+        assert!(model.contains(name), "{model}");
+    }
+}
+
+#[test]
+fn amplitudes_of_every_kind() {
+    let cards = "*AMPLITUDE, NAME=A, DEFINITION=SMOOTH STEP, TIME=TOTAL TIME\n0., 0., 0.1, 1.\n\
+                 *AMPLITUDE, NAME=B, DEFINITION=EQUALLY SPACED, FIXED INTERVAL=0.1\n0., 1., 0.3\n\
+                 *AMPLITUDE, NAME=C, DEFINITION=PERIODIC\n2, 3., 0.1, 0.2\n0.3, 0.4, 0.5, 0.6\n\
+                 *AMPLITUDE, NAME=D, DEFINITION=DECAY\n0.1, 0.2, 0.3, 0.4\n\
+                 *AMPLITUDE, NAME=E, DEFINITION=MODULATED, SCALEX=3., SHIFTY=0.1\n\
+                 0.1, 0.2, 0.3, 0.4, 0.5\n";
+    let step = "*BOUNDARY, AMPLITUDE=A\n4, 1, 1, 0.1\n*BOUNDARY, AMPLITUDE=C\n3, 1, 1, 0.1\n\
+                *CLOAD, AMPLITUDE=D\n4, 2, 3.\n*DLOAD, AMPLITUDE=E\nBODY, GRAV, 1., 3., -4.\n";
+    round_trip(read(&square(cards, step)));
+}
+
+/// Three steps whose heads have these parameters, with these loads and supports each.
+fn steps(parts: [[&str; 2]; 3]) -> Model {
+    let amplitudes = "*AMPLITUDE, NAME=T, TIME=TOTAL TIME\n0., 0., 9., 1.\n*AMPLITUDE, NAME=S\n\
+                      0., 0., 1., 0.7\n";
+    let head = SQUARE.split("*STEP").next().expect("a model").to_owned() + amplitudes;
+    let steps = parts.map(|[parameters, cards]| {
+        format!("*STEP, NLGEOM{parameters}\n*DYNAMIC, DIRECT\n0.1, 1.\n{cards}*END STEP\n")
+    });
+    read(&(head + &steps.concat()))
+}
+
+#[test]
+fn loads_from_step_to_step() {
+    let loads = "*CLOAD\n3, 2, 4.\n3, 2, 2.\n4, 1, 1.\n*CLOAD, AMPLITUDE=S\n4, 2, 1.\n\
+                 *DLOAD\nBODY, GRAV, 9.81, 3., -4.\nBODY, BX, 2.\nBODY, P3, 3.\n\
+                 *DSLOAD\nTOP, P, 5.\n*DSLOAD, FOLLOWER=NO\nTOP, TRVEC, 2., 1., 1.\n\
+                 *DLOAD, FOLLOWER=NO\nBODY, TRVEC2, 2., 1., 0.\n";
+    let follow = "*CLOAD, AMPLITUDE=T\n3, 1, 1.\n*DLOAD, AMPLITUDE=T\nBODY, BY, 1.\n";
+    for more in [
+        "",
+        "*CLOAD, OP=NEW\n",
+        "*CLOAD, OP=NEW\n4, 1, 7.\n",
+        "*DLOAD, OP=NEW\n",
+        follow,
+    ] {
+        round_trip(steps([["", loads], ["", more], ["", "*DSLOAD, OP=NEW\n"]]));
+        round_trip(steps([["", follow], ["", more], ["", loads]]));
+    }
+}
+
+#[test]
+fn tractions_on_faces_of_elements_are_those_on_surfaces() {
+    let model = |card: &str| read(&square("", card));
+    let on_surface = model("*DSLOAD, FOLLOWER=NO\nTOP, TRVEC, 2., 3., 4.\n");
+    let on_faces = model("*DLOAD, FOLLOWER=NO\nBODY, TRVEC3, 2., 3., 4.\n");
+    assert_eq!(on_surface, on_faces);
+    assert_eq!(on_faces.steps[0].tractions[0].at.direction, [0.6, 0.8]);
+}
+
+#[test]
+fn loads_that_ramp() {
+    let ramp = ", AMPLITUDE=RAMP";
+    let loads =
+        "*CLOAD\n3, 2, 4.\n4, 1, 1.\n3, 2, 3.\n*DLOAD\nBODY, GRAV, 9.81, 0., -1.\nBODY, P3, 1.\n";
+    for more in [
+        "",
+        "*CLOAD, OP=NEW\n",
+        "*CLOAD\n3, 2, 8.\n",
+        "*CLOAD, OP=NEW\n4, 1, 7.\n",
+        "*DLOAD\nBODY, GRAV, 1., 1., 0.\n",
+        "*CLOAD, AMPLITUDE=T\n3, 2, 8.\n",
+        "*CLOAD\n3, 2, 1.\n3, 2, 2.\n",
+    ] {
+        let model = steps([[ramp, loads], [ramp, more], ["", "*CLOAD\n4, 2, 1.\n"]]);
+        let ramps = |v: Variation| matches!(v, Variation::Ramp { .. });
+        assert!(
+            model.steps[0]
+                .point_loads
+                .iter()
+                .all(|load| ramps(load.variation))
+        );
+        round_trip(model);
+        round_trip(steps([
+            ["", loads],
+            [ramp, more],
+            [ramp, "*CLOAD\n4, 2, 1.\n"],
+        ]));
+    }
+}
+
+/// Loads on one face by *DLOAD and by *DSLOAD, two of these with directions.
+const ON_A_FACE: [&str; 9] = [
+    "",
+    "*DLOAD\nBODY, P3, 3.\n",
+    "*DLOAD, OP=NEW\n",
+    "*DSLOAD\nTOP, P, 5.\n",
+    "*DSLOAD, OP=NEW\n",
+    "*DSLOAD\nTOP, P, 1.\n*DLOAD\nBODY, P3, 2.\n",
+    "*DSLOAD, FOLLOWER=NO\nTOP, TRVEC, 2., 1., 0.\n",
+    "*DLOAD, FOLLOWER=NO\nBODY, TRVEC3, 2., 1., 0.\n",
+    "*DLOAD, FOLLOWER=NO\nBODY, TRVEC3, 3., 0., 1.\n",
+];
+
+#[test]
+fn several_loads_on_a_face_that_fade_and_grow() {
+    let heads = ["", ", AMPLITUDE=RAMP"];
+    let before = ON_A_FACE.concat();
+    for (first, second) in pairs(&ON_A_FACE) {
+        for (head, next) in pairs(&heads) {
+            round_trip(steps([[head, &before], [next, first], [heads[1], second]]));
+            round_trip(steps([[head, first], [heads[1], second], [next, &before]]));
+        }
+    }
+}
+
+#[test]
+fn loads_on_a_face_that_follow_amplitudes_while_others_fade() {
+    let ramp = ", AMPLITUDE=RAMP";
+    let both = "*DLOAD\nBODY, P3, 3.\n*DSLOAD, AMPLITUDE=T\nTOP, P, 2.\n";
+    for more in ["", "*DSLOAD, OP=NEW\n", "*DSLOAD\nTOP, P, 1.\n"] {
+        round_trip(steps([["", both], [ramp, more], ["", ""]]));
+    }
+    let apart = "*DLOAD, FOLLOWER=NO\nBODY, TRVEC3, 2., 1., 0.\n\
+                 *DSLOAD, FOLLOWER=NO, AMPLITUDE=T\nTOP, TRVEC, 3., 0., 1.\n";
+    round_trip(steps([["", apart], [ramp, "*DLOAD, OP=NEW\n"], ["", ""]]));
+    // one that follows the total time, and one that fades in the same direction: no card leaves the first alone
+    let model = steps([["", both], [ramp, "*DLOAD, OP=NEW\n"], ["", ""]]);
+    assert!(!reads_as(&flat_deck(&model), &model));
+}
+
+fn pairs<'a>(all: &'a [&'a str]) -> impl Iterator<Item = (&'a str, &'a str)> {
+    let of = move |&first: &&'a str| all.iter().map(move |&second| (first, second));
+    all.iter().flat_map(of)
+}
+
+#[test]
+fn supports_from_step_to_step() {
+    let moves = "*BOUNDARY, AMPLITUDE=S\n4, 1, 1, 0.1\n*BOUNDARY, AMPLITUDE=T\n3, 1, 1, 0.1\n\
+                 *BOUNDARY, TYPE=VELOCITY\n4, 2, 2, 0.3\n";
+    for more in [
+        "",
+        "*BOUNDARY, OP=NEW\n",
+        "*BOUNDARY, OP=NEW\n4, 1\n",
+        "*BOUNDARY\n3, 2\n",
+    ] {
+        round_trip(steps([["", moves], ["", more], ["", ""]]));
+    }
+}
+
+#[test]
+fn settings_and_times_of_every_kind() {
+    for card in [
+        "SCHEME=SS22, THETA1=0.5, THETA2=0.75",
+        "IMPACT=NONE, LCP=LEMKE, FACTORIZATION=EVERY PASS",
+        "IMPACT TIME=EVENT, LANDING=RETURN, SOLVER=SPRS",
+        "CONTACT MASS=REDISTRIBUTED, TOLERANCE=1.e-9, MAX PASSES=40",
+    ] {
+        round_trip(read(&square("", &format!("*STICKSLIP, {card}\n"))));
+    }
+    let points = "*TIME POINTS, NAME=P, TIME=TOTAL TIME\n0.5, 1.25, 1.75\n";
+    for when in [
+        "FREQUENCY=7",
+        "NUMBER INTERVAL=3",
+        "TIME INTERVAL=0.3",
+        "TIME POINTS=P",
+    ] {
+        let field = format!("*OUTPUT, FIELD, {when}\n");
+        let cards = format!("{points}{field}");
+        let model = steps([["", &cards], ["", ""], ["", ""]]);
+        assert_ne!(model.steps[2].frames, Frames::Default);
+        round_trip(model);
+    }
+    let totals =
+        "*NODE PRINT, NSET=ALL, TOTALS=ONLY\nU\n*EL PRINT, ELSET=BODY, TOTALS=ONLY\nELSE\n";
+    round_trip(read(&square("", totals)));
+    for fields in [
+        "*NODE FILE\nCF\n",
+        "*EL FILE\nLE\n*NODE FILE\nU, CF\n",
+        "*EL FILE\nS, ENER\n",
+    ] {
+        round_trip(read(&square("", fields)));
+    }
+    assert!(round_trip(read(&square("", "*NO ANALYSIS\n"))).contains("*NO ANALYSIS"));
+    round_trip(read(
+        &SQUARE.replace("DYNAMIC, DIRECT\n0.1, 1.", "DYNAMIC\n0.1, 1., 1.e-5"),
+    ));
+}
+
+#[test]
+fn constraints_and_contacts() {
+    let equations = "*EQUATION\n2\n3, 1, 1., 4, 1, -0.3\n*EQUATION\n5\n3, 2, 2., 4, 1, 0.1, 4, 2, 0.2,\
+                     1, 1, 3.\n2, 1, 4.\n";
+    round_trip(read(&square(equations, "")));
+    round_trip(read(&square("*EQUATION\n2\n3, 1, 1., 4, 1, 0.\n", "")));
+    let pair = "*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE\nSBOT, STOP\n";
+    let general = "*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n\
+                   *CONTACT PROPERTY ASSIGNMENT\n, , DRY\n";
+    let floor = "*NODE\n100, 0., -5.\n*SURFACE, NAME=FLOOR, TYPE=SEGMENTS\nSTART, 9., 0.\n\
+                 START, 0., 0.\nLINE, 2., 0.\nCIRCL, 3., 1., 2., 1.\nSTART, 5., 0.\nLINE, 6., 0.\n\
+                 LINE, 6., 1.\nLINE, 5., 0.\n*RIGID BODY, ANALYTICAL SURFACE=FLOOR, REF NODE=100\n\
+                 *BOUNDARY\n100, 1, 2\n";
+    let onto_floor = pair.replace("STOP", "FLOOR");
+    for contact in [
+        general.to_owned(),
+        format!("{floor}{onto_floor}"),
+        format!("{floor}{general}"),
+        format!("{floor}{general}{onto_floor}"),
+        pair.replace("TYPE", "ADJUST=0.05, TYPE"),
+        pair.replace("TYPE", "ADJUST=NBLOCK, TYPE"),
+        pair.replace("SBOT, STOP", "STOP"),
+        format!(
+            "{pair}*SURFACE INTERACTION, NAME=SLICK\n{}",
+            pair.replace("DRY", "SLICK")
+                .replace("SBOT, STOP", "STOP, SBOT")
+        ),
+    ] {
+        round_trip(read(&SHARED.replacen(pair, &contact, 1)));
+    }
+}
+
+#[test]
+fn surfaces_called_as_that_of_general_contact() {
+    for deck in [
+        SHARED.replace("STOP", "ALL_EXTERIOR"),
+        SHARED.replace("SBOT", "ALL_EXTERIOR"),
+        square("*SURFACE, NAME=ALL_EXTERIOR\nBODY\n", ""),
+    ] {
+        round_trip(read(&deck));
+    }
+}
+
+#[test]
+fn rigid_elements_with_a_reference_node_apart() {
+    let cards = "*NODE\n100, 0., -5.\n*RIGID BODY, ELSET=EBASE, REF NODE=100\n*AMPLITUDE, NAME=A\n\
+                 0., 0., 1., 1.\n*BOUNDARY\n100, 1, 2";
+    let deck = SHARED.replacen("*BOUNDARY\nNFIX, 1, 2", cards, 1);
+    round_trip(read(&deck));
+    let moved = "*BOUNDARY, AMPLITUDE=A\n100, 1, 1, 0.3\n*DLOAD";
+    round_trip(read(&deck.replacen("*DLOAD", moved, 1)));
+}
+
+#[test]
+fn friction_that_decays() {
+    for decay in ["0.3, 0.1, 5.", "0.3, 0.3, 5.", "0.3, 0.1, 0."] {
+        let card = format!("*FRICTION, EXPONENTIAL DECAY\n{decay}");
+        round_trip(read(&SHARED.replacen("*FRICTION\n0.3, 2.1E5", &card, 1)));
+    }
+}
+
+#[test]
+fn materials_of_every_kind() {
+    let more = "*MATERIAL, NAME=EMPTY\n*MATERIAL, NAME=HARD\n*ELASTIC\n1.e5, 0.3\n*DENSITY\n2.\n\
+                *DAMPING, ALPHA=0.1, BETA=1.e-7\n*ELSET, ELSET=NONE\n*NSET, NSET=NO\n";
+    round_trip(read(&square(more, "")));
+    let rubber = SQUARE.replace(
+        "*ELASTIC\n1000., 0.3",
+        "*HYPERELASTIC, NEO HOOKE\n200., 2.E-3",
+    );
+    let mean = rubber.replace("CPS4", "CPE4");
+    round_trip(read(&mean.replace(
+        "MATERIAL=RUBBER\n",
+        "MATERIAL=RUBBER, FORMULATION=MEAN DILATATION\n",
+    )));
+    round_trip(read(&mean));
+}

@@ -1,0 +1,10 @@
+//! From deck to model: what is read, what is refused, and what is written back.
+
+mod assembly;
+mod errors;
+mod flat;
+mod fuzz;
+mod model;
+mod picture;
+mod reference;
+mod syntax;

@@ -1,0 +1,99 @@
+//! The picture of a model (`check --picture`).
+
+use stickslip::diagnostics::{Diagnostics, Sources};
+use stickslip::model::Model;
+use stickslip::output::picture;
+use stickslip::{deck, reader};
+
+const SHARED: &str = include_str!("../decks/shared.inp");
+const STEPS: &str = include_str!("../decks/steps.inp");
+
+fn read(text: &str) -> Model {
+    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+    let deck = deck::parse_str("deck.inp", text, &mut sources, &mut d);
+    let model = reader::build(&deck, &mut d);
+    model.unwrap_or_else(|| panic!("{}", d.render(&sources, false)))
+}
+
+#[test]
+fn a_block_above_its_base() {
+    insta::assert_snapshot!(picture(&read(SHARED)));
+}
+
+/// Number of tags that hold a text.
+fn count(picture: &str, what: &str) -> usize {
+    picture.lines().filter(|line| line.contains(what)).count()
+}
+
+#[test]
+fn everything_that_a_deck_says_is_in_the_legend() {
+    let drawn = picture(&read(STEPS));
+    for text in [
+        "two steps that use everything",
+        "material Stiff Rubber",
+        "master surface",
+        "slave surface and nodes",
+        "surface without contact",
+        "contact CORNERS on TOP, mu 0",
+        "fixed in x and y",
+        "prescribed motion",
+        "force",
+        "pressure or traction",
+        "body force",
+        "initial velocity",
+    ] {
+        assert!(drawn.contains(&format!(">{text}")), "{text}");
+    }
+    let still = picture(&read(&SHARED.replace("NBLOCK, 2, -1000.", "NBLOCK, 2, 0.")));
+    assert!(!still.contains("initial velocity"));
+}
+
+#[test]
+fn models_of_any_size_fill_the_sheet() {
+    let drawn = picture(&read(SHARED));
+    for (scale, unit) in [(1e-9, "e-9"), (1e9, "e9")] {
+        let of_unit = |line: &str| -> String {
+            let fields = line.split(", ").map(|field| match field.strip_suffix('.') {
+                Some(_) => format!("{field}{unit}"),
+                None if field.contains('.') => format!("{field}{unit}"),
+                None => field.to_owned(),
+            });
+            fields.collect::<Vec<_>>().join(", ")
+        };
+        let (nodes, rest) = SHARED.split_once("*ELEMENT").expect("elements");
+        let nodes: Vec<String> = nodes.lines().map(of_unit).collect();
+        let model = read(&format!("{}\n*ELEMENT{rest}", nodes.join("\n")));
+        assert!((model.mesh.coordinates[1][0] / scale - 2.0).abs() < 1e-9);
+        let other = picture(&model);
+        assert!(!other.contains("NaN") && !other.contains("inf"));
+        let paths = |text: &str| -> Vec<String> {
+            text.lines()
+                .filter(|l| l.starts_with("<path"))
+                .map(str::to_owned)
+                .collect()
+        };
+        assert_eq!(paths(&other), paths(&drawn));
+    }
+}
+
+#[test]
+fn many_marks_are_thinned_out() {
+    let squares: usize = 400;
+    let row = |i: usize| format!("{}, {i}., 0.\n{}, {i}., 1.\n", 2 * i + 1, 2 * i + 2);
+    let nodes: String = (0..=squares).map(row).collect();
+    let element = |i: usize| {
+        let n = 2 * i;
+        format!("{}, {}, {}, {}, {}\n", i + 1, n + 1, n + 3, n + 4, n + 2)
+    };
+    let elements: String = (0..squares).map(element).collect();
+    let rest = SHARED.split("*MATERIAL").nth(1).expect("a material");
+    let rest = rest.split("*SOLID").next().expect("a material");
+    let model = read(&format!(
+        "*NODE, NSET=ALL\n{nodes}*ELEMENT, TYPE=CPE4, ELSET=E\n{elements}*MATERIAL{rest}\
+         *SOLID SECTION, ELSET=E, MATERIAL=STEEL\n*BOUNDARY\nALL, 1, 2\n*STEP, NLGEOM\n*DYNAMIC\n\
+         1.e-9, 1.e-6\n*DLOAD\nE, P3, 1.\n*END STEP\n"
+    ));
+    let drawn = picture(&model);
+    let marks = count(&drawn, "<polygon");
+    assert!((100..400).contains(&marks), "{marks}");
+}

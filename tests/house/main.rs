@@ -1,0 +1,10 @@
+//! The house itself: layers of the source, and documents that agree with it.
+
+mod circles;
+mod equations;
+mod imports;
+mod layers;
+mod names;
+mod numbers;
+mod sources;
+mod table;

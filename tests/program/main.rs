@@ -1,0 +1,12 @@
+//! The program as users run it: exit codes, files, kills, memory.
+
+mod exit;
+mod killed;
+mod lcp;
+mod memory;
+mod repeat;
+mod rubber_ring;
+mod run;
+#[path = "../results/writers.rs"]
+#[allow(dead_code)] // shared with the tests of result files
+mod writers;
