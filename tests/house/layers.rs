@@ -74,7 +74,7 @@ fn relative_paths_lead_only_to_lower_layers() {
 
 #[test]
 fn every_module_has_a_layer() {
-    let library = include_str!("../src/lib.rs");
+    let library = include_str!("../../src/lib.rs");
     let modules = library
         .lines()
         .filter_map(|line| line.strip_prefix("pub mod "));

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use syn::spanned::Spanned;
 use syn::{Attribute, ImplItem, Item, Meta};
 
 /// A source file.
@@ -12,8 +11,6 @@ pub struct Source {
     pub path: String,
     /// The whole text, tests included.
     pub text: String,
-    /// Number of lines of the text that are items for tests.
-    pub test_lines: usize,
     /// Items outside of tests.
     pub items: Vec<Item>,
     /// Is the whole file a module of tests?
@@ -59,17 +56,13 @@ pub fn parse_sources(texts: &BTreeMap<String, String>) -> Vec<Source> {
 fn parse(path: &str, text: &str, test_modules: &mut Vec<String>) -> Source {
     let file = syn::parse_file(text).unwrap_or_else(|error| panic!("{path}: {error}"));
     let mut items = file.items;
-    let mut removed = Vec::new();
-    remove_tests(&mut items, &mut removed);
-    for item in &removed {
-        if let Removed::Module(name) = item {
-            test_modules.push(format!("{}{name}/", children_folder(path)));
-        }
-    }
+    let mut modules = Vec::new();
+    remove_tests(&mut items, &mut modules);
+    let folder = children_folder(path);
+    test_modules.extend(modules.iter().map(|name| format!("{folder}{name}/")));
     Source {
         path: path.to_owned(),
         text: text.to_owned(),
-        test_lines: removed.iter().map(Removed::lines).sum(),
         items,
         is_test: false,
     }
@@ -84,57 +77,30 @@ fn children_folder(path: &str) -> String {
     }
 }
 
-/// What is compiled for tests only.
-enum Removed {
-    /// A module in a file of its own.
-    Module(String),
-    /// Lines of an item.
-    Lines(usize),
-}
-
-impl Removed {
-    fn lines(&self) -> usize {
-        match self {
-            Removed::Module(_) => 0,
-            Removed::Lines(lines) => *lines,
-        }
-    }
-}
-
-fn remove_tests(items: &mut Vec<Item>, removed: &mut Vec<Removed>) {
+/// Takes out what is for tests only; adds the modules among it that are files of their own.
+fn remove_tests(items: &mut Vec<Item>, modules: &mut Vec<String>) {
     items.retain_mut(|item| {
         if is_for_tests(attributes(item)) {
-            removed.push(match item {
-                Item::Mod(module) if module.content.is_none() => {
-                    Removed::Module(module.ident.to_string())
-                }
-                _ => Removed::Lines(line_count(item)),
-            });
+            if let Item::Mod(module) = item
+                && module.content.is_none()
+            {
+                modules.push(module.ident.to_string());
+            }
             return false;
         }
         match item {
             Item::Mod(module) => {
                 if let Some((_, items)) = &mut module.content {
-                    remove_tests(items, removed);
+                    remove_tests(items, modules);
                 }
             }
-            Item::Impl(block) => block.items.retain(|item| {
-                let test = matches!(item, ImplItem::Fn(function) if is_for_tests(&function.attrs));
-                if test {
-                    removed.push(Removed::Lines(line_count(item)));
-                }
-                !test
-            }),
+            Item::Impl(block) => block.items.retain(
+                |item| !matches!(item, ImplItem::Fn(function) if is_for_tests(&function.attrs)),
+            ),
             _ => {}
         }
         true
     });
-}
-
-/// Number of lines from the first attribute or comment to the last character.
-fn line_count(item: &impl Spanned) -> usize {
-    let span = item.span();
-    span.end().line - span.start().line + 1
 }
 
 fn attributes(item: &Item) -> &[Attribute] {

@@ -1,10 +1,13 @@
 //! Complementarity problems, general and frictional, with known answers.
 
+#[allow(dead_code)] // shared with the benches
 mod block;
 mod blocks;
 mod frictional;
 mod general;
+#[allow(dead_code)] // shared with the benches
 mod problems;
 mod properties;
 mod random;
+#[allow(dead_code)] // shared with the benches
 mod tableau;
