@@ -69,6 +69,9 @@ class Overlap:
     """Pairs of edges that cross, with all four ends further than LIMIT from the other edge."""
     corner: Intrusion | None = None
     """The deepest corner of a rigid surface in a body."""
+    crossing: float = 0.0
+    """Deepest crossing of edges of bodies: how far the nearest of the four ends is behind the other
+    edge, in lengths of that edge."""
 
     @property
     def depth(self) -> float:
@@ -133,7 +136,8 @@ def compare(
     """Compares the nodes of all outlines with all bodies and with the obstacles."""
     found: list[Intrusion] = []
     corners: list[Intrusion] = []
-    crossings = 0
+    of_bodies: list[Array] = [np.empty(0)]
+    of_profiles = 0
     boxes = [_box(position[outline.nodes]) for outline in bodies]
     for number, host in enumerate(bodies):
         for other, guest in enumerate(bodies):
@@ -141,13 +145,16 @@ def compare(
                 continue
             found += intrusions(position, host, guest.nodes, number)
             if other <= number:
-                crossings += count_crossings(position, host, guest)
+                of_bodies.append(crossings(position, host, guest))
         for other, obstacle in enumerate(obstacles or []):
             corners += intrusions(position, host, obstacle.corners, number)
             found += in_obstacle(position, host, obstacle, (number, other) in gone)
-            crossings += count_crossings(position, host, obstacle)
+            of_profiles += len(crossings(position, host, obstacle))
     inside = sum(intrusion.depth > LIMIT for intrusion in found)
-    return Overlap(_deepest(found), inside, crossings, _deepest(corners))
+    crossed = np.concatenate(of_bodies)
+    deepest = float(crossed.max(initial=0.0))
+    count = len(crossed) + of_profiles
+    return Overlap(_deepest(found), inside, count, _deepest(corners), deepest)
 
 
 def _deepest(found: list[Intrusion]) -> Intrusion | None:
@@ -155,8 +162,11 @@ def _deepest(found: list[Intrusion]) -> Intrusion | None:
     return deepest if deepest and deepest.depth > 0.0 else None
 
 
-def count_crossings(position: Array, one: Outline, two: Outline | Profile) -> int:
-    """Pairs of edges that cross by more than LIMIT; within one outline each pair counts once."""
+def crossings(position: Array, one: Outline, two: Outline | Profile) -> Array:
+    """Depths of the edges that cross by more than LIMIT; within one outline each pair counts once.
+
+    The depth is the distance of the nearest of the four ends from the other edge, in its lengths.
+    """
     a, b = position[one.nodes], position[one.after]
     c, d = position[two.nodes], position[two.after]
     low = (np.minimum(a, b)[:, None] < np.maximum(c, d)[None]).all(axis=2)
@@ -167,16 +177,19 @@ def count_crossings(position: Array, one: Outline, two: Outline | Profile) -> in
         keep = (rows < columns) & apart
         rows, columns = rows[keep], columns[keep]
     a, b, c, d = a[rows], b[rows], c[columns], d[columns]
-    return int((_separates(a, b, c, d) & _separates(c, d, a, b)).sum())
+    depth = np.minimum(_heights(a, b, c, d), _heights(c, d, a, b))
+    return depth[depth > LIMIT]
 
 
-def _separates(a: Array, b: Array, c: Array, d: Array) -> NDArray[np.bool_]:
-    """Whether c and d are on different sides of the line a, b and further than LIMIT from it."""
+def _heights(a: Array, b: Array, c: Array, d: Array) -> Array:
+    """Distance of the nearer of c and d from the line a, b, in lengths of a, b.
+
+    It is zero where both are on the same side.
+    """
     along = b - a
     square = np.einsum("ei,ei->e", along, along)
-    heights = [(along[:, 0] * (p - a)[:, 1] - along[:, 1] * (p - a)[:, 0]) for p in (c, d)]
-    far = np.minimum(*map(np.abs, heights)) > LIMIT * square
-    return far & (np.sign(heights[0]) != np.sign(heights[1]))
+    one, two = (along[:, 0] * (p - a)[:, 1] - along[:, 1] * (p - a)[:, 0] for p in (c, d))
+    return np.where(np.sign(one) != np.sign(two), np.minimum(abs(one), abs(two)) / square, 0.0)
 
 
 def _box(point: Array) -> tuple[Array, Array]:
@@ -226,7 +239,8 @@ def describe(results: Results, frame: int, overlap: Overlap) -> str:
     if overlap.corner is not None:
         parts.append(f"rigid corner {_words(overlap.corner, results, frame)}")
     if overlap.crossings:
-        parts.append(f"{overlap.crossings} crossings of edges")
+        deep = f", up to {overlap.crossing:.3g} of an edge deep" if overlap.crossing else ""
+        parts.append(f"{overlap.crossings} crossings of edges{deep}")
     return text + "; ".join(parts)
 
 

@@ -1,0 +1,33 @@
+"""Random scenes: the generator."""
+
+import numpy as np
+import pytest
+import random_scenes
+import scene_shapes
+from results import Array
+
+
+@pytest.mark.parametrize("kind", random_scenes.KINDS)
+def test_scenes_are_bodies_in_their_places(kind: str) -> None:
+    decks = set()
+    for seed in range(30):
+        scene = random_scenes.KINDS[kind](seed)
+        decks.add(scene.deck())
+        assert scene.deck() == random_scenes.KINDS[kind](seed).deck()
+        for body in scene.bodies:
+            corners = [body.nodes[list(corners)] for corners in body.shape.elements]
+            assert min(map(area, corners)) > 0.0
+    assert len(decks) == 30
+
+
+def area(corners: Array) -> float:
+    """Least area between two sides of an element."""
+    after, before = np.roll(corners, -1, axis=0) - corners, np.roll(corners, 1, axis=0) - corners
+    return float((after[:, 0] * before[:, 1] - after[:, 1] * before[:, 0]).min())
+
+
+def test_nodes_at_one_place_are_joined() -> None:
+    ring = scene_shapes.strip(scene_shapes.arc(1.0, 2 * np.pi, 0.0), 12, 2, 0.1)
+    assert (len(ring.nodes), len(ring.elements)) == (36, 24)
+    polygon = scene_shapes.polygon(5, 2, 1.0, np.random.default_rng(1))
+    assert (len(polygon.nodes), len(polygon.elements)) == (1 + 5 * 6, 20)
