@@ -96,7 +96,10 @@ def test_thin_body() -> None:
 def test_plates_that_cross_without_a_node_inside() -> None:
     lying = [(-1.0, -0.1), (1.0, -0.1), (1.0, 0.1), (-1.0, 0.1)]
     standing = [(-0.1, -1.0), (0.1, -1.0), (0.1, 1.0), (-0.1, 1.0)]
-    assert overlap(lying, standing) == Overlap(None, 0, 4)
+    found = overlap(lying, standing)
+    assert (found.deepest, found.inside, found.crossings) == (None, 0, 4)
+    # the long edges cross; each ends 0.9 beyond another, whose length is 2
+    assert found.crossing == pytest.approx(0.45)
 
 
 def test_a_body_around_another() -> None:
