@@ -63,3 +63,16 @@ def positive_integer(text: str) -> int:
     if number < 1:
         raise argparse.ArgumentTypeError(f"{text} is not above zero")
     return number
+
+
+def numbers(count: int) -> Callable[[str], tuple[float, ...]]:
+    """So many finite numbers between commas, as a type of argparse."""
+
+    def parse(text: str) -> tuple[float, ...]:
+        values = tuple(finite(part) for part in text.split(","))
+        if len(values) != count:
+            raise argparse.ArgumentTypeError(f"{text} is not {count} numbers between commas")
+        return values
+
+    parse.__name__ = f"{count} numbers"
+    return parse

@@ -88,14 +88,42 @@ class Colouring:
     field: Field
     label: str
     norm: Normalize
+    extend: str
+    """Which ends of the scale have values beyond them: neither, min, max or both."""
 
     @classmethod
-    def of(cls, name: str, shown: Sequence[Shown]) -> "Colouring":
-        """Scale that holds 0 and the field in all given frames."""
+    def of(
+        cls, name: str, shown: Sequence[Shown], ends: tuple[float, float] | None = None
+    ) -> "Colouring":
+        """Scale that holds 0 and the field in the given frames, or one with the given ends.
+
+        Frames that rise far above the others do not set its ends: they would make all others
+        dark. What lies beyond has the colour of the end, and the label says how far it goes.
+        """
         field = FIELDS[name]
-        values = np.concatenate([field.values(*each) for each in shown])
-        values = values[np.isfinite(values)]
-        low = min(0.0, float(values.min(initial=0.0)))
-        high = max(0.0, float(values.max(initial=0.0)))
-        labels = dict.fromkeys(field.label(results) for results, _ in shown)
-        return cls(field, " / ".join(labels), Normalize(low, high if high > low else low + 1.0))
+        finite = [values[np.isfinite(values)] for values in (field.values(*each) for each in shown)]
+        least = np.array([min(0.0, float(values.min(initial=0.0))) for values in finite])
+        most = np.array([max(0.0, float(values.max(initial=0.0))) for values in finite])
+        low, high = ends or (-usual(-least), usual(most))
+        if high <= low:
+            high = low + 1.0
+        below, above = bool(least.min() < low), bool(most.max() > high)
+        label = " / ".join(dict.fromkeys(field.label(results) for results, _ in shown))
+        if below:
+            label += f", smallest {least.min():.3g}"
+        if above:
+            label += f", largest {most.max():.3g}"
+        extend = {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}[below, above]
+        return cls(field, label, Normalize(low, high), extend)
+
+
+PEAK = 3.0
+"""A frame whose largest value is so many times that of most others is a peak."""
+
+
+def usual(largest: Array) -> float:
+    """The largest value of frames [frames] without the frames that are peaks."""
+    values = largest[largest > 0.0]
+    if len(values) == 0:
+        return 0.0
+    return float(min(values.max(), PEAK * np.quantile(values, 0.75)))

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
+from command import Fault
 from numpy.typing import NDArray
 from results import Array, Results
 
@@ -27,13 +28,22 @@ class Outline:
         """Takes [edges, 2] node indices in any order."""
         nodes = np.unique(edges)
         one, two = edges[np.argsort(edges[:, 0])], edges[np.argsort(edges[:, 1])]
-        if not (np.array_equal(one[:, 0], nodes) and np.array_equal(two[:, 1], nodes)):
-            raise ValueError("an outline touches itself in a node")
         return cls(nodes, one[:, 1], two[:, 0])
 
 
 def outlines(results: Results) -> list[Outline]:
-    """The outlines of all bodies, in the order of `Results.body`."""
+    """The outlines of all bodies, in the order of `Results.body`.
+
+    A Fault names a node in which elements touch with their corners only: what is inside is not
+    defined there.
+    """
+    starts, count = np.unique(results.boundary[:, 0], return_counts=True)
+    pinched = results.node_labels[starts[count > 1]]
+    if len(pinched):
+        raise Fault(
+            f"{results.path}: elements of a body touch in corners only, at node"
+            f" {', '.join(map(str, pinched[:5]))}: its outline has no inside there"
+        )
     body = results.body[results.boundary[:, 0]]
     return [Outline.of(results.boundary[body == number]) for number in np.unique(body)]
 

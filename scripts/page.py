@@ -84,6 +84,8 @@ class Legends:
     """Scale of the colour bar."""
     label: str = ""
     """Title of the colour bar."""
+    extend: str = "neither"
+    """Ends of the colour bar that have values beyond them."""
 
     def __bool__(self) -> bool:
         return bool(self.entries) or self.norm is not None
@@ -196,6 +198,7 @@ class Page:
                 ScalarMappable(legends.norm, "viridis"),
                 self._axes(left, self.bottom, 0.2, height),
                 label=fill(legends.label, round(height / CHARACTER)),
+                extend=legends.extend,
             )
 
     def _below(self, legends: Legends) -> None:
@@ -208,6 +211,7 @@ class Page:
                 axes,
                 label=legends.label,
                 orientation="horizontal",
+                extend=legends.extend,
             )
             left += 0.55 * self.width + 0.3
         top = legends.height - 0.1

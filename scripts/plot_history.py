@@ -108,6 +108,7 @@ def flat(axes: Axes, change: float, scale: float) -> None:
 
 def contact_force(axes: Axes, results: Results) -> None:
     """Normal and tangential resultant of each contact."""
+    axes.set_prop_cycle(color=style.colours(max(2 * len(results.contacts), 2)))
     for contact in results.contacts.values():
         prefix = f"{contact.name}: " if len(results.contacts) > 1 else ""
         axes.plot(results.time, contact.normal, lw=0.8, label=f"{prefix}normal")
@@ -117,6 +118,7 @@ def contact_force(axes: Axes, results: Results) -> None:
 
 def contact_state(axes: Axes, results: Results) -> None:
     """Number of closed and of sticking pairs."""
+    axes.set_prop_cycle(color=style.colours(max(2 * len(results.contacts), 2)))
     for contact in results.contacts.values():
         prefix = f"{contact.name}: " if len(results.contacts) > 1 else ""
         axes.plot(results.time, contact.closed, lw=0.8, label=f"{prefix}closed")
@@ -199,6 +201,7 @@ def compare(all_results: list[Results]) -> Figure:
     rows = COMPARED if touching else COMPARED[:5]
     figure, axes = plt.subplots(len(rows), 1, figsize=(9, 1.0 + 1.6 * len(rows)), sharex=True)
     for at, (title, values) in zip(axes, rows):
+        at.set_prop_cycle(color=style.colours(len(all_results)))
         for name, results in zip(names(all_results), all_results):
             at.plot(results.time, values(results), lw=0.9, label=name)
         at.set_ylabel(title)
@@ -226,7 +229,7 @@ def draw_named(all_results: list[Results], along: str, rows: list[list[str]]) ->
 def draw_row(axes: Axes, all_results: list[Results], along: str, shown: list[str]) -> list[str]:
     """Draws the histories of one row; returns the titles of the abscissa."""
     abscissae, ordinates = {}, {}
-    colours = cycle(style.COLOURS)
+    colours = iter(style.colours(len(all_results) * len(shown)))
     for job, results in zip(names(all_results), all_results):
         across = find(results, along)
         if not across.alone:

@@ -7,7 +7,9 @@ next to the first result, as JOB_motion.png; --animation alone writes no picture
 """
 
 import argparse
-from collections.abc import Iterable, Sequence
+import shutil
+import subprocess
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,11 +19,12 @@ import numpy as np
 import style
 from command import Fault
 from fields import FIELDS, Colouring, Shown
-from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from page import Legends, Page
+from PIL import Image
 from results import Array, Results
 from shapes import VECTORS, Arrows, draw_overlay, draw_shape, limits, status_legend
 
@@ -30,6 +33,13 @@ MOST = 100
 
 FILMS = (".mp4", ".m4v", ".mov", ".mkv", ".avi", ".webm")
 """Animations that ffmpeg writes."""
+
+FILM_DPI = 90
+"""Pixels per inch of animations."""
+
+
+Box = tuple[Array, Array]
+"""Lower left and upper right corner."""
 
 
 @dataclass(frozen=True)
@@ -40,18 +50,25 @@ class Look:
     """Name of the field that colours the bodies."""
     vectors: str | None = None
     """Name of the vector field whose arrows are drawn."""
+    ends: tuple[float, float] | None = None
+    """Ends of the colour scale."""
+    window: Box | None = None
+    """Part of the plane that is shown."""
 
 
 class Scene:
     """Frames drawn with one scale of everything."""
 
     def __init__(self, shown: Sequence[Shown], look: Look) -> None:
-        self.colouring = Colouring.of(look.field, shown) if look.field else None
+        colouring = Colouring.of(look.field, shown, look.ends) if look.field else None
+        self.colouring = colouring
         self.arrows = Arrows.of(look.vectors, shown) if look.vectors else None
-        self.box = limits(shown, self.arrows)
-        entries = status_legend(shown) + (self.arrows.legend() if self.arrows else [])
-        if self.colouring:
-            self.legends = Legends(entries, self.colouring.norm, self.colouring.label)
+        self.box = look.window or limits(shown, self.arrows)
+        marked = colouring is None or not colouring.field.on_edges
+        entries = status_legend(shown) if marked else []
+        entries += self.arrows.legend() if self.arrows else []
+        if colouring:
+            self.legends = Legends(entries, colouring.norm, colouring.label, colouring.extend)
         else:
             self.legends = Legends(entries)
 
@@ -105,10 +122,11 @@ def time_legend(shown: Sequence[Shown]) -> list[Line2D]:
     return [Line2D([], [], color=c, label=f"t = {t:.4g}") for t, c in zip(times, colours)]
 
 
-def overlay(rows: Sequence[Sequence[Shown]]) -> Figure:
+def overlay(rows: Sequence[Sequence[Shown]], window: Box | None = None) -> Figure:
     """A page with a panel for each result, all its frames in it."""
     legends = Legends(time_legend(max(rows, key=len)))
-    page = Page(len(rows), limits([each for row in rows for each in row]), legends)
+    box = window or limits([each for row in rows for each in row])
+    page = Page(len(rows), box, legends)
     columns = page.grid.columns
     for i, row in enumerate(rows):
         axes = page.panel(i // columns, i % columns, i + columns >= len(rows))
@@ -117,22 +135,67 @@ def overlay(rows: Sequence[Sequence[Shown]]) -> Figure:
     return page.figure
 
 
-def film_writer(path: Path, frames_per_second: int) -> AbstractMovieWriter:
-    """What writes an animation of this name."""
+def check_film(path: Path) -> None:
+    """A Fault unless an animation of this name can be written."""
     if path.suffix == ".gif":
-        return PillowWriter(fps=frames_per_second)
+        return
     if path.suffix not in FILMS:
         raise Fault(f"{path}: an animation is a .gif, or with ffmpeg one of {' '.join(FILMS)}")
-    if not FFMpegWriter.isAvailable():
+    if shutil.which("ffmpeg") is None:
         raise Fault(
             f"{path}: a {path.suffix} needs ffmpeg, which is not installed"
             " (Debian, Ubuntu: apt-get install ffmpeg); a .gif needs nothing"
         )
-    return FFMpegWriter(fps=frames_per_second)
+
+
+def write_film(path: Path, pictures: Iterable[Image.Image], frames_per_second: int) -> None:
+    """Writes pictures of one size as a .gif, or through ffmpeg."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if path.suffix == ".gif":
+        first, *others = pictures
+        palette = first.quantize(256)
+        others = [picture.quantize(palette=palette, dither=0) for picture in others]
+        duration = round(1000 / frames_per_second)
+        palette.save(path, save_all=True, append_images=others, duration=duration, loop=0)
+        return
+    pictures = iter(pictures)
+    first = next(pictures)
+    width, height = first.size
+    command_line = ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"]
+    command_line += ["-s", f"{width}x{height}", "-r", str(frames_per_second), "-i", "-"]
+    command_line += ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", str(path)]
+    with subprocess.Popen(command_line, stdin=subprocess.PIPE) as process:
+        assert process.stdin is not None
+        for picture in (first, *pictures):
+            process.stdin.write(picture.tobytes())
+        process.stdin.close()
+    if process.returncode:
+        raise Fault(f"{path}: ffmpeg ended with code {process.returncode}")
+
+
+def pictures_of(
+    page: Page, grid: Sequence[Axes], scene: Scene, rows: Sequence[Sequence[Shown]]
+) -> Iterator[Image.Image]:
+    """A picture for each row of frames. Axes and legends are drawn once, the bodies in each."""
+    canvas = FigureCanvasAgg(page.figure)
+    page.figure.set_dpi(FILM_DPI)
+    canvas.draw()
+    background = canvas.copy_from_bbox(page.figure.bbox)
+    for row in rows:
+        canvas.restore_region(background)
+        for axes, (results, frame) in zip(grid, row):
+            scene.draw(axes, results, frame)
+            axes.set_title(f"{results.job},  t = {results.frame_times[frame]:.4g}", pad=4)
+            drawn = [*axes.collections, *axes.texts]
+            for artist in sorted([*drawn, axes.title], key=lambda artist: artist.get_zorder()):
+                axes.draw_artist(artist)
+            for artist in drawn:
+                artist.remove()
+        yield Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
 
 
 def animate(
-    all_results: Sequence[Results], look: Look, path: Path, writer: AbstractMovieWriter
+    all_results: Sequence[Results], look: Look, path: Path, frames_per_second: int
 ) -> None:
     """Writes an animation of all frames of the first result; others are shown at its times."""
     times = all_results[0].frame_times
@@ -142,17 +205,7 @@ def animate(
     columns = page.grid.columns
     places = [divmod(i, columns) for i in range(len(all_results))]
     grid = [page.panel(*place, place[0] == places[-1][0]) for place in places]
-
-    def draw(number: int) -> None:
-        for axes, (results, frame) in zip(grid, rows[number]):
-            for artist in (*axes.collections, *axes.texts):
-                artist.remove()
-            scene.draw(axes, results, frame)
-            axes.set_title(f"{results.job},  t = {results.frame_times[frame]:.4g}", pad=4)
-
-    path.parent.mkdir(parents=True, exist_ok=True)
-    film = FuncAnimation(page.figure, draw, len(times), init_func=lambda: None)
-    film.save(path, writer=writer, dpi=90)
+    write_film(path, pictures_of(page, grid, scene, rows), frames_per_second)
     plt.close(page.figure)
     print(f"wrote {path}")
 
@@ -175,6 +228,14 @@ def shown_at(results: Results, times: Iterable[float]) -> list[Shown]:
     return [(results, frame) for frame in sorted({results.nearest_frame(t) for t in times})]
 
 
+def window(text: str) -> Box:
+    """Four numbers X0,X1,Y0,Y1, as a type of argparse."""
+    x0, x1, y0, y1 = command.numbers(4)(text)
+    if not (x0 < x1 and y0 < y1):
+        raise argparse.ArgumentTypeError(f"{text} is empty: give X0,X1,Y0,Y1 with X0 < X1, Y0 < Y1")
+    return np.array((x0, y0)), np.array((x1, y1))
+
+
 def arguments_of_command_line() -> argparse.Namespace:
     """Options of the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -184,6 +245,12 @@ def arguments_of_command_line() -> argparse.Namespace:
     )
     parser.add_argument("--interval", type=command.positive, help="show 0, INTERVAL, 2 INTERVAL..")
     parser.add_argument("--field", choices=[*FIELDS, "none"], default="von-mises")
+    parser.add_argument(
+        "--range", type=command.numbers(2), metavar="LOW,HIGH", help="ends of the colour scale"
+    )
+    parser.add_argument(
+        "--window", type=window, metavar="X0,X1,Y0,Y1", help="part of the plane to show"
+    )
     parser.add_argument("--vectors", choices=VECTORS, help="draw this vector field as arrows")
     parser.add_argument("--forces", action="store_true", help="the same as --vectors CONTACT_FORCE")
     parser.add_argument("--columns", type=command.positive_integer, help="panels side by side")
@@ -201,19 +268,24 @@ def main() -> None:
     """Command line."""
     arguments = arguments_of_command_line()
     vectors = arguments.vectors or ("CONTACT_FORCE" if arguments.forces else None)
-    look = Look(None if arguments.field == "none" else arguments.field, vectors)
+    field = None if arguments.field == "none" else arguments.field
+    look = Look(field, vectors, arguments.range, arguments.window)
     film = arguments.animation
-    writer = film_writer(film, arguments.fps) if film else None
+    if film:
+        check_film(film)
     all_results = [Results(path) for path in arguments.result]
     if arguments.output or not film:
         first = all_results[0]
         times = chosen_times(first, arguments.times, arguments.interval)
         rows = [shown_at(results, times) for results in all_results]
-        figure = overlay(rows) if arguments.overlay else panels(rows, look, arguments.columns)
+        if arguments.overlay:
+            figure = overlay(rows, arguments.window)
+        else:
+            figure = panels(rows, look, arguments.columns)
         path = arguments.output or first.path.with_name(f"{first.job}_motion.png")
         style.save(figure, path, arguments.dpi)
-    if writer is not None:
-        animate(all_results, look, film, writer)
+    if film:
+        animate(all_results, look, film, arguments.fps)
 
 
 if __name__ == "__main__":

@@ -138,6 +138,17 @@ class Results:
         return np.unique(np.concatenate([*self.cells, self.rigid.ravel()]))
 
     @cached_property
+    def in_cells(self) -> NDArray[np.int64]:
+        """Nodes of elements."""
+        return np.unique(np.concatenate(self.cells))
+
+    @cached_property
+    def edge_length(self) -> float:
+        """Median length of the edges of the undeformed mesh."""
+        way = [self.coordinates[cell] - self.coordinates[np.roll(cell, -1)] for cell in self.cells]
+        return float(np.median(np.linalg.norm(np.concatenate(way), axis=1)))
+
+    @cached_property
     def boundary(self) -> NDArray[np.int64]:
         """Edges that belong to one element only, [edges, 2] node indices, body on the left."""
         edges = {(int(a), int(b)) for cell in self.cells for a, b in zip(cell, np.roll(cell, -1))}

@@ -23,6 +23,14 @@ VECTORS = {
 }
 """Vector fields at the nodes: what they are."""
 
+MESH_LINE = 0.25
+"""Widest lines of the mesh in points."""
+
+POINTS_PER_INCH = 72.0
+
+AROUND = 4.0
+"""Corners of rigid surfaces farther from the bodies, in sizes of these, are not shown."""
+
 CROWD = 40
 """At most so many arrows of a field that is everywhere stand side by side."""
 
@@ -88,8 +96,10 @@ class Arrows:
 def draw_shape(axes: Axes, results: Results, frame: int, colouring: Colouring | None) -> None:
     """The deformed mesh in one frame, its outline and the nodes in contact."""
     position = results.positions(frame)
-    on_cells = colouring is not None and not colouring.field.on_edges
-    bodies = PolyCollection([position[cell] for cell in results.cells], linewidths=0.25)
+    on_edges = colouring is not None and colouring.field.on_edges
+    on_cells = colouring is not None and not on_edges
+    bodies = PolyCollection([position[cell] for cell in results.cells])
+    bodies.set_linewidth(mesh_line(axes, results))
     bodies.set_edgecolor("#ffffff80" if on_cells else "#b8c0c8")
     bodies.set_facecolor(BACKGROUND)
     outline = LineCollection(position[results.boundary], colors=EDGE, linewidths=0.8)
@@ -98,17 +108,30 @@ def draw_shape(axes: Axes, results: Results, frame: int, colouring: Colouring | 
     if colouring is not None:
         values = colouring.field.values(results, frame)
         coloured = bodies
-        if colouring.field.on_edges:
+        if on_edges:
             there = np.isfinite(values) & (values != 0.0)
             values = values[there]
             coloured = LineCollection(position[results.boundary[there]], linewidths=3.0, zorder=3)
             axes.add_collection(coloured)
         coloured.set(array=values, cmap="viridis", norm=colouring.norm)
     axes.add_collection(LineCollection(position[results.rigid], colors=EDGE, linewidths=1.6))
+    if on_edges:
+        return  # marks of the nodes would cover the coloured edges
     status = results.point_field("CONTACT_STATUS", frame)
     for value, face in ((STICK, MARK), (SLIP, "white")):
         at = position[status == value]
         axes.scatter(*at.T, s=11, facecolor=face, edgecolor=MARK, linewidth=0.9, zorder=5)
+
+
+def mesh_line(axes: Axes, results: Results) -> float:
+    """Width of the lines of the mesh in points: at most a thirtieth of an edge, none below that.
+
+    Lines of a fine mesh would drown the colours of its elements.
+    """
+    left, right = axes.get_xlim()
+    across = axes.get_position().width * axes.figure.get_size_inches()[0] * POINTS_PER_INCH
+    edge = results.edge_length * across / ((right - left) or 1.0)
+    return float(min(MESH_LINE, edge / 30.0)) if edge > 3.0 else 0.0
 
 
 def status_legend(shown: Sequence[Shown]) -> list[Artist]:
@@ -127,12 +150,22 @@ def status_legend(shown: Sequence[Shown]) -> list[Artist]:
 
 
 def limits(shown: Sequence[Shown], arrows: Arrows | None = None) -> tuple[Array, Array]:
-    """Lower left and upper right corner of the box that holds everything shown, with a margin."""
-    positions = [results.positions(frame)[results.drawn] for results, frame in shown]
+    """Lower left and upper right corner of the box that holds the deformable bodies, with a margin.
+
+    Corners of rigid surfaces are in it where they are near: at most AROUND sizes of the box away.
+    """
+    positions = [results.positions(frame)[results.in_cells] for results, frame in shown]
     if arrows is not None:
         positions += [arrows.tips(*each) for each in shown]
     low = np.min([place.min(axis=0) for place in positions], axis=0)
     high = np.max([place.max(axis=0) for place in positions], axis=0)
+    around = AROUND * float((high - low).max())
+    for results, frame in shown:
+        corner = results.positions(frame)[np.unique(results.rigid)]
+        near = ((corner > low - around) & (corner < high + around)).all(axis=1)
+        positions.append(corner[near])
+    low = np.min([place.min(axis=0, initial=np.inf) for place in positions], axis=0)
+    high = np.max([place.max(axis=0, initial=-np.inf) for place in positions], axis=0)
     margin = 0.03 * float((high - low).max()) or 1.0
     return low - margin, high + margin
 

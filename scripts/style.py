@@ -8,8 +8,10 @@ import matplotlib
 if not os.environ.get("DISPLAY"):
     matplotlib.use("Agg")
 
+import numpy as np  # noqa: E402
 from command import Fault, one_line  # noqa: E402
 from cycler import cycler  # noqa: E402
+from matplotlib.colors import to_hex  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from PIL import Image  # noqa: E402
 
@@ -19,6 +21,15 @@ MOST_PIXELS = 1e8
 COLOURS = ("#0b559f", "#d1495b", "#2e8b57", "#e08e0b", "#6a4c93", "#5c6b73", "#17a2b8")
 ACCOUNTS = (*COLOURS[:4], "#9acd32", "#c38d5a", "#222222", *COLOURS[4:])
 """Colours of the accounts of the energy ledger."""
+
+
+
+def colours(count: int) -> list[str]:
+    """So many colours that differ: those of the figures, or more of them from a colour map."""
+    if count <= len(COLOURS):
+        return list(COLOURS[:count])
+    return [to_hex(colour) for colour in matplotlib.colormaps["turbo"](np.linspace(0.04, 0.96, count))]
+
 
 matplotlib.rcParams.update(
     {

@@ -8,11 +8,13 @@ from pathlib import Path
 import numpy as np
 import penetration
 import pytest
+from command import Fault
 from conftest import ROOT, Job
 from decks import CANTILEVERS, parse, shortened
-from outlines import Outline, side
+from outlines import Outline, outlines, side
 from penetration import Overlap, compare, in_obstacle, still_gone
 from profiles import Profile
+from results import Results
 
 Points = list[tuple[float, float]]
 
@@ -153,9 +155,16 @@ def test_all_turns_of_a_body_are_found_alike() -> None:
         assert overlap(apart).deepest is None
 
 
-def test_an_outline_that_touches_itself_in_a_node_is_refused() -> None:
-    with pytest.raises(ValueError, match="touches itself"):
-        Outline.of(np.array([(0, 1), (1, 2), (2, 0), (0, 3), (3, 4), (4, 0)]))
+def test_an_outline_that_touches_itself_in_a_node_is_refused(job: Job, tmp_path: Path) -> None:
+    square = (ROOT / "tests/decks/square.inp").read_text().partition("*STEP")[0]
+    pinched = (
+        f"{square}*NODE\n91, 1., 2.\n92, 2., 2.\n93, 2., 1.\n"
+        "*ELEMENT, TYPE=CPS4, ELSET=BODY\n91, 3, 93, 92, 91\n"
+        "*STEP, NLGEOM\n*DYNAMIC, DIRECT\n1e-5, 1e-5\n*END STEP\n"
+    )
+    with Results(job(parse(pinched, tmp_path))) as results:
+        with pytest.raises(Fault, match="touch in corners only, at node 3:"):
+            outlines(results)
 
 
 def rigid(chain: Points, *polygons: Points, closed: bool = False) -> Overlap:

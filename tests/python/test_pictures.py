@@ -6,18 +6,21 @@ from pathlib import Path
 import h5py
 import matplotlib.pyplot as plt
 import numpy as np
+import plot_along
 import plot_history
 import pytest
 from command import Fault
 from conftest import ROOT, Job
 from deck import Deck
-from decks import CANTILEVERS, RINGS, shortened
-from fields import FIELDS, Colouring
+from decks import CANTILEVERS, RINGS, parse, shortened
+from fields import FIELDS, Colouring, usual
 from histories import find, listed
 from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 from matplotlib.quiver import Quiver
-from plot_motion import Look, chosen_times, overlay, panels, shown_at
+from PIL import Image
+from plot_motion import Look, animate, chosen_times, overlay, panels, shown_at
 from results import Results
 
 PLAIN = Look()
@@ -282,6 +285,69 @@ def test_fields_of_slave_nodes_colour_the_outline(contact: Results, tmp_path: Pa
         assert len(figure.axes) == 3
 
 
+def test_nodes_in_contact_do_not_cover_coloured_edges(contact: Results) -> None:
+    last = int(np.argmax([(contact.point_field("CONTACT_STATUS", k) > 1).any() for k in range(9)]))
+    shown = [[(contact, last)]]
+    marked, coloured = panels(shown, PLAIN), panels(shown, Look("contact-pressure"))
+    kinds = [[type(each) for each in figure.axes[0].collections] for figure in (marked, coloured)]
+    assert PathCollection in kinds[0] and PathCollection not in kinds[1]
+    assert not coloured.legends
+
+
+def test_a_frame_that_is_a_peak_does_not_set_the_colours() -> None:
+    largest = np.array([1.0, 1.2, 0.9, 1.1, 100.0, 0.0])
+    assert 3.0 < usual(largest) < 4.0
+    assert usual(np.array([1.0, 2.0, 2.5])) == 2.5
+    assert usual(np.zeros(3)) == 0.0
+
+
+def test_ends_of_the_colours_can_be_given(contact: Results) -> None:
+    last = len(contact.frame_times) - 1
+    colouring = Colouring.of("von-mises", [(contact, last)], (0.0, 1e-3))
+    assert (colouring.norm.vmin, colouring.norm.vmax, colouring.extend) == (0.0, 1e-3, "max")
+    assert ", largest " in colouring.label
+
+
+def test_lines_of_a_fine_mesh_do_not_drown_its_colours(contact: Results) -> None:
+    near = np.array([0.0, 0.0]), np.array([1.0, 1.0])
+    far = np.array([-900.0, -900.0]), np.array([900.0, 900.0])
+    widths = [
+        panels([[(contact, 0)]], Look(window=window)).axes[0].collections[0].get_linewidth()[0]
+        for window in (near, far)
+    ]
+    assert widths[0] > 0.2 and widths[1] == 0.0
+
+
+def test_an_animation_has_every_frame(job: Job, tmp_path: Path) -> None:
+    with Results(job(shortened(CANTILEVERS / "A_mu04.inp", 3), "--frames", "3")) as results:
+        animate([results], Look("von-mises"), tmp_path / "motion.gif", 15)
+        with Image.open(tmp_path / "motion.gif") as film:
+            assert film.n_frames == len(results.frame_times)
+            film.seek(film.n_frames - 1)
+            assert np.asarray(film.convert("RGB")).std() > 3.0
+
+
+def test_many_lines_have_colours_of_their_own(contact: Results) -> None:
+    names = [name for name in listed(contact) if name.startswith("energy/")]
+    figure = plot_history.draw_named([contact], "time", [names])
+    colours = [line.get_color() for line in figure.axes[0].lines]
+    assert len(colours) == len(set(colours)) == len(names) > 10
+
+
+def test_pressure_along_a_surface(job: Job) -> None:
+    with Results(job(shortened(RINGS / "rings_mu02.inp", 120))) as results:
+        nodes = np.flatnonzero(np.isfinite(results.point_field("SLIP", 0)))
+        lines = plot_along.chains(results, nodes)
+        assert sorted(np.concatenate([np.unique(line) for line in lines])) == sorted(nodes)
+        last = len(results.frame_times) - 1
+        figure = plot_along.draw(results, lines, [0, last], "CONTACT_PRESSURE", "length")
+        (start, end) = figure.axes[0].lines
+        assert not np.nan_to_num(start.get_ydata()).any()
+        assert len(end.get_xdata()) == len(lines[0]) and (np.diff(end.get_xdata()) > 0.0).all()
+        with pytest.raises(Fault, match="is a vector"):
+            plot_along.field(results, "U", 0)
+
+
 def test_times(contact: Results) -> None:
     assert chosen_times(contact, None, 2.0).tolist() == [0.0, 2.0, 4.0]
     assert len(chosen_times(contact, None, None)) == 6
@@ -291,6 +357,17 @@ def test_times(contact: Results) -> None:
         (contact, 0),
         (contact, len(contact.frame_times) - 1),
     ]
+
+
+def test_the_view_follows_the_bodies(job: Job, tmp_path: Path) -> None:
+    deck = (ROOT / "tests/decks/rigid_floor.inp").read_text()
+    far = deck.replace("*RIGID BODY", "LINE, 1000., 0.\n*RIGID BODY", 1)
+    with Results(job(parse(far, tmp_path))) as results:
+        low, high = panels([[(results, 0)]], PLAIN).axes[0].get_xlim()
+        assert high - low < 30.0
+        window = np.array([0.0, 1.0]), np.array([2.0, 4.0])
+        axes = panels([[(results, 0)]], Look(window=window)).axes[0]
+        assert axes.get_xlim() == (0.0, 2.0) and axes.get_ylim() == (1.0, 4.0)
 
 
 def test_rigid_surfaces_are_in_the_picture(job: Job) -> None:
