@@ -2,10 +2,11 @@
 //! Redistributed mass.
 
 use std::collections::HashMap;
+use std::f64::consts::TAU;
 
 use crate::contact::ContactSurfaces;
 use crate::model::{Face, Mesh, Model};
-use crate::vectors::cross;
+use crate::vectors::{angle, difference, polygon_area};
 
 /// Nodes of the contact surfaces of deformable bodies, increasing, each with whether it may be without
 /// mass: nodes at the edge of a hole may not, nor those that equations tie.
@@ -38,8 +39,8 @@ fn outer_nodes(mesh: &Mesh) -> Vec<Option<bool>> {
     let mut outer = vec![None; mesh.node_count()];
     for edge in edges(mesh) {
         let x = |node: usize| mesh.coordinates[node];
-        // twice the area within a closed edge, negative round a hole: the body is on the left
-        let area: f64 = edge.iter().map(|&[a, b]| cross(x(a), x(b))).sum();
+        // the area within a closed edge, negative round a hole: the body is on the left
+        let area = polygon_area(edge.iter().map(|&[a, _]| x(a)));
         for &[a, _] in &edge {
             outer[a] = Some(area > 0.0 && outer[a] != Some(false));
         }
@@ -47,21 +48,33 @@ fn outer_nodes(mesh: &Mesh) -> Vec<Option<bool>> {
     outer
 }
 
-/// Closed edges of the bodies, as their faces in order.
+/// Closed edges of the bodies, as their faces in order. Where elements meet in a node only, the edge goes on
+/// along the element that it has come by.
 fn edges(mesh: &Mesh) -> Vec<Vec<[usize; 2]>> {
     let sides = |face: &Face| face.nodes(mesh);
     let faces: Vec<[usize; 2]> = mesh.exterior_faces().iter().map(sides).collect();
     let mut starting: HashMap<usize, Vec<usize>> = HashMap::new();
-    for (face, &[a, _]) in faces.iter().enumerate().rev() {
+    for (face, &[a, _]) in faces.iter().enumerate() {
         starting.entry(a).or_default().push(face);
     }
+    let mut is_left = vec![true; faces.len()];
     let mut edges = Vec::new();
-    for &[first, _] in &faces {
+    for first in 0..faces.len() {
         let mut edge = Vec::new();
-        let mut at = first;
-        while let Some(face) = starting.get_mut(&at).and_then(Vec::pop) {
-            edge.push(faces[face]);
-            at = faces[face][1];
+        let mut next = Some(first).filter(|&face| is_left[face]);
+        while let Some(face) = next {
+            is_left[face] = false;
+            let [a, b] = faces[face];
+            edge.push([a, b]);
+            // of the faces that go on from b the first clockwise from the way back
+            let arm = |node: usize| difference(mesh.coordinates[b], mesh.coordinates[node]);
+            let clockwise = |&face: &usize| match angle(arm(faces[face][1]), arm(a)) {
+                turn if turn > 0.0 => turn,
+                turn => turn + TAU,
+            };
+            let going_on = starting.get(&b).into_iter().flatten().copied();
+            let nearest = going_on.min_by(|p, q| clockwise(p).total_cmp(&clockwise(q)));
+            next = nearest.filter(|&face| is_left[face]);
         }
         if !edge.is_empty() {
             edges.push(edge);

@@ -142,3 +142,53 @@ fn holes_thin_layers_and_tied_nodes_keep_their_mass() {
     });
     assert_eq!(redistribution(&tied).kept(), [3, 50]);
 }
+
+/// A flat block whose nodes are moved.
+fn flat(
+    cells: [usize; 2],
+    has: fn(usize, usize) -> bool,
+    moved: impl Fn([f64; 2]) -> [f64; 2],
+) -> Model {
+    let mut model = block(cells, |_, _| false, has);
+    let columns = cells[0] + 1;
+    for (k, x) in model.mesh.coordinates.iter_mut().enumerate() {
+        *x = moved([0.6 * (k % columns) as f64, 0.5 * (k / columns) as f64 - 1.0]);
+    }
+    model
+}
+
+/// Two layers have their donors on a line, some nodes on that line themselves; three layers have not.
+#[test]
+fn round_off_turns_and_places_do_not_decide_over_mass() {
+    for (rows, count) in [(2, 0), (3, 16)] {
+        let as_it_is = massless(&flat([5, rows], ALL, |x| x));
+        assert_eq!(as_it_is.len(), count, "{rows}");
+        let noise = |[x, y]: [f64; 2]| [x, y + 1e-16 * (37.0 * x + 11.0 * y).sin()];
+        assert_eq!(massless(&flat([5, rows], ALL, noise)), as_it_is, "noise");
+        for k in 0..24 {
+            let angle = f64::from(k) * std::f64::consts::PI / 12.0;
+            let (sin, cos) = angle.sin_cos();
+            for far in [0.0, 1e3] {
+                let turned = |[x, y]: [f64; 2]| [cos * x - sin * y + far, sin * x + cos * y - far];
+                assert_eq!(
+                    massless(&flat([5, rows], ALL, turned)),
+                    as_it_is,
+                    "{angle} {far}"
+                );
+            }
+        }
+    }
+}
+
+/// A notch and a hole that meet in a node, between two elements that meet there only: one edge goes round both.
+#[test]
+fn the_order_of_elements_does_not_decide_over_mass() {
+    let has = |i, j| (i, j) != (3, 0) && (i, j) != (4, 1);
+    let mut model = flat([8, 6], has, |x| x);
+    let found = massless(&model);
+    model.mesh.elements.reverse();
+    model.surfaces[0].kind = SurfaceKind::Faces(model.mesh.exterior_faces());
+    assert_eq!(massless(&model), found);
+    let edges = [3, 4, 12, 13, 14, 22, 23];
+    assert!(edges.iter().all(|node| found.contains(node)), "{found:?}");
+}
