@@ -99,14 +99,16 @@ impl ModelEcho {
         lines
     }
 
-    /// What suits the waves of the model: an increment, and the time in which they cross it.
+    /// What suits the waves of the model, an increment and the time in which they cross it, and that slow motion
+    /// asks for another increment.
     pub fn guide(&self) -> Vec<String> {
         let size = [0, 1].map(|i| self.upper[i] - self.lower[i]);
         let crossing = size[0].hypot(size[1]) / self.wave_speed;
         let pieces = [
-            format!("suggested dt {}", general(self.edge_time, 2)),
-            "in which a wave crosses the shortest edge".to_owned(),
+            format!("dt {} for waves and impacts:", general(self.edge_time, 2)),
+            "one crosses the shortest edge in it,".to_owned(),
             format!("the model in {}", general(crossing, 2)),
+            "for slow motion as long as the motion allows".to_owned(),
         ];
         wrap("guide", &pieces)
     }
