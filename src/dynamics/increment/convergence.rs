@@ -243,3 +243,90 @@ impl<'a> Scales<'a> {
         if scale == 0.0 { value } else { value / scale }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Configurations, ContactTarget, PairTarget, RowForm};
+    use crate::model::Friction;
+    use crate::prepare::redistribution_tests::block;
+
+    const FALLING: Friction = Friction {
+        at_rest: 0.3,
+        sliding: 0.1,
+        decay: 2.0,
+    };
+
+    /// Whether a node at 1/4 of a segment of length 2 may end an increment of length 1 with the given gap, slip and
+    /// forces, none where it is open.
+    fn obeys(
+        [gap, slip]: [f64; 2],
+        friction: Friction,
+        closed: Option<([f64; 2], ContactState)>,
+    ) -> bool {
+        let source = PairTarget {
+            slave_index: 0,
+            target: ContactTarget::face(0),
+            nodes: [0, 1, 2, 2],
+            from: None,
+            friction,
+        };
+        let mut u = [0.0; 6];
+        (u[0], u[1]) = (slip, gap);
+        let at = Configurations {
+            form: RowForm::End,
+            x: &[[-0.5, 0.0], [0.0, 0.0], [-2.0, 0.0]],
+            u0: &[0.0; 6],
+            u: &u,
+        };
+        let mut constraint = Constraint::new(source, &at);
+        constraint.take_slip_rate(1.0);
+        let pair = closed.map(|(force, state)| ClosedPair::new(&constraint, force, state));
+        let mut forces = ContactForces::without_constraints(&pair.into_iter().collect());
+        forces.relinearize(&mut vec![constraint]);
+        let parts = Parts::new(&block([1, 1], |_, _| false, |_, _| true));
+        let lengths = Lengths {
+            displacement: smallvec![0.0],
+            increment: smallvec![1.0],
+            position: smallvec![0.0],
+        };
+        let scales = Scales::new(&parts, smallvec![1.0], (&[0.0], &[0.0]), lengths, 1e-11);
+        scales.obeys_contact_law(&forces, false)
+    }
+
+    #[test]
+    fn an_increment_ends_with_the_friction_of_its_own_slip_rate() {
+        let sign = |pt: f64| match pt < 0.0 {
+            true => ContactState::SlipPlus,
+            false => ContactState::SlipMinus,
+        };
+        for slip in [0.25, -0.25, 2.0, -2.0] {
+            let own = FALLING.at(slip);
+            let with = |mu: f64| {
+                let pt = -mu * slip.signum() * 5.0;
+                obeys([0.0, slip], FALLING, Some(([5.0, pt], sign(pt))))
+            };
+            assert!(with(own) && with(own * (1.0 + 1e-12)), "{slip}");
+            for other in [own * (1.0 + 1e-9), own * (1.0 - 1e-9), FALLING.at_rest] {
+                assert!(!with(other), "{slip} {other}");
+            }
+        }
+        let sticks = |pt: f64| obeys([0.0; 2], FALLING, Some(([5.0, pt], ContactState::Stick)));
+        assert!(sticks(0.0) && sticks(-1.5) && !sticks(1.5 * (1.0 + 1e-9)));
+    }
+
+    #[test]
+    fn an_increment_ends_with_gaps_and_slips_of_the_contact_law() {
+        let mu = Friction::constant(0.5);
+        let [stick, plus] = [ContactState::Stick, ContactState::SlipPlus];
+        let closed = |gap, slip, mu, state| obeys([gap, slip], mu, Some(([1.0, 0.0], state)));
+        assert!(obeys([1e-3, 0.1], mu, None) && obeys([-1e-12, 0.1], mu, None));
+        assert!(!obeys([-1e-9, 0.1], mu, None), "overlap");
+        assert!(closed(1e-12, 1e-12, mu, stick));
+        assert!(!closed(1e-9, 0.0, mu, stick) && !closed(-1e-9, 0.0, mu, stick));
+        assert!(!closed(0.0, 1e-9, mu, stick) && !closed(0.0, -1e-9, mu, stick));
+        assert!(closed(0.0, 0.1, Friction::constant(0.0), stick));
+        assert!(closed(0.0, 0.1, mu, plus), "slides against its friction");
+        assert!(!closed(0.0, -1e-9, mu, plus), "slides along its friction");
+    }
+}
