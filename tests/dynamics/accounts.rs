@@ -1,7 +1,9 @@
 //! Accounts of bodies and contacts against the ledger, the momenta and closed forms.
 
-use stickslip::dynamics::{ContactOnBody, IncrementReport, NodeStatus, SolverCounts};
-use stickslip::model::{Bodies, Contact, LcpChoice, Model, Scheme, Settings, SurfaceKind};
+use stickslip::dynamics::{ContactOnBody, Energy, IncrementReport, NodeStatus, SolverCounts};
+use stickslip::model::{
+    Bodies, Contact, LcpChoice, Model, Scheme, Settings, Support, SupportMotion, SurfaceKind,
+};
 
 use stickslip::vectors::cross;
 
@@ -289,4 +291,64 @@ fn the_smallest_gap_is_that_of_the_nearest_node_or_unknown() {
     }
     assert!(kept.reports[0].contacts[0].min_gap.is_nan());
     assert!(kept.reports[10].contacts[0].min_gap > 0.0);
+}
+
+/// A block that falls askew on a plate with a supported bottom, all of which moves with the velocity `c`.
+fn landing_in_frame(c: [f64; 2], settings: Settings) -> Model {
+    let mut model = model(1e3, 0.3, 1.0);
+    let plate = add_block(&mut model, [-1.0, -1.0], [4.0, 1.0], (8, 4), 0.0);
+    let block = add_block(&mut model, [0.0, 0.03], [2.0, 1.0], (6, 5), 0.03);
+    throw(&mut model, &plate, c, 0.0, [0.0; 2]);
+    throw(&mut model, &block, [c[0] + 0.4, c[1] - 2.0], 0.0, [0.0; 2]);
+    add_contact(&mut model, block.faces(0), plate.faces(2), 0.3);
+    let (dt, count) = (0.005, 60);
+    let support = |dof: usize| Support {
+        dof,
+        motion: SupportMotion::Ramp {
+            to: c[dof % 2] * dt * count as f64,
+        },
+    };
+    let bottom = (0..=plate.nx).map(|i| plate.node(i, 0));
+    let dofs = bottom.flat_map(|node| [2 * node, 2 * node + 1]);
+    model.steps = vec![step(dt, count, settings, dofs.map(support).collect())];
+    model
+}
+
+/// Whatever the velocity with which everything moves, landings, impulses, friction and scheme take the same:
+/// what supports do to keep their velocity is external work.
+#[test]
+fn losses_do_not_depend_on_the_frame() {
+    for settings in [Settings::default()] {
+        let runs = [[0.0, 0.0], [10.0, 7.0], [-3.0, 40.0]].map(|c| {
+            let (kept, _) = run_to_end(&landing_in_frame(c, settings));
+            kept
+        });
+        let scale = energy(&runs[0].reports);
+        let last = runs[0].reports.last().expect("reports").energy;
+        let lost = last.impact_loss - last.normal_contact_work + last.release_loss;
+        assert!(lost > 1e-2 * scale, "{last:?}");
+        for moving in &runs[1..] {
+            assert_eq!(moving.reports.len(), runs[0].reports.len());
+            for (still, moving) in runs[0].reports.iter().zip(&moving.reports) {
+                let losses = |e: &Energy| {
+                    [
+                        e.strain,
+                        e.normal_contact_work,
+                        e.friction_dissipation,
+                        e.impact_loss,
+                        e.landing_return,
+                        e.release_loss,
+                        e.numerical_dissipation,
+                        e.balance,
+                    ]
+                };
+                let both = losses(&still.energy)
+                    .into_iter()
+                    .zip(losses(&moving.energy));
+                for (k, (a, b)) in both.enumerate() {
+                    assert!((a - b).abs() < 1e-9 * scale, "{k} {}: {a} {b}", still.time);
+                }
+            }
+        }
+    }
 }

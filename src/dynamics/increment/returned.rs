@@ -8,6 +8,8 @@ use crate::contact::{Constraint, ConstraintKey};
 pub(crate) struct Returned {
     /// What was given back to each pair.
     pub pairs: Vec<PairReturn>,
+    /// Work of the supports that hold their velocity against what is given back (energy).
+    pub support_work: f64,
     /// What nodes without mass lost as they came to rest.
     pub release: Release,
 }

@@ -21,7 +21,7 @@ pub(super) struct Pattern {
     pub momentum: Vec<f64>,
 }
 
-/// The patterns of some loads at the end of an increment of length `dt`, where the displacements are `u`.
+/// The patterns of some loads at the end of an increment of length `dt`, where the bodies are `bodies`.
 ///
 /// w = K*^-1 Gn^T, eq. (6.6): what a load changes in the velocity of the end, but for a factor.
 ///
@@ -31,10 +31,9 @@ pub(super) fn patterns(
     problem: &StepProblem,
     workspace: &mut Workspace,
     dt: f64,
-    u: &[f64],
+    bodies: &RigidBodies,
     loads: &[ReturnLoad],
 ) -> Result<Vec<Pattern>, Cause> {
-    let bodies = RigidBodies::new(problem, u);
     let pattern = |load: &ReturnLoad| {
         let mut w = (workspace.k()).respond(&problem.unknowns.map, &load.force)?;
         bodies.correct(problem, dt, &load.force, &mut w);
@@ -45,7 +44,7 @@ pub(super) fn patterns(
 }
 
 /// The free bodies as rigid ones.
-struct RigidBodies {
+pub(super) struct RigidBodies {
     is_free: Vec<bool>,
     /// Mass and moment of inertia of every body.
     inertia: Vec<[f64; 2]>,
@@ -55,7 +54,7 @@ struct RigidBodies {
 
 impl RigidBodies {
     /// The bodies at the displacements `u`.
-    fn new(problem: &StepProblem, u: &[f64]) -> Self {
+    pub fn new(problem: &StepProblem, u: &[f64]) -> Self {
         let is_free: Vec<bool> = holds(problem).iter().map(|&h| h == Hold::Free).collect();
         let body_of = problem.parts.of_nodes();
         let mut sums = vec![[0.0; 3]; is_free.len()];
@@ -78,6 +77,30 @@ impl RigidBodies {
             bodies.inertia[body][1] += dot(at(&bodies.arms, node), at(&weighted, node));
         }
         bodies
+    }
+
+    /// V_s over all dofs: in each direction the mean velocity of the supports of the body, or where it has none that of
+    /// its mass, when the velocities are `v`.
+    pub fn support_velocity(&self, problem: &StepProblem, v: &[f64]) -> Vec<f64> {
+        let body_of = problem.parts.of_nodes();
+        // sums of the velocities and their number, and of the momenta and masses
+        let mut held = vec![[[0.0; 2]; 2]; self.is_free.len()];
+        let mut moving = held.clone();
+        for dof in problem.unknowns.prescribed() {
+            let [sum, number] = &mut held[body_of[dof / 2]][dof % 2];
+            (*sum, *number) = (*sum + v[dof], *number + 1.0);
+        }
+        for (dof, v) in v.iter().enumerate() {
+            let m = problem.mass.shares[dof / 2];
+            let [sum, mass] = &mut moving[body_of[dof / 2]][dof % 2];
+            (*sum, *mass) = (*sum + m * v, *mass + m);
+        }
+        let mean = |[sum, number]: [f64; 2]| (number > 0.0).then(|| sum / number);
+        let of_dof = |dof: usize| {
+            let at = |sums: &[[[f64; 2]; 2]]| mean(sums[body_of[dof / 2]][dof % 2]);
+            at(&held).or_else(|| at(&moving)).unwrap_or(0.0)
+        };
+        (0..v.len()).map(of_dof).collect()
     }
 
     /// Sums of forces or momenta over the dofs of every body, and of their moments.

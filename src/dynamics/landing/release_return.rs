@@ -1,7 +1,7 @@
 //! What releases take of nodes without mass, given back to the velocities of the end. Section 6 of
 //! docs/theory.md, Releases.
 
-use super::landing_return::give_back;
+use super::landing_return::{GivenBack, give_back};
 use super::pattern::ReturnLoad;
 use crate::contact::Constraint;
 use crate::dynamics::increment::{PairReturn, Release, Returned, Solved};
@@ -28,13 +28,14 @@ pub(crate) fn return_release(
             constraint.add_force(*pair, &mut force);
         }
         let energy = release.loss;
-        let y = give_back(
+        let GivenBack { y, support_work } = give_back(
             problem,
             workspace,
             dt,
             solved,
             &[ReturnLoad { force, energy }],
         )?;
+        returned.support_work += support_work;
         returned.pairs.extend(parts(&release, dt * dt / 2.0 * y[0]));
     }
     returned.release = release;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::dynamics::increment::{Returned, Solved};
 use crate::dynamics::results::{Cause, Energy, State};
-use crate::dynamics::step::{Equilibrium, StepProblem, dot, sum};
+use crate::dynamics::step::{Equilibrium, StepProblem, difference, dot, sum};
 use crate::elements::ElementResult;
 use crate::linear::{larger, largest};
 
@@ -100,13 +100,18 @@ impl Ledger {
             inertia,
             ..
         } = &solved.equilibrium;
-        // T(V0) - T(V0+), eq. (9.4), the momentum being that of V0
+        // -Phi.(Bn V) - Psi.(Bt V), V = (V0 + V0+)/2, eq. (9.4); at supports V0.(M (V0+ - V0) - B^T Phi)
+        // of eq. (9.1), with what equations pass on to them
         if v0p != &start.v {
-            let [before, after] = [
-                dot(&start.v, &self.momentum) / 2.0,
-                problem.mass.kinetic_energy(v0p),
+            let [impulse, change] = [
+                solved.impulses.resultant(d.len()),
+                problem.mass.times(&difference(v0p, &start.v)),
             ];
-            self.energy.impact_loss += before - after;
+            self.energy.impact_loss -= dot(&sum(&start.v, v0p), &impulse) / 2.0;
+            let reaction = difference(&change, &impulse);
+            let reaction = problem.unknowns.passed_on(&reaction);
+            let prescribed = problem.unknowns.prescribed();
+            self.energy.external_work += prescribed.map(|p| start.v[p] * reaction[p]).sum::<f64>();
         }
         let elements = problem.elements.evaluate(&end.u, &end.internal);
         problem.mass.write_product(&end.v, &mut self.momentum);
@@ -134,12 +139,12 @@ impl Ledger {
             e.normal_contact_work += pn * constraint.normal_motion(d);
             e.friction_dissipation -= pt * constraint.tangential_motion(d);
         }
-        // what landings and releases are given back, R and the work of the loads on the way to rest,
-        // eq. (6.11)
+        // what landings and releases are given back, with the work of the supports on the way, eq. (6.10), R and
+        // the work of the loads on the way to rest, eq. (6.12)
         let (loss, load_work) = (returned.release.loss, returned.release.load_work);
         e.landing_return += returned.energy();
         e.release_loss += loss;
-        e.external_work += load_work;
+        e.external_work += load_work + returned.support_work;
         // d.F_d, D, and d.F - (W1 - W0) - d.F_d - D, eq. (9.5), W1 that before the rest
         let (u1, dissipated) = (sum(&start.u, d), solved.material_dissipation);
         let damping = (problem.elements).damping_dissipation([&start.u, &u1], d, dt);

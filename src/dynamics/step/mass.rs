@@ -1,4 +1,4 @@
-//! Global mass matrices over the nodes and over the unknowns, and kinetic energies. Section 2 of
+//! Global mass matrices over the nodes and over the unknowns. Section 2 of
 //! docs/theory.md.
 
 use super::unknowns::Unknowns;
@@ -37,11 +37,6 @@ impl Mass {
     /// Writes M v for a vector over all dofs.
     pub fn write_product(&self, v: &[f64], product: &mut [f64]) {
         self.nodal.write_product(v, product);
-    }
-
-    /// Kinetic energy v.M v/2.
-    pub fn kinetic_energy(&self, v: &[f64]) -> f64 {
-        dot(v, &self.times(v)) / 2.0
     }
 }
 
