@@ -19,6 +19,5 @@ pub use geometry::{
     Along, ContactSurfaces, Interior, Positions, Projection, contact_surfaces, project,
 };
 pub use search::{Candidate, ListedSlave, Search, Territory, all_segments};
-pub(crate) use search::{Circle, CircleTree};
 pub use targets::{ContactTarget, Corner, PairTarget, SlaveNode, common_normal, find_targets};
 pub use tunnelling::{Penetration, find_penetration};

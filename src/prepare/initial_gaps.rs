@@ -1,8 +1,11 @@
 //! Initial gaps of a contact by closest-point projection of the slave nodes in the reference
-//! configuration, with branch and bound over the bounding circles of the segments.
+//! configuration, with branch and bound over the bounding circles of the segments and the fans of their
+//! normals. Section 10 of docs/theory.md, Initial gaps.
 
+use super::normal_fan::NormalFan;
 use crate::contact::tolerances::PROJECTION_BEYOND_ENDS;
-use crate::contact::{Circle, CircleTree, ContactSurfaces, Projection, project};
+use crate::contact::{ContactSurfaces, Projection, project};
+use crate::vectors::{Circle, CircleTree};
 
 /// Gap of a slave node to the segment it faces in the reference configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,13 +25,7 @@ pub struct InitialGap {
 /// Gaps of the slave nodes of a contact at the positions `x`; nodes that face no segment are left
 /// out.
 pub(super) fn gaps(contact: &ContactSurfaces, x: &[[f64; 2]], bodies: &[usize]) -> Vec<InitialGap> {
-    let circles = contact.segments.iter().map(|&[a, b]| circle(x[a], x[b]));
-    let start = Start {
-        contact,
-        x,
-        bodies,
-        tree: CircleTree::new(circles),
-    };
+    let start = Start::new(contact, x, bodies);
     let slaves = contact.slaves.iter();
     slaves.filter_map(|&slave| start.gap(slave)).collect()
 }
@@ -48,14 +45,39 @@ struct Start<'m> {
     bodies: &'m [usize],
     /// Circles about the segments.
     tree: CircleTree,
+    /// Normals of the segments of every group of the tree.
+    fans: Vec<Option<NormalFan>>,
 }
 
-impl Start<'_> {
+impl<'m> Start<'m> {
+    fn new(contact: &'m ContactSurfaces, x: &'m [[f64; 2]], bodies: &'m [usize]) -> Self {
+        let circles = contact.segments.iter().map(|&[a, b]| circle(x[a], x[b]));
+        let tree = CircleTree::new(circles);
+        let ends = |i: usize| contact.segments[i].map(|node| x[node]);
+        let fan = |i: usize| NormalFan::new(ends(i), contact.next[i].map(ends));
+        Start {
+            fans: tree.of_groups(fan, NormalFan::join),
+            contact,
+            x,
+            bodies,
+            tree,
+        }
+    }
+
+    /// Visits the segments that a point may face, in about the order of their distance, up to the limit
+    /// (length) that the last visit gave.
+    fn visit_faced(&self, point: [f64; 2], visit: impl FnMut(usize) -> f64) {
+        let may_face = |group: usize, circle: &Circle| {
+            self.fans[group].is_some_and(|fan| fan.may_face(point, circle))
+        };
+        self.tree.visit_near(point, may_face, visit);
+    }
+
     /// Gap to the closest segment that the node projects into, or in whose wedge with the next
     /// segment it lies.
     fn gap(&self, slave: usize) -> Option<InitialGap> {
         let mut closest: Option<(f64, usize)> = None;
-        self.tree.visit_near(self.x[slave], |i| {
+        self.visit_faced(self.x[slave], |i| {
             let found = [self.over(slave, i), self.in_wedge(slave, i)];
             for (distance, segment) in found.into_iter().flatten() {
                 let is_closer = |(d, other)| distance < d || (distance == d && segment < other);
@@ -178,6 +200,45 @@ mod tests {
         }
     }
 
+    /// Segments that the nodes of a closed outline visit at most, per node.
+    fn visits_per_node(outline: impl Fn(f64) -> [f64; 2], count: usize) -> f64 {
+        let at = |i: usize| outline(i as f64 / count as f64);
+        let x: Vec<[f64; 2]> = (0..count).map(at).collect();
+        let segments = (0..count).map(|i| [i, (i + 1) % count]).collect();
+        let contact =
+            ContactSurfaces::new((0..count).collect(), &[], segments, Friction::default());
+        let bodies = vec![0; count];
+        let start = Start::new(&contact, &x, &bodies);
+        let mut visits = 0;
+        for &point in &x {
+            start.visit_faced(point, |_| {
+                visits += 1;
+                f64::INFINITY
+            });
+        }
+        visits as f64 / count as f64
+    }
+
+    #[test]
+    fn nodes_of_one_outline_visit_few_of_its_segments() {
+        let square = |t: f64| {
+            let (side, along) = ((4.0 * t).floor() as usize, (4.0 * t).fract());
+            let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]];
+            let [a, b] = [corners[side], corners[side + 1]];
+            [0, 1].map(|i| a[i] + along * (b[i] - a[i]))
+        };
+        let disc = |t: f64| {
+            [
+                (std::f64::consts::TAU * t).cos(),
+                (std::f64::consts::TAU * t).sin(),
+            ]
+        };
+        for count in [400, 1600, 6400] {
+            let visits = [visits_per_node(square, count), visits_per_node(disc, count)];
+            assert!(visits.iter().all(|v| *v < 60.0), "{count}: {visits:?}");
+        }
+    }
+
     #[test]
     fn the_tree_finds_what_all_segments_give() {
         let at = |i: usize| {
@@ -188,12 +249,7 @@ mod tests {
         let segments = (20..59).map(|i| [i, i + 1]).collect();
         let contact = ContactSurfaces::new((0..60).collect(), &[], segments, Friction::default());
         let bodies: Vec<usize> = (0..60).map(|i| usize::from(i > 30)).collect();
-        let start = Start {
-            contact: &contact,
-            x: &x,
-            bodies: &bodies,
-            tree: CircleTree::new([]),
-        };
+        let start = Start::new(&contact, &x, &bodies);
         let expected = |slave: usize| {
             let all = (0..39).flat_map(|i| [start.over(slave, i), start.in_wedge(slave, i)]);
             let closest = all

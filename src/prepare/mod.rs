@@ -6,6 +6,7 @@ mod adjustment;
 mod initial_gaps;
 mod initial_penetration;
 mod memory_need;
+mod normal_fan;
 mod prepared_model;
 mod redistribution;
 

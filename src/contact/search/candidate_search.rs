@@ -1,12 +1,11 @@
 //! Candidate search between slave nodes and segments, after Zhong & Nilsson (1989), with lists
 //! that stay valid over several increments. Section 10 of docs/theory.md, Territories.
 
-use super::bounding_circles::{Circle, CircleTree};
 use crate::contact::geometry::{ContactSurfaces, position};
 use crate::contact::tolerances::{
     PAIRING_REACH, PROJECTION_BEYOND_ENDS, SEARCH_MARGIN, SEARCH_MARGIN_PER_MOTION,
 };
-use crate::vectors::{difference, dot, length};
+use crate::vectors::{Circle, CircleTree, difference, dot, length};
 
 /// A segment that a slave node may pair with.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,5 +1,9 @@
 //! Vectors of the plane: products, lengths and angles.
 
+mod bounding_circles;
+
+pub(crate) use bounding_circles::{Circle, CircleTree};
+
 /// From `p` to `q`: q - p.
 #[inline]
 pub fn difference(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {

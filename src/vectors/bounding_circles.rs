@@ -1,7 +1,7 @@
 //! Bounding circles and their binary hierarchies, for overlaps and nearest neighbours: the
 //! territories of Zhong & Nilsson (1989). Section 10 of docs/theory.md, Territories.
 
-use crate::vectors::{difference, dot, length};
+use super::{difference, dot, length};
 
 /// Members of the groups that are not split further.
 const GROUP: usize = 8;
@@ -119,9 +119,34 @@ impl CircleTree {
         &self.members[from..to]
     }
 
+    /// A value of every group, joined from those of its members; of an empty group there is none.
+    pub fn of_groups<T: Copy>(
+        &self,
+        of_member: impl Fn(usize) -> T,
+        join: impl Fn(T, T) -> T,
+    ) -> Vec<Option<T>> {
+        let mut values: Vec<Option<T>> = vec![None; self.groups.len()];
+        for group in (1..self.groups.len()).rev() {
+            values[group] = if self.is_smallest(group) {
+                let members = self.members_of(group).iter();
+                members.map(|(_, i)| of_member(*i as usize)).reduce(&join)
+            } else {
+                let halves = [values[2 * group], values[2 * group + 1]];
+                halves.into_iter().flatten().reduce(&join)
+            };
+        }
+        values
+    }
+
     /// Visits members in about the order of their distance from a point, until all others are
-    /// further away than the limit (length) that the last visit gave.
-    pub fn visit_near(&self, point: [f64; 2], mut visit: impl FnMut(usize) -> f64) {
+    /// further away than the limit (length) that the last visit gave. Groups that are not admitted,
+    /// by their number and circle, are left out with all of their members.
+    pub fn visit_near(
+        &self,
+        point: [f64; 2],
+        is_admitted: impl Fn(usize, &Circle) -> bool,
+        mut visit: impl FnMut(usize) -> f64,
+    ) {
         if self.members.is_empty() {
             return;
         }
@@ -129,7 +154,7 @@ impl CircleTree {
         let mut limit = f64::INFINITY;
         let mut open = vec![1];
         while let Some(group) = open.pop() {
-            if distance(group) > limit {
+            if distance(group) > limit || !is_admitted(group, &self.groups[group].0) {
                 continue;
             }
             if self.is_smallest(group) {
@@ -216,7 +241,7 @@ mod tests {
             let distance = |i: usize| all[i].distance([x, y]);
             let expected = (0..all.len()).map(distance).fold(f64::INFINITY, f64::min);
             let mut nearest = f64::INFINITY;
-            CircleTree::new(all.clone()).visit_near([x, y], |i| {
+            CircleTree::new(all.clone()).visit_near([x, y], |_, _| true, |i| {
                 nearest = nearest.min(distance(i));
                 nearest
             });
@@ -234,10 +259,14 @@ mod tests {
         let members = [at(-1.0); GROUP].into_iter().chain([at(1.0); GROUP]);
         let all: Vec<Circle> = members.collect();
         let mut visited = Vec::new();
-        CircleTree::new(all.clone()).visit_near([0.0, 0.0], |i| {
-            visited.push(i);
-            all[i].distance([0.0, 0.0])
-        });
+        CircleTree::new(all.clone()).visit_near(
+            [0.0, 0.0],
+            |_, _| true,
+            |i| {
+                visited.push(i);
+                all[i].distance([0.0, 0.0])
+            },
+        );
         visited.sort_unstable();
         assert_eq!(visited, (0..2 * GROUP).collect::<Vec<_>>());
     }
