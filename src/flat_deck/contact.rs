@@ -2,7 +2,9 @@
 
 use super::lines::{Lines, name, named, number, set};
 use super::mesh::{all_exterior, first_of_rigid};
-use crate::model::{Adjust, Contact, Element, Equation, Friction, Interaction, Model, RigidBody};
+use crate::model::{
+    Adjust, Contact, Element, Equation, Friction, Interaction, Model, Reach, RigidBody,
+};
 
 /// Terms of an equation on a data line.
 const TERMS: usize = 4;
@@ -21,6 +23,9 @@ pub(super) fn write(model: &Model, lines: &mut Lines) {
         lines.card("CONTACT INCLUSIONS", ["ALL EXTERIOR".to_owned()]);
         lines.card("CONTACT PROPERTY ASSIGNMENT", []);
         lines.row([String::new(), String::new(), interaction]);
+        if let Some(Adjust::Within(reach)) = general.adjust {
+            initialization(reach, lines);
+        }
     }
     for &RigidBody { surface, reference } in &model.rigid_bodies {
         let surface = named("ANALYTICAL SURFACE", &model.surfaces[surface].name);
@@ -125,7 +130,7 @@ fn pair(contact: &Contact, interactions: &Interactions, model: &Model, lines: &m
         set("TYPE", "NODE TO SURFACE"),
     ];
     parameters.extend(contact.adjust.map(|adjust| match adjust {
-        Adjust::Within(clearance) => set("ADJUST", number(clearance)),
+        Adjust::Within(reach) => set("ADJUST", number(reach.above)),
         Adjust::Nodes(set) => named("ADJUST", &model.sets.nodes[set].name),
     }));
     lines.card_of("CONTACT PAIR", &parameters);
@@ -134,6 +139,19 @@ fn pair(contact: &Contact, interactions: &Interactions, model: &Model, lines: &m
         true => lines.row([surface(contact.slave)]),
         false => lines.row([contact.slave, contact.master].map(surface)),
     }
+}
+
+/// Writes which nodes of general contact are moved before the start.
+fn initialization(reach: Reach, lines: &mut Lines) {
+    const NAME: &str = "INITIALIZATION-1";
+    let mut parameters = vec![set("NAME", NAME), set("SEARCH ABOVE", number(reach.above))];
+    if reach.below.is_finite() {
+        parameters.push(set("SEARCH BELOW", number(reach.below)));
+    }
+    parameters.push(set("INITIAL CLEARANCE", number(reach.clearance)));
+    lines.card_of("CONTACT INITIALIZATION DATA", &parameters);
+    lines.card("CONTACT INITIALIZATION ASSIGNMENT", []);
+    lines.row([String::new(), String::new(), NAME.to_owned()]);
 }
 
 /// Writes -u_dof + sum c_k u_k = 0.

@@ -82,10 +82,31 @@ pub struct Contact {
 /// Which slave nodes are moved onto the master surface before the start, free of strain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Adjust {
-    /// Those inside the master body and those with at most this clearance (length).
-    Within(f64),
+    /// Those inside the master body or above it that are near its surface.
+    Within(Reach),
     /// Those of the node set with this index.
     Nodes(usize),
+}
+
+/// Which nodes are near a surface, and where they are moved to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// Largest clearance of a node that is moved (length).
+    pub above: f64,
+    /// Largest depth of a node that is moved (length); infinite without a limit.
+    pub below: f64,
+    /// Clearance that the moved nodes get (length).
+    pub clearance: f64,
+}
+
+impl Adjust {
+    /// Clearance that the moved nodes get (length).
+    pub fn clearance(&self) -> f64 {
+        match self {
+            Adjust::Within(reach) => reach.clearance,
+            Adjust::Nodes(_) => 0.0,
+        }
+    }
 }
 
 impl Contact {

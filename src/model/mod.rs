@@ -21,7 +21,7 @@ pub use crate::materials::Plane;
 pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
 pub use bodies::Bodies;
 pub use constraint::{Equation, RigidBody};
-pub use contact::{Adjust, Contact, Friction, Interaction};
+pub use contact::{Adjust, Contact, Friction, Interaction, Reach};
 pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub use load::{
     BodyForce, Load, PointLoad, Pressure, Rate, Support, SupportMotion, Traction, Variation,

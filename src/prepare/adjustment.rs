@@ -1,15 +1,20 @@
 //! Adjustment of the mesh before the start: strain-free moves of slave nodes onto the master
-//! surface (`ADJUST=` of `*CONTACT PAIR`), with a check of the elements that change shape.
+//! surface (`ADJUST=` of `*CONTACT PAIR`, `*CONTACT INITIALIZATION DATA` of general contact), with a check
+//! of the elements that change shape. Section 10 of docs/theory.md, Initial gaps.
 
 use super::initial_gaps::{InitialGap, gaps};
-use crate::contact::ContactSurfaces;
 use crate::contact::tolerances::{ADJUSTMENT_REACH, COORDINATE_ROUND_OFF};
+use crate::contact::{ContactSurfaces, project};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
-use crate::model::{Adjust, Contact, Element, Model};
-use crate::vectors::{cross, difference, polygon_area};
+use crate::model::{Adjust, Contact, Element, Model, Reach};
+use crate::vectors::{cross, difference, distance, polygon_area};
+use std::collections::HashSet;
 
 /// Smallest ratio of an element's area to that before.
 const SMALLEST_AREA: f64 = 0.5;
+
+/// Most sweeps over the nodes of a surface that touches itself.
+const SWEEPS: usize = 20;
 
 /// Nodes moved for a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,19 +47,55 @@ pub(super) fn adjust(model: &mut Model, surfaces: &[ContactSurfaces]) -> Vec<Adj
         let Some(wanted) = model.contacts[i].adjust else {
             continue;
         };
-        let mut moved = gaps(surfaces, &model.mesh.coordinates, &bodies);
-        moved.retain(|gap| {
-            gap.gap.abs() > COORDINATE_ROUND_OFF * gap.edge && is_meant(model, wanted, gap)
-        });
-        adjusted.extend(move_nodes(model, i, &moved));
+        let before = model.mesh.coordinates.clone();
+        let clearance = wanted.clearance();
+        let meant = |model: &Model| {
+            let mut meant = gaps(surfaces, &model.mesh.coordinates, &bodies);
+            meant.retain(|gap| {
+                let off = (gap.gap - clearance).abs();
+                off > COORDINATE_ROUND_OFF * gap.edge && is_meant(model, wanted, gap)
+            });
+            meant
+        };
+        let mut wanted_moves = meant(model);
+        if model.contacts[i].is_self_contact() {
+            for _ in 0..SWEEPS {
+                move_nodes(model, &independent(wanted_moves), clearance);
+                wanted_moves = meant(model);
+                wanted_moves.retain(|gap| gap.gap < 0.0);
+                if wanted_moves.is_empty() {
+                    break;
+                }
+            }
+        } else {
+            move_nodes(model, &wanted_moves, clearance);
+        }
+        adjusted.extend(adjusted_of(model, i, &surfaces.slaves, &before));
     }
     adjusted
+}
+
+/// Those of the nodes that face segments at rest: of a node and the segment that it faces only one is
+/// moved in a sweep. The deepest nodes come first.
+fn independent(mut gaps: Vec<InitialGap>) -> Vec<InitialGap> {
+    gaps.sort_by(|a, b| a.gap.total_cmp(&b.gap).then(a.slave.cmp(&b.slave)));
+    let (mut moved, mut faced) = (HashSet::new(), HashSet::new());
+    gaps.retain(|gap| {
+        let is_free = !faced.contains(&gap.slave);
+        let is_at_rest = gap.segment.iter().all(|node| !moved.contains(node));
+        if is_free && is_at_rest {
+            moved.insert(gap.slave);
+            faced.extend(gap.segment);
+        }
+        is_free && is_at_rest
+    });
+    gaps
 }
 
 /// Whether a node is to be moved.
 fn is_meant(model: &Model, wanted: Adjust, gap: &InitialGap) -> bool {
     match wanted {
-        Adjust::Within(clearance) => gap.gap <= clearance,
+        Adjust::Within(Reach { above, below, .. }) => (-below..=above).contains(&gap.gap),
         Adjust::Nodes(set) => {
             let members = &model.sets.nodes[set].members;
             members.binary_search(&gap.slave).is_ok() && gap.gap <= ADJUSTMENT_REACH * gap.edge
@@ -62,24 +103,35 @@ fn is_meant(model: &Model, wanted: Adjust, gap: &InitialGap) -> bool {
     }
 }
 
-/// Moves nodes to their feet on the master surface.
-fn move_nodes(model: &mut Model, contact: usize, moved: &[InitialGap]) -> Option<Adjusted> {
+/// Moves nodes to their feet on the master surface, or to a clearance above these.
+fn move_nodes(model: &mut Model, moved: &[InitialGap], clearance: f64) {
     let before = model.mesh.coordinates.clone();
-    let mut largest: Option<(f64, usize)> = None;
     for gap in moved {
         let [a, b] = gap.segment.map(|node| before[node]);
         let xi = gap.xi.clamp(0.0, 1.0);
         let foot = [0, 1].map(|i| a[i] + xi * (b[i] - a[i]));
-        let old = before[gap.slave];
-        let way = (foot[0] - old[0]).hypot(foot[1] - old[1]);
-        model.mesh.coordinates[gap.slave] = foot;
-        if largest.is_none_or(|(most, _)| way > most) {
-            largest = Some((way, gap.slave));
-        }
+        let normal = project(a, a, b).normal;
+        model.mesh.coordinates[gap.slave] = match clearance {
+            0.0 => foot,
+            _ => [0, 1].map(|i| foot[i] + clearance * normal[i]),
+        };
     }
-    let (largest, node) = largest?;
+}
+
+/// What has become of the slave nodes of a contact since they were at the places `before`.
+fn adjusted_of(
+    model: &Model,
+    contact: usize,
+    slaves: &[usize],
+    before: &[[f64; 2]],
+) -> Option<Adjusted> {
     let after = &model.mesh.coordinates;
-    let is_spoiled = |element: &Element| is_spoiled(element, &before, after);
+    let ways = slaves
+        .iter()
+        .map(|&node| (distance(before[node], after[node]), node));
+    let moved: Vec<(f64, usize)> = ways.filter(|(way, _)| *way > 0.0).collect();
+    let &(largest, node) = (moved.iter()).max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)))?;
+    let is_spoiled = |element: &Element| is_spoiled(element, before, after);
     Some(Adjusted {
         contact,
         count: moved.len(),
@@ -130,7 +182,10 @@ fn note(model: &Model, contact: &Contact, moved: &Adjusted) -> Diagnostic {
         moved.count,
         if moved.count == 1 { "node" } else { "nodes" },
         model.surfaces[contact.slave].name,
-        model.surfaces[contact.master].name,
+        match contact.is_self_contact() {
+            true => "the surfaces that they face",
+            false => &model.surfaces[contact.master].name,
+        },
         model.node_name(moved.node),
         moved.largest,
         if moved.count == 1 {
@@ -202,7 +257,11 @@ mod tests {
             slave: 0,
             master: 1,
             interaction: Interaction::default(),
-            adjust: Some(Adjust::Within(0.1 * edge)),
+            adjust: Some(Adjust::Within(Reach {
+                above: 0.1 * edge,
+                below: f64::INFINITY,
+                clearance: 0.0,
+            })),
             left_out: Vec::new(),
             span: Span::default(),
         });

@@ -190,9 +190,15 @@ fn remedy(model: &Model, contact: &Contact) -> String {
     let apart = "move the bodies apart: pushing the nodes out would add energy";
     let adjust = "ADJUST= on *CONTACT PAIR moves the nodes onto the master before the start, free \
                   of strain";
-    let apart = match is_pair(model, contact) {
-        true => format!("{apart}; {adjust}"),
-        false => apart.to_string(),
+    let initialization = "*CONTACT INITIALIZATION DATA, NAME=FIT with , , FIT under *CONTACT \
+                          INITIALIZATION ASSIGNMENT moves the nodes onto the surfaces before the \
+                          start, free of strain";
+    let apart = if is_pair(model, contact) {
+        format!("{apart}; {adjust}")
+    } else if model.surfaces[contact.slave].name == ALL_EXTERIOR {
+        format!("{apart}; {initialization}")
+    } else {
+        apart.to_owned()
     };
     match model.surfaces[contact.master].kind {
         SurfaceKind::Rigid(_) => format!(

@@ -92,6 +92,7 @@ fn read(cx: &mut Context) -> Model {
     checks::coincident_nodes(&model, side, &mesh_index.places, cx);
     checks::fixed_slaves(&model, cx);
     checks::proportion(&model.steps, &outline.steps, guide, cx);
+    checks::overlap(&model, &mesh_index.places, cx);
     checks::motion(&model, &outline.steps, cx);
     model
 }

@@ -1,6 +1,10 @@
 //! Checks of the model: decks that trigger each, and decks close to them that do not.
 
 use super::{Code, GENERAL, SQUARE, Source, change, messages, shared, square};
+use std::fmt::Write;
+use stickslip::diagnostics::{Diagnostics, Severity, Sources};
+use stickslip::prepare::{PreparedModel, prepare};
+use stickslip::{deck, reader};
 
 /// Codes of the messages about a deck.
 fn codes(source: &Source) -> Vec<Code> {
@@ -79,4 +83,82 @@ fn a_surface_that_looks_away_is_no_penetration() {
     assert!(found.contains(&Code::FacingAway) && !found.contains(&Code::NothingFaced));
     let inside = codes(&shared("11, 1., 1.1", "11, 1., 0.99"));
     assert!(!inside.contains(&Code::FacingAway) && inside.contains(&Code::InitialPenetration));
+}
+
+/// Nodes and elements of a ring of so many elements between two radii.
+fn ring(text: &mut String, name: &str, first: usize, count: usize, radii: [f64; 2]) {
+    writeln!(text, "*NODE").expect("a text");
+    for i in 0..count {
+        let angle = std::f64::consts::TAU * i as f64 / count as f64;
+        for (j, radius) in radii.into_iter().enumerate() {
+            let [x, y] = [radius * angle.cos(), radius * angle.sin()];
+            writeln!(text, "{}, {x:.12}, {y:.12}", first + 2 * i + j).expect("a text");
+        }
+    }
+    writeln!(text, "*ELEMENT, TYPE=CPS4, ELSET={name}").expect("a text");
+    for i in 0..count {
+        let [a, b] = [i, (i + 1) % count].map(|i| first + 2 * i);
+        writeln!(text, "{}, {a}, {}, {}, {b}", first + i, a + 1, b + 1).expect("a text");
+    }
+    writeln!(text, "*SOLID SECTION, ELSET={name}, MATERIAL=RUBBER").expect("a text");
+}
+
+/// A pin in a hole in general contact: elements of about 1 on radii of about 10, whose sagitta is more than
+/// the clearance. The prepared model, if there is no error, and the messages.
+fn pin_in_a_hole(clearance: f64, contact: &str) -> (Option<PreparedModel>, Diagnostics) {
+    let mut text = String::new();
+    ring(&mut text, "PIN", 1, 64, [7.0, 10.0]);
+    ring(&mut text, "EYE", 1001, 61, [10.0 + clearance, 14.0]);
+    text.push_str("*MATERIAL, NAME=RUBBER\n*ELASTIC\n1000., 0.3\n*DENSITY\n1.\n");
+    text.push_str(contact);
+    text.push_str("*BOUNDARY\n1, 1, 2\n*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.1, 1.\n*DLOAD\n, GRAV, 1., 0., -1.\n*END STEP\n");
+    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+    let deck = deck::parse_str("pin.inp", &text, &mut sources, &mut d);
+    let model = reader::build(&deck, &mut d);
+    (model.and_then(|model| prepare(model, &mut d)), d)
+}
+
+#[test]
+fn curved_surfaces_that_mesh_into_each_other_start_with_an_initialization() {
+    for clearance in [0.0, 0.01] {
+        let (model, d) = pin_in_a_hole(clearance, GENERAL);
+        let error = d.iter().find(|item| item.severity == Severity::Error);
+        assert!(model.is_none() && error.is_some_and(|e| e.code == Code::InitialPenetration));
+        let help = error
+            .and_then(|error| error.help.clone())
+            .unwrap_or_default();
+        assert!(help.contains("*CONTACT INITIALIZATION DATA"), "{help}");
+        let fit = format!(
+            "*CONTACT INITIALIZATION DATA, NAME=FIT\n{GENERAL}\
+             *CONTACT INITIALIZATION ASSIGNMENT\n, , FIT\n"
+        );
+        let (model, d) = pin_in_a_hole(clearance, &fit);
+        let model = model.expect("no errors");
+        assert!(!d.has_errors() && d.iter().any(|item| item.code == Code::Adjusted));
+        let moved = model.adjusted()[0];
+        assert!(moved.largest < 0.014 && moved.count <= 64, "{moved:?}");
+        let gaps = model.initial_gaps()[0].iter();
+        let deepest = gaps
+            .map(|gap| gap.gap / gap.edge)
+            .fold(f64::INFINITY, f64::min);
+        assert!(deepest > -1e-9, "{deepest:e}");
+    }
+}
+
+#[test]
+fn bodies_that_overlap_are_told_unless_contact_moves_them() {
+    let overlap = |contact: &str| {
+        let (_, d) = pin_in_a_hole(-0.5, contact);
+        let told = d.iter().find(|item| item.code == Code::OverlappingBodies);
+        told.map(|item| item.severity)
+    };
+    assert_eq!(overlap(GENERAL), Some(Severity::Error));
+    assert_eq!(overlap(""), Some(Severity::Warning));
+    let pair = "*SURFACE, NAME=P\nPIN\n*SURFACE, NAME=E\nEYE\n*SURFACE INTERACTION, NAME=I\n\
+                *CONTACT PAIR, INTERACTION=I, ADJUST=0.\nP, E\n";
+    assert_eq!(overlap(pair), None, "moved before the start");
+    assert_eq!(
+        overlap(&pair.replace(", ADJUST=0.", "")),
+        Some(Severity::Warning)
+    );
 }

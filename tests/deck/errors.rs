@@ -156,6 +156,14 @@ fn faulty(code: Code) -> Source {
             "7, 1, 2, 3, 4",
             "7, 1, 2, 3, 4\n8, 5, 6, 7, 8\n*NODE\n5, 1., 0.\n6, 2., 0.\n7, 2., 1.\n8, 1., 1.",
         ),
+        OverlappingElements => square(
+            "7, 1, 2, 3, 4",
+            "7, 1, 2, 3, 4\n*ELEMENT, TYPE=CPS3, ELSET=BODY\n8, 1, 2, 3",
+        ),
+        OverlappingBodies => square(
+            "7, 1, 2, 3, 4",
+            "7, 1, 2, 3, 4\n8, 5, 6, 7, 8\n*NODE\n5, 0.5, 0.5\n6, 2., 0.5\n7, 2., 2.\n8, 0.5, 2.",
+        ),
         IncompleteMaterial => square("*DENSITY\n1.\n", ""),
         MaterialRange => square("1000., 0.3", "1000., 0.5"),
         NoSection => square("*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER\n0.5\n", ""),
@@ -243,6 +251,14 @@ fn one_cause_one_message() {
     }
 }
 
+/// General contact whose nodes are moved before the start.
+fn initialized(parameters: &str, row: &str) -> String {
+    format!(
+        "*CONTACT INITIALIZATION DATA, NAME=FIT, {parameters}\n{GENERAL}\
+         *CONTACT INITIALIZATION ASSIGNMENT\n{row}\n"
+    )
+}
+
 #[test]
 fn contacts_that_cannot_be() {
     let general = |more: &str| format!("{GENERAL}{more}");
@@ -278,6 +294,11 @@ EBLOCK",
         shared(PAIR, &general("*CONTACT PROPERTY ASSIGNMENT\n, , WET\n")),
         shared(PAIR, &general("*SURFACE, NAME=All_Exterior\nEBASE, S3\n")),
         shared(PAIR, &format!("*CONTACT INCLUSIONS, ALL EXTERIOR\n{PAIR}")),
+        shared(PAIR, &initialized("SEARCH ABOVE=-0.1", ", , FIT")),
+        shared(PAIR, &initialized("ADJUST=NO", ", , FIT")),
+        shared(PAIR, &initialized("INTERFERENCE FIT", ", , FIT")),
+        shared(PAIR, &initialized("ADJUST=YES", ", , FOT")),
+        shared(PAIR, &initialized("ADJUST=YES", "SBOT, STOP, FIT")),
         step(GENERAL.trim_end()),
     ];
     let texts = decks.map(|deck| {

@@ -302,6 +302,9 @@ fn constraints_and_contacts() {
     let pair = "*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE\nSBOT, STOP\n";
     let general = "*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n\
                    *CONTACT PROPERTY ASSIGNMENT\n, , DRY\n";
+    let initialization =
+        "*CONTACT INITIALIZATION DATA, NAME=FIT, INITIAL CLEARANCE=0.01, SEARCH ABOVE=0.1\n";
+    let assignment = "*CONTACT INITIALIZATION ASSIGNMENT\n, , FIT\n";
     let floor = "*NODE\n100, 0., -5.\n*SURFACE, NAME=FLOOR, TYPE=SEGMENTS\nSTART, 9., 0.\n\
                  START, 0., 0.\nLINE, 2., 0.\nCIRCL, 3., 1., 2., 1.\nSTART, 5., 0.\nLINE, 6., 0.\n\
                  LINE, 6., 1.\nLINE, 5., 0.\n*RIGID BODY, ANALYTICAL SURFACE=FLOOR, REF NODE=100\n\
@@ -309,6 +312,11 @@ fn constraints_and_contacts() {
     let onto_floor = pair.replace("STOP", "FLOOR");
     for contact in [
         general.to_owned(),
+        format!("{initialization}{general}{assignment}"),
+        format!(
+            "{}{floor}{general}{assignment}",
+            initialization.replace("0.1", "0.1, SEARCH BELOW=0.02")
+        ),
         format!("{floor}{onto_floor}"),
         format!("{floor}{general}"),
         format!("{floor}{general}{onto_floor}"),

@@ -672,13 +672,14 @@ fn a_deck_as_a_preprocessor_writes_it() {
 /// Heights of the nodes 11 and 12 of the block, which are 0.1 above and 0.05 inside its base, after
 /// they are adjusted.
 fn adjusted(adjust: &str) -> ([f64; 2], usize) {
+    adjusted_by(&PAIR.replace("TYPE", &format!("ADJUST={adjust}, TYPE")))
+}
+
+/// The same with any cards of contact.
+fn adjusted_by(contact: &str) -> ([f64; 2], usize) {
     let deck = include_str!("../decks/shared.inp")
         .replacen("12, 3., 1.1", "12, 3., 0.95", 1)
-        .replacen(
-            PAIR,
-            &PAIR.replace("TYPE", &format!("ADJUST={adjust}, TYPE")),
-            1,
-        );
+        .replacen(PAIR, contact, 1);
     let prepared = PreparedModel::new(read(&deck).0);
     let (model, moved) = (prepared.model(), prepared.adjusted());
     let height = |label: u64| {
@@ -698,6 +699,21 @@ fn adjusted_nodes_are_moved_onto_the_master() {
     assert_eq!(adjusted("0.0"), ([1.1, 1.0], 1));
     assert_eq!(adjusted("NBLOCK"), ([1.0, 1.0], 2));
     assert_eq!(adjusted("NFIX"), ([1.1, 0.95], 0));
+}
+
+#[test]
+fn nodes_of_general_contact_are_moved_onto_the_surfaces() {
+    let adjusted = |parameters: &str| {
+        adjusted_by(&format!(
+            "*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n\
+             *CONTACT INITIALIZATION DATA, NAME=FIT{parameters}\n\
+             *CONTACT INITIALIZATION ASSIGNMENT\n, ALL EXTERIOR, FIT\n"
+        ))
+    };
+    assert_eq!(adjusted(""), ([1.1, 1.0], 1));
+    assert_eq!(adjusted(", ADJUST=YES, SEARCH ABOVE=0.2"), ([1.0, 1.0], 2));
+    assert_eq!(adjusted(", SEARCH BELOW=0.01"), ([1.1, 0.95], 0));
+    assert_eq!(adjusted(", INITIAL CLEARANCE=0.125"), ([1.1, 1.125], 1));
 }
 
 /// The model of the block above a rigid floor with these rows, moved as the step says.

@@ -7,6 +7,7 @@ mod fixed_slaves;
 mod magnitudes;
 mod mesh;
 mod motion;
+mod overlap;
 mod proportion;
 mod thickness;
 
@@ -16,5 +17,6 @@ pub(super) use fixed_slaves::fixed_slaves;
 pub(super) use magnitudes::magnitudes;
 pub(super) use mesh::mesh;
 pub(super) use motion::motion;
+pub(super) use overlap::overlap;
 pub(super) use proportion::{Shortest, proportion, shortest};
 pub(super) use thickness::thickness;

@@ -1,5 +1,7 @@
 //! `*CONTACT`: every exterior face against every other and against the rigid surfaces.
 
+use super::assignment::of_all_surfaces;
+use super::initialization;
 use super::interactions::Interactions;
 use crate::deck::{Card, Name, Row};
 use crate::diagnostics::{Code, Diagnostic, Span};
@@ -63,6 +65,7 @@ fn general(
     let block = blocks.first()?;
     let span = inclusions(block, cx);
     let assigned = assignment(block, interactions, cx);
+    let adjust = initialization::read(outline, block, cx);
     let span = span?;
     if surfaces.names.is_defined(&Name::plain(ALL_EXTERIOR)) {
         let message = format!("the deck has a surface {ALL_EXTERIOR} of its own");
@@ -79,7 +82,7 @@ fn general(
         slave: surface,
         master: surface,
         interaction: assigned.ok()?,
-        adjust: None,
+        adjust: adjust.ok()?,
         left_out: Vec::new(),
         span,
     })
@@ -135,15 +138,7 @@ fn assignment(
 
 /// `, , interaction`
 fn assigned_in(row: Row, interactions: &Interactions, cx: &mut Context) -> Option<Interaction> {
-    row.at_most(3, cx.d);
-    let mut named = (0..2).filter_map(|i| row.get(i));
-    if let Some(field) = named.find(|field| field.name_key() != "ALLEXTERIOR") {
-        let message = "only the assignment to all surfaces is supported";
-        let error = Diagnostic::error(Code::GeneralContact, field.span, message);
-        cx.d.push(error.help("leave the first two fields empty"));
-        return None;
-    }
-    let name = row.required(2, "the interaction", cx.d)?;
+    let name = of_all_surfaces(row, "the interaction", cx)?;
     interactions.find(name, cx)
 }
 

@@ -4,7 +4,7 @@ use super::general_contact;
 use super::interactions::Interactions;
 use crate::deck::{Card, Row};
 use crate::diagnostics::{Code, Diagnostic};
-use crate::model::{Adjust, Contact, Interaction, SurfaceKind};
+use crate::model::{Adjust, Contact, Interaction, Reach, SurfaceKind};
 use crate::reader::context::Context;
 use crate::reader::mesh::{Found, MeshIndex, Outline, Sets, Surfaces, surface};
 use std::collections::HashSet;
@@ -49,7 +49,11 @@ fn adjust(card: &Card, sets: &Sets, cx: &mut Context) -> Option<Adjust> {
     let value = card.value("ADJUST")?;
     match value.as_real() {
         None => sets.node_names.find(value, cx).map(Adjust::Nodes),
-        Some(clearance) if clearance >= 0.0 => Some(Adjust::Within(clearance)),
+        Some(clearance) if clearance >= 0.0 => Some(Adjust::Within(Reach {
+            above: clearance,
+            below: f64::INFINITY,
+            clearance: 0.0,
+        })),
         Some(_) => {
             let message = format!("the clearance must not be negative, found {}", value.text);
             cx.error(Code::BadValue, value.span, message);
@@ -60,8 +64,10 @@ fn adjust(card: &Card, sets: &Sets, cx: &mut Context) -> Option<Adjust> {
 
 fn report_adjusted_self_contact(contact: Option<&Contact>, card: &Card, cx: &mut Context) {
     if card.has("ADJUST") && contact.is_some_and(Contact::is_self_contact) {
-        let message = "the nodes of a surface that touches itself cannot be moved onto it";
-        cx.error(Code::SurfaceUse, card.span_of("ADJUST"), message);
+        let message =
+            "the nodes of a surface that touches itself cannot be moved onto it by a pair";
+        let error = Diagnostic::error(Code::SurfaceUse, card.span_of("ADJUST"), message);
+        cx.d.push(error.help("general contact can: *CONTACT INITIALIZATION DATA"));
     }
 }
 

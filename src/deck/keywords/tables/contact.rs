@@ -16,6 +16,11 @@ const GENERAL_CONTACT: &str = "*CONTACT\n\
          *CONTACT INCLUSIONS, ALL EXTERIOR\n\
          *CONTACT PROPERTY ASSIGNMENT\n\
          , , DRY";
+const INITIALIZATION: &str = "*CONTACT INITIALIZATION DATA, NAME=FIT\n\
+         *CONTACT\n\
+         *CONTACT INCLUSIONS, ALL EXTERIOR\n\
+         *CONTACT INITIALIZATION ASSIGNMENT\n\
+         , , FIT";
 const CONTACT_CHANGE: &str = "Contacts hold for all steps.";
 const PAIR: &str = "*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE\n\
          SBOT, STOP";
@@ -190,6 +195,61 @@ pub(super) static CONTACT: &[Keyword] = &[
          and its name. Without it there is no friction.",
         GENERAL_CONTACT,
     ),
+    Keyword::read(
+        "CONTACT INITIALIZATION DATA",
+        Scope::BlockOrModel("CONTACT"),
+        Data::None,
+        &[
+            NAME,
+            P::value(
+                "SEARCH ABOVE",
+                "largest clearance of the nodes that are moved (default 0)",
+            )
+            .measuring(LENGTH),
+            P::value(
+                "SEARCH BELOW",
+                "largest depth of the nodes that are moved (default: any)",
+            )
+            .measuring(LENGTH),
+            P::value(
+                "INITIAL CLEARANCE",
+                "clearance that the moved nodes get (default 0)",
+            )
+            .measuring(LENGTH),
+            P::choice(
+                "ADJUST",
+                &[
+                    V::read("YES", "nodes are moved free of strain (default)"),
+                    V::refused("NO", "overlaps cannot be pressed out in a step"),
+                ],
+                "whether nodes are moved",
+            ),
+            P::optional(
+                "INTERFERENCE FIT",
+                "overlaps cannot be pressed out in a step",
+            )
+            .refused(),
+            P::value("SEARCH NSET", "all nodes are searched").refused(),
+        ],
+        "Moves nodes of general contact that start inside another body onto its surface, free of \
+         strain; with SEARCH ABOVE= those above it too. Of two surfaces that mesh into each other the \
+         nodes that lie deepest are moved first, the others only if they are still inside. It acts \
+         where *CONTACT INITIALIZATION ASSIGNMENT names it.",
+        INITIALIZATION,
+    ),
+    Keyword::read(
+        "CONTACT INITIALIZATION ASSIGNMENT",
+        Scope::Block("CONTACT"),
+        Data::Required(&[row(&[
+            plain("surface"),
+            plain("surface"),
+            plain("initialization"),
+        ])]),
+        &[],
+        "Which nodes of general contact are moved before the start: a row of two empty fields, which \
+         stand for all surfaces, and the name of the *CONTACT INITIALIZATION DATA.",
+        INITIALIZATION,
+    ),
     Keyword::warned("CONTACT CONTROLS", OTHER_NUMBERS),
     Keyword::warned("CONTACT CONTROLS ASSIGNMENT", OTHER_NUMBERS),
     Keyword::warned("CONTACT STABILIZATION", OTHER_NUMBERS),
@@ -197,8 +257,6 @@ pub(super) static CONTACT: &[Keyword] = &[
     Keyword::warned("GAP HEAT GENERATION", THERMAL),
     Keyword::warned("GAP RADIATION", THERMAL),
     Keyword::refused("CONTACT EXCLUSIONS", GENERAL).example(GENERAL_CONTACT),
-    Keyword::refused("CONTACT INITIALIZATION DATA", GENERAL).example(GENERAL_CONTACT),
-    Keyword::refused("CONTACT INITIALIZATION ASSIGNMENT", GENERAL).example(GENERAL_CONTACT),
     Keyword::refused("CONTACT FORMULATION", GENERAL).example(GENERAL_CONTACT),
     Keyword::refused("SURFACE PROPERTY ASSIGNMENT", GENERAL).example(GENERAL_CONTACT),
     Keyword::refused("CONTACT CLEARANCE", "Clearances are those of the mesh."),
@@ -210,7 +268,8 @@ pub(super) static CONTACT: &[Keyword] = &[
     Keyword::refused("CONTACT DAMPING", "Contact has no damping."),
     Keyword::refused(
         "CONTACT INTERFERENCE",
-        "Nodes are moved before the start with ADJUST= of *CONTACT PAIR only.",
+        "Nodes are moved before the start with ADJUST= of *CONTACT PAIR or *CONTACT INITIALIZATION DATA \
+         only.",
     ),
     Keyword::refused("COHESIVE BEHAVIOR", "Surfaces do not stick to each other."),
     Keyword::refused("TIE", "Surfaces cannot be tied yet."),
