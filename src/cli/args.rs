@@ -1,14 +1,16 @@
 //! Subcommands and options of the command line (parsed by clap), and their translation into
 //! settings of the other layers.
 
+use std::num::NonZero;
 use std::path::PathBuf;
+use std::thread;
 
 use clap::{ArgAction, Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
 use super::version::{LONG_VERSION, VERSION};
 use crate::diagnostics::Strictness;
 use crate::model::{Frames, SolverChoice};
-use crate::output::Verbosity;
+use crate::output::{Verbosity, Window};
 
 /// Large-displacement dynamics of plane deformable bodies with exact contact and Coulomb friction.
 #[derive(Debug, Parser)]
@@ -92,8 +94,8 @@ pub(super) struct RunArgs {
     /// Sparse factorisation (default faer, or what the deck says)
     #[arg(long, value_name = "NAME")]
     pub solver: Option<Solver>,
-    /// Number of threads (default: all of the machine)
-    #[arg(long, value_name = "N", value_parser = positive_count)]
+    /// Number of threads, at most 4 for each processor (default: the number of processors)
+    #[arg(long, value_name = "N", value_parser = thread_count)]
     pub threads: Option<usize>,
     /// Print errors only
     #[arg(short, long, action = ArgAction::SetTrue, conflicts_with = "verbose")]
@@ -125,16 +127,22 @@ pub(super) struct CheckArgs {
     /// The deck
     #[command(flatten)]
     pub deck: DeckArgs,
-    /// Draw the model: bodies, supports, loads, velocities, surfaces with normals, contacts; an
-    /// earlier picture is replaced
+    /// Draw the model: bodies, supports, loads, velocities, surfaces with normals, contacts
     #[arg(long, value_name = "FILE.svg", value_parser = svg_file)]
     pub picture: Option<PathBuf>,
+    /// Draw this part of the plane only (default: the deformable bodies and what is near them)
+    #[arg(long, value_name = "X0,X1,Y0,Y1", value_parser = window, requires = "picture",
+          allow_hyphen_values = true)]
+    pub window: Option<Window>,
+    /// Replace an earlier picture
+    #[arg(long, requires = "picture")]
+    pub overwrite: bool,
 }
 
 /// Arguments of `explain`.
 #[derive(Debug, ClapArgs)]
 pub(super) struct ExplainArgs {
-    /// The keyword, with or without its star, or the code
+    /// Keywords, with or without their stars, and codes
     #[arg(value_name = "KEYWORD|CODE", required = true)]
     pub words: Vec<String>,
 }
@@ -145,9 +153,12 @@ pub(super) struct FlattenArgs {
     /// The deck
     #[command(flatten)]
     pub deck: DeckArgs,
-    /// A new file for the flat deck (default: the screen)
+    /// A file for the flat deck (default: the screen)
     #[arg(short, long, value_name = "FILE.inp")]
     pub output: Option<PathBuf>,
+    /// Replace an earlier file
+    #[arg(long, requires = "output")]
+    pub overwrite: bool,
 }
 
 /// Arguments of `info`.
@@ -196,6 +207,37 @@ fn positive_count(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(count) if count > 0 => Ok(count),
         _ => Err("expected a whole number greater than 0".into()),
+    }
+}
+
+/// Most threads for each processor: more of them only wait for each other.
+const THREADS_PER_PROCESSOR: usize = 4;
+
+fn thread_count(text: &str) -> Result<usize, String> {
+    let count = positive_count(text)?;
+    let processors = processors();
+    let most = THREADS_PER_PROCESSOR.saturating_mul(processors);
+    match count <= most {
+        true => Ok(count),
+        false => Err(format!(
+            "expected at most {most}, which is {THREADS_PER_PROCESSOR} for each of the processors \
+             that the program may use ({processors})"
+        )),
+    }
+}
+
+/// Processors that the program may use; 1 where the system does not tell.
+pub(super) fn processors() -> usize {
+    thread::available_parallelism().map_or(1, NonZero::get)
+}
+
+fn window(text: &str) -> Result<Window, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|x| x.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok(&[x0, x1, y0, y1]) if x0 < x1 && y0 < y1 && (x1 - x0 + (y1 - y0)).is_finite() => {
+            Ok(Window([[x0, y0], [x1, y1]]))
+        }
+        _ => Err("expected four numbers X0,X1,Y0,Y1 with X0 < X1 and Y0 < Y1".into()),
     }
 }
 

@@ -75,6 +75,12 @@ pub(super) enum CliError {
         /// Why.
         source: io::Error,
     },
+    /// A file that the command makes exists.
+    #[error("{} exists already; --overwrite replaces it", path.display())]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
@@ -95,6 +101,7 @@ impl CliError {
             | CliError::Problem { .. }
             | CliError::Memory(_)
             | CliError::File { .. }
+            | CliError::Exists { .. }
             | CliError::Output(_)
             | CliError::Write(_)
             | CliError::Broken { .. }

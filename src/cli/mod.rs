@@ -5,6 +5,8 @@ mod commands;
 mod connect;
 mod error;
 mod exit;
+mod file;
+mod memory;
 mod signals;
 mod terminal;
 #[cfg(test)]
@@ -21,6 +23,7 @@ use args::{Args, Command};
 use connect::Numerics;
 use error::CliError;
 pub use exit::Exit;
+pub use memory::Allocator;
 use terminal::{complain, on_screen};
 
 /// Runs the program with its arguments, the program's name first.

@@ -2,6 +2,9 @@
 
 use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rustix::process::{Resource, getrlimit};
 
 use crate::output::text::bytes;
 use crate::prepare::MemoryNeed;
@@ -10,11 +13,14 @@ use crate::prepare::MemoryNeed;
 /// as much.
 const TOO_LARGE: f64 = 1.5;
 
+/// What the run of this process needs (bytes); 0 before it is known.
+static NEED: AtomicU64 = AtomicU64::new(0);
+
 /// A run that does not fit into the free memory.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the run needs about {} of memory (mesh {}, matrices {}, factors {}, contact {}), {} are free: use a \
-     coarser mesh, end other programs, or run on a machine with more memory",
+     coarser mesh, end other programs, raise the limit (ulimit -v), or run on a machine with more memory",
     bytes(need.total()), bytes(need.mesh), bytes(need.matrices), bytes(need.factors), bytes(need.contact),
     bytes(*free)
 )]
@@ -25,8 +31,10 @@ pub struct MemoryError {
     pub free: u64,
 }
 
-/// Checks that a run fits into the memory that is free; always where the system does not tell.
+/// Checks that a run fits into the memory that is free; always where the system does not tell. What it
+/// needs is kept for [`memory_need`].
 pub fn check_memory(need: MemoryNeed) -> Result<(), MemoryError> {
+    NEED.store(need.total(), Ordering::Relaxed);
     match free_memory() {
         Some(free) if need.total() as f64 / TOO_LARGE > free as f64 => {
             Err(MemoryError { need, free })
@@ -35,13 +43,18 @@ pub fn check_memory(need: MemoryNeed) -> Result<(), MemoryError> {
     }
 }
 
+/// Bytes that the run of this process needs, once they are estimated.
+pub fn memory_need() -> Option<u64> {
+    Some(NEED.load(Ordering::Relaxed)).filter(|&need| need > 0)
+}
+
 /// Most bytes resident at a time in this process so far; none where the system does not tell.
 pub(crate) fn peak_memory() -> Option<u64> {
     kilobytes(&read_to_string("/proc/self/status").ok()?, "VmHWM:")
 }
 
-/// Bytes that are free: on the machine, with what swaps, and in the groups of this process that have a
-/// limit.
+/// Bytes that are free: on the machine, with what swaps, in the groups of this process that have a
+/// limit, and below the limits of the process itself (`ulimit -v`, `ulimit -d`).
 fn free_memory() -> Option<u64> {
     let machine = read_to_string("/proc/meminfo").ok()?;
     let swap = kilobytes(&machine, "SwapFree:").unwrap_or(0);
@@ -49,7 +62,17 @@ fn free_memory() -> Option<u64> {
     let groups = read_to_string("/proc/self/cgroup").unwrap_or_default();
     let folders = groups.lines().flat_map(group_folders);
     let limits = folders.filter_map(|folder| free_in_group(&folder));
-    Some(limits.fold(free, u64::min))
+    Some(limits.chain(free_in_process()).fold(free, u64::min))
+}
+
+/// Bytes free below the limits of this process: of its addresses and of its data.
+fn free_in_process() -> impl Iterator<Item = u64> {
+    let status = read_to_string("/proc/self/status").unwrap_or_default();
+    let limits = [(Resource::As, "VmSize:"), (Resource::Data, "VmData:")];
+    limits.into_iter().filter_map(move |(resource, used)| {
+        let limit = getrlimit(resource).current?;
+        Some(limit.saturating_sub(kilobytes(&status, used)?))
+    })
 }
 
 /// Folders of the control group of a line of /proc/self/cgroup (of version 2) and of those around it.

@@ -25,8 +25,8 @@ pub use file::{Claim, RunRecord, UNFINISHED, check_names, contact_names, regular
 pub use frames::{DEFAULT_FRAMES, FrameSchedule};
 pub use interrupt::Interrupt;
 pub use job::JobFiles;
-pub use memory::{MemoryError, check_memory};
-pub use picture::picture;
+pub use memory::{MemoryError, check_memory, memory_need};
+pub use picture::{Window, picture};
 pub use summary::{ResultSummary, SummaryError, deck_line, program_lines};
 pub use text::{ModelEcho, Verbosity, frames, solver};
 pub use writer::ResultWriter;

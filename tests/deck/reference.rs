@@ -105,12 +105,32 @@ fn keywords_and_codes_are_explained() {
 }
 
 #[test]
+fn several_words_are_explained_one_after_the_other() {
+    let (code, text, _) = explain(&["D103", "contact-pair", "*solid", "section", "d410"]);
+    assert_eq!(code, Some(0));
+    let heads = [
+        "D103: ",
+        "\n\n*CONTACT PAIR: ",
+        "\n\n*SOLID SECTION: ",
+        "\n\nD410: ",
+    ];
+    let places = heads.map(|head| text.find(head).unwrap_or_else(|| panic!("{head}\n{text}")));
+    assert!(places.is_sorted(), "{text}");
+}
+
+#[test]
 fn what_is_neither_keyword_nor_code_gets_a_suggestion() {
     for (typed, meant) in [
         ("*BONDARY", "did you mean BOUNDARY?"),
         ("D999", "D999 is neither"),
+        ("D103 NONSENSE", "error: NONSENSE is neither"),
+        (
+            "D103 CONTCT PAIR",
+            "CONTCT PAIR is neither a keyword nor the code of a message; did you mean CONTACT PAIR?",
+        ),
     ] {
-        let (code, text, error) = explain(&[typed]);
+        let words: Vec<&str> = typed.split(' ').collect();
+        let (code, text, error) = explain(&words);
         assert_eq!((code, text.as_str()), (Some(3), ""));
         assert!(error.contains(meant), "{error}");
     }
@@ -146,7 +166,7 @@ fn deck_with(lines: &str, scope: Scope) -> String {
         _ if SHARED.contains(lines) => SHARED.to_owned(),
         _ if ASSEMBLY.contains(lines) => ASSEMBLY.to_owned(),
         _ if lines.ends_with("*END STEP") => format!("{SHARED}{lines}\n"),
-        _ if lines.starts_with("*CONTACT\n") => put("*STEP", "").replacen(PAIR, "", 1),
+        _ if lines.contains("*CONTACT\n") => put("*STEP", "").replacen(PAIR, "", 1),
         Scope::Step => put("*END STEP", ""),
         Scope::Block("MATERIAL") => {
             let law = if lines.contains("ELASTIC") { "" } else { LAW };

@@ -68,9 +68,10 @@ fn a_missing_file_is_4() {
 fn check_echoes_the_model_and_draws_it() {
     let folder = TempDir::new().expect("folder");
     let picture = folder.path().join("model.svg").display().to_string();
-    for _ in 0..2 {
+    let window: &[&str] = &["--overwrite", "--window", "-1,0.5,0,1e1"];
+    for more in [&[][..], &["--overwrite"], window] {
         let check = ["check", "tests/decks/shared.inp", "--picture", &picture];
-        let (code, out, _) = stickslip(&check);
+        let (code, out, _) = stickslip(&[&check[..], more].concat());
         assert_eq!(code, 0);
         for text in [
             "10 nodes   3 elements (CPE4)   20 dofs, 6 fixed   mass 4.68e-08",
@@ -107,15 +108,107 @@ fn flatten_writes_a_deck_that_is_written_the_same_again() {
     assert_eq!(stickslip(&write), (0, String::new(), String::new()));
     assert_eq!(std::fs::read_to_string(&flat).expect("a deck"), text);
     assert_eq!(stickslip(&["flatten", &flat]).1, text);
-    let (code, _, err) = stickslip(&write);
-    assert_eq!(code, 4, "nothing is replaced");
-    assert!(
-        err.contains("cannot write") && err.contains("flat.inp"),
-        "{err}"
-    );
+    let overwrite = [&write[..], &["--overwrite"]].concat();
+    assert_eq!(stickslip(&overwrite), (0, String::new(), String::new()));
+    assert_eq!(std::fs::read_to_string(&flat).expect("a deck"), text);
     let (code, out, err) = stickslip(&["flatten", "tests/decks/missing_include.inp"]);
     assert_eq!((code, out.as_str()), (2, ""));
     assert!(err.contains("D101"), "{err}");
+}
+
+#[test]
+fn what_exists_is_replaced_only_where_it_is_asked_for() {
+    let folder = TempDir::new().expect("folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (deck, drawn, flat) = ("tests/decks/shared.inp", path("a.svg"), path("a.inp"));
+    for (file, command) in [
+        (&drawn, ["check", deck, "--picture", &drawn]),
+        (&flat, ["flatten", deck, "-o", &flat]),
+    ] {
+        std::fs::write(file, "precious").expect("an earlier file");
+        let (code, _, err) = stickslip(&command);
+        let told = format!("error: {file} exists already; --overwrite replaces it\n");
+        assert!(code == 4 && err.ends_with(&told), "{code}: {err}");
+        assert_eq!(std::fs::read(file).expect("the file"), b"precious");
+        let overwrite = [&command[..], &["--overwrite"]].concat();
+        assert_eq!(stickslip(&overwrite).0, 0);
+        assert_ne!(std::fs::read(file).expect("the file"), b"precious");
+        std::fs::remove_file(file).expect("a file");
+        std::fs::create_dir(file).expect("a folder");
+        let (code, _, err) = stickslip(&overwrite);
+        assert_eq!(code, 4);
+        assert!(err.contains("it is not a regular file"), "{err}");
+    }
+    assert_eq!(
+        std::fs::read_dir(folder.path()).expect("a folder").count(),
+        2,
+        "no drafts"
+    );
+}
+
+#[test]
+fn all_commands_refuse_the_same_decks() {
+    let folder = TempDir::new().expect("folder");
+    let deck = folder.path().join("a.inp").display().to_string();
+    let square = include_str!("../decks/square.inp");
+    let shared = include_str!("../decks/shared.inp");
+    for (text, told) in [
+        (
+            square.replace("FOOT", "\"A/B\""),
+            "'A/B' cannot stand in the result file",
+        ),
+        (shared.replace("11, 1., 1.1", "11, 1., 0.99"), "D410"),
+    ] {
+        std::fs::write(&deck, text).expect("a deck");
+        for command in ["check", "flatten", "run"] {
+            let output = folder.path().display().to_string();
+            let options = ["-o", output.as_str()];
+            let options = if command == "run" { &options[..] } else { &[] };
+            let (code, _, err) = stickslip(&[&[command, deck.as_str()][..], options].concat());
+            assert_eq!(code, 2, "{command}: {err}");
+            assert!(err.contains(told), "{command}: {err}");
+        }
+    }
+}
+
+#[test]
+fn threads_are_bounded_by_the_processors() {
+    let (code, out, err) = stickslip(&["run", "tests/decks/drop.inp", "--threads", "20000"]);
+    assert_eq!((code, out.as_str()), (3, ""));
+    assert!(
+        err.contains("at most") && err.contains("4 for each"),
+        "{err}"
+    );
+    let processors = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let folder = TempDir::new().expect("folder");
+    let (output, most) = (
+        folder.path().display().to_string(),
+        (4 * processors).to_string(),
+    );
+    let run = [
+        "run",
+        "tests/decks/drop.inp",
+        "-q",
+        "-o",
+        &output,
+        "--threads",
+        &most,
+    ];
+    assert_eq!(stickslip(&run), (0, String::new(), String::new()));
+    let mut command = Command::cargo_bin("stickslip").expect("binary");
+    let command = command.args([
+        "run",
+        "tests/decks/drop.inp",
+        "-q",
+        "--overwrite",
+        "-o",
+        &output,
+    ]);
+    command
+        .env("RAYON_NUM_THREADS", "20000")
+        .env(NO_LOCKS.0, NO_LOCKS.1)
+        .assert()
+        .success();
 }
 
 #[test]

@@ -64,6 +64,43 @@ fn run(n: usize, squares: usize) -> [i64; 2] {
     })
 }
 
+/// Exit code and standard error of a run with so many kilobytes of addresses.
+#[cfg(target_os = "linux")]
+fn limited(n: usize, kilobytes: usize) -> (Option<i32>, String) {
+    let folder = TempDir::new().expect("folder");
+    fs::write(folder.path().join("block.inp"), deck(n, 1)).expect("deck");
+    let mut command = std::process::Command::new("bash");
+    command.args(["-c", &format!("ulimit -v {kilobytes}; exec \"$@\""), "bash"]);
+    command
+        .arg(env!("CARGO_BIN_EXE_stickslip"))
+        .args(["run", "block.inp", "-q", "--threads", "1"]);
+    let done = command
+        .current_dir(folder.path())
+        .output()
+        .expect("started");
+    (
+        done.status.code(),
+        String::from_utf8_lossy(&done.stderr).into_owned(),
+    )
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_limit_of_the_process_ends_the_run_with_a_message() {
+    let (code, err) = limited(200, 200_000);
+    assert_eq!(code, Some(4), "{err}");
+    assert!(err.starts_with("error: the run needs about "), "{err}");
+    assert!(err.contains(" are free: "), "{err}");
+    let (code, err) = limited(300, 60_000);
+    assert_eq!(code, Some(4), "{err}");
+    assert!(err.starts_with("error: out of memory: "), "{err}");
+    assert_eq!(err.lines().count(), 1, "{err}");
+    // between what the estimate lets pass and what is enough
+    let (code, err) = limited(200, 420_000);
+    assert_eq!(code, Some(4), "{err}");
+    assert!(err.contains("the run needs about "), "{err}");
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn the_estimate_is_near_the_use() {

@@ -1,12 +1,12 @@
 //! The subcommand `check`, and the reading of a deck that it shares with `run`.
 
-use std::fs;
 use std::path::Path;
 
 use crate::cli::args::{CheckArgs, DeckArgs};
 use crate::cli::connect::{Loaded, Numerics};
 use crate::cli::error::CliError;
 use crate::cli::exit::Exit;
+use crate::cli::file::write_file;
 use crate::cli::terminal::{coloured, complain, print};
 use crate::output::{ModelEcho, check_names, deck_line, picture, regular_file};
 use crate::prepare::PreparedModel;
@@ -21,11 +21,7 @@ pub(in crate::cli) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exi
     };
     describe(&args.deck, &loaded, model)?;
     if let Some(path) = &args.picture {
-        let written = fs::write(path, picture(model.model()));
-        written.map_err(|source| CliError::File {
-            path: path.clone(),
-            source,
-        })?;
+        write_file(path, &picture(model.model(), args.window), args.overwrite)?;
     }
     Ok(Exit::Finished)
 }

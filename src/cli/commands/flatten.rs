@@ -1,28 +1,31 @@
 //! The subcommand `flatten`.
 
-use std::fs::File;
-use std::io::Write;
-use std::path::Path;
-
 use super::check::{complain_of, openable};
 use crate::cli::args::FlattenArgs;
 use crate::cli::error::CliError;
 use crate::cli::exit::Exit;
+use crate::cli::file::write_file;
 use crate::cli::terminal::{coloured, complain, print};
 use crate::diagnostics::{Diagnostics, Sources};
 use crate::flat_deck::{flat_deck, reads_as};
+use crate::output::check_names;
+use crate::prepare::prepare;
 use crate::reader;
 
-/// Writes a deck as one flat deck, after a test that this reads as the same model.
+/// Writes a deck as one flat deck, after a test that this reads as the same model. What `check` rejects
+/// is rejected.
 pub(in crate::cli) fn flatten(args: &FlattenArgs) -> Result<Exit, CliError> {
     openable(&args.deck.path)?;
     let mut sources = Sources::new();
     let mut d = Diagnostics::with_strictness(args.deck.strictness());
     let model = reader::read_model(&args.deck.path, &mut sources, &mut d);
-    let Some(model) = model else {
+    // the flat deck has the nodes where the deck has them
+    let sound = model.filter(|model| prepare(model.clone(), &mut d).is_some());
+    let Some(model) = sound else {
         complain_of(&d.render(&sources, coloured()));
         return Ok(Exit::Rejected);
     };
+    check_names(&model)?;
     let text = flat_deck(&model);
     if !reads_as(&text, &model) {
         complain(
@@ -32,17 +35,8 @@ pub(in crate::cli) fn flatten(args: &FlattenArgs) -> Result<Exit, CliError> {
         return Ok(Exit::Rejected);
     }
     match &args.output {
-        Some(path) => write_new(path, &text)?,
+        Some(path) => write_file(path, &text, args.overwrite)?,
         None => print(&[text.trim_end().to_owned()])?,
     }
     Ok(Exit::Finished)
-}
-
-/// Writes a file that does not exist yet.
-fn write_new(path: &Path, text: &str) -> Result<(), CliError> {
-    let written = File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
-    written.map_err(|source| CliError::File {
-        path: path.to_owned(),
-        source,
-    })
 }

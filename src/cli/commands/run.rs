@@ -1,8 +1,10 @@
 //! The subcommand `run`: from the deck to the finished result files, however the run ends.
 
+use std::error::Error;
+
 use super::check::{complain_of, deck_line_of, describe, load};
 use super::overrides;
-use crate::cli::args::RunArgs;
+use crate::cli::args::{RunArgs, processors};
 use crate::cli::connect::{Loaded, Numerics};
 use crate::cli::error::CliError;
 use crate::cli::exit::Exit;
@@ -106,12 +108,15 @@ fn solve(
 
 /// Starts the threads of the program, this one being the first, and returns their number.
 fn start_threads(wanted: Option<usize>) -> Result<usize, CliError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(wanted.unwrap_or(0));
-    let built = pool.use_current_thread().build_global();
-    // Where none are asked for, those that run already will do.
-    if let (Some(threads), Err(error)) = (wanted, built) {
-        let reason = error.to_string();
-        return Err(CliError::Threads { threads, reason });
+    let threads = wanted.unwrap_or_else(processors);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    if let Err(error) = pool.use_current_thread().build_global() {
+        // Where none are asked for, those that run already will do.
+        let run_already = error.source().is_none();
+        if wanted.is_some() || !run_already {
+            let reason = error.to_string();
+            return Err(CliError::Threads { threads, reason });
+        }
     }
     Ok(rayon::current_num_threads())
 }

@@ -25,10 +25,15 @@ pub(super) fn draw(model: &Model, canvas: &mut Canvas, legend: &mut Legend) {
         }
         let colour = FILLS[index % FILLS.len()];
         let (outline, inside) = sides(&elements);
-        let places = |nodes: &[usize]| nodes.iter().map(|&n| model.mesh.coordinates[n]).collect();
-        let loops: Vec<Vec<[f64; 2]>> = loops(outline).iter().map(|nodes| places(nodes)).collect();
+        let place = |&node: &usize| model.mesh.coordinates[node];
+        let loops = loops(outline);
+        let loops: Vec<Vec<[f64; 2]>> = loops
+            .iter()
+            .map(|l| l.iter().map(place).collect())
+            .collect();
         canvas.fill(&loops, colour, OUTLINE);
-        let inside: Vec<Vec<[f64; 2]>> = inside.iter().map(|side| places(side)).collect();
+        let ends = |side: &[usize; 2]| side.map(|node| place(&node));
+        let inside: Vec<[[f64; 2]; 2]> = inside.iter().map(ends).collect();
         if mean_length(&inside, canvas) > SMALLEST {
             canvas.lines(&inside, SIDES);
         }
@@ -76,11 +81,8 @@ fn take(from: &mut BTreeMap<usize, Vec<usize>>, node: usize) -> Option<usize> {
     next
 }
 
-fn mean_length(sides: &[Vec<[f64; 2]>], canvas: &Canvas) -> f64 {
-    let lengths = sides.iter().map(|side| {
-        let [a, b] = [0, side.len() - 1].map(|i| side[i]);
-        canvas.pixels((b[0] - a[0]).hypot(b[1] - a[1]))
-    });
+fn mean_length(sides: &[[[f64; 2]; 2]], canvas: &Canvas) -> f64 {
+    let lengths = (sides.iter()).map(|[a, b]| canvas.pixels((b[0] - a[0]).hypot(b[1] - a[1])));
     lengths.sum::<f64>() / sides.len().max(1) as f64
 }
 

@@ -1,5 +1,6 @@
 //! The sheet that is drawn on: places of the model become points of the picture, y upwards.
 
+use super::view::Window;
 use std::collections::HashMap;
 use std::fmt::Write;
 
@@ -9,6 +10,8 @@ const WIDTH: f64 = 860.0;
 const HEIGHTS: [f64; 2] = [760.0, 160.0];
 /// Space about the drawing, for arrows and names.
 pub(super) const MARGIN: f64 = 70.0;
+/// Part of this space into which bodies and surfaces reach that are not shown as a whole.
+const BEYOND: f64 = 20.0;
 /// Width of the legend.
 pub(super) const LEGEND: f64 = 300.0;
 
@@ -18,8 +21,10 @@ pub(super) type Point = [f64; 2];
 /// An SVG picture being drawn.
 pub(super) struct Canvas {
     body: String,
-    /// Smallest and largest coordinates of the model.
+    /// Smallest and largest coordinates of what is shown.
     pub extents: [[f64; 2]; 2],
+    /// What is shown, with the space about it.
+    area: Window,
     /// Pixels per unit of length.
     scale: f64,
     /// Width and height of the drawing.
@@ -33,24 +38,21 @@ pub(super) struct Canvas {
 pub(super) struct Pen(pub &'static str, pub f64);
 
 impl Canvas {
-    /// An empty sheet that holds these places.
-    pub fn new(places: &[[f64; 2]]) -> Self {
-        let mut extents = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        for x in places {
-            for i in 0..2 {
-                extents[0][i] = extents[0][i].min(x[i]);
-                extents[1][i] = extents[1][i].max(x[i]);
-            }
-        }
+    /// An empty sheet that shows a part of the plane.
+    pub fn new(window: Window) -> Self {
+        let Window(extents) = window;
         // half of the size, which does not overflow
         let half = [0, 1].map(|i| extents[1][i] / 2.0 - extents[0][i] / 2.0);
         let scale = (WIDTH / half[0]).min(HEIGHTS[0] / half[1]) / 2.0;
-        let [width, height] = half.map(|half| 2.0 * half * scale);
+        let inner = half.map(|half| 2.0 * half * scale);
+        let size = [inner[0].max(WIDTH / 2.0), inner[1].max(HEIGHTS[1])];
+        let beyond = [0, 1].map(|i| ((size[i] - inner[i]) / 2.0 + BEYOND) / scale);
         Canvas {
             body: String::new(),
             extents,
+            area: window.widened(beyond),
             scale,
-            size: [width.max(WIDTH / 2.0), height.max(HEIGHTS[1])],
+            size,
             least_height: 0.0,
         }
     }
@@ -65,6 +67,16 @@ impl Canvas {
         [middle[0] + from_middle(0), middle[1] - from_middle(1)]
     }
 
+    /// Whether a place is shown.
+    pub fn shows(&self, x: [f64; 2]) -> bool {
+        self.area.holds(x)
+    }
+
+    /// The part of a line between two places that is shown.
+    pub fn part(&self, line: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
+        self.area.part(line)
+    }
+
     /// Pixels that a length of the model takes.
     pub fn pixels(&self, length: f64) -> f64 {
         length * self.scale
@@ -74,15 +86,22 @@ impl Canvas {
     pub fn fill(&mut self, loops: &[Vec<[f64; 2]>], colour: &str, pen: Pen) {
         let path: String = loops.iter().map(|places| self.path(places) + "Z").collect();
         let Pen(stroke, width) = pen;
+        let is_whole = loops.iter().flatten().all(|&place| self.shows(place));
+        let clip = if is_whole {
+            ""
+        } else {
+            " clip-path=\"url(#area)\""
+        };
         self.tag(&format!(
             "<path d=\"{path}\" fill=\"{colour}\" fill-rule=\"evenodd\" stroke=\"{stroke}\" \
-             stroke-width=\"{width}\"/>"
+             stroke-width=\"{width}\"{clip}/>"
         ));
     }
 
-    /// Lines through places.
-    pub fn lines(&mut self, lines: &[Vec<[f64; 2]>], pen: Pen) {
-        let path: String = lines.iter().map(|places| self.path(places)).collect();
+    /// Lines between two places each, as far as they are shown.
+    pub fn lines(&mut self, lines: &[[[f64; 2]; 2]], pen: Pen) {
+        let parts = lines.iter().filter_map(|&line| self.part(line));
+        let path: String = parts.map(|part| self.path(&part)).collect();
         self.stroke(&path, pen);
     }
 
@@ -168,9 +187,13 @@ impl Canvas {
     pub fn text(self) -> String {
         let width = self.size[0] + 2.0 * MARGIN + LEGEND;
         let height = (self.size[1] + 2.0 * MARGIN).max(self.least_height);
+        let from = MARGIN - BEYOND;
+        let [across, down] = self.size.map(|size| size + 2.0 * BEYOND);
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
              viewBox=\"0 0 {width:.0} {height:.0}\" font-family=\"sans-serif\" font-size=\"12\">\n\
+             <clipPath id=\"area\"><rect x=\"{from}\" y=\"{from}\" width=\"{across:.1}\" \
+             height=\"{down:.1}\"/></clipPath>\n\
              <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{}</svg>\n",
             self.body
         )
@@ -252,7 +275,7 @@ mod tests {
 
     #[test]
     fn the_model_is_in_the_middle_and_upright() {
-        let canvas = Canvas::new(&[[1.0, 2.0], [5.0, 4.0]]);
+        let canvas = Canvas::new(Window([[1.0, 2.0], [5.0, 4.0]]));
         let ([x0, y0], [x1, y1]) = (canvas.at([1.0, 2.0]), canvas.at([5.0, 4.0]));
         assert!((x1 - x0 - 860.0).abs() < 1e-9 && (y0 - y1 - 430.0).abs() < 1e-9);
         assert!((x0 - MARGIN).abs() < 1e-9 && (y1 - MARGIN).abs() < 1e-9);

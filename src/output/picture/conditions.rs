@@ -62,7 +62,7 @@ fn supports(model: &Model, canvas: &mut Canvas, legend: &mut Legend) {
         let way = directions.map(|way| way.unwrap_or(0.0));
         if way != [0.0; 2] {
             moving.push((place, way));
-        } else if spacing.takes(at) {
+        } else if canvas.shows(place) && spacing.takes(at) {
             let is_held = directions.map(|way| way.is_some());
             mark(at, is_held, canvas, legend);
         }
@@ -73,10 +73,13 @@ fn supports(model: &Model, canvas: &mut Canvas, legend: &mut Legend) {
 /// The reference nodes of rigid surfaces, with the names of these.
 fn reference_nodes(model: &Model, canvas: &mut Canvas, legend: &mut Legend) {
     for body in &model.rigid_bodies {
-        let [x, y] = canvas.at(model.mesh.coordinates[body.reference]);
-        canvas.dot([x, y], 5.0, REFERENCE.0);
-        let name = &model.surfaces[body.surface].name;
-        canvas.label([x + 9.0, y + 16.0], "start", REFERENCE.0, name);
+        let place = model.mesh.coordinates[body.reference];
+        if canvas.shows(place) {
+            let [x, y] = canvas.at(place);
+            canvas.dot([x, y], 5.0, REFERENCE.0);
+            let name = &model.surfaces[body.surface].name;
+            canvas.label([x + 9.0, y + 16.0], "start", REFERENCE.0, name);
+        }
         legend.add(
             Symbol::Dotted(REFERENCE),
             "reference node of a rigid surface",
@@ -171,7 +174,7 @@ fn onto_faces(loads: &[Vector], canvas: &mut Canvas, legend: &mut Legend) {
     for (place, load) in loads {
         let at = canvas.at(*place);
         let size = load[0].hypot(load[1]);
-        if spacing.takes(at) {
+        if canvas.shows(*place) && spacing.takes(at) {
             let way = [load[0] / size, -load[1] / size].map(|e| 0.5 * ARROW * e);
             canvas.arrow([at[0] - way[0], at[1] - way[1]], way, LOAD);
         }
@@ -246,7 +249,8 @@ fn arrows(vectors: &[Vector], pen: Pen, canvas: &mut Canvas, legend: &mut Legend
     let mut spacing = Spacing::new(APART);
     for (place, vector) in vectors {
         let at = canvas.at(*place);
-        if !(size(vector) > 0.0 && largest.is_finite() && spacing.takes(at)) {
+        let is_drawn = size(vector) > 0.0 && largest.is_finite() && canvas.shows(*place);
+        if !(is_drawn && spacing.takes(at)) {
             continue;
         }
         let length = ARROW * (size(vector) / largest).max(0.35);

@@ -7,14 +7,18 @@ mod conditions;
 mod frame;
 mod legend;
 mod surfaces;
+mod view;
 
 use crate::model::Model;
 use canvas::Canvas;
 use legend::Legend;
+pub use view::Window;
 
-/// Draws a model as text of an SVG file.
-pub fn picture(model: &Model) -> String {
-    let mut canvas = Canvas::new(&model.mesh.coordinates);
+/// Draws a model as text of an SVG file: a part of the plane, or the deformable bodies and what is near
+/// them.
+pub fn picture(model: &Model, window: Option<Window>) -> String {
+    let window = window.unwrap_or_else(|| Window::about_bodies(model));
+    let mut canvas = Canvas::new(window);
     let mut legend = Legend::default();
     bodies::draw(model, &mut canvas, &mut legend);
     surfaces::draw(model, &mut canvas, &mut legend);

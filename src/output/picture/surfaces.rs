@@ -64,16 +64,16 @@ fn role(index: usize, model: &Model) -> (Pen, &'static str, bool) {
 fn segments(surface: &Surface, model: &Model, pen: Pen, canvas: &mut Canvas) {
     let x = &model.mesh.coordinates;
     let segments = surface.segments(&model.mesh);
-    let lines: Vec<Vec<[f64; 2]>> = segments.iter().map(|s| s.map(|n| x[n]).to_vec()).collect();
+    let lines: Vec<[[f64; 2]; 2]> = segments.iter().map(|s| s.map(|n| x[n])).collect();
     canvas.lines(&lines, pen);
     let mut spacing = Spacing::new(APART);
     let mut normals = String::new();
-    for [a, b] in segments {
-        let along = project(x[a], x[a], x[b]);
+    for [a, b] in lines.into_iter().filter_map(|line| canvas.part(line)) {
+        let along = project(a, a, b);
         let count = (canvas.pixels(along.length) / FAR).ceil().max(1.0);
         for k in 0..count as usize {
             let part = (k as f64 + 0.5) / count;
-            let [px, py] = canvas.at([0, 1].map(|i| x[a][i] + part * (x[b][i] - x[a][i])));
+            let [px, py] = canvas.at([0, 1].map(|i| a[i] + part * (b[i] - a[i])));
             if along.normal.iter().all(|n| n.is_finite()) && spacing.takes([px, py]) {
                 let [dx, dy] = [NORMAL * along.normal[0], -NORMAL * along.normal[1]];
                 normals.push_str(&format!("M{px:.1} {py:.1}l{dx:.1} {dy:.1}"));
@@ -86,26 +86,34 @@ fn segments(surface: &Surface, model: &Model, pen: Pen, canvas: &mut Canvas) {
 fn nodes(surface: &Surface, model: &Model, pen: Pen, canvas: &mut Canvas) {
     let mut spacing = Spacing::new(6.0);
     for node in surface.nodes(&model.mesh) {
-        let at = canvas.at(model.mesh.coordinates[node]);
-        if spacing.takes(at) {
+        let place = model.mesh.coordinates[node];
+        let at = canvas.at(place);
+        if canvas.shows(place) && spacing.takes(at) {
             canvas.dot(at, 2.2, pen.0);
         }
     }
 }
 
-/// The name of a surface beside its middle, on the side of its normal.
+/// The name of a surface beside the middle of what is shown of it, on the side of its normal.
 fn name(surface: &Surface, model: &Model, pen: Pen, canvas: &mut Canvas) {
     let x = &model.mesh.coordinates;
-    let segments = surface.segments(&model.mesh);
-    let (place, normal) = match segments.get(segments.len() / 2) {
+    let lines = surface
+        .segments(&model.mesh)
+        .into_iter()
+        .map(|s| s.map(|node| x[node]));
+    let parts: Vec<[[f64; 2]; 2]> = lines.filter_map(|line| canvas.part(line)).collect();
+    let (place, normal) = match parts.get(parts.len() / 2) {
         Some(&[a, b]) => {
-            let middle = [0, 1].map(|i| x[a][i] / 2.0 + x[b][i] / 2.0);
-            (middle, project(x[a], x[a], x[b]).normal)
+            let middle = [0, 1].map(|i| a[i] / 2.0 + b[i] / 2.0);
+            (middle, project(a, a, b).normal)
         }
-        None => match surface.nodes(&model.mesh).first() {
-            Some(&node) => (x[node], [0.0, 1.0]),
-            None => return,
-        },
+        None => {
+            let nodes = surface.nodes(&model.mesh).into_iter().map(|node| x[node]);
+            match { nodes }.find(|&place| canvas.shows(place)) {
+                Some(place) => (place, [0.0, 1.0]),
+                None => return,
+            }
+        }
     };
     let [px, py] = canvas.at(place);
     let at = [px + 18.0 * normal[0], py - 18.0 * normal[1] + 4.0];
