@@ -4,6 +4,7 @@ A name is the path of a dataset below /history (see docs/output.md). After a col
 component of a vector, from 1. After the name of a node set may stand the number of one of its
 nodes in brackets; without it displacements and velocities are means over the set, reactions sums.
 The same holds of element sets, `elements/BLOCK[7]/S:1`: means of stresses and strains, sums of energies.
+These names hold too where a result has only the sums and means of a set (`TOTALS=ONLY`).
 Of the histories of bodies, `bodies/velocity[0]:1`, the number in brackets is that of the body.
 """
 
@@ -95,7 +96,11 @@ def _selected(results: Results, path: str) -> tuple[Array, str]:
             matched = pattern.fullmatch(path)
             if matched and plain in results.histories:
                 return select(results, plain, matched)
-        raise Fault(f"{results.path} has no history {path}: {_alternatives(results, path)}")
+        for kind in ("mean", "sum"):
+            place, _, field = path.rpartition("/")
+            if f"{place}/{kind}/{field}" in results.histories:
+                return _selected(results, f"{place}/{kind}/{field}")
+        raise Fault(f"{results.path} has no history {path}: {_alternatives(results, plain)}")
     matched, data = SETS.fullmatch(path), results.history(path)
     if matched and data.ndim > 1:
         return _of_set(data, _description(results, path), matched)

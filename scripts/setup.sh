@@ -75,11 +75,14 @@ need_venv() {
     "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' ||
         fail "Python 3.11 or newer is needed ($("$python" --version) found);" \
             "set PYTHON to one"
-    say "installing the packages of $(basename "$list") into .venv"
+    say "installing the packages of $(basename "$list") into .venv; this happens once and takes" \
+        "about a minute"
     [ -x "$VENV/bin/python" ] || "$python" -m venv "$VENV" </dev/null ||
         fail "the virtual environment $VENV could not be made"
-    "$VENV/bin/python" -m pip install --quiet --disable-pip-version-check \
-        --requirement "$list" </dev/null ||
+    local quiet=(--quiet)
+    [ ! -t 2 ] || quiet=()
+    "$VENV/bin/python" -m pip install "${quiet[@]}" --disable-pip-version-check \
+        --requirement "$list" </dev/null >&2 ||
         fail "pip could not install the packages of $list"
     cp "$list" "$stamp"
 }

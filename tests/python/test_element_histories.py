@@ -5,6 +5,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from command import Fault
 from conftest import Job
 from decks import BLOCK, CANTILEVERS, parse, shortened
 from histories import find
@@ -111,3 +112,22 @@ def test_frames_and_energies(path: Path, tmp_path: Path, job: Job) -> None:
         assert np.array_equal(part, results.history(f"elements/{name}/S")[:, -1, 1])
         (part,) = find(results, f"elements/{name}/ELSE").parts.values()
         assert np.allclose(part, results.history(f"elements/{name}/sum/ELSE"))
+
+
+def test_names_hold_where_a_result_has_only_sums_and_means(tmp_path: Path, job: Job) -> None:
+    """`nodes/RIGHT/U:1` is the mean over the set, `nodes/RIGHT/RF:1` the sum, with TOTALS=ONLY or without."""
+    asked = "*NODE PRINT, NSET=RIGHT{}\nU, RF\n*EL PRINT"
+    all_results = []
+    for totals in ("", ", TOTALS=ONLY"):
+        text = STRETCHED.replace("*EL PRINT", asked.format(totals))
+        text = text.replace("ELSET=BODY\nS,", f"ELSET=BODY{totals}\nS,")
+        all_results.append(Results(job(parse(text, tmp_path))))
+    each, only = all_results
+    assert "nodes/RIGHT/U" in each.histories and "nodes/RIGHT/U" not in only.histories
+    for name in ("nodes/RIGHT/U:1", "nodes/RIGHT/V:1", "nodes/RIGHT/RF:1", "elements/BODY/ELKE"):
+        (expected,), (found,) = (find(r, name).parts.values() for r in (each, only))
+        assert np.allclose(found, expected, rtol=1e-12, atol=1e-12), name
+    assert find(only, "nodes/RIGHT/A:1").parts.keys() == {"x"}
+    assert find(only, "nodes/RIGHT/CF").parts.keys() == {"x", "y"}
+    with pytest.raises(Fault, match="mean"):
+        find(only, "nodes/RIGHT[2]/U:1")
