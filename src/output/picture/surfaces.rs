@@ -108,8 +108,8 @@ fn name(surface: &Surface, model: &Model, pen: Pen, canvas: &mut Canvas) {
             (middle, project(a, a, b).normal)
         }
         None => {
-            let nodes = surface.nodes(&model.mesh).into_iter().map(|node| x[node]);
-            match { nodes }.find(|&place| canvas.shows(place)) {
+            let mut places = surface.nodes(&model.mesh).into_iter().map(|node| x[node]);
+            match places.find(|&place| canvas.shows(place)) {
                 Some(place) => (place, [0.0, 1.0]),
                 None => return,
             }
