@@ -21,8 +21,11 @@ TOTALS = ("increments", "cutbacks", "events", "exit_status")
 REWORDED = ("description",)
 """Attributes for readers."""
 
-REMAINDERS = ("balance", "residual", "cone_violation")
+REMAINDERS = ("balance", "residual", "cone_violation", "impulse_cone_violation")
 """Datasets of terms that cancel: round-off, without a scale of their own."""
+
+EVENT_TIMES = {"impacts": "time", "returns": "time", "touches": "end"}
+"""Groups of the history with one row per event, and the dataset of its time."""
 
 WORK = (
     "active_set_iterations",
@@ -173,9 +176,10 @@ class Files:
         assert self.span is not None
         file, frames = self.files[which], self.span.frames[which]
         group = name.split("/")
-        if name.startswith("history/impacts/"):
+        if group[0] == "history" and group[1] in EVENT_TIMES:
             end = file["history/time"][self.span.rows - 1]
-            return int((file["history/impacts/time"][()] <= end).sum())
+            times = file["history"][group[1]][EVENT_TIMES[group[1]]]
+            return int((times[()] <= end).sum())
         if group[0] == "history" and self._has_a_row_per_increment(name):
             return self.span.rows
         if group[:2] == ["VTKHDF", "Steps"]:

@@ -21,7 +21,9 @@ Numbers = NDArray[np.int64]
 REPORTED_NEARBY = ("CONTACT_STATUS", "GAP", "min_gap")
 """Reported of nodes near a segment; how near may depend on which of two segments comes first."""
 
-LEFT_OUT = re.compile(r"history/solver/(?!converged)\w+|history/impacts/.*|.*/(labels|node|BODY)")
+LEFT_OUT = re.compile(
+    r"history/solver/(?!converged)\w+|history/(impacts|returns|touches)/.*|.*/(labels|node|BODY)"
+)
 """Work and errors of the solver, and numbers; impacts are compared by themselves."""
 
 POINTS = ("center", "position")

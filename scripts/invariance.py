@@ -46,7 +46,7 @@ LIMIT = 0.3
 LONGER = 1.5
 """The other runs may take longer by this factor."""
 
-SHARED = ("history/contact/", "history/impacts")
+SHARED = ("history/contact/", "history/impacts", "history/returns", "history/touches")
 """Histories of single contacts."""
 
 GOOD_ENDS = (0, 1)

@@ -39,6 +39,9 @@ NONE, OPEN, STICK, SLIP = range(4)
 LARGEST = 1e150
 """Largest position whose square is a number."""
 
+EVENTS = ("impacts/", "returns/", "touches/")
+"""Groups of the history with one row per event."""
+
 
 @dataclass(frozen=True)
 class Contact:
@@ -182,13 +185,13 @@ class Results:
     def histories(self) -> dict[str, h5py.Dataset]:
         """All histories by their paths below /history, such as `energy/kinetic`.
 
-        The landings (impacts), numbers of the deck and volumes are none: they have other rows.
+        Events, numbers of the deck and volumes are none: they have other rows.
         """
         found: dict[str, h5py.Dataset] = {}
 
         def visit(name: str, item: object) -> None:
             last = name.rpartition("/")[2]
-            other = name.startswith("impacts/") or last in ("labels", "node", "EVOL")
+            other = name.startswith(EVENTS) or last in ("labels", "node", "EVOL")
             if isinstance(item, h5py.Dataset) and item.ndim > 0 and not other:
                 found[name] = item
 

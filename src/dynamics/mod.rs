@@ -11,7 +11,7 @@ mod step;
 pub use results::{
     Alternation, BodyResult, Cause, ContactImpulse, ContactOnBody, ContactResultant,
     ContactViolation, Course, Cutback, Energy, FailedLcp, Failure, IncrementReport, Landing,
-    Momentum, NodalResults, NodeMass, NodeStatus, Observer, Outcome, PassReport, RigidReaction,
-    RunSummary, SolverCounts, State, Timings, Worst,
+    Momentum, NodalResults, NodeMass, NodeStatus, Observer, Outcome, PassReport, ReturnedImpulse,
+    RigidReaction, RunSummary, SolverCounts, State, Timings, Touch, Worst,
 };
 pub use run::{RunError, run};

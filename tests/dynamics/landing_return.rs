@@ -1,12 +1,14 @@
 //! Energy that landings take is given back: `*STICKSLIP, LANDING=RETURN`.
 
-use stickslip::dynamics::IncrementReport;
+use stickslip::dynamics::{IncrementReport, Touch};
 use stickslip::model::{
-    Impact, ImpactTime, LandingRule, Model, Scheme, Settings, Support, SupportMotion,
+    Face, Impact, ImpactTime, LandingRule, Model, Scheme, Settings, Support, SupportMotion,
 };
 
 use crate::accounts::{MASSES, all_exterior, near};
-use crate::blocks::{Block, Keep, add_block, add_contact, fixed, model, run_to_end, step, throw};
+use crate::blocks::{
+    Block, Keep, add_block, add_contact, fixed, gravity, model, run_to_end, step, throw,
+};
 use crate::invariants::{drift, oblique_impact};
 
 fn settings() -> Settings {
@@ -46,17 +48,21 @@ fn check(keep: &Keep, what: &str) -> f64 {
         assert!(rise < 1e-10 * scale, "{what}: {rise:e}");
         let of_contacts = pair[1].contacts.iter().map(|c| c.landing_return);
         near(of_contacts.sum(), after.landing_return, scale);
+        for contact in &pair[1].contacts {
+            let outside = contact.impulse_cone_violation;
+            assert!(outside < 1e-12, "{what}: {outside:e} at {}", pair[1].time);
+        }
     }
     keep.reports.last().expect("reports").energy.landing_return / total(&keep.reports[0])
 }
 
 /// A square of one stiff element falls flat with the speed 2 on a fixed plate, `way` increments away.
-fn falling_square(young: f64, way: f64, dt: f64) -> (Model, Block) {
+fn falling_square(young: f64, way: f64, dt: f64, friction: f64) -> (Model, Block) {
     let mut model = model(young, 0.0, 1.0);
     let plate = add_block(&mut model, [-1.0, -0.5], [3.0, 0.5], (1, 1), 0.0);
     let square = add_block(&mut model, [0.0, way * 2.0 * dt], [1.0, 1.0], (1, 1), 0.0);
     throw(&mut model, &square, [0.5, -2.0], 0.0, [0.0; 2]);
-    add_contact(&mut model, square.faces(0), plate.faces(2), 0.0);
+    add_contact(&mut model, square.faces(0), plate.faces(2), friction);
     let supports = plate.nodes().flat_map(|n| [fixed(2 * n), fixed(2 * n + 1)]);
     let settings = Settings {
         impact: Impact::None,
@@ -70,7 +76,7 @@ fn falling_square(young: f64, way: f64, dt: f64) -> (Model, Block) {
 #[test]
 fn a_stiff_element_bounces_like_a_point_mass() {
     for way in [2.0625, 2.25, 2.5, 2.75, 2.9375] {
-        let (model, _) = falling_square(1e12, way, 0.01);
+        let (model, _) = falling_square(1e12, way, 0.01, 0.0);
         let (keep, _) = run_to_end(&model);
         check(&keep, "square");
         let last = keep.reports.last().expect("reports");
@@ -79,6 +85,25 @@ fn a_stiff_element_bounces_like_a_point_mass() {
         assert!((body.velocity[1] - 2.0).abs() < 1e-6, "{way}: {body:?}");
         assert!((body.velocity[0] - 0.5).abs() < 1e-12, "{way}: {body:?}");
         assert!(body.angular_velocity.abs() < 1e-9, "{way}: {body:?}");
+        // one touch of both nodes, with the energy of the fall
+        let touches: Vec<Touch> = keep
+            .reports
+            .iter()
+            .flat_map(|r| r.touches.clone())
+            .collect();
+        let [touch] = &touches[..] else {
+            panic!("{way}: {touches:?}");
+        };
+        assert!((touch.energy - 2.0).abs() < 1e-5, "{touch:?}");
+        assert!(
+            (touch.impulse - 4.0).abs() < 1e-5 && touch.is_at_corner,
+            "{touch:?}"
+        );
+        assert!(
+            touch.first == 3 && touch.last <= 4 && touch.nodes == 2,
+            "{touch:?}"
+        );
+        assert!(last.contacts[0].handover_work == 0.0);
         let mut plastic = model.clone();
         plastic.steps[0].settings.landing = LandingRule::Plastic;
         let (keep, _) = run_to_end(&plastic);
@@ -86,6 +111,42 @@ fn a_stiff_element_bounces_like_a_point_mass() {
         // it lands after the part s of the increment and leaves it with |1 - 2 s| of its speed
         let expected = 2.0 * (1.0 - 2.0 * (way - 2.0)).abs();
         assert!((speed - expected).abs() < 1e-4, "{way}: {speed} {expected}");
+    }
+}
+
+/// Wherever within an increment a square lands that slides, the impulses of every increment stay in Coulomb's cone, and
+/// so does their sum: what takes a force back takes its friction back.
+#[test]
+fn impulses_of_landings_stay_in_the_cone() {
+    let friction = 0.1;
+    for way in [2.0625, 2.25, 2.5, 2.75, 2.9375] {
+        for young in [1e4, 1e8] {
+            let (model, _) = falling_square(young, way, 0.01, friction);
+            let (keep, _) = run_to_end(&model);
+            check(&keep, "sliding square");
+            let mut friction_dissipation = 0.0;
+            for report in &keep.reports {
+                let contact = &report.contacts[0];
+                for impulse in [&contact.impulse, &contact.impulse_sum] {
+                    let most = friction * impulse.normal + 1e-12;
+                    assert!(
+                        impulse.tangential.abs() <= most,
+                        "{way} {young}: {impulse:?}"
+                    );
+                }
+                for pair in &report.returns {
+                    assert!(
+                        pair.tangential.abs() <= friction * pair.normal + 1e-12,
+                        "{pair:?}"
+                    );
+                }
+                let total = report.energy.friction_dissipation;
+                assert!(total >= friction_dissipation - 1e-12);
+                friction_dissipation = total;
+            }
+            let returned = keep.reports.iter().map(|r| r.returns.len()).sum::<usize>();
+            assert!(returned > 0 && friction_dissipation > 0.0);
+        }
     }
 }
 
@@ -196,4 +257,35 @@ fn what_is_symmetric_stays_symmetric() {
         let body = &report.bodies[1];
         assert!(body.angular_velocity.abs() < 1e-9 && body.velocity[0].abs() < 1e-10);
     }
+}
+
+/// A disc of a mapped block rolls on a plate, on which its weight presses it: nodes hand over to each other.
+#[test]
+fn nodes_of_a_rolling_disc_hand_over() {
+    let mut model = model(1e4, 0.3, 1.0);
+    let plate = add_block(&mut model, [-1.0, -0.5], [8.0, 0.5], (8, 1), 0.0);
+    let disc = add_block(&mut model, [-1.0, -1.0], [2.0, 2.0], (6, 6), 0.0);
+    for node in disc.nodes() {
+        let [x, y] = model.mesh.coordinates[node];
+        let round = |a: f64, b: f64| a * (1.0 - b * b / 2.0).sqrt();
+        model.mesh.coordinates[node] = [round(x, y), round(y, x) + 1.0];
+    }
+    throw(&mut model, &disc, [1.0, 0.0], -1.0, [0.0, 1.0]);
+    let skin: Vec<Face> = (0..4).flat_map(|side| disc.faces(side)).collect();
+    add_contact(&mut model, skin, plate.faces(2), 0.5);
+    let supports = plate.nodes().flat_map(|n| [fixed(2 * n), fixed(2 * n + 1)]);
+    let mut roll = step(0.01, 150, Settings::default(), supports.collect());
+    roll.body_forces = (plate.nx * plate.ny..model.mesh.elements.len())
+        .map(|element| gravity(element, 100.0))
+        .collect();
+    model.steps = vec![roll];
+    let (keep, _) = run_to_end(&model);
+    let last = keep.reports.last().expect("reports");
+    let contact = &last.contacts[0];
+    println!(
+        "handover {} of {}",
+        contact.handover_work, contact.normal_work
+    );
+    assert!(last.bodies[1].center[0] > 0.9);
+    assert!(contact.handover_work < 0.5 * contact.normal_work && contact.normal_work < 0.0);
 }

@@ -65,14 +65,14 @@ def largest_deviations(first: Path, second: Path, units: Units = SAME) -> dict[s
     It is relative to the largest value among all histories of the same dimension, so that a force
     or an energy that vanishes but for round-off does not count; that of a turn is at least the largest
     velocity over the largest length, as bodies may not turn at all. Pure numbers (residuals, cone
-    violation) and the list of impacts are left out.
+    violation) and the lists of events are left out.
     """
     errors: dict[str, tuple[Dimension, float]] = {}
     scales: dict[Dimension, float] = {}
     with h5py.File(first) as a, h5py.File(second) as b:
         for name, data in datasets(a["history"]):
             unit = dimension(data.attrs["dimension"])
-            if unit == BASE["1"] or name.startswith("impacts"):
+            if unit == BASE["1"] or name.startswith(("impacts", "returns", "touches")):
                 continue
             expected = data[()] * units.factor(unit)
             actual = b["history"][name][()]

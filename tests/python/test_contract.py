@@ -54,6 +54,8 @@ CONTACT = {
     "sticking": (),
     "min_gap": (),
     "cone_violation": (),
+    "impulse_cone_violation": (),
+    "handover_work": (),
     "normal_work": (),
     "friction_dissipation": (),
     "landing_return": (),

@@ -77,6 +77,16 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
         ("/history/momentum/angular", vec![I]),
         ("/history/momentum/damped_linear", vec![I, 2]),
         ("/history/momentum/damped_angular", vec![I]),
+        ("/history/touches/start", vec![0]),
+        ("/history/touches/end", vec![0]),
+        ("/history/touches/impulse", vec![0]),
+        ("/history/touches/energy", vec![0]),
+        ("/history/touches/first", vec![0]),
+        ("/history/touches/last", vec![0]),
+        ("/history/touches/nodes", vec![0]),
+        ("/history/touches/corner", vec![0]),
+        ("/history/touches/bodies", vec![0, 2]),
+        ("/history/touches/node", vec![0]),
         ("/history/impacts/time", vec![1]),
         ("/history/impacts/increment", vec![1]),
         ("/history/impacts/slave", vec![1]),
@@ -176,7 +186,7 @@ const VECTOR_PER_INCREMENT: [&str; 18] = [
     "/history/nodes/TIP/mean/A",
 ];
 
-const PER_INCREMENT: [&str; 72] = [
+const PER_INCREMENT: [&str; 76] = [
     "/history/contact/BOTTOM_TOP/normal_work",
     "/history/contact/BOTTOM_TOP/friction_dissipation",
     "/history/contact/BOTTOM_TOP/normal_impulse",
@@ -229,6 +239,8 @@ const PER_INCREMENT: [&str; 72] = [
     "/history/contact/BOTTOM_TOP/sticking",
     "/history/contact/BOTTOM_TOP/min_gap",
     "/history/contact/BOTTOM_TOP/cone_violation",
+    "/history/contact/BOTTOM_TOP/impulse_cone_violation",
+    "/history/contact/BOTTOM_TOP/handover_work",
     "/history/contact/BOTTOM_TOP_2/moment",
     "/history/contact/BOTTOM_TOP_2/normal",
     "/history/contact/BOTTOM_TOP_2/tangential",
@@ -236,6 +248,8 @@ const PER_INCREMENT: [&str; 72] = [
     "/history/contact/BOTTOM_TOP_2/sticking",
     "/history/contact/BOTTOM_TOP_2/min_gap",
     "/history/contact/BOTTOM_TOP_2/cone_violation",
+    "/history/contact/BOTTOM_TOP_2/impulse_cone_violation",
+    "/history/contact/BOTTOM_TOP_2/handover_work",
     "/history/solver/passes",
     "/history/solver/lcps",
     "/history/solver/lcp_size",

@@ -191,6 +191,7 @@ pub fn report(k: usize) -> IncrementReport {
         momentum: Momentum {
             linear: [k as f64, -1.0],
             angular: 0.5,
+            consistent_angular: None,
             damped_linear: [0.25, 0.0],
             damped_angular: -0.5,
         },
@@ -206,6 +207,8 @@ pub fn report(k: usize) -> IncrementReport {
             ..BodyResult::default()
         }],
         landings: if k == 4 { vec![landing()] } else { vec![] },
+        returns: vec![],
+        touches: vec![],
         solver: SolverCounts {
             passes: 2,
             lcps: 3,

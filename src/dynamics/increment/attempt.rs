@@ -15,7 +15,6 @@ use crate::dynamics::step::{
     write_difference, write_sum,
 };
 use crate::elements::Updated;
-use crate::linear::LinearError;
 
 /// A converged increment.
 #[derive(Default)]
@@ -265,12 +264,7 @@ impl<'m> Attempt<'_, 'm> {
             at: problem.configurations(&self.start.u, u),
         };
         let factorized = (self.workspace).factorize(problem, dt, motion, &closed);
-        factorized.map_err(|error| match error {
-            LinearError::NotPositiveDefinite { unknown, .. } => Cause::Indefinite {
-                node: problem.unknowns.dof[unknown] / 2,
-            },
-            other => other.into(),
-        })
+        factorized.map_err(|error| problem.unsolvable(error))
     }
 
     /// Whether the forces at hand balance the iterate and its gaps and slips are those of the contact

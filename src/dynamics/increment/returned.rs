@@ -32,8 +32,12 @@ pub(crate) struct PairReturn {
     pub key: ConstraintKey,
     /// Energy D.
     pub energy: f64,
+    /// What friction had dissipated and gives back with its force (energy).
+    pub friction: f64,
     /// Normal impulse (dt²/2) y (force time).
     pub normal: f64,
+    /// Tangential impulse (force time).
+    pub tangential: f64,
     /// Impulse on the slave node (force time).
     pub vector: [f64; 2],
 }
@@ -51,5 +55,10 @@ impl Returned {
     /// Energy given back to all pairs.
     pub fn energy(&self) -> f64 {
         self.pairs.iter().map(|pair| pair.energy).sum()
+    }
+
+    /// What friction gives back at all pairs.
+    pub fn friction(&self) -> f64 {
+        self.pairs.iter().map(|pair| pair.friction).sum()
     }
 }

@@ -9,11 +9,24 @@ use crate::vectors::{cross, difference, dot};
 pub(crate) struct ReturnLoad {
     /// Nodal forces over all dofs, at the positions of the end, as Gn^T of a pair.
     pub force: Vec<f64>,
+    /// Friction that is taken back where the load is.
+    pub friction: Option<FrictionLoad>,
     /// Energy to be given back.
     pub energy: f64,
+    /// Least share: it takes all of the force of the increment back.
+    pub least: f64,
+}
+
+/// The friction that goes with a load.
+pub(crate) struct FrictionLoad {
+    /// Nodal forces over all dofs, as (Pt/Pn) Gt^T of a pair.
+    pub force: Vec<f64>,
+    /// c: what friction has dissipated, for a share y of -1 (energy).
+    pub work: f64,
 }
 
 /// A pattern of velocity.
+#[derive(Clone)]
 pub(super) struct Pattern {
     /// w, over all dofs.
     pub w: Vec<f64>,
@@ -21,26 +34,32 @@ pub(super) struct Pattern {
     pub momentum: Vec<f64>,
 }
 
-/// The patterns of some loads at the end of an increment of length `dt`, where the bodies are `bodies`.
+impl Pattern {
+    /// Adds another pattern.
+    pub fn add(&mut self, other: &Pattern) {
+        let add = |sum: &mut [f64], v: &[f64]| sum.iter_mut().zip(v).for_each(|(s, v)| *s += v);
+        add(&mut self.w, &other.w);
+        add(&mut self.momentum, &other.momentum);
+    }
+}
+
+/// The pattern of the forces of a load at the end of an increment of length `dt`, where the bodies are `bodies`.
 ///
 /// w = K*^-1 Gn^T, eq. (6.6): what a load changes in the velocity of the end, but for a factor.
 ///
 /// # Errors
 /// Solves with K* that fail.
-pub(super) fn patterns(
+pub(super) fn pattern(
     problem: &StepProblem,
     workspace: &mut Workspace,
     dt: f64,
     bodies: &RigidBodies,
-    loads: &[ReturnLoad],
-) -> Result<Vec<Pattern>, Cause> {
-    let pattern = |load: &ReturnLoad| {
-        let mut w = (workspace.k()).respond(&problem.unknowns.map, &load.force)?;
-        bodies.correct(problem, dt, &load.force, &mut w);
-        let momentum = problem.mass.times(&w);
-        Ok(Pattern { w, momentum })
-    };
-    loads.iter().map(pattern).collect()
+    force: &[f64],
+) -> Result<Pattern, Cause> {
+    let mut w = (workspace.k()).respond(&problem.unknowns.map, force)?;
+    bodies.correct(problem, dt, force, &mut w);
+    let momentum = problem.mass.times(&w);
+    Ok(Pattern { w, momentum })
 }
 
 /// The free bodies as rigid ones.

@@ -1,15 +1,15 @@
 //! What releases take of nodes without mass, given back to the velocities of the end. Section 6 of
 //! docs/theory.md, Releases.
 
-use super::landing_return::{GivenBack, give_back};
+use super::landing_return::{GivenBack, factorize_anew, give_back};
 use super::pattern::ReturnLoad;
 use crate::contact::Constraint;
 use crate::dynamics::increment::{PairReturn, Release, Returned, Solved};
-use crate::dynamics::results::Cause;
+use crate::dynamics::results::{Cause, State};
 use crate::dynamics::step::{StepProblem, Workspace};
 use crate::model::LandingRule;
 
-/// Enters the release at the end of an increment of length `dt` and, where the step asks for it
+/// Enters the release at the end of an increment of length `dt` from `start` and, where the step asks for it
 /// (`LANDING=RETURN`), gives back what it has taken: along the pattern of the forces that the opened pairs
 /// carried before, each by its normal force.
 ///
@@ -18,11 +18,14 @@ use crate::model::LandingRule;
 pub(crate) fn return_release(
     problem: &StepProblem,
     workspace: &mut Workspace,
-    dt: f64,
+    (start, dt): (&State, f64),
     solved: &mut Solved,
     (release, returned): (Release, &mut Returned),
 ) -> Result<(), Cause> {
     if problem.settings.landing == LandingRule::Return && release.loss > 0.0 {
+        if returned.pairs.is_empty() {
+            factorize_anew(problem, workspace, (start, dt), solved)?;
+        }
         let mut force = vec![0.0; solved.d.len()];
         for (constraint, pair) in &release.opened {
             constraint.add_force(*pair, &mut force);
@@ -33,7 +36,12 @@ pub(crate) fn return_release(
             workspace,
             dt,
             solved,
-            &[ReturnLoad { force, energy }],
+            &[ReturnLoad {
+                force,
+                friction: None,
+                energy,
+                least: 0.0,
+            }],
         )?;
         returned.support_work += support_work;
         returned.pairs.extend(parts(&release, dt * dt / 2.0 * y[0]));
@@ -56,7 +64,9 @@ fn parts(release: &Release, factor: f64) -> Vec<PairReturn> {
         PairReturn {
             key: constraint.key,
             energy: release.loss * force[0] / whole,
+            friction: 0.0,
             normal: factor * force[0],
+            tangential: factor * force[1],
             vector,
         }
     };

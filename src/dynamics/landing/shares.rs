@@ -11,24 +11,31 @@ const SWEEPS: usize = 1000;
 /// velocity of zero.
 const AT_REST: f64 = 1e-8;
 
-/// Shares y of the patterns,
+/// Signs of the shares: those of b, which strengthen the motion along each pattern and never reverse it; without any
+/// motion the pattern of the force is taken.
+pub(super) fn signs(a: &DMatrix<f64>, b: &[f64], energies: &[f64]) -> Vec<f64> {
+    let sign = |j: usize| {
+        let is_at_rest = b[j].abs() <= AT_REST * (2.0 * a[(j, j)] * energies[j]).sqrt();
+        if b[j] < 0.0 && !is_at_rest { -1.0 } else { 1.0 }
+    };
+    (0..b.len()).map(sign).collect()
+}
+
+/// Shares y of the patterns with the given signs,
 ///
 /// ```text
-/// y_j (b_j + sum_k A_jk y_k / 2) = D_j,  y_j b_j >= 0,   eq. (6.9)
+/// y_j (b_j + sum_k A_jk y_k / 2) = D_j,   eq. (6.9)
 /// ```
 ///
-/// A_jk = w_j.M w_k (energy for y = 1), b_j = w_j.M V1, `energies` D_j > 0. There is one solution for any signs
-/// of y: the minimum of a convex function, found coordinate by coordinate. That with the signs of b strengthens
-/// the motion along each pattern and never reverses it; without any motion the pattern of the force is
-/// taken, y_j > 0. A pattern without energy has no share.
-pub(super) fn shares(a: &DMatrix<f64>, b: &[f64], energies: &[f64]) -> Vec<f64> {
+/// A_jk = w_j.M w_k (energy for y = 1), b_j = w_j.M V1 - s_j + c_j, `energies` D_j > 0. There is one solution for any
+/// signs of y: the minimum of a convex function, found coordinate by coordinate. A pattern without energy has no share.
+pub(super) fn shares(a: &DMatrix<f64>, b: &[f64], energies: &[f64], signs: &[f64]) -> Vec<f64> {
     let n = b.len();
     let mut y = vec![0.0; n];
     for _ in 0..SWEEPS {
         let mut change = 0.0_f64;
         for j in 0..n {
-            let is_at_rest = b[j].abs() <= AT_REST * (2.0 * a[(j, j)] * energies[j]).sqrt();
-            let sign = if b[j] < 0.0 && !is_at_rest { -1.0 } else { 1.0 };
+            let sign = signs[j];
             let others: f64 = (0..n).filter(|&k| k != j).map(|k| a[(j, k)] * y[k]).sum();
             let root = positive_root(a[(j, j)] / 2.0, sign * (b[j] + others / 2.0), energies[j]);
             change = change.max((sign * root - y[j]).abs() / root.max(f64::MIN_POSITIVE));
@@ -92,7 +99,7 @@ mod tests {
             let n = w.len();
             let a = DMatrix::from_fn(n, n, |j, k| dot(&w[j], &w[k]));
             let b: Vec<f64> = w.iter().map(|w| dot(w, &v)).collect();
-            let y = shares(&a, &b, &d[..n]);
+            let y = shares(&a, &b, &d[..n], &signs(&a, &b, &d[..n]));
             for (j, given) in given(&a, &b, &y).into_iter().enumerate() {
                 prop_assert!((given - d[j]).abs() < 1e-6, "{given} {}", d[j]);
                 prop_assert!(y[j] * b[j] >= 0.0);
@@ -108,9 +115,8 @@ mod tests {
         // mass 1, D = 2 s (1 - s)
         for s in [0.0625, 0.25, 0.5, 0.75, 0.9375] {
             let (v, d) = (1.0 - 2.0 * s, 2.0 * s * (1.0 - s));
-            let [y] = shares(&DMatrix::from_element(1, 1, 4.0), &[2.0 * v], &[d])[..] else {
-                panic!("one share")
-            };
+            let (a, b) = (DMatrix::from_element(1, 1, 4.0), [2.0 * v]);
+            let y = shares(&a, &b, &[d], &signs(&a, &b, &[d]))[0];
             let expected = if s > 0.5 { -1.0 } else { 1.0 };
             assert!((v + 2.0 * y - expected).abs() < 1e-15, "{s}");
         }
@@ -119,7 +125,7 @@ mod tests {
     #[test]
     fn patterns_that_are_alike_share_alike_and_one_without_motion_has_none() {
         let a = DMatrix::from_row_slice(3, 3, &[1.0, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
-        let y = shares(&a, &[0.5, 0.5, 0.0], &[0.1, 0.1, 0.1]);
+        let y = shares(&a, &[0.5, 0.5, 0.0], &[0.1; 3], &[1.0; 3]);
         assert!((y[0] - y[1]).abs() < 1e-12 && y[2] == 0.0, "{y:?}");
     }
 }

@@ -8,14 +8,15 @@ use super::energy::Ledger;
 use super::nodal_results::{contact_resultants, nodal_results, node_masses};
 use super::pressure::SlaveFaces;
 use super::rigid_surfaces::RigidSurfaces;
-use crate::contact::ContactSurfaces;
+use super::touches::{Sides, Touches};
 use crate::dynamics::increment::{Returned, Solved};
 use crate::dynamics::results::{
     ContactOnBody, ContactResultant, IncrementReport, Momentum, NodalResults, NodeStatus,
     RigidReaction, State,
 };
-use crate::dynamics::step::{Interval, Mass, StepProblem};
-use crate::model::{Contact, Model};
+use crate::dynamics::step::{Discretization, Interval, Mass, StepProblem};
+use crate::model::Contact;
+use crate::prepare::Redistribution;
 
 /// Accounts of a run besides the energy ledger: bodies, rigid surfaces and contacts.
 pub(crate) struct Accounts {
@@ -23,18 +24,38 @@ pub(crate) struct Accounts {
     rigid: RigidSurfaces,
     faces: SlaveFaces,
     contacts: ContactLedger,
+    touches: Touches,
+    /// The consistent mass, where the mass is redistributed.
+    consistent: Option<Mass>,
     /// Momentum that mass-proportional damping has taken.
     damped: Momentum,
 }
 
 impl Accounts {
     /// Accounts at the start of a run.
-    pub fn new(model: &Model, mass: &Mass, contacts: &[ContactSurfaces]) -> Self {
+    pub fn new(discretization: &Discretization) -> Self {
+        let Discretization {
+            model,
+            contacts,
+            mass,
+            elements,
+            redistribution,
+            ..
+        } = discretization;
         let faces = SlaveFaces::new(model);
+        let consistent = || {
+            Mass::new(
+                elements,
+                &Redistribution::default(),
+                model.mesh.node_count(),
+            )
+        };
         Accounts {
             bodies: BodyMasses::new(model, mass),
             rigid: RigidSurfaces::new(model),
             contacts: ContactLedger::new(model, contacts, faces.start.clone()),
+            touches: Touches::new(&model.mesh),
+            consistent: (!redistribution.is_empty()).then(consistent),
             faces,
             damped: Momentum::default(),
         }
@@ -81,7 +102,13 @@ impl Accounts {
         let u = &solved.equilibrium.u_theta;
         let mut contacts = contact_resultants(problem, solved);
         let bodies = &self.bodies.bodies;
-        (self.contacts).enter_returns(returned, &mut contacts);
+        let sides = Sides {
+            bodies,
+            contact_of: &self.contacts.contact_of,
+        };
+        let both = (solved, returned);
+        report.touches = (self.touches).enter(problem, &sides, both, interval, &mut contacts);
+        report.returns = (self.contacts).enter_returns(both, interval, &mut contacts);
         (self.contacts).enter(problem, bodies, solved, interval.dt, &mut contacts);
         let mut nodal = nodal_results(problem, solved);
         let (theta1, Interval { start, end, .. }) = (problem.weights.theta1, interval);
@@ -130,6 +157,8 @@ impl Accounts {
         let moving = Moving { u, v, p, elements };
         IncrementReport {
             momentum: Momentum {
+                consistent_angular: (self.consistent.as_ref())
+                    .map(|mass| momentum(problem, u, &mass.times(v)).angular),
                 damped_linear: self.damped.linear,
                 damped_angular: self.damped.angular,
                 ..momentum(problem, u, p)

@@ -1,10 +1,13 @@
 //! Work, impulses and slip of every contact since the start, section 9 of docs/theory.md.
 
+use std::collections::BTreeMap;
+
 use super::nodal_results::contact_of_slave_indices;
-use crate::contact::{Constraint, ContactSurfaces};
+use crate::contact::{Constraint, ConstraintKey, ContactSurfaces};
 use crate::dynamics::increment::{PairReturn, Returned, Solved};
-use crate::dynamics::results::{ContactImpulse, ContactOnBody, ContactResultant};
-use crate::dynamics::step::StepProblem;
+use crate::dynamics::results::{ContactImpulse, ContactOnBody, ContactResultant, ReturnedImpulse};
+use crate::dynamics::step::{Interval, StepProblem};
+use crate::linear::larger;
 use crate::model::{Bodies, Model};
 use crate::vectors::cross;
 
@@ -12,6 +15,7 @@ use crate::vectors::cross;
 #[derive(Clone, Copy, Default)]
 struct Sums {
     normal_work: f64,
+    handover_work: f64,
     friction_dissipation: f64,
     landing_return: f64,
     release_loss: f64,
@@ -24,7 +28,7 @@ pub(crate) struct ContactLedger {
     /// `N` entries; NaN at all nodes but slave nodes.
     pub slip: Vec<f64>,
     /// Contact of every slave index.
-    contact_of: Vec<usize>,
+    pub contact_of: Vec<usize>,
     /// Reference node of every contact whose master is a rigid surface.
     reference: Vec<Option<usize>>,
 }
@@ -88,6 +92,8 @@ impl ContactLedger {
             sums.impulse.sum(&result.impulse);
             result.impulse_sum = sums.impulse;
             result.normal_work = sums.normal_work;
+            sums.handover_work += result.handover_work;
+            result.handover_work = sums.handover_work;
             result.friction_dissipation = sums.friction_dissipation;
             result.landing_return = sums.landing_return;
             result.release_loss = sums.release_loss;
@@ -98,15 +104,59 @@ impl ContactLedger {
         }
     }
 
-    /// Enters what is given back after an increment, before the increment itself.
-    pub fn enter_returns(&mut self, returned: &Returned, resultants: &mut [ContactResultant]) {
+    /// Enters what is given back after an increment, before the increment itself; gives the total impulses of these
+    /// pairs.
+    pub fn enter_returns(
+        &mut self,
+        (solved, returned): (&Solved, &Returned),
+        interval: Interval,
+        resultants: &mut [ContactResultant],
+    ) -> Vec<ReturnedImpulse> {
         for pair in &returned.pairs {
             let contact = self.contact_of[pair.key.slave_index];
             self.contacts[contact].landing_return += pair.energy;
+            self.contacts[contact].friction_dissipation -= pair.friction;
             resultants[contact].impulse.add_return(pair);
         }
         for (key, loss) in returned.release.losses() {
             self.contacts[self.contact_of[key.slave_index]].release_loss += loss;
+        }
+        if returned.pairs.is_empty() {
+            return Vec::new();
+        }
+        let totals = total_impulses(solved, returned, interval.dt);
+        self.measure_cones(&totals, resultants);
+        let total = |pair: &PairReturn| {
+            let (constraint, [normal, tangential]) = totals.get(&pair.key)?;
+            let [slave, a, b, _] = constraint.source.nodes;
+            Some(ReturnedImpulse {
+                time: interval.end.total,
+                slave,
+                segment: [a, b],
+                normal: *normal,
+                tangential: *tangential,
+                returned_normal: pair.normal,
+                returned_tangential: pair.tangential,
+            })
+        };
+        returned.pairs.iter().filter_map(total).collect()
+    }
+
+    /// How far the total impulses are from Coulomb's cone, contact by contact. Without returns they are in it, as
+    /// forces and impacts each are.
+    fn measure_cones(&self, totals: &Totals, resultants: &mut [ContactResultant]) {
+        let mut largest = vec![0.0_f64; resultants.len()];
+        for (key, (constraint, [normal, tangential])) in totals {
+            let contact = self.contact_of[key.slave_index];
+            let outside = larger(tangential.abs() - constraint.mu * normal, -normal);
+            let violation = &mut resultants[contact].impulse_cone_violation;
+            *violation = larger(*violation, outside);
+            largest[contact] = larger(largest[contact], normal.abs());
+        }
+        for (result, largest) in resultants.iter_mut().zip(largest) {
+            if largest > 0.0 {
+                result.impulse_cone_violation /= largest;
+            }
         }
     }
 
@@ -126,6 +176,33 @@ impl ContactLedger {
     }
 }
 
+/// Normal and tangential impulses of pairs in an increment.
+type Totals<'s> = BTreeMap<ConstraintKey, (&'s Constraint, [f64; 2])>;
+
+/// Total impulses dt P + (Phi, Psi) and what is given back, pair by pair.
+fn total_impulses<'s>(solved: &'s Solved, returned: &'s Returned, dt: f64) -> Totals<'s> {
+    let mut totals = Totals::new();
+    let mut add = |constraint: &'s Constraint, impulse: [f64; 2]| {
+        let (_, sum) = (totals.entry(constraint.key)).or_insert((constraint, [0.0; 2]));
+        *sum = [sum[0] + impulse[0], sum[1] + impulse[1]];
+    };
+    for (constraint, pair) in solved.forces.acting() {
+        add(constraint, pair.force.map(|p| dt * p));
+    }
+    for (constraint, pair) in solved.impulses.acting() {
+        add(constraint, pair.force);
+    }
+    for (constraint, _) in &returned.release.opened {
+        add(constraint, [0.0; 2]);
+    }
+    for pair in &returned.pairs {
+        if let Some((_, sum)) = totals.get_mut(&pair.key) {
+            *sum = [sum[0] + pair.normal, sum[1] + pair.tangential];
+        }
+    }
+    totals
+}
+
 impl ContactImpulse {
     /// Adds the normal and tangential impulse of a constraint.
     fn add(&mut self, constraint: &Constraint, [normal, tangential]: [f64; 2]) {
@@ -142,6 +219,7 @@ impl ContactImpulse {
         self.vector[0] += returned.vector[0];
         self.vector[1] += returned.vector[1];
         self.normal += returned.normal;
+        self.tangential += returned.tangential;
         self.landing_return += returned.normal;
     }
 

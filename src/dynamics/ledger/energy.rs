@@ -139,10 +139,11 @@ impl Ledger {
             e.normal_contact_work += pn * constraint.normal_motion(d);
             e.friction_dissipation -= pt * constraint.tangential_motion(d);
         }
-        // what landings and releases are given back, with the work of the supports on the way, eq. (6.10), R and
-        // the work of the loads on the way to rest, eq. (6.12)
+        // what landings and releases are given back, with the work of the supports on the way, eq. (6.10), and of
+        // friction that is taken back, eq. (6.11), R and the work of the loads on the way to rest, eq. (6.13)
         let (loss, load_work) = (returned.release.loss, returned.release.load_work);
         e.landing_return += returned.energy();
+        e.friction_dissipation -= returned.friction();
         e.release_loss += loss;
         e.external_work += load_work + returned.support_work;
         // d.F_d, D, and d.F - (W1 - W0) - d.F_d - D, eq. (9.5), W1 that before the rest

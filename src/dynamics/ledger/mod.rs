@@ -9,6 +9,7 @@ mod energy_check;
 mod nodal_results;
 mod pressure;
 mod rigid_surfaces;
+mod touches;
 
 pub(crate) use accounts::Accounts;
 pub(crate) use contact_violation::contact_violation;

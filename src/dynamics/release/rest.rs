@@ -110,7 +110,7 @@ impl Releasing<'_, '_> {
         None
     }
 
-    /// dU = K_ii^-1 (R - F + Bn^T Pn), eq. (6.11), Pn of the complementarity problem of the gaps.
+    /// dU = K_ii^-1 (R - F + Bn^T Pn), eq. (6.12), Pn of the complementarity problem of the gaps.
     fn newton_step(&mut self, u: &[f64]) -> Option<Vec<f64>> {
         let (problem, end) = (self.problem, self.interval.end);
         let motion = Motion::at(u, &self.end.internal);
@@ -163,7 +163,7 @@ impl Releasing<'_, '_> {
         found.is_some()
     }
 
-    /// What the rest at the displacements `u` takes, eq. (6.12); none if it would give energy.
+    /// What the rest at the displacements `u` takes, eq. (6.13); none if it would give energy.
     fn release(&self, u: &[f64]) -> Option<Release> {
         let (elements, end) = (self.problem.elements, self.interval.end);
         let before = elements.evaluate(&self.end.u, &self.end.internal);

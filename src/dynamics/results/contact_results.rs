@@ -57,11 +57,17 @@ pub struct ContactResultant {
     pub min_gap: f64,
     /// max(|Pt| - mu Pn, 0) / max(Pn); 0 without contact.
     pub cone_violation: f64,
+    /// The same of the total impulses of the pairs in the increment, with impacts and what is given back; of a
+    /// pair whose total pulls, the pull.
+    pub impulse_cone_violation: f64,
     /// Moment of the force about the reference node of a rigid master (force length); 0 for other
     /// masters.
     pub reference_moment: f64,
     /// Work of the normal contact forces since the start of the analysis.
     pub normal_work: f64,
+    /// The part of it of nodes that landed where others of the same two bodies had opened, while the bodies stayed in
+    /// contact.
+    pub handover_work: f64,
     /// Energy dissipated by friction since the start of the analysis.
     pub friction_dissipation: f64,
     /// Kinetic energy given back after its landings and releases since the start of the analysis.
@@ -74,6 +80,52 @@ pub struct ContactResultant {
     pub impulse_sum: ContactImpulse,
     /// Force on each body in self-contact; empty for two surfaces.
     pub bodies: Vec<ContactOnBody>,
+}
+
+/// The contact of two bodies, or of a body and a rigid surface, from the landing of a first node until no pair is
+/// closed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Touch {
+    /// The bodies, in the order of [`crate::model::Bodies`]; none for a rigid surface.
+    pub bodies: [Option<usize>; 2],
+    /// A slave node that landed first (index).
+    pub node: usize,
+    /// Time at the start of the first increment.
+    pub start: f64,
+    /// Time at the end of the last increment.
+    pub end: f64,
+    /// Number of the first increment.
+    pub first: usize,
+    /// Number of the last increment.
+    pub last: usize,
+    /// Most nodes of one side in contact at a time.
+    pub nodes: usize,
+    /// Whether the contact reached a corner of an outline.
+    pub is_at_corner: bool,
+    /// Impulse J on one of the bodies (force time).
+    pub impulse: f64,
+    /// J²/(8 m), m being the reduced mass of the bodies: the kinetic energy of their approach where they rebound
+    /// with their speed; 0 where both are held.
+    pub energy: f64,
+}
+
+/// Total impulses on a pair of an increment after which it was given energy back.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReturnedImpulse {
+    /// Time at the end of the increment.
+    pub time: f64,
+    /// Slave node (index).
+    pub slave: usize,
+    /// Nodes a and b of the segment (indices).
+    pub segment: [usize; 2],
+    /// Total normal impulse: dt Pn + Phi and what is given back (force time).
+    pub normal: f64,
+    /// Total tangential impulse (force time).
+    pub tangential: f64,
+    /// Normal impulse that gives back (force time).
+    pub returned_normal: f64,
+    /// Tangential impulse with it (force time).
+    pub returned_tangential: f64,
 }
 
 /// A slave node that came into contact within the increment; time and place from its second-order

@@ -3,7 +3,7 @@
 use std::io;
 use std::sync::Arc;
 
-use super::contact_results::{ContactResultant, ContactViolation, Landing};
+use super::contact_results::{ContactResultant, ContactViolation, Landing, ReturnedImpulse, Touch};
 use super::failure::Failure;
 use super::pass_report::PassReport;
 use crate::elements::{ElementResult, Strained};
@@ -110,6 +110,8 @@ pub struct Momentum {
     pub linear: [f64; 2],
     /// Angular momentum about the origin (mass length^2/time).
     pub angular: f64,
+    /// That of the consistent mass, where the mass is redistributed.
+    pub consistent_angular: Option<f64>,
     /// Linear momentum that mass-proportional damping has taken since the start of the analysis (mass
     /// length/time).
     pub damped_linear: [f64; 2],
@@ -209,6 +211,10 @@ pub struct IncrementReport {
     pub contacts: Vec<ContactResultant>,
     /// Landings of this increment.
     pub landings: Vec<Landing>,
+    /// Total impulses of the pairs that were given energy back.
+    pub returns: Vec<ReturnedImpulse>,
+    /// Touches that have ended.
+    pub touches: Vec<Touch>,
     /// Counters of this increment.
     pub solver: SolverCounts,
     /// Its passes.

@@ -8,7 +8,8 @@ mod pass_report;
 mod run_summary;
 
 pub use contact_results::{
-    ContactImpulse, ContactOnBody, ContactResultant, ContactViolation, Landing,
+    ContactImpulse, ContactOnBody, ContactResultant, ContactViolation, Landing, ReturnedImpulse,
+    Touch,
 };
 pub use course::{Alternation, Course};
 pub use failure::{Cause, FailedLcp, Failure, Worst};

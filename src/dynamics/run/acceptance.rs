@@ -86,8 +86,9 @@ fn checked(
     let release = bring_to_rest(problem, workspace, start, interval, solved);
     check_paths(problem, workspace, before, solved)?;
     let dt = interval.dt;
-    let mut returned = return_landings(problem, workspace, dt, solved)?;
-    return_release(problem, workspace, dt, solved, (release, &mut returned))?;
+    let from = (before.state, dt);
+    let mut returned = return_landings(problem, workspace, from, solved)?;
+    return_release(problem, workspace, from, solved, (release, &mut returned))?;
     problem.follow_donors(&mut solved.end.v);
     problem.follow_donors(&mut solved.end.a);
     let ledger = before.ledger.clone();

@@ -77,11 +77,7 @@ impl<'m, 'o> Runner<'m, 'o> {
     /// A run before its first step.
     fn new(discretization: &'m Discretization<'m>, observer: &'o mut dyn Observer) -> Self {
         let Discretization {
-            model,
-            contacts,
-            mass,
-            elements,
-            ..
+            model, elements, ..
         } = discretization;
         Runner {
             discretization,
@@ -93,7 +89,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             },
             contact: ClosedPairs::default(),
             ledger: Ledger::default(),
-            accounts: Accounts::new(model, mass, contacts),
+            accounts: Accounts::new(discretization),
             summary: RunSummary {
                 outcome: Outcome::Finished,
                 increments: 0,

@@ -16,7 +16,7 @@ use crate::contact::{
 use crate::dynamics::results::{Cause, State};
 use crate::elements::Elements;
 use crate::lcp::LcpMethod;
-use crate::linear::largest;
+use crate::linear::{LinearError, largest};
 use crate::model::{Model, Settings, Step};
 use crate::prepare::Redistribution;
 use crate::vectors::distance;
@@ -142,6 +142,16 @@ impl StepProblem<'_> {
     pub fn place(&self, u: &[f64], nodes: [usize; 3]) -> Projection {
         let [s, a, b] = nodes.map(|node| self.position(u, node));
         project(s, a, b)
+    }
+
+    /// Why K* has no factors.
+    pub fn unsolvable(&self, error: LinearError) -> Cause {
+        match error {
+            LinearError::NotPositiveDefinite { unknown, .. } => Cause::Indefinite {
+                node: self.unknowns.dof[unknown] / 2,
+            },
+            other => other.into(),
+        }
     }
 
     /// Every segment must have a length to have a normal.

@@ -1,14 +1,14 @@
-//! Groups `/history/contact` and `/history/impacts`.
+//! Groups `/history/contact`, `/history/impacts`, `/history/returns` and `/history/touches`.
 
 use hdf5::Group;
 
-use crate::dynamics::{ContactImpulse, ContactResultant, Landing};
+use crate::dynamics::{ContactImpulse, ContactResultant, Landing, ReturnedImpulse, Touch};
 use crate::model::{Bodies, Contact, Model};
 use crate::output::file::{
     Column, Columns, Growing, Meaning, Scalar, Series, contact_names, group, meaning, scalar,
 };
 
-const RESULTANTS: [Scalar<ContactResultant, f64>; 9] = [
+const RESULTANTS: [Scalar<ContactResultant, f64>; 11] = [
     scalar(
         "moment",
         "moment of the force about the origin",
@@ -37,10 +37,22 @@ const RESULTANTS: [Scalar<ContactResultant, f64>; 9] = [
         |c| c.cone_violation,
     ),
     scalar(
+        "impulse_cone_violation",
+        "the same of the total impulses of the pairs in the increment, with impacts and what is given back",
+        "1",
+        |c| c.impulse_cone_violation,
+    ),
+    scalar(
         "normal_work",
         "work of the normal contact forces since the start",
         "energy",
         |c| c.normal_work,
+    ),
+    scalar(
+        "handover_work",
+        "the part of it of nodes that landed where others of the same bodies had opened",
+        "energy",
+        |c| c.handover_work,
     ),
     scalar(
         "friction_dissipation",
@@ -82,7 +94,7 @@ const IMPULSES: [Scalar<ContactImpulse, f64>; 5] = [
     ),
     scalar(
         "tangential_impulse",
-        "sum of dt Pt + Psi in the increment",
+        "sum of dt Pt + Psi and of return impulses in the increment",
         "force*time",
         |i| i.tangential,
     ),
@@ -311,5 +323,156 @@ impl Impacts {
         all.push(&mut self.increment);
         all.push(&mut self.slave);
         all.push(&mut self.segment);
+    }
+}
+
+const RETURNS: [Scalar<ReturnedImpulse, f64>; 5] = [
+    scalar("time", "time at the end of the increment", "time", |r| {
+        r.time
+    }),
+    scalar(
+        "normal",
+        "total normal impulse of the pair in the increment: dt Pn + Phi and what is given back",
+        "force*time",
+        |r| r.normal,
+    ),
+    scalar(
+        "tangential",
+        "total tangential impulse of the pair in the increment",
+        "force*time",
+        |r| r.tangential,
+    ),
+    scalar(
+        "returned_normal",
+        "normal impulse that gives back",
+        "force*time",
+        |r| r.returned_normal,
+    ),
+    scalar(
+        "returned_tangential",
+        "tangential impulse that gives back",
+        "force*time",
+        |r| r.returned_tangential,
+    ),
+];
+
+/// `/history/returns`: one row per pair and increment in which it is given energy back.
+pub(crate) struct Returns {
+    impulses: Series<ReturnedImpulse, f64>,
+    increment: Column<i64>,
+    slave: Column<i64>,
+    segment: Column<i64>,
+}
+
+impl Returns {
+    /// Creates the datasets.
+    pub fn create(at: &Group) -> hdf5::Result<Self> {
+        let column =
+            |name, row: &[usize], text| Column::<i64>::events(at, name, row, meaning(text, "1"));
+        Ok(Returns {
+            impulses: Series::of_events(at, &RETURNS)?,
+            increment: column("increment", &[], "increment")?,
+            slave: column("slave", &[], "node number of the slave node")?,
+            segment: column("segment", &[2], "node numbers of the segment's ends")?,
+        })
+    }
+
+    /// Appends a row.
+    pub fn push(&mut self, model: &Model, increment: usize, returned: &ReturnedImpulse) {
+        let label = |node: usize| model.mesh.node_labels[node] as i64;
+        self.impulses.push(returned);
+        self.increment.push([increment as i64]);
+        self.slave.push([label(returned.slave)]);
+        self.segment.push(returned.segment.map(label));
+    }
+
+    /// Its datasets.
+    pub fn columns<'a>(&'a mut self, all: &mut Columns<'a>) {
+        self.impulses.columns(all);
+        all.push(&mut self.increment);
+        all.push(&mut self.slave);
+        all.push(&mut self.segment);
+    }
+}
+
+const TIMES_OF_TOUCHES: [Scalar<Touch, f64>; 4] = [
+    scalar(
+        "start",
+        "time at the start of its first increment",
+        "time",
+        |t| t.start,
+    ),
+    scalar(
+        "end",
+        "time at the end of its last increment",
+        "time",
+        |t| t.end,
+    ),
+    scalar(
+        "impulse",
+        "size of the impulse on each of the bodies",
+        "force*time",
+        |t| t.impulse,
+    ),
+    scalar(
+        "energy",
+        "kinetic energy of the approach if the bodies rebound with its speed, J^2/(8 m); 0 where both are held",
+        "energy",
+        |t| t.energy,
+    ),
+];
+const COUNTS_OF_TOUCHES: [Scalar<Touch, i64>; 4] = [
+    scalar("first", "its first increment", "1", |t| t.first as i64),
+    scalar("last", "its last increment", "1", |t| t.last as i64),
+    scalar(
+        "nodes",
+        "most nodes of one side in contact at a time",
+        "1",
+        |t| t.nodes as i64,
+    ),
+    scalar(
+        "corner",
+        "1 where it reached a corner of an outline",
+        "1",
+        |t| i64::from(t.is_at_corner),
+    ),
+];
+
+/// `/history/touches`: one row per contact of two bodies that has ended.
+pub(crate) struct Touches {
+    times: Series<Touch, f64>,
+    counts: Series<Touch, i64>,
+    bodies: Column<i64>,
+    node: Column<i64>,
+}
+
+impl Touches {
+    /// Creates the datasets.
+    pub fn create(at: &Group) -> hdf5::Result<Self> {
+        let bodies = meaning("its bodies; -1 for a rigid surface", "1");
+        let node = meaning("number of a slave node that landed first", "1");
+        Ok(Touches {
+            times: Series::of_events(at, &TIMES_OF_TOUCHES)?,
+            counts: Series::of_events(at, &COUNTS_OF_TOUCHES)?,
+            bodies: Column::<i64>::events(at, "bodies", &[2], bodies)?,
+            node: Column::<i64>::events(at, "node", &[], node)?,
+        })
+    }
+
+    /// Appends a row.
+    pub fn push(&mut self, model: &Model, touch: &Touch) {
+        self.times.push(touch);
+        self.counts.push(touch);
+        let number = |body: Option<usize>| body.map_or(-1, |body| body as i64);
+        self.bodies.push(touch.bodies.map(number));
+        self.node.push([model.mesh.node_labels[touch.node] as i64]);
+    }
+
+    /// Its datasets.
+    pub fn columns<'a>(&'a mut self, all: &mut Columns<'a>) {
+        self.times.columns(all);
+        self.counts.columns(all);
+        all.push(&mut self.bodies);
+        all.push(&mut self.node);
     }
 }

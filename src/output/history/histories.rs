@@ -3,12 +3,12 @@
 use hdf5::Group;
 
 use super::bodies::BodyHistory;
-use super::contacts::{ContactHistory, Impacts, create_contacts};
+use super::contacts::{ContactHistory, Impacts, Returns, Touches, create_contacts};
 use super::rigid_surfaces::{RigidHistory, create_rigid};
 use super::sets::SetHistories;
 use super::strains::StrainHistory;
 use crate::dynamics::{Energy, IncrementReport, Momentum, SolverCounts};
-use crate::model::Model;
+use crate::model::{ContactMass, LandingRule, Model, Step};
 use crate::output::file::{Column, Columns, Scalar, Series, group, meaning, scalar};
 
 /// Writes the history.
@@ -21,6 +21,8 @@ pub(crate) struct History {
     strain: StrainHistory,
     contacts: Vec<ContactHistory>,
     impacts: Impacts,
+    returns: Option<Returns>,
+    touches: Touches,
     rigid: Vec<RigidHistory>,
     sets: SetHistories,
     solver: SolverHistory,
@@ -43,11 +45,16 @@ impl History {
             times: Series::create(&at, &TIMES)?,
             step: Series::create(&at, &STEP)?,
             energy: Series::create(&group(&at, "energy")?, &ENERGY)?,
-            momentum: MomentumHistory::create(&group(&at, "momentum")?)?,
+            momentum: MomentumHistory::create(&group(&at, "momentum")?, model)?,
             bodies: BodyHistory::create(&group(&at, "bodies")?, model)?,
             strain: StrainHistory::create(&group(&at, "strain")?, model)?,
             contacts: create_contacts(&group(&at, "contact")?, model)?,
             impacts: Impacts::create(&group(&at, "impacts")?)?,
+            returns: match model.steps.iter().any(gives_back) {
+                true => Some(Returns::create(&group(&at, "returns")?)?),
+                false => None,
+            },
+            touches: Touches::create(&group(&at, "touches")?)?,
             rigid: create_rigid(&group(&at, "rigid")?, model)?,
             sets: SetHistories::create(&at, model)?,
             solver: SolverHistory::create(&group(&at, "solver")?)?,
@@ -80,12 +87,25 @@ impl History {
         for landing in &report.landings {
             self.impacts.push(model, report.increment, landing);
         }
+        if let Some(returns) = &mut self.returns {
+            for returned in &report.returns {
+                returns.push(model, report.increment, returned);
+            }
+        }
+        for touch in &report.touches {
+            self.touches.push(model, touch);
+        }
         for (surface, reaction) in self.rigid.iter_mut().zip(&report.rigid) {
             surface.push(model, &report.state, reaction);
         }
         self.sets.push(report);
         self.solver.push(&report.solver);
-        self.waiting.rows += report.landings.len().max(1);
+        let events = [
+            report.landings.len(),
+            report.returns.len(),
+            report.touches.len(),
+        ];
+        self.waiting.rows += events.into_iter().fold(1, usize::max);
     }
 
     /// Whether no further row may wait.
@@ -121,6 +141,10 @@ impl History {
             contact.columns(&mut all);
         }
         self.impacts.columns(&mut all);
+        if let Some(returns) = &mut self.returns {
+            returns.columns(&mut all);
+        }
+        self.touches.columns(&mut all);
         for surface in &mut self.rigid {
             surface.columns(&mut all);
         }
@@ -128,6 +152,16 @@ impl History {
         self.solver.columns(&mut all);
         all
     }
+}
+
+/// Whether the mass of contact surfaces is redistributed in a step.
+fn redistributes(step: &Step) -> bool {
+    step.settings.contact_mass == ContactMass::Redistributed
+}
+
+/// Whether a step may give energy back after landings.
+fn gives_back(step: &Step) -> bool {
+    step.settings.landing == LandingRule::Return
 }
 
 const TIMES: [Scalar<IncrementReport, f64>; 2] = [
@@ -222,15 +256,24 @@ const ANGULAR: [Scalar<Momentum, f64>; 2] = [
     ),
 ];
 
+/// With redistributed mass; where no node gives its mass up it is the other.
+const CONSISTENT: [Scalar<Momentum, f64>; 1] = [scalar(
+    "consistent_angular",
+    "angular momentum about the origin of the consistent mass",
+    "mass*length^2/time",
+    |m| m.consistent_angular.unwrap_or(m.angular),
+)];
+
 /// `/history/momentum`.
 struct MomentumHistory {
     linear: Column<f64>,
     damped_linear: Column<f64>,
     angular: Series<Momentum, f64>,
+    consistent: Option<Series<Momentum, f64>>,
 }
 
 impl MomentumHistory {
-    fn create(at: &Group) -> hdf5::Result<Self> {
+    fn create(at: &Group, model: &Model) -> hdf5::Result<Self> {
         let text = meaning("linear momentum", "mass*length/time");
         let damped = meaning(
             "linear momentum taken by mass-proportional damping since the start",
@@ -240,6 +283,10 @@ impl MomentumHistory {
             linear: Column::series(at, "linear", &[2], text)?,
             damped_linear: Column::series(at, "damped_linear", &[2], damped)?,
             angular: Series::create(at, &ANGULAR)?,
+            consistent: match model.steps.iter().any(redistributes) {
+                true => Some(Series::create(at, &CONSISTENT)?),
+                false => None,
+            },
         })
     }
 
@@ -247,12 +294,18 @@ impl MomentumHistory {
         self.linear.push(momentum.linear);
         self.damped_linear.push(momentum.damped_linear);
         self.angular.push(momentum);
+        if let Some(consistent) = &mut self.consistent {
+            consistent.push(momentum);
+        }
     }
 
     fn columns<'a>(&'a mut self, all: &mut Columns<'a>) {
         all.push(&mut self.linear);
         all.push(&mut self.damped_linear);
         self.angular.columns(all);
+        if let Some(consistent) = &mut self.consistent {
+            consistent.columns(all);
+        }
     }
 }
 

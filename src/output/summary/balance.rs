@@ -18,6 +18,8 @@ pub(crate) struct Balance {
     worst: f64,
     /// The last energies.
     last: Energy,
+    /// Normal work of nodes that took the place of others so far.
+    handover_work: f64,
     contact_energy: ContactEnergy,
     /// Momentum at the start of a model without external forces.
     start: Option<Momentum>,
@@ -72,6 +74,7 @@ impl Balance {
             self.add_momentum(report.momentum);
         }
         self.last = report.energy;
+        self.handover_work = report.contacts.iter().map(|c| c.handover_work).sum();
         if let Some(added) = report.contact_energy {
             self.contact_energy.count += 1;
             self.contact_energy.energy += added;
@@ -97,6 +100,11 @@ impl Balance {
         part(balance, self.largest)
     }
 
+    /// Largest energy or external work so far.
+    pub fn largest(&self) -> f64 {
+        self.largest
+    }
+
     /// The worst balance so far as a part of the largest energy.
     pub fn worst(&self) -> f64 {
         part(self.worst, self.largest)
@@ -104,7 +112,7 @@ impl Balance {
 
     /// Where the energy has gone so far.
     pub fn losses(&self) -> Losses {
-        Losses::new(&self.last, self.largest)
+        Losses::new(&self.last, self.handover_work, self.largest)
     }
 
     /// The change of a free model's linear momentum as a part of its largest value.

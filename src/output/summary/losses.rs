@@ -14,6 +14,8 @@ const MUCH: f64 = 0.01;
 pub(crate) struct Losses {
     /// Taken by the normal contact forces: nodes that land within increments.
     pub clipping: f64,
+    /// The part of the clipping of nodes that land where others of the same bodies have opened.
+    pub handover: f64,
     /// Taken by the impact impulses: the mass of the nodes that land.
     pub node_mass: f64,
     /// Taken from nodes without mass as they come to rest after a release.
@@ -31,10 +33,12 @@ pub(crate) struct Losses {
 }
 
 impl Losses {
-    /// The losses of a ledger beside the largest energy or external work.
-    pub fn new(energy: &Energy, largest: f64) -> Self {
+    /// The losses of a ledger beside the largest energy or external work, with the normal work of nodes that take the
+    /// place of others.
+    pub fn new(energy: &Energy, handover_work: f64, largest: f64) -> Self {
         Losses {
             clipping: part(-energy.normal_contact_work, largest),
+            handover: part(-handover_work, largest),
             node_mass: part(energy.impact_loss, largest),
             release: part(energy.release_loss, largest),
             returned: part(-energy.landing_return, largest),
@@ -69,12 +73,29 @@ impl Losses {
     /// What takes less, and its price, for each loss that is more than a hundredth.
     pub fn advice(&self) -> Vec<String> {
         let landings = self.clipping + self.release + self.returned;
-        let texts = [
-            (
-                landings,
+        let landed = match self.is_handover() {
+            true => (
+                "nodes that take each other's place in lasting contact, as in rolling and sliding, took",
+                "choose smaller increments or smaller elements at the surface; LANDING=RETURN would \
+                 turn the loss into vibrations of the mesh",
+            ),
+            false => (
                 "nodes that land within increments took",
                 "choose LANDING=RETURN of *STICKSLIP (a solve for each landing; bodies go on \
                  bouncing and ringing), IMPACT TIME=EVENT (more increments) or smaller increments",
+            ),
+        };
+        let rings = match self.is_handover() && self.returned < 0.0 {
+            true => self.handover,
+            false => 0.0,
+        };
+        let texts = [
+            (landings, landed.0, landed.1),
+            (
+                rings,
+                "LANDING=RETURN makes forces ring: to nodes that take each other's place in lasting contact, \
+                 as in rolling and sliding, it gave back",
+                "choose LANDING=PLASTIC with smaller increments or smaller elements at the surface",
             ),
             (
                 -landings,
@@ -85,7 +106,8 @@ impl Losses {
                 self.node_mass,
                 "impulses that stop the mass of landing nodes took",
                 "choose CONTACT MASS=REDISTRIBUTED with LANDING=RETURN (shifts the highest \
-                 frequencies; bodies go on bouncing and ringing) or a finer mesh at the surface",
+                 frequencies; bodies go on bouncing and ringing; layers of one or two elements keep \
+                 their mass) or a finer mesh at the surface",
             ),
             (
                 self.scheme.abs(),
@@ -103,6 +125,11 @@ impl Losses {
             })
         };
         texts.into_iter().filter_map(text).collect()
+    }
+
+    /// Whether most of what landings take is that of nodes that take each other's place.
+    fn is_handover(&self) -> bool {
+        self.handover > self.clipping / 2.0
     }
 }
 
@@ -127,14 +154,14 @@ mod tests {
 
     #[test]
     fn losses_are_told_in_percent_without_round_off() {
-        let lines = Losses::new(&energy(), 10.0).lines();
+        let lines = Losses::new(&energy(), 0.0, 10.0).lines();
         assert_eq!(lines, ["lost     clipping 20 %   node mass 5 %"]);
-        assert!(Losses::new(&Energy::default(), 0.0).lines().is_empty());
+        assert!(Losses::new(&Energy::default(), 0.0, 0.0).lines().is_empty());
         let lost = Energy {
             numerical_dissipation: f64::NAN,
             ..energy()
         };
-        assert!(Losses::new(&lost, 10.0).lines()[0].ends_with("scheme nan %"));
+        assert!(Losses::new(&lost, 0.0, 10.0).lines()[0].ends_with("scheme nan %"));
     }
 
     #[test]
@@ -142,7 +169,7 @@ mod tests {
         let advice = |change: fn(&mut Energy)| {
             let mut energy = energy();
             change(&mut energy);
-            Losses::new(&energy, 10.0).advice()
+            Losses::new(&energy, 0.0, 10.0).advice()
         };
         let both = advice(|_| {});
         assert!(both[0].contains("2.0e-01 of the largest") && both[0].contains("LANDING=RETURN"));
@@ -170,5 +197,28 @@ mod tests {
             }
         });
         assert!(user.is_empty(), "what the deck asks for");
+    }
+
+    #[test]
+    fn nodes_that_take_each_others_place_ask_for_smaller_increments() {
+        let mut rolling = energy();
+        rolling.impact_loss = 0.0;
+        let [taken] = &Losses::new(&rolling, -1.5, 10.0).advice()[..] else {
+            panic!("one warning");
+        };
+        assert!(taken.contains("2.0e-01 of the largest energy"), "{taken}");
+        assert!(taken.contains("choose smaller increments or"), "{taken}");
+        rolling.landing_return = 2.0;
+        let [rings] = &Losses::new(&rolling, -1.5, 10.0).advice()[..] else {
+            panic!("one warning");
+        };
+        assert!(
+            rings.contains("makes forces ring") && rings.contains("1.5e-01"),
+            "{rings}"
+        );
+        assert!(
+            Losses::new(&rolling, -0.5, 10.0).advice().is_empty(),
+            "bounces"
+        );
     }
 }

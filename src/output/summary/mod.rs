@@ -6,6 +6,7 @@ mod losses;
 mod monitor;
 mod run_summary;
 mod totals;
+mod touches;
 mod warnings;
 
 pub use header::{deck_line, program_lines};

@@ -23,8 +23,8 @@ pub(crate) struct Monitor {
     /// Causes of the cutbacks so far, each with the course of the passes.
     kinds: Vec<(Discriminant<Cause>, Option<Discriminant<Course>>)>,
     landings: usize,
-    /// Largest violation of Coulomb's cone.
-    cone_violation: f64,
+    /// Largest violation of Coulomb's cone by forces and by total impulses.
+    cone_violations: [f64; 2],
 }
 
 /// Remarks on an increment besides its line in the table.
@@ -46,7 +46,7 @@ impl Monitor {
             cutbacks: 0,
             kinds: Vec::new(),
             landings: 0,
-            cone_violation: 0.0,
+            cone_violations: [0.0; 2],
         }
     }
 
@@ -56,7 +56,9 @@ impl Monitor {
         self.watch.add(report);
         self.landings += report.landings.len();
         for contact in &report.contacts {
-            self.cone_violation = larger(self.cone_violation, contact.cone_violation);
+            let [force, impulse] = &mut self.cone_violations;
+            *force = larger(*force, contact.cone_violation);
+            *impulse = larger(*impulse, contact.impulse_cone_violation);
         }
         Remarks {
             contact_energy,
@@ -94,10 +96,10 @@ impl Monitor {
         lines.extend(self.balance.losses().lines());
         lines.push(self.strain.line(model));
         if !model.contacts.is_empty() {
+            let [force, impulse] = self.cone_violations.map(|part| scientific(part, 1));
+            let landings = counted(self.landings, "landing");
             lines.push(format!(
-                "contact  {}; largest violation of Coulomb's cone {}",
-                counted(self.landings, "landing"),
-                scientific(self.cone_violation, 1),
+                "contact  {landings}; outside Coulomb's cone at most: forces {force}, impulses {impulse}"
             ));
         }
         let added = self.balance.contact_energy();

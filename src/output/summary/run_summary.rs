@@ -9,8 +9,9 @@ use thiserror::Error;
 
 use super::losses::{Losses, part};
 use super::totals::error_line;
+use super::touches::Touches;
 use super::warnings::{Findings, never_closed};
-use crate::dynamics::{ContactViolation, Energy};
+use crate::dynamics::{ContactViolation, Energy, Touch};
 use crate::linear::{larger, largest};
 use crate::output::error::reason;
 use crate::output::file::{BodyTimes, UNFINISHED, regular_file};
@@ -81,6 +82,8 @@ pub struct ResultSummary {
     pub worst_balance: f64,
     /// Largest relative force residual of the history.
     pub residual: f64,
+    /// Where the energy has gone.
+    losses: Losses,
     /// How far the pairs were from the contact law at most; none without contact, and of a file from
     /// before there was this history.
     pub violation: Option<ContactViolation>,
@@ -114,7 +117,12 @@ impl ResultSummary {
         let (energies, largest_energy) = read_energies(&history.group("energy")?)?;
         let balance: Vec<f64> = column(&history, "energy/balance")?;
         let worst = part(largest(&balance), largest_energy);
-        let findings = read_findings(&file, losses(&energies, largest_energy), worst)?;
+        let losses = losses(
+            &energies,
+            read_handovers(&history.group("contact")?)?,
+            largest_energy,
+        );
+        let findings = read_findings(&file, losses, [worst, largest_energy])?;
         Ok(ResultSummary {
             path: path.to_owned(),
             size,
@@ -137,6 +145,7 @@ impl ResultSummary {
             largest_energy,
             worst_balance: largest(&balance),
             residual: largest(&column::<f64>(&history, "solver/residual")?),
+            losses,
             violation: read_violation(&history)?,
             warnings: findings.lines(),
         })
@@ -216,7 +225,7 @@ impl ResultSummary {
         let mut lines = wrap("energy", &pieces);
         let part = scientific(part(self.worst_balance, self.largest_energy), 1);
         lines.push(label("", &format!("balance {part} of the largest energy")));
-        lines.extend(losses(&self.energies, self.largest_energy).lines());
+        lines.extend(self.losses.lines());
         lines
     }
 }
@@ -260,8 +269,8 @@ fn read_energies(at: &Group) -> hdf5::Result<(Vec<(String, f64)>, f64)> {
     Ok((energies, scale))
 }
 
-/// Where the energy has gone, from the last value of each energy.
-fn losses(energies: &[(String, f64)], largest: f64) -> Losses {
+/// Where the energy has gone, from the last value of each energy and the normal work of handovers.
+fn losses(energies: &[(String, f64)], handover_work: f64, largest: f64) -> Losses {
     let last = |wanted: &str| {
         let found = energies.iter().find(|(name, _)| name == wanted);
         found.map_or(0.0, |(_, energy)| *energy)
@@ -277,11 +286,15 @@ fn losses(energies: &[(String, f64)], largest: f64) -> Losses {
         numerical_dissipation: last("numerical_dissipation"),
         ..Energy::default()
     };
-    Losses::new(&energy, largest)
+    Losses::new(&energy, handover_work, largest)
 }
 
 /// Figures that the warnings are made from; datasets that older files lack are left out.
-fn read_findings(file: &Group, losses: Losses, balance: f64) -> hdf5::Result<Findings> {
+fn read_findings(
+    file: &Group,
+    losses: Losses,
+    [balance, largest_energy]: [f64; 2],
+) -> hdf5::Result<Findings> {
     let history = file.group("history")?;
     let times: Vec<f64> = column(&history, "time")?;
     let increments: Vec<f64> = column(&history, "dt")?;
@@ -300,12 +313,57 @@ fn read_findings(file: &Group, losses: Losses, balance: f64) -> hdf5::Result<Fin
             true => read_open(&history.group("contact")?)?,
             false => Vec::new(),
         },
+        touches: Touches::new(&read_touches(&history).unwrap_or_default(), largest_energy),
         dt,
         time: times.last().copied().unwrap_or(0.0),
         bodies: (edge.into_iter().zip(body))
             .map(|(edge, body)| BodyTimes { edge, body })
             .collect(),
     })
+}
+
+/// The touches of the bodies, as far as the warnings need them.
+fn read_touches(history: &Group) -> hdf5::Result<Vec<Touch>> {
+    let at = history.group("touches")?;
+    let [start, end, energy] = ["start", "end", "energy"].map(|name| column::<f64>(&at, name));
+    let [first, last, nodes, corner, bodies] =
+        ["first", "last", "nodes", "corner", "bodies"].map(|name| column::<i64>(&at, name));
+    let (start, end, energy) = (start?, end?, energy?);
+    let (first, last, nodes, corner, bodies) = (first?, last?, nodes?, corner?, bodies?);
+    let count = |number: i64| number.unsigned_abs() as usize;
+    let body = |number: i64| usize::try_from(number).ok();
+    let touch = |k: usize| Touch {
+        bodies: [body(bodies[2 * k]), body(bodies[2 * k + 1])],
+        start: start[k],
+        end: end[k],
+        first: count(first[k]),
+        last: count(last[k]),
+        nodes: count(nodes[k]),
+        is_at_corner: corner[k] != 0,
+        energy: energy[k],
+        ..Touch::default()
+    };
+    let rows = [
+        start.len(),
+        end.len(),
+        energy.len(),
+        first.len(),
+        last.len(),
+        nodes.len(),
+        corner.len(),
+    ];
+    let complete = rows.into_iter().fold(bodies.len() / 2, usize::min);
+    Ok((0..complete).map(touch).collect())
+}
+
+/// Normal work of nodes that took the place of others, of all contacts; 0 of a file from before there was this
+/// account.
+fn read_handovers(at: &Group) -> hdf5::Result<f64> {
+    let last = |name: String| {
+        let work = column::<f64>(at, &format!("{name}/handover_work")).unwrap_or_default();
+        work.last().copied().unwrap_or(0.0)
+    };
+    Ok(at.member_names()?.into_iter().map(last).sum())
 }
 
 /// How far the pairs were from the contact law at most, where the file has contacts and says it.

@@ -2,7 +2,8 @@
 
 use super::balance::Balance;
 use super::losses::Losses;
-use crate::dynamics::IncrementReport;
+use super::touches::Touches;
+use crate::dynamics::{IncrementReport, Touch};
 use crate::linear::larger;
 use crate::model::{ALL_EXTERIOR, Bodies, Model};
 use crate::output::file::{BodyTimes, body_times, contact_names};
@@ -27,6 +28,8 @@ pub(crate) struct Findings {
     pub strain: Option<f64>,
     /// Names of the contacts that never closed, sorted.
     pub open: Vec<String>,
+    /// The touches that matter.
+    pub touches: Touches,
     /// Length of the longest increment; 0 without any.
     pub dt: f64,
     /// Last time.
@@ -40,7 +43,13 @@ impl Findings {
     pub fn lines(&self) -> Vec<String> {
         let mut texts: Vec<String> = self.balance_text().into_iter().collect();
         texts.extend(self.losses.advice());
-        let others = [self.strain_text(), self.long_text(), self.short_text()];
+        let others = [
+            self.touches.brief_text(),
+            self.touches.narrow_text(),
+            self.strain_text(),
+            self.long_text(),
+            self.short_text(),
+        ];
         texts.extend(others.into_iter().flatten());
         texts.extend(self.open.iter().map(|name| self.open_text(name)));
         texts
@@ -119,6 +128,7 @@ impl Findings {
 pub(crate) struct Watch {
     /// Whether each contact has closed, or been struck.
     closed: Vec<bool>,
+    touches: Vec<Touch>,
     dt: f64,
     time: f64,
 }
@@ -130,6 +140,7 @@ impl Watch {
         for (closed, contact) in self.closed.iter_mut().zip(&report.contacts) {
             *closed |= contact.closed > 0 || contact.impulse.impact_normal > 0.0;
         }
+        self.touches.extend(&report.touches);
         self.dt = larger(self.dt, report.dt);
         self.time = report.time;
     }
@@ -146,6 +157,7 @@ impl Watch {
                 true => never_closed(&contacts),
                 false => Vec::new(),
             },
+            touches: Touches::new(&self.touches, balance.largest()),
             dt: self.dt,
             time: self.time,
             bodies: body_times(model, &Bodies::new(&model.mesh)),
@@ -193,6 +205,7 @@ mod tests {
             },
             strain: Some(0.1),
             open: vec![],
+            touches: Touches::default(),
             dt: 0.1,
             time: 1.0,
             bodies: vec![

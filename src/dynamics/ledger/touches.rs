@@ -1,0 +1,262 @@
+//! Touches: contacts of two bodies from the landing of a first node until no node is closed, and the
+//! landings of nodes that take the place of others. Section 9 of docs/theory.md, Touches.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::contact::tolerances::CLOSED_GAP;
+use crate::contact::{ClosedPair, Constraint};
+use crate::dynamics::increment::{Returned, Solved};
+use crate::dynamics::results::{ContactResultant, Touch};
+use crate::dynamics::step::{Hold, Interval, StepProblem, holds};
+use crate::model::{Bodies, Mesh};
+use crate::vectors::{angle, difference};
+
+/// Angle (rad) from which on a surface has a corner, at which a contact of any size ends.
+const CORNER: f64 = 1.0;
+
+/// What touches: a body, or the rigid surface of a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Partner {
+    Body(usize),
+    Surface(usize),
+}
+
+/// The touches of a run.
+pub(crate) struct Touches {
+    /// Whether a node is at a corner of its body.
+    corners: Vec<bool>,
+    /// Number of increments so far.
+    increments: usize,
+    under_way: BTreeMap<[Partner; 2], UnderWay>,
+}
+
+/// A touch that has not ended.
+#[derive(Default)]
+struct UnderWay {
+    touch: Touch,
+    /// Impulse on the first partner.
+    impulse: [f64; 2],
+    /// Slave indices closed at the end of the last increment.
+    closed: BTreeSet<usize>,
+    /// Nodes that have opened and whose place none has taken.
+    opened: usize,
+}
+
+impl Touches {
+    /// No touches yet.
+    pub fn new(mesh: &Mesh) -> Self {
+        Touches {
+            corners: corners(mesh),
+            increments: 0,
+            under_way: BTreeMap::new(),
+        }
+    }
+
+    /// Enters a converged increment; adds the work of nodes that take the place of others to the contacts, and gives
+    /// the touches that have ended.
+    pub fn enter(
+        &mut self,
+        problem: &StepProblem,
+        sides: &Sides,
+        (solved, returned): (&Solved, &Returned),
+        interval: Interval,
+        contacts: &mut [ContactResultant],
+    ) -> Vec<Touch> {
+        self.increments += 1;
+        let mut pairs: BTreeMap<[Partner; 2], Vec<(&Constraint, &ClosedPair)>> = BTreeMap::new();
+        for (constraint, pair) in solved.forces.acting() {
+            let of_both = pairs.entry(sides.partners(constraint).0).or_default();
+            of_both.push((constraint, pair));
+        }
+        for (both, pairs) in &pairs {
+            let under_way = (self.under_way.entry(*both))
+                .or_insert_with(|| UnderWay::begin(*both, pairs, interval, self.increments));
+            under_way.touch.last = self.increments;
+            under_way.measure(sides, pairs, &self.corners);
+            for (index, work) in under_way.hand_over(pairs, &solved.d) {
+                contacts[sides.contact_of[index]].handover_work += work;
+            }
+        }
+        self.add_impulses(sides, (solved, returned), interval.dt);
+        let has_ended = |under_way: &UnderWay| under_way.touch.last < self.increments;
+        let ended: Vec<[Partner; 2]> = (self.under_way.iter())
+            .filter(|(_, under_way)| has_ended(under_way))
+            .map(|(both, _)| *both)
+            .collect();
+        let masses = FreeMasses::new(problem, sides.bodies);
+        let end = |both| {
+            let under_way = self.under_way.remove(&both)?;
+            Some(under_way.end(interval.start.total, masses.reduced(both)))
+        };
+        ended.into_iter().filter_map(end).collect()
+    }
+
+    /// Adds the impulses of an increment of length `dt`: dt P + (Phi, Psi), and what is given back.
+    fn add_impulses(&mut self, sides: &Sides, (solved, returned): (&Solved, &Returned), dt: f64) {
+        let forces = (solved.forces.acting()).map(|(c, pair)| (c, pair.force.map(|p| dt * p)));
+        let impulses = solved.impulses.acting().map(|(c, pair)| (c, pair.force));
+        for (constraint, impulse) in forces.chain(impulses) {
+            let (both, sign) = sides.partners(constraint);
+            if let Some(under_way) = self.under_way.get_mut(&both) {
+                let vectors = constraint.slave_forces(impulse);
+                vectors.for_each(|(_, vector)| under_way.add(sign, vector));
+            }
+        }
+        let opened = returned.release.opened.iter().map(|(c, _)| c);
+        let constraints = (solved.forces.acting().map(|(c, _)| c)).chain(opened);
+        let of_keys: BTreeMap<_, _> = constraints.map(|c| (c.key, sides.partners(c))).collect();
+        for pair in &returned.pairs {
+            if let Some((both, sign)) = of_keys.get(&pair.key)
+                && let Some(under_way) = self.under_way.get_mut(both)
+            {
+                under_way.add(*sign, pair.vector);
+            }
+        }
+    }
+}
+
+/// What the surfaces of contacts belong to.
+pub(crate) struct Sides<'a> {
+    pub bodies: &'a Bodies,
+    /// Contact of every slave index.
+    pub contact_of: &'a [usize],
+}
+
+impl Sides<'_> {
+    /// The two partners of a constraint in their order, and 1 where the slave is the first, else -1.
+    fn partners(&self, constraint: &Constraint) -> ([Partner; 2], f64) {
+        let [s, a, ..] = constraint.source.nodes;
+        let side = |node: usize| match self.bodies.of_node[node] {
+            Some(body) => Partner::Body(body),
+            None => Partner::Surface(self.contact_of[constraint.key.slave_index]),
+        };
+        match [side(s), side(a)] {
+            [p, q] if p <= q => ([p, q], 1.0),
+            [p, q] => ([q, p], -1.0),
+        }
+    }
+}
+
+impl UnderWay {
+    /// A touch that begins with some pairs in an increment, whose number is given.
+    fn begin(
+        both: [Partner; 2],
+        pairs: &[(&Constraint, &ClosedPair)],
+        interval: Interval,
+        increment: usize,
+    ) -> Self {
+        UnderWay {
+            touch: Touch {
+                bodies: both.map(Partner::body),
+                node: pairs[0].0.source.nodes[0],
+                start: interval.start.total,
+                first: increment,
+                ..Touch::default()
+            },
+            ..UnderWay::default()
+        }
+    }
+
+    /// Nodes that land where others have opened before, by slave indices, with the work Pn (Bn d) of their landings.
+    fn hand_over(&mut self, pairs: &[(&Constraint, &ClosedPair)], d: &[f64]) -> Vec<(usize, f64)> {
+        let closed: BTreeSet<usize> = pairs.iter().map(|(c, _)| c.key.slave_index).collect();
+        self.opened += self.closed.difference(&closed).count();
+        let mut handed_over = Vec::new();
+        for (constraint, pair) in pairs {
+            let (index, way) = (constraint.key.slave_index, constraint.normal_motion(d));
+            let lands = -way > CLOSED_GAP * constraint.scale && !self.closed.contains(&index);
+            if lands && self.opened > 0 {
+                self.opened -= 1;
+                handed_over.push((index, pair.force[0] * way));
+            }
+        }
+        self.closed = closed;
+        handed_over
+    }
+
+    /// Takes in how many nodes of one side are closed, and whether the contact reaches a corner.
+    fn measure(&mut self, sides: &Sides, pairs: &[(&Constraint, &ClosedPair)], corners: &[bool]) {
+        let mut slaves = [BTreeSet::new(), BTreeSet::new()];
+        for (constraint, _) in pairs {
+            let is_first = sides.partners(constraint).1 > 0.0;
+            slaves[usize::from(is_first)].insert(constraint.source.nodes[0]);
+            let mut nodes = constraint.source.nodes.iter();
+            self.touch.is_at_corner |= nodes.any(|&node| corners[node]);
+        }
+        let most = slaves.iter().map(BTreeSet::len).fold(0, usize::max);
+        self.touch.nodes = self.touch.nodes.max(most);
+    }
+
+    fn add(&mut self, sign: f64, vector: [f64; 2]) {
+        for (sum, p) in self.impulse.iter_mut().zip(vector) {
+            *sum += sign * p;
+        }
+    }
+
+    /// The touch that has ended at a time, `mass` being the reduced mass of its bodies.
+    fn end(self, time: f64, mass: f64) -> Touch {
+        let [x, y] = self.impulse;
+        let impulse = x.hypot(y);
+        Touch {
+            end: time,
+            impulse,
+            // E = J²/(8 m), eq. (9.11)
+            energy: impulse * impulse / (8.0 * mass),
+            ..self.touch
+        }
+    }
+}
+
+impl Partner {
+    fn body(self) -> Option<usize> {
+        match self {
+            Partner::Body(body) => Some(body),
+            Partner::Surface(_) => None,
+        }
+    }
+}
+
+/// Masses of the bodies that nothing holds; those of others, and of rigid surfaces, count as infinite.
+struct FreeMasses(Vec<f64>);
+
+impl FreeMasses {
+    fn new(problem: &StepProblem, bodies: &Bodies) -> Self {
+        let holds = holds(problem);
+        let mut masses = vec![0.0; bodies.count];
+        for (node, body) in bodies.of_node.iter().enumerate() {
+            if let Some(body) = *body {
+                masses[body] += match holds[problem.parts.of_nodes()[node]] {
+                    Hold::Free => problem.mass.shares[node],
+                    _ => f64::INFINITY,
+                };
+            }
+        }
+        FreeMasses(masses)
+    }
+
+    /// 1/m = 1/m_1 + 1/m_2, eq. (9.11)
+    fn reduced(&self, partners: [Partner; 2]) -> f64 {
+        let inverse = |partner: Partner| partner.body().map_or(0.0, |body| 1.0 / self.0[body]);
+        1.0 / partners.map(inverse).iter().sum::<f64>()
+    }
+}
+
+/// Whether the outline of the bodies turns at a node by more than [`CORNER`], or has no one way through it.
+fn corners(mesh: &Mesh) -> Vec<bool> {
+    let x = |node: usize| mesh.coordinates[node];
+    let mut sides: Vec<[Vec<usize>; 2]> = vec![Default::default(); mesh.node_count()];
+    for face in mesh.exterior_faces() {
+        let [a, b] = face.nodes(mesh);
+        sides[a][1].push(b);
+        sides[b][0].push(a);
+    }
+    let turns = |(node, [from, to]): (usize, &[Vec<usize>; 2])| match (&from[..], &to[..]) {
+        ([], []) => false,
+        ([from], [to]) => {
+            let along = [difference(x(*from), x(node)), difference(x(node), x(*to))];
+            angle(along[0], along[1]).abs() > CORNER
+        }
+        _ => true,
+    };
+    sides.iter().enumerate().map(turns).collect()
+}
