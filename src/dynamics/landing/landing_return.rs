@@ -12,6 +12,9 @@ use crate::dynamics::results::{Cause, State};
 use crate::dynamics::step::{ClosedConstraints, StepProblem, Workspace, difference, dot, sum};
 use crate::model::LandingRule;
 
+/// Part of the force of a landing by which a return may pull, as round-off of a force that is taken back as a whole.
+const ROUND_OFF: f64 = 1e-9;
+
 /// Gives back what the landings of a converged increment of length `dt` from `start` have taken, where the step
 /// asks for it (`LANDING=RETURN`).
 ///
@@ -117,7 +120,7 @@ fn landing(
             force,
             friction,
             energy,
-            least: -2.0 * pn / dt * (1.0 + 1e-9),
+            least: -2.0 * pn / dt * (1.0 + ROUND_OFF),
         },
     ))
 }

@@ -127,7 +127,7 @@ impl ContactLedger {
         let totals = total_impulses(solved, returned, interval.dt);
         self.measure_cones(&totals, resultants);
         let total = |pair: &PairReturn| {
-            let (constraint, [normal, tangential]) = totals.get(&pair.key)?;
+            let (constraint, [normal, tangential, _]) = totals.get(&pair.key)?;
             let [slave, a, b, _] = constraint.source.nodes;
             Some(ReturnedImpulse {
                 time: interval.end.total,
@@ -146,12 +146,12 @@ impl ContactLedger {
     /// forces and impacts each are.
     fn measure_cones(&self, totals: &Totals, resultants: &mut [ContactResultant]) {
         let mut largest = vec![0.0_f64; resultants.len()];
-        for (key, (constraint, [normal, tangential])) in totals {
+        for (key, (constraint, [normal, tangential, size])) in totals {
             let contact = self.contact_of[key.slave_index];
             let outside = larger(tangential.abs() - constraint.mu * normal, -normal);
             let violation = &mut resultants[contact].impulse_cone_violation;
             *violation = larger(*violation, outside);
-            largest[contact] = larger(largest[contact], normal.abs());
+            largest[contact] = larger(largest[contact], *size);
         }
         for (result, largest) in resultants.iter_mut().zip(largest) {
             if largest > 0.0 {
@@ -176,15 +176,16 @@ impl ContactLedger {
     }
 }
 
-/// Normal and tangential impulses of pairs in an increment.
-type Totals<'s> = BTreeMap<ConstraintKey, (&'s Constraint, [f64; 2])>;
+/// Normal and tangential impulses of pairs in an increment, and the sum of the sizes of the normal ones: where all of
+/// a force is taken back, the total is round-off of its parts.
+type Totals<'s> = BTreeMap<ConstraintKey, (&'s Constraint, [f64; 3])>;
 
 /// Total impulses dt P + (Phi, Psi) and what is given back, pair by pair.
 fn total_impulses<'s>(solved: &'s Solved, returned: &'s Returned, dt: f64) -> Totals<'s> {
     let mut totals = Totals::new();
     let mut add = |constraint: &'s Constraint, impulse: [f64; 2]| {
-        let (_, sum) = (totals.entry(constraint.key)).or_insert((constraint, [0.0; 2]));
-        *sum = [sum[0] + impulse[0], sum[1] + impulse[1]];
+        let (_, sum) = (totals.entry(constraint.key)).or_insert((constraint, [0.0; 3]));
+        add_impulse(sum, impulse);
     };
     for (constraint, pair) in solved.forces.acting() {
         add(constraint, pair.force.map(|p| dt * p));
@@ -197,10 +198,16 @@ fn total_impulses<'s>(solved: &'s Solved, returned: &'s Returned, dt: f64) -> To
     }
     for pair in &returned.pairs {
         if let Some((_, sum)) = totals.get_mut(&pair.key) {
-            *sum = [sum[0] + pair.normal, sum[1] + pair.tangential];
+            add_impulse(sum, [pair.normal, pair.tangential]);
         }
     }
     totals
+}
+
+fn add_impulse([normal, tangential, size]: &mut [f64; 3], impulse: [f64; 2]) {
+    *normal += impulse[0];
+    *tangential += impulse[1];
+    *size += impulse[0].abs();
 }
 
 impl ContactImpulse {
