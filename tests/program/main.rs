@@ -8,5 +8,4 @@ mod repeat;
 mod rubber_ring;
 mod run;
 #[path = "../results/writers.rs"]
-#[allow(dead_code)] // shared with the tests of result files
 mod writers;

@@ -49,7 +49,7 @@ impl Window {
             } else {
                 [high[i], low[i]]
             };
-            if along == 0.0 && !(low[i]..=high[i]).contains(&&a[i]) {
+            if along == 0.0 && !(low[i]..=high[i]).contains(&a[i]) {
                 return None;
             }
             if along != 0.0 {
