@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
 REPORTED_NEARBY = ("CONTACT_STATUS", "GAP", "min_gap")
-"""Reported of nodes near a segment; how near may depend on which of two segments comes first."""
+"""Reported of nodes near a segment; how near depends on ways and passes of the increment."""
 
 LEFT_OUT = re.compile(
     r"history/solver/(?!converged)\w+|history/(impacts|returns|touches)/.*|.*/(labels|node|BODY)"
@@ -93,6 +93,7 @@ class Seen:
         # points of rigid surfaces are the last nodes
         self.rigid = self.nodes - sum(len(card.rows) for card in deck.find("NODE"))
         self.cells = len(self.data["VTKHDF/Types"])
+        self.edge = self._shortest_edge()
         # the last increment before a stop may have been cut back
         self.rows = len(self["history/time"]) - was_stopped
 
@@ -101,6 +102,16 @@ class Seen:
             self.data[name] = item[()]
             if item.dtype.kind == "f":
                 self.dimensions[name] = str(item.attrs["dimension"])
+
+    def _shortest_edge(self) -> float:
+        """Length of the shortest edge of an element."""
+        nodes, offsets = self["VTKHDF/Connectivity"], self["VTKHDF/Offsets"]
+        points = self["model/coordinates"]
+        cells = [
+            nodes[a:b] for a, b in zip(offsets, offsets[1 : len(self["model/element_labels"]) + 1])
+        ]
+        edges = [points[np.roll(cell, -1)] - points[cell] for cell in cells]
+        return min(float(np.linalg.norm(edge, axis=1).min()) for edge in edges)
 
     def __getitem__(self, name: str) -> NDArray:
         return self.data[name]
@@ -344,7 +355,7 @@ def deviations(old: Seen, new: Seen, change: Change, theta: float, apart: set[in
                 continue
             wanted, actual = wanted[:, ~is_apart], actual[:, ~is_apart]
         if own in REPORTED_NEARBY:
-            wanted, actual = _where_both_report(wanted, actual)
+            wanted, actual = _nearby(wanted, actual, old.edge * change.units.length)
         if wanted.dtype.kind != "f":
             differs = wanted != actual
             found.by_name[name] = np.where(_flat(differs).any(axis=1), np.inf, 0.0)
@@ -397,12 +408,13 @@ def _in_order(
     return wanted, actual
 
 
-def _where_both_report(wanted: NDArray, actual: NDArray) -> tuple[NDArray, NDArray]:
-    """Gaps that both report, and states in which none is as good as open."""
-    if wanted.dtype.kind == "f":
-        either = np.isnan(wanted) | np.isnan(actual)
-        return np.where(either, np.nan, wanted), np.where(either, np.nan, actual)
-    return np.maximum(wanted, OPEN), np.maximum(actual, OPEN)
+def _nearby(wanted: NDArray, actual: NDArray, near: float) -> tuple[NDArray, NDArray]:
+    """States in which none is as good as open; gaps that both report, up to a length."""
+    if wanted.dtype.kind != "f":
+        return np.maximum(wanted, OPEN), np.maximum(actual, OPEN)
+    either = np.isnan(wanted) | np.isnan(actual)
+    wanted, actual = (np.where(either, near, np.fmin(x, near)) for x in (wanted, actual))
+    return wanted, actual
 
 
 def _flat(values: NDArray) -> NDArray:
