@@ -78,6 +78,9 @@ pub(crate) const SETTLED_OVERLAP: f64 = 1e-10;
 /// of it.
 pub(crate) const SOLVED_GAP: f64 = 1e-12;
 
+/// Round-off of a gap, in units of the coordinates of its nodes.
+pub(crate) const POSITION_ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+
 // Crossing and penetration.
 
 /// Round-off of a cross product, in units of the products that make it.

@@ -134,6 +134,24 @@ fn a_corner_that_slides_over_a_corner_is_held_by_the_face_that_its_surface_lies_
 }
 
 #[test]
+fn a_corner_that_turns_concave_under_a_node_that_comes_over_it_does_not_let_it_in() {
+    // an open node over the segment from (2, 0) to the corner, and behind the line of that from the corner to (0, 0)
+    let points = |height: f64| [[2.0, 0.0], [1.0, height], [0.0, 0.0]];
+    let (mut start, mut now) = (points(1e-4).to_vec(), points(-0.03).to_vec());
+    start.push([1.003, 0.9975e-4]);
+    now.push([0.95, -0.03]);
+    let segments = chain(&start[..3], false);
+    let surfaces = ContactSurfaces::new(vec![3], &[], segments, Friction::default());
+    let targets = targets_of(&surfaces, &start, &now);
+    let slid_on = targets.iter().find(|target| target.segment == 1);
+    assert_eq!(
+        slid_on.map(|target| target.from),
+        Some(Some(0)),
+        "{targets:?}"
+    );
+}
+
+#[test]
 fn both_sides_of_a_concave_corner_are_targets() {
     // a valley over (2, 1), (0, 0), (-2, 1)
     let valley = [[2.0, 1.0], [0.0, 0.0], [-2.0, 1.0]];

@@ -9,6 +9,7 @@ mod damping;
 mod elastic_bar;
 mod equations;
 mod events;
+mod facing;
 mod fast;
 mod finite;
 mod friction;

@@ -1,4 +1,4 @@
-"""Elastic bodies that are pressed on each other: sheared blocks, blocks at rest, a long bar."""
+"""Elastic bodies that are pressed on each other: blocks sheared, at rest, or dropped; a long bar."""
 
 from cards import card, dry, elastic, step
 from quads import Grid, facing_blocks, outline
@@ -76,6 +76,36 @@ def block_at_rest(
                 50,
                 settings(scheme, tolerance),
                 card("DSLOAD, AMPLITUDE=LOAD", ("LOADED", "P", 50.0)),
+            ),
+        ]
+    )
+
+
+def dropped_block(scheme: str = "default") -> str:
+    """A block that falls on a wider one, both symmetric about one line, without friction.
+
+    Their middle nodes meet at a convex and a hollow corner and come back to each other.
+    """
+    base = Grid("BASE", 4, 2, lambda i, j: (0.5 * i, 0.5 * j))
+    labels = base.next_node, base.next_element
+    block = Grid("BLOCK", 2, 2, lambda i, j: (0.5 + 0.5 * i, 1.01 + 0.5 * j), *labels)
+    return "".join(
+        [
+            card("HEADING", ("a block that falls on a wider one",)),
+            base.mesh("CPS4"),
+            block.mesh("CPS4"),
+            base.side_nodes("BOTTOM", "bottom"),
+            elastic(1e3, 0.3, 1.0, "BASE", "BLOCK"),
+            dry(0.0),
+            card("CONTACT"),
+            card("CONTACT INCLUSIONS, ALL EXTERIOR"),
+            card("CONTACT PROPERTY ASSIGNMENT", ("", "", "DRY")),
+            card("BOUNDARY", ("BOTTOM", 1, 2)),
+            step(
+                0.005,
+                200,
+                settings(scheme),
+                card("DLOAD", ("", "GRAV", 9.81, 0.0, -1.0)),
             ),
         ]
     )

@@ -15,6 +15,7 @@ from deck import write_to_folder  # noqa: E402
 PROBLEMS = {
     "two_blocks": elastic_blocks.two_blocks,
     "block_at_rest": elastic_blocks.block_at_rest,
+    "dropped_block": elastic_blocks.dropped_block,
     "compressed_bar": elastic_blocks.compressed_bar,
     "rotating_bar": stiff_bodies.rotating_bar,
     "pendulum": stiff_bodies.pendulum,

@@ -34,30 +34,31 @@ pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint 
         mut force,
         derivative,
     } = segment_rows([s, a, b], at);
-    if let Some(from) = source.from.filter(|_| at.form == RowForm::DiscreteGradient) {
-        tilt(&mut force, [s, a, b], from, at);
+    let kappa = tilt(&source, at);
+    if kappa != 0.0 {
+        force.normal = sum_of(1.0, &force.normal, kappa, &force.tangential);
     }
     let gap_and_scale = (projection.gap, projection.length);
     Constraint::of_nodes(source, [force, derivative], gap_and_scale, at)
 }
 
-/// Tilts the force rows of a node that has slid on from segment i, eq. (7.6):
+/// Tilt of the force on a node that has slid on from another segment, eq. (7.6), zero on all others:
 ///
 /// ```text
 /// Bn <- Bn + kappa Bt,   kappa = (g0 - h0)/(Bt d),   h0 = max(min(g0, g0_i), 0)
 /// ```
 ///
 /// Then Bn d = g1 - h0, so that contact puts no energy in.
-fn tilt(rows: &mut RowPair<6>, nodes: [usize; 3], [a, b]: [usize; 2], at: &Configurations) {
-    let [start, end] = [at.start(nodes), at.iterate(nodes)].map(Arms::new);
-    let [p, q] = at.start([a, b]);
-    let [s] = at.start([nodes[0]]);
-    let rise = rise(start.cross / start.length, project(s, p, q).gap);
-    let xi = |arms: &Arms| arms.dot / (arms.length * arms.length);
-    let slip = (start.length + end.length) / 2.0 * (xi(&end) - xi(&start));
-    if rise != 0.0 {
-        rows.normal = sum_of(1.0, &rows.normal, rise / slip, &rows.tangential);
-    }
+pub(super) fn tilt(source: &PairTarget, at: &Configurations) -> f64 {
+    let from = source.from.filter(|_| at.form == RowForm::DiscreteGradient);
+    let Some([i, j]) = from else { return 0.0 };
+    let [s, a, b, _] = source.nodes;
+    let [start, end] =
+        [at.start([s, a, b]), at.iterate([s, a, b])].map(|[s, a, b]| project(s, a, b));
+    let [s, i, j] = at.start([s, i, j]);
+    let rise = rise(&start, project(s, i, j).gap, s);
+    let slip = (start.length + end.length) / 2.0 * (end.xi - start.xi);
+    if rise == 0.0 { 0.0 } else { rise / slip }
 }
 
 /// Projection and rows of the node s on the segment from a to b.
@@ -240,6 +241,32 @@ mod tests {
         assert!((constraint.start_gap - start.gap).abs() < 1e-14);
         let length = (start.length + end.length) / 2.0;
         assert!((constraint.slip - length * (end.xi - start.xi)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_node_that_has_come_back_is_not_tilted_by_round_off() {
+        // s lies at the corner a between the segments from i to a and from a to b, but for round-off
+        let rise_and_slip = |height: f64, slip: f64| {
+            let x = [[0.0, height], [0.0; 2], [-1.0, 0.0], [1.0, 0.0]];
+            let u = [-slip, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+            let source = PairTarget {
+                slave_index: 0,
+                target: ContactTarget::face(0),
+                nodes: [0, 1, 2, 2],
+                from: Some([3, 1]),
+                friction: Friction::constant(0.3),
+            };
+            let form = RowForm::DiscreteGradient;
+            let u0 = &[0.0; 8];
+            let x = &x;
+            tilt(&source, &Configurations { form, x, u0, u: &u })
+        };
+        // a gap is no rise, an overlap is
+        assert_eq!(rise_and_slip(1e-3, 1e-2), 0.0);
+        assert!((rise_and_slip(-1e-3, 1e-2) + 0.1).abs() < 1e-15);
+        for slip in [0.0, 1e-16, -1e-12, 1e-9] {
+            assert_eq!(rise_and_slip(-1e-16, slip), 0.0, "{slip:e}");
+        }
     }
 
     #[test]

@@ -26,6 +26,7 @@ use nalgebra::{DMatrix, DVector, Matrix4, Matrix6, SMatrix, Vector4};
 
 use super::configurations::{Configurations, RowForm};
 use super::constraint::Constraint;
+use super::node_to_segment::tilt;
 use crate::contact::geometry::project;
 
 /// Places of the dofs of s, a and b, or s, b and c, among those of the constraint.
@@ -40,7 +41,7 @@ impl Constraint {
         match self.source.target.corner {
             None => {
                 // the force of a tilted row is Bn^T Pn + Bt^T (Pt + kappa Pn), eq. (7.6)
-                let kappa = self.tilt([s, a, b], at);
+                let kappa = tilt(&self.source, at);
                 add_block(&mut k, &changes([s, a, b], [pn, pt + kappa * pn], at), 0);
                 if kappa != 0.0 {
                     // dkappa = -kappa/s Gt
@@ -82,17 +83,6 @@ impl Constraint {
         match sticks {
             true => held + &tangential * tangential.transpose(),
             false => held,
-        }
-    }
-
-    /// kappa = (g0 - h0)/(Bt d) of a tilted row, eq. (7.6), where g0 is the gap of the start and h0 that
-    /// in the sense of the row; zero where the row is not tilted.
-    fn tilt(&self, nodes: [usize; 3], at: &Configurations) -> f64 {
-        let [s, a, b] = at.start(nodes);
-        let is_tilted = self.source.from.is_some() && at.form == RowForm::DiscreteGradient;
-        match is_tilted && self.slip != 0.0 {
-            true => (project(s, a, b).gap - self.start_gap) / self.slip,
-            false => 0.0,
         }
     }
 }
@@ -276,8 +266,7 @@ mod tests {
             }
         }
         let at = between(FORMS[1], &U1);
-        let tilted = Constraint::new(target(face, [0, 1, 2, 2], Some([4, 1])), &at);
-        assert!(tilted.tilt([0, 1, 2], &at).abs() > 0.1);
+        assert!(tilt(&target(face, [0, 1, 2, 2], Some([4, 1])), &at).abs() > 0.1);
     }
 
     #[test]

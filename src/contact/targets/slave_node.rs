@@ -109,8 +109,17 @@ impl SlaveNode<'_> {
     /// Sine of the turn to the left from one segment to the next: positive at a convex corner,
     /// negative at a concave one; 1 or -1 beyond a right angle.
     pub(crate) fn corner_sine(&self, i: usize, j: usize) -> f64 {
+        self.corner_sine_at(self.now, i, j)
+    }
+
+    /// The same at the start.
+    pub(crate) fn corner_sine_at_start(&self, i: usize, j: usize) -> f64 {
+        self.corner_sine_at(self.start, i, j)
+    }
+
+    fn corner_sine_at(&self, at: Positions, i: usize, j: usize) -> f64 {
         let [e, f] = [i, j].map(|i| {
-            let [a, b] = self.surfaces.segments[i].map(|n| self.now.of(n));
+            let [a, b] = self.surfaces.segments[i].map(|n| at.of(n));
             project(a, a, b).tangent
         });
         let [sin, cos] = [cross(e, f), dot(e, f)];
@@ -154,6 +163,11 @@ impl SlaveNode<'_> {
     #[inline]
     pub(crate) fn position(&self) -> [f64; 2] {
         self.now.of(self.node())
+    }
+
+    /// Position of the node at the start.
+    pub(crate) fn start_position(&self) -> [f64; 2] {
+        self.start.of(self.node())
     }
 
     /// Projection on a segment in the iterate.

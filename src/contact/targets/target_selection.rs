@@ -5,12 +5,13 @@ use smallvec::{SmallVec, smallvec};
 
 use super::corner::{Corner, common_normal};
 use super::slave_node::SlaveNode;
-use crate::contact::geometry::{Along, project};
+use crate::contact::geometry::{Along, Projection, project};
 use crate::contact::search::Candidate;
 use crate::contact::tolerances::{
-    CLOSED_GAP, CORNER_TIP, CORNER_ZONE, GENTLE_SINE, PROJECTION_BEYOND_ENDS, SLID, SLIDING_SINE,
-    STRAIGHT_SINE,
+    CLOSED_GAP, CORNER_TIP, CORNER_ZONE, GENTLE_SINE, POSITION_ROUND_OFF, PROJECTION_BEYOND_ENDS,
+    SLID, SLIDING_SINE, SOLVED_GAP, STRAIGHT_SINE,
 };
+use crate::linear::largest;
 
 /// What a slave node must not penetrate: a segment, or the corner at its end.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,10 +48,13 @@ pub type Targets = SmallVec<[ContactTarget; 4]>;
 /// Segments near a node, mostly few.
 type Segments = SmallVec<[usize; 8]>;
 
-/// Gap at the start of the segment that a node has slid on to, above what it counts as: the gap of the
-/// segment that the node came from, and no overlap.
-pub fn rise(gap: f64, gap_before: f64) -> f64 {
-    gap - gap.min(gap_before).max(0.0)
+/// Rise g0 - h0 of eq. (7.6): the gap at the start of the segment that a node at `s` has slid on to, above what it
+/// counts as, the gap `before` of the segment that the node came from, and no overlap. What is round-off of closed
+/// gaps and positions is zero: over the slip of a node that has come back it would tilt the force at random.
+pub fn rise(start: &Projection, before: f64, s: [f64; 2]) -> f64 {
+    let rise = start.gap - start.gap.min(before).max(0.0);
+    let round_off = (SOLVED_GAP * start.length).max(POSITION_ROUND_OFF * largest(&s));
+    if rise.abs() <= round_off { 0.0 } else { rise }
 }
 
 /// Selection of the targets of a node.
@@ -105,12 +109,13 @@ impl SlaveNode<'_> {
     }
 
     /// Whether the node still projects on a target of an earlier pass, beyond its ends by `beyond`
-    /// segment lengths at most.
+    /// segment lengths at most, and its force, if it has slid on to the target, still tilts gently.
     pub fn is_over(&self, target: &ContactTarget, beyond: f64) -> bool {
-        target.segments().any(|i| {
+        let is_over = target.segments().any(|i| {
             let p = self.project(i);
             (-beyond..=1.0 + beyond).contains(&p.xi) && p.gap >= -p.length
-        })
+        });
+        is_over && (target.from).is_none_or(|i| self.tilts_gently(i, target.segment))
     }
 
     /// Whether two targets belong to one run of segments round convex corners, of which one is
@@ -280,7 +285,8 @@ impl SlaveNode<'_> {
     fn tilts_gently(&self, i: usize, j: usize) -> bool {
         let (start, now) = (self.project_at_start(j), self.project(j));
         let slip = (start.length + now.length) / 2.0 * (now.xi - start.xi);
-        rise(start.gap, self.project_at_start(i).gap).abs() <= SLIDING_SINE * slip.abs()
+        let rise = rise(&start, self.project_at_start(i).gap, self.start_position());
+        rise.abs() <= SLIDING_SINE * slip.abs()
     }
 
     /// The neighbour, round a convex corner near the node, of a segment that the surface of the
@@ -316,18 +322,23 @@ impl SlaveNode<'_> {
     }
 
     /// The first segment before or after another that the node projected on at the start, round
-    /// convex corners and within twice its displacement.
+    /// corners that are convex, or were at the start, and within twice its displacement.
     fn walk(&self, from: usize, direction: Along) -> Option<usize> {
         let farthest = 2.0 * self.relative_displacement(from);
         let length = |i: usize| self.project(i).length;
         let mut at = from;
         for following in (self.surfaces).walk(from, direction, farthest, length) {
-            let (i, j) = (at, following?);
-            let turn = match direction {
-                Along::Forward => self.corner_sine(i, j),
-                Along::Backward => self.corner_sine(j, i),
+            let j = following?;
+            let [first, second] = match direction {
+                Along::Forward => [at, j],
+                Along::Backward => [j, at],
             };
-            if turn < -GENTLE_SINE {
+            // a corner that has turned concave since was convex when the node came over it
+            let turns = [
+                self.corner_sine(first, second),
+                self.corner_sine_at_start(first, second),
+            ];
+            if turns.iter().all(|turn| *turn < -GENTLE_SINE) {
                 return None;
             }
             let is_over = (-CORNER_ZONE..=1.0 + CORNER_ZONE).contains(&self.project_at_start(j).xi);
