@@ -15,7 +15,7 @@ mod names;
 mod steps;
 
 use crate::deck::{self, Card, Deck};
-use crate::diagnostics::{Diagnostics, Sources};
+use crate::diagnostics::{Code, Diagnostic, Diagnostics, Sources};
 use crate::model::{ElementsAtNodes, Instance, Mesh, Model, NamedSets};
 use contact::{pairs, rigid_surface};
 use context::Context;
@@ -35,6 +35,10 @@ pub fn read_model(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Op
 /// The model that a deck describes; `None` if there are errors.
 pub fn build(deck: &Deck, d: &mut Diagnostics) -> Option<Model> {
     if deck.cards.is_empty() {
+        if !d.has_errors() {
+            let message = "nothing is left of the deck: all of its cards are left out";
+            d.push(Diagnostic::error_without_place(Code::EmptyMesh, message));
+        }
         return None;
     }
     let model = read(&mut Context::new(deck, d));

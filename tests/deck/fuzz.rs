@@ -169,6 +169,12 @@ fn check_step(step: &Step, model: &Model) {
     }
 }
 
+#[test]
+fn a_deck_of_which_nothing_is_left_is_an_error() {
+    survive("*NONSENSE\n1, 2\n");
+    survive("*Nonsense\n*Part, name=Block\n*Node\n1, 0., 0.\n*End Part\n");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
