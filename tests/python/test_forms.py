@@ -15,11 +15,11 @@ from sample_decks import Sample, all_samples
 
 DECKS = {
     # a rigid surface that moves
-    "tests/decks/rigid_floor": {"boosted"},
+    "tests/decks/rigid_floor": set(),
     # three steps, equations, loads of all kinds, damping
     "tests/decks/every_card": set(),
     # friction in two passes, two steps
-    "input/fast_bullet/bullet_two": {"boosted"},
+    "input/fast_bullet/bullet_two": set(),
     # the paper's scheme, loads, large rotations
     "input/two_cantilevers/A_mu04": set(),
     # prescribed motion in both directions
