@@ -18,6 +18,7 @@ mod plane;
 mod saint_venant_kirchhoff;
 mod stress_at_points;
 mod viscosity;
+mod voigt;
 #[cfg(test)]
 pub(crate) mod yielding;
 

@@ -4,6 +4,7 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
+use super::voigt::{dyad, product};
 use super::{Across, ConstitutiveLaw, SmallStrainModuli, energy_momentum};
 
 /// Neo-Hookean material in plane strain, `*HYPERELASTIC, NEO HOOKE`.
@@ -129,22 +130,9 @@ impl ConstitutiveLaw for NeoHooke {
     fn tangent(&self, e: &Matrix2<f64>, _z: &[f64]) -> Matrix3<f64> {
         let v = Dilatation::new(e);
         let inverse = (Matrix2::identity() + cofactor(e) * 2.0) / (v.j * v.j);
-        let (xx, yy, xy) = (inverse.m11, inverse.m22, inverse.m12);
-        let c = Vector3::new(xx, yy, xy);
+        let (square, product) = (dyad(&inverse), product(&inverse));
+        let c = Vector3::new(inverse.m11, inverse.m22, inverse.m12);
         let one = Vector3::new(1.0, 1.0, 0.0);
-        let square = c * c.transpose();
-        // C^-1 o C^-1 on engineering strains
-        let product = Matrix3::new(
-            xx * xx,
-            xy * xy,
-            xx * xy,
-            xy * xy,
-            yy * yy,
-            yy * xy,
-            xx * xy,
-            yy * xy,
-            (xx * yy + xy * xy) / 2.0,
-        );
         let (i1, p) = (3.0 + v.t, self.pressure(&v));
         let mixed = one * c.transpose();
         let shape = product * i1 + square * (i1 / 3.0) - (mixed + mixed.transpose());

@@ -1,24 +1,28 @@
-//! Viscosity of a material (`*DAMPING, BETA=`): a stress beside that of the law that follows the rate
-//! of the strain. Section 4 of docs/theory.md, Damping.
+//! Viscosity of a material (`*DAMPING, BETA=`): a stress beside that of the law that follows the rates
+//! of its shape and of its volume. Section 4 of docs/theory.md, Damping.
 
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
+use super::voigt::{dyad, product};
 use super::{ConstitutiveLaw, Plane, SaintVenantKirchhoff, SmallStrainModuli, StressAtPoints};
 
-/// Stiffness-proportional viscosity of a material in the plane.
+/// Stiffness-proportional viscosity of a material in the plane, over an increment with dE = E1 - E0.
 ///
 /// ```text
-/// S_d dt = beta C0 dE,  dE = E1 - E0                            the stress, over the increment
-/// S_d:dE = (beta/dt) dE:C0:dE >= 0                              what it dissipates
+/// G = cof(C_m)/J_m,  C_m = I + E0 + E1,  J_m = (J0 + J1)/2     J C^-1 halfway
+/// dJ = G : dE = J1 - J0                                        change of the volume ratio
+/// dS = G dE G - (dJ/2) G                                       change of the shape
+/// S_d dt = beta/J_m (2 mu dS + kappa dJ G)                     the stress
+/// S_d : dE >= 0                                                what it dissipates
 /// ```
 ///
-/// C0 is the elasticity of the law at small strains, which is positive definite and constant, whatever
-/// the law: with the tangent of the state in its place the dissipation of a law that softens could be
-/// negative.
+/// mu and kappa are the moduli of shear and of the area at small strains.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viscosity {
-    /// beta C0 in Voigt order (force time/length^2).
-    c: Matrix3<f64>,
+    /// 2 beta mu (force time/length^2).
+    shape: f64,
+    /// beta (kappa - mu), since dS has the part -(dJ/2) G (force time/length^2).
+    volume: f64,
 }
 
 impl Viscosity {
@@ -26,9 +30,25 @@ impl Viscosity {
     pub fn new(beta: f64, moduli: SmallStrainModuli, plane: Plane) -> Self {
         let SmallStrainModuli { young, poisson } = moduli;
         let linear = SaintVenantKirchhoff { young, poisson }.in_plane(plane);
+        // 2 mu E + (kappa - mu) tr(E) I at small strains
+        let c0 = linear.tangent(&Matrix2::zeros(), &[]);
         Viscosity {
-            c: linear.tangent(&Matrix2::zeros(), &[]) * beta,
+            shape: beta * 2.0 * c0.m33,
+            volume: beta * c0.m12,
         }
+    }
+
+    /// V of eq. (4.25), beta/J_m (2 mu G o G + (kappa - mu) G x G) between two strains, in Voigt order: positive definite
+    /// (force time/length^2).
+    fn between(&self, [e0, e1]: [&Matrix2<f64>; 2]) -> Matrix3<f64> {
+        // cof is linear in the plane: cof(I + A) = I + cof A
+        let (twice, cofactor) = (e0 + e1, |m: &Matrix2<f64>| {
+            Matrix2::new(m.m22, -m.m12, -m.m21, m.m11)
+        });
+        let ratio = |e: &Matrix2<f64>| (1.0 + 2.0 * e.trace() + 4.0 * e.determinant()).sqrt();
+        let j = (ratio(e0) + ratio(e1)) / 2.0;
+        let g = (Matrix2::identity() + cofactor(&twice)) / j;
+        (product(&g) * self.shape + dyad(&g) * self.volume) / j
     }
 }
 
@@ -39,10 +59,10 @@ impl StressAtPoints for Viscosity {
         Matrix2::zeros()
     }
 
-    /// S_d dt = beta C0 dE, eq. (4.22)
+    /// S_d dt = V : dE, eq. (4.23)
     fn mean_stress(&self, _point: usize, [e0, e1]: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
         let de = e1 - e0;
-        let s = self.c * Vector3::new(de.m11, de.m22, 2.0 * de.m12);
+        let s = self.between([e0, e1]) * Vector3::new(de.m11, de.m22, 2.0 * de.m12);
         Matrix2::new(s.x, s.z, s.z, s.y)
     }
 
@@ -50,7 +70,104 @@ impl StressAtPoints for Viscosity {
         Matrix3::zeros()
     }
 
-    fn mean_tangent(&self, _point: usize, _strains: [&Matrix2<f64>; 2]) -> Matrix3<f64> {
-        self.c * 2.0
+    /// Without the change of G and J_m, which is of first order in dE.
+    fn mean_tangent(&self, _point: usize, strains: [&Matrix2<f64>; 2]) -> Matrix3<f64> {
+        self.between(strains) * 2.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BETA: f64 = 0.3;
+
+    /// Viscosity with these moduli of shear and volume in plane strain.
+    fn viscosity(mu: f64, bulk: f64) -> Viscosity {
+        let moduli = SmallStrainModuli {
+            young: 9.0 * bulk * mu / (3.0 * bulk + mu),
+            poisson: (3.0 * bulk - 2.0 * mu) / (2.0 * (3.0 * bulk + mu)),
+        };
+        Viscosity::new(BETA, moduli, Plane::Strain)
+    }
+
+    fn strain(f: &Matrix2<f64>) -> Matrix2<f64> {
+        (f.transpose() * f - Matrix2::identity()) / 2.0
+    }
+
+    fn some() -> Matrix2<f64> {
+        Matrix2::new(1.4, 0.3, -0.5, 0.8)
+    }
+
+    #[test]
+    fn the_bulk_modulus_is_not_felt_at_constant_volume_nor_the_shear_modulus_at_constant_shape() {
+        let f = some();
+        // of one volume ratio, however large the change
+        let stretched = f * Matrix2::new(1.5, 0.0, 0.4, 1.0 / 1.5);
+        let ends = [strain(&f), strain(&stretched)];
+        let of = |v: Viscosity, [e0, e1]: &[Matrix2<f64>; 2]| v.mean_stress(0, [e0, e1]);
+        let [soft, hard] = [2.0, 2e6].map(|bulk| of(viscosity(1.0, bulk), &ends));
+        assert!((soft - hard).norm() < 1e-8 * soft.norm(), "{soft} {hard}");
+        // of one shape, turned; kappa = K + mu/3 is the same
+        let turned = Matrix2::new(0.6, 0.8, -0.8, 0.6) * f * 1.7;
+        let ends = [strain(&f), strain(&turned)];
+        let [one, other] =
+            [(1.0, 3.0), (3.0, 3.0 - 2.0 / 3.0)].map(|(mu, bulk)| of(viscosity(mu, bulk), &ends));
+        assert!((one - other).norm() < 1e-14 * one.norm(), "{one} {other}");
+    }
+
+    #[test]
+    fn in_a_short_increment_it_is_the_spatial_law() {
+        // sigma = beta (2 mu D + lambda tr(D) I), S = J F^-1 sigma F^-T
+        let (f, rate, (mu, bulk)) = (some(), Matrix2::new(0.2, -0.7, 0.4, 0.5), (1.3, 4.0));
+        let gradient = rate * f.try_inverse().expect("an inverse");
+        let d = (gradient + gradient.transpose()) / 2.0;
+        let lambda = bulk - 2.0 * mu / 3.0;
+        let sigma = (d * (2.0 * mu) + Matrix2::identity() * (lambda * d.trace())) * BETA;
+        let inverse = f.try_inverse().expect("an inverse");
+        let exact = inverse * sigma * inverse.transpose() * f.determinant();
+        let h = 1e-5;
+        let [e0, e1] = [-h, h].map(|h| strain(&(f + rate * h)));
+        let found = viscosity(mu, bulk).mean_stress(0, [&e0, &e1]) / (2.0 * h);
+        assert!(
+            (found - exact).norm() < 1e-9 * exact.norm(),
+            "{found} {exact}"
+        );
+    }
+
+    #[test]
+    fn it_never_gives_energy_back() {
+        for bulk in [0.1, 3.0, 1e6] {
+            let v = viscosity(1.0, bulk);
+            for k in 0..200 {
+                let at = |i: usize| (f64::from(k) * 1.7 + i as f64 * 2.3).sin();
+                let f = |i: usize| {
+                    Matrix2::new(1.0 + 0.9 * at(i), at(i + 1), at(i + 2), 1.5 + at(i + 3))
+                };
+                let [f0, f1] = [f(0), f(4)];
+                if f0.determinant() > 0.0 && f1.determinant() > 0.0 {
+                    let [e0, e1] = [strain(&f0), strain(&f1)];
+                    let work = v.mean_stress(0, [&e0, &e1]).dot(&(e1 - e0));
+                    assert!(work > 0.0, "{work}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn plane_stress_keeps_its_own_moduli() {
+        let moduli = SmallStrainModuli {
+            young: 100.0,
+            poisson: 0.3,
+        };
+        let v = Viscosity::new(BETA, moduli, Plane::Stress);
+        let e = Matrix2::new(3e-9, 1e-9, 1e-9, -2e-9);
+        let linear = SaintVenantKirchhoff {
+            young: 100.0,
+            poisson: 0.3,
+        };
+        let exact = linear.in_plane(Plane::Stress).stress(&e, &[]) * BETA;
+        let found = v.mean_stress(0, [&Matrix2::zeros(), &e]);
+        assert!((found - exact).norm() < 1e-8 * exact.norm());
     }
 }

@@ -179,6 +179,63 @@ fn viscosity_keeps_both_momenta_and_takes_what_is_booked() {
     }
 }
 
+/// A neo-Hookean square with mean dilatation, mu = 1, that is pulled to 1.5 times its length in a time of 10 and may
+/// contract: its run without and with BETA = 0.01, and the dof of a pulled node.
+fn pulled(bulk: f64, scheme: Scheme) -> ([(Keep, usize); 2], [usize; 2]) {
+    let mut model = model(1.0, 0.3, 1e-6);
+    let d1 = 2.0 / bulk;
+    model.materials[0].law = Law::NeoHooke(NeoHooke { c10: 0.5, d1 });
+    let block = add_block(&mut model, [0.0, 0.0], [1.0, 1.0], (1, 1), 0.0);
+    model.mesh.elements[0].element_type = ElementType {
+        formulation: Formulation::MeanDilatation,
+        ..ElementType::CPE4
+    };
+    let pulled = [0, 1].map(|j| 2 * block.node(1, j));
+    let moved = |dof: usize, to: f64| Support {
+        dof,
+        motion: SupportMotion::Ramp { to },
+    };
+    let held = [2 * block.node(0, 0), 2 * block.node(0, 1)];
+    let below = [0, 1].map(|i| 2 * block.node(i, 0) + 1);
+    let supports = held.into_iter().chain(below).map(|dof| moved(dof, 0.0));
+    let supports: Vec<Support> = supports.chain(pulled.map(|dof| moved(dof, 0.5))).collect();
+    let runs = [0.0, 0.01].map(|beta| {
+        model.materials[0].damping = Damping { alpha: 0.0, beta };
+        model.steps = vec![step(0.05, 200, with(scheme), supports.clone())];
+        let (keep, summary) = run_to_end(&model);
+        (keep, summary.solver.passes)
+    });
+    (runs, pulled)
+}
+
+#[test]
+fn the_bulk_modulus_does_not_brake_a_motion_that_keeps_the_volume() {
+    for scheme in SCHEMES {
+        for bulk in [2.17, 50.0, 1e3, 1e4] {
+            let ([(_, elastic), (keep, passes)], pulled) = pulled(bulk, scheme);
+            let last = last(&keep);
+            let ratio = last.energy.damping / last.energy.strain;
+            let force: f64 = pulled.iter().map(|&dof| last.nodal.reaction[dof]).sum();
+            println!(
+                "K/mu {bulk}: damping {:.4e}, of the strain energy {ratio:.4e}, force {force:.4}, \
+                 passes {passes}, without {elastic}",
+                last.energy.damping
+            );
+            assert!((ratio - 1.95e-3).abs() < 0.06e-3, "{ratio}");
+            if bulk > 1e3 {
+                // at constant volume: 4 beta mu int (dl/dt/l)² dt = 0.002 (1 - 1/1.5), l - l^-3 + 4 beta l'/l²
+                assert!((last.energy.damping / (0.002 / 3.0) - 1.0).abs() < 1e-3);
+                assert!((force - 1.2046).abs() < 0.01, "{force}");
+            }
+            assert!(passes < elastic + elastic / 4, "{passes} {elastic}");
+            for pair in keep.reports.windows(2) {
+                assert!(pair[1].energy.damping >= pair[0].energy.damping);
+            }
+            assert!(keep.cutbacks.is_empty());
+        }
+    }
+}
+
 #[test]
 fn viscosity_needs_no_more_passes_where_it_is_large() {
     let [elastic, _] = laws();

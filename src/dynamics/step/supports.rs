@@ -56,7 +56,7 @@ impl<'m> Supports<'m> {
                 value,
                 amplitude,
             } => {
-                // a, and its first and second integral since the start of the step, eq. (4.25)
+                // a, and its first and second integral since the start of the step, eq. (4.26)
                 let [a, first, second] = at.integrals(self.model, amplitude);
                 match rate {
                     Rate::Velocity => [from + value * first, value * a],

@@ -45,13 +45,13 @@ impl Elements {
     }
 
     /// Energy d.F_d that damping dissipates in an increment of length `dt` with the displacement
-    /// increment `d`, eq. (4.23) (force length).
+    /// increment `d`, eq. (4.24) (force length).
     pub fn damping_dissipation(&self, increment: Increment, d: &[f64], dt: f64) -> f64 {
         let work = |element: &_, damping: &ElementDamping| damping.work(element, increment, d);
         self.of_damped(work).iter().sum::<f64>() / dt
     }
 
-    /// Calls `add(element, c)` with the damping matrix of every damped element in order, eq. (4.24), or
+    /// Calls `add(element, c)` with the damping matrix of every damped element in order, eq. (4.25), or
     /// its positive part, c being D x D column by column (force time/length).
     pub fn for_each_damping(
         &self,

@@ -127,7 +127,7 @@ pub(super) static MATERIALS: &[Keyword] = &[
             ).measuring(PER_TIME),
             P::value(
                 "BETA",
-                "damping in proportion to the elasticity at small strains: ratio BETA omega/2 of a \
+                "viscosity in proportion to the moduli of shear and volume at small strains: ratio BETA omega/2 of a \
                  mode; none in rigid motion, momenta are kept",
             ).measuring(TIME),
             P::value(

@@ -206,7 +206,7 @@ impl EffectiveStiffness {
         elements.for_each_tangent(motion, form.part(), free, |element, tangent| {
             k.add(element, tangent, weights.theta2)
         });
-        // K* <- K* + Cd/dt, eq. (4.24)
+        // K* <- K* + Cd/dt, eq. (4.25)
         if let Some(increment) = motion.increment {
             elements.for_each_damping(increment, form.part(), |element, damping| {
                 k.add(element, damping, 1.0 / dt)
