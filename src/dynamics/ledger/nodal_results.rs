@@ -31,9 +31,13 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         inertia,
         ..
     } = &solved.equilibrium;
+    // M A + F - R - B^T P at the supports, with what equations pass on to them, eq. (9.11)
+    let missing = |p: usize| inertia[p] + internal[p] - load[p] - contact_force[p];
+    let missing: Vec<f64> = (0..dofs).map(missing).collect();
+    let passed_on = problem.unknowns.passed_on(&missing);
     let mut reaction = vec![0.0; dofs];
-    for &p in problem.unknowns.constrained() {
-        reaction[p] = inertia[p] + internal[p] - load[p] - contact_force[p];
+    for p in problem.unknowns.prescribed() {
+        reaction[p] = passed_on[p];
     }
     let mut results = NodalResults {
         reaction,

@@ -15,6 +15,10 @@ const TERMS_PER_LINE: usize = 4;
 /// Sum of velocities, relative to its largest terms, that counts as zero.
 const ROUND_OFF: f64 = 1e-12;
 
+/// Largest ratio of two displacements of an equation, and the inverse of the smallest: its square, which stiffness
+/// and mass are multiplied by, and their products stay within the range of numbers.
+const LARGEST_RATIO: f64 = 1e50;
+
 /// A term of an equation, or of those of all nodes of a set.
 struct Term {
     /// Nodes, in the order of their numbers.
@@ -229,7 +233,8 @@ fn substituted(mut solved: ByDof, targets: Targets, cx: &mut Context) -> Vec<(Eq
                 *terms.entry(k).or_insert(0.0) += c * ck;
             }
         }
-        let terms = terms.into_iter().filter(|(_, c)| *c != 0.0).collect();
+        let terms: Vec<(usize, f64)> = terms.into_iter().filter(|(_, c)| *c != 0.0).collect();
+        report_ratios(dof, &terms, span, targets, cx);
         equations.insert(dof, (Equation { dof, terms }, span));
     }
     if let Some((&dof, equation)) = solved.first_key_value() {
@@ -238,6 +243,27 @@ fn substituted(mut solved: ByDof, targets: Targets, cx: &mut Context) -> Vec<(Eq
         cx.d.push(error.help("put a term first that no other of these equations eliminates"));
     }
     equations.into_values().collect()
+}
+
+/// Reports a displacement that would follow another one in a ratio that cannot be computed with.
+fn report_ratios(
+    dof: usize,
+    terms: &[(usize, f64)],
+    span: Span,
+    targets: Targets,
+    cx: &mut Context,
+) {
+    let reach = 1.0 / LARGEST_RATIO..=LARGEST_RATIO;
+    if let Some((to, c)) = terms.iter().find(|(_, c)| !reach.contains(&c.abs())) {
+        let (dof, to) = (name(dof, targets), name(*to, targets));
+        let message = format!("{dof} follows {to} {c:e}-fold: it cannot be computed with");
+        let error = Diagnostic::error(Code::BadEquation, span, message);
+        cx.d.push(
+            error.help(
+                "leave out terms without effect; coefficients in a ratio beyond 1e50 are none",
+            ),
+        );
+    }
 }
 
 /// The eliminated dofs, each after those it depends on; dofs that depend on themselves are left

@@ -158,9 +158,10 @@ pub(super) static CONDITIONS: &[Keyword] = &[
          any number of equations. Sets give an equation for every node, in the order of the numbers; \
          those after the first have as many nodes, or one. The first term is eliminated: no *BOUNDARY \
          may prescribe it and no other equation eliminate it; the others may be prescribed, or \
-         eliminated by other equations. A node without element moves as its equations say. The \
-         forces of the equations are in RF; their first terms start with the velocities that follow \
-         from those of the others.",
+         eliminated by other equations. A node without element moves as its equations say. RF of a \
+         prescribed term holds the force that its support exerts through the equations; at all other \
+         terms RF is 0. The first terms start with the velocities that follow from those of the others. \
+         The ratio of two coefficients lies between 1e-50 and 1e50.",
         "*EQUATION\n\
          2\n\
          13, 2, 1., 14, 2, -1.",
