@@ -1,9 +1,9 @@
 //! Numbers that are not finite: increments with them fail, and the cause says where they are.
 
-use crate::blocks::{Keep, add_block, add_contact, fixed, model, run, step};
+use crate::blocks::{Keep, add_block, add_contact, fixed, model, run, settings, step};
 use stickslip::dynamics::{Cause, Outcome};
 use stickslip::model::{
-    Load, Model, PointLoad, Pressure, Settings, Support, SupportMotion, TimeBase, Variation,
+    Load, Model, PointLoad, Pressure, Scheme, Settings, Support, SupportMotion, TimeBase, Variation,
 };
 
 fn run_to_a_stop(model: &Model) -> (Keep, Cause) {
@@ -48,6 +48,29 @@ fn a_start_whose_energy_overflows_is_not_reported() {
         what == "the kinetic energy" && node >= first,
         "{what} {node}"
     );
+}
+
+#[test]
+fn no_increment_ends_with_an_element_inside_out() {
+    // SS22 with both weights 1/2 has its forces halfway, where the element is not
+    for theta in [0.5, 0.75, 1.0] {
+        let mut model = model(1000.0, 0.3, 1.0);
+        let block = add_block(&mut model, [0.0, 0.0], [1.0, 1.0], (1, 1), 0.0);
+        let to = |dof: usize| if dof == 5 || dof == 7 { -1.2 } else { 0.0 };
+        let supports = (0..8).map(|dof| Support {
+            dof,
+            motion: SupportMotion::Ramp { to: to(dof) },
+        });
+        let scheme = Scheme::Ss22 {
+            theta1: theta,
+            theta2: theta,
+        };
+        model.steps = vec![step(1.0, 1, settings(scheme), supports.collect())];
+        let (keep, cause) = run_to_a_stop(&model);
+        assert!(matches!(cause, Cause::Inverted { .. }), "{cause:?}");
+        let height = 1.0 + keep.reports.last().unwrap().state.u[2 * block.node(0, 1) + 1];
+        assert!(height > 0.0 && height < 0.01, "{height}");
+    }
 }
 
 #[test]

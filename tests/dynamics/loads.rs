@@ -83,6 +83,98 @@ fn pressure_all_around_has_no_resultant_and_follows_the_surface() {
 }
 
 #[test]
+fn pressure_acts_on_the_face_as_it_is_now() {
+    for scheme in SCHEMES {
+        let (mut model, block) = free_block();
+        // all nodes go straight to where a quarter turn takes them
+        let moved = |node: usize| {
+            let [x, y] = model.mesh.coordinates[node];
+            [(2 * node, -y - x), (2 * node + 1, x - y)]
+        };
+        let supports = block.nodes().flat_map(moved).map(|(dof, to)| Support {
+            dof,
+            motion: SupportMotion::Ramp { to },
+        });
+        let mut step = step(0.01, 20, settings(scheme), supports.collect());
+        let pressure = |face| Load {
+            at: Pressure { face },
+            magnitude: 40.0,
+            variation: Variation::Constant,
+        };
+        step.pressures = block.faces(1).into_iter().map(pressure).collect();
+        model.steps = vec![step];
+        let (keep, _) = run_to_end(&model);
+        // the supports of constant velocity hold the pressure alone: p t (e_y, -e_x), e along the right side
+        let reaction = |report: &IncrementReport| {
+            let of = |i: usize| {
+                block
+                    .nodes()
+                    .map(|n| report.nodal.reaction[2 * n + i])
+                    .sum()
+            };
+            let force: [f64; 2] = [of(0), of(1)];
+            force
+        };
+        for pair in keep.reports[1..].windows(2) {
+            let [before, now] = pair else { unreachable!() };
+            let x = |node: usize, i: usize| {
+                let [u0, u1] = [before, now].map(|report| report.state.u[2 * node + i]);
+                let u = match scheme {
+                    Scheme::EnergyMomentum => (u0 + u1) / 2.0,
+                    Scheme::Ss22 { .. } => u1,
+                };
+                model.mesh.coordinates[node][i] + u
+            };
+            let e = [0, 1].map(|i| x(block.node(4, 2), i) - x(block.node(4, 0), i));
+            let [fx, fy] = reaction(now);
+            let off = (fx - 40.0 * e[1]).hypot(fy + 40.0 * e[0]);
+            assert!(off < 1e-8, "{off:e}");
+        }
+        // at the end the right side is the upper one; half an increment before it in the default scheme
+        let [fx, fy] = reaction(keep.reports.last().unwrap());
+        assert!((fy - 40.0).abs() < 1.5 && fx.abs() < 1.5, "{fx} {fy}");
+    }
+}
+
+#[test]
+fn a_dead_traction_does_not_follow_the_face() {
+    for scheme in SCHEMES {
+        let (mut model, block) = free_block();
+        // stretched to twice its height, which changes neither the force of the traction nor its direction
+        let moved = |node: usize| {
+            let [_, y] = model.mesh.coordinates[node];
+            [(2 * node, 0.5 * y), (2 * node + 1, y)]
+        };
+        let supports = block.nodes().flat_map(moved).map(|(dof, to)| Support {
+            dof,
+            motion: SupportMotion::Ramp { to },
+        });
+        let mut step = step(0.01, 20, settings(scheme), supports.collect());
+        let traction = |face| Load {
+            at: Traction {
+                face,
+                direction: [0.6, 0.8],
+            },
+            magnitude: 30.0,
+            variation: Variation::Constant,
+        };
+        step.tractions = block.faces(1).into_iter().map(traction).collect();
+        model.steps = vec![step];
+        let (keep, _) = run_to_end(&model);
+        for report in &keep.reports[2..] {
+            let of = |i: usize| {
+                block
+                    .nodes()
+                    .map(|n| report.nodal.reaction[2 * n + i])
+                    .sum()
+            };
+            let [fx, fy]: [f64; 2] = [of(0), of(1)];
+            assert!((fx + 18.0).hypot(fy + 24.0) < 1e-8, "{fx} {fy}");
+        }
+    }
+}
+
+#[test]
 fn a_shaken_support_moves_as_its_amplitude_says() {
     for scheme in SCHEMES {
         let (mut model, block) = free_block();

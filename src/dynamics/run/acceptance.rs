@@ -70,8 +70,8 @@ impl Accepted {
 }
 
 /// Checks a converged increment, brings released nodes to rest, gives back what landings and releases have
-/// taken and enters it in the ledger: no node may have gone through a surface, the energies must be finite, and contact must
-/// put in none where the increment may be halved for that.
+/// taken and enters it in the ledger: no element may be turned inside out, no node may have gone through a surface, the
+/// energies must be finite, and contact must put in none where the increment may be halved for that.
 fn checked(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -84,6 +84,7 @@ fn checked(
         closed: before.closed,
     };
     let release = bring_to_rest(problem, workspace, start, interval, solved);
+    problem.check_end(&solved.end)?;
     check_paths(problem, workspace, before, solved)?;
     let dt = interval.dt;
     let from = (before.state, dt);

@@ -14,7 +14,7 @@ use crate::contact::{
     Configurations, Constraint, ContactSurfaces, PairTarget, Projection, position, project,
 };
 use crate::dynamics::results::{Cause, State};
-use crate::elements::Elements;
+use crate::elements::{Elements, Motion};
 use crate::lcp::LcpMethod;
 use crate::linear::{LinearError, largest};
 use crate::model::{Model, Settings, Step};
@@ -171,6 +171,25 @@ impl StepProblem<'_> {
             Some(&segment) => Err(Cause::Collapsed { segment }),
             None => Ok(()),
         }
+    }
+
+    /// No element may be turned inside out at the end of an increment. The passes see it in the energy-momentum form,
+    /// and with both weights 1; else they see U_theta only.
+    ///
+    /// # Errors
+    /// [`Cause::Inverted`] with the first element that is.
+    pub fn check_end(&self, end: &State) -> Result<(), Cause> {
+        let Weights {
+            theta1,
+            theta2,
+            energy_momentum,
+        } = self.weights;
+        if energy_momentum || [theta1, theta2] == [1.0; 2] {
+            return Ok(());
+        }
+        let motion = Motion::at(&end.u, &end.internal);
+        self.elements.internal_force(motion)?;
+        Ok(())
     }
 
     /// Writes the constraints of pairs between the displacements `u0` and `u` of an increment; rigid

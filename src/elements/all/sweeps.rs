@@ -205,7 +205,7 @@ mod tests {
     use super::*;
     use crate::elements::all::damped::dofs;
     use crate::materials::{Law, NeoHooke};
-    use crate::model::{Damping, Element, ElementType, Material, Model, Section};
+    use crate::model::{Damping, Element, ElementType, Formulation, Material, Model, Section};
 
     /// A model of a law on three quadrilaterals and a triangle, with other types of the quadrilaterals.
     fn model(law: Law, quad: ElementType) -> Model {
@@ -386,6 +386,28 @@ mod tests {
                 let found = elements.internal_force(Motion::at(&u, &[]));
                 assert!(found.is_err_and(|inverted| inverted.determinant.is_nan()));
             }
+        }
+    }
+
+    #[test]
+    fn an_end_inside_out_is_found_where_halfway_nothing_is() {
+        let mean = ElementType {
+            formulation: Formulation::MeanDilatation,
+            ..ElementType::CPE4
+        };
+        let with_mean = models().map(|m| model(m.materials[0].law, mean));
+        for model in models().iter().chain(&with_mean) {
+            // heights become -0.2 of themselves, halfway 0.4
+            let coordinates = model.mesh.coordinates.iter();
+            let u: Vec<f64> = coordinates.flat_map(|x| [0.0, -1.2 * x[1]]).collect();
+            let start = vec![0.0; u.len()];
+            let between = Motion {
+                start: Some(&start),
+                ..Motion::at(&u, &[])
+            };
+            let found = Elements::new(model).internal_force(between);
+            let inverted = found.expect_err("an element inverted");
+            assert!((inverted.determinant + 0.2).abs() < 1e-13, "{inverted:?}");
         }
     }
 
