@@ -344,6 +344,14 @@ codes! {
     NothingToDo "D520" "Nothing moves: there is no load, no velocity and no prescribed motion."
         "The cards are missing, or their magnitudes are zero."
         "Give a load, an initial velocity or a motion."
+    ShortFeature "D521" "An amplitude has a feature that is shorter than the increment."
+        "It rises and falls, or falls and rises, within an increment, which sees its values at its \
+         two ends only."
+        "Take shorter increments, or leave the feature out of the amplitude."
+    StartJump "D522" "A prescribed displacement jumps at the start of a step."
+        "Its amplitude does not start with the displacement that is there: all are 0 before the \
+         first step."
+        "Let the amplitude start there, or prescribe the velocity."
 }
 
 #[cfg(test)]

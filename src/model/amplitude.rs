@@ -118,6 +118,24 @@ impl Amplitude {
 }
 
 impl Signal {
+    /// All its numbers.
+    pub fn numbers(&self) -> Vec<f64> {
+        match self {
+            Signal::Periodic {
+                frequency,
+                harmonics,
+            } => {
+                let harmonics = harmonics.iter().flat_map(|&(a, b)| [a, b]);
+                harmonics.chain([*frequency]).collect()
+            }
+            Signal::Decay { size, time } => vec![*size, *time],
+            Signal::Modulated {
+                size,
+                frequencies: [w1, w2],
+            } => vec![*size, *w1, *w2],
+        }
+    }
+
     /// First and second integral from 0 to `t >= 0`.
     fn integrals(&self, t: f64) -> [f64; 2] {
         match self {
@@ -223,7 +241,8 @@ fn integrals_of_table(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64;
         let (p, q) = (pair[0], pair[1]);
         let (s, h) = (t.min(q.0) - p.0, q.0 - p.0);
         let [first, second] = step(s / h);
-        let rise = [(q.1 - p.1) * h * first, (q.1 - p.1) * h * h * second];
+        // each product with h at once: h² may overflow where the step is zero
+        let rise = [h * first, h * (h * second)].map(|share| (q.1 - p.1) * share);
         integrals = added(on(integrals, s, p.1), rise);
     }
     match t > last.0 {

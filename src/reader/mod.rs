@@ -92,6 +92,7 @@ fn read(cx: &mut Context) -> Model {
         steps: steps.all,
         rigid_bodies: rigid_surface::bodies(&rigid_bodies),
     };
+    checks::amplitudes(&model, &amplitudes.spans, cx);
     checks::braked_flight(&model, &properties.damping_spans, cx);
     checks::coincident_nodes(&model, side, &mesh_index.places, cx);
     checks::fixed_slaves(&model, cx);

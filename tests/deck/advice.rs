@@ -69,6 +69,9 @@ fn amplitudes_that_cannot_be() {
             amplitude("PERIODIC, SCALEX=-1.\n0, 3."),
             amplitude("DECAY\n0., 1., 0., -2."),
             amplitude("MODULATED, SCALEY=1.E300\n1.E300, 1., 0., 1., 1."),
+            amplitude("MODULATED\n0., 1., 0., 1.E308, 1."),
+            amplitude("TABULAR\n-1.E308, 0., 1.E308, 1."),
+            amplitude("TABULAR\n0., 0., 1., -1.E101"),
         ],
     ));
 }

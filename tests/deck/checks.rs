@@ -70,6 +70,116 @@ fn anything_that_moves_is_something_to_do() {
     assert!(!codes(&change(&unloaded(), "*STEP", velocity)).contains(&Code::NothingToDo));
 }
 
+/// The square with an amplitude, which its load or a card of its step follows; its increment is 0.1.
+fn with_amplitude(amplitude: &str, card: Option<&str>) -> Source {
+    let model = format!("*AMPLITUDE, NAME=A{amplitude}\n*STEP");
+    let load = "*CLOAD, AMPLITUDE=A\n3, 2, 4.";
+    let deck = SQUARE.replacen("*STEP", &model, 1);
+    change(&deck, "*CLOAD\n3, 2, 4.", card.unwrap_or(load))
+}
+
+#[test]
+fn features_of_amplitudes_are_as_long_as_the_increment() {
+    let found =
+        |amplitude: &str| codes(&with_amplitude(amplitude, None)).contains(&Code::ShortFeature);
+    let short = [
+        "\n0., 0., 0.51, 0., 0.55, 1., 0.59, 0., 1., 0.",
+        // with its top at the end of an increment
+        "\n0., 0., 0.46, 0., 0.5, -1., 0.54, 0., 1., 0.",
+        "\n0., 1., 0.51, 1., 0.5101, 0., 0.56, 0., 0.5601, 1.",
+        ", DEFINITION=SMOOTH STEP\n0., 0., 0.51, 0., 0.55, 1., 0.59, 0., 1., 0.",
+        ", DEFINITION=EQUALLY SPACED, FIXED INTERVAL=0.05\n0., 1., 0., 1., 0., 1., 0.",
+        ", TIME=TOTAL TIME\n0., 0., 0.51, 0., 0.55, 1., 0.59, 0., 1., 0.",
+        // a load that is there at the start only
+        "\n0., 1., 1.E-3, 0.",
+        ", DEFINITION=PERIODIC\n1, 62.83185307, 0., 1.\n-1., 0.",
+        ", DEFINITION=PERIODIC\n2, 20., 0., 0.\n0., 1., 0., 1.",
+        ", DEFINITION=DECAY\n0., 1., 0.5, 0.1",
+        ", DEFINITION=MODULATED\n0., 1., 0., 20., 15.",
+    ];
+    for amplitude in short {
+        assert!(found(amplitude), "{amplitude}");
+    }
+    let long = [
+        "\n0., 1., 1., 1.",
+        "\n0., 0., 1.E-6, 1.",
+        "\n0., 0., 0.5, 0., 0.5001, 1.",
+        "\n0., 0., 0.3, 1., 0.6, 0.",
+        // noise of two per cent
+        "\n0., 0., 0.3, 1., 0.31, 0.98, 0.32, 1., 0.6, 0.",
+        // after the step
+        "\n0., 0., 5.51, 0., 5.55, 1., 5.59, 0.",
+        ", DEFINITION=PERIODIC\n1, 20., 0., 1.\n-1., 0.",
+        ", DEFINITION=PERIODIC\n2, 20., 0., 0.\n0., 1., 0., 0.",
+        ", DEFINITION=PERIODIC\n1, 62.83185307, 3., 1.\n-1., 0.",
+        ", DEFINITION=DECAY\n0., 1., 0.5, 0.2",
+        ", DEFINITION=MODULATED\n0., 1., 0., 20., 10.",
+    ];
+    for amplitude in long {
+        assert!(!found(amplitude), "{amplitude}");
+    }
+    // rates are integrated, so that no increment misses what they do; a load of zero does nothing
+    let spike = short[0];
+    let codes_of = |card: &str| codes(&with_amplitude(spike, Some(card)));
+    let velocity = "*BOUNDARY, TYPE=VELOCITY, AMPLITUDE=A\n3, 2, 2, 4.";
+    assert!(!codes_of(velocity).contains(&Code::ShortFeature));
+    assert!(!codes_of("*CLOAD, AMPLITUDE=A\n3, 2, 0.").contains(&Code::ShortFeature));
+    let displacement = "*BOUNDARY, AMPLITUDE=A\n3, 2, 2, 0.1";
+    assert!(codes_of(displacement).contains(&Code::ShortFeature));
+    for load in [
+        "*DLOAD, AMPLITUDE=A\nBODY, P3, 1.",
+        "*DLOAD, AMPLITUDE=A\nBODY, GRAV, 1., 0., -1.",
+    ] {
+        assert!(codes_of(load).contains(&Code::ShortFeature), "{load}");
+    }
+}
+
+#[test]
+fn prescribed_displacements_go_on_from_where_the_node_is() {
+    let jumps = |amplitude: &str, cards: &str| {
+        let deck = with_amplitude(amplitude, Some(&format!("*BOUNDARY, AMPLITUDE=A\n{cards}")));
+        let found = codes(&deck).into_iter();
+        found.filter(|code| *code == Code::StartJump).count()
+    };
+    assert_eq!(jumps("\n0., 1., 1., 1.", "3, 2, 2, 0.1\n4, 2, 2, 0.1"), 1);
+    assert_eq!(jumps("\n0., 0., 1., 1.", "3, 2, 2, 0.1"), 0);
+    assert_eq!(jumps("\n0., 1., 1., 1.", "3, 2, 2, 0."), 0);
+    let cosine = ", DEFINITION=PERIODIC\n1, 3., 0., 0.\n1., 0.";
+    assert_eq!(jumps(cosine, "3, 2, 2, 0.1"), 1);
+    assert_eq!(
+        jumps(&cosine.replace("0.\n1.", "-1.\n1."), "3, 2, 2, 0.1"),
+        0
+    );
+    // a second step that goes on with the end of the first, and one that does not
+    let next = |value: f64| {
+        format!(
+            "3, 2, 2, 0.1\n*END STEP\n*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.1, 1.\n\
+             *BOUNDARY, AMPLITUDE=A\n3, 2, 2, {value}"
+        )
+    };
+    let [back, total] = [
+        "\n0., 0., 1., 1.",
+        ", TIME=TOTAL TIME\n0., 0., 1., 1., 2., 0.",
+    ];
+    assert_eq!(jumps(back, &next(0.1)), 1);
+    assert_eq!(jumps(total, &next(0.1)), 0);
+    assert_eq!(jumps(total, &next(0.2)), 1);
+    // where the end is not known there is nothing to compare with
+    let free = "3, 2, 2, 0.1\n*END STEP\n*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.1, 1.\n\
+                *BOUNDARY, AMPLITUDE=A\n4, 2, 2, 0.1";
+    assert_eq!(jumps(total, free), 0);
+}
+
+#[test]
+fn displacements_of_an_equation_have_ratios_that_can_be_computed_with() {
+    let found = |a: &str, b: &str| {
+        let card = format!("*EQUATION\n2\n4, 1, {a}, 3, 1, {b}\n*STEP");
+        codes(&square("*STEP", &card)).contains(&Code::BadEquation)
+    };
+    assert!(found("1.", "1.E-300") && found("1.E-300", "1.") && found("1.", "-1.E51"));
+    assert!(!found("1.E-300", "1.E-300") && !found("1.", "1.E-49") && !found("1.", "0."));
+}
+
 #[test]
 fn a_surface_that_looks_away_is_no_penetration() {
     let found = codes(&shared("EBASE, S3", "EBASE, S1"));

@@ -207,6 +207,16 @@ fn faulty(code: Code) -> Source {
         IgnoredVariable => square("U, RF", "U, PEEQ"),
         OutOfProportion => square("0.1, 1.", "1.e9, 1.e10"),
         NothingToDo => square("3, 2, 4.", "3, 2, 0."),
+        ShortFeature => square(
+            "*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.1, 1.\n*CLOAD\n",
+            "*AMPLITUDE, NAME=PULSE\n0., 0., 0.51, 0., 0.55, 1., 0.59, 0.\n\
+             *STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.1, 1.\n*CLOAD, AMPLITUDE=PULSE\n",
+        ),
+        StartJump => square(
+            "*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.1, 1.\n",
+            "*AMPLITUDE, NAME=SHIFT\n0., 1., 1., 1.\n\
+             *STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.1, 1.\n*BOUNDARY, AMPLITUDE=SHIFT\n4, 1, 1, 0.1\n",
+        ),
         BadEquation => model("*EQUATION\n2\n4, 1, 0., 3, 1, -1."),
         ConstantIncrement => square("*DYNAMIC, DIRECT\n0.1, 1.", "*DYNAMIC\n0.1, 1., 1.e-3, 0.2"),
     }

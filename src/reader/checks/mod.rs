@@ -1,6 +1,7 @@
 //! Checks across keywords: the quality of the mesh, magnitudes, contacts, and whether the steps make
 //! sense with the material.
 
+mod amplitudes;
 mod braked_flight;
 mod coincident_nodes;
 mod fixed_slaves;
@@ -11,6 +12,7 @@ mod overlap;
 mod proportion;
 mod thickness;
 
+pub(super) use amplitudes::amplitudes;
 pub(super) use braked_flight::braked_flight;
 pub(super) use coincident_nodes::coincident_nodes;
 pub(super) use fixed_slaves::fixed_slaves;

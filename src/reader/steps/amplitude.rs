@@ -1,8 +1,8 @@
 //! `*AMPLITUDE`: tables of points; `signal` reads the other definitions.
 
-use super::signal::{self, Axes, positive};
+use super::signal::{self, Axes, are_in_reach, positive, report_out_of_reach};
 use crate::deck::{Card, Row, Text};
-use crate::diagnostics::{Code, Diagnostic};
+use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Amplitude, Curve, TimeBase};
 use crate::reader::context::Context;
 use crate::reader::names::Names;
@@ -13,6 +13,8 @@ pub(crate) struct Amplitudes {
     pub names: Names,
     /// Amplitudes in the order of their names.
     pub all: Vec<Amplitude>,
+    /// Their places.
+    pub spans: Vec<Span>,
 }
 
 impl Amplitudes {
@@ -30,6 +32,7 @@ pub(crate) fn read(cx: &mut Context) -> Amplitudes {
     let mut amplitudes = Amplitudes {
         names: Names::new("amplitude"),
         all: Vec::new(),
+        spans: Vec::new(),
     };
     let deck = cx.deck;
     for card in deck
@@ -46,6 +49,7 @@ pub(crate) fn read(cx: &mut Context) -> Amplitudes {
             amplitudes.names.spoil(&name);
             continue;
         };
+        amplitudes.spans.push(card.span_of("NAME"));
         amplitudes.all.push(Amplitude {
             name: name.typed.clone(),
             time: time_base(card),
@@ -84,12 +88,8 @@ fn points(given: Vec<Given>, axes: Axes, cx: &mut Context) -> Option<Vec<(f64, f
     let mut points: Vec<(f64, f64)> = Vec::new();
     for (time, value, field) in given {
         let point = axes.point(time, value);
-        if !(point.0.is_finite() && point.1.is_finite()) {
-            cx.error(
-                Code::AmplitudeTable,
-                field.span,
-                "this point lies at infinity",
-            );
+        if !are_in_reach(&[point.0, point.1]) {
+            report_out_of_reach("this point is out of reach", field.span, cx);
             return None;
         }
         if points.last().is_some_and(|last| last.0 >= point.0) {

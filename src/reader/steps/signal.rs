@@ -2,9 +2,24 @@
 //! scale and shift of all definitions.
 
 use crate::deck::{Card, Row, Text};
-use crate::diagnostics::Code;
+use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::{Curve, Signal};
 use crate::reader::context::Context;
+
+/// Largest time, value or frequency of an amplitude: products of a few of them do not overflow.
+const LARGEST: f64 = 1e100;
+
+/// Whether numbers of an amplitude can be computed with.
+pub(super) fn are_in_reach(numbers: &[f64]) -> bool {
+    numbers.iter().all(|number| number.abs() <= LARGEST)
+}
+
+/// Reports numbers of an amplitude that cannot be computed with.
+pub(super) fn report_out_of_reach(what: &str, span: Span, cx: &mut Context) {
+    let message = format!("{what}: the numbers of an amplitude end at {LARGEST:e}");
+    let error = Diagnostic::error(Code::AmplitudeTable, span, message);
+    cx.d.push(error.help("before its first point and after its last one a table is constant"));
+}
 
 /// Scale and shift of times and values: time * SCALEX + SHIFTX, value * SCALEY + SHIFTY.
 #[derive(Clone, Copy)]
@@ -53,12 +68,8 @@ pub(super) fn read(definition: &str, card: &Card, axes: Axes, cx: &mut Context) 
         cx.error(Code::StrayData, extra.span(), message);
     }
     let (start, base) = axes.point(start, base);
-    if !(start.is_finite() && base.is_finite()) {
-        cx.error(
-            Code::AmplitudeTable,
-            row.span(),
-            "this curve lies at infinity",
-        );
+    if !(are_in_reach(&[start, base]) && are_in_reach(&signal.numbers())) {
+        report_out_of_reach("this curve is out of reach", row.span(), cx);
     }
     Some(Curve::Signal {
         start,
