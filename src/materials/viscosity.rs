@@ -1,7 +1,7 @@
 //! Viscosity of a material (`*DAMPING, BETA=`): a stress beside that of the law that follows the rates
 //! of its shape and of its volume. Section 4 of docs/theory.md, Damping.
 
-use nalgebra::{Matrix2, Matrix3, Vector3};
+use nalgebra::{Matrix2, Matrix3};
 
 use super::voigt::{dyad, product};
 use super::{ConstitutiveLaw, Plane, SaintVenantKirchhoff, SmallStrainModuli, StressAtPoints};
@@ -38,17 +38,15 @@ impl Viscosity {
         }
     }
 
-    /// V of eq. (4.25), beta/J_m (2 mu G o G + (kappa - mu) G x G) between two strains, in Voigt order: positive definite
-    /// (force time/length^2).
-    fn between(&self, [e0, e1]: [&Matrix2<f64>; 2]) -> Matrix3<f64> {
-        // cof is linear in the plane: cof(I + A) = I + cof A
-        let (twice, cofactor) = (e0 + e1, |m: &Matrix2<f64>| {
-            Matrix2::new(m.m22, -m.m12, -m.m21, m.m11)
-        });
+    /// G and 1/J_m of eq. (4.23) between two strains.
+    #[inline]
+    fn halfway([e0, e1]: [&Matrix2<f64>; 2]) -> (Matrix2<f64>, f64) {
         let ratio = |e: &Matrix2<f64>| (1.0 + 2.0 * e.trace() + 4.0 * e.determinant()).sqrt();
-        let j = (ratio(e0) + ratio(e1)) / 2.0;
-        let g = (Matrix2::identity() + cofactor(&twice)) / j;
-        (product(&g) * self.shape + dyad(&g) * self.volume) / j
+        let inverse = 2.0 / (ratio(e0) + ratio(e1));
+        // cof is linear in the plane: cof(I + A) = I + cof A, A = E0 + E1
+        let (xx, yy) = (1.0 + e0.m22 + e1.m22, 1.0 + e0.m11 + e1.m11);
+        let xy = -(e0.m12 + e1.m12);
+        (Matrix2::new(xx, xy, xy, yy) * inverse, inverse)
     }
 }
 
@@ -59,20 +57,31 @@ impl StressAtPoints for Viscosity {
         Matrix2::zeros()
     }
 
-    /// S_d dt = V : dE, eq. (4.23)
-    fn mean_stress(&self, _point: usize, [e0, e1]: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
-        let de = e1 - e0;
-        let s = self.between([e0, e1]) * Vector3::new(de.m11, de.m22, 2.0 * de.m12);
-        Matrix2::new(s.x, s.z, s.z, s.y)
+    /// S_d dt, eq. (4.23)
+    #[inline]
+    fn mean_stress(&self, _point: usize, strains: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
+        let ((g, inverse), de) = (Self::halfway(strains), strains[1] - strains[0]);
+        let (row, dj) = (g * de, g.dot(&de));
+        // a component of G dE G and of G, both symmetric
+        let s = |gdeg: f64, g: f64| (self.shape * gdeg + self.volume * dj * g) * inverse;
+        let xy = s(row.m11 * g.m12 + row.m12 * g.m22, g.m12);
+        Matrix2::new(
+            s(row.m11 * g.m11 + row.m12 * g.m12, g.m11),
+            xy,
+            xy,
+            s(row.m21 * g.m12 + row.m22 * g.m22, g.m22),
+        )
     }
 
     fn tangent(&self, _point: usize, _e: &Matrix2<f64>) -> Matrix3<f64> {
         Matrix3::zeros()
     }
 
-    /// Without the change of G and J_m, which is of first order in dE.
+    /// 2 V of eq. (4.25), positive definite: without the change of G and J_m, which is of first order in dE.
+    #[inline]
     fn mean_tangent(&self, _point: usize, strains: [&Matrix2<f64>; 2]) -> Matrix3<f64> {
-        self.between(strains) * 2.0
+        let (g, inverse) = Self::halfway(strains);
+        product(&g) * (2.0 * self.shape * inverse) + dyad(&g) * (2.0 * self.volume * inverse)
     }
 }
 
