@@ -31,7 +31,7 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         inertia,
         ..
     } = &solved.equilibrium;
-    // M A + F - R - B^T P at the supports, with what equations pass on to them, eq. (9.11)
+    // M A + F - R - B^T P at the supports, with what equations pass on to them, eq. (9.12)
     let missing = |p: usize| inertia[p] + internal[p] - load[p] - contact_force[p];
     let missing: Vec<f64> = (0..dofs).map(missing).collect();
     let passed_on = problem.unknowns.passed_on(&missing);

@@ -53,7 +53,7 @@ pub enum NodeMass {
 /// Results at nodes, apart from the motion.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NodalResults {
-    /// Support reaction, with the force that the support exerts through equations, eq. (9.11), `2 N` entries
+    /// Support reaction, with the force that the support exerts through equations, eq. (9.12), `2 N` entries
     /// (force); 0 at all other dofs. That of a rigid surface is at its reference node.
     pub reaction: Vec<f64>,
     /// Concentrated loads on the node, `2 N` entries (force).
