@@ -98,7 +98,7 @@ fn is_meant(model: &Model, wanted: Adjust, gap: &InitialGap) -> bool {
         Adjust::Within(Reach { above, below, .. }) => (-below..=above).contains(&gap.gap),
         Adjust::Nodes(set) => {
             let members = &model.sets.nodes[set].members;
-            members.binary_search(&gap.slave).is_ok() && gap.gap <= ADJUSTMENT_REACH * gap.edge
+            members.binary_search(&gap.slave).is_ok() && gap.gap <= ADJUSTMENT_REACH * gap.length
         }
     }
 }

@@ -5,7 +5,8 @@
 use super::normal_fan::NormalFan;
 use crate::contact::tolerances::PROJECTION_BEYOND_ENDS;
 use crate::contact::{ContactSurfaces, Projection, project};
-use crate::vectors::{Circle, CircleTree};
+use crate::vectors::{Circle, CircleTree, distance};
+use std::collections::HashMap;
 
 /// Gap of a slave node to the segment it faces in the reference configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,6 +20,8 @@ pub struct InitialGap {
     /// Gap (length), negative when the node is inside the body.
     pub gap: f64,
     /// Length of the segment.
+    pub length: f64,
+    /// The smaller of the lengths of the segment and of the faces of the slave node: what a depth is measured by.
     pub edge: f64,
 }
 
@@ -47,6 +50,21 @@ struct Start<'m> {
     tree: CircleTree,
     /// Normals of the segments of every group of the tree.
     fans: Vec<Option<NormalFan>>,
+    /// Length of the shortest face at every slave node that has one.
+    shortest: HashMap<usize, f64>,
+}
+
+/// Length of the shortest of some faces at each of their nodes.
+fn shortest_faces(faces: &[[usize; 2]], x: &[[f64; 2]]) -> HashMap<usize, f64> {
+    let mut shortest = HashMap::new();
+    for &[a, b] in faces {
+        let length = distance(x[a], x[b]);
+        for node in [a, b] {
+            let least = shortest.entry(node).or_insert(length);
+            *least = length.min(*least);
+        }
+    }
+    shortest
 }
 
 impl<'m> Start<'m> {
@@ -57,6 +75,7 @@ impl<'m> Start<'m> {
         let fan = |i: usize| NormalFan::new(ends(i), contact.next[i].map(ends));
         Start {
             fans: tree.of_groups(fan, NormalFan::join),
+            shortest: shortest_faces(&contact.slave_faces, x),
             contact,
             x,
             bodies,
@@ -94,7 +113,8 @@ impl<'m> Start<'m> {
             segment: self.contact.segments[segment],
             xi: p.xi,
             gap: p.gap,
-            edge: p.length,
+            length: p.length,
+            edge: (self.shortest.get(&slave)).map_or(p.length, |own| own.min(p.length)),
         })
     }
 

@@ -169,7 +169,7 @@ fn overlap(model: &Model, contact: &Contact, face: [usize; 2]) -> Diagnostic {
 fn diagnostic(model: &Model, contact: &Contact, deepest: &InitialGap, count: usize) -> Diagnostic {
     let message = format!(
         "{count} {} of {} inside {} at the start; deepest: node {} by {:.3e} \
-         ({:.1e} of the edge length)",
+         ({:.1e} of the shorter edge)",
         if count == 1 { "node" } else { "nodes" },
         model.surfaces[contact.slave].name,
         opposite(model, contact),

@@ -99,7 +99,7 @@ fn contact(prepared: &PreparedModel) -> u64 {
     let bodies = Bodies::new(&prepared.model().mesh).of_node;
     let gaps = prepared.initial_gaps().iter().flatten();
     let (mut all, mut blocks) = (NearPairs::default(), BTreeMap::new());
-    for gap in gaps.filter(|gap| gap.gap.abs() <= gap.edge) {
+    for gap in gaps.filter(|gap| gap.gap.abs() <= gap.length) {
         all.add(gap);
         let between = [bodies[gap.slave], bodies[gap.segment[0]]];
         let block: &mut NearPairs = blocks.entry(between).or_default();

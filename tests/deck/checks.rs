@@ -272,3 +272,28 @@ fn bodies_that_overlap_are_told_unless_contact_moves_them() {
         Some(Severity::Warning)
     );
 }
+
+/// A node 0.01 deep in a base of length 1000 is a thousandth of the base's edge off, but a hundredth of its own.
+#[test]
+fn a_start_overlap_is_measured_in_the_smaller_edge() {
+    let overlaps = |slave: &str, depth: f64| {
+        let (bottom, top) = (-depth, 1.0 - depth);
+        let deck = format!(
+            "*NODE\n1, -1000., -9.\n2, 1000., -9.\n3, 1000., 0.\n4, -1000., 0.\n\
+             5, 0., {bottom}\n6, 1., {bottom}\n7, 1., {top}\n8, 0., {top}\n\
+             *ELEMENT, TYPE=CPE4, ELSET=ALL\n1, 1, 2, 3, 4\n2, 5, 6, 7, 8\n\
+             *MATERIAL, NAME=M\n*ELASTIC\n1e4, 0.3\n*DENSITY\n1.\n*SOLID SECTION, ELSET=ALL, MATERIAL=M\n\
+             *SURFACE, NAME=TOP\n1, S3\n*SURFACE, NAME=FOOT{slave}\n\
+             *SURFACE INTERACTION, NAME=I\n*CONTACT PAIR, INTERACTION=I\nFOOT, TOP\n\
+             *BOUNDARY\n1, 1, 2\n2, 1, 2\n*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 0.1\n*END STEP\n"
+        );
+        let (found, _) = messages(&Source::Text(deck));
+        let overlap = found.iter().find(|d| d.code == Code::InitialPenetration);
+        overlap.map(|d| d.severity)
+    };
+    for slave in ["\n2, S1", ", TYPE=NODE\n5\n6"] {
+        assert_eq!(overlaps(slave, 0.01), Some(Severity::Error), "{slave}");
+        assert_eq!(overlaps(slave, 1e-4), Some(Severity::Warning), "{slave}");
+        assert_eq!(overlaps(slave, 0.0), None, "{slave}");
+    }
+}

@@ -2,12 +2,12 @@
 //! corners. Section 10 of docs/theory.md.
 
 use crate::contact::tolerances::SHARP_TURN_COSINE;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::interior::Interior;
 use super::projection::project;
-use crate::model::{Contact, Element, Friction, Model};
+use crate::model::{Contact, Element, Friction, Mesh, Model, SurfaceKind};
 use crate::vectors::{cross, dot};
 
 /// The two sides of a contact of the model, as nodes and segments.
@@ -15,6 +15,8 @@ use crate::vectors::{cross, dot};
 pub struct ContactSurfaces {
     /// Slave nodes.
     pub slaves: Vec<usize>,
+    /// Faces of the slave surface; of a surface that is made of nodes the exterior faces at them.
+    pub slave_faces: Vec<[usize; 2]>,
     /// For every slave node the nodes before and after it on its own surface, if it has both.
     pub adjacent: Vec<Option<[usize; 2]>>,
     /// Master segments [a, b] with the body on the left of the direction from a to b.
@@ -53,6 +55,7 @@ impl ContactSurfaces {
         let at = |of: &HashMap<usize, usize>, node: usize| of.get(&node).copied();
         ContactSurfaces {
             adjacent: slaves.iter().map(neighbours).collect(),
+            slave_faces: own.to_vec(),
             next: segments.iter().map(|&[_, b]| at(&starting, b)).collect(),
             previous: segments.iter().map(|&[a, _]| at(&ending, a)).collect(),
             sharp_corners: vec![false; segments.len()],
@@ -66,6 +69,19 @@ impl ContactSurfaces {
     /// With the interior of the bodies behind the segments.
     pub fn with_interior(mut self, interior: Arc<Interior>) -> Self {
         self.interior = interior;
+        self
+    }
+
+    /// With the exterior faces at the slave nodes, for a slave surface that is made of nodes.
+    pub fn with_exterior_faces(mut self, mesh: &Mesh) -> Self {
+        let is_slave: HashSet<usize> = self.slaves.iter().copied().collect();
+        let faces = mesh
+            .exterior_faces()
+            .into_iter()
+            .map(|face| face.nodes(mesh));
+        self.slave_faces = faces
+            .filter(|face| face.iter().any(|node| is_slave.contains(node)))
+            .collect();
         self
     }
 
@@ -143,14 +159,18 @@ pub fn contact_surfaces(model: &Model, bodies: &[usize]) -> Vec<ContactSurfaces>
         let [slave, master] = [contact.slave, contact.master].map(|i| &model.surfaces[i]);
         let mut slaves = slave.nodes(&model.mesh);
         slaves.retain(|node| contact.left_out.binary_search(node).is_err());
-        ContactSurfaces::new(
+        let surfaces = ContactSurfaces::new(
             slaves,
             &slave.segments(&model.mesh),
             master.segments(&model.mesh),
             contact.interaction.friction,
         )
         .with_sharp_corners(&model.mesh.coordinates)
-        .with_interior(Arc::clone(&interior))
+        .with_interior(Arc::clone(&interior));
+        match slave.kind {
+            SurfaceKind::Nodes(_) => surfaces.with_exterior_faces(&model.mesh),
+            _ => surfaces,
+        }
     };
     model.contacts.iter().map(of_contact).collect()
 }

@@ -154,8 +154,9 @@ pub(super) static CONTACT: &[Keyword] = &[
         ],
         "Slave surface, master surface; one contact per row. The master consists of faces; both \
          orders of two surfaces may be given. One surface alone touches itself. Nodes that start \
-         inside the master body by more than 0.001 of a segment are an error unless ADJUST= moves \
-         them; a pair of which no node faces the master at the start is a warning.",
+         inside the master body by more than 0.001 of the shorter of both sides' edges are an \
+         error unless ADJUST= moves them; a pair of which no node faces the master at the start is \
+         a warning.",
         "*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE\n\
          SBOT, STOP",
     ),
