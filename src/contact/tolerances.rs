@@ -77,6 +77,9 @@ pub(crate) const SETTLED_OVERLAP: f64 = 1e-10;
 /// Gap of a closed pair, and slip of a sticking one, that is round-off: what positions and solves leave
 /// of it.
 pub(crate) const SOLVED_GAP: f64 = 1e-12;
+/// Gap, slip or motion that is none: round-off of what is itself round-off of a length. What a motion has died
+/// away to would underflow otherwise.
+pub(crate) const NOTHING: f64 = f64::EPSILON * f64::EPSILON;
 
 /// Round-off of a gap, in units of the coordinates of its nodes.
 pub(crate) const POSITION_ROUND_OFF: f64 = 4.0 * f64::EPSILON;

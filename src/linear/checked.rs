@@ -6,7 +6,7 @@ use sprs::CsMatView;
 
 use super::added_blocks::BlockSum;
 use super::assembled::united;
-use super::{AddedBlocks, Assembled, LinearError, LinearSolver, larger, largest};
+use super::{AddedBlocks, Assembled, LinearError, LinearSolver, SMALLEST, larger, largest};
 
 /// Largest residual of a solve, relative to the terms it is made of. A backward stable solve stays
 /// near the round-off unit.
@@ -257,8 +257,8 @@ fn sum(columns: &[f64], n: usize) -> Vec<f64> {
 /// Rows whose residual is one piece of work for a thread.
 const ROWS: usize = 16_384;
 
-/// max_i |b - A x|_i / max_i (|b0| + |A| |x|)_i, b0 being what the solve began with; the rows of the symmetric
-/// A are its columns.
+/// max_i |b - A x|_i / max_i (|b0| + |A| |x|)_i, b0 being what the solve began with, 0 where numbers are so small
+/// that they have lost digits; the rows of the symmetric A are its columns.
 fn relative_residual(a: CsMatView<'_, f64>, x: &[f64], [b, b0]: [&[f64]; 2]) -> f64 {
     let of_rows =
         |(k, (b, b0)): (usize, (&[f64], &[f64]))| residual_and_size(a, x, (k * ROWS, b, b0));
@@ -269,7 +269,7 @@ fn relative_residual(a: CsMatView<'_, f64>, x: &[f64], [b, b0]: [&[f64]; 2]) -> 
         true => rows.map(of_rows).reduce(|| [0.0; 2], both),
         false => residual_and_size(a, x, (0, b, b0)),
     };
-    if scale == 0.0 { 0.0 } else { error / scale }
+    if scale < SMALLEST { 0.0 } else { error / scale }
 }
 
 /// The largest |b - A x| and |b0| + |A| |x| in the rows from `first` on, which `b` and `b0` are of.
@@ -448,6 +448,16 @@ mod tests {
             one.add(0, &[4.0], 1.0);
             let mut solver = factorized(choice, one).unwrap();
             assert_eq!(solver.solve(&[8.0]).unwrap(), [2.0]);
+        }
+    }
+
+    #[test]
+    fn numbers_that_have_lost_digits_are_solved_with_those_they_have() {
+        let mut solver = CheckedSolver::new(linear_solver(SolverChoice::Faer), grid(3, 0.1));
+        solver.factorize().expect("definite");
+        for b in [1e-318, 1e-305, 1e-290] {
+            let x = solver.solve(&[b; 9]).expect("solved");
+            assert!(x.iter().all(|x| (0.0..=6.0 * b).contains(x)), "{x:?}");
         }
     }
 }

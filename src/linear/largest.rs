@@ -6,6 +6,9 @@ use rayon::prelude::*;
 /// Values that are one piece of work for a thread.
 const PIECE: usize = 32_768;
 
+/// Smallest number that a relative error of it can be told of: its round-off is a normal number.
+pub const SMALLEST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
+
 /// Largest absolute value, 0 without values; NaN when one is.
 pub fn largest(values: &[f64]) -> f64 {
     match values.len() > PIECE && rayon::current_num_threads() > 1 {

@@ -13,7 +13,7 @@ mod transformation;
 pub use added_blocks::AddedBlocks;
 pub use assembled::Assembled;
 pub use checked::CheckedSolver;
-pub use largest::{larger, largest};
+pub use largest::{SMALLEST, larger, largest};
 pub use nodal_matrix::NodalMatrix;
 pub use rotation::Rotation;
 pub use solvers::{

@@ -463,3 +463,26 @@ fn extreme_numbers_never_panic() {
         }
     }
 }
+
+/// What penetrates so little that the force against it vanishes, or has lost digits, does not penetrate.
+#[test]
+fn penetrations_that_underflow_are_none() {
+    for mu in [0.0, 0.3] {
+        for (gap, slip) in [(-1.11794e-318, -1.6e-299), (-1e-305, 1.0), (-5e-324, 0.0)] {
+            let problem = FrictionalLcp {
+                q: DMatrix::from_row_slice(2, 2, &[44340.5, 0.0, 0.0, 44340.5]),
+                ..one(gap, slip, mu)
+            };
+            for method in METHODS {
+                let s = solve(&problem, method);
+                assert_eq!((s.state[0], s.pn[0]), (Open, 0.0), "{gap:e}");
+            }
+            let lcp = problem.to_lcp();
+            let solved = lemke(&lcp, &covering_vector(&lcp), &LemkeSettings::default());
+            assert!(solved.unwrap().z.amax() < 1e-290);
+        }
+    }
+    // a little more has its force
+    let s = solve(&one(-1e-280, 0.0, 0.3), LcpMethod::Hybrid);
+    assert!((s.pn[0] / 5e-281 - 1.0).abs() < 1e-12);
+}

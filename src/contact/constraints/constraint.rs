@@ -9,6 +9,7 @@ use smallvec::SmallVec;
 
 use super::configurations::Configurations;
 use crate::contact::targets::PairTarget;
+use crate::contact::tolerances::NOTHING;
 
 /// One value for every dof of a constraint: stored in place up to the eight dofs of a corner, on
 /// the heap beyond.
@@ -167,6 +168,15 @@ impl Constraint {
     /// Gt v: what a vector over all dofs adds to the slip.
     pub fn slip_change(&self, v: &[f64]) -> f64 {
         self.product(&self.derivative_rows().tangential, |dof| v[dof])
+    }
+
+    /// A gap or slip of the pair (length), 0 where it is nothing beside the segment, eq. (4.26): what a motion has died away to
+    /// must not become the scale of a complementarity problem, whose forces would underflow.
+    pub fn resolved(&self, length: f64) -> f64 {
+        match length.abs() < NOTHING * self.scale {
+            true => 0.0,
+            false => length,
+        }
     }
 
     /// Bn d: the work of a unit normal force on a displacement over all dofs (length).

@@ -101,7 +101,10 @@ impl Refactorization {
     /// n(theta) = ln(correction/tolerance)/-ln(theta) passes are left at the rate theta; the factors are
     /// worn when that is more than with fresh ones and the factorisation.
     pub fn take_in(&mut self, correction: f64) -> Result<(), Cause> {
-        let rate = correction / self.correction;
+        let rate = match correction {
+            0.0 => 0.0,
+            _ => correction / self.correction,
+        };
         let is_first = self.correction == f64::INFINITY;
         self.passes += 1;
         self.age += 1;

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::dense::add_product;
 use super::general::{Lcp, LcpError, expect_finite, expect_non_negative, expect_size};
+use crate::linear::{SMALLEST, larger};
 
 /// Coulomb friction of n coupled contacts, eq. (8.2) with the law of eq. (3.6). Find Pn, Pt with
 ///
@@ -36,6 +37,28 @@ impl FrictionalLcp {
     /// Whether there are no contacts.
     pub fn is_empty(&self) -> bool {
         self.gap.is_empty()
+    }
+
+    /// Whether a contact penetrates. What is so small that the force which stops it would have lost digits, or
+    /// vanish, is no penetration.
+    pub(crate) fn penetrates(&self) -> bool {
+        let least = self.smallest_length();
+        self.gap.iter().any(|gap| *gap <= -least)
+    }
+
+    /// Mean compliance of the contacts, mean Qnn_ii, 1 where there is none.
+    pub(crate) fn compliance(&self) -> f64 {
+        let n = self.len();
+        let mean = (0..n).map(|i| self.q[(i, i)]).sum::<f64>() / n as f64;
+        match mean > 0.0 && mean.is_finite() {
+            true => mean,
+            false => 1.0,
+        }
+    }
+
+    /// Smallest length whose force has all its digits.
+    pub(crate) fn smallest_length(&self) -> f64 {
+        SMALLEST * larger(self.compliance(), 1.0)
     }
 
     /// Refuses wrong sizes, negative mu and numbers that are not finite.

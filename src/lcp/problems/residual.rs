@@ -8,6 +8,7 @@ use super::dense::{add_product_and_sizes, max_abs};
 use super::frictional::FrictionalLcp;
 use super::general::Lcp;
 use super::scaling::Equilibration;
+use crate::linear::{SMALLEST, larger};
 
 /// Largest residual of a point that counts as a solution.
 pub(crate) const TOLERANCE: f64 = 1e-9;
@@ -16,7 +17,8 @@ pub(crate) const TOLERANCE: f64 = 1e-9;
 /// 1e-16 of the largest term, so that 1e-9 of the scale is never below round-off.
 pub(crate) const ROUNDING: f64 = 1e-6;
 
-/// Residual of z, zero for a solution, infinite when a number is not finite or a size is wrong.
+/// Residual of z, zero for a solution, infinite when a number is not finite or a size is wrong. What is so small
+/// that it has lost digits is no error.
 ///
 /// r = max_i |z_i - max(0, z_i - w_i)| / s,  w = M z + q,  s = max |q| + 1e-6 max |M| |z|,
 /// after rows and columns of M are scaled to entries near 1 (which makes the residual independent
@@ -28,11 +30,13 @@ pub fn residual(lcp: &Lcp, z: &DVector<f64>) -> f64 {
     let Equilibration { rows, columns } = Equilibration::of(&lcp.m);
     let w = lcp.w(z);
     let terms = lcp.m.abs() * z.abs();
-    let (mut error, mut scale) = (0.0_f64, 0.0_f64);
+    let (mut error, mut scale) = (0.0_f64, SMALLEST);
     for i in 0..z.len() {
         let (z_i, w_i) = (z[i] / columns[i], w[i] * rows[i]);
         error = worse(error, smaller(z_i, w_i));
         scale = scale.max(rows[i] * lcp.q[i].abs() + ROUNDING * rows[i] * terms[i]);
+        // below, numbers lose digits
+        scale = scale.max(SMALLEST * larger(rows[i], 1.0 / columns[i]));
     }
     relative(error, scale)
 }
@@ -53,15 +57,13 @@ pub(crate) fn frictional_residual<'a>(
     let mut terms = filled(arena, 0.0, 2 * n);
     let forces = list(arena, pn.iter().chain(pt).copied());
     add_product_and_sizes(problem.q.as_slice(), &forces, &mut motion, &mut terms);
-    let length = problem.gap.iter().fold(0.0_f64, |l, g| l.max(-g)) + ROUNDING * max_abs(&terms);
-
-    let mean = (0..n).map(|i| problem.q[(i, i)]).sum::<f64>() / n as f64;
-    let compliance = if mean > 0.0 && mean.is_finite() {
-        mean
-    } else {
-        1.0
-    };
+    let deepest = problem.gap.iter().fold(0.0_f64, |l, g| l.max(-g));
+    let compliance = problem.compliance();
     let contact = |i: usize| ([motion[i], motion[n + i]], [pn[i], pt[i]], problem.mu[i]);
+    let length = larger(
+        deepest + ROUNDING * max_abs(&terms),
+        problem.smallest_length(),
+    );
     let residual = law_residual((0..n).map(contact), compliance, length);
     (residual, motion)
 }

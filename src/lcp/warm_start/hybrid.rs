@@ -69,7 +69,7 @@ fn solve_in(
     (kept, arena): (&mut KeptFactors, &Bump),
 ) -> Result<FrictionalSolution, LcpError> {
     let mut counters = Counters::default();
-    if problem.gap.iter().all(|g| *g >= 0.0) {
+    if !problem.penetrates() {
         let states = filled(arena, ContactState::Open, problem.len());
         let forces = [(); 2].map(|()| filled(arena, 0.0, problem.len()));
         let found = (&*states, forces);

@@ -228,7 +228,7 @@ fn by_bodies(
     constraints: &[Constraint],
     given: &[[f64; 2]],
     dofs: usize,
-    (guess, system): (&Guess, &mut ContactSystem),
+    (guess, system, dt): (&Guess, &mut ContactSystem, f64),
     closed: &mut ClosedPairs,
 ) -> Result<Option<usize>, Cause> {
     if !is_large(constraints.len()) {
@@ -245,6 +245,7 @@ fn by_bodies(
     let posed = |(constraint, &[gap, slip]): (&Constraint, &[f64; 2])| Constraint {
         gap,
         slip,
+        scale: constraint.scale / dt,
         ..constraint.clone()
     };
     let posed: Vec<Constraint> = constraints.iter().zip(given).map(posed).collect();
@@ -272,9 +273,14 @@ fn impulses(
     dt: f64,
     mut system: ContactSystem,
 ) -> Result<ContactForces, Cause> {
-    // Gn V0 + (2/dt) max(g0, 0) and Gt V0, eq. (6.2)
-    let rates = constraints.iter();
-    let given: Vec<[f64; 2]> = (rates.map(|c| [approach(c, v0, dt), c.slip_change(v0)])).collect();
+    // Gn V0 + (2/dt) max(g0, 0) and Gt V0, eq. (6.2); 0 where what they make of an increment is nothing
+    let resolved = |c: &Constraint, rate: f64| match c.resolved(dt * rate) {
+        0.0 => 0.0,
+        _ => rate,
+    };
+    let rates =
+        |c: &Constraint| [approach(c, v0, dt), c.slip_change(v0)].map(|rate| resolved(c, rate));
+    let given: Vec<[f64; 2]> = constraints.iter().map(rates).collect();
     if given.iter().all(|[approach, _]| *approach >= 0.0) {
         return Ok(ContactForces::default());
     }
@@ -292,7 +298,7 @@ fn impulses(
         &constraints,
         &given,
         dofs,
-        (&guess, &mut system),
+        (&guess, &mut system, dt),
         &mut closed,
     )? {
         Some(pivots) => pivots,

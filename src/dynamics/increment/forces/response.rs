@@ -42,7 +42,7 @@ impl<'a> Response<'a> {
         Ok(Response { start, vectors })
     }
 
-    /// Writes g + Gn y and Dt + Gt y of every constraint, y being the response so far.
+    /// Writes g + Gn y and Dt + Gt y of every constraint, y being the response so far, 0 where that is nothing.
     pub fn gaps_and_slips(
         &mut self,
         system: &mut ContactSystem,
@@ -69,7 +69,9 @@ impl<'a> Response<'a> {
             (y[2 * node], y[2 * node + 1]) =
                 (start[2 * node] + own[0], start[2 * node + 1] + own[1]);
         }
-        let after = |c: &Constraint| [c.gap + c.gap_change(y), c.slip + c.slip_change(y)];
+        let after = |c: &Constraint| {
+            [c.gap + c.gap_change(y), c.slip + c.slip_change(y)].map(|length| c.resolved(length))
+        };
         found.clear();
         found.extend(constraints.iter().map(after));
     }
