@@ -1,6 +1,7 @@
 //! The solver as a library: problems with known answers.
 
 mod accounts;
+mod bends;
 mod blocks;
 mod collapse;
 mod compressed;
@@ -24,7 +25,9 @@ mod mean_dilatation;
 mod neo_hooke;
 mod patch;
 mod redistributed_mass;
+mod rest;
 mod rigid;
 mod scales;
 mod subincrements;
 mod thin;
+mod unbalanced;

@@ -11,8 +11,8 @@ use crate::contact::tolerances::PROJECTION_BEYOND_ENDS;
 use crate::contact::{ClosedPairs, Constraint};
 use crate::dynamics::results::{Cause, PassReport, State};
 use crate::dynamics::step::{
-    ClosedConstraints, Equilibrium, Interval, StartVelocity, StepProblem, Workspace, sum,
-    write_difference, write_sum,
+    ClosedConstraints, EffectiveStiffness, Equilibrium, Interval, StartVelocity, StepProblem,
+    Workspace, sum, write_difference, write_sum,
 };
 use crate::elements::Updated;
 
@@ -44,6 +44,26 @@ impl Solved {
     pub fn mean_acceleration(&self, dt: f64) -> Vec<f64> {
         let both = self.d.iter().zip(&self.v0p);
         both.map(|(d, v0p)| 2.0 / (dt * dt) * (d - dt * v0p))
+            .collect()
+    }
+}
+
+impl Solved {
+    /// Round-off of the forces of every part, eq. (4.10), the largest displacement increment of its body and its
+    /// largest entry of K* (force; length; force/length).
+    pub fn noise(&self, problem: &StepProblem, stiffness: &EffectiveStiffness) -> Vec<[f64; 3]> {
+        let none = vec![0.0; self.d.len()];
+        let pass = Pass {
+            equilibrium: &self.equilibrium,
+            support_force: &none,
+            contact: &self.forces,
+            displacements: [&self.end.u, &self.d, &none],
+        };
+        let scales = pass.scales(problem, stiffness, &self.forces.resultant(none.len()));
+        let diagonals = stiffness.stiffness.iter().zip(&stiffness.inertia);
+        let parts = scales.noise_and_way().zip(diagonals);
+        parts
+            .map(|([noise, way], (k, m))| [noise, way, k + m])
             .collect()
     }
 }

@@ -111,6 +111,12 @@ impl<'a> Scales<'a> {
         self
     }
 
+    /// Round-off of the residual of every part, and the largest displacement increment of its body.
+    pub fn noise_and_way(&self) -> impl Iterator<Item = [f64; 2]> {
+        let parts = self.noise.iter().zip(self.parts.of_parts());
+        parts.map(|(noise, &body)| [*noise, self.increment[body]])
+    }
+
     /// Largest relative residual and correction of a pass.
     pub fn report(&self, errors: &Errors, forces: &ContactForces) -> PassReport {
         let residuals = (0..self.force.len()).map(|part| self.residual(errors, part));
@@ -247,8 +253,8 @@ impl<'a> Scales<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Configurations, ContactTarget, PairTarget, RowForm};
-    use crate::model::Friction;
+    use crate::contact::{Configurations, ConstraintKey, ContactTarget, PairTarget, RowForm, Rows};
+    use crate::model::{Friction, Mesh, Model};
     use crate::prepare::redistribution_tests::block;
 
     const FALLING: Friction = Friction {
@@ -328,5 +334,108 @@ mod tests {
         assert!(closed(0.0, 0.1, Friction::constant(0.0), stick));
         assert!(closed(0.0, 0.1, mu, plus), "slides against its friction");
         assert!(!closed(0.0, -1e-9, mu, plus), "slides along its friction");
+    }
+
+    /// A node over ground, at dofs 0 and 1, with the gap given.
+    fn over_ground(gap: f64) -> Constraint {
+        let key = ConstraintKey {
+            slave_index: 0,
+            segment: 0,
+        };
+        Constraint {
+            key,
+            dofs: [0, 1].into_iter().collect(),
+            slave_dofs: 2,
+            force_rows: Rows::new(&[0.0, 1.0], &[1.0, 0.0]),
+            other_derivative_rows: None,
+            gap,
+            start_gap: gap,
+            slip: 0.0,
+            mu: 0.5,
+            scale: 1.0,
+            source: PairTarget {
+                slave_index: 0,
+                target: ContactTarget::face(0),
+                nodes: [0, 1, 2, 2],
+                from: None,
+                friction: Friction::constant(0.5),
+            },
+        }
+    }
+
+    /// A pair that is open, or closed in a state.
+    fn contact(gap: f64, state: Option<ContactState>) -> ContactForces {
+        let constraint = over_ground(gap);
+        let pair = state.map(|state| ClosedPair::new(&constraint, [1.0, 0.0], state));
+        let mut contact = ContactForces::default();
+        contact.closed.set(pair.into_iter());
+        contact.constraints.push(constraint);
+        contact
+    }
+
+    fn parts() -> Parts {
+        Parts::new(&Model {
+            mesh: Mesh {
+                node_labels: vec![1],
+                coordinates: vec![[0.0; 2]],
+                ..Mesh::default()
+            },
+            ..Model::default()
+        })
+    }
+
+    /// Scales of one node with forces up to 10, increments up to 0.1, and the noise 4 eps 1e3 = 9e-13 of forces,
+    /// at the tolerance 1e-9.
+    fn scales(parts: &Parts) -> Scales<'_> {
+        let lengths = Lengths {
+            displacement: smallvec![1.0],
+            increment: smallvec![0.1],
+            position: smallvec![0.0],
+        };
+        Scales::new(
+            parts,
+            smallvec![10.0],
+            (&[1e3][..], &[0.0][..]),
+            lengths,
+            1e-9,
+        )
+    }
+
+    #[test]
+    fn residual_and_correction_must_both_be_small() {
+        let parts = parts();
+        let ends = |residual: f64, correction: f64| {
+            let errors = Errors {
+                residual: smallvec![residual],
+                correction: smallvec![correction],
+            };
+            [scales(&parts), scales(&parts).strict()].map(|scales| scales.converged(&errors))
+        };
+        assert_eq!(
+            ends(0.9e-9, 0.9e-11),
+            [true, true],
+            "a tenth of the tolerance"
+        );
+        assert_eq!(ends(5e-9, 0.9e-11), [true, false]);
+        assert_eq!(ends(2e-8, 0.0), [false, false]);
+        assert_eq!(ends(0.9e-9, 5e-11), [true, false]);
+        assert_eq!(ends(0.9e-9, 2e-10), [false, false]);
+        // residuals of round-off say the same of the correction, unless corrections still fall
+        assert_eq!(ends(5e-13, 1.0), [true, false]);
+        assert_eq!(ends(f64::NAN, 0.0), [false, false]);
+    }
+
+    #[test]
+    fn a_pass_must_close_its_gaps() {
+        let parts = parts();
+        let closes =
+            |gap: f64, du: f64, state| scales(&parts).closes_gaps(&contact(gap, state), &[0.0, du]);
+        let stick = Some(ContactState::Stick);
+        for sign in [1.0, -1.0] {
+            assert!(closes(sign * 0.3, -sign * 0.3 + 0.9e-10, stick));
+            assert!(!closes(sign * 0.3, -sign * 0.3 + 1.2e-10, stick));
+            assert!(!closes(sign * 1e-3, 0.0, stick));
+        }
+        assert!(closes(0.3, 0.0, None), "an open pair");
     }
 }

@@ -76,7 +76,7 @@ impl Pass<'_> {
     }
 
     /// What residual and correction of the pass are measured against.
-    fn scales<'m>(
+    pub fn scales<'m>(
         &self,
         problem: &StepProblem<'m>,
         stiffness: &EffectiveStiffness,

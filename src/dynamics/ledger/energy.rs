@@ -25,7 +25,7 @@ pub(crate) struct Ledger {
     /// Energy that contact put in in the last increment, if it did.
     pub contact_energy: Option<f64>,
     /// Largest kinetic or strain energy or external work so far.
-    scale: f64,
+    pub scale: f64,
     /// T + W at the start of the analysis.
     start: f64,
 }

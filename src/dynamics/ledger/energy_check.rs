@@ -1,15 +1,20 @@
-//! Energy check of contact in the energy-momentum scheme: positive normal work at corners that
-//! turn concave under a sliding node. Section 7 of docs/theory.md.
+//! Energy checks of a converged increment: positive normal work of contact in the energy-momentum scheme, at
+//! corners that turn concave under a sliding node (section 7 of docs/theory.md), and the balance of the ledger
+//! (section 9).
 
 use super::energy::{CONTACT_WORK_ROUND_OFF, Ledger};
 use crate::contact::Constraint;
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{Cause, State};
-use crate::dynamics::step::StepProblem;
+use crate::dynamics::step::{EffectiveStiffness, StepProblem};
+use crate::linear::larger;
+
+/// Energy balance, as a part of the largest energy, beyond which a run says nothing any more.
+const UNBALANCED: f64 = 1e-3;
 
 /// Checks that contact puts no energy in, in a converged increment from `start`, that counts beside
-/// the largest energy that the bodies in contact have had so far.
+/// the largest energy that the bodies in contact have had up to its end.
 ///
 /// # Errors
 /// [`Cause::GainedEnergy`]: in halves of the increment a node passes a corner before or after the
@@ -25,6 +30,45 @@ pub(crate) fn check_energy_gain(
         return Ok(());
     }
     Err(Cause::GainedEnergy { part })
+}
+
+/// Checks that the energy balance counts for nothing beside the largest energy so far.
+///
+/// Round-off of positions makes forces that are out of balance by as much as they are. Of a motion with so
+/// little energy that these forces n are more than a thousandth of its own no balance is asked,
+///
+/// ```text
+/// |balance| <= 1e-3 E,   or   E <= max n²/(1e-3² (K_ii + (2/dt²) M_ii))      eq. (9.13)
+/// ```
+///
+/// E the largest energy so far, n, K_ii and M_ii those of eq. (4.10).
+///
+/// # Errors
+/// [`Cause::Unbalanced`].
+pub(crate) fn check_balance(
+    problem: &StepProblem,
+    stiffness: &EffectiveStiffness,
+    ledger: &Ledger,
+    solved: &Solved,
+) -> Result<(), Cause> {
+    let (balance, energy) = (ledger.energy.balance.abs(), ledger.scale);
+    if balance <= UNBALANCED * energy {
+        return Ok(());
+    }
+    let noise = solved.noise(problem, stiffness);
+    // max n²/(1e-3² (K_ii + (2/dt²) M_ii)), eq. (9.13)
+    let of_part = |&[noise, _, diagonal]: &[f64; 3]| match noise {
+        0.0 => 0.0,
+        _ => (noise / UNBALANCED).powi(2) / diagonal,
+    };
+    if energy <= noise.iter().map(of_part).fold(0.0, larger) {
+        return Ok(());
+    }
+    let is_round_off = |&[noise, way, _]: &[f64; 3]| noise * way > UNBALANCED * energy;
+    Err(Cause::Unbalanced {
+        part: balance / energy,
+        is_round_off: noise.iter().any(is_round_off),
+    })
 }
 
 /// Energy that contact puts in because nodes slide on to segments that they were behind: the sum over

@@ -14,5 +14,5 @@ mod touches;
 pub(crate) use accounts::Accounts;
 pub(crate) use contact_violation::contact_violation;
 pub(crate) use energy::Ledger;
-pub(crate) use energy_check::check_energy_gain;
+pub(crate) use energy_check::{check_balance, check_energy_gain};
 pub(crate) use nodal_results::{landings, motion};

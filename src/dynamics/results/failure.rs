@@ -50,6 +50,14 @@ pub enum Cause {
         /// The energy put in, relative to the largest energy.
         part: f64,
     },
+    /// The energy balance is off: the residual that the passes have left does work that counts.
+    Unbalanced {
+        /// The balance relative to the largest energy.
+        part: f64,
+        /// Whether the round-off of positions makes forces whose work in an increment counts by itself: in halves
+        /// it is not less.
+        is_round_off: bool,
+    },
     /// A complementarity problem was not solved.
     Lcp(Box<FailedLcp>),
     /// A quantity is not finite.
@@ -148,6 +156,12 @@ impl fmt::Display for Cause {
             Cause::GainedEnergy { part } => {
                 write!(f, "contact would put energy in ({part:.1e} of the largest)")
             }
+            Cause::Unbalanced { part, .. } => {
+                write!(
+                    f,
+                    "the energy balance would be off by {part:.1e} of the largest energy"
+                )
+            }
             Cause::LinearSolver(error) => write!(f, "the linear solver failed: {error}"),
             Cause::Diverged => write!(f, "the passes diverged"),
             Cause::Lcp(failed) => match &failed.error {
@@ -168,6 +182,17 @@ impl From<LinearError> for Cause {
 }
 
 impl Cause {
+    /// Whether the increment would fail in halves as well.
+    pub(crate) fn stays(&self) -> bool {
+        matches!(
+            self,
+            Cause::Unbalanced {
+                is_round_off: true,
+                ..
+            }
+        )
+    }
+
     /// Whether the only cause is a number that has become too large.
     pub(crate) fn is_overflow(&self) -> bool {
         match self {

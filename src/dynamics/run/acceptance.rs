@@ -6,7 +6,7 @@ use crate::contact::{ClosedPairs, Penetration};
 use crate::dynamics::events::{FailedSubincrement, Subincrement};
 use crate::dynamics::increment::{Failed, Returned, Solved};
 use crate::dynamics::landing::{return_landings, return_release};
-use crate::dynamics::ledger::{Ledger, check_energy_gain};
+use crate::dynamics::ledger::{Ledger, check_balance, check_energy_gain};
 use crate::dynamics::release::{ReleaseStart, bring_to_rest};
 use crate::dynamics::results::{Cause, Failure, State};
 use crate::dynamics::step::{Interval, StepPlace, StepProblem, Workspace};
@@ -71,7 +71,7 @@ impl Accepted {
 
 /// Checks a converged increment, brings released nodes to rest, gives back what landings and releases have
 /// taken and enters it in the ledger: no element may be turned inside out, no node may have gone through a surface, the
-/// energies must be finite, and contact must put in none where the increment may be halved for that.
+/// energies must be finite and in balance, and contact must put in none where the increment may be halved for that.
 fn checked(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -95,8 +95,9 @@ fn checked(
     let ledger = before.ledger.clone();
     let ledger = ledger.with(problem, before.state, (solved, &returned), dt)?;
     if may_be_halved {
-        check_energy_gain(problem, before.state, before.ledger, solved)?;
+        check_energy_gain(problem, before.state, &ledger, solved)?;
     }
+    check_balance(problem, &workspace.stiffness, &ledger, solved)?;
     Ok((returned, ledger))
 }
 

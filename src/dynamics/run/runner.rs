@@ -203,10 +203,10 @@ impl<'m, 'o> Runner<'m, 'o> {
     }
 
     /// Reports a failed attempt that is to be repeated with half its length; returns it when
-    /// it may not be halved again.
+    /// halves would fail too, or it may not be halved again.
     fn cut_back(&mut self, failure: Failure, dt_min: f64) -> Result<Option<Failure>, RunError> {
         let next_dt = failure.dt / 2.0;
-        if failure.halvings == HALVINGS || next_dt < dt_min {
+        if failure.cause.stays() || failure.halvings == HALVINGS || next_dt < dt_min {
             return Ok(Some(failure));
         }
         self.summary.cutbacks += 1;

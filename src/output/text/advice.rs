@@ -90,7 +90,9 @@ pub(super) fn advice(failure: &Failure, model: &Model) -> Option<String> {
 
 /// Whether only the deck's least increment kept a stopped run from halving its increment again.
 fn has_halvings_left(failure: &Failure, step: &Step) -> bool {
-    failure.halvings < NO_MORE_HALVINGS && failure.dt / 2.0 < step.increments.dt_min
+    !failure.cause.stays()
+        && failure.halvings < NO_MORE_HALVINGS
+        && failure.dt / 2.0 < step.increments.dt_min
 }
 
 fn alternation_advice(alternations: &[Alternation]) -> Option<&'static str> {
@@ -123,11 +125,22 @@ fn cause_advice(cause: &Cause, model: &Model) -> Option<&'static str> {
             prescribed: false, ..
         } => "take smaller increments, or a finer mesh where the node went in",
         Cause::GainedEnergy { .. } => "take smaller increments",
+        Cause::Unbalanced { is_round_off, .. } => match is_round_off {
+            true => {
+                "a body is so stiff that the round-off of its positions makes forces like those on it: \
+                 see whether stiffness, loads, lengths and times are in consistent units"
+            }
+            false => "lower the TOLERANCE of *STICKSLIP, or take smaller increments",
+        },
         Cause::Lcp(failed) => match failed.error {
             LcpError::Ray { .. } => {
                 "let supports and rigid surfaces not drive the bodies into each other there"
             }
-            _ => "take smaller increments, or a smaller friction coefficient",
+            LcpError::NotFinite => "see whether loads, materials and times are in consistent units",
+            _ if failed.problem.mu.iter().any(|mu| *mu > 0.0) => {
+                "take smaller increments, or a smaller friction coefficient"
+            }
+            _ => "take smaller increments",
         },
         Cause::NotFinite { .. } => "see whether loads, materials and times are in consistent units",
         Cause::Inverted { .. } | Cause::Crossed { .. } | Cause::LinearSolver(_) => return None,
@@ -143,7 +156,10 @@ fn is_for_small_strains_at(node: usize, model: &Model) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dynamics::FailedLcp;
+    use crate::lcp::FrictionalLcp;
     use crate::model::{Increments, Mesh, Procedure, Settings};
+    use nalgebra::DMatrix;
 
     /// Nodes 10, 20, ... and a step of at least 0.01 an increment, 25 passes at most.
     fn model() -> Model {
@@ -261,6 +277,42 @@ mod tests {
         let [halved, least] = [0.02, 0.015].map(|dt| advice(dt).expect("advice"));
         assert!(!halved.contains("least increment"), "{halved}");
         assert!(least.starts_with("take a smaller load") && least.contains("least increment"));
+    }
+
+    #[test]
+    fn friction_is_advised_on_where_there_is_some() {
+        let of = |mu: f64, error: LcpError| {
+            let problem = FrictionalLcp {
+                q: DMatrix::identity(2, 2),
+                gap: vec![-1.0].into(),
+                slip: vec![0.0].into(),
+                mu: vec![mu].into(),
+            };
+            let pairs = vec![[0, 1, 2]];
+            let failed = FailedLcp {
+                error,
+                problem,
+                pairs,
+            };
+            let text = advice(&failure(Cause::Lcp(Box::new(failed)), None, 0.5), &model());
+            text.expect("advice").contains("friction")
+        };
+        let unsolved = || LcpError::PivotLimit { pivots: 9 };
+        assert!(of(0.3, unsolved()) && !of(0.0, unsolved()));
+        assert!(!of(0.3, LcpError::NotFinite));
+    }
+
+    #[test]
+    fn what_puts_a_balance_off_is_told() {
+        let text = |is_round_off| {
+            let cause = Cause::Unbalanced {
+                part: 0.1,
+                is_round_off,
+            };
+            advice(&failure(cause, None, 0.015), &model()).expect("advice")
+        };
+        assert!(text(true).contains("consistent units") && !text(true).contains("halved"));
+        assert!(text(false).contains("TOLERANCE") && text(false).contains("halved"));
     }
 
     #[test]
