@@ -20,4 +20,4 @@ pub use geometry::{
 };
 pub use search::{Candidate, ListedSlave, Search, Territory, all_segments};
 pub use targets::{ContactTarget, Corner, PairTarget, SlaveNode, common_normal, find_targets};
-pub use tunnelling::{Penetration, find_penetration};
+pub use tunnelling::{Penetration, crossed_edges, find_penetration};

@@ -262,6 +262,7 @@ const PER_INCREMENT: [&str; 76] = [
     "/history/solver/overlap",
     "/history/solver/gap_violation",
     "/history/solver/slip_violation",
+    "/history/solver/penetration",
     "/history/solver/converged",
 ];
 

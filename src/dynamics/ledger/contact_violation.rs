@@ -1,15 +1,18 @@
 //! How far the pairs at the end of a converged increment are from the contact law. Section 5 of
 //! docs/theory.md.
 
-use crate::contact::Constraint;
+use crate::contact::{Constraint, Search, crossed_edges};
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{ContactViolation, State};
 use crate::dynamics::step::StepProblem;
 use crate::lcp::ContactState;
+use crate::linear::larger;
 
-/// The largest violations at the end of an increment that began with `start`.
+/// The largest violations at the end of an increment that began with `start`, with lists of candidates that
+/// hold there.
 pub(crate) fn contact_violation(
     problem: &StepProblem,
+    search: &Search,
     start: &State,
     solved: &Solved,
 ) -> ContactViolation {
@@ -17,9 +20,13 @@ pub(crate) fn contact_violation(
     let of_pair =
         |constraint: &Constraint, state| violation_of_pair(&constraint.relinearized(&at), state);
     let pairs = solved.forces.iter();
-    pairs
+    let largest = pairs
         .map(|(constraint, pair)| of_pair(constraint, pair.map(|pair| pair.state)))
-        .fold(ContactViolation::default(), ContactViolation::larger)
+        .fold(ContactViolation::default(), ContactViolation::larger);
+    ContactViolation {
+        penetration: larger(largest.overlap, crossed_edges(search, &solved.end.u)),
+        ..largest
+    }
 }
 
 /// An open pair must not overlap (`state` none), a closed one has no gap, one that sticks no slip.
@@ -40,6 +47,7 @@ fn violation_of_pair(constraint: &Constraint, state: Option<ContactState>) -> Co
         } else {
             0.0
         },
+        ..ContactViolation::default()
     }
 }
 

@@ -27,6 +27,8 @@ pub struct ContactViolation {
     pub gap: f64,
     /// Largest slip of a sticking pair in the increment, in absolute value.
     pub slip: f64,
+    /// Largest penetration: of an open pair, or of edges that cross, in lengths of the edge.
+    pub penetration: f64,
 }
 
 /// Force of one contact on a body.

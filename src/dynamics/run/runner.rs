@@ -233,7 +233,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         } = subincrement;
         let accounted = (self.accounts).enter(problem, (&solved, &returned), interval, &ledger);
         let solver = SolverCounts {
-            violation: contact_violation(problem, &self.state, &solved),
+            violation: contact_violation(problem, &workspace.search, &self.state, &solved),
             converged: true,
             ..workspace.meter.counts
         };

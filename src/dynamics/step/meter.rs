@@ -89,6 +89,7 @@ impl ContactViolation {
             overlap: larger(self.overlap, other.overlap),
             gap: larger(self.gap, other.gap),
             slip: larger(self.slip, other.slip),
+            penetration: larger(self.penetration, other.penetration),
         }
     }
 }
@@ -122,6 +123,7 @@ mod tests {
                 overlap: 10.0 / k as f64,
                 gap: 11.0 * k as f64,
                 slip: 12.0 * k as f64,
+                penetration: 13.0 * k as f64,
             },
             converged: true,
         };

@@ -348,7 +348,7 @@ const COUNTS: [Scalar<SolverCounts, i64>; 8] = [
     ),
 ];
 
-const ERRORS: [Scalar<SolverCounts, f64>; 4] = [
+const ERRORS: [Scalar<SolverCounts, f64>; 5] = [
     scalar(
         "residual",
         "relative force residual of the last pass",
@@ -372,6 +372,12 @@ const ERRORS: [Scalar<SolverCounts, f64>; 4] = [
         "largest slip of a sticking pair in the increment, in lengths of its segment",
         "1",
         |s| s.violation.slip,
+    ),
+    scalar(
+        "penetration",
+        "largest penetration at the end, of an open pair or of edges that cross, in lengths of the edge",
+        "1",
+        |s| s.violation.penetration,
     ),
 ];
 

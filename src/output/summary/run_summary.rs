@@ -377,6 +377,10 @@ fn read_violation(history: &Group) -> hdf5::Result<Option<ContactViolation>> {
         overlap: most("overlap")?,
         gap: most("gap_violation")?,
         slip: most("slip_violation")?,
+        penetration: match solver.link_exists("penetration") {
+            true => most("penetration")?,
+            false => f64::NAN,
+        },
     }))
 }
 

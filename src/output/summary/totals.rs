@@ -32,15 +32,28 @@ pub(crate) fn timing_lines(summary: &RunSummary, output: f64, total: f64) -> Vec
     wrap(done, &pieces)
 }
 
+/// Penetration, in lengths of an edge, that is shown: less is round-off of positions.
+const SHOWN_PENETRATION: f64 = 1e-9;
+
 /// The largest errors of the increments: relative force residual and, with contacts, how far their pairs
 /// are from the contact law.
 pub(crate) fn error_line(residual: f64, violation: Option<ContactViolation>) -> String {
     let mut line = format!("error    residual {}", scientific(residual, 1));
-    if let Some(ContactViolation { overlap, gap, slip }) = violation {
+    if let Some(violation) = violation {
+        let ContactViolation {
+            overlap,
+            gap,
+            slip,
+            penetration,
+        } = violation;
+        let deepest = scientific(penetration, 1);
         let [overlap, gap, slip] = [overlap, gap, slip].map(|part| scientific(part, 0));
         line.push_str(&format!(
             "; overlap {overlap}, gap {gap}, slip {slip} of a segment"
         ));
+        if penetration > SHOWN_PENETRATION {
+            line.push_str(&format!("; edges cross by {deepest} of an edge"));
+        }
     }
     line
 }
@@ -71,9 +84,20 @@ mod tests {
             overlap: 0.0,
             gap: 3e-13,
             slip: f64::NAN,
+            penetration: 1e-10,
         };
         let line = error_line(8.1e-12, Some(violation));
         let expected = "error    residual 8.1e-12; overlap 0e+00, gap 3e-13, slip nan of a segment";
         assert_eq!(line, expected);
+        let penetration = 3.71e-5;
+        let crossed = ContactViolation {
+            penetration,
+            ..violation
+        };
+        let line = error_line(8.1e-12, Some(crossed));
+        assert_eq!(
+            line,
+            format!("{expected}; edges cross by 3.7e-5 of an edge")
+        );
     }
 }
