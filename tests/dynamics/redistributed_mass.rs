@@ -5,8 +5,8 @@ use crate::invariants::drift;
 use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::dynamics::IncrementReport;
 use stickslip::model::{
-    Amplitude, ContactMass, Curve, Equation, ImpactTime, LandingRule, Model, Settings, Support,
-    SupportMotion, TimeBase,
+    Amplitude, ContactMass, Curve, Equation, ImpactTime, LandingRule, Load, Model, PointLoad,
+    Settings, Support, SupportMotion, TimeBase, Variation,
 };
 use stickslip::prepare::PreparedModel;
 use stickslip::{deck, reader};
@@ -180,6 +180,39 @@ fn a_block_falls_and_lands_on_a_moving_table() {
             assert!((report.state.v[2 * node + 1] - 0.1).abs() < 1e-14);
         }
     }
+    assert_sound(&keep);
+}
+
+/// Forces at nodes without mass, which press them on a table and then pull, do work as these nodes come to
+/// rest after they are released, eq. (6.11): without it the balance would not close.
+#[test]
+fn loads_do_work_on_the_way_to_rest() {
+    let mut model = model(1e3, 0.3, 1.0);
+    let table = add_block(&mut model, [-1.0, -1.0], [4.0, 1.0], (8, 4), 0.0);
+    let block = add_block(&mut model, [0.0, 0.0], [2.0, 1.0], (6, 5), 0.0);
+    add_contact(&mut model, block.faces(0), table.faces(2), 0.3);
+    model.amplitudes = vec![Amplitude {
+        name: "PULL".into(),
+        time: TimeBase::Step,
+        curve: Curve::Linear(vec![(0.0, -1.0), (0.05, -1.0), (0.1, 1.0), (0.3, 1.0)]),
+    }];
+    let held = table.nodes().flat_map(|n| [fixed(2 * n), fixed(2 * n + 1)]);
+    let mut pull = step(0.005, 60, redistributed(), held.collect());
+    let load = |i: usize| Load {
+        at: PointLoad {
+            dof: 2 * block.node(i, 0) + 1,
+        },
+        magnitude: 2.0 + i as f64,
+        variation: Variation::Amplitude(0),
+    };
+    pull.point_loads = (0..=6).map(load).collect();
+    model.steps = vec![pull];
+    let massless = massless(&model);
+    assert!((0..=6).all(|i| massless.contains(&block.node(i, 0))));
+    let (keep, _) = run_to_end(&model);
+    let last = keep.reports.last().expect("reports");
+    assert!(last.energy.release_loss > 1e-6 * last.energy.external_work);
+    assert_eq!(last.contacts[0].closed, 0);
     assert_sound(&keep);
 }
 
