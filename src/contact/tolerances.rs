@@ -114,5 +114,6 @@ pub(crate) const ADJUSTMENT_REACH: f64 = 1.0;
 
 /// Gap below which a node has met its target at an impact; it joins with this accuracy.
 pub(crate) const IMPACT_GAP: f64 = 1e-12;
-/// Cosine of the turn from a touched segment to another that a node slides on to without an impact.
-pub(crate) const FACING_ALIKE_COSINE: f64 = 0.9999;
+/// Cosine of the turn from a touched segment to another that a node slides on to without an impact: that of
+/// [`GENTLE_SINE`], up to which one of the two is its only target.
+pub(crate) const FACING_ALIKE_COSINE: f64 = 0.9998;

@@ -92,7 +92,12 @@ fn oblique_impact(friction: f64, settings: Settings) -> Model {
 #[test]
 fn impacts_keep_both_momenta_and_stop_no_node() {
     let (increment, event) = (ImpactTime::Increment, ImpactTime::Event);
-    for (impact_time, friction) in [(increment, 0.0), (increment, 0.3), (event, 0.0)] {
+    for (impact_time, friction) in [
+        (increment, 0.0),
+        (increment, 0.3),
+        (event, 0.0),
+        (event, 0.3),
+    ] {
         let settings = Settings {
             impact_time,
             ..redistributed()
@@ -194,10 +199,10 @@ fn loads_do_work_on_the_way_to_rest() {
     model.amplitudes = vec![Amplitude {
         name: "PULL".into(),
         time: TimeBase::Step,
-        curve: Curve::Linear(vec![(0.0, -1.0), (0.05, -1.0), (0.1, 1.0), (0.3, 1.0)]),
+        curve: Curve::Linear(vec![(0.0, -1.0), (0.05, -1.0), (0.1, 1.0)]),
     }];
     let held = table.nodes().flat_map(|n| [fixed(2 * n), fixed(2 * n + 1)]);
-    let mut pull = step(0.005, 60, redistributed(), held.collect());
+    let mut pull = step(0.005, 20, redistributed(), held.collect());
     let load = |i: usize| Load {
         at: PointLoad {
             dof: 2 * block.node(i, 0) + 1,
@@ -211,7 +216,8 @@ fn loads_do_work_on_the_way_to_rest() {
     assert!((0..=6).all(|i| massless.contains(&block.node(i, 0))));
     let (keep, _) = run_to_end(&model);
     let last = keep.reports.last().expect("reports");
-    assert!(last.energy.release_loss > 1e-6 * last.energy.external_work);
+    // the work is more than what the rest takes
+    assert!(last.energy.release_loss > 1e-7 * last.energy.external_work);
     assert_eq!(last.contacts[0].closed, 0);
     assert_sound(&keep);
 }

@@ -220,6 +220,12 @@ impl Constraint {
         self.nodal_forces(force).take(self.slave_dofs / 2)
     }
 
+    /// Whether it keeps a node out of a body: its slave node, or the corner that this meets.
+    pub fn keeps_out(&self, node: usize) -> bool {
+        let [s, _, corner, _] = self.source.nodes;
+        node == s || (self.source.target.corner.is_some() && node == corner)
+    }
+
     fn product(&self, row: &[f64], v: impl Fn(usize) -> f64) -> f64 {
         row.iter().zip(&self.dofs).map(|(b, &dof)| b * v(dof)).sum()
     }

@@ -16,6 +16,10 @@ pub struct Penetration {
     pub slave: usize,
     /// Ends of the segment through which it entered.
     pub segment: [usize; 2],
+    /// Place of the slave node among all slave nodes of all contacts.
+    pub slave_index: usize,
+    /// Number of the segment in its contact.
+    pub number: usize,
 }
 
 /// The first slave node that penetrates a body on its straight path from the displacements `u0` to
@@ -53,6 +57,8 @@ pub fn find_penetration(
             return Some(Penetration {
                 slave: path.slave,
                 segment: path.contact.segments[segment],
+                slave_index: path.slave_index,
+                number: segment,
             });
         }
     }

@@ -194,6 +194,8 @@ fn a_hollow_corner_holds_a_node_with_both_sides() {
     let through = Penetration {
         slave: 0,
         segment: [2, 3],
+        slave_index: 0,
+        number: 1,
     };
     assert_eq!(entry(0.1), None);
     assert_eq!(entry(0.21), Some(through));

@@ -1,10 +1,15 @@
 //! Event-driven integration of impacts: subincrements [t, t + tau] that end at the next impact,
 //! its time being the solution of T(tau) = tau. Section 6 of docs/theory.md, Impacts as events.
 
-use super::impact_time::ImpactTime;
-use crate::contact::tolerances::IMPACT_GAP;
-use crate::contact::{ClosedPairs, Crossing, Direction, ListedSlave, Projection, crossings};
-use crate::dynamics::increment::{ActiveConstraints, Attempt, ConstraintSet, Failed, Solved};
+use super::impact_time::{ImpactTime, Trial};
+use crate::contact::tolerances::{CLOSED_GAP, CROSSING_BEYOND_ENDS, IMPACT_GAP};
+use crate::contact::{
+    ClosedPairs, Constraint, Crossing, Direction, Penetration, Projection, crossings,
+    line_crossings,
+};
+use crate::dynamics::increment::{
+    ActiveConstraints, Attempt, ConstraintSet, Failed, NodeAtSegment, Path, Solved,
+};
 use crate::dynamics::ledger::motion;
 use crate::dynamics::results::State;
 use crate::dynamics::step::{Interval, StepProblem, TimePoint, Workspace};
@@ -14,8 +19,6 @@ use crate::dynamics::step::{Interval, StepProblem, TimePoint, Workspace};
 const IMPACT_GROUPING_TIME: f64 = 1e-3;
 /// Accuracy of the time of an impact, in nominal increments.
 const ACCURACY: f64 = 1e-10;
-/// How long the motion of a subincrement is followed to find the next impact, in its lengths.
-const MOTION_HORIZON: f64 = 2.0;
 /// Attempts to find the time of an impact.
 const TRIALS: usize = 12;
 
@@ -44,19 +47,16 @@ pub(crate) struct Subincrements<'a, 'm> {
 }
 
 /// A node goes into a body.
-#[derive(Clone, Copy)]
-struct PredictedImpact {
-    /// Time since the start of the subincrement.
+#[derive(Debug, Clone, Copy)]
+struct Entry {
+    pair: NodeAtSegment,
+    /// Time since the start of the subincrement, by the motion between its ends.
     time: f64,
-    slave_index: usize,
-    segment: usize,
-    nodes: [usize; 3],
 }
 
 /// Second-order motion of all nodes from the start of a subincrement.
 struct FreeMotion<'a> {
-    v: &'a [f64],
-    a: &'a [f64],
+    path: &'a Path,
     /// End of the subincrement, where this is its own converged motion.
     end: f64,
     /// How long it is followed.
@@ -66,131 +66,150 @@ struct FreeMotion<'a> {
 impl FreeMotion<'_> {
     /// U0 + t V + t²/2 A at the end.
     fn displacement(&self, u0: &[f64]) -> Vec<f64> {
-        let t = self.duration;
-        let at = |i: usize| u0[i] + t * (self.v[i] + t / 2.0 * self.a[i]);
-        (0..u0.len()).map(at).collect()
+        let way = self.path.displacement(self.duration);
+        u0.iter().zip(&way).map(|(u, d)| u + d).collect()
     }
 
-    /// Whether the displacements of the nodes are large enough for them to meet.
+    /// Whether the nodes move far enough relative to each other to meet: a node that meets a segment at xi
+    /// was at most (1 - xi) and xi times its ways relative to the ends a and b away from there.
     fn may_meet(&self, start: &Projection, [s, a, b]: [usize; 3]) -> bool {
-        let displacement = |node: usize| {
-            let size = |x: &[f64]| x[2 * node].hypot(x[2 * node + 1]);
-            self.duration * (size(self.v) + self.duration / 2.0 * size(self.a))
+        let Path {
+            v, a: acceleration, ..
+        } = self.path;
+        let way = |end: usize| {
+            let size = |x: &[f64]| (x[2 * s] - x[2 * end]).hypot(x[2 * s + 1] - x[2 * end + 1]);
+            self.duration * (size(v) + self.duration / 2.0 * size(acceleration))
         };
-        start.gap.abs() <= displacement(s) + displacement(a).max(displacement(b))
+        let round_off = CROSSING_BEYOND_ENDS * start.length;
+        let beyond = (start.xi - start.xi.clamp(0.0, 1.0)) * start.length;
+        beyond.hypot(start.gap) <= way(a).max(way(b)) + round_off
     }
 
-    /// The impact of a slave node on a segment, unless one is kept out of the other as a constraint.
-    fn impact(
-        &self,
-        problem: &StepProblem,
-        u0: &[f64],
-        active: &ActiveConstraints,
-        listed: &ListedSlave,
-        segment: usize,
-    ) -> Option<PredictedImpact> {
-        let (slave_index, s) = (listed.slave_index, listed.node());
-        let [a, b] = listed.surfaces.segments[segment];
-        let nodes = [s, a, b];
-        let p = problem.place(u0, nodes);
-        let is_free = self.may_meet(&p, nodes)
-            && s != a
-            && s != b
-            && problem.unknowns.moves(&nodes)
-            && !active.holds(slave_index, &p);
-        if !is_free {
-            return None;
-        }
-        let time = self.entry(problem, u0, nodes)?;
-        Some(PredictedImpact {
-            time,
-            slave_index,
-            segment,
-            nodes,
-        })
+    /// When a slave node goes in through a segment.
+    fn entry(&self, problem: &StepProblem, u0: &[f64], pair: NodeAtSegment) -> Option<f64> {
+        let Path { v, a, .. } = self.path;
+        let motions = pair.nodes.map(|node| motion(problem, u0, v, a, node));
+        self.first_to_stay(&crossings(&motions, self.duration))
     }
 
-    /// When the node s goes in through the segment from a to b. One that comes out again before the
-    /// end of the subincrement has not gone in: between its ends its motion is an estimate.
-    fn entry(&self, problem: &StepProblem, u0: &[f64], nodes: [usize; 3]) -> Option<f64> {
-        let motions = nodes.map(|node| motion(problem, u0, self.v, self.a, node));
-        let found = crossings(&motions, self.duration);
+    /// When the slave node of a constraint that did not count, and that ends behind its segment, has gone
+    /// behind the line of the segment.
+    fn overlap(&self, problem: &StepProblem, u0: &[f64], pair: NodeAtSegment) -> Option<f64> {
+        let Path { v, a, .. } = self.path;
+        let motions = pair.nodes.map(|node| motion(problem, u0, v, a, node));
+        self.first_to_stay(&line_crossings(&motions, self.end))
+    }
+
+    /// The first entry. A node that comes out again before the end of the subincrement has not gone in:
+    /// between its ends its motion is an estimate.
+    fn first_to_stay(&self, found: &[Crossing]) -> Option<f64> {
         let stays = |&(k, crossing): &(usize, &Crossing)| {
             let is_out = |c: &Crossing| c.direction == Direction::Leaving && c.time < self.end;
             crossing.direction == Direction::Entering && !found[k..].iter().any(is_out)
         };
-        found
-            .iter()
-            .enumerate()
-            .find(stays)
-            .map(|(_, crossing)| crossing.time)
+        let mut numbered = found.iter().enumerate();
+        numbered.find(stays).map(|(_, crossing)| crossing.time)
     }
 }
 
 impl<'m> Subincrements<'_, 'm> {
     /// The subincrement up to the earliest impact of a pair that does not touch at the start.
     ///
-    /// Its length tau is predicted from the second-order motion of the start (paper eq. 50), with
-    /// the exact condition of meeting. The motion of the converged subincrement,
+    /// All that is left of the increment is tried first. The pairs that stay out and have gone in at the end of
+    /// the trial of length tau tell of an impact; the subincrement ends at the first of them,
     ///
     /// ```text
-    /// U(t) = U0 + t V0+ + t²/2 A,   A = (2/tau²) (d - tau V0+),   eq. (6.3)
+    /// g(tau) = 0    eq. (6.4)
     /// ```
     ///
-    /// then tells when the pairs that stay out meet: at T(tau). The subincrement ends at the impact when
-    /// T(tau) = tau, which secants find; without elastic forces T does not depend on tau.
-    ///
-    /// `last` is the length of the last subincrement.
-    pub fn next(&mut self, last: f64) -> Result<Subincrement, FailedSubincrement> {
+    /// g being the gap at the end of a subincrement of the length tau. Where the whole does not converge, the
+    /// second-order motion of the start (paper eq. 50) predicts tau.
+    pub fn next(&mut self) -> Result<Subincrement, FailedSubincrement> {
         let (rest, group) = (self.rest.dt, IMPACT_GROUPING_TIME * self.nominal);
         let search = &mut self.workspace.search;
         search.start(&self.start.v, rest);
         search.cover(&self.start.u);
         let mut active = ActiveConstraints::new(self.problem, search, &self.start.u, self.contact);
-        let mut tau = self.predicted(&mut active, last);
-        let mut root = ImpactTime::new(rest);
+        let mut impact = ImpactTime::new(&self.start.u);
+        let (mut tau, mut guess, mut before) = (rest, None, None);
+        let mut entries = Vec::new();
         for _ in 0..TRIALS {
-            let solved = self.attempt(tau, ConstraintSet::Active(&active))?;
-            let a = solved.mean_acceleration(tau);
-            let motion = FreeMotion {
-                v: &solved.v0p,
-                a: &a,
-                end: tau,
-                duration: rest.min(MOTION_HORIZON * tau),
-            };
-            let entry = self.first_entry(&active, motion);
-            let met = match entry {
-                None => rest,
-                Some(entry) if entry.time < group => {
-                    self.join_at_start(&mut active, entry);
-                    root = ImpactTime::new(rest);
+            let solved = match self.attempt(tau, ConstraintSet::Active(&active), guess.as_ref()) {
+                Ok(solved) => solved,
+                Err(failed) if tau == rest => {
+                    tau = self.predicted(&mut active);
+                    if tau == rest {
+                        return Err(failed);
+                    }
                     continue;
                 }
-                Some(entry) if entry.time > rest - group => {
-                    if tau == rest {
-                        // it lands within the subincrement, at its very end
-                        active.join(entry.slave_index);
-                        root = ImpactTime::new(rest);
-                        continue;
-                    }
-                    rest
-                }
-                Some(entry) => {
-                    let gap = self.problem.place(&solved.end.u, entry.nodes);
-                    if gap.gap.abs() <= IMPACT_GAP * gap.length {
-                        tau
-                    } else {
-                        entry.time
-                    }
-                }
+                Err(failed) => match before {
+                    Some((tau, solved)) if tau >= group => return Ok(self.converged(tau, solved)),
+                    _ => return Err(failed),
+                },
             };
-            // T(tau) = tau, eq. (6.4)
-            if (met - tau).abs() <= ACCURACY * self.nominal {
+            let path = solved.path(tau);
+            let found = self.entries(&active, &path, tau, Some(&solved));
+            let is_before = found.is_empty();
+            if !is_before {
+                entries = found;
+            } else if entries.is_empty() {
                 return Ok(self.converged(tau, solved));
             }
-            tau = root.next(tau, met, solved);
+            let trial = Trial {
+                length: tau,
+                u: solved.end.u.clone(),
+            };
+            impact.take_in(trial, is_before);
+            // a node that has just bounced off has hardly a gap at the start: there its motion tells
+            let expected = |entry: &Entry| {
+                let gap = |u: &[f64]| self.problem.place(u, entry.pair.nodes).gap;
+                let root = impact.root(gap).filter(|root| *root >= group);
+                root.unwrap_or(entry.time)
+            };
+            let first = entries
+                .iter()
+                .min_by(|e, f| expected(e).total_cmp(&expected(f)));
+            let root = first.map(expected);
+            let lands = |is_time: &dyn Fn(f64) -> bool| {
+                entries
+                    .iter()
+                    .filter(|e| is_time(expected(e)))
+                    .copied()
+                    .collect::<Vec<_>>()
+            };
+            let at_start = lands(&|time| time < group);
+            let at_end = lands(&|time| time > rest - group);
+            if !at_start.is_empty() || root.is_none_or(|root| root > rest - group) {
+                // they join, the latter to land at the very end of all that is left
+                at_start
+                    .iter()
+                    .for_each(|entry| self.join_at_start(&mut active, *entry));
+                if at_start.is_empty() {
+                    at_end
+                        .iter()
+                        .for_each(|entry| active.join(entry.pair.slave_index));
+                }
+                (impact, before, guess) = (ImpactTime::new(&self.start.u), None, Some(path));
+                tau = rest;
+                entries.clear();
+                continue;
+            }
+            let is_met = |entry: &Entry| {
+                let place = self.problem.place(&solved.end.u, entry.pair.nodes);
+                place.gap.abs() <= IMPACT_GAP * place.length
+            };
+            let is_near = |root: f64| (root - tau).abs() <= ACCURACY * self.nominal;
+            if first.is_some_and(is_met) || root.is_some_and(is_near) {
+                return Ok(self.converged(tau, solved));
+            }
+            if is_before {
+                before = Some((tau, solved));
+            }
+            tau = impact.next(tau, root);
+            guess = Some(path);
         }
-        match root.before {
+        match before {
             // not as far as the impact
             Some((tau, solved)) if tau >= group => Ok(self.converged(tau, solved)),
             _ => self.rest(),
@@ -199,61 +218,145 @@ impl<'m> Subincrements<'_, 'm> {
 
     /// All that is left of the increment; nodes land within it.
     pub fn rest(&mut self) -> Result<Subincrement, FailedSubincrement> {
-        let solved = self.attempt(self.rest.dt, ConstraintSet::All)?;
+        let solved = self.attempt(self.rest.dt, ConstraintSet::All, None)?;
         Ok(self.converged(self.rest.dt, solved))
     }
 
     /// Length of the subincrement by the motion of the start.
-    fn predicted(&mut self, active: &mut ActiveConstraints, last: f64) -> f64 {
+    fn predicted(&mut self, active: &mut ActiveConstraints) -> f64 {
         let (rest, group) = (self.rest.dt, IMPACT_GROUPING_TIME * self.nominal);
-        let start = self.start;
+        let path = Path {
+            v: self.start.v.clone(),
+            a: self.start.a.clone(),
+            closed: ClosedPairs::default(),
+        };
         loop {
-            let motion = FreeMotion {
-                v: &start.v,
-                a: &start.a,
-                end: 0.0,
-                duration: rest.min(MOTION_HORIZON * last),
-            };
-            match self.first_entry(active, motion) {
-                Some(entry) if entry.time < group => self.join_at_start(active, entry),
+            let entries = self.entries(active, &path, rest, None);
+            let first = entries.iter().min_by(|e, f| e.time.total_cmp(&f.time));
+            match first {
+                Some(entry) if entry.time < group => self.join_at_start(active, *entry),
                 Some(entry) if entry.time <= rest - group => return entry.time,
                 _ => return rest,
             }
         }
     }
 
-    fn join_at_start(&self, active: &mut ActiveConstraints, entry: PredictedImpact) {
-        let p = self.problem.place(&self.start.u, entry.nodes);
-        active.join_at_start(entry.slave_index, entry.segment, p.normal);
+    fn join_at_start(&self, active: &mut ActiveConstraints, entry: Entry) {
+        let p = self.problem.place(&self.start.u, entry.pair.nodes);
+        active.join_at_start(entry.pair, p.normal);
     }
 
-    /// The first entry of a node into a body that is not kept out of it as a constraint.
-    fn first_entry(
+    /// The nodes that go into bodies, and are not kept out of them, within the time tau of a motion: that of a
+    /// converged subincrement, or else a prediction. In the former they stay in to its end, or go through
+    /// the body.
+    fn entries(
         &mut self,
         active: &ActiveConstraints,
-        motion: FreeMotion,
-    ) -> Option<PredictedImpact> {
+        path: &Path,
+        tau: f64,
+        solved: Option<&Solved>,
+    ) -> Vec<Entry> {
         let (problem, u0) = (self.problem, &self.start.u);
+        let motion = FreeMotion {
+            path,
+            duration: tau,
+            end: if solved.is_some() { tau } else { 0.0 },
+        };
+        let constraints = solved.map_or(&[][..], |solved| solved.forces.constraints.as_slice());
+        let counts = |c: &&Constraint| active.is_held(problem, u0, c);
+        let (counting, left_out): (Vec<_>, Vec<_>) = constraints.iter().partition(counts);
+        let has_constraint = |slave: usize| counting.iter().any(|c| c.keeps_out(slave));
+        // between its ends the motion is an estimate: what is in front at the end has not gone in
+        let ends_behind = |pair: &NodeAtSegment| {
+            solved.is_none_or(|solved| problem.place(&solved.end.u, pair.nodes).gap < 0.0)
+        };
+        let is_kept = |pair: &NodeAtSegment, place: &Projection| {
+            active.holds(pair.slave_index, place)
+                && (solved.is_none()
+                    || active.has_joined(pair.slave_index)
+                    || has_constraint(pair.nodes[0]))
+        };
+        let mut entries: Vec<Entry> = Vec::new();
+        for c in left_out {
+            let [s, a, b, _] = c.source.nodes;
+            let pair = NodeAtSegment {
+                slave_index: c.key.slave_index,
+                segment: c.key.segment,
+                nodes: [s, a, b],
+            };
+            if c.gap < -CLOSED_GAP * c.scale && problem.unknowns.moves(&pair.nodes) {
+                let time = motion.overlap(problem, u0, pair);
+                entries.extend(time.map(|time| Entry { pair, time }));
+            }
+        }
         let Workspace { search, meter, .. } = &mut *self.workspace;
         let find = || {
             search.cover_path(u0, &motion.displacement(u0));
-            let mut first: Option<PredictedImpact> = None;
             for listed in search.slaves() {
                 for candidate in listed.candidates() {
-                    let impact = motion.impact(problem, u0, active, &listed, candidate.segment);
-                    if let Some(impact) = impact
-                        && first.is_none_or(|first| impact.time < first.time)
-                    {
-                        first = Some(impact);
+                    let pair = NodeAtSegment::new(&listed, candidate.segment);
+                    let [s, a, b] = pair.nodes;
+                    let place = problem.place(u0, pair.nodes);
+                    let may_enter = motion.may_meet(&place, pair.nodes)
+                        && s != a
+                        && s != b
+                        && problem.unknowns.moves(&pair.nodes)
+                        && ends_behind(&pair)
+                        && !is_kept(&pair, &place);
+                    if may_enter {
+                        let time = motion.entry(problem, u0, pair);
+                        entries.extend(time.map(|time| Entry { pair, time }));
                     }
                 }
             }
-            first
         };
-        meter.time(|t| &mut t.contact, find)
+        meter.time(|t| &mut t.contact, find);
+        if let (true, Some(solved)) = (entries.is_empty(), solved) {
+            entries.extend(self.tunnelled(active, &motion, solved));
+        }
+        entries
     }
 
-    fn attempt(&mut self, tau: f64, set: ConstraintSet) -> Result<Solved, FailedSubincrement> {
+    /// The node that goes into or through a body by the check that a converged subincrement must pass,
+    /// unless it has joined.
+    fn tunnelled(
+        &mut self,
+        active: &ActiveConstraints,
+        motion: &FreeMotion,
+        solved: &Solved,
+    ) -> Option<Entry> {
+        let (problem, u0) = (self.problem, &self.start.u);
+        let closed = [self.contact, &solved.forces.closed];
+        let unsolved = problem.unsolved(&solved.d);
+        let found = (self.workspace).find_penetration([u0, &solved.end.u], closed, &unsolved)?;
+        let Penetration {
+            slave,
+            segment: [a, b],
+            slave_index,
+            number,
+        } = found;
+        let pair = NodeAtSegment {
+            slave_index,
+            segment: number,
+            nodes: [slave, a, b],
+        };
+        if active.has_joined(slave_index) || !problem.unknowns.moves(&pair.nodes) {
+            return None;
+        }
+        let through = FreeMotion {
+            end: 0.0,
+            ..*motion
+        };
+        let time = through.entry(problem, u0, pair).unwrap_or(0.0);
+        Some(Entry { pair, time })
+    }
+
+    fn attempt(
+        &mut self,
+        tau: f64,
+        set: ConstraintSet,
+        guess: Option<&Path>,
+    ) -> Result<Solved, FailedSubincrement> {
         let interval = self.interval(tau);
         let attempt = Attempt {
             problem: self.problem,
@@ -261,6 +364,7 @@ impl<'m> Subincrements<'_, 'm> {
             start: self.start,
             interval,
             set,
+            guess,
         };
         let solved = attempt.solve(self.contact);
         solved.map_err(|failed| Box::new((interval, failed)))

@@ -1,60 +1,82 @@
-//! Time of an impact: the root of T(tau) - tau, eq. (6.4), by the secant method, safeguarded by bisection.
-//! Section 6 of docs/theory.md, Impacts as events, item 3.
+//! Time of an impact: the length tau of a subincrement at whose end a gap that stays out of the constraints
+//! is zero, eq. (6.4), bracketed and interpolated. Section 6 of docs/theory.md, Impacts as events, item 3.
 
-use crate::dynamics::increment::Solved;
+/// A converged subincrement that starts like the others.
+pub(crate) struct Trial {
+    /// Its length tau.
+    pub length: f64,
+    /// Displacements at its end.
+    pub u: Vec<f64>,
+}
 
-/// Reduction of the error by a trial from which on the time is bracketed by halving.
-const SLOW: f64 = 0.5;
-
-/// Looks for the length of a subincrement that ends at the impact.
+/// Looks for the length of a subincrement that ends at the first impact.
 pub(crate) struct ImpactTime {
-    /// What is left of the increment.
-    rest: f64,
-    /// The longest subincrement tried that ends before an impact.
-    pub before: Option<(f64, Solved)>,
+    /// The longest trial that ends before an impact; at first the start.
+    before: Trial,
     /// The shortest one that ends after it.
-    after: Option<f64>,
-    /// The last one, with T(tau) - tau.
-    last: Option<(f64, f64)>,
+    after: Option<Trial>,
+    /// The one that the last trial has taken the place of.
+    old: Option<Trial>,
+    /// The last two changes of the length.
+    steps: [f64; 2],
 }
 
 impl ImpactTime {
-    /// Starts with what is left of the increment.
-    pub fn new(rest: f64) -> Self {
+    /// Starts with the displacements `u0` at the start.
+    pub fn new(u0: &[f64]) -> Self {
         ImpactTime {
-            rest,
-            before: None,
+            before: Trial {
+                length: 0.0,
+                u: u0.to_vec(),
+            },
             after: None,
-            last: None,
+            old: None,
+            steps: [f64::INFINITY; 2],
         }
     }
 
-    /// The length to try next after `tau`, in whose motion the impact is at `met`: by the secant
-    /// through the last two, or else at `met`; halfway where these do not help.
-    pub fn next(&mut self, tau: f64, met: f64, solved: Solved) -> f64 {
-        let f = met - tau;
-        if f < 0.0 {
-            self.before.take_if(|(before, _)| *before > tau);
-            self.after = Some(tau);
-        } else {
-            self.after.take_if(|after| *after < tau);
-            self.before = Some((tau, solved));
+    /// Takes in a trial that ends before, or after, an impact.
+    pub fn take_in(&mut self, trial: Trial, is_before: bool) {
+        self.old = match is_before {
+            true => Some(std::mem::replace(&mut self.before, trial)),
+            false => self.after.replace(trial),
+        };
+    }
+
+    /// When the gap of a pair, given by the displacements, is zero: by inverse quadratic interpolation of
+    /// three trials, or else linear interpolation of two. None where it has no change of sign.
+    pub fn root(&self, gap: impl Fn(&[f64]) -> f64) -> Option<f64> {
+        let (low, high) = (&self.before, self.after.as_ref()?);
+        let (g, h) = (gap(&low.u), gap(&high.u));
+        if !(g >= 0.0 && h < 0.0) {
+            return None;
         }
+        let linear = low.length + (high.length - low.length) * (g / (g - h));
+        let is_inside = |t: &f64| *t > low.length && *t < high.length;
+        let quadratic = self.old.as_ref().map(|old| {
+            let points = [(low.length, g), (high.length, h), (old.length, gap(&old.u))];
+            let term = |i: usize| {
+                let [(t, g), (_, p), (_, q)] = [0, 1, 2].map(|k| points[(i + k) % 3]);
+                t * (p / (g - p)) * (q / (g - q))
+            };
+            term(0) + term(1) + term(2)
+        });
+        Some(quadratic.filter(is_inside).unwrap_or(linear))
+    }
+
+    /// The length to try after the last one, `tau`, where the impact is expected at `root`: halfway between
+    /// the trials before and after where it is not, or where the steps become hardly smaller.
+    pub fn next(&mut self, tau: f64, root: Option<f64>) -> f64 {
         let (low, high) = (
-            self.before.as_ref().map_or(0.0, |(tau, _)| *tau),
-            self.after.unwrap_or(self.rest),
+            self.before.length,
+            self.after.as_ref().map_or(tau, |t| t.length),
         );
-        let last = self.last.replace((tau, f));
-        let is_slow = last.is_some_and(|(_, f_old)| f.abs() > SLOW * f_old.abs());
-        if is_slow && self.after.is_some() {
-            return low + (high - low) / 2.0;
-        }
-        let secant = last.map(|(old, f_old)| tau - f * (tau - old) / (f - f_old));
-        match secant.filter(|t| *t > low).unwrap_or(met) {
-            t if t > low && t < high => t,
-            _ if self.after.is_none() => self.rest,
-            _ => low + (high - low) / 2.0,
-        }
+        let middle = low + (high - low) / 2.0;
+        let is_fast = |t: &f64| (t - tau).abs() < self.steps[0] / 2.0;
+        let root = root.filter(|t| *t > low && *t < high);
+        let next = root.filter(is_fast).unwrap_or(middle);
+        self.steps = [self.steps[1], (next - tau).abs()];
+        next
     }
 }
 
@@ -62,44 +84,56 @@ impl ImpactTime {
 mod tests {
     use super::*;
 
-    /// Number of trials until the root of met(tau) = tau is found, or none.
-    fn trials(met: impl Fn(f64) -> f64, rest: f64, first: f64, root: f64) -> Option<usize> {
-        let (mut search, mut tau) = (ImpactTime::new(rest), first);
-        (0..60).find(|_| {
-            let is_found = (tau - root).abs() < 1e-12;
-            tau = search.next(tau, met(tau), Solved::default());
+    /// Number of trials until the root of a gap is found to 1e-10, from the length 1 on.
+    fn trials(gap: impl Fn(f64) -> f64, root: f64) -> Option<usize> {
+        let (mut search, mut tau) = (ImpactTime::new(&[gap(0.0)]), 1.0);
+        (1..40).find(|_| {
+            let trial = Trial {
+                length: tau,
+                u: vec![gap(tau)],
+            };
+            search.take_in(trial, gap(tau) >= 0.0);
+            let expected = search.root(|u| u[0]);
+            let is_found = (tau - root).abs() < 1e-10;
+            tau = search.next(tau, expected);
             is_found
         })
     }
 
     #[test]
     fn the_time_of_an_impact_is_found() {
-        assert_eq!(trials(|_| 0.3, 1.0, 1.0, 0.3), Some(1), "free motion");
-        let elastic = |tau: f64| 0.3 + 0.2 * (tau - 0.3) + 0.1 * (tau - 0.3) * (tau - 0.3);
-        assert!(trials(elastic, 1.0, 0.35, 0.3).unwrap() < 12);
-        // the subincrement as a whole seems free, its first part does not
-        let jump = |tau: f64| if tau < 0.4 { 1.0 } else { 0.2 };
-        assert!(trials(jump, 1.0, 1.0, 0.4).is_some(), "bracketed");
-        assert_eq!(trials(|_| 1.0, 1.0, 0.5, 1.0), Some(1), "no impact");
+        assert_eq!(trials(|t| 0.3 - t, 0.3), Some(2), "free motion");
+        let falls = |t: f64| 0.3 - 0.5 * t - t * t / 2.0;
+        let found = trials(falls, (0.25_f64 + 0.6).sqrt() - 0.5);
+        assert!(found.unwrap() <= 6, "{found:?}");
+        // the surface swings: the gap as a function of the length is bent
+        let swings = |t: f64| 0.02 - 0.5 * t - 0.05 * (20.0 * t).sin();
+        let root = (0..60).fold([0.0, 0.05], |[low, high], _| {
+            let middle = (low + high) / 2.0;
+            if swings(middle) > 0.0 {
+                [middle, high]
+            } else {
+                [low, middle]
+            }
+        });
+        let found = trials(swings, root[0]);
+        assert!(found.unwrap() <= 9, "{found:?}");
     }
 
     #[test]
-    fn secants_that_hardly_come_nearer_are_followed_by_halving() {
-        // a subincrement that ends after the impact at 0.4 tells of one only a little before its end
-        let met = |tau: f64| {
-            if tau < 0.4 {
-                1.0
-            } else {
-                tau - 0.02 * (1.0 + tau)
-            }
-        };
-        for rest in [1.0, 1e-6, 1e6] {
-            let (mut search, mut tau) = (ImpactTime::new(rest), rest);
-            for _ in 0..12 {
-                tau = search.next(tau, rest * met(tau / rest), Solved::default());
-            }
-            let before = search.before.map_or(0.0, |(tau, _)| tau / rest);
-            assert!(before <= 0.4 && 0.4 - before < 1e-2, "{before}, {rest:e}");
+    fn a_gap_that_jumps_is_bracketed() {
+        let (mut search, mut tau) = (ImpactTime::new(&[1.0]), 1.0);
+        for _ in 0..12 {
+            let gap = if tau < 0.4 { 1.0 } else { -1e-6 };
+            let trial = Trial {
+                length: tau,
+                u: vec![gap],
+            };
+            search.take_in(trial, gap > 0.0);
+            let root = search.root(|u| u[0]);
+            tau = search.next(tau, root);
         }
+        let (low, high) = (search.before.length, search.after.expect("after").length);
+        assert!(low < 0.4 && high >= 0.4 && high - low < 0.2, "{low} {high}");
     }
 }

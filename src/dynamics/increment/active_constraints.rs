@@ -55,6 +55,29 @@ impl ConstraintSet<'_> {
     }
 }
 
+/// A slave node and a segment.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct NodeAtSegment {
+    /// Place of the slave node among all slave nodes of all contacts.
+    pub slave_index: usize,
+    /// Segment in its contact.
+    pub segment: usize,
+    /// The slave node and the ends of the segment.
+    pub nodes: [usize; 3],
+}
+
+impl NodeAtSegment {
+    /// A slave node of the search with one of its segments.
+    pub fn new(listed: &ListedSlave, segment: usize) -> Self {
+        let [a, b] = listed.surfaces.segments[segment];
+        NodeAtSegment {
+            slave_index: listed.slave_index,
+            segment,
+            nodes: [listed.node(), a, b],
+        }
+    }
+}
+
 /// The pairs that are constraints in a subincrement between impacts: those that touch at its start,
 /// and those that have joined them.
 ///
@@ -66,6 +89,8 @@ pub(crate) struct ActiveConstraints {
     touching: ClosedPairs,
     /// Normals of these segments, in the same order.
     normals: Vec<[f64; 2]>,
+    /// Slave node and ends of the segment of these pairs; increasing.
+    nodes: Vec<[usize; 3]>,
     /// Slave indices that have joined, with all their segments; increasing.
     joined: Vec<usize>,
 }
@@ -78,17 +103,18 @@ impl ActiveConstraints {
         for listed in search.slaves() {
             for candidate in listed.candidates() {
                 let segment = candidate.segment;
-                let touched = touched_normal(problem, u0, &listed, segment, before);
-                active.add(listed.slave_index, segment, touched);
+                if let Some(normal) = touched_normal(problem, u0, &listed, segment, before) {
+                    active.add(NodeAtSegment::new(&listed, segment), normal);
+                }
             }
         }
         active
     }
 
     /// Takes in a slave node that lands soon after the start.
-    pub fn join_at_start(&mut self, slave_index: usize, segment: usize, normal: [f64; 2]) {
-        self.add(slave_index, segment, Some(normal));
-        self.join(slave_index);
+    pub fn join_at_start(&mut self, pair: NodeAtSegment, normal: [f64; 2]) {
+        self.add(pair, normal);
+        self.join(pair.slave_index);
     }
 
     /// Takes in a slave node that lands within the subincrement.
@@ -98,10 +124,15 @@ impl ActiveConstraints {
         }
     }
 
+    /// Whether a slave node has joined with all its segments.
+    pub fn has_joined(&self, slave_index: usize) -> bool {
+        self.joined.binary_search(&slave_index).is_ok()
+    }
+
     /// Whether a slave node is kept out of a segment that has the place `start` relative to it at the
     /// start.
     pub fn holds(&self, slave_index: usize, start: &Projection) -> bool {
-        if self.joined.binary_search(&slave_index).is_ok() {
+        if self.has_joined(slave_index) {
             return true;
         }
         let own = &self.normals[self.touching.range_of_slave(slave_index)];
@@ -111,20 +142,35 @@ impl ActiveConstraints {
         !own.is_empty() && (is_behind || own.iter().any(faces_alike))
     }
 
-    /// Whether the slave node of a constraint is kept out of its segment, or of one of those at its corner.
-    fn is_held(&self, problem: &StepProblem, u0: &[f64], constraint: &Constraint) -> bool {
+    /// Whether the slave node of a constraint is kept out of its segment, or of one of those at its corner,
+    /// or the node of the corner out of a segment of the slave node: two nodes that are each other's corner
+    /// are one constraint.
+    pub fn is_held(&self, problem: &StepProblem, u0: &[f64], constraint: &Constraint) -> bool {
         let source = &constraint.source;
         let [s, a, b, c] = source.nodes;
         let is_held = |nodes| self.holds(source.slave_index, &problem.place(u0, nodes));
-        is_held([s, a, b]) || (source.target.corner.is_some() && is_held([s, b, c]))
+        is_held([s, a, b])
+            || (source.target.corner.is_some() && (is_held([s, b, c]) || self.touches_end(b, s)))
+    }
+
+    /// Whether a slave node touches a segment that ends at another node.
+    fn touches_end(&self, slave: usize, end: usize) -> bool {
+        let from = self.nodes.partition_point(|[s, _, _]| *s < slave);
+        let own = self.nodes[from..]
+            .iter()
+            .take_while(|[s, _, _]| *s == slave);
+        own.into_iter().any(|[_, a, b]| [*a, *b].contains(&end))
     }
 
     /// Adds a pair that touches with the given normal.
-    fn add(&mut self, slave_index: usize, segment: usize, normal: Option<[f64; 2]>) {
-        let pair = ClosedPair::touching(slave_index, segment);
-        if let (Some(normal), Err(at)) = (normal, self.touching.position(pair.key)) {
+    fn add(&mut self, at: NodeAtSegment, normal: [f64; 2]) {
+        let pair = ClosedPair::touching(at.slave_index, at.segment);
+        if let Err(place) = self.touching.position(pair.key) {
             self.touching.insert(pair);
-            self.normals.insert(at, normal);
+            self.normals.insert(place, normal);
+        }
+        if let Err(place) = self.nodes.binary_search(&at.nodes) {
+            self.nodes.insert(place, at.nodes);
         }
     }
 }
@@ -163,12 +209,18 @@ fn touches(p: &Projection) -> bool {
 mod tests {
     use super::*;
 
+    const AT: NodeAtSegment = NodeAtSegment {
+        slave_index: 3,
+        segment: 7,
+        nodes: [0, 1, 2],
+    };
+
     /// Whether a node that touches a segment is held by another, which it is in front of, turned from
     /// the first by an angle.
     fn is_held(direction: f64, turn: f64) -> bool {
         let normal = |angle: f64| [angle.cos(), angle.sin()];
         let mut active = ActiveConstraints::default();
-        active.add(3, 7, Some(normal(direction)));
+        active.add(AT, normal(direction));
         let [x, y] = normal(direction + turn);
         let start = Projection {
             xi: -0.5,
@@ -185,12 +237,23 @@ mod tests {
     fn a_node_slides_round_a_bend_but_runs_against_a_wall() {
         for i in 0..16 {
             let direction = 0.3 + f64::from(i) * std::f64::consts::FRAC_PI_8;
-            for turn in [-0.01, 0.0, 0.01] {
+            // 0.0175 is the turn of a circle in chords of a degree
+            for turn in [-0.0175, -0.01, 0.0, 0.01, 0.0175] {
                 assert!(is_held(direction, turn), "{direction} {turn}");
             }
-            for turn in [-1.5, -0.1, -0.02, 0.02, 0.1, 1.5] {
+            for turn in [-1.5, -0.1, -0.021, 0.021, 0.1, 1.5] {
                 assert!(!is_held(direction, turn), "{direction} {turn}");
             }
+        }
+    }
+
+    #[test]
+    fn a_corner_is_held_by_either_of_its_nodes() {
+        let mut active = ActiveConstraints::default();
+        active.add(AT, [1.0, 0.0]);
+        // node 0 touches the segment from 1 to 2
+        for (slave, end, is_held) in [(0, 1, true), (0, 2, true), (0, 3, false), (1, 0, false)] {
+            assert_eq!(active.touches_end(slave, end), is_held, "{slave} {end}");
         }
     }
 
@@ -210,7 +273,7 @@ mod tests {
             }
             // a wall that a node was not in front of stops it as any other segment that it touches
             let mut active = ActiveConstraints::default();
-            active.add(3, 7, Some([1.0, 0.0]));
+            active.add(AT, [1.0, 0.0]);
             for (part, is_held) in [(-0.1, true), (5e-10, true), (2e-9, false)] {
                 assert_eq!(active.holds(3, &at(part)), is_held, "{part:e} {length:e}");
             }

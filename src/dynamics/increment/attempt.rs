@@ -39,12 +39,35 @@ pub(crate) struct Solved {
     pub passes: Vec<PassReport>,
 }
 
+/// The motion of a converged increment between its ends, which another attempt from the same start may begin
+/// with.
+pub(crate) struct Path {
+    /// Velocity V0+.
+    pub v: Vec<f64>,
+    /// Acceleration A, at the supports too.
+    pub a: Vec<f64>,
+    /// The pairs closed at the end.
+    pub closed: ClosedPairs,
+}
+
+impl Path {
+    /// t V0+ + t²/2 A, eq. (6.3).
+    pub fn displacement(&self, t: f64) -> Vec<f64> {
+        let both = self.v.iter().zip(&self.a);
+        both.map(|(v, a)| t * (v + t / 2.0 * a)).collect()
+    }
+}
+
 impl Solved {
-    /// A = (2/dt²) (d - dt V0+), eq. (4.1), of an increment of length `dt`, at the supports too.
-    pub fn mean_acceleration(&self, dt: f64) -> Vec<f64> {
+    /// The motion of an increment of length `dt`, A = (2/dt²) (d - dt V0+), eq. (4.1).
+    pub fn path(&self, dt: f64) -> Path {
         let both = self.d.iter().zip(&self.v0p);
-        both.map(|(d, v0p)| 2.0 / (dt * dt) * (d - dt * v0p))
-            .collect()
+        let a = both.map(|(d, v0p)| 2.0 / (dt * dt) * (d - dt * v0p));
+        Path {
+            a: a.collect(),
+            v: self.v0p.clone(),
+            closed: self.forces.closed.clone(),
+        }
     }
 }
 
@@ -99,6 +122,8 @@ pub(crate) struct Attempt<'a, 'm> {
     pub start: &'a State,
     pub interval: Interval,
     pub set: ConstraintSet<'a>,
+    /// What the passes start from, in place of the rigid motion of the bodies.
+    pub guess: Option<&'a Path>,
 }
 
 impl<'m> Attempt<'_, 'm> {
@@ -123,6 +148,7 @@ impl<'m> Attempt<'_, 'm> {
                 }
                 Err(cause) => failed = cause,
             }
+            self.guess = None;
         }
         Err(trace.failed(failed, self.problem.settings.tolerance))
     }
@@ -136,11 +162,15 @@ impl<'m> Attempt<'_, 'm> {
         v: &mut Vectors,
     ) -> Result<Solved, Cause> {
         let (problem, start, dt) = (self.problem, self.start, self.interval.dt);
-        let mut contact = ContactForces::without_constraints(before);
-        let mut impulses = Impulses::new(before, self.set);
+        let closed = self.guess.map_or(before, |path| &path.closed);
+        let mut contact = ContactForces::without_constraints(closed);
+        let mut impulses = Impulses::new(closed, self.set);
         let mut equal_forces = EqualForces::new(problem.settings.tolerance);
-        // the passes start from the rigid motion of the bodies
-        let mut d = rigid_predictor(problem, start, self.interval);
+        // the passes start from the rigid motion of the bodies, or from a motion that is known
+        let mut d = match self.guess {
+            Some(path) => path.displacement(dt),
+            None => rigid_predictor(problem, start, self.interval),
+        };
         for pass in 0..problem.settings.max_passes {
             // g, Dt and their rows in the iterate U = U0 + d
             write_sum(&start.u, &d, &mut v.u);

@@ -11,8 +11,8 @@ mod returned;
 mod rigid_predictor;
 mod trace;
 
-pub(crate) use active_constraints::{ActiveConstraints, ConstraintSet};
-pub(crate) use attempt::{Attempt, Solved};
+pub(crate) use active_constraints::{ActiveConstraints, ConstraintSet, NodeAtSegment};
+pub(crate) use attempt::{Attempt, Path, Solved};
 pub(crate) use forces::{ContactForces, ContactSystem};
 pub(crate) use returned::{PairReturn, Release, Returned};
 pub(crate) use trace::Failed;

@@ -113,7 +113,7 @@ fn check_paths(
     let (u0, u1) = (&before.state.u, &solved.end.u);
     let closed = [before.closed, &solved.forces.closed];
     let found = workspace.find_penetration([u0, u1], closed, &unsolved);
-    found.map_or(Ok(()), |Penetration { slave, segment }| {
+    found.map_or(Ok(()), |Penetration { slave, segment, .. }| {
         let [a, b] = segment;
         Err(Cause::Crossed {
             slave,

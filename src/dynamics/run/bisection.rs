@@ -28,7 +28,7 @@ impl TimeControl for Bisection {
         let interval = || self.nominal.part(self.part, self.halvings);
         (self.part < 1 << self.halvings).then(|| Span {
             interval: interval(),
-            until_impact: None,
+            until_impact: false,
         })
     }
 

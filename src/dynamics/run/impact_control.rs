@@ -8,13 +8,13 @@ use crate::dynamics::step::Interval;
 /// Impact events within a nominal increment, after which its rest is one subincrement without events:
 /// chattering contacts must not stall a run.
 const MOST_EVENTS: usize = 50;
+/// Halvings of a subincrement from which on nodes land within it.
+const EVENT_HALVINGS: u32 = 2;
 
 /// A nominal increment that is solved up to the step time `from`.
 pub(crate) struct ImpactControl {
     nominal: NominalIncrement,
     from: f64,
-    /// Length of the last subincrement.
-    last: f64,
     events: usize,
     /// End of the nominal increment and ends of its halves; the last entry bounds the next
     /// subincrement.
@@ -26,7 +26,6 @@ impl ImpactControl {
     pub fn new(nominal: NominalIncrement) -> Self {
         ImpactControl {
             from: nominal.from,
-            last: nominal.length,
             events: 0,
             ends: vec![nominal.to],
             nominal,
@@ -45,7 +44,7 @@ impl TimeControl for ImpactControl {
                 end: place.time_point(to),
                 dt: if is_whole { length } else { to - self.from },
             },
-            until_impact: (self.events < MOST_EVENTS).then_some(self.last),
+            until_impact: self.events < MOST_EVENTS && self.halvings() < EVENT_HALVINGS,
         })
     }
 
@@ -54,7 +53,7 @@ impl TimeControl for ImpactControl {
     }
 
     fn accepted(&mut self, interval: &Interval, ends_at_impact: bool) {
-        (self.from, self.last) = (interval.end.step, interval.dt);
+        self.from = interval.end.step;
         if ends_at_impact {
             self.events += 1;
         } else {
@@ -106,12 +105,29 @@ mod tests {
     }
 
     #[test]
+    fn what_fails_with_events_is_solved_without() {
+        let mut control = ImpactControl::new(nominal());
+        let mut with_events = Vec::new();
+        for _ in 0..3 {
+            let span = control.next().expect("something is left");
+            with_events.push(span.until_impact);
+            control.failed(&span.interval);
+        }
+        assert_eq!(with_events, [true, true, false]);
+        while let Some(span) = control.next() {
+            with_events.push(span.until_impact);
+            control.accepted(&span.interval, false);
+        }
+        assert_eq!(with_events[3..], [false, false, true, true]);
+    }
+
+    #[test]
     fn contacts_that_chatter_do_not_stall() {
         let mut control = ImpactControl::new(nominal());
         let mut count = 0;
         while let Some(Span {
             interval,
-            until_impact: Some(_),
+            until_impact: true,
         }) = control.next()
         {
             count += 1;

@@ -197,8 +197,8 @@ impl<'m, 'o> Runner<'m, 'o> {
             nominal,
         };
         match span.until_impact {
-            Some(last) => subincrements.next(last),
-            None => subincrements.rest(),
+            true => subincrements.next(),
+            false => subincrements.rest(),
         }
     }
 

@@ -7,8 +7,8 @@ use crate::dynamics::step::Interval;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Span {
     pub interval: Interval,
-    /// Length of the last subincrement, where the next impact may end this one.
-    pub until_impact: Option<f64>,
+    /// Whether the next impact ends it.
+    pub until_impact: bool,
 }
 
 /// Divides one nominal increment.
