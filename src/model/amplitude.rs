@@ -1,6 +1,9 @@
 //! Amplitudes: functions of time with their value and exact rate. The rate is the velocity of a
 //! prescribed displacement (docs/theory.md, section 4).
 
+/// Relative difference up to which two times are the same: the round-off of products k dt.
+const SAME_TIME: f64 = 16.0 * f64::EPSILON;
+
 /// Time that an amplitude is a function of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TimeBase {
@@ -104,12 +107,15 @@ impl Amplitude {
         match &self.curve {
             Curve::Linear(points) => in_table(points, t, |x| [x, 1.0]),
             Curve::SmoothStep(points) => in_table(points, t, smooth_step),
-            Curve::Signal { start, base, .. } if t < *start => [*base, 0.0],
             Curve::Signal {
                 start,
                 base,
                 signal,
             } => {
+                let t = if is_same_time(t, *start) { *start } else { t };
+                if t < *start {
+                    return [*base, 0.0];
+                }
                 let [value, rate] = signal.value_and_rate(t - start);
                 [base + value, rate]
             }
@@ -263,6 +269,7 @@ fn smooth_step(x: f64) -> [f64; 2] {
 /// gives the share of the way and its derivative at `0 <= x <= 1`; constant outside the table.
 fn in_table(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
     let (first, last) = (points[0], points[points.len() - 1]);
+    let t = at_point(points, t);
     if points.len() == 1 || t < first.0 || t > last.0 {
         return [if t < first.0 { first.1 } else { last.1 }, 0.0];
     }
@@ -274,6 +281,19 @@ fn in_table(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2]) -> [f
         _ => p.1 + (q.1 - p.1) * share,
     };
     [value, (q.1 - p.1) / (q.0 - p.0) * slope]
+}
+
+/// The time of the point of a table that `t` is but for round-off, else `t`: on which side of a kink an
+/// increment ends does not depend on the unit of time.
+fn at_point(points: &[(f64, f64)], t: f64) -> f64 {
+    let next = points.partition_point(|p| p.0 < t);
+    let around = &points[next.saturating_sub(1)..points.len().min(next + 1)];
+    let same = around.iter().find(|p| is_same_time(p.0, t));
+    same.map_or(t, |p| p.0)
+}
+
+fn is_same_time(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME_TIME * a.abs().max(b.abs())
 }
 
 /// The interval (p, q] of a table with p.0 < t <= q.0, or the first one.
@@ -295,6 +315,35 @@ mod tests {
             time: TimeBase::Step,
             curve,
         }
+    }
+
+    #[test]
+    fn round_off_of_the_time_does_not_choose_the_side_of_a_kink() {
+        let points = vec![(0.1, 0.0), (0.3, 1.0), (0.7, 5.0)];
+        let table = amplitude(Curve::Linear(points.clone()));
+        let steps = amplitude(Curve::SmoothStep(points));
+        let decay = signal(Signal::Decay {
+            size: 1.0,
+            time: 3.0,
+        });
+        for (amplitude, time) in [
+            (&table, 0.1),
+            (&table, 0.3),
+            (&table, 0.7),
+            (&steps, 0.3),
+            (&decay, 1.0),
+        ] {
+            let time: f64 = time;
+            for t in [
+                time.next_down(),
+                time.next_up(),
+                time * (1.0 + 8.0 * f64::EPSILON),
+            ] {
+                assert_eq!(amplitude.at(t), amplitude.at(time), "{t}");
+                assert_eq!(amplitude.rate(t), amplitude.rate(time), "{t}");
+            }
+        }
+        assert_eq!(table.rate(0.3), 1.0 / (0.3 - 0.1));
     }
 
     fn signal(signal: Signal) -> Amplitude {
