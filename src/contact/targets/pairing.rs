@@ -26,6 +26,17 @@ pub struct PairTarget {
     pub friction: Friction,
 }
 
+impl PairTarget {
+    /// Ends of its segment; at a corner, of that whose normal has the larger weight.
+    pub fn nearer_segment(&self) -> [usize; 2] {
+        let [_, a, b, c] = self.nodes;
+        match self.target.corner {
+            Some(corner) if corner.weight > 0.5 => [b, c],
+            _ => [a, b],
+        }
+    }
+}
+
 /// Writes the pairs of all contacts between the displacements `u0` of the start of an increment and `u`
 /// of an iterate, which the search covers; increasing by slave index and segment, as those `before`,
 /// of the last pass. `held` are slave index and segment of the pairs closed at the start, increasing.
@@ -72,8 +83,8 @@ pub fn find_targets<'p>(
     remove_twins(pairs);
 }
 
-/// Leaves those of the targets that a slave node had in the pass before which it keeps, and adds what is
-/// found beside them.
+/// Leaves those of the targets that a slave node had in the pass before which it keeps, corners with the
+/// weights of the iterate, and adds what is found beside them.
 fn keep(node: &SlaveNode, found: &Targets, settled: bool, targets: &mut Targets) {
     let beyond = if settled {
         KEPT_WHEN_SETTLED
@@ -83,9 +94,10 @@ fn keep(node: &SlaveNode, found: &Targets, settled: bool, targets: &mut Targets)
     targets.retain(|target| node.is_over(target, beyond));
     let kept = targets.len();
     for target in found {
-        let mut old = targets[..kept].iter();
-        if !old.any(|old| node.is_same_face(old, target)) {
-            targets.push(*target);
+        let mut old = targets[..kept].iter_mut();
+        match old.find(|old| node.is_same_face(old, target)) {
+            None => targets.push(*target),
+            Some(old) => old.take_weight(target),
         }
     }
     targets.sort_by_key(|target| target.segment);
@@ -113,4 +125,43 @@ fn remove_twins(pairs: &mut Vec<PairTarget>) {
         let [s, _, v, _] = pair.nodes;
         pair.target.corner.is_none() || s < v || !corners.contains(&[v, s])
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::targets::Corner;
+
+    #[test]
+    fn the_nearer_segment_at_a_corner_is_that_of_the_larger_weight() {
+        let at = |corner: Option<f64>| PairTarget {
+            slave_index: 0,
+            target: ContactTarget {
+                corner: corner.map(|weight| Corner { next: 1, weight }),
+                ..ContactTarget::face(0)
+            },
+            nodes: [9, 1, 2, 3],
+            from: None,
+            friction: Friction::default(),
+        };
+        assert_eq!(at(None).nearer_segment(), [1, 2]);
+        assert_eq!(at(Some(0.3)).nearer_segment(), [1, 2]);
+        assert_eq!(at(Some(0.7)).nearer_segment(), [2, 3]);
+    }
+
+    #[test]
+    fn a_corner_that_is_kept_takes_the_weight_of_the_iterate() {
+        let corner = |segment, next, weight| ContactTarget {
+            corner: Some(Corner { next, weight }),
+            ..ContactTarget::face(segment)
+        };
+        let weight_after = |other: ContactTarget| {
+            let mut kept = corner(4, 5, 0.2);
+            kept.take_weight(&other);
+            kept.corner.map(|corner| corner.weight)
+        };
+        assert_eq!(weight_after(corner(4, 5, 0.6)), Some(0.6));
+        assert_eq!(weight_after(corner(5, 6, 0.6)), Some(0.2));
+        assert_eq!(weight_after(ContactTarget::face(4)), Some(0.2));
+    }
 }

@@ -34,6 +34,15 @@ impl ContactTarget {
         }
     }
 
+    /// Takes the weight that the same corner has in another iterate.
+    pub fn take_weight(&mut self, other: &ContactTarget) {
+        if let (Some(corner), Some(now)) = (&mut self.corner, other.corner)
+            && [self.segment, corner.next] == [other.segment, now.next]
+        {
+            corner.weight = now.weight;
+        }
+    }
+
     /// Segments it is made of.
     pub fn segments(&self) -> impl Iterator<Item = usize> + use<> {
         [Some(self.segment), self.corner.map(|v| v.next)]

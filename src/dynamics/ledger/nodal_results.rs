@@ -167,7 +167,8 @@ fn landing(
     interval: Interval,
     touched: bool,
 ) -> Landing {
-    let [s, a, b, _] = pair.nodes;
+    let segment = pair.nearer_segment();
+    let [s, a, b] = [pair.nodes[0], segment[0], segment[1]];
     let motions = [s, a, b].map(|node| motion(problem, &start.u, &start.v, &start.a, node));
     let tau = match impact_time(&motions, interval.dt) {
         // it touches at the start and does not cross
@@ -182,7 +183,7 @@ fn landing(
     Landing {
         time: interval.start.total + tau,
         slave: pair.nodes[0],
-        segment: [pair.nodes[1], pair.nodes[2]],
+        segment,
         xi: p.xi,
         approach_speed: -(p.normal[0] * relative(0) + p.normal[1] * relative(1)),
     }
