@@ -185,3 +185,27 @@ fn distances_far_beyond_the_segments_give_no_candidate() {
     };
     assert!((0..32).all(near));
 }
+
+#[test]
+fn a_velocity_that_all_bodies_share_brings_no_pair() {
+    let (surfaces, x) = scene(&[([0.0, 0.0], 1.0, 16, 0.0), ([5.0, 0.0], 1.0, 16, 0.0)]);
+    let contacts = [surfaces];
+    let found = |speed: f64| {
+        let common: Vec<f64> = x.iter().flat_map(|_| [speed, -speed]).collect();
+        let mut search = Search::new(&contacts, &x);
+        search.start(&common, 1.0);
+        search.cover(&common);
+        let territory = &search.territories()[0];
+        let list = |k| {
+            territory
+                .candidates(k)
+                .map(|c| c.segment)
+                .collect::<Vec<_>>()
+        };
+        let lists: Vec<_> = (0..x.len()).map(list).collect();
+        (lists, territory.reach(0, 1))
+    };
+    let ((still, near), (moving, nearly)) = (found(0.0), found(1000.0));
+    assert_eq!(still, moving);
+    assert!((near - nearly).abs() < 1e-9, "{near} {nearly}");
+}

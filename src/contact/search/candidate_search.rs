@@ -28,7 +28,8 @@ pub fn all_segments(surfaces: &ContactSurfaces) -> impl Iterator<Item = Candidat
 ///
 /// Each slave node and each segment has a circle that is grown by a margin, and each contact two
 /// hierarchies of such circles. Overlapping circles are candidates; the lists are valid until an
-/// entity has moved further than its margin.
+/// entity has moved further than its margin. Positions and motions are those relative to the mean of the
+/// contact's nodes: what two bodies have in common brings no pair together.
 pub struct Search<'m> {
     x: &'m [[f64; 2]],
     territories: Vec<Territory<'m>>,
@@ -49,8 +50,9 @@ impl<'m> Search<'m> {
     /// displacements dt |v| of its node and its segment.
     pub fn start(&mut self, v: &[f64], dt: f64) {
         for territory in &mut self.territories {
+            let v = territory.about_mean(|node| [v[2 * node], v[2 * node + 1]]);
             for side in [&mut territory.slaves, &mut territory.segments] {
-                side.set_travel(|node| dt * length([v[2 * node], v[2 * node + 1]]));
+                side.set_travel(|node| dt * length(v(node)));
             }
         }
     }
@@ -59,8 +61,9 @@ impl<'m> Search<'m> {
     pub fn cover(&mut self, u: &[f64]) {
         let x = self.x;
         for territory in &mut self.territories {
-            if !territory.covers(|node| position(x, u, node)) {
-                territory.search(|node| position(x, u, node));
+            let at = territory.about_mean(|node| position(x, u, node));
+            if !territory.covers(&at) {
+                territory.search(at);
                 self.searches += 1;
             }
         }
@@ -71,9 +74,10 @@ impl<'m> Search<'m> {
     pub fn cover_path(&mut self, u0: &[f64], u1: &[f64]) {
         let x = self.x;
         for territory in &mut self.territories {
-            let [at_start, at_end] = [u0, u1].map(|u| move |node| position(x, u, node));
-            if !territory.reaches(at_start) || !territory.reaches(at_end) {
-                territory.extend_travel(at_start, at_end);
+            let [at_start, at_end] =
+                [u0, u1].map(|u| territory.about_mean(move |node| position(x, u, node)));
+            if !territory.reaches(&at_start) || !territory.reaches(&at_end) {
+                territory.extend_travel(&at_start, &at_end);
                 territory.search(|node| {
                     let (p, q) = (at_start(node), at_end(node));
                     [0, 1].map(|i| p[i] + (q[i] - p[i]) / 2.0)
@@ -185,6 +189,17 @@ impl<'m> Territory<'m> {
             segment: i as usize,
             reach: self.reach(k, i as usize),
         })
+    }
+
+    /// Positions or velocities of nodes less their mean over the ends of all slaves and segments.
+    fn about_mean<F: Fn(usize) -> [f64; 2]>(&self, of: F) -> impl Fn(usize) -> [f64; 2] + use<F> {
+        let ends = || self.slaves.ends.iter().chain(&self.segments.ends).flatten();
+        let sum = ends()
+            .map(|&node| of(node))
+            .fold([0.0; 2], |sum, at| [sum[0] + at[0], sum[1] + at[1]]);
+        let count = (2 * (self.slaves.ends.len() + self.segments.ends.len())).max(1) as f64;
+        let mean = sum.map(|sum| sum / count);
+        move |node| difference(mean, of(node))
     }
 
     /// Distance up to which the slave node number `k` pairs with a segment (length).
