@@ -78,6 +78,17 @@ def test_it_sees_another_coefficient_of_friction(tmp_path: Path, job: Job) -> No
     assert found["history/bodies/velocity"].max() > 1e-3
 
 
+def test_two_corners_that_meet_do_not_depend_on_the_way_of_the_passes(
+    tmp_path: Path, job: Job
+) -> None:
+    path = ROOT / "input/corner_to_corner/corners_left_mu00.inp"
+    deck = flat(binary(), Deck.read(path).write(tmp_path / "corners.inp"))
+    first = Seen(job(deck), deck)
+    form = FORMS["solved otherwise"](deck, first)
+    found = compared(deck, form.deck, form.change, job).by_name
+    assert found["VTKHDF/PointData/V"].max() < TOLERANCE
+
+
 def test_it_says_what_cannot_be_written_otherwise(tmp_path: Path) -> None:
     deck = flat(binary(), Deck.read(EVERY_CARD).write(tmp_path / "every_card.inp"))
     with pytest.raises(Unchangeable, match="ALPHA damps the velocity itself"):
