@@ -4,7 +4,7 @@
 use super::configurations::{Configurations, RowForm};
 use super::constraint::{Constraint, RowPair};
 use crate::contact::geometry::{Projection, project};
-use crate::contact::targets::{PairTarget, rise};
+use crate::contact::targets::{PairTarget, position_round_off, rise};
 use crate::vectors::{cross, difference, dot};
 
 /// A node on a segment, with its force rows and derivative rows.
@@ -58,7 +58,11 @@ pub(super) fn tilt(source: &PairTarget, at: &Configurations) -> f64 {
     let [s, i, j] = at.start([s, i, j]);
     let rise = rise(&start, project(s, i, j).gap, s);
     let slip = (start.length + end.length) / 2.0 * (end.xi - start.xi);
-    if rise == 0.0 { 0.0 } else { rise / slip }
+    // a node that has not moved has no direction to be tilted in
+    match rise != 0.0 && slip.abs() > position_round_off(s) {
+        true => rise / slip,
+        false => 0.0,
+    }
 }
 
 /// Projection and rows of the node s on the segment from a to b.

@@ -9,4 +9,4 @@ pub use corner::{Corner, common_normal};
 pub use pairing::{PairTarget, find_targets};
 pub use slave_node::SlaveNode;
 pub use target_selection::ContactTarget;
-pub(super) use target_selection::rise;
+pub(super) use target_selection::{position_round_off, rise};

@@ -57,12 +57,17 @@ pub type Targets = SmallVec<[ContactTarget; 4]>;
 /// Segments near a node, mostly few.
 type Segments = SmallVec<[usize; 8]>;
 
+/// Round-off of gaps and slips of a node at `s` (length).
+pub fn position_round_off(s: [f64; 2]) -> f64 {
+    POSITION_ROUND_OFF * largest(&s)
+}
+
 /// Rise g0 - h0 of eq. (7.6): the gap at the start of the segment that a node at `s` has slid on to, above what it
 /// counts as, the gap `before` of the segment that the node came from, and no overlap. What is round-off of closed
 /// gaps and positions is zero: over the slip of a node that has come back it would tilt the force at random.
 pub fn rise(start: &Projection, before: f64, s: [f64; 2]) -> f64 {
     let rise = start.gap - start.gap.min(before).max(0.0);
-    let round_off = (SOLVED_GAP * start.length).max(POSITION_ROUND_OFF * largest(&s));
+    let round_off = (SOLVED_GAP * start.length).max(position_round_off(s));
     if rise.abs() <= round_off { 0.0 } else { rise }
 }
 
