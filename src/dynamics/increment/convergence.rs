@@ -278,7 +278,8 @@ mod tests {
             friction,
         };
         let mut u = [0.0; 6];
-        (u[0], u[1]) = (slip, gap);
+        // the tangent of the segment from 0 to -2 is -x
+        (u[0], u[1]) = (-slip, gap);
         let at = Configurations {
             form: RowForm::End,
             x: &[[-0.5, 0.0], [0.0, 0.0], [-2.0, 0.0]],

@@ -9,7 +9,7 @@ use crate::dynamics::{Cause, Course, Cutback, IncrementReport};
 use crate::elements::Strained;
 use crate::linear::larger;
 use crate::model::Model;
-use crate::output::text::{StrainWatch, counted, scientific};
+use crate::output::text::{StrainWatch, counted, scientific, wrap};
 
 /// Follows a run.
 pub(crate) struct Monitor {
@@ -98,9 +98,9 @@ impl Monitor {
         if !model.contacts.is_empty() {
             let [force, impulse] = self.cone_violations.map(|part| scientific(part, 1));
             let landings = counted(self.landings, "landing");
-            lines.push(format!(
-                "contact  {landings}; outside Coulomb's cone at most: forces {force}, impulses {impulse}"
-            ));
+            let cone =
+                format!("outside Coulomb's cone at most: forces {force}, impulses {impulse}");
+            lines.extend(wrap("contact", &[format!("{landings};"), cone]));
         }
         let added = self.balance.contact_energy();
         if added.count > 0 {

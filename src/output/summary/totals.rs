@@ -97,7 +97,7 @@ mod tests {
         let line = error_line(8.1e-12, Some(crossed));
         assert_eq!(
             line,
-            format!("{expected}; edges cross by 3.7e-5 of an edge")
+            format!("{expected}; edges cross by 3.7e-05 of an edge")
         );
     }
 }
