@@ -27,7 +27,7 @@ INCREMENTS = 25
 def read_keywords() -> set[str]:
     """Keywords that docs/keywords.md marks as read."""
     text = (ROOT / "docs/keywords.md").read_text()
-    read = text.partition("## Keywords that are read")[2].partition("\n## ")[0]
+    read = text.partition("## Each keyword")[2].partition("\n## ")[0]
     return {fold(name) for name in re.findall(r"^### `\*(.+)`$", read, re.MULTILINE)}
 
 

@@ -61,11 +61,14 @@ An error stops the run before it begins. These are errors:
 
 /// A keyword that is read, in the table at the beginning: its first sentence, and where it stands.
 fn push_entry(text: &mut String, keyword: &Keyword) {
-    let first = keyword
+    let sentence = keyword
         .text
-        .split(['.', ':', ';'])
-        .next()
-        .unwrap_or_default();
+        .trim_end_matches('.')
+        .replace("St. ", "St.\u{a0}");
+    let ends = [": ", "; ", ". "]
+        .iter()
+        .filter_map(|end| sentence.find(end));
+    let first = &sentence[..ends.min().unwrap_or(sentence.len())].replace('\u{a0}', " ");
     let anchor = keyword.name.to_lowercase().replace(' ', "-");
     let (name, first) = (keyword.name, plain(first));
     let _ = writeln!(text, "| [`*{name}`](#{anchor}) | {first} |");

@@ -155,7 +155,9 @@ fn crossing(
     intervals.find_map(|index| {
         let [(t0, v0), (t1, v1)] = [points[index], points[index + 1]];
         let share = (value - v0) / (v1 - v0);
-        (0.0..=1.0).contains(&share).then(|| t0 + share * (t1 - t0))
+        (0.0..=1.0)
+            .contains(&share)
+            .then_some(t0 + share * (t1 - t0))
     })
 }
 
