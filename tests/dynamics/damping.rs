@@ -342,3 +342,19 @@ fn landings_of_damped_bodies_give_back_energy_and_keep_momenta() {
         }
     }
 }
+
+#[test]
+fn damping_below_round_off_has_no_effect() {
+    for tiny in [1e-300, 1e-320] {
+        let runs = [(0.0, 0.0), (tiny, 0.0), (0.0, tiny)].map(|(alpha, beta)| {
+            let model = collision(Damping { alpha, beta }, ContactMass::Consistent);
+            run_to_end(&model).0
+        });
+        let [none, damped @ ..] = &runs;
+        let exact = energy(last(none));
+        for keep in damped {
+            assert!((energy(last(keep)) - exact).abs() < 1e-9 * exact);
+            assert!(keep.cutbacks.len() == none.cutbacks.len());
+        }
+    }
+}

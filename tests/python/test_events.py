@@ -1,0 +1,37 @@
+"""Decks that stopped with a node gone through a segment when impacts were events run to their ends."""
+
+import pytest
+from conftest import ROOT, Job
+from deck import Deck
+from results import Results
+
+BEAM = ROOT / "tests/decks/beam_lands_with_events.inp"
+"""A beam without mass at its surface lands on a rigid floor with a hollow vertex."""
+
+STACK = ROOT / "tests/decks/stack_with_events.inp"
+"""Twenty blocks on each other, whose corners meet corners."""
+
+EVENTS = {"IMPACT_TIME": "EVENT", "CONTACT_MASS": "REDISTRIBUTED"}
+ALL = EVENTS | {"LANDING": "RETURN", "LCP": "LEMKE", "FACTORIZATION": "EVERY PASS"}
+
+
+@pytest.mark.parametrize("settings", [EVENTS, ALL])
+def test_a_beam_lands_round_a_hollow_vertex(job: Job, settings: dict[str, str]) -> None:
+    deck = Deck.read(BEAM)
+    deck.set_settings(**settings)
+    with Results(job(deck)) as results:
+        ended(results, 1)
+
+
+def test_corners_of_a_stack_hold_each_other(job: Job) -> None:
+    deck = Deck.read(STACK)
+    deck.set_increments(deck.dt, 49)
+    with Results(job(deck)) as results:
+        ended(results, 0)
+
+
+def ended(results: Results, cutbacks: int) -> None:
+    """The run went to its end, with so many cutbacks at most, and kept its balance."""
+    record = results.file["run"].attrs
+    assert record["exit_status"] == 0 and record["cutbacks"] <= cutbacks
+    assert abs(results.energy["balance"]).max() < 1e-10 * results.largest_energy
