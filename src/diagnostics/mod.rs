@@ -5,19 +5,12 @@
 
 mod code;
 mod diagnostic;
-mod lines;
-mod list;
-mod number;
 mod render;
 mod sources;
-mod span;
-mod suggestion;
+mod words;
 
 pub use code::Code;
-pub use diagnostic::{Diagnostic, Severity};
-pub(crate) use lines::wrapped;
-pub use list::{Diagnostics, Strictness};
-pub use number::shown;
+pub use diagnostic::{Diagnostic, Diagnostics, FileId, Severity, Span, Strictness};
 pub use sources::{Source, Sources};
-pub use span::{FileId, Span};
-pub use suggestion::closest;
+pub(crate) use words::wrapped;
+pub use words::{closest, shown};

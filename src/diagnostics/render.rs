@@ -1,8 +1,8 @@
 //! Diagnostics as text: message, source line with caret, chain of includes and advice, laid out by
 //! annotate-snippets in the style of rustc.
 
-use super::list::{Diagnostics, SHOWN};
-use super::{Diagnostic, Severity, Sources, Span};
+use super::diagnostic::SHOWN;
+use super::{Diagnostic, Diagnostics, Severity, Sources, Span};
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 use std::ops::Range;
 

@@ -4,12 +4,8 @@
 //! The deck reads as the same model but for the places of its contacts in the text and the instances
 //! of parts, whose nodes and elements have the numbers of the mesh. Two kinds of names are made up, as the model does not keep those of the deck: of interactions and of time points.
 
-mod amplitudes;
-mod contact;
 mod lines;
-mod loads;
-mod mesh;
-mod properties;
+mod model;
 mod steps;
 
 use crate::deck;
@@ -22,10 +18,7 @@ use lines::Lines;
 pub fn flat_deck(model: &Model) -> String {
     let mut lines = Lines::default();
     title(&model.title, &mut lines);
-    mesh::write(model, &mut lines);
-    properties::write(model, &mut lines);
-    amplitudes::write(&model.amplitudes, &mut lines);
-    contact::write(model, &mut lines);
+    model::write(model, &mut lines);
     steps::write(model, &mut lines);
     lines.text()
 }

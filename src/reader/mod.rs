@@ -4,27 +4,36 @@
 //! the order of a deck never matters; names that a card with an error defines are marked, so
 //! that they are not reported as undefined where they are used.
 
-mod catalogue;
+mod amplitudes;
+mod boundary;
 mod checks;
 mod contact;
 mod context;
+mod equations;
 mod label;
+mod loads;
 mod materials;
-mod mesh;
+mod mesh_index;
 mod names;
+mod nodes_elements;
+mod outline;
+mod output;
+mod rigid_bodies;
+mod sections;
+mod sets;
 mod steps;
+mod surfaces;
 
 use crate::deck::{self, Card, Deck};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Sources};
 use crate::model::{ElementsAtNodes, Instance, Mesh, Model, NamedSets};
-use contact::{pairs, rigid_surface};
+use boundary::Targets;
 use context::Context;
-use materials::Properties;
-use mesh::{Outline, Sets, nodes_elements, sets, surface};
+use outline::Outline;
+use output::Histories;
+use sections::Properties;
+use sets::Sets;
 use std::path::Path;
-use steps::boundary::Targets;
-use steps::output::Histories;
-use steps::{amplitude, equation, initial_velocity, step};
 
 /// Reads a deck file into a model; `None` if there are errors.
 pub fn read_model(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Option<Model> {
@@ -55,15 +64,15 @@ fn read(cx: &mut Context) -> Model {
     let at_nodes = ElementsAtNodes::new(&mesh_index.mesh);
     checks::mesh(&mesh_index, &at_nodes, cx);
     let sets = sets::read(&outline, &mesh_index, cx);
-    let mut surfaces = surface::read(&outline, &mesh_index, &sets, &at_nodes, cx);
+    let mut surfaces = surfaces::read(&outline, &mesh_index, &sets, &at_nodes, cx);
     drop(at_nodes);
     mesh_index.add_points(&surfaces.rigid_points);
-    let rigid_bodies = rigid_surface::read(&outline, &mesh_index, &sets, &surfaces, cx);
-    let properties = materials::read(&outline, &mesh_index, &sets, cx);
+    let rigid_bodies = rigid_bodies::read(&outline, &mesh_index, &sets, &surfaces, cx);
+    let properties = sections::read(&outline, &mesh_index, &sets, cx);
     checks::magnitudes(&mesh_index, &properties, cx);
-    let contacts = pairs::read(&outline, &mesh_index, &sets, &mut surfaces, cx);
+    let contacts = contact::read(&outline, &mesh_index, &sets, &mut surfaces, cx);
     checks::thickness(&contacts, &surfaces, &properties, cx);
-    let amplitudes = amplitude::read(cx);
+    let amplitudes = amplitudes::read(cx);
     let targets = Targets {
         mesh_index: &mesh_index,
         sets: &sets,
@@ -71,10 +80,10 @@ fn read(cx: &mut Context) -> Model {
         rigid_bodies: &rigid_bodies,
     };
     let checks::Shortest { side, time: guide } = checks::shortest(&mesh_index.mesh, &properties);
-    let steps = step::read(&outline, targets, &surfaces, guide, cx);
-    let equations = equation::read(&outline, targets, &steps.all, cx);
-    let initial_velocity = initial_velocity::read(&outline, targets, &steps.at_start, cx);
-    equation::check_velocities(&equations, &initial_velocity, &steps.at_start, targets, cx);
+    let steps = steps::read(&outline, targets, &surfaces, guide, cx);
+    let equations = equations::read(&outline, targets, &steps.all, cx);
+    let initial_velocity = boundary::initial_velocity(&outline, targets, &steps.at_start, cx);
+    equations::check_velocities(&equations, &initial_velocity, &steps.at_start, targets, cx);
     let model = Model {
         title: title(&outline),
         mesh: with_sections(mesh_index.mesh, &properties),
@@ -90,7 +99,7 @@ fn read(cx: &mut Context) -> Model {
             .collect(),
         initial_velocity,
         steps: steps.all,
-        rigid_bodies: rigid_surface::bodies(&rigid_bodies),
+        rigid_bodies: rigid_bodies::bodies(&rigid_bodies),
     };
     checks::amplitudes(&model, &amplitudes.spans, cx);
     checks::braked_flight(&model, &properties.damping_spans, cx);

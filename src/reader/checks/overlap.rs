@@ -8,7 +8,7 @@
 use crate::diagnostics::{Code, Diagnostic};
 use crate::model::{ALL_EXTERIOR, Contact, ElementsAtNodes, Face, Mesh, Model};
 use crate::reader::context::Context;
-use crate::reader::mesh::Places;
+use crate::reader::mesh_index::Places;
 use crate::vectors::{Circle, CircleTree, cross, difference, distance, dot};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,0 +1,492 @@
+//! Decks with parts and an assembly made flat: every instance gets the cards of its part, whose
+//! spans name the instance. What a name or a number means in an instance is left to the reader.
+
+use super::card::{Card, Instance, Placement, Row};
+use super::collect::Deck;
+use super::keywords::{Scope, Status};
+use super::text::{Name, Text};
+use crate::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Sources, Span, closest};
+
+/// The deck with the cards of the parts in place of their instances.
+pub(in crate::deck) fn flatten(deck: Deck, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
+    let is_structure = |card: &Card| card.keyword.scope == Scope::Assembly;
+    if !deck.cards.iter().any(is_structure) {
+        return without_assembly(deck, d);
+    }
+    let errors = d.count(Severity::Error);
+    let Structure {
+        mut parts, items, ..
+    } = Structure::new(deck.cards, d);
+    let faulty = d.count(Severity::Error) > errors;
+    let mut flat = Deck {
+        cards: Vec::new(),
+        incomplete: deck.incomplete || faulty,
+        ..deck
+    };
+    let of_items = instances(&items, &mut parts, &mut flat, sources, d);
+    for (item, of_item) in items.into_iter().zip(of_items) {
+        match item {
+            Item::Card(card, place) => {
+                let card = scoped(card, place, &flat, d);
+                flat.cards.push(card);
+            }
+            Item::Instance(_, own) => flat.cards.extend(of_item.cards(&mut parts, own)),
+        }
+    }
+    flat.incomplete |= d.count(Severity::Error) > errors;
+    report_unused(&parts, &flat, d);
+    flat
+}
+
+/// Instance and part of an item; zero and none of other cards.
+struct Copied {
+    instance: u32,
+    part: Option<usize>,
+}
+
+impl Copied {
+    /// The cards of the part, followed by those of the instance itself.
+    fn cards(&self, parts: &mut [Part], own: Vec<Card>) -> Vec<Card> {
+        let part = self.part.and_then(|part| parts.get_mut(part));
+        let of_part = part.map(|part| {
+            part.wanted -= 1;
+            match part.wanted {
+                0 => std::mem::take(&mut part.cards),
+                _ => part.cards.clone(),
+            }
+        });
+        let all = of_part.unwrap_or_default().into_iter().chain(own);
+        all.map(|card| card.in_instance(self.instance)).collect()
+    }
+}
+
+/// Registers the instances with the deck and the sources.
+fn instances(
+    items: &[Item],
+    parts: &mut [Part],
+    flat: &mut Deck,
+    sources: &mut Sources,
+    d: &mut Diagnostics,
+) -> Vec<Copied> {
+    let mut all = Vec::new();
+    for item in items {
+        let (mut instance, mut part) = (0, None);
+        if let Item::Instance(head, _) = item {
+            part = part_of(head, parts, flat, d);
+            if let Some(name) = instance_name(head, flat, d) {
+                instance = sources.add_instance(&name.typed, head.span);
+                let placement = placement(head, d);
+                flat.instances.push(Instance { name, placement });
+            }
+        }
+        // the cards of an instance without name would be those of the whole deck
+        part = part.filter(|_| instance > 0);
+        if let Some(part) = part.and_then(|part| parts.get_mut(part)) {
+            part.wanted += 1;
+        }
+        all.push(Copied { instance, part });
+    }
+    all
+}
+
+/// The name of an instance; reports one that is missing or taken.
+fn instance_name(head: &Card, flat: &Deck, d: &mut Diagnostics) -> Option<Name> {
+    let text = head.required("NAME", d)?;
+    let name = text.name(d)?;
+    if flat.instance(&name.key).is_some() {
+        let message = format!("instance {name} is defined a second time");
+        d.push(Diagnostic::error(Code::RepeatedName, text.span, message));
+        return None;
+    }
+    Some(name)
+}
+
+/// The part of an instance; reports one that is not defined.
+fn part_of(head: &Card, parts: &[Part], flat: &Deck, d: &mut Diagnostics) -> Option<usize> {
+    let text = head.required("PART", d)?;
+    let key = text.name_key();
+    let names = || parts.iter().filter_map(|part| part.name.as_ref());
+    let found = parts
+        .iter()
+        .position(|part| part.name.as_ref().is_some_and(|name| name.key == key));
+    if found.is_none() && !flat.incomplete && names().count() == parts.len() {
+        undefined("part", text, names(), d);
+    }
+    found
+}
+
+fn undefined<'n>(
+    what: &str,
+    text: Text,
+    names: impl Iterator<Item = &'n Name> + Clone,
+    d: &mut Diagnostics,
+) {
+    let message = format!("{what} {} is not defined", text.text);
+    let error = Diagnostic::error(Code::UndefinedName, text.span, message);
+    let meant = closest(text.text, names.clone().map(|name| name.typed.as_str()));
+    d.push(match (meant, names.clone().next()) {
+        (Some(meant), _) => error.suggest(Some(meant)),
+        (None, None) => error.help(format!("the deck has no {what}s")),
+        (None, Some(_)) => {
+            let all: Vec<&str> = names.map(|name| name.typed.as_str()).collect();
+            let (the, are) = match all.len() {
+                1 => ("the only ", " is"),
+                _ => ("the ", "s are"),
+            };
+            error.help(format!("{the}{what}{are} {}", all.join(", ")))
+        }
+    });
+}
+
+/// The card with its rows in the instance that its parameter names.
+fn scoped(card: Card, place: Place, flat: &Deck, d: &mut Diagnostics) -> Card {
+    let Some(text) = card.value("INSTANCE").filter(|_| place == Place::Assembly) else {
+        return card;
+    };
+    match flat.instance(&text.name_key()) {
+        Some(instance) => card.with_rows_in(instance),
+        None => {
+            undefined("instance", text, flat.instances.iter().map(|i| &i.name), d);
+            card
+        }
+    }
+}
+
+/// Reports sets of instances in a deck that has none.
+fn without_assembly(mut deck: Deck, d: &mut Diagnostics) -> Deck {
+    let fields: Vec<(String, Span)> = deck
+        .cards
+        .iter()
+        .filter(|card| ["NSET", "ELSET"].contains(&card.keyword.name))
+        .filter_map(|card| card.value("INSTANCE"))
+        .map(|text| (text.text.to_string(), text.span))
+        .collect();
+    for (text, span) in fields.iter().filter(|_| !deck.incomplete) {
+        undefined(
+            "instance",
+            Text { text, span: *span },
+            std::iter::empty(),
+            d,
+        );
+    }
+    deck.incomplete |= !fields.is_empty();
+    deck
+}
+
+/// Warns about parts without instance.
+fn report_unused(parts: &[Part], flat: &Deck, d: &mut Diagnostics) {
+    for part in parts.iter().filter(|part| !part.cards.is_empty()) {
+        if let (Some(name), false) = (&part.name, flat.incomplete) {
+            let message = format!("part {name} has no instance");
+            let span = part.head.span_of("NAME");
+            let warning = Diagnostic::warning(Code::AssemblyStructure, span, message);
+            d.push(warning.help("left out"));
+        }
+    }
+}
+
+/// A part with its cards.
+pub(super) struct Part {
+    /// Its name, unless that cannot be read.
+    pub name: Option<Name>,
+    /// `*PART`.
+    pub head: Card,
+    /// The cards up to `*END PART`.
+    pub cards: Vec<Card>,
+    /// Number of its instances that have no cards yet.
+    pub wanted: usize,
+}
+
+/// A card outside parts, or an instance.
+pub(super) enum Item {
+    /// A card.
+    Card(Card, Place),
+    /// `*INSTANCE` with the cards up to `*END INSTANCE`.
+    Instance(Card, Vec<Card>),
+}
+
+/// The cards of a deck by where they stand.
+pub(super) struct Structure {
+    pub parts: Vec<Part>,
+    pub items: Vec<Item>,
+    place: Place,
+    has_assembly: bool,
+    /// Whether the last card is reported to be out of place: one of several in a row is.
+    misplaced: bool,
+}
+
+impl Structure {
+    /// Sorts cards; reports those out of place and what is not closed.
+    pub fn new(cards: Vec<Card>, d: &mut Diagnostics) -> Structure {
+        let mut structure = Structure {
+            parts: Vec::new(),
+            items: Vec::new(),
+            place: Place::Model,
+            has_assembly: false,
+            misplaced: false,
+        };
+        let end = cards.last().map(|card| card.span);
+        for card in cards {
+            structure.add(card, d);
+        }
+        if let Some(end) = end {
+            report_open(structure.place, end, d);
+        }
+        structure
+    }
+
+    fn add(&mut self, card: Card, d: &mut Diagnostics) {
+        match card.keyword.name {
+            "PART" => self.part(card, d),
+            "ASSEMBLY" => self.assembly(&card, d),
+            "INSTANCE" => self.instance(card, d),
+            "END PART" => self.end(Place::Part, Place::Model, &card, d),
+            "END ASSEMBLY" => self.end(Place::Assembly, Place::Model, &card, d),
+            "END INSTANCE" => self.end(Place::Instance, Place::Assembly, &card, d),
+            _ => self.other(card, d),
+        }
+    }
+
+    fn part(&mut self, head: Card, d: &mut Diagnostics) {
+        report_open(self.place, head.span, d);
+        self.place = Place::Part;
+        let text = head.required("NAME", d);
+        let name = text.and_then(|text| text.name(d));
+        let known = |name: &Name| {
+            let mut names = self.parts.iter().filter_map(|part| part.name.as_ref());
+            names.any(|known| known.key == name.key)
+        };
+        if let Some(name) = name.as_ref().filter(|name| known(name)) {
+            let message = format!("part {name} is defined a second time");
+            d.push(Diagnostic::error(
+                Code::RepeatedName,
+                head.span_of("NAME"),
+                message,
+            ));
+        }
+        self.parts.push(Part {
+            name,
+            head,
+            cards: Vec::new(),
+            wanted: 0,
+        });
+    }
+
+    fn assembly(&mut self, head: &Card, d: &mut Diagnostics) {
+        report_open(self.place, head.span, d);
+        self.place = Place::Assembly;
+        head.has("NAME");
+        if std::mem::replace(&mut self.has_assembly, true) {
+            let message = "*ASSEMBLY appears a second time here";
+            d.push(Diagnostic::error(Code::RepeatedCard, head.span, message));
+        }
+    }
+
+    fn instance(&mut self, head: Card, d: &mut Diagnostics) {
+        if self.place != Place::Assembly {
+            report_open(self.place, head.span, d);
+        }
+        if self.place == Place::Model {
+            let error = Diagnostic::error(
+                Code::WrongPlace,
+                head.span,
+                "*INSTANCE must stand in the assembly",
+            );
+            d.push(error.help("move it between *ASSEMBLY and *END ASSEMBLY"));
+        }
+        self.place = Place::Instance;
+        self.items.push(Item::Instance(head, Vec::new()));
+    }
+
+    /// The end of `place`, behind which cards belong to `outer`.
+    fn end(&mut self, place: Place, outer: Place, card: &Card, d: &mut Diagnostics) {
+        if self.place == Place::Instance && place == Place::Assembly {
+            report_open(self.place, card.span, d);
+        } else if self.place != place {
+            let head = place.head().unwrap_or_default();
+            let message = format!("{} without *{head}", card.title());
+            d.push(Diagnostic::error(
+                Code::AssemblyStructure,
+                card.span,
+                message,
+            ));
+        }
+        self.place = outer;
+    }
+
+    fn other(&mut self, card: Card, d: &mut Diagnostics) {
+        if card.keyword.name == "STEP" {
+            report_open(self.place, card.span, d);
+            self.place = Place::Model;
+        }
+        let misplaced = !self.place.takes(&card);
+        if misplaced && !self.misplaced {
+            self.place.report(&card, d);
+        }
+        self.misplaced = misplaced;
+        let (part, item) = (self.parts.last_mut(), self.items.last_mut());
+        match (self.place, part, item) {
+            (Place::Part, Some(part), _) => part.cards.push(card),
+            (Place::Instance, _, Some(Item::Instance(_, cards))) => cards.push(card),
+            (place, _, _) => self.items.push(Item::Card(card, place)),
+        }
+    }
+}
+
+/// The part of a deck that a card stands in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    /// Outside parts and the assembly.
+    Model,
+    /// A part.
+    Part,
+    /// The assembly, outside its instances.
+    Assembly,
+    /// An instance.
+    Instance,
+}
+
+/// Cards of parts and instances.
+const OF_PARTS: [&str; 6] = [
+    "NODE",
+    "ELEMENT",
+    "NSET",
+    "ELSET",
+    "SURFACE",
+    "SOLID SECTION",
+];
+
+/// Cards of the assembly.
+const OF_ASSEMBLY: [&str; 7] = [
+    "NODE",
+    "ELEMENT",
+    "NSET",
+    "ELSET",
+    "SURFACE",
+    "RIGID BODY",
+    "EQUATION",
+];
+
+impl Place {
+    /// The keyword that begins it; none outside parts and the assembly.
+    pub fn head(self) -> Option<&'static str> {
+        match self {
+            Place::Model => None,
+            Place::Part => Some("PART"),
+            Place::Assembly => Some("ASSEMBLY"),
+            Place::Instance => Some("INSTANCE"),
+        }
+    }
+
+    /// Whether the card may stand here.
+    pub fn takes(self, card: &Card) -> bool {
+        let name = card.keyword.name;
+        if card.keyword.status != Status::Read {
+            return true;
+        }
+        match self {
+            Place::Model => !OF_PARTS.contains(&name),
+            Place::Part | Place::Instance => OF_PARTS.contains(&name),
+            Place::Assembly => OF_ASSEMBLY.contains(&name),
+        }
+    }
+
+    /// Where the card belongs.
+    fn advice(card: &Card) -> &'static str {
+        match (card.keyword.name, card.keyword.scope) {
+            ("SOLID SECTION", _) => "put it between *PART and *END PART",
+            (name, _) if OF_PARTS.contains(&name) => {
+                "in a deck with an assembly it belongs to *PART or *ASSEMBLY"
+            }
+            (_, Scope::Step) => "move it between *STEP and *END STEP",
+            _ => "move it behind *END ASSEMBLY",
+        }
+    }
+
+    /// Reports a card that cannot stand here.
+    pub fn report(self, card: &Card, d: &mut Diagnostics) {
+        let place = match self {
+            Place::Model => "outside parts and the assembly",
+            Place::Part => "in a part",
+            Place::Assembly => "in the assembly",
+            Place::Instance => "in an instance",
+        };
+        let message = format!("{} cannot stand {place}", card.title());
+        let error = Diagnostic::error(Code::WrongPlace, card.span, message);
+        d.push(error.help(Place::advice(card)));
+    }
+}
+
+/// Reports a part, an assembly or an instance whose end is missing before `span`.
+pub(super) fn report_open(place: Place, span: Span, d: &mut Diagnostics) {
+    if let Some(head) = place.head() {
+        let message = format!("the *{head} before is not closed");
+        let error = Diagnostic::error(Code::AssemblyStructure, span, message);
+        d.push(error.help(format!("close it with *END {head}")));
+    }
+}
+
+/// Largest deviation of the axis of a rotation from the normal of the plane, as a part of its
+/// length: numbers of a deck have six digits or more.
+const TILT: f64 = 1e-6;
+
+/// Reads where an instance is; reports what leads out of the plane.
+pub(super) fn placement(card: &Card, d: &mut Diagnostics) -> Placement {
+    let mut rows = card.rows.iter();
+    let translation = rows.next().map(|row| translation(row, d));
+    let rotation = rows.next().and_then(|row| rotation(row, d));
+    if let Some(extra) = rows.next() {
+        let message = "an instance has a translation and a rotation only";
+        d.push(Diagnostic::error(Code::StrayData, extra.span(), message));
+    }
+    Placement {
+        translation: translation.unwrap_or_default(),
+        rotation,
+    }
+}
+
+/// `tx, ty, tz`
+fn translation(row: Row, d: &mut Diagnostics) -> [f64; 2] {
+    row.at_most(3, d);
+    let [x, y, z] = [0, 1, 2].map(|i| row.real_or(i, 0.0, d).unwrap_or(0.0));
+    if z != 0.0 {
+        let span = row.get(2).map_or(row.span(), |field| field.span);
+        out_of_plane(span, "this translation leads out of the plane", d);
+    }
+    [x, y]
+}
+
+/// `x1, y1, z1, x2, y2, z2, angle`: centre, and cosine and sine of the angle.
+fn rotation(row: Row, d: &mut Diagnostics) -> Option<([f64; 2], [f64; 2])> {
+    row.at_most(7, d);
+    let point = |first: usize, d: &mut Diagnostics| {
+        [0, 1, 2].map(|i| row.real_or(first + i, 0.0, d).unwrap_or(0.0))
+    };
+    let (a, b) = (point(0, d), point(3, d));
+    let angle = row.real(6, "the angle in degrees", d)?;
+    let [x, y, z] = [0, 1, 2].map(|i| b[i] - a[i]);
+    if angle == 0.0 {
+        return None;
+    }
+    if x.abs().max(y.abs()) > TILT * z.abs() || z == 0.0 {
+        let message = "the axis of this rotation is not normal to the plane";
+        out_of_plane(row.span(), message, d);
+    }
+    Some(([a[0], a[1]], cosine_and_sine(angle * z.signum())))
+}
+
+/// Cosine and sine of an angle in degrees, exact for quarter turns.
+fn cosine_and_sine(degrees: f64) -> [f64; 2] {
+    match degrees.rem_euclid(360.0) {
+        0.0 => [1.0, 0.0],
+        90.0 => [0.0, 1.0],
+        180.0 => [-1.0, 0.0],
+        270.0 => [0.0, -1.0],
+        other => [other.to_radians().cos(), other.to_radians().sin()],
+    }
+}
+
+fn out_of_plane(span: Span, message: &str, d: &mut Diagnostics) {
+    let error = Diagnostic::error(Code::Placement, span, message);
+    d.push(error.help("the program is plane: instances move in x and y and turn about z"));
+}

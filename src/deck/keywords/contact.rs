@@ -1,0 +1,285 @@
+//! The rows of the keyword table for contact.
+
+use super::common::{NAME, OTHER_NUMBERS};
+use super::types::Quantity::{Of, OrName, Unknown};
+use super::types::{
+    Data, FORCE_PER_VOLUME, Keyword, LENGTH, Parameter as P, STRESS, Scope, Value as V, of, plain,
+    row,
+};
+
+const SMOOTHING: &str = "contact is enforced on the surface as meshed";
+const THERMAL: &str = "There are no temperatures.";
+const GENERAL: &str = "General contact is that of all exterior faces alike.";
+const GENERAL_CONTACT: &str = "*CONTACT\n\
+         *CONTACT INCLUSIONS, ALL EXTERIOR\n\
+         *CONTACT PROPERTY ASSIGNMENT\n\
+         , , DRY";
+const INITIALIZATION: &str = "*CONTACT INITIALIZATION DATA, NAME=FIT\n\
+         *CONTACT\n\
+         *CONTACT INCLUSIONS, ALL EXTERIOR\n\
+         *CONTACT INITIALIZATION ASSIGNMENT\n\
+         , , FIT";
+const CONTACT_CHANGE: &str = "Contacts hold for all steps.";
+const PAIR: &str = "*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE\n\
+         SBOT, STOP";
+
+pub(super) static CONTACT: &[Keyword] = &[
+    Keyword::read(
+        "SURFACE INTERACTION",
+        Scope::Model,
+        Data::Rows(&[row(&[of("thickness", LENGTH)])]),
+        &[
+            NAME,
+            P::optional("TRACKING THICKNESS", SMOOTHING)
+                .measuring(LENGTH)
+                .warned(),
+            P::optional("PAD THICKNESS", "surfaces have no pads").refused(),
+            P::flag("USER", "user interactions are not supported").refused(),
+        ],
+        "Begins an interaction; its laws follow. The out-of-plane thickness on a data line has no \
+         effect (warning unless 1).",
+        "*SURFACE INTERACTION, NAME=DRY\n\
+         *FRICTION\n\
+         0.3",
+    ),
+    Keyword::read(
+        "SURFACE BEHAVIOR",
+        Scope::Block("SURFACE INTERACTION"),
+        Data::Rows(&[
+            row(&[
+                of("k", FORCE_PER_VOLUME),
+                of("tension", STRESS),
+                of("clearance", LENGTH),
+            ])
+            .under("PRESSURE-OVERCLOSURE", "LINEAR"),
+            row(&[of("number", Unknown)]).repeating(1),
+        ]),
+        &[
+            P::choice(
+                "PRESSURE-OVERCLOSURE",
+                &[
+                    V::read("HARD", "no penetration (default)"),
+                    V::warned("LINEAR", "taken as HARD: contact is enforced exactly"),
+                    V::refused("EXPONENTIAL", "soft contact is not supported"),
+                    V::refused("TABULAR", "soft contact is not supported"),
+                    V::refused("SCALE FACTOR", "soft contact is not supported"),
+                    V::refused("TIED", "surfaces cannot be tied yet"),
+                ],
+                "law between pressure and penetration",
+            ),
+            P::flag("DIRECT", "contact is enforced exactly").ignored(),
+            P::optional("PENALTY", "contact is enforced exactly").warned(),
+            P::flag("AUGMENTED LAGRANGE", "contact is enforced exactly").warned(),
+            P::flag("NO SEPARATION", "surfaces always separate").refused(),
+        ],
+        "Normal contact: exact, without penetration; numbers on a data line have no effect (warning).",
+        "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD",
+    ),
+    Keyword::read(
+        "FRICTION",
+        Scope::Block("SURFACE INTERACTION"),
+        Data::Rows(&[
+            row(&[
+                plain("mu at rest"),
+                plain("mu of fast slip"),
+                of("decay", Of("time/length")),
+            ])
+            .under("EXPONENTIAL DECAY", ""),
+            row(&[plain("mu"), of("number", Unknown)]).repeating(1),
+        ]),
+        &[
+            P::flag("LAGRANGE", "sticking is exact").ignored(),
+            P::value("ELASTIC SLIP", "sticking is exact")
+                .measuring(LENGTH)
+                .warned(),
+            P::value("SLIP TOLERANCE", "sticking is exact").warned(),
+            P::flag("ROUGH", "give a large coefficient of friction").refused(),
+            P::value("TAUMAX", "shear stress has no limit but Coulomb's").refused(),
+            P::flag(
+                "EXPONENTIAL DECAY",
+                "mu = mu_k + (mu_s - mu_k) exp(-d_c |slip rate|): the row is mu_s, mu_k, d_c",
+            ),
+            P::flag("TEST DATA", "give mu_s, mu_k and d_c").refused(),
+            P::flag("ANISOTROPIC", "friction is isotropic").refused(),
+            P::flag("USER", "user friction is not supported").refused(),
+        ],
+        "Coulomb's coefficient of friction mu; further fields, a slip rate for Abaqus and a stick \
+         slope for CalculiX, are left out because sticking is exact (warning).",
+        "*FRICTION\n\
+         0.3",
+    ),
+    Keyword::read(
+        "CONTACT PAIR",
+        Scope::Model,
+        Data::Required(&[row(&[plain("slave"), plain("master")])]),
+        &[
+            P::value("INTERACTION", "name of the interaction; required"),
+            P::choice(
+                "TYPE",
+                &[
+                    V::read(
+                        "NODE TO SURFACE",
+                        "slave nodes against master segments (default)",
+                    ),
+                    V::warned("SURFACE TO SURFACE", "taken as NODE TO SURFACE"),
+                    V::warned("MORTAR", "taken as NODE TO SURFACE"),
+                    V::warned("MASSLESS", "taken as NODE TO SURFACE"),
+                ],
+                "discretisation",
+            ),
+            P::flag("SMALL SLIDING", "sliding is finite").warned(),
+            P::value(
+                "ADJUST",
+                "largest clearance, or node set, of the slave nodes that are moved onto the master \
+                 before the start, free of strain; with a clearance those inside the master too",
+            )
+            .measuring(OrName("length")),
+            P::flag("TIED", "surfaces cannot be tied yet").refused(),
+            P::value("EXTENSION ZONE", SMOOTHING).warned(),
+            P::value("SMOOTH", SMOOTHING).warned(),
+            P::value("HCRIT", SMOOTHING).measuring(LENGTH).warned(),
+            P::flag("NO THICKNESS", SMOOTHING).warned(),
+            P::value("TRACKING", SMOOTHING).warned(),
+            P::value("MINIMUM DISTANCE", SMOOTHING).warned(),
+            P::value("GEOMETRIC CORRECTION", SMOOTHING).warned(),
+            P::value("SLIDING TRANSITION", SMOOTHING).warned(),
+            P::value("SUPPLEMENTARY CONSTRAINTS", SMOOTHING).warned(),
+            P::value("MECHANICAL CONSTRAINT", "contact is enforced exactly").warned(),
+            P::value("CPSET", "there are no contact controls").warned(),
+            P::value("WEIGHT", "the slave's nodes meet the master's segments").warned(),
+            P::flag("LINEAR", SMOOTHING).warned(),
+            P::value("OP", "contact pairs hold for all steps").refused(),
+        ],
+        "Slave surface, master surface; one contact per row. The master consists of faces; both \
+         orders of two surfaces may be given. One surface alone touches itself. Nodes that start \
+         inside the master body by more than 0.001 of the shorter of both sides' edges are an \
+         error unless ADJUST= moves them; a pair of which no node faces the master at the start is \
+         a warning.",
+        "*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE\n\
+         SBOT, STOP",
+    ),
+    Keyword::read(
+        "CONTACT",
+        Scope::Model,
+        Data::None,
+        &[P::value("OP", "contacts hold for all steps").refused()],
+        "Begins general contact: every exterior face against every other, of its own body too, and \
+         every exterior node against the rigid surfaces.",
+        GENERAL_CONTACT,
+    ),
+    Keyword::read(
+        "CONTACT INCLUSIONS",
+        Scope::Block("CONTACT"),
+        Data::Rows(&[row(&[plain("surface"), plain("surface")])]),
+        &[P::flag(
+            "ALL EXTERIOR",
+            "all faces that belong to one element only; required",
+        )],
+        "What takes part in general contact: a surface ALL_EXTERIOR is made, which touches itself and \
+         every rigid surface. The nodes of a *CONTACT PAIR with a rigid surface are held by the pair, \
+         with its interaction, and left out of general contact with that surface; rigid surfaces do not \
+         touch each other.",
+        GENERAL_CONTACT,
+    ),
+    Keyword::read(
+        "CONTACT PROPERTY ASSIGNMENT",
+        Scope::Block("CONTACT"),
+        Data::Required(&[row(&[
+            plain("surface"),
+            plain("surface"),
+            plain("interaction"),
+        ])]),
+        &[],
+        "Interaction of general contact: a row of two empty fields, which stand for all surfaces, \
+         and its name. Without it there is no friction.",
+        GENERAL_CONTACT,
+    ),
+    Keyword::read(
+        "CONTACT INITIALIZATION DATA",
+        Scope::BlockOrModel("CONTACT"),
+        Data::None,
+        &[
+            NAME,
+            P::value(
+                "SEARCH ABOVE",
+                "largest clearance of the nodes that are moved (default 0)",
+            )
+            .measuring(LENGTH),
+            P::value(
+                "SEARCH BELOW",
+                "largest depth of the nodes that are moved (default: any)",
+            )
+            .measuring(LENGTH),
+            P::value(
+                "INITIAL CLEARANCE",
+                "clearance that the moved nodes get (default 0)",
+            )
+            .measuring(LENGTH),
+            P::choice(
+                "ADJUST",
+                &[
+                    V::read("YES", "nodes are moved free of strain (default)"),
+                    V::refused("NO", "overlaps cannot be pressed out in a step"),
+                ],
+                "whether nodes are moved",
+            ),
+            P::optional(
+                "INTERFERENCE FIT",
+                "overlaps cannot be pressed out in a step",
+            )
+            .refused(),
+            P::value("SEARCH NSET", "all nodes are searched").refused(),
+        ],
+        "Moves nodes of general contact that start inside another body onto its surface, free of \
+         strain; with SEARCH ABOVE= those above it too. Of two surfaces that mesh into each other the \
+         nodes that lie deepest are moved first, the others only if they are still inside. It acts \
+         where *CONTACT INITIALIZATION ASSIGNMENT names it.",
+        INITIALIZATION,
+    ),
+    Keyword::read(
+        "CONTACT INITIALIZATION ASSIGNMENT",
+        Scope::Block("CONTACT"),
+        Data::Required(&[row(&[
+            plain("surface"),
+            plain("surface"),
+            plain("initialization"),
+        ])]),
+        &[],
+        "Which nodes of general contact are moved before the start: a row of two empty fields, which \
+         stand for all surfaces, and the name of the *CONTACT INITIALIZATION DATA.",
+        INITIALIZATION,
+    ),
+    Keyword::warned("CONTACT CONTROLS", OTHER_NUMBERS),
+    Keyword::warned("CONTACT CONTROLS ASSIGNMENT", OTHER_NUMBERS),
+    Keyword::warned("CONTACT STABILIZATION", OTHER_NUMBERS),
+    Keyword::warned("GAP CONDUCTANCE", THERMAL),
+    Keyword::warned("GAP HEAT GENERATION", THERMAL),
+    Keyword::warned("GAP RADIATION", THERMAL),
+    Keyword::refused("CONTACT EXCLUSIONS", GENERAL).example(GENERAL_CONTACT),
+    Keyword::refused("CONTACT FORMULATION", GENERAL).example(GENERAL_CONTACT),
+    Keyword::refused("SURFACE PROPERTY ASSIGNMENT", GENERAL).example(GENERAL_CONTACT),
+    Keyword::refused("CONTACT CLEARANCE", "Clearances are those of the mesh."),
+    Keyword::refused(
+        "CONTACT CLEARANCE ASSIGNMENT",
+        "Clearances are those of the mesh.",
+    ),
+    Keyword::refused("CLEARANCE", "Clearances are those of the mesh."),
+    Keyword::refused("CONTACT DAMPING", "Contact has no damping."),
+    Keyword::refused(
+        "CONTACT INTERFERENCE",
+        "Nodes are moved before the start with ADJUST= of *CONTACT PAIR or *CONTACT INITIALIZATION DATA \
+         only.",
+    ),
+    Keyword::refused("COHESIVE BEHAVIOR", "Surfaces do not stick to each other."),
+    Keyword::refused("TIE", "Surfaces cannot be tied yet."),
+    Keyword::refused("MODEL CHANGE", CONTACT_CHANGE),
+    Keyword::refused("CHANGE FRICTION", CONTACT_CHANGE),
+    Keyword::refused("CHANGE CONTACT TYPE", CONTACT_CHANGE),
+    Keyword::refused("CHANGE SURFACE BEHAVIOR", CONTACT_CHANGE),
+    Keyword::refused("GAP", "Contact is that of surfaces: use *CONTACT PAIR.").example(PAIR),
+    Keyword::refused(
+        "SLIDE LINE",
+        "Contact is that of surfaces: use *CONTACT PAIR.",
+    )
+    .example(PAIR),
+];

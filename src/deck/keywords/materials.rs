@@ -1,0 +1,235 @@
+//! The rows of the keyword table for materials and sections.
+
+use super::common::{NAME, OTHER_NUMBERS, OTHER_SOLVER};
+use super::types::Quantity::{OfOr, Unknown};
+use super::types::{
+    COMPRESSIBILITY, DENSITY, Data, Keyword, PER_TIME, Parameter as P, STRESS, Scope, TIME,
+    Value as V, of, plain, row,
+};
+
+const ONLY_NEO_HOOKE: &str =
+    "only NEO HOOKE is supported: C10, D1 with C10 = mu/2, D1 = 2/K of small strains";
+const THERMAL_DATA: &str = "Material data of heat conduction without temperatures.";
+const SECTION: &str = "Elements have solid sections: use *SOLID SECTION.";
+const SOLID: &str = "*SOLID SECTION, ELSET=EBASE, MATERIAL=STEEL\n\
+         1.";
+const DENSE: &str = "*DENSITY\n\
+         7.8E-9";
+const INELASTIC: &str = "Materials are elastic: *ELASTIC, or *HYPERELASTIC, NEO HOOKE.";
+const ELASTIC: &str = "*ELASTIC\n\
+         210000., 0.3";
+const DAMPING: &str = "*DAMPING, BETA=1.E-7";
+
+pub(super) static MATERIALS: &[Keyword] = &[
+    Keyword::read(
+        "MATERIAL",
+        Scope::Model,
+        Data::None,
+        &[
+            NAME,
+            P::optional("RTOL", OTHER_SOLVER).warned(),
+            P::value("STRAIN RATE REGULARIZATION", OTHER_SOLVER).measuring(Unknown).warned(),
+            P::optional("SRATE FACTOR", OTHER_SOLVER).warned(),
+        ],
+        "Begins a material; its constants follow.",
+    "*MATERIAL, NAME=STEEL\n\
+         *ELASTIC\n\
+         210000., 0.3\n\
+         *DENSITY\n\
+         7.8E-9"),
+    Keyword::read(
+        "ELASTIC",
+        Scope::Block("MATERIAL"),
+        Data::Required(&[row(&[of("E", STRESS), plain("nu"), plain("temperature")])]),
+        &[P::choice(
+            "TYPE",
+            &[
+                V::read("ISO", "(default)"),
+                V::read("ISOTROPIC", "the same"),
+                V::refused("ORTHO", "only isotropic elasticity is supported"),
+                V::refused("ORTHOTROPIC", "only isotropic elasticity is supported"),
+                V::refused(
+                    "ENGINEERING CONSTANTS",
+                    "only isotropic elasticity is supported",
+                ),
+                V::refused("LAMINA", "only isotropic elasticity is supported"),
+                V::refused("ANISO", "only isotropic elasticity is supported"),
+                V::refused("ANISOTROPIC", "only isotropic elasticity is supported"),
+                V::refused("TRACTION", "only isotropic elasticity is supported"),
+                V::refused("SHEAR", "only isotropic elasticity is supported"),
+            ],
+            "symmetry",
+        )],
+        "E, nu of a St. Venant-Kirchhoff material: second Piola-Kirchhoff stress linear in the \
+         Green-Lagrange strain, as in CalculiX; Abaqus' law agrees for small strains. In plane strain \
+         elements lock from nu = 0.45 on (warning). A temperature in the third field has no effect \
+         (warning).",
+    "*ELASTIC\n\
+         210000., 0.3"),
+    Keyword::read(
+        "HYPERELASTIC",
+        Scope::Block("MATERIAL"),
+        Data::Required(&[row(&[of("C10", STRESS), of("D1", COMPRESSIBILITY), plain("temperature")])]),
+        &[
+            P::flag("NEO HOOKE", "the form of the energy; required"),
+            P::flag("MOONEY-RIVLIN", ONLY_NEO_HOOKE).refused(),
+            P::flag("YEOH", ONLY_NEO_HOOKE).refused(),
+            P::flag("OGDEN", ONLY_NEO_HOOKE).refused(),
+            P::flag("ARRUDA-BOYCE", ONLY_NEO_HOOKE).refused(),
+            P::flag("POLYNOMIAL", ONLY_NEO_HOOKE).refused(),
+            P::flag("REDUCED POLYNOMIAL", ONLY_NEO_HOOKE).refused(),
+            P::flag("MARLOW", ONLY_NEO_HOOKE).refused(),
+            P::flag("VAN DER WAALS", ONLY_NEO_HOOKE).refused(),
+            P::flag("USER", ONLY_NEO_HOOKE).refused(),
+            P::value("N", "order of other forms"),
+            P::flag("TEST DATA INPUT", "give C10 and D1 on the data line").refused(),
+            P::value(
+                "POISSON",
+                "give D1 = 3 (1 - 2 nu)/(2 C10 (1 + nu)) on the data line",
+            )
+            .refused(),
+            P::choice(
+                "MODULI",
+                &[
+                    V::read("INSTANTANEOUS", "(default)"),
+                    V::refused("LONG TERM", "materials have no memory"),
+                ],
+                "moduli that the data line gives",
+            ),
+        ],
+        "C10, D1 of a neo-Hookean material, for large strains in plane strain: U = C10 (Ibar1 - 3) + \
+         (J - 1)^2/D1; at small strains the shear modulus is mu = 2 C10, the bulk modulus K = 2/D1. D1 is \
+         required and positive: an incompressible material (D1 = 0) and plane stress are errors. A \
+         material has *ELASTIC or *HYPERELASTIC. Where (3 K - 2 mu)/(6 K + 2 mu), Poisson's ratio at small \
+         strains, is 0.45 or more, elements lock unless their section has FORMULATION=MEAN DILATATION \
+         (warning). A temperature in the third field has no effect (warning).",
+    "*HYPERELASTIC, NEO HOOKE\n\
+         0.5, 0.04"),
+    Keyword::read(
+        "DENSITY",
+        Scope::Block("MATERIAL"),
+        Data::Required(&[row(&[of("rho", DENSITY), plain("temperature")])]),
+        &[],
+        "Mass per volume; a temperature in the second field has no effect (warning).",
+    "*DENSITY\n\
+         7.8E-9"),
+    Keyword::read(
+        "DAMPING",
+        Scope::BlockOrModel("MATERIAL"),
+        Data::None,
+        &[
+            P::value(
+                "ALPHA",
+                "damping in proportion to the mass: ratio ALPHA/(2 omega) of a mode; also brakes the \
+                 free flight of bodies without support (warning)",
+            ).measuring(PER_TIME),
+            P::value(
+                "BETA",
+                "viscosity in proportion to the moduli of shear and volume at small strains: ratio BETA omega/2 of a \
+                 mode; none in rigid motion, momenta are kept",
+            ).measuring(TIME),
+            P::value(
+                "COMPOSITE",
+                "there are no modes to damp: give ALPHA and BETA",
+            )
+            .refused(),
+            P::value(
+                "STRUCTURAL",
+                "give BETA, which damps in proportion to the rate",
+            )
+            .refused(),
+        ],
+        "Damping of a material (Rayleigh): at least one of ALPHA (1/time) and BETA (time), not \
+         negative. Outside materials it is that of all that have none of their own. What it dissipates is a term of the energy balance.",
+    "*DAMPING, BETA=1.E-7"),
+    Keyword::read(
+        "SOLID SECTION",
+        Scope::Model,
+        Data::Rows(&[row(&[of("thickness", OfOr("length", "1"))])]),
+        &[
+            P::value("ELSET", "elements; required"),
+            P::value("MATERIAL", "material; required"),
+            P::choice(
+                "FORMULATION",
+                &[
+                    V::read("DISPLACEMENT", "strains of the displacements (default)"),
+                    V::read(
+                        "MEAN DILATATION",
+                        "one volume strain per element, for nearly incompressible materials; CPE4 only",
+                    ),
+                ],
+                "how strains follow from the displacements",
+            ),
+            P::value("CONTROLS", OTHER_SOLVER).warned(),
+            P::value("ORIENTATION", "materials are isotropic").refused(),
+            P::flag("NODAL THICKNESS", "the thickness is constant").refused(),
+            P::flag("COMPOSITE", "an element has one material").refused(),
+        ],
+        "Material and thickness (default 1) of elements.",
+    "*SOLID SECTION, ELSET=EBASE, MATERIAL=STEEL\n\
+         1."),
+    Keyword::warned("CONDUCTIVITY", THERMAL_DATA),
+    Keyword::warned("SPECIFIC HEAT", THERMAL_DATA),
+    Keyword::warned("EXPANSION", THERMAL_DATA),
+    Keyword::warned("LATENT HEAT", THERMAL_DATA),
+    Keyword::warned("INELASTIC HEAT FRACTION", THERMAL_DATA),
+    Keyword::warned("ELECTRICAL CONDUCTIVITY", THERMAL_DATA),
+    Keyword::warned("MAGNETIC PERMEABILITY", THERMAL_DATA),
+    Keyword::warned("FLUID CONSTANTS", THERMAL_DATA),
+    Keyword::warned("SPECIFIC GAS CONSTANT", THERMAL_DATA),
+    Keyword::warned("ORIENTATION", "Materials are isotropic."),
+    Keyword::warned("DISTRIBUTION", "Materials and sections are uniform."),
+    Keyword::warned("DISTRIBUTION TABLE", "Materials and sections are uniform."),
+    Keyword::warned("USER OUTPUT VARIABLES", "There are no user subroutines."),
+    Keyword::warned("SECTION CONTROLS", OTHER_NUMBERS),
+    Keyword::refused("SHELL SECTION", SECTION).example(SOLID),
+    Keyword::refused("SHELL GENERAL SECTION", SECTION).example(SOLID),
+    Keyword::refused("BEAM SECTION", SECTION).example(SOLID),
+    Keyword::refused("BEAM GENERAL SECTION", SECTION).example(SOLID),
+    Keyword::refused("MEMBRANE SECTION", SECTION).example(SOLID),
+    Keyword::refused("TRUSS SECTION", SECTION).example(SOLID),
+    Keyword::refused("FRAME SECTION", SECTION).example(SOLID),
+    Keyword::refused("FLUID SECTION", SECTION).example(SOLID),
+    Keyword::refused("COHESIVE SECTION", SECTION).example(SOLID),
+    Keyword::refused("GASKET SECTION", SECTION).example(SOLID),
+    Keyword::refused("SURFACE SECTION", SECTION).example(SOLID),
+    Keyword::refused("REBAR LAYER", SECTION).example(SOLID),
+    Keyword::refused("USER SECTION", SECTION).example(SOLID),
+    Keyword::refused("NODAL THICKNESS", "The thickness of a section is constant: give it under *SOLID SECTION.").example(SOLID),
+    Keyword::refused("NONSTRUCTURAL MASS", "Masses are those of the densities.").example(DENSE),
+    Keyword::refused("HYPERFOAM", INELASTIC).example(ELASTIC),
+    Keyword::refused("HYPOELASTIC", INELASTIC).example(ELASTIC),
+    Keyword::refused("PLASTIC", INELASTIC).example(ELASTIC),
+    Keyword::refused("CYCLIC HARDENING", INELASTIC).example(ELASTIC),
+    Keyword::refused("CREEP", INELASTIC).example(ELASTIC),
+    Keyword::refused("VISCOELASTIC", INELASTIC).example(ELASTIC),
+    Keyword::refused("VISCOUS", INELASTIC).example(ELASTIC),
+    Keyword::refused("DEFORMATION PLASTICITY", INELASTIC).example(ELASTIC),
+    Keyword::refused("MOHR COULOMB", INELASTIC).example(ELASTIC),
+    Keyword::refused("MOHR COULOMB HARDENING", INELASTIC).example(ELASTIC),
+    Keyword::refused("DRUCKER PRAGER", INELASTIC).example(ELASTIC),
+    Keyword::refused("DRUCKER PRAGER HARDENING", INELASTIC).example(ELASTIC),
+    Keyword::refused("CAP PLASTICITY", INELASTIC).example(ELASTIC),
+    Keyword::refused("CLAY PLASTICITY", INELASTIC).example(ELASTIC),
+    Keyword::refused("CRUSHABLE FOAM", INELASTIC).example(ELASTIC),
+    Keyword::refused("CONCRETE", INELASTIC).example(ELASTIC),
+    Keyword::refused("CONCRETE DAMAGED PLASTICITY", INELASTIC).example(ELASTIC),
+    Keyword::refused("BRITTLE CRACKING", INELASTIC).example(ELASTIC),
+    Keyword::refused("CAST IRON PLASTICITY", INELASTIC).example(ELASTIC),
+    Keyword::refused("POROUS METAL PLASTICITY", INELASTIC).example(ELASTIC),
+    Keyword::refused("RATE DEPENDENT", INELASTIC).example(ELASTIC),
+    Keyword::refused("EOS", INELASTIC).example(ELASTIC),
+    Keyword::refused("USER MATERIAL", INELASTIC).example(ELASTIC),
+    Keyword::refused("DEPVAR", INELASTIC).example(ELASTIC),
+    Keyword::refused("COMPRESSION ONLY", INELASTIC).example(ELASTIC),
+    Keyword::refused("NO COMPRESSION", INELASTIC).example(ELASTIC),
+    Keyword::refused("NO TENSION", INELASTIC).example(ELASTIC),
+    Keyword::refused("DAMAGE INITIATION", INELASTIC).example(ELASTIC),
+    Keyword::refused("DAMAGE EVOLUTION", INELASTIC).example(ELASTIC),
+    Keyword::refused("DAMAGE STABILIZATION", INELASTIC).example(ELASTIC),
+    Keyword::refused("SHEAR FAILURE", INELASTIC).example(ELASTIC),
+    Keyword::refused("TENSILE FAILURE", INELASTIC).example(ELASTIC),
+    Keyword::refused("MULLINS EFFECT", INELASTIC).example(ELASTIC),
+    Keyword::refused("MODAL DAMPING", "There are no modes: give *DAMPING of the materials.").example(DAMPING),
+    Keyword::refused("GLOBAL DAMPING", "Give *DAMPING of the materials.").example(DAMPING),
+];

@@ -1,0 +1,361 @@
+//! The rows of the keyword table for files, nodes, elements, sets and surfaces, and for parts,
+//! instances and the assembly.
+
+use super::common::{CAE, HARMLESS, INPUT, NAME};
+use super::types::{
+    AREA, Data, Keyword, LENGTH, Parameter as P, Scope, Value as V, of, plain, row,
+};
+
+const OF_INSTANCE: &str = "in the assembly: the rows are numbers and sets of this instance";
+const SMOOTHING: &str = "contact is enforced on the surface as meshed";
+const NODES: &str = "Give all nodes with *NODE.";
+const NODE_CARD: &str = "*NODE, NSET=NBLOCK\n\
+         11, 1., 1.1\n\
+         12, 3., 1.1\n\
+         13, 3., 2.1\n\
+         14, 1., 2.1";
+const ELEMENTS: &str = "Give all elements with *ELEMENT.";
+const ELEMENT_CARD: &str = "*ELEMENT, TYPE=CPE4, ELSET=EBASE\n\
+         1, 1, 2, 5, 4\n\
+         2, 2, 3, 6, 5";
+const RIGID: &str = "Define it with *SURFACE, TYPE=SEGMENTS and *RIGID BODY.";
+const RIGID_FLOOR: &str = "*NODE, NSET=NREF\n\
+         100, 0., -5.\n\
+         *SURFACE, NAME=FLOOR, TYPE=SEGMENTS\n\
+         START, -4., -1.\n\
+         LINE, 8., -1.\n\
+         *RIGID BODY, ANALYTICAL SURFACE=FLOOR, REF NODE=NREF\n\
+         *BOUNDARY\n\
+         NREF, 1, 2";
+
+pub(super) static MESH: &[Keyword] = &[
+    Keyword::read(
+        "HEADING",
+        Scope::Model,
+        Data::Text,
+        &[],
+        "The title: free text until the next keyword.",
+        "*HEADING\n\
+         block on a fixed base, friction 0.3",
+    ),
+    Keyword::read(
+        "INCLUDE",
+        Scope::Anywhere,
+        Data::None,
+        &[P::value(
+            "INPUT",
+            "path, seen from the including file or else from the main deck",
+        )],
+        "The lines of another file in this place.",
+        "*INCLUDE, INPUT=parts/brass.inc",
+    ),
+    Keyword::read(
+        "NODE",
+        Scope::Model,
+        Data::Rows(&[row(&[
+            plain("node"),
+            of("x", LENGTH),
+            of("y", LENGTH),
+            of("z", LENGTH),
+        ])]),
+        &[
+            P::value("NSET", "node set that takes the nodes"),
+            INPUT,
+            P::choice(
+                "SYSTEM",
+                &[
+                    V::read("R", "rectangular (default)"),
+                    V::refused("C", "cylindrical coordinates are not supported"),
+                    V::refused("S", "spherical coordinates are not supported"),
+                ],
+                "coordinate system",
+            ),
+        ],
+        "Nodes: number (1 to 999 999 999), x, y and a z that is the same for all.",
+        "*NODE, NSET=NBLOCK\n\
+         11, 1., 1.1\n\
+         12, 3., 1.1\n\
+         13, 3., 2.1\n\
+         14, 1., 2.1",
+    ),
+    Keyword::read(
+        "ELEMENT",
+        Scope::Model,
+        Data::Rows(&[row(&[plain("element"), plain("node")]).repeating(1)]),
+        &[
+            P::value(
+                "TYPE",
+                "CPE3, CPS3, CPE4 or CPS4; T3D2, T2D2, B21 or B31 for line elements; required",
+            ),
+            P::value("ELSET", "element set that takes the elements"),
+            INPUT,
+        ],
+        "Elements: number (1 to 999 999 999) and nodes, counter-clockwise; a row may run over several \
+         lines. A line element, as Gmsh writes for boundary curves, has two nodes and names the side \
+         of a plane element between them: sets of them make surfaces and node sets.",
+        "*ELEMENT, TYPE=CPE4, ELSET=EBASE\n\
+         1, 1, 2, 5, 4\n\
+         2, 2, 3, 6, 5",
+    ),
+    Keyword::read(
+        "NSET",
+        Scope::Model,
+        Data::Rows(&[
+            row(&[plain("first"), plain("last"), plain("increment")]).under("GENERATE", ""),
+            row(&[plain("node or node set")]).repeating(1),
+        ]),
+        &[
+            P::value("NSET", "name; required; a name used again adds to the set"),
+            P::flag("GENERATE", "rows are first, last, increment"),
+            P::value("ELSET", "element set whose nodes are taken"),
+            INPUT,
+            P::flag("INTERNAL", CAE).ignored(),
+            P::flag(
+                "UNSORTED",
+                "sets have no order: *EQUATION refuses an unsorted one",
+            ),
+            P::value("INSTANCE", OF_INSTANCE),
+        ],
+        "A node set: nodes and node sets, whole or as ranges.",
+        "*NSET, NSET=NFIX, GENERATE\n\
+         1, 3, 1",
+    ),
+    Keyword::read(
+        "ELSET",
+        Scope::Model,
+        Data::Rows(&[
+            row(&[plain("first"), plain("last"), plain("increment")]).under("GENERATE", ""),
+            row(&[plain("element or element set")]).repeating(1),
+        ]),
+        &[
+            P::value("ELSET", "name; required; a name used again adds to the set"),
+            P::flag("GENERATE", "rows are first, last, increment"),
+            INPUT,
+            P::flag("INTERNAL", CAE).ignored(),
+            P::flag("UNSORTED", "sets have no order").ignored(),
+            P::value("INSTANCE", OF_INSTANCE),
+        ],
+        "An element set: elements and element sets, whole or as ranges.",
+        "*ELSET, ELSET=EALL\n\
+         EBASE, EBLOCK",
+    ),
+    Keyword::read(
+        "SURFACE",
+        Scope::Model,
+        Data::Required(&[
+            row(&[plain("START or LINE"), of("x", LENGTH), of("y", LENGTH)])
+                .saying(0, &["START", "LINE"])
+                .under("TYPE", "SEGMENTS"),
+            row(&[
+                plain("CIRCL"),
+                of("x", LENGTH),
+                of("y", LENGTH),
+                of("xc", LENGTH),
+                of("yc", LENGTH),
+            ])
+            .saying(0, &["CIRCL"])
+            .under("TYPE", "SEGMENTS"),
+            row(&[plain("node or node set"), of("area", AREA)]).under("TYPE", "NODE"),
+            row(&[plain("element or element set"), plain("face")]),
+        ]),
+        &[
+            NAME,
+            P::choice(
+                "TYPE",
+                &[
+                    V::read("ELEMENT", "rows are element or element set, face (default)"),
+                    V::read(
+                        "NODE",
+                        "rows are node or node set, and an area that has no effect (warning unless 1)",
+                    ),
+                    V::read(
+                        "SEGMENTS",
+                        "a rigid profile; rows are START, x, y; LINE, x, y; CIRCL, x, y, xc, yc",
+                    ),
+                    V::refused("CYLINDER", "surfaces of solids are not plane"),
+                    V::refused("REVOLUTION", "surfaces of solids are not plane"),
+                    V::refused("CUTTING SURFACE", "list the faces"),
+                    V::refused("USER", "user surfaces are not supported"),
+                ],
+                "what the surface is made of",
+            ),
+            P::flag("INTERNAL", CAE).ignored(),
+            P::value("TRIM", SMOOTHING).warned(),
+            P::value("MAX RATIO", SMOOTHING).warned(),
+            P::flag("NO THICK", SMOOTHING).warned(),
+            P::flag("NO OFFSET", SMOOTHING).warned(),
+            P::value("FILLET RADIUS", "give the arcs with CIRCL").refused(),
+            P::value("COMBINE", "list the faces in one surface").refused(),
+            P::flag("CROP", "list the faces in one surface").refused(),
+        ],
+        "A surface: faces S1 = side 1-2, S2 = 2-3, S3 = 3-4 (triangle: 3-1), S4 = 4-1; without a \
+         face the free sides, and those that line elements name. The outside of a rigid profile lies on the left of the way from START, \
+         the obstacle on the right; an arc (less than 180 degrees) is cut into equal chords of at \
+         most 1 degree, 3.8e-5 of its radius off the arc at most.",
+        "*SURFACE, NAME=STOP\n\
+         EBASE, S3",
+    ),
+    Keyword::read(
+        "RIGID BODY",
+        Scope::Model,
+        Data::None,
+        &[
+            P::value(
+                "ANALYTICAL SURFACE",
+                "surface of TYPE=SEGMENTS; this or ELSET is required",
+            ),
+            P::value("REF NODE", "node, or node set of one node; required"),
+            P::value("ELSET", "plane elements, whose nodes all move alike"),
+            P::value("NSET", "fix or prescribe all nodes").refused(),
+            P::value("PIN NSET", "fix or prescribe all nodes").refused(),
+            P::value("TIE NSET", "fix or prescribe all nodes").refused(),
+            P::value("ROT NODE", "rotation is not supported").refused(),
+            P::value(
+                "POSITION",
+                "without rotation the place of the node does not matter",
+            )
+            .ignored(),
+            P::optional("ISOTHERMAL", "there are no temperatures").ignored(),
+        ],
+        "Moves a rigid surface, or elements, with a reference node, whose directions 1 and 2 are \
+         prescribed in every step; the body does not turn. Points of a rigid surface become nodes without element, numbered from the \
+         largest node number of the deck on.",
+        "*NODE, NSET=NREF\n\
+         100, 0., -5.\n\
+         *SURFACE, NAME=FLOOR, TYPE=SEGMENTS\n\
+         START, -4., -1.\n\
+         LINE, 8., -1.\n\
+         *RIGID BODY, ANALYTICAL SURFACE=FLOOR, REF NODE=NREF\n\
+         *BOUNDARY\n\
+         NREF, 1, 2",
+    ),
+    Keyword::refused("TRANSFORM", "Directions are those of the axes x and y."),
+    Keyword::refused("SYSTEM", "Give coordinates in the axes x and y."),
+    Keyword::refused("NGEN", NODES).example(NODE_CARD),
+    Keyword::refused("NFILL", NODES).example(NODE_CARD),
+    Keyword::refused("NCOPY", NODES).example(NODE_CARD),
+    Keyword::refused("NMAP", NODES).example(NODE_CARD),
+    Keyword::refused("ELGEN", ELEMENTS).example(ELEMENT_CARD),
+    Keyword::refused("ELCOPY", ELEMENTS).example(ELEMENT_CARD),
+    Keyword::refused(
+        "REFINE MESH",
+        "Write the finer mesh with *NODE and *ELEMENT.",
+    ),
+    Keyword::refused("PARAMETER", "Write numbers, not parameters."),
+    Keyword::refused("RIGID SURFACE", RIGID).example(RIGID_FLOOR),
+    Keyword::refused(
+        "IMPERFECTION",
+        "Write the imperfect coordinates with *NODE.",
+    ),
+    Keyword::refused("USER ELEMENT", "User elements are not supported."),
+    Keyword::refused("MATRIX INPUT", "Matrices are those of the elements."),
+    Keyword::refused("SUPERELEMENT", "Substructures are not supported."),
+    Keyword::refused("SUBMODEL", "Submodels are not supported."),
+    Keyword::refused("CYCLIC SYMMETRY MODEL", "Mesh the whole body."),
+    Keyword::ignored("DISPLAY BODY", HARMLESS),
+    Keyword::ignored("PREPRINT", HARMLESS).of_words(),
+    Keyword::ignored("PHYSICAL CONSTANTS", HARMLESS),
+    Keyword::ignored("NORMAL", "Normals are those of the faces."),
+];
+
+const EXTERNAL: &str = "instances are made of the parts of the deck";
+const PART: &str = "*PART, NAME=BLOCK\n\
+     *NODE\n\
+     1, 0., 0.\n\
+     2, 2., 0.\n\
+     3, 2., 1.\n\
+     4, 0., 1.\n\
+     *ELEMENT, TYPE=CPE4, ELSET=ALL\n\
+     1, 1, 2, 3, 4\n\
+     *SOLID SECTION, ELSET=ALL, MATERIAL=STEEL\n\
+     1.\n\
+     *END PART";
+const ASSEMBLY_OF_TWO: &str = "*ASSEMBLY, NAME=BOTH\n\
+     *INSTANCE, NAME=LOWER, PART=BLOCK\n\
+     *END INSTANCE\n\
+     *INSTANCE, NAME=UPPER, PART=BLOCK\n\
+     1.5, 1.01, 0.\n\
+     1.5, 1.01, 0., 1.5, 1.01, 1., 90.\n\
+     *END INSTANCE\n\
+     *NSET, NSET=NFIX, INSTANCE=LOWER\n\
+     1, 2\n\
+     *SURFACE, NAME=STOP\n\
+     LOWER.ALL, S3\n\
+     *SURFACE, NAME=SBOT\n\
+     UPPER.ALL, S4\n\
+     *END ASSEMBLY";
+const INSTANCE: &str = "*INSTANCE, NAME=UPPER, PART=BLOCK\n\
+     1.5, 1.01, 0.\n\
+     1.5, 1.01, 0., 1.5, 1.01, 1., 90.\n\
+     *END INSTANCE";
+
+pub(super) static ASSEMBLY: &[Keyword] = &[
+    Keyword::read(
+        "PART",
+        Scope::Assembly,
+        Data::None,
+        &[P::value("NAME", "name; required")],
+        "Begins a part: nodes, elements, sets, surfaces and sections that instances copy. Without \
+         instance it is left out with a warning.",
+        PART,
+    ),
+    Keyword::read(
+        "END PART",
+        Scope::Assembly,
+        Data::None,
+        &[],
+        "Ends a part.",
+        PART,
+    ),
+    Keyword::read(
+        "ASSEMBLY",
+        Scope::Assembly,
+        Data::None,
+        &[P::value("NAME", "name; without effect")],
+        "Begins the assembly: instances, and sets and surfaces of their nodes and elements.",
+        ASSEMBLY_OF_TWO,
+    ),
+    Keyword::read(
+        "END ASSEMBLY",
+        Scope::Assembly,
+        Data::None,
+        &[],
+        "Ends the assembly.",
+        ASSEMBLY_OF_TWO,
+    ),
+    Keyword::read(
+        "INSTANCE",
+        Scope::Assembly,
+        Data::Rows(&[
+            row(&[of("x", LENGTH), of("y", LENGTH), of("z", LENGTH)]).first(),
+            row(&[
+                of("x1", LENGTH),
+                of("y1", LENGTH),
+                of("z1", LENGTH),
+                of("x2", LENGTH),
+                of("y2", LENGTH),
+                of("z2", LENGTH),
+                plain("degrees"),
+            ]),
+        ]),
+        &[
+            P::value("NAME", "name; required"),
+            P::value("PART", "the part that is copied; required"),
+            P::value("INSTANCE", EXTERNAL).refused(),
+            P::value("LIBRARY", EXTERNAL).refused(),
+        ],
+        "A copy of a part. The first row is a translation, the second a rotation after it: two \
+         points of its axis, which is normal to the plane, and the angle in degrees. Outside the \
+         part its nodes, elements, sets and surfaces are called `Instance.name`, such as \
+         `Block-1.12`.",
+        INSTANCE,
+    ),
+    Keyword::read(
+        "END INSTANCE",
+        Scope::Assembly,
+        Data::None,
+        &[],
+        "Ends an instance.",
+        INSTANCE,
+    ),
+];

@@ -1,0 +1,306 @@
+//! The rows of the keyword table for steps and their settings.
+
+use super::common::{OTHER_NUMBERS, OTHER_SOLVER};
+use super::types::{Data, FORCE, Keyword, Parameter as P, Scope, TIME, Value as V, of, row};
+
+const UNSCALED: &str = "Masses are not scaled: remove it, implicit increments do not need it.";
+const INTEGRATOR: &str = "the time integration is that of *STICKSLIP, SCHEME=";
+const PROCEDURE: &str = "Steps are dynamic: use *DYNAMIC.";
+const DYNAMIC: &str = "*DYNAMIC, DIRECT\n\
+         1.E-7, 1.E-4";
+
+pub(super) static STEPS: &[Keyword] = &[
+    Keyword::read(
+        "STEP",
+        Scope::Model,
+        Data::Text,
+        &[
+            P::optional_choice(
+                "NLGEOM",
+                &[
+                    V::read("YES", "(default)"),
+                    V::warned("NO", "displacements are large in any case"),
+                ],
+                "large displacements; always on",
+            ),
+            P::value("INC", "the number of increments has no limit").ignored(),
+            P::value("NAME", "name of the step"),
+            P::choice(
+                "AMPLITUDE",
+                &[
+                    V::read("STEP", "at once (default)"),
+                    V::read("RAMP", "linearly over the step"),
+                ],
+                "how loads without amplitude reach their magnitude",
+            ),
+            P::value("UNSYMM", OTHER_SOLVER).warned(),
+            P::value("EXTRAPOLATION", OTHER_SOLVER).warned(),
+            P::value("CONVERT SDI", OTHER_SOLVER).warned(),
+            P::value("SOLVER", OTHER_SOLVER).warned(),
+            P::flag("PERTURBATION", "linear perturbations are not supported").refused(),
+        ],
+        "Begins a step; free text may follow.",
+        "*STEP, NLGEOM, INC=100000\n\
+         *DYNAMIC, DIRECT\n\
+         1.E-7, 1.E-4\n\
+         *END STEP",
+    ),
+    Keyword::read(
+        "END STEP",
+        Scope::Step,
+        Data::None,
+        &[],
+        "Ends a step.",
+        "*STEP, NLGEOM\n\
+         *DYNAMIC, DIRECT\n\
+         1.E-7, 1.E-4\n\
+         *END STEP",
+    ),
+    Keyword::read(
+        "DYNAMIC",
+        Scope::Step,
+        Data::Rows(&[row(&[
+            of("increment", TIME),
+            of("duration", TIME),
+            of("smallest increment", TIME),
+            of("largest increment", TIME),
+        ])]),
+        &[
+            P::optional_choice(
+                "DIRECT",
+                &[
+                    V::read("YES", "(default)"),
+                    V::read("NO", "the same as no DIRECT"),
+                    V::refused(
+                        "NO STOP",
+                        "an increment that does not converge is not accepted",
+                    ),
+                ],
+                "increments of fixed size",
+            ),
+            P::choice(
+                "IMPACT",
+                &[
+                    V::read("NO", "no impact impulses"),
+                    V::read("AVERAGE TIME", "impact impulses"),
+                    V::read("CURRENT TIME", "impact impulses"),
+                ],
+                "what happens at impacts; *STICKSLIP, IMPACT= goes first",
+            ),
+            P::choice(
+                "APPLICATION",
+                &[
+                    V::warned("TRANSIENT FIDELITY", INTEGRATOR),
+                    V::warned("MODERATE DISSIPATION", INTEGRATOR),
+                    V::refused("QUASI-STATIC", "steps are dynamic"),
+                ],
+                "kind of problem",
+            ),
+            P::optional("EXPLICIT", "the time integration is implicit").warned(),
+            P::value("ALPHA", INTEGRATOR).warned(),
+            P::value("BETA", INTEGRATOR).warned(),
+            P::value("GAMMA", INTEGRATOR).warned(),
+            P::value("TIME INTEGRATOR", INTEGRATOR).warned(),
+            P::value("HAFTOL", OTHER_SOLVER).measuring(FORCE).warned(),
+            P::value("HALFINC SCALE FACTOR", OTHER_SOLVER).warned(),
+            P::flag("NOHAF", OTHER_SOLVER).warned(),
+            P::value("INITIAL", OTHER_SOLVER).warned(),
+            P::value("INCREMENTATION", OTHER_SOLVER).warned(),
+            P::value("SINGULAR MASS", OTHER_SOLVER).warned(),
+            P::value("SCALE FACTOR", OTHER_SOLVER).warned(),
+            P::flag("ELEMENT BY ELEMENT", OTHER_SOLVER).warned(),
+            P::flag("FIXED TIME INCREMENTATION", OTHER_SOLVER).warned(),
+            P::flag("DIRECT USER CONTROL", "use DIRECT").refused(),
+            P::value("SOLVER", "use *STICKSLIP, SOLVER=").warned(),
+            P::flag("RELATIVE TO ABSOLUTE", OTHER_SOLVER).warned(),
+        ],
+        "A dynamic step: increment, duration, smallest increment, largest increment. Increments that \
+         fail are halved; none grows beyond the first, with DIRECT or without (a warning without). The \
+         largest increment bounds the first one, and has no effect with DIRECT (warning).",
+        "*DYNAMIC, DIRECT\n\
+         1.E-7, 1.E-4",
+    ),
+    Keyword::read(
+        "STICKSLIP",
+        Scope::Step,
+        Data::None,
+        &[
+            P::choice(
+                "SCHEME",
+                &[
+                    V::read(
+                        "ENERGY-MOMENTUM",
+                        "implicit mid-point, averaged stress (default)",
+                    ),
+                    V::read("SS22", "single-step SS22 with THETA1 and THETA2"),
+                ],
+                "time integration",
+            ),
+            P::value("THETA1", "weight of SS22 on velocity and load (default 1)"),
+            P::value("THETA2", "weight of SS22 on acceleration (default 1)"),
+            P::choice(
+                "IMPACT",
+                &[
+                    V::read("IMPULSE", "impulses stop landing nodes (default)"),
+                    V::read("NONE", "no impulses"),
+                ],
+                "what happens at impacts",
+            ),
+            P::choice(
+                "IMPACT TIME",
+                &[
+                    V::read("INCREMENT", "nodes land within the increment (default)"),
+                    V::read(
+                        "EVENT",
+                        "increments are cut at impacts, where the impulses act",
+                    ),
+                ],
+                "when nodes land",
+            ),
+            P::choice(
+                "LANDING",
+                &[
+                    V::read("PLASTIC", "what landings take is lost (default)"),
+                    V::read(
+                        "RETURN",
+                        "it is given back as kinetic energy (not with SS22)",
+                    ),
+                ],
+                "energy that contact takes at landings",
+            ),
+            P::choice(
+                "CONTACT MASS",
+                &[
+                    V::read("CONSISTENT", "that of the elements (default)"),
+                    V::read(
+                        "REDISTRIBUTED",
+                        "carried by the nodes behind the surface: no node lands with mass",
+                    ),
+                ],
+                "mass of the nodes of contact surfaces, the same in all steps",
+            ),
+            P::choice(
+                "LCP",
+                &[
+                    V::read(
+                        "HYBRID",
+                        "active set, with Lemke's method behind it (default)",
+                    ),
+                    V::read("LEMKE", "Lemke's method at every pass"),
+                ],
+                "solver of the complementarity problem",
+            ),
+            P::choice(
+                "FACTORIZATION",
+                &[
+                    V::read("KEEP", "kept while passes converge quickly (default)"),
+                    V::read("EVERY PASS", "anew at every pass"),
+                ],
+                "when the effective matrix is factored",
+            ),
+            P::choice(
+                "SOLVER",
+                &[
+                    V::read("FAER", "multifrontal LDL^T (default)"),
+                    V::read("SPRS", "sprs-ldl with an AMD permutation"),
+                ],
+                "sparse factorisation",
+            ),
+            P::value(
+                "TOLERANCE",
+                "relative tolerance of an increment's convergence",
+            ),
+            P::value("MAX PASSES", "most passes of an increment"),
+        ],
+        "Settings of this program; they hold for the later steps too. Other codes do not know it.",
+        "*STICKSLIP, IMPACT TIME=EVENT, LANDING=RETURN, TOLERANCE=1.E-10",
+    ),
+    Keyword::read(
+        "NO ANALYSIS",
+        Scope::Anywhere,
+        Data::None,
+        &[],
+        "The deck is read and checked only, as by the command check: no step of it is solved.",
+        "*NO ANALYSIS",
+    ),
+    Keyword::read(
+        "RESTART",
+        Scope::Anywhere,
+        Data::None,
+        &[
+            P::flag(
+                "WRITE",
+                "left out with a warning; the result file keeps all frames",
+            ),
+            P::flag(
+                "READ",
+                "a run cannot be continued: give all steps in one deck",
+            )
+            .refused(),
+            P::value("FREQUENCY", "0 switches restart files off"),
+            P::value("NUMBER INTERVAL", "there are no restart files").ignored(),
+            P::value("STEP", "a run cannot be continued").ignored(),
+            P::value("INC", "a run cannot be continued").ignored(),
+            P::flag("OVERLAY", "there are no restart files").ignored(),
+        ],
+        "There are no restart files: a run goes from the first step to the last. One that ends early leaves \
+         its frames, the last good state among them. FREQUENCY=0 is accepted silently.",
+        "*RESTART, WRITE, FREQUENCY=0",
+    ),
+    Keyword::warned("CONTROLS", OTHER_NUMBERS),
+    Keyword::warned("SOLVER CONTROLS", OTHER_NUMBERS),
+    Keyword::warned("DIAGNOSTICS", OTHER_NUMBERS),
+    Keyword::warned("BULK VISCOSITY", OTHER_NUMBERS),
+    Keyword::refused("VARIABLE MASS SCALING", UNSCALED),
+    Keyword::refused("FIXED MASS SCALING", UNSCALED),
+    Keyword::warned("ADAPTIVE MESH", "The mesh stays as it is."),
+    Keyword::warned("ADAPTIVE MESH CONTROLS", "The mesh stays as it is."),
+    Keyword::refused("STATIC", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("VISCO", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("FREQUENCY", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("COMPLEX FREQUENCY", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("MODAL DYNAMIC", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("BUCKLE", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("STEADY STATE DYNAMICS", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("RESPONSE SPECTRUM", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("RANDOM RESPONSE", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("DIRECT CYCLIC", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("HEAT TRANSFER", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("COUPLED TEMPERATURE-DISPLACEMENT", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("DYNAMIC TEMPERATURE-DISPLACEMENT", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("UNCOUPLED TEMPERATURE-DISPLACEMENT", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("COUPLED THERMAL-ELECTRICAL", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("ELECTROMAGNETICS", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("PIEZOELECTRIC", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("MASS DIFFUSION", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("ACOUSTIC", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("CFD", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("SUBSTRUCTURE GENERATE", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("GREEN", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("SENSITIVITY", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("FEASIBLE DIRECTION", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("ROBUST DESIGN", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("HCF", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("CRACK PROPAGATION", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("ANNEAL", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("GEOSTATIC", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("SOILS", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("DESIGN VARIABLES", "There is no optimisation."),
+    Keyword::refused("DESIGN RESPONSE", "There is no optimisation."),
+    Keyword::refused("OBJECTIVE", "There is no optimisation."),
+    Keyword::refused("CONSTRAINT", "There is no optimisation."),
+    Keyword::refused(
+        "CHANGE MATERIAL",
+        "Materials and sections hold for all steps.",
+    ),
+    Keyword::refused(
+        "CHANGE PLASTIC",
+        "Materials and sections hold for all steps.",
+    ),
+    Keyword::refused(
+        "CHANGE SOLID SECTION",
+        "Materials and sections hold for all steps.",
+    ),
+    Keyword::refused("SELECT CYCLIC SYMMETRY MODES", PROCEDURE).example(DYNAMIC),
+    Keyword::refused("RETAINED NODAL DOFS", PROCEDURE).example(DYNAMIC),
+];

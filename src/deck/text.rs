@@ -1,0 +1,275 @@
+//! Fields and parameter values with their places, read as numbers, names or words.
+//!
+//! Values that are no numbers or names are reported, as are those that Abaqus or CalculiX read
+//! differently. Case and blanks of words do not matter, a unique beginning of at least four letters
+//! suffices, and a likely typing error gets a suggestion.
+
+use super::number;
+use super::number::{LONGEST_NUMBER, NotANumber};
+use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span, closest};
+
+/// Longest name other codes read.
+const LONGEST_NAME: usize = 80;
+
+/// A field or a parameter's value: its text and its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Text<'a> {
+    /// As typed, without blanks around it.
+    pub text: &'a str,
+    /// Where it stands.
+    pub span: Span,
+}
+
+impl<'a> Text<'a> {
+    /// Whether nothing was typed.
+    pub fn is_empty(&self) -> bool {
+        self.text.is_empty()
+    }
+
+    /// Its value as an integer; reports anything else.
+    pub fn integer(&self, d: &mut Diagnostics) -> Option<i64> {
+        let parsed = number::integer(self.text);
+        parsed
+            .map_err(|why| d.push(self.not_a("an integer", why)))
+            .ok()
+    }
+
+    /// Its value as an integer, if it is one; reports nothing.
+    pub fn as_integer(&self) -> Option<i64> {
+        number::integer(self.text).ok()
+    }
+
+    /// Its value as a real number, if it is one; reports nothing.
+    pub fn as_real(&self) -> Option<f64> {
+        number::real(self.text).ok().map(|real| real.value)
+    }
+
+    /// Its value as a real number; reports anything else.
+    pub fn real(&self, d: &mut Diagnostics) -> Option<f64> {
+        match number::real(self.text) {
+            Err(why) => {
+                d.push(self.not_a("a number", why));
+                None
+            }
+            Ok(real) => {
+                self.remark_on_form(real.letterless, d);
+                Some(real.value)
+            }
+        }
+    }
+
+    /// Warns of forms of numbers that other codes read differently, of each once in a deck.
+    fn remark_on_form(&self, letterless: bool, d: &mut Diagnostics) {
+        let message = "an exponent without its letter E";
+        if letterless && !d.has_said(Code::FortranNumber, message) {
+            d.push_once(
+                Diagnostic::warning(Code::FortranNumber, self.span, message)
+                    .label("read as a power of ten"),
+            );
+        }
+        let message = "a number of more than 20 characters";
+        if self.text.len() > LONGEST_NUMBER && !d.has_said(Code::LongNumber, message) {
+            d.push_once(
+                Diagnostic::note(Code::LongNumber, self.span, message)
+                    .help("all of it is read here; CalculiX reads the first 20 characters only"),
+            );
+        }
+    }
+
+    fn not_a(&self, wanted: &str, why: NotANumber) -> Diagnostic {
+        let message = match self.is_empty() {
+            true => format!("expected {wanted}, found nothing"),
+            false => format!("expected {wanted}, found `{}`", self.text),
+        };
+        if let Some(gap) = self.gap_between_numbers() {
+            let diagnostic = Diagnostic::error(Code::BadNumber, gap, message);
+            return diagnostic.label("is a comma missing here?");
+        }
+        let diagnostic = Diagnostic::error(Code::BadNumber, self.span, message);
+        match why {
+            NotANumber::Unexpected(c) if c.is_whitespace() => {
+                diagnostic.label("a blank inside a number")
+            }
+            NotANumber::Unexpected(c) => diagnostic.label(format!("`{c}` does not belong here")),
+            NotANumber::Incomplete => diagnostic,
+            NotANumber::BareExponent => diagnostic
+                .label("an exponent without its number")
+                .help("a comma ends a field: a number has a decimal point, not a decimal comma"),
+            NotANumber::TooLarge => diagnostic.label("too large"),
+        }
+    }
+
+    /// Place of the first blanks, if the field is a list of numbers with blanks between them.
+    fn gap_between_numbers(&self) -> Option<Span> {
+        let start = self.text.find(char::is_whitespace)?;
+        let (before, after) = self.text.split_at(start);
+        let blanks = after.chars().take_while(|c| c.is_whitespace()).count();
+        let mut parts = self.text.split_whitespace();
+        let numbers = parts.all(|part| number::real(part).is_ok());
+        numbers.then(|| Span {
+            column: self.span.column + before.chars().count() as u32,
+            length: blanks as u32,
+            ..self.span
+        })
+    }
+
+    /// Whether it consists of digits only, without point, sign or exponent.
+    pub(crate) fn is_digits(&self) -> bool {
+        !self.is_empty() && self.text.bytes().all(|byte| byte.is_ascii_digit())
+    }
+
+    /// Its value as a name; reports invalid names.
+    pub fn name(&self, d: &mut Diagnostics) -> Option<Name> {
+        let fault = match self.quoted_content() {
+            Some(content) if fits(content) => return Some(Name::quoted(content)),
+            Some(_) => Some("a name has 1 to 80 characters".to_string()),
+            // An open quotation mark is reported already.
+            None if self.text.matches('"').count() % 2 == 1 => return None,
+            None => self.fault_of_plain_name(),
+        };
+        match fault {
+            None => Some(Name::plain(self.text)),
+            Some(fault) => {
+                let message = format!("`{}` cannot be a name", self.text);
+                d.push(Diagnostic::error(Code::BadName, self.span, message).label(fault));
+                None
+            }
+        }
+    }
+
+    /// Key by which its value is compared as a name, valid or not.
+    pub fn name_key(&self) -> String {
+        let quoted = self.quoted_content();
+        quoted.map_or_else(|| fold(self.text), str::to_string)
+    }
+
+    fn quoted_content(&self) -> Option<&'a str> {
+        self.text.strip_prefix('"')?.strip_suffix('"')
+    }
+
+    fn fault_of_plain_name(&self) -> Option<String> {
+        let allowed = |c: &char| c.is_alphanumeric() || " \t_-.+/()".contains(*c);
+        if !fits(self.text) {
+            Some("a name has 1 to 80 characters".to_string())
+        } else if self.as_integer().is_some() {
+            Some("a number, not a name".to_string())
+        } else {
+            let stranger = self.text.chars().find(|c| !allowed(c))?;
+            Some(format!(
+                "`{stranger}` needs quotation marks around the name"
+            ))
+        }
+    }
+}
+
+fn fits(name: &str) -> bool {
+    (1..=LONGEST_NAME).contains(&name.chars().count())
+}
+
+/// A name in a deck: shown as typed, compared without case unless it was quoted.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Name {
+    /// As typed, without quotation marks.
+    pub typed: String,
+    /// As compared: upper case without blanks, or as typed if quoted.
+    pub key: String,
+}
+
+impl Name {
+    /// A name without quotation marks.
+    pub fn plain(typed: &str) -> Name {
+        Name {
+            typed: typed.to_string(),
+            key: fold(typed),
+        }
+    }
+
+    /// A name between quotation marks.
+    pub fn quoted(typed: &str) -> Name {
+        Name {
+            typed: typed.to_string(),
+            key: typed.to_string(),
+        }
+    }
+}
+
+impl std::fmt::Display for Name {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.typed)
+    }
+}
+
+/// Shortest abbreviation that is understood.
+const SHORTEST: usize = 4;
+
+/// How a typed word matches a list of known words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Match {
+    /// It is this one.
+    Exact(&'static str),
+    /// It is the beginning of this one and of no other.
+    Abbreviation(&'static str),
+    /// It is none of them; the one probably meant.
+    Unknown(Option<&'static str>),
+}
+
+/// Upper case without blanks: how words and unquoted names are compared.
+pub(crate) fn fold(word: &str) -> String {
+    folded(word).collect()
+}
+
+fn folded(word: &str) -> impl Iterator<Item = char> {
+    let visible = word.chars().filter(|c| !c.is_whitespace());
+    visible.flat_map(char::to_uppercase)
+}
+
+/// Looks a word up among known ones, blanks and case aside.
+pub(crate) fn find(word: &str, known: impl Iterator<Item = &'static str> + Clone) -> Match {
+    match find_known(word, known.clone()) {
+        Match::Unknown(_) => Match::Unknown(suggestion(&fold(word), known)),
+        found => found,
+    }
+}
+
+/// As [`find`], without a suggestion for an unknown word.
+pub(crate) fn find_known(word: &str, known: impl Iterator<Item = &'static str> + Clone) -> Match {
+    let short = fold(word);
+    if let Some(exact) = known.clone().find(|k| folded(k).eq(short.chars())) {
+        return Match::Exact(exact);
+    }
+    let size = short.chars().count();
+    let begins = |k: &&str| folded(k).take(size).eq(short.chars());
+    let mut longer = known.filter(begins);
+    match (longer.next(), longer.next()) {
+        (Some(only), None) if size >= SHORTEST => Match::Abbreviation(only),
+        _ => Match::Unknown(None),
+    }
+}
+
+/// The known word at the smallest edit distance, if that is small.
+fn suggestion(
+    short: &str,
+    known: impl Iterator<Item = &'static str> + Clone,
+) -> Option<&'static str> {
+    let pairs: Vec<(String, &'static str)> = known.map(|k| (fold(k), k)).collect();
+    let best = closest(short, pairs.iter().map(|(f, _)| f.as_str()))?;
+    pairs.iter().find(|(f, _)| f == best).map(|&(_, k)| k)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_match_without_blanks_and_case() {
+        let known = ["NODE", "NODE FILE", "AMPLITUDE", "END STEP"].into_iter();
+        assert_eq!(find("endstep", known.clone()), Match::Exact("END STEP"));
+        assert_eq!(
+            find("AMPL", known.clone()),
+            Match::Abbreviation("AMPLITUDE")
+        );
+        assert_eq!(find("AMP", known.clone()), Match::Unknown(None));
+        assert_eq!(find("AMPLITUDEXYZ", known.clone()), Match::Unknown(None));
+        assert_eq!(find("AMPLTUDE", known), Match::Unknown(Some("AMPLITUDE")));
+    }
+}

@@ -1,0 +1,476 @@
+//! What stands before the steps: nodes, elements, sets and surfaces, materials and sections,
+//! amplitudes, contacts with their interactions, rigid bodies and equations.
+
+use super::lines::{Lines, name, named, number, set};
+use crate::materials::{Law, NeoHooke, SaintVenantKirchhoff};
+use crate::model::{
+    ALL_EXTERIOR, Adjust, Amplitude, Contact, Curve, Damping, Element, Equation, Face, Formulation,
+    Friction, Interaction, Material, Mesh, Model, Reach, RigidBody, Section, Set, Signal,
+    SurfaceKind, TimeBase,
+};
+
+/// Terms of an equation on a data line.
+const TERMS: usize = 4;
+
+/// Writes what stands before the initial velocities and the steps.
+pub(super) fn write(model: &Model, lines: &mut Lines) {
+    write_mesh(model, lines);
+    write_properties(model, lines);
+    write_amplitudes(&model.amplitudes, lines);
+    write_contacts(model, lines);
+}
+
+/// Writes contacts, rigid bodies and equations.
+fn write_contacts(model: &Model, lines: &mut Lines) {
+    let interactions = Interactions::write(&model.contacts, lines);
+    let all_exterior = all_exterior(model);
+    let is_general = |contact: &&Contact| Some(contact.slave) == all_exterior;
+    for contact in model.contacts.iter().filter(|contact| !is_general(contact)) {
+        pair(contact, &interactions, model, lines);
+    }
+    if let Some(general) = model.contacts.iter().find(is_general) {
+        let interaction = interactions.name(general.interaction);
+        lines.card("CONTACT", []);
+        lines.card("CONTACT INCLUSIONS", ["ALL EXTERIOR".to_owned()]);
+        lines.card("CONTACT PROPERTY ASSIGNMENT", []);
+        lines.row([String::new(), String::new(), interaction]);
+        if let Some(Adjust::Within(reach)) = general.adjust {
+            initialization(reach, lines);
+        }
+    }
+    for &RigidBody { surface, reference } in &model.rigid_bodies {
+        let surface = named("ANALYTICAL SURFACE", &model.surfaces[surface].name);
+        let label = model.mesh.node_labels[reference];
+        lines.card("RIGID BODY", [surface, set("REF NODE", label)]);
+    }
+    rigid_elements(model, lines);
+    for equation in &model.equations {
+        write_equation(equation, model, lines);
+    }
+}
+
+/// Rigid bodies of elements whose reference node belongs to nothing else. The model knows them by
+/// their supports alone: one element that moves with the node keeps the node in the deck.
+fn rigid_elements(model: &Model, lines: &mut Lines) {
+    let mut is_kept = vec![false; first_of_rigid(model)];
+    let of_elements = model.mesh.elements.iter().flat_map(|e| &e.nodes).copied();
+    let of_surfaces = model.rigid_bodies.iter().map(|body| body.reference);
+    let of_equations = model.equations.iter().flat_map(Equation::dofs);
+    for node in of_elements
+        .chain(of_surfaces)
+        .chain(of_equations.map(|dof| dof / 2))
+    {
+        is_kept[node] = true;
+    }
+    let alone = is_kept.iter().enumerate().filter(|(_, kept)| !**kept);
+    for (reference, _) in alone {
+        let follows = |element: &&Element| {
+            let mut nodes = element.nodes.iter();
+            nodes.all(|&node| moves_with(node, reference, model))
+        };
+        if let Some(element) = model.mesh.elements.iter().find(follows) {
+            let label = model.mesh.node_labels[reference];
+            lines.card(
+                "RIGID BODY",
+                [set("ELSET", element.label), set("REF NODE", label)],
+            );
+        }
+    }
+}
+
+/// Whether two nodes are prescribed alike in all steps.
+fn moves_with(node: usize, other: usize, model: &Model) -> bool {
+    model.steps.iter().all(|step| {
+        let motion = |dof: usize| {
+            let found = step
+                .supports
+                .binary_search_by_key(&dof, |support| support.dof);
+            found.ok().map(|index| step.supports[index].motion)
+        };
+        (0..2).all(|i| {
+            let both = [node, other].map(|node| motion(2 * node + i));
+            both[0].is_some() && both[0] == both[1]
+        })
+    })
+}
+
+/// The different interactions in the order of the contacts.
+struct Interactions(Vec<Interaction>);
+
+impl Interactions {
+    fn write(contacts: &[Contact], lines: &mut Lines) -> Self {
+        let mut all = Vec::new();
+        for contact in contacts {
+            if !all.contains(&contact.interaction) {
+                all.push(contact.interaction);
+            }
+        }
+        let interactions = Interactions(all);
+        for &interaction in &interactions.0 {
+            let Interaction { friction } = interaction;
+            lines.card(
+                "SURFACE INTERACTION",
+                [set("NAME", interactions.name(interaction))],
+            );
+            lines.card("SURFACE BEHAVIOR", [set("PRESSURE-OVERCLOSURE", "HARD")]);
+            if friction == Friction::constant(friction.at_rest) {
+                lines.card("FRICTION", []);
+                lines.row([number(friction.at_rest)]);
+            } else {
+                lines.card("FRICTION", ["EXPONENTIAL DECAY".to_string()]);
+                let Friction {
+                    at_rest,
+                    sliding,
+                    decay,
+                } = friction;
+                lines.row([at_rest, sliding, decay].map(number));
+            }
+        }
+        interactions
+    }
+
+    fn name(&self, interaction: Interaction) -> String {
+        let index = self.0.iter().position(|known| *known == interaction);
+        format!("INTERACTION-{}", index.map_or(0, |index| index + 1))
+    }
+}
+
+fn pair(contact: &Contact, interactions: &Interactions, model: &Model, lines: &mut Lines) {
+    let mut parameters = vec![
+        set("INTERACTION", interactions.name(contact.interaction)),
+        set("TYPE", "NODE TO SURFACE"),
+    ];
+    parameters.extend(contact.adjust.map(|adjust| match adjust {
+        Adjust::Within(reach) => set("ADJUST", number(reach.above)),
+        Adjust::Nodes(set) => named("ADJUST", &model.sets.nodes[set].name),
+    }));
+    lines.card_of("CONTACT PAIR", &parameters);
+    let surface = |index: usize| name(&model.surfaces[index].name);
+    match contact.is_self_contact() {
+        true => lines.row([surface(contact.slave)]),
+        false => lines.row([contact.slave, contact.master].map(surface)),
+    }
+}
+
+/// Writes which nodes of general contact are moved before the start.
+fn initialization(reach: Reach, lines: &mut Lines) {
+    const NAME: &str = "INITIALIZATION-1";
+    let mut parameters = vec![set("NAME", NAME), set("SEARCH ABOVE", number(reach.above))];
+    if reach.below.is_finite() {
+        parameters.push(set("SEARCH BELOW", number(reach.below)));
+    }
+    parameters.push(set("INITIAL CLEARANCE", number(reach.clearance)));
+    lines.card_of("CONTACT INITIALIZATION DATA", &parameters);
+    lines.card("CONTACT INITIALIZATION ASSIGNMENT", []);
+    lines.row([String::new(), String::new(), NAME.to_owned()]);
+}
+
+/// Writes -u_dof + sum c_k u_k = 0.
+fn write_equation(equation: &Equation, model: &Model, lines: &mut Lines) {
+    let Equation { dof, terms } = equation;
+    let mut all = vec![(*dof, -1.0)];
+    all.extend(terms);
+    if terms.is_empty() {
+        all.extend(any_other_dof(*dof, model).map(|other| (other, 0.0)));
+    }
+    lines.card("EQUATION", []);
+    lines.row([all.len().to_string()]);
+    for terms in all.chunks(TERMS) {
+        lines.row(terms.iter().flat_map(|&(dof, coefficient)| {
+            let label = model.mesh.node_labels[dof / 2];
+            [
+                label.to_string(),
+                (dof % 2 + 1).to_string(),
+                number(coefficient),
+            ]
+        }));
+    }
+}
+
+/// A dof that no equation eliminates: equations have two terms at least.
+fn any_other_dof(dof: usize, model: &Model) -> Option<usize> {
+    let eliminated = |other: &usize| model.equations.iter().any(|e| e.dof == *other);
+    (0..model.mesh.dof_count()).find(|other| *other != dof && !eliminated(other))
+}
+
+/// Writes nodes, elements, sets and surfaces.
+fn write_mesh(model: &Model, lines: &mut Lines) {
+    let mesh = &model.mesh;
+    nodes(model, lines);
+    for block in mesh
+        .elements
+        .chunk_by(|a, b| a.element_type.name() == b.element_type.name())
+    {
+        elements(block, mesh, lines);
+    }
+    let node_label = |&node: &usize| mesh.node_labels[node];
+    let element_label = |&element: &usize| mesh.elements[element].label;
+    sets("NSET", &model.sets.nodes, node_label, lines);
+    sets("ELSET", &model.sets.elements, element_label, lines);
+    surfaces(model, lines);
+}
+
+/// Index of the first node that belongs to a rigid surface: these nodes come with the surfaces.
+pub(super) fn first_of_rigid(model: &Model) -> usize {
+    let nodes = model.rigid_segments().into_iter().flatten();
+    nodes.min().unwrap_or(model.mesh.node_count())
+}
+
+/// The surface of general contact: the last one, by its name, which touches itself.
+pub(super) fn all_exterior(model: &Model) -> Option<usize> {
+    let last = model.surfaces.len().checked_sub(1)?;
+    let touches_itself = |contact: &Contact| contact.slave == last && contact.master == last;
+    let is_named = model.surfaces[last].name == ALL_EXTERIOR;
+    (is_named && model.contacts.iter().any(touches_itself)).then_some(last)
+}
+
+fn nodes(model: &Model, lines: &mut Lines) {
+    lines.card("NODE", []);
+    let nodes = model.mesh.node_labels.iter().zip(&model.mesh.coordinates);
+    for (label, x) in nodes.take(first_of_rigid(model)) {
+        lines.row([label.to_string(), number(x[0]), number(x[1])]);
+    }
+}
+
+fn elements(elements: &[Element], mesh: &Mesh, lines: &mut Lines) {
+    let Some(first) = elements.first() else {
+        return;
+    };
+    lines.card("ELEMENT", [set("TYPE", first.element_type.name())]);
+    for element in elements {
+        let nodes = element.nodes.iter().map(|&node| mesh.node_labels[node]);
+        lines.row(
+            [element.label]
+                .into_iter()
+                .chain(nodes)
+                .map(|label| label.to_string()),
+        );
+    }
+}
+
+fn sets(keyword: &str, sets: &[Set], label: impl Fn(&usize) -> u64, lines: &mut Lines) {
+    for set in sets {
+        lines.card(keyword, [named(keyword, &set.name)]);
+        let labels: Vec<u64> = set.members.iter().map(&label).collect();
+        lines.list(&labels);
+    }
+}
+
+/// Surfaces but that of general contact, which its card makes.
+fn surfaces(model: &Model, lines: &mut Lines) {
+    let mesh = &model.mesh;
+    let own = all_exterior(model).unwrap_or(model.surfaces.len());
+    for surface in &model.surfaces[..own] {
+        let kind = match surface.kind {
+            SurfaceKind::Faces(_) => "ELEMENT",
+            SurfaceKind::Nodes(_) => "NODE",
+            SurfaceKind::Rigid(_) => "SEGMENTS",
+        };
+        lines.card("SURFACE", [named("NAME", &surface.name), set("TYPE", kind)]);
+        match &surface.kind {
+            SurfaceKind::Faces(faces) => faces
+                .iter()
+                .for_each(|face| lines.row(face_fields(face, mesh))),
+            SurfaceKind::Nodes(nodes) => {
+                for &node in nodes {
+                    lines.row([mesh.node_labels[node].to_string()]);
+                }
+            }
+            SurfaceKind::Rigid(segments) => profile(segments, mesh, lines),
+        }
+    }
+}
+
+fn face_fields(face: &Face, mesh: &Mesh) -> [String; 2] {
+    let label = mesh.elements[face.element].label;
+    [label.to_string(), format!("S{}", face.side + 1)]
+}
+
+/// A rigid profile from its last segment to its first, as the deck gives it.
+fn profile(segments: &[[usize; 2]], mesh: &Mesh, lines: &mut Lines) {
+    let mut end = None;
+    for &[to, from] in segments.iter().rev() {
+        if end != Some(from) {
+            lines.row(point("START", from, mesh));
+        }
+        lines.row(point("LINE", to, mesh));
+        end = Some(to);
+    }
+}
+
+fn point(word: &str, node: usize, mesh: &Mesh) -> [String; 3] {
+    let [x, y] = mesh.coordinates[node].map(number);
+    [word.to_owned(), x, y]
+}
+
+/// The set of exactly these elements.
+pub(super) fn set_of<'m>(elements: &[usize], model: &'m Model) -> Option<&'m str> {
+    let mut sets = model.sets.elements.iter();
+    let found = sets.find(|set| set.members == elements)?;
+    Some(&found.name)
+}
+
+/// A field that names elements: nothing for all of them, a set, or `None` where they make none.
+pub(super) fn elements_field(elements: &[usize], model: &Model) -> Option<String> {
+    match elements.len() == model.mesh.elements.len() {
+        true => Some(String::new()),
+        false => set_of(elements, model).map(name),
+    }
+}
+
+/// Writes materials and sections.
+fn write_properties(model: &Model, lines: &mut Lines) {
+    for material in &model.materials {
+        write_material(material, lines);
+    }
+    for (index, section) in model.sections.iter().enumerate() {
+        write_section(index, section, model, lines);
+    }
+}
+
+fn write_material(material: &Material, lines: &mut Lines) {
+    let Material {
+        name,
+        law,
+        density,
+        damping,
+    } = material;
+    lines.card("MATERIAL", [named("NAME", name)]);
+    write_law(law, lines);
+    // a material that no section names may lack constants
+    if *density > 0.0 {
+        lines.card("DENSITY", []);
+        lines.row([number(*density)]);
+    }
+    let Damping { alpha, beta } = *damping;
+    if alpha != 0.0 || beta != 0.0 {
+        lines.card(
+            "DAMPING",
+            [set("ALPHA", number(alpha)), set("BETA", number(beta))],
+        );
+    }
+}
+
+fn write_law(law: &Law, lines: &mut Lines) {
+    match *law {
+        Law::SaintVenantKirchhoff(SaintVenantKirchhoff { young, poisson }) => {
+            if young > 0.0 {
+                lines.card("ELASTIC", []);
+                lines.row([young, poisson].map(number));
+            }
+        }
+        Law::NeoHooke(NeoHooke { c10, d1 }) => {
+            lines.card("HYPERELASTIC", ["NEO HOOKE".to_owned()]);
+            lines.row([c10, d1].map(number));
+        }
+        #[cfg(test)]
+        Law::Yielding(_) => {}
+    }
+}
+
+fn write_section(index: usize, section: &Section, model: &Model, lines: &mut Lines) {
+    let Section {
+        material,
+        thickness,
+    } = *section;
+    let elements = model.mesh.elements.iter().enumerate();
+    let members: Vec<usize> = elements
+        .filter(|(_, e)| e.section == index)
+        .map(|(i, _)| i)
+        .collect();
+    let set_name = set_of(&members, model).map(str::to_owned);
+    let set_name = set_name.unwrap_or_else(|| new_set(index, &members, model, lines));
+    let is_mean = |&element: &usize| {
+        model.mesh.elements[element].element_type.formulation == Formulation::MeanDilatation
+    };
+    let formulation = match members.iter().any(is_mean) {
+        true => "MEAN DILATATION",
+        false => "DISPLACEMENT",
+    };
+    lines.card(
+        "SOLID SECTION",
+        [
+            named("ELSET", &set_name),
+            named("MATERIAL", &model.materials[material].name),
+            set("FORMULATION", formulation),
+        ],
+    );
+    lines.row([number(thickness)]);
+}
+
+/// Writes a set of the elements of a section, which no set of the model holds.
+fn new_set(index: usize, members: &[usize], model: &Model, lines: &mut Lines) -> String {
+    let name = format!("SECTION-{}", index + 1);
+    lines.card("ELSET", [named("ELSET", &name)]);
+    let labels: Vec<u64> = members
+        .iter()
+        .map(|&e| model.mesh.elements[e].label)
+        .collect();
+    lines.list(&labels);
+    name
+}
+
+/// Points on a data line.
+const POINTS: usize = 4;
+
+/// Writes all amplitudes.
+fn write_amplitudes(amplitudes: &[Amplitude], lines: &mut Lines) {
+    for Amplitude { name, time, curve } in amplitudes {
+        let time = match time {
+            TimeBase::Step => "STEP TIME",
+            TimeBase::Total => "TOTAL TIME",
+        };
+        let parameters = [
+            named("NAME", name),
+            set("TIME", time),
+            set("DEFINITION", definition(curve)),
+        ];
+        lines.card("AMPLITUDE", parameters);
+        match curve {
+            Curve::Linear(points) | Curve::SmoothStep(points) => pairs(points, lines),
+            Curve::Signal {
+                start,
+                base,
+                signal,
+            } => write_signal(*start, *base, signal, lines),
+        }
+    }
+}
+
+fn definition(curve: &Curve) -> &'static str {
+    match curve {
+        Curve::Linear(_) => "TABULAR",
+        Curve::SmoothStep(_) => "SMOOTH STEP",
+        Curve::Signal { signal, .. } => match signal {
+            Signal::Periodic { .. } => "PERIODIC",
+            Signal::Decay { .. } => "DECAY",
+            Signal::Modulated { .. } => "MODULATED",
+        },
+    }
+}
+
+fn pairs(pairs: &[(f64, f64)], lines: &mut Lines) {
+    for pairs in pairs.chunks(POINTS) {
+        lines.row(pairs.iter().flat_map(|&(a, b)| [a, b]).map(number));
+    }
+}
+
+fn write_signal(start: f64, base: f64, signal: &Signal, lines: &mut Lines) {
+    match signal {
+        Signal::Periodic {
+            frequency,
+            harmonics,
+        } => {
+            let numbers = [*frequency, start, base].map(number);
+            lines.row([harmonics.len().to_string()].into_iter().chain(numbers));
+            pairs(harmonics, lines);
+        }
+        Signal::Decay { size, time } => lines.row([base, *size, start, *time].map(number)),
+        Signal::Modulated {
+            size,
+            frequencies: [w1, w2],
+        } => {
+            lines.row([base, *size, start, *w1, *w2].map(number));
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! Whether the model makes sense as a whole: increments and duration against the time that waves take,
+//! something that moves, damping of bodies in free flight, slaves that contact cannot move, and the
+//! thickness of both sides of a contact.
+
+use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::model::{
+    ALL_EXTERIOR, Bodies, Contact, Element, Equation, Load, Mesh, Model, Plane, Step,
+    SupportMotion, SurfaceKind,
+};
+use crate::reader::context::Context;
+use crate::reader::outline::StepCards;
+use crate::reader::sections::Properties;
+use crate::reader::surfaces::Surfaces;
+use std::collections::BTreeSet;
+
+/// Sides that waves cross in one increment, above which the increment cannot be meant: implicit
+/// increments of slow motions reach some thousands.
+const MOST_SIDES: f64 = 1e6;
+
+/// The shortest side of an element, and the shortest time in which a wave crosses a side.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shortest {
+    /// Length; infinite without elements.
+    pub side: f64,
+    /// Time; none without a material.
+    pub time: Option<f64>,
+}
+
+/// The shortest side, and the shortest time in which a wave crosses one.
+pub(crate) fn shortest(mesh: &Mesh, properties: &Properties) -> Shortest {
+    // elements of a section in plane stress and in plane strain; at last those without section
+    let planes = [Plane::Stress, Plane::Strain];
+    let last = planes.len() * properties.sections.len();
+    let group = |index: usize, element: &Element| {
+        let section = properties.section_of(index);
+        section
+            .map_or(last, |s| {
+                planes.len() * s + element.element_type.plane as usize
+            })
+            .min(last)
+    };
+    let sides = mesh.shortest_sides(last + 1, group);
+    let speeds = properties.sections.iter().flat_map(|section| {
+        let material = properties.materials.get(section.material);
+        planes.map(|plane| material.map(|material| material.wave_speed(plane)))
+    });
+    let times = sides.iter().zip(speeds);
+    let times = times.filter_map(|(side, speed)| Some(side / speed?));
+    let time = times.reduce(f64::min);
+    Shortest {
+        side: sides.iter().copied().fold(f64::INFINITY, f64::min),
+        time: time.filter(|time| time.is_finite() && *time > 0.0),
+    }
+}
+
+/// Warns about steps that end before a wave has crossed the shortest side of an element, and about
+/// increments in which it crosses more than a million of them; `guide` is the [`shortest`] time.
+pub(crate) fn proportion(
+    steps: &[Step],
+    cards: &[StepCards],
+    guide: Option<f64>,
+    cx: &mut Context,
+) {
+    let Some(guide) = guide.filter(|_| !cx.d.has_errors()) else {
+        return;
+    };
+    for (step, cards) in steps.iter().zip(cards) {
+        let mut procedures = cards.cards.iter();
+        let card = procedures.find(|card| card.keyword.name == "DYNAMIC");
+        let row = card.and_then(|card| card.rows.first());
+        let span = |index: usize| {
+            let field = row.and_then(|row| row.get(index));
+            field.map_or(cards.head.span, |field| field.span)
+        };
+        let (dt, period) = (step.increments.dt, step.increments.period);
+        let (span, message) = if period < guide {
+            let sides = period / guide;
+            (
+                span(1),
+                format!("in this step a wave crosses {sides:.1e} of the shortest element side"),
+            )
+        } else if dt > MOST_SIDES * guide {
+            let sides = dt / guide;
+            (
+                span(0),
+                format!(
+                    "in one increment a wave crosses {sides:.1e} times the shortest element side"
+                ),
+            )
+        } else {
+            continue;
+        };
+        let warning = Diagnostic::warning(Code::OutOfProportion, span, message);
+        cx.d.push(warning.help(format!(
+            "it takes {guide:.2e} for one side: are times, lengths and material in one system of \
+             units?"
+        )));
+    }
+}
+
+/// Warns at the first step about a model in which nothing ever moves.
+pub(crate) fn motion(model: &Model, cards: &[StepCards], cx: &mut Context) {
+    let Some(first) = cards.first().filter(|_| !cx.d.has_errors()) else {
+        return;
+    };
+    let moves = || model.initial_velocity.iter().any(|v| *v != 0.0);
+    if model.steps.iter().any(has_cause) || moves() {
+        return;
+    }
+    let message = "nothing moves: there is no load, no velocity and no prescribed motion";
+    let warning = Diagnostic::warning(Code::NothingToDo, first.head.span, message);
+    cx.d.push(warning.help(
+        "add *DLOAD, *DSLOAD or *CLOAD, a *BOUNDARY that moves, or *INITIAL CONDITIONS, \
+         TYPE=VELOCITY",
+    ));
+}
+
+/// Whether something in a step sets bodies in motion.
+fn has_cause(step: &Step) -> bool {
+    let moves = |motion: SupportMotion| match motion {
+        SupportMotion::Ramp { to } => to != 0.0,
+        SupportMotion::Amplitude { value, .. } | SupportMotion::Rate { value, .. } => value != 0.0,
+    };
+    step.supports.iter().any(|support| moves(support.motion))
+        || acts(&step.point_loads)
+        || acts(&step.body_forces)
+        || acts(&step.pressures)
+        || acts(&step.tractions)
+}
+
+fn acts<T>(loads: &[Load<T>]) -> bool {
+    loads.iter().any(|load| load.magnitude != 0.0)
+}
+
+/// Warns where mass-proportional damping takes momentum from bodies that have no support in a step.
+pub(crate) fn braked_flight(model: &Model, damping_spans: &[Span], cx: &mut Context) {
+    if cx.d.has_errors() || model.materials.iter().all(|m| m.damping.alpha == 0.0) {
+        return;
+    }
+    let bodies = Bodies::new(&model.mesh);
+    let is_held = held_in_all_steps(model, &bodies);
+    let elements = model.mesh.elements.iter().zip(&bodies.of_element);
+    let mut braked = vec![BTreeSet::new(); model.materials.len()];
+    for (element, &body) in elements.filter(|(_, body)| !is_held[**body]) {
+        braked[model.sections[element.section].material].insert(body);
+    }
+    for ((material, braked), &span) in model.materials.iter().zip(&braked).zip(damping_spans) {
+        let count = braked.len();
+        if material.damping.alpha > 0.0 && count > 0 {
+            let bodies = if count == 1 { "a body" } else { "bodies" };
+            let message = format!(
+                "ALPHA of material {} takes momentum from {bodies} without support",
+                material.name
+            );
+            let warning = Diagnostic::warning(Code::BrakedFlight, span, message);
+            cx.d.push(warning.help(
+                "it acts against the velocity, that of free flight too; BETA damps vibration alone \
+                 and keeps momentum",
+            ));
+        }
+    }
+}
+
+/// Whether every body has a node with a support, or an equation, in all steps.
+fn held_in_all_steps(model: &Model, bodies: &Bodies) -> Vec<bool> {
+    let mut is_held = vec![true; bodies.count];
+    let tied: Vec<usize> = model.equations.iter().flat_map(Equation::dofs).collect();
+    for step in &model.steps {
+        let dofs = step.supports.iter().map(|support| support.dof);
+        let mut held = vec![false; bodies.count];
+        for body in dofs
+            .chain(tied.iter().copied())
+            .filter_map(|dof| bodies.of_node[dof / 2])
+        {
+            held[body] = true;
+        }
+        for (is_held, held) in is_held.iter_mut().zip(held) {
+            *is_held &= held;
+        }
+    }
+    is_held
+}
+
+/// Warns about contact pairs of which more than half of the slave nodes are prescribed in both
+/// directions throughout. The clamped end of a surface is common, and does no harm.
+pub(crate) fn fixed_slaves(model: &Model, cx: &mut Context) {
+    if cx.d.has_errors() {
+        return;
+    }
+    let prescribed = prescribed_throughout(&model.steps);
+    let is_fixed = |node: &usize| [0, 1].iter().all(|i| prescribed.contains(&(2 * node + i)));
+    for contact in &model.contacts {
+        let slave = &model.surfaces[contact.slave];
+        if contact.is_self_contact() || slave.name == ALL_EXTERIOR {
+            continue;
+        }
+        let nodes = slave.nodes(&model.mesh);
+        let fixed = nodes.iter().filter(|node| is_fixed(node)).count();
+        if 2 * fixed <= nodes.len() {
+            continue;
+        }
+        let message = format!(
+            "{fixed} of the {} slave nodes of {} are prescribed in both directions",
+            nodes.len(),
+            slave.name,
+        );
+        let warning = Diagnostic::warning(Code::FixedSlave, contact.span, message);
+        cx.d.push(warning.help("contact cannot move them: make the free surface the slave"));
+    }
+}
+
+/// Dofs that are prescribed in all steps.
+fn prescribed_throughout(steps: &[Step]) -> BTreeSet<usize> {
+    let of = |step: &Step| step.supports.iter().map(|support| support.dof).collect();
+    let sets = steps.iter().map(of);
+    let common = sets.reduce(|common: BTreeSet<usize>, of| &common & &of);
+    common.unwrap_or_default()
+}
+
+/// Warns where the two sides of a contact differ in thickness.
+pub(crate) fn thickness(
+    contacts: &[Contact],
+    surfaces: &Surfaces,
+    properties: &Properties,
+    cx: &mut Context,
+) {
+    for contact in contacts {
+        let sides = [contact.slave, contact.master];
+        let [slave, master] = sides.map(|s| range_of_thickness(s, surfaces, properties));
+        if let (Some(slave), Some(master)) = (slave, master)
+            && (slave != master || slave.0 < slave.1 && contact.is_self_contact())
+        {
+            let message = "the two sides of this contact differ in thickness";
+            let warning = Diagnostic::warning(Code::ThicknessMismatch, contact.span, message);
+            cx.d.push(warning.help("the bodies touch over the whole thickness of each"));
+        }
+    }
+}
+
+fn range_of_thickness(
+    surface: usize,
+    surfaces: &Surfaces,
+    properties: &Properties,
+) -> Option<(f64, f64)> {
+    let SurfaceKind::Faces(faces) = &surfaces.all.get(surface)?.kind else {
+        return None;
+    };
+    let all = faces.iter().filter_map(|face| {
+        properties
+            .sections
+            .get(properties.section_of(face.element)?)
+    });
+    let all: Vec<f64> = all.map(|section| section.thickness).collect();
+    let low = all.iter().copied().reduce(f64::min)?;
+    Some((low, all.iter().copied().fold(low, f64::max)))
+}

@@ -1,0 +1,499 @@
+//! `*CONTACT PAIR` and `*CONTACT`, general contact of every exterior face with every other and with the
+//! rigid surfaces; their interactions, and the nodes that general contact moves before the start.
+
+use super::context::Context;
+use super::mesh_index::MeshIndex;
+use super::names::Names;
+use super::outline::{Block, Outline};
+use super::sets::Sets;
+use super::surfaces::{Found, Surfaces};
+use crate::deck::{Card, Name, Row, Text};
+use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::model::{
+    ALL_EXTERIOR, Adjust, Contact, Face, Friction, Interaction, Mesh, Reach, Surface, SurfaceKind,
+};
+use std::collections::{HashMap, HashSet};
+
+/// Reads the contacts with their interactions.
+pub(crate) fn read(
+    outline: &Outline,
+    mesh_index: &MeshIndex,
+    sets: &Sets,
+    surfaces: &mut Surfaces,
+    cx: &mut Context,
+) -> Vec<Contact> {
+    let interactions = Interactions::read(outline, cx);
+    let mut contacts = Vec::new();
+    for card in outline.model_cards("CONTACT PAIR") {
+        let name = card.required("INTERACTION", cx.d);
+        let interaction = name.and_then(|name| interactions.find(name, cx));
+        let adjust = adjust(card, sets, cx);
+        for row in card.rows.iter() {
+            let contact = contact(row, interaction, surfaces, cx);
+            report_adjusted_self_contact(contact.as_ref(), card, cx);
+            contacts.extend(contact.map(|contact| Contact { adjust, ..contact }));
+        }
+    }
+    report_repeated(&contacts, cx);
+    let general = general_contacts(
+        outline,
+        mesh_index,
+        (surfaces, &contacts),
+        &interactions,
+        cx,
+    );
+    if !general.is_empty() {
+        report_pairs(&contacts, surfaces, cx);
+    }
+    contacts.extend(general);
+    contacts
+}
+
+/// A clearance or a node set.
+fn adjust(card: &Card, sets: &Sets, cx: &mut Context) -> Option<Adjust> {
+    let value = card.value("ADJUST")?;
+    match value.as_real() {
+        None => sets.node_names.find(value, cx).map(Adjust::Nodes),
+        Some(clearance) if clearance >= 0.0 => Some(Adjust::Within(Reach {
+            above: clearance,
+            below: f64::INFINITY,
+            clearance: 0.0,
+        })),
+        Some(_) => {
+            let message = format!("the clearance must not be negative, found {}", value.text);
+            cx.error(Code::BadValue, value.span, message);
+            None
+        }
+    }
+}
+
+fn report_adjusted_self_contact(contact: Option<&Contact>, card: &Card, cx: &mut Context) {
+    if card.has("ADJUST") && contact.is_some_and(Contact::is_self_contact) {
+        let message =
+            "the nodes of a surface that touches itself cannot be moved onto it by a pair";
+        let error = Diagnostic::error(Code::SurfaceUse, card.span_of("ADJUST"), message);
+        cx.d.push(error.help("general contact can: *CONTACT INITIALIZATION DATA"));
+    }
+}
+
+/// Reports a second pair of the same slave and master, which would double the contact forces.
+fn report_repeated(contacts: &[Contact], cx: &mut Context) {
+    let mut seen = HashSet::new();
+    for contact in contacts {
+        if !seen.insert((contact.slave, contact.master)) {
+            let message = "this slave and this master are paired already";
+            cx.error(Code::SurfaceUse, contact.span, message);
+        }
+    }
+}
+
+/// `slave, master`; a single surface is in contact with itself.
+fn contact(
+    row: Row,
+    interaction: Option<Interaction>,
+    surfaces: &Surfaces,
+    cx: &mut Context,
+) -> Option<Contact> {
+    row.at_most(2, cx.d);
+    let slave = row.required(0, "the slave surface", cx.d);
+    let slave = slave.and_then(|field| surfaces.find(field, cx));
+    let master = match row.get(1) {
+        Some(field) => surfaces.find(field, cx),
+        None => slave,
+    };
+    let (slave, master) = (slave?, master?);
+    check_use(row, slave, master, cx)?;
+    Some(Contact {
+        slave: slave.0,
+        master: master.0,
+        interaction: interaction?,
+        adjust: None,
+        left_out: Vec::new(),
+        span: row.span(),
+    })
+}
+
+/// Reports surfaces that cannot be slave or master.
+fn check_use(row: Row, slave: Found, master: Found, cx: &mut Context) -> Option<()> {
+    let once = row.get(1).is_none();
+    let name = &master.1.name;
+    let is_of_nodes = matches!(master.1.kind, SurfaceKind::Nodes(_));
+    let (message, help) = if once && is_of_nodes {
+        (
+            format!("surface {name} is made of nodes and cannot touch itself"),
+            "self-contact needs element faces",
+        )
+    } else if !once && slave.0 == master.0 {
+        (
+            format!("surface {name} is slave and master at once"),
+            "for self-contact write its name once",
+        )
+    } else if let SurfaceKind::Rigid(_) = slave.1.kind {
+        (
+            format!("the rigid surface {} cannot be slave", slave.1.name),
+            "a rigid surface is a master: write the other surface first",
+        )
+    } else if is_of_nodes {
+        (
+            format!("the master surface {name} is made of nodes"),
+            "a master is made of element faces; the slave may be made of nodes",
+        )
+    } else {
+        return Some(());
+    };
+    cx.d.push(Diagnostic::error(Code::SurfaceUse, master.2, message).help(help));
+    None
+}
+
+/// The interactions of the deck by their names.
+struct Interactions {
+    names: Names,
+    /// In the order of their names.
+    all: Vec<Interaction>,
+}
+
+impl Interactions {
+    /// Reads all interactions.
+    pub fn read(outline: &Outline, cx: &mut Context) -> Self {
+        let mut names = Names::new("surface interaction");
+        let mut all = Vec::new();
+        for block in outline.blocks("SURFACE INTERACTION") {
+            let Some(name) = names.new_name(block.head, cx) else {
+                continue;
+            };
+            if let Some(friction) = friction(block, cx) {
+                all.push(Interaction { friction });
+                names.define(name);
+            } else {
+                names.spoil(&name);
+            }
+        }
+        Interactions { names, all }
+    }
+
+    /// The interaction of a name; reports an undefined one.
+    pub fn find(&self, name: Text, cx: &mut Context) -> Option<Interaction> {
+        let index = self.names.find(name, cx)?;
+        self.all.get(index).copied()
+    }
+}
+
+/// Friction of an interaction; `None` after a reported error.
+fn friction(block: &Block, cx: &mut Context) -> Option<Friction> {
+    let behaviors = block.parts_of("SURFACE BEHAVIOR");
+    cx.only_once(&behaviors);
+    behaviors
+        .iter()
+        .for_each(|card| warn_of_behavior_data(card, cx));
+    out_of_plane_thickness(block.head, cx);
+    let cards = block.parts_of("FRICTION");
+    cx.only_once(&cards);
+    match cards.first() {
+        None => Some(Friction::default()),
+        Some(card) if card.faulty => None,
+        Some(card) => law(card, cx),
+    }
+}
+
+/// Warns that the data of a pressure-overclosure law have no effect, as contact is exact; LINEAR
+/// has a warning of its own.
+fn warn_of_behavior_data(card: &Card, cx: &mut Context) {
+    if let (Some(row), None | Some("HARD")) =
+        (card.rows.first(), card.choice("PRESSURE-OVERCLOSURE"))
+    {
+        let message = "this data line has no effect";
+        let warning = Diagnostic::warning(Code::IgnoredParameter, row.span(), message);
+        cx.d.push_once(warning.help("contact is enforced exactly: it needs no numbers"));
+    }
+}
+
+/// `[thickness]` under `*SURFACE INTERACTION`; 1 is the default of other codes.
+fn out_of_plane_thickness(head: &Card, cx: &mut Context) {
+    let Some(row) = head.rows.first() else { return };
+    row.at_most(1, cx.d);
+    let thickness = row.real_or(0, 1.0, cx.d);
+    if thickness.is_some_and(|thickness| thickness != 1.0) {
+        let help = "the bodies touch over the thickness of their sections";
+        row.without_effect(0, "this thickness has no effect", help, cx.d);
+    }
+    if let Some(extra) = head.rows.get(1) {
+        let message = "*SURFACE INTERACTION takes one data line at most";
+        cx.error(Code::StrayData, extra.span(), message);
+    }
+}
+
+/// `mu[, ...]`, or with EXPONENTIAL DECAY `mu at rest, mu sliding, decay`.
+fn law(card: &Card, cx: &mut Context) -> Option<Friction> {
+    let Some(row) = card.rows.first() else {
+        cx.error(
+            Code::MissingData,
+            card.span,
+            "*FRICTION needs the coefficient of friction",
+        );
+        return None;
+    };
+    if let Some(second) = card.rows.get(1) {
+        let message = "friction that depends on slip rate, pressure or temperature cannot be used";
+        cx.error(Code::UnsupportedParameter, second.span(), message);
+    }
+    if card.has("EXPONENTIAL DECAY") {
+        row.at_most(3, cx.d);
+        let at_rest = not_negative(row, 0, "the coefficient of friction at rest", cx);
+        let sliding = not_negative(row, 1, "the coefficient of sliding friction", cx);
+        let decay = not_negative(row, 2, "the decay of friction", cx);
+        return Some(Friction {
+            at_rest: at_rest?,
+            sliding: sliding?,
+            decay: decay?,
+        });
+    }
+    let friction = not_negative(row, 0, "the coefficient of friction", cx)?;
+    let message = "only the coefficient of friction is read here";
+    let help = "sticking is exact: it needs no stick slope or slip rate";
+    row.without_effect(1, message, help, cx.d);
+    Some(Friction::constant(friction))
+}
+
+/// A field that is not negative; `what` it is.
+fn not_negative(row: Row, index: usize, what: &str, cx: &mut Context) -> Option<f64> {
+    let field = row.required(index, what, cx.d)?;
+    let value = field.real(cx.d)?;
+    if value < 0.0 {
+        let message = format!("{what} must not be negative, found {}", field.text);
+        cx.error(Code::FrictionRange, field.span, message);
+        return None;
+    }
+    Some(value)
+}
+
+/// Reads general contact and adds its surface: contact of the surface with itself and with every
+/// rigid surface, there without the slave nodes of contact pairs.
+fn general_contacts(
+    outline: &Outline,
+    mesh_index: &MeshIndex,
+    (surfaces, pairs): (&mut Surfaces, &[Contact]),
+    interactions: &Interactions,
+    cx: &mut Context,
+) -> Vec<Contact> {
+    let mut all = Vec::new();
+    if let Some(general) = general(outline, mesh_index, surfaces, interactions, cx) {
+        for &(master, _) in &surfaces.rigid {
+            let left_out = paired(master, pairs, surfaces, mesh_index);
+            all.push(Contact {
+                master,
+                left_out,
+                ..general.clone()
+            });
+        }
+        all.insert(0, general);
+    }
+    all
+}
+
+/// Slave nodes of the contact pairs with a rigid surface, increasing.
+fn paired(
+    rigid: usize,
+    pairs: &[Contact],
+    surfaces: &Surfaces,
+    mesh_index: &MeshIndex,
+) -> Vec<usize> {
+    let pairs = pairs.iter().filter(|pair| pair.master == rigid);
+    let slaves = pairs.filter_map(|pair| surfaces.all.get(pair.slave));
+    let mut nodes: Vec<usize> = slaves
+        .flat_map(|slave| slave.nodes(&mesh_index.mesh))
+        .collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
+/// The contact of all exterior faces with each other.
+fn general(
+    outline: &Outline,
+    mesh_index: &MeshIndex,
+    surfaces: &mut Surfaces,
+    interactions: &Interactions,
+    cx: &mut Context,
+) -> Option<Contact> {
+    let blocks: Vec<&Block> = outline.blocks("CONTACT").collect();
+    let heads: Vec<&Card> = blocks.iter().map(|block| block.head).collect();
+    cx.only_once(&heads);
+    let block = blocks.first()?;
+    let span = inclusions(block, cx);
+    let assigned = assignment(block, interactions, cx);
+    let adjust = initialization(outline, block, cx);
+    let span = span?;
+    if surfaces.names.is_defined(&Name::plain(ALL_EXTERIOR)) {
+        let message = format!("the deck has a surface {ALL_EXTERIOR} of its own");
+        let error = Diagnostic::error(Code::RepeatedName, span, message);
+        cx.d.push(error.help("rename it: general contact makes a surface of this name"));
+        return None;
+    }
+    let surface = surfaces.all.len();
+    surfaces.all.push(Surface {
+        name: ALL_EXTERIOR.to_string(),
+        kind: SurfaceKind::Faces(exterior(&mesh_index.mesh)),
+    });
+    Some(Contact {
+        slave: surface,
+        master: surface,
+        interaction: assigned.ok()?,
+        adjust: adjust.ok()?,
+        left_out: Vec::new(),
+        span,
+    })
+}
+
+/// Reports contact pairs of faces, which general contact includes; pairs with a rigid surface take
+/// precedence for their nodes.
+fn report_pairs(pairs: &[Contact], surfaces: &Surfaces, cx: &mut Context) {
+    let is_rigid = |pair: &Contact| {
+        let master = surfaces.all.get(pair.master);
+        master.is_some_and(|master| matches!(master.kind, SurfaceKind::Rigid(_)))
+    };
+    for pair in pairs.iter().filter(|pair| !is_rigid(pair)) {
+        let message = "general contact holds between these surfaces already";
+        let error = Diagnostic::error(Code::GeneralContact, pair.span, message);
+        cx.d.push(error.help("leave out the pair or *CONTACT: their forces would add up"));
+    }
+}
+
+/// Place of `ALL EXTERIOR`; `None` after a reported error.
+fn inclusions(block: &Block, cx: &mut Context) -> Option<Span> {
+    let cards = block.parts_of("CONTACT INCLUSIONS");
+    cx.only_once(&cards);
+    let help = "write *CONTACT INCLUSIONS, ALL EXTERIOR";
+    let (span, message) = match cards.first() {
+        None if cx.may_lack_cards() => return None,
+        None => (block.head.span, "*CONTACT includes no surfaces"),
+        Some(card) if card.faulty => return None,
+        Some(card) if !card.has("ALL EXTERIOR") => (card.span, "only ALL EXTERIOR can be included"),
+        Some(card) => match card.rows.first() {
+            None => return Some(card.span),
+            Some(row) => (row.span(), "only ALL EXTERIOR can be included"),
+        },
+    };
+    cx.d.push(Diagnostic::error(Code::GeneralContact, span, message).help(help));
+    None
+}
+
+/// The interaction of all surfaces, the last one assigned; an error is reported.
+fn assignment(
+    block: &Block,
+    interactions: &Interactions,
+    cx: &mut Context,
+) -> Result<Interaction, ()> {
+    let mut assigned = Ok(Interaction::default());
+    for card in block.parts_of("CONTACT PROPERTY ASSIGNMENT") {
+        for row in card.rows.iter() {
+            assigned = assigned_in(row, interactions, cx).ok_or(());
+        }
+    }
+    assigned
+}
+
+/// `, , interaction`
+fn assigned_in(row: Row, interactions: &Interactions, cx: &mut Context) -> Option<Interaction> {
+    let name = of_all_surfaces(row, "the interaction", cx)?;
+    interactions.find(name, cx)
+}
+
+/// All faces that belong to one element only, chain by chain along the boundaries.
+fn exterior(mesh: &Mesh) -> Vec<Face> {
+    let free = mesh.exterior_faces();
+    let mut starts: HashMap<usize, Vec<usize>> = HashMap::new();
+    for (i, face) in free.iter().enumerate() {
+        starts.entry(face.nodes(mesh)[0]).or_default().push(i);
+    }
+    let mut taken = vec![false; free.len()];
+    let mut chained = Vec::with_capacity(free.len());
+    for first in 0..free.len() {
+        let mut next = Some(first).filter(|&i| !taken[i]);
+        while let Some(i) = next {
+            taken[i] = true;
+            chained.push(free[i]);
+            let at_end = starts.get(&free[i].nodes(mesh)[1]).into_iter().flatten();
+            next = at_end.copied().find(|&face| !taken[face]);
+        }
+    }
+    chained
+}
+
+/// What the last assignment in the block of `*CONTACT` asks for; an error is reported.
+fn initialization(
+    outline: &Outline,
+    block: &Block,
+    cx: &mut Context,
+) -> Result<Option<Adjust>, ()> {
+    let (names, all) = data(outline, block, cx);
+    let mut assigned = Ok(None);
+    for card in block.parts_of("CONTACT INITIALIZATION ASSIGNMENT") {
+        for row in card.rows.iter() {
+            let name = of_all_surfaces(row, "the contact initialization", cx);
+            let index = name.and_then(|name| names.find(name, cx));
+            let reach = index.and_then(|index| all.get(index).copied());
+            assigned = reach.map(|reach| Some(Adjust::Within(reach))).ok_or(());
+        }
+    }
+    assigned
+}
+
+/// All data of initialization by their names, which may stand in the block or outside.
+fn data(outline: &Outline, block: &Block, cx: &mut Context) -> (Names, Vec<Reach>) {
+    const KEYWORD: &str = "CONTACT INITIALIZATION DATA";
+    let (mut names, mut all) = (Names::new("contact initialization"), Vec::new());
+    for card in [outline.model_cards(KEYWORD), block.parts_of(KEYWORD)].concat() {
+        let Some(name) = names.new_name(card, cx) else {
+            continue;
+        };
+        match reach(card, cx) {
+            Some(reach) => {
+                all.push(reach);
+                names.define(name);
+            }
+            None => names.spoil(&name),
+        }
+    }
+    (names, all)
+}
+
+/// Which nodes are moved and where to: those inside, unless the card says more.
+fn reach(card: &Card, cx: &mut Context) -> Option<Reach> {
+    let mut or = |name: &str, default: f64| match card.has(name) {
+        true => length(card, name, cx),
+        false => Some(default),
+    };
+    let (above, below) = (or("SEARCH ABOVE", 0.0), or("SEARCH BELOW", f64::INFINITY));
+    let clearance = or("INITIAL CLEARANCE", 0.0);
+    (!card.faulty).then_some(())?;
+    Some(Reach {
+        above: above?,
+        below: below?,
+        clearance: clearance?,
+    })
+}
+
+/// A parameter that is not negative.
+fn length(card: &Card, name: &str, cx: &mut Context) -> Option<f64> {
+    let text = card.value(name)?;
+    let value = text.real(cx.d)?;
+    if value < 0.0 {
+        let message = format!("{name} must not be negative, found {}", text.text);
+        cx.error(Code::BadValue, text.span, message);
+        return None;
+    }
+    Some(value)
+}
+
+/// The name in `, , name`, where `what` it names; the empty fields stand for all surfaces.
+fn of_all_surfaces<'a>(row: Row<'a>, what: &str, cx: &mut Context) -> Option<Text<'a>> {
+    row.at_most(3, cx.d);
+    let mut named = (0..2).filter_map(|i| row.get(i));
+    if let Some(field) = named.find(|field| field.name_key() != "ALLEXTERIOR") {
+        let message = "only the assignment to all surfaces is supported";
+        let error = Diagnostic::error(Code::GeneralContact, field.span, message);
+        cx.d.push(error.help("leave the first two fields empty"));
+        return None;
+    }
+    row.required(2, what, cx.d)
+}

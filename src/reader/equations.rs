@@ -1,0 +1,325 @@
+//! `*EQUATION`: linear equations between displacements, sum a_k u_k = 0, solved for their first
+//! terms. Section 3 of docs/theory.md.
+
+use super::boundary::{Direction, Targets, direction};
+use super::context::Context;
+use super::outline::Outline;
+use crate::deck::{Card, Row, Text};
+use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::model::{Equation, Step, Support};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Terms on a data line; each takes three fields.
+const TERMS_PER_LINE: usize = 4;
+
+/// Sum of velocities, relative to its largest terms, that counts as zero.
+const ROUND_OFF: f64 = 1e-12;
+
+/// Largest ratio of two displacements of an equation, and the inverse of the smallest: its square, which stiffness
+/// and mass are multiplied by, and their products stay within the range of numbers.
+const LARGEST_RATIO: f64 = 1e50;
+
+/// A term of an equation, or of those of all nodes of a set.
+struct Term {
+    /// Nodes, in the order of their numbers.
+    nodes: Vec<usize>,
+    direction: usize,
+    coefficient: f64,
+    span: Span,
+}
+
+/// An equation of single dofs, u_dof = sum c_k u_k.
+struct Solved {
+    terms: Vec<(usize, f64)>,
+    span: Span,
+}
+
+/// Equations by the dofs that they eliminate.
+type ByDof = BTreeMap<usize, Solved>;
+
+/// Reads all equations with their places: those between eliminated dofs are substituted into each
+/// other.
+pub(crate) fn read(
+    outline: &Outline,
+    targets: Targets,
+    steps: &[Step],
+    cx: &mut Context,
+) -> Vec<(Equation, Span)> {
+    let mut solved = ByDof::new();
+    for card in outline.model_cards("EQUATION") {
+        let mut rows = card.rows.iter();
+        while let Some(row) = rows.next() {
+            let Some(terms) = terms(card, row, &mut rows, targets, cx) else {
+                break;
+            };
+            let terms: Option<Vec<Term>> = terms.into_iter().collect();
+            if let Some(terms) = terms {
+                solve(&terms, &mut solved, targets, cx);
+            }
+        }
+    }
+    report_prescribed(&solved, steps, targets, cx);
+    substituted(solved, targets, cx)
+}
+
+/// The terms of one equation without faulty ones; line `head` holds their number. `None` when it is
+/// unclear where the next equation begins.
+fn terms<'r>(
+    card: &Card,
+    head: Row,
+    rows: &mut impl Iterator<Item = Row<'r>>,
+    targets: Targets,
+    cx: &mut Context,
+) -> Option<Vec<Option<Term>>> {
+    let count = number_of_terms(head, cx)?;
+    let (mut terms, mut read) = (Vec::new(), 0);
+    while read < count {
+        let Some(row) = rows.next() else {
+            if !card.faulty && !cx.deck.incomplete {
+                let message = format!("an equation of {count} terms ends after {read}");
+                cx.error(Code::MissingData, head.span(), message);
+            }
+            return None;
+        };
+        let most = TERMS_PER_LINE.min(count - read);
+        let on_line = row.fields().count().div_ceil(3).clamp(1, most);
+        row.at_most(3 * most, cx.d);
+        for k in 0..on_line {
+            terms.push(term(row, 3 * k, targets, cx));
+        }
+        read += on_line;
+    }
+    Some(terms)
+}
+
+/// `number of terms`
+fn number_of_terms(row: Row, cx: &mut Context) -> Option<usize> {
+    row.at_most(1, cx.d);
+    let field = row.required(0, "the number of terms", cx.d)?;
+    let count = field.integer(cx.d)?;
+    if count < 2 {
+        let message = format!("an equation has two terms at least, found {count}");
+        let error = Diagnostic::error(Code::BadEquation, field.span, message);
+        cx.d.push(error.help("a displacement that is zero is prescribed with *BOUNDARY"));
+        return None;
+    }
+    usize::try_from(count).ok()
+}
+
+/// `node or set, direction, coefficient`, from field `first` on.
+fn term(row: Row, first: usize, targets: Targets, cx: &mut Context) -> Option<Term> {
+    let target = row.required(first, "a node or node set", cx.d);
+    let nodes = target.and_then(|field| nodes(field, targets, cx));
+    let field = row.required(first + 1, "the direction", cx.d);
+    let axis = field.and_then(|field| match direction(field, cx)? {
+        Direction::Plane(axis) => Some(axis),
+        Direction::OutOfPlane => {
+            let message = "only directions 1 and 2 lie in the plane";
+            cx.error(Code::BadDof, field.span, message);
+            None
+        }
+    });
+    let coefficient = row.real(first + 2, "the coefficient", cx.d);
+    Some(Term {
+        nodes: nodes?,
+        direction: axis?,
+        coefficient: coefficient?,
+        span: target?.span,
+    })
+}
+
+/// The node, or the nodes of the set in the order of their numbers.
+fn nodes(field: Text, targets: Targets, cx: &mut Context) -> Option<Vec<usize>> {
+    let errors = cx.errors();
+    let mut nodes = targets.sets.nodes_of(field, targets.mesh_index, cx);
+    let labels = &targets.mesh_index.mesh.node_labels;
+    nodes.sort_by_key(|&node| labels.get(node));
+    if nodes.len() > 1 && targets.sets.unsorted.contains(&cx.key_of(field)) {
+        let message = format!("the set {} is UNSORTED: its order is not kept", field.text);
+        let error = Diagnostic::error(Code::BadEquation, field.span, message);
+        cx.d.push(error.help("number its nodes in their order, or write an equation for each"));
+        return None;
+    }
+    if nodes.is_empty() && cx.errors() == errors && !cx.may_lack_cards() {
+        let message = format!("{} holds no node of an element", field.text);
+        cx.error(Code::BadEquation, field.span, message);
+    }
+    (!nodes.is_empty()).then_some(nodes)
+}
+
+/// Adds u_1 = -sum a_k/a_1 u_k of every node of the first term.
+fn solve(terms: &[Term], solved: &mut ByDof, targets: Targets, cx: &mut Context) {
+    let [first, others @ ..] = terms else { return };
+    let count = first.nodes.len();
+    if let Some(other) = (others.iter()).find(|term| ![1, count].contains(&term.nodes.len())) {
+        let message = format!(
+            "the set has {} nodes, that of the first term {count}",
+            other.nodes.len()
+        );
+        let error = Diagnostic::error(Code::BadEquation, other.span, message);
+        cx.d.push(
+            error.help("sets of an equation have as many nodes as the first, or are one node"),
+        );
+        return;
+    }
+    if first.coefficient == 0.0 {
+        let message = "the first coefficient is zero";
+        let error = Diagnostic::error(Code::BadEquation, first.span, message);
+        cx.d.push(error.help("the first term is eliminated: put one with a coefficient first"));
+        return;
+    }
+    for (i, node) in first.nodes.iter().enumerate() {
+        let dof = 2 * node + first.direction;
+        let at = |term: &Term| term.nodes[if term.nodes.len() == 1 { 0 } else { i }];
+        let others = others.iter().map(|term| {
+            let c = -term.coefficient / first.coefficient;
+            (2 * at(term) + term.direction, c)
+        });
+        let equation = Solved {
+            terms: others.collect(),
+            span: first.span,
+        };
+        if equation.terms.iter().any(|&(other, _)| other == dof) {
+            let message = format!("{} stands in it again", name(dof, targets));
+            let error = Diagnostic::error(Code::BadEquation, first.span, message);
+            cx.d.push(error.help("the first term is eliminated: it stands in the equation once"));
+        } else if solved.insert(dof, equation).is_some() {
+            let message = format!(
+                "{} is eliminated by an earlier equation",
+                name(dof, targets)
+            );
+            let error = Diagnostic::error(Code::BadEquation, first.span, message);
+            cx.d.push(error.help("put another term first"));
+        }
+    }
+}
+
+/// The dof in the words of the deck.
+fn name(dof: usize, targets: Targets) -> String {
+    let name = targets.mesh_index.node_name(dof / 2);
+    format!("direction {} of node {name}", dof % 2 + 1)
+}
+
+/// An eliminated dof cannot be prescribed as well.
+fn report_prescribed(solved: &ByDof, steps: &[Step], targets: Targets, cx: &mut Context) {
+    let supports = steps.iter().flat_map(|step| &step.supports);
+    let prescribed: BTreeSet<usize> = supports.map(|support| support.dof).collect();
+    for (dof, equation) in solved.iter().filter(|(dof, _)| prescribed.contains(dof)) {
+        let message = format!(
+            "{} is eliminated by an equation and prescribed",
+            name(*dof, targets)
+        );
+        let error = Diagnostic::error(Code::BadEquation, equation.span, message);
+        cx.d.push(error.help("put a term first that is not prescribed"));
+    }
+}
+
+/// The equations with eliminated dofs replaced by their own equations, so that all remaining terms
+/// are independent; each with its place.
+fn substituted(mut solved: ByDof, targets: Targets, cx: &mut Context) -> Vec<(Equation, Span)> {
+    let mut equations = BTreeMap::new();
+    for dof in elimination_order(&solved) {
+        let Some(Solved { terms: own, span }) = solved.remove(&dof) else {
+            continue;
+        };
+        let mut terms = BTreeMap::new();
+        for (to, c) in own {
+            let direct = [(to, 1.0)];
+            let of = match equations.get(&to) {
+                Some((Equation { terms, .. }, _)) => terms.as_slice(),
+                None => &direct,
+            };
+            for &(k, ck) in of {
+                *terms.entry(k).or_insert(0.0) += c * ck;
+            }
+        }
+        let terms: Vec<(usize, f64)> = terms.into_iter().filter(|(_, c)| *c != 0.0).collect();
+        report_ratios(dof, &terms, span, targets, cx);
+        equations.insert(dof, (Equation { dof, terms }, span));
+    }
+    if let Some((&dof, equation)) = solved.first_key_value() {
+        let message = format!("equations eliminate {} in a circle", name(dof, targets));
+        let error = Diagnostic::error(Code::BadEquation, equation.span, message);
+        cx.d.push(error.help("put a term first that no other of these equations eliminates"));
+    }
+    equations.into_values().collect()
+}
+
+/// Reports a displacement that would follow another one in a ratio that cannot be computed with.
+fn report_ratios(
+    dof: usize,
+    terms: &[(usize, f64)],
+    span: Span,
+    targets: Targets,
+    cx: &mut Context,
+) {
+    let reach = 1.0 / LARGEST_RATIO..=LARGEST_RATIO;
+    if let Some((to, c)) = terms.iter().find(|(_, c)| !reach.contains(&c.abs())) {
+        let (dof, to) = (name(dof, targets), name(*to, targets));
+        let message = format!("{dof} follows {to} {c:e}-fold: it cannot be computed with");
+        let error = Diagnostic::error(Code::BadEquation, span, message);
+        cx.d.push(
+            error.help(
+                "leave out terms without effect; coefficients in a ratio beyond 1e50 are none",
+            ),
+        );
+    }
+}
+
+/// The eliminated dofs, each after those it depends on; dofs that depend on themselves are left
+/// out.
+fn elimination_order(solved: &ByDof) -> Vec<usize> {
+    let mut users: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    let mut open: BTreeMap<usize, usize> = BTreeMap::new();
+    for (&dof, equation) in solved {
+        let eliminated = equation.terms.iter().map(|term| term.0);
+        let eliminated = eliminated.filter(|to| solved.contains_key(to));
+        let count = open.entry(dof).or_insert(0);
+        for to in eliminated {
+            users.entry(to).or_default().push(dof);
+            *count += 1;
+        }
+    }
+    let is_ready = |(dof, count): (&usize, &usize)| (*count == 0).then_some(*dof);
+    let mut order: Vec<usize> = open.iter().filter_map(is_ready).collect();
+    let mut next = 0;
+    while let Some(dof) = order.get(next) {
+        for user in users.remove(dof).unwrap_or_default() {
+            if let Some(count) = open.get_mut(&user) {
+                *count -= 1;
+                if *count == 0 {
+                    order.push(user);
+                }
+            }
+        }
+        next += 1;
+    }
+    order
+}
+
+/// Warns where the deck gives an eliminated dof a velocity (`2 N` entries) that differs from the one
+/// its equation implies; the velocities of `supports` are prescribed.
+pub(crate) fn check_velocities(
+    equations: &[(Equation, Span)],
+    velocity: &[f64],
+    supports: &[Support],
+    targets: Targets,
+    cx: &mut Context,
+) {
+    let of = |dof: usize| velocity.get(dof).copied().unwrap_or(0.0);
+    let is_prescribed = |dof: usize| supports.iter().any(|support| support.dof == dof);
+    for (Equation { dof, terms }, span) in equations.iter().filter(|(e, _)| of(e.dof) != 0.0) {
+        if terms.iter().any(|term| is_prescribed(term.0)) {
+            continue;
+        }
+        let parts = terms.iter().map(|&(to, c)| c * of(to));
+        let (sum, size) = parts.fold((0.0, of(*dof).abs()), |(sum, size), part| {
+            (sum + part, size + part.abs())
+        });
+        if (sum - of(*dof)).abs() > ROUND_OFF * size {
+            let message = format!("{} does not start with its velocity", name(*dof, targets));
+            let warning = Diagnostic::warning(Code::BadEquation, *span, message);
+            cx.d.push(warning.help("it starts with what follows from the other terms"));
+        }
+    }
+}

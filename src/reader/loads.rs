@@ -1,0 +1,631 @@
+//! `*CLOAD`, `*DLOAD` and `*DSLOAD`, and loads as they are carried from step to step.
+
+use super::boundary::{Targets, row_direction};
+use super::context::Context;
+use super::surfaces::{Surfaces, side_count};
+use crate::deck::{Card, Row, Text};
+use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::model::{
+    Amplitude, BodyForce, Face, Load, PointLoad, Pressure, Step, SurfaceKind, TimeBase, Traction,
+    Variation,
+};
+use std::borrow::Cow;
+
+/// All loads, as they are carried from step to step.
+#[derive(Default)]
+pub(crate) struct Loads {
+    points: LoadHistory<usize, PointLoad>,
+    bodies: LoadHistory<(u32, Body), BodyForce>,
+    pressures: LoadHistory<Face, Pressure>,
+    face_tractions: LoadHistory<Face, Traction>,
+    surface_pressures: LoadHistory<(usize, Face), Pressure>,
+    tractions: LoadHistory<(usize, Face), Traction>,
+    point_operation: Operation,
+    element_operation: Operation,
+    surface_operation: Operation,
+}
+
+/// Kinds of body force; a later step replaces a force of the same kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Body {
+    Gravity,
+    X,
+    Y,
+}
+
+/// A card of loads with what its rows have in common.
+#[derive(Clone, Copy)]
+struct Source<'a> {
+    card: &'a Card,
+    amplitude: Option<usize>,
+    context: StepContext,
+    targets: Targets<'a>,
+    surfaces: &'a Surfaces,
+}
+
+impl Loads {
+    /// Reads a card of loads.
+    pub fn card(
+        &mut self,
+        card: &Card,
+        context: StepContext,
+        targets: Targets,
+        surfaces: &Surfaces,
+        cx: &mut Context,
+    ) {
+        self.operation(card, context, cx);
+        let Ok(amplitude) = targets.amplitudes.of(card, cx) else {
+            return;
+        };
+        let source = Source {
+            card,
+            amplitude,
+            context,
+            targets,
+            surfaces,
+        };
+        for row in card.rows.iter() {
+            match card.keyword.name {
+                "CLOAD" => self.point_row(row, source, cx),
+                "DLOAD" => self.element_row(row, source, cx),
+                _ => self.surface_row(row, source, cx),
+            };
+        }
+    }
+
+    fn operation(&mut self, card: &Card, context: StepContext, cx: &mut Context) {
+        let operation = match card.keyword.name {
+            "CLOAD" => &mut self.point_operation,
+            "DLOAD" => &mut self.element_operation,
+            _ => &mut self.surface_operation,
+        };
+        if !operation.starts_anew(card, context.step, cx) {
+            return;
+        }
+        match card.keyword.name {
+            "CLOAD" => self.points.clear(context),
+            "DLOAD" => {
+                self.bodies.clear(context);
+                self.pressures.clear(context);
+                self.face_tractions.clear(context);
+            }
+            _ => {
+                self.surface_pressures.clear(context);
+                self.tractions.clear(context);
+            }
+        }
+    }
+
+    /// `node or set, direction, force`
+    fn point_row(&mut self, row: Row, source: Source, cx: &mut Context) -> Option<()> {
+        row.at_most(3, cx.d);
+        let Targets {
+            mesh_index, sets, ..
+        } = source.targets;
+        let target = row.required(0, "a node or node set", cx.d);
+        let nodes = target.map(|field| sets.nodes_of(field, mesh_index, cx));
+        let force = row.real(2, "the force", cx.d);
+        let direction = row_direction(row, force.unwrap_or(0.0), cx);
+        let (direction, force) = (direction?, force?);
+        for node in nodes? {
+            let dof = 2 * node + direction;
+            let at = PointLoad { dof };
+            self.points
+                .add(dof, at, force, source.amplitude, source.context);
+        }
+        Some(())
+    }
+
+    /// `element or set, kind, magnitude[, dx, dy[, dz]]`; no set is all elements
+    fn element_row(&mut self, row: Row, source: Source, cx: &mut Context) -> Option<()> {
+        let Targets {
+            mesh_index, sets, ..
+        } = source.targets;
+        let elements = match row.get(0) {
+            Some(field) => sets.elements_of(field, mesh_index, cx),
+            None => Cow::Owned((0..mesh_index.mesh.elements.len()).collect()),
+        };
+        let kind = row.required(1, "the kind of load", cx.d)?;
+        let key = kind.name_key();
+        let body = match key.as_str() {
+            "GRAV" => Some(Body::Gravity),
+            "BX" => Some(Body::X),
+            "BY" => Some(Body::Y),
+            _ => None,
+        };
+        if let Some(body) = body {
+            return self.body_row(row, body, &elements, source, cx);
+        }
+        let Some((side, is_traction)) = loaded_side(&key) else {
+            let known = "GRAV, BX, BY, P1 to P4 and TRVEC1 to TRVEC4";
+            return unknown_kind(kind, known, cx);
+        };
+        let direction = match is_traction {
+            true => Some(dead_direction(kind, row, source.card, cx)?),
+            false => None,
+        };
+        self.face_row(row, (side, direction), &elements, source, cx)
+    }
+
+    fn body_row(
+        &mut self,
+        row: Row,
+        body: Body,
+        elements: &[usize],
+        source: Source,
+        cx: &mut Context,
+    ) -> Option<()> {
+        let magnitude = row.real(2, "the magnitude", cx.d)?;
+        let direction = match body {
+            Body::Gravity => gravity_direction(row, magnitude, cx)?,
+            Body::X => [1.0, 0.0],
+            Body::Y => [0.0, 1.0],
+        };
+        row.at_most(if body == Body::Gravity { 6 } else { 3 }, cx.d);
+        let (amplitude, context) = (source.amplitude, source.context);
+        self.bodies.reserve(elements.len());
+        for &element in elements {
+            let at = BodyForce {
+                element,
+                direction,
+                per_mass: body == Body::Gravity,
+            };
+            let key = (element as u32, body);
+            self.bodies.add(key, at, magnitude, amplitude, context);
+        }
+        Some(())
+    }
+
+    /// A pressure, or a traction with its direction, on one side of each element.
+    fn face_row(
+        &mut self,
+        row: Row,
+        (side, direction): (usize, Option<[f64; 2]>),
+        elements: &[usize],
+        source: Source,
+        cx: &mut Context,
+    ) -> Option<()> {
+        if direction.is_none() {
+            row.at_most(3, cx.d);
+        }
+        let magnitude = row.real(2, "the magnitude", cx.d)?;
+        let mesh = &source.targets.mesh_index.mesh;
+        if let Some(&bad) = elements.iter().find(|&&e| side >= side_count(mesh, e)) {
+            let label = source.targets.mesh_index.element_name(bad);
+            let message = format!("element {label} has no face {}", side + 1);
+            cx.error(Code::NoSuchFace, row.span(), message);
+            return None;
+        }
+        let (amplitude, context) = (source.amplitude, source.context);
+        for &element in elements {
+            let face = Face { element, side };
+            match direction {
+                None => {
+                    let at = Pressure { face };
+                    self.pressures.add(face, at, magnitude, amplitude, context);
+                }
+                Some(direction) => {
+                    let at = Traction { face, direction };
+                    self.face_tractions
+                        .add(face, at, magnitude, amplitude, context);
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// `surface, P, p` or `surface, TRVEC, t, dx, dy[, dz]`
+    fn surface_row(&mut self, row: Row, source: Source, cx: &mut Context) -> Option<()> {
+        let field = row.required(0, "a surface", cx.d);
+        let surface = field.and_then(|field| source.surfaces.find(field, cx));
+        let kind = row.required(1, "the kind of load", cx.d)?;
+        let magnitude = row.real(2, "the magnitude", cx.d)?;
+        let direction = match kind.name_key().as_str() {
+            "P" => {
+                row.at_most(3, cx.d);
+                warn_that_pressure_follows(source.card, cx);
+                None
+            }
+            "TRVEC" => Some(dead_direction(kind, row, source.card, cx)?),
+            _ => return unknown_kind(kind, "P and TRVEC", cx),
+        };
+        let (index, surface, span) = surface?;
+        let SurfaceKind::Faces(faces) = &surface.kind else {
+            let message = format!("surface {} has no element faces", surface.name);
+            cx.error(Code::SurfaceUse, span, message);
+            return None;
+        };
+        for &face in faces {
+            self.add_to_face((index, face), direction, magnitude, source);
+        }
+        Some(())
+    }
+
+    fn add_to_face(
+        &mut self,
+        key: (usize, Face),
+        direction: Option<[f64; 2]>,
+        magnitude: f64,
+        source: Source,
+    ) {
+        let (amplitude, context, face) = (source.amplitude, source.context, key.1);
+        match direction {
+            None => {
+                let at = Pressure { face };
+                self.surface_pressures
+                    .add(key, at, magnitude, amplitude, context);
+            }
+            Some(direction) => {
+                let at = Traction { face, direction };
+                self.tractions.add(key, at, magnitude, amplitude, context);
+            }
+        }
+    }
+
+    /// Writes the loads of the current step; those of the last one are not carried further.
+    pub fn fill(&mut self, step: &mut Step, is_last: bool) {
+        step.point_loads = self.points.list(is_last);
+        step.body_forces = self.bodies.list(is_last);
+        let mut pressures = self.pressures.list(is_last);
+        pressures.extend(self.surface_pressures.list(is_last));
+        step.pressures = joined(pressures, |load| load.at.face);
+        let mut tractions = self.face_tractions.list(is_last);
+        tractions.extend(self.tractions.list(is_last));
+        step.tractions = joined(tractions, |load| load.at.face);
+    }
+
+    /// Ends a step of duration `period` at total time `total`.
+    pub fn end_step(&mut self, period: f64, total: f64, amplitudes: &[Amplitude]) {
+        self.points.end_step(period, total, amplitudes);
+        self.bodies.end_step(period, total, amplitudes);
+        self.pressures.end_step(period, total, amplitudes);
+        self.face_tractions.end_step(period, total, amplitudes);
+        self.surface_pressures.end_step(period, total, amplitudes);
+        self.tractions.end_step(period, total, amplitudes);
+    }
+}
+
+fn unknown_kind(kind: Text, known: &str, cx: &mut Context) -> Option<()> {
+    let message = format!("load {} cannot be used", kind.text);
+    let error = Diagnostic::error(Code::UnsupportedParameter, kind.span, message);
+    cx.d.push(error.help(format!("the loads here are {known}")));
+    None
+}
+
+/// Side, from 0, of P1 to P4 and of TRVEC1 to TRVEC4, and whether it is a traction.
+fn loaded_side(kind: &str) -> Option<(usize, bool)> {
+    let (number, is_traction) = match kind.strip_prefix("TRVEC") {
+        Some(number) => (number, true),
+        None => (kind.strip_prefix('P')?, false),
+    };
+    let side = ["1", "2", "3", "4"]
+        .iter()
+        .position(|side| *side == number)?;
+    Some((side, is_traction))
+}
+
+fn gravity_direction(row: Row, magnitude: f64, cx: &mut Context) -> Option<[f64; 2]> {
+    let direction = unit_direction(row, cx)?;
+    warn_unless_unit(row, cx);
+    if magnitude != 0.0 {
+        hint_at_units(row, magnitude, cx);
+    }
+    Some(direction)
+}
+
+/// Notes a gravity that hints at mixed units.
+fn hint_at_units(row: Row, magnitude: f64, cx: &mut Context) {
+    let usual = [9.81, 981.0, 9810.0, 32.2, 386.0];
+    let near = |g: &f64| (magnitude.abs() / g - 1.0).abs() < 0.02;
+    if let (false, Some(field)) = (usual.iter().any(near), row.get(2)) {
+        let text = field.text;
+        let message = format!("{text} is not the gravity of the earth in common units");
+        let note = Diagnostic::note(Code::UnitsHint, field.span, message);
+        cx.d.push_once(note.help("9.81 m/s^2 = 981 cm/s^2 = 9810 mm/s^2 = 386 in/s^2"));
+    }
+}
+
+/// Fields 3 to 5: dx, dy, dz with dz = 0, made a unit vector.
+fn unit_direction(row: Row, cx: &mut Context) -> Option<[f64; 2]> {
+    let components = [3, 4, 5].map(|i| row.real_or(i, 0.0, cx.d));
+    let [Some(x), Some(y), Some(z)] = components else {
+        return None;
+    };
+    let span = row.get(3).map_or(row.span(), |field| field.span);
+    let length = match x.hypot(y) {
+        // a unit vector to round-off stays as it is given
+        length if (length - 1.0).abs() <= 2.0 * f64::EPSILON => 1.0,
+        length => length,
+    };
+    if z != 0.0 {
+        cx.error(Code::BadDirection, span, "the direction leaves the plane");
+        return None;
+    }
+    if length == 0.0 || !length.is_finite() {
+        cx.error(Code::BadDirection, span, "the direction is zero");
+        return None;
+    }
+    Some([x / length, y / length])
+}
+
+/// CalculiX multiplies an acceleration by the length of its direction.
+fn warn_unless_unit(row: Row, cx: &mut Context) {
+    let component = |i: usize| row.get(i).and_then(|field| field.as_real());
+    let length = component(3)
+        .unwrap_or(0.0)
+        .hypot(component(4).unwrap_or(0.0));
+    if (length - 1.0).abs() > 1e-6 {
+        let span = row.get(3).map_or(row.span(), |field| field.span);
+        let message = format!("the direction has the length {length}, not 1");
+        let warning = Diagnostic::warning(Code::BadDirection, span, message);
+        cx.d.push_once(warning.help("only its direction is taken, the magnitude stays as given"));
+    }
+}
+
+fn warn_that_pressure_follows(card: &Card, cx: &mut Context) {
+    if card.choice("FOLLOWER") == Some("NO") {
+        let message = "FOLLOWER=NO has no effect on P: a pressure always follows its face";
+        let span = card.span_of("FOLLOWER");
+        cx.d.push_once(Diagnostic::warning(Code::IgnoredParameter, span, message));
+    }
+}
+
+/// Direction of a TRVEC, which must not follow the face.
+fn dead_direction(kind: Text, row: Row, card: &Card, cx: &mut Context) -> Option<[f64; 2]> {
+    row.at_most(6, cx.d);
+    if card.choice("FOLLOWER") != Some("NO") {
+        let span: Span = kind.span;
+        let message = "TRVEC needs FOLLOWER=NO: tractions that turn with the face cannot be used";
+        cx.error(Code::UnsupportedParameter, span, message);
+        return None;
+    }
+    unit_direction(row, cx)
+}
+
+/// How a load without amplitude reaches its magnitude, and the step it is given in.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StepContext {
+    /// Number of the step, from 1; 0 is model data.
+    pub step: usize,
+    /// Whether loads without amplitude grow linearly (`*STEP, AMPLITUDE=RAMP`).
+    pub ramp: bool,
+}
+
+/// Whether a step keeps the loads of earlier steps (`OP`); the first card of its kind decides.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Operation {
+    step: usize,
+    new: bool,
+}
+
+impl Operation {
+    /// Enters a card; true if it removes all loads of earlier steps.
+    pub fn starts_anew(&mut self, card: &Card, step: usize, cx: &mut Context) -> bool {
+        let typed = card.choice("OP");
+        let new = typed == Some("NEW");
+        if self.step == step {
+            if typed.is_some() && new != self.new {
+                let message = format!("OP of the first {} in this step holds", card.title());
+                let span = card.span_of("OP");
+                cx.d.push(Diagnostic::warning(Code::MixedOperation, span, message));
+            }
+            return false;
+        }
+        *self = Operation { step, new };
+        new
+    }
+}
+
+/// Loads of one kind by their keys.
+pub(crate) struct LoadHistory<K, T> {
+    /// The first ones, `sorted` of them, in the order of their keys; then those added since.
+    parts: Vec<(K, Part<T>)>,
+    sorted: usize,
+}
+
+#[derive(Clone, Copy)]
+struct Part<T> {
+    load: Load<T>,
+    /// Magnitude at the end of the step before.
+    end: f64,
+    /// Step that gave it.
+    step: u32,
+    /// Whether another one has taken its place.
+    replaced: bool,
+}
+
+impl<K, T> Default for LoadHistory<K, T> {
+    fn default() -> Self {
+        LoadHistory {
+            parts: Vec::new(),
+            sorted: 0,
+        }
+    }
+}
+
+impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
+    /// All loads of the current step, in the order of their keys; nothing remains after the last
+    /// step.
+    pub fn list(&mut self, is_last: bool) -> Vec<Load<T>> {
+        self.sort();
+        let simple = |part: &Part<T>| {
+            let load = part.load;
+            load.ends().map_or(load, |ends| load.between(ends))
+        };
+        match is_last {
+            // within the same memory
+            true => {
+                let parts = std::mem::take(self).parts.into_iter();
+                parts.map(|(_, part)| simple(&part)).collect()
+            }
+            false => self.parts.iter().map(|(_, part)| simple(part)).collect(),
+        }
+    }
+
+    /// Removes all loads; where loads ramp they fade out over the step.
+    pub fn clear(&mut self, context: StepContext) {
+        if !context.ramp {
+            *self = LoadHistory::default();
+        }
+        for (_, part) in &mut self.parts {
+            part.fade();
+        }
+    }
+
+    /// Makes room for so many loads more.
+    pub fn reserve(&mut self, count: usize) {
+        self.parts.reserve(count);
+    }
+
+    /// Adds a load; it replaces those of earlier steps under the same key.
+    pub fn add(
+        &mut self,
+        key: K,
+        at: T,
+        magnitude: f64,
+        amplitude: Option<usize>,
+        context: StepContext,
+    ) {
+        let mut from = 0.0;
+        let ramps = context.ramp && amplitude.is_none();
+        for part in self.earlier(key, context) {
+            if ramps && part.load.at != at {
+                part.fade();
+            } else {
+                from += part.end;
+                part.replaced = true;
+            }
+        }
+        let part = Part::new(at, magnitude, amplitude, context);
+        self.parts.push((key, part.rising_from(from)));
+    }
+
+    /// Parts of earlier steps under a key.
+    fn earlier(&mut self, key: K, context: StepContext) -> impl Iterator<Item = &mut Part<T>> {
+        let sorted = self.parts.get(..self.sorted).unwrap_or_default();
+        let first = sorted.partition_point(|(known, _)| *known < key);
+        let parts = self.parts.iter_mut().skip(first);
+        parts
+            .take_while(move |(known, _)| *known == key)
+            .map(|(_, part)| part)
+            .filter(move |part| (part.step as usize) < context.step && !part.replaced)
+    }
+
+    /// Leaves out parts that are replaced, and puts the others in the order of their keys.
+    fn sort(&mut self) {
+        self.parts.retain(|(_, part)| !part.replaced);
+        if !self.parts.is_sorted_by_key(|(key, _)| *key) {
+            self.parts.sort_by_key(|(key, _)| *key);
+        }
+        self.sorted = self.parts.len();
+    }
+
+    /// Ends a step: loads keep the magnitude they have reached, unless they follow the total time.
+    pub fn end_step(&mut self, period: f64, total: f64, amplitudes: &[Amplitude]) {
+        self.sort();
+        for (_, part) in &mut self.parts {
+            part.end_step(period, total, amplitudes);
+        }
+        for parts in self.parts.chunk_by_mut(|(a, _), (b, _)| a == b) {
+            add_up(parts);
+        }
+        let acts = |part: &Part<T>| !part.replaced && part.load.magnitude != 0.0;
+        self.parts.retain(|(_, part)| acts(part));
+        self.sorted = self.parts.len();
+    }
+}
+
+/// Loads on faces in the order of the faces, on each those without amplitude first, which are one load where
+/// they have one direction.
+pub(super) fn joined<T: Copy + PartialEq>(
+    mut loads: Vec<Load<T>>,
+    face: fn(&Load<T>) -> Face,
+) -> Vec<Load<T>> {
+    loads.sort_by_key(|load| (face(load), load.ends().is_none()));
+    let mut all: Vec<Load<T>> = Vec::with_capacity(loads.len());
+    for load in loads {
+        let before = all.iter_mut().rev();
+        let mut on_face = before.take_while(|known| face(known) == face(&load));
+        let same = on_face.find(|known| known.at == load.at && known.ends().is_some());
+        match same.and_then(|known| Some((known.ends()?, load.ends()?, known))) {
+            Some(([from, to], [more, end], known)) => {
+                *known = known.between([from + more, to + end]);
+            }
+            None => all.push(load),
+        }
+    }
+    all
+}
+
+/// Joins constant loads at the same place and in the same direction.
+fn add_up<K, T: Copy + PartialEq>(parts: &mut [(K, Part<T>)]) {
+    for index in 1..parts.len() {
+        let (before, after) = parts.split_at_mut(index);
+        let Some((_, part)) = after.first_mut() else {
+            return;
+        };
+        let joins = |sum: &Part<T>| {
+            let both = [sum.load.variation, part.load.variation];
+            sum.load.at == part.load.at && both == [Variation::Constant; 2]
+        };
+        let mut sums = before.iter_mut().map(|(_, sum)| sum);
+        if let Some(sum) = sums.find(|sum| !sum.replaced && joins(sum)) {
+            sum.load.magnitude += part.load.magnitude;
+            sum.end += part.end;
+            part.replaced = true;
+        }
+    }
+}
+
+impl<T> Part<T> {
+    /// A load that reaches its magnitude from zero where it ramps.
+    fn new(at: T, magnitude: f64, amplitude: Option<usize>, context: StepContext) -> Part<T> {
+        let variation = match amplitude {
+            Some(index) => Variation::Amplitude(index),
+            None if context.ramp => Variation::Ramp { from: 0.0 },
+            None => Variation::Constant,
+        };
+        let load = Load {
+            at,
+            magnitude,
+            variation,
+        };
+        Part {
+            load,
+            end: 0.0,
+            step: context.step as u32,
+            replaced: false,
+        }
+    }
+
+    /// The same load, from another magnitude where it ramps.
+    fn rising_from(mut self, from: f64) -> Part<T> {
+        if let Variation::Ramp { .. } = self.load.variation {
+            self.load.variation = Variation::Ramp { from };
+        }
+        self
+    }
+
+    fn fade(&mut self) {
+        self.load.magnitude = 0.0;
+        self.load.variation = Variation::Ramp { from: self.end };
+    }
+
+    fn end_step(&mut self, period: f64, total: f64, amplitudes: &[Amplitude]) {
+        let load = &mut self.load;
+        let curve = match load.variation {
+            Variation::Amplitude(index) => amplitudes.get(index),
+            Variation::Constant | Variation::Ramp { .. } => None,
+        };
+        match curve {
+            Some(curve) if curve.time == TimeBase::Total => {
+                self.end = load.magnitude * curve.at(total);
+                return;
+            }
+            Some(curve) => load.magnitude *= curve.at(period),
+            None => {}
+        }
+        load.variation = Variation::Constant;
+        self.end = load.magnitude;
+    }
+}

@@ -1,0 +1,274 @@
+//! The mesh with the node and element numbers of the deck, the sets named on `*NODE` and `*ELEMENT`,
+//! and the places of the elements. Nodes and elements of instances get numbers of the program's own, as
+//! their numbers in the part appear in every instance.
+
+use super::context::Context;
+use super::label::{LabelList, instance_of, number_of};
+use super::names::Labels;
+use crate::deck::{Card, Name};
+use crate::diagnostics::{Code, FileId, Span};
+use crate::model::{Face, Instance, Mesh, element_name, node_name};
+
+/// The mesh, with the numbers and sets that the deck gives to its nodes and elements.
+pub(crate) struct MeshIndex {
+    /// Nodes that belong to elements, and elements. Sections are not yet known.
+    pub mesh: Mesh,
+    /// Instances of parts.
+    pub instances: Vec<Instance>,
+    /// Labels of the nodes.
+    pub nodes: Labels,
+    /// Labels of the elements; the indices of line elements follow those of the plane ones.
+    pub elements: Labels,
+    /// Faces of the plane elements that the line elements name.
+    pub lines: Vec<Face>,
+    /// Places of the plane elements.
+    pub places: Places,
+    /// Node sets named on `*NODE`.
+    pub node_groups: Vec<Group>,
+    /// Element sets named on `*ELEMENT`.
+    pub element_groups: Vec<Group>,
+}
+
+/// A set named where its members are defined.
+pub(crate) struct Group {
+    /// Its name.
+    pub name: Name,
+    /// Where it is named.
+    pub span: Span,
+    /// Labels of its members.
+    pub labels: LabelList,
+}
+
+impl Group {
+    /// The set that a parameter of a card names.
+    pub fn named_by(
+        card: &Card,
+        parameter: &str,
+        labels: LabelList,
+        cx: &mut Context,
+    ) -> Option<Group> {
+        let text = card.value(parameter)?;
+        Some(Group {
+            name: text
+                .name(cx.d)
+                .map(|name| cx.of_instance(name, text.span))?,
+            span: text.span,
+            labels,
+        })
+    }
+}
+
+impl Default for MeshIndex {
+    fn default() -> MeshIndex {
+        MeshIndex {
+            mesh: Mesh::default(),
+            instances: Vec::new(),
+            nodes: Labels::new("node", Code::UndefinedNode),
+            elements: Labels::new("element", Code::UndefinedElement),
+            lines: Vec::new(),
+            places: Places::default(),
+            node_groups: Vec::new(),
+            element_groups: Vec::new(),
+        }
+    }
+}
+
+impl MeshIndex {
+    /// What the deck calls a node.
+    pub fn node_name(&self, node: usize) -> String {
+        node_name(node, &self.mesh, &self.instances)
+    }
+
+    /// What the deck calls an element.
+    pub fn element_name(&self, element: usize) -> String {
+        element_name(element, &self.mesh, &self.instances)
+    }
+
+    /// Adds nodes without element at these points; their numbers follow the largest one.
+    pub fn add_points(&mut self, points: &[[f64; 2]]) {
+        let largest = self.mesh.node_labels.iter().max().copied().unwrap_or(0);
+        let labels = (1..).map(|i| largest.saturating_add(i));
+        self.mesh.node_labels.extend(labels.take(points.len()));
+        self.mesh.coordinates.extend(points);
+    }
+
+    /// Makes room for so many nodes more.
+    pub fn reserve_nodes(&mut self, count: usize) {
+        self.nodes.reserve(count);
+        self.mesh.node_labels.reserve(count);
+        self.mesh.coordinates.reserve(count);
+    }
+
+    /// Makes room for so many elements more.
+    pub fn reserve_elements(&mut self, count: usize) {
+        self.elements.reserve(count);
+        self.mesh.elements.reserve(count);
+        self.places.reserve(count);
+    }
+
+    /// Takes out the nodes that are not used and numbers the others anew.
+    pub fn keep_nodes(&mut self, used: &[bool]) {
+        let mut count = 0;
+        let numbers = used.iter().map(|&used| {
+            count += usize::from(used);
+            used.then(|| count - 1)
+        });
+        let numbers: Vec<Option<usize>> = numbers.collect();
+        self.nodes.renumber(&numbers);
+        for element in &mut self.mesh.elements {
+            for node in &mut element.nodes {
+                *node = numbers[*node].unwrap_or(*node);
+            }
+        }
+        let mut kept = used.iter();
+        self.mesh.node_labels.retain(|_| kept.next() == Some(&true));
+        let mut kept = used.iter();
+        self.mesh.coordinates.retain(|_| kept.next() == Some(&true));
+    }
+}
+
+/// Places of rows of the deck.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Places {
+    places: Vec<Place>,
+    /// Runs of places in the same file and instance: the first place of each.
+    runs: Vec<(usize, FileId, u32)>,
+}
+
+/// A place in a file; no line has more characters than the columns count.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    line: u32,
+    /// Characters before it.
+    before: u16,
+    /// Characters behind its first one.
+    more: u16,
+}
+
+impl Places {
+    /// Adds a place at the end.
+    pub fn push(&mut self, span: Span) {
+        let last = self.runs.last();
+        if last.is_none_or(|(_, file, instance)| (*file, *instance) != (span.file, span.instance)) {
+            self.runs
+                .push((self.places.len(), span.file, span.instance));
+        }
+        let short = |count: u32| u16::try_from(count.saturating_sub(1)).unwrap_or(u16::MAX);
+        self.places.push(Place {
+            line: span.line,
+            before: short(span.column),
+            more: short(span.length),
+        });
+    }
+
+    /// Makes room for so many places more.
+    pub fn reserve(&mut self, count: usize) {
+        self.places.reserve(count);
+    }
+
+    /// The place with this index; that of nothing behind the last one.
+    pub fn get(&self, index: usize) -> Span {
+        let run = self.runs.partition_point(|&(first, ..)| first <= index);
+        let run = run.checked_sub(1).and_then(|run| self.runs.get(run));
+        let (Some(&(_, file, instance)), Some(place)) = (run, self.places.get(index)) else {
+            return Span::default();
+        };
+        Span {
+            file,
+            line: place.line,
+            column: u32::from(place.before) + 1,
+            length: u32::from(place.more) + 1,
+            instance,
+        }
+    }
+}
+
+/// Replaces the labels of nodes and elements by numbers; those of instances follow the largest one
+/// of the others.
+pub(super) fn number_instances(mesh: &mut Mesh, cx: &Context) -> Vec<Instance> {
+    if cx.deck.instances.is_empty() {
+        return Vec::new();
+    }
+    let mut instances: Vec<Instance> = Vec::new();
+    for instance in &cx.deck.instances {
+        instances.push(Instance {
+            name: instance.name.typed.clone(),
+            ..Instance::default()
+        });
+    }
+    let first = first_number(mesh.node_labels.iter());
+    let labels = mesh.node_labels.iter_mut();
+    for (index, instance, number) in renumbered(labels, first) {
+        if let Some(instance) = instances.get_mut(instance) {
+            if instance.node_numbers.is_empty() {
+                instance.first_node = index;
+            }
+            instance.node_numbers.push(number);
+        }
+    }
+    let first = first_number(mesh.elements.iter().map(|element| &element.label));
+    let labels = mesh.elements.iter_mut().map(|element| &mut element.label);
+    for (index, instance, number) in renumbered(labels, first) {
+        if let Some(instance) = instances.get_mut(instance) {
+            if instance.element_numbers.is_empty() {
+                instance.first_element = index;
+            }
+            instance.element_numbers.push(number);
+        }
+    }
+    instances
+}
+
+/// The number after the largest one outside instances.
+fn first_number<'l>(labels: impl Iterator<Item = &'l u64>) -> u64 {
+    let others = labels.filter(|label| instance_of(**label) == 0);
+    1 + others.max().copied().unwrap_or(0)
+}
+
+/// Gives those of instances numbers of their own from `next` on; returns index, instance and number
+/// in the part of each.
+fn renumbered<'l>(
+    labels: impl Iterator<Item = &'l mut u64>,
+    mut next: u64,
+) -> impl Iterator<Item = (usize, usize, u64)> {
+    labels.enumerate().filter_map(move |(index, label)| {
+        let instance = instance_of(*label).checked_sub(1)?;
+        let number = number_of(*label);
+        *label = next;
+        next += 1;
+        Some((index, instance as usize, number))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_are_kept() {
+        let span = |file, line, column, length, instance| Span {
+            file: FileId(file),
+            line,
+            column,
+            length,
+            instance,
+        };
+        let spans = [
+            span(0, 1, 1, 65536, 0),
+            span(0, 3, 65536, 1, 0),
+            span(1, u32::MAX, 2, 3, 0),
+            span(1, 4, 2, 3, 1),
+            span(1, 4, 2, 3, 2),
+            span(0, 9, 1, 1, 0),
+        ];
+        let mut places = Places::default();
+        spans.iter().for_each(|&span| places.push(span));
+        for (index, &span) in spans.iter().enumerate() {
+            assert_eq!(places.get(index), span);
+        }
+        assert_eq!(
+            (places.get(spans.len()), places.runs.len()),
+            (Span::default(), 5)
+        );
+    }
+}

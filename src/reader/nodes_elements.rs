@@ -1,0 +1,592 @@
+//! `*NODE` and `*ELEMENT`.
+//!
+//! A line element names the side of a plane element with the same nodes, as the boundary curves do that
+//! a mesh generator writes; it has no stiffness and no section.
+
+use super::context::Context;
+use super::label::{LabelList, LabelMap};
+use super::mesh_index;
+use super::mesh_index::{Group, MeshIndex};
+use super::names::Labelled;
+use super::outline::Outline;
+use crate::deck::{Card, Row, Text};
+use crate::diagnostics::{Code, Diagnostic, Span, closest};
+use crate::model::{Element, ElementType, Face, Mesh, Nodes, Plane};
+use smallvec::SmallVec;
+use std::collections::{BTreeSet, HashMap};
+
+/// Reads nodes and elements; leaves out nodes of neither an element, a rigid surface nor an
+/// equation.
+pub(crate) fn read<'a>(outline: &Outline<'a>, cx: &mut Context<'a>) -> MeshIndex {
+    let errors = cx.errors();
+    let mut reading = Reading::default();
+    let MeshIndex {
+        nodes, elements, ..
+    } = &mut reading.mesh_index;
+    nodes.incomplete = outline.blocks("NODE").next().is_none();
+    elements.incomplete = outline.blocks("ELEMENT").next().is_none();
+    for card in outline.model_cards("NODE") {
+        reading.node_card(card, cx);
+    }
+    for card in outline.model_cards("ELEMENT") {
+        reading.element_card(card, cx);
+    }
+    if cx.errors() == errors && !cx.may_lack_cards() {
+        reading.report_empty(outline, cx);
+    }
+    reading.report_not_planar(outline, cx);
+    let groups = reading.mesh_index.node_groups.iter();
+    let groups: Vec<_> = groups
+        .map(|group| (group.name.key.as_str(), &group.labels))
+        .collect();
+    let references = labels_needed(outline, &groups, cx);
+    reading.finish(&references, outline, cx)
+}
+
+#[derive(Default)]
+struct Reading {
+    /// The mesh so far, with all nodes and without line elements.
+    mesh_index: MeshIndex,
+    /// Third coordinates (length) of the nodes up to the last one off the plane z = 0.
+    heights: Vec<f64>,
+    /// Lines that define the nodes.
+    node_lines: Vec<u32>,
+    /// Last lines of line elements, and of plane ones that are defined again.
+    other_lines: LabelMap<u32>,
+    lines: Vec<RawLine>,
+}
+
+impl Reading {
+    fn node_card(&mut self, card: &Card, cx: &mut Context) {
+        let count = card.rows.line_count();
+        let mut labels = LabelList::default();
+        self.mesh_index.reserve_nodes(count);
+        self.node_lines.reserve(count);
+        let mut rows = card.rows.iter();
+        while let Some((row, point)) = rows.next_point() {
+            let label = point.and_then(|point| self.plain_node(point, row, cx));
+            match label.or_else(|| self.node(row, cx)) {
+                Some(label) => labels.push(label),
+                None => self.mesh_index.nodes.incomplete = true,
+            }
+        }
+        let group = Group::named_by(card, "NSET", labels, cx);
+        self.mesh_index.node_groups.extend(group);
+    }
+
+    /// Adds the new node of a row of plain numbers; returns its number.
+    fn plain_node(
+        &mut self,
+        (number, [x, y, z]): (u64, [f64; 3]),
+        row: Row,
+        cx: &Context,
+    ) -> Option<u64> {
+        let nodes = &self.mesh_index.nodes;
+        let label = nodes.plain_label(number, row.instance())?;
+        if nodes.get(label).is_some() {
+            return None;
+        }
+        self.add_node(label, cx.placed([x, y], row), z, row);
+        Some(label)
+    }
+
+    /// Reads the node of any row; returns its number.
+    fn node(&mut self, row: Row, cx: &mut Context) -> Option<u64> {
+        let fields: SmallVec<[Text; 4]> = row.fields().collect();
+        row.at_most(4, cx.d);
+        let number = row.required(0, "the node number", cx.d)?;
+        let label = self.mesh_index.nodes.label(number, cx)?;
+        let known = self.mesh_index.nodes.get(label);
+        let at = [1, 2, 3].map(|i| match fields.get(i) {
+            Some(field) if !field.is_empty() => field.real(cx.d),
+            _ => Some(0.0),
+        });
+        let [Some(x), Some(y), Some(z)] = at else {
+            if known.is_none() {
+                self.mesh_index.nodes.insert(label, Labelled::LEFT_OUT);
+            }
+            return Some(label);
+        };
+        let at = cx.placed([x, y], row);
+        let Some(known) = known else {
+            self.add_node(label, at, z, row);
+            return Some(label);
+        };
+        let mesh = &self.mesh_index.mesh;
+        let differs = |&i: &usize| mesh.coordinates[i] != at || self.height(i) != z;
+        if let Some(first) = known.index().filter(differs) {
+            let (name, line) = (cx.named(label), self.node_lines[first]);
+            let message = format!("node {name} has other coordinates on line {line}");
+            cx.error(Code::RepeatedNode, row.span(), message);
+        }
+        Some(label)
+    }
+
+    fn add_node(&mut self, label: u64, at: [f64; 2], height: f64, row: Row) {
+        self.node_lines.push(row.line());
+        let MeshIndex { mesh, nodes, .. } = &mut self.mesh_index;
+        let index = mesh.node_count();
+        nodes.insert(label, Labelled::new(index));
+        mesh.node_labels.push(label);
+        mesh.coordinates.push(at);
+        if height != 0.0 {
+            self.heights.resize(index, 0.0);
+            self.heights.push(height);
+        }
+    }
+
+    fn height(&self, node: usize) -> f64 {
+        self.heights.get(node).copied().unwrap_or(0.0)
+    }
+
+    fn element_card(&mut self, card: &Card, cx: &mut Context) {
+        let kind = card
+            .required("TYPE", cx.d)
+            .and_then(|name| element_kind(name, cx));
+        let mut labels = LabelList::default();
+        if let Some(kind) = kind {
+            self.mesh_index.reserve_elements(card.rows.line_count());
+            let mut rows = card.rows.iter();
+            let mut numbers = SmallVec::new();
+            while let Some((row, is_plain)) = rows.next_integers(&mut numbers) {
+                let plain = is_plain.then(|| self.plain_element(&numbers, row, kind));
+                let label = plain.flatten().or_else(|| {
+                    let fields = element_fields(row, &mut rows, kind.nodes() + 1);
+                    self.element(row.span(), &fields, kind, cx)
+                });
+                match label {
+                    Some(label) => labels.push(label),
+                    None => self.mesh_index.elements.incomplete = true,
+                }
+            }
+        } else {
+            self.mesh_index.elements.incomplete = true;
+        }
+        let group = Group::named_by(card, "ELSET", labels, cx);
+        self.mesh_index.element_groups.extend(group);
+    }
+
+    /// Adds the new element of a row of plain numbers, whose nodes exist and differ; returns its
+    /// number.
+    fn plain_element(&mut self, numbers: &[u64], row: Row, kind: Kind) -> Option<u64> {
+        let (&number, corners) = numbers.split_first()?;
+        let MeshIndex {
+            nodes, elements, ..
+        } = &self.mesh_index;
+        let label = elements.plain_label(number, row.instance())?;
+        let mut indices = Nodes::new();
+        for &node in corners {
+            let node = nodes.plain_label(node, row.instance())?;
+            let index = nodes.get(node)?.index();
+            indices.push(index.filter(|index| !indices.contains(index))?);
+        }
+        if indices.len() != kind.nodes() || self.line_of(label).is_some() {
+            return None;
+        }
+        self.add_element(label, indices, kind, row.span());
+        Some(label)
+    }
+
+    /// Reads one element at the place `span`; returns its number.
+    fn element(
+        &mut self,
+        span: Span,
+        fields: &[Text],
+        kind: Kind,
+        cx: &mut Context,
+    ) -> Option<u64> {
+        let corners = kind.nodes();
+        let (first, rest) = fields.split_first()?;
+        let label = self.mesh_index.elements.label(*first, cx)?;
+        if rest.len() < corners && rest.iter().all(|field| field.integer(cx.d).is_some()) {
+            let (name, found) = (cx.named(label), rest.len());
+            let message = format!("element {name} needs {corners} nodes, found {found}");
+            cx.error(Code::MissingField, span, message);
+            return None;
+        }
+        if let Some(extra) = rest.get(corners) {
+            let name = cx.named(label);
+            let message = format!("element {name} has {corners} nodes, this is one more");
+            cx.error(Code::ExtraField, extra.span, message);
+        }
+        let nodes = self.element_nodes(label, rest.get(..corners)?, cx)?;
+        if let Some(line) = self.line_of(label) {
+            self.other_lines.insert(label, span.line);
+            let name = cx.named(label);
+            let message = format!("element {name} is defined on line {line} too");
+            cx.error(Code::RepeatedElement, first.span, message);
+            return Some(label);
+        }
+        self.add_element(label, nodes, kind, span);
+        Some(label)
+    }
+
+    /// The last line that defines an element.
+    fn line_of(&self, element: u64) -> Option<u32> {
+        self.other_lines.get(element).copied().or_else(|| {
+            let index = self.mesh_index.elements.get(element)?.index()?;
+            Some(self.mesh_index.places.get(index).line)
+        })
+    }
+
+    fn add_element(&mut self, label: u64, nodes: Nodes, kind: Kind, span: Span) {
+        let MeshIndex {
+            mesh,
+            elements,
+            places,
+            ..
+        } = &mut self.mesh_index;
+        match kind {
+            Kind::Plane(element_type) => {
+                elements.insert(label, Labelled::new(mesh.elements.len()));
+                places.push(span);
+                mesh.elements.push(Element {
+                    label,
+                    element_type,
+                    nodes,
+                    section: 0,
+                });
+            }
+            Kind::Line => {
+                self.other_lines.insert(label, span.line);
+                self.lines.push(RawLine { label, nodes, span });
+            }
+        }
+    }
+
+    /// Indices of an element's nodes, which must exist and differ.
+    fn element_nodes(&self, element: u64, fields: &[Text], cx: &mut Context) -> Option<Nodes> {
+        let mut labels: SmallVec<[u64; 4]> = SmallVec::new();
+        let mut nodes = Nodes::new();
+        for field in fields {
+            let Some(node) = self.mesh_index.nodes.label(*field, cx) else {
+                continue;
+            };
+            let differs = !labels.contains(&node);
+            if !differs {
+                let [element, node] = [element, node].map(|label| cx.named(label));
+                let message = format!("element {element} has node {node} twice");
+                cx.error(Code::BadShape, field.span, message);
+            }
+            match self.mesh_index.nodes.get(node) {
+                Some(known) => nodes.extend(known.index().filter(|_| differs)),
+                None => self.undefined_node(node, field.span, cx),
+            }
+            labels.push(node);
+        }
+        (nodes.len() == fields.len()).then_some(nodes)
+    }
+
+    fn undefined_node(&self, node: u64, span: Span, cx: &mut Context) {
+        if !self.mesh_index.nodes.incomplete && !cx.deck.incomplete {
+            let message = format!("node {} is not defined", cx.named(node));
+            cx.error(Code::UndefinedNode, span, message);
+        }
+    }
+
+    /// Reports a mesh without nodes or elements at their card, or else where it should stand:
+    /// elements after the last nodes, nodes at the first keyword of the deck.
+    fn report_empty(&self, outline: &Outline, cx: &mut Context) {
+        let mesh = &self.mesh_index.mesh;
+        let (keyword, before) = match (mesh.node_count() == 0, mesh.elements.is_empty()) {
+            (true, _) => ("NODE", None),
+            (false, true) => ("ELEMENT", outline.model_cards("NODE").pop()),
+            (false, false) => return,
+        };
+        let cards = outline.model_cards(keyword);
+        let is_left_out = |card: &&Card| card.faulty && card.rows.first().is_none();
+        let said = cards.iter().any(is_left_out);
+        let first = cards.first().copied().or(before);
+        if let Some(card) = first.or(cx.deck.cards.first()).filter(|_| !said) {
+            let message = format!("the deck has no {}s", keyword.to_lowercase());
+            let error = Diagnostic::error(Code::EmptyMesh, card.span, message);
+            cx.d.push(error.help(format!("give them with *{keyword}")));
+        }
+    }
+
+    /// Reports nodes whose z differ by more than a small fraction of the model's size.
+    fn report_not_planar(&self, outline: &Outline, cx: &mut Context) {
+        if self.heights.is_empty() {
+            return;
+        }
+        let mesh = &self.mesh_index.mesh;
+        let range = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                (low.min(value), high.max(value))
+            })
+        };
+        let [x, y] = [0, 1].map(|i| range(&mut mesh.coordinates.iter().map(|at| at[i])));
+        let z = range(&mut (0..mesh.node_count()).map(|node| self.height(node)));
+        let size = (x.1 - x.0).max(y.1 - y.0);
+        if z.1 - z.0 > 1e-9 * size {
+            let is_off = |&node: &usize| self.height(node) != self.height(0);
+            let off = (0..mesh.node_count()).find(is_off).unwrap_or(0);
+            let message = format!("the mesh is not plane: z runs from {} to {}", z.0, z.1);
+            if let Some(row) = row_of(mesh.node_labels[off], outline, cx) {
+                cx.error(Code::NotPlanar, row.span(), message);
+            }
+        }
+    }
+
+    /// The mesh without unused nodes and with line elements; nodes of `references` are used too.
+    fn finish(self, references: &BTreeSet<u64>, outline: &Outline, cx: &mut Context) -> MeshIndex {
+        let MeshIndex { mesh, nodes, .. } = &self.mesh_index;
+        let mut used = vec![false; mesh.node_count()];
+        for &node in mesh.elements.iter().flat_map(|element| &element.nodes) {
+            used[node] = true;
+        }
+        let index = |label: &u64| nodes.get(*label).and_then(Labelled::index);
+        for node in references.iter().filter_map(index) {
+            used[node] = true;
+        }
+        if used.contains(&false) {
+            self.report_unused(&used, outline, cx);
+        }
+        let mut mesh_index = self.mesh_index;
+        add_lines(&self.lines, &used, &mut mesh_index, cx);
+        if used.contains(&false) {
+            mesh_index.keep_nodes(&used);
+        }
+        mesh_index.instances = mesh_index::number_instances(&mut mesh_index.mesh, cx);
+        mesh_index
+    }
+
+    /// Warns about nodes of no element.
+    fn report_unused(&self, used: &[bool], outline: &Outline, cx: &mut Context) {
+        let MeshIndex { mesh, elements, .. } = &self.mesh_index;
+        if elements.incomplete || mesh.elements.is_empty() || cx.deck.incomplete {
+            return;
+        }
+        let labels = mesh.node_labels.iter().zip(used);
+        let mut unused = labels.filter(|(_, used)| !**used).map(|(label, _)| *label);
+        let Some(first) = unused.next() else { return };
+        let name = cx.named(first);
+        let message = match 1 + unused.count() {
+            1 => format!("node {name} belongs to no element"),
+            n => format!("{n} nodes belong to no element, the first is node {name}"),
+        };
+        if let Some(row) = row_of(first, outline, cx) {
+            let warning = Diagnostic::warning(Code::UnusedNode, row.span(), message);
+            cx.d.push(warning.help("left out, together with what the deck says about them"));
+        }
+    }
+}
+
+/// The row that defines a node, searched for a message.
+fn row_of<'a>(label: u64, outline: &Outline<'a>, cx: &Context) -> Option<Row<'a>> {
+    let cards = outline.model_cards("NODE").into_iter();
+    let mut rows = cards.flat_map(|card| card.rows.iter());
+    rows.find(|row| row.get(0).and_then(|field| cx.as_label(field)) == Some(label))
+}
+
+/// Fields of the element that starts in row `first`: it takes rows until it has `count` fields or
+/// the next row would exceed them.
+fn element_fields<'a>(
+    first: Row<'a>,
+    rest: &mut (impl Iterator<Item = Row<'a>> + Clone),
+    count: usize,
+) -> SmallVec<[Text<'a>; 5]> {
+    let mut fields: SmallVec<[Text; 5]> = first.fields().collect();
+    while fields.len() < count {
+        let (missing, mut after) = (count - fields.len(), rest.clone());
+        match after.next() {
+            Some(row) if row.fields().count() <= missing => fields.extend(row.fields()),
+            _ => break,
+        }
+        *rest = after;
+    }
+    fields
+}
+
+/// Kind of an element of the deck.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// A plane element.
+    Plane(ElementType),
+    /// Two nodes that name a side of a plane element.
+    Line,
+}
+
+impl Kind {
+    /// Number of nodes.
+    pub fn nodes(self) -> usize {
+        match self {
+            Kind::Plane(element_type) => element_type.topology().nodes,
+            Kind::Line => 2,
+        }
+    }
+}
+
+/// The kind of elements with this name.
+pub(super) fn element_kind(name: Text, cx: &mut Context) -> Option<Kind> {
+    let folded = name.name_key();
+    if ["T2D2", "T3D2", "B21", "B31"].contains(&folded.as_str()) {
+        return Some(Kind::Line);
+    }
+    let known = ElementType::from_name(&folded).or_else(|| unusable(name, &folded, cx));
+    known.map(Kind::Plane)
+}
+
+/// Reports a type; lenient reading replaces reduced by full integration of 4-node elements.
+fn unusable(name: Text, folded: &str, cx: &mut Context) -> Option<ElementType> {
+    let full = folded.strip_suffix('R').and_then(ElementType::from_name);
+    if let Some(full) = full.filter(|full| full.topology().nodes == 4 && cx.d.is_lenient()) {
+        let message = format!("{} is integrated with 2 x 2 points", name.text);
+        cx.d.push_once(Diagnostic::warning(Code::ElementType, name.span, message));
+        return Some(full);
+    }
+    let message = format!("element type {} cannot be used", name.text);
+    let error = Diagnostic::error(Code::ElementType, name.span, message);
+    let meant = closest(folded, ["CPS3", "CPE3", "CPS4", "CPE4"]);
+    cx.d.push(match reason(folded) {
+        Some(reason) => error.help(reason),
+        None => error.suggest(meant).help("use CPS3, CPE3, CPS4 or CPE4"),
+    });
+    None
+}
+
+/// Why a type that other codes know cannot be used.
+fn reason(folded: &str) -> Option<&'static str> {
+    let starts = |prefixes: &[&str]| prefixes.iter().any(|prefix| folded.starts_with(prefix));
+    if starts(&["CPE4R", "CPS4R"]) && folded.len() == 5 {
+        Some(
+            "elements with one integration point are not supported: write CPE4 or CPS4; --lenient takes \
+             them as these",
+        )
+    } else if starts(&["CPE4", "CPS4", "CPE3", "CPS3"]) && folded.len() > 4 {
+        Some("write CPE3, CPS3, CPE4 or CPS4: other formulations are not supported")
+    } else if starts(&["CPE6", "CPS6", "CPE8", "CPS8"]) {
+        Some("quadratic elements are not supported: split them into linear ones")
+    } else if starts(&["CAX"]) {
+        Some("axisymmetric elements are not supported")
+    } else if starts(&["T2D", "T3D", "B2", "B3", "R2D"]) {
+        Some("line elements only name sides of plane elements: use T3D2 with two nodes")
+    } else if starts(&["C3D", "S3", "S4", "S6", "S8", "M3D", "R3D"]) {
+        Some("the program is plane: use CPS3, CPE3, CPS4 or CPE4")
+    } else {
+        None
+    }
+}
+
+/// A line element as the deck gives it.
+pub(super) struct RawLine {
+    pub label: u64,
+    pub nodes: Nodes,
+    pub span: Span,
+}
+
+/// Numbers the line elements after the plane ones; leaves out those that are no side. `used` tells
+/// which nodes are not left out.
+pub(super) fn add_lines(
+    lines: &[RawLine],
+    used: &[bool],
+    mesh_index: &mut MeshIndex,
+    cx: &mut Context,
+) {
+    if lines.is_empty() {
+        return;
+    }
+    let faces = faces_by_nodes(&mesh_index.mesh);
+    let mut strays = Vec::new();
+    for line in lines {
+        let mut nodes = line.nodes.clone();
+        nodes.retain(|node| used[*node]);
+        nodes.sort_unstable();
+        let labelled = match faces.get(&nodes) {
+            Some(&face) => {
+                mesh_index.lines.push(face);
+                Labelled::new(mesh_index.mesh.elements.len() + mesh_index.lines.len() - 1)
+            }
+            None => {
+                strays.push(line);
+                Labelled::LEFT_OUT
+            }
+        };
+        mesh_index.elements.insert(line.label, labelled);
+    }
+    if !cx.d.has_errors() {
+        report_strays(&strays, cx);
+        report_plane_stress(mesh_index, cx);
+    }
+}
+
+/// A face for the nodes of every side, in increasing order; the first of two elements.
+fn faces_by_nodes(mesh: &Mesh) -> HashMap<Nodes, Face> {
+    let mut faces = HashMap::new();
+    for (element, e) in mesh.elements.iter().enumerate() {
+        for (side, nodes) in e.sides().enumerate() {
+            let mut nodes = Nodes::from_slice(&nodes);
+            nodes.sort_unstable();
+            faces.entry(nodes).or_insert(Face { element, side });
+        }
+    }
+    faces
+}
+
+fn report_strays(strays: &[&RawLine], cx: &mut Context) {
+    let Some(first) = strays.first() else { return };
+    let label = cx.named(first.label);
+    let message = match strays.len() {
+        1 => format!("line element {label} is no side of a plane element"),
+        n => format!("{n} line elements are no sides of plane elements, the first is {label}"),
+    };
+    let warning = Diagnostic::warning(Code::LineElement, first.span, message);
+    cx.d.push(warning.help("left out: line elements only name sides of plane elements"));
+}
+
+/// Notes that a mesh generator's triangles and quadrilaterals are in plane stress.
+fn report_plane_stress(mesh_index: &MeshIndex, cx: &mut Context) {
+    let mut elements = mesh_index.mesh.elements.iter();
+    let found = elements.position(|element| element.element_type.plane == Plane::Stress);
+    if let Some(index) = found {
+        let name = mesh_index.mesh.elements[index].element_type.name();
+        let span = mesh_index.places.get(index);
+        let message = format!("{name} elements are in plane stress");
+        let note = Diagnostic::note(Code::LineElement, span, message);
+        cx.d.push(note.help(
+            "mesh generators write CPS3 and CPS4 for every mesh: write CPE3 and CPE4 for plane strain",
+        ));
+    }
+}
+
+/// Labels that may be those of reference nodes or of nodes of equations; `groups` are the node
+/// sets of `*NODE` by their names, as compared, with the labels of their members.
+pub(super) fn labels_needed(
+    outline: &Outline,
+    groups: &[(&str, &LabelList)],
+    cx: &Context,
+) -> BTreeSet<u64> {
+    let (mut labels, mut names) = (BTreeSet::new(), BTreeSet::new());
+    for field in fields(outline) {
+        match cx.is_number(field) {
+            true => labels.extend(cx.as_label(field)),
+            false => names.extend([field.name_key(), cx.key_of(field)]),
+        }
+    }
+    for (_, members) in groups.iter().filter(|(name, _)| names.contains(*name)) {
+        labels.extend(members.iter());
+    }
+    let is_meant = |set: &&Card| {
+        let name = set.value("NSET");
+        name.is_some_and(|name| names.contains(&cx.key_of(name)))
+    };
+    for set in outline.model_cards("NSET").into_iter().filter(is_meant) {
+        let count = if set.has("GENERATE") { 2 } else { usize::MAX };
+        let numbers = set.rows.iter().flat_map(|row| row.fields().take(count));
+        labels.extend(numbers.filter_map(|field| cx.as_label(field)));
+    }
+    labels
+}
+
+/// Fields that name a reference node, or a node or node set of an equation.
+fn fields<'a>(outline: &Outline<'a>) -> Vec<Text<'a>> {
+    let bodies = outline.model_cards("RIGID BODY").into_iter();
+    let equations = outline.model_cards("EQUATION").into_iter();
+    // a line of one field is the number of terms
+    let rows = equations.flat_map(|card| card.rows.iter());
+    let terms = rows.filter(|row| row.get(1).is_some());
+    bodies
+        .filter_map(|card| card.value("REF NODE"))
+        .chain(terms.flat_map(|row| row.fields().step_by(3)))
+        .collect()
+}

@@ -1,0 +1,189 @@
+//! The cards of a deck in their order: blocks of the model, and steps. Reports cards out of place.
+
+use super::context::Context;
+use crate::deck::{Card, Data, Scope, Status};
+use crate::diagnostics::{Code, Diagnostic};
+
+/// A model card with the cards that belong to it, such as a material with its constants.
+pub(crate) struct Block<'a> {
+    /// The card that begins it.
+    pub head: &'a Card,
+    /// The cards under it.
+    pub parts: Vec<&'a Card>,
+}
+
+impl<'a> Block<'a> {
+    /// The cards of a keyword.
+    pub fn parts_of(&self, keyword: &str) -> Vec<&'a Card> {
+        let parts = self.parts.iter().copied();
+        parts.filter(|card| card.keyword.name == keyword).collect()
+    }
+}
+
+/// A step with its cards.
+pub(crate) struct StepCards<'a> {
+    /// `*STEP`.
+    pub head: &'a Card,
+    /// The cards up to `*END STEP`.
+    pub cards: Vec<&'a Card>,
+}
+
+/// The cards of a deck, sorted into blocks of the model and steps.
+#[derive(Default)]
+pub(crate) struct Outline<'a> {
+    /// Cards outside steps.
+    pub model: Vec<Block<'a>>,
+    /// Steps in order.
+    pub steps: Vec<StepCards<'a>>,
+    /// Whether the deck has steps at all.
+    has_steps: bool,
+    /// Whether a step is open.
+    open: bool,
+    /// Whether the last card belongs to the model, so that its block may continue.
+    in_model: bool,
+}
+
+impl<'a> Outline<'a> {
+    /// Sorts the cards of a deck; reports those out of place.
+    pub fn new(cx: &mut Context<'a>) -> Outline<'a> {
+        let deck = cx.deck;
+        let mut outline = Outline {
+            has_steps: deck.cards.iter().any(|card| card.keyword.name == "STEP"),
+            ..Outline::default()
+        };
+        for card in &deck.cards {
+            if card.keyword.status == Status::Read {
+                outline.check_data(card, cx);
+                outline.place(card, cx);
+            }
+        }
+        outline.finish(cx);
+        outline
+    }
+
+    /// Cards outside steps with this keyword.
+    pub fn model_cards(&self, keyword: &str) -> Vec<&'a Card> {
+        self.blocks(keyword).map(|block| block.head).collect()
+    }
+
+    /// Blocks that begin with this keyword.
+    pub fn blocks(&self, keyword: &str) -> impl Iterator<Item = &Block<'a>> {
+        self.model
+            .iter()
+            .filter(move |block| block.head.keyword.name == keyword)
+    }
+
+    fn check_data(&self, card: &Card, cx: &mut Context) {
+        let required = matches!(card.keyword.data, Data::Required(_));
+        if required && card.rows.is_empty() && !card.faulty && !cx.deck.incomplete {
+            let message = format!("{} needs data lines", card.title());
+            cx.error(Code::MissingData, card.span, message);
+        }
+    }
+
+    fn place(&mut self, card: &'a Card, cx: &mut Context) {
+        match (card.keyword.name, card.keyword.scope) {
+            ("STEP", _) => self.begin_step(card, cx),
+            ("END STEP", _) => self.end_step(card, cx),
+            (_, Scope::Block(head)) => self.place_in_block(card, head, cx),
+            (_, Scope::BlockOrModel(head)) => match self.open_block(head) {
+                Some(block) => block.parts.push(card),
+                None => self.place_in_model(card, cx),
+            },
+            (_, Scope::Step) => self.place_in_step(card, cx),
+            (_, Scope::Anywhere) if self.open => self.place_in_step(card, cx),
+            (_, Scope::Model | Scope::Anywhere | Scope::Assembly) => self.place_in_model(card, cx),
+        }
+    }
+
+    fn place_in_model(&mut self, card: &'a Card, cx: &mut Context) {
+        let fault = match (self.open, self.steps.is_empty()) {
+            (true, _) => Some("cannot stand in a step"),
+            (false, false) => Some("must stand before the first step"),
+            (false, true) => None,
+        };
+        if let Some(fault) = fault {
+            out_of_place(card, fault, "move it above the first *STEP", cx);
+        }
+        self.in_model = true;
+        self.model.push(Block {
+            head: card,
+            parts: Vec::new(),
+        });
+    }
+
+    fn begin_step(&mut self, card: &'a Card, cx: &mut Context) {
+        if self.open {
+            let message = "a step begins before the last one ends";
+            let error = Diagnostic::error(Code::StepStructure, card.span, message);
+            cx.d.push(error.help("close the step before with *END STEP"));
+        }
+        self.open = true;
+        self.in_model = false;
+        self.steps.push(StepCards {
+            head: card,
+            cards: Vec::new(),
+        });
+    }
+
+    fn end_step(&mut self, card: &Card, cx: &mut Context) {
+        if !self.open && self.has_steps {
+            cx.error(Code::StepStructure, card.span, "*END STEP without *STEP");
+        }
+        self.open = false;
+        self.in_model = false;
+    }
+
+    /// The block that the last card stands in, if it begins with this keyword.
+    fn open_block(&mut self, head: &str) -> Option<&mut Block<'a>> {
+        let last = self.model.last_mut().filter(|_| self.in_model);
+        last.filter(|block| block.head.keyword.name == head)
+    }
+
+    fn place_in_block(&mut self, card: &'a Card, head: &str, cx: &mut Context) {
+        match self.open_block(head) {
+            Some(block) => block.parts.push(card),
+            None => {
+                let help = format!("put it under the *{head} it belongs to");
+                out_of_place(card, &format!("must follow *{head}"), &help, cx);
+            }
+        }
+    }
+
+    fn place_in_step(&mut self, card: &'a Card, cx: &mut Context) {
+        match self.steps.last_mut().filter(|_| self.open) {
+            Some(step) => {
+                self.in_model = false;
+                step.cards.push(card);
+            }
+            None if !self.has_steps => {}
+            None => {
+                let help = "move it between *STEP and *END STEP";
+                out_of_place(card, "must stand in a step", help, cx);
+            }
+        }
+    }
+
+    fn finish(&self, cx: &mut Context) {
+        match self.steps.last() {
+            Some(step) if self.open => {
+                let message = "this step is not closed by *END STEP";
+                cx.warning(Code::MissingEndStep, step.head.span, message);
+            }
+            None if !cx.may_lack_cards() => {
+                let message = "the deck has no *STEP: there is nothing to compute";
+                let end = cx.deck.cards.last().map(|card| card.span);
+                if let Some(end) = end {
+                    let error = Diagnostic::error(Code::NoStep, end, message);
+                    cx.d.push(error.label("the last keyword of the deck"));
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+fn out_of_place(card: &Card, fault: &str, help: &str, cx: &mut Context) {
+    let message = format!("{} {fault}", card.title());
+    cx.d.push(Diagnostic::error(Code::WrongPlace, card.span, message).help(help));
+}

@@ -1,0 +1,447 @@
+//! Output requests: times of frames (`*OUTPUT`, `*NODE FILE` and related keywords, `*TIME POINTS`), sets
+//! of the histories (`*NODE PRINT`, `*EL PRINT`), dofs in the status file (`*MONITOR`); `*RESTART`.
+
+use super::amplitudes::{report_long_rows, time_base};
+use super::boundary::{Direction, Targets, direction};
+use super::context::Context;
+use super::names::Names;
+use super::sets::Sets;
+use crate::deck::{Card, Row, Text};
+use crate::diagnostics::{Code, Diagnostic, shown};
+use crate::model::{Frames, HistorySet, RequestedFields, TimeBase};
+
+/// Variables that the result file holds.
+const WRITTEN: &[&str] = &[
+    "U", "V", "A", "RF", "CF", "UT", "VT", "AT", "S11", "S22", "S33", "S12", "MISES", "E11", "E22",
+    "E12", "LE11", "LE22", "LE12", "U1", "U2", "V1", "V2", "A1", "A2", "RF1", "RF2", "CF1", "CF2",
+    "S", "E", "LE", "ENER", "ELSE", "ELKE", "EVOL", "CSTRESS", "CDISP", "CFORCE", "CSTATUS",
+    "CDIS", "CSTR", "CELS", "CF", "CFN", "CFS", "CFT", "CNUM", "CFNM", "CFSM", "CFTM", "CPRESS",
+    "COPEN", "CSLIP1", "ALLKE", "ALLSE", "ALLIE", "ALLWK", "ALLFD", "ALLVD", "ETOTAL",
+];
+
+/// Output requests of the deck so far.
+pub(crate) struct Requests {
+    points: TimePoints,
+    /// Frames of the current step.
+    frames: Frames,
+    /// Time points in total time: those of each step are selected when it is built.
+    total_times: Option<Vec<f64>>,
+    /// What the histories and the status file show.
+    pub histories: Histories,
+}
+
+impl Requests {
+    /// Nothing yet.
+    pub fn new(cx: &mut Context) -> Requests {
+        Requests {
+            points: time_points(cx),
+            frames: Frames::Default,
+            total_times: None,
+            histories: Histories::default(),
+        }
+    }
+
+    /// Reads the output cards of a step.
+    pub fn cards(&mut self, cards: &[&Card], targets: Targets, cx: &mut Context) {
+        let mut in_history = None;
+        for card in cards {
+            match (card.keyword.name, in_history) {
+                ("OUTPUT", _) => in_history = self.output(card, cx),
+                ("NODE PRINT", _) | ("NODE OUTPUT", Some(true)) => {
+                    self.history(card, Family::Nodes, targets, cx);
+                }
+                ("EL PRINT", _) | ("ELEMENT OUTPUT", Some(true)) => {
+                    self.history(card, Family::Elements, targets, cx);
+                }
+                ("CONTACT OUTPUT", Some(true)) => skip_sets(card),
+                ("NODE OUTPUT" | "ELEMENT OUTPUT" | "CONTACT OUTPUT", Some(false)) => {
+                    skip_sets(card);
+                    self.histories.fields(card);
+                }
+                ("NODE OUTPUT" | "ELEMENT OUTPUT" | "CONTACT OUTPUT", None)
+                | ("NODE FILE" | "EL FILE" | "CONTACT FILE", _) => {
+                    skip_sets(card);
+                    self.histories.fields(card);
+                    self.when(card, cx);
+                }
+                ("CONTACT PRINT", _) => self.check_when(card, cx),
+                ("ENERGY OUTPUT", _) => {}
+                ("RESTART", _) => restart(card, cx),
+                ("MONITOR", _) => self.histories.monitor(card, targets, cx),
+                _ => continue,
+            }
+            report_variables(card, cx);
+        }
+    }
+
+    /// `*OUTPUT`: whether histories, or else fields, are asked for below it.
+    fn output(&mut self, card: &Card, cx: &mut Context) -> Option<bool> {
+        match (card.has("FIELD"), card.has("HISTORY")) {
+            (true, true) => {
+                let message = "FIELD and HISTORY exclude each other";
+                cx.error(Code::BadValue, card.span_of("HISTORY"), message);
+                None
+            }
+            (true, false) => {
+                self.when(card, cx);
+                Some(false)
+            }
+            (false, true) => {
+                self.check_when(card, cx);
+                Some(true)
+            }
+            (false, false) => {
+                self.when(card, cx);
+                None
+            }
+        }
+    }
+
+    /// Adds the set of a card to the history.
+    fn history(&mut self, card: &Card, family: Family, targets: Targets, cx: &mut Context) {
+        self.check_when(card, cx);
+        self.histories.card(card, family, targets.sets, cx);
+    }
+
+    /// Sets the times of frames, if the card gives any.
+    fn when(&mut self, card: &Card, cx: &mut Context) {
+        let given: Vec<&str> = WHEN.into_iter().filter(|name| card.has(name)).collect();
+        if let [first, second, ..] = given[..] {
+            let message = format!("{first} and {second} exclude each other");
+            cx.error(Code::OutputTimes, card.span_of(second), message);
+            return;
+        }
+        let Some(&name) = given.first() else { return };
+        if let Some((frames, total_times)) = self.asked(name, card, cx) {
+            self.frames = frames;
+            self.total_times = total_times;
+        }
+    }
+
+    /// Checks the times on a card for histories; histories hold every increment all the same.
+    fn check_when(&self, card: &Card, cx: &mut Context) {
+        for name in WHEN.into_iter().filter(|name| card.has(name)) {
+            self.asked(name, card, cx);
+        }
+    }
+
+    /// Frames that a parameter requests, and its time points in total time.
+    fn asked(
+        &self,
+        name: &str,
+        card: &Card,
+        cx: &mut Context,
+    ) -> Option<(Frames, Option<Vec<f64>>)> {
+        let frames = match name {
+            "FREQUENCY" => frequency(card, cx),
+            "NUMBER INTERVAL" => number_interval(card, cx),
+            "TIME INTERVAL" => time_interval(card, cx),
+            _ => return self.at_time_points(card, cx),
+        };
+        Some((frames?, None))
+    }
+
+    fn at_time_points(&self, card: &Card, cx: &mut Context) -> Option<(Frames, Option<Vec<f64>>)> {
+        let name = card.value("TIME POINTS")?;
+        let (base, times) = self.points.find(name, cx)?;
+        let total_times = (*base == TimeBase::Total).then(|| times.clone());
+        Some((Frames::Times(times.clone()), total_times))
+    }
+
+    /// Frames of a step that begins at total time `start` and takes `period`.
+    pub fn frames(&self, start: f64, period: f64) -> Frames {
+        let within = |times: Vec<f64>| {
+            let inside = times
+                .into_iter()
+                .filter(|&t| t > 0.0 && t <= period * (1.0 + 1e-9));
+            Frames::Times(inside.collect())
+        };
+        match (&self.total_times, &self.frames) {
+            (Some(times), _) => within(times.iter().map(|t| t - start).collect()),
+            (None, Frames::Times(times)) => within(times.clone()),
+            (None, frames) => frames.clone(),
+        }
+    }
+}
+
+/// Sets that fields are asked for on, which are written on the whole mesh.
+fn skip_sets(card: &Card) {
+    card.value("NSET");
+    card.value("ELSET");
+}
+
+const WHEN: [&str; 4] = [
+    "FREQUENCY",
+    "NUMBER INTERVAL",
+    "TIME INTERVAL",
+    "TIME POINTS",
+];
+
+/// Every so many increments; 0 means the ends of the step only.
+fn frequency(card: &Card, cx: &mut Context) -> Option<Frames> {
+    match count(card, "FREQUENCY", 0, cx)? {
+        0 => Some(Frames::Count(1)),
+        n => Some(Frames::Increments(n)),
+    }
+}
+
+fn number_interval(card: &Card, cx: &mut Context) -> Option<Frames> {
+    count(card, "NUMBER INTERVAL", 1, cx).map(Frames::Count)
+}
+
+fn count(card: &Card, name: &str, least: i64, cx: &mut Context) -> Option<usize> {
+    let value = card.integer(name, cx.d)?;
+    if value < least {
+        let message = format!("{name} must be at least {least}, found {value}");
+        cx.error(Code::OutputTimes, card.span_of(name), message);
+        return None;
+    }
+    usize::try_from(value).ok()
+}
+
+fn time_interval(card: &Card, cx: &mut Context) -> Option<Frames> {
+    let interval = card.real("TIME INTERVAL", cx.d)?;
+    if interval <= 0.0 {
+        let message = format!("TIME INTERVAL must be positive, found {}", shown(interval));
+        cx.error(Code::OutputTimes, card.span_of("TIME INTERVAL"), message);
+        return None;
+    }
+    Some(Frames::Every(interval))
+}
+
+/// Warns that `*RESTART` writes nothing.
+pub(crate) fn restart(card: &Card, cx: &mut Context) {
+    let off = card.integer("FREQUENCY", cx.d) == Some(0);
+    if card.has("WRITE") && !off {
+        let message = "*RESTART, WRITE is left out: there are no restart files";
+        let warning = Diagnostic::warning(Code::IgnoredKeyword, card.span, message);
+        cx.d.push_once(warning.help(
+            "a run that ends early leaves its frames, the last good state among them; to go on from there, run \
+             the deck with all its steps again",
+        ));
+    }
+}
+
+/// Warns about variables that are not written.
+fn report_variables(card: &Card, cx: &mut Context) {
+    for field in card.rows.iter().flat_map(Row::fields) {
+        if !field.is_empty() && !WRITTEN.contains(&field.name_key().as_str()) {
+            let message = format!("the variable {} is not written", field.text);
+            let warning = Diagnostic::warning(Code::IgnoredVariable, field.span, message);
+            cx.d.push_once(warning.help("docs/output.md lists everything the result file holds"));
+        }
+    }
+}
+
+/// What the deck has asked for so far.
+#[derive(Default)]
+pub(crate) struct Histories {
+    /// Node sets.
+    pub nodes: Vec<HistorySet>,
+    /// Element sets.
+    pub elements: Vec<HistorySet>,
+    /// Fields on request.
+    pub fields: RequestedFields,
+    /// Dofs in the status file.
+    pub monitored: Vec<usize>,
+}
+
+/// What a set holds.
+#[derive(Clone, Copy)]
+pub(super) enum Family {
+    Nodes,
+    Elements,
+}
+
+impl Family {
+    fn parameter(self) -> &'static str {
+        match self {
+            Family::Nodes => "NSET",
+            Family::Elements => "ELSET",
+        }
+    }
+
+    /// Warns that a history without a set is not written.
+    fn report_all(self, card: &Card, cx: &mut Context) {
+        let (members, help) = match self {
+            Family::Nodes => ("nodes", "name a node set with NSET="),
+            Family::Elements => ("elements", "name an element set with ELSET="),
+        };
+        let message = format!("the history of all {members} is not written");
+        let warning = Diagnostic::warning(Code::IgnoredVariable, card.span, message);
+        cx.d.push(warning.help(help));
+    }
+}
+
+impl Histories {
+    /// Adds the set of a card; `FREQUENCY=0` asks for nothing.
+    pub(super) fn card(&mut self, card: &Card, family: Family, sets: &Sets, cx: &mut Context) {
+        let name = card.value(family.parameter());
+        let is_off = card
+            .value("FREQUENCY")
+            .is_some_and(|n| n.text.trim() == "0");
+        let each_member = card.choice("TOTALS") != Some("ONLY");
+        match name {
+            Some(name) => {
+                if let Some(set) = family.set(name, sets, cx).filter(|_| !is_off) {
+                    self.add(family, HistorySet { set, each_member });
+                }
+            }
+            None if is_off || card.has(family.parameter()) => {}
+            None => family.report_all(card, cx),
+        }
+    }
+
+    fn add(&mut self, family: Family, asked: HistorySet) {
+        let known = match family {
+            Family::Nodes => &mut self.nodes,
+            Family::Elements => &mut self.elements,
+        };
+        match known.iter_mut().find(|known| known.set == asked.set) {
+            Some(known) => known.each_member |= asked.each_member,
+            None => known.push(asked),
+        }
+    }
+
+    /// Adds the fields of nodes or elements that a card names and that are written on request only.
+    pub(super) fn fields(&mut self, card: &Card) {
+        if card.keyword.name.starts_with("CONTACT") {
+            return;
+        }
+        for field in card.rows.iter().flat_map(Row::fields) {
+            match field.name_key().as_str() {
+                "CF" => self.fields.concentrated_load = true,
+                "ENER" => self.fields.energy_density = true,
+                "LE" => self.fields.logarithmic_strain = true,
+                _ => {}
+            }
+        }
+    }
+
+    /// Adds the dof of `*MONITOR`.
+    pub(super) fn monitor(&mut self, card: &Card, targets: Targets, cx: &mut Context) {
+        let new = monitored(card, targets, cx).filter(|dof| !self.monitored.contains(dof));
+        self.monitored.extend(new);
+    }
+}
+
+impl Family {
+    /// The set of a name; none that holds line elements only, with a warning.
+    fn set(self, name: Text, sets: &Sets, cx: &mut Context) -> Option<usize> {
+        let set = match self {
+            Family::Nodes => return sets.node_names.find(name, cx),
+            Family::Elements => sets.element_names.find(name, cx)?,
+        };
+        if sets.holds_lines_only(set) {
+            let message = format!("{} holds line elements only: it has no history", name.text);
+            let warning = Diagnostic::warning(Code::IgnoredVariable, name.span, message);
+            cx.d.push(warning.help("line elements name faces, they carry no stress"));
+            return None;
+        }
+        Some(set)
+    }
+}
+
+/// The dof that a card names.
+pub(super) fn monitored(card: &Card, targets: Targets, cx: &mut Context) -> Option<usize> {
+    let node = card.required("NODE", cx.d);
+    let dof = card.required("DOF", cx.d);
+    let help = "a column shows one node; give *MONITOR for each";
+    let node = node.and_then(|field| {
+        let Targets {
+            sets, mesh_index, ..
+        } = targets;
+        sets.single_node(field, mesh_index, (Code::BadValue, help), cx)
+    });
+    let dof = dof?;
+    match (node, direction(dof, cx)?) {
+        (node, Direction::Plane(direction)) => Some(2 * node? + direction),
+        (_, Direction::OutOfPlane) => {
+            let message = format!("direction {} is not in the status file", dof.text);
+            let warning = Diagnostic::warning(Code::IgnoredVariable, dof.span, message);
+            cx.d.push(warning.help("1 is x, 2 is y"));
+            None
+        }
+    }
+}
+
+/// Largest number of frames a deck may generate.
+const MOST_TIMES: f64 = 1e6;
+
+/// Named lists of times.
+pub(super) struct TimePoints {
+    names: Names,
+    all: Vec<(TimeBase, Vec<f64>)>,
+}
+
+impl TimePoints {
+    /// The list that a field names.
+    pub fn find(&self, name: Text, cx: &mut Context) -> Option<&(TimeBase, Vec<f64>)> {
+        let index = self.names.find(name, cx)?;
+        self.all.get(index)
+    }
+}
+
+/// Reads all `*TIME POINTS`.
+pub(super) fn time_points(cx: &mut Context) -> TimePoints {
+    let mut points = TimePoints {
+        names: Names::new("list of time points"),
+        all: Vec::new(),
+    };
+    let deck = cx.deck;
+    for card in deck
+        .cards
+        .iter()
+        .filter(|card| card.keyword.name == "TIME POINTS")
+    {
+        let Some(name) = points.names.new_name(card, cx) else {
+            continue;
+        };
+        let errors = cx.errors();
+        let generate = card.has("GENERATE");
+        if !generate {
+            report_long_rows(card, cx);
+        }
+        let mut times = Vec::new();
+        for row in card.rows.iter() {
+            match generate {
+                true => times.extend(generated(row, cx)),
+                false => times.extend(row.fields().filter_map(|field| field.real(cx.d))),
+            }
+        }
+        if cx.errors() > errors || card.faulty {
+            points.names.spoil(&name);
+            continue;
+        }
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        points.all.push((time_base(card), times));
+        points.names.define(name);
+    }
+    points
+}
+
+/// `first, last, increment`
+fn generated(row: Row, cx: &mut Context) -> Vec<f64> {
+    row.at_most(3, cx.d);
+    let first = row.real(0, "the first time", cx.d);
+    let last = row.real(1, "the last time", cx.d);
+    let step = row.real(2, "the increment", cx.d);
+    let (Some(first), Some(last), Some(step)) = (first, last, step) else {
+        return Vec::new();
+    };
+    let count = ((last - first) / step + 1e-9).floor();
+    if step <= 0.0 || !(0.0..=MOST_TIMES).contains(&count) {
+        let message = format!(
+            "no times run from {} to {} in steps of {}",
+            shown(first),
+            shown(last),
+            shown(step)
+        );
+        cx.error(Code::OutputTimes, row.span(), message);
+        return Vec::new();
+    }
+    (0..=count as usize)
+        .map(|i| first + i as f64 * step)
+        .collect()
+}

@@ -1,0 +1,388 @@
+//! `*NSET` and `*ELSET`.
+
+use super::context::Context;
+use super::mesh_index::{Group, MeshIndex};
+use super::names::{Labelled, Labels, Names};
+use super::outline::Outline;
+use crate::deck::{Card, Row, Text};
+use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::model::{Face, Set};
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+
+/// All node sets and element sets.
+pub(crate) struct Sets {
+    /// Names of the node sets.
+    pub node_names: Names,
+    /// Node sets in the order of their names.
+    pub nodes: Vec<Set>,
+    /// Keys of node sets whose members are listed unsorted; that order is lost.
+    pub unsorted: BTreeSet<String>,
+    /// Names of the element sets.
+    pub element_names: Names,
+    /// Element sets in the order of their names, without line elements.
+    pub elements: Vec<Set>,
+    /// Faces that the line elements of the element sets name.
+    pub lines: Vec<Vec<Face>>,
+}
+
+impl Sets {
+    /// Whether an element set holds line elements and no others.
+    pub fn holds_lines_only(&self, set: usize) -> bool {
+        let lines = self.lines.get(set);
+        let elements = self.elements.get(set);
+        lines.is_some_and(|lines| !lines.is_empty())
+            && elements.is_some_and(|set| set.members.is_empty())
+    }
+
+    /// The node, or the nodes of the set, that a field names.
+    pub fn nodes_of(&self, field: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<usize> {
+        match cx.is_number(field) {
+            true => mesh_index.nodes.find(field, cx).into_iter().collect(),
+            false => members(&self.nodes, self.node_names.find(field, cx)).to_vec(),
+        }
+    }
+
+    /// The node that a field names, or the only node of the set; reports other sets with a
+    /// code and a help. A node that is left out is none.
+    pub fn single_node(
+        &self,
+        field: Text,
+        mesh_index: &MeshIndex,
+        (code, help): (Code, &str),
+        cx: &mut Context,
+    ) -> Option<usize> {
+        let errors = cx.errors();
+        match self.nodes_of(field, mesh_index, cx)[..] {
+            [node] => Some(node),
+            _ if cx.errors() > errors || cx.may_lack_cards() || mesh_index.nodes.incomplete => None,
+            [] if cx.is_number(field) => None,
+            ref nodes => {
+                let message = format!("{} holds {} nodes", field.text, nodes.len());
+                cx.d.push(Diagnostic::error(code, field.span, message).help(help));
+                None
+            }
+        }
+    }
+
+    /// The element, or the elements of the set, that a field names; reports line elements alone.
+    pub fn elements_of(
+        &self,
+        field: Text,
+        mesh_index: &MeshIndex,
+        cx: &mut Context,
+    ) -> Cow<'_, [usize]> {
+        let (elements, lines) = self.elements_and_lines_of(field, mesh_index, cx);
+        if elements.is_empty() && !lines.is_empty() {
+            report_lines(field, cx);
+        }
+        elements
+    }
+
+    /// The element, or the elements of the set, that a field names, and the faces that line elements
+    /// among them name.
+    pub fn elements_and_lines_of(
+        &self,
+        field: Text,
+        mesh_index: &MeshIndex,
+        cx: &mut Context,
+    ) -> (Cow<'_, [usize]>, Vec<Face>) {
+        if cx.is_number(field) {
+            let found = mesh_index.elements.find(field, cx);
+            let (elements, lines) = split(found.into_iter().collect(), mesh_index);
+            return (Cow::Owned(elements), lines);
+        }
+        let set = self.element_names.find(field, cx);
+        let lines = set.and_then(|index| self.lines.get(index)).cloned();
+        let elements = members(&self.elements, set);
+        (Cow::Borrowed(elements), lines.unwrap_or_default())
+    }
+}
+
+/// Reports line elements where plane ones are needed.
+fn report_lines(field: Text, cx: &mut Context) {
+    let message = format!("{} stands for line elements only", field.text);
+    let error = Diagnostic::error(Code::LineElement, field.span, message);
+    cx.d.push(error.help("they name sides of plane elements, in rows of *SURFACE without a face"));
+}
+
+/// Plane elements, and the faces that line elements name.
+fn split(members: Vec<usize>, mesh_index: &MeshIndex) -> (Vec<usize>, Vec<Face>) {
+    if mesh_index.lines.is_empty() {
+        return (members, Vec::new());
+    }
+    let count = mesh_index.mesh.elements.len();
+    let (elements, lines): (Vec<_>, Vec<_>) = members.into_iter().partition(|&m| m < count);
+    let faces = lines.iter().filter_map(|m| mesh_index.lines.get(m - count));
+    (elements, faces.copied().collect())
+}
+
+/// Element sets and the faces that their line elements name.
+fn split_sets(sets: Vec<Set>, mesh_index: &MeshIndex) -> (Vec<Set>, Vec<Vec<Face>>) {
+    let split = sets.into_iter().map(|Set { name, members }| {
+        let (members, lines) = split(members, mesh_index);
+        (Set { name, members }, lines)
+    });
+    split.unzip()
+}
+
+fn members(sets: &[Set], index: Option<usize>) -> &[usize] {
+    let set = index.and_then(|index| sets.get(index));
+    set.map(|set| set.members.as_slice()).unwrap_or_default()
+}
+
+/// Reads all sets; a set may list sets that are defined later.
+pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) -> Sets {
+    let mut elements = Family::new("element set", &mesh_index.elements);
+    elements.add_groups(&mesh_index.element_groups);
+    elements.define(&outline.model_cards("ELSET"), "ELSET", cx);
+    elements.fill(cx);
+    let element_names = elements.names;
+    let element_sets = resolve(&element_names, elements.drafts, cx);
+    let (element_sets, lines) = split_sets(element_sets, mesh_index);
+
+    let mut nodes = Family::new("node set", &mesh_index.nodes);
+    nodes.add_groups(&mesh_index.node_groups);
+    nodes.define(&outline.model_cards("NSET"), "NSET", cx);
+    nodes.fill(cx);
+    let mut sets = Sets {
+        node_names: nodes.names,
+        nodes: Vec::new(),
+        unsorted: nodes.unsorted,
+        element_names,
+        elements: element_sets,
+        lines,
+    };
+    let mut drafts = nodes.drafts;
+    for (index, source) in nodes.from_elements {
+        let found = sets.element_names.find(source, cx);
+        if let (Some(draft), Some(set)) = (drafts.get_mut(index), found) {
+            let members = sets.elements.get(set).map_or(&[][..], |set| &set.members);
+            let cells = members
+                .iter()
+                .filter_map(|&e| mesh_index.mesh.elements.get(e));
+            draft
+                .members
+                .extend(cells.flat_map(|element| &element.nodes));
+            let lines = sets.lines.get(set).map_or(&[][..], |lines| lines);
+            let ends = lines.iter().flat_map(|face| face.nodes(&mesh_index.mesh));
+            draft.members.extend(ends);
+        }
+    }
+    sets.nodes = resolve(&sets.node_names, drafts, cx);
+    sets
+}
+
+/// A set before the sets it lists are known.
+struct Draft {
+    span: Span,
+    /// In any order, some perhaps several times.
+    members: Vec<usize>,
+    children: Vec<usize>,
+}
+
+/// Node sets or element sets being read.
+struct Family<'a> {
+    names: Names,
+    labels: &'a Labels,
+    drafts: Vec<Draft>,
+    cards: Vec<(usize, &'a Card)>,
+    from_elements: Vec<(usize, Text<'a>)>,
+    unsorted: BTreeSet<String>,
+}
+
+impl<'a> Family<'a> {
+    fn new(what: &'static str, labels: &'a Labels) -> Family<'a> {
+        Family {
+            names: Names::of_parts(what),
+            labels,
+            drafts: Vec::new(),
+            cards: Vec::new(),
+            from_elements: Vec::new(),
+            unsorted: BTreeSet::new(),
+        }
+    }
+
+    fn open(&mut self, name: crate::deck::Name, span: Span) -> usize {
+        let index = self.names.define(name);
+        if index == self.drafts.len() {
+            self.drafts.push(Draft {
+                span,
+                members: Vec::new(),
+                children: Vec::new(),
+            });
+        }
+        index
+    }
+
+    fn add_groups(&mut self, groups: &[Group]) {
+        for group in groups {
+            let index = self.open(group.name.clone(), group.span);
+            let labels = self.labels;
+            let found = group.labels.iter().filter_map(|label| labels.get(label));
+            if let Some(draft) = self.drafts.get_mut(index) {
+                draft.members.reserve(group.labels.len());
+                draft.members.extend(found.filter_map(Labelled::index));
+            }
+        }
+    }
+
+    fn extend(&mut self, index: usize, members: impl IntoIterator<Item = usize>) {
+        if let Some(draft) = self.drafts.get_mut(index) {
+            draft.members.extend(members);
+        }
+    }
+
+    /// Registers the names of all cards.
+    fn define(&mut self, cards: &[&'a Card], parameter: &str, cx: &mut Context) {
+        for card in cards {
+            let text = card.required(parameter, cx.d);
+            match text.and_then(|text| Some((self.names.defined(text, cx)?, text.span))) {
+                Some((name, span)) => {
+                    let index = self.open(name, span);
+                    self.cards.push((index, card));
+                }
+                None => self.names.spoil_unknown(),
+            }
+        }
+    }
+
+    /// Reads the rows of all cards.
+    fn fill(&mut self, cx: &mut Context) {
+        for (index, card) in std::mem::take(&mut self.cards) {
+            let generate = card.has("GENERATE");
+            if card.has("UNSORTED") {
+                let name = card.value("NSET").map(|name| cx.key_of(name));
+                self.unsorted.extend(name);
+            }
+            if card.keyword.name == "NSET"
+                && let Some(source) = card.value("ELSET")
+            {
+                self.from_elements.push((index, source));
+            }
+            for row in card.rows.iter() {
+                match generate {
+                    true => self.range(index, row, cx),
+                    false => self.list(index, row, cx),
+                }
+            }
+        }
+    }
+
+    fn list(&mut self, index: usize, row: Row<'a>, cx: &mut Context) {
+        for field in row.fields().filter(|field| !field.is_empty()) {
+            if cx.is_number(field) {
+                let member = self.labels.find(field, cx);
+                self.extend(index, member);
+            } else if let Some(child) = self.names.find(field, cx)
+                && let Some(draft) = self.drafts.get_mut(index)
+            {
+                draft.children.push(child);
+            }
+        }
+    }
+
+    /// `first, last[, increment]`
+    fn range(&mut self, index: usize, row: Row, cx: &mut Context) {
+        row.at_most(3, cx.d);
+        let first = row.required(0, "the first number", cx.d);
+        let first = first.and_then(|field| self.labels.label(field, cx));
+        let last = row.required(1, "the last number", cx.d);
+        let last = last.and_then(|field| self.labels.label(field, cx));
+        let step = match row.get(2) {
+            Some(field) => self.labels.number(field, cx),
+            None => Some(1),
+        };
+        if let (Some(first), Some(last), Some(step)) = (first, last, step) {
+            self.check_range(first, last, step, row, cx);
+            let members = self.in_range(first, last, step, row, cx);
+            self.extend(index, members);
+        }
+    }
+
+    fn check_range(&self, first: u64, last: u64, step: u64, row: Row, cx: &mut Context) {
+        let [start, stop] = [first, last].map(|label| cx.named(label));
+        if last < first {
+            let message = format!("the range from {start} to {stop} runs backwards");
+            cx.error(Code::BadRange, row.span(), message);
+        } else if !(last - first).is_multiple_of(step) {
+            let message = format!("steps of {step} from {start} do not meet {stop}");
+            let end = cx.named(last - (last - first) % step);
+            let warning = Diagnostic::warning(Code::BadRange, row.span(), message);
+            cx.d.push(warning.help(format!("the range ends at {end}")));
+        }
+    }
+
+    /// Members of a range; reports the first number that does not exist.
+    fn in_range(&self, first: u64, last: u64, step: u64, row: Row, cx: &mut Context) -> Vec<usize> {
+        let in_step = |label: u64| (label - first).is_multiple_of(step);
+        let found = self
+            .labels
+            .between(first, last)
+            .filter(|&(label, _)| in_step(label));
+        let mut wanted = Some(first);
+        let mut members = Vec::new();
+        let mut missing = None;
+        for (label, labelled) in found {
+            if wanted != Some(label) && missing.is_none() {
+                missing = wanted;
+            }
+            wanted = label.checked_add(step);
+            members.extend(labelled.index());
+        }
+        let missing = missing.or(wanted.filter(|&label| label <= last));
+        if let Some(label) = missing {
+            self.labels.undefined(label, row.span(), cx);
+        }
+        members
+    }
+}
+
+/// Adds to each set the members of the sets it lists, innermost first.
+fn resolve(names: &Names, mut drafts: Vec<Draft>, cx: &mut Context) -> Vec<Set> {
+    let mut parents: Vec<Vec<usize>> = vec![Vec::new(); drafts.len()];
+    let mut open: Vec<usize> = drafts.iter().map(|draft| draft.children.len()).collect();
+    for (index, draft) in drafts.iter().enumerate() {
+        for &child in &draft.children {
+            parents[child].push(index);
+        }
+    }
+    let mut ready: Vec<usize> = (0..drafts.len()).filter(|&i| open[i] == 0).collect();
+    while let Some(child) = ready.pop() {
+        sort(&mut drafts[child].members);
+        for &parent in &parents[child] {
+            let members = drafts[child].members.clone();
+            drafts[parent].members.extend(members);
+            open[parent] -= 1;
+            if open[parent] == 0 {
+                ready.push(parent);
+            }
+        }
+    }
+    for (draft, _) in drafts.iter().zip(&open).filter(|(_, open)| **open > 0) {
+        cx.error(Code::SetCycle, draft.span, "this set contains itself");
+    }
+    for draft in drafts.iter().filter(|draft| draft.members.is_empty()) {
+        if !cx.d.has_errors() && !cx.deck.incomplete {
+            cx.warning(Code::EmptySurface, draft.span, "this set has no members");
+        }
+    }
+    let named = names.typed().zip(drafts);
+    named
+        .map(|(name, mut draft)| {
+            sort(&mut draft.members);
+            Set {
+                name: name.to_string(),
+                members: draft.members,
+            }
+        })
+        .collect()
+}
+
+/// Sorts members and leaves out those that appear again.
+fn sort(members: &mut Vec<usize>) {
+    if !members.is_sorted_by(|a, b| a < b) {
+        members.sort_unstable();
+        members.dedup();
+    }
+}

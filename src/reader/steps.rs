@@ -1,0 +1,456 @@
+//! `*STEP`, `*DYNAMIC` and `*STICKSLIP`; the state of supports, loads and settings from step to step.
+
+use super::amplitudes::Amplitudes;
+use super::boundary::{Supports, Targets};
+use super::context::Context;
+use super::loads::{Loads, Operation, StepContext};
+use super::outline::{Outline, StepCards};
+use super::output::{Histories, Requests, restart};
+use super::rigid_bodies;
+use super::surfaces::Surfaces;
+use crate::deck::{Card, Row};
+use crate::diagnostics::{Code, Diagnostic, shown};
+use crate::model::{
+    ContactMass, Factorization, Impact, ImpactTime, Increments, LandingRule, LcpChoice, Procedure,
+    Scheme, Settings, SolverChoice, Step, Support,
+};
+
+/// Most increments of a step: at a microsecond each they would take eleven days.
+const MOST_INCREMENTS: f64 = 1e12;
+
+/// Everything the steps of a deck say.
+pub(crate) struct Steps {
+    /// Steps in order.
+    pub all: Vec<Step>,
+    /// What the histories and the status file show.
+    pub histories: Histories,
+    /// Supports of the first step.
+    pub at_start: Vec<Support>,
+}
+
+/// Reads all steps; `guide` is a sensible increment, if one is known.
+pub(crate) fn read(
+    outline: &Outline,
+    targets: Targets,
+    surfaces: &Surfaces,
+    guide: Option<f64>,
+    cx: &mut Context,
+) -> Steps {
+    let mut reading = Reading {
+        targets,
+        surfaces,
+        guide,
+        settings: Settings::default(),
+        supports: Supports::default(),
+        support_operation: Operation::default(),
+        loads: Loads::default(),
+        requests: Requests::new(cx),
+        nonlinear: false,
+        start: 0.0,
+        last: outline.steps.len(),
+    };
+    for card in outline.model_cards("BOUNDARY") {
+        if card.choice("OP") == Some("NEW") {
+            reading.supports.clear();
+        }
+        reading.supports.card(card, 0, targets, cx);
+    }
+    reading.settings.is_check_only = !outline.model_cards("NO ANALYSIS").is_empty();
+    for card in outline.model_cards("RESTART") {
+        restart(card, cx);
+    }
+    let mut steps = Vec::new();
+    let mut at_start = None;
+    for (index, cards) in outline.steps.iter().enumerate() {
+        steps.extend(reading.step(index + 1, cards, &mut at_start, cx));
+    }
+    Steps {
+        all: steps,
+        histories: reading.requests.histories,
+        at_start: at_start.unwrap_or_default(),
+    }
+}
+
+/// The state of a deck between its steps.
+struct Reading<'a> {
+    targets: Targets<'a>,
+    surfaces: &'a Surfaces,
+    guide: Option<f64>,
+    settings: Settings,
+    supports: Supports,
+    support_operation: Operation,
+    loads: Loads,
+    requests: Requests,
+    nonlinear: bool,
+    start: f64,
+    /// Number of the last step.
+    last: usize,
+}
+
+impl Reading<'_> {
+    fn step(
+        &mut self,
+        number: usize,
+        cards: &StepCards,
+        at_start: &mut Option<Vec<Support>>,
+        cx: &mut Context,
+    ) -> Option<Step> {
+        self.check_nonlinear(cards.head, cx);
+        let context = StepContext {
+            step: number,
+            ramp: cards.head.choice("AMPLITUDE") == Some("RAMP"),
+        };
+        let increments = self.procedure(cards, cx);
+        let period = increments.map_or(0.0, |increments| increments.period);
+        self.own_settings(cards, number, cx);
+        self.conditions(cards, context, cx);
+        self.requests.cards(&cards.cards, self.targets, cx);
+        let mut supports = self.supports.list();
+        let Targets {
+            rigid_bodies,
+            mesh_index,
+            ..
+        } = self.targets;
+        rigid_bodies::follow(rigid_bodies, mesh_index, number, &mut supports, cx);
+        at_start.get_or_insert_with(|| supports.clone());
+        let name = cards.head.value("NAME").and_then(|name| name.name(cx.d));
+        let step = increments.map(|increments| Step {
+            supports,
+            ..self.build(name.map(|n| n.typed), increments, number == self.last)
+        });
+        if number < self.last {
+            self.end(period);
+        }
+        step
+    }
+
+    fn build(&mut self, name: Option<String>, increments: Increments, is_last: bool) -> Step {
+        let mut step = Step {
+            name,
+            procedure: Procedure::Dynamic,
+            increments,
+            settings: self.settings,
+            supports: Vec::new(),
+            point_loads: Vec::new(),
+            body_forces: Vec::new(),
+            pressures: Vec::new(),
+            tractions: Vec::new(),
+            frames: self.requests.frames(self.start, increments.period),
+        };
+        self.loads.fill(&mut step, is_last);
+        step
+    }
+
+    fn end(&mut self, period: f64) {
+        self.start += period;
+        let Amplitudes { all, .. } = self.targets.amplitudes;
+        self.supports.end_step(period, all);
+        self.loads.end_step(period, self.start, all);
+    }
+
+    fn check_nonlinear(&mut self, head: &Card, cx: &mut Context) {
+        let said_no = head.choice("NLGEOM") == Some("NO");
+        self.nonlinear |= head.has("NLGEOM") && !said_no;
+        if !self.nonlinear && !said_no {
+            let message = "this step runs with NLGEOM: displacements are large in any case";
+            cx.d.push_once(Diagnostic::warning(Code::NonlinearStep, head.span, message));
+        }
+    }
+
+    /// Reads the procedure of a step; reports a missing or second one.
+    fn procedure(&mut self, cards: &StepCards, cx: &mut Context) -> Option<Increments> {
+        let found = named(cards, "DYNAMIC");
+        cx.only_once(&found);
+        let Some(card) = found.first() else {
+            if !cx.may_lack_cards() {
+                let message = "this step has no procedure";
+                let error = Diagnostic::error(Code::StepStructure, cards.head.span, message);
+                cx.d.push(error.help("add *DYNAMIC with the increment and the duration"));
+            }
+            return None;
+        };
+        match card.choice("IMPACT") {
+            Some("NO") => self.settings.impact = Impact::None,
+            Some(_) => self.settings.impact = Impact::Impulse,
+            None => {}
+        }
+        increments(card, self.guide, cx)
+    }
+
+    fn own_settings(&mut self, cards: &StepCards, number: usize, cx: &mut Context) {
+        let found = named(cards, "STICKSLIP");
+        cx.only_once(&found);
+        for card in found {
+            let before = self.settings.contact_mass;
+            apply_settings(card, &mut self.settings, cx);
+            let now = self.settings.contact_mass;
+            check_contact_mass(card, [before, now], number, cx);
+        }
+        self.settings.is_check_only |= !named(cards, "NO ANALYSIS").is_empty();
+    }
+
+    fn conditions(&mut self, cards: &StepCards, context: StepContext, cx: &mut Context) {
+        for card in &cards.cards {
+            match card.keyword.name {
+                "BOUNDARY" => {
+                    if self.support_operation.starts_anew(card, context.step, cx) {
+                        self.supports.clear();
+                    }
+                    self.supports.card(card, context.step, self.targets, cx);
+                }
+                "CLOAD" | "DLOAD" | "DSLOAD" => {
+                    self.loads
+                        .card(card, context, self.targets, self.surfaces, cx);
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+fn named<'a>(cards: &StepCards<'a>, keyword: &str) -> Vec<&'a Card> {
+    let all = cards.cards.iter().copied();
+    all.filter(|card| card.keyword.name == keyword).collect()
+}
+
+/// `dt, T[, smallest dt[, largest dt]]`
+fn increments(card: &Card, guide: Option<f64>, cx: &mut Context) -> Option<Increments> {
+    let direct = card.has("DIRECT") && card.choice("DIRECT") != Some("NO");
+    let Some(row) = card.rows.first() else {
+        let message = "*DYNAMIC needs a data line: the increment and the duration";
+        cx.error(Code::MissingData, card.span, message);
+        return None;
+    };
+    row.at_most(4, cx.d);
+    if let Some(extra) = card.rows.get(1) {
+        cx.error(Code::StrayData, extra.span(), "*DYNAMIC has one data line");
+    }
+    let first = first_increment(row, guide, cx);
+    let period = row.real(1, "the duration of the step", cx.d);
+    let dt_min = row.real_or(2, 0.0, cx.d);
+    let dt_max = row.real_or(3, f64::INFINITY, cx.d);
+    let (first, period, dt_min, dt_max) = (first?, period?, dt_min?, dt_max?);
+    let dt = if direct { first } else { first.min(dt_max) };
+    check_times(row, dt, period, dt_min, dt_max, cx)?;
+    if direct {
+        let help = "with DIRECT increments keep their size but for cutbacks";
+        row.without_effect(3, "this largest increment has no effect", help, cx.d);
+        note_short_end(row, dt, period, cx);
+    } else if dt < dt_max.min(period) {
+        warn_that_increments_stay(row, cx);
+    }
+    Some(Increments {
+        dt,
+        period,
+        dt_min,
+        direct,
+    })
+}
+
+fn first_increment(row: Row, guide: Option<f64>, cx: &mut Context) -> Option<f64> {
+    match row.get(0) {
+        Some(field) => field.real(cx.d),
+        None => {
+            let message = "give the time increment in the first field";
+            let error = Diagnostic::error(Code::MissingField, row.span(), message);
+            cx.d.push(match guide {
+                Some(dt) => error.help(format!(
+                    "a wave crosses the shortest element side in {dt:.2e}"
+                )),
+                None => error,
+            });
+            None
+        }
+    }
+}
+
+fn check_times(
+    row: Row,
+    dt: f64,
+    period: f64,
+    dt_min: f64,
+    dt_max: f64,
+    cx: &mut Context,
+) -> Option<()> {
+    let (field, fault) = if dt <= 0.0 {
+        (0, "the increment must be positive")
+    } else if period <= 0.0 {
+        (1, "the duration must be positive")
+    } else if dt > period {
+        (0, "the increment is longer than the step")
+    } else if period / dt > MOST_INCREMENTS {
+        (
+            0,
+            "the increment is out of all proportion to the duration: the step has more than 1e12 \
+             of them",
+        )
+    } else if !(dt * dt).is_normal() {
+        // K* holds 2/dt² M
+        (
+            0,
+            "the square of the increment is beyond the range of numbers: use other units of time",
+        )
+    } else if dt_min < 0.0 || dt_min > dt {
+        (
+            2,
+            "the smallest increment must lie between 0 and the increment",
+        )
+    } else if dt_max <= 0.0 {
+        (3, "the largest increment must be positive")
+    } else {
+        return Some(());
+    };
+    let span = row.get(field).map_or(row.span(), |field| field.span);
+    cx.error(Code::BadIncrement, span, fault);
+    None
+}
+
+/// Warns that increments do not grow, as those of other codes do.
+fn warn_that_increments_stay(row: Row, cx: &mut Context) {
+    let [first, largest] = [0, 3].map(|i| row.get(i));
+    let span = largest.or(first).map_or(row.span(), |field| field.span);
+    let message = "increments do not grow: none is longer than the first";
+    let warning = Diagnostic::warning(Code::ConstantIncrement, span, message);
+    let warning = match largest {
+        Some(_) => warning.label("bounds the first increment only"),
+        None => warning,
+    };
+    cx.d.push_once(warning.help("give the increment that suits the whole step in the first field"));
+}
+
+/// Notes that the duration is not a multiple of the increment.
+fn note_short_end(row: Row, dt: f64, period: f64, cx: &mut Context) {
+    let count = period / dt;
+    if (count - count.round()).abs() > 1e-6 * count.clamp(1.0, 1e5) {
+        let span = row.get(1).map_or(row.span(), |field| field.span);
+        let message = "the duration is no multiple of the increment: the last one is shorter";
+        cx.d.push(Diagnostic::note(Code::ShortIncrement, span, message));
+    }
+}
+
+/// Changes settings as a card says.
+pub(crate) fn apply_settings(card: &Card, settings: &mut Settings, cx: &mut Context) {
+    settings.scheme = scheme(card, settings.scheme, cx);
+    match card.choice("IMPACT") {
+        Some("NONE") => settings.impact = Impact::None,
+        Some(_) => settings.impact = Impact::Impulse,
+        None => {}
+    }
+    match card.choice("IMPACT TIME") {
+        Some("EVENT") => settings.impact_time = ImpactTime::Event,
+        Some(_) => settings.impact_time = ImpactTime::Increment,
+        None => {}
+    }
+    match card.choice("LANDING") {
+        Some("RETURN") => settings.landing = LandingRule::Return,
+        Some(_) => settings.landing = LandingRule::Plastic,
+        None => {}
+    }
+    match card.choice("CONTACT MASS") {
+        Some("REDISTRIBUTED") => settings.contact_mass = ContactMass::Redistributed,
+        Some(_) => settings.contact_mass = ContactMass::Consistent,
+        None => {}
+    }
+    match card.choice("LCP") {
+        Some("LEMKE") => settings.lcp = LcpChoice::Lemke,
+        Some(_) => settings.lcp = LcpChoice::Hybrid,
+        None => {}
+    }
+    match card.choice("FACTORIZATION") {
+        Some("KEEP") => settings.factorization = Factorization::Keep,
+        Some(_) => settings.factorization = Factorization::EveryPass,
+        None => {}
+    }
+    match card.choice("SOLVER") {
+        Some("SPRS") => settings.solver = SolverChoice::Sprs,
+        Some(_) => settings.solver = SolverChoice::Faer,
+        None => {}
+    }
+    if let Some(tolerance) = tolerance(card, cx) {
+        settings.tolerance = tolerance;
+    }
+    if let Some(passes) = max_passes(card, cx) {
+        settings.max_passes = passes;
+    }
+    check_scheme(card, settings, cx);
+}
+
+/// The landing return needs the energy-momentum scheme, whose contact force takes Pn g0 at a landing and
+/// nothing else, as do nodes without mass, for which end rows and impulses are not made.
+fn check_scheme(card: &Card, settings: &Settings, cx: &mut Context) {
+    if settings.scheme == Scheme::EnergyMomentum {
+        return;
+    }
+    let returns = settings.landing == LandingRule::Return;
+    let redistributes = settings.contact_mass == ContactMass::Redistributed;
+    let options = [
+        (returns, "LANDING", "RETURN", "PLASTIC"),
+        (redistributes, "CONTACT MASS", "REDISTRIBUTED", "CONSISTENT"),
+    ];
+    for (_, option, value, other) in options.into_iter().filter(|option| option.0) {
+        let mut given = [option, "SCHEME"].into_iter().filter(|name| card.has(name));
+        let span = given.next().map_or(card.span, |name| card.span_of(name));
+        let message = format!("{option}={value} is not for SCHEME=SS22");
+        let help = format!("leave out SCHEME=SS22, or choose {option}={other}");
+        cx.d.push(Diagnostic::error(Code::SchemeOption, span, message).help(help));
+    }
+}
+
+/// The scheme, whose weights must make it stable: theta2 >= theta1 >= 1/2.
+fn scheme(card: &Card, before: Scheme, cx: &mut Context) -> Scheme {
+    let (old1, old2) = match (card.choice("SCHEME"), before) {
+        (Some("SS22"), Scheme::EnergyMomentum) => (1.0, 1.0),
+        (Some("SS22") | None, Scheme::Ss22 { theta1, theta2 }) => (theta1, theta2),
+        _ if card.choice("SCHEME").is_some() => return Scheme::EnergyMomentum,
+        _ => return before,
+    };
+    let theta1 = card.real("THETA1", cx.d).unwrap_or(old1);
+    let theta2 = card.real("THETA2", cx.d).unwrap_or(old2);
+    if theta1 < 0.5 || theta2 < theta1 {
+        let message = format!(
+            "SS22 is unstable with THETA1 = {} and THETA2 = {}",
+            shown(theta1),
+            shown(theta2)
+        );
+        let span = card.span_of(if theta1 < 0.5 { "THETA1" } else { "THETA2" });
+        let error = Diagnostic::error(Code::UnstableScheme, span, message);
+        cx.d.push(error.help("it is stable for THETA2 >= THETA1 >= 1/2"));
+    }
+    Scheme::Ss22 { theta1, theta2 }
+}
+
+/// The first step says what the mass of contact surfaces is.
+pub(crate) fn check_contact_mass(
+    card: &Card,
+    [before, now]: [ContactMass; 2],
+    step: usize,
+    cx: &mut Context,
+) {
+    if step > 1 && now != before {
+        let message = "CONTACT MASS is the same in all steps";
+        let error = Diagnostic::error(Code::BadValue, card.span_of("CONTACT MASS"), message);
+        cx.d.push(error.help("give it in the first step"));
+    }
+}
+
+fn tolerance(card: &Card, cx: &mut Context) -> Option<f64> {
+    let tolerance = card.real("TOLERANCE", cx.d)?;
+    if tolerance <= 0.0 || tolerance >= 1.0 {
+        let message = format!(
+            "the tolerance must lie between 0 and 1, found {}",
+            shown(tolerance)
+        );
+        cx.error(Code::BadValue, card.span_of("TOLERANCE"), message);
+        return None;
+    }
+    Some(tolerance)
+}
+
+fn max_passes(card: &Card, cx: &mut Context) -> Option<usize> {
+    let passes = card.integer("MAX PASSES", cx.d)?;
+    if passes < 1 {
+        let message = format!("at least one pass is needed, found {passes}");
+        cx.error(Code::BadValue, card.span_of("MAX PASSES"), message);
+    }
+    usize::try_from(passes).ok().filter(|&passes| passes > 0)
+}

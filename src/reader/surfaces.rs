@@ -1,0 +1,414 @@
+//! `*SURFACE`, and the profiles of rigid surfaces.
+
+use super::context::Context;
+use super::mesh_index::MeshIndex;
+use super::names::Names;
+use super::outline::Outline;
+use super::sets::Sets;
+use crate::deck::{Card, Row, Text};
+use crate::diagnostics::{Code, Diagnostic, Span, closest, shown};
+use crate::model::{ElementsAtNodes, Face, Mesh, Surface, SurfaceKind};
+use crate::vectors::{angle, difference};
+use std::collections::{BTreeSet, HashSet};
+
+/// All surfaces.
+pub(crate) struct Surfaces {
+    /// Their names.
+    pub names: Names,
+    /// Surfaces in the order of their names.
+    pub all: Vec<Surface>,
+    /// Rigid surfaces and their places.
+    pub rigid: Vec<(usize, Span)>,
+    /// Points of the rigid surfaces: nodes that follow those of the mesh.
+    pub rigid_points: Vec<[f64; 2]>,
+}
+
+impl Surfaces {
+    /// The surface that a field names.
+    pub fn find(&self, field: Text, cx: &mut Context) -> Option<Found<'_>> {
+        let index = self.names.find(field, cx)?;
+        Some((index, self.all.get(index)?, field.span))
+    }
+}
+
+/// Reads all surfaces.
+pub(crate) fn read(
+    outline: &Outline,
+    mesh_index: &MeshIndex,
+    sets: &Sets,
+    at_nodes: &ElementsAtNodes,
+    cx: &mut Context,
+) -> Surfaces {
+    let mut surfaces = Surfaces {
+        names: Names::of_parts("surface"),
+        all: Vec::new(),
+        rigid: Vec::new(),
+        rigid_points: Vec::new(),
+    };
+    for card in outline.model_cards("SURFACE") {
+        let Some(name) = surfaces.names.new_name(card, cx) else {
+            continue;
+        };
+        let errors = cx.errors();
+        let kind = match card.choice("TYPE") {
+            Some("NODE") => SurfaceKind::Nodes(nodes(card, mesh_index, sets, cx)),
+            Some("SEGMENTS") => {
+                let first = mesh_index.mesh.node_count() + surfaces.rigid_points.len();
+                let profile = Profile::read(card, cx);
+                surfaces.rigid_points.extend(&profile.points);
+                SurfaceKind::Rigid(profile.segments(first))
+            }
+            _ => SurfaceKind::Faces(faces(card, mesh_index, sets, at_nodes, cx)),
+        };
+        if card.faulty || cx.errors() > errors {
+            surfaces.names.spoil(&name);
+            continue;
+        }
+        report_empty(&kind, card, cx);
+        let typed = name.typed.clone();
+        if let SurfaceKind::Rigid(_) = kind {
+            surfaces
+                .rigid
+                .push((surfaces.all.len(), card.span_of("NAME")));
+        }
+        surfaces.names.define(name);
+        surfaces.all.push(Surface { name: typed, kind });
+    }
+    surfaces
+}
+
+fn report_empty(kind: &SurfaceKind, card: &Card, cx: &mut Context) {
+    let empty = match kind {
+        SurfaceKind::Faces(faces) => faces.is_empty(),
+        SurfaceKind::Nodes(nodes) => nodes.is_empty(),
+        SurfaceKind::Rigid(segments) => segments.is_empty(),
+    };
+    if empty && !card.rows.is_empty() && !cx.d.has_errors() && !cx.deck.incomplete {
+        cx.error(
+            Code::EmptySurface,
+            card.span_of("NAME"),
+            "this surface has no members",
+        );
+    }
+}
+
+/// `node or node set[, area]`
+fn nodes(card: &Card, mesh_index: &MeshIndex, sets: &Sets, cx: &mut Context) -> Vec<usize> {
+    let mut nodes = Vec::new();
+    let mut seen = HashSet::new();
+    for row in card.rows.iter() {
+        row.at_most(2, cx.d);
+        let Some(field) = row.required(0, "a node or node set", cx.d) else {
+            continue;
+        };
+        let area = row.real_or(1, 1.0, cx.d);
+        if area.is_some_and(|area| area != 1.0) {
+            let help = "contact forces of nodes need no area";
+            row.without_effect(1, "this area has no effect", help, cx.d);
+        }
+        let found = sets.nodes_of(field, mesh_index, cx);
+        nodes.extend(found.into_iter().filter(|&node| seen.insert(node)));
+    }
+    nodes
+}
+
+/// `element or element set[, face]`
+fn faces(
+    card: &Card,
+    mesh_index: &MeshIndex,
+    sets: &Sets,
+    at_nodes: &ElementsAtNodes,
+    cx: &mut Context,
+) -> Vec<Face> {
+    let mut faces = Vec::new();
+    let mut seen = BTreeSet::new();
+    for row in card.rows.iter() {
+        row.at_most(2, cx.d);
+        let Some(field) = row.required(0, "an element or element set", cx.d) else {
+            continue;
+        };
+        let found = match row.get(1) {
+            Some(face) => {
+                let elements = sets.elements_of(field, mesh_index, cx);
+                named_faces(&elements, face, mesh_index, cx)
+            }
+            None => unnamed_faces(field, (mesh_index, sets), at_nodes, cx),
+        };
+        report_interior(&found, at_nodes, row, mesh_index, cx);
+        let before = faces.len();
+        faces.extend(found.iter().copied().filter(|&face| seen.insert(face)));
+        if faces.len() - before < found.len() {
+            let message = "faces of this row are in the surface already";
+            cx.warning(Code::RepeatedFace, row.span(), message);
+        }
+    }
+    faces
+}
+
+/// Exterior sides of the elements that a field names, and the faces that its line elements name.
+fn unnamed_faces(
+    field: Text,
+    (mesh_index, sets): (&MeshIndex, &Sets),
+    at_nodes: &ElementsAtNodes,
+    cx: &mut Context,
+) -> Vec<Face> {
+    let (elements, lines) = sets.elements_and_lines_of(field, mesh_index, cx);
+    let mut faces = exterior_faces(&elements, at_nodes, &mesh_index.mesh);
+    let known: HashSet<Face> = faces.iter().copied().collect();
+    faces.extend(lines.into_iter().filter(|face| !known.contains(face)));
+    faces
+}
+
+/// Side `face` of each element.
+fn named_faces(
+    elements: &[usize],
+    face: Text,
+    mesh_index: &MeshIndex,
+    cx: &mut Context,
+) -> Vec<Face> {
+    let Some(side) = side_number(face, cx) else {
+        return Vec::new();
+    };
+    let mut faces = Vec::new();
+    for &element in elements {
+        match side < side_count(&mesh_index.mesh, element) {
+            true => faces.push(Face { element, side }),
+            false => return no_such_face(element, face, mesh_index, cx),
+        }
+    }
+    faces
+}
+
+fn no_such_face(element: usize, face: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<Face> {
+    let label = mesh_index.element_name(element);
+    let sides = side_count(&mesh_index.mesh, element);
+    let message = format!(
+        "element {label} has faces S1 to S{sides}, not {}",
+        face.text
+    );
+    cx.error(Code::NoSuchFace, face.span, message);
+    Vec::new()
+}
+
+/// Side, from 0, of a face name S1 to S4.
+fn side_number(face: Text, cx: &mut Context) -> Option<usize> {
+    match face.name_key().as_str() {
+        "S1" => Some(0),
+        "S2" => Some(1),
+        "S3" => Some(2),
+        "S4" => Some(3),
+        other => {
+            let message = format!("unknown face {}", face.text);
+            let error = Diagnostic::error(Code::NoSuchFace, face.span, message);
+            let meant = closest(other, ["S1", "S2", "S3", "S4"]);
+            let help = "the faces of plane elements are S1, S2, S3 and S4";
+            cx.d.push(error.suggest(meant).help(help));
+            None
+        }
+    }
+}
+
+/// Number of sides of an element.
+pub(crate) fn side_count(mesh: &Mesh, element: usize) -> usize {
+    mesh.elements.get(element).map_or(0, |e| e.sides().len())
+}
+
+/// Exterior sides of these elements, in order.
+fn exterior_faces(elements: &[usize], at_nodes: &ElementsAtNodes, mesh: &Mesh) -> Vec<Face> {
+    let sides =
+        |&element: &usize| (0..side_count(mesh, element)).map(move |side| Face { element, side });
+    let all = elements.iter().flat_map(sides);
+    all.filter(|&face| !at_nodes.share(face, mesh)).collect()
+}
+
+/// Warns about faces between two elements.
+fn report_interior(
+    faces: &[Face],
+    at_nodes: &ElementsAtNodes,
+    row: Row,
+    mesh_index: &MeshIndex,
+    cx: &mut Context,
+) {
+    let mesh = &mesh_index.mesh;
+    let interior = || faces.iter().filter(|&&face| at_nodes.share(face, mesh));
+    let Some(first) = interior().next().filter(|_| !cx.d.has_errors()) else {
+        return;
+    };
+    let label = mesh_index.element_name(first.element);
+    let side = first.side + 1;
+    let message = match interior().count() {
+        1 => format!("face S{side} of element {label} lies between two elements"),
+        n => {
+            format!("{n} of these faces lie between two elements, the first is S{side} of {label}")
+        }
+    };
+    cx.warning(Code::InteriorFace, row.span(), message);
+}
+
+/// A surface with its index and the place of its name.
+pub(crate) type Found<'a> = (usize, &'a Surface, Span);
+
+/// Largest angle that a chord of an arc subtends.
+const CHORD: f64 = std::f64::consts::PI / 180.0;
+/// Largest relative difference of an arc's radii at its ends; smallest difference of its angle from
+/// 180 degrees, in radians.
+const ARC_ROUND_OFF: f64 = 1e-4;
+
+/// A rigid profile: points and the sides between them, with the rigid body on the right of each
+/// side.
+#[derive(Default)]
+pub(crate) struct Profile {
+    /// Points in the order of the rows.
+    pub points: Vec<[f64; 2]>,
+    /// Chords [from, to] between the points.
+    sides: Vec<[usize; 2]>,
+    /// First point of the chain that is read.
+    start: usize,
+    /// Last point so far.
+    end: usize,
+}
+
+impl Profile {
+    /// Reads the rows of a card up to the first that has an error.
+    pub fn read(card: &Card, cx: &mut Context) -> Profile {
+        let mut profile = Profile::default();
+        for row in card.rows.iter() {
+            if profile.row(row, cx).is_none() {
+                return profile;
+            }
+        }
+        profile.drop_lone_point();
+        if profile.sides.is_empty() && !card.rows.is_empty() {
+            fault(
+                card.span,
+                "this rigid surface has no segments",
+                "add LINE or CIRCL rows",
+                cx,
+            );
+        }
+        profile
+    }
+
+    /// Segments between nodes of which the first point is number `first`: the body lies on the
+    /// left of the direction from a to b, so that they run from the last row to the first.
+    pub fn segments(&self, first: usize) -> Vec<[usize; 2]> {
+        let sides = self.sides.iter().rev();
+        sides.map(|[from, to]| [first + to, first + from]).collect()
+    }
+
+    fn row(&mut self, row: Row, cx: &mut Context) -> Option<()> {
+        let word = row.required(0, "START, LINE or CIRCL", cx.d)?;
+        let kind = word.name_key();
+        match kind.as_str() {
+            "START" => self.start(point(row, 1, 3, cx)?),
+            "LINE" | "CIRCL" if self.points.is_empty() => {
+                let help = "begin with START, x, y";
+                return fault(word.span, "the profile has no starting point", help, cx);
+            }
+            "LINE" => {
+                let to = point(row, 1, 3, cx)?;
+                if self.points.get(self.end) == Some(&to) {
+                    return fault(row.span(), "this line has no length", "leave it out", cx);
+                }
+                self.side_to(to);
+            }
+            "CIRCL" => {
+                let (to, centre) = (point(row, 1, 5, cx)?, point(row, 3, 5, cx)?);
+                self.arc(to, centre, row, cx)?;
+            }
+            "PARAB" => {
+                let help = "give it with LINE or CIRCL";
+                return fault(word.span, "parabolas are not supported", help, cx);
+            }
+            _ => {
+                let message = format!("expected START, LINE or CIRCL, found `{}`", word.text);
+                return fault(
+                    word.span,
+                    &message,
+                    "a profile is START, x, y; LINE, x, y; CIRCL, x, y, xc, yc",
+                    cx,
+                );
+            }
+        }
+        Some(())
+    }
+
+    fn start(&mut self, at: [f64; 2]) {
+        self.drop_lone_point();
+        self.start = self.points.len();
+        self.end = self.start;
+        self.points.push(at);
+    }
+
+    /// Drops the last point if no side begins or ends there: a START without a LINE or CIRCL.
+    fn drop_lone_point(&mut self) {
+        let is_last = |end: &usize| end + 1 == self.points.len();
+        if !self.sides.iter().rev().take(1).flatten().any(is_last) {
+            self.points.pop();
+        }
+    }
+
+    /// A chord to the next point, which may be the first of the chain again.
+    fn side_to(&mut self, to: [f64; 2]) {
+        let closes = self.points.get(self.start) == Some(&to);
+        let next = if closes {
+            self.start
+        } else {
+            self.points.len()
+        };
+        if !closes {
+            self.points.push(to);
+        }
+        self.sides.push([self.end, next]);
+        self.end = next;
+    }
+
+    /// Equal chords of at most [`CHORD`] on the shorter arc about a centre.
+    fn arc(&mut self, to: [f64; 2], centre: [f64; 2], row: Row, cx: &mut Context) -> Option<()> {
+        let from = *self.points.get(self.end)?;
+        let [p, q] = [from, to].map(|x| difference(centre, x));
+        let [r, s] = [p, q].map(|[x, y]| x.hypot(y));
+        let angle = angle(p, q);
+        let help = "an arc of less than 180 degrees from the point before to x, y about xc, yc";
+        if (r - s).abs() > ARC_ROUND_OFF * r.max(s) {
+            let message = format!(
+                "the ends of this arc are {} and {} away from its centre",
+                shown(r),
+                shown(s)
+            );
+            return fault(row.span(), &message, help, cx);
+        }
+        if angle == 0.0 || angle.abs() > std::f64::consts::PI - ARC_ROUND_OFF {
+            let message = format!("this arc has {} degrees", shown(angle.abs().to_degrees()));
+            return fault(row.span(), &message, help, cx);
+        }
+        // round-off must not add a chord to angles such as 90 degrees
+        let count = (angle.abs() / CHORD * (1.0 - 1e-9)).ceil();
+        for k in 1..count as usize {
+            let part = k as f64 / count;
+            let (sin, cos) = (part * angle).sin_cos();
+            let scale = 1.0 + part * (s / r - 1.0);
+            self.side_to([
+                centre[0] + scale * (cos * p[0] - sin * p[1]),
+                centre[1] + scale * (sin * p[0] + cos * p[1]),
+            ]);
+        }
+        self.side_to(to);
+        Some(())
+    }
+}
+
+/// The point in the fields `index` and the next, of `count` fields.
+fn point(row: Row, index: usize, count: usize, cx: &mut Context) -> Option<[f64; 2]> {
+    if index == 1 {
+        row.at_most(count, cx.d);
+    }
+    let x = row.real(index, "a coordinate", cx.d);
+    let y = row.real(index + 1, "a coordinate", cx.d);
+    Some([x?, y?])
+}
+
+fn fault(span: Span, message: &str, help: &str, cx: &mut Context) -> Option<()> {
+    cx.d.push(Diagnostic::error(Code::RigidSurface, span, message).help(help));
+    None
+}
