@@ -3,10 +3,9 @@
 
 use nalgebra::SMatrix;
 
-use super::formulation::{Formulation, add_geometric, strain_displacement};
-use super::integration_point::{PointState, Reference, Strains};
-use super::kinematics::{
-    Configuration, determinant, displacement_gradient, green_lagrange, smaller,
+use super::formulation::{
+    Configuration, Formulation, PointState, Reference, Strains, add_geometric, determinant,
+    displacement_gradient, green_lagrange, smaller, strain_displacement,
 };
 use crate::materials::StressAtPoints;
 

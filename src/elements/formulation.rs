@@ -1,13 +1,12 @@
-//! What the formulations of an element have in common: internal force, strain-displacement matrix,
-//! geometric stiffness, and the evaluation of stress, strain and energy. Section 2 of
-//! docs/theory.md (paper eq. 12).
+//! What the formulations of an element have in common: finite-strain kinematics at one configuration or between two
+//! (energy-momentum form), integration points with their precomputed gradients and weights (total-Lagrangian form),
+//! internal force, strain-displacement matrix, geometric stiffness, and what an evaluation gives beside the force:
+//! strain energy, Cauchy stress and Green-Lagrange strain averaged over the element, the von Mises stress of these
+//! averages, largest principal strain. Sections 2 and 4 of docs/theory.md (paper eq. 12).
 
-use nalgebra::{SMatrix, Vector3};
+use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector3};
 
-use super::integration_point::{Point, PointState, Reference, Strains};
-use super::kinematics::{Configuration, smaller};
-use super::recovery::{ElementResult, PointResult};
-use crate::materials::{Committed, StressAtPoints};
+use crate::materials::{Across, Committed, StressAtPoints};
 
 /// How strains and stresses at the integration points follow from the displacements of an element.
 /// Chosen at compile time: a sweep has no dispatch within an element.
@@ -121,5 +120,389 @@ pub(super) fn add_geometric<const N: usize, const D: usize>(
             k[(2 * a, 2 * b)] += geometric[(a, b)];
             k[(2 * a + 1, 2 * b + 1)] += geometric[(a, b)];
         }
+    }
+}
+
+/// One integration point in the reference configuration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point<const N: usize> {
+    /// Shape functions h_a.
+    pub shape: SVector<f64, N>,
+    /// Gradients dh_a/dX_i, row a (1/length).
+    pub gradient: SMatrix<f64, N, 2>,
+    /// Weight: t det(dX/dr) times the quadrature weight (length^3).
+    pub volume: f64,
+}
+
+/// The map to one integration point from its natural coordinates r: all that differs between two
+/// elements of a shape.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jacobian {
+    /// (dX/dr)^-1 (1/length).
+    pub inverse: Matrix2<f64>,
+    /// Weight: t det(dX/dr) times the quadrature weight (length^3).
+    pub volume: f64,
+}
+
+/// Shape functions of N nodes at P integration points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShapeFunctions<const N: usize, const P: usize> {
+    /// Shape functions h_a at every point.
+    pub values: [[f64; N]; P],
+    /// Natural derivatives dh_a/dr_i at every point.
+    pub natural: [[[f64; 2]; N]; P],
+    /// Quadrature weight of every point.
+    pub weight: f64,
+}
+
+impl<const N: usize, const P: usize> ShapeFunctions<N, P> {
+    /// dX/dr at every point of an element between nodes at `x` (column a for node a), of thickness `t`.
+    pub fn jacobians(&self, x: &SMatrix<f64, 2, N>, t: f64) -> [Jacobian; P] {
+        self.natural.map(|natural| {
+            let j: Matrix2<f64> = x * SMatrix::<f64, N, 2>::from_fn(|a, i| natural[a][i]);
+            let det = j.determinant();
+            Jacobian {
+                inverse: Matrix2::new(j.m22, -j.m12, -j.m21, j.m11) / det,
+                volume: t * self.weight * det,
+            }
+        })
+    }
+
+    /// The element with these jacobians, dh/dX = dh/dr (dX/dr)^-1.
+    pub fn reference(&self, jacobians: &[Jacobian; P]) -> Reference<N, P> {
+        let point = |p: usize| Point {
+            shape: SVector::from(self.values[p]),
+            gradient: SMatrix::<f64, N, 2>::from_fn(|a, i| self.natural[p][a][i])
+                * jacobians[p].inverse,
+            volume: jacobians[p].volume,
+        };
+        Reference {
+            points: std::array::from_fn(point),
+        }
+    }
+}
+
+/// An element with N nodes and P integration points in the reference configuration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reference<const N: usize, const P: usize> {
+    /// Integration points of stress and internal force.
+    pub points: [Point<N>; P],
+}
+
+impl<const N: usize, const P: usize> Reference<N, P> {
+    /// Volume of the element (length^3).
+    pub fn volume(&self) -> f64 {
+        self.points.iter().map(|p| p.volume).sum()
+    }
+
+    /// Share of each node in a uniform force per volume, int h_a dOmega (length^3).
+    pub fn nodal_volume(&self) -> SVector<f64, N> {
+        self.points.iter().map(|p| p.shape * p.volume).sum()
+    }
+}
+
+/// Green-Lagrange strains at which a material is evaluated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Strains {
+    /// One strain.
+    At(Matrix2<f64>),
+    /// Those of start and end, in the energy-momentum form.
+    Between(Matrix2<f64>, Matrix2<f64>),
+}
+
+impl Strains {
+    /// Second Piola-Kirchhoff stress at a point, eq. (2.3), or energy-momentum stress, eq. (4.8)
+    /// (force/length^2).
+    #[inline(always)]
+    pub fn stress(&self, material: &impl StressAtPoints, point: usize) -> Matrix2<f64> {
+        match self {
+            Strains::At(e) => material.stress(point, e),
+            Strains::Between(e0, e1) => material.mean_stress(point, [e0, e1]),
+        }
+    }
+
+    /// Tangent of [`Self::stress`] in Voigt order (force/length^2).
+    #[inline(always)]
+    pub fn tangent(&self, material: &impl StressAtPoints, point: usize) -> Matrix3<f64> {
+        match self {
+            Strains::At(e) => material.tangent(point, e),
+            Strains::Between(e0, e1) => material.mean_tangent(point, [e0, e1]),
+        }
+    }
+
+    /// The strain at the end.
+    pub fn end(&self) -> &Matrix2<f64> {
+        match self {
+            Strains::At(e) | Strains::Between(_, e) => e,
+        }
+    }
+}
+
+/// Deformation and stress at an integration point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointState {
+    /// Displacement gradient H = F - I of the strain-displacement matrix.
+    pub h: Matrix2<f64>,
+    /// Green-Lagrange strain that the material has, or strains.
+    pub strains: Strains,
+    /// Determinant of the deformation gradient in the plane that the material has.
+    pub material_determinant: f64,
+    /// Second Piola-Kirchhoff stress S that does work on the strain of the displacements
+    /// (force/length^2).
+    pub s: Matrix2<f64>,
+    /// Smallest determinant of F met: of the configuration, and of the end in the energy-momentum
+    /// form.
+    pub determinant: f64,
+}
+
+impl PointState {
+    /// Deformation gradient F.
+    pub fn f(&self) -> Matrix2<f64> {
+        Matrix2::identity() + self.h
+    }
+}
+
+/// The configuration in which internal force and tangent are evaluated; displacements of the
+/// element's nodes are 2 x N (length).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Configuration<const N: usize> {
+    /// Displacements u: F(u), S = dW/dE at E(u).
+    At(SMatrix<f64, 2, N>),
+    /// Energy-momentum form between start u0 and end u1: F at the mid configuration (u0 + u1)/2 and
+    /// a stress that does the work of the strain energy (Simo & Tarnow 1992).
+    Between(SMatrix<f64, 2, N>, SMatrix<f64, 2, N>),
+}
+
+/// The smaller of two values; NaN when one is.
+pub(super) fn smaller(a: f64, b: f64) -> f64 {
+    if a < b || a.is_nan() { a } else { b }
+}
+
+/// Displacement gradient H = du/dX, eq. (2.1).
+pub fn displacement_gradient<const N: usize>(
+    point: &Point<N>,
+    u: &SMatrix<f64, 2, N>,
+) -> Matrix2<f64> {
+    u * point.gradient
+}
+
+/// Green-Lagrange strain E = (H + H^T + H^T H)/2, eq. (2.2), from H so that small strains keep their
+/// digits.
+pub fn green_lagrange(h: &Matrix2<f64>) -> Matrix2<f64> {
+    (h + h.transpose() + h.transpose() * h) / 2.0
+}
+
+/// det F = det(I + H).
+pub(super) fn determinant(h: &Matrix2<f64>) -> f64 {
+    (Matrix2::identity() + h).determinant()
+}
+
+/// Strain energy of one element, and its stress and strain averaged over the volume.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ElementResult {
+    /// Strain energy (force length).
+    pub energy: f64,
+    /// Cauchy stress xx, yy, xy (force/length^2).
+    pub stress: [f64; 3],
+    /// Cauchy stress zz across the thickness (force/length^2).
+    pub across: f64,
+    /// Green-Lagrange strain xx, yy, xy (tensor shear).
+    pub strain: [f64; 3],
+    /// Largest absolute principal value of the Green-Lagrange strain in the plane at the integration
+    /// points; NaN when there is one.
+    pub principal_strain: f64,
+}
+
+/// The element with the largest principal strain.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Strained {
+    /// Element (index).
+    pub element: usize,
+    /// Largest absolute principal value of its Green-Lagrange strain in the plane.
+    pub strain: f64,
+}
+
+/// The first element with the largest principal strain.
+pub fn most_strained(results: &[ElementResult]) -> Strained {
+    let mut most = Strained::default();
+    for (element, result) in results.iter().enumerate() {
+        let strain = result.principal_strain;
+        if strain > most.strain || strain.is_nan() {
+            most = Strained { element, strain };
+        }
+    }
+    most
+}
+
+/// Strain energy per volume, stress and strain at one integration point.
+#[derive(Clone, Copy, Default)]
+pub(super) struct PointResult {
+    energy: f64,
+    sigma: Matrix2<f64>,
+    across: f64,
+    strain: Matrix2<f64>,
+}
+
+impl PointResult {
+    /// sigma = F S F^T/J, eq. (2.8), with J = det F F_zz, and sigma_zz = F_zz S_zz F_zz / J.
+    pub fn new(state: &PointState, material: &Committed, point: usize) -> Self {
+        let (f, e) = (state.f(), state.strains.end());
+        let Across { stretch, stress } = material.across(point, e);
+        PointResult {
+            energy: material.stored_energy(point, e),
+            sigma: f * state.s * f.transpose() / (state.determinant * stretch),
+            across: stress * stretch / state.material_determinant,
+            strain: green_lagrange(&state.h),
+        }
+    }
+
+    /// Largest absolute principal value of the strain in the plane.
+    ///
+    /// ```text
+    /// E_1,2 = (E_xx + E_yy)/2 +- sqrt((E_xx - E_yy)²/4 + E_xy²)
+    /// ```
+    fn principal_strain(&self) -> f64 {
+        let e = &self.strain;
+        let (mean, half) = ((e.m11 + e.m22) / 2.0, (e.m11 - e.m22) / 2.0);
+        mean.abs() + half.hypot(e.m12)
+    }
+}
+
+impl ElementResult {
+    /// Energy int W dOmega, eq. (2.4), and volume means of integration points with their weights (length^3).
+    pub(super) fn of_points(points: impl Iterator<Item = (PointResult, f64)>) -> Self {
+        let (mut sigma, mut strain) = (Matrix2::zeros(), Matrix2::zeros());
+        let (mut energy, mut across, mut volume, mut principal) = (0.0, 0.0, 0.0, 0.0);
+        for (point, weight) in points {
+            energy += point.energy * weight;
+            sigma += point.sigma * weight;
+            across += point.across * weight;
+            strain += point.strain * weight;
+            principal = -smaller(-principal, -point.principal_strain());
+            volume += weight;
+        }
+        let voigt = |m: Matrix2<f64>| [m.m11 / volume, m.m22 / volume, m.m12 / volume];
+        ElementResult {
+            energy,
+            stress: voigt(sigma),
+            across: across / volume,
+            strain: voigt(strain),
+            principal_strain: principal,
+        }
+    }
+
+    /// Von Mises stress of the mean stresses, zz included (force/length^2):
+    ///
+    /// ```text
+    /// sqrt(((sxx - syy)^2 + (syy - szz)^2 + (szz - sxx)^2)/2 + 3 sxy^2)
+    /// ```
+    pub fn von_mises(&self) -> f64 {
+        let [xx, yy, xy] = self.stress;
+        let [a, b, c] = [xx - yy, yy - self.across, self.across - xx];
+        ((a * a + b * b + c * c) / 2.0 + 3.0 * xy * xy).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::Elements;
+    use crate::materials::Law;
+    use crate::model::{Damping, Element, ElementType, Material, Mesh, Model, Section};
+
+    /// A unit square of E = 100, nu = 0.25.
+    fn square(element_type: ElementType) -> Model {
+        let coordinates = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let elements = vec![Element {
+            label: 1,
+            element_type,
+            nodes: vec![0, 1, 2, 3].into(),
+            section: 0,
+        }];
+        let material = Material {
+            name: "M".into(),
+            law: Law::elastic(100.0, 0.25),
+            density: 1.0,
+            damping: Damping::default(),
+        };
+        Model {
+            mesh: Mesh {
+                node_labels: vec![1, 2, 3, 4],
+                coordinates,
+                elements,
+            },
+            materials: vec![material],
+            sections: vec![Section {
+                material: 0,
+                thickness: 1.0,
+            }],
+            ..Model::default()
+        }
+    }
+
+    fn evaluate(model: &Model, u: &[f64]) -> Vec<ElementResult> {
+        Elements::new(model).evaluate(u, &[])
+    }
+
+    #[test]
+    fn cauchy_stress_is_the_force_per_current_area() {
+        // Stretch 1.2 along x, free laterally in plane stress: E_xx = 0.22, E_yy = E_zz = -0.055,
+        // S = 22, sigma = F_x S / (F_y F_z) = 1.2 S / (1 - 0.11).
+        let lateral = (1.0_f64 - 0.11).sqrt() - 1.0;
+        let u = [0.0, 0.0, 0.2, 0.0, 0.2, lateral, 0.0, lateral];
+        let means = evaluate(&square(ElementType::CPS4), &u);
+        assert!((means[0].stress[0] - 1.2 * 22.0 / 0.89).abs() < 1e-12);
+        assert!(means[0].stress[1].abs() < 1e-13 && means[0].stress[2].abs() < 1e-13);
+        assert!((means[0].strain[0] - 0.22).abs() < 1e-15);
+    }
+
+    #[test]
+    fn stress_across_the_thickness_by_hand() {
+        // Plane strain, stretch 1.2 along x: E_xx = 0.22; E = 100, nu = 1/4: lambda = mu = 40,
+        // S = (26.4, 8.8), S_zz = 8.8, J = 1.2: sigma = (26.4 1.2, 8.8/1.2, 8.8/1.2).
+        let u = [0.0, 0.0, 0.2, 0.0, 0.2, 0.0, 0.0, 0.0];
+        let means = evaluate(&square(ElementType::CPE4), &u)[0];
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
+        assert!(near(means.stress[0], 31.68) && near(means.stress[1], 8.8 / 1.2));
+        assert!(near(means.across, 8.8 / 1.2));
+        // the other two are alike: von Mises is their difference to the first
+        assert!(near(means.von_mises(), 31.68 - 8.8 / 1.2));
+        let means = evaluate(&square(ElementType::CPS4), &u)[0];
+        assert_eq!(means.across, 0.0);
+        let [xx, yy, _] = means.stress;
+        assert!(near(
+            means.von_mises(),
+            (xx * xx - xx * yy + yy * yy).sqrt()
+        ));
+    }
+
+    #[test]
+    fn von_mises_of_shear_and_of_pressure() {
+        let means = |stress, across| ElementResult {
+            stress,
+            across,
+            ..ElementResult::default()
+        };
+        assert!((means([0.0, 0.0, 2.0], 0.0).von_mises() - 12.0_f64.sqrt()).abs() < 1e-15);
+        assert_eq!(means([-3.0, -3.0, 0.0], -3.0).von_mises(), 0.0);
+        assert_eq!(means([-3.0, -3.0, 0.0], 0.0).von_mises(), 3.0);
+    }
+
+    #[test]
+    fn a_rotation_turns_the_stress_of_plane_strain_with_the_body() {
+        // Simple dilatation 1 %, then a quarter turn: sigma_xx becomes sigma_yy.
+        let model = square(ElementType::CPE4);
+        let stretched = [0.0, 0.0, 0.01, 0.0, 0.01, 0.0, 0.0, 0.0];
+        let turned = [0.0, 0.0, -1.0, 1.01, -2.0, 0.01, -1.0, -1.0];
+        let (a, b) = (
+            evaluate(&model, &stretched)[0],
+            evaluate(&model, &turned)[0],
+        );
+        assert!((a.stress[0] - b.stress[1]).abs() < 1e-12 * a.stress[0]);
+        assert!((a.stress[1] - b.stress[0]).abs() < 1e-12 * a.stress[0]);
+        assert!(
+            (a.strain[0] - b.strain[0]).abs() < 1e-14,
+            "E does not see the rotation"
+        );
     }
 }

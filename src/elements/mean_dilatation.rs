@@ -11,10 +11,9 @@
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector3};
 
-use super::formulation::{Formulation, add_geometric, strain_displacement};
-use super::integration_point::{Point, PointState, Reference, Strains};
-use super::kinematics::{
-    Configuration, determinant, displacement_gradient, green_lagrange, smaller,
+use super::formulation::{
+    Configuration, Formulation, Point, PointState, Reference, Strains, add_geometric, determinant,
+    displacement_gradient, green_lagrange, smaller, strain_displacement,
 };
 use super::solid::Solid;
 use crate::materials::StressAtPoints;

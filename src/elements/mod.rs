@@ -4,19 +4,20 @@
 //! node a. Element matrices have D = 2 N rows, row 2 a + i belonging to direction i of node a.
 
 mod all;
+mod block;
+mod chunk;
 mod damping;
 mod displacement;
 mod element;
 mod formulation;
-mod integration_point;
-mod kinematics;
 mod mean_dilatation;
+mod mean_gradient;
 mod quad4;
-mod recovery;
 mod solid;
-mod sweep;
 mod tri3;
 
-pub use all::{ElementInertia, Elements, Inverted, MeanGradient, Updated};
-pub use recovery::{ElementResult, Strained, most_strained};
+pub use all::{Elements, Inverted, Updated};
+pub use element::ElementInertia;
+pub use formulation::{ElementResult, Strained, most_strained};
+pub use mean_gradient::MeanGradient;
 pub use solid::{Increment, Motion, TangentPart};

@@ -2,10 +2,10 @@
 
 use nalgebra::SMatrix;
 
+use super::block::Shape;
 use super::displacement::Displacement;
-use super::integration_point::{Reference, ShapeFunctions};
+use super::formulation::{Reference, ShapeFunctions};
 use super::solid::Solid;
-use super::sweep::Shape;
 use crate::materials::lanes::Lanes;
 
 /// Q4 in the displacement formulation (CPE4, CPS4).

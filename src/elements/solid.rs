@@ -5,10 +5,9 @@ use std::marker::PhantomData;
 
 use nalgebra::{DMatrix, SMatrix, SymmetricEigen};
 
-use super::formulation::{Formulation, evaluate, internal_force, update, work};
-use super::integration_point::Reference;
-use super::kinematics::Configuration;
-use super::recovery::ElementResult;
+use super::formulation::{
+    Configuration, ElementResult, Formulation, Reference, evaluate, internal_force, update, work,
+};
 use crate::materials::{Committed, StressAtPoints};
 
 /// Largest number of nodes of an element.

@@ -11,9 +11,9 @@
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use super::pivots::{LemkeSettings, covering_vector, lemke};
-use super::problems::{FrictionalLcp, Lcp, LcpError, LcpSolution};
-use super::warm_start::{FrictionalSolution, LcpMethod, Method, solve_frictional};
+use super::hybrid::{LcpMethod, solve_frictional};
+use super::lemke::{LemkeSettings, covering_vector, lemke};
+use super::problems::{FrictionalLcp, FrictionalSolution, Lcp, LcpError, LcpSolution, Method};
 
 /// A number, or the text of one that JSON cannot hold.
 #[derive(Serialize, Deserialize)]

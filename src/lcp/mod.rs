@@ -11,17 +11,24 @@
 //! All methods work on a problem scaled by powers of two, so that the answer of a problem whose
 //! lengths or forces are multiplied by powers of two is the same to the last bit.
 
-mod blocks;
+mod basis;
+mod block_iteration;
+mod dense;
 mod exchange;
-mod pivots;
+mod hybrid;
+mod lemke;
 mod problems;
-mod warm_start;
+mod reduced;
+mod residual;
+mod scaled;
+mod similar;
 
-pub use blocks::{BlockIteration, BlockSolution, BlockStart, LcpBlock, Progress};
+pub use block_iteration::{BlockIteration, BlockSolution, BlockStart, LcpBlock, Progress};
 pub use exchange::{JsonAnswer, solve_json};
-pub use pivots::{LemkeSettings, covering_vector, lemke};
-pub use problems::{ContactState, Counters, FrictionalLcp, Lcp, LcpError, LcpSolution, residual};
-pub use warm_start::{
-    ContactName, FrictionalSolution, KeptFactors, LcpMethod, Method, solve_frictional,
-    solve_similar,
+pub use hybrid::{LcpMethod, solve_frictional, solve_similar};
+pub use lemke::{LemkeSettings, covering_vector, lemke};
+pub use problems::{
+    ContactState, Counters, FrictionalLcp, FrictionalSolution, Lcp, LcpError, LcpSolution, Method,
 };
+pub use residual::residual;
+pub use similar::{ContactName, KeptFactors};

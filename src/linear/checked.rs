@@ -4,8 +4,7 @@
 use rayon::prelude::*;
 use sprs::CsMatView;
 
-use super::added_blocks::BlockSum;
-use super::assembled::united;
+use super::assembled::{BlockSum, united};
 use super::{AddedBlocks, Assembled, LinearError, LinearSolver, SMALLEST, larger, largest};
 
 /// Largest residual of a solve, relative to the terms it is made of. A backward stable solve stays

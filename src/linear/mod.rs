@@ -1,22 +1,38 @@
 //! Sparse symmetric matrices over the unknowns of u = T q + g with the pattern of the elements and, if
 //! need be, further blocks, their factorisations, and parts of their inverses.
 
-mod added_blocks;
 mod assembled;
 mod checked;
 mod largest;
+mod multifrontal;
 mod nodal_matrix;
-mod rotation;
-mod solvers;
+mod solver;
+mod sprs_ldl;
 mod transformation;
 
-pub use added_blocks::AddedBlocks;
-pub use assembled::Assembled;
+pub use assembled::{AddedBlocks, Assembled};
 pub use checked::CheckedSolver;
 pub use largest::{SMALLEST, larger, largest};
+pub use multifrontal::{FaerLdl, factor_entries};
 pub use nodal_matrix::NodalMatrix;
-pub use rotation::Rotation;
-pub use solvers::{
-    FaerLdl, LinearError, LinearSolver, SprsLdl, factor_entries, linear_solver, two_linear_solvers,
-};
-pub use transformation::Transformation;
+pub use solver::{LinearError, LinearSolver};
+pub use sprs_ldl::SprsLdl;
+pub use transformation::{Rotation, Transformation};
+
+use crate::model::SolverChoice;
+
+/// The solver that the deck chooses.
+pub fn linear_solver(choice: SolverChoice) -> Box<dyn LinearSolver> {
+    match choice {
+        SolverChoice::Faer => Box::new(FaerLdl::default()),
+        SolverChoice::Sprs => Box::new(SprsLdl::default()),
+    }
+}
+
+/// Two of them, for matrices whose patterns may be the same: one takes over the analysis of the other.
+pub fn two_linear_solvers(choice: SolverChoice) -> [Box<dyn LinearSolver>; 2] {
+    match choice {
+        SolverChoice::Faer => FaerLdl::two().map(|solver| Box::new(solver) as _),
+        SolverChoice::Sprs => [(); 2].map(|()| linear_solver(choice)),
+    }
+}

@@ -1,4 +1,5 @@
-//! What an element asks of a material at one integration point. Sections 2 and 4 of docs/theory.md.
+//! What an element asks of a material: of a law at one integration point, and of the stress at all its points.
+//! Sections 2 and 4 of docs/theory.md.
 
 use nalgebra::{Matrix2, Matrix3};
 
@@ -50,4 +51,21 @@ pub trait ConstitutiveLaw {
     fn update(&self, _e: &Matrix2<f64>, _z: &[f64], _updated: &mut [f64]) -> f64 {
         0.0
     }
+}
+
+/// A stress that follows from the strains at the integration points of one element: that of its
+/// material, or that of its viscosity.
+pub trait StressAtPoints {
+    /// Second Piola-Kirchhoff stress at a point (force/length^2).
+    fn stress(&self, point: usize, e: &Matrix2<f64>) -> Matrix2<f64>;
+
+    /// Stress between the strains of start and end at a point (force/length^2).
+    fn mean_stress(&self, point: usize, strains: [&Matrix2<f64>; 2]) -> Matrix2<f64>;
+
+    /// Tangent of [`Self::stress`] at a point in Voigt order (force/length^2).
+    fn tangent(&self, point: usize, e: &Matrix2<f64>) -> Matrix3<f64>;
+
+    /// Symmetric part of twice the derivative of [`Self::mean_stress`] by the strain of the end, in
+    /// Voigt order (force/length^2).
+    fn mean_tangent(&self, point: usize, strains: [&Matrix2<f64>; 2]) -> Matrix3<f64>;
 }

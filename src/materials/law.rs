@@ -1,5 +1,6 @@
-//! The materials a deck may name, and their reduction to the plane. One file per material; a new one
-//! is a variant here.
+//! The materials a deck may name, each in a file of its own, and their reduction to the plane: a new one is a variant of
+//! [`Law`] and of [`PlaneLaw`]. A law with the internal variables that the last accepted increment has committed.
+//! Section 2 of docs/theory.md.
 
 use nalgebra::{Matrix2, Matrix3};
 
@@ -7,7 +8,7 @@ use nalgebra::{Matrix2, Matrix3};
 use super::yielding::Yielding;
 use super::{
     Across, ConstitutiveLaw, NeoHooke, Plane, PlaneSaintVenantKirchhoff, SaintVenantKirchhoff,
-    SmallStrainModuli,
+    SmallStrainModuli, StressAtPoints,
 };
 
 /// Law of a material with the constants of the deck.
@@ -132,5 +133,156 @@ impl ConstitutiveLaw for PlaneLaw {
 
     fn update(&self, e: &Matrix2<f64>, z: &[f64], updated: &mut [f64]) -> f64 {
         of_each!(self, law => law.update(e, z, updated))
+    }
+}
+
+/// A law with the committed internal variables of the integration points of an element, point after
+/// point.
+#[derive(Debug, Clone, Copy)]
+pub struct Committed<'a, L = PlaneLaw> {
+    law: &'a L,
+    variables: &'a [f64],
+}
+
+impl<'a, L: ConstitutiveLaw> Committed<'a, L> {
+    /// A law with the variables of all points of an element.
+    pub fn new(law: &'a L, variables: &'a [f64]) -> Self {
+        Committed { law, variables }
+    }
+
+    /// Internal variables of a point.
+    #[inline]
+    fn at(&self, point: usize) -> &[f64] {
+        let count = self.law.variables();
+        &self.variables[point * count..(point + 1) * count]
+    }
+
+    /// Stored energy W(E, z) of a point per volume (force/length^2).
+    pub fn stored_energy(&self, point: usize, e: &Matrix2<f64>) -> f64 {
+        self.law.stored_energy(e, self.at(point))
+    }
+
+    /// Stretch and stress across the thickness at a point.
+    pub fn across(&self, point: usize, e: &Matrix2<f64>) -> Across {
+        self.law.across(e, self.at(point))
+    }
+
+    /// Internal variables of a point at the strain of the end of an increment, written to `updated`, and
+    /// the energy dissipated on the way to them per volume (force/length^2).
+    pub fn update(&self, point: usize, e: &Matrix2<f64>, updated: &mut [f64]) -> f64 {
+        let count = self.law.variables();
+        let updated = &mut updated[point * count..(point + 1) * count];
+        self.law.update(e, self.at(point), updated)
+    }
+}
+
+impl<L: ConstitutiveLaw> StressAtPoints for Committed<'_, L> {
+    #[inline]
+    fn stress(&self, point: usize, e: &Matrix2<f64>) -> Matrix2<f64> {
+        self.law.stress(e, self.at(point))
+    }
+
+    /// Energy-momentum stress.
+    #[inline]
+    fn mean_stress(&self, point: usize, [e0, e1]: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
+        self.law.mean_stress(e0, e1, self.at(point))
+    }
+
+    #[inline]
+    fn tangent(&self, point: usize, e: &Matrix2<f64>) -> Matrix3<f64> {
+        self.law.tangent(e, self.at(point))
+    }
+
+    #[inline]
+    fn mean_tangent(&self, point: usize, [e0, e1]: [&Matrix2<f64>; 2]) -> Matrix3<f64> {
+        self.law.mean_tangent(e0, e1, self.at(point))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::materials::yielding::{Yielding, plastic};
+
+    const LAW: Yielding = Yielding { g: 50.0, y: 0.02 };
+    /// Internal variables of two points.
+    type Variables = [f64; 6];
+
+    /// What a body of two points has at one time, as the state of a run.
+    #[derive(Clone, Debug, PartialEq)]
+    struct State {
+        strains: [Matrix2<f64>; 2],
+        committed: Variables,
+    }
+
+    /// An increment to new strains: the state at its end, the work of the stresses and the energy
+    /// dissipated; `None` if the strain has gone too far at once.
+    fn attempt(start: &State, strains: [Matrix2<f64>; 2]) -> Option<(State, f64, f64)> {
+        let material = Committed::new(&LAW, &start.committed);
+        let (mut work, mut dissipated, mut committed) = (0.0, 0.0, [0.0; 6]);
+        for (p, (e0, e1)) in start.strains.iter().zip(&strains).enumerate() {
+            work += material.mean_stress(p, [e0, e1]).dot(&(e1 - e0));
+            dissipated += material.update(p, e1, &mut committed);
+        }
+        let step = strains[0] - start.strains[0];
+        let end = State { strains, committed };
+        (step.norm() < 0.03).then_some((end, work, dissipated))
+    }
+
+    fn energy(state: &State) -> f64 {
+        let material = Committed::new(&LAW, &state.committed);
+        let at = |p: usize| material.stored_energy(p, &state.strains[p]);
+        at(0) + at(1)
+    }
+
+    /// Strains of the two points at a time, the second with a quarter of the first and other signs.
+    fn path(time: f64) -> [Matrix2<f64>; 2] {
+        let e = Matrix2::new(0.06, 0.01, 0.01, -0.03) * (2.0 * time).sin();
+        [e, e * -0.25]
+    }
+
+    #[test]
+    fn variables_are_committed_with_an_accepted_increment_and_dropped_with_a_failed_one() {
+        let mut state = State {
+            strains: path(0.0),
+            committed: [0.0; 6],
+        };
+        let (mut time, mut failed, mut total) = (0.0, 0, 0.0);
+        while time < 3.0 {
+            // too long at first, then in halves: a failed attempt leaves nothing behind
+            let mut dt = 0.5;
+            let (end, work, dissipated) = loop {
+                let before = state.clone();
+                let found = attempt(&state, path(time + dt));
+                assert_eq!(state, before);
+                match found {
+                    Some(found) => break found,
+                    None => (dt, failed) = (dt / 2.0, failed + 1),
+                }
+            };
+            // work = W1 - W0 + D with D >= 0
+            let change = energy(&end) - energy(&state);
+            assert!((work - change - dissipated).abs() < 1e-14 && dissipated >= 0.0);
+            (time, total, state) = (time + dt, total + dissipated, end);
+        }
+        assert!(failed > 3 && total > 0.01);
+        // the first point has yielded; the second, with a quarter of its strain, has not
+        assert!(state.committed[0].abs() > 0.01 && state.committed[3..] == [0.0; 3]);
+        // the way in small increments from the start ends on the same yield surface
+        let elastic = state.strains[0] - plastic(&state.committed);
+        assert!(elastic.norm() <= LAW.y * (1.0 + 1e-14));
+    }
+
+    #[test]
+    fn stresses_are_those_of_the_committed_variables() {
+        let start = [0.01, -0.02, 0.005, 0.0, 0.0, 0.0];
+        let material = Committed::new(&LAW, &start);
+        let e = Matrix2::new(0.05, 0.0, 0.0, 0.01);
+        let before = material.stress(0, &e);
+        let mut updated = [0.0; 6];
+        material.update(0, &e, &mut updated);
+        assert_eq!(material.stress(0, &e), before);
+        let after = Committed::new(&LAW, &updated).stress(0, &e);
+        assert!((after.norm() - LAW.g * LAW.y).abs() < 1e-13 && before.norm() > after.norm());
     }
 }

@@ -7,28 +7,22 @@
 //! matrices; tangents act on strains in Voigt order (E_xx, E_yy, 2 E_xy). A [`Law`] has the constants
 //! of the deck, a [`PlaneLaw`] is the same reduced to the plane of the elements.
 
-mod committed;
 mod constitutive_law;
 pub mod energy_momentum;
 pub mod lanes;
 mod law;
-mod law_in_lanes;
 mod neo_hooke;
 mod plane;
 mod saint_venant_kirchhoff;
-mod stress_at_points;
 mod viscosity;
-mod voigt;
 #[cfg(test)]
 pub(crate) mod yielding;
 
-pub use committed::Committed;
-pub use constitutive_law::{Across, ConstitutiveLaw};
-pub use law::{Law, PlaneLaw};
-pub(crate) use law_in_lanes::in_lanes;
-pub use law_in_lanes::{LawInLanes, OneByOne, StrainChange, TangentLanes};
+pub use constitutive_law::{Across, ConstitutiveLaw, StressAtPoints};
+pub(crate) use lanes::in_lanes;
+pub use lanes::{LawInLanes, OneByOne, StrainChange, TangentLanes};
+pub use law::{Committed, Law, PlaneLaw};
 pub use neo_hooke::NeoHooke;
 pub use plane::{Plane, SmallStrainModuli};
 pub use saint_venant_kirchhoff::{PlaneSaintVenantKirchhoff, SaintVenantKirchhoff};
-pub use stress_at_points::StressAtPoints;
 pub use viscosity::Viscosity;

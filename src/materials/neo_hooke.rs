@@ -4,7 +4,7 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
-use super::voigt::{dyad, product};
+use super::plane::{dyad, product};
 use super::{Across, ConstitutiveLaw, SmallStrainModuli, energy_momentum};
 
 /// Neo-Hookean material in plane strain, `*HYPERELASTIC, NEO HOOKE`.

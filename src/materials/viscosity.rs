@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix2, Matrix3};
 
-use super::voigt::{dyad, product};
+use super::plane::{dyad, product};
 use super::{ConstitutiveLaw, Plane, SaintVenantKirchhoff, SmallStrainModuli, StressAtPoints};
 
 /// Stiffness-proportional viscosity of a material in the plane, over an increment with dE = E1 - E0.

@@ -1,6 +1,10 @@
-//! Contacts of a model and their interactions: hard contact with Coulomb friction (docs/theory.md,
-//! section 3).
+//! Contact surfaces, contacts and their interactions, hard contact with Coulomb friction; equations between
+//! displacements, and rigid surfaces that move with a reference node. Section 3 of docs/theory.md, and section 9, Rigid
+//! surfaces.
+//!
+//! Segments run from a to b with the body on the left.
 
+use super::mesh::{Face, Mesh};
 use crate::diagnostics::Span;
 
 /// Contact law between two surfaces: hard normal contact and Coulomb friction.
@@ -114,4 +118,79 @@ impl Contact {
     pub fn is_self_contact(&self) -> bool {
         self.slave == self.master
     }
+}
+
+/// Name of the surface of general contact: all faces that belong to one element only.
+pub const ALL_EXTERIOR: &str = "ALL_EXTERIOR";
+
+/// A named surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    /// Name as typed in the deck.
+    pub name: String,
+    /// Its faces, nodes or rigid segments.
+    pub kind: SurfaceKind,
+}
+
+/// Element faces, nodes or rigid segments.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SurfaceKind {
+    /// Faces of elements: can be slave or master.
+    Faces(Vec<Face>),
+    /// Nodes: can be slave only.
+    Nodes(Vec<usize>),
+    /// Segments [a, b] between nodes without element, the rigid body on the left of the direction
+    /// from a to b: can be master only.
+    Rigid(Vec<[usize; 2]>),
+}
+
+impl Surface {
+    /// Segments [a, b] in order, the body on the left; empty for a node surface.
+    pub fn segments(&self, mesh: &Mesh) -> Vec<[usize; 2]> {
+        match &self.kind {
+            SurfaceKind::Faces(faces) => faces.iter().map(|face| face.nodes(mesh)).collect(),
+            SurfaceKind::Nodes(_) => Vec::new(),
+            SurfaceKind::Rigid(segments) => segments.clone(),
+        }
+    }
+
+    /// Nodes of the surface in order of first appearance, without duplicates.
+    pub fn nodes(&self, mesh: &Mesh) -> Vec<usize> {
+        let all: Vec<usize> = match &self.kind {
+            SurfaceKind::Faces(faces) => faces.iter().flat_map(|f| f.nodes(mesh)).collect(),
+            SurfaceKind::Nodes(nodes) => nodes.clone(),
+            SurfaceKind::Rigid(segments) => segments.as_flattened().to_vec(),
+        };
+        let mut seen = vec![false; mesh.node_count()];
+        all.into_iter()
+            .filter(|&n| !std::mem::replace(&mut seen[n], true))
+            .collect()
+    }
+}
+
+/// A dof that follows others at all times: u_dof = sum c_k u_k, eq. (3.8).
+///
+/// The u_k are free or prescribed: none follows others itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Equation {
+    /// The dof that is eliminated, `2 node + direction`.
+    pub dof: usize,
+    /// Dofs that it follows, each once, and their coefficients c_k (dimensionless).
+    pub terms: Vec<(usize, f64)>,
+}
+
+impl Equation {
+    /// The eliminated dof and the dofs that it follows.
+    pub fn dofs(&self) -> impl Iterator<Item = usize> + '_ {
+        std::iter::once(self.dof).chain(self.terms.iter().map(|&(dof, _)| dof))
+    }
+}
+
+/// A rigid surface and the node that it moves with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RigidBody {
+    /// Index of the rigid surface.
+    pub surface: usize,
+    /// Reference node (index).
+    pub reference: usize,
 }

@@ -1,41 +1,32 @@
-//! The problem as plain data, all names resolved to indices: mesh, materials, sets, surfaces,
-//! contacts, constraints, steps with loads and settings.
+//! The problem as plain data, all names resolved to indices: mesh, materials and sections, sets, surfaces,
+//! contacts, constraints, steps with loads and settings. Sections 1 to 4 of docs/theory.md.
 //!
 //! Everything is indexed from 0 in the order of the deck. Vectors over degrees of freedom hold
 //! `2 N` entries, dof `2 n + i` being direction i (0 = x, 1 = y) of node n.
 
 mod amplitude;
-mod bodies;
-mod constraint;
 mod contact;
 mod element_type;
-mod load;
-mod material;
 mod mesh;
 mod sets;
-mod settings;
 mod step;
-mod surface;
 
 pub use crate::materials::Plane;
+use crate::materials::{Law, SmallStrainModuli};
 pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
-pub use bodies::Bodies;
-pub use constraint::{Equation, RigidBody};
-pub use contact::{Adjust, Contact, Friction, Interaction, Reach};
+pub use contact::{
+    ALL_EXTERIOR, Adjust, Contact, Equation, Friction, Interaction, Reach, RigidBody, Surface,
+    SurfaceKind,
+};
 pub use element_type::{ElementType, Formulation, Shape, Topology};
-pub use load::{
-    BodyForce, Load, PointLoad, Pressure, Rate, Support, SupportMotion, Traction, Variation,
-};
-pub use material::{Damping, Material, Section};
 pub(crate) use mesh::sides;
-pub use mesh::{Element, ElementsAtNodes, Face, Mesh, Nodes, Set};
+pub use mesh::{Bodies, Element, ElementsAtNodes, Face, Mesh, Nodes, Set};
 pub use sets::{HistorySet, Instance, NamedSets, RequestedFields, element_name, node_name};
-pub use settings::{
-    ContactMass, Factorization, Impact, ImpactTime, LandingRule, LcpChoice, Scheme, Settings,
-    SolverChoice,
+pub use step::{
+    BodyForce, ContactMass, Factorization, Frames, Impact, ImpactTime, Increments, LandingRule,
+    LcpChoice, Load, PointLoad, Pressure, Procedure, Rate, Scheme, Settings, SolverChoice, Step,
+    Support, SupportMotion, Traction, Variation,
 };
-pub use step::{Frames, Increments, Procedure, Step};
-pub use surface::{ALL_EXTERIOR, Surface, SurfaceKind};
 
 /// A whole problem: the content of a deck, checked, with all names resolved to indices.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -90,4 +81,48 @@ impl Model {
         });
         segments.flatten().copied().collect()
     }
+}
+
+/// A material: its law with the constants of the deck, and its density.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Name in the deck.
+    pub name: String,
+    /// Law of the stress.
+    pub law: Law,
+    /// Density rho of the reference configuration (mass/length^3).
+    pub density: f64,
+    /// Damping.
+    pub damping: Damping,
+}
+
+/// Damping of a material: none by default.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Damping {
+    /// Damping in proportion to the mass (1/time).
+    pub alpha: f64,
+    /// Damping in proportion to the elasticity at small strains (time).
+    pub beta: f64,
+}
+
+impl Material {
+    /// Speed of longitudinal waves (length/time): sqrt(E/((1 - nu^2) rho)) in plane stress,
+    /// sqrt(E (1 - nu)/((1 + nu) (1 - 2 nu) rho)) in plane strain.
+    pub fn wave_speed(&self, plane: Plane) -> f64 {
+        let SmallStrainModuli { young, poisson: nu } = self.law.small_strain();
+        let factor = match plane {
+            Plane::Stress => 1.0 / (1.0 - nu * nu),
+            Plane::Strain => (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+        };
+        (young * factor / self.density).sqrt()
+    }
+}
+
+/// Material and thickness of a group of elements.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Section {
+    /// Index into `Model::materials`.
+    pub material: usize,
+    /// Thickness t (length).
+    pub thickness: f64,
 }

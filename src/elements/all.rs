@@ -1,0 +1,781 @@
+//! All elements of a model in chunks and parts, and sweeps over them in parallel: internal force, tangents, strain
+//! energies and strains, damping, and products of tangents and damping matrices with a vector. Sections 2 and 4 of
+//! docs/theory.md.
+
+use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use rayon::prelude::*;
+
+use super::chunk::{BlockTangents, MAX_CHUNK, TangentSweep};
+use super::damping::ElementDamping;
+use super::element::{AnyChunk, AnyElement};
+use super::formulation::ElementResult;
+use super::solid::{ElementMatrix, ElementVector, Increment, MAX_NODES, Motion, TangentPart};
+use crate::materials::{Committed, ConstitutiveLaw, PlaneLaw};
+use crate::model::{Element, ElementType, Mesh, Model};
+
+/// What the elements of one section and type have in common.
+struct Kind {
+    law: PlaneLaw,
+    density: f64,
+    thickness: f64,
+}
+
+/// An element that is swept on its own: in another formulation than that of the displacements, or with
+/// internal variables.
+pub(super) struct Part {
+    pub(super) index: usize,
+    pub(super) element: AnyElement,
+    law: PlaneLaw,
+    /// Place of the internal variables of its points among those of all elements.
+    pub(super) variables: Range<usize>,
+}
+
+/// Where the data of an element are.
+#[derive(Clone, Copy)]
+enum Place {
+    /// In a chunk (index), at a place of it.
+    Chunk(u32, u32),
+    /// Among the parts (index).
+    Part(u32),
+}
+
+/// All elements of a model, ready for integration. Displacements are vectors of 2 N entries.
+///
+/// Sweeps over the elements run in parallel; their results are added up in the order of chunks and
+/// elements, so that they do not depend on the number of threads.
+pub struct Elements {
+    /// Nodes of the elements, one after the other.
+    nodes: Vec<usize>,
+    /// Start of every element in `nodes`, and their end.
+    starts: Vec<usize>,
+    kinds: Vec<Kind>,
+    /// Kind (index) and place of every element.
+    places: Vec<(u32, Place)>,
+    pub(super) chunks: Vec<AnyChunk>,
+    pub(super) parts: Vec<Part>,
+    /// Elements with damping, increasing.
+    pub(super) damped: Vec<(usize, ElementDamping)>,
+    pub(super) dofs: usize,
+    pub(super) space: Mutex<Space>,
+}
+
+/// Memory of the sweeps, kept between them and locked while one needs it.
+#[derive(Default)]
+pub(super) struct Space {
+    pub(super) forces: Vec<(ElementVector, f64)>,
+    pub(super) tangents: Vec<ElementMatrix>,
+    pub(super) block_tangents: Vec<BlockTangents>,
+}
+
+impl Part {
+    /// The material with its committed variables among those of all elements.
+    pub(super) fn material<'a>(&'a self, committed: &'a [f64]) -> Committed<'a> {
+        Committed::new(&self.law, &committed[self.variables.clone()])
+    }
+
+    pub(super) fn force(&self, motion: Motion) -> (ElementVector, f64) {
+        self.element.force(&self.material(motion.committed), motion)
+    }
+
+    pub(super) fn tangent(&self, motion: Motion, part: TangentPart) -> ElementMatrix {
+        self.element
+            .tangent(&self.material(motion.committed), motion, part)
+    }
+}
+
+impl Elements {
+    /// Elements of a model.
+    pub fn new(model: &Model) -> Self {
+        let elements = &model.mesh.elements;
+        let mut all = Elements {
+            nodes: Vec::with_capacity(4 * elements.len()),
+            starts: vec![0],
+            kinds: Vec::new(),
+            places: vec![(0, Place::Part(0)); elements.len()],
+            chunks: Vec::new(),
+            parts: Vec::new(),
+            damped: Vec::new(),
+            dofs: model.mesh.dof_count(),
+            space: Mutex::default(),
+        };
+        for element in elements {
+            all.nodes.extend(&element.nodes);
+            all.starts.push(all.nodes.len());
+        }
+        let body = model.mesh.bodies();
+        let body = |&element: &usize| body[elements[element].nodes[0]];
+        for ((section, element_type), mut of_kind) in by_kind(elements) {
+            let section = &model.sections[section];
+            let material = &model.materials[section.material];
+            let kind = Kind {
+                law: material.law.in_plane(element_type.plane),
+                density: material.density,
+                thickness: section.thickness,
+            };
+            of_kind.sort_by_key(body);
+            let bodies = of_kind.chunk_by(|a, b| body(a) == body(b));
+            let chunks = bodies.flat_map(|of_body| of_body.chunks(MAX_CHUNK));
+            if AnyChunk::has(&element_type, &kind.law) {
+                chunks.for_each(|chunk| all.enter_chunk(model, &kind, chunk));
+            } else {
+                of_kind
+                    .iter()
+                    .for_each(|&element| all.enter_part(model, &kind, element));
+            }
+            all.kinds.push(kind);
+        }
+        for (index, element) in elements.iter().enumerate() {
+            let material = &model.materials[model.sections[element.section].material];
+            let plane = element.element_type.plane;
+            let damping = ElementDamping::new(|| all.element(index), material, plane);
+            all.damped.extend(damping.map(|damping| (index, damping)));
+        }
+        all
+    }
+
+    /// Takes in elements of the next kind and of one body, so that a body that rests costs nothing.
+    fn enter_chunk(&mut self, model: &Model, kind: &Kind, elements: &[usize]) {
+        let (number, chunk) = (self.kinds.len() as u32, self.chunks.len() as u32);
+        for (place, &element) in elements.iter().enumerate() {
+            self.places[element] = (number, Place::Chunk(chunk, place as u32));
+        }
+        let chunk = AnyChunk::new(model, elements, kind.thickness, kind.law);
+        self.chunks.push(chunk);
+    }
+
+    /// Takes in an element of the next kind that is swept on its own.
+    fn enter_part(&mut self, model: &Model, kind: &Kind, index: usize) {
+        let Mesh {
+            coordinates,
+            elements,
+            ..
+        } = &model.mesh;
+        let (number, part) = (self.kinds.len() as u32, self.parts.len() as u32);
+        self.places[index] = (number, Place::Part(part));
+        let element = AnyElement::new(&elements[index], coordinates, kind.thickness);
+        let first = self.variable_count();
+        self.parts.push(Part {
+            index,
+            element,
+            law: kind.law,
+            variables: first..first + element.points() * kind.law.variables(),
+        });
+    }
+
+    /// Number of internal variables of all points.
+    pub(super) fn variable_count(&self) -> usize {
+        self.parts.last().map_or(0, |part| part.variables.end)
+    }
+
+    fn kind(&self, element: usize) -> &Kind {
+        &self.kinds[self.places[element].0 as usize]
+    }
+
+    /// One element, which in a chunk is made anew.
+    pub(super) fn element(&self, element: usize) -> AnyElement {
+        match self.places[element].1 {
+            Place::Chunk(chunk, place) => {
+                self.chunks[chunk as usize].element(place as usize, self.nodes(element))
+            }
+            Place::Part(part) => self.parts[part as usize].element,
+        }
+    }
+
+    /// The material of one element with its internal variables among those of all elements.
+    pub(super) fn material<'a>(&'a self, element: usize, variables: &'a [f64]) -> Committed<'a> {
+        match self.places[element].1 {
+            Place::Chunk(..) => Committed::new(&self.kind(element).law, &[]),
+            Place::Part(part) => self.parts[part as usize].material(variables),
+        }
+    }
+
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Whether there are no elements.
+    pub fn is_empty(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    /// Node indices of an element.
+    pub fn nodes(&self, element: usize) -> &[usize] {
+        &self.nodes[self.starts[element]..self.starts[element + 1]]
+    }
+
+    /// Density of an element (mass/length^3).
+    pub fn density(&self, element: usize) -> f64 {
+        self.kind(element).density
+    }
+
+    /// Thickness of an element (length).
+    pub fn thickness(&self, element: usize) -> f64 {
+        self.kind(element).thickness
+    }
+
+    /// Share of each node of an element in a uniform force per volume (length^3); entries beyond its
+    /// nodes are 0.
+    pub fn nodal_volumes(&self, element: usize) -> [f64; MAX_NODES] {
+        self.element(element).nodal_volumes()
+    }
+
+    /// Consistent mass of an element per direction, n x n column by column (mass).
+    pub fn mass(&self, element: usize) -> Vec<f64> {
+        self.element(element).mass(self.density(element))
+    }
+
+    /// Internal variables of all points before the first increment, element by element: zero.
+    pub fn initial_variables(&self) -> Vec<f64> {
+        vec![0.0; self.variable_count()]
+    }
+}
+
+/// Elements (indices, increasing) of every section (index) and type, in the order of their first
+/// elements.
+fn by_kind(elements: &[Element]) -> Vec<((usize, ElementType), Vec<usize>)> {
+    let (mut kinds, mut number) = (Vec::new(), HashMap::new());
+    for (index, element) in elements.iter().enumerate() {
+        let kind = (element.section, element.element_type);
+        let at = *number.entry(kind).or_insert(kinds.len());
+        if at == kinds.len() {
+            kinds.push((kind, Vec::new()));
+        }
+        kinds[at].1.push(index);
+    }
+    kinds
+}
+
+/// Elements below which a sweep over them is not worth a second thread.
+pub(super) const PARALLEL_CHUNK: usize = 1024;
+
+/// An element whose deformation gradient has a determinant that is not positive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inverted {
+    /// Element (index).
+    pub element: usize,
+    /// Determinant.
+    pub determinant: f64,
+}
+
+/// Internal variables at the end of an increment.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Updated {
+    /// Internal variables of all points, element by element.
+    pub variables: Vec<f64>,
+    /// Energy dissipated on the way to them (force length).
+    pub dissipated: f64,
+}
+
+impl Elements {
+    /// Internal variables at the end of an increment with displacements `u`. `committed` stays as it
+    /// is: the increment commits or drops what this returns.
+    pub fn update(&self, u: &[f64], committed: &[f64]) -> Updated {
+        let mut updated = Updated {
+            variables: committed.to_vec(),
+            dissipated: 0.0,
+        };
+        for part in self.parts.iter().filter(|part| !part.variables.is_empty()) {
+            let variables = &mut updated.variables[part.variables.clone()];
+            updated.dissipated += part.element.update(&part.material(committed), u, variables);
+        }
+        updated
+    }
+
+    /// Strain energy, mean stress and mean strain of every element at displacements `u`, with the
+    /// internal variables there.
+    pub fn evaluate(&self, u: &[f64], variables: &[f64]) -> Vec<ElementResult> {
+        let of_chunk = |chunk: &AnyChunk| chunk.evaluate(u);
+        let parts = self.parts.par_iter().with_min_len(PARALLEL_CHUNK);
+        let parts = parts.map(|part| part.element.evaluate(&part.material(variables), u));
+        let parts: Vec<ElementResult> = parts.collect();
+        let chunks: Vec<_> = match self.is_worth_threads() {
+            true => self.chunks.par_iter().map(of_chunk).collect(),
+            false => self.chunks.iter().map(of_chunk).collect(),
+        };
+        let mut results = vec![ElementResult::default(); self.len()];
+        for (element, result) in chunks.into_iter().flatten() {
+            results[element] = result;
+        }
+        for (part, result) in self.parts.iter().zip(parts) {
+            results[part.index] = result;
+        }
+        results
+    }
+
+    /// Internal force F at the end of a motion, or its energy-momentum form from start to end, 2 N
+    /// entries.
+    ///
+    /// # Errors
+    /// The first element that is turned inside out.
+    pub fn internal_force(&self, motion: Motion) -> Result<Vec<f64>, Inverted> {
+        let mut force = vec![0.0; self.dofs];
+        self.write_internal_force(motion, &mut force)?;
+        Ok(force)
+    }
+
+    /// Writes [`Self::internal_force`] to `total`, 2 N entries.
+    ///
+    /// # Errors
+    /// The first element that is turned inside out.
+    pub fn write_internal_force(&self, motion: Motion, total: &mut [f64]) -> Result<(), Inverted> {
+        let Space { forces, .. } = &mut *self.space();
+        if !self.sum_chunks(motion) {
+            self.chunks.iter().for_each(AnyChunk::clear_sums);
+            return Err(self.inverted(motion));
+        }
+        let parts = self.parts.par_iter().with_min_len(PARALLEL_CHUNK);
+        parts
+            .map(|part| part.force(motion))
+            .collect_into_vec(forces);
+        total.fill(0.0);
+        self.chunks.iter().for_each(|chunk| chunk.add_sums(total));
+        for (part, (force, determinant)) in self.parts.iter().zip(forces) {
+            if determinant.is_nan() || *determinant <= 0.0 {
+                return Err(self.inverted(motion));
+            }
+            for (dof, force) in part.element.dofs().zip(force) {
+                total[dof] += *force;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether there are threads, and elements enough for them.
+    fn is_worth_threads(&self) -> bool {
+        rayon::current_num_threads() > 1 && self.len() >= 2 * PARALLEL_CHUNK
+    }
+
+    /// Sums up the forces of the elements in chunks. False where one is turned inside out.
+    fn sum_chunks(&self, motion: Motion) -> bool {
+        let sum = |chunk: &AnyChunk| chunk.sum_forces(motion);
+        if self.is_worth_threads() {
+            let sums = self.chunks.par_iter().map(sum);
+            sums.reduce(|| true, |all, chunk| all && chunk)
+        } else {
+            self.chunks.iter().all(sum)
+        }
+    }
+
+    /// The first element that is turned inside out.
+    fn inverted(&self, motion: Motion) -> Inverted {
+        let of = |element: usize| {
+            let material = self.material(element, motion.committed);
+            let (_, determinant) = self.element(element).force(&material, motion);
+            Inverted {
+                element,
+                determinant,
+            }
+        };
+        let turned =
+            |inverted: &Inverted| inverted.determinant.is_nan() || inverted.determinant <= 0.0;
+        let least = |a: Inverted, b: Inverted| match a.determinant <= b.determinant {
+            true => a,
+            false => b,
+        };
+        let all = (0..self.len()).map(of);
+        let none = Inverted {
+            element: 0,
+            determinant: f64::INFINITY,
+        };
+        all.clone()
+            .find(turned)
+            .unwrap_or_else(|| all.fold(none, least))
+    }
+
+    /// Memory of the sweeps, of which there is one at a time.
+    fn space(&self) -> MutexGuard<'_, Space> {
+        self.space.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Calls `add(element, k)` with the tangent of every element that is `wanted`, and maybe of others
+    /// beside them, or its positive part, k being D x D column by column, in the configuration of
+    /// [`Self::internal_force`].
+    pub fn for_each_tangent(
+        &self,
+        motion: Motion,
+        part: TangentPart,
+        wanted: impl Fn(usize) -> bool + Sync,
+        mut add: impl FnMut(usize, &[f64]),
+    ) {
+        let Space {
+            tangents,
+            block_tangents,
+            ..
+        } = &mut *self.space();
+        for chunk in &self.chunks {
+            let sweep = TangentSweep {
+                motion,
+                part,
+                wanted: &wanted,
+            };
+            chunk.for_each_tangent(sweep, block_tangents, &mut add);
+        }
+        for parts in self.parts.chunks(2 * PARALLEL_CHUNK) {
+            let sweep = parts.par_iter().with_min_len(PARALLEL_CHUNK);
+            let sweep = sweep.map(|element| element.tangent(motion, part));
+            sweep.collect_into_vec(tangents);
+            for (part, k) in parts.iter().zip(tangents.iter()) {
+                let d = 2 * part.element.nodes().len();
+                add(part.index, &k[..d * d]);
+            }
+        }
+    }
+
+    /// Tangent of one element in the configuration of [`Self::internal_force`], D x D column by column.
+    pub fn tangent(&self, element: usize, motion: Motion) -> Vec<f64> {
+        let d = 2 * self.nodes(element).len();
+        self.whole_tangent(element, motion)[..d * d].to_vec()
+    }
+
+    pub(super) fn whole_tangent(&self, element: usize, motion: Motion) -> ElementMatrix {
+        let material = self.material(element, motion.committed);
+        self.element(element)
+            .tangent(&material, motion, TangentPart::Whole)
+    }
+}
+
+impl Elements {
+    /// K v with the tangent in the configuration of [`Self::internal_force`], 2 N entries. Elements
+    /// at whose nodes `v` is zero cost nothing.
+    pub fn tangent_product(&self, motion: Motion, v: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; self.dofs];
+        for element in 0..self.len() {
+            let moves = |&node: &usize| v[2 * node] != 0.0 || v[2 * node + 1] != 0.0;
+            if self.nodes(element).iter().any(moves) {
+                let k = self.whole_tangent(element, motion);
+                add_product(self.nodes(element), &k, v, &mut product);
+            }
+        }
+        product
+    }
+
+    /// Whether any element is damped.
+    pub fn has_damping(&self) -> bool {
+        !self.damped.is_empty()
+    }
+
+    /// Force of damping F_d in an increment of length `dt` with the displacement increment `d`, eq.
+    /// (4.22), 2 N entries.
+    pub fn damping_force(&self, increment: Increment, d: &[f64], dt: f64) -> Vec<f64> {
+        let impulses = self.of_damped(|element, damping| damping.impulse(element, increment, d));
+        let mut force = self.sum_of_damped(&impulses);
+        force.iter_mut().for_each(|f| *f /= dt);
+        force
+    }
+
+    /// Impulse that mass-proportional damping takes in a displacement increment, alpha M d, 2 N entries
+    /// (force time).
+    pub fn mass_damping_impulse(&self, d: &[f64]) -> Vec<f64> {
+        self.sum_of_damped(&self.of_damped(|element, damping| damping.mass_impulse(element, d)))
+    }
+
+    /// Energy d.F_d that damping dissipates in an increment of length `dt` with the displacement
+    /// increment `d`, eq. (4.24) (force length).
+    pub fn damping_dissipation(&self, increment: Increment, d: &[f64], dt: f64) -> f64 {
+        let work = |element: &_, damping: &ElementDamping| damping.work(element, increment, d);
+        self.of_damped(work).iter().sum::<f64>() / dt
+    }
+
+    /// Calls `add(element, c)` with the damping matrix of every damped element in order, eq. (4.25), or
+    /// its positive part, c being D x D column by column (force time/length).
+    pub fn for_each_damping(
+        &self,
+        increment: Increment,
+        part: TangentPart,
+        mut add: impl FnMut(usize, &[f64]),
+    ) {
+        let of = |element: &_, damping: &ElementDamping| damping.matrix(element, increment, part);
+        for ((element, _), c) in self.damped.iter().zip(self.of_damped(of)) {
+            let d = 2 * self.nodes(*element).len();
+            add(*element, &c[..d * d]);
+        }
+    }
+
+    /// Cd v with the damping matrix, 2 N entries.
+    pub fn damping_product(&self, increment: Increment, v: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; self.dofs];
+        for (element, damping) in &self.damped {
+            let c = damping.matrix(&self.element(*element), increment, TangentPart::Whole);
+            add_product(self.nodes(*element), &c, v, &mut product);
+        }
+        product
+    }
+
+    /// A quantity of all damped elements.
+    fn of_damped<T: Send>(&self, of: impl Fn(&AnyElement, &ElementDamping) -> T + Sync) -> Vec<T> {
+        let damped = self.damped.par_iter().with_min_len(PARALLEL_CHUNK);
+        let all = damped.map(|(element, damping)| of(&self.element(*element), damping));
+        all.collect()
+    }
+
+    /// Sum of vectors of the damped elements, 2 N entries.
+    fn sum_of_damped(&self, vectors: &[ElementVector]) -> Vec<f64> {
+        let mut sum = vec![0.0; self.dofs];
+        for ((element, _), vector) in self.damped.iter().zip(vectors) {
+            for (dof, value) in dofs(self.nodes(*element)).zip(vector) {
+                sum[dof] += value;
+            }
+        }
+        sum
+    }
+}
+
+/// Dofs of the nodes of an element, in the order of element vectors.
+pub(super) fn dofs(nodes: &[usize]) -> impl Iterator<Item = usize> + '_ {
+    nodes.iter().flat_map(|n| [2 * n, 2 * n + 1])
+}
+
+/// Adds k v to a product over all dofs, k being a matrix of an element with these nodes.
+fn add_product(nodes: &[usize], k: &ElementMatrix, v: &[f64], product: &mut [f64]) {
+    let d = 2 * nodes.len();
+    for (j, column) in dofs(nodes).enumerate() {
+        for (i, row) in dofs(nodes).enumerate() {
+            product[row] += k[j * d + i] * v[column];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::dofs;
+    use super::*;
+    use crate::materials::{Law, NeoHooke};
+    use crate::model::{Damping, Element, ElementType, Formulation, Material, Model, Section};
+
+    /// A model of a law on three quadrilaterals and a triangle, with other types of the quadrilaterals.
+    fn model(law: Law, quad: ElementType) -> Model {
+        let mut model = Model::default();
+        model.materials.push(Material {
+            name: "M".into(),
+            law,
+            density: 1.0,
+            damping: Damping::default(),
+        });
+        model.sections.push(Section {
+            material: 0,
+            thickness: 2.0,
+        });
+        let mesh = &mut model.mesh;
+        mesh.coordinates = vec![
+            [0.0, 0.0],
+            [1.0, 0.1],
+            [1.2, 1.1],
+            [-0.1, 0.9],
+            [0.6, 1.8],
+            [2.1, 0.0],
+            [2.0, 1.2],
+            [3.0, 0.2],
+            [3.1, 0.9],
+        ];
+        let tri = ElementType {
+            plane: quad.plane,
+            ..ElementType::CPE3
+        };
+        let elements = [
+            (quad, vec![0, 1, 2, 3]),
+            (tri, vec![3, 2, 4]),
+            (quad, vec![1, 5, 6, 2]),
+            (quad, vec![5, 7, 8, 6]),
+        ];
+        for (element_type, nodes) in elements {
+            mesh.elements.push(Element {
+                label: 1,
+                element_type,
+                nodes: nodes.into(),
+                section: 0,
+            });
+        }
+        model
+    }
+
+    fn wave(scale: f64, k: f64) -> Vec<f64> {
+        (0..18).map(|i| scale * (k * f64::from(i)).sin()).collect()
+    }
+
+    fn models() -> [Model; 3] {
+        let elastic = Law::elastic(100.0, 0.3);
+        let rubber = Law::NeoHooke(NeoHooke {
+            c10: 20.0,
+            d1: 0.02,
+        });
+        [
+            model(elastic, ElementType::CPS4),
+            model(elastic, ElementType::CPE4),
+            model(rubber, ElementType::CPE4),
+        ]
+    }
+
+    fn assert_near(one: &ElementResult, other: &ElementResult) {
+        let all = |r: &ElementResult| {
+            let [sx, sy, sxy] = r.stress;
+            let [ex, ey, exy] = r.strain;
+            [
+                sx,
+                sy,
+                sxy,
+                r.across,
+                ex,
+                ey,
+                exy,
+                r.principal_strain,
+                r.energy,
+            ]
+        };
+        let scale = [100.0, 100.0, 100.0, 100.0, 1.0, 1.0, 1.0, 1.0, 100.0];
+        for ((a, b), scale) in all(one).iter().zip(all(other)).zip(scale) {
+            assert!((a - b).abs() < 1e-13 * scale, "{one:?} {other:?}");
+        }
+    }
+
+    #[test]
+    fn sweeps_over_blocks_are_those_over_single_elements() {
+        let (u0, u1) = (wave(0.1, 1.3), wave(0.12, 2.9));
+        let between = Motion {
+            start: Some(&u0),
+            ..Motion::at(&u1, &[])
+        };
+        for (model, motion) in models()
+            .iter()
+            .flat_map(|m| [(m, between), (m, Motion::at(&u1, &[]))])
+        {
+            let elements = Elements::new(model);
+            let mut force = vec![0.0; u1.len()];
+            for element in 0..elements.len() {
+                let material = elements.material(element, &[]);
+                let (of_one, _) = elements.element(element).force(&material, motion);
+                for (dof, f) in dofs(elements.nodes(element)).zip(of_one) {
+                    force[dof] += f;
+                }
+            }
+            let found = elements
+                .internal_force(motion)
+                .expect("no element inverted");
+            let largest = force.iter().fold(0.0, |most: f64, f| most.max(f.abs()));
+            let near = |a: &f64, b: &f64| (a - b).abs() < 1e-13 * largest;
+            assert!(found.iter().zip(&force).all(|(a, b)| near(a, b)));
+            for (element, result) in elements.evaluate(&u1, &[]).iter().enumerate() {
+                let material = elements.material(element, &[]);
+                let one = elements.element(element).evaluate(&material, &u1);
+                assert_near(&one, result);
+            }
+            let mut swept = Vec::new();
+            elements.for_each_tangent(
+                motion,
+                TangentPart::Whole,
+                |_| true,
+                |element, k| {
+                    let one = elements.tangent(element, motion);
+                    let largest = one.iter().fold(0.0, |most: f64, k| most.max(k.abs()));
+                    assert!(
+                        one.iter()
+                            .zip(k)
+                            .all(|(a, b)| (a - b).abs() < 1e-13 * largest)
+                    );
+                    assert_eq!(one.len(), k.len());
+                    swept.push(element);
+                },
+            );
+            swept.sort_unstable();
+            assert_eq!(swept, [0, 1, 2, 3]);
+        }
+    }
+
+    #[test]
+    fn any_number_of_threads_gives_the_same_bits() {
+        let mut model = model(Law::elastic(100.0, 0.3), ElementType::CPE4);
+        let one = model.mesh.elements.clone();
+        (0..1500).for_each(|_| model.mesh.elements.extend(one.clone()));
+        let (elements, u) = (Elements::new(&model), wave(0.1, 1.3));
+        let sweep = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            pool.expect("threads").install(|| {
+                let motion = Motion::at(&u, &[]);
+                let force = elements.internal_force(motion);
+                let mut tangents: Vec<f64> = Vec::new();
+                elements.for_each_tangent(
+                    motion,
+                    TangentPart::Whole,
+                    |_| true,
+                    |_, k| tangents.extend(k),
+                );
+                (force, tangents)
+            })
+        };
+        let [one, two, three] = [1, 2, 3].map(sweep);
+        assert!(one.0.is_ok() && one == two && one == three);
+    }
+
+    #[test]
+    fn the_first_element_turned_inside_out_is_found() {
+        for model in models() {
+            // node 8 beyond node 5, node 4 below nodes 2 and 3
+            for (node, move_by, element) in [(8, [-2.0, -2.0], 3), (4, [0.0, -2.0], 1)] {
+                let mut u = vec![0.0; 18];
+                u[2 * node..2 * node + 2].copy_from_slice(&move_by);
+                let elements = Elements::new(&model);
+                let found = elements.internal_force(Motion::at(&u, &[]));
+                let inverted = found.expect_err("an element inverted");
+                assert_eq!(inverted.element, element);
+                assert!(inverted.determinant <= 0.0);
+                u[2 * node] = f64::NAN;
+                let found = elements.internal_force(Motion::at(&u, &[]));
+                assert!(found.is_err_and(|inverted| inverted.determinant.is_nan()));
+            }
+        }
+    }
+
+    #[test]
+    fn an_end_inside_out_is_found_where_halfway_nothing_is() {
+        let mean = ElementType {
+            formulation: Formulation::MeanDilatation,
+            ..ElementType::CPE4
+        };
+        let with_mean = models().map(|m| model(m.materials[0].law, mean));
+        for model in models().iter().chain(&with_mean) {
+            // heights become -0.2 of themselves, halfway 0.4
+            let coordinates = model.mesh.coordinates.iter();
+            let u: Vec<f64> = coordinates.flat_map(|x| [0.0, -1.2 * x[1]]).collect();
+            let start = vec![0.0; u.len()];
+            let between = Motion {
+                start: Some(&start),
+                ..Motion::at(&u, &[])
+            };
+            let found = Elements::new(model).internal_force(between);
+            let inverted = found.expect_err("an element inverted");
+            assert!((inverted.determinant + 0.2).abs() < 1e-13, "{inverted:?}");
+        }
+    }
+
+    #[test]
+    fn bodies_that_move_as_one_have_no_force() {
+        let elements = Elements::new(&model(Law::elastic(100.0, 0.3), ElementType::CPE4));
+        let u: Vec<f64> = [0.1, 0.7].repeat(9);
+        let force = elements
+            .internal_force(Motion::at(&u, &[]))
+            .expect("no element inverted");
+        assert!(force.iter().all(|&f| f == 0.0));
+    }
+
+    #[test]
+    fn the_tangent_product_is_the_change_of_the_internal_force() {
+        let elements = Elements::new(&model(Law::elastic(100.0, 0.3), ElementType::CPE4));
+        let (u, v) = (wave(0.1, 1.3), wave(1.0, 2.1));
+        let force = |t: f64| {
+            let moved: Vec<f64> = u.iter().zip(&v).map(|(u, v)| u + t * v).collect();
+            elements
+                .internal_force(Motion::at(&moved, &[]))
+                .expect("no element inverted")
+        };
+        let (ahead, behind) = (force(1e-5), force(-1e-5));
+        let product = elements.tangent_product(Motion::at(&u, &[]), &v);
+        let largest = product.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
+        for (i, p) in product.iter().enumerate() {
+            let quotient = (ahead[i] - behind[i]) / 2e-5;
+            assert!((p - quotient).abs() < 1e-8 * largest, "{i}: {p} {quotient}");
+        }
+    }
+}

@@ -1,0 +1,463 @@
+//! Elements of one shape and material side by side: internal force, tangent, and the results of
+//! [`crate::elements::ElementResult`]. Section 2 of docs/theory.md.
+
+// Loops over points, nodes and directions: indices are those of the formulas.
+#![allow(clippy::needless_range_loop)]
+
+use std::array::from_fn;
+
+use nalgebra::Matrix2;
+
+use super::formulation::{ElementResult, Jacobian, ShapeFunctions, smaller};
+use crate::materials::lanes::{LANES, Lanes, Positive, SymmetricLanes};
+use crate::materials::{LawInLanes, StrainChange, TangentLanes};
+
+/// A tensor of the plane, row by row.
+pub type TensorLanes = [[Lanes; 2]; 2];
+/// Values x, then y, of the nodes.
+pub type NodalLanes<const N: usize> = [[Lanes; N]; 2];
+
+/// Elements of one shape side by side.
+pub struct Block<const N: usize, const P: usize> {
+    /// Nodes, numbered within the chunk.
+    pub nodes: [[u16; LANES]; N],
+    /// (dX/dr)^-1 at the integration points (1/length).
+    pub inverse: [TensorLanes; P],
+    /// Weights of the points (length^3).
+    pub volume: [Lanes; P],
+}
+
+/// Displacements of the nodes at which a block is evaluated (length).
+#[derive(Clone, Copy)]
+pub enum BlockMotion<const N: usize> {
+    /// Displacements u.
+    At(NodalLanes<N>),
+    /// Energy-momentum form: the mid configuration (u0 + u1)/2 and half the way (u1 - u0)/2.
+    Between(NodalLanes<N>, NodalLanes<N>),
+}
+
+/// Natural derivatives of the displacements x, then y, at the points: those of [`BlockMotion`].
+pub enum Derivatives<const P: usize> {
+    /// Of the displacements.
+    At([[[Lanes; 2]; P]; 2]),
+    /// Of the mid configuration and of half the way.
+    Between([[[Lanes; 2]; P]; 2], [[[Lanes; 2]; P]; 2]),
+}
+
+/// Deformation at one integration point.
+#[derive(Clone, Copy)]
+pub enum Deformation {
+    /// Displacement gradient H.
+    At(TensorLanes),
+    /// H of the mid configuration and the strains of start and end.
+    Between(TensorLanes, StrainChange),
+}
+
+impl<const N: usize> BlockMotion<N> {
+    /// The motion between two configurations.
+    #[inline(always)]
+    pub fn between(u0: &NodalLanes<N>, u1: &NodalLanes<N>) -> Self {
+        let (mut mid, mut half) = ([[Lanes::ZERO; N]; 2], [[Lanes::ZERO; N]; 2]);
+        for i in 0..2 {
+            for a in 0..N {
+                mid[i][a] = (u1[i][a] + u0[i][a]) * 0.5;
+                half[i][a] = (u1[i][a] - u0[i][a]) * 0.5;
+            }
+        }
+        Self::Between(mid, half)
+    }
+
+    /// Natural derivatives at the points.
+    #[inline(always)]
+    pub fn derivatives<S: Shape<N, P>, const P: usize>(&self) -> Derivatives<P> {
+        let of = |u: &NodalLanes<N>| [S::derivatives(&u[0]), S::derivatives(&u[1])];
+        match self {
+            Self::At(u) => Derivatives::At(of(u)),
+            Self::Between(mid, half) => Derivatives::Between(of(mid), of(half)),
+        }
+    }
+}
+
+impl Deformation {
+    /// H of the strain-displacement matrix.
+    #[inline(always)]
+    pub fn h(&self) -> &TensorLanes {
+        match self {
+            Self::At(h) | Self::Between(h, _) => h,
+        }
+    }
+
+    /// Second Piola-Kirchhoff stress, eq. (2.3), or energy-momentum stress, eq. (4.8).
+    #[inline(always)]
+    pub fn stress(&self, law: &impl LawInLanes) -> SymmetricLanes {
+        match self {
+            Self::At(h) => law.stress(&green_lagrange(h)),
+            Self::Between(_, change) => law.mean_stress(change),
+        }
+    }
+}
+
+impl<const N: usize, const P: usize> Block<N, P> {
+    /// A block of elements with the given nodes and jacobians.
+    pub fn new(nodes: [[u16; N]; LANES], jacobians: [[Jacobian; P]; LANES]) -> Self {
+        let of = |p: usize, value: &dyn Fn(&Jacobian) -> f64| {
+            Lanes(from_fn(|lane| value(&jacobians[lane][p])))
+        };
+        Block {
+            nodes: from_fn(|a| from_fn(|lane| nodes[lane][a])),
+            inverse: from_fn(|p| from_fn(|i| from_fn(|j| of(p, &|at| at.inverse[(i, j)])))),
+            volume: from_fn(|p| of(p, &|at| at.volume)),
+        }
+    }
+
+    /// The jacobians of one element.
+    pub fn jacobians(&self, lane: usize) -> [Jacobian; P] {
+        from_fn(|p| Jacobian {
+            inverse: Matrix2::from_fn(|i, j| self.inverse[p][i][j].0[lane]),
+            volume: self.volume[p].0[lane],
+        })
+    }
+
+    /// Internal force F = int B_L^T S dOmega, eq. (2.5) (force), and whether det F is positive at all
+    /// points.
+    #[inline(always)]
+    pub fn force<S: Shape<N, P>>(
+        &self,
+        law: &impl LawInLanes,
+        motion: &BlockMotion<N>,
+    ) -> (NodalLanes<N>, Positive) {
+        let mut positive = Positive::default();
+        let mut q = [[[Lanes::ZERO; 2]; P]; 2];
+        let u = motion.derivatives::<S, P>();
+        for p in 0..P {
+            let deformation = self.deformation(p, &u, &mut positive);
+            let s = scaled(&deformation.stress(law), self.volume[p]);
+            // B_L^T S of node a is F S dh_a/dX = (F S J^-T) dh_a/dr, J = dX/dr
+            let piola = times_symmetric(&deformation_gradient(deformation.h()), &s);
+            [q[0][p], q[1][p]] = times_transposed(&piola, &self.inverse[p]);
+        }
+        ([S::nodal_sums(&q[0]), S::nodal_sums(&q[1])], positive)
+    }
+
+    /// Deformation at a point, given natural derivatives; `positive` takes in det F.
+    #[inline(always)]
+    pub fn deformation(
+        &self,
+        p: usize,
+        u: &Derivatives<P>,
+        positive: &mut Positive,
+    ) -> Deformation {
+        match u {
+            Derivatives::At(u) => {
+                let h = self.gradient(p, u);
+                *positive = positive.and(determinant(&h));
+                Deformation::At(h)
+            }
+            Derivatives::Between(mid, half) => {
+                let (h, g) = (self.gradient(p, mid), self.gradient(p, half));
+                let end = determinant(&plus(&h, &g));
+                *positive = positive.and(determinant(&h)).and(end);
+                Deformation::Between(h, strain_change(&h, &g))
+            }
+        }
+    }
+
+    /// H = du/dr J^-1 at a point, eq. (2.1).
+    #[inline(always)]
+    fn gradient(&self, p: usize, u: &[[[Lanes; 2]; P]; 2]) -> TensorLanes {
+        let [r, s] = &self.inverse[p];
+        let row = |[dr, ds]: [Lanes; 2]| [dr * r[0] + ds * s[0], dr * r[1] + ds * s[1]];
+        [row(u[0][p]), row(u[1][p])]
+    }
+}
+
+/// F = I + H.
+#[inline(always)]
+pub fn deformation_gradient([[xx, xy], [yx, yy]]: &TensorLanes) -> TensorLanes {
+    [[*xx + 1.0, *xy], [*yx, *yy + 1.0]]
+}
+
+/// det F = det(I + H).
+#[inline(always)]
+pub fn determinant(h: &TensorLanes) -> Lanes {
+    let [[xx, xy], [yx, yy]] = deformation_gradient(h);
+    xx * yy - xy * yx
+}
+
+/// E = (H + H^T + H^T H)/2, eq. (2.2).
+#[inline(always)]
+pub fn green_lagrange(h: &TensorLanes) -> SymmetricLanes {
+    let [xx, yy, xy] = half_of_square(h);
+    [h[0][0] + xx, h[1][1] + yy, (h[0][1] + h[1][0]) * 0.5 + xy]
+}
+
+/// Of F0 = F - G and F1 = F + G, F = I + H: E0 + E1 = 2 E(H) + G^T G, E1 - E0 = F^T G + G^T F.
+#[inline(always)]
+fn strain_change(h: &TensorLanes, g: &TensorLanes) -> StrainChange {
+    let (e, square, f) = (
+        green_lagrange(h),
+        half_of_square(g),
+        deformation_gradient(h),
+    );
+    let product = |i: usize, j: usize| f[0][i] * g[0][j] + f[1][i] * g[1][j];
+    StrainChange {
+        mean: [e[0] + square[0], e[1] + square[1], e[2] + square[2]],
+        half: [
+            product(0, 0),
+            product(1, 1),
+            (product(0, 1) + product(1, 0)) * 0.5,
+        ],
+    }
+}
+
+/// A^T A/2.
+#[inline(always)]
+fn half_of_square(a: &TensorLanes) -> SymmetricLanes {
+    let product = |i: usize, j: usize| (a[0][i] * a[0][j] + a[1][i] * a[1][j]) * 0.5;
+    [product(0, 0), product(1, 1), product(0, 1)]
+}
+
+/// A + B.
+#[inline(always)]
+fn plus(a: &TensorLanes, b: &TensorLanes) -> TensorLanes {
+    [
+        [a[0][0] + b[0][0], a[0][1] + b[0][1]],
+        [a[1][0] + b[1][0], a[1][1] + b[1][1]],
+    ]
+}
+
+/// A symmetric tensor times a number.
+#[inline(always)]
+pub fn scaled(&[xx, yy, xy]: &SymmetricLanes, factor: Lanes) -> SymmetricLanes {
+    [xx * factor, yy * factor, xy * factor]
+}
+
+/// A S with a symmetric S.
+#[inline(always)]
+pub fn times_symmetric(a: &TensorLanes, &[xx, yy, xy]: &SymmetricLanes) -> TensorLanes {
+    let row = |[x, y]: [Lanes; 2]| [x * xx + y * xy, x * xy + y * yy];
+    [row(a[0]), row(a[1])]
+}
+
+/// A B^T.
+#[inline(always)]
+pub fn times_transposed(a: &TensorLanes, b: &TensorLanes) -> TensorLanes {
+    let row = |[x, y]: [Lanes; 2]| [x * b[0][0] + y * b[0][1], x * b[1][0] + y * b[1][1]];
+    [row(a[0]), row(a[1])]
+}
+
+/// Shape functions of N nodes at P integration points, and the two sums over the nodes that a sweep
+/// needs, each with as few operations as the shape allows.
+pub trait Shape<const N: usize, const P: usize> {
+    /// The shape functions.
+    const FUNCTIONS: ShapeFunctions<N, P>;
+
+    /// Natural derivatives dv/dr_i = sum_a v_a dh_a/dr_i of a field at every point.
+    fn derivatives(v: &[Lanes; N]) -> [[Lanes; 2]; P];
+
+    /// sum_p q_pi dh_a/dr_i at every node a: the transpose of [`Self::derivatives`].
+    fn nodal_sums(q: &[[Lanes; 2]; P]) -> [Lanes; N];
+}
+
+/// Matrix between the nodes: entry [a][b] is the 2 x 2 block of the directions of a and b.
+pub type MatrixLanes<const N: usize> = [[TensorLanes; N]; N];
+
+impl Deformation {
+    /// Tangent of [`Self::stress`] in Voigt order.
+    #[inline(always)]
+    fn tangent(&self, law: &impl LawInLanes) -> TangentLanes {
+        match self {
+            Self::At(h) => law.tangent(&green_lagrange(h)),
+            Self::Between(_, change) => law.mean_tangent(change),
+        }
+    }
+}
+
+impl<const N: usize, const P: usize> Block<N, P> {
+    /// Adds K = int B_L^T C B_L + B_NL^T S B_NL dOmega, eq. (2.6) (force/length), in the energy-momentum form
+    /// with B_L of the mid configuration, symmetric: entries [a][b] with a <= b.
+    ///
+    /// With A = dP/dF, the derivative of the first Piola-Kirchhoff stress, K_ab = dh_a/dX . A . dh_b/dX.
+    #[inline(always)]
+    pub fn add_tangent<S: Shape<N, P>>(
+        &self,
+        law: &impl LawInLanes,
+        motion: &BlockMotion<N>,
+        k: &mut MatrixLanes<N>,
+    ) {
+        let u = motion.derivatives::<S, P>();
+        for p in 0..P {
+            let deformation = self.deformation(p, &u, &mut Positive::default());
+            let s = scaled(&deformation.stress(law), self.volume[p]);
+            let c = deformation.tangent(law);
+            let c = [
+                scaled(&c[0], self.volume[p]),
+                scaled(&c[1], self.volume[p]),
+                scaled(&c[2], self.volume[p]),
+            ];
+            let a = elasticity(&deformation_gradient(deformation.h()), &s, &c);
+            add_products(k, &self.gradients::<S>(p), &a);
+        }
+    }
+
+    /// Gradients dh_a/dX = dh_a/dr J^-1 of the nodes at a point.
+    #[inline(always)]
+    fn gradients<S: Shape<N, P>>(&self, p: usize) -> [[Lanes; 2]; N] {
+        let [r, s] = &self.inverse[p];
+        let mut gradients = [[Lanes::ZERO; 2]; N];
+        for (gradient, &[hr, hs]) in gradients.iter_mut().zip(&S::FUNCTIONS.natural[p]) {
+            *gradient = [r[0] * hr + s[0] * hs, r[1] * hr + s[1] * hs];
+        }
+        gradients
+    }
+}
+
+/// Elasticity A = dP/dF, P = F S, of the first Piola-Kirchhoff stress.
+///
+/// A_iIjJ = F_iK C_KILJ F_jL + delta_ij S_IJ; entry [2 j + J] of the stress of row i, [I].
+type Elasticity = [[[Lanes; 2]; 4]; 2];
+
+/// A of a deformation gradient, a stress and its tangent in Voigt order.
+#[inline(always)]
+fn elasticity(f: &TensorLanes, s: &SymmetricLanes, c: &TangentLanes) -> Elasticity {
+    let mut a = [[[Lanes::ZERO; 2]; 4]; 2];
+    for j in 0..2 {
+        let [x, y] = f[j];
+        // dE in Voigt order is (F_jX, 0, F_jY) for dF_jX, (0, F_jY, F_jX) for dF_jY
+        for k in 0..2 {
+            let along = [x, y][k];
+            let across = [y, x][k];
+            let ds = |i: usize| c[i][k] * along + c[i][2] * across;
+            let ds = [ds(0), ds(1), ds(2)];
+            for i in 0..2 {
+                a[i][2 * j + k] = times(&ds, &f[i]);
+            }
+        }
+    }
+    let [xx, yy, xy] = *s;
+    for i in 0..2 {
+        let geometric = [[xx, xy], [xy, yy]];
+        for k in 0..2 {
+            a[i][2 * i + k][0] += geometric[k][0];
+            a[i][2 * i + k][1] += geometric[k][1];
+        }
+    }
+    a
+}
+
+/// S v with a symmetric S.
+#[inline(always)]
+fn times(&[xx, yy, xy]: &SymmetricLanes, &[x, y]: &[Lanes; 2]) -> [Lanes; 2] {
+    [xx * x + xy * y, xy * x + yy * y]
+}
+
+/// Adds g_a . A . g_b for a <= b.
+#[inline(always)]
+fn add_products<const N: usize>(k: &mut MatrixLanes<N>, g: &[[Lanes; 2]; N], a: &Elasticity) {
+    for second in 0..N {
+        let [x, y] = g[second];
+        for i in 0..2 {
+            for j in 0..2 {
+                let [ax, ay] = [a[i][2 * j], a[i][2 * j + 1]];
+                let stress = [ax[0] * x + ay[0] * y, ax[1] * x + ay[1] * y];
+                for first in 0..second + 1 {
+                    k[first][second][i][j] += g[first][0] * stress[0] + g[first][1] * stress[1];
+                }
+            }
+        }
+    }
+}
+
+/// Sums over the integration points, each times its weight.
+#[derive(Clone, Copy)]
+struct Sums {
+    energy: Lanes,
+    stress: SymmetricLanes,
+    across: Lanes,
+    strain: SymmetricLanes,
+    volume: Lanes,
+    /// Largest absolute principal strain so far.
+    principal: [f64; LANES],
+}
+
+impl<const N: usize, const P: usize> Block<N, P> {
+    /// Results of the elements at displacements.
+    #[inline(always)]
+    pub fn evaluate<S: Shape<N, P>>(
+        &self,
+        law: &impl LawInLanes,
+        motion: &BlockMotion<N>,
+    ) -> [ElementResult; LANES] {
+        let u = motion.derivatives::<S, P>();
+        let mut sums = Sums {
+            energy: Lanes::ZERO,
+            stress: [Lanes::ZERO; 3],
+            across: Lanes::ZERO,
+            strain: [Lanes::ZERO; 3],
+            volume: Lanes::ZERO,
+            principal: [0.0; LANES],
+        };
+        for p in 0..P {
+            let deformation = self.deformation(p, &u, &mut Positive::default());
+            sums.add(law, &deformation, self.volume[p]);
+        }
+        from_fn(|lane| sums.result(lane))
+    }
+}
+
+impl Sums {
+    /// Adds a point: sigma = F S F^T/J, eq. (2.8), with J = det F F_zz, and sigma_zz = F_zz S_zz F_zz/J.
+    #[inline(always)]
+    fn add(&mut self, law: &impl LawInLanes, deformation: &Deformation, weight: Lanes) {
+        let (h, e) = (deformation.h(), green_lagrange(deformation.h()));
+        let (f, det) = (deformation_gradient(h), determinant(h));
+        let [stretch, stress] = law.across(&e);
+        let sigma = times_transposed(&times_symmetric(&f, &law.stress(&e)), &f);
+        let over_j = weight / (det * stretch);
+        self.energy += law.stored_energy(&e) * weight;
+        self.stress[0] += sigma[0][0] * over_j;
+        self.stress[1] += sigma[1][1] * over_j;
+        self.stress[2] += sigma[0][1] * over_j;
+        self.across += stress * stretch / det * weight;
+        for (sum, e) in self.strain.iter_mut().zip(&e) {
+            *sum += *e * weight;
+        }
+        self.volume += weight;
+        self.take_principal(&e);
+    }
+
+    /// Takes in the largest absolute principal strain of a point.
+    ///
+    /// ```text
+    /// E_1,2 = (E_xx + E_yy)/2 +- sqrt((E_xx - E_yy)²/4 + E_xy²)
+    /// ```
+    #[inline(always)]
+    fn take_principal(&mut self, &[xx, yy, xy]: &SymmetricLanes) {
+        let (mean, half) = ((xx + yy) * 0.5, (xx - yy) * 0.5);
+        let shear = (half * half + xy * xy).sqrt();
+        for (lane, most) in self.principal.iter_mut().enumerate() {
+            let strain = mean.0[lane].abs() + shear.0[lane];
+            *most = -smaller(-*most, -strain);
+        }
+    }
+
+    /// The means of one element.
+    #[inline(always)]
+    fn result(&self, lane: usize) -> ElementResult {
+        let volume = self.volume.0[lane];
+        let means = |sums: &SymmetricLanes| {
+            [
+                sums[0].0[lane] / volume,
+                sums[1].0[lane] / volume,
+                sums[2].0[lane] / volume,
+            ]
+        };
+        ElementResult {
+            energy: self.energy.0[lane],
+            stress: means(&self.stress),
+            across: self.across.0[lane] / volume,
+            strain: means(&self.strain),
+            principal_strain: self.principal[lane],
+        }
+    }
+}

@@ -1,0 +1,354 @@
+//! Chunks: elements of one shape and material in blocks, with the nodes that they share. What a chunk
+//! reads and adds to fits the first caches, and chunks are swept on any number of threads.
+
+// Loops over points, nodes and directions: indices are those of the formulas.
+#![allow(clippy::needless_range_loop)]
+
+use std::array::from_fn;
+use std::marker::PhantomData;
+use std::sync::{Mutex, PoisonError};
+
+use nalgebra::SMatrix;
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+use super::block::{Block, BlockMotion, MatrixLanes, NodalLanes, Shape};
+use super::formulation::{ElementResult, Reference};
+use super::solid::{ElementMatrix, MAX_DOFS, Motion, TangentPart, take_positive_part};
+use crate::materials::lanes::{LANES, Lanes, Positive};
+use crate::materials::{LawInLanes, PlaneLaw, in_lanes};
+
+/// Elements of a chunk at most.
+pub const MAX_CHUNK: usize = 1024;
+
+/// Tangents of the elements of a block, D x D column by column each.
+pub type BlockTangents = [ElementMatrix; LANES];
+const NO_TANGENTS: BlockTangents = [[0.0; MAX_DOFS * MAX_DOFS]; LANES];
+
+/// Blocks whose tangents are not worth a second thread.
+const PARALLEL_BLOCKS: usize = 64;
+
+/// A sweep over tangents.
+pub struct TangentSweep<'a, W> {
+    pub motion: Motion<'a>,
+    pub part: TangentPart,
+    /// Whether the tangent of an element is needed.
+    pub wanted: &'a W,
+}
+
+/// Elements of one shape and material.
+pub struct Chunk<const N: usize, const P: usize, S> {
+    /// Elements (indices), lane after lane and block after block.
+    elements: Vec<usize>,
+    /// Node indices, increasing; blocks have places in this list.
+    nodes: Vec<usize>,
+    /// Blocks; places of the last that no element fills have the last element with no volume.
+    blocks: Vec<Block<N, P>>,
+    law: PlaneLaw,
+    /// Sums of the last sweep over the nodes, zero once they have been read; locked by the thread that makes or reads
+    /// them.
+    sums: Mutex<Vec<[f64; 2]>>,
+    shape: PhantomData<S>,
+}
+
+impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
+    /// A chunk of elements (indices) with their nodes, between nodes at the coordinates `x`, of the
+    /// thickness `t`.
+    pub fn new(
+        elements: Vec<usize>,
+        of: &[[usize; N]],
+        x: &[[f64; 2]],
+        t: f64,
+        law: PlaneLaw,
+    ) -> Self {
+        let mut nodes: Vec<usize> = of.iter().flatten().copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let block = |first: usize| {
+            let at = |lane: usize| (first + lane).min(of.len() - 1);
+            let places = from_fn(|lane| of[at(lane)].map(|node| place(&nodes, node)));
+            let jacobians = from_fn(|lane| {
+                let corners = SMatrix::from_fn(|i, a| x[of[at(lane)][a]][i]);
+                let t = if first + lane < of.len() { t } else { 0.0 };
+                S::FUNCTIONS.jacobians(&corners, t)
+            });
+            Block::new(places, jacobians)
+        };
+        Chunk {
+            blocks: (0..of.len()).step_by(LANES).map(block).collect(),
+            sums: Mutex::new(vec![[0.0; 2]; nodes.len()]),
+            elements,
+            nodes,
+            law,
+            shape: PhantomData,
+        }
+    }
+
+    /// The element at a place of the chunk.
+    pub fn reference(&self, place: usize) -> Reference<N, P> {
+        let block = &self.blocks[place / LANES];
+        S::FUNCTIONS.reference(&block.jacobians(place % LANES))
+    }
+
+    /// Adds the internal forces of the elements at the end of a motion, or in its energy-momentum form, to the
+    /// sums. False where an element is turned inside out.
+    pub fn sum_forces(&self, motion: Motion) -> bool {
+        let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
+        if !self.is_strained(motion) {
+            return true;
+        }
+        let positive = in_lanes!(&self.law, law => Arch::new().dispatch(ForceSweep {
+            chunk: self,
+            law,
+            motion,
+            sums: &mut sums,
+        }));
+        positive.everywhere()
+    }
+
+    /// Adds the sums to a vector over all dofs, and makes them zero.
+    pub fn add_sums(&self, total: &mut [f64]) {
+        let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
+        let total = total.as_chunks_mut::<2>().0;
+        for (&node, sum) in self.nodes.iter().zip(sums.iter_mut()) {
+            let [x, y] = std::mem::take(sum);
+            total[node][0] += x;
+            total[node][1] += y;
+        }
+    }
+
+    /// Makes the sums zero.
+    pub fn clear_sums(&self) {
+        let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
+        sums.fill([0.0; 2]);
+    }
+
+    /// Elements (indices) with strain energy, stress and strain at displacements `u`.
+    pub fn evaluate(&self, u: &[f64]) -> Vec<(usize, ElementResult)> {
+        in_lanes!(&self.law, law => Arch::new().dispatch(Evaluation { chunk: self, law, u }))
+    }
+
+    /// Calls `add(element, k)` with the tangent of every element that is wanted or in a block with one, D x
+    /// D column by column. The tangents of a chunk are made in parallel in `space` where there are threads.
+    pub fn for_each_tangent(
+        &self,
+        sweep: TangentSweep<impl Fn(usize) -> bool + Sync>,
+        space: &mut Vec<BlockTangents>,
+        add: &mut impl FnMut(usize, &[f64]),
+    ) {
+        let elements = |number: usize| {
+            let first = LANES * number;
+            &self.elements[first..(first + LANES).min(self.elements.len())]
+        };
+        let wanted = |number: &usize| elements(*number).iter().any(|&e| (sweep.wanted)(e));
+        let mut add_block = |number: usize, tangents: &BlockTangents| {
+            for (&element, k) in elements(number).iter().zip(tangents) {
+                add(element, &k[..4 * N * N]);
+            }
+        };
+        let (all, TangentSweep { motion, part, .. }) = (0..self.blocks.len(), &sweep);
+        if rayon::current_num_threads() > 1 {
+            space.resize(self.blocks.len(), NO_TANGENTS);
+            let pairs = all.clone().into_par_iter().zip(space.par_iter_mut());
+            let pairs = pairs.with_min_len(PARALLEL_BLOCKS);
+            pairs
+                .filter(|(number, _)| wanted(number))
+                .for_each(|(number, k)| self.write_tangents(number, *motion, *part, k));
+            all.filter(wanted)
+                .for_each(|number| add_block(number, &space[number]));
+        } else {
+            let mut k = NO_TANGENTS;
+            for number in all.filter(wanted) {
+                self.write_tangents(number, *motion, *part, &mut k);
+                add_block(number, &k);
+            }
+        }
+    }
+
+    /// Writes the tangents of the elements of a block.
+    fn write_tangents(
+        &self,
+        number: usize,
+        motion: Motion,
+        part: TangentPart,
+        tangents: &mut BlockTangents,
+    ) {
+        let block = &self.blocks[number];
+        in_lanes!(&self.law, law => Arch::new().dispatch(Tangents {
+            chunk: self,
+            law,
+            block,
+            motion,
+            tangents,
+        }));
+        if part == TangentPart::Positive {
+            for matrix in tangents {
+                take_positive_part(&mut matrix[..4 * N * N], 2 * N);
+            }
+        }
+    }
+
+    /// Whether some nodes move otherwise than the others. If none does no element is strained, as in
+    /// bodies that are fixed.
+    fn is_strained(&self, motion: Motion) -> bool {
+        let differs = |u: &[f64]| {
+            let u = u.as_chunks::<2>().0;
+            let first = u[self.nodes[0]];
+            let mut others = self.nodes.iter().map(|&node| u[node]);
+            others.any(|u| u[0] - first[0] != 0.0 || u[1] - first[1] != 0.0)
+        };
+        differs(motion.end) || motion.start.is_some_and(differs)
+    }
+
+    /// Adds the forces of all blocks, each in the motion that `motion` gives.
+    #[inline(always)]
+    fn sweep(
+        &self,
+        sums: &mut [[f64; 2]],
+        law: &impl LawInLanes,
+        motion: impl Fn(&Block<N, P>) -> BlockMotion<N>,
+    ) -> Positive {
+        let mut positive = Positive::default();
+        for block in &self.blocks {
+            let (force, of_block) = block.force::<S>(law, &motion(block));
+            positive = positive.both(of_block);
+            for (a, places) in block.nodes.iter().enumerate() {
+                for (lane, &place) in places.iter().enumerate() {
+                    let [x, y] = sums[usize::from(place)];
+                    sums[usize::from(place)] = [x + force[0][a].0[lane], y + force[1][a].0[lane]];
+                }
+            }
+        }
+        positive
+    }
+
+    #[inline(always)]
+    fn at(&self, block: &Block<N, P>, u: &[f64]) -> BlockMotion<N> {
+        BlockMotion::At(self.gather(block, u))
+    }
+
+    #[inline(always)]
+    fn between(&self, block: &Block<N, P>, u: [&[f64]; 2]) -> BlockMotion<N> {
+        BlockMotion::between(&self.gather(block, u[0]), &self.gather(block, u[1]))
+    }
+
+    /// Entries of a vector over all dofs at the nodes of a block.
+    #[inline(always)]
+    fn gather(&self, block: &Block<N, P>, u: &[f64]) -> NodalLanes<N> {
+        let u = u.as_chunks::<2>().0;
+        let mut values = [[Lanes::ZERO; N]; 2];
+        for (a, places) in block.nodes.iter().enumerate() {
+            let u = places.map(|place| u[self.nodes[usize::from(place)]]);
+            values[0][a] = Lanes(u.map(|[x, _]| x));
+            values[1][a] = Lanes(u.map(|[_, y]| y));
+        }
+        values
+    }
+}
+
+/// A sweep over internal forces with the vector instructions of the processor.
+struct ForceSweep<'a, const N: usize, const P: usize, S, L> {
+    chunk: &'a Chunk<N, P, S>,
+    law: &'a L,
+    motion: Motion<'a>,
+    sums: &'a mut [[f64; 2]],
+}
+
+impl<const N: usize, const P: usize, S, L> WithSimd for ForceSweep<'_, N, P, S, L>
+where
+    S: Shape<N, P> + Sync,
+    L: LawInLanes,
+{
+    type Output = Positive;
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) -> Positive {
+        let Self {
+            chunk, law, sums, ..
+        } = self;
+        let end = self.motion.end;
+        match self.motion.start {
+            None => chunk.sweep(sums, law, |block| chunk.at(block, end)),
+            Some(start) => chunk.sweep(sums, law, |block| chunk.between(block, [start, end])),
+        }
+    }
+}
+
+/// Results of all elements with the vector instructions of the processor.
+struct Evaluation<'a, const N: usize, const P: usize, S, L> {
+    chunk: &'a Chunk<N, P, S>,
+    law: &'a L,
+    u: &'a [f64],
+}
+
+impl<const N: usize, const P: usize, S, L> WithSimd for Evaluation<'_, N, P, S, L>
+where
+    S: Shape<N, P> + Sync,
+    L: LawInLanes,
+{
+    type Output = Vec<(usize, ElementResult)>;
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) -> Self::Output {
+        let Self { chunk, law, u } = self;
+        let mut results = Vec::with_capacity(chunk.elements.len());
+        for (block, elements) in chunk.blocks.iter().zip(chunk.elements.chunks(LANES)) {
+            let of_block = block.evaluate::<S>(law, &chunk.at(block, u));
+            results.extend(elements.iter().copied().zip(of_block));
+        }
+        results
+    }
+}
+
+/// Tangents of a block with the vector instructions of the processor.
+struct Tangents<'a, const N: usize, const P: usize, S, L> {
+    chunk: &'a Chunk<N, P, S>,
+    law: &'a L,
+    block: &'a Block<N, P>,
+    motion: Motion<'a>,
+    tangents: &'a mut BlockTangents,
+}
+
+impl<const N: usize, const P: usize, S, L> WithSimd for Tangents<'_, N, P, S, L>
+where
+    S: Shape<N, P> + Sync,
+    L: LawInLanes,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) {
+        let Self {
+            chunk, law, block, ..
+        } = self;
+        let (mut k, end) = ([[[[Lanes::ZERO; 2]; 2]; N]; N], self.motion.end);
+        match self.motion.start {
+            None => block.add_tangent::<S>(law, &chunk.at(block, end), &mut k),
+            Some(start) => block.add_tangent::<S>(law, &chunk.between(block, [start, end]), &mut k),
+        }
+        for (lane, matrix) in self.tangents.iter_mut().enumerate() {
+            write_matrix(lane, &k, matrix);
+        }
+    }
+}
+
+/// Place of a node in the list of a chunk, which has at most [`MAX_CHUNK`] elements.
+fn place(nodes: &[usize], node: usize) -> u16 {
+    nodes.partition_point(|&other| other < node) as u16
+}
+
+/// Writes the symmetric matrix of one element of which the lanes have the entries [a][b] with a <= b.
+fn write_matrix<const N: usize>(lane: usize, k: &MatrixLanes<N>, matrix: &mut ElementMatrix) {
+    for b in 0..N {
+        for a in 0..b + 1 {
+            for i in 0..2 {
+                for j in 0..2 {
+                    let (row, column) = (2 * a + i, 2 * b + j);
+                    let entry = k[a][b][i][j].0[lane];
+                    matrix[column * 2 * N + row] = entry;
+                    matrix[row * 2 * N + column] = entry;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,393 @@
+//! Frictional problems of many contacts by blocks: each block is solved exactly with the forces of the others held,
+//! until the motion that it expects is that under the forces of all; accelerated by the last steps (Anderson 1965) in
+//! the form of generalised conjugate residuals. Section 8 of docs/theory.md, Blocks.
+
+use super::dense::{add_sizes, axpy, dot, max_abs};
+use super::hybrid::{LcpMethod, solve_similar};
+use super::problems::{ContactState, Counters, FrictionalLcp, LcpError};
+use super::residual::{ROUNDING, TOLERANCE, law_residual};
+use super::similar::KeptFactors;
+use crate::linear::largest;
+
+/// Difference between motion and expected motion that is round-off, relative to the terms of either.
+const CONVERGED: f64 = 1e-14;
+
+/// Iterations at most.
+const MOST: usize = 60;
+
+/// Iterations by which the difference must have fallen to [`FALLEN`] of the first, or the coupling of the
+/// blocks is too strong.
+const TRIAL: usize = 15;
+
+/// See [`TRIAL`].
+const FALLEN: f64 = 1e-2;
+
+/// Iterations without a smaller difference after which it is taken for round-off.
+const STAGNANT: usize = 4;
+
+/// Growth of the difference beyond the smallest one that ends the acceleration by the steps before.
+const GROWTH: f64 = 10.0;
+
+/// A block of the contacts of a larger problem.
+pub struct LcpBlock {
+    /// Positions of its contacts in the larger problem.
+    pub contacts: Vec<usize>,
+    /// Its part of Q and its friction; the iteration sets gaps and slips.
+    pub problem: FrictionalLcp,
+    /// Factors of a similar problem before.
+    pub kept: KeptFactors,
+}
+
+/// What a block iteration starts from, for all contacts.
+pub struct BlockStart {
+    /// States.
+    pub states: Vec<ContactState>,
+    /// Forces Pn and Pt.
+    pub forces: Vec<[f64; 2]>,
+    /// Gaps and slips under these forces.
+    pub motion: Vec<[f64; 2]>,
+    /// Gaps and slips without forces.
+    pub free: Vec<[f64; 2]>,
+}
+
+/// The answer of a block iteration, for all contacts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlockSolution {
+    /// Forces Pn and Pt.
+    pub forces: Vec<[f64; 2]>,
+    /// States.
+    pub states: Vec<ContactState>,
+    /// Scaled residual of the contact conditions.
+    pub residual: f64,
+    /// Work of all blocks.
+    pub counters: Counters,
+}
+
+/// Where an iteration stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Progress {
+    /// The forces are those of the answer.
+    Solved,
+    /// It goes on.
+    GoesOn,
+    /// It does not converge.
+    Fails,
+}
+
+/// How the difference of motion and expected motion falls.
+#[derive(Debug, Clone, Copy, Default)]
+struct Course {
+    first: f64,
+    least: f64,
+    iterations: usize,
+    /// Iterations since it was half the least before.
+    since_least: usize,
+}
+
+impl Course {
+    /// Takes in the difference of an iteration.
+    fn take_in(&mut self, difference: f64) -> Self {
+        if self.iterations == 0 {
+            (self.first, self.least) = (difference, difference);
+        }
+        let falls = difference < 0.5 * self.least;
+        self.since_least = if falls { 0 } else { self.since_least + 1 };
+        self.least = self.least.min(difference);
+        self.iterations += 1;
+        *self
+    }
+
+    /// Whether the coupling of the blocks is too strong.
+    fn is_slow(self) -> bool {
+        self.iterations >= TRIAL && self.least > FALLEN * self.first
+    }
+}
+
+/// Iteration over the blocks of a problem, all at once, accelerated by its last steps. It knows Q within
+/// the blocks only; what all forces do to all contacts it is told:
+///
+/// ```text
+/// P <- forces(P):   block c solved with g + Q P - Q_cc P_c as gaps and slips without its forces
+/// ```
+pub struct BlockIteration {
+    blocks: Vec<LcpBlock>,
+    method: LcpMethod,
+    free: f64,
+    length: f64,
+    states: Vec<ContactState>,
+    /// Forces that the blocks are solved at, by contact, and the motion under them.
+    at: [Vec<f64>; 2],
+    /// Forces of the blocks, and the motion that each expects.
+    answer: [Vec<f64>; 2],
+    /// Largest sum of the sizes of the terms of Q P within the blocks.
+    terms: f64,
+    acceleration: Acceleration,
+    course: Course,
+    residual: f64,
+    counters: Counters,
+}
+
+impl BlockIteration {
+    /// Starts an iteration over blocks that have each contact once.
+    pub fn new(blocks: Vec<LcpBlock>, start: BlockStart, method: LcpMethod) -> Self {
+        let free = start.free.as_flattened();
+        let deepest = start.free.iter().fold(0.0_f64, |l, [gap, _]| l.max(-gap));
+        BlockIteration {
+            blocks,
+            method,
+            free: max_abs(free),
+            length: deepest,
+            states: start.states,
+            answer: [vec![0.0; free.len()], vec![0.0; free.len()]],
+            at: [start.forces, start.motion].map(|values| values.as_flattened().to_vec()),
+            terms: 0.0,
+            acceleration: Acceleration::default(),
+            course: Course::default(),
+            residual: f64::INFINITY,
+            counters: Counters::default(),
+        }
+    }
+
+    /// Solves all blocks: the forces Pn and Pt of all contacts whose motion [`Self::take_in`] wants.
+    ///
+    /// # Errors
+    /// A block without solution.
+    pub fn forces(&mut self) -> Result<&[[f64; 2]], LcpError> {
+        let Self { at, answer, .. } = self;
+        self.terms = 0.0;
+        for block in &mut self.blocks {
+            let states: Vec<ContactState> =
+                block.contacts.iter().map(|&k| self.states[k]).collect();
+            block.set_motion(at);
+            let LcpBlock { problem, kept, .. } = &mut *block;
+            let solved = solve_similar(problem, Some(&states), self.method, kept)?;
+            self.counters += solved.counters;
+            for (k, &contact) in block.contacts.iter().enumerate() {
+                let [forces, motion] = answer.each_mut();
+                forces[2 * contact..][..2].copy_from_slice(&[solved.pn[k], solved.pt[k]]);
+                motion[2 * contact..][..2].copy_from_slice(&[solved.gap[k], solved.slip[k]]);
+                self.states[contact] = solved.state[k];
+            }
+            let forces = solved.pn.iter().chain(&solved.pt);
+            self.terms = self.terms.max(block.terms(forces));
+        }
+        Ok(pairs(&self.answer[0]))
+    }
+
+    /// Takes in gaps and slips under the last forces.
+    pub fn take_in(&mut self, motion: &[[f64; 2]]) -> Progress {
+        let motion = motion.as_flattened();
+        let differences = motion.iter().zip(&self.answer[1]).map(|(v, e)| v - e);
+        let difference = largest(&differences.collect::<Vec<f64>>());
+        let course = self.course.take_in(difference);
+        let ends = difference <= CONVERGED * (self.terms + self.free);
+        if ends || course.since_least >= STAGNANT {
+            self.residual = self.law_residual(motion);
+            if self.residual <= TOLERANCE {
+                return Progress::Solved;
+            }
+        }
+        if !difference.is_finite() || course.iterations >= MOST || course.is_slow() {
+            return Progress::Fails;
+        }
+        if difference > GROWTH * course.least {
+            self.acceleration.clear();
+        }
+        self.go_on(motion);
+        Progress::GoesOn
+    }
+
+    /// The forces that the blocks are solved at next, and the motion under them.
+    fn go_on(&mut self, motion: &[f64]) {
+        let [forces, _] = &self.answer;
+        let residual = forces.iter().zip(&self.at[0]).map(|(f, x)| f - x);
+        let step = Step {
+            residual: residual.collect(),
+            forces: forces.clone(),
+            motion: motion.to_vec(),
+        };
+        let next = self.acceleration.next(step);
+        self.at = [next.forces, next.motion];
+    }
+
+    /// Residual of the contact law under the last forces, whose motion is given.
+    fn law_residual(&self, motion: &[f64]) -> f64 {
+        let (mut mu, mut compliance) = (vec![0.0; self.states.len()], 0.0);
+        for LcpBlock {
+            contacts, problem, ..
+        } in &self.blocks
+        {
+            for (k, &contact) in contacts.iter().enumerate() {
+                mu[contact] = problem.mu[k];
+                compliance += problem.q[(k, k)] / self.states.len() as f64;
+            }
+        }
+        let length = self.length + ROUNDING * self.terms;
+        let contacts = pairs(motion).iter().zip(pairs(&self.answer[0])).zip(mu);
+        let contacts = contacts.map(|((motion, force), mu)| (*motion, *force, mu));
+        law_residual(contacts, compliance, length)
+    }
+
+    /// The answer, once it is solved, and the blocks with their factors.
+    pub fn end(self) -> (BlockSolution, Vec<LcpBlock>) {
+        let solution = BlockSolution {
+            forces: pairs(&self.answer[0]).to_vec(),
+            states: self.states,
+            residual: self.residual,
+            counters: self.counters,
+        };
+        (solution, self.blocks)
+    }
+}
+
+impl LcpBlock {
+    /// Sets gaps and slips without the forces of the block, under those of all others:
+    /// v_c - Q_cc P_c.
+    fn set_motion(&mut self, [forces, motion]: &[Vec<f64>; 2]) {
+        let LcpBlock {
+            contacts, problem, ..
+        } = self;
+        let of = |values: &[f64], i: usize| {
+            let part = contacts.iter().map(|&contact| values[2 * contact + i]);
+            part.collect::<Vec<f64>>().into()
+        };
+        (problem.gap, problem.slip) = (of(motion, 0), of(motion, 1));
+        let (pn, pt) = (-of(forces, 0), -of(forces, 1));
+        (problem.gap, problem.slip) = problem.motion(&pn, &pt);
+    }
+
+    /// Largest sum of the sizes of the terms of Q P.
+    fn terms<'a>(&self, forces: impl Iterator<Item = &'a f64>) -> f64 {
+        let rows = 2 * self.contacts.len();
+        let mut terms = vec![0.0; rows];
+        let columns = self.problem.q.as_slice().chunks_exact(rows.max(1));
+        for (force, column) in forces.zip(columns) {
+            add_sizes(*force, column, &mut terms);
+        }
+        max_abs(&terms)
+    }
+}
+
+/// Values of a normal and a tangential direction.
+fn pairs(values: &[f64]) -> &[[f64; 2]] {
+    values.as_chunks().0
+}
+
+/// Steps that are remembered.
+const MEMORY: usize = 20;
+
+/// Part of a change of the residual, beside what is along those before, below which it is round-off.
+const DEPENDENT: f64 = 1e-8;
+
+/// A point of the iteration x <- f(x), whose motion depends linearly on the forces f.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Step {
+    /// f(x) - x
+    pub residual: Vec<f64>,
+    /// f(x)
+    pub forces: Vec<f64>,
+    /// Motion under f(x).
+    pub motion: Vec<f64>,
+}
+
+impl Step {
+    /// Adds a times another.
+    fn add(&mut self, a: f64, other: &Step) {
+        axpy(a, &other.residual, &mut self.residual);
+        axpy(a, &other.forces, &mut self.forces);
+        axpy(a, &other.motion, &mut self.motion);
+    }
+}
+
+/// What the last steps say about the answer.
+#[derive(Debug, Default)]
+pub(super) struct Acceleration {
+    last: Option<Step>,
+    /// Differences of steps, their residuals orthonormal.
+    directions: Vec<Step>,
+}
+
+impl Acceleration {
+    /// Forgets the steps before.
+    pub fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Of all combinations of this step and those before, weights adding up to 1, the one with the least
+    /// residual:
+    ///
+    /// ```text
+    /// f - sum (e_j.r) f_j,   e_j = r_j the orthonormal changes of the residual, f_j those of f
+    /// ```
+    pub fn next(&mut self, step: Step) -> Step {
+        if let Some(mut change) = self.last.replace(step.clone()) {
+            change.add(-1.0, &step);
+            self.take_in(change);
+        }
+        let mut next = step;
+        for direction in &self.directions {
+            let part = dot(&direction.residual, &next.residual);
+            next.add(-part, direction);
+        }
+        next
+    }
+
+    /// Makes a change orthonormal to those before and remembers it.
+    fn take_in(&mut self, mut change: Step) {
+        if self.directions.len() == MEMORY {
+            self.directions.remove(0);
+        }
+        let whole = norm(&change.residual);
+        for direction in &self.directions {
+            let part = dot(&direction.residual, &change.residual);
+            change.add(-part, direction);
+        }
+        let rest = norm(&change.residual);
+        if rest > DEPENDENT * whole {
+            let vectors = [&mut change.residual, &mut change.forces, &mut change.motion];
+            vectors
+                .into_iter()
+                .flatten()
+                .for_each(|value| *value /= rest);
+            self.directions.push(change);
+        }
+    }
+}
+
+fn norm(vector: &[f64]) -> f64 {
+    dot(vector, vector).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// x <- A x + c of three unknowns, A with eigenvalues up to 0.9 and one beyond 1, is solved by four
+    /// accelerated steps.
+    #[test]
+    fn a_linear_iteration_ends_after_as_many_steps_as_unknowns() {
+        let rates = [0.9, -0.5, 1.5];
+        let image = |x: &[f64]| -> Vec<f64> {
+            let of = x.iter().zip(rates);
+            of.map(|(x, rate)| rate * x + 1.0).collect()
+        };
+        let (mut acceleration, mut x) = (Acceleration::default(), vec![0.0; 3]);
+        for _ in 0..4 {
+            let forces = image(&x);
+            let residual = forces.iter().zip(&x).map(|(f, x)| f - x).collect();
+            let motion = forces.iter().map(|f| 2.0 * f).collect();
+            let next = acceleration.next(Step {
+                residual,
+                forces,
+                motion,
+            });
+            x = next.forces;
+            for (x, motion) in x.iter().zip(next.motion) {
+                assert!((motion - 2.0 * x).abs() < 1e-12 * (1.0 + motion.abs()));
+            }
+        }
+        for (x, rate) in x.iter().zip(rates) {
+            assert!((x - 1.0 / (1.0 - rate)).abs() < 1e-11, "{x} {rate}");
+        }
+    }
+}

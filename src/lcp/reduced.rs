@@ -1,0 +1,398 @@
+//! The forces of given contact states: a linear system, solved directly, or with the factors of a similar one.
+
+use super::dense::{Factors, List, copy, filled, list, max_abs};
+use super::problems::ContactState;
+use super::scaled::Scaled;
+use super::similar::{KeptFactors, Similar, slide};
+
+/// Shift of the diagonal, relative to its entries, that makes a singular system solvable.
+const SHIFT: f64 = 1e-10;
+
+/// Difference of mirrored entries, relative to their diagonal entries, of a symmetric matrix.
+const ASYMMETRY: f64 = 1e-9;
+
+/// Residual of forces that are as good as they can be, in units of the sum of the terms of its rows.
+const ACCURATE: f64 = 4.0 * f64::EPSILON;
+
+/// Residual that no correction makes smaller, in the same units.
+const ROUND_OFF: f64 = 0.5 * f64::EPSILON;
+
+/// How forces are corrected by the residual.
+struct Corrections {
+    /// Solves at least and at most.
+    solves: [usize; 2],
+    /// Fall of the residual, from correction to correction, at least.
+    rate: f64,
+}
+
+/// With the factors of the system itself: the first correction makes the gaps exact to round-off, more are
+/// needed only by the shifted system.
+const OWN: Corrections = Corrections {
+    solves: [2, 7],
+    rate: 0.1,
+};
+
+/// Solves with the factors of a similar system in place of factors of its own: so many, or, of a large system, that
+/// take a part of the operations of these.
+const SIMILAR_SOLVES: usize = 6;
+
+/// Unknowns for one such solve.
+const UNKNOWNS_PER_SOLVE: usize = 24;
+
+/// Forces p and their motion v.
+type Solution<'a> = (List<'a, f64>, List<'a, f64>);
+
+impl Corrections {
+    /// With the factors of a similar system of the given size: as long as the residual falls to round-off.
+    fn similar(size: usize) -> Self {
+        let most = SIMILAR_SOLVES.max(size / UNKNOWNS_PER_SOLVE);
+        Corrections {
+            solves: [1, most],
+            rate: f64::EPSILON.powf(1.0 / most as f64),
+        }
+    }
+}
+
+/// Solves for the forces p of the given states, and their motion v = Q p + b:
+/// gap = 0 where closed, slip = 0 where sticking, Pt = -+mu Pn where sliding, no force where open.
+/// None when no solution is finite. Where redundant contacts leave the forces undetermined they
+/// share the load.
+pub(crate) fn forces<'a>(
+    scaled: &Scaled<'a>,
+    states: &[ContactState],
+    kept: &mut KeptFactors,
+) -> Option<Solution<'a>> {
+    let unknowns = unknowns(scaled, states);
+    if unknowns.is_empty() {
+        let arena = scaled.arena;
+        return Some((filled(arena, 0.0, scaled.size()), copy(arena, &scaled.b)));
+    }
+    let size = unknowns.len();
+    if let Some(found) = from_kept(scaled, states, &unknowns, kept) {
+        return Some(found);
+    }
+    let matrix = || matrix(scaled, states, &unknowns);
+    let nothing_slides = scaled.owners.iter().all(|i| states[*i].slip_sign() == 0.0);
+    let values = matrix();
+    let regular = if nothing_slides && is_symmetric(&values, size) {
+        Factors::cholesky(values, size)
+    } else {
+        Factors::lu(values, size)
+    };
+    let solution = |factors: &Factors| {
+        let solve = |b: &mut [f64]| factors.solve(b);
+        let (p, v, _) = refine(scaled, states, &unknowns, (&OWN, solve));
+        p.iter().all(|v| v.is_finite()).then_some((p, v))
+    };
+    match regular {
+        Some(factors) => {
+            let found = solution(&factors);
+            kept.keep(scaled, states, &unknowns, factors);
+            found
+        }
+        None => solution(&Factors::lu(shifted(matrix(), size), size)?),
+    }
+}
+
+/// Forces from kept factors, if these serve.
+fn from_kept<'a>(
+    scaled: &Scaled<'a>,
+    states: &[ContactState],
+    unknowns: &[usize],
+    kept: &KeptFactors,
+) -> Option<Solution<'a>> {
+    if let Some(factors) = kept
+        .same(scaled, states)
+        .filter(|f| f.size() == unknowns.len())
+    {
+        return from_similar(scaled, states, unknowns, |b| factors.solve(b));
+    }
+    let similar = Similar::of(kept, scaled, states, unknowns)?;
+    from_similar(scaled, states, unknowns, |b| similar.solve(b))
+}
+
+/// Forces from solves of a similar system, if they are as good as those from the own factors.
+fn from_similar<'a>(
+    scaled: &Scaled<'a>,
+    states: &[ContactState],
+    unknowns: &[usize],
+    solve: impl Fn(&mut [f64]),
+) -> Option<Solution<'a>> {
+    let corrections = Corrections::similar(unknowns.len());
+    let (p, v, error) = refine(scaled, states, unknowns, (&corrections, solve));
+    (error <= ACCURATE * terms(scaled, &p)).then_some((p, v))
+}
+
+/// Sum of the sizes of the diagonal terms of Q p.
+fn terms(scaled: &Scaled, p: &[f64]) -> f64 {
+    let q = scaled.q();
+    (0..p.len()).map(|k| (q[(k, k)] * p[k]).abs()).sum()
+}
+
+/// Positions in p of the unknowns, which are also the rows that must vanish.
+fn unknowns<'a>(scaled: &Scaled<'a>, states: &[ContactState]) -> List<'a, usize> {
+    let closed = (0..scaled.contacts).filter(|i| states[*i].is_closed());
+    let tangents = scaled.owners.iter().zip(scaled.contacts..);
+    let stick = tangents
+        .filter(|(i, _)| states[**i] == ContactState::Stick)
+        .map(|(_, k)| k);
+    list(scaled.arena, closed.chain(stick))
+}
+
+/// The matrix of the system by columns: Q on the unknowns; the column of a sliding Pn is
+/// Q e_n - slip sign mu Q e_t.
+fn matrix(scaled: &Scaled, states: &[ContactState], unknowns: &[usize]) -> Vec<f64> {
+    let mut values = Vec::with_capacity(unknowns.len() * unknowns.len());
+    for k in unknowns {
+        let column = scaled.column(*k);
+        match sliding(scaled, states, *k) {
+            None => values.extend(unknowns.iter().map(|r| column[*r])),
+            Some((t, factor)) => {
+                let tangent = scaled.column(t);
+                values.extend(unknowns.iter().map(|r| column[*r] + factor * tangent[*r]));
+            }
+        }
+    }
+    values
+}
+
+/// For an unknown k that is the Pn of a sliding contact: the position t of its Pt and the factor in
+/// Pt = factor Pn.
+fn sliding(scaled: &Scaled, states: &[ContactState], k: usize) -> Option<(usize, f64)> {
+    if k >= scaled.contacts || states[k].slip_sign() == 0.0 {
+        return None;
+    }
+    scaled.tangents[k].map(|t| (t, slide(scaled, states, k)))
+}
+
+/// Whether the two triangles of a matrix are equal up to differences that the corrections by the
+/// residual remove.
+fn is_symmetric(matrix: &[f64], size: usize) -> bool {
+    let at = |i: usize, j: usize| matrix[i + j * size];
+    let is_mirrored = |i: usize, j: usize| {
+        let scale = (at(i, i) * at(j, j)).abs().sqrt();
+        (at(i, j) - at(j, i)).abs() <= ASYMMETRY * scale
+    };
+    (0..size).all(|j| (0..j).all(|i| is_mirrored(i, j)))
+}
+
+/// The matrix with its diagonal increased a little.
+fn shifted(mut matrix: Vec<f64>, size: usize) -> Vec<f64> {
+    let largest = (0..size).fold(0.0_f64, |l, i| l.max(matrix[i + i * size].abs()));
+    (0..size).for_each(|i| matrix[i + i * size] += SHIFT * largest);
+    matrix
+}
+
+/// p and v from solves with some factors, corrected by the residual of the system itself as long as that falls and is
+/// not yet round-off, and the largest residual.
+fn refine<'a>(
+    scaled: &Scaled<'a>,
+    states: &[ContactState],
+    unknowns: &[usize],
+    (corrections, solve): (&Corrections, impl Fn(&mut [f64])),
+) -> (List<'a, f64>, List<'a, f64>, f64) {
+    let arena = scaled.arena;
+    let [mut p, mut best] = [(); 2].map(|()| filled(arena, 0.0, scaled.size()));
+    let mut motion = List::new_in(arena);
+    let mut residual = List::with_capacity_in(unknowns.len(), arena);
+    let mut smallest = f64::INFINITY;
+    let [least, most] = corrections.solves;
+    for solves in 0..=most {
+        let v = match solves {
+            0 => copy(arena, &scaled.b),
+            _ => scaled.motion(&p),
+        };
+        residual.clear();
+        residual.extend(unknowns.iter().map(|k| -v[*k]));
+        let error = max_abs(&residual);
+        if error.is_nan() || error >= smallest {
+            break;
+        }
+        let stagnates = error > corrections.rate * smallest;
+        best.copy_from_slice(&p);
+        motion = v;
+        smallest = error;
+        if stagnates || (solves >= least && error <= ROUND_OFF * terms(scaled, &p)) {
+            break;
+        }
+        solve(&mut residual);
+        for (k, correction) in unknowns.iter().zip(&residual) {
+            p[*k] += correction;
+            if let Some((t, factor)) = sliding(scaled, states, *k) {
+                p[t] = factor * p[*k];
+            }
+        }
+    }
+    (best, motion, smallest)
+}
+
+#[cfg(test)]
+mod tests {
+    use bumpalo::Bump;
+    use nalgebra::{DMatrix, DVector};
+
+    use super::*;
+    use crate::lcp::problems::FrictionalLcp;
+    use ContactState::{Open, SlipMinus, SlipPlus, Stick};
+
+    const CONTACTS: usize = 40;
+
+    /// Contacts on an elastic surface, each at the place of its name, those of the same place being one and the
+    /// same; all penetrate.
+    fn problem(names: &[usize], compliance: f64) -> FrictionalLcp {
+        let n = names.len();
+        let entry = |i: usize, j: usize| {
+            let distance = names[i % n] as f64 - names[j % n] as f64;
+            let decay = compliance * (-distance.abs() / 4.0).exp();
+            let side = distance
+                .partial_cmp(&0.0)
+                .map_or(0.0, |order| order as i8 as f64);
+            match (i < n, j < n) {
+                (true, true) => decay,
+                (false, false) => 0.8 * decay,
+                (true, false) => 0.1 * decay * side,
+                (false, true) => -0.1 * decay * side,
+            }
+        };
+        FrictionalLcp {
+            q: DMatrix::from_fn(2 * n, 2 * n, entry),
+            gap: DVector::from_element(n, -1.0),
+            slip: DVector::from_fn(n, |i, _| 0.1 * i as f64 - 0.5),
+            mu: DVector::from_element(n, 0.3),
+        }
+    }
+
+    /// A system of named contacts.
+    fn scaled<'a>(names: &[usize], compliance: f64, arena: &'a Bump) -> Scaled<'a> {
+        Scaled::new(&problem(names, compliance), arena).expect("finite")
+    }
+
+    /// Factors kept of the system of all contacts with every state.
+    fn kept() -> (KeptFactors, Vec<usize>, Vec<ContactState>) {
+        let names: Vec<usize> = (0..CONTACTS).map(|i| 2 * i).collect();
+        let states = (0..CONTACTS).map(|i| [Stick, SlipPlus, Open, SlipMinus, Stick][i % 5]);
+        let states: Vec<ContactState> = states.collect();
+        let mut kept = KeptFactors::default();
+        kept.name_contacts(names.iter().map(|&name| [name, 0]));
+        let arena = Bump::new();
+        forces(&scaled(&names, 1.0, &arena), &states, &mut kept).expect("regular");
+        (kept, names, states)
+    }
+
+    /// The solve by the kept factors beside that by own ones, if they serve.
+    fn differs(
+        kept: &mut KeptFactors,
+        names: &[usize],
+        states: &[ContactState],
+        compliance: f64,
+    ) -> Option<f64> {
+        kept.name_contacts(names.iter().map(|&name| [name, 0]));
+        let arena = Bump::new();
+        let scaled = scaled(names, compliance, &arena);
+        let unknowns = unknowns(&scaled, states);
+        let own = Factors::lu(matrix(&scaled, states, &unknowns), unknowns.len())?;
+        let mut expected: Vec<f64> = (0..unknowns.len()).map(|k| 1.0 + (k % 7) as f64).collect();
+        let mut found = expected.clone();
+        Similar::of(kept, &scaled, states, &unknowns)?.solve(&mut found);
+        own.solve(&mut expected);
+        let difference = expected.iter().zip(&found).map(|(a, b)| (a - b).abs());
+        Some(difference.fold(0.0, f64::max) / max_abs(&expected))
+    }
+
+    #[test]
+    fn kept_factors_solve_systems_with_other_states() {
+        let (mut kept, names, states) = kept();
+        for first in [0, 5, 35] {
+            for (i, before) in states.iter().enumerate().skip(first).take(5) {
+                for after in [Open, Stick, SlipPlus, SlipMinus] {
+                    let mut others = states.clone();
+                    (others[i], others[(i + 7) % CONTACTS]) = (after, Stick);
+                    let difference = differs(&mut kept, &names, &others, 1.0);
+                    let difference = difference.expect("a small border");
+                    assert!(difference < 1e-11, "{before:?} {after:?} {difference:e}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn kept_factors_solve_systems_with_other_contacts_in_other_units() {
+        let (mut kept, mut names, mut states) = kept();
+        for gone in [11, 7, 0] {
+            names.remove(gone);
+            states.remove(gone);
+        }
+        names.insert(20, names[20] - 1);
+        states.insert(20, Stick);
+        // a little less than a power of two has half its unit
+        for (compliance, most) in [(1.0, 1e-11), (1.0 - 1e-6, 1e-4)] {
+            let difference = differs(&mut kept, &names, &states, compliance);
+            let difference = difference.expect("a small border");
+            assert!(difference < most, "{compliance} {difference:e}");
+        }
+    }
+
+    #[test]
+    fn forces_by_kept_factors_are_those_by_own_ones() {
+        let (mut kept, names, mut states) = kept();
+        (states[3], states[4], states[12]) = (Stick, SlipPlus, Stick);
+        let arena = Bump::new();
+        let scaled = scaled(&names, 1.0001, &arena);
+        let unknowns = unknowns(&scaled, &states);
+        let similar = Similar::of(&kept, &scaled, &states, &unknowns).expect("a border");
+        let found = from_similar(&scaled, &states, &unknowns, |b| similar.solve(b));
+        let (p, v) = found.expect("converges");
+        let own = forces(&scaled, &states, &mut KeptFactors::default()).expect("regular");
+        for (found, own) in [(p, own.0), (v, own.1)] {
+            let most = max_abs(&own);
+            assert!(
+                found
+                    .iter()
+                    .zip(own)
+                    .all(|(a, b)| (a - b).abs() < 1e-12 * most)
+            );
+        }
+        drop(similar);
+        let before = forces(&scaled, &states, &mut kept);
+        assert!(before.is_some(), "the kept factors serve again");
+    }
+
+    #[test]
+    fn factors_of_their_own_replace_those_that_do_not_serve() {
+        let (mut kept, names, states) = kept();
+        // too many states differ
+        let all = vec![Stick; CONTACTS];
+        assert_eq!(differs(&mut kept, &names, &all, 1.0), None);
+        // Q is another one: corrections by the residual do not converge
+        let far: Vec<usize> = names.iter().map(|name| 50 * name).collect();
+        let arena = Bump::new();
+        let other = scaled(&far, 1.0, &arena);
+        kept.name_contacts(names.iter().map(|&name| [name, 0]));
+        let unknowns = unknowns(&other, &states);
+        let similar = Similar::of(&kept, &other, &states, &unknowns).expect("the same states");
+        assert!(from_similar(&other, &states, &unknowns, |b| similar.solve(b)).is_none());
+        drop(similar);
+        let (p, v) = forces(&other, &states, &mut kept).expect("own factors");
+        assert!(unknowns.iter().all(|k| v[*k].abs() < 1e-13 * max_abs(&p)));
+    }
+
+    #[test]
+    fn a_singular_border_gives_way_to_shared_loads() {
+        let (mut kept, mut names, mut states) = kept();
+        // a contact that is there twice
+        names.insert(1, names[0]);
+        states.insert(1, Stick);
+        let arena = Bump::new();
+        let twice = scaled(&names, 1.0, &arena);
+        kept.name_contacts((0..names.len()).map(|i| [i.max(1) - 1, usize::from(i == 1)]));
+        let (p, v) = forces(&twice, &states, &mut kept).expect("shared");
+        let closed = (0..names.len()).filter(|i| states[*i].is_closed());
+        assert!(closed.clone().all(|i| v[i].abs() < 1e-10 * max_abs(&p)));
+        assert!(
+            (p[0] - p[1]).abs() < 1e-5 * max_abs(&p),
+            "{} {}",
+            p[0],
+            p[1]
+        );
+    }
+}

@@ -1,0 +1,209 @@
+//! The dimensionless form of the frictional problem that the methods solve, without the tangential unknowns of
+//! frictionless contacts. Scale factors are powers of two: multiplication by them is exact. Section 8 of docs/theory.md.
+
+use bumpalo::Bump;
+use nalgebra::{DMatrix, DMatrixView};
+
+use super::dense::{List, add_product, copy, extend_scaled, filled, list};
+use super::problems::{FrictionalLcp, LcpError, expect_finite};
+
+/// v = Q p + b with p = (Pn of all n contacts, Pt of the m contacts with mu > 0).
+///
+/// With the weights w_i = root of Qnn_ii over its mean, the unit of length of contact i is
+/// w_i times the deepest penetration (over its weight), the unit of force is that length over
+/// Qnn_ii; both are rounded to powers of two. One weight for normal and tangent keeps the friction
+/// law. The penetration drives the forces: a gap or a slip many orders larger must not make a
+/// closed contact inaccurate.
+pub(crate) struct Scaled<'a> {
+    /// Where its lists lie, and those of its solution.
+    pub arena: &'a Bump,
+    /// Number of contacts n.
+    pub contacts: usize,
+    /// Contact of each tangential unknown (length m).
+    pub owners: List<'a, usize>,
+    /// Position in p of the tangential unknown of each contact, None without friction (length n).
+    pub tangents: List<'a, Option<usize>>,
+    /// Q, (n + m) x (n + m), column by column.
+    entries: List<'a, f64>,
+    /// Gaps and slips without forces (length n + m).
+    pub b: List<'a, f64>,
+    /// Friction coefficients (length n).
+    pub mu: List<'a, f64>,
+    /// Weights of the contacts (length n).
+    pub weights: List<'a, f64>,
+    /// Unit of the compliances.
+    pub compliance: f64,
+    /// Unit of the forces of each contact (length n).
+    units: List<'a, f64>,
+}
+
+impl<'a> Scaled<'a> {
+    /// Scales a problem with at least one penetration.
+    pub fn new(problem: &FrictionalLcp, arena: &'a Bump) -> Result<Self, LcpError> {
+        let n = problem.len();
+        let owners = list(arena, (0..n).filter(|i| problem.mu[*i] > 0.0));
+        let mut tangents = filled(arena, None, n);
+        for (f, i) in owners.iter().enumerate() {
+            tangents[*i] = Some(n + f);
+        }
+        let compliance = power_of_two((0..n).map(|i| problem.q[(i, i)]).sum::<f64>() / n as f64);
+        let weight = |i: usize| power_of_two((problem.q[(i, i)] / compliance).max(0.0).sqrt());
+        let weights = list(arena, (0..n).map(weight));
+        let penetrations = problem.gap.iter().zip(&weights).map(|(g, w)| -g / w);
+        let length = power_of_two(penetrations.fold(0.0, f64::max));
+        // Reciprocals of powers of two are exact.
+        let inverses = list(arena, weights.iter().map(|w| 1.0 / w));
+        let gather = |column: &[f64], unit: f64, out: &mut List<f64>| {
+            let factor = 1.0 / unit;
+            let (normal, tangential) = column.split_at(n);
+            extend_scaled(out, normal, &inverses, factor);
+            match owners.len() == n {
+                true => extend_scaled(out, tangential, &inverses, factor),
+                false => out.extend(
+                    owners
+                        .iter()
+                        .map(|&i| tangential[i] * (inverses[i] * factor)),
+                ),
+            }
+        };
+        let size = n + owners.len();
+        let mut entries = List::with_capacity_in(size * size, arena);
+        for k in (0..n).chain(owners.iter().map(|i| n + i)) {
+            let column = &problem.q.as_slice()[2 * n * k..2 * n * (k + 1)];
+            gather(column, compliance * weights[k % n], &mut entries);
+        }
+        let motion = list(arena, problem.gap.iter().chain(&problem.slip).copied());
+        let mut b = List::with_capacity_in(size, arena);
+        gather(&motion, length, &mut b);
+
+        let units = list(arena, weights.iter().map(|w| length / compliance / w));
+        for values in [&entries, &b, &units] {
+            expect_finite(values)?;
+        }
+        let mu = copy(arena, problem.mu.as_slice());
+        Ok(Self {
+            arena,
+            contacts: n,
+            owners,
+            tangents,
+            entries,
+            b,
+            mu,
+            weights,
+            compliance,
+            units,
+        })
+    }
+
+    /// Length of p.
+    pub fn size(&self) -> usize {
+        self.b.len()
+    }
+
+    /// Column k of Q.
+    pub fn column(&self, k: usize) -> &[f64] {
+        let size = self.size();
+        &self.entries[k * size..(k + 1) * size]
+    }
+
+    /// Q.
+    pub fn q(&self) -> DMatrixView<'_, f64> {
+        DMatrixView::from_slice(&self.entries, self.size(), self.size())
+    }
+
+    /// Q p + b.
+    pub fn motion(&self, p: &[f64]) -> List<'a, f64> {
+        let mut v = copy(self.arena, &self.b);
+        add_product(&self.entries, p, &mut v);
+        v
+    }
+
+    /// (Pn, Pt) of all contacts in the units of the problem.
+    pub fn forces(&self, p: &[f64]) -> [List<'a, f64>; 2] {
+        let pn = p.iter().zip(&self.units).map(|(p, unit)| p * unit);
+        let pt = self.tangents.iter().zip(&self.units);
+        let pt = pt.map(|(t, unit)| t.map_or(0.0, |t| p[t] * unit));
+        [list(self.arena, pn), list(self.arena, pt)]
+    }
+}
+
+/// Sweeps over rows and columns when a matrix is equilibrated.
+const SWEEPS: usize = 4;
+
+/// Largest power of two <= |x|; 1 for zero.
+pub(crate) fn power_of_two(x: f64) -> f64 {
+    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
+    if x == 0.0 {
+        return 1.0;
+    }
+    f64::from_bits(x.abs().to_bits() & EXPONENT).max(f64::MIN_POSITIVE)
+}
+
+/// Row factors r and column factors c that bring the entries r_i M_ij c_j near 1.
+pub(crate) struct Equilibration {
+    /// Row factors.
+    pub rows: Vec<f64>,
+    /// Column factors.
+    pub columns: Vec<f64>,
+}
+
+impl Equilibration {
+    /// Factors for `m`: rows and columns are divided in turn by the root of largest times smallest
+    /// entry, rounded to powers of two. Rows and columns of zeros keep the factor 1.
+    pub fn of(m: &DMatrix<f64>) -> Self {
+        let (mut rows, mut columns) = (vec![1.0; m.nrows()], vec![1.0; m.ncols()]);
+        for _ in 0..SWEEPS {
+            for (i, factor) in rows.iter_mut().enumerate() {
+                *factor = inverse_mean((0..m.ncols()).map(|j| (m[(i, j)] * columns[j]).abs()));
+            }
+            for (j, factor) in columns.iter_mut().enumerate() {
+                *factor = inverse_mean((0..m.nrows()).map(|i| (m[(i, j)] * rows[i]).abs()));
+            }
+        }
+        Self { rows, columns }
+    }
+
+    /// The scaled matrix r_i M_ij c_j.
+    pub fn apply(&self, m: &DMatrix<f64>) -> DMatrix<f64> {
+        DMatrix::from_fn(m.nrows(), m.ncols(), |i, j| {
+            m[(i, j)] * self.rows[i] * self.columns[j]
+        })
+    }
+}
+
+/// One over the geometric mean of the largest and the smallest non-zero entry.
+fn inverse_mean(entries: impl Iterator<Item = f64>) -> f64 {
+    let (mut smallest, mut largest) = (f64::INFINITY, 0.0_f64);
+    for entry in entries.filter(|e| *e > 0.0) {
+        smallest = smallest.min(entry);
+        largest = largest.max(entry);
+    }
+    if largest == 0.0 {
+        1.0
+    } else {
+        1.0 / power_of_two(smallest.sqrt() * largest.sqrt())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn power_of_two_keeps_the_exponent() {
+        assert_eq!(power_of_two(1.0), 1.0);
+        assert_eq!(power_of_two(-7.9), 4.0);
+        assert_eq!(power_of_two(0.3), 0.25);
+        assert_eq!(power_of_two(0.0), 1.0);
+        assert_eq!(power_of_two(5e-324), f64::MIN_POSITIVE);
+    }
+
+    #[test]
+    fn equilibration_undoes_row_and_column_scales() {
+        let m = DMatrix::from_fn(3, 3, |i, j| {
+            10f64.powi(8 * i as i32 - 9 * j as i32) * (1.0 + (i + j) as f64)
+        });
+        let scaled = Equilibration::of(&m).apply(&m);
+        assert!(scaled.iter().all(|v| (0.1..10.0).contains(v)), "{scaled}");
+    }
+}

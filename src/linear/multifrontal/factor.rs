@@ -1,0 +1,377 @@
+//! LDL^T factors limb by limb, packed in the order in which substitutions read them, in memory with large pages where
+//! the system has them: substitutions read the entries from one end to the other, and a processor reads ahead within a
+//! page only. Section 5 of docs/theory.md, One solve and Branches.
+
+use std::ops::{Deref, DerefMut};
+
+use bytemuck::{cast_slice, cast_slice_mut};
+use memmap2::MmapMut;
+use rayon::prelude::*;
+
+use super::supernodes::{Layout, Limb, Supernode, Supernodes, cut};
+
+/// Least entries of L for which a factorisation and a substitution are worth threads.
+const FACTORISATION: usize = 200_000;
+const SUBSTITUTION: usize = 800_000;
+
+/// Where the unknown of a pivot is.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Place {
+    /// Its limb.
+    pub limb: usize,
+    /// Its row there.
+    pub row: usize,
+}
+
+/// Where a supernode of a limb is.
+#[derive(Debug, Clone, Copy)]
+struct Spot {
+    start: u32,
+    size: u32,
+    is_of_twos: bool,
+    /// Its first entry in the rows of the limb.
+    rows: usize,
+    /// Its first entry among those of the limb.
+    entries: usize,
+}
+
+/// Columns of L and D of a branch or a trunk. Its rows are its own, then those of the trunk it stands on.
+#[derive(Debug, Default, Clone)]
+pub struct LimbFactor {
+    /// Unknowns of its own rows.
+    pub unknowns: Vec<usize>,
+    /// The trunk, by its number among the limbs.
+    pub trunk: Option<usize>,
+    /// Number of rows, own and of the trunk.
+    pub length: usize,
+    /// Rows of its longest supernode.
+    pub longest: usize,
+    spots: Vec<Spot>,
+    rows: Vec<u32>,
+    /// Number of entries of L, and the first among those of all limbs, which begins a line of the cache.
+    entries: usize,
+    first: usize,
+    /// D
+    pub pivots: Vec<f64>,
+}
+
+/// Factors of a matrix.
+#[derive(Debug, Default)]
+pub struct Factor {
+    /// Branches, then trunks.
+    pub limbs: Vec<LimbFactor>,
+    /// Number of branches.
+    pub branches: usize,
+    /// Place of every unknown.
+    pub places: Vec<Place>,
+    /// Number of entries of L.
+    entries: usize,
+    /// L, limb by limb.
+    values: Entries,
+}
+
+/// Places of pivots in the limbs, in their order.
+struct Places {
+    of_pivots: Vec<Place>,
+    /// Number of own rows of every limb.
+    sizes: Vec<usize>,
+}
+
+impl Factor {
+    /// For the factors of an analysed matrix, whose memory [`Self::make_room`] takes; `unknowns` has the unknown of every pivot.
+    pub fn new(supernodes: &Supernodes, unknowns: &[usize]) -> Self {
+        let all = 0..supernodes.count();
+        let work: Vec<usize> = all.map(|s| supernodes.entries(s)).collect();
+        let (limbs, branches) = cut(&supernodes.parents(), &work);
+        let in_limbs = Places::new(supernodes, &limbs, unknowns.len());
+        let mut places = vec![Place::default(); unknowns.len()];
+        for (&unknown, place) in unknowns.iter().zip(&in_limbs.of_pivots) {
+            places[unknown] = *place;
+        }
+        let mut factor = Factor {
+            limbs: Vec::new(),
+            branches,
+            places,
+            entries: work.iter().sum(),
+            values: Entries::default(),
+        };
+        let of_limb = |number| in_limbs.factor(supernodes, unknowns, (number, &limbs));
+        let all = 0..limbs.len();
+        factor.limbs = match factor.is_factorised_on_threads() {
+            true => all.into_par_iter().map(of_limb).collect(),
+            false => all.map(of_limb).collect(),
+        };
+        let mut entries = 0;
+        for limb in &mut factor.limbs {
+            limb.first = entries;
+            entries += limb.entries.next_multiple_of(LINE);
+        }
+        factor
+    }
+
+    /// The same without L and its memory.
+    pub fn without_values(&self) -> Self {
+        Factor {
+            limbs: self.limbs.clone(),
+            places: self.places.clone(),
+            values: Entries::default(),
+            ..*self
+        }
+    }
+
+    /// Takes memory for L: that of former factors, as far as it is enough.
+    pub fn make_room(&mut self, memory: Entries) {
+        let of_limb = |limb: &LimbFactor| limb.entries.next_multiple_of(LINE);
+        self.values = memory;
+        self.values.make_room(self.limbs.iter().map(of_limb).sum());
+    }
+
+    /// The memory of L.
+    pub fn into_memory(self) -> Entries {
+        self.values
+    }
+
+    /// L of all limbs, for their supernodes.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The limbs, each with its part of L.
+    pub fn limbs_mut(&mut self) -> Vec<(&mut LimbFactor, &mut [f64])> {
+        let (mut of_limbs, mut rest) = (Vec::new(), &mut *self.values);
+        for limb in &mut self.limbs {
+            let own;
+            (own, rest) = rest.split_at_mut(limb.entries.next_multiple_of(LINE));
+            of_limbs.push((limb, own));
+        }
+        of_limbs
+    }
+
+    /// Whether there are threads, and entries enough for them in a factorisation.
+    pub fn is_factorised_on_threads(&self) -> bool {
+        self.is_worth_threads(FACTORISATION)
+    }
+
+    /// Whether there are threads, and entries enough for them in a substitution.
+    pub fn is_substituted_on_threads(&self) -> bool {
+        self.is_worth_threads(SUBSTITUTION)
+    }
+
+    fn is_worth_threads(&self, least: usize) -> bool {
+        self.entries >= least && self.branches > 1 && rayon::current_num_threads() > 1
+    }
+
+    /// D with the unknowns it belongs to.
+    pub fn pivots(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.limbs.iter().flat_map(|limb| {
+            let pivots = limb.unknowns.iter().zip(&limb.pivots);
+            pivots.map(|(&unknown, &pivot)| (unknown, pivot))
+        })
+    }
+}
+
+impl Places {
+    fn new(supernodes: &Supernodes, limbs: &[Limb], unknowns: usize) -> Self {
+        let mut of_pivots = vec![Place::default(); unknowns];
+        let mut sizes = Vec::new();
+        for (number, limb) in limbs.iter().enumerate() {
+            let mut rows = 0..;
+            for &s in &limb.supernodes {
+                for (place, row) in of_pivots[supernodes.columns(s)].iter_mut().zip(&mut rows) {
+                    *place = Place { limb: number, row };
+                }
+            }
+            sizes.push(rows.start);
+        }
+        Places { of_pivots, sizes }
+    }
+
+    /// Room for the factors of a limb.
+    fn factor(
+        &self,
+        supernodes: &Supernodes,
+        unknowns: &[usize],
+        (number, limbs): (usize, &[Limb]),
+    ) -> LimbFactor {
+        let (limb, own) = (&limbs[number], self.sizes[number]);
+        let mut factor = LimbFactor {
+            trunk: limb.trunk,
+            length: own + limb.trunk.map_or(0, |trunk| self.sizes[trunk]),
+            ..LimbFactor::default()
+        };
+        let row = |&pivot: &usize| match self.of_pivots[pivot] {
+            Place { limb, row } if limb == number => row,
+            Place { row, .. } => own + row,
+        };
+        for &s in &limb.supernodes {
+            let columns = supernodes.columns(s);
+            let rows: Vec<usize> = supernodes.rows(s).iter().map(row).collect();
+            factor.push(columns.len(), &rows);
+            factor.unknowns.extend_from_slice(&unknowns[columns]);
+        }
+        factor.pivots = vec![0.0; factor.unknowns.len()];
+        factor
+    }
+}
+
+impl LimbFactor {
+    /// Room for a supernode with its number of columns and the rows below.
+    fn push(&mut self, size: usize, rows: &[usize]) {
+        let (twos, rest) = rows.as_chunks::<2>();
+        let is_of_twos = rest.is_empty() && twos.iter().all(|[p, q]| p + 1 == *q);
+        self.spots.push(Spot {
+            start: self.unknowns.len() as u32,
+            size: size as u32,
+            is_of_twos,
+            rows: self.rows.len(),
+            entries: self.entries,
+        });
+        match is_of_twos {
+            true => self.rows.extend(twos.iter().map(|[p, _]| *p as u32)),
+            false => self.rows.extend(rows.iter().map(|&row| row as u32)),
+        }
+        let length = size + rows.len();
+        self.longest = self.longest.max(length);
+        self.entries += Layout::of_processor().supernode(size, length);
+    }
+
+    /// A supernode, by its number in the limb.
+    #[inline(always)]
+    pub fn supernode(&self, k: usize) -> Supernode<'_> {
+        let spot = self.spots[k];
+        let (rows, entries) = match self.spots.get(k + 1) {
+            Some(next) => (next.rows, next.entries),
+            None => (self.rows.len(), self.entries),
+        };
+        Supernode {
+            start: spot.start as usize,
+            size: spot.size as usize,
+            rows: &self.rows[spot.rows..rows],
+            is_of_twos: spot.is_of_twos,
+            entries: [self.first + spot.entries, self.first + entries],
+        }
+    }
+
+    /// Number of supernodes.
+    pub fn supernodes(&self) -> usize {
+        self.spots.len()
+    }
+
+    /// The supernode that has a row among its columns.
+    pub fn supernode_of(&self, row: usize) -> usize {
+        self.spots
+            .partition_point(|spot| spot.start as usize <= row)
+            - 1
+    }
+
+    /// Takes the entries of `b`, over the unknowns, to its own rows.
+    pub fn take(&self, b: &[f64], rows: &mut [f64]) {
+        for (row, &unknown) in rows.iter_mut().zip(&self.unknowns) {
+            *row = b[unknown];
+        }
+    }
+
+    /// L and D of a supernode, given L of the limb.
+    #[inline(always)]
+    pub fn columns_mut<'a>(&'a mut self, k: usize, l: &'a mut [f64]) -> [&'a mut [f64]; 2] {
+        let (spot, next) = (self.spots[k], self.spots.get(k + 1));
+        let start = spot.start as usize;
+        let entries = spot.entries..next.map_or(self.entries, |next| next.entries);
+        let columns = start..start + spot.size as usize;
+        [&mut l[entries], &mut self.pivots[columns]]
+    }
+}
+
+/// Entries in a line of the cache.
+pub const LINE: usize = 64 / size_of::<f64>();
+
+/// Entries that begin a line of the cache; zero at first.
+#[derive(Debug, Default)]
+pub struct Entries {
+    memory: Option<MmapMut>,
+    /// Those for which the system gives no memory of whole pages; their length says so.
+    plain: Vec<f64>,
+}
+
+impl Entries {
+    /// So many zeros.
+    pub fn zeros(count: usize) -> Self {
+        match MmapMut::map_anon(count * size_of::<f64>()) {
+            Ok(memory) if count > 0 => Entries {
+                memory: Some(in_large_pages(memory)),
+                plain: Vec::new(),
+            },
+            _ => Entries {
+                memory: None,
+                plain: vec![0.0; count],
+            },
+        }
+    }
+}
+
+/// Part of the entries asked for by which there is more room, so that a few more do not take other memory: the
+/// system gives memory for what is written only.
+const SPARE: usize = 8;
+
+impl Entries {
+    /// Room for so many entries at least, in the memory at hand where it is enough; of any value.
+    pub fn make_room(&mut self, count: usize) {
+        if self.len() < count {
+            *self = Entries::default();
+            *self = Entries::zeros(count + count / SPARE);
+        }
+    }
+}
+
+/// Asks for large pages: without them all is as it was.
+#[cfg(target_os = "linux")]
+fn in_large_pages(memory: MmapMut) -> MmapMut {
+    let _ = memory.advise(memmap2::Advice::HugePage);
+    memory
+}
+
+#[cfg(not(target_os = "linux"))]
+fn in_large_pages(memory: MmapMut) -> MmapMut {
+    memory
+}
+
+impl Deref for Entries {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        match &self.memory {
+            Some(memory) => cast_slice(memory),
+            None => &self.plain,
+        }
+    }
+}
+
+impl DerefMut for Entries {
+    fn deref_mut(&mut self) -> &mut [f64] {
+        match &mut self.memory {
+            Some(memory) => cast_slice_mut(memory),
+            None => &mut self.plain,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_number_of_entries_is_zero_and_can_be_written() {
+        for count in [0, 1, 7, 1000, 600_000] {
+            let mut entries = Entries::zeros(count);
+            assert!(entries.len() == count && entries.iter().all(|&entry| entry == 0.0));
+            entries
+                .iter_mut()
+                .zip(1..)
+                .for_each(|(entry, k)| *entry = f64::from(k));
+            assert_eq!(
+                entries.iter().sum::<f64>(),
+                (count * (count + 1) / 2) as f64
+            );
+        }
+    }
+}

@@ -1,0 +1,383 @@
+//! Multifrontal LDL^T factorisation (Duff & Reid 1983), substitutions and parts of the inverse, branch by branch of the
+//! elimination forest. Approximate minimum degree order (Amestoy, Davis & Duff 1996) and symbolic analysis by faer, once
+//! for each pattern. Section 5 of docs/theory.md, One solve and Branches.
+
+mod elimination;
+mod factor;
+mod front;
+mod partial_inverse;
+mod substitution;
+mod supernodes;
+
+use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use faer::Side;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::perm::PermRef;
+use faer::sparse::SymbolicSparseColMatRef;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
+};
+use faer::sparse::linalg::{SupernodalThreshold, SymbolicSupernodalParams, amd};
+use rayon::prelude::*;
+use sprs::CsMatView;
+
+use super::solver::{LinearError, LinearSolver, check_pivots};
+pub use elimination::Elimination;
+pub use factor::Factor;
+pub use partial_inverse::{InverseSpace, inverse_at};
+pub use substitution::Substitution;
+pub use supernodes::Supernodes;
+
+/// What matrices of one pattern have in common.
+#[derive(Default)]
+struct Analysis {
+    pattern: Pattern,
+    /// Room for their factors.
+    factor: Factor,
+    elimination: Elimination,
+}
+
+impl Analysis {
+    /// The same, as yet without factors.
+    fn again(&self) -> Self {
+        Analysis {
+            pattern: self.pattern.clone(),
+            factor: self.factor.without_values(),
+            elimination: self.elimination.again(),
+        }
+    }
+}
+
+/// Place where the first of two solvers that analyses a pattern leaves the analysis for the other.
+type Handover = Arc<Mutex<Option<Analysis>>>;
+
+/// Multifrontal LDL^T with an approximate minimum degree order and the supernodes of faer's analysis.
+#[derive(Default)]
+pub struct FaerLdl {
+    analysis: Analysis,
+    /// Until it has been used.
+    handover: Option<Handover>,
+    substitution: Substitution,
+    /// Unknowns of the paths of the substitution.
+    watched: Vec<usize>,
+    inverse_space: InverseSpace,
+}
+
+fn library(error: impl std::fmt::Debug) -> LinearError {
+    LinearError::Library(format!("{error:?}"))
+}
+
+/// Two supernodes one above the other with at most so many groups of unknowns are merged where less than this part of
+/// their entries is zero: as faer does it, with a group, which is mostly a node, for two unknowns.
+const MERGED: [(usize, f64); 4] = [(2, 1.0), (8, 0.8), (24, 0.1), (usize::MAX, 0.05)];
+
+/// Supernodes of the factors of a matrix, and the unknown of every pivot. Unknowns with the same entries, as those of a
+/// node, are analysed as one.
+///
+/// Supernodal at every size: the automatic choice prefers the slower simplicial form below some
+/// ten thousand unknowns, and the library's own threshold for all still leaves it diagonal matrices,
+/// whose factorisation takes no operations.
+fn analyse(pattern: &Pattern) -> Result<(Supernodes, Vec<usize>), LinearError> {
+    if pattern.size() == 0 {
+        return Ok((Supernodes::default(), Vec::new()));
+    }
+    let parameters = CholeskySymbolicParams {
+        supernodal_flop_ratio_threshold: SupernodalThreshold(-1.0),
+        supernodal_params: SymbolicSupernodalParams {
+            relax: Some(&MERGED),
+        },
+        ..Default::default()
+    };
+    let groups = Groups::of(pattern);
+    let pivots = groups.minimum_degree()?;
+    let mut positions = vec![0; pivots.len()];
+    for (position, &group) in pivots.iter().enumerate() {
+        positions[group] = position;
+    }
+    let order = PermRef::new_checked(&pivots, &positions, pivots.len());
+    let order = SymmetricOrdering::Custom(order);
+    let pattern = groups.pattern.symbolic();
+    let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, order, parameters);
+    let symbolic = symbolic.map_err(library)?;
+    match (symbolic.raw(), symbolic.perm()) {
+        (SymbolicCholeskyRaw::Supernodal(raw), Some(order)) => {
+            let order = order.arrays().0;
+            let supernodes = Supernodes::of_groups(raw, &groups.offsets(order));
+            Ok((supernodes, groups.unknowns(order).collect()))
+        }
+        _ => Err(LinearError::Library("analysis without supernodes".into())),
+    }
+}
+
+/// Entries of the factor L of a matrix with one unknown per node, `neighbours` being the other nodes
+/// that each node is coupled with, in increasing order, and itself; 0 where the analysis fails.
+pub fn factor_entries(neighbours: &[Vec<usize>]) -> usize {
+    let pattern = Pattern::of_graph(neighbours);
+    let entries = |supernodes: Supernodes| {
+        let all = 0..supernodes.count();
+        all.map(|s| supernodes.entries(s)).sum()
+    };
+    analyse(&pattern).map_or(0, |(supernodes, _)| entries(supernodes))
+}
+
+impl Analysis {
+    /// Analyses the pattern of a matrix; the room for its factors has no memory yet.
+    fn new(a: CsMatView<'_, f64>) -> Result<Self, LinearError> {
+        let pattern = Pattern::of(a);
+        let (supernodes, unknowns) = analyse(&pattern)?;
+        let factor = Factor::new(&supernodes, &unknowns);
+        Ok(Analysis {
+            elimination: Elimination::new(&factor, a),
+            factor,
+            pattern,
+        })
+    }
+}
+
+impl FaerLdl {
+    /// Two solvers, one of which takes over the analysis of the other where both begin with the same pattern.
+    pub fn two() -> [Self; 2] {
+        let handover = Handover::default();
+        [(); 2].map(|()| FaerLdl {
+            handover: Some(Arc::clone(&handover)),
+            ..FaerLdl::default()
+        })
+    }
+
+    /// Analyses the pattern of a matrix.
+    fn analyse(&mut self, a: CsMatView<'_, f64>) -> Result<(), LinearError> {
+        // The factors of another pattern go first, but for their memory.
+        let former = std::mem::take(&mut self.analysis);
+        let (memory, fronts) = (
+            former.factor.into_memory(),
+            former.elimination.into_fronts(),
+        );
+        self.analysis = match self.handover.take() {
+            None => Analysis::new(a)?,
+            Some(handover) => {
+                let mut left = handover.lock().unwrap_or_else(PoisonError::into_inner);
+                match left.take().filter(|left| left.pattern.is_of(a)) {
+                    Some(left) => left,
+                    None => {
+                        let analysis = Analysis::new(a)?;
+                        let is_awaited = Arc::strong_count(&handover) > 1;
+                        *left = is_awaited.then(|| analysis.again());
+                        analysis
+                    }
+                }
+            }
+        };
+        self.analysis.factor.make_room(memory);
+        self.analysis.elimination.use_fronts(fronts);
+        Ok(())
+    }
+}
+
+impl LinearSolver for FaerLdl {
+    fn factorize(&mut self, a: CsMatView<'_, f64>) -> Result<(), LinearError> {
+        if !self.analysis.pattern.is_of(a) {
+            self.analyse(a)?;
+        }
+        let Analysis {
+            factor,
+            elimination,
+            ..
+        } = &mut self.analysis;
+        elimination.eliminate(a.data(), factor);
+        self.substitution.adapt(factor);
+        check_pivots(factor.pivots())
+    }
+
+    fn begin(&mut self, b: &[f64]) {
+        self.substitution.begin(&self.analysis.factor, b);
+    }
+
+    fn watch(&mut self, unknowns: &[usize]) {
+        if self.substitution.has_paths() && self.watched == unknowns {
+            return;
+        }
+        self.watched.clear();
+        self.watched.extend_from_slice(unknowns);
+        let places = unknowns
+            .iter()
+            .map(|&unknown| self.analysis.factor.places[unknown]);
+        self.substitution.set_paths(&self.analysis.factor, places);
+    }
+
+    fn watched(&mut self, watched: &mut Vec<f64>) {
+        self.substitution.on_paths(&self.analysis.factor);
+        let places = self.watched.iter().map(|&u| self.analysis.factor.places[u]);
+        watched.clear();
+        watched.extend(places.map(|place| self.substitution.x(place)));
+    }
+
+    fn add(&mut self, b: &[(usize, f64)]) {
+        let places = &self.analysis.factor.places;
+        let entries = b.iter().map(|&(unknown, value)| (places[unknown], value));
+        self.substitution.add(&self.analysis.factor, entries);
+    }
+
+    fn end(&mut self, x: &mut [f64]) {
+        self.substitution.end(&self.analysis.factor, x);
+    }
+
+    fn inverse_at(&mut self, unknowns: &[&[usize]], _n: usize) -> Vec<Vec<f64>> {
+        let (factor, space) = (&self.analysis.factor, &mut self.inverse_space);
+        if unknowns.len() > 1 && factor.is_factorised_on_threads() {
+            let of_list = |list: &&[usize]| inverse_at(factor, list, &mut InverseSpace::default());
+            return unknowns.par_iter().map(of_list).collect();
+        }
+        let lists = unknowns.iter();
+        lists.map(|list| inverse_at(factor, list, space)).collect()
+    }
+}
+
+/// Where a matrix has entries.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(super) struct Pattern {
+    starts: Vec<usize>,
+    rows: Vec<usize>,
+}
+
+impl Pattern {
+    /// The pattern of a matrix by columns.
+    pub fn of(a: CsMatView<'_, f64>) -> Self {
+        Pattern {
+            starts: a.indptr().to_proper().to_vec(),
+            rows: a.indices().to_vec(),
+        }
+    }
+
+    /// Whether it is that of a matrix.
+    pub fn is_of(&self, a: CsMatView<'_, f64>) -> bool {
+        self.starts == a.indptr().raw_storage() && self.rows == a.indices()
+    }
+
+    /// The pattern whose column k has entries in the rows `neighbours[k]`, in increasing order.
+    pub fn of_graph(neighbours: &[Vec<usize>]) -> Self {
+        let mut starts = vec![0];
+        for rows in neighbours {
+            starts.push(starts[starts.len() - 1] + rows.len());
+        }
+        let rows = neighbours.concat();
+        Pattern { starts, rows }
+    }
+
+    /// Number of unknowns.
+    pub fn size(&self) -> usize {
+        self.starts.len().max(1) - 1
+    }
+
+    /// Rows of the entries of a column.
+    fn column(&self, k: usize) -> &[usize] {
+        &self.rows[self.starts[k]..self.starts[k + 1]]
+    }
+
+    /// First unknown of every group of unknowns next to each other with the same entries, and their number.
+    fn starts_of_groups(&self) -> Vec<usize> {
+        let begins = |&k: &usize| k == 0 || self.column(k) != self.column(k - 1);
+        let mut starts: Vec<usize> = (0..self.size()).filter(begins).collect();
+        starts.push(self.size());
+        starts
+    }
+
+    /// The pattern between groups of unknowns, given by the first unknown of each, and their number.
+    fn quotient(&self, groups: &[usize]) -> Pattern {
+        let mut group_of = vec![0; self.size()];
+        for (group, ends) in groups.windows(2).enumerate() {
+            group_of[ends[0]..ends[1]].fill(group);
+        }
+        let mut quotient = Pattern {
+            starts: vec![0],
+            rows: Vec::new(),
+        };
+        for &first in &groups[..groups.len() - 1] {
+            let column = self.column(first).iter().map(|&row| group_of[row]);
+            let mut last = None;
+            quotient
+                .rows
+                .extend(column.filter(|&group| last.replace(group) != Some(group)));
+            quotient.starts.push(quotient.rows.len());
+        }
+        quotient
+    }
+
+    /// The pattern in faer's form.
+    pub fn symbolic(&self) -> SymbolicSparseColMatRef<'_, usize> {
+        let n = self.size();
+        SymbolicSparseColMatRef::new_checked(n, n, self.starts(), None, &self.rows)
+    }
+
+    /// Starts of the columns, and the end of the last one.
+    fn starts(&self) -> &[usize] {
+        match self.starts.is_empty() {
+            true => &[0],
+            false => &self.starts,
+        }
+    }
+}
+
+/// Groups of unknowns next to each other with the same entries, as those of a node, which are ordered as one.
+pub(super) struct Groups {
+    /// First unknown of every group, and the number of unknowns.
+    starts: Vec<usize>,
+    /// The pattern between them.
+    pub pattern: Pattern,
+}
+
+impl Groups {
+    /// The groups of a pattern.
+    pub fn of(pattern: &Pattern) -> Self {
+        let starts = pattern.starts_of_groups();
+        Groups {
+            pattern: pattern.quotient(&starts),
+            starts,
+        }
+    }
+
+    /// Approximate minimum degree order: entry k is the group of pivot k.
+    pub fn minimum_degree(&self) -> Result<Vec<usize>, LinearError> {
+        let count = self.starts.len() - 1;
+        let (mut order, mut inverse) = (vec![0; count], vec![0; count]);
+        let scratch = amd::order_scratch::<usize>(count, self.pattern.rows.len());
+        amd::order(
+            &mut order,
+            &mut inverse,
+            self.pattern.symbolic(),
+            amd::Control::default(),
+            MemStack::new(&mut MemBuffer::new(scratch)),
+        )
+        .map_err(|error| LinearError::Library(format!("{error:?}")))?;
+        Ok(order)
+    }
+
+    fn unknowns_of(&self, group: usize) -> Range<usize> {
+        self.starts[group]..self.starts[group + 1]
+    }
+
+    /// The unknowns of groups in an order.
+    pub fn unknowns(&self, order: &[usize]) -> impl Iterator<Item = usize> {
+        order.iter().flat_map(|&group| self.unknowns_of(group))
+    }
+
+    /// Place of the first unknown of every group in an order, and the number of unknowns.
+    pub fn offsets(&self, order: &[usize]) -> Vec<usize> {
+        let mut offsets = vec![0];
+        let mut end = 0;
+        offsets.extend(order.iter().map(|&group| {
+            end += self.unknowns_of(group).len();
+            end
+        }));
+        offsets
+    }
+}
+
+/// Approximate minimum degree order of a symmetric pattern: entry k is the unknown of pivot k. The unknowns of a group
+/// stay next to each other.
+pub(super) fn minimum_degree(pattern: &Pattern) -> Result<Vec<usize>, LinearError> {
+    let groups = Groups::of(pattern);
+    let order = groups.minimum_degree()?;
+    Ok(groups.unknowns(&order).collect())
+}

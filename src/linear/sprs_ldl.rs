@@ -1,0 +1,82 @@
+//! Binding of the sprs-ldl library, a simplicial factorisation that shares nothing with the multifrontal one; parts of
+//! the inverse come from unit right-hand sides.
+
+use sprs::{CsMatView, PermOwned, SymmetryCheck};
+use sprs_ldl::{LdlNumeric, LdlSymbolic};
+
+use super::multifrontal::{Pattern, minimum_degree};
+use super::solver::{LinearError, LinearSolver, check_pivots};
+
+/// Up-looking LDL^T of sprs-ldl with an approximate minimum degree order: the reference
+/// implementation beside the multifrontal one.
+#[derive(Default)]
+pub struct SprsLdl {
+    order: Vec<usize>,
+    /// Pattern of the order and the factor.
+    pattern: Pattern,
+    /// The library needs at least two unknowns; the pivot of a single one.
+    single: Option<f64>,
+    factor: Option<LdlNumeric<f64, usize>>,
+    /// Right-hand side of a solve.
+    b: Vec<f64>,
+    watched: Vec<usize>,
+}
+
+impl LinearSolver for SprsLdl {
+    fn factorize(&mut self, a: CsMatView<'_, f64>) -> Result<(), LinearError> {
+        if a.cols() < 2 {
+            self.single = a.data().first().copied();
+            return check_pivots(self.single.into_iter().map(|pivot| (0, pivot)));
+        }
+        let library = |error| LinearError::Library(format!("{error}"));
+        let pattern = Pattern::of(a);
+        match &mut self.factor {
+            Some(factor) if self.pattern == pattern => factor.update(a).map_err(library)?,
+            _ => {
+                self.order = minimum_degree(&pattern)?;
+                let permutation = PermOwned::new(self.order.clone());
+                let check = SymmetryCheck::DontCheckSymmetry;
+                let symbolic = LdlSymbolic::new_perm(a, permutation, check);
+                self.factor = Some(symbolic.factor(a).map_err(library)?);
+                self.pattern = pattern;
+            }
+        }
+        let Some(factor) = &self.factor else {
+            return Ok(());
+        };
+        check_pivots(self.order.iter().copied().zip(factor.d().iter().copied()))
+    }
+
+    fn begin(&mut self, b: &[f64]) {
+        self.b = b.to_vec();
+    }
+
+    fn watch(&mut self, unknowns: &[usize]) {
+        self.watched = unknowns.to_vec();
+    }
+
+    fn watched(&mut self, values: &mut Vec<f64>) {
+        let x = self.solution();
+        values.clear();
+        values.extend(self.watched.iter().map(|&unknown| x[unknown]));
+    }
+
+    fn add(&mut self, b: &[(usize, f64)]) {
+        b.iter()
+            .for_each(|&(unknown, value)| self.b[unknown] += value);
+    }
+
+    fn end(&mut self, x: &mut [f64]) {
+        x.copy_from_slice(&self.solution());
+    }
+}
+
+impl SprsLdl {
+    fn solution(&self) -> Vec<f64> {
+        match (&self.factor, self.single) {
+            (Some(factor), _) => factor.solve(&self.b),
+            (None, Some(pivot)) => self.b.iter().map(|value| value / pivot).collect(),
+            (None, None) => Vec::new(),
+        }
+    }
+}
