@@ -315,3 +315,150 @@ fn impulses(
         ..ContactForces::default()
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::steady::tests::turned;
+    use super::*;
+    use crate::contact::ClosedPair;
+    use crate::dynamics::step::{ClosedConstraints, Discretization, Equilibrium};
+    use crate::elements::Motion;
+    use crate::model::{Frames, Increments, Procedure, Scheme, Settings, Step};
+    use crate::prepare::{PreparedModel, redistribution_tests::block};
+
+    const DT: f64 = 0.1;
+    /// Dofs of a block of one element.
+    const DOFS: usize = 8;
+
+    /// Calls `test` with a step of a free block of one element, of which K* and M are factorised.
+    fn with_block(settings: Settings, test: impl FnOnce(&StepProblem, &mut Workspace)) {
+        let prepared = PreparedModel::new(block([1, 1], |_, _| false, |_, _| true));
+        let discretization = Discretization::new(&prepared);
+        let step = Step {
+            name: None,
+            procedure: Procedure::Dynamic,
+            increments: Increments {
+                dt: DT,
+                period: 1.0,
+                dt_min: 0.0,
+                direct: true,
+            },
+            settings,
+            supports: vec![],
+            point_loads: vec![],
+            body_forces: vec![],
+            pressures: vec![],
+            tractions: vec![],
+            frames: Frames::Default,
+        };
+        let still = [0.0; DOFS];
+        let problem = StepProblem::new(&discretization, &step, [&still, &still]);
+        let mut workspace = Workspace::new(&problem);
+        let contact = ClosedConstraints {
+            acting: vec![],
+            at: problem.configurations(&still, &still),
+        };
+        let motion = Motion::at(&still, &[]);
+        (workspace.factorize(&problem, DT, motion, &contact)).expect("positive definite");
+        test(&problem, &mut workspace);
+    }
+
+    fn pairs<const N: usize>(slaves: [usize; N]) -> ClosedPairs {
+        slaves
+            .map(|slave| ClosedPair::touching(slave, 0))
+            .into_iter()
+            .collect()
+    }
+
+    #[test]
+    fn the_set_is_at_rest_once_a_pass_does_not_change_it() {
+        with_block(Settings::default(), |problem, _| {
+            let (one, two) = (pairs([0]), pairs([0, 1]));
+            let mut impulses = Impulses::new(&one, ConstraintSet::All);
+            assert!(impulses.rest(problem, &one));
+            assert!(!impulses.rest(problem, &two) && impulses.rest(problem, &two));
+            // pairs that touch at the start strike in any case, nodes without mass in none
+            let mut touching = Impulses::new(&one, ConstraintSet::All);
+            touching.touching = pairs([1]);
+            assert!(touching.rest(problem, &two));
+            let mut massless = Impulses::new(&one, ConstraintSet::All);
+            massless.massless = vec![two.iter().last().expect("two").key];
+            assert!(massless.rest(problem, &two));
+        });
+    }
+
+    #[test]
+    fn after_some_changes_the_set_is_kept() {
+        with_block(Settings::default(), |problem, _| {
+            let sets = [pairs([0]), pairs([0, 1])];
+            let mut impulses = Impulses::new(&sets[0], ConstraintSet::All);
+            let changes = (1..=9).filter(|k| !impulses.rest(problem, &sets[k % 2]));
+            assert_eq!(changes.collect::<Vec<_>>(), [1, 2, 3, 4, 5]);
+            assert_eq!(impulses.closed, sets[1]);
+        });
+    }
+
+    #[test]
+    fn the_pairs_of_the_last_increment_have_impulses() {
+        with_block(Settings::default(), |_, _| {
+            let impulses = Impulses::new(&pairs([0]), ConstraintSet::All);
+            assert!(impulses.strikes(&turned(0.0)));
+            let impulses = Impulses::new(&pairs([1]), ConstraintSet::All);
+            assert!(!impulses.strikes(&turned(0.0)));
+        });
+    }
+
+    /// A node slides and falls on to ground that turns from pass to pass: impulses that are near those of its rows
+    /// will do while the passes go on, but not where they end.
+    #[test]
+    fn an_increment_ends_with_the_impulses_of_its_own_rows() {
+        let settings = Settings {
+            scheme: Scheme::Ss22 {
+                theta1: 1.0,
+                theta2: 1.0,
+            },
+            ..Settings::default()
+        };
+        with_block(settings, |problem, workspace| {
+            let mut start = State {
+                u: vec![0.0; DOFS],
+                v: vec![0.0; DOFS],
+                ..State::default()
+            };
+            (start.v[0], start.v[1]) = (1.0, -2.0);
+            let forces = Equilibrium {
+                load: vec![0.0; DOFS],
+                internal: vec![1e3; DOFS],
+                inertia: vec![0.0; DOFS],
+                ..Equilibrium::default()
+            };
+            let closed = pairs([0]);
+            let mut impulses = Impulses::new(&closed, ConstraintSet::All);
+            let mut pass = |impulses: &mut Impulses, angle, correction| {
+                let before = Before::new(&forces, correction, DT);
+                let rows = [turned(angle)];
+                (impulses.start_velocity(problem, workspace, &rows, &start, &before))
+                    .expect("solved");
+                let rests = impulses.rest(problem, &closed);
+                assert_eq!(rests, impulses.are_at_rest());
+                (
+                    rests,
+                    impulses
+                        .acting
+                        .closed
+                        .iter()
+                        .map(|pair| pair.force)
+                        .collect::<Vec<_>>(),
+                )
+            };
+            let (rests, first) = pass(&mut impulses, 0.0, 1e-2);
+            assert!(rests && first.len() == 1 && first[0][0] > 0.0);
+            let (rests, kept) = pass(&mut impulses, 1e-6, 1e-2);
+            assert!(!rests && kept == first, "near, not exact");
+            let (rests, solved) = pass(&mut impulses, 1e-6, 1e-6);
+            assert!(rests && solved != first, "exact");
+            let (rests, kept) = pass(&mut impulses, 1e-6 + 1e-14, 1e-6);
+            assert!(rests && kept == solved, "the difference is round-off");
+        });
+    }
+}

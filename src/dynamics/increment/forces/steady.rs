@@ -131,13 +131,13 @@ fn change(
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::contact::{ConstraintKey, ContactTarget, PairTarget};
     use crate::model::Friction;
 
     /// A node at dofs 0 and 1 over ground that turns by an angle: n = (-sin, cos), t = (cos, sin).
-    fn turned(angle: f64) -> Constraint {
+    pub fn turned(angle: f64) -> Constraint {
         let (sin, cos) = angle.sin_cos();
         Constraint {
             key: ConstraintKey {
