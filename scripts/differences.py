@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 TOTALS = ("increments", "cutbacks", "events", "exit_status")
 """Attributes of /run that the computation decides."""
 
-REWORDED = ("description",)
-"""Attributes for readers."""
+REWORDED = ("description", "rows")
+"""Attributes for readers: what a dataset is, and how many rows it has."""
 
 REMAINDERS = ("balance", "residual", "cone_violation", "impulse_cone_violation")
 """Datasets of terms that cancel: round-off, without a scale of their own."""

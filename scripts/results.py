@@ -1,10 +1,10 @@
 """Reads result files `JOB.vtkhdf` (see docs/output.md) with h5py alone.
 
-The file of a running job is read up to the rows and frames that all its datasets have. What cannot
-be read is told as a `Fault`.
+The file of a running or killed job is read up to the rows and frames that are complete. What cannot be
+read is told as a `Fault`.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sized
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -201,11 +201,16 @@ class Results:
 
     @cached_property
     def rows(self) -> int:
-        """Rows that all histories have."""
-        rows = min((len(data) for data in self.histories.values()), default=0)
+        """Complete rows of all histories."""
+        rows = self._complete("history", self.histories.values())
         if rows == 0:
             raise Fault(f"{self.path} has no history yet")
         return rows
+
+    def _complete(self, group: str, datasets: Iterable[Sized]) -> int:
+        """Complete rows of the datasets of a group; files of older programs do not say it."""
+        rows = min(map(len, datasets), default=0)
+        return min(rows, int(self.file[group].attrs.get("rows", rows)))
 
     def history(self, name: str) -> Array:
         """A history by its path below /history."""
@@ -261,7 +266,7 @@ class Results:
         """Landings: time, increment, slave, segment, xi, approach_speed."""
         names = self.file["history/impacts"]
         found = {name: self.read(f"history/impacts/{name}") for name in names}
-        rows = min(map(len, found.values()), default=0)
+        rows = self._complete("history/impacts", found.values())
         return {name: data[:rows] for name, data in found.items()}
 
     def nodes(self, name: str) -> NodeHistory:
@@ -276,7 +281,8 @@ class Results:
     def frame_times(self) -> Array:
         """Times of the frames [F]."""
         with self._reading("frames"):
-            frames = len(self.file["VTKHDF/Steps/Values"])
+            steps = self.file["VTKHDF/Steps"]
+            frames = min(int(steps.attrs["NSteps"]), len(steps["Values"]))
             for kind, count in self._sizes.items():
                 for name, data in self.file[f"VTKHDF/{kind}"].items():
                     ends = self._offsets(kind, name) + count

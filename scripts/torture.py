@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Kills runs, lets them race, sends them signals and fills their disk.
+"""Kills runs, at any time and before each of many writes, lets them race, sends them signals and fills their disk.
 
 After each trial the files have to be what docs/output.md promises: a result file is there with at
-least one frame or not at all, what it holds is the beginning of an undisturbed run's results bit by
+least one frame or not at all, what it counts is the beginning of an undisturbed run's results bit by
 bit, an earlier result is there until a new one takes its place, and exit codes tell what happened.
 """
 
@@ -28,6 +28,55 @@ JOB = "job"
 FULL = ("no space left on device", "larger than files may become here")
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 DISK_FULL = 4
+KILLER = r"""
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static long writes;
+
+static void count(int file)
+{
+    char link[64], path[4096];
+    snprintf(link, sizeof link, "/proc/self/fd/%d", file);
+    ssize_t length = readlink(link, path, sizeof path - 1);
+    if (length < 0)
+        return;
+    path[length] = 0;
+    const char *last = getenv("KILL_BEFORE_WRITE");
+    if (strstr(path, ".vtkhdf") && last && ++writes == atol(last))
+        raise(SIGKILL);
+}
+
+__attribute__((destructor)) static void tell(void)
+{
+    const char *path = getenv("WRITES");
+    FILE *file = path ? fopen(path, "w") : NULL;
+    if (file)
+        fprintf(file, "%ld", writes), fclose(file);
+}
+
+#define COUNTED(name, arguments, values) \
+    int name arguments \
+    { \
+        count(file); \
+        return ((int(*) arguments)dlsym(RTLD_NEXT, #name)) values; \
+    }
+#define COUNTED_WRITE(name, place) \
+    ssize_t name(int file, const void *bytes, size_t size, place at) \
+    { \
+        count(file); \
+        return ((ssize_t(*)(int, const void *, size_t, place))dlsym(RTLD_NEXT, #name))(file, bytes, size, at); \
+    }
+COUNTED_WRITE(pwrite, off_t)
+COUNTED_WRITE(pwrite64, off64_t)
+COUNTED(ftruncate, (int file, off_t size), (file, size))
+COUNTED(ftruncate64, (int file, off64_t size), (file, size))
+"""
 
 
 @dataclass
@@ -85,8 +134,10 @@ class Bench:
         self.seconds = time.monotonic() - start
         self.size = (self.reference / f"{JOB}.vtkhdf").stat().st_size
 
-    def start(self, output: Path, *options: str, limit: int | None = None) -> subprocess.Popen[str]:
-        """Starts a run; `limit` is the largest size of a file in bytes."""
+    def start(
+        self, output: Path, *options: str, limit: int | None = None, **more: str
+    ) -> subprocess.Popen[str]:
+        """Starts a run; `limit` is the largest size of a file in bytes, `more` belongs to its environment."""
         command = [str(binary()), "run", str(self.deck), "-o", str(output), "-q", *options]
         if limit is not None:
             # The shell counts in blocks of 1024 bytes.
@@ -97,6 +148,7 @@ class Bench:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             text=True,
+            env={**os.environ, **more},
         )
 
     def end(self, run: subprocess.Popen[str]) -> tuple[int, str]:
@@ -151,20 +203,16 @@ def same(a: np.ndarray, b: np.ndarray) -> bool:
     return a.shape == b.shape and np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
 
 
-def written(rows: np.ndarray) -> np.ndarray:
-    """Rows without the zeros at their end: those that were being written at a kill may be zeros."""
-    there = np.flatnonzero(rows.reshape(len(rows), -1).any(axis=1)) if len(rows) else []
-    return rows[: there[-1] + 1] if len(there) else rows[:0]
-
-
 def history_difference(history: h5py.Group, reference: h5py.Group) -> str | None:
-    """Where a history is not the beginning of another."""
+    """Where the rows that a history counts are not the beginning of another."""
     fault: list[str] = []
 
     def compare(name: str, values: h5py.Group | h5py.Dataset) -> None:
         if isinstance(values, h5py.Dataset):
-            rows = written(values[:])
-            if not same(rows, reference[name][: len(rows)]):
+            grows = values.maxshape[0] is None
+            counting = values.parent if "rows" in values.parent.attrs else history
+            rows = int(counting.attrs["rows"]) if grows else len(reference[name])
+            if not same(values[:rows], reference[name][:rows]):
                 fault.append(f"history/{name} differs")
 
     history.visititems(compare)
@@ -210,6 +258,26 @@ def kills(bench: Bench, counts: Counts, number: int) -> None:
         counts.check(not list(output.glob("*.part")), "the next run leaves a draft behind")
         fault = bench.fault(output, None)
         counts.check(fault is None, f"the next run: {fault}")
+
+
+def writes(bench: Bench, counts: Counts, number: int) -> None:
+    """Runs that are killed before one of their writes to the result, from the middle of the run on."""
+    source, killer, told = (bench.folder / name for name in ("killer.c", "killer.so", "writes"))
+    source.write_text(KILLER)
+    subprocess.run(["cc", "-shared", "-fPIC", "-o", killer, source, "-ldl"], check=True)
+    run = bench.start(
+        bench.folder / "counted", LD_PRELOAD=str(killer), KILL_BEFORE_WRITE="0", WRITES=str(told)
+    )
+    bench.end(run)
+    last = int(told.read_text())
+    for trial, write in enumerate(np.linspace(last / 2, last, number).astype(int)):
+        output = bench.folder / f"write{trial}"
+        counts.trials += 1
+        run = bench.start(output, LD_PRELOAD=str(killer), KILL_BEFORE_WRITE=str(write))
+        code, _ = bench.end(run)
+        fault = bench.fault(output, None)
+        counts.check(fault is None, f"before write {write}: {fault}")
+        counts.saw("killed" if code == -signal.SIGKILL else "finished")
 
 
 def races(bench: Bench, counts: Counts, number: int) -> None:
@@ -347,6 +415,7 @@ def main() -> int:
     args = parser.parse_args()
     kinds: list[tuple[str, Callable[[Bench, Counts, int], None], int]] = [
         ("kills", kills, 4 if args.short else 25),
+        ("writes", writes, 30 if args.short else 150),
         ("races", races, 4 if args.short else 24),
         ("signals", signals, 4 if args.short else 20),
         ("disks", disks, 6 if args.short else 40),

@@ -116,12 +116,13 @@ impl ResultFile {
         self.room_for_more()
     }
 
-    /// Writes what waits in memory: the number of frames, by which readers go, after everything else.
+    /// Writes what waits in memory: the numbers of frames and rows, by which readers go, after everything
+    /// else.
     pub fn write(&mut self) -> io::Result<()> {
         let written = (self.fields.flush()).and_then(|()| self.history.flush());
         self.checked(written)?;
         self.flush()?;
-        let counted = self.fields.note_count();
+        let counted = (self.fields.note_count()).and_then(|()| self.history.note_counts());
         self.checked(counted)?;
         self.flush()
     }

@@ -151,6 +151,7 @@ def test_histories_have_one_row_per_increment(example: tuple) -> None:
     rows = increments + 1
     with h5py.File(path) as file:
         history = file["history"]
+        assert history.attrs["rows"] == rows
         for name in ("time", "dt", "step", "momentum/angular"):
             assert history[name].shape == (rows,), name
         assert history["momentum/linear"].shape == (rows, 2)
@@ -161,6 +162,8 @@ def test_histories_have_one_row_per_increment(example: tuple) -> None:
         for name in SOLVER:
             assert history["solver"][name].shape == (rows,), name
         landings = history["impacts/time"].shape[0]
+        assert history["impacts"].attrs["rows"] == landings
+        assert history["touches"].attrs["rows"] == len(history["touches/start"])
         for name, shape in IMPACTS.items():
             assert history["impacts"][name].shape == (landings, *shape), name
         assert set(history["nodes"]) == set(sets)

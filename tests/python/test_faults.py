@@ -12,6 +12,7 @@ import numpy as np
 import penetration
 import plot_history
 import plot_motion
+import program
 import pytest
 from command import FAULT, Fault
 from conftest import ROOT, Job
@@ -45,6 +46,14 @@ def result(job: Job, tmp_path: Path) -> Path:
     """A result that may be changed."""
     made = job(shortened(CANTILEVERS / "A_mu04.inp", 40), "--frames", "4")
     return Path(shutil.copy(made, tmp_path / "JOB.vtkhdf"))
+
+
+def info(path: Path) -> list[str]:
+    """What the program tells of a result."""
+    words = [program.binary(), "info", path]
+    done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.splitlines()
 
 
 def missing(path: Path) -> str:
@@ -146,6 +155,24 @@ def test_rows_and_frames_that_are_not_complete_are_left_out(result: Path) -> Non
     with Results(result) as results:
         assert (len(results.time), len(results.frame_times)) == (41, 5)
         assert len(results.energy["kinetic"]) == len(results.dt) == 41
+
+
+def test_rows_beyond_those_that_the_file_counts_are_left_out(result: Path) -> None:
+    """A kill in the middle of a write leaves rows behind the last ones that are counted."""
+
+    def grow(_: str, item: h5py.Group | h5py.Dataset) -> None:
+        if isinstance(item, h5py.Dataset) and item.maxshape[:1] == (None,):
+            item.resize(2 * len(item) + 7, axis=0)
+
+    with Results(result) as results:
+        landings = len(results.impacts["time"])
+    told = info(result)
+    with h5py.File(result, "r+") as file:
+        file.visititems(grow)
+    with Results(result) as results:
+        assert (len(results.time), len(results.frame_times)) == (41, 5)
+        assert len(results.impacts["time"]) == landings
+    assert info(result)[1:] == told[1:]
 
 
 @pytest.mark.parametrize(

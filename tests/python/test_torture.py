@@ -16,7 +16,7 @@ def test_torture() -> None:
     )
     assert done.returncode == 0, done.stdout + done.stderr
     counts = [line.split()[:2] for line in done.stdout.splitlines() if " trials " in line]
-    kinds = ["kills", "races", "signals", "disks", "screens"]
+    kinds = ["kills", "writes", "races", "signals", "disks", "screens"]
     assert [kind for kind, _ in counts] == kinds
     assert all(int(number) >= 4 for _, number in counts)
     assert "torture: 0 wrong" in done.stdout

@@ -276,6 +276,16 @@ fn every_dataset_has_its_shape_and_its_attributes() {
     actual.sort();
     expected.sort();
     assert_eq!(actual, expected);
+    let history = [
+        ("history", "time"),
+        ("history/impacts", "time"),
+        ("history/touches", "start"),
+    ];
+    for (group, counted) in history {
+        let group = file.group(group).expect("group");
+        let rows: i64 = (group.attr("rows").expect("rows").read_scalar()).expect("number");
+        assert_eq!(rows as usize, group.dataset(counted).expect(counted).size());
+    }
     for (path, dataset) in &found {
         for name in ["description", "dimension"] {
             let value: VarLenUnicode = dataset.attr(name).expect(path).read_scalar().expect(path);

@@ -1,7 +1,10 @@
 //! Building blocks of the result file: HDF5 groups, attributes and constant datasets.
 
 use hdf5::types::VarLenUnicode;
-use hdf5::{Dataset, Group, H5Type, Location};
+use hdf5::{Attribute, Dataset, Group, H5Type, Location};
+
+/// The attribute of `/history`, and of its groups of events, that counts their complete rows.
+pub(crate) const ROWS: &str = "rows";
 
 /// What a dataset holds: its attributes `description` and `dimension`.
 #[derive(Debug, Clone, Copy)]
@@ -44,6 +47,13 @@ pub(crate) fn set_attribute<T: H5Type>(at: &Location, name: &str, value: T) -> h
         return attribute.write_scalar(&value);
     }
     at.new_attr::<T>().create(name)?.write_scalar(&value)
+}
+
+/// Creates the attribute `name`, a number by which readers go: it is written after all that it counts.
+pub(crate) fn counter(at: &Location, name: &str) -> hdf5::Result<Attribute> {
+    let count = at.new_attr::<i64>().create(name)?;
+    count.write_scalar(&0_i64)?;
+    Ok(count)
 }
 
 /// Writes a dataset that never changes; the shape's product is the length of `data`.

@@ -17,7 +17,7 @@ pub(crate) use body_times::{BodyTimes, body_times};
 pub use claim::Claim;
 pub(crate) use clock::utc_now;
 pub(crate) use column::{Column, Columns, Growing};
-pub(crate) use dataset::{Meaning, constant, group, meaning};
+pub(crate) use dataset::{Meaning, ROWS, constant, counter, group, meaning};
 pub(crate) use grid::{ENERGY_DENSITY, Fields, LOGARITHMIC_STRAIN};
 pub use names::{check_names, contact_names};
 pub(crate) use record::{Record, phases};

@@ -1,11 +1,12 @@
 //! Groups `/history/contact`, `/history/impacts`, `/history/returns` and `/history/touches`.
 
-use hdf5::Group;
+use hdf5::{Attribute, Group};
 
 use crate::dynamics::{ContactImpulse, ContactResultant, Landing, ReturnedImpulse, Touch};
 use crate::model::{Bodies, Contact, Model};
 use crate::output::file::{
-    Column, Columns, Growing, Meaning, Scalar, Series, contact_names, group, meaning, scalar,
+    Column, Columns, Growing, Meaning, ROWS, Scalar, Series, contact_names, counter, group,
+    meaning, scalar,
 };
 
 const RESULTANTS: [Scalar<ContactResultant, f64>; 11] = [
@@ -289,6 +290,7 @@ const LANDINGS: [Scalar<Landing, f64>; 3] = [
 
 /// `/history/impacts`: one row per landing.
 pub(crate) struct Impacts {
+    count: Attribute,
     landings: Series<Landing, f64>,
     increment: Column<i64>,
     slave: Column<i64>,
@@ -301,6 +303,7 @@ impl Impacts {
         let column =
             |name, row: &[usize], text| Column::<i64>::events(at, name, row, meaning(text, "1"));
         Ok(Impacts {
+            count: counter(at, ROWS)?,
             landings: Series::of_events(at, &LANDINGS)?,
             increment: column("increment", &[], "increment of the landing")?,
             slave: column("slave", &[], "node number of the slave node")?,
@@ -315,6 +318,11 @@ impl Impacts {
         self.increment.push([increment as i64]);
         self.slave.push([label(landing.slave)]);
         self.segment.push(landing.segment.map(label));
+    }
+
+    /// Writes the number of rows.
+    pub fn note_count(&self) -> hdf5::Result<()> {
+        self.count.write_scalar(&(self.increment.rows() as i64))
     }
 
     /// Its datasets.
@@ -358,6 +366,7 @@ const RETURNS: [Scalar<ReturnedImpulse, f64>; 5] = [
 
 /// `/history/returns`: one row per pair and increment in which it is given energy back.
 pub(crate) struct Returns {
+    count: Attribute,
     impulses: Series<ReturnedImpulse, f64>,
     increment: Column<i64>,
     slave: Column<i64>,
@@ -370,6 +379,7 @@ impl Returns {
         let column =
             |name, row: &[usize], text| Column::<i64>::events(at, name, row, meaning(text, "1"));
         Ok(Returns {
+            count: counter(at, ROWS)?,
             impulses: Series::of_events(at, &RETURNS)?,
             increment: column("increment", &[], "increment")?,
             slave: column("slave", &[], "node number of the slave node")?,
@@ -384,6 +394,11 @@ impl Returns {
         self.increment.push([increment as i64]);
         self.slave.push([label(returned.slave)]);
         self.segment.push(returned.segment.map(label));
+    }
+
+    /// Writes the number of rows.
+    pub fn note_count(&self) -> hdf5::Result<()> {
+        self.count.write_scalar(&(self.increment.rows() as i64))
     }
 
     /// Its datasets.
@@ -440,6 +455,7 @@ const COUNTS_OF_TOUCHES: [Scalar<Touch, i64>; 4] = [
 
 /// `/history/touches`: one row per contact of two bodies that has ended.
 pub(crate) struct Touches {
+    count: Attribute,
     times: Series<Touch, f64>,
     counts: Series<Touch, i64>,
     bodies: Column<i64>,
@@ -452,6 +468,7 @@ impl Touches {
         let bodies = meaning("its bodies; -1 for a rigid surface", "1");
         let node = meaning("number of a slave node that landed first", "1");
         Ok(Touches {
+            count: counter(at, ROWS)?,
             times: Series::of_events(at, &TIMES_OF_TOUCHES)?,
             counts: Series::of_events(at, &COUNTS_OF_TOUCHES)?,
             bodies: Column::<i64>::events(at, "bodies", &[2], bodies)?,
@@ -466,6 +483,11 @@ impl Touches {
         let number = |body: Option<usize>| body.map_or(-1, |body| body as i64);
         self.bodies.push(touch.bodies.map(number));
         self.node.push([model.mesh.node_labels[touch.node] as i64]);
+    }
+
+    /// Writes the number of rows.
+    pub fn note_count(&self) -> hdf5::Result<()> {
+        self.count.write_scalar(&(self.node.rows() as i64))
     }
 
     /// Its datasets.

@@ -1,6 +1,6 @@
 //! Group `/history`: one row per increment, row 0 being the start.
 
-use hdf5::Group;
+use hdf5::{Attribute, Group};
 
 use super::bodies::BodyHistory;
 use super::contacts::{ContactHistory, Impacts, Returns, Touches, create_contacts};
@@ -9,10 +9,13 @@ use super::sets::SetHistories;
 use super::strains::StrainHistory;
 use crate::dynamics::{Energy, IncrementReport, Momentum, SolverCounts};
 use crate::model::{ContactMass, LandingRule, Model, Step};
-use crate::output::file::{Column, Columns, Scalar, Series, group, meaning, scalar};
+use crate::output::file::{Column, Columns, ROWS, Scalar, Series, counter, group, meaning, scalar};
 
 /// Writes the history.
 pub(crate) struct History {
+    count: Attribute,
+    /// Rows appended.
+    rows: usize,
     times: Series<IncrementReport, f64>,
     step: Series<IncrementReport, i64>,
     energy: Series<Energy, f64>,
@@ -42,6 +45,8 @@ impl History {
     pub fn create(root: &Group, model: &Model) -> hdf5::Result<Self> {
         let at = group(root, "history")?;
         let mut history = History {
+            count: counter(&at, ROWS)?,
+            rows: 0,
             times: Series::create(&at, &TIMES)?,
             step: Series::create(&at, &STEP)?,
             energy: Series::create(&group(&at, "energy")?, &ENERGY)?,
@@ -75,6 +80,7 @@ impl History {
 
     /// Appends the row of an increment, which waits in memory.
     pub fn push(&mut self, model: &Model, report: &IncrementReport) {
+        self.rows += 1;
         self.times.push(report);
         self.step.push(report);
         self.energy.push(&report.energy);
@@ -113,10 +119,18 @@ impl History {
         self.waiting.rows >= self.waiting.most
     }
 
-    /// Writes the rows that wait.
+    /// Writes the rows that wait, but not their number.
     pub fn flush(&mut self) -> hdf5::Result<()> {
         self.waiting.rows = 0;
         (self.columns().into_iter()).try_for_each(|column| column.flush())
+    }
+
+    /// Writes the numbers of rows.
+    pub fn note_counts(&self) -> hdf5::Result<()> {
+        self.count.write_scalar(&(self.rows as i64))?;
+        self.impacts.note_count()?;
+        self.returns.as_ref().map_or(Ok(()), Returns::note_count)?;
+        self.touches.note_count()
     }
 
     /// Bytes by which the file may grow until the rows are written.

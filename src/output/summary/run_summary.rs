@@ -4,7 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use hdf5::types::VarLenUnicode;
-use hdf5::{FileBuilder, Group, H5Type};
+use hdf5::{Dataset, FileBuilder, Group, H5Type};
 use thiserror::Error;
 
 use super::losses::{Losses, part};
@@ -14,7 +14,7 @@ use super::warnings::{Findings, never_closed};
 use crate::dynamics::{ContactViolation, Energy, Touch};
 use crate::linear::{larger, largest};
 use crate::output::error::reason;
-use crate::output::file::{BodyTimes, UNFINISHED, regular_file};
+use crate::output::file::{BodyTimes, ROWS, UNFINISHED, regular_file};
 use crate::output::text::{bytes, counted, general, label, scientific, wrap};
 
 /// Why a result file could not be read.
@@ -136,11 +136,11 @@ impl ResultSummary {
             nodes: file.dataset("model/node_labels")?.size(),
             elements: file.dataset("model/element_labels")?.size(),
             contacts: read_contacts(&history.group("contact")?)?,
-            landings: history.dataset("impacts/time")?.size(),
+            landings: column::<f64>(&history, "impacts/time")?.len(),
             steps: steps.iter().copied().max().unwrap_or(0),
             increments: times.len().saturating_sub(1),
             time: times.last().copied().unwrap_or(0.0),
-            frames: column(&file, "VTKHDF/Steps/Values")?,
+            frames: read_frames(&file)?,
             energies,
             largest_energy,
             worst_balance: largest(&balance),
@@ -406,8 +406,38 @@ fn read_contacts(at: &Group) -> hdf5::Result<Vec<(String, f64)>> {
     at.member_names()?.into_iter().map(read).collect()
 }
 
+/// Times of the frames that are complete.
+fn read_frames(file: &Group) -> hdf5::Result<Vec<f64>> {
+    let steps = file.group("VTKHDF/Steps")?;
+    let count: i64 = steps.attr("NSteps")?.read_scalar()?;
+    let mut times = steps.dataset("Values")?.read_raw()?;
+    times.truncate(count.unsigned_abs() as usize);
+    Ok(times)
+}
+
+/// A dataset; of the history its complete rows.
 fn column<T: H5Type>(at: &Group, name: &str) -> hdf5::Result<Vec<T>> {
-    at.dataset(name)?.read_raw()
+    let dataset = at.dataset(name)?;
+    let mut values = dataset.read_raw()?;
+    if let Some(complete) = complete_rows(&dataset)? {
+        let row = values.len() / dataset.shape()[0].max(1);
+        values.truncate(complete * row);
+    }
+    Ok(values)
+}
+
+/// How many rows of a dataset are complete, by the innermost of its groups that says it; none does of what is
+/// written at once, and in a file from before there was this number.
+fn complete_rows(dataset: &Dataset) -> hdf5::Result<Option<usize>> {
+    let (file, path) = (dataset.file()?, dataset.name());
+    let groups = path.rmatch_indices('/').filter(|(end, _)| *end > 0);
+    for (end, _) in groups {
+        if let Ok(count) = file.group(&path[..end])?.attr(ROWS) {
+            let rows: i64 = count.read_scalar()?;
+            return Ok(Some(rows.unsigned_abs() as usize));
+        }
+    }
+    Ok(None)
 }
 
 fn text(at: &Group, name: &str) -> hdf5::Result<String> {

@@ -3,7 +3,7 @@
 use hdf5::{Attribute, Group};
 
 use crate::output::file::column::{Column, Growing};
-use crate::output::file::dataset::{group, meaning};
+use crate::output::file::dataset::{counter, group, meaning};
 
 /// The steps of the grid: their times and where their geometry starts (always at 0).
 pub(super) struct Steps {
@@ -18,13 +18,11 @@ pub(super) struct Steps {
 impl Steps {
     pub fn create(grid: &Group) -> hdf5::Result<Self> {
         let steps = group(grid, "Steps")?;
-        let count = steps.new_attr::<i64>().create("NSteps")?;
-        count.write_scalar(&0i64)?;
         let column = |name, row: &[usize], text| {
             Column::<i64>::series(&steps, name, row, meaning(text, "1"))
         };
         Ok(Steps {
-            count,
+            count: counter(&steps, "NSteps")?,
             values: Column::series(&steps, "Values", &[], meaning("time of the frame", "time"))?,
             parts: column("NumberOfParts", &[], "grids of the frame")?,
             zeros: vec![
