@@ -744,9 +744,14 @@ mod tests {
                 start: Some(&start),
                 ..Motion::at(&u, &[])
             };
-            let found = Elements::new(model).internal_force(between);
-            let inverted = found.expect_err("an element inverted");
+            let elements = Elements::new(model);
+            let inverted = (elements.internal_force(between)).expect_err("an element inverted");
             assert!((inverted.determinant + 0.2).abs() < 1e-13, "{inverted:?}");
+            for element in 0..elements.len() {
+                let material = elements.material(element, &[]);
+                let (_, least) = elements.element(element).force(&material, between);
+                assert!((least + 0.2).abs() < 1e-13, "{element}: {least}");
+            }
         }
     }
 

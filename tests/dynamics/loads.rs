@@ -56,6 +56,24 @@ fn gravity_and_dead_traction_give_the_momentum_of_their_resultant() {
     }
 }
 
+/// The first pass finds where a falling block is, and its forces then balance: that an iterate that has just moved by
+/// as much as the increment is the solution, a second pass shows.
+#[test]
+fn increments_end_after_a_small_correction() {
+    for scheme in SCHEMES {
+        let (mut model, _) = free_block();
+        let mut step = step(0.05, 10, settings(scheme), Vec::new());
+        step.body_forces = (0..8).map(|element| gravity(element, 9.81)).collect();
+        model.steps = vec![step];
+        let (keep, _) = run_to_end(&model);
+        for report in &keep.reports[1..] {
+            let corrections: Vec<f64> = report.passes.iter().map(|p| p.correction).collect();
+            let last = corrections[corrections.len() - 1];
+            assert!(corrections[0] > 1e-2 && last < 1e-4, "{corrections:?}");
+        }
+    }
+}
+
 #[test]
 fn pressure_all_around_has_no_resultant_and_follows_the_surface() {
     for scheme in SCHEMES {
