@@ -69,7 +69,8 @@ pub(crate) const CORNER_TIP: f64 = 1e-5;
 /// Overrun beyond the ends of a segment up to which a node that has left it within an increment for
 /// no other keeps it: whether it has slid off is decided by the end of the increment.
 pub(crate) const KEPT_BEYOND_ENDS: f64 = 0.1;
-/// The same once the passes have settled, where targets change no more.
+/// The same once the passes have settled, even if another holds the node now. Where passes go to and fro between two
+/// targets all the same, it is the number above.
 pub(crate) const KEPT_WHEN_SETTLED: f64 = 1e-3;
 /// Overlap below which an open pair stays open once the passes have settled, so that a force does
 /// not alternate between two nodes that face each other.

@@ -263,7 +263,7 @@ impl Default for Settings {
             factorization: Factorization::Keep,
             solver: SolverChoice::Faer,
             tolerance: 1e-11,
-            max_passes: 25,
+            max_passes: 50,
             is_check_only: false,
         }
     }

@@ -68,7 +68,8 @@ impl Bodies {
                     let is_above = (0.0..=1.0).contains(&part);
                     is_above.then(|| p[1] + part * (q[1] - p[1]) - s[1])
                 };
-                (0..24).find_map(on_face).expect("above the plate")
+                // a node beside the plate is not below it
+                (0..24).find_map(on_face).unwrap_or(f64::NEG_INFINITY)
             };
             self.block.nodes().map(below).fold(0.0, f64::max)
         };

@@ -7,7 +7,7 @@ use super::slave_node::SlaveNode;
 use super::target_selection::{ContactTarget, Targets};
 use crate::contact::geometry::Positions;
 use crate::contact::search::{ListedSlave, Search};
-use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED};
+use crate::contact::tolerances::KEPT_BEYOND_ENDS;
 use crate::model::Friction;
 
 /// Which slave node meets which segment, or which corner.
@@ -40,8 +40,8 @@ impl PairTarget {
 /// Writes the pairs of all contacts between the displacements `u0` of the start of an increment and `u`
 /// of an iterate, which the search covers; increasing by slave index and segment, as those `before`,
 /// of the last pass. `held` are slave index and segment of the pairs closed at the start, increasing.
-/// Where the passes have `settled`, targets are kept even if others hold the node
-/// now: passes that go to and fro across a corner come to rest with it.
+/// With `kept`, targets are kept up to this overrun beyond their ends (segment lengths) even if others hold the
+/// node now: passes that go to and fro across a corner come to rest with it.
 ///
 /// A node that has just left its segment by a little and finds no other keeps it: whether it has
 /// slid off is decided by the end of the increment, not by one of its passes.
@@ -49,7 +49,7 @@ pub fn find_targets<'p>(
     search: &Search,
     [u0, u]: [&[f64]; 2],
     before: impl IntoIterator<Item = &'p PairTarget>,
-    (held, settled): (&[[usize; 2]], bool),
+    (held, kept): (&[[usize; 2]], Option<f64>),
     pairs: &mut Vec<PairTarget>,
 ) {
     let [start, now] = [u0, u].map(|u| Positions::new(search.coordinates(), u));
@@ -72,9 +72,9 @@ pub fn find_targets<'p>(
         while let Some(pair) = before.next_if(|pair| pair.slave_index <= index) {
             own.push(pair.target);
         }
-        let keeps = !own.is_empty() && (settled || found.is_empty());
+        let keeps = !own.is_empty() && (kept.is_some() || found.is_empty());
         if keeps {
-            keep(&node, &found, settled, &mut own);
+            keep(&node, &found, kept.unwrap_or(KEPT_BEYOND_ENDS), &mut own);
         }
         for &target in if keeps { &own } else { &found } {
             pairs.push(pair_target(&listed, target));
@@ -85,12 +85,7 @@ pub fn find_targets<'p>(
 
 /// Leaves those of the targets that a slave node had in the pass before which it keeps, corners with the
 /// weights of the iterate, and adds what is found beside them.
-fn keep(node: &SlaveNode, found: &Targets, settled: bool, targets: &mut Targets) {
-    let beyond = if settled {
-        KEPT_WHEN_SETTLED
-    } else {
-        KEPT_BEYOND_ENDS
-    };
+fn keep(node: &SlaveNode, found: &Targets, beyond: f64, targets: &mut Targets) {
     targets.retain(|target| node.is_over(target, beyond));
     let kept = targets.len();
     for target in found {

@@ -110,10 +110,13 @@ impl NodePath<'_> {
             if entering.direction != Direction::Entering {
                 continue;
             }
-            let later = events[n..].iter();
-            let leaving = later
-                .clone()
-                .find(|(_, c)| c.direction == Direction::Leaving);
+            let is_out = |c: &Crossing| match c.direction {
+                Direction::Leaving => true,
+                // it ends on the surface
+                Direction::Touching => c.time >= 1.0,
+                Direction::Entering => false,
+            };
+            let leaving = events[n..].iter().find(|(_, c)| is_out(c));
             let is_harmless = match leaving {
                 Some((exit, leaving)) => {
                     self.may_leave((*segment, entering.time), (*exit, leaving.time))
@@ -168,8 +171,12 @@ impl NodePath<'_> {
         beyond.hypot(p.gap)
     }
 
-    /// Whether a node that enters through one segment may leave through another.
+    /// Whether a node that enters through one segment may leave through another. Through the same one it
+    /// comes back to the side that it came from.
     fn may_leave(&self, (i, entered): (usize, f64), (j, left): (usize, f64)) -> bool {
+        if i == j {
+            return true;
+        }
         let middle = entered + (left - entered) / 2.0;
         let (p, q) = (self.project(i, middle), self.project(j, middle));
         let depth = (-p.gap).min(-q.gap);

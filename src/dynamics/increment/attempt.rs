@@ -1,13 +1,14 @@
 //! Solution of one increment: predictor and corrector passes with contact forces and impulses.
 //! Section 4 of docs/theory.md (paper eqs 27, 29 and 36 to 49).
 
+use super::acceleration::Acceleration;
 use super::active_constraints::ConstraintSet;
 use super::forces::{Before, ContactForces, ContactSystem, EqualForces, Impulses};
 use super::pass::{Iterate, Pass, Residual};
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::rigid_predictor::rigid_predictor;
 use super::trace::{Failed, Trace};
-use crate::contact::tolerances::PROJECTION_BEYOND_ENDS;
+use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED, PROJECTION_BEYOND_ENDS};
 use crate::contact::{ClosedPairs, Constraint};
 use crate::dynamics::results::{Cause, PassReport, State};
 use crate::dynamics::step::{
@@ -15,6 +16,25 @@ use crate::dynamics::step::{
     Workspace, sum, write_difference, write_sum,
 };
 use crate::elements::Updated;
+
+/// Passes of an attempt that are made in any case; further ones only while they will end within MAX PASSES.
+const PATIENCE: usize = 25;
+/// Passes after which those that follow are accelerated, and slave nodes that go to and fro between two targets keep both.
+const SLOW_PASSES: usize = 10;
+/// Most halvings of a correction that turns an element inside out.
+const HALVINGS: i32 = 6;
+
+/// Overrun beyond the ends of a segment (segment lengths) up to which slave nodes keep their targets in a pass, even
+/// if others hold them now.
+fn kept_beyond_ends(pass: usize) -> Option<f64> {
+    if pass < SEARCHING_PASSES {
+        None
+    } else if pass < SLOW_PASSES {
+        Some(KEPT_WHEN_SETTLED)
+    } else {
+        Some(KEPT_BEYOND_ENDS)
+    }
+}
 
 /// A converged increment.
 #[derive(Default)]
@@ -166,23 +186,26 @@ impl<'m> Attempt<'_, 'm> {
         let mut contact = ContactForces::without_constraints(closed);
         let mut impulses = Impulses::new(closed, self.set);
         let mut equal_forces = EqualForces::new(problem.settings.tolerance);
+        let mut acceleration = Acceleration::default();
         // the passes start from the rigid motion of the bodies, or from a motion that is known
         let mut d = match self.guess {
             Some(path) => path.displacement(dt),
             None => rigid_predictor(problem, start, self.interval),
         };
-        for pass in 0..problem.settings.max_passes {
-            // g, Dt and their rows in the iterate U = U0 + d
-            write_sum(&start.u, &d, &mut v.u);
-            let settled = pass >= SEARCHING_PASSES;
-            self.constraints(v, &contact, settled)?;
-
-            // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1)
-            let last = Before::new(&v.equilibrium, trace.correction(), dt);
-            let v0p = impulses.start_velocity(problem, self.workspace, &v.found, start, &last)?;
-
-            // r = R_theta - F(U_theta) - M A, eq. (4.5)
-            self.equilibrium(&v0p, [&v.u, &d], &mut v.equilibrium)?;
+        for number in 0..problem.settings.max_passes {
+            if number >= PATIENCE && !trace.will_end(&problem.settings) {
+                break;
+            }
+            // g, Dt and their rows, V0+ and r in the iterate U = U0 + d
+            let settled = number >= SEARCHING_PASSES;
+            self.evaluate(
+                number,
+                &mut d,
+                &contact,
+                &mut impulses,
+                trace.correction(),
+                v,
+            )?;
             trace.balance((problem.unknowns).largest_restricted(&v.equilibrium.out_of_balance));
 
             // the forces at hand may balance r and close the gaps of the iterate
@@ -196,7 +219,7 @@ impl<'m> Attempt<'_, 'm> {
 
             // K* of eq. (4.6), and d_p at the supports, which takes the force theta2 K d_p
             self.refresh(factors, v, &contact)?;
-            self.supports(pass, v);
+            self.supports(number, v);
 
             // Pn, Pt of the complementarity problem, eq. (5.2);
             // dU = d_p + K*^-1 (r - theta2 K d_p + Bn^T Pn + Bt^T Pt), eq. (4.7)
@@ -208,15 +231,72 @@ impl<'m> Attempt<'_, 'm> {
             let pass = iterate.pass(&v.support_force, &v.du);
             let has_converged = self.measure(&pass, &mut v.residual, trace)?;
 
+            let ends = impulses.rest(problem, &contact.closed) && has_converged;
+            let correction = trace.correction();
+            if !ends {
+                equal_forces.take_in(correction, settled);
+                factors.take_in(correction)?;
+                if number >= SLOW_PASSES {
+                    let progress = [correction, factors.rate(), problem.settings.tolerance];
+                    acceleration.improve(problem.parts, &d, &contact.closed, progress, &mut v.du);
+                }
+            }
             // d <- d + dU, eq. (4.7)
             d.iter_mut().zip(&v.du).for_each(|(d, du)| *d += du);
-            if impulses.rest(problem, &contact.closed) && has_converged {
+            if ends {
                 return self.finish(&d, contact, impulses, v, false);
             }
-            equal_forces.take_in(trace.correction(), settled);
-            factors.take_in(trace.correction())?;
         }
         Err(Cause::NotConverged)
+    }
+
+    /// Evaluates the iterate U = U0 + d: constraints, impulses and forces. Where the last correction turns an
+    /// element inside out, what it changes beside the motion of the supports is halved. `correction` is that of
+    /// the pass before, beside its scale.
+    fn evaluate(
+        &mut self,
+        pass: usize,
+        d: &mut [f64],
+        contact: &ContactForces,
+        impulses: &mut Impulses,
+        correction: f64,
+        v: &mut Vectors,
+    ) -> Result<(), Cause> {
+        let halvings = if pass == 0 { 0 } else { HALVINGS };
+        for halving in 1..=halvings {
+            match self.evaluate_at(pass, d, contact, impulses, correction, v) {
+                Err(Cause::Inverted { .. } | Cause::Collapsed { .. }) => {}
+                other => return other,
+            }
+            let part = 0.5_f64.powi(halving);
+            for (d, (du, d_p)) in d.iter_mut().zip(v.du.iter().zip(&v.d_p)) {
+                *d -= part * (du - d_p);
+            }
+        }
+        self.evaluate_at(pass, d, contact, impulses, correction, v)
+    }
+
+    /// Evaluates the iterate as it is.
+    fn evaluate_at(
+        &mut self,
+        pass: usize,
+        d: &[f64],
+        contact: &ContactForces,
+        impulses: &mut Impulses,
+        correction: f64,
+        v: &mut Vectors,
+    ) -> Result<(), Cause> {
+        let (problem, start) = (self.problem, self.start);
+        // g, Dt and their rows in the iterate U = U0 + d
+        write_sum(&start.u, d, &mut v.u);
+        self.constraints(v, contact, kept_beyond_ends(pass))?;
+
+        // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1)
+        let last = Before::new(&v.equilibrium, correction, self.interval.dt);
+        let v0p = impulses.start_velocity(problem, self.workspace, &v.found, start, &last)?;
+
+        // r = R_theta - F(U_theta) - M A, eq. (4.5)
+        self.equilibrium(&v0p, [&v.u, d], &mut v.equilibrium)
     }
 
     /// Writes the constraints of the iterate, `last` being those of the pass before: those that count, and the
@@ -225,12 +305,12 @@ impl<'m> Attempt<'_, 'm> {
         &mut self,
         v: &mut Vectors,
         last: &ContactForces,
-        settled: bool,
+        kept: Option<f64>,
     ) -> Result<(), Cause> {
         let (problem, u0, u) = (self.problem, &self.start.u, &v.u);
         problem.check_segments(u)?;
         let (before, dt) = (&last.constraints, self.interval.dt);
-        (self.workspace).constraints(problem, [u0, u], before, (&v.held, settled), &mut v.found);
+        (self.workspace).constraints(problem, [u0, u], before, (&v.held, kept), &mut v.found);
         (v.found.iter_mut()).for_each(|constraint| constraint.take_slip_rate(dt));
         (self.set).split(problem, u0, &mut v.found, &mut v.left_out);
         Ok(())

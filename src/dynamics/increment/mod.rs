@@ -1,5 +1,6 @@
 //! One increment: passes, contact forces, impulses, convergence.
 
+mod acceleration;
 mod active_constraints;
 mod alternation;
 mod attempt;

@@ -91,6 +91,11 @@ impl Refactorization {
         self.correction < NEAR
     }
 
+    /// Last correction over the one before.
+    pub fn rate(&self) -> f64 {
+        self.rate
+    }
+
     /// Whether the corrections become hardly smaller: where they are small, that is round-off.
     pub fn stagnate(&self) -> bool {
         self.rate > STAGNANT

@@ -3,6 +3,7 @@
 use super::alternation::ContactHistory;
 use super::forces::ContactForces;
 use crate::dynamics::results::{Cause, Course, PassReport, Worst};
+use crate::model::Settings;
 
 /// Corrections whose mean rate counts at the end of an attempt.
 const LAST: usize = 4;
@@ -68,6 +69,22 @@ impl Trace {
             .map_or(f64::INFINITY, |pass| pass.correction)
     }
 
+    /// Whether the passes since they last began will have converged within MAX PASSES, at the rate of the
+    /// last ones.
+    pub fn will_end(&self, settings: &Settings) -> bool {
+        let corrections = self.corrections();
+        match end_of(&corrections, settings.tolerance) {
+            Some(Course::Slow { left, .. }) => corrections.len() + left <= settings.max_passes,
+            _ => false,
+        }
+    }
+
+    /// Relative corrections of the passes since they last began.
+    fn corrections(&self) -> Vec<f64> {
+        let passes = self.passes[self.earlier..].iter();
+        passes.map(|pass| pass.correction).collect()
+    }
+
     /// The iterate of the last pass is solved to the given residual.
     pub fn solved(&mut self, residual: f64) {
         if let Some(pass) = self.passes.last_mut() {
@@ -93,10 +110,7 @@ impl Trace {
     /// How the passes went; none where they were too few to tell.
     fn course(&self, tolerance: f64) -> Option<Course> {
         let alternations = self.contact.alternations();
-        let corrections = self.passes[self.earlier..]
-            .iter()
-            .map(|pass| pass.correction);
-        let corrections: Vec<f64> = corrections.collect();
+        let corrections = self.corrections();
         let grown = growth(&corrections).map(|pass| Course::Growing {
             from: self.earlier + pass,
         });

@@ -140,7 +140,7 @@ impl Releasing<'_, '_> {
     fn constraints(&mut self, u: &[f64]) -> Vec<Constraint> {
         let (start, held) = (&self.end.u, self.held.segments());
         let (way, mut found) = ([start.as_slice(), u], Vec::new());
-        (self.workspace).constraints(self.problem, way, &[], (&held, false), &mut found);
+        (self.workspace).constraints(self.problem, way, &[], (&held, None), &mut found);
         let opens = |constraint: &Constraint| self.free.open(constraint);
         let above_least = |constraint: Constraint| Constraint {
             gap: constraint.gap - constraint.start_gap.min(0.0),

@@ -124,6 +124,17 @@ impl Parts {
         largest_of(&self.runs_of_bodies, self.bodies, values)
     }
 
+    /// Values over all dofs, those of every body in units of its largest of the increment `d`; zero where
+    /// that is zero.
+    pub fn beside_increments(&self, d: &[f64], values: &[f64]) -> Vec<f64> {
+        let units = self.largest_of_bodies(d);
+        let beside = |(dof, value): (usize, &f64)| match units[self.body[dof / 2]] {
+            0.0 => 0.0,
+            unit => value / unit,
+        };
+        values.iter().enumerate().map(beside).collect()
+    }
+
     /// Largest diagonal entry of every part; the matrix is over unknowns, whose dofs are given.
     pub fn largest_diagonal(&self, matrix: &Assembled, dof_of: &[usize]) -> Vec<f64> {
         let mut most = vec![0.0; self.body_of.len()];

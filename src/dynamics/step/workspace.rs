@@ -104,14 +104,14 @@ impl<'m> Workspace<'m> {
     }
 
     /// Writes the constraints between the displacements `u0` and `u` of an increment, `before` being those of
-    /// the last pass and `held` slave index and segment of the pairs closed at the start. Where the
-    /// passes have `settled`, slave nodes keep their targets.
+    /// the last pass and `held` slave index and segment of the pairs closed at the start. With `kept`, slave
+    /// nodes keep their targets up to this overrun beyond the ends (segment lengths).
     pub fn constraints(
         &mut self,
         problem: &StepProblem,
         increment: [&[f64]; 2],
         before: &[Constraint],
-        (held, settled): (&[[usize; 2]], bool),
+        (held, kept): (&[[usize; 2]], Option<f64>),
         constraints: &mut Vec<Constraint>,
     ) {
         let Workspace {
@@ -123,7 +123,7 @@ impl<'m> Workspace<'m> {
         meter.time(|t| &mut t.search, || search.cover(increment[1]));
         let before = before.iter().map(|constraint| &constraint.source);
         let write = || {
-            find_targets(search, increment, before, (held, settled), pairs);
+            find_targets(search, increment, before, (held, kept), pairs);
             problem.constraints(pairs, increment, constraints);
         };
         meter.time(|t| &mut t.contact, write);

@@ -225,12 +225,12 @@ mod tests {
                     left: 12,
                 },
                 "about 12 more passes were needed: each correction is 0.61 of the last",
-                "MAX PASSES of *STICKSLIP to 37 or more",
+                "MAX PASSES of *STICKSLIP to 62 or more",
             ),
             (
                 Course::Slow { rate: 0.1, left: 1 },
                 "about 1 more pass was needed",
-                "to 26 or more",
+                "to 51 or more",
             ),
             (
                 Course::Stagnant { correction: 3e-9 },

@@ -9,9 +9,12 @@ use crate::dynamics::{Cause, FailedLcp, Failure, Worst};
 use crate::elements::ElementResult;
 use crate::lcp::LcpError;
 use crate::model::Model;
+use crate::vectors::{cross, difference};
 
 /// Pairs of a complementarity problem that the text names.
 const SHOWN_PAIRS: usize = 4;
+/// Part of the area between the sides of a corner at which its element is crushed there.
+const CRUSHED_CORNER: f64 = 0.01;
 
 /// Increment, time, cause, worst place, advice, halvings and the passes; `u` and `elements` are the last
 /// converged displacement and the results of the elements there.
@@ -37,9 +40,21 @@ pub(crate) fn failure_lines(
     if let Cause::Indefinite { node } = failure.cause {
         lines.extend(body_line(node, model, elements));
     }
-    let hint = hint(&failure.cause, model).iter();
-    lines.extend(hint.map(|&line| line.to_owned()));
-    if let Some(advice) = advice(failure, model) {
+    let mut hints = hint(&failure.cause, model);
+    let crushed = crushed(&failure.cause, model, u);
+    if let Some(Crushed {
+        element,
+        node,
+        part,
+    }) = crushed
+    {
+        lines.extend(crushed_lines(element, node, part, model));
+        hints = inversion_hint(element, model);
+    }
+    lines.extend(hints.iter().map(|&line| line.to_owned()));
+    if crushed.is_none()
+        && let Some(advice) = advice(failure, model)
+    {
         lines.extend(wrap_words("advice", &advice));
     }
     if increment > 0 {
@@ -75,6 +90,61 @@ fn hint(cause: &Cause, model: &Model) -> &'static [&'static str] {
         } => &["         both sides are prescribed: they are driven into each other"],
         _ => &[],
     }
+}
+
+/// An element with a corner that is inside out, or nearly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Crushed {
+    element: usize,
+    /// At the corner.
+    node: usize,
+    /// Area between the sides of the corner beside that of the reference configuration.
+    part: f64,
+}
+
+/// The worst crushed element at the nodes of a contact that the cause names. The integration points lie
+/// inside an element and do not see its corners.
+fn crushed(cause: &Cause, model: &Model, u: &[f64]) -> Option<Crushed> {
+    let named: Vec<usize> = match cause {
+        Cause::Crossed { slave, segment, .. } => vec![*slave, segment[0], segment[1]],
+        Cause::Collapsed { segment } => segment.to_vec(),
+        Cause::Lcp(failed) => failed.pairs.iter().flatten().copied().collect(),
+        _ => return None,
+    };
+    let all = model.mesh.elements.iter().enumerate();
+    let at_contact = all.filter(|(_, element)| element.nodes.iter().any(|n| named.contains(n)));
+    let corners = at_contact.flat_map(|(index, element)| {
+        let count = element.nodes.len();
+        (0..count).map(move |k| {
+            let corner = [k, (k + 1) % count, (k + count - 1) % count].map(|k| element.nodes[k]);
+            let area = |at: &dyn Fn(usize) -> [f64; 2]| {
+                let [p, q, r] = corner.map(at);
+                cross(difference(p, q), difference(p, r))
+            };
+            let now = area(&|node| position(model, node, u));
+            let part = now / area(&|node| model.mesh.coordinates[node]);
+            Crushed {
+                element: index,
+                node: corner[0],
+                part,
+            }
+        })
+    });
+    corners
+        .filter(|corner| corner.part <= CRUSHED_CORNER)
+        .min_by(|p, q| p.part.total_cmp(&q.part))
+}
+
+/// What is crushed.
+fn crushed_lines(element: usize, node: usize, part: f64, model: &Model) -> Vec<String> {
+    let text = format!(
+        "element {} is crushed: at its corner, node {}, the area between its sides is {} of \
+         what it was (integration points do not see corners)",
+        model.element_name(element),
+        model.node_name(node),
+        general(part, 2),
+    );
+    wrap_words("cause", &text)
 }
 
 /// The element or node that the cause names.
@@ -215,5 +285,26 @@ mod tests {
         let start = line(0, &[]).expect("before the first increment");
         assert_eq!(start, "element  10 of ALL at this node was not compressed");
         assert_eq!(line(9, &results), None, "a node without element");
+    }
+
+    #[test]
+    fn a_crushed_corner_at_a_contact_is_named() {
+        let mut model = Model::default();
+        model.mesh.coordinates = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        model.mesh.elements = vec![Element {
+            label: 7,
+            element_type: ElementType::CPE4,
+            nodes: vec![0, 1, 2, 3].into(),
+            section: 0,
+        }];
+        // node 2 goes through the diagonal: from there the sides to 3 and 1 are (-0.4, 0.6) and (0.6, -0.4)
+        let u = [0.0, 0.0, 0.0, 0.0, -0.6, -0.6, 0.0, 0.0];
+        let at = |segment: [usize; 2], u: &[f64]| crushed(&Cause::Collapsed { segment }, &model, u);
+        let found = at([1, 2], &u).expect("crushed");
+        assert_eq!((found.element, found.node), (0, 2));
+        assert!((found.part + 0.2).abs() < 1e-15, "{found:?}");
+        assert_eq!(at([1, 2], &[0.0; 8]), None, "as it was");
+        assert_eq!(at([8, 9], &u), None, "elsewhere");
+        assert_eq!(crushed(&Cause::NotConverged, &model, &u), None);
     }
 }
