@@ -271,16 +271,17 @@ pub struct Updated {
 }
 
 impl Elements {
-    /// Internal variables at the end of an increment with displacements `u`. `committed` stays as it
-    /// is: the increment commits or drops what this returns.
-    pub fn update(&self, u: &[f64], committed: &[f64]) -> Updated {
+    /// Internal variables at the end of a motion, and what is dissipated on the way. Those that `motion` has stay as
+    /// they are: the increment commits or drops what this returns.
+    pub fn update(&self, motion: Motion) -> Updated {
         let mut updated = Updated {
-            variables: committed.to_vec(),
+            variables: motion.committed.to_vec(),
             dissipated: 0.0,
         };
         for part in self.parts.iter().filter(|part| !part.variables.is_empty()) {
             let variables = &mut updated.variables[part.variables.clone()];
-            updated.dissipated += part.element.update(&part.material(committed), u, variables);
+            let material = part.material(motion.committed);
+            updated.dissipated += part.element.update(&material, motion, variables);
         }
         updated
     }

@@ -151,7 +151,12 @@ mod tests {
             c10: 20.0,
             d1: 0.02,
         });
-        let yielding = Law::Yielding(Yielding { g: 50.0, y: 0.02 });
+        let yielding = Law::Yielding(Yielding {
+            g: 50.0,
+            y: 0.02,
+            r: 0.3,
+            c: 0.05,
+        });
         let cases = [
             (elastic, ElementType::CPS4),
             (elastic, ElementType::CPE4),

@@ -4,10 +4,10 @@
 use nalgebra::SMatrix;
 
 use super::formulation::{
-    Configuration, Formulation, PointState, Reference, Strains, add_geometric, determinant,
+    Configuration, Formulation, PointState, Reference, add_geometric, determinant,
     displacement_gradient, green_lagrange, smaller, strain_displacement,
 };
-use crate::materials::StressAtPoints;
+use crate::materials::{Strains, StressAtPoints};
 
 /// Strains of the displacements, E = (F^T F - I)/2.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +39,7 @@ impl Formulation for Displacement {
         let mut k = SMatrix::<f64, D, D>::zeros();
         for (p, point) in element.points.iter().enumerate() {
             let state = state(element, p, material, configuration);
-            let c = state.strains.tangent(material, p);
+            let c = material.tangent(p, &state.strains);
             let b = strain_displacement::<N, D>(point, &state.f());
             k += b.transpose() * (c * b) * point.volume;
             add_geometric(&mut k, point, &state.s);
@@ -65,7 +65,7 @@ fn state<const N: usize, const P: usize>(
                 h,
                 strains,
                 material_determinant: determinant,
-                s: strains.stress(material, p),
+                s: material.stress(p, &strains),
                 determinant,
             }
         }
@@ -78,7 +78,7 @@ fn state<const N: usize, const P: usize>(
                 h,
                 strains,
                 material_determinant: mid,
-                s: strains.stress(material, p),
+                s: material.stress(p, &strains),
                 determinant: smaller(mid, determinant(&h1)),
             }
         }

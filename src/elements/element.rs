@@ -120,10 +120,10 @@ impl AnyElement {
         with_element!(self, element => element.evaluate(material, u))
     }
 
-    /// Internal variables at displacements `u`, written to `updated`, and the energy dissipated on the
-    /// way to them (force length).
-    pub fn update(&self, material: &Committed, u: &[f64], updated: &mut [f64]) -> f64 {
-        with_element!(self, element => element.update(material, u, updated))
+    /// Internal variables at the end of a motion, written to `updated`, and the energy dissipated on the way to them
+    /// (force length).
+    pub fn update(&self, material: &Committed, motion: Motion, updated: &mut [f64]) -> f64 {
+        with_element!(self, element => element.update(material, motion, updated))
     }
 }
 

@@ -4,9 +4,9 @@
 //! strain energy, Cauchy stress and Green-Lagrange strain averaged over the element, the von Mises stress of these
 //! averages, largest principal strain. Sections 2 and 4 of docs/theory.md (paper eq. 12).
 
-use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix2, SMatrix, SVector, Vector3};
 
-use crate::materials::{Across, Committed, StressAtPoints};
+use crate::materials::{Across, Committed, Strains, StressAtPoints};
 
 /// How strains and stresses at the integration points follow from the displacements of an element.
 /// Chosen at compile time: a sweep has no dispatch within an element.
@@ -55,7 +55,7 @@ pub fn work<F: Formulation, const N: usize, const P: usize>(
     let mut work = 0.0;
     F::for_each_state(element, material, configuration, |p, state| {
         if let Strains::Between(e0, e1) = state.strains {
-            let s = material.mean_stress(p, [&e0, &e1]);
+            let s = material.stress(p, &state.strains);
             work += s.dot(&(e1 - e0)) * element.points[p].volume;
         }
     });
@@ -76,18 +76,18 @@ pub fn evaluate<F: Formulation, const N: usize, const P: usize>(
     ElementResult::of_points(results.into_iter().zip(weights))
 }
 
-/// Internal variables of all points at displacements `u`, written to `updated`, and the energy
-/// dissipated on the way to them, int D dOmega (force length).
+/// Internal variables of all points at the end of a configuration, written to `updated`, and the energy dissipated on
+/// the way to them, int D dOmega (force length).
 pub fn update<F: Formulation, const N: usize, const P: usize>(
     element: &Reference<N, P>,
     material: &Committed,
-    u: &SMatrix<f64, 2, N>,
+    configuration: &Configuration<N>,
     updated: &mut [f64],
 ) -> f64 {
     let mut dissipated = 0.0;
-    F::for_each_state(element, material, &Configuration::At(*u), |p, state| {
+    F::for_each_state(element, material, configuration, |p, state| {
         let volume = element.points[p].volume;
-        dissipated += material.update(p, state.strains.end(), updated) * volume;
+        dissipated += material.update(p, &state.strains, updated) * volume;
     });
     dissipated
 }
@@ -198,43 +198,6 @@ impl<const N: usize, const P: usize> Reference<N, P> {
     /// Share of each node in a uniform force per volume, int h_a dOmega (length^3).
     pub fn nodal_volume(&self) -> SVector<f64, N> {
         self.points.iter().map(|p| p.shape * p.volume).sum()
-    }
-}
-
-/// Green-Lagrange strains at which a material is evaluated.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Strains {
-    /// One strain.
-    At(Matrix2<f64>),
-    /// Those of start and end, in the energy-momentum form.
-    Between(Matrix2<f64>, Matrix2<f64>),
-}
-
-impl Strains {
-    /// Second Piola-Kirchhoff stress at a point, eq. (2.3), or energy-momentum stress, eq. (4.8)
-    /// (force/length^2).
-    #[inline(always)]
-    pub fn stress(&self, material: &impl StressAtPoints, point: usize) -> Matrix2<f64> {
-        match self {
-            Strains::At(e) => material.stress(point, e),
-            Strains::Between(e0, e1) => material.mean_stress(point, [e0, e1]),
-        }
-    }
-
-    /// Tangent of [`Self::stress`] in Voigt order (force/length^2).
-    #[inline(always)]
-    pub fn tangent(&self, material: &impl StressAtPoints, point: usize) -> Matrix3<f64> {
-        match self {
-            Strains::At(e) => material.tangent(point, e),
-            Strains::Between(e0, e1) => material.mean_tangent(point, [e0, e1]),
-        }
-    }
-
-    /// The strain at the end.
-    pub fn end(&self) -> &Matrix2<f64> {
-        match self {
-            Strains::At(e) | Strains::Between(_, e) => e,
-        }
     }
 }
 

@@ -12,11 +12,11 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector3};
 
 use super::formulation::{
-    Configuration, Formulation, Point, PointState, Reference, Strains, add_geometric, determinant,
+    Configuration, Formulation, Point, PointState, Reference, add_geometric, determinant,
     displacement_gradient, green_lagrange, smaller, strain_displacement,
 };
 use super::solid::Solid;
-use crate::materials::StressAtPoints;
+use crate::materials::{Strains, StressAtPoints};
 
 /// Q4 with mean dilatation (CPE4 with `FORMULATION=MEAN DILATATION`).
 pub type Quad4MeanDilatation = Solid<4, 4, 8, MeanDilatation>;
@@ -77,9 +77,7 @@ impl PointMotion {
         })
     }
 
-    fn stress(&self, theta: [f64; 2], material: &impl StressAtPoints, p: usize) -> PointStress {
-        let [e0, e1] = self.material_strain(theta);
-        let strains = Strains::Between(e0, e1);
+    fn stress(&self, theta: [f64; 2], strains: Strains, s: Matrix2<f64>) -> PointStress {
         let [j0, j1] = self.dilatation.map(|j| 1.0 + j);
         let [t0, t1] = theta.map(|t| 1.0 + t);
         let h = (self.h[0] + self.h[1]) / 2.0;
@@ -90,7 +88,7 @@ impl PointMotion {
             half_c: (Matrix2::identity() + self.strain[0] + self.strain[1]) / 2.0,
             k: Matrix2::new(c.m22, -c.m12, -c.m21, c.m11) / f.determinant(),
             strains,
-            s: strains.stress(material, p),
+            s,
             ratio: (t0 / j0 + t1 / j1) / 2.0,
             inverse_j: (j0 + j1) / 2.0 / (j0 * j1),
             theta_over_jj: (t0 + t1) / 2.0 / (j0 * j1),
@@ -141,8 +139,14 @@ fn stresses<const N: usize, const P: usize>(
     };
     // theta - 1 = int (J - 1) dOmega / V
     let theta = [0, 1].map(|i| mean(&|p| motions[p].dilatation[i]));
-    let mut stresses: [PointStress; P] =
-        std::array::from_fn(|p| motions[p].stress(theta, material, p));
+    let mut stresses: [PointStress; P] = std::array::from_fn(|p| {
+        let [e0, e1] = motions[p].material_strain(theta);
+        let strains = match configuration {
+            Configuration::At(_) => Strains::At(e1),
+            Configuration::Between(..) => Strains::Between(e0, e1),
+        };
+        motions[p].stress(theta, strains, material.stress(p, &strains))
+    });
     // a = S : C_m/2 / (J0 J1),  A = int a J_m dOmega / V
     let shared = mean(&|p| stresses[p].kirchhoff() * stresses[p].inverse_j);
     for stress in &mut stresses {
@@ -198,7 +202,7 @@ impl Formulation for MeanDilatation {
             let half_c = &stress.half_c;
             let half_c = Vector3::new(half_c.m11, half_c.m22, 2.0 * half_c.m12);
             let b_bar = b[p] * stress.ratio + half_c * dr.transpose();
-            k += b_bar.transpose() * (stress.strains.tangent(material, p) * b_bar) * point.volume;
+            k += b_bar.transpose() * (material.tangent(p, &stress.strains) * b_bar) * point.volume;
             // S : D2Ebar without the second derivatives of J and theta
             let s = b[p].transpose() * work_conjugate(&stress.s)
                 - dj[p] * (stress.kirchhoff() * stress.inverse_j);

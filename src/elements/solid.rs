@@ -144,10 +144,11 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
         evaluate::<F, N, P>(&self.reference, material, &self.gather(u))
     }
 
-    /// Internal variables at displacements `u`, written to `updated`, and the energy dissipated on the
-    /// way to them (force length).
-    pub(super) fn update(&self, material: &Committed, u: &[f64], updated: &mut [f64]) -> f64 {
-        update::<F, N, P>(&self.reference, material, &self.gather(u), updated)
+    /// Internal variables at the end of a motion, written to `updated`, and the energy dissipated on the way to them
+    /// (force length).
+    pub(super) fn update(&self, material: &Committed, motion: Motion, updated: &mut [f64]) -> f64 {
+        let configuration = self.configuration(motion);
+        update::<F, N, P>(&self.reference, material, &configuration, updated)
     }
 
     /// Entries of a vector over all dofs at the nodes, 2 x N.

@@ -1,7 +1,24 @@
-//! What an element asks of a material: of a law at one integration point, and of the stress at all its points.
-//! Sections 2 and 4 of docs/theory.md.
+//! What an element asks of a material at an integration point. Sections 2 and 4 of docs/theory.md.
 
 use nalgebra::{Matrix2, Matrix3};
+
+/// Green-Lagrange strains at which a material is evaluated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Strains {
+    /// One strain.
+    At(Matrix2<f64>),
+    /// Those of start and end of an increment, in the energy-momentum form.
+    Between(Matrix2<f64>, Matrix2<f64>),
+}
+
+impl Strains {
+    /// The strain at the end.
+    pub fn end(&self) -> &Matrix2<f64> {
+        match self {
+            Strains::At(e) | Strains::Between(_, e) => e,
+        }
+    }
+}
 
 /// What happens across the thickness.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,60 +29,43 @@ pub struct Across {
     pub stress: f64,
 }
 
-/// A material in the plane: energy, stress and tangent at a strain E, given the internal variables z
-/// that the last accepted increment has committed. No function changes z: [`Self::update`] returns the
-/// variables of the end, which the caller commits with the increment or forgets with it.
+/// A material in the plane. From the strains of an iterate and the internal variables z0 that the last accepted
+/// increment has committed follow the stress, its tangent and the internal variables z1 of the iterate, by a local
+/// solution (return mapping) where the law needs one.
 ///
-/// Energies are per reference volume (force/length^2).
+/// Energies are per reference volume (force/length^2), the stored one apart from the dissipated one.
 pub trait ConstitutiveLaw {
     /// Number of internal variables at a point.
     fn variables(&self) -> usize {
         0
     }
 
+    /// Second Piola-Kirchhoff stress S, eq. (2.3), or energy-momentum stress, eq. (4.8) (force/length^2), and z1 at the
+    /// end of the strains, which is written to `z1`.
+    fn stress(&self, strains: &Strains, z0: &[f64], z1: &mut [f64]) -> Matrix2<f64>;
+
+    /// Tangent dS/dE of [`Self::stress`], or the symmetric part of 2 dS/dE1 in the energy-momentum form, z1 following
+    /// the strain, in Voigt order (force/length^2).
+    fn tangent(&self, strains: &Strains, z0: &[f64]) -> Matrix3<f64>;
+
     /// Stored energy W(E, z).
     fn stored_energy(&self, e: &Matrix2<f64>, z: &[f64]) -> f64;
 
-    /// W(E1, z) - W(E0, z), with a round-off that is relative to E1 - E0: it may not be formed as the
-    /// difference of two energies, which keeps no digits where E1 is near E0.
-    fn energy_change(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> f64;
-
-    /// Second Piola-Kirchhoff stress S = dW/dE, eq. (2.3) (force/length^2).
-    fn stress(&self, e: &Matrix2<f64>, z: &[f64]) -> Matrix2<f64>;
-
-    /// Tangent C = dS/dE, eq. (2.3), in Voigt order (force/length^2).
-    fn tangent(&self, e: &Matrix2<f64>, z: &[f64]) -> Matrix3<f64>;
+    /// Energy D >= 0 dissipated on the way from z0 to the z1 of the strains.
+    fn dissipation(&self, _strains: &Strains, _z0: &[f64]) -> f64 {
+        0.0
+    }
 
     /// Stretch and stress across the thickness.
     fn across(&self, e: &Matrix2<f64>, z: &[f64]) -> Across;
-
-    /// Energy-momentum stress between two strains: S:(E1 - E0) = W(E1, z) - W(E0, z),
-    /// eq. (4.8): [`super::energy_momentum::stress`] has it for any energy.
-    fn mean_stress(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix2<f64>;
-
-    /// Symmetric part of 2 dS/dE1 of [`Self::mean_stress`], in Voigt order (force/length^2).
-    fn mean_tangent(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix3<f64>;
-
-    /// Writes the internal variables at strain `e` to `updated` and returns the energy dissipated on
-    /// the way from `z` to them (force/length^2, >= 0): W(E, z) - W(E, updated).
-    fn update(&self, _e: &Matrix2<f64>, _z: &[f64], _updated: &mut [f64]) -> f64 {
-        0.0
-    }
 }
 
 /// A stress that follows from the strains at the integration points of one element: that of its
 /// material, or that of its viscosity.
 pub trait StressAtPoints {
     /// Second Piola-Kirchhoff stress at a point (force/length^2).
-    fn stress(&self, point: usize, e: &Matrix2<f64>) -> Matrix2<f64>;
+    fn stress(&self, point: usize, strains: &Strains) -> Matrix2<f64>;
 
-    /// Stress between the strains of start and end at a point (force/length^2).
-    fn mean_stress(&self, point: usize, strains: [&Matrix2<f64>; 2]) -> Matrix2<f64>;
-
-    /// Tangent of [`Self::stress`] at a point in Voigt order (force/length^2).
-    fn tangent(&self, point: usize, e: &Matrix2<f64>) -> Matrix3<f64>;
-
-    /// Symmetric part of twice the derivative of [`Self::mean_stress`] by the strain of the end, in
-    /// Voigt order (force/length^2).
-    fn mean_tangent(&self, point: usize, strains: [&Matrix2<f64>; 2]) -> Matrix3<f64>;
+    /// Tangent of [`Self::stress`] at a point, as [`ConstitutiveLaw::tangent`] (force/length^2).
+    fn tangent(&self, point: usize, strains: &Strains) -> Matrix3<f64>;
 }

@@ -6,7 +6,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
 use nalgebra::{Matrix2, Matrix3};
 
-use super::{Across, ConstitutiveLaw, PlaneSaintVenantKirchhoff};
+use super::{Across, ConstitutiveLaw, PlaneSaintVenantKirchhoff, Strains};
 
 /// Elements side by side: as many numbers as an instruction of any x86-64 processor takes. More would
 /// not fit its registers.
@@ -134,9 +134,9 @@ pub struct StrainChange {
 
 impl StrainChange {
     /// Strains of start and end of one element.
-    fn of(&self, lane: usize) -> [Matrix2<f64>; 2] {
+    fn of(&self, lane: usize) -> Strains {
         let [mean, half] = [&self.mean, &self.half].map(|strain| tensor_of(lane, strain));
-        [mean - half, mean + half]
+        Strains::Between(mean - half, mean + half)
     }
 }
 
@@ -210,25 +210,25 @@ pub struct OneByOne<'a, L>(pub &'a L);
 
 impl<L: ConstitutiveLaw> LawInLanes for OneByOne<'_, L> {
     fn stress(&self, e: &SymmetricLanes) -> SymmetricLanes {
-        tensors(|lane| self.0.stress(&tensor_of(lane, e), &[]))
+        tensors(|lane| {
+            self.0
+                .stress(&Strains::At(tensor_of(lane, e)), &[], &mut [])
+        })
     }
 
     fn mean_stress(&self, change: &StrainChange) -> SymmetricLanes {
         tensors(|lane| {
-            let [e0, e1] = change.of(lane);
-            self.0.mean_stress(&e0, &e1, &[])
+            let strains = change.of(lane);
+            self.0.stress(&strains, &[], &mut [])
         })
     }
 
     fn tangent(&self, e: &SymmetricLanes) -> TangentLanes {
-        tangents(|lane| self.0.tangent(&tensor_of(lane, e), &[]))
+        tangents(|lane| self.0.tangent(&Strains::At(tensor_of(lane, e)), &[]))
     }
 
     fn mean_tangent(&self, change: &StrainChange) -> TangentLanes {
-        tangents(|lane| {
-            let [e0, e1] = change.of(lane);
-            self.0.mean_tangent(&e0, &e1, &[])
-        })
+        tangents(|lane| self.0.tangent(&change.of(lane), &[]))
     }
 
     fn stored_energy(&self, e: &SymmetricLanes) -> Lanes {

@@ -1,5 +1,5 @@
 //! Materials: strain energy, second Piola-Kirchhoff stress and tangent at one integration point, as
-//! functions of the Green-Lagrange strain and of committed internal variables. Section 2 of
+//! functions of the Green-Lagrange strain and of internal variables. Section 2 of
 //! docs/theory.md.
 //!
 //! A deformation gradient F enters through E = (F^T F - I)/2 alone, so that every material is
@@ -8,7 +8,7 @@
 //! of the deck, a [`PlaneLaw`] is the same reduced to the plane of the elements.
 
 mod constitutive_law;
-pub mod energy_momentum;
+mod hyperelastic;
 pub mod lanes;
 mod law;
 mod neo_hooke;
@@ -18,7 +18,8 @@ mod viscosity;
 #[cfg(test)]
 pub(crate) mod yielding;
 
-pub use constitutive_law::{Across, ConstitutiveLaw, StressAtPoints};
+pub use constitutive_law::{Across, ConstitutiveLaw, Strains, StressAtPoints};
+pub use hyperelastic::Hyperelastic;
 pub(crate) use lanes::in_lanes;
 pub use lanes::{LawInLanes, OneByOne, StrainChange, TangentLanes};
 pub use law::{Committed, Law, PlaneLaw};

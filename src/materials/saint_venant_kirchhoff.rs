@@ -4,7 +4,7 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
-use super::{Across, ConstitutiveLaw, Plane, SmallStrainModuli};
+use super::{Across, Hyperelastic, Plane, SmallStrainModuli};
 
 /// St. Venant-Kirchhoff material.
 ///
@@ -100,41 +100,41 @@ impl PlaneSaintVenantKirchhoff {
     }
 }
 
-impl ConstitutiveLaw for PlaneSaintVenantKirchhoff {
+impl Hyperelastic for PlaneSaintVenantKirchhoff {
     /// W = E:C:E/2 = S:E/2, eq. (2.13)
-    fn stored_energy(&self, e: &Matrix2<f64>, z: &[f64]) -> f64 {
-        self.stress(e, z).dot(e) / 2.0
+    fn stored_energy(&self, e: &Matrix2<f64>) -> f64 {
+        self.stress(e).dot(e) / 2.0
     }
 
     /// W1 - W0 = S(E_m):(E1 - E0)
-    fn energy_change(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> f64 {
-        self.mean_stress(e0, e1, z).dot(&(e1 - e0))
+    fn energy_change(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>) -> f64 {
+        self.mean_stress(e0, e1).dot(&(e1 - e0))
     }
 
     /// S = lambda tr(E) I + 2 mu E = C:E, eq. (2.13)
-    fn stress(&self, e: &Matrix2<f64>, _z: &[f64]) -> Matrix2<f64> {
+    fn stress(&self, e: &Matrix2<f64>) -> Matrix2<f64> {
         let s = self.c * Vector3::new(e.m11, e.m22, 2.0 * e.m12);
         Matrix2::new(s.x, s.z, s.z, s.y)
     }
 
-    fn tangent(&self, _e: &Matrix2<f64>, _z: &[f64]) -> Matrix3<f64> {
+    fn tangent(&self, _e: &Matrix2<f64>) -> Matrix3<f64> {
         self.c
     }
 
     /// F_zz² = 1 + 2 E_zz
-    fn across(&self, e: &Matrix2<f64>, z: &[f64]) -> Across {
+    fn across(&self, e: &Matrix2<f64>) -> Across {
         Across {
             stretch: (1.0 - 2.0 * self.contraction * e.trace()).sqrt(),
-            stress: self.across * self.stress(e, z).trace(),
+            stress: self.across * self.stress(e).trace(),
         }
     }
 
     /// S(E_m) = (S0 + S1)/2, eq. (4.8) (Simo & Tarnow 1992): the discrete gradient of a quadratic energy.
-    fn mean_stress(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix2<f64> {
-        self.stress(&((e0 + e1) / 2.0), z)
+    fn mean_stress(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>) -> Matrix2<f64> {
+        self.stress(&((e0 + e1) / 2.0))
     }
 
-    fn mean_tangent(&self, _e0: &Matrix2<f64>, _e1: &Matrix2<f64>, _z: &[f64]) -> Matrix3<f64> {
+    fn mean_tangent(&self, _e0: &Matrix2<f64>, _e1: &Matrix2<f64>) -> Matrix3<f64> {
         self.c
     }
 }
@@ -166,7 +166,7 @@ mod tests {
     fn uniaxial_stress_in_plane_stress_gives_young() {
         // E_yy = -nu E_xx leaves S_yy = 0 and S_xx = E E_xx.
         let law = material(200.0, 0.3).in_plane(Plane::Stress);
-        let s = law.stress(&Matrix2::new(1e-3, 0.0, 0.0, -3e-4), &[]);
+        let s = law.stress(&Matrix2::new(1e-3, 0.0, 0.0, -3e-4));
         assert!((s.m11 - 0.2).abs() < 1e-15 && s.m22.abs() < 1e-16 && s.m12 == 0.0);
     }
 
@@ -180,7 +180,7 @@ mod tests {
     fn shear_strain_counts_once() {
         // S_xy = 2 G E_xy, G = E/(2(1+nu)) = 4.
         let law = material(10.0, 0.25).in_plane(Plane::Strain);
-        let s = law.stress(&Matrix2::new(0.0, 0.5, 0.5, 0.0), &[]);
+        let s = law.stress(&Matrix2::new(0.0, 0.5, 0.5, 0.0));
         assert_eq!(s, Matrix2::new(0.0, 4.0, 4.0, 0.0));
     }
 }

@@ -4,7 +4,9 @@
 use nalgebra::{Matrix2, Matrix3};
 
 use super::plane::{dyad, product};
-use super::{ConstitutiveLaw, Plane, SaintVenantKirchhoff, SmallStrainModuli, StressAtPoints};
+use super::{
+    Hyperelastic, Plane, SaintVenantKirchhoff, SmallStrainModuli, Strains, StressAtPoints,
+};
 
 /// Stiffness-proportional viscosity of a material in the plane, over an increment with dE = E1 - E0.
 ///
@@ -31,7 +33,7 @@ impl Viscosity {
         let SmallStrainModuli { young, poisson } = moduli;
         let linear = SaintVenantKirchhoff { young, poisson }.in_plane(plane);
         // 2 mu E + (kappa - mu) tr(E) I at small strains
-        let c0 = linear.tangent(&Matrix2::zeros(), &[]);
+        let c0 = linear.tangent(&Matrix2::zeros());
         Viscosity {
             shape: beta * 2.0 * c0.m33,
             volume: beta * c0.m12,
@@ -40,7 +42,7 @@ impl Viscosity {
 
     /// G and 1/J_m of eq. (4.23) between two strains.
     #[inline]
-    fn halfway([e0, e1]: [&Matrix2<f64>; 2]) -> (Matrix2<f64>, f64) {
+    fn halfway(e0: &Matrix2<f64>, e1: &Matrix2<f64>) -> (Matrix2<f64>, f64) {
         let ratio = |e: &Matrix2<f64>| (1.0 + 2.0 * e.trace() + 4.0 * e.determinant()).sqrt();
         let inverse = 2.0 / (ratio(e0) + ratio(e1));
         // cof is linear in the plane: cof(I + A) = I + cof A, A = E0 + E1
@@ -50,17 +52,16 @@ impl Viscosity {
     }
 }
 
-/// Stresses are taken over the length of the increment (force time/length^2).
+/// Stresses are taken over the length of the increment (force time/length^2). There are none at a strain that does not
+/// change.
 impl StressAtPoints for Viscosity {
-    /// None at a strain that does not change.
-    fn stress(&self, _point: usize, _e: &Matrix2<f64>) -> Matrix2<f64> {
-        Matrix2::zeros()
-    }
-
     /// S_d dt, eq. (4.23)
     #[inline]
-    fn mean_stress(&self, _point: usize, strains: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
-        let ((g, inverse), de) = (Self::halfway(strains), strains[1] - strains[0]);
+    fn stress(&self, _point: usize, strains: &Strains) -> Matrix2<f64> {
+        let Strains::Between(e0, e1) = strains else {
+            return Matrix2::zeros();
+        };
+        let ((g, inverse), de) = (Self::halfway(e0, e1), e1 - e0);
         let (row, dj) = (g * de, g.dot(&de));
         // a component of G dE G and of G, both symmetric
         let s = |gdeg: f64, g: f64| (self.shape * gdeg + self.volume * dj * g) * inverse;
@@ -73,14 +74,13 @@ impl StressAtPoints for Viscosity {
         )
     }
 
-    fn tangent(&self, _point: usize, _e: &Matrix2<f64>) -> Matrix3<f64> {
-        Matrix3::zeros()
-    }
-
     /// 2 V of eq. (4.25), positive definite: without the change of G and J_m, which is of first order in dE.
     #[inline]
-    fn mean_tangent(&self, _point: usize, strains: [&Matrix2<f64>; 2]) -> Matrix3<f64> {
-        let (g, inverse) = Self::halfway(strains);
+    fn tangent(&self, _point: usize, strains: &Strains) -> Matrix3<f64> {
+        let Strains::Between(e0, e1) = strains else {
+            return Matrix3::zeros();
+        };
+        let (g, inverse) = Self::halfway(e0, e1);
         product(&g) * (2.0 * self.shape * inverse) + dyad(&g) * (2.0 * self.volume * inverse)
     }
 }
@@ -114,7 +114,8 @@ mod tests {
         // of one volume ratio, however large the change
         let stretched = f * Matrix2::new(1.5, 0.0, 0.4, 1.0 / 1.5);
         let ends = [strain(&f), strain(&stretched)];
-        let of = |v: Viscosity, [e0, e1]: &[Matrix2<f64>; 2]| v.mean_stress(0, [e0, e1]);
+        let of =
+            |v: Viscosity, &[e0, e1]: &[Matrix2<f64>; 2]| v.stress(0, &Strains::Between(e0, e1));
         let [soft, hard] = [2.0, 2e6].map(|bulk| of(viscosity(1.0, bulk), &ends));
         assert!((soft - hard).norm() < 1e-8 * soft.norm(), "{soft} {hard}");
         // of one shape, turned; kappa = K + mu/3 is the same
@@ -137,7 +138,7 @@ mod tests {
         let exact = inverse * sigma * inverse.transpose() * f.determinant();
         let h = 1e-5;
         let [e0, e1] = [-h, h].map(|h| strain(&(f + rate * h)));
-        let found = viscosity(mu, bulk).mean_stress(0, [&e0, &e1]) / (2.0 * h);
+        let found = viscosity(mu, bulk).stress(0, &Strains::Between(e0, e1)) / (2.0 * h);
         assert!(
             (found - exact).norm() < 1e-9 * exact.norm(),
             "{found} {exact}"
@@ -156,7 +157,7 @@ mod tests {
                 let [f0, f1] = [f(0), f(4)];
                 if f0.determinant() > 0.0 && f1.determinant() > 0.0 {
                     let [e0, e1] = [strain(&f0), strain(&f1)];
-                    let work = v.mean_stress(0, [&e0, &e1]).dot(&(e1 - e0));
+                    let work = v.stress(0, &Strains::Between(e0, e1)).dot(&(e1 - e0));
                     assert!(work > 0.0, "{work}");
                 }
             }
@@ -175,8 +176,8 @@ mod tests {
             young: 100.0,
             poisson: 0.3,
         };
-        let exact = linear.in_plane(Plane::Stress).stress(&e, &[]) * BETA;
-        let found = v.mean_stress(0, [&Matrix2::zeros(), &e]);
+        let exact = linear.in_plane(Plane::Stress).stress(&e) * BETA;
+        let found = v.stress(0, &Strains::Between(Matrix2::zeros(), e));
         assert!((found - exact).norm() < 1e-8 * exact.norm());
     }
 }

@@ -1,22 +1,44 @@
-//! A law with internal variables, for tests of the state at integration points.
+//! A law with internal variables, for tests of the state at integration points: associated plasticity with a hardening
+//! that saturates, solved by a local return mapping (Simo & Hughes, Computational Inelasticity, section 3.3).
 
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
-use super::{Across, ConstitutiveLaw, SmallStrainModuli, energy_momentum};
+use super::hyperelastic::{corrected_stress, corrected_tangent};
+use super::{Across, ConstitutiveLaw, SmallStrainModuli, Strains};
 
-/// Elastic with W = G/2 (E - Z):(E - Z) at a plastic strain Z = (Z_xx, Z_yy, Z_xy); at the end of an
-/// increment Z follows until the elastic strain is within the yield surface |E - Z| <= Y.
+/// Elastic up to a yield stress that grows with the accumulated plastic strain a:
+///
+/// ```text
+/// S = G (E - Z),  W = G/2 (E - Z):(E - Z) + U(a),  |S| <= G Y + R(a)
+/// R = U' = r (1 - exp(-a/c)),  U = r (a - c (1 - exp(-a/c)))
+/// ```
+///
+/// The internal variables are Z_xx, Z_yy, Z_xy and a.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Yielding {
     /// Modulus G (force/length^2).
     pub g: f64,
-    /// Largest elastic strain Y.
+    /// Largest elastic strain Y without hardening.
     pub y: f64,
+    /// Largest growth r of the yield stress (force/length^2).
+    pub r: f64,
+    /// Plastic strain c in which most of it is reached.
+    pub c: f64,
 }
 
 /// The plastic strain Z.
 pub fn plastic(z: &[f64]) -> Matrix2<f64> {
     Matrix2::new(z[0], z[2], z[2], z[1])
+}
+
+/// End of a return mapping.
+struct Returned {
+    stress: Matrix2<f64>,
+    /// Algorithmic tangent dS/dE.
+    tangent: Matrix3<f64>,
+    /// dZ and da of the way.
+    flow: Matrix2<f64>,
+    slip: f64,
 }
 
 impl Yielding {
@@ -27,35 +49,114 @@ impl Yielding {
             poisson: 0.0,
         }
     }
+
+    /// R(a) and R'(a).
+    fn hardening(&self, a: f64) -> [f64; 2] {
+        let left = (-a / self.c).exp();
+        [self.r * (1.0 - left), self.r * left / self.c]
+    }
+
+    /// U(a).
+    fn hardening_energy(&self, a: f64) -> f64 {
+        self.r * (a + self.c * (-a / self.c).exp_m1())
+    }
+
+    /// The return from the trial stress S* = G (E - Z0) along n = S*/|S*| to the yield surface, by Newton's method on
+    /// phi = |S*| - G da - G Y - R(a0 + da) = 0, which is concave in -da: every step stays on one side.
+    ///
+    /// ```text
+    /// dZ = da n,   dS/dE = G n n/(1 + G/R') + (1 - G da/|S*|) G (I - n n)
+    /// ```
+    fn returned(&self, e: &Matrix2<f64>, z0: &[f64]) -> Returned {
+        let trial = (e - plastic(z0)) * self.g;
+        let size = trial.norm();
+        let beyond = |slip: f64| size - self.g * (slip + self.y) - self.hardening(z0[3] + slip)[0];
+        let mut slip = 0.0;
+        if beyond(0.0) > 0.0 {
+            for _ in 0..50 {
+                let step = beyond(slip) / (self.g + self.hardening(z0[3] + slip)[1]);
+                slip += step;
+                if step <= f64::EPSILON * slip {
+                    break;
+                }
+            }
+        }
+        let identity = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 0.5));
+        let elastic = Returned {
+            stress: trial,
+            tangent: identity * self.g,
+            flow: Matrix2::zeros(),
+            slip,
+        };
+        if slip <= 0.0 {
+            return elastic;
+        }
+        let n = trial / size;
+        let direction = Vector3::new(n.m11, n.m22, n.m12);
+        let along = direction * direction.transpose();
+        let slope = self.hardening(z0[3] + slip)[1];
+        let across = self.g * (1.0 - self.g * slip / size);
+        Returned {
+            stress: trial - n * (self.g * slip),
+            tangent: along * (self.g * slope / (self.g + slope)) + (identity - along) * across,
+            flow: n * slip,
+            slip,
+        }
+    }
+
+    /// The stress at the start of an increment.
+    fn start(&self, e0: &Matrix2<f64>, z0: &[f64]) -> Matrix2<f64> {
+        (e0 - plastic(z0)) * self.g
+    }
 }
 
 impl ConstitutiveLaw for Yielding {
     fn variables(&self) -> usize {
-        3
+        4
+    }
+
+    /// Between two strains (S0 + S1)/2 and what it lacks, W1 - W0 + D - S:dE = (S1 - S0):dZ/2, eq. (4.8).
+    fn stress(&self, strains: &Strains, z0: &[f64], z1: &mut [f64]) -> Matrix2<f64> {
+        let end = self.returned(strains.end(), z0);
+        let z = plastic(z0) + end.flow;
+        z1.copy_from_slice(&[z.m11, z.m22, z.m12, z0[3] + end.slip]);
+        match strains {
+            Strains::At(_) => end.stress,
+            Strains::Between(e0, e1) => {
+                let start = self.start(e0, z0);
+                corrected_stress((start + end.stress) / 2.0, &(e1 - e0), || {
+                    (end.stress - start).dot(&end.flow) / 2.0
+                })
+            }
+        }
+    }
+
+    /// With dZ/dE = I - (dS/dE)/G.
+    fn tangent(&self, strains: &Strains, z0: &[f64]) -> Matrix3<f64> {
+        let end = self.returned(strains.end(), z0);
+        let Strains::Between(e0, e1) = strains else {
+            return end.tangent;
+        };
+        let change = end.stress - self.start(e0, z0);
+        let engineering = |m: &Matrix2<f64>| Vector3::new(m.m11, m.m22, 2.0 * m.m12);
+        corrected_tangent(end.tangent, &(e1 - e0), || {
+            let change_of = end.tangent * engineering(&change) / self.g;
+            let g = end.tangent * engineering(&end.flow)
+                + Vector3::new(change.m11, change.m22, change.m12)
+                - change_of;
+            (change.dot(&end.flow) / 2.0, g / 2.0)
+        })
     }
 
     fn stored_energy(&self, e: &Matrix2<f64>, z: &[f64]) -> f64 {
-        (e - plastic(z)).norm_squared() * self.g / 2.0
+        (e - plastic(z)).norm_squared() * self.g / 2.0 + self.hardening_energy(z[3])
     }
 
-    fn energy_change(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> f64 {
-        self.stress(&((e0 + e1) / 2.0), z).dot(&(e1 - e0))
-    }
-
-    fn stress(&self, e: &Matrix2<f64>, z: &[f64]) -> Matrix2<f64> {
-        (e - plastic(z)) * self.g
-    }
-
-    fn tangent(&self, _e: &Matrix2<f64>, _z: &[f64]) -> Matrix3<f64> {
-        Matrix3::from_diagonal(&Vector3::new(self.g, self.g, self.g / 2.0))
-    }
-
-    fn mean_stress(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix2<f64> {
-        energy_momentum::stress(self, e0, e1, z)
-    }
-
-    fn mean_tangent(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>, z: &[f64]) -> Matrix3<f64> {
-        energy_momentum::tangent(self, e0, e1, z)
+    /// D = S1:dZ - (U1 - U0)
+    fn dissipation(&self, strains: &Strains, z0: &[f64]) -> f64 {
+        let end = self.returned(strains.end(), z0);
+        let stored = self.hardening_energy(z0[3] + end.slip) - self.hardening_energy(z0[3]);
+        end.stress.dot(&end.flow) - stored
     }
 
     fn across(&self, _e: &Matrix2<f64>, _z: &[f64]) -> Across {
@@ -64,12 +165,72 @@ impl ConstitutiveLaw for Yielding {
             stress: 0.0,
         }
     }
+}
 
-    fn update(&self, e: &Matrix2<f64>, z: &[f64], updated: &mut [f64]) -> f64 {
-        let elastic = e - plastic(z);
-        let beyond = (1.0 - self.y / elastic.norm()).max(0.0);
-        let flow = elastic * beyond;
-        updated.copy_from_slice(&[z[0] + flow.m11, z[1] + flow.m22, z[2] + flow.m12]);
-        self.stored_energy(e, z) - self.stored_energy(e, updated)
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAW: Yielding = Yielding {
+        g: 50.0,
+        y: 0.02,
+        r: 0.7,
+        c: 0.03,
+    };
+
+    fn strain(xx: f64, yy: f64, xy: f64) -> Matrix2<f64> {
+        Matrix2::new(xx, xy, xy, yy)
+    }
+
+    /// Stress and the internal variables of the iterate.
+    fn stress(strains: &Strains, z0: &[f64]) -> (Matrix2<f64>, [f64; 4]) {
+        let mut z1 = [0.0; 4];
+        (LAW.stress(strains, z0, &mut z1), z1)
+    }
+
+    #[test]
+    fn the_stress_of_the_iterate_is_on_its_yield_surface() {
+        let z0 = [0.01, -0.02, 0.005, 0.03];
+        let (s, z1) = stress(&Strains::At(strain(0.08, 0.0, 0.04)), &z0);
+        let yield_stress = LAW.g * LAW.y + LAW.r * (1.0 - (-z1[3] / LAW.c).exp());
+        assert!(z1[3] > z0[3] + 0.03 && (s.norm() - yield_stress).abs() < 1e-13 * yield_stress);
+        // at the strain that it has come to the law is elastic, and what yields against it yields as far as at once
+        let (again, z2) = stress(&Strains::At(strain(0.08, 0.0, 0.04)), &z1);
+        assert!((again - s).norm() < 1e-13 * s.norm());
+        assert!(z1.iter().zip(z2).all(|(a, b)| (a - b).abs() < 1e-15));
+    }
+
+    #[test]
+    fn the_tangent_is_the_symmetric_part_of_the_derivative() {
+        let (z0, e0) = ([0.01, -0.02, 0.005, 0.01], strain(0.02, -0.01, 0.01));
+        let units = [
+            strain(1.0, 0.0, 0.0),
+            strain(0.0, 1.0, 0.0),
+            strain(0.0, 0.0, 0.5),
+        ];
+        let elastic = e0 + strain(0.004, 0.002, 0.001);
+        for end in [strain(0.08, 0.0, 0.04), strain(-0.05, 0.01, 0.02), elastic] {
+            let at: &dyn Fn(Matrix2<f64>) -> Strains = &Strains::At;
+            let between: &dyn Fn(Matrix2<f64>) -> Strains = &|e| Strains::Between(e0, e);
+            for (strains, factor) in [(at, 1.0), (between, 2.0)] {
+                let columns = units.map(|unit| {
+                    let s = |h: f64| stress(&strains(end + unit * h), &z0).0;
+                    let d = (s(1e-6) - s(-1e-6)) / 2e-6 * factor;
+                    Vector3::new(d.m11, d.m22, d.m12)
+                });
+                let exact = Matrix3::from_columns(&columns);
+                let symmetric = (exact + exact.transpose()) / 2.0;
+                let found = LAW.tangent(&strains(end), &z0);
+                assert!((found - symmetric).norm() < 1e-7 * exact.norm());
+            }
+        }
+    }
+
+    #[test]
+    fn a_long_way_back_dissipates_too() {
+        // from yield in one direction to yield in the other, in one increment
+        let (_, z0) = stress(&Strains::At(strain(0.1, 0.0, 0.0)), &[0.0; 4]);
+        let strains = Strains::Between(strain(0.1, 0.0, 0.0), strain(-0.2, 0.0, 0.0));
+        assert!(LAW.dissipation(&strains, &z0) > LAW.g * LAW.y * 0.1);
     }
 }

@@ -15,7 +15,7 @@ use crate::dynamics::step::{
     ClosedConstraints, EffectiveStiffness, Equilibrium, Interval, StartVelocity, StepProblem,
     Workspace, sum, write_difference, write_sum,
 };
-use crate::elements::Updated;
+use crate::elements::{Motion, Updated};
 
 /// Passes of an attempt that are made in any case; further ones only while they will end within MAX PASSES.
 const PATIENCE: usize = 25;
@@ -483,7 +483,10 @@ impl<'m> Attempt<'_, 'm> {
         let Updated {
             variables: internal,
             dissipated,
-        } = (self.problem.elements).update(&u, &self.start.internal);
+        } = (self.problem.elements).update(Motion {
+            start: Some(&self.start.u),
+            ..Motion::at(&u, &self.start.internal)
+        });
         let end = State {
             u,
             v,

@@ -57,7 +57,7 @@ pub(crate) fn bring_to_rest(
     let found = releasing.rest();
     let safe = found.filter(|u| !releasing.goes_through(&start, u));
     let found = safe.and_then(|u| Some((releasing.release(&u)?, u)));
-    let Some((mut release, u)) = found else {
+    let Some(((mut release, internal), u)) = found else {
         return Release::default();
     };
     let at = problem.configurations(&u, &u);
@@ -66,8 +66,7 @@ pub(crate) fn bring_to_rest(
         Some((Constraint::new(target, &at), pair.force))
     };
     release.opened = opened.iter().filter_map(constraint).collect();
-    let updated = problem.elements.update(&u, &start.state.internal);
-    (solved.end.u, solved.end.internal) = (u, updated.variables);
+    (solved.end.u, solved.end.internal) = (u, internal);
     release
 }
 
@@ -163,21 +162,28 @@ impl Releasing<'_, '_> {
         found.is_some()
     }
 
-    /// What the rest at the displacements `u` takes, eq. (6.13); none if it would give energy.
-    fn release(&self, u: &[f64]) -> Option<Release> {
+    /// What the rest at the displacements `u` takes, eq. (6.13), and the internal variables there; none if it would
+    /// give energy.
+    fn release(&self, u: &[f64]) -> Option<(Release, Vec<f64>)> {
         let (elements, end) = (self.problem.elements, self.interval.end);
         let before = elements.evaluate(&self.end.u, &self.end.internal);
-        let after = elements.evaluate(u, &self.end.internal);
+        let internal = (elements.update(Motion {
+            start: Some(&self.end.u),
+            ..Motion::at(u, &self.end.internal)
+        }))
+        .variables;
+        let after = elements.evaluate(u, &internal);
         let both = before.iter().zip(&after);
         let taken: f64 = both.map(|(b, a)| b.energy - a.energy).sum();
         let strain: f64 = before.iter().map(|element| element.energy).sum();
         let load = (self.problem.loads).at(elements, end, u);
         let load_work = dot(&load, &difference(u, &self.end.u));
         let loss = taken + load_work;
-        (loss >= -ROUND_OFF * strain).then(|| Release {
+        let release = Release {
             loss,
             load_work,
             opened: Vec::new(),
-        })
+        };
+        (loss >= -ROUND_OFF * strain).then_some((release, internal))
     }
 }

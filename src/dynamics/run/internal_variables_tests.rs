@@ -5,7 +5,7 @@ use std::io;
 
 use super::run;
 use crate::dynamics::{Cutback, IncrementReport, Observer, Outcome};
-use crate::elements::Elements;
+use crate::elements::{Elements, Motion};
 use crate::materials::{Law, yielding::Yielding};
 use crate::model::{
     Damping, Element, ElementType, Frames, Increments, Material, Model, Procedure, Section,
@@ -13,7 +13,12 @@ use crate::model::{
 };
 use crate::prepare::PreparedModel;
 
-const YIELDING: Yielding = Yielding { g: 50.0, y: 0.02 };
+const YIELDING: Yielding = Yielding {
+    g: 50.0,
+    y: 0.02,
+    r: 0.3,
+    c: 0.05,
+};
 /// Nodes along a side of the block.
 const SIDE: usize = 4;
 
@@ -100,7 +105,10 @@ fn checked_run(mut model: Model, step: Step) -> Keep {
     for pair in keep.reports.windows(2) {
         let [before, after] = [&pair[0], &pair[1]];
         // from what the last accepted increment has left, whatever was tried in between
-        let updated = elements.update(&after.state.u, &before.state.internal);
+        let updated = elements.update(Motion {
+            start: Some(&before.state.u),
+            ..Motion::at(&after.state.u, &before.state.internal)
+        });
         assert_eq!(after.state.internal, updated.variables);
         let [d0, d1] = [before, after].map(|report| report.energy.material_dissipation);
         assert!(updated.dissipated >= 0.0 && (d1 - d0 - updated.dissipated).abs() < 1e-13 * start);
