@@ -1,11 +1,12 @@
 //! Decks with parts and an assembly made flat: every instance gets the cards of its part, whose
 //! spans name the instance. What a name or a number means in an instance is left to the reader.
 
-use super::card::{Card, Instance, Placement, Row};
+use super::card::{Card, Instance, Placement};
 use super::collect::Deck;
 use super::keywords::{Scope, Status};
+use super::lines::Line;
 use super::text::{Name, Text};
-use crate::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Sources, Span, closest};
+use crate::diagnostics::{Code, Diagnostics, Severity, Sources, Span, closest, list_of};
 
 /// The deck with the cards of the parts in place of their instances.
 pub(in crate::deck) fn flatten(deck: Deck, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
@@ -95,7 +96,7 @@ fn instance_name(head: &Card, flat: &Deck, d: &mut Diagnostics) -> Option<Name> 
     let name = text.name(d)?;
     if flat.instance(&name.key).is_some() {
         let message = format!("instance {name} is defined a second time");
-        d.push(Diagnostic::error(Code::RepeatedName, text.span, message));
+        d.error(Code::RepeatedName, text.span, message);
         return None;
     }
     Some(name)
@@ -122,20 +123,12 @@ fn undefined<'n>(
     d: &mut Diagnostics,
 ) {
     let message = format!("{what} {} is not defined", text.text);
-    let error = Diagnostic::error(Code::UndefinedName, text.span, message);
-    let meant = closest(text.text, names.clone().map(|name| name.typed.as_str()));
-    d.push(match (meant, names.clone().next()) {
-        (Some(meant), _) => error.suggest(Some(meant)),
-        (None, None) => error.help(format!("the deck has no {what}s")),
-        (None, Some(_)) => {
-            let all: Vec<&str> = names.map(|name| name.typed.as_str()).collect();
-            let (the, are) = match all.len() {
-                1 => ("the only ", " is"),
-                _ => ("the ", "s are"),
-            };
-            error.help(format!("{the}{what}{are} {}", all.join(", ")))
-        }
-    });
+    let names = names.map(|name| name.typed.as_str());
+    let error = d.error(Code::UndefinedName, text.span, message);
+    match closest(text.text, names.clone()) {
+        Some(meant) => error.suggest(Some(meant)),
+        None => error.help(list_of(what, names)),
+    };
 }
 
 /// The card with its rows in the instance that its parameter names.
@@ -179,8 +172,8 @@ fn report_unused(parts: &[Part], flat: &Deck, d: &mut Diagnostics) {
         if let (Some(name), false) = (&part.name, flat.incomplete) {
             let message = format!("part {name} has no instance");
             let span = part.head.span_of("NAME");
-            let warning = Diagnostic::warning(Code::AssemblyStructure, span, message);
-            d.push(warning.help("left out"));
+            d.warning(Code::AssemblyStructure, span, message)
+                .help("left out");
         }
     }
 }
@@ -258,11 +251,7 @@ impl Structure {
         };
         if let Some(name) = name.as_ref().filter(|name| known(name)) {
             let message = format!("part {name} is defined a second time");
-            d.push(Diagnostic::error(
-                Code::RepeatedName,
-                head.span_of("NAME"),
-                message,
-            ));
+            d.error(Code::RepeatedName, head.span_of("NAME"), message);
         }
         self.parts.push(Part {
             name,
@@ -278,7 +267,7 @@ impl Structure {
         head.has("NAME");
         if std::mem::replace(&mut self.has_assembly, true) {
             let message = "*ASSEMBLY appears a second time here";
-            d.push(Diagnostic::error(Code::RepeatedCard, head.span, message));
+            d.error(Code::RepeatedCard, head.span, message);
         }
     }
 
@@ -287,12 +276,12 @@ impl Structure {
             report_open(self.place, head.span, d);
         }
         if self.place == Place::Model {
-            let error = Diagnostic::error(
+            d.error(
                 Code::WrongPlace,
                 head.span,
                 "*INSTANCE must stand in the assembly",
-            );
-            d.push(error.help("move it between *ASSEMBLY and *END ASSEMBLY"));
+            )
+            .help("move it between *ASSEMBLY and *END ASSEMBLY");
         }
         self.place = Place::Instance;
         self.items.push(Item::Instance(head, Vec::new()));
@@ -305,11 +294,7 @@ impl Structure {
         } else if self.place != place {
             let head = place.head().unwrap_or_default();
             let message = format!("{} without *{head}", card.title());
-            d.push(Diagnostic::error(
-                Code::AssemblyStructure,
-                card.span,
-                message,
-            ));
+            d.error(Code::AssemblyStructure, card.span, message);
         }
         self.place = outer;
     }
@@ -412,8 +397,8 @@ impl Place {
             Place::Instance => "in an instance",
         };
         let message = format!("{} cannot stand {place}", card.title());
-        let error = Diagnostic::error(Code::WrongPlace, card.span, message);
-        d.push(error.help(Place::advice(card)));
+        d.error(Code::WrongPlace, card.span, message)
+            .help(Place::advice(card));
     }
 }
 
@@ -421,8 +406,8 @@ impl Place {
 pub(super) fn report_open(place: Place, span: Span, d: &mut Diagnostics) {
     if let Some(head) = place.head() {
         let message = format!("the *{head} before is not closed");
-        let error = Diagnostic::error(Code::AssemblyStructure, span, message);
-        d.push(error.help(format!("close it with *END {head}")));
+        d.error(Code::AssemblyStructure, span, message)
+            .help(format!("close it with *END {head}"));
     }
 }
 
@@ -437,7 +422,7 @@ pub(super) fn placement(card: &Card, d: &mut Diagnostics) -> Placement {
     let rotation = rows.next().and_then(|row| rotation(row, d));
     if let Some(extra) = rows.next() {
         let message = "an instance has a translation and a rotation only";
-        d.push(Diagnostic::error(Code::StrayData, extra.span(), message));
+        d.error(Code::StrayData, extra.span(), message);
     }
     Placement {
         translation: translation.unwrap_or_default(),
@@ -446,18 +431,18 @@ pub(super) fn placement(card: &Card, d: &mut Diagnostics) -> Placement {
 }
 
 /// `tx, ty, tz`
-fn translation(row: Row, d: &mut Diagnostics) -> [f64; 2] {
+fn translation(row: Line, d: &mut Diagnostics) -> [f64; 2] {
     row.at_most(3, d);
     let [x, y, z] = [0, 1, 2].map(|i| row.real_or(i, 0.0, d).unwrap_or(0.0));
     if z != 0.0 {
-        let span = row.get(2).map_or(row.span(), |field| field.span);
+        let span = row.span_at(2);
         out_of_plane(span, "this translation leads out of the plane", d);
     }
     [x, y]
 }
 
 /// `x1, y1, z1, x2, y2, z2, angle`: centre, and cosine and sine of the angle.
-fn rotation(row: Row, d: &mut Diagnostics) -> Option<([f64; 2], [f64; 2])> {
+fn rotation(row: Line, d: &mut Diagnostics) -> Option<([f64; 2], [f64; 2])> {
     row.at_most(7, d);
     let point = |first: usize, d: &mut Diagnostics| {
         [0, 1, 2].map(|i| row.real_or(first + i, 0.0, d).unwrap_or(0.0))
@@ -487,6 +472,6 @@ fn cosine_and_sine(degrees: f64) -> [f64; 2] {
 }
 
 fn out_of_plane(span: Span, message: &str, d: &mut Diagnostics) {
-    let error = Diagnostic::error(Code::Placement, span, message);
-    d.push(error.help("the program is plane: instances move in x and y and turn about z"));
+    d.error(Code::Placement, span, message)
+        .help("the program is plane: instances move in x and y and turn about z");
 }

@@ -1,96 +1,198 @@
-//! The lines of a deck file: their kind, their fields, the assignments of keyword lines, and blocks
-//! of data lines among them.
+//! The lines of a deck file, blocks of data lines among them, and the fields of a line with typed
+//! access; a wrong or missing field is reported with its place.
 
-use super::content::lines_fit;
-use crate::diagnostics::{Code, Diagnostic, Diagnostics, FileId, Span};
+use super::number::{self, LONGEST_NUMBER};
+use super::text::Text;
+use crate::diagnostics::{Code, Diagnostics, FileId, Span};
 use memchr::{memchr, memchr_iter, memrchr};
-use nom::bytes::complete::{tag, take_till};
-use nom::combinator::opt;
-use nom::sequence::preceded;
-use nom::{IResult, Parser};
-use nom_locate::LocatedSpan;
+use smallvec::SmallVec;
 use std::ops::Range;
 
 /// One line of a file.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Line<'a> {
-    /// File it stands in.
+pub struct Line<'a> {
+    /// The file that it stands in.
     pub file: FileId,
-    /// Its number, from 1.
+    /// Its number in the file, from 1.
     pub number: u32,
-    /// Byte of the file at which it starts.
-    pub start: usize,
+    /// The instance of a part that its names and numbers belong to, from 1; 0 for none.
+    pub instance: u32,
     /// Its text without the line end.
     pub text: &'a str,
 }
 
 /// What a line is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
-    /// Nothing but blanks.
+pub(crate) enum LineKind {
+    /// It has nothing but blanks.
     Blank,
-    /// Begins with two stars.
+    /// It begins with two stars.
     Comment,
-    /// Begins with one star.
+    /// It begins with one star.
     Keyword,
-    /// Anything else.
+    /// It begins with anything else.
     Data,
 }
 
 impl<'a> Line<'a> {
     /// What it is.
-    pub fn kind(&self) -> Kind {
-        kind_of(self.text)
+    pub(super) fn kind(self) -> LineKind {
+        // the first character of most lines
+        if let Some(b'0'..=b'9') = self.text.as_bytes().first() {
+            return LineKind::Data;
+        }
+        match self.text.trim_start() {
+            "" => LineKind::Blank,
+            text if text.starts_with("**") => LineKind::Comment,
+            text if text.starts_with('*') => LineKind::Keyword,
+            _ => LineKind::Data,
+        }
     }
 
     /// Whether its last visible character is a comma.
-    pub fn ends_with_comma(&self) -> bool {
+    pub(super) fn ends_with_comma(self) -> bool {
         self.text.trim_end().ends_with(',')
     }
 
-    /// Place of the bytes from `start` to `end`.
-    pub fn span(&self, start: usize, end: usize) -> Span {
-        span_in(self.text, self.file, self.number, start, end)
+    /// Place of its visible text.
+    pub fn span(self) -> Span {
+        let (start, end) = trimmed(self.text, 0, self.text.len());
+        self.span_of(start..end)
     }
 
-    /// Place of its visible text.
-    pub fn visible_span(&self) -> Span {
-        let start = self.text.len() - self.text.trim_start().len();
-        self.span(start, self.text.trim_end().len())
+    /// Place of some of its bytes.
+    pub(super) fn span_of(self, bytes: Range<usize>) -> Span {
+        let is_ascii = self.text.is_ascii();
+        let characters = |bytes: Range<usize>| match is_ascii {
+            true => bytes.len() as u32,
+            false => self.text.get(bytes).unwrap_or("").chars().count() as u32,
+        };
+        Span {
+            file: self.file,
+            line: self.number,
+            column: characters(0..bytes.start) + 1,
+            length: characters(bytes).max(1),
+            instance: self.instance,
+        }
     }
 
     /// Reports a quotation mark that is not closed.
-    pub fn check_quotes(&self, d: &mut Diagnostics) {
+    pub(super) fn check_quotes(self, d: &mut Diagnostics) {
         let mut marks = self.text.match_indices('"');
         if let (Some((at, _)), 1) = (marks.next_back(), (marks.count() + 1) % 2) {
             let message = "this quotation mark is not closed on its line";
-            d.push(Diagnostic::error(
-                Code::OpenQuote,
-                self.span(at, at + 1),
-                message,
-            ));
+            d.error(Code::OpenQuote, self.span_of(at..at + 1), message);
         }
     }
-}
 
-/// What a line with this text is.
-pub(super) fn kind_of(line: &str) -> Kind {
-    // the first character of most lines
-    if let Some(b'0'..=b'9') = line.as_bytes().first() {
-        return Kind::Data;
+    /// All fields in order, empty ones included.
+    pub fn fields(self) -> impl Iterator<Item = Text<'a>> {
+        Fields::new(self.text).map(move |(start, end)| Text {
+            text: self.text.get(start..end).unwrap_or(""),
+            span: self.span_of(start..end),
+        })
     }
-    let text = line.trim_start();
-    match text {
-        "" => Kind::Blank,
-        _ if text.starts_with("**") => Kind::Comment,
-        _ if text.starts_with('*') => Kind::Keyword,
-        _ => Kind::Data,
+
+    /// Field `index`, from 0; `None` where it is blank.
+    pub fn get(self, index: usize) -> Option<Text<'a>> {
+        self.fields().nth(index).filter(|field| !field.is_empty())
+    }
+
+    /// Place of field `index`, or of the whole line where it is blank.
+    pub fn span_at(self, index: usize) -> Span {
+        self.get(index).map_or(self.span(), |field| field.span)
+    }
+
+    /// Field `index`; reports that `what` is missing where it is blank.
+    pub fn required(self, index: usize, what: &str, d: &mut Diagnostics) -> Option<Text<'a>> {
+        let field = self.get(index);
+        if field.is_none() {
+            let empty = self.fields().nth(index).map(|field| field.span);
+            let message = format!("field {} is missing: {what}", index + 1);
+            d.error(Code::MissingField, empty.unwrap_or(self.span()), message);
+        }
+        field
+    }
+
+    /// The number in field `index`; reports that `what` is missing where it is blank.
+    pub fn real(self, index: usize, what: &str, d: &mut Diagnostics) -> Option<f64> {
+        self.required(index, what, d)?.real(d)
+    }
+
+    /// The number in field `index`, or `default` where it is blank.
+    pub fn real_or(self, index: usize, default: f64, d: &mut Diagnostics) -> Option<f64> {
+        match self.get(index) {
+            Some(field) => field.real(d),
+            None => Some(default),
+        }
+    }
+
+    /// The fields of a line without quotation marks, of which no empty one is dropped but the last.
+    fn plain_fields(self) -> impl Iterator<Item = &'a str> {
+        let text = self.text.trim_ascii();
+        let fields = text.strip_suffix(',').unwrap_or(text).split(',');
+        fields.map(str::trim_ascii)
+    }
+
+    /// The integers without sign that the line consists of; none if it has anything else.
+    pub fn plain_integers(self) -> Option<SmallVec<[u64; 5]>> {
+        self.plain_fields()
+            .map(|field| field.parse().ok())
+            .collect()
+    }
+
+    /// The integer without sign that the line begins with and its coordinates, 0 where they are missing;
+    /// none if the line has anything else, or numbers that other codes read differently.
+    pub fn plain_point(self) -> Option<(u64, [f64; 3])> {
+        let mut fields = self.plain_fields();
+        let label = fields.next()?.parse().ok()?;
+        let mut at = [0.0; 3];
+        for (index, field) in fields.enumerate() {
+            let value = number::plain_real(field).filter(|_| field.len() <= LONGEST_NUMBER)?;
+            *at.get_mut(index)? = value;
+        }
+        Some((label, at))
+    }
+
+    /// The first field from `count` on that is not blank.
+    fn field_behind(self, count: usize) -> Option<Text<'a>> {
+        self.fields().skip(count).find(|field| !field.is_empty())
+    }
+
+    /// Reports fields beyond the first `count`.
+    pub fn at_most(self, count: usize, d: &mut Diagnostics) {
+        if let Some(extra) = self.field_behind(count) {
+            let fields = if count == 1 { "field is" } else { "fields are" };
+            let message = format!("only {count} {fields} read on this line");
+            let error = d.error(Code::ExtraField, extra.span, message);
+            if self.has_decimal_comma() {
+                error.help(
+                    "a comma ends a field: write a decimal point where a decimal comma is meant",
+                );
+            }
+        }
+    }
+
+    /// Whether the line may have a decimal comma: two fields of digits one after the other, such as
+    /// `0,25`, after the first.
+    fn has_decimal_comma(self) -> bool {
+        let fields: Vec<Text> = self.fields().skip(1).collect();
+        let mut pairs = fields.windows(2);
+        pairs.any(|pair| pair.iter().all(Text::is_digits))
+    }
+
+    /// Warns that the first field from `count` on that is not blank has no effect.
+    pub fn without_effect(self, count: usize, message: &str, help: &str, d: &mut Diagnostics) {
+        if let Some(field) = self.field_behind(count) {
+            d.warning_once(Code::IgnoredParameter, field.span, message)
+                .help(help);
+        }
     }
 }
 
 /// Byte ranges of the fields between the commas of a line, without blanks around them; an empty
 /// last field is dropped. Commas between quotation marks do not count.
-pub(crate) struct Fields<'a> {
+pub(super) struct Fields<'a> {
     text: &'a str,
     /// Where the next field starts; behind the text after the last one.
     start: usize,
@@ -131,24 +233,8 @@ impl Iterator for Fields<'_> {
     }
 }
 
-/// Place of the bytes from `start` to `end` of line `number`.
-pub(crate) fn span_in(text: &str, file: FileId, number: u32, start: usize, end: usize) -> Span {
-    let is_ascii = text.is_ascii();
-    let characters = |range: std::ops::Range<usize>| match is_ascii {
-        true => range.len() as u32,
-        false => text.get(range).unwrap_or("").chars().count() as u32,
-    };
-    Span {
-        file,
-        line: number,
-        column: characters(0..start) + 1,
-        length: characters(start..end).max(1),
-        instance: 0,
-    }
-}
-
 /// The bytes from `start` to `end` without blanks around them.
-pub(crate) fn trimmed(text: &str, start: usize, end: usize) -> (usize, usize) {
+fn trimmed(text: &str, start: usize, end: usize) -> (usize, usize) {
     let bytes = text.as_bytes().get(start..end).unwrap_or_default();
     let blanks = bytes.iter().take_while(|&&byte| byte == b' ').count();
     let visible = bytes.get(blanks..).unwrap_or_default();
@@ -161,51 +247,19 @@ pub(crate) fn trimmed(text: &str, start: usize, end: usize) -> (usize, usize) {
     (first, first + piece.trim().len())
 }
 
-/// Name and value of a parameter, `NAME` or `NAME=value`, with their offsets in bytes.
-pub(crate) struct Assignment<'a> {
-    /// The name and where it starts.
-    pub name: (&'a str, usize),
-    /// The value and where it starts.
-    pub value: Option<(&'a str, usize)>,
-}
-
-/// Splits a parameter at its equals sign.
-pub(crate) fn assignment(text: &str) -> Assignment<'_> {
-    let input = LocatedSpan::new(text);
-    let parsed: IResult<_, _> = (
-        take_till(|c| c == '='),
-        opt(preceded(tag("="), take_till(|_| false))),
-    )
-        .parse(input);
-    let piece = |span: LocatedSpan<&'_ str>| -> (usize, usize) {
-        let start = span.location_offset();
-        trimmed(text, start, start + span.fragment().len())
-    };
-    let cut = |(first, last): (usize, usize)| (text.get(first..last).unwrap_or(""), first);
-    match parsed {
-        Ok((_, (name, value))) => Assignment {
-            name: cut(piece(name)),
-            value: value.map(|value| cut(piece(value))),
-        },
-        Err(_) => Assignment {
-            name: (text, 0),
-            value: None,
-        },
-    }
-}
-
 /// The lines of a text, which end with LF or CRLF.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Lines<'a> {
-    file: FileId,
+pub(super) struct Lines<'a> {
+    /// Their file.
+    pub file: FileId,
     /// The text up to the end of the last line.
-    text: &'a str,
+    pub text: &'a str,
     /// Byte at which the next line starts.
-    start: usize,
+    pub start: usize,
     /// Number of the line before it.
-    number: u32,
-    /// Number of the last line, where it is known.
-    last: Option<u32>,
+    pub before: u32,
+    /// The instance of a part that names and numbers belong to.
+    pub instance: u32,
 }
 
 impl<'a> Lines<'a> {
@@ -215,110 +269,38 @@ impl<'a> Lines<'a> {
             file,
             text,
             start: 0,
-            number: 0,
-            last: None,
+            before: 0,
+            instance: 0,
         }
-    }
-
-    /// The lines in some bytes of a text, the numbers of which are those from `numbers.start` on.
-    pub fn between(
-        file: FileId,
-        text: &'a str,
-        bytes: Range<usize>,
-        numbers: Range<u32>,
-    ) -> Lines<'a> {
-        Lines {
-            file,
-            text: text.get(..bytes.end).unwrap_or(text),
-            start: bytes.start,
-            number: numbers.start.saturating_sub(1),
-            last: Some(numbers.end.saturating_sub(1)),
-        }
-    }
-
-    /// Their file.
-    pub fn file(&self) -> FileId {
-        self.file
-    }
-
-    /// Their bytes.
-    pub fn bytes(&self) -> Range<usize> {
-        self.start..self.text.len()
-    }
-
-    /// Their numbers.
-    pub fn numbers(&self) -> Range<u32> {
-        let last = self.last.unwrap_or_else(|| {
-            let ends = memchr_iter(b'\n', self.text().as_bytes()).count();
-            let is_open = !self.text.is_empty() && !self.text.ends_with('\n');
-            self.number + ends as u32 + u32::from(is_open)
-        });
-        self.number + 1..last + 1
     }
 
     /// The text of these lines.
-    pub fn text(&self) -> &'a str {
+    pub fn rest(&self) -> &'a str {
         self.text.get(self.start..).unwrap_or("")
     }
 
+    /// How many there are.
+    pub fn count_lines(&self) -> u32 {
+        let text = self.rest();
+        let is_open = !text.is_empty() && !text.ends_with('\n');
+        memchr_iter(b'\n', text.as_bytes()).count() as u32 + u32::from(is_open)
+    }
+
     /// Those among them that are data lines.
-    pub fn data(mut self) -> impl Iterator<Item = Line<'a>> {
-        std::iter::from_fn(move || self.next_data())
+    pub fn data(self) -> impl Iterator<Item = Line<'a>> + Clone {
+        self.filter(|line| line.kind() == LineKind::Data)
     }
 
-    /// Takes the lines up to the next data line.
-    pub fn next_data(&mut self) -> Option<Line<'a>> {
-        self.find(|line| line.kind() == Kind::Data)
-    }
-
-    /// Takes the next line, if it is one that `read` takes: a data line of which it says what it
-    /// holds, and what follows it from its end on.
-    pub fn next_read<T>(
-        &mut self,
-        read: impl FnOnce(&[u8]) -> Option<(T, &[u8])>,
-    ) -> Option<(Line<'a>, T)> {
-        let text = self.text();
-        let (value, after) = read(text.as_bytes())?;
-        let length = text.len() - after.len();
-        let end = match after {
-            [b'\r', b'\n', ..] => 2,
-            rest => rest.len().min(1),
-        };
-        let start = self.start;
-        self.start += length + end;
-        self.number += 1;
-        let line = Line {
-            file: self.file,
-            number: self.number,
-            start,
-            text: text.get(..length)?,
-        };
-        Some((line, value))
-    }
-
-    /// Whether none is longer than `most` bytes; a line that ends with CRLF may be said to be.
-    pub fn fit(&self, most: usize) -> bool {
-        lines_fit(self.text().as_bytes(), 0, most)
-    }
-
-    /// Takes the lines before the next keyword line; `first`, the last line taken, comes before
-    /// them.
-    pub fn take_block(&mut self, first: &Line) -> Lines<'a> {
-        let rest = self.text();
-        let length = before_keyword(rest);
-        let end = self.start + length;
-        let taken = rest.as_bytes().get(..length).unwrap_or_default();
-        let is_open = taken.last().is_some_and(|&byte| byte != b'\n');
-        let count = memchr_iter(b'\n', taken).count() as u32 + u32::from(is_open);
-        self.start = end;
-        self.number += count;
-        Lines {
+    /// Takes the lines before the next keyword line.
+    pub fn take_block(&mut self) -> Lines<'a> {
+        let end = self.start + before_keyword(self.rest());
+        let block = Lines {
             text: self.text.get(..end).unwrap_or(self.text),
-            start: first.start,
-            number: first.number - 1,
-            last: Some(self.number),
             ..*self
-        }
+        };
+        self.start = end;
+        self.before += block.count_lines();
+        block
     }
 }
 
@@ -326,19 +308,18 @@ impl<'a> Iterator for Lines<'a> {
     type Item = Line<'a>;
 
     fn next(&mut self) -> Option<Line<'a>> {
-        let rest = self.text();
+        let rest = self.rest();
         if rest.is_empty() {
             return None;
         }
         let end = memchr(b'\n', rest.as_bytes());
         let line = rest.get(..end.unwrap_or(rest.len())).unwrap_or(rest);
-        let start = self.start;
         self.start += line.len() + usize::from(end.is_some());
-        self.number += 1;
+        self.before += 1;
         Some(Line {
             file: self.file,
-            number: self.number,
-            start,
+            number: self.before,
+            instance: self.instance,
             text: line.strip_suffix('\r').unwrap_or(line),
         })
     }
@@ -350,38 +331,122 @@ fn before_keyword(text: &str) -> usize {
     let bytes = text.as_bytes();
     let mut start = 0;
     while let Some(star) = bytes.get(start..).and_then(|rest| memchr(b'*', rest)) {
-        let (before, after) = bytes.split_at(start + star);
+        let before = bytes.get(..start + star).unwrap_or_default();
         start = memrchr(b'\n', before).map_or(0, |end| end + 1);
-        let end = memchr(b'\n', after).map_or(bytes.len(), |end| before.len() + end);
-        if kind_of(text.get(start..end).unwrap_or("")) == Kind::Keyword {
+        let Some(line) = Lines::new(FileId(0), text.get(start..).unwrap_or("")).next() else {
+            break;
+        };
+        if line.kind() == LineKind::Keyword {
             return start;
         }
-        start = end;
+        start += line.text.len();
     }
     bytes.len()
+}
+
+/// The byte at which the first line of more than `most` bytes has as many; a line that ends with CRLF may
+/// be said to be too long.
+pub(super) fn overlong(text: &[u8], most: usize) -> Option<usize> {
+    let mut start = 0;
+    while text.len() - start > most {
+        let line = text.get(start..=start + most)?;
+        match memrchr(b'\n', line) {
+            Some(end) => start += end + 1,
+            None => return Some(start + most),
+        }
+    }
+    None
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::deck::number::{integer, real};
+    use proptest::prelude::*;
 
     #[test]
     fn a_block_ends_before_the_next_keyword_line() {
         let text = "1, 2\r\n\n** 3\n 4*5 \n\u{a0}*NODE\n6";
         let mut lines = Lines::new(FileId(0), text);
-        let first = lines.next().expect("a line");
-        let block = lines.take_block(&first);
+        let block = lines.take_block();
         let found: Vec<_> = block.data().map(|line| (line.number, line.text)).collect();
         assert_eq!(found, [(1, "1, 2"), (4, " 4*5 ")]);
-        assert_eq!(block.numbers(), 1..5);
+        assert_eq!(block.count_lines(), 4);
         let rest: Vec<_> = lines.map(|line| (line.number, line.text)).collect();
         assert_eq!(rest, [(5, "\u{a0}*NODE"), (6, "6")]);
     }
 
     #[test]
     fn lines_fit_up_to_the_limit() {
-        let fit = |text| Lines::new(FileId(0), text).fit(3);
+        let fit = |text: &str| overlong(text.as_bytes(), 3).is_none();
         assert!(fit("") && fit("abc") && fit("abc\nabc\n") && fit("\n\n\n\n\n"));
         assert!(!fit("abcd") && !fit("abcd\n") && !fit("abc\nabcd\na"));
+    }
+
+    /// Checks that what is read of a plain line is what its fields are.
+    fn assert_plain_is_fields(text: &str) {
+        let line = Lines::new(FileId(0), text).next().unwrap_or(Line {
+            file: FileId(0),
+            number: 1,
+            instance: 0,
+            text: "",
+        });
+        let fields: Vec<&str> = line.fields().map(|field| field.text).collect();
+        if let Some(found) = line.plain_integers() {
+            let whole = fields
+                .iter()
+                .map(|field| integer(field).ok()?.try_into().ok());
+            assert_eq!(Some(found.to_vec()), whole.collect(), "{text}");
+        }
+        if let Some((label, at)) = line.plain_point() {
+            assert_eq!(integer(fields[0]), Ok(label as i64), "{text}");
+            let bits = |field: &&str| real(field).expect("a number").value.to_bits();
+            let mut expected: Vec<u64> = fields[1..].iter().map(bits).collect();
+            expected.resize(3, 0.0_f64.to_bits());
+            assert_eq!(at.map(f64::to_bits).to_vec(), expected, "{text}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn any_plain_line_is_what_its_fields_are(text in "[0-9]{1,4}( ?[0-9., \r+eE-]{0,3}){0,12}") {
+            assert_plain_is_fields(&text);
+        }
+    }
+
+    #[test]
+    fn lines_of_other_than_plain_numbers_are_not_plain() {
+        let line = |text| Line {
+            file: FileId(0),
+            number: 1,
+            instance: 0,
+            text,
+        };
+        let (a, b) = ([-0.5, 2.0, 300.0], [1.0, 1e-3, 0.0]);
+        assert_eq!(line("1, -.5, 2.,+3e2 ").plain_point(), Some((1, a)));
+        assert_eq!(line(" 9 ,1,1e-3").plain_point(), Some((9, b)));
+        let others = [
+            "1,,2",
+            "1, nan",
+            "1, inf, 0",
+            "1, 1e999",
+            "1, 1.5D3",
+            "1, 1, 1, 1, 1",
+            "a, 1, 1",
+            "-1, 0, 0",
+            "1, 0.0000000000000000000001",
+            "1, 1 2",
+        ];
+        for text in others {
+            assert_eq!(line(text).plain_point(), None, "{text}");
+        }
+        for text in ["1, 2, 3", "1,2,3,", " 7 , 8 , ", "7,\t8", "12"] {
+            assert!(line(text).plain_integers().is_some(), "{text}");
+        }
+        for text in [
+            "1,,2", ",", "1,2,,", "-1, 2", "1 2, 3", "1, a", "1.0, 2", "\"1\", 2",
+        ] {
+            assert_eq!(line(text).plain_integers(), None, "{text}");
+        }
     }
 }

@@ -14,12 +14,13 @@ mod number;
 mod resolve;
 mod text;
 
-pub use card::{Card, Instance, Param, Placement, Row, Rows};
+pub use card::{Card, Instance, Param, Placement, Rows};
 pub use collect::Deck;
 pub use keywords::{
     Data, Field, Keyword, Parameter, Quantity, RowForm, Scope, Status, Takes, Value,
     dimensions_json, find_keyword, keyword_reference, keywords,
 };
+pub use lines::Line;
 pub use text::{Name, Text};
 
 use crate::diagnostics::{Diagnostics, Sources};

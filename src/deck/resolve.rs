@@ -2,8 +2,7 @@
 //! unknown, ignored or refused.
 
 use super::card::{Card, Param};
-use super::keywords::{Keyword, Parameter, Status, Takes, Value, find_keyword, keywords};
-use super::lines::assignment;
+use super::keywords::{Keyword, Parameter, Status, Takes, find_keyword, keywords};
 use super::text::{Match, Text, find, find_known};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span};
 use std::cell::Cell;
@@ -52,9 +51,8 @@ fn known_word(
         Match::Exact(name) => Some(name),
         Match::Abbreviation(name) => {
             let message = format!("this abbreviation is read as {prefix}{name}");
-            d.push_once(
-                Diagnostic::warning(Code::Abbreviation, span, message).help("write the whole word"),
-            );
+            d.warning_once(Code::Abbreviation, span, message)
+                .help("write the whole word");
             Some(name)
         }
         Match::Unknown(meant) => {
@@ -87,21 +85,17 @@ fn unknown_keyword(starred: &str, span: Span, found: Match) -> Diagnostic {
 }
 
 fn report_keyword(keyword: &Keyword, span: Span, d: &mut Diagnostics) {
-    let name = keyword.name;
+    let (what, help) = (format!("*{}", keyword.name), advice(keyword.text));
     match keyword.status {
         Status::Read | Status::Ignored => {}
         Status::Warned => {
-            let message = format!("*{name} is left out");
-            d.push_once(
-                Diagnostic::warning(Code::IgnoredKeyword, span, message).help(advice(keyword.text)),
-            );
+            let message = format!("{what} is left out");
+            d.warning_once(Code::IgnoredKeyword, span, message)
+                .help(help);
         }
         Status::Refused => {
-            let message = format!("*{name} cannot be used");
-            d.push(
-                Diagnostic::error(Code::UnsupportedKeyword, span, message)
-                    .help(advice(keyword.text)),
-            );
+            let message = format!("{what} cannot be used");
+            d.error(Code::UnsupportedKeyword, span, message).help(help);
         }
     }
 }
@@ -116,41 +110,59 @@ fn advice(sentence: &str) -> String {
 /// A parameter of `card`, checked against the table; `None` if it is left out.
 pub(crate) fn parameter(card: &Card, piece: &Piece, d: &mut Diagnostics) -> Option<Param> {
     let span = piece.text.span;
-    let typed = assignment(piece.text.text);
+    let (typed, value) = piece.text.assignment();
     let names = card.keyword.parameters.iter().map(|p| p.name);
-    let found = find(typed.name.0, names);
-    let unknown = || unknown_parameter(card, typed.name.0, piece, found);
+    let found = find(typed, names);
+    let unknown = || unknown_parameter(card, typed, piece, found);
     let name = known_word(found, unknown, "", span, d)?;
     let known = card.keyword.parameter(name)?;
     if card.params.iter().any(|param| param.name == name) {
-        let message = format!("{name} is given twice");
-        d.push(Diagnostic::error(Code::RepeatedParameter, span, message));
+        d.error(
+            Code::RepeatedParameter,
+            span,
+            format!("{name} is given twice"),
+        );
         return None;
     }
-    let offset = typed.value.map_or(0, |(_, at)| at);
-    let value = typed
-        .value
-        .map(|(value, _)| (value.to_string(), value_span(piece, value, offset)));
+    let what = format!("{name} of {}", card.title());
+    report(known.status, [&what, "is left out", known.text], span, d)?;
+    if known.status != Status::Read {
+        return None;
+    }
     let mut param = Param {
         name: known.name,
         span,
-        value,
+        value: value.map(|value| (value.text.to_string(), value.span)),
         choice: None,
         faulty: false,
         used: Cell::new(false),
     };
-    check_status(card, known, span, d)?;
     check_value(known, &mut param, d);
     Some(param)
 }
 
-fn value_span(piece: &Piece, value: &str, offset: usize) -> Span {
-    let before = piece.text.text.get(..offset).unwrap_or("");
-    Span {
-        column: piece.text.span.column + before.chars().count() as u32,
-        length: (value.chars().count() as u32).max(1),
-        ..piece.text.span
+/// Reports a parameter or a value that is left out, or else refused; none of the latter. The words say
+/// what it is, what happens to it and why.
+fn report(
+    status: Status,
+    [what, treated, why]: [&str; 3],
+    span: Span,
+    d: &mut Diagnostics,
+) -> Option<()> {
+    match status {
+        Status::Read | Status::Ignored => {}
+        Status::Warned => {
+            let message = format!("{what} {treated}");
+            d.warning_once(Code::IgnoredParameter, span, message)
+                .help(why);
+        }
+        Status::Refused => {
+            let message = format!("{what} cannot be used");
+            d.error(Code::UnsupportedParameter, span, message).help(why);
+            return None;
+        }
     }
+    Some(())
 }
 
 fn unknown_parameter(card: &Card, typed: &str, piece: &Piece, found: Match) -> Diagnostic {
@@ -173,27 +185,6 @@ fn unknown_parameter(card: &Card, typed: &str, piece: &Piece, found: Match) -> D
         .help(help)
 }
 
-/// Reports a parameter that is ignored or refused; `None` if it is left out.
-fn check_status(card: &Card, known: &Parameter, span: Span, d: &mut Diagnostics) -> Option<()> {
-    let (name, title) = (known.name, card.title());
-    match known.status {
-        Status::Read => Some(()),
-        Status::Ignored => None,
-        Status::Warned => {
-            let message = format!("{name} of {title} is left out");
-            d.push_once(
-                Diagnostic::warning(Code::IgnoredParameter, span, message).help(known.text),
-            );
-            None
-        }
-        Status::Refused => {
-            let message = format!("{name} of {title} cannot be used");
-            d.push(Diagnostic::error(Code::UnsupportedParameter, span, message).help(known.text));
-            None
-        }
-    }
-}
-
 /// Checks that a value is given where the parameter takes one, and that it is an allowed word.
 fn check_value(known: &Parameter, param: &mut Param, d: &mut Diagnostics) {
     let name = known.name;
@@ -204,7 +195,7 @@ fn check_value(known: &Parameter, param: &mut Param, d: &mut Diagnostics) {
         _ => String::new(),
     };
     if !complaint.is_empty() {
-        d.push(Diagnostic::error(Code::BadValue, param.span, complaint));
+        d.error(Code::BadValue, param.span, complaint);
         param.faulty = true;
     } else if let (Some((typed, span)), false) = (typed, known.values().is_empty()) {
         param.choice = choose(known, typed, *span, d);
@@ -229,29 +220,12 @@ fn choose(known: &Parameter, typed: &str, span: Span, d: &mut Diagnostics) -> Op
     };
     let name = known_word(found, unknown, "", span, d)?;
     let value = known.values().iter().find(|value| value.name == name)?;
-    report_choice(known, value, span, d)
-}
-
-fn report_choice(
-    known: &Parameter,
-    value: &Value,
-    span: Span,
-    d: &mut Diagnostics,
-) -> Option<&'static str> {
-    let words = format!("{}={}", known.name, value.name);
-    match value.status {
-        Status::Read | Status::Ignored => Some(value.name),
-        Status::Warned => {
-            let message = format!("{words} is not taken as written");
-            d.push_once(
-                Diagnostic::warning(Code::IgnoredParameter, span, message).help(value.text),
-            );
-            Some(value.name)
-        }
-        Status::Refused => {
-            let message = format!("{words} cannot be used");
-            d.push(Diagnostic::error(Code::UnsupportedParameter, span, message).help(value.text));
-            None
-        }
-    }
+    let what = format!("{}={name}", known.name);
+    report(
+        value.status,
+        [&what, "is not taken as written", value.text],
+        span,
+        d,
+    )?;
+    Some(value.name)
 }

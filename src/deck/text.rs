@@ -4,8 +4,7 @@
 //! differently. Case and blanks of words do not matter, a unique beginning of at least four letters
 //! suffices, and a likely typing error gets a suggestion.
 
-use super::number;
-use super::number::{LONGEST_NUMBER, NotANumber};
+use super::number::{self, LONGEST_NUMBER, NotANumber};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span, closest};
 
 /// Longest name other codes read.
@@ -60,19 +59,21 @@ impl<'a> Text<'a> {
 
     /// Warns of forms of numbers that other codes read differently, of each once in a deck.
     fn remark_on_form(&self, letterless: bool, d: &mut Diagnostics) {
-        let message = "an exponent without its letter E";
-        if letterless && !d.has_said(Code::FortranNumber, message) {
-            d.push_once(
-                Diagnostic::warning(Code::FortranNumber, self.span, message)
-                    .label("read as a power of ten"),
-            );
+        if letterless {
+            d.warning_once(
+                Code::FortranNumber,
+                self.span,
+                "an exponent without its letter E",
+            )
+            .label("read as a power of ten");
         }
-        let message = "a number of more than 20 characters";
-        if self.text.len() > LONGEST_NUMBER && !d.has_said(Code::LongNumber, message) {
-            d.push_once(
-                Diagnostic::note(Code::LongNumber, self.span, message)
-                    .help("all of it is read here; CalculiX reads the first 20 characters only"),
-            );
+        if self.text.len() > LONGEST_NUMBER {
+            d.note_once(
+                Code::LongNumber,
+                self.span,
+                "a number of more than 20 characters",
+            )
+            .help("all of it is read here; CalculiX reads the first 20 characters only");
         }
     }
 
@@ -131,10 +132,26 @@ impl<'a> Text<'a> {
             None => Some(Name::plain(self.text)),
             Some(fault) => {
                 let message = format!("`{}` cannot be a name", self.text);
-                d.push(Diagnostic::error(Code::BadName, self.span, message).label(fault));
+                d.error(Code::BadName, self.span, message).label(fault);
                 None
             }
         }
+    }
+
+    /// Name and value of a parameter, `NAME` or `NAME=value`.
+    pub(super) fn assignment(&self) -> (&'a str, Option<Text<'a>>) {
+        let Some((name, value)) = self.text.split_once('=') else {
+            return (self.text, None);
+        };
+        let characters = |text: &str| text.chars().count() as u32;
+        let value = value.trim_start();
+        let before = characters(self.text) - characters(value);
+        let span = Span {
+            column: self.span.column + before,
+            length: characters(value).max(1),
+            ..self.span
+        };
+        (name.trim_end(), Some(Text { text: value, span }))
     }
 
     /// Key by which its value is compared as a name, valid or not.

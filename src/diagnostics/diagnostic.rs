@@ -55,11 +55,6 @@ impl Diagnostic {
         Diagnostic::new(Severity::Note, code, Some(span), message.into())
     }
 
-    /// An error about a deck that cannot be opened: there is no line to show.
-    pub fn error_without_place(code: Code, message: impl Into<String>) -> Diagnostic {
-        Diagnostic::new(Severity::Error, code, None, message.into())
-    }
-
     fn new(severity: Severity, code: Code, span: Option<Span>, message: String) -> Diagnostic {
         Diagnostic {
             severity,
@@ -89,6 +84,31 @@ impl Diagnostic {
             Some(word) => self.label(format!("did you mean {}?", word.as_ref())),
             None => self,
         }
+    }
+}
+
+/// A diagnostic that has been added, unless the same was added before.
+pub struct Added<'d>(Option<&'d mut Diagnostic>);
+
+impl Added<'_> {
+    /// Puts text beside its caret.
+    pub fn label(self, label: impl Into<String>) -> Self {
+        self.with(|added| added.label = Some(shortened(label.into())))
+    }
+
+    /// Puts "did you mean ...?" beside its caret, if there is a suggestion.
+    pub fn suggest(self, suggestion: Option<impl AsRef<str>>) -> Self {
+        self.with(|added| *added = added.clone().suggest(suggestion))
+    }
+
+    /// Gives advice.
+    pub fn help(self, help: impl Into<String>) -> Self {
+        self.with(|added| added.help = Some(shortened(help.into())))
+    }
+
+    fn with(mut self, change: impl FnOnce(&mut Diagnostic)) -> Self {
+        self.0.as_deref_mut().map(change);
+        self
     }
 }
 
@@ -158,12 +178,60 @@ impl Diagnostics {
         self.strictness == Strictness::Lenient
     }
 
+    /// Adds an error at `span`.
+    pub fn error(&mut self, code: Code, span: Span, message: impl Into<String>) -> Added<'_> {
+        self.push(Diagnostic::error(code, span, message))
+    }
+
+    /// Adds an error about a deck that cannot be opened: there is no line to show.
+    pub fn error_without_place(&mut self, code: Code, message: impl Into<String>) -> Added<'_> {
+        self.push(Diagnostic::new(Severity::Error, code, None, message.into()))
+    }
+
+    /// Adds a warning at `span`.
+    pub fn warning(&mut self, code: Code, span: Span, message: impl Into<String>) -> Added<'_> {
+        self.push(Diagnostic::warning(code, span, message))
+    }
+
+    /// Adds a note at `span`.
+    pub fn note(&mut self, code: Code, span: Span, message: impl Into<String>) -> Added<'_> {
+        self.push(Diagnostic::note(code, span, message))
+    }
+
+    /// Adds a warning at `span` unless one with the same code and message was added this way before.
+    pub fn warning_once(&mut self, code: Code, span: Span, message: impl AsRef<str>) -> Added<'_> {
+        self.once(code, message.as_ref(), |message| {
+            Diagnostic::warning(code, span, message)
+        })
+    }
+
+    /// Adds a note at `span` unless one with the same code and message was added this way before.
+    pub fn note_once(&mut self, code: Code, span: Span, message: impl AsRef<str>) -> Added<'_> {
+        self.once(code, message.as_ref(), |message| {
+            Diagnostic::note(code, span, message)
+        })
+    }
+
+    fn once(
+        &mut self,
+        code: Code,
+        message: &str,
+        make: impl FnOnce(String) -> Diagnostic,
+    ) -> Added<'_> {
+        let said = self.said.entry(code).or_default();
+        if said.contains(message) {
+            return Added(None);
+        }
+        said.insert(message.to_owned());
+        self.push(make(message.to_owned()))
+    }
+
     /// Adds a diagnostic; that of a line of a part once, however many instances the part has.
-    pub fn push(&mut self, mut diagnostic: Diagnostic) {
+    pub fn push(&mut self, mut diagnostic: Diagnostic) -> Added<'_> {
         diagnostic.severity = self.judge(&diagnostic);
         self.errors += usize::from(diagnostic.severity == Severity::Error);
         if self.is_of_another_instance(&diagnostic) {
-            return;
+            return Added(None);
         }
         self.counts[diagnostic.severity as usize] += 1;
         let first = &mut self.first[diagnostic.severity as usize];
@@ -172,6 +240,7 @@ impl Diagnostics {
             first.pop();
         }
         self.items.push(diagnostic);
+        Added(self.items.last_mut())
     }
 
     /// Whether the same line of the part has this diagnostic in another instance already.
@@ -197,20 +266,6 @@ impl Diagnostics {
     pub fn may_show(&self, diagnostic: &Diagnostic) -> bool {
         let first = &self.first[self.judge(diagnostic) as usize];
         first.len() < SHOWN || first.peek().is_some_and(|last| diagnostic.span < *last)
-    }
-
-    /// Adds a diagnostic unless one with the same code and message was added this way before.
-    pub fn push_once(&mut self, diagnostic: Diagnostic) {
-        let said = self.said.entry(diagnostic.code).or_default();
-        if said.insert(diagnostic.message.clone()) {
-            self.push(diagnostic);
-        }
-    }
-
-    /// Whether this code and message was added by [`Self::push_once`].
-    pub fn has_said(&self, code: Code, message: &str) -> bool {
-        let said = self.said.get(&code);
-        said.is_some_and(|said| said.contains(message))
     }
 
     fn judge(&self, diagnostic: &Diagnostic) -> Severity {
@@ -285,7 +340,7 @@ mod tests {
     fn what_is_echoed_is_cut() {
         let message = |text: &str| {
             let message = format!("unknown keyword *{text}, really");
-            Diagnostic::error_without_place(Code::UnknownKeyword, message).message
+            Diagnostic::error(Code::UnknownKeyword, Span::default(), message).message
         };
         assert_eq!(message("NODE"), "unknown keyword *NODE, really");
         let long = message(&"Ä".repeat(100_000));

@@ -10,7 +10,7 @@ mod sources;
 mod words;
 
 pub use code::Code;
-pub use diagnostic::{Diagnostic, Diagnostics, FileId, Severity, Span, Strictness};
+pub use diagnostic::{Added, Diagnostic, Diagnostics, FileId, Severity, Span, Strictness};
 pub use sources::{Source, Sources};
-pub(crate) use words::wrapped;
 pub use words::{closest, shown};
+pub(crate) use words::{list_of, wrapped};

@@ -57,6 +57,26 @@ fn typing_errors(a: &[char], b: &[char], allowed: usize) -> Option<usize> {
     Some(last[b.len()]).filter(|&errors| errors <= allowed)
 }
 
+/// Most names that a message lists.
+const LISTED: usize = 8;
+
+/// A list of the defined names, of the first few where there are many.
+pub(crate) fn list_of<'n>(kind: &str, names: impl Iterator<Item = &'n str>) -> String {
+    let names: Vec<&str> = names.collect();
+    let plural = match kind {
+        "list of time points" => "lists of time points".to_string(),
+        _ => format!("{kind}s"),
+    };
+    let shown = names.iter().take(LISTED).copied().collect::<Vec<_>>();
+    let more = names.len() - shown.len();
+    match (names.len(), more) {
+        (0, _) => format!("the deck has no {plural}"),
+        (1, _) => format!("the only {kind} is {}", shown[0]),
+        (_, 0) => format!("the {plural} are {}", shown.join(", ")),
+        _ => format!("the {plural} are {} and {more} more", shown.join(", ")),
+    }
+}
+
 /// Width of the screen in columns.
 const WIDTH: usize = 80;
 

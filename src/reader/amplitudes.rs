@@ -2,8 +2,8 @@
 
 use super::context::Context;
 use super::names::Names;
-use crate::deck::{Card, Row, Text};
-use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::deck::{Card, Line, Text};
+use crate::diagnostics::{Code, Span};
 use crate::model::{Amplitude, Curve, Signal, TimeBase};
 
 /// All amplitudes.
@@ -110,11 +110,8 @@ pub(super) fn report_long_rows(card: &Card, cx: &mut Context) {
     let long = rows.find_map(|row| row.fields().nth(NUMBERS));
     if let Some(field) = long {
         let message = format!("more than {NUMBERS} numbers on a line of {}", card.title());
-        let warning = Diagnostic::warning(Code::LongLine, field.span, message);
-        cx.d.push(
-            warning
-                .help("all are read here; Abaqus and CalculiX leave out those beyond the eighth"),
-        );
+        cx.warning(Code::LongLine, field.span, message)
+            .help("all are read here; Abaqus and CalculiX leave out those beyond the eighth");
     }
 }
 
@@ -137,7 +134,7 @@ fn equally_spaced<'a>(card: &'a Card, cx: &mut Context) -> Vec<Given<'a>> {
         return Vec::new();
     };
     let mut given = Vec::new();
-    for field in card.rows.iter().flat_map(Row::fields) {
+    for field in card.rows.iter().flat_map(Line::fields) {
         let value = if field.is_empty() {
             Some(0.0)
         } else {
@@ -150,7 +147,7 @@ fn equally_spaced<'a>(card: &'a Card, cx: &mut Context) -> Vec<Given<'a>> {
 }
 
 /// Times and values of a row.
-fn pairs<'a>(row: Row<'a>, cx: &mut Context) -> Vec<Given<'a>> {
+fn pairs<'a>(row: Line<'a>, cx: &mut Context) -> Vec<Given<'a>> {
     let mut pairs = Vec::new();
     let count = row.fields().count();
     for index in (0..count).step_by(2) {
@@ -179,8 +176,8 @@ pub(super) fn are_in_reach(numbers: &[f64]) -> bool {
 /// Reports numbers of an amplitude that cannot be computed with.
 pub(super) fn report_out_of_reach(what: &str, span: Span, cx: &mut Context) {
     let message = format!("{what}: the numbers of an amplitude end at {LARGEST:e}");
-    let error = Diagnostic::error(Code::AmplitudeTable, span, message);
-    cx.d.push(error.help("before its first point and after its last one a table is constant"));
+    cx.error(Code::AmplitudeTable, span, message)
+        .help("before its first point and after its last one a table is constant");
 }
 
 /// Scale and shift of times and values: time * SCALEX + SHIFTX, value * SCALEY + SHIFTY.
@@ -242,8 +239,8 @@ pub(super) fn signal(definition: &str, card: &Card, axes: Axes, cx: &mut Context
 
 /// `N, w, t0, A0`, and `A1, B1, A2, B2, ...` on further lines; returns t0, A0 and the signal.
 fn periodic<'a>(
-    row: Row,
-    more: &mut impl Iterator<Item = Row<'a>>,
+    row: Line,
+    more: &mut impl Iterator<Item = Line<'a>>,
     axes: Axes,
     cx: &mut Context,
 ) -> Option<(f64, f64, Signal)> {
@@ -275,7 +272,7 @@ fn periodic<'a>(
 }
 
 /// `A0, A, t0, td`; returns t0, A0 and the signal.
-fn decay(row: Row, axes: Axes, cx: &mut Context) -> Option<(f64, f64, Signal)> {
+fn decay(row: Line, axes: Axes, cx: &mut Context) -> Option<(f64, f64, Signal)> {
     row.at_most(4, cx.d);
     let [base, size, start] = first_three(row, cx)?;
     let time = row.required(3, "the time of decay", cx.d)?;
@@ -287,7 +284,7 @@ fn decay(row: Row, axes: Axes, cx: &mut Context) -> Option<(f64, f64, Signal)> {
 }
 
 /// `A0, A, t0, w1, w2`; returns t0, A0 and the signal.
-fn modulated(row: Row, axes: Axes, cx: &mut Context) -> Option<(f64, f64, Signal)> {
+fn modulated(row: Line, axes: Axes, cx: &mut Context) -> Option<(f64, f64, Signal)> {
     row.at_most(5, cx.d);
     let [base, size, start] = first_three(row, cx)?;
     let mut frequency = |index: usize| {
@@ -302,7 +299,7 @@ fn modulated(row: Row, axes: Axes, cx: &mut Context) -> Option<(f64, f64, Signal
 }
 
 /// `A0, A, t0`
-fn first_three(row: Row, cx: &mut Context) -> Option<[f64; 3]> {
+fn first_three(row: Line, cx: &mut Context) -> Option<[f64; 3]> {
     let [base, size, start] = [0, 1, 2].map(|index| row.real_or(index, 0.0, cx.d));
     Some([base?, size?, start?])
 }

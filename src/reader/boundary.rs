@@ -7,8 +7,8 @@ use super::mesh_index::MeshIndex;
 use super::outline::Outline;
 use super::rigid_bodies::Rigid;
 use super::sets::Sets;
-use crate::deck::{Card, Row, Text};
-use crate::diagnostics::{Code, Diagnostic, Span, closest};
+use crate::deck::{Card, Line, Text};
+use crate::diagnostics::{Code, Span, closest};
 use crate::model::{Amplitude, Rate, Support, SupportMotion};
 use std::collections::BTreeMap;
 
@@ -121,7 +121,7 @@ impl Supports {
     /// `node or set, first[, last[, value]]` or `set, name`
     fn row(
         &mut self,
-        row: Row,
+        row: Line,
         quantity: Quantity,
         step: usize,
         targets: Targets,
@@ -140,11 +140,7 @@ impl Supports {
         }
         if let (Quantity::Displacement(None), true) = (quantity, prescribed.value != 0.0) {
             let message = "a displacement without amplitude grows linearly over the step";
-            cx.d.push_once(Diagnostic::note(
-                Code::RampedSupport,
-                prescribed.span,
-                message,
-            ));
+            cx.d.note_once(Code::RampedSupport, prescribed.span, message);
         }
         if let (Quantity::Fixed, true) = (quantity, prescribed.value != 0.0) {
             let help = "FIXED keeps the displacement of the start of the step";
@@ -163,8 +159,8 @@ impl Supports {
         let earlier = self.held.insert(dof, now);
         if earlier.is_some_and(|held| held.step == now.step && held.motion != now.motion) {
             let message = "another motion is prescribed here than before in this step";
-            let warning = Diagnostic::warning(Code::ConflictingSupport, span, message);
-            cx.d.push(warning.help("the later one holds"));
+            cx.warning(Code::ConflictingSupport, span, message)
+                .help("the later one holds");
         }
     }
 }
@@ -176,7 +172,7 @@ struct Prescribed {
     span: Span,
 }
 
-fn prescribed(row: Row, cx: &mut Context) -> Option<Prescribed> {
+fn prescribed(row: Line, cx: &mut Context) -> Option<Prescribed> {
     let first = row.required(1, "the first direction", cx.d)?;
     if first.text.starts_with(|c: char| c.is_ascii_alphabetic()) {
         let directions = named_directions(first, cx)?;
@@ -190,7 +186,7 @@ fn prescribed(row: Row, cx: &mut Context) -> Option<Prescribed> {
     let last = row.get(2).unwrap_or(first);
     let (low, high) = (dof_number(first, cx)?, dof_number(last, cx)?);
     let value = row.real_or(3, 0.0, cx.d)?;
-    let span = row.get(3).map_or(row.span(), |field| field.span);
+    let span = row.span_at(3);
     if high < low {
         let message = format!("directions run from {low} to {high}");
         cx.error(Code::BadDof, last.span, message);
@@ -229,10 +225,11 @@ fn named_directions(name: Text, cx: &mut Context) -> Option<Vec<usize>> {
     }
     let names = NAMED.iter().map(|&(known, _)| known);
     let message = format!("{} is neither a direction nor a named support", name.text);
-    let error = Diagnostic::error(Code::BadDof, name.span, message);
     let list = names.clone().collect::<Vec<_>>().join(", ");
     let help = format!("directions are numbers; the named supports are {list}");
-    cx.d.push(error.suggest(closest(&key, names)).help(help));
+    cx.error(Code::BadDof, name.span, message)
+        .suggest(closest(&key, names))
+        .help(help);
     None
 }
 
@@ -243,8 +240,8 @@ fn dof_number(field: Text, cx: &mut Context) -> Option<usize> {
         return usize::try_from(number).ok();
     }
     let message = format!("plane elements have no degree of freedom {number}");
-    let error = Diagnostic::error(Code::BadDof, field.span, message);
-    cx.d.push(error.help("1 is x, 2 is y; 3 to 6 are accepted with the value zero"));
+    cx.error(Code::BadDof, field.span, message)
+        .help("1 is x, 2 is y; 3 to 6 are accepted with the value zero");
     None
 }
 
@@ -257,7 +254,7 @@ pub(crate) fn direction(field: Text, cx: &mut Context) -> Option<Direction> {
 }
 
 /// The direction of a row whose value acts there; out of the plane it must be zero.
-pub(crate) fn row_direction(row: Row, value: f64, cx: &mut Context) -> Option<usize> {
+pub(crate) fn row_direction(row: Line, value: f64, cx: &mut Context) -> Option<usize> {
     let field = row.required(1, "the direction", cx.d)?;
     match direction(field, cx)? {
         Direction::Plane(direction) => Some(direction),
@@ -309,7 +306,7 @@ fn is_given(support: &Support) -> bool {
 }
 
 /// `node or set, direction, velocity`
-fn velocity_row(row: Row, targets: Targets, cx: &mut Context) -> Vec<(usize, f64)> {
+fn velocity_row(row: Line, targets: Targets, cx: &mut Context) -> Vec<(usize, f64)> {
     row.at_most(3, cx.d);
     let target = row.required(0, "a node or node set", cx.d);
     let nodes = target.map(|field| targets.sets.nodes_of(field, targets.mesh_index, cx));
@@ -353,7 +350,7 @@ fn report_supported(
             dofs.len(),
             first % 2 + 1
         );
-        let error = Diagnostic::error(Code::VelocityOnSupport, span, message);
-        cx.d.push(error.help("give the velocity to free nodes only"));
+        cx.error(Code::VelocityOnSupport, span, message)
+            .help("give the velocity to free nodes only");
     }
 }

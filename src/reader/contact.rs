@@ -7,8 +7,8 @@ use super::names::Names;
 use super::outline::{Block, Outline};
 use super::sets::Sets;
 use super::surfaces::{Found, Surfaces};
-use crate::deck::{Card, Name, Row, Text};
-use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::deck::{Card, Line, Name, Text};
+use crate::diagnostics::{Code, Span};
 use crate::model::{
     ALL_EXTERIOR, Adjust, Contact, Face, Friction, Interaction, Mesh, Reach, Surface, SurfaceKind,
 };
@@ -71,8 +71,8 @@ fn report_adjusted_self_contact(contact: Option<&Contact>, card: &Card, cx: &mut
     if card.has("ADJUST") && contact.is_some_and(Contact::is_self_contact) {
         let message =
             "the nodes of a surface that touches itself cannot be moved onto it by a pair";
-        let error = Diagnostic::error(Code::SurfaceUse, card.span_of("ADJUST"), message);
-        cx.d.push(error.help("general contact can: *CONTACT INITIALIZATION DATA"));
+        cx.error(Code::SurfaceUse, card.span_of("ADJUST"), message)
+            .help("general contact can: *CONTACT INITIALIZATION DATA");
     }
 }
 
@@ -89,7 +89,7 @@ fn report_repeated(contacts: &[Contact], cx: &mut Context) {
 
 /// `slave, master`; a single surface is in contact with itself.
 fn contact(
-    row: Row,
+    row: Line,
     interaction: Option<Interaction>,
     surfaces: &Surfaces,
     cx: &mut Context,
@@ -114,7 +114,7 @@ fn contact(
 }
 
 /// Reports surfaces that cannot be slave or master.
-fn check_use(row: Row, slave: Found, master: Found, cx: &mut Context) -> Option<()> {
+fn check_use(row: Line, slave: Found, master: Found, cx: &mut Context) -> Option<()> {
     let once = row.get(1).is_none();
     let name = &master.1.name;
     let is_of_nodes = matches!(master.1.kind, SurfaceKind::Nodes(_));
@@ -141,7 +141,7 @@ fn check_use(row: Row, slave: Found, master: Found, cx: &mut Context) -> Option<
     } else {
         return Some(());
     };
-    cx.d.push(Diagnostic::error(Code::SurfaceUse, master.2, message).help(help));
+    cx.error(Code::SurfaceUse, master.2, message).help(help);
     None
 }
 
@@ -202,8 +202,8 @@ fn warn_of_behavior_data(card: &Card, cx: &mut Context) {
         (card.rows.first(), card.choice("PRESSURE-OVERCLOSURE"))
     {
         let message = "this data line has no effect";
-        let warning = Diagnostic::warning(Code::IgnoredParameter, row.span(), message);
-        cx.d.push_once(warning.help("contact is enforced exactly: it needs no numbers"));
+        cx.d.warning_once(Code::IgnoredParameter, row.span(), message)
+            .help("contact is enforced exactly: it needs no numbers");
     }
 }
 
@@ -255,7 +255,7 @@ fn law(card: &Card, cx: &mut Context) -> Option<Friction> {
 }
 
 /// A field that is not negative; `what` it is.
-fn not_negative(row: Row, index: usize, what: &str, cx: &mut Context) -> Option<f64> {
+fn not_negative(row: Line, index: usize, what: &str, cx: &mut Context) -> Option<f64> {
     let field = row.required(index, what, cx.d)?;
     let value = field.real(cx.d)?;
     if value < 0.0 {
@@ -325,8 +325,8 @@ fn general(
     let span = span?;
     if surfaces.names.is_defined(&Name::plain(ALL_EXTERIOR)) {
         let message = format!("the deck has a surface {ALL_EXTERIOR} of its own");
-        let error = Diagnostic::error(Code::RepeatedName, span, message);
-        cx.d.push(error.help("rename it: general contact makes a surface of this name"));
+        cx.error(Code::RepeatedName, span, message)
+            .help("rename it: general contact makes a surface of this name");
         return None;
     }
     let surface = surfaces.all.len();
@@ -353,8 +353,8 @@ fn report_pairs(pairs: &[Contact], surfaces: &Surfaces, cx: &mut Context) {
     };
     for pair in pairs.iter().filter(|pair| !is_rigid(pair)) {
         let message = "general contact holds between these surfaces already";
-        let error = Diagnostic::error(Code::GeneralContact, pair.span, message);
-        cx.d.push(error.help("leave out the pair or *CONTACT: their forces would add up"));
+        cx.error(Code::GeneralContact, pair.span, message)
+            .help("leave out the pair or *CONTACT: their forces would add up");
     }
 }
 
@@ -373,7 +373,7 @@ fn inclusions(block: &Block, cx: &mut Context) -> Option<Span> {
             Some(row) => (row.span(), "only ALL EXTERIOR can be included"),
         },
     };
-    cx.d.push(Diagnostic::error(Code::GeneralContact, span, message).help(help));
+    cx.error(Code::GeneralContact, span, message).help(help);
     None
 }
 
@@ -393,7 +393,7 @@ fn assignment(
 }
 
 /// `, , interaction`
-fn assigned_in(row: Row, interactions: &Interactions, cx: &mut Context) -> Option<Interaction> {
+fn assigned_in(row: Line, interactions: &Interactions, cx: &mut Context) -> Option<Interaction> {
     let name = of_all_surfaces(row, "the interaction", cx)?;
     interactions.find(name, cx)
 }
@@ -486,13 +486,13 @@ fn length(card: &Card, name: &str, cx: &mut Context) -> Option<f64> {
 }
 
 /// The name in `, , name`, where `what` it names; the empty fields stand for all surfaces.
-fn of_all_surfaces<'a>(row: Row<'a>, what: &str, cx: &mut Context) -> Option<Text<'a>> {
+fn of_all_surfaces<'a>(row: Line<'a>, what: &str, cx: &mut Context) -> Option<Text<'a>> {
     row.at_most(3, cx.d);
     let mut named = (0..2).filter_map(|i| row.get(i));
     if let Some(field) = named.find(|field| field.name_key() != "ALLEXTERIOR") {
         let message = "only the assignment to all surfaces is supported";
-        let error = Diagnostic::error(Code::GeneralContact, field.span, message);
-        cx.d.push(error.help("leave the first two fields empty"));
+        cx.error(Code::GeneralContact, field.span, message)
+            .help("leave the first two fields empty");
         return None;
     }
     row.required(2, what, cx.d)

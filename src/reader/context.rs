@@ -2,8 +2,8 @@
 //! suggestion of what was meant, among names of all kinds of things that a deck defines.
 
 use super::label::{instance_of, label, number_of};
-use crate::deck::{Card, Deck, Name, Row, Text};
-use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span, closest};
+use crate::deck::{Card, Deck, Line, Name, Text};
+use crate::diagnostics::{Added, Code, Diagnostic, Diagnostics, Span, closest, list_of};
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
@@ -28,13 +28,13 @@ impl<'a> Context<'a> {
     }
 
     /// Adds an error.
-    pub fn error(&mut self, code: Code, span: Span, message: impl Into<String>) {
-        self.d.push(Diagnostic::error(code, span, message));
+    pub fn error(&mut self, code: Code, span: Span, message: impl Into<String>) -> Added<'_> {
+        self.d.error(code, span, message)
     }
 
     /// Adds a warning.
-    pub fn warning(&mut self, code: Code, span: Span, message: impl Into<String>) {
-        self.d.push(Diagnostic::warning(code, span, message));
+    pub fn warning(&mut self, code: Code, span: Span, message: impl Into<String>) -> Added<'_> {
+        self.d.warning(code, span, message)
     }
 
     /// Whether cards may be missing because of a reported error.
@@ -48,8 +48,8 @@ impl<'a> Context<'a> {
     }
 
     /// Where a point of a part is in the instance of a row (length).
-    pub fn placed(&self, at: [f64; 2], row: Row) -> [f64; 2] {
-        let index = (row.instance() as usize).checked_sub(1);
+    pub fn placed(&self, at: [f64; 2], row: Line) -> [f64; 2] {
+        let index = (row.instance as usize).checked_sub(1);
         let instance = index.and_then(|index| self.deck.instances.get(index));
         instance.map_or(at, |instance| instance.placement.of(at))
     }
@@ -217,9 +217,6 @@ const DEFINITIONS: [(&str, &str, &str); 9] = [
     ("TIME POINTS", "NAME", "list of time points"),
 ];
 
-/// Most names that a message lists.
-const LISTED: usize = 8;
-
 /// Keys of the names of a deck, with the kinds of objects that have them.
 pub(super) struct Catalogue {
     kinds: BTreeMap<String, Vec<&'static str>>,
@@ -290,22 +287,5 @@ pub(super) fn help_for(wanted: &str, found: &str, name: &str) -> Option<String> 
             "*SURFACE, NAME=..., TYPE=NODE with the row `{name}` makes a surface of its nodes"
         )),
         _ => None,
-    }
-}
-
-/// A list of the defined names, of the first few where there are many.
-pub(super) fn list_of<'n>(kind: &str, names: impl Iterator<Item = &'n str>) -> String {
-    let names: Vec<&str> = names.collect();
-    let plural = match kind {
-        "list of time points" => "lists of time points".to_string(),
-        _ => format!("{kind}s"),
-    };
-    let shown = names.iter().take(LISTED).copied().collect::<Vec<_>>();
-    let more = names.len() - shown.len();
-    match (names.len(), more) {
-        (0, _) => format!("the deck has no {plural}"),
-        (1, _) => format!("the only {kind} is {}", shown[0]),
-        (_, 0) => format!("the {plural} are {}", shown.join(", ")),
-        _ => format!("the {plural} are {} and {more} more", shown.join(", ")),
     }
 }

@@ -4,8 +4,8 @@
 use super::boundary::{Direction, Targets, direction};
 use super::context::Context;
 use super::outline::Outline;
-use crate::deck::{Card, Row, Text};
-use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::deck::{Card, Line, Text};
+use crate::diagnostics::{Code, Span};
 use crate::model::{Equation, Step, Support};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -66,8 +66,8 @@ pub(crate) fn read(
 /// unclear where the next equation begins.
 fn terms<'r>(
     card: &Card,
-    head: Row,
-    rows: &mut impl Iterator<Item = Row<'r>>,
+    head: Line,
+    rows: &mut impl Iterator<Item = Line<'r>>,
     targets: Targets,
     cx: &mut Context,
 ) -> Option<Vec<Option<Term>>> {
@@ -93,21 +93,21 @@ fn terms<'r>(
 }
 
 /// `number of terms`
-fn number_of_terms(row: Row, cx: &mut Context) -> Option<usize> {
+fn number_of_terms(row: Line, cx: &mut Context) -> Option<usize> {
     row.at_most(1, cx.d);
     let field = row.required(0, "the number of terms", cx.d)?;
     let count = field.integer(cx.d)?;
     if count < 2 {
         let message = format!("an equation has two terms at least, found {count}");
-        let error = Diagnostic::error(Code::BadEquation, field.span, message);
-        cx.d.push(error.help("a displacement that is zero is prescribed with *BOUNDARY"));
+        cx.error(Code::BadEquation, field.span, message)
+            .help("a displacement that is zero is prescribed with *BOUNDARY");
         return None;
     }
     usize::try_from(count).ok()
 }
 
 /// `node or set, direction, coefficient`, from field `first` on.
-fn term(row: Row, first: usize, targets: Targets, cx: &mut Context) -> Option<Term> {
+fn term(row: Line, first: usize, targets: Targets, cx: &mut Context) -> Option<Term> {
     let target = row.required(first, "a node or node set", cx.d);
     let nodes = target.and_then(|field| nodes(field, targets, cx));
     let field = row.required(first + 1, "the direction", cx.d);
@@ -136,8 +136,8 @@ fn nodes(field: Text, targets: Targets, cx: &mut Context) -> Option<Vec<usize>> 
     nodes.sort_by_key(|&node| labels.get(node));
     if nodes.len() > 1 && targets.sets.unsorted.contains(&cx.key_of(field)) {
         let message = format!("the set {} is UNSORTED: its order is not kept", field.text);
-        let error = Diagnostic::error(Code::BadEquation, field.span, message);
-        cx.d.push(error.help("number its nodes in their order, or write an equation for each"));
+        cx.error(Code::BadEquation, field.span, message)
+            .help("number its nodes in their order, or write an equation for each");
         return None;
     }
     if nodes.is_empty() && cx.errors() == errors && !cx.may_lack_cards() {
@@ -156,16 +156,14 @@ fn solve(terms: &[Term], solved: &mut ByDof, targets: Targets, cx: &mut Context)
             "the set has {} nodes, that of the first term {count}",
             other.nodes.len()
         );
-        let error = Diagnostic::error(Code::BadEquation, other.span, message);
-        cx.d.push(
-            error.help("sets of an equation have as many nodes as the first, or are one node"),
-        );
+        cx.error(Code::BadEquation, other.span, message)
+            .help("sets of an equation have as many nodes as the first, or are one node");
         return;
     }
     if first.coefficient == 0.0 {
         let message = "the first coefficient is zero";
-        let error = Diagnostic::error(Code::BadEquation, first.span, message);
-        cx.d.push(error.help("the first term is eliminated: put one with a coefficient first"));
+        cx.error(Code::BadEquation, first.span, message)
+            .help("the first term is eliminated: put one with a coefficient first");
         return;
     }
     for (i, node) in first.nodes.iter().enumerate() {
@@ -181,15 +179,15 @@ fn solve(terms: &[Term], solved: &mut ByDof, targets: Targets, cx: &mut Context)
         };
         if equation.terms.iter().any(|&(other, _)| other == dof) {
             let message = format!("{} stands in it again", name(dof, targets));
-            let error = Diagnostic::error(Code::BadEquation, first.span, message);
-            cx.d.push(error.help("the first term is eliminated: it stands in the equation once"));
+            cx.error(Code::BadEquation, first.span, message)
+                .help("the first term is eliminated: it stands in the equation once");
         } else if solved.insert(dof, equation).is_some() {
             let message = format!(
                 "{} is eliminated by an earlier equation",
                 name(dof, targets)
             );
-            let error = Diagnostic::error(Code::BadEquation, first.span, message);
-            cx.d.push(error.help("put another term first"));
+            cx.error(Code::BadEquation, first.span, message)
+                .help("put another term first");
         }
     }
 }
@@ -209,8 +207,8 @@ fn report_prescribed(solved: &ByDof, steps: &[Step], targets: Targets, cx: &mut 
             "{} is eliminated by an equation and prescribed",
             name(*dof, targets)
         );
-        let error = Diagnostic::error(Code::BadEquation, equation.span, message);
-        cx.d.push(error.help("put a term first that is not prescribed"));
+        cx.error(Code::BadEquation, equation.span, message)
+            .help("put a term first that is not prescribed");
     }
 }
 
@@ -239,8 +237,8 @@ fn substituted(mut solved: ByDof, targets: Targets, cx: &mut Context) -> Vec<(Eq
     }
     if let Some((&dof, equation)) = solved.first_key_value() {
         let message = format!("equations eliminate {} in a circle", name(dof, targets));
-        let error = Diagnostic::error(Code::BadEquation, equation.span, message);
-        cx.d.push(error.help("put a term first that no other of these equations eliminates"));
+        cx.error(Code::BadEquation, equation.span, message)
+            .help("put a term first that no other of these equations eliminates");
     }
     equations.into_values().collect()
 }
@@ -257,12 +255,8 @@ fn report_ratios(
     if let Some((to, c)) = terms.iter().find(|(_, c)| !reach.contains(&c.abs())) {
         let (dof, to) = (name(dof, targets), name(*to, targets));
         let message = format!("{dof} follows {to} {c:e}-fold: it cannot be computed with");
-        let error = Diagnostic::error(Code::BadEquation, span, message);
-        cx.d.push(
-            error.help(
-                "leave out terms without effect; coefficients in a ratio beyond 1e50 are none",
-            ),
-        );
+        cx.error(Code::BadEquation, span, message)
+            .help("leave out terms without effect; coefficients in a ratio beyond 1e50 are none");
     }
 }
 
@@ -318,8 +312,8 @@ pub(crate) fn check_velocities(
         });
         if (sum - of(*dof)).abs() > ROUND_OFF * size {
             let message = format!("{} does not start with its velocity", name(*dof, targets));
-            let warning = Diagnostic::warning(Code::BadEquation, *span, message);
-            cx.d.push(warning.help("it starts with what follows from the other terms"));
+            cx.warning(Code::BadEquation, *span, message)
+                .help("it starts with what follows from the other terms");
         }
     }
 }

@@ -3,8 +3,8 @@
 use super::boundary::{Targets, row_direction};
 use super::context::Context;
 use super::surfaces::{Surfaces, side_count};
-use crate::deck::{Card, Row, Text};
-use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::deck::{Card, Line, Text};
+use crate::diagnostics::{Code, Span};
 use crate::model::{
     Amplitude, BodyForce, Face, Load, PointLoad, Pressure, Step, SurfaceKind, TimeBase, Traction,
     Variation,
@@ -97,7 +97,7 @@ impl Loads {
     }
 
     /// `node or set, direction, force`
-    fn point_row(&mut self, row: Row, source: Source, cx: &mut Context) -> Option<()> {
+    fn point_row(&mut self, row: Line, source: Source, cx: &mut Context) -> Option<()> {
         row.at_most(3, cx.d);
         let Targets {
             mesh_index, sets, ..
@@ -117,7 +117,7 @@ impl Loads {
     }
 
     /// `element or set, kind, magnitude[, dx, dy[, dz]]`; no set is all elements
-    fn element_row(&mut self, row: Row, source: Source, cx: &mut Context) -> Option<()> {
+    fn element_row(&mut self, row: Line, source: Source, cx: &mut Context) -> Option<()> {
         let Targets {
             mesh_index, sets, ..
         } = source.targets;
@@ -149,7 +149,7 @@ impl Loads {
 
     fn body_row(
         &mut self,
-        row: Row,
+        row: Line,
         body: Body,
         elements: &[usize],
         source: Source,
@@ -179,7 +179,7 @@ impl Loads {
     /// A pressure, or a traction with its direction, on one side of each element.
     fn face_row(
         &mut self,
-        row: Row,
+        row: Line,
         (side, direction): (usize, Option<[f64; 2]>),
         elements: &[usize],
         source: Source,
@@ -215,7 +215,7 @@ impl Loads {
     }
 
     /// `surface, P, p` or `surface, TRVEC, t, dx, dy[, dz]`
-    fn surface_row(&mut self, row: Row, source: Source, cx: &mut Context) -> Option<()> {
+    fn surface_row(&mut self, row: Line, source: Source, cx: &mut Context) -> Option<()> {
         let field = row.required(0, "a surface", cx.d);
         let surface = field.and_then(|field| source.surfaces.find(field, cx));
         let kind = row.required(1, "the kind of load", cx.d)?;
@@ -287,8 +287,8 @@ impl Loads {
 
 fn unknown_kind(kind: Text, known: &str, cx: &mut Context) -> Option<()> {
     let message = format!("load {} cannot be used", kind.text);
-    let error = Diagnostic::error(Code::UnsupportedParameter, kind.span, message);
-    cx.d.push(error.help(format!("the loads here are {known}")));
+    cx.error(Code::UnsupportedParameter, kind.span, message)
+        .help(format!("the loads here are {known}"));
     None
 }
 
@@ -304,7 +304,7 @@ fn loaded_side(kind: &str) -> Option<(usize, bool)> {
     Some((side, is_traction))
 }
 
-fn gravity_direction(row: Row, magnitude: f64, cx: &mut Context) -> Option<[f64; 2]> {
+fn gravity_direction(row: Line, magnitude: f64, cx: &mut Context) -> Option<[f64; 2]> {
     let direction = unit_direction(row, cx)?;
     warn_unless_unit(row, cx);
     if magnitude != 0.0 {
@@ -314,24 +314,24 @@ fn gravity_direction(row: Row, magnitude: f64, cx: &mut Context) -> Option<[f64;
 }
 
 /// Notes a gravity that hints at mixed units.
-fn hint_at_units(row: Row, magnitude: f64, cx: &mut Context) {
+fn hint_at_units(row: Line, magnitude: f64, cx: &mut Context) {
     let usual = [9.81, 981.0, 9810.0, 32.2, 386.0];
     let near = |g: &f64| (magnitude.abs() / g - 1.0).abs() < 0.02;
     if let (false, Some(field)) = (usual.iter().any(near), row.get(2)) {
         let text = field.text;
         let message = format!("{text} is not the gravity of the earth in common units");
-        let note = Diagnostic::note(Code::UnitsHint, field.span, message);
-        cx.d.push_once(note.help("9.81 m/s^2 = 981 cm/s^2 = 9810 mm/s^2 = 386 in/s^2"));
+        cx.d.note_once(Code::UnitsHint, field.span, message)
+            .help("9.81 m/s^2 = 981 cm/s^2 = 9810 mm/s^2 = 386 in/s^2");
     }
 }
 
 /// Fields 3 to 5: dx, dy, dz with dz = 0, made a unit vector.
-fn unit_direction(row: Row, cx: &mut Context) -> Option<[f64; 2]> {
+fn unit_direction(row: Line, cx: &mut Context) -> Option<[f64; 2]> {
     let components = [3, 4, 5].map(|i| row.real_or(i, 0.0, cx.d));
     let [Some(x), Some(y), Some(z)] = components else {
         return None;
     };
-    let span = row.get(3).map_or(row.span(), |field| field.span);
+    let span = row.span_at(3);
     let length = match x.hypot(y) {
         // a unit vector to round-off stays as it is given
         length if (length - 1.0).abs() <= 2.0 * f64::EPSILON => 1.0,
@@ -349,16 +349,16 @@ fn unit_direction(row: Row, cx: &mut Context) -> Option<[f64; 2]> {
 }
 
 /// CalculiX multiplies an acceleration by the length of its direction.
-fn warn_unless_unit(row: Row, cx: &mut Context) {
+fn warn_unless_unit(row: Line, cx: &mut Context) {
     let component = |i: usize| row.get(i).and_then(|field| field.as_real());
     let length = component(3)
         .unwrap_or(0.0)
         .hypot(component(4).unwrap_or(0.0));
     if (length - 1.0).abs() > 1e-6 {
-        let span = row.get(3).map_or(row.span(), |field| field.span);
+        let span = row.span_at(3);
         let message = format!("the direction has the length {length}, not 1");
-        let warning = Diagnostic::warning(Code::BadDirection, span, message);
-        cx.d.push_once(warning.help("only its direction is taken, the magnitude stays as given"));
+        cx.d.warning_once(Code::BadDirection, span, message)
+            .help("only its direction is taken, the magnitude stays as given");
     }
 }
 
@@ -366,12 +366,12 @@ fn warn_that_pressure_follows(card: &Card, cx: &mut Context) {
     if card.choice("FOLLOWER") == Some("NO") {
         let message = "FOLLOWER=NO has no effect on P: a pressure always follows its face";
         let span = card.span_of("FOLLOWER");
-        cx.d.push_once(Diagnostic::warning(Code::IgnoredParameter, span, message));
+        cx.d.warning_once(Code::IgnoredParameter, span, message);
     }
 }
 
 /// Direction of a TRVEC, which must not follow the face.
-fn dead_direction(kind: Text, row: Row, card: &Card, cx: &mut Context) -> Option<[f64; 2]> {
+fn dead_direction(kind: Text, row: Line, card: &Card, cx: &mut Context) -> Option<[f64; 2]> {
     row.at_most(6, cx.d);
     if card.choice("FOLLOWER") != Some("NO") {
         let span: Span = kind.span;
@@ -407,7 +407,7 @@ impl Operation {
             if typed.is_some() && new != self.new {
                 let message = format!("OP of the first {} in this step holds", card.title());
                 let span = card.span_of("OP");
-                cx.d.push(Diagnostic::warning(Code::MixedOperation, span, message));
+                cx.warning(Code::MixedOperation, span, message);
             }
             return false;
         }

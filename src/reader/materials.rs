@@ -3,8 +3,8 @@
 use super::context::Context;
 use super::names::Names;
 use super::outline::{Block, Outline};
-use crate::deck::{Card, Row};
-use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::deck::{Card, Line};
+use crate::diagnostics::{Code, Span};
 use crate::materials::{Law, NeoHooke, Plane};
 use crate::model::{Damping, Material, Section};
 
@@ -95,7 +95,7 @@ fn draft(name: String, block: &Block, general: Option<Placed>, cx: &mut Context)
 }
 
 /// `rho[, T]`
-fn density_row(row: Row, cx: &mut Context) -> Option<f64> {
+fn density_row(row: Line, cx: &mut Context) -> Option<f64> {
     row.at_most(2, cx.d);
     let density = row.real(0, "the density", cx.d);
     temperature(row, 1, cx)?;
@@ -140,8 +140,8 @@ fn hint_at_units(material: &Material, span: Span, cx: &mut Context) {
     if speed.is_finite() && speed > 0.0 && !(10.0..=1e8).contains(&speed) {
         let name = &material.name;
         let message = format!("the waves in material {name} run at {speed:.3e}");
-        let note = Diagnostic::note(Code::UnitsHint, span, message);
-        cx.d.push(note.help("most materials lie between 10 and 1e8 in common units"));
+        cx.d.note(Code::UnitsHint, span, message)
+            .help("most materials lie between 10 and 1e8 in common units");
     }
 }
 
@@ -178,12 +178,12 @@ fn report_second(first: &Card, card: &Card, cx: &mut Context) {
         return cx.only_once(&[first, card]);
     }
     let message = format!("a material has one law: {} is given already", first.title());
-    let error = Diagnostic::error(Code::RepeatedCard, card.span, message);
-    cx.d.push(error.help("take one of the two out, or give each a material of its own"));
+    cx.error(Code::RepeatedCard, card.span, message)
+        .help("take one of the two out, or give each a material of its own");
 }
 
 /// `E, nu[, T]`
-fn elastic_row(row: Row, cx: &mut Context) -> Option<Law> {
+fn elastic_row(row: Line, cx: &mut Context) -> Option<Law> {
     row.at_most(3, cx.d);
     let young = row.real(0, "Young's modulus", cx.d);
     let poisson = row.real_or(1, 0.0, cx.d);
@@ -208,17 +208,15 @@ fn hyperelastic(card: &Card, cx: &mut Context) -> Constant<Law> {
     }
     if !card.has("NEO HOOKE") {
         let message = "*HYPERELASTIC needs the parameter NEO HOOKE";
-        let error = Diagnostic::error(Code::MissingParameter, card.span, message);
-        cx.d.push(
-            error.help("its data line is C10, D1 with C10 = mu/2, D1 = 2/K of small strains"),
-        );
+        cx.error(Code::MissingParameter, card.span, message)
+            .help("its data line is C10, D1 with C10 = mu/2, D1 = 2/K of small strains");
         return Constant::Wrong;
     }
     constant(&[card], neo_hooke_row, cx)
 }
 
 /// `C10, D1[, T]`
-fn neo_hooke_row(row: Row, cx: &mut Context) -> Option<Law> {
+fn neo_hooke_row(row: Line, cx: &mut Context) -> Option<Law> {
     row.at_most(3, cx.d);
     let c10 = row.real(0, "C10", cx.d);
     let d1 = row.real_or(1, 0.0, cx.d);
@@ -236,7 +234,7 @@ fn neo_hooke_row(row: Row, cx: &mut Context) -> Option<Law> {
 }
 
 /// Reports a D1 that is missing, zero or negative.
-fn report_d1(d1: f64, row: Row, cx: &mut Context) {
+fn report_d1(d1: f64, row: Line, cx: &mut Context) {
     let given = row.get(1).filter(|field| !field.text.is_empty());
     let (code, span, message) = match given {
         None => (
@@ -255,11 +253,10 @@ fn report_d1(d1: f64, row: Row, cx: &mut Context) {
             format!("D1 must be positive, found {}", field.text),
         ),
     };
-    let error = Diagnostic::error(code, span, message);
-    cx.d.push(error.help(
+    cx.error(code, span, message).help(
         "D1 = 2/K with the bulk modulus K, which must be finite; where it is not known, K = 20 mu \
          (D1 = 0.05/C10) is usual for rubber",
-    ));
+    );
 }
 
 /// Damping with the place of the part in proportion to the mass.
@@ -291,8 +288,8 @@ fn only(cards: &[&Card], cx: &mut Context) -> Option<Placed> {
 fn report_empty(card: &Card, cx: &mut Context) {
     if !card.faulty && !card.has("ALPHA") && !card.has("BETA") {
         let message = "*DAMPING has neither ALPHA nor BETA";
-        let error = Diagnostic::error(Code::MissingParameter, card.span, message);
-        cx.d.push(error.help("ALPHA damps in proportion to the mass, BETA to the elasticity"));
+        cx.error(Code::MissingParameter, card.span, message)
+            .help("ALPHA damps in proportion to the mass, BETA to the elasticity");
     }
 }
 
@@ -327,7 +324,7 @@ impl<T> Constant<T> {
 /// The constant that all rows of a card agree on.
 pub(super) fn constant<T: PartialEq + Copy>(
     cards: &[&Card],
-    read: fn(Row, &mut Context) -> Option<T>,
+    read: fn(Line, &mut Context) -> Option<T>,
     cx: &mut Context,
 ) -> Constant<T> {
     let Some(card) = cards.first() else {
@@ -348,12 +345,12 @@ pub(super) fn constant<T: PartialEq + Copy>(
 }
 
 /// A temperature in field `index`, which may be any: the rows of all temperatures are alike.
-pub(super) fn temperature(row: Row, index: usize, cx: &mut Context) -> Option<()> {
+pub(super) fn temperature(row: Line, index: usize, cx: &mut Context) -> Option<()> {
     row.real_or(index, 0.0, cx.d).map(|_| ())
 }
 
 /// Reports the number in a field, if it is there.
-pub(super) fn out_of_range(rule: &str, row: Row, index: usize, cx: &mut Context) {
+pub(super) fn out_of_range(rule: &str, row: Line, index: usize, cx: &mut Context) {
     if let Some(field) = row.get(index) {
         let message = format!("{rule}, found {}", field.text);
         cx.error(Code::MaterialRange, field.span, message);

@@ -25,7 +25,7 @@ mod steps;
 mod surfaces;
 
 use crate::deck::{self, Card, Deck};
-use crate::diagnostics::{Code, Diagnostic, Diagnostics, Sources};
+use crate::diagnostics::{Code, Diagnostics, Sources};
 use crate::model::{ElementsAtNodes, Instance, Mesh, Model, NamedSets};
 use boundary::Targets;
 use context::Context;
@@ -46,7 +46,7 @@ pub fn build(deck: &Deck, d: &mut Diagnostics) -> Option<Model> {
     if deck.cards.is_empty() {
         if !d.has_errors() {
             let message = "nothing is left of the deck: all of its cards are left out";
-            d.push(Diagnostic::error_without_place(Code::EmptyMesh, message));
+            d.error_without_place(Code::EmptyMesh, message);
         }
         return None;
     }
@@ -139,7 +139,7 @@ fn title(outline: &Outline) -> String {
     let lines = cards
         .iter()
         .flat_map(|card| card.rows.iter())
-        .map(|row| row.text().trim());
+        .map(|row| row.text.trim());
     lines.collect::<Vec<_>>().join(" ")
 }
 

@@ -9,8 +9,8 @@ use super::mesh_index;
 use super::mesh_index::{Group, MeshIndex};
 use super::names::Labelled;
 use super::outline::Outline;
-use crate::deck::{Card, Row, Text};
-use crate::diagnostics::{Code, Diagnostic, Span, closest};
+use crate::deck::{Card, Line, Text};
+use crate::diagnostics::{Code, Span, closest};
 use crate::model::{Element, ElementType, Face, Mesh, Nodes, Plane};
 use smallvec::SmallVec;
 use std::collections::{BTreeSet, HashMap};
@@ -62,10 +62,8 @@ impl Reading {
         let mut labels = LabelList::default();
         self.mesh_index.reserve_nodes(count);
         self.node_lines.reserve(count);
-        let mut rows = card.rows.iter();
-        while let Some((row, point)) = rows.next_point() {
-            let label = point.and_then(|point| self.plain_node(point, row, cx));
-            match label.or_else(|| self.node(row, cx)) {
+        for row in card.rows.iter() {
+            match self.plain_node(row, cx).or_else(|| self.node(row, cx)) {
                 Some(label) => labels.push(label),
                 None => self.mesh_index.nodes.incomplete = true,
             }
@@ -75,14 +73,10 @@ impl Reading {
     }
 
     /// Adds the new node of a row of plain numbers; returns its number.
-    fn plain_node(
-        &mut self,
-        (number, [x, y, z]): (u64, [f64; 3]),
-        row: Row,
-        cx: &Context,
-    ) -> Option<u64> {
+    fn plain_node(&mut self, row: Line, cx: &Context) -> Option<u64> {
+        let (number, [x, y, z]) = row.plain_point()?;
         let nodes = &self.mesh_index.nodes;
-        let label = nodes.plain_label(number, row.instance())?;
+        let label = nodes.plain_label(number, row.instance)?;
         if nodes.get(label).is_some() {
             return None;
         }
@@ -91,7 +85,7 @@ impl Reading {
     }
 
     /// Reads the node of any row; returns its number.
-    fn node(&mut self, row: Row, cx: &mut Context) -> Option<u64> {
+    fn node(&mut self, row: Line, cx: &mut Context) -> Option<u64> {
         let fields: SmallVec<[Text; 4]> = row.fields().collect();
         row.at_most(4, cx.d);
         let number = row.required(0, "the node number", cx.d)?;
@@ -122,8 +116,8 @@ impl Reading {
         Some(label)
     }
 
-    fn add_node(&mut self, label: u64, at: [f64; 2], height: f64, row: Row) {
-        self.node_lines.push(row.line());
+    fn add_node(&mut self, label: u64, at: [f64; 2], height: f64, row: Line) {
+        self.node_lines.push(row.number);
         let MeshIndex { mesh, nodes, .. } = &mut self.mesh_index;
         let index = mesh.node_count();
         nodes.insert(label, Labelled::new(index));
@@ -147,10 +141,8 @@ impl Reading {
         if let Some(kind) = kind {
             self.mesh_index.reserve_elements(card.rows.line_count());
             let mut rows = card.rows.iter();
-            let mut numbers = SmallVec::new();
-            while let Some((row, is_plain)) = rows.next_integers(&mut numbers) {
-                let plain = is_plain.then(|| self.plain_element(&numbers, row, kind));
-                let label = plain.flatten().or_else(|| {
+            while let Some(row) = rows.next() {
+                let label = self.plain_element(row, kind).or_else(|| {
                     let fields = element_fields(row, &mut rows, kind.nodes() + 1);
                     self.element(row.span(), &fields, kind, cx)
                 });
@@ -168,15 +160,16 @@ impl Reading {
 
     /// Adds the new element of a row of plain numbers, whose nodes exist and differ; returns its
     /// number.
-    fn plain_element(&mut self, numbers: &[u64], row: Row, kind: Kind) -> Option<u64> {
+    fn plain_element(&mut self, row: Line, kind: Kind) -> Option<u64> {
+        let numbers = row.plain_integers()?;
         let (&number, corners) = numbers.split_first()?;
         let MeshIndex {
             nodes, elements, ..
         } = &self.mesh_index;
-        let label = elements.plain_label(number, row.instance())?;
+        let label = elements.plain_label(number, row.instance)?;
         let mut indices = Nodes::new();
         for &node in corners {
-            let node = nodes.plain_label(node, row.instance())?;
+            let node = nodes.plain_label(node, row.instance)?;
             let index = nodes.get(node)?.index();
             indices.push(index.filter(|index| !indices.contains(index))?);
         }
@@ -299,8 +292,8 @@ impl Reading {
         let first = cards.first().copied().or(before);
         if let Some(card) = first.or(cx.deck.cards.first()).filter(|_| !said) {
             let message = format!("the deck has no {}s", keyword.to_lowercase());
-            let error = Diagnostic::error(Code::EmptyMesh, card.span, message);
-            cx.d.push(error.help(format!("give them with *{keyword}")));
+            cx.error(Code::EmptyMesh, card.span, message)
+                .help(format!("give them with *{keyword}"));
         }
     }
 
@@ -366,14 +359,14 @@ impl Reading {
             n => format!("{n} nodes belong to no element, the first is node {name}"),
         };
         if let Some(row) = row_of(first, outline, cx) {
-            let warning = Diagnostic::warning(Code::UnusedNode, row.span(), message);
-            cx.d.push(warning.help("left out, together with what the deck says about them"));
+            cx.warning(Code::UnusedNode, row.span(), message)
+                .help("left out, together with what the deck says about them");
         }
     }
 }
 
 /// The row that defines a node, searched for a message.
-fn row_of<'a>(label: u64, outline: &Outline<'a>, cx: &Context) -> Option<Row<'a>> {
+fn row_of<'a>(label: u64, outline: &Outline<'a>, cx: &Context) -> Option<Line<'a>> {
     let cards = outline.model_cards("NODE").into_iter();
     let mut rows = cards.flat_map(|card| card.rows.iter());
     rows.find(|row| row.get(0).and_then(|field| cx.as_label(field)) == Some(label))
@@ -382,8 +375,8 @@ fn row_of<'a>(label: u64, outline: &Outline<'a>, cx: &Context) -> Option<Row<'a>
 /// Fields of the element that starts in row `first`: it takes rows until it has `count` fields or
 /// the next row would exceed them.
 fn element_fields<'a>(
-    first: Row<'a>,
-    rest: &mut (impl Iterator<Item = Row<'a>> + Clone),
+    first: Line<'a>,
+    rest: &mut (impl Iterator<Item = Line<'a>> + Clone),
     count: usize,
 ) -> SmallVec<[Text<'a>; 5]> {
     let mut fields: SmallVec<[Text; 5]> = first.fields().collect();
@@ -432,16 +425,16 @@ fn unusable(name: Text, folded: &str, cx: &mut Context) -> Option<ElementType> {
     let full = folded.strip_suffix('R').and_then(ElementType::from_name);
     if let Some(full) = full.filter(|full| full.topology().nodes == 4 && cx.d.is_lenient()) {
         let message = format!("{} is integrated with 2 x 2 points", name.text);
-        cx.d.push_once(Diagnostic::warning(Code::ElementType, name.span, message));
+        cx.d.warning_once(Code::ElementType, name.span, message);
         return Some(full);
     }
     let message = format!("element type {} cannot be used", name.text);
-    let error = Diagnostic::error(Code::ElementType, name.span, message);
+    let error = cx.error(Code::ElementType, name.span, message);
     let meant = closest(folded, ["CPS3", "CPE3", "CPS4", "CPE4"]);
-    cx.d.push(match reason(folded) {
+    match reason(folded) {
         Some(reason) => error.help(reason),
         None => error.suggest(meant).help("use CPS3, CPE3, CPS4 or CPE4"),
-    });
+    };
     None
 }
 
@@ -530,8 +523,8 @@ fn report_strays(strays: &[&RawLine], cx: &mut Context) {
         1 => format!("line element {label} is no side of a plane element"),
         n => format!("{n} line elements are no sides of plane elements, the first is {label}"),
     };
-    let warning = Diagnostic::warning(Code::LineElement, first.span, message);
-    cx.d.push(warning.help("left out: line elements only name sides of plane elements"));
+    cx.warning(Code::LineElement, first.span, message)
+        .help("left out: line elements only name sides of plane elements");
 }
 
 /// Notes that a mesh generator's triangles and quadrilaterals are in plane stress.
@@ -542,10 +535,9 @@ fn report_plane_stress(mesh_index: &MeshIndex, cx: &mut Context) {
         let name = mesh_index.mesh.elements[index].element_type.name();
         let span = mesh_index.places.get(index);
         let message = format!("{name} elements are in plane stress");
-        let note = Diagnostic::note(Code::LineElement, span, message);
-        cx.d.push(note.help(
+        cx.d.note(Code::LineElement, span, message).help(
             "mesh generators write CPS3 and CPS4 for every mesh: write CPE3 and CPE4 for plane strain",
-        ));
+        );
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::context::Context;
 use crate::deck::{Card, Data, Scope, Status};
-use crate::diagnostics::{Code, Diagnostic};
+use crate::diagnostics::Code;
 
 /// A model card with the cards that belong to it, such as a material with its constants.
 pub(crate) struct Block<'a> {
@@ -115,8 +115,8 @@ impl<'a> Outline<'a> {
     fn begin_step(&mut self, card: &'a Card, cx: &mut Context) {
         if self.open {
             let message = "a step begins before the last one ends";
-            let error = Diagnostic::error(Code::StepStructure, card.span, message);
-            cx.d.push(error.help("close the step before with *END STEP"));
+            cx.error(Code::StepStructure, card.span, message)
+                .help("close the step before with *END STEP");
         }
         self.open = true;
         self.in_model = false;
@@ -174,8 +174,8 @@ impl<'a> Outline<'a> {
                 let message = "the deck has no *STEP: there is nothing to compute";
                 let end = cx.deck.cards.last().map(|card| card.span);
                 if let Some(end) = end {
-                    let error = Diagnostic::error(Code::NoStep, end, message);
-                    cx.d.push(error.label("the last keyword of the deck"));
+                    cx.error(Code::NoStep, end, message)
+                        .label("the last keyword of the deck");
                 }
             }
             _ => {}
@@ -185,5 +185,5 @@ impl<'a> Outline<'a> {
 
 fn out_of_place(card: &Card, fault: &str, help: &str, cx: &mut Context) {
     let message = format!("{} {fault}", card.title());
-    cx.d.push(Diagnostic::error(Code::WrongPlace, card.span, message).help(help));
+    cx.error(Code::WrongPlace, card.span, message).help(help);
 }

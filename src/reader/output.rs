@@ -6,8 +6,8 @@ use super::boundary::{Direction, Targets, direction};
 use super::context::Context;
 use super::names::Names;
 use super::sets::Sets;
-use crate::deck::{Card, Row, Text};
-use crate::diagnostics::{Code, Diagnostic, shown};
+use crate::deck::{Card, Line, Text};
+use crate::diagnostics::{Code, shown};
 use crate::model::{Frames, HistorySet, RequestedFields, TimeBase};
 
 /// Variables that the result file holds.
@@ -214,21 +214,20 @@ pub(crate) fn restart(card: &Card, cx: &mut Context) {
     let off = card.integer("FREQUENCY", cx.d) == Some(0);
     if card.has("WRITE") && !off {
         let message = "*RESTART, WRITE is left out: there are no restart files";
-        let warning = Diagnostic::warning(Code::IgnoredKeyword, card.span, message);
-        cx.d.push_once(warning.help(
+        cx.d.warning_once(Code::IgnoredKeyword, card.span, message).help(
             "a run that ends early leaves its frames, the last good state among them; to go on from there, run \
              the deck with all its steps again",
-        ));
+        );
     }
 }
 
 /// Warns about variables that are not written.
 fn report_variables(card: &Card, cx: &mut Context) {
-    for field in card.rows.iter().flat_map(Row::fields) {
+    for field in card.rows.iter().flat_map(Line::fields) {
         if !field.is_empty() && !WRITTEN.contains(&field.name_key().as_str()) {
             let message = format!("the variable {} is not written", field.text);
-            let warning = Diagnostic::warning(Code::IgnoredVariable, field.span, message);
-            cx.d.push_once(warning.help("docs/output.md lists everything the result file holds"));
+            cx.d.warning_once(Code::IgnoredVariable, field.span, message)
+                .help("docs/output.md lists everything the result file holds");
         }
     }
 }
@@ -268,8 +267,8 @@ impl Family {
             Family::Elements => ("elements", "name an element set with ELSET="),
         };
         let message = format!("the history of all {members} is not written");
-        let warning = Diagnostic::warning(Code::IgnoredVariable, card.span, message);
-        cx.d.push(warning.help(help));
+        cx.warning(Code::IgnoredVariable, card.span, message)
+            .help(help);
     }
 }
 
@@ -308,7 +307,7 @@ impl Histories {
         if card.keyword.name.starts_with("CONTACT") {
             return;
         }
-        for field in card.rows.iter().flat_map(Row::fields) {
+        for field in card.rows.iter().flat_map(Line::fields) {
             match field.name_key().as_str() {
                 "CF" => self.fields.concentrated_load = true,
                 "ENER" => self.fields.energy_density = true,
@@ -334,8 +333,8 @@ impl Family {
         };
         if sets.holds_lines_only(set) {
             let message = format!("{} holds line elements only: it has no history", name.text);
-            let warning = Diagnostic::warning(Code::IgnoredVariable, name.span, message);
-            cx.d.push(warning.help("line elements name faces, they carry no stress"));
+            cx.warning(Code::IgnoredVariable, name.span, message)
+                .help("line elements name faces, they carry no stress");
             return None;
         }
         Some(set)
@@ -358,8 +357,8 @@ pub(super) fn monitored(card: &Card, targets: Targets, cx: &mut Context) -> Opti
         (node, Direction::Plane(direction)) => Some(2 * node? + direction),
         (_, Direction::OutOfPlane) => {
             let message = format!("direction {} is not in the status file", dof.text);
-            let warning = Diagnostic::warning(Code::IgnoredVariable, dof.span, message);
-            cx.d.push(warning.help("1 is x, 2 is y"));
+            cx.warning(Code::IgnoredVariable, dof.span, message)
+                .help("1 is x, 2 is y");
             None
         }
     }
@@ -422,7 +421,7 @@ pub(super) fn time_points(cx: &mut Context) -> TimePoints {
 }
 
 /// `first, last, increment`
-fn generated(row: Row, cx: &mut Context) -> Vec<f64> {
+fn generated(row: Line, cx: &mut Context) -> Vec<f64> {
     row.at_most(3, cx.d);
     let first = row.real(0, "the first time", cx.d);
     let last = row.real(1, "the last time", cx.d);

@@ -6,7 +6,7 @@ use super::outline::Outline;
 use super::sets::Sets;
 use super::surfaces::Surfaces;
 use crate::deck::{Card, Text};
-use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::diagnostics::{Code, Span};
 use crate::model::{RigidBody, Support, SupportMotion, SurfaceKind};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -70,8 +70,8 @@ pub(crate) fn read(
     for &(index, span) in surfaces.rigid.iter().filter(lone) {
         if let Some(surface) = surfaces.all.get(index).filter(|_| !incomplete) {
             let message = format!("the rigid surface {} has no reference node", surface.name);
-            let error = Diagnostic::error(Code::RigidSurface, span, message);
-            cx.d.push(error.help("add *RIGID BODY, ANALYTICAL SURFACE=, REF NODE="));
+            cx.error(Code::RigidSurface, span, message)
+                .help("add *RIGID BODY, ANALYTICAL SURFACE=, REF NODE=");
         }
     }
     of_surfaces.into_values().chain(of_elements).collect()
@@ -110,8 +110,8 @@ fn of_surface(card: &Card, named: Named, cx: &mut Context) -> Option<Members> {
     let (index, surface, span) = named.surfaces.find(field, cx)?;
     let SurfaceKind::Rigid(_) = surface.kind else {
         let message = format!("surface {} is no rigid surface", surface.name);
-        let error = Diagnostic::error(Code::RigidSurface, span, message);
-        cx.d.push(error.help("define it with *SURFACE, TYPE=SEGMENTS"));
+        cx.error(Code::RigidSurface, span, message)
+            .help("define it with *SURFACE, TYPE=SEGMENTS");
         return None;
     };
     let nodes = surface.nodes(&named.mesh_index.mesh);
@@ -122,8 +122,8 @@ fn of_surface(card: &Card, named: Named, cx: &mut Context) -> Option<Members> {
 fn of_elements(field: Text, card: &Card, named: Named, cx: &mut Context) -> Option<Members> {
     if card.has("ANALYTICAL SURFACE") {
         let span = card.span_of("ANALYTICAL SURFACE");
-        let error = Diagnostic::error(Code::RigidSurface, span, "a rigid body of two kinds");
-        cx.d.push(error.help("give the surface and the elements a *RIGID BODY each"));
+        cx.error(Code::RigidSurface, span, "a rigid body of two kinds")
+            .help("give the surface and the elements a *RIGID BODY each");
         return None;
     }
     let elements = named.sets.elements_of(field, named.mesh_index, cx);
@@ -179,8 +179,8 @@ fn report_other_motion(rigid: &Rigid, node: &str, cx: &mut Context) {
         "node {node} of {} is prescribed otherwise than the reference node {}",
         rigid.name, rigid.label
     );
-    let error = Diagnostic::error(Code::RigidSurface, rigid.span, message);
-    cx.d.push(error.help("a rigid body moves as its reference node, which *BOUNDARY prescribes"));
+    cx.error(Code::RigidSurface, rigid.span, message)
+        .help("a rigid body moves as its reference node, which *BOUNDARY prescribes");
 }
 
 fn report_free(rigid: &Rigid, direction: usize, step: usize, cx: &mut Context) {
@@ -190,6 +190,6 @@ fn report_free(rigid: &Rigid, direction: usize, step: usize, cx: &mut Context) {
         rigid.name,
         direction + 1
     );
-    let error = Diagnostic::error(Code::RigidSurface, rigid.span, message);
-    cx.d.push(error.help("prescribe its directions 1 and 2 with *BOUNDARY"));
+    cx.error(Code::RigidSurface, rigid.span, message)
+        .help("prescribe its directions 1 and 2 with *BOUNDARY");
 }

@@ -8,7 +8,7 @@ use super::names::Names;
 use super::outline::Outline;
 use super::sets::Sets;
 use crate::deck::Card;
-use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::diagnostics::{Code, Span};
 use crate::materials::Plane;
 use crate::model::{Element, ElementType, Formulation, Material, Section};
 use std::num::NonZeroU32;
@@ -145,11 +145,10 @@ impl Properties {
                 let label = mesh_index.element_name(index);
                 let name = element_type.name();
                 let message = format!("MEAN DILATATION is for CPE4: element {label} is {name}");
-                let error =
-                    Diagnostic::error(Code::ElementType, card.span_of("FORMULATION"), message);
-                cx.d.push(error.help(
-                    "give other elements a section of their own with FORMULATION=DISPLACEMENT",
-                ));
+                cx.error(Code::ElementType, card.span_of("FORMULATION"), message)
+                    .help(
+                        "give other elements a section of their own with FORMULATION=DISPLACEMENT",
+                    );
                 return;
             }
         }
@@ -174,8 +173,8 @@ impl Properties {
                 n => format!("{n} elements have no section, the first is {name}"),
             };
             let span = mesh_index.places.get(first);
-            let error = Diagnostic::error(Code::NoSection, span, message);
-            cx.d.push(error.help("give them a material and a thickness with *SOLID SECTION"));
+            cx.error(Code::NoSection, span, message)
+                .help("give them a material and a thickness with *SOLID SECTION");
         }
     }
 }
@@ -200,8 +199,8 @@ impl Properties {
                     material.name
                 );
                 let span = mesh_index.places.get(index);
-                let error = Diagnostic::error(Code::PlaneStrainOnly, span, message);
-                cx.d.push(error.help("take CPE elements, or *ELASTIC"));
+                cx.error(Code::PlaneStrainOnly, span, message)
+                    .help("take CPE elements, or *ELASTIC");
                 return;
             }
         }
@@ -229,12 +228,11 @@ impl Properties {
                     material.name,
                     (poisson * 1e6).round() / 1e6
                 );
-                let warning = Diagnostic::warning(Code::Locking, span, message);
-                cx.d.push(warning.help(
+                cx.warning(Code::Locking, span, message).help(
                     "CPE3 and CPE4 are integrated fully: from nu = 0.45 on they are too stiff, the \
                      more so the closer nu is to 0.5; CPE4 is not with FORMULATION=MEAN DILATATION \
                      on its *SOLID SECTION",
-                ));
+                );
             }
         }
     }

@@ -4,8 +4,8 @@ use super::context::Context;
 use super::mesh_index::{Group, MeshIndex};
 use super::names::{Labelled, Labels, Names};
 use super::outline::Outline;
-use crate::deck::{Card, Row, Text};
-use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::deck::{Card, Line, Text};
+use crate::diagnostics::{Code, Span};
 use crate::model::{Face, Set};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -59,7 +59,7 @@ impl Sets {
             [] if cx.is_number(field) => None,
             ref nodes => {
                 let message = format!("{} holds {} nodes", field.text, nodes.len());
-                cx.d.push(Diagnostic::error(code, field.span, message).help(help));
+                cx.error(code, field.span, message).help(help);
                 None
             }
         }
@@ -102,8 +102,8 @@ impl Sets {
 /// Reports line elements where plane ones are needed.
 fn report_lines(field: Text, cx: &mut Context) {
     let message = format!("{} stands for line elements only", field.text);
-    let error = Diagnostic::error(Code::LineElement, field.span, message);
-    cx.d.push(error.help("they name sides of plane elements, in rows of *SURFACE without a face"));
+    cx.error(Code::LineElement, field.span, message)
+        .help("they name sides of plane elements, in rows of *SURFACE without a face");
 }
 
 /// Plane elements, and the faces that line elements name.
@@ -269,7 +269,7 @@ impl<'a> Family<'a> {
         }
     }
 
-    fn list(&mut self, index: usize, row: Row<'a>, cx: &mut Context) {
+    fn list(&mut self, index: usize, row: Line<'a>, cx: &mut Context) {
         for field in row.fields().filter(|field| !field.is_empty()) {
             if cx.is_number(field) {
                 let member = self.labels.find(field, cx);
@@ -283,7 +283,7 @@ impl<'a> Family<'a> {
     }
 
     /// `first, last[, increment]`
-    fn range(&mut self, index: usize, row: Row, cx: &mut Context) {
+    fn range(&mut self, index: usize, row: Line, cx: &mut Context) {
         row.at_most(3, cx.d);
         let first = row.required(0, "the first number", cx.d);
         let first = first.and_then(|field| self.labels.label(field, cx));
@@ -300,7 +300,7 @@ impl<'a> Family<'a> {
         }
     }
 
-    fn check_range(&self, first: u64, last: u64, step: u64, row: Row, cx: &mut Context) {
+    fn check_range(&self, first: u64, last: u64, step: u64, row: Line, cx: &mut Context) {
         let [start, stop] = [first, last].map(|label| cx.named(label));
         if last < first {
             let message = format!("the range from {start} to {stop} runs backwards");
@@ -308,13 +308,20 @@ impl<'a> Family<'a> {
         } else if !(last - first).is_multiple_of(step) {
             let message = format!("steps of {step} from {start} do not meet {stop}");
             let end = cx.named(last - (last - first) % step);
-            let warning = Diagnostic::warning(Code::BadRange, row.span(), message);
-            cx.d.push(warning.help(format!("the range ends at {end}")));
+            cx.warning(Code::BadRange, row.span(), message)
+                .help(format!("the range ends at {end}"));
         }
     }
 
     /// Members of a range; reports the first number that does not exist.
-    fn in_range(&self, first: u64, last: u64, step: u64, row: Row, cx: &mut Context) -> Vec<usize> {
+    fn in_range(
+        &self,
+        first: u64,
+        last: u64,
+        step: u64,
+        row: Line,
+        cx: &mut Context,
+    ) -> Vec<usize> {
         let in_step = |label: u64| (label - first).is_multiple_of(step);
         let found = self
             .labels

@@ -8,8 +8,8 @@ use super::outline::{Outline, StepCards};
 use super::output::{Histories, Requests, restart};
 use super::rigid_bodies;
 use super::surfaces::Surfaces;
-use crate::deck::{Card, Row};
-use crate::diagnostics::{Code, Diagnostic, shown};
+use crate::deck::{Card, Line};
+use crate::diagnostics::{Code, shown};
 use crate::model::{
     ContactMass, Factorization, Impact, ImpactTime, Increments, LandingRule, LcpChoice, Procedure,
     Scheme, Settings, SolverChoice, Step, Support,
@@ -153,7 +153,7 @@ impl Reading<'_> {
         self.nonlinear |= head.has("NLGEOM") && !said_no;
         if !self.nonlinear && !said_no {
             let message = "this step runs with NLGEOM: displacements are large in any case";
-            cx.d.push_once(Diagnostic::warning(Code::NonlinearStep, head.span, message));
+            cx.d.warning_once(Code::NonlinearStep, head.span, message);
         }
     }
 
@@ -164,8 +164,8 @@ impl Reading<'_> {
         let Some(card) = found.first() else {
             if !cx.may_lack_cards() {
                 let message = "this step has no procedure";
-                let error = Diagnostic::error(Code::StepStructure, cards.head.span, message);
-                cx.d.push(error.help("add *DYNAMIC with the increment and the duration"));
+                cx.error(Code::StepStructure, cards.head.span, message)
+                    .help("add *DYNAMIC with the increment and the duration");
             }
             return None;
         };
@@ -247,25 +247,24 @@ fn increments(card: &Card, guide: Option<f64>, cx: &mut Context) -> Option<Incre
     })
 }
 
-fn first_increment(row: Row, guide: Option<f64>, cx: &mut Context) -> Option<f64> {
+fn first_increment(row: Line, guide: Option<f64>, cx: &mut Context) -> Option<f64> {
     match row.get(0) {
         Some(field) => field.real(cx.d),
         None => {
             let message = "give the time increment in the first field";
-            let error = Diagnostic::error(Code::MissingField, row.span(), message);
-            cx.d.push(match guide {
-                Some(dt) => error.help(format!(
+            let error = cx.error(Code::MissingField, row.span(), message);
+            if let Some(dt) = guide {
+                error.help(format!(
                     "a wave crosses the shortest element side in {dt:.2e}"
-                )),
-                None => error,
-            });
+                ));
+            }
             None
         }
     }
 }
 
 fn check_times(
-    row: Row,
+    row: Line,
     dt: f64,
     period: f64,
     dt_min: f64,
@@ -300,31 +299,31 @@ fn check_times(
     } else {
         return Some(());
     };
-    let span = row.get(field).map_or(row.span(), |field| field.span);
+    let span = row.span_at(field);
     cx.error(Code::BadIncrement, span, fault);
     None
 }
 
 /// Warns that increments do not grow, as those of other codes do.
-fn warn_that_increments_stay(row: Row, cx: &mut Context) {
+fn warn_that_increments_stay(row: Line, cx: &mut Context) {
     let [first, largest] = [0, 3].map(|i| row.get(i));
     let span = largest.or(first).map_or(row.span(), |field| field.span);
     let message = "increments do not grow: none is longer than the first";
-    let warning = Diagnostic::warning(Code::ConstantIncrement, span, message);
-    let warning = match largest {
-        Some(_) => warning.label("bounds the first increment only"),
-        None => warning,
-    };
-    cx.d.push_once(warning.help("give the increment that suits the whole step in the first field"));
+    let warning = (cx.d)
+        .warning_once(Code::ConstantIncrement, span, message)
+        .help("give the increment that suits the whole step in the first field");
+    if largest.is_some() {
+        warning.label("bounds the first increment only");
+    }
 }
 
 /// Notes that the duration is not a multiple of the increment.
-fn note_short_end(row: Row, dt: f64, period: f64, cx: &mut Context) {
+fn note_short_end(row: Line, dt: f64, period: f64, cx: &mut Context) {
     let count = period / dt;
     if (count - count.round()).abs() > 1e-6 * count.clamp(1.0, 1e5) {
-        let span = row.get(1).map_or(row.span(), |field| field.span);
+        let span = row.span_at(1);
         let message = "the duration is no multiple of the increment: the last one is shorter";
-        cx.d.push(Diagnostic::note(Code::ShortIncrement, span, message));
+        cx.d.note(Code::ShortIncrement, span, message);
     }
 }
 
@@ -392,7 +391,7 @@ fn check_scheme(card: &Card, settings: &Settings, cx: &mut Context) {
         let span = given.next().map_or(card.span, |name| card.span_of(name));
         let message = format!("{option}={value} is not for SCHEME=SS22");
         let help = format!("leave out SCHEME=SS22, or choose {option}={other}");
-        cx.d.push(Diagnostic::error(Code::SchemeOption, span, message).help(help));
+        cx.error(Code::SchemeOption, span, message).help(help);
     }
 }
 
@@ -413,8 +412,8 @@ fn scheme(card: &Card, before: Scheme, cx: &mut Context) -> Scheme {
             shown(theta2)
         );
         let span = card.span_of(if theta1 < 0.5 { "THETA1" } else { "THETA2" });
-        let error = Diagnostic::error(Code::UnstableScheme, span, message);
-        cx.d.push(error.help("it is stable for THETA2 >= THETA1 >= 1/2"));
+        cx.error(Code::UnstableScheme, span, message)
+            .help("it is stable for THETA2 >= THETA1 >= 1/2");
     }
     Scheme::Ss22 { theta1, theta2 }
 }
@@ -428,8 +427,8 @@ pub(crate) fn check_contact_mass(
 ) {
     if step > 1 && now != before {
         let message = "CONTACT MASS is the same in all steps";
-        let error = Diagnostic::error(Code::BadValue, card.span_of("CONTACT MASS"), message);
-        cx.d.push(error.help("give it in the first step"));
+        cx.error(Code::BadValue, card.span_of("CONTACT MASS"), message)
+            .help("give it in the first step");
     }
 }
 

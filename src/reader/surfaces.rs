@@ -5,7 +5,7 @@ use super::mesh_index::MeshIndex;
 use super::names::Names;
 use super::outline::Outline;
 use super::sets::Sets;
-use crate::deck::{Card, Row, Text};
+use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Diagnostic, Span, closest, shown};
 use crate::model::{ElementsAtNodes, Face, Mesh, Surface, SurfaceKind};
 use crate::vectors::{angle, difference};
@@ -225,7 +225,7 @@ fn exterior_faces(elements: &[usize], at_nodes: &ElementsAtNodes, mesh: &Mesh) -
 fn report_interior(
     faces: &[Face],
     at_nodes: &ElementsAtNodes,
-    row: Row,
+    row: Line,
     mesh_index: &MeshIndex,
     cx: &mut Context,
 ) {
@@ -296,7 +296,7 @@ impl Profile {
         sides.map(|[from, to]| [first + to, first + from]).collect()
     }
 
-    fn row(&mut self, row: Row, cx: &mut Context) -> Option<()> {
+    fn row(&mut self, row: Line, cx: &mut Context) -> Option<()> {
         let word = row.required(0, "START, LINE or CIRCL", cx.d)?;
         let kind = word.name_key();
         match kind.as_str() {
@@ -364,7 +364,7 @@ impl Profile {
     }
 
     /// Equal chords of at most [`CHORD`] on the shorter arc about a centre.
-    fn arc(&mut self, to: [f64; 2], centre: [f64; 2], row: Row, cx: &mut Context) -> Option<()> {
+    fn arc(&mut self, to: [f64; 2], centre: [f64; 2], row: Line, cx: &mut Context) -> Option<()> {
         let from = *self.points.get(self.end)?;
         let [p, q] = [from, to].map(|x| difference(centre, x));
         let [r, s] = [p, q].map(|[x, y]| x.hypot(y));
@@ -399,7 +399,7 @@ impl Profile {
 }
 
 /// The point in the fields `index` and the next, of `count` fields.
-fn point(row: Row, index: usize, count: usize, cx: &mut Context) -> Option<[f64; 2]> {
+fn point(row: Line, index: usize, count: usize, cx: &mut Context) -> Option<[f64; 2]> {
     if index == 1 {
         row.at_most(count, cx.d);
     }
@@ -409,6 +409,6 @@ fn point(row: Row, index: usize, count: usize, cx: &mut Context) -> Option<[f64;
 }
 
 fn fault(span: Span, message: &str, help: &str, cx: &mut Context) -> Option<()> {
-    cx.d.push(Diagnostic::error(Code::RigidSurface, span, message).help(help));
+    cx.error(Code::RigidSurface, span, message).help(help);
     None
 }

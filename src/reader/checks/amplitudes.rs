@@ -1,7 +1,7 @@
 //! Amplitudes that increments cannot follow: features shorter than an increment, and prescribed
 //! displacements that jump at the start of a step.
 
-use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::diagnostics::{Code, Span};
 use crate::model::{
     Amplitude, Curve, Load, Model, Rate, Signal, Step, Support, SupportMotion, TimeBase, Variation,
 };
@@ -46,11 +46,10 @@ pub(crate) fn amplitudes(model: &Model, spans: &[Span], cx: &mut Context) {
                      increment of {dt:.2e}",
                     amplitude.name
                 );
-                let warning = Diagnostic::warning(Code::ShortFeature, span, message);
-                cx.d.push(warning.help(
+                cx.warning(Code::ShortFeature, span, message).help(
                     "an increment sees the values at its two ends only, and may miss what lies \
                      between them",
-                ));
+                );
             }
         }
         report_jumps(model, (step, index, start), &before, spans, cx);
@@ -281,11 +280,10 @@ fn report_jumps(
                 support.dof % 2 + 1,
                 index + 1
             );
-            let warning = Diagnostic::warning(Code::StartJump, span, message);
-            cx.d.push(warning.help(format!(
+            cx.warning(Code::StartJump, span, message).help(format!(
                 "the node makes this way in the first increment; it goes on from where it is if the \
                  displacement starts at {from:.2e}"
-            )));
+            ));
         }
     }
 }

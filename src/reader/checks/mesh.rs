@@ -1,7 +1,7 @@
 //! The mesh: shapes of the elements, quantities that overflow or vanish, nodes at the same place that
 //! nothing joins.
 
-use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::diagnostics::{Code, Span};
 use crate::model::{Element, ElementsAtNodes, Equation, Mesh, Model, Plane, sides};
 use crate::reader::context::Context;
 use crate::reader::mesh_index::{MeshIndex, Places};
@@ -116,7 +116,7 @@ fn shape(index: usize, mesh_index: &MeshIndex, span: Span, cx: &mut Context) {
     } else {
         (format!("element {label} is not convex"), "mend the mesh")
     };
-    cx.d.push(Diagnostic::error(Code::BadShape, span, fault).help(help));
+    cx.error(Code::BadShape, span, fault).help(help);
 }
 
 /// Reports materials in use and elements whose wave speed, area, stiffness or mass overflows or vanishes:
@@ -174,8 +174,8 @@ pub(crate) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &m
 /// Reports a quantity that is not a normal number.
 pub(super) fn unusable(what: &str, value: f64, span: Span, cx: &mut Context) {
     let message = format!("{what} is {value:e}: it cannot be computed with");
-    let error = Diagnostic::error(Code::Magnitude, span, message);
-    cx.d.push(error.help("choose units in which the numbers of the deck are not so extreme"));
+    cx.error(Code::Magnitude, span, message)
+        .help("choose units in which the numbers of the deck are not so extreme");
 }
 
 /// Area of an element.
@@ -223,12 +223,8 @@ pub(crate) fn coincident_nodes(model: &Model, shortest: f64, places: &Places, cx
             "{n} pairs of nodes lie at the same place and nothing joins them, the first are {a} and {b}"
         ),
     };
-    let warning = Diagnostic::warning(Code::CoincidentNodes, places.get(element), message);
-    cx.d.push(
-        warning.help(
-            "the elements part there: merge the nodes, or define contact between the surfaces",
-        ),
-    );
+    cx.warning(Code::CoincidentNodes, places.get(element), message)
+        .help("the elements part there: merge the nodes, or define contact between the surfaces");
 }
 
 /// The largest whole number up to x. The processors that the program is built for have no

@@ -2,7 +2,7 @@
 //! something that moves, damping of bodies in free flight, slaves that contact cannot move, and the
 //! thickness of both sides of a contact.
 
-use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::diagnostics::{Code, Span};
 use crate::model::{
     ALL_EXTERIOR, Bodies, Contact, Element, Equation, Load, Mesh, Model, Plane, Step,
     SupportMotion, SurfaceKind,
@@ -90,11 +90,10 @@ pub(crate) fn proportion(
         } else {
             continue;
         };
-        let warning = Diagnostic::warning(Code::OutOfProportion, span, message);
-        cx.d.push(warning.help(format!(
+        cx.warning(Code::OutOfProportion, span, message).help(format!(
             "it takes {guide:.2e} for one side: are times, lengths and material in one system of \
              units?"
-        )));
+        ));
     }
 }
 
@@ -108,11 +107,11 @@ pub(crate) fn motion(model: &Model, cards: &[StepCards], cx: &mut Context) {
         return;
     }
     let message = "nothing moves: there is no load, no velocity and no prescribed motion";
-    let warning = Diagnostic::warning(Code::NothingToDo, first.head.span, message);
-    cx.d.push(warning.help(
-        "add *DLOAD, *DSLOAD or *CLOAD, a *BOUNDARY that moves, or *INITIAL CONDITIONS, \
+    cx.warning(Code::NothingToDo, first.head.span, message)
+        .help(
+            "add *DLOAD, *DSLOAD or *CLOAD, a *BOUNDARY that moves, or *INITIAL CONDITIONS, \
          TYPE=VELOCITY",
-    ));
+        );
 }
 
 /// Whether something in a step sets bodies in motion.
@@ -152,11 +151,10 @@ pub(crate) fn braked_flight(model: &Model, damping_spans: &[Span], cx: &mut Cont
                 "ALPHA of material {} takes momentum from {bodies} without support",
                 material.name
             );
-            let warning = Diagnostic::warning(Code::BrakedFlight, span, message);
-            cx.d.push(warning.help(
+            cx.warning(Code::BrakedFlight, span, message).help(
                 "it acts against the velocity, that of free flight too; BETA damps vibration alone \
                  and keeps momentum",
-            ));
+            );
         }
     }
 }
@@ -204,8 +202,8 @@ pub(crate) fn fixed_slaves(model: &Model, cx: &mut Context) {
             nodes.len(),
             slave.name,
         );
-        let warning = Diagnostic::warning(Code::FixedSlave, contact.span, message);
-        cx.d.push(warning.help("contact cannot move them: make the free surface the slave"));
+        cx.warning(Code::FixedSlave, contact.span, message)
+            .help("contact cannot move them: make the free surface the slave");
     }
 }
 
@@ -231,8 +229,8 @@ pub(crate) fn thickness(
             && (slave != master || slave.0 < slave.1 && contact.is_self_contact())
         {
             let message = "the two sides of this contact differ in thickness";
-            let warning = Diagnostic::warning(Code::ThicknessMismatch, contact.span, message);
-            cx.d.push(warning.help("the bodies touch over the whole thickness of each"));
+            cx.warning(Code::ThicknessMismatch, contact.span, message)
+                .help("the bodies touch over the whole thickness of each");
         }
     }
 }

@@ -5,7 +5,7 @@
 //! with an exterior node have a common part. A loop of the boundary that meets no other lies inside as many
 //! elements as the loops go around it.
 
-use crate::diagnostics::{Code, Diagnostic};
+use crate::diagnostics::Code;
 use crate::model::{ALL_EXTERIOR, Contact, ElementsAtNodes, Face, Mesh, Model};
 use crate::reader::context::Context;
 use crate::reader::mesh_index::Places;
@@ -38,8 +38,8 @@ pub(crate) fn overlap(model: &Model, places: &Places, cx: &mut Context) {
             "{} lie over each other",
             elements(model, pair, within.len())
         );
-        let error = Diagnostic::error(Code::OverlappingElements, places.get(pair[1]), message);
-        cx.d.push(error.help("remove one of them, or mend the nodes"));
+        cx.error(Code::OverlappingElements, places.get(pair[1]), message)
+            .help("remove one of them, or mend the nodes");
         return;
     }
     let acting = Acting::new(model, &bodies);
@@ -50,12 +50,14 @@ pub(crate) fn overlap(model: &Model, places: &Places, cx: &mut Context) {
             elements(model, pair, pairs.len())
         );
         let (code, at) = (Code::OverlappingBodies, places.get(pair[1]));
-        cx.d.push(match acting.is_general {
-            true => Diagnostic::error(code, at, message)
+        match acting.is_general {
+            true => cx
+                .error(code, at, message)
                 .help("move the bodies apart: contact keeps apart what starts apart"),
-            false => Diagnostic::warning(code, at, message)
+            false => cx
+                .warning(code, at, message)
                 .help("contact keeps apart what starts apart: move the bodies unless it is meant"),
-        });
+        };
     }
 }
 
