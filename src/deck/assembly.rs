@@ -15,77 +15,73 @@ pub(in crate::deck) fn flatten(deck: Deck, sources: &mut Sources, d: &mut Diagno
         return without_assembly(deck, d);
     }
     let errors = d.count(Severity::Error);
-    let Structure {
-        mut parts, items, ..
-    } = Structure::new(deck.cards, d);
+    let Structure { parts, items, .. } = Structure::new(deck.cards, d);
     let faulty = d.count(Severity::Error) > errors;
     let mut flat = Deck {
         cards: Vec::new(),
         incomplete: deck.incomplete || faulty,
         ..deck
     };
-    let of_items = instances(&items, &mut parts, &mut flat, sources, d);
-    for (item, of_item) in items.into_iter().zip(of_items) {
+    let copies = instances(&items, &parts, &mut flat, sources, d);
+    for (item, copy) in items.into_iter().zip(&copies) {
         match item {
-            Item::Card(card, place) => {
-                let card = scoped(card, place, &flat, d);
+            Item::Card(card, region) => {
+                let card = scoped(card, region, &flat, d);
                 flat.cards.push(card);
             }
-            Item::Instance(_, own) => flat.cards.extend(of_item.cards(&mut parts, own)),
+            Item::Instance(_, own) => {
+                let of_part = copy.part.and_then(|part| parts.get(part));
+                let of_part = of_part.map_or(&[][..], |part| &part.cards).iter().cloned();
+                let all = of_part
+                    .chain(own)
+                    .map(|card| card.in_instance(copy.instance));
+                flat.cards.extend(all);
+            }
         }
     }
     flat.incomplete |= d.count(Severity::Error) > errors;
-    report_unused(&parts, &flat, d);
+    for (index, part) in parts.iter().enumerate() {
+        let is_used = copies.iter().any(|copy| copy.part == Some(index));
+        if let (Some(name), false, false) = (&part.name, is_used, flat.incomplete)
+            && !part.cards.is_empty()
+        {
+            let message = format!("part {name} has no instance");
+            d.warning(Code::AssemblyStructure, part.head.span_of("NAME"), message)
+                .help("left out");
+        }
+    }
     flat
 }
 
-/// Instance and part of an item; zero and none of other cards.
-struct Copied {
+/// Number of an instance and its part (index); zero and none of other cards.
+#[derive(Default)]
+struct Copy {
     instance: u32,
     part: Option<usize>,
-}
-
-impl Copied {
-    /// The cards of the part, followed by those of the instance itself.
-    fn cards(&self, parts: &mut [Part], own: Vec<Card>) -> Vec<Card> {
-        let part = self.part.and_then(|part| parts.get_mut(part));
-        let of_part = part.map(|part| {
-            part.wanted -= 1;
-            match part.wanted {
-                0 => std::mem::take(&mut part.cards),
-                _ => part.cards.clone(),
-            }
-        });
-        let all = of_part.unwrap_or_default().into_iter().chain(own);
-        all.map(|card| card.in_instance(self.instance)).collect()
-    }
 }
 
 /// Registers the instances with the deck and the sources.
 fn instances(
     items: &[Item],
-    parts: &mut [Part],
+    parts: &[Part],
     flat: &mut Deck,
     sources: &mut Sources,
     d: &mut Diagnostics,
-) -> Vec<Copied> {
+) -> Vec<Copy> {
     let mut all = Vec::new();
     for item in items {
-        let (mut instance, mut part) = (0, None);
+        let mut copy = Copy::default();
         if let Item::Instance(head, _) = item {
-            part = part_of(head, parts, flat, d);
+            let part = part_of(head, parts, flat, d);
+            // the cards of an instance without name would be those of the whole deck
             if let Some(name) = instance_name(head, flat, d) {
-                instance = sources.add_instance(&name.typed, head.span);
+                let instance = sources.add_instance(&name.typed, head.span);
+                copy = Copy { instance, part };
                 let placement = placement(head, d);
                 flat.instances.push(Instance { name, placement });
             }
         }
-        // the cards of an instance without name would be those of the whole deck
-        part = part.filter(|_| instance > 0);
-        if let Some(part) = part.and_then(|part| parts.get_mut(part)) {
-            part.wanted += 1;
-        }
-        all.push(Copied { instance, part });
+        all.push(copy);
     }
     all
 }
@@ -132,8 +128,11 @@ fn undefined<'n>(
 }
 
 /// The card with its rows in the instance that its parameter names.
-fn scoped(card: Card, place: Place, flat: &Deck, d: &mut Diagnostics) -> Card {
-    let Some(text) = card.value("INSTANCE").filter(|_| place == Place::Assembly) else {
+fn scoped(card: Card, region: Region, flat: &Deck, d: &mut Diagnostics) -> Card {
+    let Some(text) = card
+        .value("INSTANCE")
+        .filter(|_| region == Region::Assembly)
+    else {
         return card;
     };
     match flat.instance(&text.name_key()) {
@@ -147,35 +146,16 @@ fn scoped(card: Card, place: Place, flat: &Deck, d: &mut Diagnostics) -> Card {
 
 /// Reports sets of instances in a deck that has none.
 fn without_assembly(mut deck: Deck, d: &mut Diagnostics) -> Deck {
-    let fields: Vec<(String, Span)> = deck
-        .cards
-        .iter()
-        .filter(|card| ["NSET", "ELSET"].contains(&card.keyword.name))
-        .filter_map(|card| card.value("INSTANCE"))
-        .map(|text| (text.text.to_string(), text.span))
-        .collect();
-    for (text, span) in fields.iter().filter(|_| !deck.incomplete) {
-        undefined(
-            "instance",
-            Text { text, span: *span },
-            std::iter::empty(),
-            d,
-        );
-    }
-    deck.incomplete |= !fields.is_empty();
-    deck
-}
-
-/// Warns about parts without instance.
-fn report_unused(parts: &[Part], flat: &Deck, d: &mut Diagnostics) {
-    for part in parts.iter().filter(|part| !part.cards.is_empty()) {
-        if let (Some(name), false) = (&part.name, flat.incomplete) {
-            let message = format!("part {name} has no instance");
-            let span = part.head.span_of("NAME");
-            d.warning(Code::AssemblyStructure, span, message)
-                .help("left out");
+    let sets = (deck.cards.iter()).filter(|card| ["NSET", "ELSET"].contains(&card.keyword.name));
+    let mut incomplete = deck.incomplete;
+    for text in sets.filter_map(|card| card.value("INSTANCE")) {
+        if !deck.incomplete {
+            undefined("instance", text, std::iter::empty(), d);
         }
+        incomplete = true;
     }
+    deck.incomplete = incomplete;
+    deck
 }
 
 /// A part with its cards.
@@ -186,14 +166,12 @@ pub(super) struct Part {
     pub head: Card,
     /// The cards up to `*END PART`.
     pub cards: Vec<Card>,
-    /// Number of its instances that have no cards yet.
-    pub wanted: usize,
 }
 
 /// A card outside parts, or an instance.
 pub(super) enum Item {
     /// A card.
-    Card(Card, Place),
+    Card(Card, Region),
     /// `*INSTANCE` with the cards up to `*END INSTANCE`.
     Instance(Card, Vec<Card>),
 }
@@ -202,7 +180,7 @@ pub(super) enum Item {
 pub(super) struct Structure {
     pub parts: Vec<Part>,
     pub items: Vec<Item>,
-    place: Place,
+    region: Region,
     has_assembly: bool,
     /// Whether the last card is reported to be out of place: one of several in a row is.
     misplaced: bool,
@@ -214,7 +192,7 @@ impl Structure {
         let mut structure = Structure {
             parts: Vec::new(),
             items: Vec::new(),
-            place: Place::Model,
+            region: Region::Model,
             has_assembly: false,
             misplaced: false,
         };
@@ -223,7 +201,7 @@ impl Structure {
             structure.add(card, d);
         }
         if let Some(end) = end {
-            report_open(structure.place, end, d);
+            report_open(structure.region, end, d);
         }
         structure
     }
@@ -233,16 +211,16 @@ impl Structure {
             "PART" => self.part(card, d),
             "ASSEMBLY" => self.assembly(&card, d),
             "INSTANCE" => self.instance(card, d),
-            "END PART" => self.end(Place::Part, Place::Model, &card, d),
-            "END ASSEMBLY" => self.end(Place::Assembly, Place::Model, &card, d),
-            "END INSTANCE" => self.end(Place::Instance, Place::Assembly, &card, d),
+            "END PART" => self.end(Region::Part, Region::Model, &card, d),
+            "END ASSEMBLY" => self.end(Region::Assembly, Region::Model, &card, d),
+            "END INSTANCE" => self.end(Region::Instance, Region::Assembly, &card, d),
             _ => self.other(card, d),
         }
     }
 
     fn part(&mut self, head: Card, d: &mut Diagnostics) {
-        report_open(self.place, head.span, d);
-        self.place = Place::Part;
+        report_open(self.region, head.span, d);
+        self.region = Region::Part;
         let text = head.required("NAME", d);
         let name = text.and_then(|text| text.name(d));
         let known = |name: &Name| {
@@ -257,13 +235,12 @@ impl Structure {
             name,
             head,
             cards: Vec::new(),
-            wanted: 0,
         });
     }
 
     fn assembly(&mut self, head: &Card, d: &mut Diagnostics) {
-        report_open(self.place, head.span, d);
-        self.place = Place::Assembly;
+        report_open(self.region, head.span, d);
+        self.region = Region::Assembly;
         head.has("NAME");
         if std::mem::replace(&mut self.has_assembly, true) {
             let message = "*ASSEMBLY appears a second time here";
@@ -272,10 +249,10 @@ impl Structure {
     }
 
     fn instance(&mut self, head: Card, d: &mut Diagnostics) {
-        if self.place != Place::Assembly {
-            report_open(self.place, head.span, d);
+        if self.region != Region::Assembly {
+            report_open(self.region, head.span, d);
         }
-        if self.place == Place::Model {
+        if self.region == Region::Model {
             d.error(
                 Code::WrongPlace,
                 head.span,
@@ -283,44 +260,44 @@ impl Structure {
             )
             .help("move it between *ASSEMBLY and *END ASSEMBLY");
         }
-        self.place = Place::Instance;
+        self.region = Region::Instance;
         self.items.push(Item::Instance(head, Vec::new()));
     }
 
-    /// The end of `place`, behind which cards belong to `outer`.
-    fn end(&mut self, place: Place, outer: Place, card: &Card, d: &mut Diagnostics) {
-        if self.place == Place::Instance && place == Place::Assembly {
-            report_open(self.place, card.span, d);
-        } else if self.place != place {
-            let head = place.head().unwrap_or_default();
+    /// The end of `region`, behind which cards belong to `outer`.
+    fn end(&mut self, region: Region, outer: Region, card: &Card, d: &mut Diagnostics) {
+        if self.region == Region::Instance && region == Region::Assembly {
+            report_open(self.region, card.span, d);
+        } else if self.region != region {
+            let head = region.head().unwrap_or_default();
             let message = format!("{} without *{head}", card.title());
             d.error(Code::AssemblyStructure, card.span, message);
         }
-        self.place = outer;
+        self.region = outer;
     }
 
     fn other(&mut self, card: Card, d: &mut Diagnostics) {
         if card.keyword.name == "STEP" {
-            report_open(self.place, card.span, d);
-            self.place = Place::Model;
+            report_open(self.region, card.span, d);
+            self.region = Region::Model;
         }
-        let misplaced = !self.place.takes(&card);
+        let misplaced = !self.region.takes(&card);
         if misplaced && !self.misplaced {
-            self.place.report(&card, d);
+            self.region.report(&card, d);
         }
         self.misplaced = misplaced;
         let (part, item) = (self.parts.last_mut(), self.items.last_mut());
-        match (self.place, part, item) {
-            (Place::Part, Some(part), _) => part.cards.push(card),
-            (Place::Instance, _, Some(Item::Instance(_, cards))) => cards.push(card),
-            (place, _, _) => self.items.push(Item::Card(card, place)),
+        match (self.region, part, item) {
+            (Region::Part, Some(part), _) => part.cards.push(card),
+            (Region::Instance, _, Some(Item::Instance(_, cards))) => cards.push(card),
+            (region, _, _) => self.items.push(Item::Card(card, region)),
         }
     }
 }
 
 /// The part of a deck that a card stands in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum Region {
     /// Outside parts and the assembly.
     Model,
     /// A part.
@@ -352,14 +329,14 @@ const OF_ASSEMBLY: [&str; 7] = [
     "EQUATION",
 ];
 
-impl Place {
+impl Region {
     /// The keyword that begins it; none outside parts and the assembly.
     pub fn head(self) -> Option<&'static str> {
         match self {
-            Place::Model => None,
-            Place::Part => Some("PART"),
-            Place::Assembly => Some("ASSEMBLY"),
-            Place::Instance => Some("INSTANCE"),
+            Region::Model => None,
+            Region::Part => Some("PART"),
+            Region::Assembly => Some("ASSEMBLY"),
+            Region::Instance => Some("INSTANCE"),
         }
     }
 
@@ -370,9 +347,9 @@ impl Place {
             return true;
         }
         match self {
-            Place::Model => !OF_PARTS.contains(&name),
-            Place::Part | Place::Instance => OF_PARTS.contains(&name),
-            Place::Assembly => OF_ASSEMBLY.contains(&name),
+            Region::Model => !OF_PARTS.contains(&name),
+            Region::Part | Region::Instance => OF_PARTS.contains(&name),
+            Region::Assembly => OF_ASSEMBLY.contains(&name),
         }
     }
 
@@ -390,21 +367,21 @@ impl Place {
 
     /// Reports a card that cannot stand here.
     pub fn report(self, card: &Card, d: &mut Diagnostics) {
-        let place = match self {
-            Place::Model => "outside parts and the assembly",
-            Place::Part => "in a part",
-            Place::Assembly => "in the assembly",
-            Place::Instance => "in an instance",
+        let region = match self {
+            Region::Model => "outside parts and the assembly",
+            Region::Part => "in a part",
+            Region::Assembly => "in the assembly",
+            Region::Instance => "in an instance",
         };
-        let message = format!("{} cannot stand {place}", card.title());
+        let message = format!("{} cannot stand {region}", card.title());
         d.error(Code::WrongPlace, card.span, message)
-            .help(Place::advice(card));
+            .help(Region::advice(card));
     }
 }
 
 /// Reports a part, an assembly or an instance whose end is missing before `span`.
-pub(super) fn report_open(place: Place, span: Span, d: &mut Diagnostics) {
-    if let Some(head) = place.head() {
+pub(super) fn report_open(region: Region, span: Span, d: &mut Diagnostics) {
+    if let Some(head) = region.head() {
         let message = format!("the *{head} before is not closed");
         d.error(Code::AssemblyStructure, span, message)
             .help(format!("close it with *END {head}"));

@@ -122,13 +122,13 @@ impl Card {
 /// asked for.
 #[derive(Debug, Clone, Default)]
 pub struct Rows {
-    blocks: Vec<Block>,
+    blocks: Vec<LineBlock>,
     instance: u32,
 }
 
 /// Lines one after the other in a file, among which are no keyword lines.
 #[derive(Debug, Clone)]
-struct Block {
+struct LineBlock {
     file: FileId,
     /// Text of the whole file.
     source: Arc<String>,
@@ -141,7 +141,7 @@ struct Block {
 impl Rows {
     /// Adds lines of the file with the text `source`.
     pub(super) fn add(&mut self, lines: Lines, source: &Arc<String>) {
-        self.blocks.push(Block {
+        self.blocks.push(LineBlock {
             file: lines.file,
             source: Arc::clone(source),
             bytes: lines.start..lines.text.len(),

@@ -34,6 +34,12 @@ impl Deck {
         self.instances.get(index)
     }
 
+    /// All cards of a keyword.
+    pub fn cards_of(&self, keyword: &str) -> impl Iterator<Item = &Card> {
+        let cards = self.cards.iter();
+        cards.filter(move |card| card.keyword.name == keyword)
+    }
+
     /// Number of the instance with this name.
     pub fn instance(&self, key: &str) -> Option<u32> {
         let mut all = self.instances.iter().zip(1..);

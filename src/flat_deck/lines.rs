@@ -1,4 +1,4 @@
-//! Lines of a deck: keyword lines, data lines, names and numbers.
+//! DeckWriter of a deck: keyword lines, data lines, names and numbers.
 
 /// Longest keyword line; longer ones are continued.
 const WIDTH: usize = 80;
@@ -11,9 +11,9 @@ const MOST_ENTRIES: usize = 16;
 
 /// A deck being written.
 #[derive(Default)]
-pub(super) struct Lines(String);
+pub(super) struct DeckWriter(String);
 
-impl Lines {
+impl DeckWriter {
     /// The whole text.
     pub fn text(self) -> String {
         self.0
@@ -131,7 +131,7 @@ mod tests {
 
     #[test]
     fn long_keyword_lines_are_continued() {
-        let mut lines = Lines::default();
+        let mut lines = DeckWriter::default();
         let parameters = ["A", "B", "C"].map(|name| set(name, "x".repeat(40)));
         lines.card("KEY", parameters.clone());
         let [a, b, c] = parameters;

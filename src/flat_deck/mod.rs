@@ -12,11 +12,11 @@ use crate::deck;
 use crate::diagnostics::{Diagnostics, Sources, Span};
 use crate::model::Model;
 use crate::reader;
-use lines::Lines;
+use lines::DeckWriter;
 
 /// The deck of a model.
 pub fn flat_deck(model: &Model) -> String {
-    let mut lines = Lines::default();
+    let mut lines = DeckWriter::default();
     title(&model.title, &mut lines);
     model::write(model, &mut lines);
     steps::write(model, &mut lines);
@@ -41,7 +41,7 @@ fn flat(mut model: Model) -> Model {
 }
 
 /// The title on lines of at most 80 characters, cut at single blanks: the reader joins them by these.
-fn title(title: &str, lines: &mut Lines) {
+fn title(title: &str, lines: &mut DeckWriter) {
     if title.is_empty() {
         return;
     }

@@ -1,7 +1,7 @@
 //! What stands before the steps: nodes, elements, sets and surfaces, materials and sections,
 //! amplitudes, contacts with their interactions, rigid bodies and equations.
 
-use super::lines::{Lines, name, named, number, set};
+use super::lines::{DeckWriter, name, named, number, set};
 use crate::materials::{Law, NeoHooke, SaintVenantKirchhoff};
 use crate::model::{
     ALL_EXTERIOR, Adjust, Amplitude, Contact, Curve, Damping, Element, Equation, Face, Formulation,
@@ -13,7 +13,7 @@ use crate::model::{
 const TERMS: usize = 4;
 
 /// Writes what stands before the initial velocities and the steps.
-pub(super) fn write(model: &Model, lines: &mut Lines) {
+pub(super) fn write(model: &Model, lines: &mut DeckWriter) {
     write_mesh(model, lines);
     write_properties(model, lines);
     write_amplitudes(&model.amplitudes, lines);
@@ -21,7 +21,7 @@ pub(super) fn write(model: &Model, lines: &mut Lines) {
 }
 
 /// Writes contacts, rigid bodies and equations.
-fn write_contacts(model: &Model, lines: &mut Lines) {
+fn write_contacts(model: &Model, lines: &mut DeckWriter) {
     let interactions = Interactions::write(&model.contacts, lines);
     let all_exterior = all_exterior(model);
     let is_general = |contact: &&Contact| Some(contact.slave) == all_exterior;
@@ -51,7 +51,7 @@ fn write_contacts(model: &Model, lines: &mut Lines) {
 
 /// Rigid bodies of elements whose reference node belongs to nothing else. The model knows them by
 /// their supports alone: one element that moves with the node keeps the node in the deck.
-fn rigid_elements(model: &Model, lines: &mut Lines) {
+fn rigid_elements(model: &Model, lines: &mut DeckWriter) {
     let mut is_kept = vec![false; first_of_rigid(model)];
     let of_elements = model.mesh.elements.iter().flat_map(|e| &e.nodes).copied();
     let of_surfaces = model.rigid_bodies.iter().map(|body| body.reference);
@@ -98,7 +98,7 @@ fn moves_with(node: usize, other: usize, model: &Model) -> bool {
 struct Interactions(Vec<Interaction>);
 
 impl Interactions {
-    fn write(contacts: &[Contact], lines: &mut Lines) -> Self {
+    fn write(contacts: &[Contact], lines: &mut DeckWriter) -> Self {
         let mut all = Vec::new();
         for contact in contacts {
             if !all.contains(&contact.interaction) {
@@ -135,7 +135,7 @@ impl Interactions {
     }
 }
 
-fn pair(contact: &Contact, interactions: &Interactions, model: &Model, lines: &mut Lines) {
+fn pair(contact: &Contact, interactions: &Interactions, model: &Model, lines: &mut DeckWriter) {
     let mut parameters = vec![
         set("INTERACTION", interactions.name(contact.interaction)),
         set("TYPE", "NODE TO SURFACE"),
@@ -153,7 +153,7 @@ fn pair(contact: &Contact, interactions: &Interactions, model: &Model, lines: &m
 }
 
 /// Writes which nodes of general contact are moved before the start.
-fn initialization(reach: Reach, lines: &mut Lines) {
+fn initialization(reach: Reach, lines: &mut DeckWriter) {
     const NAME: &str = "INITIALIZATION-1";
     let mut parameters = vec![set("NAME", NAME), set("SEARCH ABOVE", number(reach.above))];
     if reach.below.is_finite() {
@@ -166,7 +166,7 @@ fn initialization(reach: Reach, lines: &mut Lines) {
 }
 
 /// Writes -u_dof + sum c_k u_k = 0.
-fn write_equation(equation: &Equation, model: &Model, lines: &mut Lines) {
+fn write_equation(equation: &Equation, model: &Model, lines: &mut DeckWriter) {
     let Equation { dof, terms } = equation;
     let mut all = vec![(*dof, -1.0)];
     all.extend(terms);
@@ -194,7 +194,7 @@ fn any_other_dof(dof: usize, model: &Model) -> Option<usize> {
 }
 
 /// Writes nodes, elements, sets and surfaces.
-fn write_mesh(model: &Model, lines: &mut Lines) {
+fn write_mesh(model: &Model, lines: &mut DeckWriter) {
     let mesh = &model.mesh;
     nodes(model, lines);
     for block in mesh
@@ -224,7 +224,7 @@ pub(super) fn all_exterior(model: &Model) -> Option<usize> {
     (is_named && model.contacts.iter().any(touches_itself)).then_some(last)
 }
 
-fn nodes(model: &Model, lines: &mut Lines) {
+fn nodes(model: &Model, lines: &mut DeckWriter) {
     lines.card("NODE", []);
     let nodes = model.mesh.node_labels.iter().zip(&model.mesh.coordinates);
     for (label, x) in nodes.take(first_of_rigid(model)) {
@@ -232,7 +232,7 @@ fn nodes(model: &Model, lines: &mut Lines) {
     }
 }
 
-fn elements(elements: &[Element], mesh: &Mesh, lines: &mut Lines) {
+fn elements(elements: &[Element], mesh: &Mesh, lines: &mut DeckWriter) {
     let Some(first) = elements.first() else {
         return;
     };
@@ -248,7 +248,7 @@ fn elements(elements: &[Element], mesh: &Mesh, lines: &mut Lines) {
     }
 }
 
-fn sets(keyword: &str, sets: &[Set], label: impl Fn(&usize) -> u64, lines: &mut Lines) {
+fn sets(keyword: &str, sets: &[Set], label: impl Fn(&usize) -> u64, lines: &mut DeckWriter) {
     for set in sets {
         lines.card(keyword, [named(keyword, &set.name)]);
         let labels: Vec<u64> = set.members.iter().map(&label).collect();
@@ -257,7 +257,7 @@ fn sets(keyword: &str, sets: &[Set], label: impl Fn(&usize) -> u64, lines: &mut 
 }
 
 /// Surfaces but that of general contact, which its card makes.
-fn surfaces(model: &Model, lines: &mut Lines) {
+fn surfaces(model: &Model, lines: &mut DeckWriter) {
     let mesh = &model.mesh;
     let own = all_exterior(model).unwrap_or(model.surfaces.len());
     for surface in &model.surfaces[..own] {
@@ -287,7 +287,7 @@ fn face_fields(face: &Face, mesh: &Mesh) -> [String; 2] {
 }
 
 /// A rigid profile from its last segment to its first, as the deck gives it.
-fn profile(segments: &[[usize; 2]], mesh: &Mesh, lines: &mut Lines) {
+fn profile(segments: &[[usize; 2]], mesh: &Mesh, lines: &mut DeckWriter) {
     let mut end = None;
     for &[to, from] in segments.iter().rev() {
         if end != Some(from) {
@@ -319,7 +319,7 @@ pub(super) fn elements_field(elements: &[usize], model: &Model) -> Option<String
 }
 
 /// Writes materials and sections.
-fn write_properties(model: &Model, lines: &mut Lines) {
+fn write_properties(model: &Model, lines: &mut DeckWriter) {
     for material in &model.materials {
         write_material(material, lines);
     }
@@ -328,7 +328,7 @@ fn write_properties(model: &Model, lines: &mut Lines) {
     }
 }
 
-fn write_material(material: &Material, lines: &mut Lines) {
+fn write_material(material: &Material, lines: &mut DeckWriter) {
     let Material {
         name,
         law,
@@ -351,7 +351,7 @@ fn write_material(material: &Material, lines: &mut Lines) {
     }
 }
 
-fn write_law(law: &Law, lines: &mut Lines) {
+fn write_law(law: &Law, lines: &mut DeckWriter) {
     match *law {
         Law::SaintVenantKirchhoff(SaintVenantKirchhoff { young, poisson }) => {
             if young > 0.0 {
@@ -368,7 +368,7 @@ fn write_law(law: &Law, lines: &mut Lines) {
     }
 }
 
-fn write_section(index: usize, section: &Section, model: &Model, lines: &mut Lines) {
+fn write_section(index: usize, section: &Section, model: &Model, lines: &mut DeckWriter) {
     let Section {
         material,
         thickness,
@@ -399,7 +399,7 @@ fn write_section(index: usize, section: &Section, model: &Model, lines: &mut Lin
 }
 
 /// Writes a set of the elements of a section, which no set of the model holds.
-fn new_set(index: usize, members: &[usize], model: &Model, lines: &mut Lines) -> String {
+fn new_set(index: usize, members: &[usize], model: &Model, lines: &mut DeckWriter) -> String {
     let name = format!("SECTION-{}", index + 1);
     lines.card("ELSET", [named("ELSET", &name)]);
     let labels: Vec<u64> = members
@@ -414,7 +414,7 @@ fn new_set(index: usize, members: &[usize], model: &Model, lines: &mut Lines) ->
 const POINTS: usize = 4;
 
 /// Writes all amplitudes.
-fn write_amplitudes(amplitudes: &[Amplitude], lines: &mut Lines) {
+fn write_amplitudes(amplitudes: &[Amplitude], lines: &mut DeckWriter) {
     for Amplitude { name, time, curve } in amplitudes {
         let time = match time {
             TimeBase::Step => "STEP TIME",
@@ -449,13 +449,13 @@ fn definition(curve: &Curve) -> &'static str {
     }
 }
 
-fn pairs(pairs: &[(f64, f64)], lines: &mut Lines) {
+fn pairs(pairs: &[(f64, f64)], lines: &mut DeckWriter) {
     for pairs in pairs.chunks(POINTS) {
         lines.row(pairs.iter().flat_map(|&(a, b)| [a, b]).map(number));
     }
 }
 
-fn write_signal(start: f64, base: f64, signal: &Signal, lines: &mut Lines) {
+fn write_signal(start: f64, base: f64, signal: &Signal, lines: &mut DeckWriter) {
     match signal {
         Signal::Periodic {
             frequency,

@@ -1,29 +1,28 @@
 //! Initial velocities and steps, with the cards that lead to the loads of a step from those of the
 //! step before.
 
-use super::lines::{Lines, named, number, set};
+use super::lines::{DeckWriter, named, number, set};
 use super::model::{elements_field, first_of_rigid};
 use crate::model::{
-    Amplitude, BodyForce, ContactMass, Factorization, Frames, HistorySet, Impact, ImpactTime,
-    Increments, LandingRule, LcpChoice, Load, Model, NamedSets, PointLoad, Pressure, Procedure,
-    Rate, Scheme, Settings, SolverChoice, Step, Support, SupportMotion, TimeBase, Traction,
-    Variation,
+    Amplitude, BodyForce, Frames, HistorySet, Increments, Load, Model, NamedSets, PointLoad,
+    Pressure, Procedure, Rate, Scheme, Settings, Step, Support, SupportMotion, Traction, Variation,
 };
+use crate::reader::{self, carried_loads};
 use std::collections::HashMap;
 
 /// Times on a data line.
 const TIMES: usize = 8;
 
 /// Writes initial velocities and all steps.
-pub(super) fn write(model: &Model, lines: &mut Lines) {
+pub(super) fn write(model: &Model, lines: &mut DeckWriter) {
     initial_velocity(model, lines);
     for (index, step) in model.steps.iter().enumerate() {
         time_points(index, step, lines);
     }
     let mut supports = Vec::new();
-    let mut loads = Loads::default();
+    let mut loads = LoadCards::default();
     for (index, step) in model.steps.iter().enumerate() {
-        let now = Loads::of(step, model);
+        let now = LoadCards::of(step, model);
         head(step, &now, lines);
         settings(&step.settings, lines);
         let held = own_supports(step, model);
@@ -32,11 +31,11 @@ pub(super) fn write(model: &Model, lines: &mut Lines) {
         requests(index, step, model, lines);
         lines.card("END STEP", []);
         supports = carried(&held, step, &model.amplitudes);
-        loads = now.carried(step.increments.period, &model.amplitudes);
+        loads = LoadCards::of(&carried_loads(step, &model.amplitudes), model);
     }
 }
 
-fn initial_velocity(model: &Model, lines: &mut Lines) {
+fn initial_velocity(model: &Model, lines: &mut DeckWriter) {
     let velocity = model.initial_velocity.iter().enumerate();
     let moving: Vec<(usize, &f64)> = velocity.filter(|(_, v)| **v != 0.0).collect();
     if !moving.is_empty() {
@@ -53,7 +52,7 @@ fn dof_fields(dof: usize, model: &Model) -> [String; 2] {
 }
 
 /// `*STEP` and its procedure.
-fn head(step: &Step, loads: &Loads, lines: &mut Lines) {
+fn head(step: &Step, loads: &LoadCards, lines: &mut DeckWriter) {
     let mut parameters = vec!["NLGEOM".to_owned()];
     parameters.extend(step.name.as_ref().map(|name| named("NAME", name)));
     parameters.extend(loads.ramp().then(|| set("AMPLITUDE", "RAMP")));
@@ -78,14 +77,19 @@ fn head(step: &Step, loads: &Loads, lines: &mut Lines) {
     }
 }
 
-fn settings(settings: &Settings, lines: &mut Lines) {
+fn settings(settings: &Settings, lines: &mut DeckWriter) {
     let Settings {
         scheme,
         impact,
         impact_time,
         landing,
+        contact_mass,
+        lcp,
+        factorization,
+        solver,
+        tolerance,
+        max_passes,
         is_check_only,
-        ..
     } = *settings;
     if is_check_only {
         lines.card("NO ANALYSIS", []);
@@ -98,65 +102,18 @@ fn settings(settings: &Settings, lines: &mut Lines) {
             set("THETA2", number(theta2)),
         ],
     };
-    let impact = match impact {
-        Impact::Impulse => "IMPULSE",
-        Impact::None => "NONE",
-    };
-    let impact_time = match impact_time {
-        ImpactTime::Increment => "INCREMENT",
-        ImpactTime::Event => "EVENT",
-    };
-    let landing = match landing {
-        LandingRule::Plastic => "PLASTIC",
-        LandingRule::Return => "RETURN",
-    };
     parameters.extend([
-        set("IMPACT", impact),
-        set("IMPACT TIME", impact_time),
-        set("LANDING", landing),
-    ]);
-    parameters.extend(solver_settings(settings));
-    lines.card_of("STICKSLIP", &parameters);
-}
-
-fn solver_settings(settings: &Settings) -> [String; 6] {
-    let Settings {
-        scheme: _,
-        impact: _,
-        impact_time: _,
-        landing: _,
-        contact_mass,
-        lcp,
-        factorization,
-        solver,
-        tolerance,
-        max_passes,
-        is_check_only: _,
-    } = *settings;
-    let contact_mass = match contact_mass {
-        ContactMass::Consistent => "CONSISTENT",
-        ContactMass::Redistributed => "REDISTRIBUTED",
-    };
-    let lcp = match lcp {
-        LcpChoice::Hybrid => "HYBRID",
-        LcpChoice::Lemke => "LEMKE",
-    };
-    let factorization = match factorization {
-        Factorization::Keep => "KEEP",
-        Factorization::EveryPass => "EVERY PASS",
-    };
-    let solver = match solver {
-        SolverChoice::Faer => "FAER",
-        SolverChoice::Sprs => "SPRS",
-    };
-    [
-        set("CONTACT MASS", contact_mass),
-        set("LCP", lcp),
-        set("FACTORIZATION", factorization),
-        set("SOLVER", solver),
+        reader::IMPACT.written(impact),
+        reader::IMPACT_TIME.written(impact_time),
+        reader::LANDING.written(landing),
+        reader::CONTACT_MASS.written(contact_mass),
+        reader::LCP.written(lcp),
+        reader::FACTORIZATION.written(factorization),
+        reader::SOLVER.written(solver),
         set("TOLERANCE", number(tolerance)),
         set("MAX PASSES", max_passes),
-    ]
+    ]);
+    lines.card_of("STICKSLIP", &parameters);
 }
 
 /// Supports but those of the nodes of rigid surfaces, which follow their reference nodes.
@@ -192,7 +149,7 @@ fn kind_of(support: &Support) -> (Option<Rate>, Option<usize>) {
 }
 
 /// Writes the supports of a step, all of them where they are not those of the step before.
-fn write_supports(now: &[Support], carried: &[Support], model: &Model, lines: &mut Lines) {
+fn write_supports(now: &[Support], carried: &[Support], model: &Model, lines: &mut DeckWriter) {
     if now == carried {
         return;
     }
@@ -231,7 +188,7 @@ fn write_supports(now: &[Support], carried: &[Support], model: &Model, lines: &m
 }
 
 /// Supports of one or both directions of a node that move alike.
-fn support_row(supports: &[&Support], model: &Model, lines: &mut Lines) {
+fn support_row(supports: &[&Support], model: &Model, lines: &mut DeckWriter) {
     let (Some(first), Some(last)) = (supports.first(), supports.last()) else {
         return;
     };
@@ -248,7 +205,7 @@ fn times_name(index: usize) -> String {
     format!("TIMES-{}", index + 1)
 }
 
-fn time_points(index: usize, step: &Step, lines: &mut Lines) {
+fn time_points(index: usize, step: &Step, lines: &mut DeckWriter) {
     let Frames::Times(times) = &step.frames else {
         return;
     };
@@ -262,7 +219,7 @@ fn time_points(index: usize, step: &Step, lines: &mut Lines) {
 
 /// When frames are written; in the first step fields on request, sets of the history and dofs in the status
 /// file.
-fn requests(index: usize, step: &Step, model: &Model, lines: &mut Lines) {
+fn requests(index: usize, step: &Step, model: &Model, lines: &mut DeckWriter) {
     let when = match &step.frames {
         Frames::Default => None,
         Frames::Count(count) => Some(set("NUMBER INTERVAL", count)),
@@ -282,7 +239,7 @@ fn requests(index: usize, step: &Step, model: &Model, lines: &mut Lines) {
     }
 }
 
-fn histories(sets: &NamedSets, lines: &mut Lines) {
+fn histories(sets: &NamedSets, lines: &mut DeckWriter) {
     let asked = sets.fields;
     if asked.concentrated_load {
         lines.card("NODE FILE", []);
@@ -328,18 +285,18 @@ struct Entry {
     variation: Variation,
 }
 
-/// Loads of the keywords `*CLOAD` and `*DLOAD`.
+/// LoadCards of the keywords `*CLOAD` and `*DLOAD`.
 #[derive(Default)]
-pub(super) struct Loads([Vec<Entry>; 2]);
+pub(super) struct LoadCards([Vec<Entry>; 2]);
 
-impl Loads {
+impl LoadCards {
     /// The loads of a step.
-    pub fn of(step: &Step, model: &Model) -> Loads {
+    pub fn of(step: &Step, model: &Model) -> LoadCards {
         let points = step.point_loads.iter().map(|load| point_load(load, model));
         let bodies = step.body_forces.iter().map(body_force);
         let pressures = step.pressures.iter().map(|load| pressure(load, model));
         let tractions = step.tractions.iter().map(|load| traction(load, model));
-        Loads([
+        LoadCards([
             points.collect(),
             bodies.chain(pressures).chain(tractions).collect(),
         ])
@@ -352,7 +309,7 @@ impl Loads {
     }
 
     /// Writes the cards of a step that begins with the loads `carried` from the step before.
-    pub fn write(&self, carried: &Loads, model: &Model, lines: &mut Lines) {
+    pub fn write(&self, carried: &LoadCards, model: &Model, lines: &mut DeckWriter) {
         let families = self.0.iter().zip(&carried.0);
         for (keyword, (now, carried)) in ["CLOAD", "DLOAD"].into_iter().zip(families) {
             if now == carried {
@@ -367,20 +324,6 @@ impl Loads {
             };
             write_cards(keyword, operation, &grouped(entries, model), model, lines);
         }
-    }
-
-    /// The loads that a step of duration `period` leaves to the next one.
-    pub fn carried(&self, period: f64, amplitudes: &[Amplitude]) -> Loads {
-        let carry = |entries: &Vec<Entry>| {
-            let mut carried: Vec<Entry> = Vec::new();
-            for entry in entries {
-                add(entry.carried(period, amplitudes), &mut carried);
-            }
-            carried.retain(|entry| entry.magnitude != 0.0);
-            carried
-        };
-        let [points, elements] = &self.0;
-        Loads([carry(points), carry(elements)])
     }
 }
 
@@ -402,20 +345,6 @@ impl Entry {
             magnitude: load.magnitude,
             variation: load.variation,
         }
-    }
-
-    /// The load at the end of a step: it keeps what it has reached, unless it follows the total time.
-    fn carried(&self, period: f64, amplitudes: &[Amplitude]) -> Entry {
-        let mut carried = self.clone();
-        if let Variation::Amplitude(index) = self.variation {
-            let curve = &amplitudes[index];
-            if curve.time == TimeBase::Total {
-                return carried;
-            }
-            carried.magnitude *= curve.at(period);
-        }
-        carried.variation = Variation::Constant;
-        carried
     }
 
     fn amplitude(&self) -> Option<usize> {
@@ -470,28 +399,6 @@ fn traction(load: &Load<Traction>, model: &Model) -> Entry {
     }
 }
 
-/// Adds a load; constant loads at the same place and in the same direction are joined.
-fn add(entry: Entry, entries: &mut Vec<Entry>) {
-    let joins = |known: &&mut Entry| {
-        let magnitude = known.magnitude;
-        let is_constant = known.variation == Variation::Constant;
-        is_constant
-            && **known
-                == Entry {
-                    magnitude,
-                    ..entry.clone()
-                }
-    };
-    let mut of_key = entries
-        .iter_mut()
-        .rev()
-        .take_while(|known| known.key() == entry.key());
-    match of_key.find(joins) {
-        Some(known) => known.magnitude += entry.magnitude,
-        None => entries.push(entry),
-    }
-}
-
 /// All loads of the places where they are not those of the step before: a load that ramps takes the place
 /// of all that were there.
 fn at_changed_places(entries: &[Entry], carried: &[Entry]) -> Vec<Entry> {
@@ -511,7 +418,7 @@ fn by_key(entries: &[Entry]) -> HashMap<Key<'_>, Vec<&Entry>> {
     by_key
 }
 
-/// Loads with body forces that are alike in one entry, where they act on all elements or on a set.
+/// LoadCards with body forces that are alike in one entry, where they act on all elements or on a set.
 fn grouped(entries: Vec<Entry>, model: &Model) -> Vec<Entry> {
     let mut groups: Vec<(Entry, Vec<usize>)> = Vec::new();
     let mut rest = Vec::new();
@@ -554,9 +461,9 @@ fn write_cards(
     operation: Option<String>,
     entries: &[Entry],
     model: &Model,
-    lines: &mut Lines,
+    lines: &mut DeckWriter,
 ) {
-    let card = |first: Option<&Entry>, lines: &mut Lines| {
+    let card = |first: Option<&Entry>, lines: &mut DeckWriter| {
         let amplitude = first
             .and_then(Entry::amplitude)
             .map(|index| &model.amplitudes[index]);

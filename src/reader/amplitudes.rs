@@ -1,17 +1,15 @@
 //! `*AMPLITUDE`: tables of points, and functions of the time since their start.
 
 use super::context::Context;
-use super::names::Names;
+use super::names::Named;
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span};
 use crate::model::{Amplitude, Curve, Signal, TimeBase};
 
 /// All amplitudes.
 pub(crate) struct Amplitudes {
-    /// Their names.
-    pub names: Names,
-    /// Amplitudes in the order of their names.
-    pub all: Vec<Amplitude>,
+    /// Amplitudes with their names.
+    pub named: Named<Amplitude>,
     /// Their places.
     pub spans: Vec<Span>,
 }
@@ -20,7 +18,7 @@ impl Amplitudes {
     /// Index of the amplitude that a card names with `AMPLITUDE=`; `Err` after a reported error.
     pub fn of(&self, card: &Card, cx: &mut Context) -> Result<Option<usize>, ()> {
         match card.value("AMPLITUDE") {
-            Some(name) => self.names.find(name, cx).map(Some).ok_or(()),
+            Some(name) => self.named.names.find(name, cx).map(Some).ok_or(()),
             None => Ok(None),
         }
     }
@@ -28,35 +26,19 @@ impl Amplitudes {
 
 /// Reads all amplitudes, including those in steps.
 pub(crate) fn read(cx: &mut Context) -> Amplitudes {
-    let mut amplitudes = Amplitudes {
-        names: Names::new("amplitude"),
-        all: Vec::new(),
-        spans: Vec::new(),
-    };
+    let (mut named, mut spans) = (Named::new("amplitude"), Vec::new());
     let deck = cx.deck;
-    for card in deck
-        .cards
-        .iter()
-        .filter(|card| card.keyword.name == "AMPLITUDE")
-    {
-        let Some(name) = amplitudes.names.new_name(card, cx) else {
-            continue;
-        };
-        let errors = cx.errors();
-        let curve = curve(card, cx);
-        let Some(curve) = curve.filter(|_| !card.faulty && cx.errors() == errors) else {
-            amplitudes.names.spoil(&name);
-            continue;
-        };
-        amplitudes.spans.push(card.span_of("NAME"));
-        amplitudes.all.push(Amplitude {
-            name: name.typed.clone(),
-            time: time_base(card),
-            curve,
+    for card in deck.cards_of("AMPLITUDE") {
+        named.add(card, cx, |name, cx| {
+            Some(Amplitude {
+                name: name.typed.clone(),
+                time: time_base(card),
+                curve: cx.sound(card, |cx| curve(card, cx))?,
+            })
         });
-        amplitudes.names.define(name);
+        spans.resize(named.all.len(), card.span_of("NAME"));
     }
-    amplitudes
+    Amplitudes { named, spans }
 }
 
 /// The time base given by a card's parameter `TIME`.

@@ -48,7 +48,7 @@ struct Prescription {
 
 /// What a card prescribes.
 #[derive(Clone, Copy)]
-enum Quantity {
+enum CardMotion {
     /// Displacements, that follow an amplitude or grow over the step.
     Displacement(Option<usize>),
     /// Velocities or accelerations, constant or with an amplitude.
@@ -57,20 +57,20 @@ enum Quantity {
     Fixed,
 }
 
-impl Quantity {
+impl CardMotion {
     /// The motion with the value of a row.
     fn motion(self, value: f64) -> SupportMotion {
         match self {
-            Quantity::Displacement(Some(amplitude)) => {
+            CardMotion::Displacement(Some(amplitude)) => {
                 SupportMotion::Amplitude { value, amplitude }
             }
-            Quantity::Displacement(None) => SupportMotion::Ramp { to: value },
-            Quantity::Rate(rate, amplitude) => SupportMotion::Rate {
+            CardMotion::Displacement(None) => SupportMotion::Ramp { to: value },
+            CardMotion::Rate(rate, amplitude) => SupportMotion::Rate {
                 rate,
                 value,
                 amplitude,
             },
-            Quantity::Fixed => SupportMotion::Rate {
+            CardMotion::Fixed => SupportMotion::Rate {
                 rate: Rate::Velocity,
                 value: 0.0,
                 amplitude: None,
@@ -108,10 +108,10 @@ impl Supports {
             return;
         };
         let quantity = match card.choice("TYPE") {
-            _ if card.has("FIXED") => Quantity::Fixed,
-            Some("VELOCITY") => Quantity::Rate(Rate::Velocity, amplitude),
-            Some("ACCELERATION") => Quantity::Rate(Rate::Acceleration, amplitude),
-            _ => Quantity::Displacement(amplitude),
+            _ if card.has("FIXED") => CardMotion::Fixed,
+            Some("VELOCITY") => CardMotion::Rate(Rate::Velocity, amplitude),
+            Some("ACCELERATION") => CardMotion::Rate(Rate::Acceleration, amplitude),
+            _ => CardMotion::Displacement(amplitude),
         };
         for row in card.rows.iter() {
             self.row(row, quantity, step, targets, cx);
@@ -122,7 +122,7 @@ impl Supports {
     fn row(
         &mut self,
         row: Line,
-        quantity: Quantity,
+        quantity: CardMotion,
         step: usize,
         targets: Targets,
         cx: &mut Context,
@@ -138,11 +138,11 @@ impl Supports {
             cx.error(Code::ValueOutsideStep, prescribed.span, message);
             return;
         }
-        if let (Quantity::Displacement(None), true) = (quantity, prescribed.value != 0.0) {
+        if let (CardMotion::Displacement(None), true) = (quantity, prescribed.value != 0.0) {
             let message = "a displacement without amplitude grows linearly over the step";
             cx.d.note_once(Code::RampedSupport, prescribed.span, message);
         }
-        if let (Quantity::Fixed, true) = (quantity, prescribed.value != 0.0) {
+        if let (CardMotion::Fixed, true) = (quantity, prescribed.value != 0.0) {
             let help = "FIXED keeps the displacement of the start of the step";
             row.without_effect(3, "this value has no effect", help, cx.d);
         }

@@ -3,8 +3,8 @@
 
 use super::context::Context;
 use super::mesh_index::MeshIndex;
-use super::names::Names;
-use super::outline::{Block, Outline};
+use super::names::Named;
+use super::outline::{CardBlock, Outline};
 use super::sets::Sets;
 use super::surfaces::{Found, Surfaces};
 use crate::deck::{Card, Line, Name, Text};
@@ -22,11 +22,11 @@ pub(crate) fn read(
     surfaces: &mut Surfaces,
     cx: &mut Context,
 ) -> Vec<Contact> {
-    let interactions = Interactions::read(outline, cx);
+    let interactions = interactions(outline, cx);
     let mut contacts = Vec::new();
     for card in outline.model_cards("CONTACT PAIR") {
         let name = card.required("INTERACTION", cx.d);
-        let interaction = name.and_then(|name| interactions.find(name, cx));
+        let interaction = name.and_then(|name| interactions.find(name, cx).copied());
         let adjust = adjust(card, sets, cx);
         for row in card.rows.iter() {
             let contact = contact(row, interaction, surfaces, cx);
@@ -145,41 +145,20 @@ fn check_use(row: Line, slave: Found, master: Found, cx: &mut Context) -> Option
     None
 }
 
-/// The interactions of the deck by their names.
-struct Interactions {
-    names: Names,
-    /// In the order of their names.
-    all: Vec<Interaction>,
-}
-
-impl Interactions {
-    /// Reads all interactions.
-    pub fn read(outline: &Outline, cx: &mut Context) -> Self {
-        let mut names = Names::new("surface interaction");
-        let mut all = Vec::new();
-        for block in outline.blocks("SURFACE INTERACTION") {
-            let Some(name) = names.new_name(block.head, cx) else {
-                continue;
-            };
-            if let Some(friction) = friction(block, cx) {
-                all.push(Interaction { friction });
-                names.define(name);
-            } else {
-                names.spoil(&name);
-            }
-        }
-        Interactions { names, all }
+/// Reads all interactions.
+fn interactions(outline: &Outline, cx: &mut Context) -> Named<Interaction> {
+    let mut interactions = Named::new("surface interaction");
+    for block in outline.blocks("SURFACE INTERACTION") {
+        interactions.add(block.head, cx, |_, cx| {
+            let friction = friction(block, cx)?;
+            Some(Interaction { friction })
+        });
     }
-
-    /// The interaction of a name; reports an undefined one.
-    pub fn find(&self, name: Text, cx: &mut Context) -> Option<Interaction> {
-        let index = self.names.find(name, cx)?;
-        self.all.get(index).copied()
-    }
+    interactions
 }
 
 /// Friction of an interaction; `None` after a reported error.
-fn friction(block: &Block, cx: &mut Context) -> Option<Friction> {
+fn friction(block: &CardBlock, cx: &mut Context) -> Option<Friction> {
     let behaviors = block.parts_of("SURFACE BEHAVIOR");
     cx.only_once(&behaviors);
     behaviors
@@ -272,7 +251,7 @@ fn general_contacts(
     outline: &Outline,
     mesh_index: &MeshIndex,
     (surfaces, pairs): (&mut Surfaces, &[Contact]),
-    interactions: &Interactions,
+    interactions: &Named<Interaction>,
     cx: &mut Context,
 ) -> Vec<Contact> {
     let mut all = Vec::new();
@@ -312,10 +291,10 @@ fn general(
     outline: &Outline,
     mesh_index: &MeshIndex,
     surfaces: &mut Surfaces,
-    interactions: &Interactions,
+    interactions: &Named<Interaction>,
     cx: &mut Context,
 ) -> Option<Contact> {
-    let blocks: Vec<&Block> = outline.blocks("CONTACT").collect();
+    let blocks: Vec<&CardBlock> = outline.blocks("CONTACT").collect();
     let heads: Vec<&Card> = blocks.iter().map(|block| block.head).collect();
     cx.only_once(&heads);
     let block = blocks.first()?;
@@ -359,7 +338,7 @@ fn report_pairs(pairs: &[Contact], surfaces: &Surfaces, cx: &mut Context) {
 }
 
 /// Place of `ALL EXTERIOR`; `None` after a reported error.
-fn inclusions(block: &Block, cx: &mut Context) -> Option<Span> {
+fn inclusions(block: &CardBlock, cx: &mut Context) -> Option<Span> {
     let cards = block.parts_of("CONTACT INCLUSIONS");
     cx.only_once(&cards);
     let help = "write *CONTACT INCLUSIONS, ALL EXTERIOR";
@@ -379,8 +358,8 @@ fn inclusions(block: &Block, cx: &mut Context) -> Option<Span> {
 
 /// The interaction of all surfaces, the last one assigned; an error is reported.
 fn assignment(
-    block: &Block,
-    interactions: &Interactions,
+    block: &CardBlock,
+    interactions: &Named<Interaction>,
     cx: &mut Context,
 ) -> Result<Interaction, ()> {
     let mut assigned = Ok(Interaction::default());
@@ -393,9 +372,13 @@ fn assignment(
 }
 
 /// `, , interaction`
-fn assigned_in(row: Line, interactions: &Interactions, cx: &mut Context) -> Option<Interaction> {
+fn assigned_in(
+    row: Line,
+    interactions: &Named<Interaction>,
+    cx: &mut Context,
+) -> Option<Interaction> {
     let name = of_all_surfaces(row, "the interaction", cx)?;
-    interactions.find(name, cx)
+    interactions.find(name, cx).copied()
 }
 
 /// All faces that belong to one element only, chain by chain along the boundaries.
@@ -422,39 +405,29 @@ fn exterior(mesh: &Mesh) -> Vec<Face> {
 /// What the last assignment in the block of `*CONTACT` asks for; an error is reported.
 fn initialization(
     outline: &Outline,
-    block: &Block,
+    block: &CardBlock,
     cx: &mut Context,
 ) -> Result<Option<Adjust>, ()> {
-    let (names, all) = data(outline, block, cx);
+    let all = initializations(outline, block, cx);
     let mut assigned = Ok(None);
     for card in block.parts_of("CONTACT INITIALIZATION ASSIGNMENT") {
         for row in card.rows.iter() {
             let name = of_all_surfaces(row, "the contact initialization", cx);
-            let index = name.and_then(|name| names.find(name, cx));
-            let reach = index.and_then(|index| all.get(index).copied());
+            let reach = name.and_then(|name| all.find(name, cx)).copied();
             assigned = reach.map(|reach| Some(Adjust::Within(reach))).ok_or(());
         }
     }
     assigned
 }
 
-/// All data of initialization by their names, which may stand in the block or outside.
-fn data(outline: &Outline, block: &Block, cx: &mut Context) -> (Names, Vec<Reach>) {
+/// All data of initialization, which may stand in the block or outside.
+fn initializations(outline: &Outline, block: &CardBlock, cx: &mut Context) -> Named<Reach> {
     const KEYWORD: &str = "CONTACT INITIALIZATION DATA";
-    let (mut names, mut all) = (Names::new("contact initialization"), Vec::new());
+    let mut all = Named::new("contact initialization");
     for card in [outline.model_cards(KEYWORD), block.parts_of(KEYWORD)].concat() {
-        let Some(name) = names.new_name(card, cx) else {
-            continue;
-        };
-        match reach(card, cx) {
-            Some(reach) => {
-                all.push(reach);
-                names.define(name);
-            }
-            None => names.spoil(&name),
-        }
+        all.add(card, cx, |_, cx| reach(card, cx).filter(|_| !card.faulty));
     }
-    (names, all)
+    all
 }
 
 /// Which nodes are moved and where to: those inside, unless the card says more.
@@ -465,7 +438,6 @@ fn reach(card: &Card, cx: &mut Context) -> Option<Reach> {
     };
     let (above, below) = (or("SEARCH ABOVE", 0.0), or("SEARCH BELOW", f64::INFINITY));
     let clearance = or("INITIAL CLEARANCE", 0.0);
-    (!card.faulty).then_some(())?;
     Some(Reach {
         above: above?,
         below: below?,

@@ -42,6 +42,17 @@ impl<'a> Context<'a> {
         self.deck.incomplete || self.deck.dropped
     }
 
+    /// What `read` makes of a card, unless the card or reading it has a reported error.
+    pub fn sound<T>(
+        &mut self,
+        card: &Card,
+        read: impl FnOnce(&mut Self) -> Option<T>,
+    ) -> Option<T> {
+        let errors = self.errors();
+        let read = read(self);
+        read.filter(|_| !card.faulty && self.errors() == errors)
+    }
+
     /// Number of errors so far.
     pub fn errors(&self) -> usize {
         self.d.errors_found()
@@ -111,10 +122,8 @@ impl<'a> Context<'a> {
 
     /// Whether a row of a keyword, such as `*NODE`, begins with this label.
     pub fn defines(&self, keyword: &str, label: u64) -> bool {
-        let cards = self.deck.cards.iter();
-        let rows = cards
-            .filter(|card| card.keyword.name == keyword)
-            .flat_map(|card| card.rows.iter());
+        let cards = self.deck.cards_of(keyword);
+        let rows = cards.flat_map(|card| card.rows.iter());
         let mut labels = rows.filter_map(|row| self.as_label(row.get(0)?));
         labels.any(|known| known == label)
     }

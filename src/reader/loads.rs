@@ -10,20 +10,21 @@ use crate::model::{
     Variation,
 };
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 /// All loads, as they are carried from step to step.
 #[derive(Default)]
-pub(crate) struct Loads {
+pub(crate) struct LoadHistories {
     points: LoadHistory<usize, PointLoad>,
     bodies: LoadHistory<(u32, Body), BodyForce>,
-    pressures: LoadHistory<Face, Pressure>,
-    face_tractions: LoadHistory<Face, Traction>,
-    surface_pressures: LoadHistory<(usize, Face), Pressure>,
-    tractions: LoadHistory<(usize, Face), Traction>,
-    point_operation: Operation,
-    element_operation: Operation,
-    surface_operation: Operation,
+    pressures: LoadHistory<OnFace, Pressure>,
+    tractions: LoadHistory<OnFace, Traction>,
+    /// By the keywords.
+    operations: BTreeMap<&'static str, Operation>,
 }
+
+/// A face, and the surface (index) on which `*DSLOAD` loads it; none with `*DLOAD`.
+type OnFace = (Option<usize>, Face);
 
 /// Kinds of body force; a later step replaces a force of the same kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -31,6 +32,31 @@ enum Body {
     Gravity,
     X,
     Y,
+}
+
+impl Body {
+    fn of(force: &BodyForce) -> Body {
+        match (force.per_mass, force.direction[0] != 0.0) {
+            (true, _) => Body::Gravity,
+            (false, true) => Body::X,
+            (false, false) => Body::Y,
+        }
+    }
+}
+
+/// A step with the loads that it leaves to the next one, given on nodes and elements.
+pub(crate) fn carried_loads(step: &Step, amplitudes: &[Amplitude]) -> Step {
+    let mut loads = LoadHistories {
+        points: LoadHistory::of(&step.point_loads, |at| at.dof),
+        bodies: LoadHistory::of(&step.body_forces, |at| (at.element as u32, Body::of(at))),
+        pressures: LoadHistory::of(&step.pressures, |at| (None, at.face)),
+        tractions: LoadHistory::of(&step.tractions, |at| (None, at.face)),
+        operations: BTreeMap::new(),
+    };
+    loads.end_step(step.increments.period, 0.0, amplitudes);
+    let mut carried = step.clone();
+    loads.fill(&mut carried, true);
+    carried
 }
 
 /// A card of loads with what its rows have in common.
@@ -43,7 +69,7 @@ struct Source<'a> {
     surfaces: &'a Surfaces,
 }
 
-impl Loads {
+impl LoadHistories {
     /// Reads a card of loads.
     pub fn card(
         &mut self,
@@ -74,26 +100,21 @@ impl Loads {
     }
 
     fn operation(&mut self, card: &Card, context: StepContext, cx: &mut Context) {
-        let operation = match card.keyword.name {
-            "CLOAD" => &mut self.point_operation,
-            "DLOAD" => &mut self.element_operation,
-            _ => &mut self.surface_operation,
-        };
+        let keyword = card.keyword.name;
+        let operation = self.operations.entry(keyword).or_default();
         if !operation.starts_anew(card, context.step, cx) {
             return;
         }
-        match card.keyword.name {
-            "CLOAD" => self.points.clear(context),
-            "DLOAD" => {
-                self.bodies.clear(context);
-                self.pressures.clear(context);
-                self.face_tractions.clear(context);
-            }
-            _ => {
-                self.surface_pressures.clear(context);
-                self.tractions.clear(context);
-            }
+        if keyword == "CLOAD" {
+            return self.points.clear(context, |_| true);
         }
+        let on_surfaces = keyword == "DSLOAD";
+        if !on_surfaces {
+            self.bodies.clear(context, |_| true);
+        }
+        let is_meant = |(surface, _): &OnFace| surface.is_some() == on_surfaces;
+        self.pressures.clear(context, is_meant);
+        self.tractions.clear(context, is_meant);
     }
 
     /// `node or set, direction, force`
@@ -196,20 +217,8 @@ impl Loads {
             cx.error(Code::NoSuchFace, row.span(), message);
             return None;
         }
-        let (amplitude, context) = (source.amplitude, source.context);
         for &element in elements {
-            let face = Face { element, side };
-            match direction {
-                None => {
-                    let at = Pressure { face };
-                    self.pressures.add(face, at, magnitude, amplitude, context);
-                }
-                Some(direction) => {
-                    let at = Traction { face, direction };
-                    self.face_tractions
-                        .add(face, at, magnitude, amplitude, context);
-                }
-            }
+            self.add_to_face((None, Face { element, side }), direction, magnitude, source);
         }
         Some(())
     }
@@ -236,14 +245,14 @@ impl Loads {
             return None;
         };
         for &face in faces {
-            self.add_to_face((index, face), direction, magnitude, source);
+            self.add_to_face((Some(index), face), direction, magnitude, source);
         }
         Some(())
     }
 
     fn add_to_face(
         &mut self,
-        key: (usize, Face),
+        key: OnFace,
         direction: Option<[f64; 2]>,
         magnitude: f64,
         source: Source,
@@ -252,8 +261,7 @@ impl Loads {
         match direction {
             None => {
                 let at = Pressure { face };
-                self.surface_pressures
-                    .add(key, at, magnitude, amplitude, context);
+                self.pressures.add(key, at, magnitude, amplitude, context);
             }
             Some(direction) => {
                 let at = Traction { face, direction };
@@ -266,12 +274,8 @@ impl Loads {
     pub fn fill(&mut self, step: &mut Step, is_last: bool) {
         step.point_loads = self.points.list(is_last);
         step.body_forces = self.bodies.list(is_last);
-        let mut pressures = self.pressures.list(is_last);
-        pressures.extend(self.surface_pressures.list(is_last));
-        step.pressures = joined(pressures, |load| load.at.face);
-        let mut tractions = self.face_tractions.list(is_last);
-        tractions.extend(self.tractions.list(is_last));
-        step.tractions = joined(tractions, |load| load.at.face);
+        step.pressures = joined(self.pressures.list(is_last), |load| load.at.face);
+        step.tractions = joined(self.tractions.list(is_last), |load| load.at.face);
     }
 
     /// Ends a step of duration `period` at total time `total`.
@@ -279,8 +283,6 @@ impl Loads {
         self.points.end_step(period, total, amplitudes);
         self.bodies.end_step(period, total, amplitudes);
         self.pressures.end_step(period, total, amplitudes);
-        self.face_tractions.end_step(period, total, amplitudes);
-        self.surface_pressures.end_step(period, total, amplitudes);
         self.tractions.end_step(period, total, amplitudes);
     }
 }
@@ -416,15 +418,15 @@ impl Operation {
     }
 }
 
-/// Loads of one kind by their keys.
+/// LoadHistories of one kind by their keys.
 pub(crate) struct LoadHistory<K, T> {
     /// The first ones, `sorted` of them, in the order of their keys; then those added since.
-    parts: Vec<(K, Part<T>)>,
+    parts: Vec<(K, CarriedLoad<T>)>,
     sorted: usize,
 }
 
 #[derive(Clone, Copy)]
-struct Part<T> {
+struct CarriedLoad<T> {
     load: Load<T>,
     /// Magnitude at the end of the step before.
     end: f64,
@@ -444,11 +446,28 @@ impl<K, T> Default for LoadHistory<K, T> {
 }
 
 impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
+    /// The loads of a step, by the keys of what they act on.
+    fn of(loads: &[Load<T>], key: impl Fn(&T) -> K) -> LoadHistory<K, T> {
+        let part = |load: &Load<T>| CarriedLoad {
+            load: *load,
+            end: 0.0,
+            step: 0,
+            replaced: false,
+        };
+        LoadHistory {
+            parts: loads
+                .iter()
+                .map(|load| (key(&load.at), part(load)))
+                .collect(),
+            sorted: 0,
+        }
+    }
+
     /// All loads of the current step, in the order of their keys; nothing remains after the last
     /// step.
     pub fn list(&mut self, is_last: bool) -> Vec<Load<T>> {
         self.sort();
-        let simple = |part: &Part<T>| {
+        let simple = |part: &CarriedLoad<T>| {
             let load = part.load;
             load.ends().map_or(load, |ends| load.between(ends))
         };
@@ -462,14 +481,15 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         }
     }
 
-    /// Removes all loads; where loads ramp they fade out over the step.
-    pub fn clear(&mut self, context: StepContext) {
+    /// Removes the loads under some keys; where loads ramp they fade out over the step.
+    pub fn clear(&mut self, context: StepContext, is_meant: impl Fn(&K) -> bool) {
         if !context.ramp {
-            *self = LoadHistory::default();
+            self.parts.retain(|(key, _)| !is_meant(key));
         }
-        for (_, part) in &mut self.parts {
+        for (_, part) in self.parts.iter_mut().filter(|(key, _)| is_meant(key)) {
             part.fade();
         }
+        self.sort();
     }
 
     /// Makes room for so many loads more.
@@ -496,12 +516,16 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
                 part.replaced = true;
             }
         }
-        let part = Part::new(at, magnitude, amplitude, context);
+        let part = CarriedLoad::new(at, magnitude, amplitude, context);
         self.parts.push((key, part.rising_from(from)));
     }
 
     /// Parts of earlier steps under a key.
-    fn earlier(&mut self, key: K, context: StepContext) -> impl Iterator<Item = &mut Part<T>> {
+    fn earlier(
+        &mut self,
+        key: K,
+        context: StepContext,
+    ) -> impl Iterator<Item = &mut CarriedLoad<T>> {
         let sorted = self.parts.get(..self.sorted).unwrap_or_default();
         let first = sorted.partition_point(|(known, _)| *known < key);
         let parts = self.parts.iter_mut().skip(first);
@@ -529,13 +553,13 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         for parts in self.parts.chunk_by_mut(|(a, _), (b, _)| a == b) {
             add_up(parts);
         }
-        let acts = |part: &Part<T>| !part.replaced && part.load.magnitude != 0.0;
+        let acts = |part: &CarriedLoad<T>| !part.replaced && part.load.magnitude != 0.0;
         self.parts.retain(|(_, part)| acts(part));
         self.sorted = self.parts.len();
     }
 }
 
-/// Loads on faces in the order of the faces, on each those without amplitude first, which are one load where
+/// LoadHistories on faces in the order of the faces, on each those without amplitude first, which are one load where
 /// they have one direction.
 pub(super) fn joined<T: Copy + PartialEq>(
     mut loads: Vec<Load<T>>,
@@ -558,13 +582,13 @@ pub(super) fn joined<T: Copy + PartialEq>(
 }
 
 /// Joins constant loads at the same place and in the same direction.
-fn add_up<K, T: Copy + PartialEq>(parts: &mut [(K, Part<T>)]) {
+fn add_up<K, T: Copy + PartialEq>(parts: &mut [(K, CarriedLoad<T>)]) {
     for index in 1..parts.len() {
         let (before, after) = parts.split_at_mut(index);
         let Some((_, part)) = after.first_mut() else {
             return;
         };
-        let joins = |sum: &Part<T>| {
+        let joins = |sum: &CarriedLoad<T>| {
             let both = [sum.load.variation, part.load.variation];
             sum.load.at == part.load.at && both == [Variation::Constant; 2]
         };
@@ -577,9 +601,14 @@ fn add_up<K, T: Copy + PartialEq>(parts: &mut [(K, Part<T>)]) {
     }
 }
 
-impl<T> Part<T> {
+impl<T> CarriedLoad<T> {
     /// A load that reaches its magnitude from zero where it ramps.
-    fn new(at: T, magnitude: f64, amplitude: Option<usize>, context: StepContext) -> Part<T> {
+    fn new(
+        at: T,
+        magnitude: f64,
+        amplitude: Option<usize>,
+        context: StepContext,
+    ) -> CarriedLoad<T> {
         let variation = match amplitude {
             Some(index) => Variation::Amplitude(index),
             None if context.ramp => Variation::Ramp { from: 0.0 },
@@ -590,7 +619,7 @@ impl<T> Part<T> {
             magnitude,
             variation,
         };
-        Part {
+        CarriedLoad {
             load,
             end: 0.0,
             step: context.step as u32,
@@ -599,7 +628,7 @@ impl<T> Part<T> {
     }
 
     /// The same load, from another magnitude where it ramps.
-    fn rising_from(mut self, from: f64) -> Part<T> {
+    fn rising_from(mut self, from: f64) -> CarriedLoad<T> {
         if let Variation::Ramp { .. } = self.load.variation {
             self.load.variation = Variation::Ramp { from };
         }

@@ -2,7 +2,7 @@
 
 use super::context::Context;
 use super::names::Names;
-use super::outline::{Block, Outline};
+use super::outline::{CardBlock, Outline};
 use crate::deck::{Card, Line};
 use crate::diagnostics::{Code, Span};
 use crate::materials::{Law, NeoHooke, Plane};
@@ -78,7 +78,7 @@ impl Drafts {
 }
 
 /// A material; `general` is the damping of one that has none of its own.
-fn draft(name: String, block: &Block, general: Option<Placed>, cx: &mut Context) -> Draft {
+fn draft(name: String, block: &CardBlock, general: Option<Placed>, cx: &mut Context) -> Draft {
     let density = block.parts_of("DENSITY");
     cx.only_once(&density);
     let damping = own_damping(block, cx).or(general);
@@ -149,7 +149,7 @@ fn hint_at_units(material: &Material, span: Span, cx: &mut Context) {
 const KEYWORDS: [&str; 2] = ["ELASTIC", "HYPERELASTIC"];
 
 /// The one law of a material.
-pub(super) fn law(block: &Block, cx: &mut Context) -> Constant<Law> {
+pub(super) fn law(block: &CardBlock, cx: &mut Context) -> Constant<Law> {
     let is_law = |card: &&&Card| KEYWORDS.contains(&card.keyword.name);
     let mut cards = block.parts.iter().filter(is_law);
     let Some(first) = cards.next() else {
@@ -166,7 +166,7 @@ pub(super) fn law(block: &Block, cx: &mut Context) -> Constant<Law> {
 }
 
 /// Place of what Poisson's ratio follows from: the second constant of the law.
-pub(super) fn poisson_span(block: &Block) -> Option<Span> {
+pub(super) fn poisson_span(block: &CardBlock) -> Option<Span> {
     let mut cards = block.parts.iter();
     let card = cards.find(|card| KEYWORDS.contains(&card.keyword.name))?;
     Some(card.rows.first()?.get(1)?.span)
@@ -263,7 +263,7 @@ fn report_d1(d1: f64, row: Line, cx: &mut Context) {
 pub(super) type Placed = (Damping, Span);
 
 /// Damping of a material of its own.
-pub(super) fn own_damping(block: &Block, cx: &mut Context) -> Option<Placed> {
+pub(super) fn own_damping(block: &CardBlock, cx: &mut Context) -> Option<Placed> {
     only(&block.parts_of("DAMPING"), cx)
 }
 

@@ -24,6 +24,9 @@ mod sets;
 mod steps;
 mod surfaces;
 
+pub(crate) use loads::carried_loads;
+pub(crate) use steps::{CONTACT_MASS, FACTORIZATION, IMPACT, IMPACT_TIME, LANDING, LCP, SOLVER};
+
 use crate::deck::{self, Card, Deck};
 use crate::diagnostics::{Code, Diagnostics, Sources};
 use crate::model::{ElementsAtNodes, Instance, Mesh, Model, NamedSets};
@@ -92,7 +95,7 @@ fn read(cx: &mut Context) -> Model {
         materials: properties.materials,
         sections: properties.sections,
         contacts,
-        amplitudes: amplitudes.all,
+        amplitudes: amplitudes.named.all,
         equations: equations
             .into_iter()
             .map(|(equation, _)| equation)
@@ -101,13 +104,20 @@ fn read(cx: &mut Context) -> Model {
         steps: steps.all,
         rigid_bodies: rigid_bodies::bodies(&rigid_bodies),
     };
-    checks::amplitudes(&model, &amplitudes.spans, cx);
-    checks::braked_flight(&model, &properties.damping_spans, cx);
-    checks::coincident_nodes(&model, side, &mesh_index.places, cx);
-    checks::fixed_slaves(&model, cx);
-    checks::proportion(&model.steps, &outline.steps, guide, cx);
-    checks::overlap(&model, &mesh_index.places, cx);
-    checks::motion(&model, &outline.steps, cx);
+    let all: [&dyn Fn(&mut Context); 7] = [
+        &|cx| checks::amplitudes(&model, &amplitudes.spans, cx),
+        &|cx| checks::braked_flight(&model, &properties.damping_spans, cx),
+        &|cx| checks::coincident_nodes(&model, side, &mesh_index.places, cx),
+        &|cx| checks::fixed_slaves(&model, cx),
+        &|cx| checks::proportion(&model.steps, &outline.steps, guide, cx),
+        &|cx| checks::overlap(&model, &mesh_index.places, cx),
+        &|cx| checks::motion(&model, &outline.steps, cx),
+    ];
+    for check in all {
+        if !cx.d.has_errors() {
+            check(cx);
+        }
+    }
     model
 }
 

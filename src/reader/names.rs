@@ -113,6 +113,49 @@ impl Names {
     }
 }
 
+/// Things of one kind with their names.
+pub(super) struct Named<T> {
+    /// Their names.
+    pub names: Names,
+    /// The things in the order of their names.
+    pub all: Vec<T>,
+}
+
+impl<T> Named<T> {
+    /// Nothing yet of things called `what`.
+    pub fn new(what: &'static str) -> Named<T> {
+        Named {
+            names: Names::new(what),
+            all: Vec::new(),
+        }
+    }
+
+    /// Adds what `read` makes of a card under the name that its parameter `NAME` gives; nothing marks the
+    /// name.
+    pub fn add(
+        &mut self,
+        card: &Card,
+        cx: &mut Context,
+        read: impl FnOnce(&Name, &mut Context) -> Option<T>,
+    ) {
+        let Some(name) = self.names.new_name(card, cx) else {
+            return;
+        };
+        match read(&name, cx) {
+            Some(thing) => {
+                self.all.push(thing);
+                self.names.define(name);
+            }
+            None => self.names.spoil(&name),
+        }
+    }
+
+    /// The thing with this name; reports an undefined one.
+    pub fn find(&self, name: Text, cx: &mut Context) -> Option<&T> {
+        self.all.get(self.names.find(name, cx)?)
+    }
+}
+
 /// Meaning of a node or element number of the deck: an index, or none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Labelled(u32);

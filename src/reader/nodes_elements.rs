@@ -19,7 +19,7 @@ use std::collections::{BTreeSet, HashMap};
 /// equation.
 pub(crate) fn read<'a>(outline: &Outline<'a>, cx: &mut Context<'a>) -> MeshIndex {
     let errors = cx.errors();
-    let mut reading = Reading::default();
+    let mut reading = MeshReading::default();
     let MeshIndex {
         nodes, elements, ..
     } = &mut reading.mesh_index;
@@ -44,7 +44,7 @@ pub(crate) fn read<'a>(outline: &Outline<'a>, cx: &mut Context<'a>) -> MeshIndex
 }
 
 #[derive(Default)]
-struct Reading {
+struct MeshReading {
     /// The mesh so far, with all nodes and without line elements.
     mesh_index: MeshIndex,
     /// Third coordinates (length) of the nodes up to the last one off the plane z = 0.
@@ -53,10 +53,10 @@ struct Reading {
     node_lines: Vec<u32>,
     /// Last lines of line elements, and of plane ones that are defined again.
     other_lines: LabelMap<u32>,
-    lines: Vec<RawLine>,
+    lines: Vec<LineElement>,
 }
 
-impl Reading {
+impl MeshReading {
     fn node_card(&mut self, card: &Card, cx: &mut Context) {
         let count = card.rows.line_count();
         let mut labels = LabelList::default();
@@ -160,7 +160,7 @@ impl Reading {
 
     /// Adds the new element of a row of plain numbers, whose nodes exist and differ; returns its
     /// number.
-    fn plain_element(&mut self, row: Line, kind: Kind) -> Option<u64> {
+    fn plain_element(&mut self, row: Line, kind: ElementKind) -> Option<u64> {
         let numbers = row.plain_integers()?;
         let (&number, corners) = numbers.split_first()?;
         let MeshIndex {
@@ -185,7 +185,7 @@ impl Reading {
         &mut self,
         span: Span,
         fields: &[Text],
-        kind: Kind,
+        kind: ElementKind,
         cx: &mut Context,
     ) -> Option<u64> {
         let corners = kind.nodes();
@@ -218,11 +218,11 @@ impl Reading {
     fn line_of(&self, element: u64) -> Option<u32> {
         self.other_lines.get(element).copied().or_else(|| {
             let index = self.mesh_index.elements.get(element)?.index()?;
-            Some(self.mesh_index.places.get(index).line)
+            Some(self.mesh_index.places[index].line)
         })
     }
 
-    fn add_element(&mut self, label: u64, nodes: Nodes, kind: Kind, span: Span) {
+    fn add_element(&mut self, label: u64, nodes: Nodes, kind: ElementKind, span: Span) {
         let MeshIndex {
             mesh,
             elements,
@@ -230,7 +230,7 @@ impl Reading {
             ..
         } = &mut self.mesh_index;
         match kind {
-            Kind::Plane(element_type) => {
+            ElementKind::Plane(element_type) => {
                 elements.insert(label, Labelled::new(mesh.elements.len()));
                 places.push(span);
                 mesh.elements.push(Element {
@@ -240,9 +240,9 @@ impl Reading {
                     section: 0,
                 });
             }
-            Kind::Line => {
+            ElementKind::Line => {
                 self.other_lines.insert(label, span.line);
-                self.lines.push(RawLine { label, nodes, span });
+                self.lines.push(LineElement { label, nodes, span });
             }
         }
     }
@@ -391,33 +391,33 @@ fn element_fields<'a>(
     fields
 }
 
-/// Kind of an element of the deck.
+/// ElementKind of an element of the deck.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum ElementKind {
     /// A plane element.
     Plane(ElementType),
     /// Two nodes that name a side of a plane element.
     Line,
 }
 
-impl Kind {
+impl ElementKind {
     /// Number of nodes.
     pub fn nodes(self) -> usize {
         match self {
-            Kind::Plane(element_type) => element_type.topology().nodes,
-            Kind::Line => 2,
+            ElementKind::Plane(element_type) => element_type.topology().nodes,
+            ElementKind::Line => 2,
         }
     }
 }
 
 /// The kind of elements with this name.
-pub(super) fn element_kind(name: Text, cx: &mut Context) -> Option<Kind> {
+pub(super) fn element_kind(name: Text, cx: &mut Context) -> Option<ElementKind> {
     let folded = name.name_key();
     if ["T2D2", "T3D2", "B21", "B31"].contains(&folded.as_str()) {
-        return Some(Kind::Line);
+        return Some(ElementKind::Line);
     }
     let known = ElementType::from_name(&folded).or_else(|| unusable(name, &folded, cx));
-    known.map(Kind::Plane)
+    known.map(ElementKind::Plane)
 }
 
 /// Reports a type; lenient reading replaces reduced by full integration of 4-node elements.
@@ -462,7 +462,7 @@ fn reason(folded: &str) -> Option<&'static str> {
 }
 
 /// A line element as the deck gives it.
-pub(super) struct RawLine {
+pub(super) struct LineElement {
     pub label: u64,
     pub nodes: Nodes,
     pub span: Span,
@@ -471,7 +471,7 @@ pub(super) struct RawLine {
 /// Numbers the line elements after the plane ones; leaves out those that are no side. `used` tells
 /// which nodes are not left out.
 pub(super) fn add_lines(
-    lines: &[RawLine],
+    lines: &[LineElement],
     used: &[bool],
     mesh_index: &mut MeshIndex,
     cx: &mut Context,
@@ -516,7 +516,7 @@ fn faces_by_nodes(mesh: &Mesh) -> HashMap<Nodes, Face> {
     faces
 }
 
-fn report_strays(strays: &[&RawLine], cx: &mut Context) {
+fn report_strays(strays: &[&LineElement], cx: &mut Context) {
     let Some(first) = strays.first() else { return };
     let label = cx.named(first.label);
     let message = match strays.len() {
@@ -533,7 +533,7 @@ fn report_plane_stress(mesh_index: &MeshIndex, cx: &mut Context) {
     let found = elements.position(|element| element.element_type.plane == Plane::Stress);
     if let Some(index) = found {
         let name = mesh_index.mesh.elements[index].element_type.name();
-        let span = mesh_index.places.get(index);
+        let span = mesh_index.places[index];
         let message = format!("{name} elements are in plane stress");
         cx.d.note(Code::LineElement, span, message).help(
             "mesh generators write CPS3 and CPS4 for every mesh: write CPE3 and CPE4 for plane strain",

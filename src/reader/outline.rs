@@ -5,14 +5,14 @@ use crate::deck::{Card, Data, Scope, Status};
 use crate::diagnostics::Code;
 
 /// A model card with the cards that belong to it, such as a material with its constants.
-pub(crate) struct Block<'a> {
+pub(crate) struct CardBlock<'a> {
     /// The card that begins it.
     pub head: &'a Card,
     /// The cards under it.
     pub parts: Vec<&'a Card>,
 }
 
-impl<'a> Block<'a> {
+impl<'a> CardBlock<'a> {
     /// The cards of a keyword.
     pub fn parts_of(&self, keyword: &str) -> Vec<&'a Card> {
         let parts = self.parts.iter().copied();
@@ -32,7 +32,7 @@ pub(crate) struct StepCards<'a> {
 #[derive(Default)]
 pub(crate) struct Outline<'a> {
     /// Cards outside steps.
-    pub model: Vec<Block<'a>>,
+    pub model: Vec<CardBlock<'a>>,
     /// Steps in order.
     pub steps: Vec<StepCards<'a>>,
     /// Whether the deck has steps at all.
@@ -67,7 +67,7 @@ impl<'a> Outline<'a> {
     }
 
     /// Blocks that begin with this keyword.
-    pub fn blocks(&self, keyword: &str) -> impl Iterator<Item = &Block<'a>> {
+    pub fn blocks(&self, keyword: &str) -> impl Iterator<Item = &CardBlock<'a>> {
         self.model
             .iter()
             .filter(move |block| block.head.keyword.name == keyword)
@@ -106,7 +106,7 @@ impl<'a> Outline<'a> {
             out_of_place(card, fault, "move it above the first *STEP", cx);
         }
         self.in_model = true;
-        self.model.push(Block {
+        self.model.push(CardBlock {
             head: card,
             parts: Vec::new(),
         });
@@ -135,7 +135,7 @@ impl<'a> Outline<'a> {
     }
 
     /// The block that the last card stands in, if it begins with this keyword.
-    fn open_block(&mut self, head: &str) -> Option<&mut Block<'a>> {
+    fn open_block(&mut self, head: &str) -> Option<&mut CardBlock<'a>> {
         let last = self.model.last_mut().filter(|_| self.in_model);
         last.filter(|block| block.head.keyword.name == head)
     }

@@ -4,7 +4,7 @@
 use super::amplitudes::{report_long_rows, time_base};
 use super::boundary::{Direction, Targets, direction};
 use super::context::Context;
-use super::names::Names;
+use super::names::Named;
 use super::sets::Sets;
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, shown};
@@ -48,10 +48,10 @@ impl Requests {
             match (card.keyword.name, in_history) {
                 ("OUTPUT", _) => in_history = self.output(card, cx),
                 ("NODE PRINT", _) | ("NODE OUTPUT", Some(true)) => {
-                    self.history(card, Family::Nodes, targets, cx);
+                    self.history(card, MemberKind::Nodes, targets, cx);
                 }
                 ("EL PRINT", _) | ("ELEMENT OUTPUT", Some(true)) => {
-                    self.history(card, Family::Elements, targets, cx);
+                    self.history(card, MemberKind::Elements, targets, cx);
                 }
                 ("CONTACT OUTPUT", Some(true)) => skip_sets(card),
                 ("NODE OUTPUT" | "ELEMENT OUTPUT" | "CONTACT OUTPUT", Some(false)) => {
@@ -98,7 +98,7 @@ impl Requests {
     }
 
     /// Adds the set of a card to the history.
-    fn history(&mut self, card: &Card, family: Family, targets: Targets, cx: &mut Context) {
+    fn history(&mut self, card: &Card, family: MemberKind, targets: Targets, cx: &mut Context) {
         self.check_when(card, cx);
         self.histories.card(card, family, targets.sets, cx);
     }
@@ -247,24 +247,24 @@ pub(crate) struct Histories {
 
 /// What a set holds.
 #[derive(Clone, Copy)]
-pub(super) enum Family {
+pub(super) enum MemberKind {
     Nodes,
     Elements,
 }
 
-impl Family {
+impl MemberKind {
     fn parameter(self) -> &'static str {
         match self {
-            Family::Nodes => "NSET",
-            Family::Elements => "ELSET",
+            MemberKind::Nodes => "NSET",
+            MemberKind::Elements => "ELSET",
         }
     }
 
     /// Warns that a history without a set is not written.
     fn report_all(self, card: &Card, cx: &mut Context) {
         let (members, help) = match self {
-            Family::Nodes => ("nodes", "name a node set with NSET="),
-            Family::Elements => ("elements", "name an element set with ELSET="),
+            MemberKind::Nodes => ("nodes", "name a node set with NSET="),
+            MemberKind::Elements => ("elements", "name an element set with ELSET="),
         };
         let message = format!("the history of all {members} is not written");
         cx.warning(Code::IgnoredVariable, card.span, message)
@@ -274,7 +274,7 @@ impl Family {
 
 impl Histories {
     /// Adds the set of a card; `FREQUENCY=0` asks for nothing.
-    pub(super) fn card(&mut self, card: &Card, family: Family, sets: &Sets, cx: &mut Context) {
+    pub(super) fn card(&mut self, card: &Card, family: MemberKind, sets: &Sets, cx: &mut Context) {
         let name = card.value(family.parameter());
         let is_off = card
             .value("FREQUENCY")
@@ -291,10 +291,10 @@ impl Histories {
         }
     }
 
-    fn add(&mut self, family: Family, asked: HistorySet) {
+    fn add(&mut self, family: MemberKind, asked: HistorySet) {
         let known = match family {
-            Family::Nodes => &mut self.nodes,
-            Family::Elements => &mut self.elements,
+            MemberKind::Nodes => &mut self.nodes,
+            MemberKind::Elements => &mut self.elements,
         };
         match known.iter_mut().find(|known| known.set == asked.set) {
             Some(known) => known.each_member |= asked.each_member,
@@ -324,12 +324,12 @@ impl Histories {
     }
 }
 
-impl Family {
+impl MemberKind {
     /// The set of a name; none that holds line elements only, with a warning.
     fn set(self, name: Text, sets: &Sets, cx: &mut Context) -> Option<usize> {
         let set = match self {
-            Family::Nodes => return sets.node_names.find(name, cx),
-            Family::Elements => sets.element_names.find(name, cx)?,
+            MemberKind::Nodes => return sets.node_names.find(name, cx),
+            MemberKind::Elements => sets.element_names.find(name, cx)?,
         };
         if sets.holds_lines_only(set) {
             let message = format!("{} holds line elements only: it has no history", name.text);
@@ -368,56 +368,37 @@ pub(super) fn monitored(card: &Card, targets: Targets, cx: &mut Context) -> Opti
 const MOST_TIMES: f64 = 1e6;
 
 /// Named lists of times.
-pub(super) struct TimePoints {
-    names: Names,
-    all: Vec<(TimeBase, Vec<f64>)>,
-}
-
-impl TimePoints {
-    /// The list that a field names.
-    pub fn find(&self, name: Text, cx: &mut Context) -> Option<&(TimeBase, Vec<f64>)> {
-        let index = self.names.find(name, cx)?;
-        self.all.get(index)
-    }
-}
+type TimePoints = Named<(TimeBase, Vec<f64>)>;
 
 /// Reads all `*TIME POINTS`.
-pub(super) fn time_points(cx: &mut Context) -> TimePoints {
-    let mut points = TimePoints {
-        names: Names::new("list of time points"),
-        all: Vec::new(),
-    };
+fn time_points(cx: &mut Context) -> TimePoints {
+    let mut points = TimePoints::new("list of time points");
     let deck = cx.deck;
-    for card in deck
-        .cards
-        .iter()
-        .filter(|card| card.keyword.name == "TIME POINTS")
-    {
-        let Some(name) = points.names.new_name(card, cx) else {
-            continue;
-        };
-        let errors = cx.errors();
-        let generate = card.has("GENERATE");
-        if !generate {
-            report_long_rows(card, cx);
-        }
-        let mut times = Vec::new();
-        for row in card.rows.iter() {
-            match generate {
-                true => times.extend(generated(row, cx)),
-                false => times.extend(row.fields().filter_map(|field| field.real(cx.d))),
-            }
-        }
-        if cx.errors() > errors || card.faulty {
-            points.names.spoil(&name);
-            continue;
-        }
-        times.sort_by(f64::total_cmp);
-        times.dedup();
-        points.all.push((time_base(card), times));
-        points.names.define(name);
+    for card in deck.cards_of("TIME POINTS") {
+        points.add(card, cx, |_, cx| {
+            let times = cx.sound(card, |cx| Some(times(card, cx)))?;
+            Some((time_base(card), times))
+        });
     }
     points
+}
+
+/// The times of a card in increasing order.
+fn times(card: &Card, cx: &mut Context) -> Vec<f64> {
+    let generate = card.has("GENERATE");
+    if !generate {
+        report_long_rows(card, cx);
+    }
+    let mut times = Vec::new();
+    for row in card.rows.iter() {
+        match generate {
+            true => times.extend(generated(row, cx)),
+            false => times.extend(row.fields().filter_map(|field| field.real(cx.d))),
+        }
+    }
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
 }
 
 /// `first, last, increment`

@@ -28,7 +28,7 @@ pub(crate) struct Rigid {
 
 /// The mesh, its sets and surfaces, among which a card names.
 #[derive(Clone, Copy)]
-struct Named<'a> {
+struct Lookup<'a> {
     mesh_index: &'a MeshIndex,
     sets: &'a Sets,
     surfaces: &'a Surfaces,
@@ -43,7 +43,7 @@ pub(crate) fn read(
     surfaces: &Surfaces,
     cx: &mut Context,
 ) -> Vec<Rigid> {
-    let named = Named {
+    let lookup = Lookup {
         mesh_index,
         sets,
         surfaces,
@@ -52,7 +52,7 @@ pub(crate) fn read(
     let mut of_elements = Vec::new();
     let mut incomplete = cx.may_lack_cards();
     for card in outline.model_cards("RIGID BODY") {
-        let Some(rigid) = rigid(card, named, cx) else {
+        let Some(rigid) = rigid(card, lookup, cx) else {
             incomplete = true;
             continue;
         };
@@ -77,15 +77,15 @@ pub(crate) fn read(
     of_surfaces.into_values().chain(of_elements).collect()
 }
 
-fn rigid(card: &Card, named: Named, cx: &mut Context) -> Option<Rigid> {
+fn rigid(card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Rigid> {
     let reference = card.required("REF NODE", cx.d);
     let reference = reference.and_then(|field| {
         let other = (Code::RigidSurface, "a rigid surface moves with one node");
-        named.sets.single_node(field, named.mesh_index, other, cx)
+        lookup.sets.single_node(field, lookup.mesh_index, other, cx)
     });
     let (surface, name, nodes) = match card.value("ELSET") {
-        Some(field) => of_elements(field, card, named, cx)?,
-        None => of_surface(card, named, cx)?,
+        Some(field) => of_elements(field, card, lookup, cx)?,
+        None => of_surface(card, lookup, cx)?,
     };
     let reference = reference?;
     Some(Rigid {
@@ -96,7 +96,7 @@ fn rigid(card: &Card, named: Named, cx: &mut Context) -> Option<Rigid> {
             .filter(|&node| node != reference)
             .collect(),
         reference,
-        label: named.mesh_index.node_name(reference),
+        label: lookup.mesh_index.node_name(reference),
         span: card.span,
     })
 }
@@ -105,29 +105,29 @@ fn rigid(card: &Card, named: Named, cx: &mut Context) -> Option<Rigid> {
 type Members = (Option<usize>, String, Vec<usize>);
 
 /// Those of the surface that a card names.
-fn of_surface(card: &Card, named: Named, cx: &mut Context) -> Option<Members> {
+fn of_surface(card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Members> {
     let field = card.required("ANALYTICAL SURFACE", cx.d)?;
-    let (index, surface, span) = named.surfaces.find(field, cx)?;
+    let (index, surface, span) = lookup.surfaces.find(field, cx)?;
     let SurfaceKind::Rigid(_) = surface.kind else {
         let message = format!("surface {} is no rigid surface", surface.name);
         cx.error(Code::RigidSurface, span, message)
             .help("define it with *SURFACE, TYPE=SEGMENTS");
         return None;
     };
-    let nodes = surface.nodes(&named.mesh_index.mesh);
+    let nodes = surface.nodes(&lookup.mesh_index.mesh);
     Some((Some(index), surface.name.clone(), nodes))
 }
 
 /// Those of the elements of a set, without surface.
-fn of_elements(field: Text, card: &Card, named: Named, cx: &mut Context) -> Option<Members> {
+fn of_elements(field: Text, card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Members> {
     if card.has("ANALYTICAL SURFACE") {
         let span = card.span_of("ANALYTICAL SURFACE");
         cx.error(Code::RigidSurface, span, "a rigid body of two kinds")
             .help("give the surface and the elements a *RIGID BODY each");
         return None;
     }
-    let elements = named.sets.elements_of(field, named.mesh_index, cx);
-    let mesh = &named.mesh_index.mesh;
+    let elements = lookup.sets.elements_of(field, lookup.mesh_index, cx);
+    let mesh = &lookup.mesh_index.mesh;
     let elements = elements.iter().filter_map(|&e| mesh.elements.get(e));
     let nodes: BTreeSet<usize> = elements.flat_map(|e| &e.nodes).copied().collect();
     Some((None, field.text.to_string(), nodes.into_iter().collect()))

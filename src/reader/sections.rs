@@ -172,7 +172,7 @@ impl Properties {
                 1 => format!("element {name} has no section"),
                 n => format!("{n} elements have no section, the first is {name}"),
             };
-            let span = mesh_index.places.get(first);
+            let span = mesh_index.places[first];
             cx.error(Code::NoSection, span, message)
                 .help("give them a material and a thickness with *SOLID SECTION");
         }
@@ -198,7 +198,7 @@ impl Properties {
                     mesh_index.element_name(index),
                     material.name
                 );
-                let span = mesh_index.places.get(index);
+                let span = mesh_index.places[index];
                 cx.error(Code::PlaneStrainOnly, span, message)
                     .help("take CPE elements, or *ELASTIC");
                 return;

@@ -133,7 +133,7 @@ fn members(sets: &[Set], index: Option<usize>) -> &[usize] {
 
 /// Reads all sets; a set may list sets that are defined later.
 pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) -> Sets {
-    let mut elements = Family::new("element set", &mesh_index.elements);
+    let mut elements = SetFamily::new("element set", &mesh_index.elements);
     elements.add_groups(&mesh_index.element_groups);
     elements.define(&outline.model_cards("ELSET"), "ELSET", cx);
     elements.fill(cx);
@@ -141,7 +141,7 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
     let element_sets = resolve(&element_names, elements.drafts, cx);
     let (element_sets, lines) = split_sets(element_sets, mesh_index);
 
-    let mut nodes = Family::new("node set", &mesh_index.nodes);
+    let mut nodes = SetFamily::new("node set", &mesh_index.nodes);
     nodes.add_groups(&mesh_index.node_groups);
     nodes.define(&outline.model_cards("NSET"), "NSET", cx);
     nodes.fill(cx);
@@ -182,7 +182,7 @@ struct Draft {
 }
 
 /// Node sets or element sets being read.
-struct Family<'a> {
+struct SetFamily<'a> {
     names: Names,
     labels: &'a Labels,
     drafts: Vec<Draft>,
@@ -191,9 +191,9 @@ struct Family<'a> {
     unsorted: BTreeSet<String>,
 }
 
-impl<'a> Family<'a> {
-    fn new(what: &'static str, labels: &'a Labels) -> Family<'a> {
-        Family {
+impl<'a> SetFamily<'a> {
+    fn new(what: &'static str, labels: &'a Labels) -> SetFamily<'a> {
+        SetFamily {
             names: Names::of_parts(what),
             labels,
             drafts: Vec::new(),

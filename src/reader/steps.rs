@@ -1,9 +1,8 @@
 //! `*STEP`, `*DYNAMIC` and `*STICKSLIP`; the state of supports, loads and settings from step to step.
 
-use super::amplitudes::Amplitudes;
 use super::boundary::{Supports, Targets};
 use super::context::Context;
-use super::loads::{Loads, Operation, StepContext};
+use super::loads::{LoadHistories, Operation, StepContext};
 use super::outline::{Outline, StepCards};
 use super::output::{Histories, Requests, restart};
 use super::rigid_bodies;
@@ -36,14 +35,14 @@ pub(crate) fn read(
     guide: Option<f64>,
     cx: &mut Context,
 ) -> Steps {
-    let mut reading = Reading {
+    let mut reading = StepReader {
         targets,
         surfaces,
         guide,
         settings: Settings::default(),
         supports: Supports::default(),
         support_operation: Operation::default(),
-        loads: Loads::default(),
+        loads: LoadHistories::default(),
         requests: Requests::new(cx),
         nonlinear: false,
         start: 0.0,
@@ -72,14 +71,14 @@ pub(crate) fn read(
 }
 
 /// The state of a deck between its steps.
-struct Reading<'a> {
+struct StepReader<'a> {
     targets: Targets<'a>,
     surfaces: &'a Surfaces,
     guide: Option<f64>,
     settings: Settings,
     supports: Supports,
     support_operation: Operation,
-    loads: Loads,
+    loads: LoadHistories,
     requests: Requests,
     nonlinear: bool,
     start: f64,
@@ -87,7 +86,7 @@ struct Reading<'a> {
     last: usize,
 }
 
-impl Reading<'_> {
+impl StepReader<'_> {
     fn step(
         &mut self,
         number: usize,
@@ -143,7 +142,7 @@ impl Reading<'_> {
 
     fn end(&mut self, period: f64) {
         self.start += period;
-        let Amplitudes { all, .. } = self.targets.amplitudes;
+        let all = &self.targets.amplitudes.named.all;
         self.supports.end_step(period, all);
         self.loads.end_step(period, self.start, all);
     }
@@ -327,44 +326,76 @@ fn note_short_end(row: Line, dt: f64, period: f64, cx: &mut Context) {
     }
 }
 
+/// A setting of `*STICKSLIP` that a word chooses: its parameter, and what the words stand for.
+pub(crate) struct Choice<T: 'static>(&'static str, [(&'static str, T); 2]);
+
+pub(crate) const IMPACT: Choice<Impact> = Choice(
+    "IMPACT",
+    [("IMPULSE", Impact::Impulse), ("NONE", Impact::None)],
+);
+pub(crate) const IMPACT_TIME: Choice<ImpactTime> = Choice(
+    "IMPACT TIME",
+    [
+        ("INCREMENT", ImpactTime::Increment),
+        ("EVENT", ImpactTime::Event),
+    ],
+);
+pub(crate) const LANDING: Choice<LandingRule> = Choice(
+    "LANDING",
+    [
+        ("PLASTIC", LandingRule::Plastic),
+        ("RETURN", LandingRule::Return),
+    ],
+);
+pub(crate) const CONTACT_MASS: Choice<ContactMass> = Choice(
+    "CONTACT MASS",
+    [
+        ("CONSISTENT", ContactMass::Consistent),
+        ("REDISTRIBUTED", ContactMass::Redistributed),
+    ],
+);
+pub(crate) const LCP: Choice<LcpChoice> = Choice(
+    "LCP",
+    [("HYBRID", LcpChoice::Hybrid), ("LEMKE", LcpChoice::Lemke)],
+);
+pub(crate) const FACTORIZATION: Choice<Factorization> = Choice(
+    "FACTORIZATION",
+    [
+        ("KEEP", Factorization::Keep),
+        ("EVERY PASS", Factorization::EveryPass),
+    ],
+);
+pub(crate) const SOLVER: Choice<SolverChoice> = Choice(
+    "SOLVER",
+    [("FAER", SolverChoice::Faer), ("SPRS", SolverChoice::Sprs)],
+);
+
+impl<T: Copy + PartialEq> Choice<T> {
+    /// Sets what a card chooses, if it does.
+    fn set(&self, card: &Card, setting: &mut T) {
+        let typed = card.choice(self.0);
+        if let Some((_, chosen)) = self.1.iter().find(|(word, _)| Some(*word) == typed) {
+            *setting = *chosen;
+        }
+    }
+
+    /// The parameter with the word for a setting.
+    pub fn written(&self, setting: T) -> String {
+        let word = self.1.iter().find(|(_, known)| *known == setting);
+        format!("{}={}", self.0, word.map_or("", |(word, _)| word))
+    }
+}
+
 /// Changes settings as a card says.
 pub(crate) fn apply_settings(card: &Card, settings: &mut Settings, cx: &mut Context) {
     settings.scheme = scheme(card, settings.scheme, cx);
-    match card.choice("IMPACT") {
-        Some("NONE") => settings.impact = Impact::None,
-        Some(_) => settings.impact = Impact::Impulse,
-        None => {}
-    }
-    match card.choice("IMPACT TIME") {
-        Some("EVENT") => settings.impact_time = ImpactTime::Event,
-        Some(_) => settings.impact_time = ImpactTime::Increment,
-        None => {}
-    }
-    match card.choice("LANDING") {
-        Some("RETURN") => settings.landing = LandingRule::Return,
-        Some(_) => settings.landing = LandingRule::Plastic,
-        None => {}
-    }
-    match card.choice("CONTACT MASS") {
-        Some("REDISTRIBUTED") => settings.contact_mass = ContactMass::Redistributed,
-        Some(_) => settings.contact_mass = ContactMass::Consistent,
-        None => {}
-    }
-    match card.choice("LCP") {
-        Some("LEMKE") => settings.lcp = LcpChoice::Lemke,
-        Some(_) => settings.lcp = LcpChoice::Hybrid,
-        None => {}
-    }
-    match card.choice("FACTORIZATION") {
-        Some("KEEP") => settings.factorization = Factorization::Keep,
-        Some(_) => settings.factorization = Factorization::EveryPass,
-        None => {}
-    }
-    match card.choice("SOLVER") {
-        Some("SPRS") => settings.solver = SolverChoice::Sprs,
-        Some(_) => settings.solver = SolverChoice::Faer,
-        None => {}
-    }
+    IMPACT.set(card, &mut settings.impact);
+    IMPACT_TIME.set(card, &mut settings.impact_time);
+    LANDING.set(card, &mut settings.landing);
+    CONTACT_MASS.set(card, &mut settings.contact_mass);
+    LCP.set(card, &mut settings.lcp);
+    FACTORIZATION.set(card, &mut settings.factorization);
+    SOLVER.set(card, &mut settings.solver);
     if let Some(tolerance) = tolerance(card, cx) {
         settings.tolerance = tolerance;
     }

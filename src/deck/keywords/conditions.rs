@@ -1,10 +1,7 @@
 //! The rows of the keyword table for amplitudes, constraints, initial conditions, supports and loads.
 
 use super::common::{INPUT, NAME};
-use super::types::{
-    ACCELERATION, Data, FORCE, FORCE_PER_VOLUME, Keyword, LENGTH, PER_TIME, Parameter as P, STRESS,
-    Scope, TIME, VELOCITY, Value as V, of, plain, row,
-};
+use super::types::{Data, Keyword, Parameter as P, Scope, Unread, Value as V, row};
 
 const TIME_DELAY: P = P::value("TIME DELAY", "delayed amplitudes are not supported").refused();
 const OP: P = P::choice(
@@ -48,26 +45,16 @@ pub(super) static CONDITIONS: &[Keyword] = &[
         "AMPLITUDE",
         Scope::Anywhere,
         Data::Required(&[
-            row(&[plain("value")])
+            row("value")
                 .repeating(1)
                 .under("DEFINITION", "EQUALLY SPACED"),
-            row(&[plain("N"), of("w", PER_TIME), of("t0", TIME), plain("A0")])
+            row("N, w [1/time], t0 [time], A0")
                 .first()
                 .under("DEFINITION", "PERIODIC"),
-            row(&[plain("A"), plain("B")])
-                .repeating(2)
-                .under("DEFINITION", "PERIODIC"),
-            row(&[plain("A0"), plain("A"), of("t0", TIME), of("td", TIME)])
-                .under("DEFINITION", "DECAY"),
-            row(&[
-                plain("A0"),
-                plain("A"),
-                of("t0", TIME),
-                of("w1", PER_TIME),
-                of("w2", PER_TIME),
-            ])
-            .under("DEFINITION", "MODULATED"),
-            row(&[of("time", TIME), plain("value")]).repeating(2),
+            row("A, B").repeating(2).under("DEFINITION", "PERIODIC"),
+            row("A0, A, t0 [time], td [time]").under("DEFINITION", "DECAY"),
+            row("A0, A, t0 [time], w1 [1/time], w2 [1/time]").under("DEFINITION", "MODULATED"),
+            row("time [time], value").repeating(2),
         ]),
         &[
             NAME,
@@ -124,13 +111,13 @@ pub(super) static CONDITIONS: &[Keyword] = &[
                 ],
                 "meaning of the values",
             ),
-            P::value("FIXED INTERVAL", "time between equally spaced values").measuring(TIME),
+            P::value("FIXED INTERVAL", "time between equally spaced values").measuring("time"),
             P::value(
                 "BEGIN",
                 "time of the first equally spaced value (default 0)",
             )
-            .measuring(TIME),
-            P::value("SHIFTX", "added to the times").measuring(TIME),
+            .measuring("time"),
+            P::value("SHIFTX", "added to the times").measuring("time"),
             P::value("SHIFTY", "added to the values"),
             P::value("SCALEX", "factor of the times"),
             P::value("SCALEY", "factor of the values"),
@@ -145,12 +132,7 @@ pub(super) static CONDITIONS: &[Keyword] = &[
     Keyword::read(
         "EQUATION",
         Scope::Model,
-        Data::Required(&[row(&[
-            plain("node or node set"),
-            plain("direction"),
-            plain("coefficient"),
-        ])
-        .repeating(3)]),
+        Data::Required(&[row("node or node set, direction, coefficient").repeating(3)]),
         &[INPUT],
         "Linear equations between displacements, a1 u1 + a2 u2 + ... = 0 at all times: the number of \
          terms on a line, then node or node set, direction, coefficient of each, four terms on a line; \
@@ -168,12 +150,9 @@ pub(super) static CONDITIONS: &[Keyword] = &[
     Keyword::read(
         "INITIAL CONDITIONS",
         Scope::Model,
-        Data::Required(&[row(&[
-            plain("node or node set"),
-            plain("direction"),
-            of("velocity", VELOCITY),
-        ])
-        .under("TYPE", "VELOCITY")]),
+        Data::Required(&[
+            row("node or node set, direction, velocity [length/time]").under("TYPE", "VELOCITY")
+        ]),
         &[
             P::choice(
                 "TYPE",
@@ -196,26 +175,13 @@ pub(super) static CONDITIONS: &[Keyword] = &[
         "BOUNDARY",
         Scope::Anywhere,
         Data::Rows(&[
-            row(&[
-                plain("node or node set"),
-                plain("first direction"),
-                plain("last direction"),
-                of("velocity", VELOCITY),
-            ])
+            row("node or node set, first direction, last direction, \
+                    velocity [length/time]")
             .under("TYPE", "VELOCITY"),
-            row(&[
-                plain("node or node set"),
-                plain("first direction"),
-                plain("last direction"),
-                of("acceleration", ACCELERATION),
-            ])
+            row("node or node set, first direction, last direction, \
+                    acceleration [length/time^2]")
             .under("TYPE", "ACCELERATION"),
-            row(&[
-                plain("node or node set"),
-                plain("first direction"),
-                plain("last direction"),
-                of("displacement", LENGTH),
-            ]),
+            row("node or node set, first direction, last direction, displacement [length]"),
         ]),
         &[
             OP,
@@ -244,11 +210,7 @@ pub(super) static CONDITIONS: &[Keyword] = &[
     Keyword::read(
         "CLOAD",
         Scope::Step,
-        Data::Rows(&[row(&[
-            plain("node or node set"),
-            plain("direction"),
-            of("force", FORCE),
-        ])]),
+        Data::Rows(&[row("node or node set, direction, force [force]")]),
         &[
             OP,
             AMPLITUDE,
@@ -265,32 +227,12 @@ pub(super) static CONDITIONS: &[Keyword] = &[
         "DLOAD",
         Scope::Step,
         Data::Rows(&[
-            row(&[
-                plain("elements"),
-                plain("GRAV"),
-                of("acceleration", ACCELERATION),
-                plain("dx"),
-                plain("dy"),
-                plain("dz"),
-            ])
-            .saying(1, &["GRAV"]),
-            row(&[
-                plain("elements"),
-                plain("BX or BY"),
-                of("force per volume", FORCE_PER_VOLUME),
-            ])
-            .saying(1, &["BX", "BY"]),
-            row(&[plain("elements"), plain("P1 to P4"), of("pressure", STRESS)])
+            row("elements, GRAV, acceleration [length/time^2], dx, dy, dz").saying(1, &["GRAV"]),
+            row("elements, BX or BY, force per volume [force/length^3]").saying(1, &["BX", "BY"]),
+            row("elements, P1 to P4, pressure [force/length^2]")
                 .saying(1, &["P1", "P2", "P3", "P4"]),
-            row(&[
-                plain("elements"),
-                plain("TRVEC1 to TRVEC4"),
-                of("traction", STRESS),
-                plain("dx"),
-                plain("dy"),
-                plain("dz"),
-            ])
-            .saying(1, &["TRVEC1", "TRVEC2", "TRVEC3", "TRVEC4"]),
+            row("elements, TRVEC1 to TRVEC4, traction [force/length^2], dx, dy, dz")
+                .saying(1, &["TRVEC1", "TRVEC2", "TRVEC3", "TRVEC4"]),
         ]),
         &[OP, AMPLITUDE, TIME_DELAY, FOLLOWER],
         "Loads on elements (empty first field: on all): GRAV, acceleration, dx, dy; BX or BY, \
@@ -304,16 +246,8 @@ pub(super) static CONDITIONS: &[Keyword] = &[
         "DSLOAD",
         Scope::Step,
         Data::Rows(&[
-            row(&[plain("surface"), plain("P"), of("pressure", STRESS)]).saying(1, &["P"]),
-            row(&[
-                plain("surface"),
-                plain("TRVEC"),
-                of("traction", STRESS),
-                plain("dx"),
-                plain("dy"),
-                plain("dz"),
-            ])
-            .saying(1, &["TRVEC"]),
+            row("surface, P, pressure [force/length^2]").saying(1, &["P"]),
+            row("surface, TRVEC, traction [force/length^2], dx, dy, dz").saying(1, &["TRVEC"]),
         ]),
         &[
             OP,
@@ -334,50 +268,33 @@ pub(super) static CONDITIONS: &[Keyword] = &[
         "*DSLOAD\n\
          STOP, P, 2.5",
     ),
-    Keyword::warned("USER SUBROUTINES", "There are no user subroutines."),
-    Keyword::refused("MPC", CONSTRAINT).example(LINEAR),
-    Keyword::refused("COUPLING", CONSTRAINT).example(LINEAR),
-    Keyword::refused("KINEMATIC", CONSTRAINT).example(LINEAR),
-    Keyword::refused("KINEMATIC COUPLING", CONSTRAINT).example(LINEAR),
-    Keyword::refused("DISTRIBUTING", CONSTRAINT).example(LINEAR),
-    Keyword::refused("DISTRIBUTING COUPLING", CONSTRAINT).example(LINEAR),
-    Keyword::refused("EMBEDDED ELEMENT", CONSTRAINT).example(LINEAR),
-    Keyword::refused("PRE-TENSION SECTION", CONSTRAINT).example(LINEAR),
-    Keyword::refused("NETWORK MPC", CONSTRAINT).example(LINEAR),
-    Keyword::refused("FASTENER", CONSTRAINT).example(LINEAR),
-    Keyword::refused("SPRING", DISCRETE),
-    Keyword::refused("DASHPOT", DISCRETE),
-    Keyword::refused("MASS", DISCRETE),
-    Keyword::refused("ROTARY INERTIA", DISCRETE),
-    Keyword::refused("JOINT", DISCRETE),
-    Keyword::refused("CONNECTOR SECTION", DISCRETE),
-    Keyword::refused("CONNECTOR BEHAVIOR", DISCRETE),
-    Keyword::refused("CONNECTOR ELASTICITY", DISCRETE),
-    Keyword::refused("CONNECTOR DAMPING", DISCRETE),
-    Keyword::refused("CONNECTOR FRICTION", DISCRETE),
-    Keyword::refused("CONNECTOR STOP", DISCRETE),
-    Keyword::refused("CONNECTOR LOCK", DISCRETE),
-    Keyword::refused("CONNECTOR FAILURE", DISCRETE),
-    Keyword::refused("CONNECTOR PLASTICITY", DISCRETE),
-    Keyword::refused("CONNECTOR CONSTITUTIVE REFERENCE", DISCRETE),
-    Keyword::refused("CONNECTOR MOTION", DISCRETE),
-    Keyword::refused("CONNECTOR LOAD", DISCRETE),
-    Keyword::refused("TEMPERATURE", THERMAL),
-    Keyword::refused("FIELD", FIELD_LOAD).example(FORCES),
-    Keyword::refused("CFLUX", FIELD_LOAD).example(FORCES),
-    Keyword::refused("DFLUX", FIELD_LOAD).example(FORCES),
-    Keyword::refused("DSFLUX", FIELD_LOAD).example(FORCES),
-    Keyword::refused("FILM", FIELD_LOAD).example(FORCES),
-    Keyword::refused("SFILM", FIELD_LOAD).example(FORCES),
-    Keyword::refused("RADIATE", FIELD_LOAD).example(FORCES),
-    Keyword::refused("SRADIATE", FIELD_LOAD).example(FORCES),
-    Keyword::refused("MASS FLOW", FIELD_LOAD).example(FORCES),
-    Keyword::refused("PRESSURE STRESS", FIELD_LOAD).example(FORCES),
-    Keyword::refused("INCIDENT WAVE", FIELD_LOAD).example(FORCES),
-    Keyword::refused("FLUID CAVITY", FIELD_LOAD).example(FORCES),
-    Keyword::refused("BASE MOTION", "Prescribe displacements with *BOUNDARY.").example(SUPPORT),
-    Keyword::refused("INERTIA RELIEF", "Bodies move with their inertia."),
-    Keyword::refused("INITIAL STRAIN INCREASE", "Bodies start as meshed."),
-    Keyword::refused("MAP SOLUTION", "A run starts from its own deck."),
-    Keyword::refused("IMPORT", "A run starts from its own deck."),
+];
+
+/// Keywords that are not read.
+pub(super) static UNREAD_CONDITIONS: &[Unread] = &[
+    Unread::warned("USER SUBROUTINES", "There are no user subroutines."),
+    Unread::refused(
+        "MPC, COUPLING, KINEMATIC, KINEMATIC COUPLING, DISTRIBUTING, \
+         DISTRIBUTING COUPLING, EMBEDDED ELEMENT, PRE-TENSION SECTION, NETWORK MPC, FASTENER",
+        CONSTRAINT,
+    )
+    .example(LINEAR),
+    Unread::refused(
+        "SPRING, DASHPOT, MASS, ROTARY INERTIA, JOINT, CONNECTOR SECTION, \
+         CONNECTOR BEHAVIOR, CONNECTOR ELASTICITY, CONNECTOR DAMPING, CONNECTOR FRICTION, \
+         CONNECTOR STOP, CONNECTOR LOCK, CONNECTOR FAILURE, CONNECTOR PLASTICITY, \
+         CONNECTOR CONSTITUTIVE REFERENCE, CONNECTOR MOTION, CONNECTOR LOAD",
+        DISCRETE,
+    ),
+    Unread::refused("TEMPERATURE", THERMAL),
+    Unread::refused(
+        "FIELD, CFLUX, DFLUX, DSFLUX, FILM, SFILM, RADIATE, SRADIATE, \
+         MASS FLOW, PRESSURE STRESS, INCIDENT WAVE, FLUID CAVITY",
+        FIELD_LOAD,
+    )
+    .example(FORCES),
+    Unread::refused("BASE MOTION", "Prescribe displacements with *BOUNDARY.").example(SUPPORT),
+    Unread::refused("INERTIA RELIEF", "Bodies move with their inertia."),
+    Unread::refused("INITIAL STRAIN INCREASE", "Bodies start as meshed."),
+    Unread::refused("MAP SOLUTION, IMPORT", "A run starts from its own deck."),
 ];

@@ -1,11 +1,7 @@
 //! The rows of the keyword table for contact.
 
 use super::common::{NAME, OTHER_NUMBERS};
-use super::types::Quantity::{Of, OrName, Unknown};
-use super::types::{
-    Data, FORCE_PER_VOLUME, Keyword, LENGTH, Parameter as P, STRESS, Scope, Value as V, of, plain,
-    row,
-};
+use super::types::{Data, Keyword, Parameter as P, Scope, Unread, Value as V, row};
 
 const SMOOTHING: &str = "contact is enforced on the surface as meshed";
 const THERMAL: &str = "There are no temperatures.";
@@ -27,11 +23,11 @@ pub(super) static CONTACT: &[Keyword] = &[
     Keyword::read(
         "SURFACE INTERACTION",
         Scope::Model,
-        Data::Rows(&[row(&[of("thickness", LENGTH)])]),
+        Data::Rows(&[row("thickness [length]")]),
         &[
             NAME,
             P::optional("TRACKING THICKNESS", SMOOTHING)
-                .measuring(LENGTH)
+                .measuring("length")
                 .warned(),
             P::optional("PAD THICKNESS", "surfaces have no pads").refused(),
             P::flag("USER", "user interactions are not supported").refused(),
@@ -46,13 +42,9 @@ pub(super) static CONTACT: &[Keyword] = &[
         "SURFACE BEHAVIOR",
         Scope::Block("SURFACE INTERACTION"),
         Data::Rows(&[
-            row(&[
-                of("k", FORCE_PER_VOLUME),
-                of("tension", STRESS),
-                of("clearance", LENGTH),
-            ])
-            .under("PRESSURE-OVERCLOSURE", "LINEAR"),
-            row(&[of("number", Unknown)]).repeating(1),
+            row("k [force/length^3], tension [force/length^2], clearance [length]")
+                .under("PRESSURE-OVERCLOSURE", "LINEAR"),
+            row("number [?]").repeating(1),
         ]),
         &[
             P::choice(
@@ -79,18 +71,13 @@ pub(super) static CONTACT: &[Keyword] = &[
         "FRICTION",
         Scope::Block("SURFACE INTERACTION"),
         Data::Rows(&[
-            row(&[
-                plain("mu at rest"),
-                plain("mu of fast slip"),
-                of("decay", Of("time/length")),
-            ])
-            .under("EXPONENTIAL DECAY", ""),
-            row(&[plain("mu"), of("number", Unknown)]).repeating(1),
+            row("mu at rest, mu of fast slip, decay [time/length]").under("EXPONENTIAL DECAY", ""),
+            row("mu, number [?]").repeating(1),
         ]),
         &[
             P::flag("LAGRANGE", "sticking is exact").ignored(),
             P::value("ELASTIC SLIP", "sticking is exact")
-                .measuring(LENGTH)
+                .measuring("length")
                 .warned(),
             P::value("SLIP TOLERANCE", "sticking is exact").warned(),
             P::flag("ROUGH", "give a large coefficient of friction").refused(),
@@ -111,7 +98,7 @@ pub(super) static CONTACT: &[Keyword] = &[
     Keyword::read(
         "CONTACT PAIR",
         Scope::Model,
-        Data::Required(&[row(&[plain("slave"), plain("master")])]),
+        Data::Required(&[row("slave, master")]),
         &[
             P::value("INTERACTION", "name of the interaction; required"),
             P::choice(
@@ -133,11 +120,11 @@ pub(super) static CONTACT: &[Keyword] = &[
                 "largest clearance, or node set, of the slave nodes that are moved onto the master \
                  before the start, free of strain; with a clearance those inside the master too",
             )
-            .measuring(OrName("length")),
+            .measuring("length or name"),
             P::flag("TIED", "surfaces cannot be tied yet").refused(),
             P::value("EXTENSION ZONE", SMOOTHING).warned(),
             P::value("SMOOTH", SMOOTHING).warned(),
-            P::value("HCRIT", SMOOTHING).measuring(LENGTH).warned(),
+            P::value("HCRIT", SMOOTHING).measuring("length").warned(),
             P::flag("NO THICKNESS", SMOOTHING).warned(),
             P::value("TRACKING", SMOOTHING).warned(),
             P::value("MINIMUM DISTANCE", SMOOTHING).warned(),
@@ -170,7 +157,7 @@ pub(super) static CONTACT: &[Keyword] = &[
     Keyword::read(
         "CONTACT INCLUSIONS",
         Scope::Block("CONTACT"),
-        Data::Rows(&[row(&[plain("surface"), plain("surface")])]),
+        Data::Rows(&[row("surface, surface")]),
         &[P::flag(
             "ALL EXTERIOR",
             "all faces that belong to one element only; required",
@@ -184,11 +171,7 @@ pub(super) static CONTACT: &[Keyword] = &[
     Keyword::read(
         "CONTACT PROPERTY ASSIGNMENT",
         Scope::Block("CONTACT"),
-        Data::Required(&[row(&[
-            plain("surface"),
-            plain("surface"),
-            plain("interaction"),
-        ])]),
+        Data::Required(&[row("surface, surface, interaction")]),
         &[],
         "Interaction of general contact: a row of two empty fields, which stand for all surfaces, \
          and its name. Without it there is no friction.",
@@ -204,17 +187,17 @@ pub(super) static CONTACT: &[Keyword] = &[
                 "SEARCH ABOVE",
                 "largest clearance of the nodes that are moved (default 0)",
             )
-            .measuring(LENGTH),
+            .measuring("length"),
             P::value(
                 "SEARCH BELOW",
                 "largest depth of the nodes that are moved (default: any)",
             )
-            .measuring(LENGTH),
+            .measuring("length"),
             P::value(
                 "INITIAL CLEARANCE",
                 "clearance that the moved nodes get (default 0)",
             )
-            .measuring(LENGTH),
+            .measuring("length"),
             P::choice(
                 "ADJUST",
                 &[
@@ -239,46 +222,48 @@ pub(super) static CONTACT: &[Keyword] = &[
     Keyword::read(
         "CONTACT INITIALIZATION ASSIGNMENT",
         Scope::Block("CONTACT"),
-        Data::Required(&[row(&[
-            plain("surface"),
-            plain("surface"),
-            plain("initialization"),
-        ])]),
+        Data::Required(&[row("surface, surface, initialization")]),
         &[],
         "Which nodes of general contact are moved before the start: a row of two empty fields, which \
          stand for all surfaces, and the name of the *CONTACT INITIALIZATION DATA.",
         INITIALIZATION,
     ),
-    Keyword::warned("CONTACT CONTROLS", OTHER_NUMBERS),
-    Keyword::warned("CONTACT CONTROLS ASSIGNMENT", OTHER_NUMBERS),
-    Keyword::warned("CONTACT STABILIZATION", OTHER_NUMBERS),
-    Keyword::warned("GAP CONDUCTANCE", THERMAL),
-    Keyword::warned("GAP HEAT GENERATION", THERMAL),
-    Keyword::warned("GAP RADIATION", THERMAL),
-    Keyword::refused("CONTACT EXCLUSIONS", GENERAL).example(GENERAL_CONTACT),
-    Keyword::refused("CONTACT FORMULATION", GENERAL).example(GENERAL_CONTACT),
-    Keyword::refused("SURFACE PROPERTY ASSIGNMENT", GENERAL).example(GENERAL_CONTACT),
-    Keyword::refused("CONTACT CLEARANCE", "Clearances are those of the mesh."),
-    Keyword::refused(
-        "CONTACT CLEARANCE ASSIGNMENT",
+];
+
+/// Keywords that are not read.
+pub(super) static UNREAD_CONTACT: &[Unread] = &[
+    Unread::warned(
+        "CONTACT CONTROLS, CONTACT CONTROLS ASSIGNMENT, CONTACT STABILIZATION",
+        OTHER_NUMBERS,
+    ),
+    Unread::warned(
+        "GAP CONDUCTANCE, GAP HEAT GENERATION, GAP RADIATION",
+        THERMAL,
+    ),
+    Unread::refused(
+        "CONTACT EXCLUSIONS, CONTACT FORMULATION, SURFACE PROPERTY ASSIGNMENT",
+        GENERAL,
+    )
+    .example(GENERAL_CONTACT),
+    Unread::refused(
+        "CONTACT CLEARANCE, CONTACT CLEARANCE ASSIGNMENT, CLEARANCE",
         "Clearances are those of the mesh.",
     ),
-    Keyword::refused("CLEARANCE", "Clearances are those of the mesh."),
-    Keyword::refused("CONTACT DAMPING", "Contact has no damping."),
-    Keyword::refused(
+    Unread::refused("CONTACT DAMPING", "Contact has no damping."),
+    Unread::refused(
         "CONTACT INTERFERENCE",
         "Nodes are moved before the start with ADJUST= of *CONTACT PAIR or *CONTACT INITIALIZATION DATA \
          only.",
     ),
-    Keyword::refused("COHESIVE BEHAVIOR", "Surfaces do not stick to each other."),
-    Keyword::refused("TIE", "Surfaces cannot be tied yet."),
-    Keyword::refused("MODEL CHANGE", CONTACT_CHANGE),
-    Keyword::refused("CHANGE FRICTION", CONTACT_CHANGE),
-    Keyword::refused("CHANGE CONTACT TYPE", CONTACT_CHANGE),
-    Keyword::refused("CHANGE SURFACE BEHAVIOR", CONTACT_CHANGE),
-    Keyword::refused("GAP", "Contact is that of surfaces: use *CONTACT PAIR.").example(PAIR),
-    Keyword::refused(
-        "SLIDE LINE",
+    Unread::refused("COHESIVE BEHAVIOR", "Surfaces do not stick to each other."),
+    Unread::refused("TIE", "Surfaces cannot be tied yet."),
+    Unread::refused(
+        "MODEL CHANGE, CHANGE FRICTION, CHANGE CONTACT TYPE, \
+         CHANGE SURFACE BEHAVIOR",
+        CONTACT_CHANGE,
+    ),
+    Unread::refused(
+        "GAP, SLIDE LINE",
         "Contact is that of surfaces: use *CONTACT PAIR.",
     )
     .example(PAIR),

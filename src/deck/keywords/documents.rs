@@ -242,7 +242,7 @@ pub(super) fn written(parameter: &Parameter) -> String {
 
 /// What a parameter means, with its dimension.
 pub(super) fn meaning(parameter: &Parameter) -> String {
-    match parameter.holds.dimension() {
+    match parameter.holds().dimension() {
         Some(dimension) => format!("{} ({dimension})", parameter.text),
         None => parameter.text.to_string(),
     }
@@ -250,9 +250,9 @@ pub(super) fn meaning(parameter: &Parameter) -> String {
 
 /// A kind of data lines: which ones, their fields, and the dimensions of those that have one.
 pub(super) fn form(form: &RowForm) -> String {
-    let names: Vec<&str> = form.fields.iter().map(|field| field.name).collect();
+    let names: Vec<&str> = form.fields().map(|field| field.name).collect();
     let over = if form.repeating > 0 { ", ..." } else { "" };
-    let dimensions: Vec<String> = form.fields.iter().filter_map(dimension).collect();
+    let dimensions: Vec<String> = form.fields().filter_map(dimension).collect();
     let dimensions = match dimensions.is_empty() {
         true => String::new(),
         false => format!(" ({})", dimensions.join(", ")),
@@ -261,7 +261,7 @@ pub(super) fn form(form: &RowForm) -> String {
     format!("{condition}`{names}{over}`{dimensions}")
 }
 
-fn dimension(field: &Field) -> Option<String> {
+fn dimension(field: Field) -> Option<String> {
     let dimension = field.holds.dimension()?;
     Some(format!("{}: {dimension}", field.name))
 }
@@ -309,7 +309,7 @@ fn entry(keyword: &Keyword) -> Option<String> {
 
 fn measure(parameter: &Parameter) -> String {
     match parameter.values() {
-        [] => quantity(parameter.holds),
+        [] => quantity(parameter.holds()),
         values => words(values),
     }
 }
@@ -351,7 +351,7 @@ fn row(form: &RowForm) -> String {
     if form.first {
         text.push_str("\"first\": true, ");
     }
-    let fields: Vec<String> = form.fields.iter().map(|f| quantity(f.holds)).collect();
+    let fields: Vec<String> = form.fields().map(|f| quantity(f.holds)).collect();
     let _ = write!(text, "\"fields\": [{}]", fields.join(", "));
     if form.repeating > 0 {
         let _ = write!(text, ", \"repeating\": {}", form.repeating);

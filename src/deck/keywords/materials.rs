@@ -1,11 +1,7 @@
 //! The rows of the keyword table for materials and sections.
 
 use super::common::{NAME, OTHER_NUMBERS, OTHER_SOLVER};
-use super::types::Quantity::{OfOr, Unknown};
-use super::types::{
-    COMPRESSIBILITY, DENSITY, Data, Keyword, PER_TIME, Parameter as P, STRESS, Scope, TIME,
-    Value as V, of, plain, row,
-};
+use super::types::{Data, Keyword, Parameter as P, Scope, Unread, Value as V, row};
 
 const ONLY_NEO_HOOKE: &str =
     "only NEO HOOKE is supported: C10, D1 with C10 = mu/2, D1 = 2/K of small strains";
@@ -28,7 +24,7 @@ pub(super) static MATERIALS: &[Keyword] = &[
         &[
             NAME,
             P::optional("RTOL", OTHER_SOLVER).warned(),
-            P::value("STRAIN RATE REGULARIZATION", OTHER_SOLVER).measuring(Unknown).warned(),
+            P::value("STRAIN RATE REGULARIZATION", OTHER_SOLVER).measuring("?").warned(),
             P::optional("SRATE FACTOR", OTHER_SOLVER).warned(),
         ],
         "Begins a material; its constants follow.",
@@ -40,7 +36,7 @@ pub(super) static MATERIALS: &[Keyword] = &[
     Keyword::read(
         "ELASTIC",
         Scope::Block("MATERIAL"),
-        Data::Required(&[row(&[of("E", STRESS), plain("nu"), plain("temperature")])]),
+        Data::Required(&[row("E [force/length^2], nu, temperature")]),
         &[P::choice(
             "TYPE",
             &[
@@ -69,7 +65,7 @@ pub(super) static MATERIALS: &[Keyword] = &[
     Keyword::read(
         "HYPERELASTIC",
         Scope::Block("MATERIAL"),
-        Data::Required(&[row(&[of("C10", STRESS), of("D1", COMPRESSIBILITY), plain("temperature")])]),
+        Data::Required(&[row("C10 [force/length^2], D1 [length^2/force], temperature")]),
         &[
             P::flag("NEO HOOKE", "the form of the energy; required"),
             P::flag("MOONEY-RIVLIN", ONLY_NEO_HOOKE).refused(),
@@ -108,7 +104,7 @@ pub(super) static MATERIALS: &[Keyword] = &[
     Keyword::read(
         "DENSITY",
         Scope::Block("MATERIAL"),
-        Data::Required(&[row(&[of("rho", DENSITY), plain("temperature")])]),
+        Data::Required(&[row("rho [mass/length^3], temperature")]),
         &[],
         "Mass per volume; a temperature in the second field has no effect (warning).",
     "*DENSITY\n\
@@ -122,12 +118,12 @@ pub(super) static MATERIALS: &[Keyword] = &[
                 "ALPHA",
                 "damping in proportion to the mass: ratio ALPHA/(2 omega) of a mode; also brakes the \
                  free flight of bodies without support (warning)",
-            ).measuring(PER_TIME),
+            ).measuring("1/time"),
             P::value(
                 "BETA",
                 "viscosity in proportion to the moduli of shear and volume at small strains: ratio BETA omega/2 of a \
                  mode; none in rigid motion, momenta are kept",
-            ).measuring(TIME),
+            ).measuring("time"),
             P::value(
                 "COMPOSITE",
                 "there are no modes to damp: give ALPHA and BETA",
@@ -145,7 +141,7 @@ pub(super) static MATERIALS: &[Keyword] = &[
     Keyword::read(
         "SOLID SECTION",
         Scope::Model,
-        Data::Rows(&[row(&[of("thickness", OfOr("length", "1"))])]),
+        Data::Rows(&[row("thickness [length = 1]")]),
         &[
             P::value("ELSET", "elements; required"),
             P::value("MATERIAL", "material; required"),
@@ -168,68 +164,53 @@ pub(super) static MATERIALS: &[Keyword] = &[
         "Material and thickness (default 1) of elements.",
     "*SOLID SECTION, ELSET=EBASE, MATERIAL=STEEL\n\
          1."),
-    Keyword::warned("CONDUCTIVITY", THERMAL_DATA),
-    Keyword::warned("SPECIFIC HEAT", THERMAL_DATA),
-    Keyword::warned("EXPANSION", THERMAL_DATA),
-    Keyword::warned("LATENT HEAT", THERMAL_DATA),
-    Keyword::warned("INELASTIC HEAT FRACTION", THERMAL_DATA),
-    Keyword::warned("ELECTRICAL CONDUCTIVITY", THERMAL_DATA),
-    Keyword::warned("MAGNETIC PERMEABILITY", THERMAL_DATA),
-    Keyword::warned("FLUID CONSTANTS", THERMAL_DATA),
-    Keyword::warned("SPECIFIC GAS CONSTANT", THERMAL_DATA),
-    Keyword::warned("ORIENTATION", "Materials are isotropic."),
-    Keyword::warned("DISTRIBUTION", "Materials and sections are uniform."),
-    Keyword::warned("DISTRIBUTION TABLE", "Materials and sections are uniform."),
-    Keyword::warned("USER OUTPUT VARIABLES", "There are no user subroutines."),
-    Keyword::warned("SECTION CONTROLS", OTHER_NUMBERS),
-    Keyword::refused("SHELL SECTION", SECTION).example(SOLID),
-    Keyword::refused("SHELL GENERAL SECTION", SECTION).example(SOLID),
-    Keyword::refused("BEAM SECTION", SECTION).example(SOLID),
-    Keyword::refused("BEAM GENERAL SECTION", SECTION).example(SOLID),
-    Keyword::refused("MEMBRANE SECTION", SECTION).example(SOLID),
-    Keyword::refused("TRUSS SECTION", SECTION).example(SOLID),
-    Keyword::refused("FRAME SECTION", SECTION).example(SOLID),
-    Keyword::refused("FLUID SECTION", SECTION).example(SOLID),
-    Keyword::refused("COHESIVE SECTION", SECTION).example(SOLID),
-    Keyword::refused("GASKET SECTION", SECTION).example(SOLID),
-    Keyword::refused("SURFACE SECTION", SECTION).example(SOLID),
-    Keyword::refused("REBAR LAYER", SECTION).example(SOLID),
-    Keyword::refused("USER SECTION", SECTION).example(SOLID),
-    Keyword::refused("NODAL THICKNESS", "The thickness of a section is constant: give it under *SOLID SECTION.").example(SOLID),
-    Keyword::refused("NONSTRUCTURAL MASS", "Masses are those of the densities.").example(DENSE),
-    Keyword::refused("HYPERFOAM", INELASTIC).example(ELASTIC),
-    Keyword::refused("HYPOELASTIC", INELASTIC).example(ELASTIC),
-    Keyword::refused("PLASTIC", INELASTIC).example(ELASTIC),
-    Keyword::refused("CYCLIC HARDENING", INELASTIC).example(ELASTIC),
-    Keyword::refused("CREEP", INELASTIC).example(ELASTIC),
-    Keyword::refused("VISCOELASTIC", INELASTIC).example(ELASTIC),
-    Keyword::refused("VISCOUS", INELASTIC).example(ELASTIC),
-    Keyword::refused("DEFORMATION PLASTICITY", INELASTIC).example(ELASTIC),
-    Keyword::refused("MOHR COULOMB", INELASTIC).example(ELASTIC),
-    Keyword::refused("MOHR COULOMB HARDENING", INELASTIC).example(ELASTIC),
-    Keyword::refused("DRUCKER PRAGER", INELASTIC).example(ELASTIC),
-    Keyword::refused("DRUCKER PRAGER HARDENING", INELASTIC).example(ELASTIC),
-    Keyword::refused("CAP PLASTICITY", INELASTIC).example(ELASTIC),
-    Keyword::refused("CLAY PLASTICITY", INELASTIC).example(ELASTIC),
-    Keyword::refused("CRUSHABLE FOAM", INELASTIC).example(ELASTIC),
-    Keyword::refused("CONCRETE", INELASTIC).example(ELASTIC),
-    Keyword::refused("CONCRETE DAMAGED PLASTICITY", INELASTIC).example(ELASTIC),
-    Keyword::refused("BRITTLE CRACKING", INELASTIC).example(ELASTIC),
-    Keyword::refused("CAST IRON PLASTICITY", INELASTIC).example(ELASTIC),
-    Keyword::refused("POROUS METAL PLASTICITY", INELASTIC).example(ELASTIC),
-    Keyword::refused("RATE DEPENDENT", INELASTIC).example(ELASTIC),
-    Keyword::refused("EOS", INELASTIC).example(ELASTIC),
-    Keyword::refused("USER MATERIAL", INELASTIC).example(ELASTIC),
-    Keyword::refused("DEPVAR", INELASTIC).example(ELASTIC),
-    Keyword::refused("COMPRESSION ONLY", INELASTIC).example(ELASTIC),
-    Keyword::refused("NO COMPRESSION", INELASTIC).example(ELASTIC),
-    Keyword::refused("NO TENSION", INELASTIC).example(ELASTIC),
-    Keyword::refused("DAMAGE INITIATION", INELASTIC).example(ELASTIC),
-    Keyword::refused("DAMAGE EVOLUTION", INELASTIC).example(ELASTIC),
-    Keyword::refused("DAMAGE STABILIZATION", INELASTIC).example(ELASTIC),
-    Keyword::refused("SHEAR FAILURE", INELASTIC).example(ELASTIC),
-    Keyword::refused("TENSILE FAILURE", INELASTIC).example(ELASTIC),
-    Keyword::refused("MULLINS EFFECT", INELASTIC).example(ELASTIC),
-    Keyword::refused("MODAL DAMPING", "There are no modes: give *DAMPING of the materials.").example(DAMPING),
-    Keyword::refused("GLOBAL DAMPING", "Give *DAMPING of the materials.").example(DAMPING),
+];
+
+/// Keywords that are not read.
+pub(super) static UNREAD_MATERIALS: &[Unread] = &[
+    Unread::warned(
+        "CONDUCTIVITY, SPECIFIC HEAT, EXPANSION, LATENT HEAT, \
+         INELASTIC HEAT FRACTION, ELECTRICAL CONDUCTIVITY, MAGNETIC PERMEABILITY, \
+         FLUID CONSTANTS, SPECIFIC GAS CONSTANT",
+        THERMAL_DATA,
+    ),
+    Unread::warned("ORIENTATION", "Materials are isotropic."),
+    Unread::warned(
+        "DISTRIBUTION, DISTRIBUTION TABLE",
+        "Materials and sections are uniform.",
+    ),
+    Unread::warned("USER OUTPUT VARIABLES", "There are no user subroutines."),
+    Unread::warned("SECTION CONTROLS", OTHER_NUMBERS),
+    Unread::refused(
+        "SHELL SECTION, SHELL GENERAL SECTION, BEAM SECTION, \
+         BEAM GENERAL SECTION, MEMBRANE SECTION, TRUSS SECTION, FRAME SECTION, \
+         FLUID SECTION, COHESIVE SECTION, GASKET SECTION, SURFACE SECTION, REBAR LAYER, \
+         USER SECTION",
+        SECTION,
+    )
+    .example(SOLID),
+    Unread::refused(
+        "NODAL THICKNESS",
+        "The thickness of a section is constant: give it under *SOLID SECTION.",
+    )
+    .example(SOLID),
+    Unread::refused("NONSTRUCTURAL MASS", "Masses are those of the densities.").example(DENSE),
+    Unread::refused(
+        "HYPERFOAM, HYPOELASTIC, PLASTIC, CYCLIC HARDENING, CREEP, \
+         VISCOELASTIC, VISCOUS, DEFORMATION PLASTICITY, MOHR COULOMB, \
+         MOHR COULOMB HARDENING, DRUCKER PRAGER, DRUCKER PRAGER HARDENING, CAP PLASTICITY, \
+         CLAY PLASTICITY, CRUSHABLE FOAM, CONCRETE, CONCRETE DAMAGED PLASTICITY, \
+         BRITTLE CRACKING, CAST IRON PLASTICITY, POROUS METAL PLASTICITY, RATE DEPENDENT, \
+         EOS, USER MATERIAL, DEPVAR, COMPRESSION ONLY, NO COMPRESSION, NO TENSION, \
+         DAMAGE INITIATION, DAMAGE EVOLUTION, DAMAGE STABILIZATION, SHEAR FAILURE, \
+         TENSILE FAILURE, MULLINS EFFECT",
+        INELASTIC,
+    )
+    .example(ELASTIC),
+    Unread::refused(
+        "MODAL DAMPING",
+        "There are no modes: give *DAMPING of the materials.",
+    )
+    .example(DAMPING),
+    Unread::refused("GLOBAL DAMPING", "Give *DAMPING of the materials.").example(DAMPING),
 ];

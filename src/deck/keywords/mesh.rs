@@ -2,9 +2,7 @@
 //! instances and the assembly.
 
 use super::common::{CAE, HARMLESS, INPUT, NAME};
-use super::types::{
-    AREA, Data, Keyword, LENGTH, Parameter as P, Scope, Value as V, of, plain, row,
-};
+use super::types::{Data, Keyword, Parameter as P, Scope, Unread, Value as V, row};
 
 const OF_INSTANCE: &str = "in the assembly: the rows are numbers and sets of this instance";
 const SMOOTHING: &str = "contact is enforced on the surface as meshed";
@@ -52,12 +50,7 @@ pub(super) static MESH: &[Keyword] = &[
     Keyword::read(
         "NODE",
         Scope::Model,
-        Data::Rows(&[row(&[
-            plain("node"),
-            of("x", LENGTH),
-            of("y", LENGTH),
-            of("z", LENGTH),
-        ])]),
+        Data::Rows(&[row("node, x [length], y [length], z [length]")]),
         &[
             P::value("NSET", "node set that takes the nodes"),
             INPUT,
@@ -81,7 +74,7 @@ pub(super) static MESH: &[Keyword] = &[
     Keyword::read(
         "ELEMENT",
         Scope::Model,
-        Data::Rows(&[row(&[plain("element"), plain("node")]).repeating(1)]),
+        Data::Rows(&[row("element, node").repeating(1)]),
         &[
             P::value(
                 "TYPE",
@@ -101,8 +94,8 @@ pub(super) static MESH: &[Keyword] = &[
         "NSET",
         Scope::Model,
         Data::Rows(&[
-            row(&[plain("first"), plain("last"), plain("increment")]).under("GENERATE", ""),
-            row(&[plain("node or node set")]).repeating(1),
+            row("first, last, increment").under("GENERATE", ""),
+            row("node or node set").repeating(1),
         ]),
         &[
             P::value("NSET", "name; required; a name used again adds to the set"),
@@ -124,8 +117,8 @@ pub(super) static MESH: &[Keyword] = &[
         "ELSET",
         Scope::Model,
         Data::Rows(&[
-            row(&[plain("first"), plain("last"), plain("increment")]).under("GENERATE", ""),
-            row(&[plain("element or element set")]).repeating(1),
+            row("first, last, increment").under("GENERATE", ""),
+            row("element or element set").repeating(1),
         ]),
         &[
             P::value("ELSET", "name; required; a name used again adds to the set"),
@@ -143,20 +136,14 @@ pub(super) static MESH: &[Keyword] = &[
         "SURFACE",
         Scope::Model,
         Data::Required(&[
-            row(&[plain("START or LINE"), of("x", LENGTH), of("y", LENGTH)])
+            row("START or LINE, x [length], y [length]")
                 .saying(0, &["START", "LINE"])
                 .under("TYPE", "SEGMENTS"),
-            row(&[
-                plain("CIRCL"),
-                of("x", LENGTH),
-                of("y", LENGTH),
-                of("xc", LENGTH),
-                of("yc", LENGTH),
-            ])
-            .saying(0, &["CIRCL"])
-            .under("TYPE", "SEGMENTS"),
-            row(&[plain("node or node set"), of("area", AREA)]).under("TYPE", "NODE"),
-            row(&[plain("element or element set"), plain("face")]),
+            row("CIRCL, x [length], y [length], xc [length], yc [length]")
+                .saying(0, &["CIRCL"])
+                .under("TYPE", "SEGMENTS"),
+            row("node or node set, area [length^2]").under("TYPE", "NODE"),
+            row("element or element set, face"),
         ]),
         &[
             NAME,
@@ -229,33 +216,6 @@ pub(super) static MESH: &[Keyword] = &[
          *BOUNDARY\n\
          NREF, 1, 2",
     ),
-    Keyword::refused("TRANSFORM", "Directions are those of the axes x and y."),
-    Keyword::refused("SYSTEM", "Give coordinates in the axes x and y."),
-    Keyword::refused("NGEN", NODES).example(NODE_CARD),
-    Keyword::refused("NFILL", NODES).example(NODE_CARD),
-    Keyword::refused("NCOPY", NODES).example(NODE_CARD),
-    Keyword::refused("NMAP", NODES).example(NODE_CARD),
-    Keyword::refused("ELGEN", ELEMENTS).example(ELEMENT_CARD),
-    Keyword::refused("ELCOPY", ELEMENTS).example(ELEMENT_CARD),
-    Keyword::refused(
-        "REFINE MESH",
-        "Write the finer mesh with *NODE and *ELEMENT.",
-    ),
-    Keyword::refused("PARAMETER", "Write numbers, not parameters."),
-    Keyword::refused("RIGID SURFACE", RIGID).example(RIGID_FLOOR),
-    Keyword::refused(
-        "IMPERFECTION",
-        "Write the imperfect coordinates with *NODE.",
-    ),
-    Keyword::refused("USER ELEMENT", "User elements are not supported."),
-    Keyword::refused("MATRIX INPUT", "Matrices are those of the elements."),
-    Keyword::refused("SUPERELEMENT", "Substructures are not supported."),
-    Keyword::refused("SUBMODEL", "Submodels are not supported."),
-    Keyword::refused("CYCLIC SYMMETRY MODEL", "Mesh the whole body."),
-    Keyword::ignored("DISPLAY BODY", HARMLESS),
-    Keyword::ignored("PREPRINT", HARMLESS).of_words(),
-    Keyword::ignored("PHYSICAL CONSTANTS", HARMLESS),
-    Keyword::ignored("NORMAL", "Normals are those of the faces."),
 ];
 
 const EXTERNAL: &str = "instances are made of the parts of the deck";
@@ -327,16 +287,11 @@ pub(super) static ASSEMBLY: &[Keyword] = &[
         "INSTANCE",
         Scope::Assembly,
         Data::Rows(&[
-            row(&[of("x", LENGTH), of("y", LENGTH), of("z", LENGTH)]).first(),
-            row(&[
-                of("x1", LENGTH),
-                of("y1", LENGTH),
-                of("z1", LENGTH),
-                of("x2", LENGTH),
-                of("y2", LENGTH),
-                of("z2", LENGTH),
-                plain("degrees"),
-            ]),
+            row("x [length], y [length], z [length]").first(),
+            row(
+                "x1 [length], y1 [length], z1 [length], x2 [length], y2 [length], \
+                    z2 [length], degrees",
+            ),
         ]),
         &[
             P::value("NAME", "name; required"),
@@ -358,4 +313,31 @@ pub(super) static ASSEMBLY: &[Keyword] = &[
         "Ends an instance.",
         INSTANCE,
     ),
+];
+
+/// Keywords that are not read.
+pub(super) static UNREAD_MESH: &[Unread] = &[
+    Unread::refused("TRANSFORM", "Directions are those of the axes x and y."),
+    Unread::refused("SYSTEM", "Give coordinates in the axes x and y."),
+    Unread::refused("NGEN, NFILL, NCOPY, NMAP", NODES).example(NODE_CARD),
+    Unread::refused("ELGEN, ELCOPY", ELEMENTS).example(ELEMENT_CARD),
+    Unread::refused(
+        "REFINE MESH",
+        "Write the finer mesh with *NODE and *ELEMENT.",
+    ),
+    Unread::refused("PARAMETER", "Write numbers, not parameters."),
+    Unread::refused("RIGID SURFACE", RIGID).example(RIGID_FLOOR),
+    Unread::refused(
+        "IMPERFECTION",
+        "Write the imperfect coordinates with *NODE.",
+    ),
+    Unread::refused("USER ELEMENT", "User elements are not supported."),
+    Unread::refused("MATRIX INPUT", "Matrices are those of the elements."),
+    Unread::refused("SUPERELEMENT", "Substructures are not supported."),
+    Unread::refused("SUBMODEL", "Submodels are not supported."),
+    Unread::refused("CYCLIC SYMMETRY MODEL", "Mesh the whole body."),
+    Unread::ignored("DISPLAY BODY", HARMLESS),
+    Unread::ignored("PREPRINT", HARMLESS).of_words(),
+    Unread::ignored("PHYSICAL CONSTANTS", HARMLESS),
+    Unread::ignored("NORMAL", "Normals are those of the faces."),
 ];

@@ -17,20 +17,30 @@ pub use types::{Data, Field, Keyword, Parameter, Quantity, RowForm, Scope, Statu
 use super::text::fold;
 use std::collections::HashMap;
 use std::sync::LazyLock;
+use types::Unread;
 
-const FAMILIES: [&[Keyword]; 7] = [
-    mesh::MESH,
-    mesh::ASSEMBLY,
-    materials::MATERIALS,
-    contact::CONTACT,
-    conditions::CONDITIONS,
-    steps::STEPS,
-    output::OUTPUT,
+const FAMILIES: [(&[Keyword], &[Unread]); 7] = [
+    (mesh::MESH, mesh::UNREAD_MESH),
+    (mesh::ASSEMBLY, &[]),
+    (materials::MATERIALS, materials::UNREAD_MATERIALS),
+    (contact::CONTACT, contact::UNREAD_CONTACT),
+    (conditions::CONDITIONS, conditions::UNREAD_CONDITIONS),
+    (steps::STEPS, steps::UNREAD_STEPS),
+    (output::OUTPUT, output::UNREAD_OUTPUT),
 ];
+
+static ALL: LazyLock<Vec<Keyword>> = LazyLock::new(|| {
+    let mut all = Vec::new();
+    for (read, unread) in FAMILIES {
+        all.extend(read);
+        all.extend(unread.iter().flat_map(Unread::keywords));
+    }
+    all
+});
 
 /// All known keywords.
 pub fn keywords() -> impl Iterator<Item = &'static Keyword> + Clone {
-    FAMILIES.into_iter().flatten()
+    ALL.iter()
 }
 
 /// The keyword with this name, blanks and case aside.

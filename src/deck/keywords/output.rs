@@ -1,7 +1,7 @@
 //! The rows of the keyword table for output requests.
 
 use super::common::{HARMLESS, NAME};
-use super::types::{Data, Keyword, Parameter as P, Scope, TIME, Value as V, of, plain, row};
+use super::types::{Data, Keyword, Parameter as P, Scope, Unread, Value as V, row};
 
 const YES_NO: &[V] = &[V::read("YES", ""), V::read("NO", "")];
 const FREQUENCY: P = P::value("FREQUENCY", "frames every so many increments; 0: ends only");
@@ -55,14 +55,14 @@ pub(super) static OUTPUT: &[Keyword] = &[
     Keyword::read(
         "OUTPUT",
         Scope::Step,
-        Data::Rows(&[row(&[plain("variable")]).repeating(1)]),
+        Data::Rows(&[row("variable").repeating(1)]),
         &[
             P::flag("FIELD", "the cards below ask for fields in frames"),
             P::flag("HISTORY", "the cards below ask for histories"),
             P::optional("DIAGNOSTICS", "diagnostics are always written").ignored(),
             FREQUENCY,
             P::value("NUMBER INTERVAL", "this many frames, evenly spaced"),
-            P::value("TIME INTERVAL", "frames at multiples of this time").measuring(TIME),
+            P::value("TIME INTERVAL", "frames at multiples of this time").measuring("time"),
             TIME_POINTS,
             P::value("TIME MARKS", "increments are not cut for output").ignored(),
             P::value("OP", "one request of frames holds").ignored(),
@@ -78,7 +78,7 @@ pub(super) static OUTPUT: &[Keyword] = &[
     Keyword::read(
         "NODE OUTPUT",
         Scope::Step,
-        Data::Rows(&[row(&[plain("variable")]).repeating(1)]),
+        Data::Rows(&[row("variable").repeating(1)]),
         &[
             P::value(
                 "NSET",
@@ -102,7 +102,7 @@ pub(super) static OUTPUT: &[Keyword] = &[
     Keyword::read(
         "NODE FILE",
         Scope::Step,
-        Data::Rows(&[row(&[plain("variable")]).repeating(1)]),
+        Data::Rows(&[row("variable").repeating(1)]),
         &[
             FREQUENCY,
             TIME_POINTS,
@@ -120,7 +120,7 @@ pub(super) static OUTPUT: &[Keyword] = &[
     Keyword::read(
         "ELEMENT OUTPUT",
         Scope::Step,
-        Data::Rows(&[row(&[plain("variable")]).repeating(1)]),
+        Data::Rows(&[row("variable").repeating(1)]),
         &[
             FREQUENCY,
             TIME_POINTS,
@@ -146,7 +146,7 @@ pub(super) static OUTPUT: &[Keyword] = &[
     Keyword::read(
         "EL FILE",
         Scope::Step,
-        Data::Rows(&[row(&[plain("variable")]).repeating(1)]),
+        Data::Rows(&[row("variable").repeating(1)]),
         &[
             FREQUENCY,
             TIME_POINTS,
@@ -166,7 +166,7 @@ pub(super) static OUTPUT: &[Keyword] = &[
     Keyword::read(
         "CONTACT OUTPUT",
         Scope::Step,
-        Data::Rows(&[row(&[plain("variable")]).repeating(1)]),
+        Data::Rows(&[row("variable").repeating(1)]),
         &[
             FREQUENCY,
             TIME_POINTS,
@@ -185,7 +185,7 @@ pub(super) static OUTPUT: &[Keyword] = &[
     Keyword::read(
         "CONTACT FILE",
         Scope::Step,
-        Data::Rows(&[row(&[plain("variable")]).repeating(1)]),
+        Data::Rows(&[row("variable").repeating(1)]),
         &[
             FREQUENCY,
             TIME_POINTS,
@@ -202,7 +202,7 @@ pub(super) static OUTPUT: &[Keyword] = &[
     Keyword::read(
         "NODE PRINT",
         Scope::Step,
-        Data::Rows(&[row(&[plain("variable")]).repeating(1)]),
+        Data::Rows(&[row("variable").repeating(1)]),
         &[
             P::value("NSET", "node set of the history"),
             HISTORY_EVERY,
@@ -218,7 +218,7 @@ pub(super) static OUTPUT: &[Keyword] = &[
     Keyword::read(
         "EL PRINT",
         Scope::Step,
-        Data::Rows(&[row(&[plain("variable")]).repeating(1)]),
+        Data::Rows(&[row("variable").repeating(1)]),
         &[
             P::value("ELSET", "element set of the history"),
             HISTORY_EVERY,
@@ -236,7 +236,7 @@ pub(super) static OUTPUT: &[Keyword] = &[
     Keyword::read(
         "CONTACT PRINT",
         Scope::Step,
-        Data::Rows(&[row(&[plain("variable")]).repeating(1)]),
+        Data::Rows(&[row("variable").repeating(1)]),
         &[
             SLAVE,
             MASTER,
@@ -252,7 +252,7 @@ pub(super) static OUTPUT: &[Keyword] = &[
     Keyword::read(
         "ENERGY OUTPUT",
         Scope::Step,
-        Data::Rows(&[row(&[plain("variable")]).repeating(1)]),
+        Data::Rows(&[row("variable").repeating(1)]),
         &[P::value("ELSET", ALWAYS_WHOLE).ignored(), ALL_VARIABLES],
         "Energies are always in the history.",
         "*OUTPUT, HISTORY\n\
@@ -263,9 +263,8 @@ pub(super) static OUTPUT: &[Keyword] = &[
         "TIME POINTS",
         Scope::Anywhere,
         Data::Required(&[
-            row(&[of("first", TIME), of("last", TIME), of("increment", TIME)])
-                .under("GENERATE", ""),
-            row(&[of("time", TIME)]).repeating(1),
+            row("first [time], last [time], increment [time]").under("GENERATE", ""),
+            row("time [time]").repeating(1),
         ]),
         &[
             NAME,
@@ -296,23 +295,16 @@ pub(super) static OUTPUT: &[Keyword] = &[
          cards give several columns.",
         "*MONITOR, NODE=13, DOF=2",
     ),
-    Keyword::ignored("FILE FORMAT", HARMLESS).of_words(),
-    Keyword::ignored("PRINT", HARMLESS).of_words(),
-    Keyword::warned("FILTER", UNWRITTEN),
-    Keyword::warned("SECTION PRINT", UNWRITTEN),
-    Keyword::warned("SECTION FILE", UNWRITTEN),
-    Keyword::warned("INTEGRATED OUTPUT", UNWRITTEN),
-    Keyword::warned("INTEGRATED OUTPUT SECTION", UNWRITTEN),
-    Keyword::warned("INCREMENTATION OUTPUT", UNWRITTEN),
-    Keyword::warned("MODAL OUTPUT", UNWRITTEN),
-    Keyword::warned("MODAL PRINT", UNWRITTEN),
-    Keyword::warned("MODAL FILE", UNWRITTEN),
-    Keyword::warned("RADIATION OUTPUT", UNWRITTEN),
-    Keyword::warned("SURFACE OUTPUT", UNWRITTEN),
-    Keyword::warned("SUBSTRUCTURE MATRIX OUTPUT", UNWRITTEN),
-    Keyword::warned("ENERGY PRINT", UNWRITTEN),
-    Keyword::warned("ENERGY FILE", UNWRITTEN),
-    Keyword::warned("ELEMENT MATRIX OUTPUT", UNWRITTEN),
-    Keyword::warned("TRACER PARTICLE", UNWRITTEN),
-    Keyword::warned("VIEWFACTOR", UNWRITTEN),
+];
+
+/// Keywords that are not read.
+pub(super) static UNREAD_OUTPUT: &[Unread] = &[
+    Unread::ignored("FILE FORMAT, PRINT", HARMLESS).of_words(),
+    Unread::warned(
+        "FILTER, SECTION PRINT, SECTION FILE, INTEGRATED OUTPUT, \
+         INTEGRATED OUTPUT SECTION, INCREMENTATION OUTPUT, MODAL OUTPUT, MODAL PRINT, \
+         MODAL FILE, RADIATION OUTPUT, SURFACE OUTPUT, SUBSTRUCTURE MATRIX OUTPUT, \
+         ENERGY PRINT, ENERGY FILE, ELEMENT MATRIX OUTPUT, TRACER PARTICLE, VIEWFACTOR",
+        UNWRITTEN,
+    ),
 ];

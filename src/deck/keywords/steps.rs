@@ -1,7 +1,7 @@
 //! The rows of the keyword table for steps and their settings.
 
 use super::common::{OTHER_NUMBERS, OTHER_SOLVER};
-use super::types::{Data, FORCE, Keyword, Parameter as P, Scope, TIME, Value as V, of, row};
+use super::types::{Data, Keyword, Parameter as P, Scope, Unread, Value as V, row};
 
 const UNSCALED: &str = "Masses are not scaled: remove it, implicit increments do not need it.";
 const INTEGRATOR: &str = "the time integration is that of *STICKSLIP, SCHEME=";
@@ -59,12 +59,10 @@ pub(super) static STEPS: &[Keyword] = &[
     Keyword::read(
         "DYNAMIC",
         Scope::Step,
-        Data::Rows(&[row(&[
-            of("increment", TIME),
-            of("duration", TIME),
-            of("smallest increment", TIME),
-            of("largest increment", TIME),
-        ])]),
+        Data::Rows(&[row(
+            "increment [time], duration [time], smallest increment [time], \
+                    largest increment [time]",
+        )]),
         &[
             P::optional_choice(
                 "DIRECT",
@@ -101,7 +99,7 @@ pub(super) static STEPS: &[Keyword] = &[
             P::value("BETA", INTEGRATOR).warned(),
             P::value("GAMMA", INTEGRATOR).warned(),
             P::value("TIME INTEGRATOR", INTEGRATOR).warned(),
-            P::value("HAFTOL", OTHER_SOLVER).measuring(FORCE).warned(),
+            P::value("HAFTOL", OTHER_SOLVER).measuring("force").warned(),
             P::value("HALFINC SCALE FACTOR", OTHER_SOLVER).warned(),
             P::flag("NOHAF", OTHER_SOLVER).warned(),
             P::value("INITIAL", OTHER_SOLVER).warned(),
@@ -247,60 +245,41 @@ pub(super) static STEPS: &[Keyword] = &[
          its frames, the last good state among them. FREQUENCY=0 is accepted silently.",
         "*RESTART, WRITE, FREQUENCY=0",
     ),
-    Keyword::warned("CONTROLS", OTHER_NUMBERS),
-    Keyword::warned("SOLVER CONTROLS", OTHER_NUMBERS),
-    Keyword::warned("DIAGNOSTICS", OTHER_NUMBERS),
-    Keyword::warned("BULK VISCOSITY", OTHER_NUMBERS),
-    Keyword::refused("VARIABLE MASS SCALING", UNSCALED),
-    Keyword::refused("FIXED MASS SCALING", UNSCALED),
-    Keyword::warned("ADAPTIVE MESH", "The mesh stays as it is."),
-    Keyword::warned("ADAPTIVE MESH CONTROLS", "The mesh stays as it is."),
-    Keyword::refused("STATIC", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("VISCO", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("FREQUENCY", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("COMPLEX FREQUENCY", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("MODAL DYNAMIC", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("BUCKLE", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("STEADY STATE DYNAMICS", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("RESPONSE SPECTRUM", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("RANDOM RESPONSE", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("DIRECT CYCLIC", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("HEAT TRANSFER", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("COUPLED TEMPERATURE-DISPLACEMENT", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("DYNAMIC TEMPERATURE-DISPLACEMENT", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("UNCOUPLED TEMPERATURE-DISPLACEMENT", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("COUPLED THERMAL-ELECTRICAL", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("ELECTROMAGNETICS", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("PIEZOELECTRIC", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("MASS DIFFUSION", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("ACOUSTIC", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("CFD", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("SUBSTRUCTURE GENERATE", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("GREEN", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("SENSITIVITY", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("FEASIBLE DIRECTION", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("ROBUST DESIGN", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("HCF", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("CRACK PROPAGATION", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("ANNEAL", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("GEOSTATIC", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("SOILS", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("DESIGN VARIABLES", "There is no optimisation."),
-    Keyword::refused("DESIGN RESPONSE", "There is no optimisation."),
-    Keyword::refused("OBJECTIVE", "There is no optimisation."),
-    Keyword::refused("CONSTRAINT", "There is no optimisation."),
-    Keyword::refused(
-        "CHANGE MATERIAL",
+];
+
+/// Keywords that are not read.
+pub(super) static UNREAD_STEPS: &[Unread] = &[
+    Unread::warned(
+        "CONTROLS, SOLVER CONTROLS, DIAGNOSTICS, BULK VISCOSITY",
+        OTHER_NUMBERS,
+    ),
+    Unread::refused("VARIABLE MASS SCALING, FIXED MASS SCALING", UNSCALED),
+    Unread::warned(
+        "ADAPTIVE MESH, ADAPTIVE MESH CONTROLS",
+        "The mesh stays as it is.",
+    ),
+    Unread::refused(
+        "STATIC, VISCO, FREQUENCY, COMPLEX FREQUENCY, MODAL DYNAMIC, BUCKLE, \
+         STEADY STATE DYNAMICS, RESPONSE SPECTRUM, RANDOM RESPONSE, DIRECT CYCLIC, \
+         HEAT TRANSFER, COUPLED TEMPERATURE-DISPLACEMENT, DYNAMIC TEMPERATURE-DISPLACEMENT, \
+         UNCOUPLED TEMPERATURE-DISPLACEMENT, COUPLED THERMAL-ELECTRICAL, ELECTROMAGNETICS, \
+         PIEZOELECTRIC, MASS DIFFUSION, ACOUSTIC, CFD, SUBSTRUCTURE GENERATE, GREEN, \
+         SENSITIVITY, FEASIBLE DIRECTION, ROBUST DESIGN, HCF, CRACK PROPAGATION, ANNEAL, \
+         GEOSTATIC, SOILS",
+        PROCEDURE,
+    )
+    .example(DYNAMIC),
+    Unread::refused(
+        "DESIGN VARIABLES, DESIGN RESPONSE, OBJECTIVE, CONSTRAINT",
+        "There is no optimisation.",
+    ),
+    Unread::refused(
+        "CHANGE MATERIAL, CHANGE PLASTIC, CHANGE SOLID SECTION",
         "Materials and sections hold for all steps.",
     ),
-    Keyword::refused(
-        "CHANGE PLASTIC",
-        "Materials and sections hold for all steps.",
-    ),
-    Keyword::refused(
-        "CHANGE SOLID SECTION",
-        "Materials and sections hold for all steps.",
-    ),
-    Keyword::refused("SELECT CYCLIC SYMMETRY MODES", PROCEDURE).example(DYNAMIC),
-    Keyword::refused("RETAINED NODAL DOFS", PROCEDURE).example(DYNAMIC),
+    Unread::refused(
+        "SELECT CYCLIC SYMMETRY MODES, RETAINED NODAL DOFS",
+        PROCEDURE,
+    )
+    .example(DYNAMIC),
 ];

@@ -92,40 +92,73 @@ impl Keyword {
             example,
         }
     }
+}
 
-    /// A keyword that is left out silently.
-    pub(super) const fn ignored(name: &'static str, text: &'static str) -> Keyword {
-        Keyword::unread(name, Status::Ignored, text)
-    }
+/// Known keywords that are not read, for the same reason.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Unread {
+    status: Status,
+    /// Their names, between commas.
+    names: &'static str,
+    text: &'static str,
+    example: &'static str,
+    data: Data,
+}
 
-    /// A keyword that is left out with a warning.
-    pub(super) const fn warned(name: &'static str, text: &'static str) -> Keyword {
-        Keyword::unread(name, Status::Warned, text)
-    }
-
-    /// A keyword that stops with an error.
-    pub(super) const fn refused(name: &'static str, text: &'static str) -> Keyword {
-        Keyword::unread(name, Status::Refused, text)
-    }
-
-    const fn unread(name: &'static str, status: Status, text: &'static str) -> Keyword {
-        Keyword {
-            status,
-            ..Keyword::read(name, Scope::Anywhere, Data::Skipped, &[], text, "")
+impl Unread {
+    /// Keywords that are left out silently.
+    pub(super) const fn ignored(names: &'static str, text: &'static str) -> Unread {
+        Unread {
+            status: Status::Ignored,
+            names,
+            text,
+            example: "",
+            data: Data::Skipped,
         }
     }
 
-    /// The same with lines of a deck that say in another way what it says.
-    pub(super) const fn example(self, example: &'static str) -> Keyword {
-        Keyword { example, ..self }
+    /// Keywords that are left out with a warning.
+    pub(super) const fn warned(names: &'static str, text: &'static str) -> Unread {
+        Unread {
+            status: Status::Warned,
+            ..Unread::ignored(names, text)
+        }
     }
 
-    /// The same with words only in its parameters and data lines.
-    pub(super) const fn of_words(self) -> Keyword {
-        Keyword {
+    /// Keywords that stop with an error.
+    pub(super) const fn refused(names: &'static str, text: &'static str) -> Unread {
+        Unread {
+            status: Status::Refused,
+            ..Unread::ignored(names, text)
+        }
+    }
+
+    /// The same with lines of a deck that say in another way what they say.
+    pub(super) const fn example(self, example: &'static str) -> Unread {
+        Unread { example, ..self }
+    }
+
+    /// The same with words only in their parameters and data lines.
+    pub(super) const fn of_words(self) -> Unread {
+        Unread {
             data: Data::Words,
             ..self
         }
+    }
+
+    /// The keywords.
+    pub(super) fn keywords(&self) -> impl Iterator<Item = Keyword> {
+        let Unread {
+            status,
+            names,
+            text,
+            example,
+            data,
+        } = *self;
+        names.split(", ").map(move |name| Keyword {
+            status,
+            ..Keyword::read(name, Scope::Anywhere, data, &[], text, example)
+        })
     }
 }
 
@@ -175,8 +208,8 @@ pub struct Parameter {
     pub name: &'static str,
     /// Its values.
     pub takes: Takes,
-    /// What a value measures.
-    pub holds: Quantity,
+    /// What a value measures, written as for fields; empty where it measures nothing.
+    pub measures: &'static str,
     /// What the program does with it.
     pub status: Status,
     /// One sentence.
@@ -188,7 +221,7 @@ impl Parameter {
         Parameter {
             name,
             takes,
-            holds: Quantity::Plain,
+            measures: "",
             status: Status::Read,
             text,
         }
@@ -226,8 +259,8 @@ impl Parameter {
     }
 
     /// The same for a number that measures something.
-    pub(super) const fn measuring(self, holds: Quantity) -> Parameter {
-        Parameter { holds, ..self }
+    pub(super) const fn measuring(self, measures: &'static str) -> Parameter {
+        Parameter { measures, ..self }
     }
 
     pub(super) const fn ignored(self) -> Parameter {
@@ -244,6 +277,14 @@ impl Parameter {
 
     const fn with(self, status: Status) -> Parameter {
         Parameter { status, ..self }
+    }
+
+    /// What a value holds.
+    pub fn holds(&self) -> Quantity {
+        match self.measures {
+            "" => Quantity::Plain,
+            written => Quantity::written(written),
+        }
     }
 
     /// The words this parameter can take; empty if it takes anything.
@@ -289,6 +330,20 @@ pub enum Quantity {
 }
 
 impl Quantity {
+    /// The quantity that the table writes as `length`, `length = 1` with its default, `length or name`, or
+    /// `?`.
+    fn written(text: &'static str) -> Quantity {
+        if text == "?" {
+            Quantity::Unknown
+        } else if let Some((dimension, default)) = text.split_once(" = ") {
+            Quantity::OfOr(dimension, default)
+        } else if let Some(dimension) = text.strip_suffix(" or name") {
+            Quantity::OrName(dimension)
+        } else {
+            Quantity::Of(text)
+        }
+    }
+
     /// The dimension, if it has a known one.
     pub fn dimension(self) -> Option<&'static str> {
         match self {
@@ -309,16 +364,6 @@ pub struct Field {
     pub holds: Quantity,
 }
 
-/// A field of words, labels or numbers that are the same in all units.
-pub(super) const fn plain(name: &'static str) -> Field {
-    of(name, Quantity::Plain)
-}
-
-/// A field that measures something.
-pub(super) const fn of(name: &'static str, holds: Quantity) -> Field {
-    Field { name, holds }
-}
-
 /// The fields of a kind of data line; the conditions say which lines are of this kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RowForm {
@@ -329,14 +374,14 @@ pub struct RowForm {
     pub word: Option<(usize, &'static [&'static str])>,
     /// Whether it is the first data line only.
     pub first: bool,
-    /// What the fields hold.
-    pub fields: &'static [Field],
+    /// The fields between commas, with what a number measures in brackets: `node, x [length]`.
+    pub fields: &'static str,
     /// Number of the last fields that repeat along the line.
     pub repeating: usize,
 }
 
 /// Data lines with these fields.
-pub(super) const fn row(fields: &'static [Field]) -> RowForm {
+pub(super) const fn row(fields: &'static str) -> RowForm {
     RowForm {
         parameter: None,
         word: None,
@@ -347,6 +392,23 @@ pub(super) const fn row(fields: &'static [Field]) -> RowForm {
 }
 
 impl RowForm {
+    /// The fields.
+    pub fn fields(&self) -> impl Iterator<Item = Field> {
+        self.fields
+            .split(", ")
+            .map(|text| match text.strip_suffix(']') {
+                Some(text) => {
+                    let (name, quantity) = text.split_once(" [").unwrap_or((text, "?"));
+                    let holds = Quantity::written(quantity);
+                    Field { name, holds }
+                }
+                None => Field {
+                    name: text,
+                    holds: Quantity::Plain,
+                },
+            })
+    }
+
     /// The same with the last so many fields repeated along the line.
     pub(super) const fn repeating(self, repeating: usize) -> RowForm {
         RowForm { repeating, ..self }
@@ -376,15 +438,3 @@ impl RowForm {
         }
     }
 }
-
-pub(super) const LENGTH: Quantity = Quantity::Of("length");
-pub(super) const AREA: Quantity = Quantity::Of("length^2");
-pub(super) const TIME: Quantity = Quantity::Of("time");
-pub(super) const PER_TIME: Quantity = Quantity::Of("1/time");
-pub(super) const VELOCITY: Quantity = Quantity::Of("length/time");
-pub(super) const ACCELERATION: Quantity = Quantity::Of("length/time^2");
-pub(super) const DENSITY: Quantity = Quantity::Of("mass/length^3");
-pub(super) const FORCE: Quantity = Quantity::Of("force");
-pub(super) const STRESS: Quantity = Quantity::Of("force/length^2");
-pub(super) const COMPRESSIBILITY: Quantity = Quantity::Of("length^2/force");
-pub(super) const FORCE_PER_VOLUME: Quantity = Quantity::Of("force/length^3");

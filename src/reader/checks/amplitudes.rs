@@ -26,9 +26,6 @@ struct Feature {
 /// Warns about features of amplitudes that are shorter than the increment of a step, each amplitude once, and
 /// about prescribed displacements that jump at the start of a step. `spans` are the places of the amplitudes.
 pub(crate) fn amplitudes(model: &Model, spans: &[Span], cx: &mut Context) {
-    if cx.d.has_errors() {
-        return;
-    }
     let (mut warned, mut start) = (BTreeSet::new(), 0.0);
     let mut before = Displacements::of_rest();
     for (index, step) in model.steps.iter().enumerate() {

@@ -4,7 +4,7 @@
 use crate::diagnostics::{Code, Span};
 use crate::model::{Element, ElementsAtNodes, Equation, Mesh, Model, Plane, sides};
 use crate::reader::context::Context;
-use crate::reader::mesh_index::{MeshIndex, Places};
+use crate::reader::mesh_index::MeshIndex;
 use crate::reader::sections::Properties;
 use crate::vectors::{cross, difference, distance, dot, polygon_area};
 use smallvec::SmallVec;
@@ -18,10 +18,10 @@ pub(crate) fn mesh(mesh_index: &MeshIndex, at_nodes: &ElementsAtNodes, cx: &mut 
     let mesh = &mesh_index.mesh;
     for index in 0..mesh.elements.len() {
         if !is_convex(index, mesh) {
-            shape(index, mesh_index, mesh_index.places.get(index), cx);
+            shape(index, mesh_index, mesh_index.places[index], cx);
         }
         if let Some(first) = same_nodes(index, mesh, at_nodes) {
-            let span = mesh_index.places.get(index);
+            let span = mesh_index.places[index];
             let [element, first] = [index, first].map(|e| mesh_index.element_name(e));
             let message = format!("element {element} has the nodes of element {first}");
             cx.error(Code::RepeatedElement, span, message);
@@ -166,7 +166,7 @@ pub(crate) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &m
         ];
         if let Some((what, value)) = magnitudes.iter().find(|(_, value)| !value.is_normal()) {
             let what = format!("the {what} element {}", mesh_index.element_name(index));
-            return unusable(&what, *value, mesh_index.places.get(index), cx);
+            return unusable(&what, *value, mesh_index.places[index], cx);
         }
     }
 }
@@ -199,10 +199,7 @@ const SQUARE: u64 = 8;
 
 /// Warns about nodes of elements that lie at the same place although neither contact nor an
 /// equation acts between them; `shortest` is the length of the shortest side of an element.
-pub(crate) fn coincident_nodes(model: &Model, shortest: f64, places: &Places, cx: &mut Context) {
-    if cx.d.has_errors() {
-        return;
-    }
+pub(crate) fn coincident_nodes(model: &Model, shortest: f64, places: &[Span], cx: &mut Context) {
     let mut pairs = coincident(&model.mesh, shortest);
     if pairs.is_empty() {
         return;
@@ -223,7 +220,7 @@ pub(crate) fn coincident_nodes(model: &Model, shortest: f64, places: &Places, cx
             "{n} pairs of nodes lie at the same place and nothing joins them, the first are {a} and {b}"
         ),
     };
-    cx.warning(Code::CoincidentNodes, places.get(element), message)
+    cx.warning(Code::CoincidentNodes, places[element], message)
         .help("the elements part there: merge the nodes, or define contact between the surfaces");
 }
 

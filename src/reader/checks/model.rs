@@ -61,7 +61,7 @@ pub(crate) fn proportion(
     guide: Option<f64>,
     cx: &mut Context,
 ) {
-    let Some(guide) = guide.filter(|_| !cx.d.has_errors()) else {
+    let Some(guide) = guide else {
         return;
     };
     for (step, cards) in steps.iter().zip(cards) {
@@ -99,7 +99,7 @@ pub(crate) fn proportion(
 
 /// Warns at the first step about a model in which nothing ever moves.
 pub(crate) fn motion(model: &Model, cards: &[StepCards], cx: &mut Context) {
-    let Some(first) = cards.first().filter(|_| !cx.d.has_errors()) else {
+    let Some(first) = cards.first() else {
         return;
     };
     let moves = || model.initial_velocity.iter().any(|v| *v != 0.0);
@@ -133,7 +133,7 @@ fn acts<T>(loads: &[Load<T>]) -> bool {
 
 /// Warns where mass-proportional damping takes momentum from bodies that have no support in a step.
 pub(crate) fn braked_flight(model: &Model, damping_spans: &[Span], cx: &mut Context) {
-    if cx.d.has_errors() || model.materials.iter().all(|m| m.damping.alpha == 0.0) {
+    if model.materials.iter().all(|m| m.damping.alpha == 0.0) {
         return;
     }
     let bodies = Bodies::new(&model.mesh);
@@ -182,9 +182,6 @@ fn held_in_all_steps(model: &Model, bodies: &Bodies) -> Vec<bool> {
 /// Warns about contact pairs of which more than half of the slave nodes are prescribed in both
 /// directions throughout. The clamped end of a surface is common, and does no harm.
 pub(crate) fn fixed_slaves(model: &Model, cx: &mut Context) {
-    if cx.d.has_errors() {
-        return;
-    }
     let prescribed = prescribed_throughout(&model.steps);
     let is_fixed = |node: &usize| [0, 1].iter().all(|i| prescribed.contains(&(2 * node + i)));
     for contact in &model.contacts {

@@ -5,10 +5,9 @@
 //! with an exterior node have a common part. A loop of the boundary that meets no other lies inside as many
 //! elements as the loops go around it.
 
-use crate::diagnostics::Code;
+use crate::diagnostics::{Code, Span};
 use crate::model::{ALL_EXTERIOR, Contact, ElementsAtNodes, Face, Mesh, Model};
 use crate::reader::context::Context;
-use crate::reader::mesh_index::Places;
 use crate::vectors::{Circle, CircleTree, cross, difference, distance, dot};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -19,10 +18,7 @@ const OVERLAP: f64 = 0.05;
 /// Reports elements that lie over each other: in a body as an error; of two bodies as an error in general
 /// contact, and as a warning where the deck may mean it. Contact that moves nodes before the start
 /// resolves the overlap of its bodies.
-pub(crate) fn overlap(model: &Model, places: &Places, cx: &mut Context) {
-    if cx.d.has_errors() {
-        return;
-    }
+pub(crate) fn overlap(model: &Model, places: &[Span], cx: &mut Context) {
     let mesh = &model.mesh;
     let mut pairs = overlapping(mesh);
     if pairs.is_empty() {
@@ -38,7 +34,7 @@ pub(crate) fn overlap(model: &Model, places: &Places, cx: &mut Context) {
             "{} lie over each other",
             elements(model, pair, within.len())
         );
-        cx.error(Code::OverlappingElements, places.get(pair[1]), message)
+        cx.error(Code::OverlappingElements, places[pair[1]], message)
             .help("remove one of them, or mend the nodes");
         return;
     }
@@ -49,7 +45,7 @@ pub(crate) fn overlap(model: &Model, places: &Places, cx: &mut Context) {
             "two bodies overlap: {} lie over each other",
             elements(model, pair, pairs.len())
         );
-        let (code, at) = (Code::OverlappingBodies, places.get(pair[1]));
+        let (code, at) = (Code::OverlappingBodies, places[pair[1]]);
         match acting.is_general {
             true => cx
                 .error(code, at, message)
