@@ -4,12 +4,11 @@ use std::fs;
 use std::process::Command;
 
 /// Libraries named by `--version`.
-const LIBRARIES: [&str; 8] = [
+const LIBRARIES: [&str; 7] = [
     "clap",
     "faer",
     "hdf5-metno",
     "nalgebra",
-    "nom",
     "rayon",
     "sprs",
     "sprs-ldl",

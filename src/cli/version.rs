@@ -23,12 +23,11 @@ pub(super) const VERSION: &str = concat!(
 );
 
 /// Licences of the libraries whose versions the build recorded.
-const LICENCES: [(&str, &str); 8] = [
+const LICENCES: [(&str, &str); 7] = [
     ("clap", "MIT OR Apache-2.0"),
     ("faer", "MIT"),
     ("hdf5-metno", "MIT OR Apache-2.0"),
     ("nalgebra", "Apache-2.0"),
-    ("nom", "MIT"),
     ("rayon", "MIT OR Apache-2.0"),
     ("sprs", "MIT OR Apache-2.0"),
     ("sprs-ldl", "LGPL-2.1"),

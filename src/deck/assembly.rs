@@ -170,7 +170,7 @@ pub(super) struct Part {
 
 /// A card outside parts, or an instance.
 pub(super) enum Item {
-    /// A card.
+    /// A card and where it stands.
     Card(Card, Region),
     /// `*INSTANCE` with the cards up to `*END INSTANCE`.
     Instance(Card, Vec<Card>),

@@ -35,7 +35,7 @@ pub(crate) enum LineKind {
 }
 
 impl<'a> Line<'a> {
-    /// What it is.
+    /// What kind of line it is.
     pub(super) fn kind(self) -> LineKind {
         // the first character of most lines
         if let Some(b'0'..=b'9') = self.text.as_bytes().first() {
@@ -250,7 +250,7 @@ fn trimmed(text: &str, start: usize, end: usize) -> (usize, usize) {
 /// The lines of a text, which end with LF or CRLF.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lines<'a> {
-    /// Their file.
+    /// The file that they stand in.
     pub file: FileId,
     /// The text up to the end of the last line.
     pub text: &'a str,
@@ -279,7 +279,7 @@ impl<'a> Lines<'a> {
         self.text.get(self.start..).unwrap_or("")
     }
 
-    /// How many there are.
+    /// The number of these lines.
     pub fn count_lines(&self) -> u32 {
         let text = self.rest();
         let is_open = !text.is_empty() && !text.ends_with('\n');

@@ -15,19 +15,19 @@ use std::collections::BTreeMap;
 /// Objects of the model that supports and loads refer to.
 #[derive(Clone, Copy)]
 pub(crate) struct Targets<'a> {
-    /// Mesh.
+    /// The mesh with the numbers of the deck.
     pub mesh_index: &'a MeshIndex,
-    /// Sets.
+    /// All sets of nodes and elements.
     pub sets: &'a Sets,
-    /// Amplitudes.
+    /// All amplitudes with their names.
     pub amplitudes: &'a Amplitudes,
-    /// Rigid bodies.
+    /// Rigid bodies, whose nodes move with reference nodes.
     pub rigid_bodies: &'a [Rigid],
 }
 
 /// A direction of displacement or rotation that the deck names.
 pub(crate) enum Direction {
-    /// 0 = x, 1 = y.
+    /// A direction in the plane: 0 is x, 1 is y.
     Plane(usize),
     /// A displacement or rotation out of the plane.
     OutOfPlane,
@@ -90,7 +90,7 @@ impl Supports {
         .collect()
     }
 
-    /// Removes all.
+    /// Removes all supports.
     pub fn clear(&mut self) {
         self.held.clear();
     }

@@ -31,7 +31,7 @@ pub(crate) struct Requests {
 }
 
 impl Requests {
-    /// Nothing yet.
+    /// No requests yet.
     pub fn new(cx: &mut Context) -> Requests {
         Requests {
             points: time_points(cx),
@@ -235,17 +235,17 @@ fn report_variables(card: &Card, cx: &mut Context) {
 /// What the deck has asked for so far.
 #[derive(Default)]
 pub(crate) struct Histories {
-    /// Node sets.
+    /// Node sets that have a history.
     pub nodes: Vec<HistorySet>,
-    /// Element sets.
+    /// Element sets that have a history.
     pub elements: Vec<HistorySet>,
-    /// Fields on request.
+    /// Fields that are written on request only.
     pub fields: RequestedFields,
-    /// Dofs in the status file.
+    /// Dofs whose displacements the status file shows.
     pub monitored: Vec<usize>,
 }
 
-/// What a set holds.
+/// What the members of a set are.
 #[derive(Clone, Copy)]
 pub(super) enum MemberKind {
     Nodes,

@@ -14,7 +14,7 @@ pub enum Scope {
     Anywhere,
     /// In the block of the model keyword of this name.
     Block(&'static str),
-    /// There, or by itself before the first step.
+    /// In such a block, or by itself before the first step.
     BlockOrModel(&'static str),
     /// Structure of assembly decks.
     Assembly,
@@ -23,7 +23,7 @@ pub enum Scope {
 /// Data lines of a keyword.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Data {
-    /// None.
+    /// It takes none.
     None,
     /// Any number of rows; the first form that fits a row holds.
     Rows(&'static [RowForm]),
@@ -178,7 +178,7 @@ pub enum Status {
 /// Values of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Takes {
-    /// None.
+    /// It takes no value.
     Nothing,
     /// A name, number or path.
     Value,
