@@ -4,36 +4,43 @@ use nalgebra::Matrix2;
 use smallvec::SmallVec;
 
 use crate::model::{Element, Mesh, Nodes};
+use crate::vectors::difference;
+
+/// Mean gradients of the shape functions of an element, in place.
+type Weights = SmallVec<[[f64; 2]; 4]>;
 
 /// Weights of the nodes of an element in its mean displacement gradient.
 pub struct MeanGradient {
     nodes: Nodes,
     /// Mean gradient of the shape function of each node (1/length).
-    weights: SmallVec<[[f64; 2]; 4]>,
+    weights: Weights,
     /// Area of the undeformed element (length^2).
     pub area: f64,
 }
 
 impl MeanGradient {
-    /// That of an element with straight sides. With N the normal of the boundary and p, q the nodes before
-    /// and after a:
+    /// That of an element, by the integrals over its sides, n being the outward normal:
     ///
     /// ```text
-    /// 1/A int dN_a/dX dA = 1/A int N_a N ds = (Y_q - Y_p, X_p - X_q) / (2 A)
+    /// 1/A int dh_a/dX dA = 1/A int h_a n dl,  A = int X n_x dl
     /// ```
     pub fn new(mesh: &Mesh, element: &Element) -> Self {
-        let x = mesh.corners(element);
-        let count = x.len();
-        let around = |a: usize| (x[(a + count - 1) % count], x[(a + 1) % count]);
-        let normals = (0..count).map(|a| {
-            let (p, q) = around(a);
-            [q[1] - p[1], p[0] - q[0]]
-        });
-        let twice: SmallVec<[[f64; 2]; 4]> = normals.collect();
-        let area = x.iter().zip(&twice).map(|(x, n)| x[0] * n[0]).sum::<f64>() / 2.0;
+        let x = |node: usize| mesh.coordinates[node];
+        let mut weights: Weights = element.nodes.iter().map(|_| [0.0; 2]).collect();
+        for side in (0..element.side_count()).map(|side| element.side(side)) {
+            let first = side.nodes()[0];
+            for (node, normal) in side.normals(|node| difference(x(first), x(node))) {
+                let own = element.nodes.iter().zip(&mut weights);
+                for (_, weight) in own.filter(|(own, _)| **own == node) {
+                    *weight = [weight[0] + normal[0], weight[1] + normal[1]];
+                }
+            }
+        }
+        let terms = element.nodes.iter().zip(&weights);
+        let area = terms.map(|(&node, n)| x(node)[0] * n[0]).sum::<f64>();
         MeanGradient {
             nodes: element.nodes.clone(),
-            weights: twice.iter().map(|n| n.map(|n| n / (2.0 * area))).collect(),
+            weights: weights.iter().map(|n| n.map(|n| n / area)).collect(),
             area,
         }
     }

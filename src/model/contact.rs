@@ -4,6 +4,7 @@
 //!
 //! Segments run from a to b with the body on the left.
 
+use super::Segment;
 use super::mesh::{Face, Mesh};
 use crate::diagnostics::Span;
 
@@ -141,14 +142,16 @@ pub enum SurfaceKind {
     Nodes(Vec<usize>),
     /// Segments [a, b] between nodes without element, the rigid body on the left of the direction
     /// from a to b: can be master only.
-    Rigid(Vec<[usize; 2]>),
+    Rigid(Vec<Segment>),
 }
 
 impl Surface {
     /// Segments [a, b] in order, the body on the left; empty for a node surface.
-    pub fn segments(&self, mesh: &Mesh) -> Vec<[usize; 2]> {
+    pub fn segments(&self, mesh: &Mesh) -> Vec<Segment> {
         match &self.kind {
-            SurfaceKind::Faces(faces) => faces.iter().map(|face| face.nodes(mesh)).collect(),
+            SurfaceKind::Faces(faces) => {
+                faces.iter().flat_map(|face| face.segments(mesh)).collect()
+            }
             SurfaceKind::Nodes(_) => Vec::new(),
             SurfaceKind::Rigid(segments) => segments.clone(),
         }

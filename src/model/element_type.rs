@@ -40,9 +40,9 @@ pub enum Formulation {
 pub struct Topology {
     /// Number of nodes.
     pub nodes: usize,
-    /// Sides as pairs of local nodes from a to b, the element on the left: side 0 is S1/P1. Each is
-    /// one contact segment.
-    pub sides: &'static [[usize; 2]],
+    /// Local nodes of every side from corner to corner, the element on the left: side 0 is S1/P1. Corners come first
+    /// among the nodes, and side i begins at corner i.
+    pub sides: &'static [&'static [usize]],
     /// Cell type of VTK.
     pub vtk_cell: u8,
 }
@@ -55,7 +55,7 @@ pub struct Topology {
 /// ```
 static TRI3: Topology = Topology {
     nodes: 3,
-    sides: &[[0, 1], [1, 2], [2, 0]],
+    sides: &[&[0, 1], &[1, 2], &[2, 0]],
     vtk_cell: 5,
 };
 
@@ -67,7 +67,7 @@ static TRI3: Topology = Topology {
 /// ```
 static QUAD4: Topology = Topology {
     nodes: 4,
-    sides: &[[0, 1], [1, 2], [2, 3], [3, 0]],
+    sides: &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
     vtk_cell: 9,
 };
 
@@ -150,10 +150,13 @@ mod tests {
     fn sides_go_round_the_element_once() {
         for element_type in ElementType::NAMED {
             let Topology { nodes, sides, .. } = *element_type.topology();
-            assert_eq!(sides.len(), nodes);
-            for (i, &[a, b]) in sides.iter().enumerate() {
-                assert_eq!([a, b], [i, (i + 1) % nodes]);
+            for (i, side) in sides.iter().enumerate() {
+                let ends = [side[0], side[side.len() - 1]];
+                assert_eq!(ends, [i, (i + 1) % sides.len()]);
             }
+            let mut all: Vec<usize> = sides.iter().flat_map(|side| &side[1..]).copied().collect();
+            all.sort_unstable();
+            assert_eq!(all, Vec::from_iter(0..nodes));
         }
     }
 }

@@ -3,6 +3,7 @@
 use smallvec::SmallVec;
 
 use super::ElementType;
+use super::side::{Segment, Side, SideNodes};
 use crate::vectors::{difference, distance, dot};
 
 /// Nodes and elements of a model.
@@ -80,7 +81,7 @@ impl Mesh {
     /// Square of the length of the shortest side of an element.
     fn shortest_square(&self, element: &Element) -> f64 {
         let at = |node: usize| self.coordinates[node];
-        match *element.nodes.as_slice() {
+        match *element.corners() {
             [a, b, c] => shortest_square(&[a, b, c].map(at)),
             [a, b, c, d] => shortest_square(&[a, b, c, d].map(at)),
             ref nodes => shortest_square(&nodes.iter().map(|&node| at(node)).collect::<Vec<_>>()),
@@ -98,10 +99,10 @@ impl Mesh {
         lengths.fold(f64::INFINITY, f64::min)
     }
 
-    /// Reference coordinates of the nodes of an element (length).
-    pub fn corners(&self, element: &Element) -> SmallVec<[[f64; 2]; 4]> {
+    /// Reference coordinates of the corners of an element (length).
+    pub fn corners(&self, element: &Element) -> Corners {
         let at = |node: usize| self.coordinates[node];
-        match *element.nodes.as_slice() {
+        match *element.corners() {
             [a, b, c, d] => SmallVec::from_buf([a, b, c, d].map(at)),
             ref nodes => nodes.iter().map(|&node| at(node)).collect(),
         }
@@ -111,7 +112,7 @@ impl Mesh {
     fn faces(&self) -> impl Iterator<Item = Face> + '_ {
         let elements = self.elements.iter().enumerate();
         elements
-            .flat_map(|(element, e)| (0..e.sides().len()).map(move |side| Face { element, side }))
+            .flat_map(|(element, e)| (0..e.side_count()).map(move |side| Face { element, side }))
     }
 }
 
@@ -188,9 +189,9 @@ impl ElementsAtNodes {
 
     /// Whether two elements share a face.
     pub fn share(&self, face: Face, mesh: &Mesh) -> bool {
-        let [a, b] = face.nodes(mesh);
+        let [a, b] = face.ends(mesh);
         let joins = |side: [usize; 2]| side == [a, b] || side == [b, a];
-        let has_side = |&element: &usize| mesh.elements[element].sides().any(joins);
+        let has_side = |&element: &usize| mesh.elements[element].side_ends().any(joins);
         self.of(a).filter(has_side).nth(1).is_some()
     }
 }
@@ -206,6 +207,9 @@ fn root(parent: &mut [usize], mut node: usize) -> usize {
 /// Node indices of an element, in place.
 pub type Nodes = SmallVec<[usize; 4]>;
 
+/// Positions of the corners of an element, in place (length).
+pub type Corners = SmallVec<[[f64; 2]; 4]>;
+
 /// One element.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Element {
@@ -213,22 +217,40 @@ pub struct Element {
     pub label: u64,
     /// Shape, formulation, and plane stress or plane strain.
     pub element_type: ElementType,
-    /// Node indices, counter-clockwise; as many as the type has.
+    /// Node indices, as many as the type has: the corners counter-clockwise, then those between them.
     pub nodes: Nodes,
     /// Index into `Model::sections`.
     pub section: usize,
 }
 
 impl Element {
-    /// Nodes of every side, from a to b with the body on the left; side 0 is S1/P1.
-    pub fn sides(&self) -> impl ExactSizeIterator<Item = [usize; 2]> + '_ {
-        let sides = self.element_type.topology().sides.iter();
-        sides.map(|side| side.map(|local| self.nodes[local]))
+    /// Number of sides, and of corners.
+    pub fn side_count(&self) -> usize {
+        self.element_type.topology().sides.len()
     }
 
-    /// Nodes of side `side`, 0-based.
-    pub fn side(&self, side: usize) -> [usize; 2] {
-        self.element_type.topology().sides[side].map(|local| self.nodes[local])
+    /// Nodes at the corners, counter-clockwise.
+    pub fn corners(&self) -> &[usize] {
+        &self.nodes[..self.side_count()]
+    }
+
+    /// Side `side`, 0-based: 0 is S1/P1.
+    pub fn side(&self, side: usize) -> Side {
+        let local = self.element_type.topology().sides[side].iter();
+        Side::new(local.map(|&local| self.nodes[local]).collect())
+    }
+
+    /// The corners where every side begins and ends.
+    pub fn side_ends(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
+        let sides = self.element_type.topology().sides.iter();
+        sides.map(|side| [side[0], side[side.len() - 1]].map(|local| self.nodes[local]))
+    }
+
+    /// The straight lines that its outline is made of, counter-clockwise.
+    pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
+        let sides = self.element_type.topology().sides.iter();
+        let pairs = sides.flat_map(|side| side.windows(2));
+        pairs.map(|pair| [self.nodes[pair[0]], self.nodes[pair[1]]])
     }
 }
 
@@ -242,9 +264,24 @@ pub struct Face {
 }
 
 impl Face {
-    /// Node indices [a, b]; the body lies on the left of the direction from a to b.
-    pub fn nodes(&self, mesh: &Mesh) -> [usize; 2] {
+    /// The side of the element.
+    pub fn of(&self, mesh: &Mesh) -> Side {
         mesh.elements[self.element].side(self.side)
+    }
+
+    /// The corners [a, b] where it begins and ends; the body lies on the left of the direction from a to b.
+    pub fn ends(&self, mesh: &Mesh) -> [usize; 2] {
+        self.of(mesh).ends()
+    }
+
+    /// Its nodes from corner to corner.
+    pub fn nodes(&self, mesh: &Mesh) -> SideNodes {
+        self.of(mesh).into_nodes()
+    }
+
+    /// The contact segments made from it, in order.
+    pub fn segments(&self, mesh: &Mesh) -> SmallVec<[Segment; 2]> {
+        self.of(mesh).segments().collect()
     }
 }
 

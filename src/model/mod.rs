@@ -9,6 +9,7 @@ mod contact;
 mod element_type;
 mod mesh;
 mod sets;
+mod side;
 mod step;
 
 pub use crate::materials::Plane;
@@ -22,6 +23,7 @@ pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub(crate) use mesh::sides;
 pub use mesh::{Bodies, Element, ElementsAtNodes, Face, Mesh, Nodes, Set};
 pub use sets::{HistorySet, Instance, NamedSets, RequestedFields, element_name, node_name};
+pub use side::{Segment, Side, SideNodes};
 pub use step::{
     BodyForce, ContactMass, Factorization, Frames, Impact, ImpactTime, Increments, LandingRule,
     LcpChoice, Load, PointLoad, Pressure, Procedure, Rate, Scheme, Settings, SolverChoice, Step,

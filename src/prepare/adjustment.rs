@@ -143,7 +143,7 @@ fn adjusted_of(
 
 /// Whether an element has lost its convexity or half its area.
 fn is_spoiled(element: &Element, before: &[[f64; 2]], after: &[[f64; 2]]) -> bool {
-    let nodes = &element.nodes;
+    let nodes = element.corners();
     if nodes.iter().all(|&n| before[n] == after[n]) {
         return false;
     }

@@ -386,7 +386,7 @@ fn exterior(mesh: &Mesh) -> Vec<Face> {
     let free = mesh.exterior_faces();
     let mut starts: HashMap<usize, Vec<usize>> = HashMap::new();
     for (i, face) in free.iter().enumerate() {
-        starts.entry(face.nodes(mesh)[0]).or_default().push(i);
+        starts.entry(face.ends(mesh)[0]).or_default().push(i);
     }
     let mut taken = vec![false; free.len()];
     let mut chained = Vec::with_capacity(free.len());
@@ -395,7 +395,7 @@ fn exterior(mesh: &Mesh) -> Vec<Face> {
         while let Some(i) = next {
             taken[i] = true;
             chained.push(free[i]);
-            let at_end = starts.get(&free[i].nodes(mesh)[1]).into_iter().flatten();
+            let at_end = starts.get(&free[i].ends(mesh)[1]).into_iter().flatten();
             next = at_end.copied().find(|&face| !taken[face]);
         }
     }

@@ -507,8 +507,8 @@ pub(super) fn add_lines(
 fn faces_by_nodes(mesh: &Mesh) -> HashMap<Nodes, Face> {
     let mut faces = HashMap::new();
     for (element, e) in mesh.elements.iter().enumerate() {
-        for (side, nodes) in e.sides().enumerate() {
-            let mut nodes = Nodes::from_slice(&nodes);
+        for side in 0..e.side_count() {
+            let mut nodes = Nodes::from_slice(e.side(side).nodes());
             nodes.sort_unstable();
             faces.entry(nodes).or_insert(Face { element, side });
         }

@@ -210,7 +210,7 @@ fn side_number(face: Text, cx: &mut Context) -> Option<usize> {
 
 /// Number of sides of an element.
 pub(crate) fn side_count(mesh: &Mesh, element: usize) -> usize {
-    mesh.elements.get(element).map_or(0, |e| e.sides().len())
+    mesh.elements.get(element).map_or(0, |e| e.side_count())
 }
 
 /// Exterior sides of these elements, in order.

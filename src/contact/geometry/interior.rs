@@ -11,19 +11,16 @@ use super::projection::project;
 use crate::model::{Element, ElementsAtNodes, Mesh};
 use crate::vectors::{difference, dot};
 
-/// Elements of a mesh, found by their sides.
+/// Elements of a mesh, found by the segments of their outlines.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Interior {
-    /// Nodes of every element; its sides lead from each to the next, the element on their left.
-    corners: Vec<Corners>,
+    /// Nodes around every element, one element after the other; segments lead from each to the next, the element on
+    /// their left.
+    nodes: Vec<u32>,
+    /// Start of every element in `nodes`, and their end.
+    starts: Vec<u32>,
     at_nodes: ElementsAtNodes,
 }
-
-/// Nodes of an element, at the end [`NO_NODE`] where it has fewer.
-type Corners = [u32; 4];
-
-/// No node.
-const NO_NODE: u32 = u32::MAX;
 
 /// A line and the elements that it goes through.
 struct Line {
@@ -35,20 +32,31 @@ struct Line {
 impl Interior {
     /// The inside of those bodies of a mesh of whose elements `is_of` holds.
     pub fn new(mesh: &Mesh, is_of: impl Fn(&Element) -> bool) -> Self {
-        let elements = mesh.elements.iter().filter(|element| is_of(element));
-        let corners: Vec<Corners> = elements.map(corners).collect();
-        let nodes = corners.iter().map(nodes_of);
+        let (mut nodes, mut starts) = (Vec::new(), vec![0]);
+        for element in mesh.elements.iter().filter(|element| is_of(element)) {
+            nodes.extend(element.segments().map(|[a, _]| a as u32));
+            starts.push(nodes.len() as u32);
+        }
+        let of_elements = starts.windows(2).map(|ends| {
+            let own = &nodes[ends[0] as usize..ends[1] as usize];
+            own.iter().map(|&node| node as usize)
+        });
         Interior {
-            at_nodes: ElementsAtNodes::of_nodes(nodes, mesh.node_count()),
-            corners,
+            at_nodes: ElementsAtNodes::of_nodes(of_elements, mesh.node_count()),
+            nodes,
+            starts,
         }
     }
 
-    /// Sides [a, b] of an element.
+    /// Segments [a, b] around an element.
     fn sides(&self, element: usize) -> impl Iterator<Item = [usize; 2]> + '_ {
-        let nodes = nodes_of(&self.corners[element]);
-        let next = nodes.clone().skip(1).chain(nodes.clone().take(1));
-        nodes.zip(next).map(|(a, b)| [a, b])
+        let [start, end] = [element, element + 1].map(|i| self.starts[i] as usize);
+        let nodes = &self.nodes[start..end];
+        let next = nodes[1..].iter().chain(&nodes[..1]);
+        nodes
+            .iter()
+            .zip(next)
+            .map(|(&a, &b)| [a as usize, b as usize])
     }
 
     /// Element on the left of the side from a to b.
@@ -162,20 +170,6 @@ impl Interior {
         let has = |&element: &usize| self.sides(element).any(|[a, _]| a == node);
         line.elements.iter().any(has)
     }
-}
-
-/// The first nodes of the sides of an element.
-fn corners(element: &Element) -> Corners {
-    let mut corners = [NO_NODE; 4];
-    for (corner, [a, _]) in corners.iter_mut().zip(element.sides()) {
-        *corner = a as u32;
-    }
-    corners
-}
-
-fn nodes_of(corners: &Corners) -> impl Iterator<Item = usize> + Clone + '_ {
-    let nodes = corners.iter().take_while(|&&node| node != NO_NODE);
-    nodes.map(|&node| node as usize)
 }
 
 #[cfg(test)]

@@ -78,7 +78,7 @@ impl ContactSurfaces {
         let faces = mesh
             .exterior_faces()
             .into_iter()
-            .map(|face| face.nodes(mesh));
+            .flat_map(|face| face.segments(mesh));
         self.slave_faces = faces
             .filter(|face| face.iter().any(|node| is_slave.contains(node)))
             .collect();

@@ -2,12 +2,12 @@
 
 use crate::dynamics::increment::ContactForces;
 use crate::dynamics::step::StepProblem;
-use crate::model::{Face, Mesh, Model, SurfaceKind};
+use crate::model::{Face, Model, Segment, SurfaceKind};
 use std::collections::BTreeSet;
 
-/// A face on which slave nodes take pressure.
+/// A segment of a face on which slave nodes take pressure.
 struct SlaveFace {
-    nodes: [usize; 2],
+    nodes: Segment,
     /// Which of its two nodes take it.
     counts: [bool; 2],
     thickness: f64,
@@ -39,16 +39,21 @@ impl SlaveFaces {
         for node in own.iter().flat_map(|face| face.nodes(mesh)) {
             is_bare[node] = false;
         }
-        let slave_face = |face: &Face, counts| SlaveFace {
-            nodes: face.nodes(mesh),
-            counts,
-            thickness: thickness(model, face),
+        let slave_faces = |face: &Face, counts: &dyn Fn(usize) -> bool| -> Vec<SlaveFace> {
+            let of_segment = |nodes: Segment| SlaveFace {
+                nodes,
+                counts: nodes.map(counts),
+                thickness: thickness(model, face),
+            };
+            face.segments(mesh).into_iter().map(of_segment).collect()
         };
         let mut faces: Vec<SlaveFace> = (own.iter())
-            .map(|face| slave_face(face, [true; 2]))
+            .flat_map(|face| slave_faces(face, &|_| true))
             .collect();
         if is_bare.contains(&true) {
-            faces.extend(bare_faces(mesh, &is_bare).map(|(face, ends)| slave_face(&face, ends)));
+            let exterior = mesh.exterior_faces().into_iter();
+            let bare = exterior.flat_map(|face| slave_faces(&face, &|node| is_bare[node]));
+            faces.extend(bare.filter(|face| face.counts.contains(&true)));
         }
         SlaveFaces { start, faces }
     }
@@ -95,15 +100,6 @@ impl SlaveFaces {
         }
         pressure
     }
-}
-
-/// Exterior faces with an end that `is_bare`, and which ends are.
-fn bare_faces(mesh: &Mesh, is_bare: &[bool]) -> impl Iterator<Item = (Face, [bool; 2])> {
-    let faces = mesh.exterior_faces().into_iter();
-    faces.filter_map(|face| {
-        let ends = face.nodes(mesh).map(|node| is_bare[node]);
-        ends.contains(&true).then_some((face, ends))
-    })
 }
 
 fn thickness(model: &Model, face: &Face) -> f64 {

@@ -245,8 +245,8 @@ impl FreeMasses {
 fn corners(mesh: &Mesh) -> Vec<bool> {
     let x = |node: usize| mesh.coordinates[node];
     let mut sides: Vec<[Vec<usize>; 2]> = vec![Default::default(); mesh.node_count()];
-    for face in mesh.exterior_faces() {
-        let [a, b] = face.nodes(mesh);
+    let faces = mesh.exterior_faces().into_iter();
+    for [a, b] in faces.flat_map(|face| face.segments(mesh)) {
         sides[a][1].push(b);
         sides[b][0].push(a);
     }

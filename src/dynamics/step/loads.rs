@@ -4,6 +4,7 @@
 use crate::elements::Elements;
 use crate::model::{Load, Model, Pressure, Step, TimeBase, Variation};
 use crate::prepare::Redistribution;
+use crate::vectors::difference;
 
 /// A point in time: time since the start of the step and of the analysis, and the step's duration.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -161,15 +162,15 @@ impl<'m> Loads<'m> {
         self.add_concentrated(weight, at, r);
         self.add_body_forces(elements, weight, at, r);
         for load in &self.step.tractions {
-            // int N^T f^S dGamma over the reference face, half to each end
-            let [a, b] = load.at.face.nodes(&self.model.mesh);
-            let x = &self.model.mesh.coordinates;
-            let length = (x[b][0] - x[a][0]).hypot(x[b][1] - x[a][1]);
-            let area = length * elements.thickness(load.at.face.element);
-            let f = weight * at.magnitude(self.model, load) * area / 2.0;
-            for node in [a, b] {
-                r[2 * node] += f * load.at.direction[0];
-                r[2 * node + 1] += f * load.at.direction[1];
+            // int N^T f^S dGamma over the reference face
+            let side = load.at.face.of(&self.model.mesh);
+            let (x, first) = (&self.model.mesh.coordinates, side.nodes()[0]);
+            let thickness = elements.thickness(load.at.face.element);
+            let f = weight * at.magnitude(self.model, load);
+            for (node, length) in side.lengths(|node| difference(x[first], x[node])) {
+                let force = f * (length * thickness);
+                r[2 * node] += force * load.at.direction[0];
+                r[2 * node + 1] += force * load.at.direction[1];
             }
         }
         for load in &self.step.pressures {
@@ -183,7 +184,7 @@ impl<'m> Loads<'m> {
         }
     }
 
-    /// Pressure p on the current face: -p t n dl, n the outward normal, half to each end.
+    /// Pressure p on the current face: -p t int N^T n dl, n the outward normal.
     fn add_pressure(
         &self,
         elements: &Elements,
@@ -192,14 +193,13 @@ impl<'m> Loads<'m> {
         u: &[f64],
         r: &mut [f64],
     ) {
-        let [a, b] = load.at.face.nodes(&self.model.mesh);
-        let x = &self.model.mesh.coordinates;
-        let e = [0, 1].map(|i| x[b][i] + u[2 * b + i] - x[a][i] - u[2 * a + i]);
-        // n dl = (e_y, -e_x): on the right of the direction from a to b
-        let half = p * elements.thickness(load.at.face.element) / 2.0;
-        for node in [a, b] {
-            r[2 * node] -= half * e[1];
-            r[2 * node + 1] += half * e[0];
+        let side = load.at.face.of(&self.model.mesh);
+        let (x, a) = (&self.model.mesh.coordinates, side.nodes()[0]);
+        let from_first = |b: usize| [0, 1].map(|i| x[b][i] + u[2 * b + i] - x[a][i] - u[2 * a + i]);
+        let thrust = p * elements.thickness(load.at.face.element);
+        for (node, normal) in side.normals(from_first) {
+            r[2 * node] -= thrust * normal[0];
+            r[2 * node + 1] -= thrust * normal[1];
         }
     }
 }

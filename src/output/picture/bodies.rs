@@ -45,9 +45,9 @@ pub(super) fn draw(model: &Model, canvas: &mut Canvas, legend: &mut Legend) {
 fn sides(elements: &[&Element]) -> (Vec<[usize; 2]>, Vec<[usize; 2]>) {
     let all: HashSet<[usize; 2]> = elements
         .iter()
-        .flat_map(|element| element.sides())
+        .flat_map(|element| element.segments())
         .collect();
-    let in_order = elements.iter().flat_map(|element| element.sides());
+    let in_order = elements.iter().flat_map(|element| element.segments());
     let (inside, outline): (Vec<_>, Vec<_>) = in_order.partition(|&[a, b]| all.contains(&[b, a]));
     (outline, inside.into_iter().filter(|[a, b]| a < b).collect())
 }

@@ -150,7 +150,7 @@ fn point_loads(model: &Model) -> Vec<Vector> {
 fn face_loads(step: &Step, model: &Model) -> Vec<Vector> {
     let x = &model.mesh.coordinates;
     let middle = |face: &Face| {
-        let [a, b] = face.nodes(&model.mesh).map(|node| x[node]);
+        let [a, b] = face.ends(&model.mesh).map(|node| x[node]);
         let normal = project(a, a, b).normal;
         ([0, 1].map(|i| a[i] / 2.0 + b[i] / 2.0), normal)
     };

@@ -313,7 +313,7 @@ pub(crate) fn element_mass(model: &Model, element: &Element) -> f64 {
     let section = &model.sections[element.section];
     let density = model.materials[section.material].density;
     let at = |node: usize| model.mesh.coordinates[node];
-    let area = match *element.nodes.as_slice() {
+    let area = match *element.corners() {
         [a, b, c, d] => area(&[a, b, c, d].map(at)),
         _ => area(&model.mesh.corners(element)),
     };

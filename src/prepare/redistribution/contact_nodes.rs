@@ -51,8 +51,8 @@ fn outer_nodes(mesh: &Mesh) -> Vec<Option<bool>> {
 /// Closed edges of the bodies, as their faces in order. Where elements meet in a node only, the edge goes on
 /// along the element that it has come by.
 fn edges(mesh: &Mesh) -> Vec<Vec<[usize; 2]>> {
-    let sides = |face: &Face| face.nodes(mesh);
-    let faces: Vec<[usize; 2]> = mesh.exterior_faces().iter().map(sides).collect();
+    let segments = |face: &Face| face.segments(mesh);
+    let faces: Vec<[usize; 2]> = mesh.exterior_faces().iter().flat_map(segments).collect();
     let mut starting: HashMap<usize, Vec<usize>> = HashMap::new();
     for (face, &[a, _]) in faces.iter().enumerate() {
         starting.entry(a).or_default().push(face);

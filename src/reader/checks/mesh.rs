@@ -7,7 +7,6 @@ use crate::reader::context::Context;
 use crate::reader::mesh_index::MeshIndex;
 use crate::reader::sections::Properties;
 use crate::vectors::{cross, difference, distance, dot, polygon_area};
-use smallvec::SmallVec;
 use std::collections::BTreeSet;
 
 /// Smallest cross product of two sides, relative to the square of the longest side.
@@ -47,7 +46,7 @@ fn same_nodes(index: usize, mesh: &Mesh, at_nodes: &ElementsAtNodes) -> Option<u
 /// Whether an element surely turns left at all of its corners.
 fn is_convex(index: usize, mesh: &Mesh) -> bool {
     let at = |node: usize| mesh.coordinates[node];
-    match *mesh.elements[index].nodes.as_slice() {
+    match *mesh.elements[index].corners() {
         [a, b, c] => turns_left([a, b, c].map(at)),
         [a, b, c, d] => turns_left([a, b, c, d].map(at)),
         _ => false,
@@ -68,7 +67,7 @@ fn turns_left<const N: usize>(corners: [[f64; 2]; N]) -> bool {
 /// Reports an element that does not turn left at all of its corners.
 fn shape(index: usize, mesh_index: &MeshIndex, span: Span, cx: &mut Context) {
     let corners = mesh_index.mesh.corners(&mesh_index.mesh.elements[index]);
-    let mut vectors: SmallVec<[[f64; 2]; 4]> = SmallVec::from_slice(&corners);
+    let mut vectors = corners.clone();
     for (vector, [a, b]) in vectors.iter_mut().zip(sides(&corners)) {
         *vector = difference(a, b);
     }
@@ -181,7 +180,7 @@ pub(super) fn unusable(what: &str, value: f64, span: Span, cx: &mut Context) {
 /// Area of an element.
 fn area(element: &Element, mesh: &Mesh) -> f64 {
     let at = |node: usize| mesh.coordinates[node];
-    match *element.nodes.as_slice() {
+    match *element.corners() {
         [a, b, c, d] => polygon_area([a, b, c, d].map(at)),
         ref nodes => polygon_area(nodes.iter().map(|&node| at(node))),
     }

@@ -124,8 +124,10 @@ fn exterior(mesh: &Mesh, at_nodes: &ElementsAtNodes) -> (Vec<Face>, Vec<[usize; 
     for node in 0..mesh.node_count() {
         corners.clear();
         for element in at_nodes.of(node) {
-            let nodes = mesh.elements[element].nodes.as_slice();
-            let at = nodes.iter().position(|&n| n == node).unwrap_or(0);
+            let nodes = mesh.elements[element].corners();
+            let Some(at) = nodes.iter().position(|&n| n == node) else {
+                continue;
+            };
             let [before, behind] = [at + nodes.len() - 1, at + 1].map(|i| nodes[i % nodes.len()]);
             corners.push((element, at, before, behind));
         }
@@ -148,7 +150,10 @@ fn at_boundaries(mesh: &Mesh, exterior: &[Face]) -> Vec<[usize; 2]> {
     }
     let has_rim = |&element: &usize| mesh.elements[element].nodes.iter().any(|&n| is_rim[n]);
     let rim: Vec<usize> = (0..mesh.elements.len()).filter(has_rim).collect();
-    let of_face = |face: &Face| about(&face.nodes(mesh).map(|node| mesh.coordinates[node]));
+    let of_face = |face: &Face| {
+        let nodes = face.nodes(mesh).into_iter();
+        about(&nodes.map(|node| mesh.coordinates[node]).collect::<Vec<_>>())
+    };
     let of_element = |&element: &usize| about(&mesh.corners(&mesh.elements[element]));
     let mut near = Vec::new();
     let faces = CircleTree::new(exterior.iter().map(of_face));
@@ -244,16 +249,16 @@ fn loops(mesh: &Mesh, exterior: &[Face]) -> Vec<Loop> {
         node
     };
     for face in exterior {
-        let [a, b] = face.nodes(mesh).map(|node| root(&mut joined, node));
+        let [a, b] = face.ends(mesh).map(|node| root(&mut joined, node));
         joined[a.max(b)] = a.min(b);
     }
     let mut all: BTreeMap<usize, Vec<Face>> = BTreeMap::new();
     for &face in exterior {
-        let first = root(&mut joined, face.nodes(mesh)[0]);
+        let first = root(&mut joined, face.ends(mesh)[0]);
         all.entry(first).or_default().push(face);
     }
     let of_faces = |faces: Vec<Face>| {
-        let nodes = faces.iter().map(|face| face.nodes(mesh)[0]);
+        let nodes = faces.iter().flat_map(|face| face.nodes(mesh));
         let corners = mesh.corners(&mesh.elements[faces[0].element]);
         let count = corners.len() as f64;
         Loop {
@@ -267,21 +272,22 @@ fn loops(mesh: &Mesh, exterior: &[Face]) -> Vec<Loop> {
 
 /// How often the faces of a loop go around a place, to the left positive: crossings of the ray to the right.
 fn turns_about(mesh: &Mesh, faces: &[Face], place: [f64; 2]) -> i64 {
-    let crossing = |face: &Face| {
-        let [a, b] = (face.nodes(mesh)).map(|node| difference(place, mesh.coordinates[node]));
+    let crossing = |segment: [usize; 2]| {
+        let [a, b] = segment.map(|node| difference(place, mesh.coordinates[node]));
         match (a[1] <= 0.0, b[1] <= 0.0) {
             (true, false) if cross(a, b) > 0.0 => 1,
             (false, true) if cross(a, b) < 0.0 => -1,
             _ => 0,
         }
     };
-    faces.iter().map(crossing).sum()
+    let segments = faces.iter().flat_map(|face| face.segments(mesh));
+    segments.map(crossing).sum()
 }
 
 /// Whether a place lies in an element.
 fn holds(mesh: &Mesh, element: usize, place: [f64; 2]) -> bool {
-    mesh.elements[element].sides().all(|side| {
-        let [a, b] = side.map(|node| mesh.coordinates[node]);
+    mesh.elements[element].segments().all(|segment| {
+        let [a, b] = segment.map(|node| mesh.coordinates[node]);
         cross(difference(a, b), difference(a, place)) >= 0.0
     })
 }
