@@ -13,7 +13,7 @@ mod transformation;
 pub use assembled::{AddedBlocks, Assembled};
 pub use checked::CheckedSolver;
 pub use largest::{SMALLEST, larger, largest};
-pub use multifrontal::{FaerLdl, factor_entries};
+pub use multifrontal::{MultifrontalLdl, factor_entries};
 pub use nodal_matrix::NodalMatrix;
 pub use solver::{LinearError, LinearSolver};
 pub use sprs_ldl::SprsLdl;
@@ -24,7 +24,7 @@ use crate::model::SolverChoice;
 /// The solver that the deck chooses.
 pub fn linear_solver(choice: SolverChoice) -> Box<dyn LinearSolver> {
     match choice {
-        SolverChoice::Faer => Box::new(FaerLdl::default()),
+        SolverChoice::Faer => Box::new(MultifrontalLdl::default()),
         SolverChoice::Sprs => Box::new(SprsLdl::default()),
     }
 }
@@ -32,7 +32,7 @@ pub fn linear_solver(choice: SolverChoice) -> Box<dyn LinearSolver> {
 /// Two of them, for matrices whose patterns may be the same: one takes over the analysis of the other.
 pub fn two_linear_solvers(choice: SolverChoice) -> [Box<dyn LinearSolver>; 2] {
     match choice {
-        SolverChoice::Faer => FaerLdl::two().map(|solver| Box::new(solver) as _),
+        SolverChoice::Faer => MultifrontalLdl::two().map(|solver| Box::new(solver) as _),
         SolverChoice::Sprs => [(); 2].map(|()| linear_solver(choice)),
     }
 }

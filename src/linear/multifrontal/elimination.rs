@@ -25,16 +25,16 @@ pub struct Elimination {
 pub struct Fronts {
     front: Front,
     /// What eliminating supernodes has left in the rows below, for their parents: the lower triangles, column by
-    /// column, at the places of [`Rests`].
-    rests: Entries,
+    /// column, at the places of [`UpdateStack`].
+    stack: Entries,
 }
 
 impl Elimination {
     /// For a factor of matrices with the pattern of `a`.
     pub fn new(factor: &Factor, a: CsMatView<'_, f64>) -> Self {
         let limbs = 0..factor.limbs.len();
-        let rests: Vec<Rests> = factor.limbs.iter().map(Rests::new).collect();
-        let assembly = |limb| Assembly::new(factor, limb, a, &rests);
+        let stacks: Vec<UpdateStack> = factor.limbs.iter().map(UpdateStack::new).collect();
+        let assembly = |limb| Assembly::new(factor, limb, a, &stacks);
         Elimination {
             fronts: Vec::new(),
             assemblies: match factor.is_factorised_on_threads() {
@@ -60,7 +60,7 @@ impl Elimination {
         let of_limbs = factor.limbs.iter().zip(&self.assemblies);
         for (fronts, (limb, assembly)) in self.fronts.iter_mut().zip(of_limbs) {
             fronts.front.make_room(limb.longest);
-            fronts.rests.make_room(assembly.height_of_rests());
+            fronts.stack.make_room(assembly.stack_height());
         }
     }
 
@@ -153,14 +153,14 @@ impl WithSimd for OfLimb<'_> {
                 fronts.front.values[place as usize] = a[entry as usize];
             }
             for (child, runs) in assembly.children(s) {
-                let rests = below.get(child.limb).map_or(&fronts.rests, |f| &f.rests);
-                fronts.front.add(&rests[child.rest..], runs);
+                let stack = below.get(child.limb).map_or(&fronts.stack, |f| &f.stack);
+                fronts.front.add(&stack[child.update..], runs);
             }
             let [values, pivots] = limb.columns_mut(s, l);
             fronts.front.eliminate(simd, size, values, pivots);
             fronts
                 .front
-                .rest(size, &mut fronts.rests[assembly.rest(s)..]);
+                .store_update(size, &mut fronts.stack[assembly.update(s)..]);
         }
     }
 }
@@ -168,8 +168,8 @@ impl WithSimd for OfLimb<'_> {
 impl Front {
     /// Adds what eliminating a child has left.
     #[inline(always)]
-    fn add(&mut self, rest: &[f64], runs: &[Run]) {
-        let mut rest = rest;
+    fn add(&mut self, update: &[f64], runs: &[Run]) {
+        let mut rest = update;
         for (k, run) in runs.iter().enumerate() {
             for column in run.row..run.row + run.length {
                 let to = &mut self.values[column * self.stride..(column + 1) * self.stride];
@@ -188,11 +188,11 @@ impl Front {
     }
 
     /// Writes the rows and columns from `size` on.
-    fn rest(&self, size: usize, mut rest: &mut [f64]) {
+    fn store_update(&self, size: usize, mut update: &mut [f64]) {
         for column in size..self.length {
             let own = &self.values[column * self.stride..][column..self.length];
-            rest[..own.len()].copy_from_slice(own);
-            rest = &mut rest[own.len()..];
+            update[..own.len()].copy_from_slice(own);
+            update = &mut update[own.len()..];
         }
     }
 }
@@ -208,25 +208,25 @@ pub struct Assembly {
     /// End of the children of every supernode.
     child_ends: Vec<usize>,
     runs: Vec<Run>,
-    rests: Rests,
+    stack: UpdateStack,
 }
 
-/// Places of what eliminating the supernodes of a limb leaves, in its memory: a stack, from which a supernode takes
-/// its children before it leaves its own rest.
+/// Places of the update matrices (contribution blocks) that eliminating the supernodes of a limb in postorder leaves: a
+/// stack, from which a supernode takes those of its children before it leaves its own.
 #[derive(Debug, Default, Clone)]
-pub struct Rests {
-    /// First entry of the rest of every supernode.
+pub struct UpdateStack {
+    /// First entry of the update matrix of every supernode.
     starts: Vec<usize>,
     /// Entries of the highest stack.
     height: usize,
 }
 
-/// A supernode whose rest goes to a front.
+/// A supernode whose update matrix is added to a front.
 #[derive(Debug, Clone, Copy)]
 pub struct Child {
     pub limb: usize,
-    /// First entry of its rest in the memory of the limb.
-    pub rest: usize,
+    /// First entry of its update matrix in the stack of the limb.
+    pub update: usize,
     /// End of its runs, which begin where those of the child before end.
     end: usize,
 }
@@ -241,12 +241,17 @@ pub struct Run {
 }
 
 impl Assembly {
-    /// For a limb of a factor of matrices with the pattern of `a`; `rests` are those of all limbs.
-    pub fn new(factor: &Factor, number: usize, a: CsMatView<'_, f64>, rests: &[Rests]) -> Self {
+    /// For a limb of a factor of matrices with the pattern of `a`; `stacks` are those of all limbs.
+    pub fn new(
+        factor: &Factor,
+        number: usize,
+        a: CsMatView<'_, f64>,
+        stacks: &[UpdateStack],
+    ) -> Self {
         let limb = &factor.limbs[number];
         let layout = Layout::of_processor();
         let mut assembly = Assembly {
-            rests: rests[number].clone(),
+            stack: stacks[number].clone(),
             ..Assembly::default()
         };
         let mut at = vec![None; limb.length];
@@ -275,8 +280,8 @@ impl Assembly {
             }
             assembly.entry_ends.push(assembly.entries.len());
             for (limb, supernode) in children {
-                let rest = rests[limb].starts[supernode];
-                assembly.push(factor, [number, limb, supernode], rest, &at);
+                let update = stacks[limb].starts[supernode];
+                assembly.push(factor, [number, limb, supernode], update, &at);
             }
             assembly.child_ends.push(assembly.children.len());
             rows.iter().for_each(|&row| at[row] = None);
@@ -284,12 +289,12 @@ impl Assembly {
         assembly
     }
 
-    /// Adds a child, with its rest, of a supernode of limb `own` whose rows are `at` these places of the front.
+    /// Adds a child, with its update matrix, of a supernode of limb `own` whose rows are `at` these places of the front.
     fn push(
         &mut self,
         factor: &Factor,
         [own, limb, supernode]: [usize; 3],
-        rest: usize,
+        update: usize,
         at: &[Option<usize>],
     ) {
         let of_child = &factor.limbs[limb];
@@ -309,7 +314,7 @@ impl Assembly {
             }
         }
         let end = self.runs.len();
-        self.children.push(Child { limb, rest, end });
+        self.children.push(Child { limb, update, end });
     }
 
     /// Entries of the matrix for a supernode: place there and in the front.
@@ -317,14 +322,14 @@ impl Assembly {
         &self.entries[start(&self.entry_ends, s)..self.entry_ends[s]]
     }
 
-    /// First entry of the rest of a supernode.
-    pub fn rest(&self, s: usize) -> usize {
-        self.rests.starts[s]
+    /// First entry of the update matrix of a supernode.
+    pub fn update(&self, s: usize) -> usize {
+        self.stack.starts[s]
     }
 
-    /// Entries of the memory for rests.
-    pub fn height_of_rests(&self) -> usize {
-        self.rests.height
+    /// Entries of the highest stack of update matrices.
+    pub fn stack_height(&self) -> usize {
+        self.stack.height
     }
 
     /// Children of a supernode with their runs.
@@ -338,10 +343,11 @@ impl Assembly {
     }
 }
 
-impl Rests {
+impl UpdateStack {
     /// Those of a limb.
     pub fn new(limb: &LimbFactor) -> Self {
-        let (mut rests, mut stack) = (Rests::default(), Vec::<(Option<usize>, usize)>::new());
+        let (mut updates, mut stack) =
+            (UpdateStack::default(), Vec::<(Option<usize>, usize)>::new());
         for s in 0..limb.supernodes() {
             while stack.last().is_some_and(|(parent, _)| *parent == Some(s)) {
                 stack.pop();
@@ -351,11 +357,11 @@ impl Rests {
             let (first, length) = (node.rows_below().next(), node.length() - node.size);
             let own = first.filter(|&row| row < limb.unknowns.len());
             let end = start + length * (length + 1) / 2;
-            rests.starts.push(start);
-            rests.height = rests.height.max(end);
+            updates.starts.push(start);
+            updates.height = updates.height.max(end);
             stack.push((own.map(|row| limb.supernode_of(row)), end));
         }
-        rests
+        updates
     }
 }
 

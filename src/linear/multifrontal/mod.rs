@@ -8,6 +8,8 @@ mod front;
 mod partial_inverse;
 mod substitution;
 mod supernodes;
+#[cfg(test)]
+mod tests;
 
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -55,9 +57,9 @@ type Handover = Arc<Mutex<Option<Analysis>>>;
 
 /// Multifrontal LDL^T with an approximate minimum degree order and the supernodes of faer's analysis.
 #[derive(Default)]
-pub struct FaerLdl {
+pub struct MultifrontalLdl {
     analysis: Analysis,
-    /// Until it has been used.
+    /// Where one of two solvers leaves its analysis for the other; none once this solver has analysed a pattern.
     handover: Option<Handover>,
     substitution: Substitution,
     /// Unknowns of the paths of the substitution.
@@ -136,13 +138,13 @@ impl Analysis {
     }
 }
 
-impl FaerLdl {
+impl MultifrontalLdl {
     /// Two solvers, one of which takes over the analysis of the other where both begin with the same pattern.
     pub fn two() -> [Self; 2] {
         let handover = Handover::default();
-        [(); 2].map(|()| FaerLdl {
+        [(); 2].map(|()| MultifrontalLdl {
             handover: Some(Arc::clone(&handover)),
-            ..FaerLdl::default()
+            ..MultifrontalLdl::default()
         })
     }
 
@@ -175,7 +177,7 @@ impl FaerLdl {
     }
 }
 
-impl LinearSolver for FaerLdl {
+impl LinearSolver for MultifrontalLdl {
     fn factorize(&mut self, a: CsMatView<'_, f64>) -> Result<(), LinearError> {
         if !self.analysis.pattern.is_of(a) {
             self.analyse(a)?;

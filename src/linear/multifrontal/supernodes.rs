@@ -357,7 +357,7 @@ pub struct Limb {
     pub trunk: Option<usize>,
 }
 
-/// A forest of supernodes, children before their parents.
+/// The elimination forest of the supernodes, in postorder: children before their parents.
 struct Forest<'a> {
     parents: &'a [Option<usize>],
     /// Work in the subtree of every supernode.
