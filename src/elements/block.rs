@@ -6,9 +6,9 @@
 
 use std::array::from_fn;
 
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, SMatrix};
 
-use super::formulation::{ElementResult, Jacobian, ShapeFunctions, smaller};
+use super::formulation::{ElementResult, Jacobian, Reference, ShapeFunctions, smaller};
 use crate::materials::lanes::{LANES, Lanes, Positive, SymmetricLanes};
 use crate::materials::{LawInLanes, StrainChange, TangentLanes};
 
@@ -257,6 +257,14 @@ pub trait Shape<const N: usize, const P: usize> {
 
     /// sum_p q_pi dh_a/dr_i at every node a: the transpose of [`Self::derivatives`].
     fn nodal_sums(q: &[[Lanes; 2]; P]) -> [Lanes; N];
+
+    /// Consistent mass per density, m_ab = int h_a h_b dOmega (length^3).
+    fn mass(element: &Reference<N, P>) -> SMatrix<f64, N, N>;
+
+    /// The element of thickness `t` between nodes at `x`, column a for node a (length).
+    fn reference(x: &SMatrix<f64, 2, N>, t: f64) -> Reference<N, P> {
+        Self::FUNCTIONS.reference(&Self::FUNCTIONS.jacobians(x, t))
+    }
 }
 
 /// Matrix between the nodes: entry [a][b] is the 2 x 2 block of the directions of a and b.

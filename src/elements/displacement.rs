@@ -88,8 +88,9 @@ fn state<const N: usize, const P: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elements::block::Shape;
     use crate::elements::formulation::{evaluate, internal_force};
-    use crate::elements::{quad4, tri3};
+    use crate::elements::shapes::{Quadrilateral, Triangle};
     use crate::materials::{Committed, Law, Plane, PlaneLaw};
     use nalgebra::Matrix2;
 
@@ -108,11 +109,11 @@ mod tests {
 
     fn quad() -> Reference<4, 4> {
         let x = [[0.0, 0.0], [2.0, 0.3], [1.7, 1.9], [-0.2, 1.2]];
-        quad4::reference(&SMatrix::from_columns(&x.map(|p| p.into())), 0.5)
+        Quadrilateral::reference(&SMatrix::from_columns(&x.map(|p| p.into())), 0.5)
     }
 
     fn tri() -> Reference<3, 1> {
-        tri3::reference(
+        Triangle::reference(
             &SMatrix::from_columns(&[[0.1, 0.0], [2.0, 0.3], [0.7, 1.9]].map(|p| p.into())),
             0.5,
         )

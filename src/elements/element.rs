@@ -3,13 +3,11 @@
 
 use nalgebra::SMatrix;
 
+use super::block::Shape as _;
 use super::chunk::{BlockTangents, Chunk, TangentSweep};
 use super::formulation::ElementResult;
-use super::mean_dilatation::Quad4MeanDilatation;
-use super::quad4::{Quad4, Quadrilateral};
+use super::shapes::{Quad4, Quad4MeanDilatation, Quadrilateral, Tri3, Triangle};
 use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion, TangentPart};
-use super::tri3::{Tri3, Triangle};
-use super::{quad4, tri3};
 use crate::materials::{Committed, ConstitutiveLaw, PlaneLaw, StressAtPoints};
 use crate::model::{ElementType, Formulation, Mesh, Model, Shape};
 
@@ -46,11 +44,11 @@ impl AnyElement {
         match (shape, formulation) {
             (Shape::Tri3, _) => {
                 let nodes = first(nodes);
-                Self::Tri3(Tri3::new(nodes, tri3::reference(&corners(nodes, x), t)))
+                Self::Tri3(Tri3::new(nodes, Triangle::reference(&corners(nodes, x), t)))
             }
             (Shape::Quad4, formulation) => {
                 let nodes = first(nodes);
-                let reference = quad4::reference(&corners(nodes, x), t);
+                let reference = Quadrilateral::reference(&corners(nodes, x), t);
                 match formulation {
                     Formulation::Displacement => Self::Quad4(Quad4::new(nodes, reference)),
                     Formulation::MeanDilatation => {
@@ -84,11 +82,15 @@ impl AnyElement {
     /// Consistent mass per direction, int rho h_a h_b dOmega, eq. (2.7), n x n column by column (mass).
     pub fn mass(&self, density: f64) -> Vec<f64> {
         match self {
-            Self::Tri3(e) => (tri3::mass(e.reference()) * density).as_slice().to_vec(),
-            Self::Quad4(e) => (quad4::mass(e.reference()) * density).as_slice().to_vec(),
-            Self::Quad4MeanDilatation(e) => {
-                (quad4::mass(e.reference()) * density).as_slice().to_vec()
-            }
+            Self::Tri3(e) => (Triangle::mass(e.reference()) * density)
+                .as_slice()
+                .to_vec(),
+            Self::Quad4(e) => (Quadrilateral::mass(e.reference()) * density)
+                .as_slice()
+                .to_vec(),
+            Self::Quad4MeanDilatation(e) => (Quadrilateral::mass(e.reference()) * density)
+                .as_slice()
+                .to_vec(),
         }
     }
 

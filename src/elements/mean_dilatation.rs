@@ -15,11 +15,7 @@ use super::formulation::{
     Configuration, Formulation, Point, PointState, Reference, add_geometric, determinant,
     displacement_gradient, green_lagrange, smaller, strain_displacement,
 };
-use super::solid::Solid;
 use crate::materials::{Strains, StressAtPoints};
-
-/// Q4 with mean dilatation (CPE4 with `FORMULATION=MEAN DILATATION`).
-pub type Quad4MeanDilatation = Solid<4, 4, 8, MeanDilatation>;
 
 /// The volume ratio of the whole element at every integration point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -239,8 +235,9 @@ fn add_second_of_volume<const N: usize, const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elements::block::Shape;
     use crate::elements::formulation::{evaluate, internal_force};
-    use crate::elements::quad4;
+    use crate::elements::shapes::Quadrilateral;
     use crate::materials::{Committed, Law, Plane, PlaneLaw};
 
     const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [2.0, 0.3], [1.7, 1.9], [-0.2, 1.2]];
@@ -250,7 +247,7 @@ mod tests {
     }
 
     fn quad() -> Reference<4, 4> {
-        quad4::reference(&corners(), 0.5)
+        Quadrilateral::reference(&corners(), 0.5)
     }
 
     fn nearly_incompressible() -> PlaneLaw {

@@ -12,9 +12,8 @@ mod element;
 mod formulation;
 mod mean_dilatation;
 mod mean_gradient;
-mod quad4;
+mod shapes;
 mod solid;
-mod tri3;
 
 pub use all::{Elements, Inverted, Updated};
 pub use element::ElementInertia;

@@ -9,9 +9,10 @@ use super::formulation::{
     Configuration, ElementResult, Formulation, Reference, evaluate, internal_force, update, work,
 };
 use crate::materials::{Committed, StressAtPoints};
+use crate::model::ElementType;
 
 /// Largest number of nodes of an element.
-pub(super) const MAX_NODES: usize = 4;
+pub(super) const MAX_NODES: usize = ElementType::MOST_NODES;
 /// Largest number of dofs of an element.
 pub(super) const MAX_DOFS: usize = 2 * MAX_NODES;
 /// Values of one element in the order of its dofs; the first D are used.

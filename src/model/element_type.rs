@@ -73,7 +73,7 @@ static QUAD4: Topology = Topology {
 
 impl Shape {
     /// Nodes, counter-clockwise, and sides.
-    pub fn topology(self) -> &'static Topology {
+    pub const fn topology(self) -> &'static Topology {
         match self {
             Shape::Tri3 => &TRI3,
             Shape::Quad4 => &QUAD4,
@@ -93,6 +93,17 @@ impl ElementType {
 
     /// All types that a deck may name, in the order of their names.
     pub const NAMED: [Self; 4] = [Self::CPE3, Self::CPE4, Self::CPS3, Self::CPS4];
+
+    /// Most nodes of any of them.
+    pub const MOST_NODES: usize = {
+        let (mut most, mut k) = (0, 0);
+        while k < Self::NAMED.len() {
+            let nodes = Self::NAMED[k].shape.topology().nodes;
+            most = if nodes > most { nodes } else { most };
+            k += 1;
+        }
+        most
+    };
 
     const fn standard(shape: Shape, plane: Plane) -> Self {
         ElementType {

@@ -1,15 +1,48 @@
-//! The bilinear isoparametric quadrilateral Q4, fully integrated. Section 2 of docs/theory.md.
+//! The shapes of elements with their quadrature and mass: the constant-strain triangle T3 and the bilinear isoparametric
+//! quadrilateral Q4, fully integrated. Section 2 of docs/theory.md.
 
 use nalgebra::SMatrix;
 
 use super::block::Shape;
 use super::displacement::Displacement;
 use super::formulation::{Reference, ShapeFunctions};
+use super::mean_dilatation::MeanDilatation;
 use super::solid::Solid;
 use crate::materials::lanes::Lanes;
 
+/// T3 in the displacement formulation (CPE3, CPS3).
+pub type Tri3 = Solid<3, 1, 6, Displacement>;
+
+/// The triangle: linear shape functions h = (1 - r - s, r, s) at its centroid.
+pub struct Triangle;
+
+impl Shape<3, 1> for Triangle {
+    const FUNCTIONS: ShapeFunctions<3, 1> = ShapeFunctions {
+        values: [[1.0 / 3.0; 3]],
+        natural: [[[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]]],
+        weight: 0.5,
+    };
+
+    #[inline(always)]
+    fn derivatives(v: &[Lanes; 3]) -> [[Lanes; 2]; 1] {
+        [[v[1] - v[0], v[2] - v[0]]]
+    }
+
+    #[inline(always)]
+    fn nodal_sums([[r, s]]: &[[Lanes; 2]; 1]) -> [Lanes; 3] {
+        [Lanes::ZERO - *r - *s, *r, *s]
+    }
+
+    /// m_ab = V (1 + delta_ab) / 12
+    fn mass(element: &Reference<3, 1>) -> SMatrix<f64, 3, 3> {
+        (SMatrix::repeat(1.0) + SMatrix::identity()) * (element.volume() / 12.0)
+    }
+}
+
 /// Q4 in the displacement formulation (CPE4, CPS4).
 pub type Quad4 = Solid<4, 4, 8, Displacement>;
+/// Q4 with mean dilatation (CPE4 with `FORMULATION=MEAN DILATATION`).
+pub type Quad4MeanDilatation = Solid<4, 4, 8, MeanDilatation>;
 
 /// Natural coordinates of the nodes.
 ///
@@ -32,7 +65,7 @@ const FAR: f64 = (1.0 - GAUSS) / 4.0;
 pub struct Quadrilateral;
 
 impl Shape<4, 4> for Quadrilateral {
-    const FUNCTIONS: ShapeFunctions<4, 4> = functions();
+    const FUNCTIONS: ShapeFunctions<4, 4> = bilinear();
 
     /// dv/dr depends on s alone and dv/ds on r alone: both follow from the differences along the edges.
     #[inline(always)]
@@ -57,10 +90,18 @@ impl Shape<4, 4> for Quadrilateral {
             left - top,
         ]
     }
+
+    /// Exact at 2 x 2 points, det(dX/dr) being linear.
+    fn mass(element: &Reference<4, 4>) -> SMatrix<f64, 4, 4> {
+        let points = element.points.iter();
+        points
+            .map(|p| p.shape * p.shape.transpose() * p.volume)
+            .sum()
+    }
 }
 
 /// Shape functions at the integration points.
-const fn functions() -> ShapeFunctions<4, 4> {
+const fn bilinear() -> ShapeFunctions<4, 4> {
     let (mut values, mut natural) = ([[0.0; 4]; 4], [[[0.0; 2]; 4]; 4]);
     let mut k = 0;
     while k < 16 {
@@ -78,56 +119,43 @@ const fn functions() -> ShapeFunctions<4, 4> {
     }
 }
 
-/// Four-node quadrilateral with 2 x 2 Gauss points and thickness `t`.
-///
-/// `x`: reference coordinates, column a for node a (length), counter-clockwise.
-pub fn reference(x: &SMatrix<f64, 2, 4>, t: f64) -> Reference<4, 4> {
-    let functions = Quadrilateral::FUNCTIONS;
-    functions.reference(&functions.jacobians(x, t))
-}
-
-/// Consistent mass per density, m_ab = int h_a h_b dOmega (length^3); exact at 2 x 2 points, det(dX/dr)
-/// being linear.
-pub fn mass(element: &Reference<4, 4>) -> SMatrix<f64, 4, 4> {
-    let points = element.points.iter();
-    points
-        .map(|p| p.shape * p.shape.transpose() * p.volume)
-        .sum()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use nalgebra::Matrix2;
 
-    fn distorted() -> SMatrix<f64, 2, 4> {
-        SMatrix::from_columns(&[[0.0, 0.0], [2.0, 0.3], [1.7, 1.9], [-0.2, 1.2]].map(|p| p.into()))
-    }
-
-    #[test]
-    fn gradients_reproduce_a_linear_field() {
-        let x = distorted();
-        for p in reference(&x, 1.0).points {
+    /// Gradients, volume and mass of an element of thickness 0.25 between nodes at `x`, whose corners come first.
+    fn check<S: Shape<N, P>, const N: usize, const P: usize>(
+        x: SMatrix<f64, 2, N>,
+        corners: usize,
+    ) {
+        let element = S::reference(&x, 0.25);
+        for p in element.points {
             // sum_a X_a dh_a/dX = I, sum_a dh_a/dX = 0
             let identity: Matrix2<f64> = x * p.gradient;
             assert!((identity - Matrix2::identity()).norm() < 1e-14);
             assert!(p.gradient.row_sum().norm() < 1e-15);
         }
-    }
-
-    #[test]
-    fn volume_and_mass_total_are_area_times_thickness() {
-        let x = distorted();
         // shoelace formula
-        let area: f64 = (0..4)
+        let area: f64 = (0..corners)
             .map(|a| {
-                let (p, q) = (x.column(a), x.column((a + 1) % 4));
+                let (p, q) = (x.column(a), x.column((a + 1) % corners));
                 (p[0] * q[1] - q[0] * p[1]) / 2.0
             })
             .sum();
-        let element = reference(&x, 0.25);
         assert!((element.volume() - 0.25 * area).abs() < 1e-15);
-        assert!((mass(&element).sum() - 0.25 * area).abs() < 1e-15);
+        assert!((S::mass(&element).sum() - 0.25 * area).abs() < 1e-15);
         assert!((element.nodal_volume().sum() - 0.25 * area).abs() < 1e-15);
+    }
+
+    #[test]
+    fn linear_fields_volume_and_mass() {
+        let quad = [[0.0, 0.0], [2.0, 0.3], [1.7, 1.9], [-0.2, 1.2]];
+        check::<Quadrilateral, 4, 4>(SMatrix::from_columns(&quad.map(|p| p.into())), 4);
+        let tri = SMatrix::from_columns(&[[0.1, 0.0], [2.0, 0.3], [0.7, 1.9]].map(|p| p.into()));
+        check::<Triangle, 3, 1>(tri, 3);
+        let element = Triangle::reference(&tri, 2.0);
+        let volume = 1.9 * 1.9 - 0.6 * 0.3;
+        assert!((Triangle::mass(&element)[(0, 0)] - volume / 6.0).abs() < 1e-14);
     }
 }
