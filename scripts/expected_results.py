@@ -306,7 +306,7 @@ def _about_origin(old: Seen, name: str, change: Change, theta: float) -> Array |
         return _cross(arm if force.ndim == 2 else arm[:, None], force)
     if own == "damped_angular":
         return _cross(change.shift, old["history/momentum/damped_linear"] @ turn.T)
-    if own == "angular":
+    if own in ("angular", "consistent_angular"):
         mass = old["model/bodies/mass"]
         first = np.einsum("b,ibk->ik", mass, old["history/bodies/center"]) @ turn.T
         momentum = old["history/momentum/linear"] @ turn.T

@@ -158,20 +158,22 @@ impl UnderWay {
     }
 
     /// Nodes that land where others have opened before, by slave indices, with the work Pn (Bn d) of their landings.
+    /// Where more land than have opened, all have their share: which of them come first would be a matter of order.
     fn hand_over(&mut self, pairs: &[(&Constraint, &ClosedPair)], d: &[f64]) -> Vec<(usize, f64)> {
         let closed: BTreeSet<usize> = pairs.iter().map(|(c, _)| c.key.slave_index).collect();
         self.opened += self.closed.difference(&closed).count();
-        let mut handed_over = Vec::new();
-        for (constraint, pair) in pairs {
+        let landing = |(constraint, pair): &(&Constraint, &ClosedPair)| {
             let (index, way) = (constraint.key.slave_index, constraint.normal_motion(d));
             let lands = -way > CLOSED_GAP * constraint.scale && !self.closed.contains(&index);
-            if lands && self.opened > 0 {
-                self.opened -= 1;
-                handed_over.push((index, pair.force[0] * way));
-            }
-        }
+            lands.then(|| (index, pair.force[0] * way))
+        };
+        let mut landings: Vec<(usize, f64)> = pairs.iter().filter_map(landing).collect();
+        let handed_over = self.opened.min(landings.len());
+        let share = handed_over as f64 / landings.len().max(1) as f64;
+        landings.iter_mut().for_each(|(_, work)| *work *= share);
+        self.opened -= handed_over;
         self.closed = closed;
-        handed_over
+        landings
     }
 
     /// Takes in how many nodes of one side are closed, and whether the contact reaches a corner.
