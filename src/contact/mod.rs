@@ -1,23 +1,36 @@
 //! Contact of slave nodes with segments and corners: surfaces, search, targets, constraints and
 //! their complementarity problem, crossing and tunnelling.
 
-mod constraints;
+mod closed_pairs;
+mod compliance;
+mod constraint;
 mod crossing;
+mod delassus;
 mod geometry;
+mod kinds;
+mod node_to_corner;
+mod node_to_segment;
+mod pairing;
+#[cfg(test)]
+mod seam_tests;
 mod search;
+mod stiffness;
 mod targets;
 pub(crate) mod tolerances;
 mod tunnelling;
+#[cfg(test)]
+mod tunnelling_tests;
 
-pub use constraints::{
-    ClosedPair, ClosedPairs, Compliance, Configurations, Constraint, ConstraintKey, DelassusSpace,
-    PerDof, RowForm, Rows, Scope, frictional_lcp,
-};
+pub use closed_pairs::{ClosedPair, ClosedPairs};
+pub use compliance::{Compliance, Scope};
+pub use constraint::{Configurations, Constraint, ConstraintKey, PerDof, RowForm, Rows};
 pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
+pub use delassus::{DelassusSpace, frictional_lcp};
 pub(crate) use geometry::position;
 pub use geometry::{
     Along, ContactSurfaces, Interior, Positions, Projection, contact_surfaces, project,
 };
+pub use pairing::{PairTarget, find_targets};
 pub use search::{Candidate, ListedSlave, Search, Territory, all_segments};
-pub use targets::{ContactTarget, Corner, PairTarget, SlaveNode, common_normal, find_targets};
+pub use targets::{ContactTarget, Corner, SlaveNode, common_normal};
 pub use tunnelling::{Penetration, crossed_edges, find_penetration};

@@ -4,10 +4,12 @@ mod events;
 mod increment;
 mod landing;
 mod ledger;
+mod patterns;
 mod release;
 mod results;
 mod run;
 mod step;
+
 pub use results::{
     Alternation, BodyResult, Cause, ContactImpulse, ContactOnBody, ContactResultant,
     ContactViolation, Course, Cutback, Energy, FailedLcp, Failure, IncrementReport, Landing,

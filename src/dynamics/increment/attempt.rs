@@ -3,8 +3,11 @@
 
 use super::acceleration::Acceleration;
 use super::active_constraints::ConstraintSet;
-use super::forces::{Before, ContactForces, ContactSystem, EqualForces, Impulses};
-use super::pass::{Iterate, Pass, Residual};
+use super::contact_forces::ContactForces;
+use super::contact_system::ContactSystem;
+use super::convergence::{Iterate, Pass, Residual};
+use super::equal_forces::EqualForces;
+use super::impulses::{Before, Impulses};
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::rigid_predictor::rigid_predictor;
 use super::trace::{Failed, Trace};

@@ -2,11 +2,12 @@
 
 mod acceleration;
 mod active_constraints;
-mod alternation;
 mod attempt;
+mod contact_forces;
+mod contact_system;
 mod convergence;
-mod forces;
-mod pass;
+mod equal_forces;
+mod impulses;
 mod refactorization;
 mod returned;
 mod rigid_predictor;
@@ -14,6 +15,7 @@ mod trace;
 
 pub(crate) use active_constraints::{ActiveConstraints, ConstraintSet, NodeAtSegment};
 pub(crate) use attempt::{Attempt, Path, Solved};
-pub(crate) use forces::{ContactForces, ContactSystem};
+pub(crate) use contact_forces::ContactForces;
+pub(crate) use contact_system::ContactSystem;
 pub(crate) use returned::{PairReturn, Release, Returned};
 pub(crate) use trace::Failed;

@@ -2,12 +2,10 @@
 //! resultants of the contacts, nodal quantities and reactions of rigid surfaces. Section 9 of
 //! docs/theory.md.
 
-use super::bodies::{BodyMasses, Moving, momentum};
+use super::bodies::{BodyMasses, Moving, RigidSurfaces, momentum};
 use super::contact_ledger::ContactLedger;
 use super::energy::Ledger;
-use super::nodal_results::{contact_resultants, nodal_results, node_masses};
-use super::pressure::SlaveFaces;
-use super::rigid_surfaces::RigidSurfaces;
+use super::nodal_results::{SlaveFaces, contact_resultants, nodal_results, node_masses};
 use super::touches::{Sides, Touches};
 use crate::dynamics::increment::{Returned, Solved};
 use crate::dynamics::results::{

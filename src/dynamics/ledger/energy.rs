@@ -1,10 +1,16 @@
 //! Energy balance of a run, accumulated increment by increment. Section 9 of docs/theory.md.
+//!
+//! Energy checks of a converged increment: positive normal work of contact in the energy-momentum scheme, at
+//! corners that turn concave under a sliding node (section 7 of docs/theory.md), and the balance of the ledger
+//! (section 9).
 
 use std::sync::Arc;
 
+use crate::contact::Constraint;
+use crate::contact::tolerances::CLOSED_GAP;
 use crate::dynamics::increment::{Returned, Solved};
 use crate::dynamics::results::{Cause, Energy, State};
-use crate::dynamics::step::{Equilibrium, StepProblem, difference, dot, sum};
+use crate::dynamics::step::{EffectiveStiffness, Equilibrium, StepProblem, difference, dot, sum};
 use crate::elements::ElementResult;
 use crate::linear::{larger, largest};
 
@@ -215,4 +221,95 @@ impl Ledger {
             })
         })
     }
+}
+
+/// Energy balance, as a part of the largest energy, beyond which a run says nothing any more.
+const UNBALANCED: f64 = 1e-3;
+
+/// Checks that contact puts no energy in, in a converged increment from `start`, that counts beside
+/// the largest energy that the bodies in contact have had up to its end.
+///
+/// # Errors
+/// [`Cause::GainedEnergy`]: in halves of the increment a node passes a corner before or after the
+/// corner turns concave.
+pub(crate) fn check_energy_gain(
+    problem: &StepProblem,
+    start: &State,
+    ledger: &Ledger,
+    solved: &Solved,
+) -> Result<(), Cause> {
+    let part = gain(problem, start, ledger, solved);
+    if part <= CONTACT_WORK_ROUND_OFF {
+        return Ok(());
+    }
+    Err(Cause::GainedEnergy { part })
+}
+
+/// Checks that the energy balance counts for nothing beside the largest energy so far.
+///
+/// Round-off of positions makes forces that are out of balance by as much as they are. Of a motion with so
+/// little energy that these forces n are more than a thousandth of its own no balance is asked,
+///
+/// ```text
+/// |balance| <= 1e-3 E,   or   E <= max n²/(1e-3² (K_ii + (2/dt²) M_ii))      eq. (9.13)
+/// ```
+///
+/// E the largest energy so far, n, K_ii and M_ii those of eq. (4.10).
+///
+/// # Errors
+/// [`Cause::Unbalanced`].
+pub(crate) fn check_balance(
+    problem: &StepProblem,
+    stiffness: &EffectiveStiffness,
+    ledger: &Ledger,
+    solved: &Solved,
+) -> Result<(), Cause> {
+    let (balance, energy) = (ledger.energy.balance.abs(), ledger.scale);
+    if balance <= UNBALANCED * energy {
+        return Ok(());
+    }
+    let noise = solved.noise(problem, stiffness);
+    // max n²/(1e-3² (K_ii + (2/dt²) M_ii)), eq. (9.13)
+    let of_part = |&[noise, _, diagonal]: &[f64; 3]| match noise {
+        0.0 => 0.0,
+        _ => (noise / UNBALANCED).powi(2) / diagonal,
+    };
+    if energy <= noise.iter().map(of_part).fold(0.0, larger) {
+        return Ok(());
+    }
+    let is_round_off = |&[noise, way, _]: &[f64; 3]| noise * way > UNBALANCED * energy;
+    Err(Cause::Unbalanced {
+        part: balance / energy,
+        is_round_off: noise.iter().any(is_round_off),
+    })
+}
+
+/// Energy that contact puts in because nodes slide on to segments that they were behind: the sum over
+/// the pairs, each relative to the largest energy of its bodies.
+///
+/// With energy-momentum rows a pair does the work Pn (g1 - g0). It is positive where a node slides over
+/// a convex corner on to a segment with g0 < 0, and that segment holds it because the corner turns
+/// concave in the same increment. Nodes that the mesh places inside are left out.
+fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) -> f64 {
+    if !problem.weights.energy_momentum {
+        return 0.0;
+    }
+    let Solved { d, forces, .. } = solved;
+    let works = forces.acting().map(|(constraint, pair)| {
+        let [slave, a, b, _] = constraint.source.nodes;
+        let p = problem.place(&start.u, [slave, a, b]);
+        let was_beyond = !(0.0..=1.0).contains(&p.xi) && p.gap < -CLOSED_GAP * p.length;
+        // Pn (Bn d) of a pair that was behind, beyond the ends, eq. (7.7)
+        let work = if was_beyond {
+            pair.force[0] * constraint.normal_motion(d)
+        } else {
+            0.0
+        };
+        (constraint, work)
+    });
+    let largest = |c: &Constraint| problem.parts.most(&ledger.largest, c.nodes());
+    let parts = works.filter(|&(_, work)| work > 0.0);
+    parts
+        .map(|(constraint, work)| work / largest(constraint))
+        .sum()
 }

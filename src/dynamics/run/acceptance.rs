@@ -1,7 +1,7 @@
 //! Checks that a converged increment must pass before it is accepted, and the failures of those that
 //! do not. Section 4 of docs/theory.md, Cutback.
 
-use super::nominal_increment::NominalIncrement;
+use super::time_control::NominalIncrement;
 use crate::contact::{ClosedPairs, Penetration};
 use crate::dynamics::events::{FailedSubincrement, Subincrement};
 use crate::dynamics::increment::{Failed, Returned, Solved};

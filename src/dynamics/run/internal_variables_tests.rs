@@ -6,7 +6,8 @@ use std::io;
 use super::run;
 use crate::dynamics::{Cutback, IncrementReport, Observer, Outcome};
 use crate::elements::{Elements, Motion};
-use crate::materials::{Law, yielding::Yielding};
+use crate::materials::Law;
+use crate::materials::yielding::Yielding;
 use crate::model::{
     Damping, Element, ElementType, Frames, Increments, Material, Model, Procedure, Section,
     Settings, Step,

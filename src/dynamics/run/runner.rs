@@ -4,10 +4,9 @@
 use std::io;
 
 use super::acceptance::{Accepted, Before, failure, start_failure};
-use super::bisection::Bisection;
-use super::impact_control::ImpactControl;
-use super::nominal_increment::{NominalIncrement, nominal_increments};
-use super::time_control::{Span, TimeControl};
+use super::time_control::{
+    Bisection, ImpactControl, NominalIncrement, Span, TimeControl, nominal_increments,
+};
 use crate::contact::ClosedPairs;
 use crate::dynamics::events::{FailedSubincrement, Subincrement, Subincrements};
 use crate::dynamics::ledger::{Accounts, Ledger, contact_violation, landings};

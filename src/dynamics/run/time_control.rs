@@ -1,7 +1,16 @@
 //! Time control of a step: how the increments of its grid are divided. Section 4 of docs/theory.md,
 //! Cutback, and section 6, Impacts as events.
+//!
+//! Nominal time increments of a step and their bisection. Section 4 of docs/theory.md, Cutback.
+//!
+//! Fixed grid: a nominal increment in halves, quarters ... that join again as soon as they align.
+//! Section 4 of docs/theory.md, Cutback.
+//!
+//! Impact events: a nominal increment in subincrements that end at impacts, or halfway where one
+//! fails. Section 6 of docs/theory.md, Impacts as events.
 
-use crate::dynamics::step::Interval;
+use crate::dynamics::step::{Interval, StepPlace};
+use crate::model::Increments;
 
 /// The next subincrement of a time control.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,4 +33,328 @@ pub(crate) trait TimeControl {
 
     /// Halves an interval that failed.
     fn failed(&mut self, interval: &Interval);
+}
+
+/// A step's duration counts as a multiple of its increment within this relative difference.
+const WHOLE: f64 = 1e-6;
+
+/// One nominal increment of a step, in step time.
+#[derive(Clone, Copy)]
+pub(crate) struct NominalIncrement {
+    pub place: StepPlace,
+    pub from: f64,
+    pub to: f64,
+    pub length: f64,
+    pub dt_min: f64,
+}
+
+impl NominalIncrement {
+    /// Part number `part` of 2^halvings.
+    pub fn part(&self, part: u32, halvings: u32) -> Interval {
+        let parts = f64::from(1_u32 << halvings);
+        let at = |k: u32| match k {
+            0 => self.from,
+            k if k == 1 << halvings => self.to,
+            k => self.from + self.length * (f64::from(k) / parts),
+        };
+        Interval {
+            start: self.place.time_point(at(part)),
+            end: self.place.time_point(at(part + 1)),
+            dt: self.length / parts,
+        }
+    }
+}
+
+/// The nominal increments of a step.
+pub(crate) fn nominal_increments(
+    place: StepPlace,
+    Increments { dt, dt_min, .. }: Increments,
+) -> impl Iterator<Item = NominalIncrement> {
+    let count = increments_of(place.period, dt);
+    (0..count).map(move |i| {
+        let from = dt * i as f64;
+        let to = if i + 1 == count {
+            place.period
+        } else {
+            dt * (i + 1) as f64
+        };
+        // the nominal length keeps the factors of K* valid; only a last, shorter one differs
+        let is_shorter = to - from < dt * (1.0 - WHOLE);
+        NominalIncrement {
+            place,
+            from,
+            to,
+            length: if is_shorter { to - from } else { dt },
+            dt_min,
+        }
+    })
+}
+
+/// Number of increments of length `dt` in a step; the last may be shorter.
+fn increments_of(period: f64, dt: f64) -> usize {
+    let ratio = period / dt;
+    let whole = ratio.round();
+    let count = if (ratio - whole).abs() <= WHOLE * whole {
+        whole
+    } else {
+        ratio.ceil()
+    };
+    (count as usize).max(1)
+}
+
+/// A nominal increment of which the parts up to number `part` of 2^`halvings` are done.
+pub(crate) struct Bisection {
+    nominal: NominalIncrement,
+    part: u32,
+    halvings: u32,
+}
+
+impl Bisection {
+    /// Starts with the increment as a whole.
+    pub fn new(nominal: NominalIncrement) -> Self {
+        Bisection {
+            nominal,
+            part: 0,
+            halvings: 0,
+        }
+    }
+}
+
+impl TimeControl for Bisection {
+    fn next(&self) -> Option<Span> {
+        let interval = || self.nominal.part(self.part, self.halvings);
+        (self.part < 1 << self.halvings).then(|| Span {
+            interval: interval(),
+            until_impact: false,
+        })
+    }
+
+    fn halvings(&self) -> u32 {
+        self.halvings
+    }
+
+    fn accepted(&mut self, _: &Interval, _: bool) {
+        self.part += 1;
+        while self.halvings > 0 && self.part.is_multiple_of(2) {
+            (self.part, self.halvings) = (self.part / 2, self.halvings - 1);
+        }
+    }
+
+    fn failed(&mut self, _: &Interval) {
+        (self.part, self.halvings) = (2 * self.part, self.halvings + 1);
+    }
+}
+
+/// Impact events within a nominal increment, after which its rest is one subincrement without events:
+/// chattering contacts must not stall a run.
+const MOST_EVENTS: usize = 50;
+/// Halvings of a subincrement from which on nodes land within it.
+const EVENT_HALVINGS: u32 = 2;
+
+/// A nominal increment that is solved up to the step time `from`.
+pub(crate) struct ImpactControl {
+    nominal: NominalIncrement,
+    from: f64,
+    events: usize,
+    /// End of the nominal increment and ends of its halves; the last entry bounds the next
+    /// subincrement.
+    ends: Vec<f64>,
+}
+
+impl ImpactControl {
+    /// Starts with the increment as a whole.
+    pub fn new(nominal: NominalIncrement) -> Self {
+        ImpactControl {
+            from: nominal.from,
+            events: 0,
+            ends: vec![nominal.to],
+            nominal,
+        }
+    }
+}
+
+impl TimeControl for ImpactControl {
+    fn next(&self) -> Option<Span> {
+        let to = *self.ends.last()?;
+        let NominalIncrement { place, length, .. } = self.nominal;
+        let is_whole = self.from == self.nominal.from && to == self.nominal.to;
+        Some(Span {
+            interval: Interval {
+                start: place.time_point(self.from),
+                end: place.time_point(to),
+                dt: if is_whole { length } else { to - self.from },
+            },
+            until_impact: self.events < MOST_EVENTS && self.halvings() < EVENT_HALVINGS,
+        })
+    }
+
+    fn halvings(&self) -> u32 {
+        self.ends.len().saturating_sub(1) as u32
+    }
+
+    fn accepted(&mut self, interval: &Interval, ends_at_impact: bool) {
+        self.from = interval.end.step;
+        if ends_at_impact {
+            self.events += 1;
+        } else {
+            self.ends.pop();
+        }
+    }
+
+    fn failed(&mut self, interval: &Interval) {
+        self.ends.push(self.from + interval.dt / 2.0);
+    }
+}
+
+#[cfg(test)]
+mod nominal_tests {
+    use super::*;
+
+    /// The increment from 0.3 to 0.4 of a step that starts at 2.
+    pub fn nominal() -> NominalIncrement {
+        NominalIncrement {
+            place: StepPlace {
+                number: 1,
+                start: 2.0,
+                period: 1.0,
+            },
+            from: 0.3,
+            to: 0.4,
+            length: 0.1,
+            dt_min: 0.0,
+        }
+    }
+
+    #[test]
+    fn increments_fill_the_step() {
+        assert_eq!(increments_of(1.0, 0.1), 10);
+        assert_eq!(increments_of(13333.0 * 1.5e-5, 1.5e-5), 13333);
+        assert_eq!(increments_of(1.05, 0.1), 11);
+        assert_eq!(increments_of(0.05, 0.1), 1);
+    }
+
+    #[test]
+    fn the_last_increment_may_be_shorter() {
+        let place = StepPlace {
+            period: 0.25,
+            ..nominal().place
+        };
+        let increments = Increments {
+            dt: 0.1,
+            period: 0.25,
+            dt_min: 0.0,
+            direct: true,
+        };
+        let all: Vec<NominalIncrement> = nominal_increments(place, increments).collect();
+        assert_eq!(all.len(), 3);
+        assert_eq!((all[1].to, all[2].to), (all[2].from, 0.25));
+        assert_eq!((all[0].length, all[1].length), (0.1, 0.1));
+        assert!((all[2].length - 0.05).abs() < 1e-15);
+    }
+
+    #[test]
+    fn parts_of_an_increment_meet() {
+        let parts: Vec<Interval> = (0..4).map(|k| nominal().part(k, 2)).collect();
+        assert_eq!((parts[0].start.step, parts[3].end.step), (0.3, 0.4));
+        for pair in parts.windows(2) {
+            assert_eq!(pair[0].end, pair[1].start);
+        }
+        assert!(parts.iter().all(|part| part.dt == 0.025));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::nominal_tests::nominal;
+    use super::*;
+
+    #[test]
+    fn parts_join_as_soon_as_they_align() {
+        let mut control = Bisection::new(nominal());
+        let mut lengths = Vec::new();
+        while let Some(Span { interval, .. }) = control.next() {
+            // the first half of the increment needs two halvings, its second none
+            if interval.start.step < 0.34 && interval.dt > 0.026 {
+                control.failed(&interval);
+            } else {
+                lengths.push(interval.dt);
+                control.accepted(&interval, false);
+            }
+        }
+        assert_eq!(lengths, [0.025, 0.025, 0.05]);
+        assert_eq!(control.halvings(), 0);
+    }
+}
+
+#[cfg(test)]
+mod impact_control_tests {
+    use super::nominal_tests::nominal;
+    use super::*;
+
+    /// The first part of an interval, up to an impact.
+    fn up_to(interval: Interval, length: f64) -> Interval {
+        let end = interval.start.step + length;
+        Interval {
+            end: nominal().place.time_point(end),
+            dt: length,
+            ..interval
+        }
+    }
+
+    #[test]
+    fn subincrements_fill_the_increment() {
+        let mut control = ImpactControl::new(nominal());
+        let mut lengths = Vec::new();
+        let mut next = |control: &ImpactControl| {
+            let span = control.next().expect("something is left");
+            lengths.push((span.interval.dt * 1e3).round());
+            span.interval
+        };
+        let whole = next(&control);
+        control.accepted(&up_to(whole, 0.02), true);
+        let rest = next(&control);
+        control.failed(&rest);
+        assert_eq!(control.halvings(), 1);
+        let half = next(&control);
+        control.accepted(&half, false);
+        let other = next(&control);
+        control.accepted(&other, false);
+        assert_eq!(control.next(), None);
+        assert_eq!(lengths, [100.0, 80.0, 40.0, 40.0]);
+        assert_eq!(other.end, whole.end);
+    }
+
+    #[test]
+    fn what_fails_with_events_is_solved_without() {
+        let mut control = ImpactControl::new(nominal());
+        let mut with_events = Vec::new();
+        for _ in 0..3 {
+            let span = control.next().expect("something is left");
+            with_events.push(span.until_impact);
+            control.failed(&span.interval);
+        }
+        assert_eq!(with_events, [true, true, false]);
+        while let Some(span) = control.next() {
+            with_events.push(span.until_impact);
+            control.accepted(&span.interval, false);
+        }
+        assert_eq!(with_events[3..], [false, false, true, true]);
+    }
+
+    #[test]
+    fn contacts_that_chatter_do_not_stall() {
+        let mut control = ImpactControl::new(nominal());
+        let mut count = 0;
+        while let Some(Span {
+            interval,
+            until_impact: true,
+        }) = control.next()
+        {
+            count += 1;
+            control.accepted(&up_to(interval, 1e-4), true);
+        }
+        assert_eq!(count, MOST_EVENTS);
+        let rest = control.next().expect("the rest");
+        assert_eq!(rest.interval.end, nominal().place.time_point(nominal().to));
+    }
 }

@@ -1,5 +1,7 @@
 //! External loads at a time point and their consistent nodal forces: concentrated loads, body
 //! forces, tractions and follower pressures. Section 4 of docs/theory.md (R_theta).
+//!
+//! Place of a step among the times of the analysis.
 
 use crate::elements::Elements;
 use crate::model::{Load, Model, Pressure, Step, TimeBase, Variation};
@@ -200,6 +202,28 @@ impl<'m> Loads<'m> {
         for (node, normal) in side.normals(from_first) {
             r[2 * node] -= thrust * normal[0];
             r[2 * node + 1] -= thrust * normal[1];
+        }
+    }
+}
+
+/// Number, start and duration of a step.
+#[derive(Clone, Copy)]
+pub(crate) struct StepPlace {
+    /// Number of the step, from 1.
+    pub number: usize,
+    /// Time of the analysis at which it starts.
+    pub start: f64,
+    /// Duration (time).
+    pub period: f64,
+}
+
+impl StepPlace {
+    /// The point at time `step` since the start of the step.
+    pub fn time_point(&self, step: f64) -> TimePoint {
+        TimePoint {
+            step,
+            total: self.start + step,
+            period: self.period,
         }
     }
 }

@@ -2,22 +2,18 @@
 //! workspace of its increments.
 
 mod bodies;
-mod discretization;
 mod loads;
 mod mass;
 mod matrices;
 mod meter;
 mod parts;
 mod scheme;
-mod step_place;
 mod step_problem;
-mod supports;
 mod unknowns;
 mod workspace;
 
 pub(crate) use bodies::{Hold, holds};
-pub(crate) use discretization::Discretization;
-pub(crate) use loads::{Interval, TimePoint};
+pub(crate) use loads::{Interval, StepPlace, TimePoint};
 pub(crate) use mass::{Mass, dot};
 pub(crate) use matrices::{
     ClosedConstraints, EffectiveStiffness, FactoredMatrix, ResponseVectors, System,
@@ -25,9 +21,8 @@ pub(crate) use matrices::{
 #[cfg(test)]
 pub(crate) use meter::Meter;
 pub(crate) use parts::{Parts, PerBody};
-pub(crate) use step_place::StepPlace;
 pub(crate) use step_problem::{
-    Equilibrium, StartVelocity, StepProblem, check_finite, difference, sum, write_difference,
-    write_sum,
+    Discretization, Equilibrium, StartVelocity, StepProblem, check_finite, difference, sum,
+    write_difference, write_sum,
 };
 pub(crate) use workspace::Workspace;

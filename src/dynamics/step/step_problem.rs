@@ -1,9 +1,11 @@
 //! Equation of motion of a step, eq. (3.1) (paper eq. 21), evaluated at an iterate: loads, internal and
 //! inertia forces, and contact pairs. Sections 3 and 4 of docs/theory.md.
+//!
+//! Discretization of a model, constant over a run: elements, mass, bodies with their parts, contact
+//! surfaces.
 
 use std::borrow::Cow;
 
-use super::discretization::Discretization;
 use super::loads::{Interval, Loads};
 use super::mass::Mass;
 use super::parts::{Parts, Run};
@@ -18,7 +20,7 @@ use crate::elements::{Elements, Motion};
 use crate::lcp::LcpMethod;
 use crate::linear::{LinearError, largest};
 use crate::model::{Model, Settings, Step};
-use crate::prepare::Redistribution;
+use crate::prepare::{PreparedModel, Redistribution};
 use crate::vectors::distance;
 
 /// The equation of motion of a step.
@@ -347,4 +349,31 @@ pub(crate) fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
 /// a - b
 pub(crate) fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
+/// A prepared model with its elements, their mass, and the bodies and parts that scale convergence.
+pub(crate) struct Discretization<'m> {
+    pub model: &'m Model,
+    pub contacts: &'m [ContactSurfaces],
+    pub elements: Elements,
+    pub mass: Mass,
+    pub redistribution: &'m Redistribution,
+    pub parts: Parts,
+}
+
+impl<'m> Discretization<'m> {
+    /// The discretization of a model.
+    pub fn new(prepared: &'m PreparedModel) -> Self {
+        let model = prepared.model();
+        let elements = Elements::new(model);
+        let redistribution = prepared.redistribution();
+        Discretization {
+            model,
+            contacts: prepared.contact_surfaces(),
+            mass: Mass::new(&elements, redistribution, model.mesh.node_count()),
+            redistribution,
+            parts: Parts::new(model),
+            elements,
+        }
+    }
 }

@@ -1,0 +1,270 @@
+//! A contact constraint, linearised at the current iterate: gap and slip, the rows that its force
+//! acts with and the derivatives of gap and slip. All that the complementarity problem, contact
+//! forces, impulses, convergence and the ledger know of contact. Sections 3 and 5 of
+//! docs/theory.md.
+//!
+//! The configurations between which contact constraints are linearised, and the form of their
+//! rows. Sections 3 and 7 of docs/theory.md.
+
+use std::array::from_fn;
+
+use smallvec::SmallVec;
+
+use super::geometry::position;
+use super::pairing::PairTarget;
+use super::tolerances::NOTHING;
+
+/// One value for every dof of a constraint: stored in place up to the eight dofs of a corner, on
+/// the heap beyond.
+pub type PerDof<T> = SmallVec<[T; 8]>;
+
+/// What identifies a constraint through passes and increments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ConstraintKey {
+    /// Number of the slave node among those of all contacts.
+    pub slave_index: usize,
+    /// Segment in its contact, at a corner that before it. A kind with one constraint for each slave
+    /// node gives the same number to all.
+    pub segment: usize,
+}
+
+/// A normal and a tangential row over the dofs of a constraint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rows {
+    /// Normal row.
+    pub normal: PerDof<f64>,
+    /// Tangential row.
+    pub tangential: PerDof<f64>,
+}
+
+impl Rows {
+    /// Rows of two slices of the same length.
+    #[inline]
+    pub fn new(normal: &[f64], tangential: &[f64]) -> Self {
+        Rows {
+            normal: SmallVec::from_slice(normal),
+            tangential: SmallVec::from_slice(tangential),
+        }
+    }
+}
+
+/// Normal and tangential row over N dofs, eight at most.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct RowPair<const N: usize> {
+    pub normal: [f64; N],
+    pub tangential: [f64; N],
+}
+
+impl<const N: usize> RowPair<N> {
+    #[inline]
+    fn rows(&self) -> Rows {
+        Rows {
+            normal: in_place(self.normal),
+            tangential: in_place(self.tangential),
+        }
+    }
+}
+
+/// The values of N dofs, eight at most.
+#[inline]
+fn in_place<T: Copy + Default, const N: usize>(values: [T; N]) -> PerDof<T> {
+    let mut all = [T::default(); 8];
+    all[..N].copy_from_slice(&values);
+    PerDof::from_buf_and_len(all, N)
+}
+
+/// A constraint g >= 0 with Coulomb friction, linearised at the current iterate.
+///
+/// ```text
+/// nodal forces   B^T P = Bn^T Pn + Bt^T Pt          B: force rows
+/// rates          dg = Gn du,  dDt = Gt du           G: derivative rows
+/// increment      Bn d = g - g0,  Bt d = Dt          d = U - U0
+/// ```
+///
+/// Force rows and derivative rows are two things even where they hold the same numbers: the former
+/// make work and momenta right, the latter say how gap and slip go on from the iterate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Constraint {
+    /// What identifies it.
+    pub key: ConstraintKey,
+    /// Its dofs, x and y of one node after the other, those of slave nodes first; every dof once.
+    pub dofs: PerDof<usize>,
+    /// Number of dofs of slave nodes.
+    pub slave_dofs: usize,
+    /// Force rows Bn and Bt (dimensionless).
+    pub force_rows: Rows,
+    /// Derivative rows Gn and Gt (dimensionless), where they are others than the force rows.
+    pub other_derivative_rows: Option<Rows>,
+    /// Gap g of the iterate (length), positive when open.
+    pub gap: f64,
+    /// Gap of the start in the sense of the force rows, g - Bn d (length).
+    pub start_gap: f64,
+    /// Slip Dt since the start of the increment (length).
+    pub slip: f64,
+    /// Coefficient of friction mu at the slip rate that it was last given, at first at rest.
+    pub mu: f64,
+    /// Length that gaps are relative to: that of the segment.
+    pub scale: f64,
+    /// The slave node and target it was made from. Only the contact layer and reports of contact
+    /// read it.
+    pub source: PairTarget,
+}
+
+impl Constraint {
+    /// The constraint at the first nodes of its source, the slave node before the others, with its force rows
+    /// and derivative rows over their N dofs; its slip is Bt d.
+    #[inline]
+    pub(super) fn of_nodes<const N: usize>(
+        source: PairTarget,
+        [force, derivative]: [RowPair<N>; 2],
+        (gap, scale): (f64, f64),
+        at: &Configurations,
+    ) -> Self {
+        let dofs: [usize; N] = from_fn(|k| 2 * source.nodes[k / 2] + k % 2);
+        // g0 = g - Bn d; Dt = Bt d, eq. (3.5); d = U - U0
+        let d = dofs.map(|dof| at.u[dof] - at.u0[dof]);
+        let product = |row: &[f64; N]| -> f64 { row.iter().zip(&d).map(|(b, d)| b * d).sum() };
+        Constraint {
+            key: ConstraintKey {
+                slave_index: source.slave_index,
+                segment: source.target.segment,
+            },
+            dofs: in_place(dofs),
+            slave_dofs: 2,
+            force_rows: force.rows(),
+            other_derivative_rows: (derivative != force).then(|| derivative.rows()),
+            gap,
+            start_gap: gap - product(&force.normal),
+            slip: product(&force.tangential),
+            mu: source.friction.at_rest,
+            scale,
+            source,
+        }
+    }
+
+    /// Takes the coefficient of friction at the slip rate |Dt|/dt of an increment of length `dt`, eq. (3.10).
+    pub fn take_slip_rate(&mut self, dt: f64) {
+        self.mu = self.source.friction.at(self.slip / dt);
+    }
+
+    /// The same constraint with its force rows as derivative rows, so that Q is symmetric.
+    pub fn with_force_rows(&self) -> Self {
+        Constraint {
+            dofs: self.dofs.clone(),
+            force_rows: self.force_rows.clone(),
+            other_derivative_rows: None,
+            ..*self
+        }
+    }
+
+    /// Derivative rows G.
+    pub fn derivative_rows(&self) -> &Rows {
+        let other = self.other_derivative_rows.as_ref();
+        other.unwrap_or(&self.force_rows)
+    }
+
+    /// Gn v: what a vector over all dofs adds to the gap.
+    pub fn gap_change(&self, v: &[f64]) -> f64 {
+        self.product(&self.derivative_rows().normal, |dof| v[dof])
+    }
+
+    /// Gt v: what a vector over all dofs adds to the slip.
+    pub fn slip_change(&self, v: &[f64]) -> f64 {
+        self.product(&self.derivative_rows().tangential, |dof| v[dof])
+    }
+
+    /// A gap or slip of the pair (length), 0 where it is nothing beside the segment, eq. (4.27): what a motion has died away to
+    /// must not become the scale of a complementarity problem, whose forces would underflow.
+    pub fn resolved(&self, length: f64) -> f64 {
+        match length.abs() < NOTHING * self.scale {
+            true => 0.0,
+            false => length,
+        }
+    }
+
+    /// Bn d: the work of a unit normal force on a displacement over all dofs (length).
+    pub fn normal_motion(&self, d: &[f64]) -> f64 {
+        self.product(&self.force_rows.normal, |dof| d[dof])
+    }
+
+    /// Bt d: the work of a unit tangential force on a displacement over all dofs (length).
+    pub fn tangential_motion(&self, d: &[f64]) -> f64 {
+        self.product(&self.force_rows.tangential, |dof| d[dof])
+    }
+
+    /// Adds Bn^T Pn + Bt^T Pt to a vector over all dofs.
+    pub fn add_force(&self, [pn, pt]: [f64; 2], force: &mut [f64]) {
+        let Rows { normal, tangential } = &self.force_rows;
+        for (&dof, (n, t)) in self.dofs.iter().zip(normal.iter().zip(tangential)) {
+            force[dof] += n * pn + t * pt;
+        }
+    }
+
+    /// Its nodes, slave nodes first.
+    pub fn nodes(&self) -> impl Iterator<Item = usize> {
+        self.dofs.chunks_exact(2).map(|dofs| dofs[0] / 2)
+    }
+
+    /// Its slave nodes.
+    pub fn slave_nodes(&self) -> impl Iterator<Item = usize> {
+        self.nodes().take(self.slave_dofs / 2)
+    }
+
+    /// Bn^T Pn + Bt^T Pt at every node.
+    pub fn nodal_forces(&self, [pn, pt]: [f64; 2]) -> impl Iterator<Item = (usize, [f64; 2])> {
+        let Rows { normal, tangential } = &self.force_rows;
+        let force = move |k: usize| normal[k] * pn + tangential[k] * pt;
+        let numbered = self.nodes().enumerate();
+        numbered.map(move |(k, node)| (node, [force(2 * k), force(2 * k + 1)]))
+    }
+
+    /// Bn^T Pn + Bt^T Pt at every slave node.
+    pub fn slave_forces(&self, force: [f64; 2]) -> impl Iterator<Item = (usize, [f64; 2])> {
+        self.nodal_forces(force).take(self.slave_dofs / 2)
+    }
+
+    /// Whether it keeps a node out of a body: its slave node, or the corner that this meets.
+    pub fn keeps_out(&self, node: usize) -> bool {
+        let [s, _, corner, _] = self.source.nodes;
+        node == s || (self.source.target.corner.is_some() && node == corner)
+    }
+
+    fn product(&self, row: &[f64], v: impl Fn(usize) -> f64) -> f64 {
+        row.iter().zip(&self.dofs).map(|(b, &dof)| b * v(dof)).sum()
+    }
+}
+
+/// How the rows Bn and Bt of a pair are made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RowForm {
+    /// Normal and tangent of the end configuration (SS22).
+    End,
+    /// Discrete gradients of gap and projection between start and end: Bn d = g1 - g0 and
+    /// Bt d = L (xi1 - xi0) exactly, and both momenta are kept (energy-momentum form).
+    DiscreteGradient,
+}
+
+/// Start of the increment and iterate between which constraints are linearised.
+#[derive(Debug, Clone, Copy)]
+pub struct Configurations<'a> {
+    /// How rows are made.
+    pub form: RowForm,
+    /// Reference coordinates of the nodes (length).
+    pub x: &'a [[f64; 2]],
+    /// Displacement U0 of the start, over all dofs (length).
+    pub u0: &'a [f64],
+    /// Displacement U of the iterate, over all dofs (length).
+    pub u: &'a [f64],
+}
+
+impl Configurations<'_> {
+    /// Positions of nodes at the start.
+    pub(super) fn start<const N: usize>(&self, nodes: [usize; N]) -> [[f64; 2]; N] {
+        nodes.map(|node| position(self.x, self.u0, node))
+    }
+
+    /// Positions of nodes in the iterate.
+    pub(super) fn iterate<const N: usize>(&self, nodes: [usize; N]) -> [[f64; 2]; N] {
+        nodes.map(|node| position(self.x, self.u, node))
+    }
+}

@@ -1,0 +1,529 @@
+//! Projection of a node on a segment: gap, projection point and local frame. Section 3 of
+//! docs/theory.md.
+//!
+//! Contact surfaces: slave nodes and oriented master segments, with their neighbours and sharp
+//! corners. Section 10 of docs/theory.md.
+//!
+//! Interior of the bodies: whether a straight line from a segment stays in the elements behind it.
+//! Section 10 of docs/theory.md.
+//!
+//! The line is followed from element to element through their common sides. This tells a node on
+//! the far side of a thin body from a node of another part that has penetrated it, however thin the
+//! body.
+
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
+
+use super::tolerances::{INSIDE_ROUND_OFF, NEARER_HALF, SHARP_TURN_COSINE};
+use crate::model::{Contact, Element, ElementsAtNodes, Friction, Mesh, Model, SurfaceKind};
+use crate::vectors::{cross, difference, dot, length};
+
+/// A point in the local frame of a segment from a to b, which has its body on the left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Projection {
+    /// Coordinate of the projection on the segment: 0 at a, 1 at b.
+    pub xi: f64,
+    /// Gap: distance along the normal, positive outside the body (length).
+    pub gap: f64,
+    /// Length of the segment.
+    pub length: f64,
+    /// Unit vector from a to b.
+    pub tangent: [f64; 2],
+    /// Unit normal out of the body.
+    pub normal: [f64; 2],
+}
+
+/// Projects the point `s` on the segment from `a` to `b`.
+///
+/// ```text
+/// e_t = (x_b - x_a)/l,  e_n = (e_t,y, -e_t,x),  l = |x_b - x_a|    eq. (3.2)
+/// xi = r.e_t/l,  g = r.e_n,  r = x_s - x_a                         eq. (3.3)
+/// ```
+#[inline]
+pub fn project(s: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Projection {
+    let e = difference(a, b);
+    let length = length(e);
+    let tangent = [e[0] / length, e[1] / length];
+    let normal = [tangent[1], -tangent[0]];
+    let r = difference(a, s);
+    Projection {
+        xi: dot(r, tangent) / length,
+        gap: dot(r, normal),
+        length,
+        tangent,
+        normal,
+    }
+}
+
+/// Positions of all nodes in a configuration: reference coordinates plus displacements.
+#[derive(Debug, Clone, Copy)]
+pub struct Positions<'a> {
+    x: &'a [[f64; 2]],
+    u: &'a [[f64; 2]],
+}
+
+impl<'a> Positions<'a> {
+    /// Reference coordinates of the nodes and displacements over all dofs (length).
+    pub fn new(x: &'a [[f64; 2]], u: &'a [f64]) -> Self {
+        let u = u.as_chunks().0;
+        Positions { x, u }
+    }
+
+    /// Position of a node.
+    #[inline]
+    pub fn of(&self, node: usize) -> [f64; 2] {
+        let ([x, y], [u, v]) = (self.x[node], self.u[node]);
+        [x + u, y + v]
+    }
+}
+
+/// Position of a node: reference coordinates plus displacement.
+pub(crate) fn position(x: &[[f64; 2]], u: &[f64], node: usize) -> [f64; 2] {
+    [x[node][0] + u[2 * node], x[node][1] + u[2 * node + 1]]
+}
+
+/// The two sides of a contact of the model, as nodes and segments.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactSurfaces {
+    /// Slave nodes.
+    pub slaves: Vec<usize>,
+    /// Faces of the slave surface; of a surface that is made of nodes the exterior faces at them.
+    pub slave_faces: Vec<[usize; 2]>,
+    /// For every slave node the nodes before and after it on its own surface, if it has both.
+    pub adjacent: Vec<Option<[usize; 2]>>,
+    /// Master segments [a, b] with the body on the left of the direction from a to b.
+    pub segments: Vec<[usize; 2]>,
+    /// For every segment the one that starts where it ends, if any.
+    pub next: Vec<Option<usize>>,
+    /// For every segment the one that ends where it starts, if any.
+    pub previous: Vec<Option<usize>>,
+    /// For every segment whether the body has a sharp corner at its end b in the reference
+    /// configuration: an angle below 120 degrees. Folded legs of any other corner are a closed
+    /// concave corner.
+    pub sharp_corners: Vec<bool>,
+    /// Coulomb friction.
+    pub friction: Friction,
+    /// Interior of the bodies; behind a segment without an element everything is inside.
+    pub interior: Arc<Interior>,
+}
+
+impl ContactSurfaces {
+    /// Slave nodes against master segments; `own` are the segments of the slave surface, none if it
+    /// is made of nodes.
+    pub fn new(
+        slaves: Vec<usize>,
+        own: &[[usize; 2]],
+        segments: Vec<[usize; 2]>,
+        friction: Friction,
+    ) -> Self {
+        // node at the other end of the segment that starts or ends at a node
+        let following: HashMap<usize, usize> = own.iter().map(|&[a, b]| (a, b)).collect();
+        let preceding: HashMap<usize, usize> = own.iter().map(|&[a, b]| (b, a)).collect();
+        let neighbours = |slave: &usize| Some([*preceding.get(slave)?, *following.get(slave)?]);
+        // segment that starts or ends at a node
+        let numbered = || segments.iter().enumerate();
+        let starting: HashMap<usize, usize> = numbered().map(|(i, &[a, _])| (a, i)).collect();
+        let ending: HashMap<usize, usize> = numbered().map(|(i, &[_, b])| (b, i)).collect();
+        let at = |of: &HashMap<usize, usize>, node: usize| of.get(&node).copied();
+        ContactSurfaces {
+            adjacent: slaves.iter().map(neighbours).collect(),
+            slave_faces: own.to_vec(),
+            next: segments.iter().map(|&[_, b]| at(&starting, b)).collect(),
+            previous: segments.iter().map(|&[a, _]| at(&ending, a)).collect(),
+            sharp_corners: vec![false; segments.len()],
+            slaves,
+            segments,
+            friction,
+            interior: Arc::default(),
+        }
+    }
+
+    /// With the interior of the bodies behind the segments.
+    pub fn with_interior(mut self, interior: Arc<Interior>) -> Self {
+        self.interior = interior;
+        self
+    }
+
+    /// With the exterior faces at the slave nodes, for a slave surface that is made of nodes.
+    pub fn with_exterior_faces(mut self, mesh: &Mesh) -> Self {
+        let is_slave: HashSet<usize> = self.slaves.iter().copied().collect();
+        let faces = mesh
+            .exterior_faces()
+            .into_iter()
+            .flat_map(|face| face.segments(mesh));
+        self.slave_faces = faces
+            .filter(|face| face.iter().any(|node| is_slave.contains(node)))
+            .collect();
+        self
+    }
+
+    /// With the sharp corners of the surfaces at the positions `x`.
+    pub fn with_sharp_corners(mut self, x: &[[f64; 2]]) -> Self {
+        let tangent = |i: usize| {
+            let [a, b] = self.segments[i].map(|node| x[node]);
+            project(a, a, b).tangent
+        };
+        let is_sharp = |i: usize| {
+            self.next[i].is_some_and(|j| {
+                let (e, f) = (tangent(i), tangent(j));
+                cross(e, f) > 0.0 && dot(e, f) < SHARP_TURN_COSINE
+            })
+        };
+        self.sharp_corners = (0..self.segments.len()).map(is_sharp).collect();
+        self
+    }
+}
+
+/// Direction along a chain of segments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Along {
+    /// From a segment to the one that starts where it ends.
+    Forward,
+    /// From a segment to the one that ends where it starts.
+    Backward,
+}
+
+impl ContactSurfaces {
+    /// Follows a chain of segments: the segments after `from`, then `None` where an open chain ends.
+    ///
+    /// The walk ends once the segments left behind, `from` not counted, are longer in sum than
+    /// `farthest`, and where it is back at `from`.
+    pub fn walk(
+        &self,
+        from: usize,
+        along: Along,
+        farthest: f64,
+        length: impl Fn(usize) -> f64,
+    ) -> impl Iterator<Item = Option<usize>> {
+        let (mut at, mut between) = (Some(from), 0.0);
+        std::iter::from_fn(move || {
+            let segment = at?;
+            if segment != from {
+                between += length(segment);
+            }
+            if between > farthest {
+                return None;
+            }
+            at = match along {
+                Along::Forward => self.next[segment],
+                Along::Backward => self.previous[segment],
+            };
+            (at != Some(from)).then_some(at)
+        })
+    }
+}
+
+/// The contacts of a model; `bodies` holds the body of every node.
+pub fn contact_surfaces(model: &Model, bodies: &[usize]) -> Vec<ContactSurfaces> {
+    if model.contacts.is_empty() {
+        return Vec::new();
+    }
+    let mut has_segments = vec![false; bodies.len()];
+    for contact in &model.contacts {
+        let segments = model.surfaces[contact.master].segments(&model.mesh);
+        segments
+            .iter()
+            .for_each(|&[a, _]| has_segments[bodies[a]] = true);
+    }
+    let is_behind = |element: &Element| has_segments[bodies[element.nodes[0]]];
+    let interior = Arc::new(Interior::new(&model.mesh, is_behind));
+    let of_contact = |contact: &Contact| {
+        let [slave, master] = [contact.slave, contact.master].map(|i| &model.surfaces[i]);
+        let mut slaves = slave.nodes(&model.mesh);
+        slaves.retain(|node| contact.left_out.binary_search(node).is_err());
+        let surfaces = ContactSurfaces::new(
+            slaves,
+            &slave.segments(&model.mesh),
+            master.segments(&model.mesh),
+            contact.interaction.friction,
+        )
+        .with_sharp_corners(&model.mesh.coordinates)
+        .with_interior(Arc::clone(&interior));
+        match slave.kind {
+            SurfaceKind::Nodes(_) => surfaces.with_exterior_faces(&model.mesh),
+            _ => surfaces,
+        }
+    };
+    model.contacts.iter().map(of_contact).collect()
+}
+
+/// Elements of a mesh, found by the segments of their outlines.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Interior {
+    /// Nodes around every element, one element after the other; segments lead from each to the next, the element on
+    /// their left.
+    nodes: Vec<u32>,
+    /// Start of every element in `nodes`, and their end.
+    starts: Vec<u32>,
+    at_nodes: ElementsAtNodes,
+}
+
+/// A line and the elements that it goes through.
+struct Line {
+    elements: Vec<usize>,
+    /// Whether it stays in them up to its end.
+    stays: bool,
+}
+
+impl Interior {
+    /// The inside of those bodies of a mesh of whose elements `is_of` holds.
+    pub fn new(mesh: &Mesh, is_of: impl Fn(&Element) -> bool) -> Self {
+        let (mut nodes, mut starts) = (Vec::new(), vec![0]);
+        for element in mesh.elements.iter().filter(|element| is_of(element)) {
+            nodes.extend(element.segments().map(|[a, _]| a as u32));
+            starts.push(nodes.len() as u32);
+        }
+        let of_elements = starts.windows(2).map(|ends| {
+            let own = &nodes[ends[0] as usize..ends[1] as usize];
+            own.iter().map(|&node| node as usize)
+        });
+        Interior {
+            at_nodes: ElementsAtNodes::of_nodes(of_elements, mesh.node_count()),
+            nodes,
+            starts,
+        }
+    }
+
+    /// Segments [a, b] around an element.
+    fn sides(&self, element: usize) -> impl Iterator<Item = [usize; 2]> + '_ {
+        let [start, end] = [element, element + 1].map(|i| self.starts[i] as usize);
+        let nodes = &self.nodes[start..end];
+        let next = nodes[1..].iter().chain(&nodes[..1]);
+        nodes
+            .iter()
+            .zip(next)
+            .map(|(&a, &b)| [a as usize, b as usize])
+    }
+
+    /// Element on the left of the side from a to b.
+    fn left(&self, side: [usize; 2]) -> Option<usize> {
+        let has_side = |&element: &usize| self.sides(element).any(|other| other == side);
+        self.at_nodes.of(side[0]).rfind(has_side)
+    }
+
+    /// Whether a node behind the line of a segment, at the positions `at`, has penetrated the body
+    /// there through this segment: it lies in the body, belongs to none of the elements on the
+    /// line, and is nearer to the segment than to the far side. Behind a segment without an element
+    /// everything is inside.
+    pub fn takes_in(
+        &self,
+        segment: [usize; 2],
+        node: usize,
+        at: impl Fn(usize) -> [f64; 2],
+    ) -> bool {
+        self.line(segment, node, NEARER_HALF, at)
+            .is_none_or(|line| self.is_foreign(&line, node))
+    }
+
+    /// Whether the node lies in the body at any depth: it may have entered through another segment.
+    pub fn contains(
+        &self,
+        segment: [usize; 2],
+        node: usize,
+        at: impl Fn(usize) -> [f64; 2],
+    ) -> bool {
+        self.line(segment, node, 1.0, at)
+            .is_none_or(|line| self.is_foreign(&line, node))
+    }
+
+    /// Whether a node behind the line of a segment belongs to the body there: it is a node of the
+    /// far side.
+    pub fn joins(&self, segment: [usize; 2], node: usize, at: impl Fn(usize) -> [f64; 2]) -> bool {
+        let line = self.line(segment, node, 1.0, at);
+        line.is_some_and(|line| line.stays && self.has_node(&line, node))
+    }
+
+    /// The line from the projection of a node on a segment to the node and beyond, `depths` times
+    /// its depth long; none without an element.
+    fn line(
+        &self,
+        segment: [usize; 2],
+        node: usize,
+        depths: f64,
+        at: impl Fn(usize) -> [f64; 2],
+    ) -> Option<Line> {
+        let first = self.left(segment)?;
+        let ([a, b], s) = (segment.map(&at), at(node));
+        let p = project(s, a, b);
+        let xi = p.xi.clamp(0.0, 1.0);
+        let from = [0, 1].map(|i| a[i] + xi * (b[i] - a[i]));
+        let to = [0, 1].map(|i| s[i] + (depths - 1.0) * p.gap * p.normal[i]);
+        let mut line = Line {
+            elements: Vec::new(),
+            stays: false,
+        };
+        let mut parts = vec![(first, self.part(first, from, to, &at)?)];
+        while let Some((element, [_, end])) = parts.pop() {
+            line.elements.push(element);
+            line.stays |= end >= 1.0;
+            for [p, q] in self.sides(element) {
+                if let Some(next) = self.left([q, p])
+                    && !line.elements.contains(&next)
+                    && parts.iter().all(|(listed, _)| *listed != next)
+                    && let Some(part) = self.part(next, from, to, &at)
+                    && part[0] <= end + INSIDE_ROUND_OFF
+                {
+                    parts.push((next, part));
+                }
+            }
+        }
+        Some(line)
+    }
+
+    /// The part of the line within an element, between 0 and 1.
+    fn part(
+        &self,
+        element: usize,
+        from: [f64; 2],
+        to: [f64; 2],
+        at: impl Fn(usize) -> [f64; 2],
+    ) -> Option<[f64; 2]> {
+        let [mut start, mut end] = [0.0_f64, 1.0_f64];
+        for side in self.sides(element) {
+            let side = project(from, at(side[0]), at(side[1]));
+            // distances outside the side at both ends of the line
+            let along = dot(difference(from, to), side.normal);
+            let (outside, most) = (side.gap, INSIDE_ROUND_OFF * side.length);
+            if outside > most && outside + along > most {
+                return None;
+            }
+            let meets = (most - outside) / along;
+            if outside > most {
+                start = start.max(meets);
+            } else if outside + along > most {
+                end = end.min(meets);
+            }
+        }
+        (start <= end).then_some([start, end])
+    }
+
+    /// Whether a line stays in the body and the node belongs to none of the elements on it.
+    fn is_foreign(&self, line: &Line, node: usize) -> bool {
+        line.stays && !self.has_node(line, node)
+    }
+
+    fn has_node(&self, line: &Line, node: usize) -> bool {
+        let has = |&element: &usize| self.sides(element).any(|[a, _]| a == node);
+        line.elements.iter().any(has)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_normal_points_out_of_the_body_on_the_left() {
+        // The top of a body runs from right to left, with the body below it on its left.
+        let p = project([1.0, 3.0], [4.0, 2.0], [0.0, 2.0]);
+        assert_eq!((p.xi, p.gap, p.length), (0.75, 1.0, 4.0));
+        assert_eq!((p.tangent, p.normal), ([-1.0, 0.0], [0.0, 1.0]));
+    }
+}
+
+#[cfg(test)]
+mod interior_tests {
+    use super::*;
+    use crate::model::ElementType;
+
+    /// A strip of two layers, one element each in its half, of the length 1 and the thickness `t`,
+    /// as triangles or not; its nodes are 0 to 8, row by row. Node 9 is anywhere.
+    fn strip(t: f64, triangles: bool) -> Mesh {
+        let mut mesh = Mesh::default();
+        for j in 0..3 {
+            mesh.coordinates
+                .extend((0..3).map(|i| [f64::from(i) / 2.0, t * f64::from(j) / 2.0]));
+        }
+        mesh.coordinates.push([0.0, 0.0]);
+        let mut add = |element_type, nodes: &[usize]| {
+            mesh.elements.push(Element {
+                label: 1,
+                element_type,
+                nodes: nodes.into(),
+                section: 0,
+            });
+        };
+        for k in [0, 1, 3, 4] {
+            let [a, b, c, d] = [k, k + 1, k + 4, k + 3];
+            if triangles {
+                add(ElementType::CPS3, &[a, b, c]);
+                add(ElementType::CPS3, &[a, c, d]);
+            } else {
+                add(ElementType::CPS4, &[a, b, c, d]);
+            }
+        }
+        mesh
+    }
+
+    #[test]
+    fn the_far_side_of_a_strip_is_part_of_it_however_thin() {
+        for t in [1.0, 1e-2, 1e-3, 1e-5] {
+            for triangles in [false, true] {
+                let mesh = strip(t, triangles);
+                let inside = Interior::new(&mesh, |_| true);
+                let at = |n: usize| mesh.coordinates[n];
+                for node in [3, 5, 6, 7, 8] {
+                    for segment in [[0, 1], [1, 2]] {
+                        let beyond = !(-1e-6..=1.0 + 1e-6)
+                            .contains(&project(at(node), at(segment[0]), at(segment[1])).xi);
+                        assert!(
+                            beyond || inside.joins(segment, node, at),
+                            "{t} {triangles} {node} {segment:?}"
+                        );
+                        assert!(beyond || !inside.contains(segment, node, at));
+                        assert!(!inside.takes_in(segment, node, at), "{t} {node}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_node_of_another_part_is_taken_in_by_the_nearer_side() {
+        let t = 1e-3;
+        for triangles in [false, true] {
+            let mut mesh = strip(t, triangles);
+            let mut place = |depth: f64| {
+                mesh.coordinates[9] = [0.3, t * depth];
+                let inside = Interior::new(&mesh, |_| true);
+                let at = |n: usize| mesh.coordinates[n];
+                assert!(!inside.joins([0, 1], 9, at));
+                let takes = inside.takes_in([0, 1], 9, at);
+                (takes, inside.contains([0, 1], 9, at))
+            };
+            assert_eq!(place(0.1), (true, true));
+            assert_eq!(place(0.45), (true, true));
+            assert_eq!(place(0.6), (false, true));
+            assert_eq!(place(1.0 + 1e-6), (false, false), "beyond the far side");
+        }
+    }
+
+    #[test]
+    fn a_line_that_leaves_the_body_does_not_come_back() {
+        // an arm above the strip, joined to it nowhere
+        let mut mesh = strip(0.1, false);
+        let first = mesh.coordinates.len();
+        for y in [0.2, 0.3] {
+            mesh.coordinates.extend([[0.0, y], [1.0, y]]);
+        }
+        mesh.elements.push(Element {
+            label: 1,
+            element_type: ElementType::CPS4,
+            nodes: vec![first, first + 1, first + 3, first + 2].into(),
+            section: 0,
+        });
+        mesh.coordinates[9] = [0.3, 0.25];
+        let inside = Interior::new(&mesh, |_| true);
+        let at = |n: usize| mesh.coordinates[n];
+        assert!(!inside.contains([0, 1], 9, at) && !inside.joins([0, 1], first, at));
+        assert!(inside.contains([first, first + 1], 9, at));
+    }
+
+    #[test]
+    fn all_is_behind_a_segment_without_an_element() {
+        let at = |n: usize| [[1.0, 0.0], [-1.0, 0.0], [0.0, -0.5]][n];
+        let inside = Interior::default();
+        assert!(inside.takes_in([0, 1], 2, at) && inside.contains([0, 1], 2, at));
+        assert!(!inside.joins([0, 1], 2, at));
+    }
+}

@@ -1,0 +1,35 @@
+//! Kinds of contact constraints: which kind is made for which target. Section 3 of docs/theory.md.
+
+use super::constraint::{Configurations, Constraint};
+use super::pairing::PairTarget;
+use super::{node_to_corner, node_to_segment};
+
+impl Constraint {
+    /// The constraint of a slave node at its target.
+    pub fn new(source: PairTarget, at: &Configurations) -> Self {
+        match source.target.corner {
+            None => node_to_segment::constraint(source, at),
+            Some(corner) => node_to_corner::constraint(source, corner, at),
+        }
+    }
+
+    /// The same constraint at the start, with the segment that holds the node there.
+    pub fn at_start(&self, start: &Configurations) -> Self {
+        let mut source = self.source;
+        if let Some([a, b]) = source.from.take() {
+            (source.nodes[1], source.nodes[2], source.nodes[3]) = (a, b, b);
+        }
+        Constraint {
+            mu: self.mu,
+            ..Constraint::new(source, start)
+        }
+    }
+
+    /// The same constraint between other configurations.
+    pub fn relinearized(&self, at: &Configurations) -> Self {
+        Constraint {
+            mu: self.mu,
+            ..Constraint::new(self.source, at)
+        }
+    }
+}

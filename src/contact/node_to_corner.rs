@@ -1,0 +1,118 @@
+//! Constraint of a slave node at a convex corner, from those of the two segments that meet there.
+//! Section 10 of docs/theory.md, Node against node.
+
+use super::constraint::{Configurations, Constraint, RowPair};
+use super::node_to_segment::segment_rows;
+use super::pairing::PairTarget;
+use super::targets::Corner;
+
+/// The constraint at the corner b between the segments from a to b and from b to c; nodes s, a, b, c.
+///
+/// With the weight w of the corner, i the segment before and j that behind it, eq. (10.3),
+///
+/// ```text
+/// g  = ((1 - w) g_i + w g_j)/m        m = |(1 - w) n_i + w n_j|
+/// Bn = ((1 - w) Bn_i + w Bn_j)/m      Bt = ((1 - w) Bt_i + w Bt_j)/m
+/// ```
+///
+/// whose normal has the length 1. The weights are constant in a pass, so that rows and gap stay
+/// exact differences.
+pub(super) fn constraint(source: PairTarget, corner: Corner, at: &Configurations) -> Constraint {
+    let [s, a, b, c] = source.nodes;
+    // g = ((1 - w) g_i + w g_j)/m, Bn and Bt likewise, eq. (10.3)
+    let (before, behind) = (segment_rows([s, a, b], at), segment_rows([s, b, c], at));
+    let (p, q) = (before.projection, behind.projection);
+    let [x, y] = [0, 1].map(|i| corner.blend(p.normal[i], q.normal[i]));
+    let m = x.hypot(y);
+    let blend = |row: [f64; 6], next: [f64; 6]| -> [f64; 8] {
+        let (row, next) = (at_first_nodes(row), at_last_nodes(next));
+        std::array::from_fn(|k| corner.blend(row[k], next[k]) / m)
+    };
+    let both = |p: RowPair<6>, q: RowPair<6>| RowPair {
+        normal: blend(p.normal, q.normal),
+        tangential: blend(p.tangential, q.tangential),
+    };
+    let rows = [
+        both(before.force, behind.force),
+        both(before.derivative, behind.derivative),
+    ];
+    let gap = corner.blend(p.gap, q.gap) / m;
+    Constraint::of_nodes(source, rows, (gap, p.length), at)
+}
+
+/// A row at s, a, b as one at s, a, b, c.
+fn at_first_nodes([sx, sy, ax, ay, bx, by]: [f64; 6]) -> [f64; 8] {
+    [sx, sy, ax, ay, bx, by, 0.0, 0.0]
+}
+
+/// A row at s, b, c as one at s, a, b, c.
+fn at_last_nodes([sx, sy, bx, by, cx, cy]: [f64; 6]) -> [f64; 8] {
+    [sx, sy, 0.0, 0.0, bx, by, cx, cy]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::RowForm;
+    use crate::contact::targets::ContactTarget;
+    use crate::model::Friction;
+
+    /// Corner of a roof, displaced, on which the node 0 has come to lie.
+    const ROOF: [[f64; 2]; 4] = [[0.3, 1.1], [2.0, 0.1], [0.3, 1.1], [-0.8, 0.9]];
+
+    fn at_corner(form: RowForm, u: &[f64]) -> Constraint {
+        let corner = Corner {
+            next: 1,
+            weight: 0.3,
+        };
+        let source = PairTarget {
+            slave_index: 0,
+            target: ContactTarget {
+                segment: 0,
+                corner: Some(corner),
+                from: None,
+            },
+            nodes: [0, 1, 2, 3],
+            from: None,
+            friction: Friction::constant(0.3),
+        };
+        let (x, u0) = (&ROOF, &[0.0; 8]);
+        Constraint::new(source, &Configurations { form, x, u0, u })
+    }
+
+    #[test]
+    fn end_rows_are_the_derivative_of_the_gap() {
+        let constraint = at_corner(RowForm::End, &[0.0; 8]);
+        assert!(constraint.gap.abs() < 1e-15);
+        assert_eq!(constraint.dofs[..], [0, 1, 2, 3, 4, 5, 6, 7]);
+        for k in 0..8 {
+            let moved = |by: f64| {
+                let mut u = [0.0; 8];
+                u[k] = by;
+                at_corner(RowForm::End, &u).gap
+            };
+            let quotient = (moved(1e-6) - moved(-1e-6)) / 2e-6;
+            let row = &constraint.derivative_rows().normal;
+            assert!((row[k] - quotient).abs() < 1e-9, "{k}");
+        }
+    }
+
+    #[test]
+    fn forces_on_both_bodies_are_opposite() {
+        let u = [0.1, -0.05, 0.02, 0.07, -0.03, 0.01, 0.04, -0.02];
+        for form in [RowForm::End, RowForm::DiscreteGradient] {
+            for force in [[1.0, 0.0], [0.0, 1.0]] {
+                let constraint = at_corner(form, &u);
+                let (mut sum, mut on_slave) = ([0.0; 2], [0.0; 2]);
+                for (node, [x, y]) in constraint.nodal_forces(force) {
+                    sum = [sum[0] + x, sum[1] + y];
+                    if node == 0 {
+                        on_slave = [x, y];
+                    }
+                }
+                assert!(on_slave[0].hypot(on_slave[1]) > 0.5);
+                assert!(sum[0].hypot(sum[1]) < 1e-15, "{form:?} {sum:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,305 @@
+//! Constraint of a slave node at a segment: projection, gap, force rows of the end configuration
+//! (section 3 of docs/theory.md) or as discrete gradients (section 7), and derivative rows.
+
+use super::constraint::{Configurations, Constraint, RowForm, RowPair};
+use super::geometry::{Projection, project};
+use super::pairing::PairTarget;
+use super::targets::{position_round_off, rise};
+use crate::vectors::{cross, difference, dot};
+
+/// A node on a segment, with its force rows and derivative rows.
+pub(super) struct SegmentRows {
+    pub projection: Projection,
+    pub force: RowPair<6>,
+    pub derivative: RowPair<6>,
+}
+
+/// Start and end of the increment: r = x_s - x_a, e = x_b - x_a and what follows from them.
+struct Arms {
+    r: [f64; 2],
+    e: [f64; 2],
+    /// |e|
+    length: f64,
+    /// pi1 = r.e
+    dot: f64,
+    /// pi2 = r x e
+    cross: f64,
+}
+
+/// The constraint of the slave node s at the segment from a to b; nodes s, a, b.
+pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint {
+    let [s, a, b, _] = source.nodes;
+    let SegmentRows {
+        projection,
+        mut force,
+        derivative,
+    } = segment_rows([s, a, b], at);
+    let kappa = tilt(&source, at);
+    if kappa != 0.0 {
+        force.normal = sum_of(1.0, &force.normal, kappa, &force.tangential);
+    }
+    let gap_and_scale = (projection.gap, projection.length);
+    Constraint::of_nodes(source, [force, derivative], gap_and_scale, at)
+}
+
+/// Tilt of the force on a node that has slid on from another segment, eq. (7.6), zero on all others:
+///
+/// ```text
+/// Bn <- Bn + kappa Bt,   kappa = (g0 - h0)/(Bt d),   h0 = max(min(g0, g0_i), 0)
+/// ```
+///
+/// Then Bn d = g1 - h0, so that contact puts no energy in.
+pub(super) fn tilt(source: &PairTarget, at: &Configurations) -> f64 {
+    let from = source.from.filter(|_| at.form == RowForm::DiscreteGradient);
+    let Some([i, j]) = from else { return 0.0 };
+    let [s, a, b, _] = source.nodes;
+    let [start, end] =
+        [at.start([s, a, b]), at.iterate([s, a, b])].map(|[s, a, b]| project(s, a, b));
+    let [s, i, j] = at.start([s, i, j]);
+    let rise = rise(&start, project(s, i, j).gap, s);
+    let slip = (start.length + end.length) / 2.0 * (end.xi - start.xi);
+    // a node that has not moved has no direction to be tilted in
+    match rise != 0.0 && slip.abs() > position_round_off(s) {
+        true => rise / slip,
+        false => 0.0,
+    }
+}
+
+/// Projection and rows of the node s on the segment from a to b.
+pub(super) fn segment_rows(nodes: [usize; 3], at: &Configurations) -> SegmentRows {
+    let (start, end) = (at.start(nodes), at.iterate(nodes));
+    let [s, a, b] = end;
+    let projection = project(s, a, b);
+    let (force, derivative) = match at.form {
+        RowForm::End => end_rows(&projection, start, end),
+        RowForm::DiscreteGradient => {
+            let (start, end) = (Arms::new(start), Arms::new(end));
+            (
+                discrete_gradient_rows(&start, &end),
+                derivatives_of_differences(&start, &end),
+            )
+        }
+    };
+    SegmentRows {
+        projection,
+        force,
+        derivative,
+    }
+}
+
+/// Force rows of the end configuration, eq. (3.4): e_n at s, -(1 - xi) e_n at a, -xi e_n at b; the
+/// same with e_t. The normal row is the derivative of the gap; the slip e_t.w has the derivative of
+/// eq. (3.9).
+fn end_rows(p: &Projection, start: [[f64; 2]; 3], end: [[f64; 2]; 3]) -> (RowPair<6>, RowPair<6>) {
+    let weights = [1.0, -(1.0 - p.xi), -p.xi];
+    let row = |e: [f64; 2]| -> [f64; 6] { std::array::from_fn(|k| weights[k / 2] * e[k % 2]) };
+    let (normal, tangential) = (row(p.normal), row(p.tangent));
+    // w = d_s - (1 - xi) d_a - xi d_b, d_e = d_b - d_a
+    let d = |node: usize, i: usize| end[node][i] - start[node][i];
+    let w = [0, 1].map(|i| d(0, i) + weights[1] * d(1, i) + weights[2] * d(2, i));
+    let stretch = [0, 1].map(|i| d(2, i) - d(1, i));
+    // Gt = Bt + (e_n.w)/l (e_n at b, -e_n at a) - (e_t.d_e) Gxi
+    // Gxi = (Bt + g/l (e_n at b, -e_n at a))/l, eq. (3.9)
+    let turn = nodal([0.0; 2], p.normal);
+    let (across, along) = (
+        dot(p.normal, w) / p.length,
+        dot(p.tangent, stretch) / p.length,
+    );
+    let slope = std::array::from_fn(|k| {
+        tangential[k] + across * turn[k] - along * (tangential[k] + p.gap / p.length * turn[k])
+    });
+    let force = RowPair { normal, tangential };
+    let derivative = RowPair {
+        normal,
+        tangential: slope,
+    };
+    (force, derivative)
+}
+
+/// Discrete gradients between the start and the end of the increment.
+///
+/// The gap g = pi2/sqrt(pi3) and the projection xi = pi1/pi3 are functions of pi1 = r.e,
+/// pi2 = r x e, pi3 = e.e, eq. (7.1), quadratic in the positions: their gradients at the mid
+/// configuration are exact difference quotients.
+fn discrete_gradient_rows(start: &Arms, end: &Arms) -> RowPair<6> {
+    let mean = |p: [f64; 2], q: [f64; 2]| [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0];
+    let (l0, l1) = (start.length, end.length);
+    let [pi1, pi2, pi3] = gradients(mean(start.r, end.r), mean(start.e, end.e));
+
+    // Bn = alpha grad pi2 + beta grad pi3, alpha = (1/l0 + 1/l1)/2,
+    // beta = -(pi2_0 + pi2_1)/2 / (l0 l1 (l0 + l1)), eq. (7.2)
+    let alpha = (1.0 / l0 + 1.0 / l1) / 2.0;
+    let beta = -(start.cross + end.cross) / 2.0 / (l0 * l1 * (l0 + l1));
+
+    // Bt = gamma grad pi1 + delta grad pi3, gamma = L (1/l0² + 1/l1²)/2,
+    // delta = -L (pi1_0 + pi1_1)/2 / (l0² l1²), L = (l0 + l1)/2, eq. (7.3)
+    let length = (l0 + l1) / 2.0;
+    let gamma = length * (1.0 / (l0 * l0) + 1.0 / (l1 * l1)) / 2.0;
+    let delta = -length * (start.dot + end.dot) / 2.0 / (l0 * l0 * l1 * l1);
+    RowPair {
+        normal: sum_of(alpha, &pi2, beta, &pi3),
+        tangential: sum_of(gamma, &pi1, delta, &pi3),
+    }
+}
+
+/// Derivatives of the gap g1 and the slip L (xi1 - xi0) with respect to the end.
+fn derivatives_of_differences(start: &Arms, end: &Arms) -> RowPair<6> {
+    let (l0, l1) = (start.length, end.length);
+    let [pi1, pi2, pi3] = gradients(end.r, end.e);
+    // Gn = grad pi2/l1 - pi2_1/(2 l1³) grad pi3, eq. (7.4)
+    let normal = sum_of(1.0 / l1, &pi2, -end.cross / (2.0 * l1.powi(3)), &pi3);
+    // Gt = L (grad pi1/l1² - pi1_1/l1⁴ grad pi3) + (xi1 - xi0)/(4 l1) grad pi3, eq. (7.5)
+    let length = (l0 + l1) / 2.0;
+    let moved = end.dot / (l1 * l1) - start.dot / (l0 * l0);
+    let of_length = -length * end.dot / l1.powi(4) + moved / (4.0 * l1);
+    let tangential = sum_of(length / (l1 * l1), &pi1, of_length, &pi3);
+    RowPair { normal, tangential }
+}
+
+impl Arms {
+    /// The arms of the positions of s, a and b.
+    fn new([s, a, b]: [[f64; 2]; 3]) -> Self {
+        let (r, e) = (difference(a, s), difference(a, b));
+        Arms {
+            r,
+            e,
+            length: dot(e, e).sqrt(),
+            dot: dot(r, e),
+            cross: cross(r, e),
+        }
+    }
+}
+
+/// Gradients of pi1 = r.e, pi2 = r x e and pi3 = e.e at s, a and b.
+fn gradients(r: [f64; 2], e: [f64; 2]) -> [[f64; 6]; 3] {
+    let pi1 = nodal(e, r);
+    let pi2 = nodal([e[1], -e[0]], [-r[1], r[0]]);
+    let pi3 = nodal([0.0; 2], [2.0 * e[0], 2.0 * e[1]]);
+    [pi1, pi2, pi3]
+}
+
+/// p row + q other
+fn sum_of(p: f64, row: &[f64; 6], q: f64, other: &[f64; 6]) -> [f64; 6] {
+    std::array::from_fn(|k| p * row[k] + q * other[k])
+}
+
+/// From parts with respect to (r, e) to the nodes: s: r-part, a: -(r-part) - (e-part), b: e-part.
+fn nodal(r: [f64; 2], e: [f64; 2]) -> [f64; 6] {
+    [r[0], r[1], -r[0] - e[0], -r[1] - e[1], e[0], e[1]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::constraint::Rows;
+    use super::*;
+    use crate::contact::geometry::position;
+    use crate::contact::targets::ContactTarget;
+    use crate::model::Friction;
+
+    const X: [[f64; 2]; 3] = [[0.7, 0.4], [2.0, 0.1], [-0.5, -0.2]];
+    const U0: [f64; 6] = [0.1, -0.05, 0.02, 0.07, -0.03, 0.01];
+    const U1: [f64; 6] = [-0.4, -0.35, 0.3, 0.2, 0.25, -0.3];
+
+    fn between(form: RowForm, u0: &[f64], u: &[f64]) -> Constraint {
+        let source = PairTarget {
+            slave_index: 0,
+            target: ContactTarget::face(0),
+            nodes: [0, 1, 2, 2],
+            from: None,
+            friction: Friction::constant(0.3),
+        };
+        let x = &X;
+        Constraint::new(source, &Configurations { form, x, u0, u })
+    }
+
+    fn projected(u: &[f64]) -> Projection {
+        project(position(&X, u, 0), position(&X, u, 1), position(&X, u, 2))
+    }
+
+    #[test]
+    fn derivative_rows_are_the_derivatives_of_gap_and_slip() {
+        for form in [RowForm::End, RowForm::DiscreteGradient] {
+            let constraint = between(form, &U0, &U1);
+            assert_eq!(constraint.gap, projected(&U1).gap);
+            assert_eq!(constraint.dofs[..], [0, 1, 2, 3, 4, 5]);
+            let rows = constraint.derivative_rows();
+            for k in 0..6 {
+                let moved = |by: f64| {
+                    let mut u = U1;
+                    u[k] += by;
+                    between(form, &U0, &u)
+                };
+                let (p, q) = (moved(1e-6), moved(-1e-6));
+                let gap = (p.gap - q.gap) / 2e-6;
+                let slip = (p.slip - q.slip) / 2e-6;
+                assert!((rows.normal[k] - gap).abs() < 1e-9, "{form:?} {k}");
+                assert!((rows.tangential[k] - slip).abs() < 1e-9, "{form:?} {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn discrete_gradients_are_exact_differences() {
+        let constraint = between(RowForm::DiscreteGradient, &U0, &U1);
+        let (start, end) = (projected(&U0), projected(&U1));
+        assert!((constraint.start_gap - start.gap).abs() < 1e-14);
+        let length = (start.length + end.length) / 2.0;
+        assert!((constraint.slip - length * (end.xi - start.xi)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_node_that_has_come_back_is_not_tilted_by_round_off() {
+        // s lies at the corner a between the segments from i to a and from a to b, but for round-off
+        let rise_and_slip = |height: f64, slip: f64| {
+            let x = [[0.0, height], [0.0; 2], [-1.0, 0.0], [1.0, 0.0]];
+            let u = [-slip, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+            let source = PairTarget {
+                slave_index: 0,
+                target: ContactTarget::face(0),
+                nodes: [0, 1, 2, 2],
+                from: Some([3, 1]),
+                friction: Friction::constant(0.3),
+            };
+            let form = RowForm::DiscreteGradient;
+            let u0 = &[0.0; 8];
+            let x = &x;
+            tilt(&source, &Configurations { form, x, u0, u: &u })
+        };
+        // a gap is no rise, an overlap is
+        assert_eq!(rise_and_slip(1e-3, 1e-2), 0.0);
+        assert!((rise_and_slip(-1e-3, 1e-2) + 0.1).abs() < 1e-15);
+        for slip in [0.0, 1e-16, -1e-12, 1e-9] {
+            assert_eq!(rise_and_slip(-1e-16, slip), 0.0, "{slip:e}");
+        }
+    }
+
+    #[test]
+    fn discrete_gradients_keep_momentum() {
+        let constraint = between(RowForm::DiscreteGradient, &U0, &U1);
+        let Rows { normal, tangential } = &constraint.force_rows;
+        for row in [normal, tangential] {
+            assert!((row[0] + row[2] + row[4]).abs() < 1e-15);
+            assert!((row[1] + row[3] + row[5]).abs() < 1e-15);
+            let moment: f64 = (0..3)
+                .map(|n| {
+                    let x = position(&X, &U0, n)[0] / 2.0 + position(&X, &U1, n)[0] / 2.0;
+                    let y = position(&X, &U0, n)[1] / 2.0 + position(&X, &U1, n)[1] / 2.0;
+                    x * row[2 * n + 1] - y * row[2 * n]
+                })
+                .sum();
+            assert!(moment.abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn both_forms_agree_when_nothing_moves() {
+        let rows = |form| between(form, &U1, &U1).force_rows;
+        let (p, q) = (rows(RowForm::End), rows(RowForm::DiscreteGradient));
+        for (p, q) in p.normal.iter().zip(&q.normal) {
+            assert!((p - q).abs() < 1e-15);
+        }
+        // The tangents agree at the slave node; on the segment they differ by the gap.
+        assert!((p.tangential[0] - q.tangential[0]).abs() < 1e-15);
+        assert!((p.tangential[1] - q.tangential[1]).abs() < 1e-15);
+    }
+}

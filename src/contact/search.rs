@@ -1,0 +1,343 @@
+//! Candidate search between slave nodes and segments, after Zhong & Nilsson (1989), with lists
+//! that stay valid over several increments. Section 10 of docs/theory.md, Territories.
+
+use super::geometry::{ContactSurfaces, position};
+use super::tolerances::{
+    PAIRING_REACH, PROJECTION_BEYOND_ENDS, SEARCH_MARGIN, SEARCH_MARGIN_PER_MOTION,
+};
+use crate::vectors::{Circle, CircleTree, difference, dot, length};
+
+/// A segment that a slave node may pair with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate {
+    /// Index of the segment in its contact.
+    pub segment: usize,
+    /// Distance up to which it pairs with the node (length).
+    pub reach: f64,
+}
+
+/// All segments of a contact at any distance: the exhaustive search.
+pub fn all_segments(surfaces: &ContactSurfaces) -> impl Iterator<Item = Candidate> + Clone {
+    (0..surfaces.segments.len()).map(|segment| Candidate {
+        segment,
+        reach: f64::INFINITY,
+    })
+}
+
+/// Contact search with hierarchies of circular territories.
+///
+/// Each slave node and each segment has a circle that is grown by a margin, and each contact two
+/// hierarchies of such circles. Overlapping circles are candidates; the lists are valid until an
+/// entity has moved further than its margin. Positions and motions are those relative to the mean of the
+/// contact's nodes: what two bodies have in common brings no pair together.
+pub struct Search<'m> {
+    x: &'m [[f64; 2]],
+    territories: Vec<Territory<'m>>,
+    searches: usize,
+}
+
+impl<'m> Search<'m> {
+    /// A search among some contacts of nodes with the reference coordinates `x`.
+    pub fn new(contacts: &'m [ContactSurfaces], x: &'m [[f64; 2]]) -> Self {
+        Search {
+            x,
+            territories: contacts.iter().map(|c| Territory::new(c, x)).collect(),
+            searches: 0,
+        }
+    }
+
+    /// Starts an increment of length `dt` with the velocities `v`: the reach of a pair grows by the
+    /// displacements dt |v| of its node and its segment.
+    pub fn start(&mut self, v: &[f64], dt: f64) {
+        for territory in &mut self.territories {
+            let v = territory.about_mean(|node| [v[2 * node], v[2 * node + 1]]);
+            for side in [&mut territory.slaves, &mut territory.segments] {
+                side.set_travel(|node| dt * length(v(node)));
+            }
+        }
+    }
+
+    /// Searches the contacts whose lists are not valid for the displacements `u`.
+    pub fn cover(&mut self, u: &[f64]) {
+        let x = self.x;
+        for territory in &mut self.territories {
+            let at = territory.about_mean(|node| position(x, u, node));
+            if !territory.covers(&at) {
+                territory.search(at);
+                self.searches += 1;
+            }
+        }
+    }
+
+    /// Searches the contacts whose lists are not valid on the whole straight path from `u0` to
+    /// `u1`.
+    pub fn cover_path(&mut self, u0: &[f64], u1: &[f64]) {
+        let x = self.x;
+        for territory in &mut self.territories {
+            let [at_start, at_end] =
+                [u0, u1].map(|u| territory.about_mean(move |node| position(x, u, node)));
+            if !territory.reaches(&at_start) || !territory.reaches(&at_end) {
+                territory.extend_travel(&at_start, &at_end);
+                territory.search(|node| {
+                    let (p, q) = (at_start(node), at_end(node));
+                    [0, 1].map(|i| p[i] + (q[i] - p[i]) / 2.0)
+                });
+                self.searches += 1;
+            }
+        }
+    }
+
+    /// The contacts with their candidates.
+    pub fn territories(&self) -> &[Territory<'m>] {
+        &self.territories
+    }
+
+    /// The slave nodes of all contacts with their candidates, in the order of their numbers.
+    pub fn slaves(&self) -> impl Iterator<Item = ListedSlave<'_, 'm>> {
+        let of_contact = |territory: &'_ Territory<'m>| 0..territory.contact.slaves.len();
+        let territories = self.territories.iter();
+        let all = territories.flat_map(move |t| of_contact(t).map(move |slave| (t, slave)));
+        all.enumerate()
+            .map(|(slave_index, (territory, slave))| ListedSlave {
+                slave_index,
+                surfaces: territory.contact,
+                slave,
+                territory,
+            })
+    }
+
+    /// Reference coordinates of the nodes.
+    pub fn coordinates(&self) -> &'m [[f64; 2]] {
+        self.x
+    }
+
+    /// Number of searches so far, of every contact on its own.
+    pub fn searches(&self) -> usize {
+        self.searches
+    }
+}
+
+/// A slave node with the segments that the search lists for it.
+#[derive(Clone, Copy)]
+pub struct ListedSlave<'a, 'm> {
+    /// Number of the slave node among those of all contacts.
+    pub slave_index: usize,
+    /// Surfaces of its contact.
+    pub surfaces: &'m ContactSurfaces,
+    /// Number of the slave node in its contact.
+    pub slave: usize,
+    territory: &'a Territory<'m>,
+}
+
+impl<'a> ListedSlave<'a, '_> {
+    /// The node.
+    pub fn node(&self) -> usize {
+        self.surfaces.slaves[self.slave]
+    }
+
+    /// Its candidates, with increasing segments.
+    pub fn candidates(&self) -> impl Iterator<Item = Candidate> + Clone + use<'a> {
+        self.territory.candidates(self.slave)
+    }
+}
+
+/// The candidates of one contact.
+pub struct Territory<'m> {
+    contact: &'m ContactSurfaces,
+    /// Distance up to which a node at rest pairs with a segment at rest (length).
+    reach: f64,
+    /// Margin of an entity at rest (length).
+    skin: f64,
+    slaves: Side,
+    segments: Side,
+    /// Segments of all slaves, one after the other, increasing for each.
+    candidates: Vec<u32>,
+    /// Where the list of each slave starts, and the end of the last.
+    starts: Vec<usize>,
+    /// The same as pairs, in the order in which they are found.
+    found: Vec<[u32; 2]>,
+}
+
+impl<'m> Territory<'m> {
+    fn new(contact: &'m ContactSurfaces, x: &[[f64; 2]]) -> Self {
+        let lengths = || {
+            let segments = contact.segments.iter();
+            segments.map(|&[a, b]| distance(x[a], x[b]))
+        };
+        let mean = lengths().sum::<f64>() / contact.segments.len().max(1) as f64;
+        Territory {
+            contact,
+            reach: PAIRING_REACH * mean,
+            skin: SEARCH_MARGIN * mean,
+            slaves: Side::new(contact.slaves.iter().map(|&s| [s, s]).collect()),
+            segments: Side::new(contact.segments.clone()),
+            candidates: Vec::new(),
+            starts: Vec::new(),
+            found: Vec::new(),
+        }
+    }
+
+    /// The surfaces.
+    pub fn surfaces(&self) -> &'m ContactSurfaces {
+        self.contact
+    }
+
+    /// Candidates of the slave node number `k` of the contact, with increasing segments.
+    pub fn candidates(&self, k: usize) -> impl Iterator<Item = Candidate> + Clone + use<'_> {
+        let list = &self.candidates[self.starts[k]..self.starts[k + 1]];
+        list.iter().map(move |&i| Candidate {
+            segment: i as usize,
+            reach: self.reach(k, i as usize),
+        })
+    }
+
+    /// Positions or velocities of nodes less their mean over the ends of all slaves and segments.
+    fn about_mean<F: Fn(usize) -> [f64; 2]>(&self, of: F) -> impl Fn(usize) -> [f64; 2] + use<F> {
+        let ends = || self.slaves.ends.iter().chain(&self.segments.ends).flatten();
+        let sum = ends()
+            .map(|&node| of(node))
+            .fold([0.0; 2], |sum, at| [sum[0] + at[0], sum[1] + at[1]]);
+        let count = (2 * (self.slaves.ends.len() + self.segments.ends.len())).max(1) as f64;
+        let mean = sum.map(|sum| sum / count);
+        move |node| difference(mean, of(node))
+    }
+
+    /// Distance up to which the slave node number `k` pairs with a segment (length).
+    pub fn reach(&self, k: usize, segment: usize) -> f64 {
+        self.reach + self.slaves.travel[k] + self.segments.travel[segment]
+    }
+
+    /// Whether the lists are valid at the given positions for the travel of the increment: the
+    /// distance of every entity from its position at the search plus its travel is within its
+    /// margin.
+    fn covers(&self, at: impl Fn(usize) -> [f64; 2]) -> bool {
+        self.slaves.is_within(&at, true) && self.segments.is_within(&at, true)
+    }
+
+    /// Whether the lists hold all pairs that may touch at the given positions.
+    fn reaches(&self, at: impl Fn(usize) -> [f64; 2]) -> bool {
+        self.slaves.is_within(&at, false) && self.segments.is_within(&at, false)
+    }
+
+    fn extend_travel(&mut self, from: impl Fn(usize) -> [f64; 2], to: impl Fn(usize) -> [f64; 2]) {
+        for side in [&mut self.slaves, &mut self.segments] {
+            side.extend_travel(|node| distance(from(node), to(node)));
+        }
+    }
+
+    /// Lists the segments that each slave node can come near while all entities are within their
+    /// margins.
+    fn search(&mut self, at: impl Fn(usize) -> [f64; 2]) {
+        self.slaves.draw(&at, self.skin, 0.0);
+        self.segments.draw(&at, self.skin, self.reach);
+        let Self {
+            contact,
+            candidates,
+            starts,
+            found,
+            ..
+        } = self;
+        found.clear();
+        self.slaves.circles.overlaps(&self.segments.circles, found);
+        found.retain(|&[k, i]| !contact.segments[i as usize].contains(&contact.slaves[k as usize]));
+
+        starts.clear();
+        starts.resize(contact.slaves.len() + 1, 0);
+        for [k, _] in &*found {
+            starts[*k as usize + 1] += 1;
+        }
+        for k in 0..contact.slaves.len() {
+            starts[k + 1] += starts[k];
+        }
+        let mut next = starts.clone();
+        candidates.resize(found.len(), 0);
+        for [k, i] in found {
+            let place = &mut next[*k as usize];
+            candidates[*place] = *i;
+            *place += 1;
+        }
+        for list in starts.windows(2) {
+            candidates[list[0]..list[1]].sort_unstable();
+        }
+    }
+}
+
+/// The entities of one side of a contact by their end nodes; both ends of a slave node are itself.
+struct Side {
+    ends: Vec<[usize; 2]>,
+    /// Distance that each may travel in the increment (length).
+    travel: Vec<f64>,
+    /// Positions of the ends at the last search; empty before the first.
+    reference: Vec<[[f64; 2]; 2]>,
+    /// Distance that the ends may move from there (length).
+    margin: Vec<f64>,
+    /// Their territories at the last search.
+    circles: CircleTree,
+}
+
+impl Side {
+    fn new(ends: Vec<[usize; 2]>) -> Self {
+        Side {
+            travel: vec![0.0; ends.len()],
+            reference: Vec::new(),
+            margin: Vec::new(),
+            circles: CircleTree::default(),
+            ends,
+        }
+    }
+
+    fn set_travel(&mut self, travel: impl Fn(usize) -> f64) {
+        for (own, [a, b]) in self.travel.iter_mut().zip(&self.ends) {
+            *own = travel(*a).max(travel(*b));
+        }
+    }
+
+    fn extend_travel(&mut self, travel: impl Fn(usize) -> f64) {
+        for (own, [a, b]) in self.travel.iter_mut().zip(&self.ends) {
+            *own = own.max(travel(*a)).max(travel(*b));
+        }
+    }
+
+    /// Whether the ends are within the margins, with the travel of the increment still ahead if
+    /// wanted.
+    fn is_within(&self, at: impl Fn(usize) -> [f64; 2], with_travel: bool) -> bool {
+        self.reference.len() == self.ends.len()
+            && (0..self.ends.len()).all(|i| {
+                let left = self.margin[i] - if with_travel { self.travel[i] } else { 0.0 };
+                let is_near = |k: usize| {
+                    let (p, q) = (self.reference[i][k], at(self.ends[i][k]));
+                    let d = difference(p, q);
+                    dot(d, d) <= left * left
+                };
+                let [a, b] = self.ends[i];
+                left >= 0.0 && is_near(0) && (a == b || is_near(1))
+            })
+    }
+
+    /// Takes the positions as the reference; circles about the entities, grown by their margins and
+    /// by `more`.
+    fn draw(&mut self, at: impl Fn(usize) -> [f64; 2], skin: f64, more: f64) {
+        self.reference.clear();
+        self.reference
+            .extend(self.ends.iter().map(|ends| ends.map(&at)));
+        self.margin.clear();
+        // m = l/2 + 2 w, eq. (10.2), w the travel
+        self.margin.extend(
+            self.travel
+                .iter()
+                .map(|travel| skin + SEARCH_MARGIN_PER_MOTION * travel),
+        );
+        // length/2 + m (+ R of a segment), eq. (10.1)
+        let circle = |([a, b], margin): (&[[f64; 2]; 2], &f64)| Circle {
+            centre: [0, 1].map(|i| a[i] + (b[i] - a[i]) / 2.0),
+            // a node pairs a little beyond the ends as well
+            radius: (distance(*a, *b) / 2.0 + margin + more) * (1.0 + 4.0 * PROJECTION_BEYOND_ENDS),
+        };
+        self.circles
+            .rebuild(self.reference.iter().zip(&self.margin).map(circle));
+    }
+}
+
+fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
+    length(difference(p, q))
+}

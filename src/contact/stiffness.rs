@@ -1,0 +1,306 @@
+//! Stiffness of a closed constraint in K*: the change of its nodal forces with the iterate, and what
+//! holds it closed. Section 4 of docs/theory.md.
+//!
+//! # Derivation
+//!
+//! With z = (r, e), r = x_s - x_a, e = x_b - x_a, the products of eq. (7.1) are pi_i = z.H_i z/2 with
+//! constant H_i, and grad pi_i = H_i z. Of the discrete gradients Bn = alpha H2 zm + beta H3 zm and
+//! Bt = gamma H1 zm + delta H3 zm, eq. (7.2), eq. (7.3), zm = (z0 + z1)/2, the derivatives with respect
+//! to the end are (rows: force; columns: d of the end)
+//!
+//! ```text
+//! dBn = (alpha H2 + beta H3)/2 + H2 zm dalpha + H3 zm dbeta
+//! dBt = (gamma H1 + delta H3)/2 + H1 zm dgamma + H3 zm ddelta
+//! ```
+//!
+//! Of the end rows Bn = (e_n, -xi e_n) and Bt = (e_t, -xi e_t), eq. (3.4), with de_n = -e_t (e_n.de)/l
+//! and de_t = e_n (e_n.de)/l,
+//!
+//! ```text
+//! dBn = -(e_t, -xi e_t) (e_n.de)/l - (0, e_n) dxi
+//! dBt =  (e_n, -xi e_n) (e_n.de)/l - (0, e_t) dxi
+//! dxi = (e_t.dr - xi e_t.de)/l + g (e_n.de)/l²
+//! ```
+
+use nalgebra::{DMatrix, DVector, Matrix4, Matrix6, SMatrix, Vector4};
+
+use super::constraint::{Configurations, Constraint, RowForm};
+use super::geometry::project;
+use super::node_to_segment::tilt;
+
+/// Places of the dofs of s, a and b, or s, b and c, among those of the constraint.
+const PLACES: [[usize; 6]; 2] = [[0, 1, 2, 3, 4, 5], [0, 1, 4, 5, 6, 7]];
+
+impl Constraint {
+    /// Contact stiffness Kc of the contact force, eq. (4.12), over the dofs of the constraint
+    /// (force/length). The weight of a corner and the length of its normal are those of the iterate.
+    pub fn stiffness(&self, [pn, pt]: [f64; 2], at: &Configurations) -> DMatrix<f64> {
+        let [s, a, b, c] = self.source.nodes;
+        let mut k = DMatrix::zeros(self.dofs.len(), self.dofs.len());
+        match self.source.target.corner {
+            None => {
+                // the force of a tilted row is Bn^T Pn + Bt^T (Pt + kappa Pn), eq. (7.6)
+                let kappa = tilt(&self.source, at);
+                add_block(&mut k, &changes([s, a, b], [pn, pt + kappa * pn], at), 0);
+                if kappa != 0.0 {
+                    // dkappa = -kappa/s Gt
+                    let column = |row: &[f64]| DVector::from_column_slice(row);
+                    let slip = column(&self.derivative_rows().tangential);
+                    let force = column(&self.force_rows.tangential);
+                    k -= force * slip.transpose() * (pn * kappa / self.slip);
+                }
+            }
+            Some(corner) => {
+                let normals = [[s, a, b], [s, b, c]].map(|nodes| {
+                    let [s, a, b] = at.iterate(nodes);
+                    project(s, a, b).normal
+                });
+                let [x, y] = [0, 1].map(|i| corner.blend(normals[0][i], normals[1][i]));
+                let blended = |weight: f64| [pn, pt].map(|p| weight * p / x.hypot(y));
+                add_block(
+                    &mut k,
+                    &changes([s, a, b], blended(corner.blend(1.0, 0.0)), at),
+                    0,
+                );
+                add_block(
+                    &mut k,
+                    &changes([s, b, c], blended(corner.blend(0.0, 1.0)), at),
+                    1,
+                );
+            }
+        }
+        (&k + k.transpose()) / 2.0
+    }
+
+    /// Gn^T Gn, and Gt^T Gt where the constraint `sticks`, eq. (4.13), over its dofs
+    /// (dimensionless).
+    pub fn hold(&self, sticks: bool) -> DMatrix<f64> {
+        let rows = self.derivative_rows();
+        let normal = DVector::from_column_slice(&rows.normal);
+        let tangential = DVector::from_column_slice(&rows.tangential);
+        let held = &normal * normal.transpose();
+        match sticks {
+            true => held + &tangential * tangential.transpose(),
+            false => held,
+        }
+    }
+}
+
+/// Adds the block of three nodes to the matrix over the dofs of a constraint.
+fn add_block(k: &mut DMatrix<f64>, block: &Matrix6<f64>, segment: usize) {
+    let places = PLACES[segment];
+    for (j, &column) in places.iter().enumerate() {
+        for (i, &row) in places.iter().enumerate() {
+            k[(row, column)] += block[(i, j)];
+        }
+    }
+}
+
+/// d(Bn^T Pn + Bt^T Pt) of a node s on the segment from a to b, with respect to the end, over s, a
+/// and b.
+fn changes(nodes: [usize; 3], force: [f64; 2], at: &Configurations) -> Matrix6<f64> {
+    let (start, end) = (at.start(nodes), at.iterate(nodes));
+    let k = match at.form {
+        RowForm::End => changes_of_end_rows(end, force),
+        RowForm::DiscreteGradient => changes_of_discrete_gradients(start, end, force),
+    };
+    // s: r-part, a: -(r-part) - (e-part), b: e-part
+    #[rustfmt::skip]
+    let nodal = SMatrix::<f64, 6, 4>::from_row_slice(&[
+         1.0,  0.0,  0.0,  0.0,
+         0.0,  1.0,  0.0,  0.0,
+        -1.0,  0.0, -1.0,  0.0,
+         0.0, -1.0,  0.0, -1.0,
+         0.0,  0.0,  1.0,  0.0,
+         0.0,  0.0,  0.0,  1.0,
+    ]);
+    nodal * k * nodal.transpose()
+}
+
+/// Over (r, e), of the rows of the end configuration.
+fn changes_of_end_rows([s, a, b]: [[f64; 2]; 3], [pn, pt]: [f64; 2]) -> Matrix4<f64> {
+    let p = project(s, a, b);
+    let row = |e: [f64; 2]| Vector4::new(e[0], e[1], -p.xi * e[0], -p.xi * e[1]);
+    let of_e = |e: [f64; 2]| Vector4::new(0.0, 0.0, e[0], e[1]);
+    // (e_n.de)/l and dxi = (e_t.dr - xi e_t.de)/l + g (e_n.de)/l²
+    let turn = of_e(p.normal) / p.length;
+    let dxi = row(p.tangent) / p.length + turn * (p.gap / p.length);
+    let normal = -row(p.tangent) * turn.transpose() - of_e(p.normal) * dxi.transpose();
+    let tangential = row(p.normal) * turn.transpose() - of_e(p.tangent) * dxi.transpose();
+    normal * pn + tangential * pt
+}
+
+/// Over (r, e), of the discrete gradients between the start and the end. With L = (l0 + l1)/2,
+/// D = l0 l1 (l0 + l1), the means p1, p2 of pi1, pi2 and dl = H3 z1/(2 l1):
+///
+/// ```text
+/// dalpha = -dl/(2 l1²)
+/// dbeta  = -H2 z1/(2 D) + p2 l0 (l0 + 2 l1)/D² dl
+/// dgamma = [(1/l0² + 1/l1²)/4 - L/l1³] dl
+/// ddelta = -L H1 z1/(2 (l0 l1)²) + [2 L p1/(l0² l1³) - p1/(2 (l0 l1)²)] dl
+/// ```
+fn changes_of_discrete_gradients(
+    start: [[f64; 2]; 3],
+    end: [[f64; 2]; 3],
+    [pn, pt]: [f64; 2],
+) -> Matrix4<f64> {
+    let arms =
+        |[s, a, b]: [[f64; 2]; 3]| Vector4::new(s[0] - a[0], s[1] - a[1], b[0] - a[0], b[1] - a[1]);
+    let (z0, z1) = (arms(start), arms(end));
+    let (zm, [h1, h2, h3]) = ((z0 + z1) / 2.0, products());
+    let product = |h: &Matrix4<f64>, z: &Vector4<f64>| z.dot(&(h * z)) / 2.0;
+    let [l0, l1] = [z0, z1].map(|z| product(&h3, &z).sqrt());
+    let [p1, p2] = [h1, h2].map(|h| (product(&h, &z0) + product(&h, &z1)) / 2.0);
+    let (l, d, squared) = ((l0 + l1) / 2.0, l0 * l1 * (l0 + l1), (l0 * l1).powi(2));
+    let (inverse, inverse_squares) = (1.0 / l0 + 1.0 / l1, 1.0 / (l0 * l0) + 1.0 / (l1 * l1));
+    let dl = h3 * z1 / (2.0 * l1);
+
+    // Bn = alpha grad pi2 + beta grad pi3, eq. (7.2)
+    let (alpha, beta) = (inverse / 2.0, -p2 / d);
+    let dalpha = -dl / (2.0 * l1 * l1);
+    let dbeta = -h2 * z1 / (2.0 * d) + dl * (p2 * l0 * (l0 + 2.0 * l1) / (d * d));
+    let normal =
+        (h2 * alpha + h3 * beta) / 2.0 + h2 * zm * dalpha.transpose() + h3 * zm * dbeta.transpose();
+
+    // Bt = gamma grad pi1 + delta grad pi3, eq. (7.3)
+    let (gamma, delta) = (l * inverse_squares / 2.0, -l * p1 / squared);
+    let dgamma = dl * (inverse_squares / 4.0 - l / l1.powi(3));
+    let ddelta = -h1 * z1 * (l / (2.0 * squared))
+        + dl * (2.0 * l * p1 / (squared * l1) - p1 / (2.0 * squared));
+    let tangential = (h1 * gamma + h3 * delta) / 2.0
+        + h1 * zm * dgamma.transpose()
+        + h3 * zm * ddelta.transpose();
+    normal * pn + tangential * pt
+}
+
+/// H1, H2 and H3 of pi1 = r.e, pi2 = r x e and pi3 = e.e.
+fn products() -> [Matrix4<f64>; 3] {
+    #[rustfmt::skip]
+    let h1 = Matrix4::new(
+        0.0, 0.0, 1.0, 0.0,
+        0.0, 0.0, 0.0, 1.0,
+        1.0, 0.0, 0.0, 0.0,
+        0.0, 1.0, 0.0, 0.0,
+    );
+    #[rustfmt::skip]
+    let h2 = Matrix4::new(
+        0.0,  0.0,  0.0, 1.0,
+        0.0,  0.0, -1.0, 0.0,
+        0.0, -1.0,  0.0, 0.0,
+        1.0,  0.0,  0.0, 0.0,
+    );
+    [
+        h1,
+        h2,
+        Matrix4::from_diagonal(&Vector4::new(0.0, 0.0, 2.0, 2.0)),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::pairing::PairTarget;
+    use crate::contact::targets::{ContactTarget, Corner};
+    use crate::model::Friction;
+
+    /// A node at a roof, and the foot of the segment before it.
+    const X: [[f64; 2]; 5] = [[0.7, 0.4], [2.0, 0.1], [0.3, 0.9], [-0.8, 0.7], [3.0, -0.6]];
+    const U0: [f64; 10] = [0.1, -0.05, 0.02, 0.07, -0.03, 0.01, 0.0, 0.04, 0.02, 0.01];
+    const U1: [f64; 10] = [0.3, 0.5, 0.3, 0.2, 0.25, -0.3, 0.1, -0.1, 0.05, -0.02];
+    const FORCE: [f64; 2] = [1.3, -0.4];
+    const FORMS: [RowForm; 2] = [RowForm::End, RowForm::DiscreteGradient];
+
+    fn target(target: ContactTarget, nodes: [usize; 4], from: Option<[usize; 2]>) -> PairTarget {
+        PairTarget {
+            slave_index: 0,
+            target,
+            nodes,
+            from,
+            friction: Friction::constant(0.3),
+        }
+    }
+
+    fn between(form: RowForm, u: &[f64]) -> Configurations<'_> {
+        Configurations {
+            form,
+            x: &X,
+            u0: &U0,
+            u,
+        }
+    }
+
+    /// Central differences of the nodal forces over the dofs of a constraint, symmetric part.
+    fn quotients(source: PairTarget, form: RowForm) -> DMatrix<f64> {
+        let force = |u: &[f64]| {
+            let constraint = Constraint::new(source, &between(form, u));
+            let mut force = [0.0; 10];
+            constraint.add_force(FORCE, &mut force);
+            DVector::from_iterator(
+                constraint.dofs.len(),
+                constraint.dofs.iter().map(|&d| force[d]),
+            )
+        };
+        let dofs = Constraint::new(source, &between(form, &U1)).dofs;
+        let columns: Vec<DVector<f64>> = dofs
+            .iter()
+            .map(|&dof| {
+                let [mut plus, mut minus] = [U1; 2];
+                (plus[dof], minus[dof]) = (plus[dof] + 1e-6, minus[dof] - 1e-6);
+                (force(&plus) - force(&minus)) / 2e-6
+            })
+            .collect();
+        let k = DMatrix::from_columns(&columns);
+        (&k + k.transpose()) / 2.0
+    }
+
+    #[test]
+    fn contact_stiffness_is_the_symmetric_derivative_of_the_nodal_forces() {
+        let face = ContactTarget::face(0);
+        for form in FORMS {
+            for from in [None, Some([4, 1])] {
+                let source = target(face, [0, 1, 2, 2], from);
+                let at = between(form, &U1);
+                let found = Constraint::new(source, &at).stiffness(FORCE, &at);
+                let error = (&found - quotients(source, form)).amax();
+                assert!(error < 1e-8 * found.amax(), "{form:?} {from:?}: {error}");
+            }
+        }
+        let at = between(FORMS[1], &U1);
+        assert!(tilt(&target(face, [0, 1, 2, 2], Some([4, 1])), &at).abs() > 0.1);
+    }
+
+    #[test]
+    fn contact_stiffness_at_a_corner_is_that_of_its_segments() {
+        // a corner of weight 0 or 1 is one of its segments
+        for form in FORMS {
+            for (weight, nodes) in [(0.0, [0, 1, 2, 2]), (1.0, [0, 2, 3, 3])] {
+                let corner = Some(Corner { next: 1, weight });
+                let of_corner = ContactTarget {
+                    corner,
+                    ..ContactTarget::face(0)
+                };
+                let at = between(form, &U1);
+                let stiffness =
+                    |source: PairTarget| Constraint::new(source, &at).stiffness(FORCE, &at);
+                let found = stiffness(target(of_corner, [0, 1, 2, 3], None));
+                let face = stiffness(target(ContactTarget::face(0), nodes, None));
+                let mut expected = DMatrix::zeros(8, 8);
+                let block = face.fixed_view::<6, 6>(0, 0).into_owned();
+                add_block(&mut expected, &block, weight as usize);
+                assert!((found - expected).amax() < 1e-14, "{form:?} {weight}");
+            }
+        }
+    }
+
+    #[test]
+    fn held_constraints_resist_gap_and_slip() {
+        let at = between(FORMS[1], &U1);
+        let constraint = Constraint::new(target(ContactTarget::face(0), [0, 1, 2, 2], None), &at);
+        let v: [f64; 6] = [0.3, -0.2, 0.5, 0.1, -0.4, 0.7];
+        let (gap, slip) = (constraint.gap_change(&v), constraint.slip_change(&v));
+        let v = DVector::from_column_slice(&v);
+        let resisted = |sticks: bool| v.dot(&(constraint.hold(sticks) * &v));
+        assert!((resisted(false) - gap * gap).abs() < 1e-14);
+        assert!((resisted(true) - gap * gap - slip * slip).abs() < 1e-14);
+    }
+}

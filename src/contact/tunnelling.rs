@@ -1,0 +1,357 @@
+//! Tunnelling check of a converged increment: slave nodes that pass into or through a body on
+//! their straight paths from U0 to U1. Section 10 of docs/theory.md, Penetration.
+//!
+//! Edges of slave surfaces that cross segments, as they may at corners though no slave node is inside.
+//! Section 10 of docs/theory.md, Penetration check.
+
+use super::closed_pairs::ClosedPairs;
+use super::crossing::{Crossing, Direction, Motion, crossings};
+use super::geometry::{Along, ContactSurfaces, Projection, position, project};
+use super::search::Search;
+use super::tolerances::{CORNER_CLIP_DEPTH, DEPTH_ROUND_OFF, SEGMENT_END};
+use crate::linear::{larger, largest};
+use crate::vectors::{cross, difference};
+
+/// A slave node that has penetrated a body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Penetration {
+    /// Slave node.
+    pub slave: usize,
+    /// Ends of the segment through which it entered.
+    pub segment: [usize; 2],
+    /// Place of the slave node among all slave nodes of all contacts.
+    pub slave_index: usize,
+    /// Number of the segment in its contact.
+    pub number: usize,
+}
+
+/// The first slave node that penetrates a body on its straight path from the displacements `u0` to
+/// `u1`, if there is one. The search must cover the paths; `closed` are the pairs in contact before
+/// the increment and at its end; `unsolved` is the error of every node's displacement that the
+/// tolerance of the increment allows (length), a depth that does not count.
+///
+/// A node may enter through a segment at which it carries a force, or leave again in contact: the
+/// straight path of a node that slides round a corner cuts the corner.
+pub fn find_penetration(
+    search: &Search,
+    [u0, u1]: [&[f64]; 2],
+    closed: [&ClosedPairs; 2],
+    unsolved: &[f64],
+) -> Option<Penetration> {
+    let x = search.coordinates();
+    let mut events = Vec::new();
+    for listed in search.slaves() {
+        let path = NodePath {
+            contact: listed.surfaces,
+            x,
+            u: [u0, u1],
+            slave: listed.node(),
+            slave_index: listed.slave_index,
+            closed,
+            unsolved,
+        };
+        events.clear();
+        for candidate in listed.candidates() {
+            let found = crossings(&path.motions(candidate.segment), 1.0);
+            events.extend(found.into_iter().map(|c| (candidate.segment, c)));
+        }
+        let ends_inside = || path.ends_inside(listed.candidates().map(|c| c.segment));
+        if let Some(segment) = path.entry(&mut events).or_else(ends_inside) {
+            return Some(Penetration {
+                slave: path.slave,
+                segment: path.contact.segments[segment],
+                slave_index: path.slave_index,
+                number: segment,
+            });
+        }
+    }
+    None
+}
+
+/// The straight path of one slave node in an increment.
+struct NodePath<'a> {
+    contact: &'a ContactSurfaces,
+    x: &'a [[f64; 2]],
+    u: [&'a [f64]; 2],
+    slave: usize,
+    slave_index: usize,
+    /// Closed pairs before the increment and at its end.
+    closed: [&'a ClosedPairs; 2],
+    unsolved: &'a [f64],
+}
+
+impl NodePath<'_> {
+    /// Whether the node was in contact before the increment.
+    fn was_held(&self) -> bool {
+        !self.closed[0].of_slave(self.slave_index).is_empty()
+    }
+
+    /// Segments that hold the node at the end.
+    fn held_by(&self) -> impl Iterator<Item = usize> {
+        let pairs = self.closed[1].of_slave(self.slave_index).iter();
+        pairs.flat_map(|pair| pair.target.segments())
+    }
+
+    fn motions(&self, segment: usize) -> [Motion; 3] {
+        let [a, b] = self.contact.segments[segment];
+        [self.slave, a, b].map(|node| {
+            let [from, to] = self.u.map(|u| position(self.x, u, node));
+            Motion::straight(from, to)
+        })
+    }
+
+    /// Projection on a segment at a fraction of the path.
+    fn project(&self, segment: usize, part: f64) -> Projection {
+        let [s, a, b] = self.motions(segment).map(|m| m.at(part));
+        project(s, a, b)
+    }
+
+    /// The segment through which the node enters a body and may not.
+    fn entry(&self, events: &mut [(usize, Crossing)]) -> Option<usize> {
+        events.sort_by(|(_, c), (_, d)| c.time.total_cmp(&d.time));
+        for (n, (segment, entering)) in events.iter().enumerate() {
+            if entering.direction != Direction::Entering {
+                continue;
+            }
+            let is_out = |c: &Crossing| match c.direction {
+                Direction::Leaving => true,
+                // it ends on the surface
+                Direction::Touching => c.time >= 1.0,
+                Direction::Entering => false,
+            };
+            let leaving = events[n..].iter().find(|(_, c)| is_out(c));
+            let is_harmless = match leaving {
+                Some((exit, leaving)) => {
+                    self.may_leave((*segment, entering.time), (*exit, leaving.time))
+                }
+                None => self.may_stay(*segment, entering.xi),
+            };
+            if !is_harmless {
+                return Some(*segment);
+            }
+        }
+        None
+    }
+
+    /// The nearest segment at the end, if the node is behind it without a force although it was
+    /// outside at the start: it has come round a corner that has turned concave.
+    fn ends_inside(&self, segments: impl Iterator<Item = usize> + Clone) -> Option<usize> {
+        let is_own = |i: &usize| self.contact.segments[*i].contains(&self.slave);
+        let others = segments.filter(|i| !is_own(i));
+        let is_behind = |&i: &usize| {
+            let p = self.project(i, 1.0);
+            (0.0..=1.0).contains(&p.xi)
+                && p.gap < 0.0
+                && !self.is_round_off(i, -p.gap, p.length)
+                && -p.gap <= 2.0 * self.relative_displacement(i)
+                && !self.is_far_side(i)
+        };
+        let depth = |i: usize| -self.project(i, 1.0).gap;
+        let nearest = |i: &usize, j: &usize| depth(*i).total_cmp(&depth(*j));
+        let i = others.clone().filter(is_behind).min_by(nearest)?;
+        let is_nearest = others.clone().all(|j| self.distance(j) >= depth(i));
+        let was_outside = |j: usize| {
+            let p = self.project(j, 0.0);
+            self.is_round_off(j, -p.gap, p.length) && self.are_near(i, j)
+        };
+        let is_held = self.held_by().any(|held| held == i);
+        (is_nearest && !is_held && others.clone().any(was_outside)).then_some(i)
+    }
+
+    /// Whether the node belongs to the body behind a segment at the end.
+    fn is_far_side(&self, i: usize) -> bool {
+        let at = |node: usize| position(self.x, self.u[1], node);
+        let ContactSurfaces {
+            interior, segments, ..
+        } = self.contact;
+        interior.joins(segments[i], self.slave, at)
+    }
+
+    /// Distance from a segment at the end.
+    fn distance(&self, i: usize) -> f64 {
+        let p = self.project(i, 1.0);
+        let beyond = (p.xi - p.xi.clamp(0.0, 1.0)) * p.length;
+        beyond.hypot(p.gap)
+    }
+
+    /// Whether a node that enters through one segment may leave through another. Through the same one it
+    /// comes back to the side that it came from.
+    fn may_leave(&self, (i, entered): (usize, f64), (j, left): (usize, f64)) -> bool {
+        if i == j {
+            return true;
+        }
+        let middle = entered + (left - entered) / 2.0;
+        let (p, q) = (self.project(i, middle), self.project(j, middle));
+        let depth = (-p.gap).min(-q.gap);
+        let slides = || {
+            let is_held = |k| self.are_near(i, k);
+            self.was_held() || self.held_by().any(is_held)
+        };
+        self.is_round_off(i, depth, p.length)
+            || (self.are_near(i, j) && (depth <= CORNER_CLIP_DEPTH * p.length || slides()))
+    }
+
+    /// Whether a node that enters through a segment and never leaves is outside the body all the
+    /// same.
+    fn may_stay(&self, i: usize, xi: f64) -> bool {
+        let p = self.project(i, 1.0);
+        if self.is_round_off(i, -p.gap, p.length)
+            || self.held_by().any(|held| held == i)
+            || self.is_outside_corner(i, xi, &p)
+        {
+            return true;
+        }
+        let is_on = |j: usize| (0.0..=1.0).contains(&self.project(j, 1.0).xi);
+        self.held_by().any(|j| is_on(j) && self.are_near(i, j))
+            || (self.was_held() && self.has_slid_off(i, &p))
+    }
+
+    /// Whether a depth behind segment `i` of the given length is within the tolerance of the
+    /// solution.
+    fn is_round_off(&self, i: usize, depth: f64, length: f64) -> bool {
+        let [a, b] = self.contact.segments[i];
+        let unsolved = [self.slave, a, b].map(|node| self.unsolved[node]);
+        depth <= largest(&unsolved) + DEPTH_ROUND_OFF * length
+    }
+
+    /// Whether the node has crossed a segment near its end and is outside the corner there: behind the
+    /// line of this segment and in front of that of its neighbour. On the neighbour it need not leave
+    /// the body again, where it has only clipped the corner.
+    fn is_outside_corner(&self, i: usize, xi: f64, p: &Projection) -> bool {
+        let (is_end_b, from_end) = (xi > 0.5, xi.min(1.0 - xi));
+        let neighbour = if is_end_b {
+            self.contact.next[i]
+        } else {
+            self.contact.previous[i]
+        };
+        let Some(j) = neighbour else {
+            return from_end <= SEGMENT_END && !(0.0..=1.0).contains(&p.xi);
+        };
+        let q = self.project(j, 1.0);
+        let is_convex = if is_end_b {
+            turns_left(p, &q)
+        } else {
+            turns_left(&q, p)
+        };
+        from_end <= CORNER_CLIP_DEPTH && is_convex && self.is_round_off(j, -q.gap, q.length)
+    }
+
+    /// Whether the node has slid off the end of an open surface.
+    fn has_slid_off(&self, i: usize, p: &Projection) -> bool {
+        (p.xi > 1.0 && self.leads(i, Along::Forward, None))
+            || (p.xi < 0.0 && self.leads(i, Along::Backward, None))
+    }
+
+    /// Whether two segments are neighbours on the surface, or the surface between them is not
+    /// longer than twice the displacement of the node: the far side of a thin body is not near.
+    fn are_near(&self, i: usize, j: usize) -> bool {
+        let leads = |i: usize, j: usize| self.leads(i, Along::Forward, Some(j));
+        i == j || leads(i, j) || leads(j, i)
+    }
+
+    /// Displacement of the node relative to the start a of a segment (length).
+    fn relative_displacement(&self, segment: usize) -> f64 {
+        let [start, end] = [0.0, 1.0].map(|part| {
+            let [s, a, _] = self.motions(segment).map(|m| m.at(part));
+            difference(a, s)
+        });
+        (end[0] - start[0]).hypot(end[1] - start[1])
+    }
+
+    /// Whether the chain leads from a segment to another, or to the end of the surface, within
+    /// twice the displacement of the node.
+    fn leads(&self, from: usize, along: Along, to: Option<usize>) -> bool {
+        let farthest = 2.0 * self.relative_displacement(from);
+        let length = |i: usize| self.project(i, 1.0).length;
+        let mut chain = self.contact.walk(from, along, farthest, length);
+        chain.any(|following| following == to)
+    }
+}
+
+/// Whether the corner from one segment to the next turns left, so that it is convex.
+fn turns_left(first: &Projection, second: &Projection) -> bool {
+    cross(first.tangent, second.tangent) > 0.0
+}
+
+/// How far an edge of a slave surface and a segment have crossed in the displacements `u`, the most of all
+/// pairs that the search lists, 0 where none cross:
+///
+/// ```text
+/// min(|h_p|, |h_q|)/|b - a|, min(|h_a|, |h_b|)/|q - p|   the smaller    eq. (10.6)
+/// ```
+///
+/// h being the distances of the ends p and q of the edge from the line of the segment from a to b, and the other
+/// way round. Edges with a common node do not count.
+pub fn crossed_edges(search: &Search, u: &[f64]) -> f64 {
+    let at = |node: usize| position(search.coordinates(), u, node);
+    let mut most = 0.0;
+    for listed in search.slaves() {
+        let slave = listed.node();
+        let Some(adjacent) = listed.surfaces.adjacent[listed.slave] else {
+            continue;
+        };
+        for candidate in listed.candidates() {
+            let segment = listed.surfaces.segments[candidate.segment];
+            for other in adjacent.iter().filter(|other| !segment.contains(other)) {
+                let depth = crossed_by([slave, *other].map(at), segment.map(at));
+                most = larger(most, depth.unwrap_or(0.0));
+            }
+        }
+    }
+    most
+}
+
+/// The same for one edge and one segment; none if they do not cross.
+fn crossed_by(edge: [[f64; 2]; 2], segment: [[f64; 2]; 2]) -> Option<f64> {
+    let depth = |[p, q]: [[f64; 2]; 2], [a, b]: [[f64; 2]; 2]| {
+        let [p, q] = [project(p, a, b), project(q, a, b)];
+        (p.gap * q.gap < 0.0).then(|| p.gap.abs().min(q.gap.abs()) / p.length)
+    };
+    Some(depth(edge, segment)?.min(depth(segment, edge)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::ContactSurfaces;
+    use crate::model::Friction;
+
+    #[test]
+    fn edges_cross_by_the_nearest_end() {
+        let segment = [[0.0, 0.0], [4.0, 0.0]];
+        let by = |p, q| crossed_by([p, q], segment);
+        assert_eq!(by([1.0, 2.0], [1.0, -0.4]), Some(0.1));
+        assert_eq!(by([1.0, -0.4], [1.0, 2.0]), Some(0.1));
+        assert_eq!(by([1.0, 2.0], [1.0, 0.4]), None, "above");
+        assert_eq!(by([5.0, 2.0], [5.0, -2.0]), None, "beside");
+        // the end of the segment is nearer to the edge than the ends of the edge to the segment
+        assert_eq!(by([3.75, 2.0], [3.75, -2.0]), Some(0.0625));
+        assert_eq!(by([1.0, 0.0], [1.0, -2.0]), None, "an end on the segment");
+    }
+
+    #[test]
+    fn a_corner_that_an_edge_cuts_is_seen_though_no_node_is_inside() {
+        // a roof over (0, 0), and a beam of two nodes that lies across its ridge, both ends outside
+        let x = [
+            [2.0, -2.0],
+            [0.0, 0.0],
+            [-2.0, -2.0],
+            [1.0, -0.5],
+            [-1.0, -0.5],
+        ];
+        let sides = vec![[0, 1], [1, 2]];
+        let beam = [[3, 4], [4, 3]];
+        let surfaces = ContactSurfaces::new(vec![3, 4], &beam, sides, Friction::default());
+        let contacts = [surfaces];
+        let mut search = Search::new(&contacts, &x);
+        let mut depth = |height: f64| {
+            let mut u = [0.0; 10];
+            (u[7], u[9]) = (height, height);
+            search.cover(&u);
+            crossed_edges(&search, &u)
+        };
+        assert_eq!(depth(0.6), 0.0);
+        // the ridge is 0.25 above the beam of length 2
+        assert!((depth(0.25) - 0.125).abs() < 1e-15, "{}", depth(0.25));
+    }
+}

@@ -1,0 +1,537 @@
+//! Event-driven integration of impacts: subincrements [t, t + tau] that end at the next impact,
+//! its time being the solution of T(tau) = tau. Section 6 of docs/theory.md, Impacts as events.
+//!
+//! Time of an impact: the length tau of a subincrement at whose end a gap that stays out of the constraints
+//! is zero, eq. (6.4), bracketed and interpolated. Section 6 of docs/theory.md, Impacts as events, item 3.
+
+use super::increment::{
+    ActiveConstraints, Attempt, ConstraintSet, Failed, NodeAtSegment, Path, Solved,
+};
+use super::ledger::motion;
+use super::results::State;
+use super::step::{Interval, StepProblem, TimePoint, Workspace};
+use crate::contact::tolerances::{CLOSED_GAP, CROSSING_BEYOND_ENDS, IMPACT_GAP};
+use crate::contact::{
+    ClosedPairs, Constraint, Crossing, Direction, Penetration, Projection, crossings,
+    line_crossings,
+};
+
+/// Part of a nominal increment within which impacts are taken together; no subincrement is
+/// shorter.
+const IMPACT_GROUPING_TIME: f64 = 1e-3;
+/// Accuracy of the time of an impact, in nominal increments.
+const ACCURACY: f64 = 1e-10;
+/// Attempts to find the time of an impact.
+const TRIALS: usize = 12;
+
+/// A converged part of an increment that ends at the next impact, or at the end of the increment.
+pub(crate) struct Subincrement {
+    pub interval: Interval,
+    pub solved: Solved,
+    /// Whether an impact ends it.
+    pub is_cut: bool,
+}
+
+/// A subincrement that failed, with its times.
+pub(crate) type FailedSubincrement = Box<(Interval, Failed)>;
+
+/// Solves the next subincrement.
+pub(crate) struct Subincrements<'a, 'm> {
+    pub problem: &'a StepProblem<'m>,
+    pub workspace: &'a mut Workspace<'m>,
+    pub start: &'a State,
+    /// The pairs that carried forces up to the start.
+    pub contact: &'a ClosedPairs,
+    /// What is left of the increment.
+    pub rest: Interval,
+    /// Length of the nominal increment.
+    pub nominal: f64,
+}
+
+/// A node goes into a body.
+#[derive(Debug, Clone, Copy)]
+struct Entry {
+    pair: NodeAtSegment,
+    /// Time since the start of the subincrement, by the motion between its ends.
+    time: f64,
+}
+
+/// Second-order motion of all nodes from the start of a subincrement.
+struct FreeMotion<'a> {
+    path: &'a Path,
+    /// End of the subincrement, where this is its own converged motion.
+    end: f64,
+    /// How long it is followed.
+    duration: f64,
+}
+
+impl FreeMotion<'_> {
+    /// U0 + t V + t²/2 A at the end.
+    fn displacement(&self, u0: &[f64]) -> Vec<f64> {
+        let way = self.path.displacement(self.duration);
+        u0.iter().zip(&way).map(|(u, d)| u + d).collect()
+    }
+
+    /// Whether the nodes move far enough relative to each other to meet: a node that meets a segment at xi
+    /// was at most (1 - xi) and xi times its ways relative to the ends a and b away from there.
+    fn may_meet(&self, start: &Projection, [s, a, b]: [usize; 3]) -> bool {
+        let Path {
+            v, a: acceleration, ..
+        } = self.path;
+        let way = |end: usize| {
+            let size = |x: &[f64]| (x[2 * s] - x[2 * end]).hypot(x[2 * s + 1] - x[2 * end + 1]);
+            self.duration * (size(v) + self.duration / 2.0 * size(acceleration))
+        };
+        let round_off = CROSSING_BEYOND_ENDS * start.length;
+        let beyond = (start.xi - start.xi.clamp(0.0, 1.0)) * start.length;
+        beyond.hypot(start.gap) <= way(a).max(way(b)) + round_off
+    }
+
+    /// When a slave node goes in through a segment.
+    fn entry(&self, problem: &StepProblem, u0: &[f64], pair: NodeAtSegment) -> Option<f64> {
+        let Path { v, a, .. } = self.path;
+        let motions = pair.nodes.map(|node| motion(problem, u0, v, a, node));
+        self.first_to_stay(&crossings(&motions, self.duration))
+    }
+
+    /// When the slave node of a constraint that did not count, and that ends behind its segment, has gone
+    /// behind the line of the segment.
+    fn overlap(&self, problem: &StepProblem, u0: &[f64], pair: NodeAtSegment) -> Option<f64> {
+        let Path { v, a, .. } = self.path;
+        let motions = pair.nodes.map(|node| motion(problem, u0, v, a, node));
+        self.first_to_stay(&line_crossings(&motions, self.end))
+    }
+
+    /// The first entry. A node that comes out again before the end of the subincrement has not gone in:
+    /// between its ends its motion is an estimate.
+    fn first_to_stay(&self, found: &[Crossing]) -> Option<f64> {
+        let stays = |&(k, crossing): &(usize, &Crossing)| {
+            let is_out = |c: &Crossing| c.direction == Direction::Leaving && c.time < self.end;
+            crossing.direction == Direction::Entering && !found[k..].iter().any(is_out)
+        };
+        let mut numbered = found.iter().enumerate();
+        numbered.find(stays).map(|(_, crossing)| crossing.time)
+    }
+}
+
+impl<'m> Subincrements<'_, 'm> {
+    /// The subincrement up to the earliest impact of a pair that does not touch at the start.
+    ///
+    /// All that is left of the increment is tried first. The pairs that stay out and have gone in at the end of
+    /// the trial of length tau tell of an impact; the subincrement ends at the first of them,
+    ///
+    /// ```text
+    /// g(tau) = 0    eq. (6.4)
+    /// ```
+    ///
+    /// g being the gap at the end of a subincrement of the length tau. Where the whole does not converge, the
+    /// second-order motion of the start (paper eq. 50) predicts tau.
+    pub fn next(&mut self) -> Result<Subincrement, FailedSubincrement> {
+        let (rest, group) = (self.rest.dt, IMPACT_GROUPING_TIME * self.nominal);
+        let search = &mut self.workspace.search;
+        search.start(&self.start.v, rest);
+        search.cover(&self.start.u);
+        let mut active = ActiveConstraints::new(self.problem, search, &self.start.u, self.contact);
+        let mut impact = ImpactTime::new(&self.start.u);
+        let (mut tau, mut guess, mut before) = (rest, None, None);
+        let mut entries = Vec::new();
+        for _ in 0..TRIALS {
+            let solved = match self.attempt(tau, ConstraintSet::Active(&active), guess.as_ref()) {
+                Ok(solved) => solved,
+                Err(failed) if tau == rest => {
+                    tau = self.predicted(&mut active);
+                    if tau == rest {
+                        return Err(failed);
+                    }
+                    continue;
+                }
+                Err(failed) => match before {
+                    Some((tau, solved)) if tau >= group => return Ok(self.converged(tau, solved)),
+                    _ => return Err(failed),
+                },
+            };
+            let path = solved.path(tau);
+            let found = self.entries(&active, &path, tau, Some(&solved));
+            let is_before = found.is_empty();
+            if !is_before {
+                entries = found;
+            } else if entries.is_empty() {
+                return Ok(self.converged(tau, solved));
+            }
+            let trial = Trial {
+                length: tau,
+                u: solved.end.u.clone(),
+            };
+            impact.take_in(trial, is_before);
+            // a node that has just bounced off has hardly a gap at the start: there its motion tells
+            let expected = |entry: &Entry| {
+                let gap = |u: &[f64]| self.problem.place(u, entry.pair.nodes).gap;
+                let root = impact.root(gap).filter(|root| *root >= group);
+                root.unwrap_or(entry.time)
+            };
+            let first = entries
+                .iter()
+                .min_by(|e, f| expected(e).total_cmp(&expected(f)));
+            let root = first.map(expected);
+            let lands = |is_time: &dyn Fn(f64) -> bool| {
+                entries
+                    .iter()
+                    .filter(|e| is_time(expected(e)))
+                    .copied()
+                    .collect::<Vec<_>>()
+            };
+            let at_start = lands(&|time| time < group);
+            let at_end = lands(&|time| time > rest - group);
+            if !at_start.is_empty() || root.is_none_or(|root| root > rest - group) {
+                // they join, the latter to land at the very end of all that is left
+                at_start
+                    .iter()
+                    .for_each(|entry| self.join_at_start(&mut active, *entry));
+                if at_start.is_empty() {
+                    at_end
+                        .iter()
+                        .for_each(|entry| active.join(entry.pair.slave_index));
+                }
+                (impact, before, guess) = (ImpactTime::new(&self.start.u), None, Some(path));
+                tau = rest;
+                entries.clear();
+                continue;
+            }
+            let is_met = |entry: &Entry| {
+                let place = self.problem.place(&solved.end.u, entry.pair.nodes);
+                place.gap.abs() <= IMPACT_GAP * place.length
+            };
+            let is_near = |root: f64| (root - tau).abs() <= ACCURACY * self.nominal;
+            if first.is_some_and(is_met) || root.is_some_and(is_near) {
+                return Ok(self.converged(tau, solved));
+            }
+            if is_before {
+                before = Some((tau, solved));
+            }
+            tau = impact.next(tau, root);
+            guess = Some(path);
+        }
+        match before {
+            // not as far as the impact
+            Some((tau, solved)) if tau >= group => Ok(self.converged(tau, solved)),
+            _ => self.rest(),
+        }
+    }
+
+    /// All that is left of the increment; nodes land within it.
+    pub fn rest(&mut self) -> Result<Subincrement, FailedSubincrement> {
+        let solved = self.attempt(self.rest.dt, ConstraintSet::All, None)?;
+        Ok(self.converged(self.rest.dt, solved))
+    }
+
+    /// Length of the subincrement by the motion of the start.
+    fn predicted(&mut self, active: &mut ActiveConstraints) -> f64 {
+        let (rest, group) = (self.rest.dt, IMPACT_GROUPING_TIME * self.nominal);
+        let path = Path {
+            v: self.start.v.clone(),
+            a: self.start.a.clone(),
+            closed: ClosedPairs::default(),
+        };
+        loop {
+            let entries = self.entries(active, &path, rest, None);
+            let first = entries.iter().min_by(|e, f| e.time.total_cmp(&f.time));
+            match first {
+                Some(entry) if entry.time < group => self.join_at_start(active, *entry),
+                Some(entry) if entry.time <= rest - group => return entry.time,
+                _ => return rest,
+            }
+        }
+    }
+
+    fn join_at_start(&self, active: &mut ActiveConstraints, entry: Entry) {
+        let p = self.problem.place(&self.start.u, entry.pair.nodes);
+        active.join_at_start(entry.pair, p.normal);
+    }
+
+    /// The nodes that go into bodies, and are not kept out of them, within the time tau of a motion: that of a
+    /// converged subincrement, or else a prediction. In the former they stay in to its end, or go through
+    /// the body.
+    fn entries(
+        &mut self,
+        active: &ActiveConstraints,
+        path: &Path,
+        tau: f64,
+        solved: Option<&Solved>,
+    ) -> Vec<Entry> {
+        let (problem, u0) = (self.problem, &self.start.u);
+        let motion = FreeMotion {
+            path,
+            duration: tau,
+            end: if solved.is_some() { tau } else { 0.0 },
+        };
+        let constraints = solved.map_or(&[][..], |solved| solved.forces.constraints.as_slice());
+        let counts = |c: &&Constraint| active.is_held(problem, u0, c);
+        let (counting, left_out): (Vec<_>, Vec<_>) = constraints.iter().partition(counts);
+        let has_constraint = |slave: usize| counting.iter().any(|c| c.keeps_out(slave));
+        // between its ends the motion is an estimate: what is in front at the end has not gone in
+        let ends_behind = |pair: &NodeAtSegment| {
+            solved.is_none_or(|solved| problem.place(&solved.end.u, pair.nodes).gap < 0.0)
+        };
+        let is_kept = |pair: &NodeAtSegment, place: &Projection| {
+            active.holds(pair.slave_index, place)
+                && (solved.is_none()
+                    || active.has_joined(pair.slave_index)
+                    || has_constraint(pair.nodes[0]))
+        };
+        let mut entries: Vec<Entry> = Vec::new();
+        for c in left_out {
+            let [s, a, b, _] = c.source.nodes;
+            let pair = NodeAtSegment {
+                slave_index: c.key.slave_index,
+                segment: c.key.segment,
+                nodes: [s, a, b],
+            };
+            if c.gap < -CLOSED_GAP * c.scale && problem.unknowns.moves(&pair.nodes) {
+                let time = motion.overlap(problem, u0, pair);
+                entries.extend(time.map(|time| Entry { pair, time }));
+            }
+        }
+        let Workspace { search, meter, .. } = &mut *self.workspace;
+        let find = || {
+            search.cover_path(u0, &motion.displacement(u0));
+            for listed in search.slaves() {
+                for candidate in listed.candidates() {
+                    let pair = NodeAtSegment::new(&listed, candidate.segment);
+                    let [s, a, b] = pair.nodes;
+                    let place = problem.place(u0, pair.nodes);
+                    let may_enter = motion.may_meet(&place, pair.nodes)
+                        && s != a
+                        && s != b
+                        && problem.unknowns.moves(&pair.nodes)
+                        && ends_behind(&pair)
+                        && !is_kept(&pair, &place);
+                    if may_enter {
+                        let time = motion.entry(problem, u0, pair);
+                        entries.extend(time.map(|time| Entry { pair, time }));
+                    }
+                }
+            }
+        };
+        meter.time(|t| &mut t.contact, find);
+        if let (true, Some(solved)) = (entries.is_empty(), solved) {
+            entries.extend(self.tunnelled(active, &motion, solved));
+        }
+        entries
+    }
+
+    /// The node that goes into or through a body by the check that a converged subincrement must pass,
+    /// unless it has joined.
+    fn tunnelled(
+        &mut self,
+        active: &ActiveConstraints,
+        motion: &FreeMotion,
+        solved: &Solved,
+    ) -> Option<Entry> {
+        let (problem, u0) = (self.problem, &self.start.u);
+        let closed = [self.contact, &solved.forces.closed];
+        let unsolved = problem.unsolved(&solved.d);
+        let found = (self.workspace).find_penetration([u0, &solved.end.u], closed, &unsolved)?;
+        let Penetration {
+            slave,
+            segment: [a, b],
+            slave_index,
+            number,
+        } = found;
+        let pair = NodeAtSegment {
+            slave_index,
+            segment: number,
+            nodes: [slave, a, b],
+        };
+        if active.has_joined(slave_index) || !problem.unknowns.moves(&pair.nodes) {
+            return None;
+        }
+        let through = FreeMotion {
+            end: 0.0,
+            ..*motion
+        };
+        let time = through.entry(problem, u0, pair).unwrap_or(0.0);
+        Some(Entry { pair, time })
+    }
+
+    fn attempt(
+        &mut self,
+        tau: f64,
+        set: ConstraintSet,
+        guess: Option<&Path>,
+    ) -> Result<Solved, FailedSubincrement> {
+        let interval = self.interval(tau);
+        let attempt = Attempt {
+            problem: self.problem,
+            workspace: self.workspace,
+            start: self.start,
+            interval,
+            set,
+            guess,
+        };
+        let solved = attempt.solve(self.contact);
+        solved.map_err(|failed| Box::new((interval, failed)))
+    }
+
+    fn converged(&self, tau: f64, solved: Solved) -> Subincrement {
+        Subincrement {
+            interval: self.interval(tau),
+            solved,
+            is_cut: tau < self.rest.dt,
+        }
+    }
+
+    /// The first part, of length `tau`, of what is left; all of it when that is its length.
+    fn interval(&self, tau: f64) -> Interval {
+        let Interval { start, end, dt } = self.rest;
+        let end = match tau == dt {
+            true => end,
+            false => TimePoint {
+                step: start.step + tau,
+                total: start.total + tau,
+                ..start
+            },
+        };
+        Interval {
+            start,
+            end,
+            dt: tau,
+        }
+    }
+}
+
+/// A converged subincrement that starts like the others.
+pub(crate) struct Trial {
+    /// Its length tau.
+    pub length: f64,
+    /// Displacements at its end.
+    pub u: Vec<f64>,
+}
+
+/// Looks for the length of a subincrement that ends at the first impact.
+pub(crate) struct ImpactTime {
+    /// The longest trial that ends before an impact; at first the start.
+    before: Trial,
+    /// The shortest one that ends after it.
+    after: Option<Trial>,
+    /// The one that the last trial has taken the place of.
+    old: Option<Trial>,
+    /// The last two changes of the length.
+    steps: [f64; 2],
+}
+
+impl ImpactTime {
+    /// Starts with the displacements `u0` at the start.
+    pub fn new(u0: &[f64]) -> Self {
+        ImpactTime {
+            before: Trial {
+                length: 0.0,
+                u: u0.to_vec(),
+            },
+            after: None,
+            old: None,
+            steps: [f64::INFINITY; 2],
+        }
+    }
+
+    /// Takes in a trial that ends before, or after, an impact.
+    pub fn take_in(&mut self, trial: Trial, is_before: bool) {
+        self.old = match is_before {
+            true => Some(std::mem::replace(&mut self.before, trial)),
+            false => self.after.replace(trial),
+        };
+    }
+
+    /// When the gap of a pair, given by the displacements, is zero: by inverse quadratic interpolation of
+    /// three trials, or else linear interpolation of two. None where it has no change of sign.
+    pub fn root(&self, gap: impl Fn(&[f64]) -> f64) -> Option<f64> {
+        let (low, high) = (&self.before, self.after.as_ref()?);
+        let (g, h) = (gap(&low.u), gap(&high.u));
+        if !(g >= 0.0 && h < 0.0) {
+            return None;
+        }
+        let linear = low.length + (high.length - low.length) * (g / (g - h));
+        let is_inside = |t: &f64| *t > low.length && *t < high.length;
+        let quadratic = self.old.as_ref().map(|old| {
+            let points = [(low.length, g), (high.length, h), (old.length, gap(&old.u))];
+            let term = |i: usize| {
+                let [(t, g), (_, p), (_, q)] = [0, 1, 2].map(|k| points[(i + k) % 3]);
+                t * (p / (g - p)) * (q / (g - q))
+            };
+            term(0) + term(1) + term(2)
+        });
+        Some(quadratic.filter(is_inside).unwrap_or(linear))
+    }
+
+    /// The length to try after the last one, `tau`, where the impact is expected at `root`: halfway between
+    /// the trials before and after where it is not, or where the steps become hardly smaller.
+    pub fn next(&mut self, tau: f64, root: Option<f64>) -> f64 {
+        let (low, high) = (
+            self.before.length,
+            self.after.as_ref().map_or(tau, |t| t.length),
+        );
+        let middle = low + (high - low) / 2.0;
+        let is_fast = |t: &f64| (t - tau).abs() < self.steps[0] / 2.0;
+        let root = root.filter(|t| *t > low && *t < high);
+        let next = root.filter(is_fast).unwrap_or(middle);
+        self.steps = [self.steps[1], (next - tau).abs()];
+        next
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Number of trials until the root of a gap is found to 1e-10, from the length 1 on.
+    fn trials(gap: impl Fn(f64) -> f64, root: f64) -> Option<usize> {
+        let (mut search, mut tau) = (ImpactTime::new(&[gap(0.0)]), 1.0);
+        (1..40).find(|_| {
+            let trial = Trial {
+                length: tau,
+                u: vec![gap(tau)],
+            };
+            search.take_in(trial, gap(tau) >= 0.0);
+            let expected = search.root(|u| u[0]);
+            let is_found = (tau - root).abs() < 1e-10;
+            tau = search.next(tau, expected);
+            is_found
+        })
+    }
+
+    #[test]
+    fn the_time_of_an_impact_is_found() {
+        assert_eq!(trials(|t| 0.3 - t, 0.3), Some(2), "free motion");
+        let falls = |t: f64| 0.3 - 0.5 * t - t * t / 2.0;
+        let found = trials(falls, (0.25_f64 + 0.6).sqrt() - 0.5);
+        assert!(found.unwrap() <= 6, "{found:?}");
+        // the surface swings: the gap as a function of the length is bent
+        let swings = |t: f64| 0.02 - 0.5 * t - 0.05 * (20.0 * t).sin();
+        let root = (0..60).fold([0.0, 0.05], |[low, high], _| {
+            let middle = (low + high) / 2.0;
+            if swings(middle) > 0.0 {
+                [middle, high]
+            } else {
+                [low, middle]
+            }
+        });
+        let found = trials(swings, root[0]);
+        assert!(found.unwrap() <= 9, "{found:?}");
+    }
+
+    #[test]
+    fn a_gap_that_jumps_is_bracketed() {
+        let (mut search, mut tau) = (ImpactTime::new(&[1.0]), 1.0);
+        for _ in 0..12 {
+            let gap = if tau < 0.4 { 1.0 } else { -1e-6 };
+            let trial = Trial {
+                length: tau,
+                u: vec![gap],
+            };
+            search.take_in(trial, gap > 0.0);
+            let root = search.root(|u| u[0]);
+            tau = search.next(tau, root);
+        }
+        let (low, high) = (search.before.length, search.after.expect("after").length);
+        assert!(low < 0.4 && high >= 0.4 && high - low < 0.2, "{low} {high}");
+    }
+}

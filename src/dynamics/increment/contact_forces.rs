@@ -1,0 +1,269 @@
+//! Contact forces of a pass, the solution of a frictional complementarity problem of the
+//! constraints of the iterate. Section 5 of docs/theory.md (paper eqs 36 to 47).
+
+use super::contact_system::{Chosen, ContactSystem, Guess, Response};
+use crate::contact::tolerances::SETTLED_OVERLAP;
+use crate::contact::{ClosedPair, ClosedPairs, Constraint};
+use crate::dynamics::results::Cause;
+
+/// Constraints with the forces (or impulses) of those that are closed.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct ContactForces {
+    /// With increasing keys, but for those that were no constraints.
+    pub constraints: Vec<Constraint>,
+    /// The closed ones among them.
+    pub closed: ClosedPairs,
+    /// Number of constraints that entered the complementarity problem.
+    pub problem_size: usize,
+    /// Pivots of its solution.
+    pub pivots: usize,
+    pub(super) choice: Choice,
+}
+
+/// Which constraints are in the complementarity problem of a pass, in memory that the next one uses again.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Choice {
+    /// Whether each of them is.
+    inside: Vec<bool>,
+    /// Their places.
+    places: Vec<usize>,
+    /// Gaps and slips without forces.
+    free: Vec<[f64; 2]>,
+    /// Gaps and slips with them.
+    after: Vec<[f64; 2]>,
+    /// Gaps and slips without forces of those in the problem.
+    terms: Vec<[f64; 2]>,
+    guess: Guess,
+    /// The pairs closed before.
+    before: ClosedPairs,
+}
+
+impl ContactForces {
+    /// The forces of the last increment, whose constraints are not linearised any more.
+    pub fn without_constraints(closed: &ClosedPairs) -> Self {
+        ContactForces {
+            closed: closed.clone(),
+            ..ContactForces::default()
+        }
+    }
+
+    /// Takes over the constraints of the next iterate, with the forces at hand, in exchange for those of the
+    /// last.
+    pub fn relinearize(&mut self, constraints: &mut Vec<Constraint>) {
+        std::mem::swap(&mut self.constraints, constraints);
+    }
+
+    /// Whether every force at hand belongs to a constraint of the iterate.
+    pub fn all_have_constraints(&self) -> bool {
+        self.acting().count() == self.closed.len()
+    }
+
+    /// Adds constraints that carry no force.
+    pub fn add_open(&mut self, constraints: impl IntoIterator<Item = Constraint>) {
+        self.constraints.extend(constraints);
+    }
+
+    /// All constraints with the closed pair that belongs to each, if any.
+    pub fn iter(&self) -> impl Iterator<Item = (&Constraint, Option<&ClosedPair>)> {
+        let mut closed = self.closed.iter().peekable();
+        let constraints = self.constraints.iter();
+        constraints.map(move |constraint| {
+            while closed.next_if(|pair| pair.key < constraint.key).is_some() {}
+            let own = closed.next_if(|pair| pair.key == constraint.key);
+            (constraint, own)
+        })
+    }
+
+    /// The closed constraints with their forces.
+    pub fn acting(&self) -> impl Iterator<Item = (&Constraint, &ClosedPair)> {
+        self.iter()
+            .filter_map(|(constraint, pair)| Some((constraint, pair?)))
+    }
+
+    /// Contact force Bn^T Pn + Bt^T Pt of eq. (3.1), over all dofs.
+    pub fn resultant(&self, dofs: usize) -> Vec<f64> {
+        let mut force = Vec::new();
+        self.write_resultant(dofs, &mut force);
+        force
+    }
+
+    /// Writes [`Self::resultant`].
+    pub fn write_resultant(&self, dofs: usize, force: &mut Vec<f64>) {
+        force.clear();
+        force.resize(dofs, 0.0);
+        for (constraint, pair) in self.acting() {
+            constraint.add_force(pair.force, force);
+        }
+    }
+
+    /// Contact forces of a pass, in place of those of the pass before; writes the correction
+    /// dU = d_p + W (r + Bn^T Pn + Bt^T Pt), d_p being the motion of the supports and r the other forces
+    /// (all dofs).
+    ///
+    /// Constraints that were open before (or without any before, that y = d_p + W r leaves open) stay out
+    /// of the problem first; those that would overlap with the forces of the others enter afterwards, so
+    /// that the answer is that of all constraints. With a `weight` of the equal-force rule, which there is
+    /// when the passes have settled, they enter only if they would overlap by more than round-off: two
+    /// nodes that face each other may carry the same force, and it must not go to and fro between them.
+    pub fn solve(
+        &mut self,
+        [d_p, r]: [&[f64]; 2],
+        weight: Option<f64>,
+        system: &mut ContactSystem,
+        du: &mut Vec<f64>,
+    ) -> Result<(), Cause> {
+        (self.problem_size, self.pivots) = (0, 0);
+        let overlap = weight.map_or(0.0, |_| SETTLED_OVERLAP);
+        let mut choice = std::mem::take(&mut self.choice);
+        let Choice {
+            inside,
+            places,
+            free,
+            after,
+            terms,
+            guess,
+            before,
+        } = &mut choice;
+        std::mem::swap(before, &mut self.closed);
+        self.closed.clear();
+        let was_closed = |constraint: &Constraint| before.closes(constraint.key);
+        inside.clear();
+        inside.extend(self.constraints.iter().map(was_closed));
+        // g + Gn y and Dt + Gt y, eq. (5.2)
+        let mut response = Response::begin(system, [d_p, r], &self.constraints)?;
+        response.gaps_and_slips(system, &self.constraints, free);
+        let mut entered = inside.contains(&true) || self.enter(inside, free, overlap);
+        while entered {
+            places.clear();
+            places.extend((0..inside.len()).filter(|&k| inside[k]));
+            let all = &self.constraints;
+            let chosen = Chosen { all, places };
+            let constraints = chosen.constraints();
+            guess.take_over(&constraints, before, weight);
+            let closed = &mut self.closed;
+            let by_bodies = system.solve_by_bodies(&mut response, &chosen, free, guess, closed)?;
+            self.pivots += match by_bodies {
+                Some(pivots) => pivots,
+                None => {
+                    terms.clear();
+                    terms.extend(chosen.places.iter().map(|&k| free[k]));
+                    system.solve(&constraints, terms, guess, closed)?
+                }
+            };
+            self.problem_size = chosen.places.len();
+            let acting = self
+                .acting()
+                .map(|(constraint, pair)| (constraint, pair.force));
+            response.set_forces(system, acting);
+            response.gaps_and_slips(system, &self.constraints, after);
+            entered = self.enter(inside, after, overlap);
+        }
+        self.choice = choice;
+        Ok(response.end(system, du)?)
+    }
+
+    /// Lets constraints into the problem that would overlap, with the given gaps after the correction, by
+    /// more than the part `overlap` of their scales; whether there are any.
+    fn enter(&self, inside: &mut [bool], after: &[[f64; 2]], overlap: f64) -> bool {
+        let mut entered = false;
+        let constraints = self.constraints.iter().zip(after);
+        for ((constraint, [gap, _]), inside) in constraints.zip(inside) {
+            if !*inside && *gap < -overlap * constraint.scale {
+                (*inside, entered) = (true, true);
+            }
+        }
+        entered
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{ConstraintKey, ContactTarget, PairTarget, Rows};
+    use crate::dynamics::step::{FactoredMatrix, Meter, System};
+    use crate::lcp::{ContactState, LcpMethod};
+    use crate::linear::{Assembled, Transformation, linear_solver};
+    use crate::model::{Friction, SolverChoice};
+
+    const DOFS: usize = 14;
+
+    /// A constraint of 14 dofs with other derivative rows than force rows:
+    /// Bn = 1, Bt = 1, -1, 1, ...; Gn = 1/2, Gt = 1/8 + Bt/4.
+    fn wide(mu: f64) -> Constraint {
+        let sign = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let row = |entry: &dyn Fn(usize) -> f64| (0..DOFS).map(entry).collect::<Vec<f64>>();
+        let derivative = Rows::new(&row(&|_| 0.5), &row(&|k| 0.125 + 0.25 * sign(k)));
+        Constraint {
+            key: ConstraintKey {
+                slave_index: 3,
+                segment: 0,
+            },
+            dofs: (0..DOFS).collect(),
+            slave_dofs: 6,
+            force_rows: Rows::new(&row(&|_| 1.0), &row(&sign)),
+            other_derivative_rows: Some(derivative),
+            gap: -7.0,
+            start_gap: 0.0,
+            slip: 0.5,
+            mu,
+            scale: 1.0,
+            source: PairTarget {
+                slave_index: 3,
+                target: ContactTarget::face(0),
+                nodes: [0, 1, 2, 2],
+                from: None,
+                friction: Friction::constant(mu),
+            },
+        }
+    }
+
+    /// Forces and correction of the constraint with W = 1/2 and y = 1/2 at every dof, by both methods.
+    ///
+    /// By hand: Q = G W B^T = [7/2, 0; 7/8, 7/4], constant terms g + Gn y = -7/2 and
+    /// Dt + Gt y = 11/8.
+    fn solved(mu: f64, method: LcpMethod) -> ([f64; 2], ContactState, Vec<f64>) {
+        let map = Transformation::identity(DOFS);
+        let elements: Vec<Vec<usize>> = (0..DOFS).map(|dof| vec![dof, (dof + 1) % DOFS]).collect();
+        let mut stiffness = Assembled::new(&map, &elements);
+        (0..DOFS).for_each(|dof| stiffness.add(dof, &[1.0, 0.0, 0.0, 1.0], 1.0));
+        let mut matrix = FactoredMatrix::new(linear_solver(SolverChoice::Faer), stiffness, &map);
+        matrix.factorize().expect("positive definite");
+        let mut meter = Meter::default();
+        let mut system = ContactSystem {
+            map: &map,
+            system: System::new(&mut matrix, &mut meter),
+            method,
+        };
+        let mut forces = ContactForces::default();
+        forces.relinearize(&mut vec![wide(mu)]);
+        let mut du = Vec::new();
+        let solved = forces.solve([&[0.0; DOFS], &[1.0; DOFS]], None, &mut system, &mut du);
+        solved.expect("solved");
+        let pair = forces.closed.iter().next().expect("closed");
+        (pair.force, pair.state, du)
+    }
+
+    #[test]
+    fn a_wide_constraint_with_own_derivative_rows_has_the_forces_computed_by_hand() {
+        for method in [LcpMethod::Hybrid, LcpMethod::Lemke] {
+            // sticks: Pn = 1, Pt = -(7/8 + 11/8)/(7/4); slides: Pt = -mu Pn, the slip being positive
+            for (mu, state, pt) in [
+                (2.0, ContactState::Stick, -9.0 / 7.0),
+                (0.5, ContactState::SlipPlus, -0.5),
+            ] {
+                let (force, found, du) = solved(mu, method);
+                assert_eq!(found, state, "{method:?}");
+                assert!((force[0] - 1.0).abs() < 1e-13, "{method:?} {force:?}");
+                assert!((force[1] - pt).abs() < 1e-13, "{method:?} {force:?}");
+                for (dof, du) in du.iter().enumerate() {
+                    // dU = y + W (Bn^T Pn + Bt^T Pt)
+                    let sign = if dof.is_multiple_of(2) { 1.0 } else { -1.0 };
+                    let expected = 0.5 + (1.0 + sign * pt) / 2.0;
+                    assert!((du - expected).abs() < 1e-13, "{dof}: {du} {expected}");
+                }
+                let gap = wide(mu).gap + wide(mu).gap_change(&du);
+                assert!(gap.abs() < 1e-12, "{gap:e}");
+            }
+        }
+    }
+}

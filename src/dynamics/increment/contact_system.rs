@@ -1,0 +1,468 @@
+//! Complementarity problem of some constraints with one of the two system matrices: K* for the
+//! contact forces of a pass, M for the impulses. Sections 5 and 6 of docs/theory.md.
+//!
+//! Complementarity problems of many constraints by blocks, one for each set of bodies that constraints are
+//! between; what the forces of all do to all is computed by the solve that is under way. Section 8 of
+//! docs/theory.md, Blocks.
+//!
+//! The correction of a pass while its solve goes on: gaps and slips at the contacts are known before its
+//! end, and contact forces join its right-hand side. Section 5 of docs/theory.md, One solve.
+
+use std::collections::BTreeMap;
+
+use smallvec::SmallVec;
+
+use super::equal_forces::FIRST_WEIGHT;
+use crate::contact::{ClosedPair, ClosedPairs, Constraint, Scope};
+use crate::dynamics::results::{Cause, FailedLcp};
+use crate::dynamics::step::{ResponseVectors, System};
+use crate::lcp::{
+    BlockIteration, BlockStart, ContactState, FrictionalLcp, LcpBlock, LcpMethod, Progress,
+};
+use crate::linear::{LinearError, Transformation};
+
+/// A system matrix with what its complementarity problems need.
+pub(crate) struct ContactSystem<'a> {
+    /// T of the unknowns.
+    pub map: &'a Transformation,
+    pub system: System<'a>,
+    pub method: LcpMethod,
+}
+
+/// What a complementarity problem starts from.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Guess {
+    /// State of every constraint.
+    pub states: Vec<ContactState>,
+    /// Forces of every constraint near which, of several solutions, the answer may lie, if there are any.
+    pub forces: Option<Vec<[f64; 2]>>,
+    /// Weight with which it lies there; without, only where there is no answer otherwise.
+    pub weight: Option<f64>,
+}
+
+impl Guess {
+    /// Takes over states and forces of the pairs closed `before`, near which the answer lies with a weight.
+    pub fn take_over(
+        &mut self,
+        constraints: &[&Constraint],
+        before: &ClosedPairs,
+        weight: Option<f64>,
+    ) {
+        let forces = self.forces.get_or_insert_default();
+        forces.clear();
+        forces.extend(constraints.iter().map(|c| before.force(c.key)));
+        self.states.clear();
+        self.states
+            .extend(constraints.iter().map(|c| before.state(c.key)));
+        self.weight = weight;
+    }
+
+    /// Whether an answer near the forces before is another one.
+    fn has_forces_only(&self) -> bool {
+        self.forces.is_some() && self.weight.is_none()
+    }
+
+    /// The same, with an answer near the forces before.
+    fn near(&self) -> Self {
+        Guess {
+            weight: Some(FIRST_WEIGHT),
+            ..self.clone()
+        }
+    }
+}
+
+impl ContactSystem<'_> {
+    /// Forces of the given constraints from the constant terms of their gaps and slips: the pairs that carry one are
+    /// `closed`; returns the pivots that it took.
+    ///
+    /// Where a problem with derivative rows has no solution, that with the force rows in their place is
+    /// solved: Q is then symmetric and the theorem of section 8 holds, so that a ray says that pairs
+    /// contradict each other. Where pairs are so nearly one that round-off spoils both problems, the answer
+    /// near the forces before is taken.
+    pub fn solve(
+        &mut self,
+        constraints: &[&Constraint],
+        constant_terms: &[[f64; 2]],
+        guess: &Guess,
+        closed: &mut ClosedPairs,
+    ) -> Result<usize, Cause> {
+        let solved = self.solve_with_rows(constraints, constant_terms, guess, closed);
+        match &solved {
+            Err(Cause::Lcp(failed)) if guess.has_forces_only() && !failed.is_contradiction() => {
+                let near = guess.near();
+                let found = self.solve_with_rows(constraints, constant_terms, &near, closed);
+                found.or(solved)
+            }
+            _ => solved,
+        }
+    }
+
+    /// With the derivative rows, else with the force rows.
+    fn solve_with_rows(
+        &mut self,
+        constraints: &[&Constraint],
+        constant_terms: &[[f64; 2]],
+        guess: &Guess,
+        closed: &mut ClosedPairs,
+    ) -> Result<usize, Cause> {
+        let with_derivatives = self.solve_once(constraints, constant_terms, guess, closed);
+        let are_other = constraints
+            .iter()
+            .any(|c| c.other_derivative_rows.is_some());
+        match with_derivatives {
+            Err(Cause::Lcp(_)) if are_other => {
+                let symmetric: Vec<Constraint> =
+                    constraints.iter().map(|c| c.with_force_rows()).collect();
+                let symmetric: Vec<&Constraint> = symmetric.iter().collect();
+                self.solve_once(&symmetric, constant_terms, guess, closed)
+            }
+            solved => solved,
+        }
+    }
+
+    fn solve_once(
+        &mut self,
+        constraints: &[&Constraint],
+        constant_terms: &[[f64; 2]],
+        guess: &Guess,
+        closed: &mut ClosedPairs,
+    ) -> Result<usize, Cause> {
+        let mut problem = (self.system).frictional_lcp(&Scope::All, constraints, constant_terms)?;
+        if let (Some(forces), Some(weight)) = (&guess.forces, guess.weight) {
+            add_proximal_term(&mut problem, forces, weight);
+        }
+        self.system.name_contacts(names(constraints));
+        match self.system.solve_lcp(&problem, &guess.states, self.method) {
+            Ok(solution) => {
+                self.system.take_back(problem);
+                let forces = solution.pn.iter().zip(&solution.pt);
+                let forces = forces.map(|(&pn, &pt)| [pn, pt]);
+                closed.set(closed_of(constraints, forces, &solution.state));
+                let pivots = solution.counters.pivots;
+                self.system.take_back_solution(solution);
+                Ok(pivots)
+            }
+            Err(error) => {
+                let failed = FailedLcp::new(error, problem, constraints);
+                Err(Cause::Lcp(Box::new(failed)))
+            }
+        }
+    }
+
+    /// y + W load, both over all dofs, W being the inverse of the matrix.
+    pub fn respond(&mut self, y: &[f64], load: &[f64]) -> Result<Vec<f64>, LinearError> {
+        self.system.begin(self.map, load)?;
+        let mut response = Vec::new();
+        self.system.end(self.map, y, &mut response)?;
+        self.system.check()?;
+        Ok(response)
+    }
+}
+
+/// What tells constraints from others in a row of complementarity problems.
+pub(super) fn names(constraints: &[&Constraint]) -> impl Iterator<Item = [usize; 2]> {
+    let keys = constraints.iter().map(|constraint| constraint.key);
+    keys.map(|key| [key.slave_index, key.segment])
+}
+
+/// The constraints that carry a force.
+pub(super) fn closed_of<'a>(
+    constraints: &'a [&Constraint],
+    forces: impl Iterator<Item = [f64; 2]> + 'a,
+    states: &'a [ContactState],
+) -> impl Iterator<Item = ClosedPair> + 'a {
+    let of_constraint = constraints.iter().zip(forces).zip(states);
+    let closed = of_constraint.filter(|((_, force), _)| force[0] > 0.0);
+    closed.map(|((constraint, force), state)| ClosedPair::new(constraint, force, *state))
+}
+
+/// Equal-force rule, eq. (5.3): adds eps Q_kk (P_k - P_k^0) to gaps and slips, P^0 being the forces of
+/// the pass before. Where several pairs can carry the same force, the solution near that of the pass
+/// before is taken; the term vanishes as the passes converge.
+fn add_proximal_term(problem: &mut FrictionalLcp, forces: &[[f64; 2]], weight: f64) {
+    let n = forces.len();
+    for (k, [pn, pt]) in forces.iter().enumerate() {
+        let [normal, tangential] = [k, k + n].map(|i| weight * problem.q[(i, i)]);
+        problem.q[(k, k)] += normal;
+        problem.q[(k + n, k + n)] += tangential;
+        problem.gap[k] -= normal * pn;
+        problem.slip[k] -= tangential * pt;
+    }
+}
+
+/// Constraints from which on their problem is solved by blocks.
+const LEAST: usize = 100;
+
+/// Constraints whose list takes no memory from the system.
+const FEW: usize = 128;
+
+/// Part of the entries of Q within the blocks at most, or blocks gain nothing.
+const WITHIN: f64 = 0.25;
+
+/// Whether a problem of so many constraints may be solved by blocks.
+pub(super) fn is_large(count: usize) -> bool {
+    count >= LEAST
+}
+
+/// The constraints that enter a problem, by their places among all.
+pub(super) struct Chosen<'a> {
+    pub all: &'a [Constraint],
+    pub places: &'a [usize],
+}
+
+impl<'a> Chosen<'a> {
+    /// The constraints that enter.
+    pub fn constraints(&self) -> SmallVec<[&'a Constraint; FEW]> {
+        self.places.iter().map(|&place| &self.all[place]).collect()
+    }
+
+    /// Whether their problem is to be solved by blocks.
+    pub fn are_by_bodies(&self, system: &ContactSystem) -> bool {
+        self.by_bodies(system).is_some()
+    }
+
+    /// Their positions by the bodies that they are between, if their problem is to be solved by blocks.
+    fn by_bodies(&self, system: &ContactSystem) -> Option<BTreeMap<Scope, Vec<usize>>> {
+        if !is_large(self.places.len()) || system.method != LcpMethod::Hybrid {
+            return None;
+        }
+        let mut blocks: BTreeMap<Scope, Vec<usize>> = BTreeMap::new();
+        for (k, constraint) in self.constraints().into_iter().enumerate() {
+            let scope = system.system.scope_of(constraint);
+            blocks.entry(scope).or_default().push(k);
+        }
+        let square = |count: usize| (count as f64).powi(2);
+        let within: f64 = blocks.values().map(|block| square(block.len())).sum();
+        (within <= WITHIN * square(self.places.len())).then_some(blocks)
+    }
+}
+
+/// Gaps and slips of the constraints of a problem under any forces.
+struct Motion<'r, 'a> {
+    response: &'r mut Response<'a>,
+    chosen: &'r Chosen<'r>,
+    /// eps Q_kk of eq. (5.3), zero without a weight.
+    held: Vec<[f64; 2]>,
+    /// P^0 of eq. (5.3).
+    near: Vec<[f64; 2]>,
+}
+
+impl Motion<'_, '_> {
+    /// g + G W B^T P + eps diag(Q) (P - P^0), g being gaps and slips without these forces.
+    fn under(&mut self, system: &mut ContactSystem, forces: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let acting = self.chosen.constraints().into_iter();
+        self.response
+            .set_forces(system, acting.zip(forces.iter().copied()));
+        let mut all = Vec::new();
+        (self.response).gaps_and_slips(system, self.chosen.all, &mut all);
+        let of = |(k, &place): (usize, &usize)| {
+            let held = |i: usize| self.held[k][i] * (forces[k][i] - self.near[k][i]);
+            [0, 1].map(|i| all[place][i] + held(i))
+        };
+        self.chosen.places.iter().enumerate().map(of).collect()
+    }
+}
+
+impl ContactSystem<'_> {
+    /// Forces of the chosen constraints by blocks, `free` being gaps and slips of all constraints without
+    /// them: the pairs that carry one are `closed`. The pivots that it took; none where blocks gain nothing or are
+    /// coupled too strongly.
+    pub(super) fn solve_by_bodies(
+        &mut self,
+        response: &mut Response,
+        chosen: &Chosen,
+        free: &[[f64; 2]],
+        guess: &Guess,
+        closed: &mut ClosedPairs,
+    ) -> Result<Option<usize>, Cause> {
+        let Some(by_bodies) = chosen.by_bodies(self) else {
+            return Ok(None);
+        };
+        let count = chosen.places.len();
+        let near = (guess.forces.clone()).unwrap_or_else(|| vec![[0.0; 2]; count]);
+        let (blocks, held) = self.blocks(chosen, &by_bodies, guess)?;
+        let mut motion = Motion {
+            response,
+            chosen,
+            held,
+            near: near.clone(),
+        };
+        let free: Vec<[f64; 2]> = chosen.places.iter().map(|&place| free[place]).collect();
+        let start = BlockStart {
+            states: guess.states.clone(),
+            motion: match guess.forces {
+                Some(_) => motion.under(self, &near),
+                None => free.clone(),
+            },
+            forces: near,
+            free,
+        };
+        let mut iteration = BlockIteration::new(blocks, start, self.method);
+        let mut progress = Progress::GoesOn;
+        while progress == Progress::GoesOn {
+            progress = match self.system.solve_blocks(&mut iteration) {
+                Ok(forces) => iteration.take_in(&motion.under(self, &forces)),
+                Err(_) => Progress::Fails,
+            };
+        }
+        let (solution, blocks) = iteration.end();
+        for (scope, block) in by_bodies.into_keys().zip(blocks) {
+            self.system.keep(scope, block.kept);
+        }
+        self.system.count_lcp(count, solution.counters);
+        if progress != Progress::Solved {
+            return Ok(None);
+        }
+        let forces = solution.forces.into_iter();
+        closed.set(closed_of(&chosen.constraints(), forces, &solution.states));
+        Ok(Some(solution.counters.pivots))
+    }
+
+    /// The blocks, with eps Q_kk of all constraints.
+    fn blocks(
+        &mut self,
+        chosen: &Chosen,
+        by_bodies: &BTreeMap<Scope, Vec<usize>>,
+        guess: &Guess,
+    ) -> Result<(Vec<LcpBlock>, Vec<[f64; 2]>), LinearError> {
+        let all = chosen.constraints();
+        let mut held = vec![[0.0; 2]; all.len()];
+        let mut blocks = Vec::with_capacity(by_bodies.len());
+        for (scope, contacts) in by_bodies {
+            let constraints: Vec<&Constraint> = contacts.iter().map(|&k| all[k]).collect();
+            let n = constraints.len();
+            let terms = vec![[0.0; 2]; n];
+            let mut problem = self.system.frictional_lcp(scope, &constraints, &terms)?;
+            for (k, &contact) in contacts.iter().enumerate() {
+                held[contact] = [k, k + n].map(|i| {
+                    let part = guess.weight.unwrap_or(0.0) * problem.q[(i, i)];
+                    problem.q[(i, i)] += part;
+                    part
+                });
+            }
+            let mut kept = self.system.take_kept(scope);
+            kept.name_contacts(names(&constraints));
+            blocks.push(LcpBlock {
+                contacts: contacts.clone(),
+                problem,
+                kept,
+            });
+        }
+        Ok((blocks, held))
+    }
+}
+
+/// u + W (f + B^T P) of some constraints, W being the inverse of the system matrix: at the nodes of the
+/// constraints at any time, everywhere at the end.
+pub(super) struct Response<'a> {
+    /// Displacements u, over all dofs.
+    start: &'a [f64],
+    vectors: ResponseVectors,
+}
+
+impl<'a> Response<'a> {
+    /// Begins with the forces `f`, over all dofs, and P = 0.
+    ///
+    /// # Errors
+    /// A matrix without factors.
+    pub fn begin(
+        system: &mut ContactSystem,
+        [start, f]: [&'a [f64]; 2],
+        constraints: &[Constraint],
+    ) -> Result<Self, LinearError> {
+        let mut vectors = system.system.take_vectors();
+        let ResponseVectors {
+            nodes,
+            unknowns,
+            forces,
+            at_nodes,
+            ..
+        } = &mut vectors;
+        replace(nodes, constraints.iter().flat_map(Constraint::nodes));
+        let dofs = nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]);
+        let terms = dofs.flat_map(|dof| system.map.row(dof));
+        replace(unknowns, terms.map(|term| term.0));
+        forces.clear();
+        at_nodes.resize(start.len(), 0.0);
+        system.system.begin(system.map, f)?;
+        Ok(Response { start, vectors })
+    }
+
+    /// Writes g + Gn y and Dt + Gt y of every constraint, y being the response so far, 0 where that is nothing.
+    pub fn gaps_and_slips(
+        &mut self,
+        system: &mut ContactSystem,
+        constraints: &[Constraint],
+        found: &mut Vec<[f64; 2]>,
+    ) {
+        let start = self.start;
+        let ResponseVectors {
+            nodes,
+            unknowns,
+            values,
+            at_nodes: y,
+            ..
+        } = &mut self.vectors;
+        system.system.partial(unknowns, values);
+        let value = |unknown: &usize| values[unknowns.partition_point(|u| u < unknown)];
+        for &node in nodes.iter() {
+            let of_dof = |dof: usize| -> f64 {
+                let terms = system.map.row(dof).iter();
+                terms.map(|(unknown, c)| c * value(unknown)).sum()
+            };
+            let mut own = [of_dof(2 * node), of_dof(2 * node + 1)];
+            system.system.rotation().turn_node(node, &mut own);
+            (y[2 * node], y[2 * node + 1]) =
+                (start[2 * node] + own[0], start[2 * node + 1] + own[1]);
+        }
+        let after = |c: &Constraint| {
+            [c.gap + c.gap_change(y), c.slip + c.slip_change(y)].map(|length| c.resolved(length))
+        };
+        found.clear();
+        found.extend(constraints.iter().map(after));
+    }
+
+    /// Takes forces of the given constraints into the right-hand side, in place of those
+    /// before; gaps and slips without them must have been asked for.
+    pub fn set_forces<'c>(
+        &mut self,
+        system: &mut ContactSystem,
+        acting: impl Iterator<Item = (&'c Constraint, [f64; 2])>,
+    ) {
+        let forces = &mut self.vectors.forces;
+        forces.iter_mut().for_each(|force| force.1 = -force.1);
+        let before = forces.len();
+        for (constraint, force) in acting {
+            for (node, mut force) in constraint.nodal_forces(force) {
+                system.system.rotation().turn_node_back(node, &mut force);
+                for (dof, force) in [2 * node, 2 * node + 1].into_iter().zip(force) {
+                    let terms = system.map.row(dof).iter();
+                    forces.extend(terms.map(|&(unknown, c)| (unknown, c * force)));
+                }
+            }
+        }
+        system.system.add(forces);
+        forces.drain(..before);
+    }
+
+    /// Writes the response, over all dofs.
+    ///
+    /// # Errors
+    /// A solution that is not finite.
+    pub fn end(
+        self,
+        system: &mut ContactSystem,
+        response: &mut Vec<f64>,
+    ) -> Result<(), LinearError> {
+        system.system.give_back(self.vectors);
+        system.system.end(system.map, self.start, response)
+    }
+}
+
+/// Puts numbers in place of those in a list: increasing, each once.
+fn replace(list: &mut Vec<usize>, numbers: impl Iterator<Item = usize>) {
+    list.clear();
+    list.extend(numbers);
+    list.sort_unstable();
+    list.dedup();
+}

@@ -1,0 +1,656 @@
+//! Velocity jump at the start of an increment: the set of pairs that take impact impulses,
+//! iterated along with the passes. Section 6 of docs/theory.md (paper eq. 30).
+//!
+//! Whether the rows of an iterate are so near those that impulses were solved with that these may stay. Section 6 of
+//! docs/theory.md.
+
+use std::borrow::Cow;
+
+use smallvec::{SmallVec, smallvec};
+
+use super::ConstraintSet;
+use super::contact_forces::ContactForces;
+use super::contact_system::{Chosen, ContactSystem, Guess, Response, is_large};
+use crate::contact::{ClosedPairs, Constraint, ConstraintKey, Rows};
+use crate::dynamics::results::{Cause, State};
+use crate::dynamics::step::{Equilibrium, StartVelocity, StepProblem, Workspace};
+use crate::lcp::ContactState;
+use crate::linear::larger;
+use crate::model::Impact;
+
+/// Changes of the set of pairs with impulses after which it is kept.
+const SET_CHANGES: usize = 5;
+
+/// The impact impulses of an increment: they act on the pairs that carry force at its end, and on
+/// those that touch at its start where an impact ended the subincrement before.
+pub(crate) struct Impulses {
+    /// The pairs closed at the end of the last pass.
+    closed: ClosedPairs,
+    /// The pairs that touch at the start and have impulses in any case.
+    pub touching: ClosedPairs,
+    changes: usize,
+    at_rest: bool,
+    /// Constraints of the last pass with nodes without mass, which take no impulse; increasing.
+    massless: Vec<ConstraintKey>,
+    /// The constraints that the impulses are for.
+    struck: Vec<Constraint>,
+    /// Those of the iterate.
+    of_iterate: Vec<Constraint>,
+    /// Phi, Psi of the last pass.
+    pub acting: ContactForces,
+    /// Whether they are those of the rows of the iterate, as an increment may end with.
+    are_exact: bool,
+    /// J = Bn^T Phi + Bt^T Psi over all dofs; empty where nothing strikes.
+    resultant: Vec<f64>,
+}
+
+impl Impulses {
+    /// Starts with the pairs that were closed in the last increment; those that touch at the start
+    /// have impulses in any case, where only some pairs are constraints.
+    pub fn new(before: &ClosedPairs, set: ConstraintSet) -> Self {
+        Impulses {
+            closed: before.clone(),
+            touching: set.touching(),
+            changes: 0,
+            at_rest: false,
+            massless: Vec::new(),
+            struck: Vec::new(),
+            of_iterate: Vec::new(),
+            acting: ContactForces::default(),
+            are_exact: true,
+            resultant: Vec::new(),
+        }
+    }
+
+    /// Impulses Phi, Psi, eq. (6.2), for the constraints of the iterate, unless those at hand are near enough
+    /// to theirs after the pass `before`.
+    fn solve(
+        &mut self,
+        problem: &StepProblem,
+        workspace: &mut Workspace,
+        constraints: &[Constraint],
+        start: &State,
+        before: &Before,
+    ) -> Result<(), Cause> {
+        let dt = before.dt;
+        if problem.settings.impact == Impact::None {
+            return Ok(());
+        }
+        // rows of the start do not change with the iterate
+        let at_start = problem.weights.impulses_at_start();
+        let configurations = problem.configurations(&start.u, &start.u);
+        let rows = |constraint: &Constraint| match at_start {
+            true => constraint.at_start(&configurations).with_force_rows(),
+            false => constraint.with_force_rows(),
+        };
+        let is_massless = |node| problem.redistribution.is_massless(node);
+        let without_mass = constraints.iter().filter(|c| c.nodes().any(is_massless));
+        self.massless.clear();
+        (self.massless).extend(without_mass.map(|constraint| constraint.key));
+        let mut struck = std::mem::take(&mut self.of_iterate);
+        struck.clear();
+        struck.reserve(constraints.len());
+        struck.extend((constraints.iter()).filter(|c| self.strikes(c)).map(rows));
+        self.of_iterate = struck;
+        let steady = Steady {
+            problem,
+            inertia: workspace.stiffness.inertia.as_slice(),
+            before,
+            v0: &start.v,
+        };
+        let [steady_part, exact_part] = steady.tolerances();
+        let part = self.part_of_change(&steady);
+        self.are_exact = part <= exact_part;
+        if part <= steady_part {
+            return Ok(());
+        }
+        self.are_exact = true;
+        let system = mass_system(problem, workspace);
+        let states = (self.of_iterate.iter()).map(|c| self.state(c, &start.v, dt));
+        let states = states.collect();
+        self.acting = impulses(self.of_iterate.clone(), states, &start.v, dt, system)?;
+        std::mem::swap(&mut self.struck, &mut self.of_iterate);
+        match self.acting.closed.is_empty() {
+            true => self.resultant.clear(),
+            false => (self.acting).write_resultant(start.v.len(), &mut self.resultant),
+        }
+        Ok(())
+    }
+
+    /// By which part of the largest forces the impulses with the rows of the iterate differ from those at hand: any
+    /// where these are for others.
+    fn part_of_change(&self, steady: &Steady) -> f64 {
+        let struck = &self.of_iterate;
+        let same_set = (self.struck.iter().map(|c| c.key)).eq(struck.iter().map(|c| c.key));
+        if !same_set {
+            return f64::INFINITY;
+        }
+        let largest = steady.largest_forces(struck);
+        let both = self.struck.iter().zip(struck);
+        both.map(|(before, now)| {
+            let state = self.acting.closed.state(now.key);
+            steady.part([before, now], state, &largest)
+        })
+        .fold(0.0, larger)
+    }
+
+    /// What the equilibrium of an iterate with the given constraints needs of the velocity of the start: V0
+    /// with the impulses beside it, so that nothing is solved with M, unless U_theta depends on V0+.
+    pub fn start_velocity<'a>(
+        &'a mut self,
+        problem: &StepProblem,
+        workspace: &mut Workspace,
+        constraints: &[Constraint],
+        start: &'a State,
+        before: &Before,
+    ) -> Result<StartVelocity<'a>, Cause> {
+        self.solve(problem, workspace, constraints, start, before)?;
+        match problem.weights.lags() {
+            true => self.velocity(problem, workspace, start),
+            false => Ok(StartVelocity {
+                v0p: Cow::Borrowed(&start.v),
+                impulse: &self.resultant,
+            }),
+        }
+    }
+
+    /// Velocity V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1).
+    pub fn velocity<'a>(
+        &self,
+        problem: &StepProblem,
+        workspace: &mut Workspace,
+        start: &'a State,
+    ) -> Result<StartVelocity<'a>, Cause> {
+        let v0p = match self.resultant.as_slice() {
+            [] => Cow::Borrowed(start.v.as_slice()),
+            impulse => Cow::Owned(mass_system(problem, workspace).respond(&start.v, impulse)?),
+        };
+        Ok(StartVelocity { v0p, impulse: &[] })
+    }
+
+    /// State of a pair in the impulses before; where it was not among them, it sticks if it approaches.
+    fn state(&self, constraint: &Constraint, v0: &[f64], dt: f64) -> ContactState {
+        let key = constraint.key;
+        match self.struck.binary_search_by_key(&key, |struck| struck.key) {
+            Ok(_) => self.acting.closed.state(key),
+            Err(_) if approach(constraint, v0, dt) < 0.0 => ContactState::Stick,
+            Err(_) => ContactState::Open,
+        }
+    }
+
+    /// Whether the set of pairs stayed the same after the last pass, and its impulses are those of the iterate.
+    pub fn are_at_rest(&self) -> bool {
+        self.at_rest && self.are_exact
+    }
+
+    /// Takes over the pairs in contact after a pass; whether they are the same as before, and the impulses theirs. After
+    /// some changes the set is kept: impulses of any set take energy, never give it.
+    pub fn rest(&mut self, problem: &StepProblem, closed: &ClosedPairs) -> bool {
+        let rest = problem.settings.impact == Impact::None
+            || self.free_keys(closed).eq(self.free_keys(&self.closed))
+            || self.changes >= SET_CHANGES;
+        self.at_rest = rest;
+        if !rest {
+            self.closed.clone_from(closed);
+            self.changes += 1;
+        }
+        self.are_at_rest()
+    }
+
+    /// Keys of the pairs that have impulses only because they are closed.
+    fn free_keys(&self, closed: &ClosedPairs) -> impl Iterator<Item = ConstraintKey> {
+        let keys = closed.iter().map(|pair| pair.key);
+        keys.filter(|key| !self.touching.closes(*key) && self.have_mass(*key))
+    }
+
+    fn have_mass(&self, key: ConstraintKey) -> bool {
+        self.massless.binary_search(&key).is_err()
+    }
+
+    fn strikes(&self, constraint: &Constraint) -> bool {
+        let is_struck =
+            self.closed.closes(constraint.key) || self.touching.has_segment_of(constraint);
+        is_struck && self.have_mass(constraint.key)
+    }
+}
+
+/// M with its complementarity problems.
+fn mass_system<'a>(problem: &'a StepProblem, workspace: &'a mut Workspace) -> ContactSystem<'a> {
+    ContactSystem {
+        map: &problem.unknowns.map,
+        system: workspace.m(),
+        method: problem.method(),
+    }
+}
+
+/// Impulses of many constraints by blocks, if that is how they are solved, from what is given of gaps and slips
+/// without impulses: the constraints take these as their own, so that the round-off of V0 stays out of
+/// what impulses add.
+fn by_bodies(
+    constraints: &[Constraint],
+    given: &[[f64; 2]],
+    dofs: usize,
+    (guess, system, dt): (&Guess, &mut ContactSystem, f64),
+    closed: &mut ClosedPairs,
+) -> Result<Option<usize>, Cause> {
+    if !is_large(constraints.len()) {
+        return Ok(None);
+    }
+    let places: Vec<usize> = (0..constraints.len()).collect();
+    let chosen = |all| Chosen {
+        all,
+        places: &places,
+    };
+    if !chosen(constraints).are_by_bodies(system) {
+        return Ok(None);
+    }
+    let posed = |(constraint, &[gap, slip]): (&Constraint, &[f64; 2])| Constraint {
+        gap,
+        slip,
+        scale: constraint.scale / dt,
+        ..constraint.clone()
+    };
+    let posed: Vec<Constraint> = constraints.iter().zip(given).map(posed).collect();
+    let chosen = chosen(&posed);
+    let nothing = vec![0.0; dofs];
+    let mut response = Response::begin(system, [&nothing, &nothing], &posed)?;
+    let mut free = Vec::new();
+    response.gaps_and_slips(system, &posed, &mut free);
+    system.solve_by_bodies(&mut response, &chosen, &free, guess, closed)
+}
+
+/// Impact impulses Phi, Psi of constraints at the start of an increment, for the velocity after them
+/// V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1) (paper eq. 30), posed as eq. (6.2):
+///
+/// ```text
+/// 0 <= Phi  complementary to  Gn V0+ + (2/dt) max(g0, 0) >= 0
+/// |Psi| <= mu Phi, Psi opposes Gt V0+
+/// ```
+///
+/// so that kinetic energy never grows where G = B. The search begins with the given states.
+fn impulses(
+    constraints: Vec<Constraint>,
+    states: Vec<ContactState>,
+    v0: &[f64],
+    dt: f64,
+    mut system: ContactSystem,
+) -> Result<ContactForces, Cause> {
+    // Gn V0 + (2/dt) max(g0, 0) and Gt V0, eq. (6.2); 0 where what they make of an increment is nothing
+    let resolved = |c: &Constraint, rate: f64| match c.resolved(dt * rate) {
+        0.0 => 0.0,
+        _ => rate,
+    };
+    let rates =
+        |c: &Constraint| [approach(c, v0, dt), c.slip_change(v0)].map(|rate| resolved(c, rate));
+    let given: Vec<[f64; 2]> = constraints.iter().map(rates).collect();
+    if given.iter().all(|[approach, _]| *approach >= 0.0) {
+        return Ok(ContactForces::default());
+    }
+    let guess = Guess {
+        states,
+        forces: None,
+        weight: None,
+    };
+    if !system.system.is_factorized() {
+        system.system.factorize()?;
+    }
+    let mut closed = ClosedPairs::default();
+    let dofs = v0.len();
+    let pivots = match by_bodies(
+        &constraints,
+        &given,
+        dofs,
+        (&guess, &mut system, dt),
+        &mut closed,
+    )? {
+        Some(pivots) => pivots,
+        None => {
+            let all: Vec<&Constraint> = constraints.iter().collect();
+            system.solve(&all, &given, &guess, &mut closed)?
+        }
+    };
+    Ok(ContactForces {
+        problem_size: constraints.len(),
+        closed,
+        pivots,
+        constraints,
+        ..ContactForces::default()
+    })
+}
+
+/// Part of the tolerance of forces by which impulses may differ from those with the rows of the iterate where an
+/// increment ends.
+const EXACT: f64 = 1e-2;
+
+/// Part of the last correction by which they may differ, as parts of forces and displacements, while the passes go on:
+/// a pass makes the next correction by more than this smaller only where it is about to end them.
+const STEADY: f64 = 1e-3;
+
+/// The pass before.
+pub(crate) struct Before<'a> {
+    /// Forces of its iterate.
+    forces: &'a Equilibrium,
+    /// Its relative correction.
+    correction: f64,
+    /// Length of the increment.
+    pub dt: f64,
+}
+
+impl<'a> Before<'a> {
+    /// A pass with the forces of its iterate and its relative correction, in an increment of length dt.
+    pub fn new(forces: &'a Equilibrium, correction: f64, dt: f64) -> Self {
+        Before {
+            forces,
+            correction,
+            dt,
+        }
+    }
+}
+
+/// Gn V0 + (2/dt) max(g0, 0), eq. (6.2), of a constraint with its force rows as derivative rows.
+pub(super) fn approach(constraint: &Constraint, v0: &[f64], dt: f64) -> f64 {
+    constraint.normal_motion(v0) + 2.0 / dt * constraint.start_gap.max(0.0)
+}
+
+/// What a change of impulses is measured by.
+pub(super) struct Steady<'a> {
+    pub problem: &'a StepProblem<'a>,
+    /// Largest diagonal entries of (2/dt²) M of every part.
+    pub inertia: &'a [f64],
+    pub before: &'a Before<'a>,
+    pub v0: &'a [f64],
+}
+
+impl Steady<'_> {
+    /// The largest force at the dofs of some constraints, of every part.
+    pub fn largest_forces(&self, constraints: &[Constraint]) -> SmallVec<[f64; 16]> {
+        let Equilibrium {
+            load,
+            internal,
+            inertia,
+            ..
+        } = self.before.forces;
+        let mut most = smallvec![0.0; self.inertia.len()];
+        for &dof in constraints.iter().flat_map(|constraint| &constraint.dofs) {
+            let most = &mut most[self.problem.parts.part(dof)];
+            for force in [load, internal, inertia] {
+                *most = larger(*most, force[dof].abs());
+            }
+        }
+        most
+    }
+
+    /// The part of the largest forces by which impulses may differ, and that by which they may where the increment
+    /// ends.
+    pub fn tolerances(&self) -> [f64; 2] {
+        let exact = EXACT * self.problem.settings.tolerance;
+        [exact.max(STEADY * self.before.correction), exact]
+    }
+
+    /// By which part of the largest forces the impulses of a constraint in a state change with its rows of `now` in
+    /// place of those `before`: an impulse that changes the velocity of a node by dV is at most M_ii dV, and the
+    /// force 2/dt of that.
+    pub fn part(
+        &self,
+        [before, now]: [&Constraint; 2],
+        state: ContactState,
+        largest: &[f64],
+    ) -> f64 {
+        if before.dofs != now.dofs {
+            return f64::INFINITY;
+        }
+        let dt = self.before.dt;
+        let change = dt * change(before, now, state, (self.v0, dt));
+        let of_dof = |&dof: &usize| {
+            let part = self.problem.parts.part(dof);
+            match change * self.inertia[part] {
+                0.0 => 0.0,
+                force => force / largest[part],
+            }
+        };
+        now.dofs.iter().map(of_dof).fold(0.0, larger)
+    }
+}
+
+/// What the rows of `now` in place of those `before` change of the velocity that the impulses of a constraint in a state
+/// make: approach and slip rate, as far as they stop them, and the turn of the jump that stops them.
+fn change(
+    before: &Constraint,
+    now: &Constraint,
+    state: ContactState,
+    (v0, dt): (&[f64], f64),
+) -> f64 {
+    let approach = [before, now].map(|c| approach(c, v0, dt));
+    let slide = [before, now].map(|c| c.tangential_motion(v0));
+    let jump = match state {
+        ContactState::Open => 0.0,
+        ContactState::Stick => approach[0].abs() + slide[0].abs(),
+        ContactState::SlipPlus | ContactState::SlipMinus => (1.0 + before.mu) * approach[0].abs(),
+    };
+    let [of_before, of_now] = [before, now].map(|c| {
+        let Rows { normal, tangential } = &c.force_rows;
+        normal.iter().chain(tangential)
+    });
+    let turns = of_before.zip(of_now).map(|(b, n)| (b - n).abs());
+    let turn = turns.fold((before.mu - now.mu).abs(), larger);
+    let slips = match state {
+        ContactState::Stick => (slide[0] - slide[1]).abs(),
+        _ => 0.0,
+    };
+    (approach[0] - approach[1]).abs() + slips + turn * jump
+}
+
+#[cfg(test)]
+mod steady_tests {
+    use super::*;
+    use crate::contact::{ConstraintKey, ContactTarget, PairTarget};
+    use crate::model::Friction;
+
+    /// A node at dofs 0 and 1 over ground that turns by an angle: n = (-sin, cos), t = (cos, sin).
+    pub fn turned(angle: f64) -> Constraint {
+        let (sin, cos) = angle.sin_cos();
+        Constraint {
+            key: ConstraintKey {
+                slave_index: 0,
+                segment: 0,
+            },
+            dofs: [0, 1].into_iter().collect(),
+            slave_dofs: 2,
+            force_rows: Rows::new(&[-sin, cos], &[cos, sin]),
+            other_derivative_rows: None,
+            gap: 0.0,
+            start_gap: 0.0,
+            slip: 0.0,
+            mu: 0.5,
+            scale: 1.0,
+            source: PairTarget {
+                slave_index: 0,
+                target: ContactTarget::face(0),
+                nodes: [0, 1, 2, 2],
+                from: None,
+                friction: Friction::constant(0.5),
+            },
+        }
+    }
+
+    #[test]
+    fn a_turn_of_the_rows_changes_what_impulses_stop() {
+        let angle = 1e-6;
+        let [before, now] = [0.0, angle].map(turned);
+        let of = |v0: [f64; 2], state| change(&before, &now, state, (&v0, 0.1)) / angle;
+        let about = |value: f64, expected: f64| (value - expected).abs() < 1e-5;
+        let (stick, slip, open) = (
+            ContactState::Stick,
+            ContactState::SlipPlus,
+            ContactState::Open,
+        );
+        // along the ground: the approach changes by 3 angles, the jump that turns is that of the slip
+        assert!(about(of([3.0, 0.0], slip), 3.0));
+        assert!(about(of([3.0, 0.0], stick), 3.0 + 3.0));
+        assert!(about(of([3.0, 0.0], open), 3.0));
+        // onto the ground: the slip rate changes by 2 angles, and the jump of 2, with its friction, turns
+        assert!(about(of([0.0, -2.0], slip), 3.0));
+        assert!(about(of([0.0, -2.0], stick), 2.0 + 2.0));
+        assert!(about(of([0.0, -2.0], open), 0.0));
+        assert_eq!(change(&now, &now, stick, (&[3.0, -2.0], 0.1)), 0.0);
+    }
+
+    #[test]
+    fn another_start_gap_or_friction_changes_what_impulses_stop() {
+        let before = turned(0.0);
+        let (mut nearer, mut rougher) = (before.clone(), before.clone());
+        (nearer.start_gap, rougher.mu) = (0.25, 0.75);
+        let of =
+            |now: &Constraint| change(&before, now, ContactState::SlipPlus, (&[0.0, -2.0], 0.5));
+        // (2/dt) g0, and 0.25 of the jump
+        assert_eq!(of(&nearer), 1.0);
+        assert_eq!(of(&rougher), 0.25 * 3.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::steady_tests::turned;
+    use super::*;
+    use crate::contact::ClosedPair;
+    use crate::dynamics::step::{ClosedConstraints, Discretization, Equilibrium};
+    use crate::elements::Motion;
+    use crate::model::{Frames, Increments, Procedure, Scheme, Settings, Step};
+    use crate::prepare::{PreparedModel, redistribution_tests::block};
+
+    const DT: f64 = 0.1;
+    /// Dofs of a block of one element.
+    const DOFS: usize = 8;
+
+    /// Calls `test` with a step of a free block of one element, of which K* and M are factorised.
+    fn with_block(settings: Settings, test: impl FnOnce(&StepProblem, &mut Workspace)) {
+        let prepared = PreparedModel::new(block([1, 1], |_, _| false, |_, _| true));
+        let discretization = Discretization::new(&prepared);
+        let step = Step {
+            name: None,
+            procedure: Procedure::Dynamic,
+            increments: Increments {
+                dt: DT,
+                period: 1.0,
+                dt_min: 0.0,
+                direct: true,
+            },
+            settings,
+            supports: vec![],
+            point_loads: vec![],
+            body_forces: vec![],
+            pressures: vec![],
+            tractions: vec![],
+            frames: Frames::Default,
+        };
+        let still = [0.0; DOFS];
+        let problem = StepProblem::new(&discretization, &step, [&still, &still]);
+        let mut workspace = Workspace::new(&problem);
+        let contact = ClosedConstraints {
+            acting: vec![],
+            at: problem.configurations(&still, &still),
+        };
+        let motion = Motion::at(&still, &[]);
+        (workspace.factorize(&problem, DT, motion, &contact)).expect("positive definite");
+        test(&problem, &mut workspace);
+    }
+
+    fn pairs<const N: usize>(slaves: [usize; N]) -> ClosedPairs {
+        slaves
+            .map(|slave| ClosedPair::touching(slave, 0))
+            .into_iter()
+            .collect()
+    }
+
+    #[test]
+    fn the_set_is_at_rest_once_a_pass_does_not_change_it() {
+        with_block(Settings::default(), |problem, _| {
+            let (one, two) = (pairs([0]), pairs([0, 1]));
+            let mut impulses = Impulses::new(&one, ConstraintSet::All);
+            assert!(impulses.rest(problem, &one));
+            assert!(!impulses.rest(problem, &two) && impulses.rest(problem, &two));
+            // pairs that touch at the start strike in any case, nodes without mass in none
+            let mut touching = Impulses::new(&one, ConstraintSet::All);
+            touching.touching = pairs([1]);
+            assert!(touching.rest(problem, &two));
+            let mut massless = Impulses::new(&one, ConstraintSet::All);
+            massless.massless = vec![two.iter().last().expect("two").key];
+            assert!(massless.rest(problem, &two));
+        });
+    }
+
+    #[test]
+    fn after_some_changes_the_set_is_kept() {
+        with_block(Settings::default(), |problem, _| {
+            let sets = [pairs([0]), pairs([0, 1])];
+            let mut impulses = Impulses::new(&sets[0], ConstraintSet::All);
+            let changes = (1..=9).filter(|k| !impulses.rest(problem, &sets[k % 2]));
+            assert_eq!(changes.collect::<Vec<_>>(), [1, 2, 3, 4, 5]);
+            assert_eq!(impulses.closed, sets[1]);
+        });
+    }
+
+    #[test]
+    fn the_pairs_of_the_last_increment_have_impulses() {
+        with_block(Settings::default(), |_, _| {
+            let impulses = Impulses::new(&pairs([0]), ConstraintSet::All);
+            assert!(impulses.strikes(&turned(0.0)));
+            let impulses = Impulses::new(&pairs([1]), ConstraintSet::All);
+            assert!(!impulses.strikes(&turned(0.0)));
+        });
+    }
+
+    /// A node slides and falls on to ground that turns from pass to pass: impulses that are near those of its rows
+    /// will do while the passes go on, but not where they end.
+    #[test]
+    fn an_increment_ends_with_the_impulses_of_its_own_rows() {
+        let settings = Settings {
+            scheme: Scheme::Ss22 {
+                theta1: 1.0,
+                theta2: 1.0,
+            },
+            ..Settings::default()
+        };
+        with_block(settings, |problem, workspace| {
+            let mut start = State {
+                u: vec![0.0; DOFS],
+                v: vec![0.0; DOFS],
+                ..State::default()
+            };
+            (start.v[0], start.v[1]) = (1.0, -2.0);
+            let forces = Equilibrium {
+                load: vec![0.0; DOFS],
+                internal: vec![1e3; DOFS],
+                inertia: vec![0.0; DOFS],
+                ..Equilibrium::default()
+            };
+            let closed = pairs([0]);
+            let mut impulses = Impulses::new(&closed, ConstraintSet::All);
+            let mut pass = |impulses: &mut Impulses, angle, correction| {
+                let before = Before::new(&forces, correction, DT);
+                let rows = [turned(angle)];
+                (impulses.start_velocity(problem, workspace, &rows, &start, &before))
+                    .expect("solved");
+                let rests = impulses.rest(problem, &closed);
+                assert_eq!(rests, impulses.are_at_rest());
+                (
+                    rests,
+                    impulses
+                        .acting
+                        .closed
+                        .iter()
+                        .map(|pair| pair.force)
+                        .collect::<Vec<_>>(),
+                )
+            };
+            let (rests, first) = pass(&mut impulses, 0.0, 1e-2);
+            assert!(rests && first.len() == 1 && first[0][0] > 0.0);
+            let (rests, kept) = pass(&mut impulses, 1e-6, 1e-2);
+            assert!(!rests && kept == first, "near, not exact");
+            let (rests, solved) = pass(&mut impulses, 1e-6, 1e-6);
+            assert!(rests && solved != first, "exact");
+            let (rests, kept) = pass(&mut impulses, 1e-6 + 1e-14, 1e-6);
+            assert!(rests && kept == solved, "the difference is round-off");
+        });
+    }
+}

@@ -1,0 +1,306 @@
+//! Patterns of velocity along which energy is given back, with the momenta of the loads that they
+//! belong to. Section 6 of docs/theory.md, Landing return.
+//!
+//! How much of every pattern is added to the velocities, so that each gives its own energy. Section 6
+//! of docs/theory.md, Landing return.
+
+use nalgebra::DMatrix;
+
+use super::results::Cause;
+use super::step::{Hold, StepProblem, Workspace, holds};
+use crate::vectors::{cross, difference, dot};
+
+/// A load along whose response energy is given back.
+pub(crate) struct ReturnLoad {
+    /// Nodal forces over all dofs, at the positions of the end, as Gn^T of a pair.
+    pub force: Vec<f64>,
+    /// Friction that is taken back where the load is.
+    pub friction: Option<FrictionLoad>,
+    /// Energy to be given back.
+    pub energy: f64,
+    /// Least share: it takes all of the force of the increment back.
+    pub least: f64,
+}
+
+/// The friction that goes with a load.
+pub(crate) struct FrictionLoad {
+    /// Nodal forces over all dofs, as (Pt/Pn) Gt^T of a pair.
+    pub force: Vec<f64>,
+    /// c: what friction has dissipated, for a share y of -1 (energy).
+    pub work: f64,
+}
+
+/// A pattern of velocity.
+#[derive(Clone)]
+pub(super) struct Pattern {
+    /// w, over all dofs.
+    pub w: Vec<f64>,
+    /// M w.
+    pub momentum: Vec<f64>,
+}
+
+impl Pattern {
+    /// Adds another pattern.
+    pub fn add(&mut self, other: &Pattern) {
+        let add = |sum: &mut [f64], v: &[f64]| sum.iter_mut().zip(v).for_each(|(s, v)| *s += v);
+        add(&mut self.w, &other.w);
+        add(&mut self.momentum, &other.momentum);
+    }
+}
+
+/// The pattern of the forces of a load at the end of an increment of length `dt`, where the bodies are `bodies`.
+///
+/// w = K*^-1 Gn^T, eq. (6.6): what a load changes in the velocity of the end, but for a factor.
+///
+/// # Errors
+/// Solves with K* that fail.
+pub(super) fn pattern(
+    problem: &StepProblem,
+    workspace: &mut Workspace,
+    dt: f64,
+    bodies: &RigidBodies,
+    force: &[f64],
+) -> Result<Pattern, Cause> {
+    let mut w = (workspace.k()).respond(&problem.unknowns.map, force)?;
+    bodies.correct(problem, dt, force, &mut w);
+    let momentum = problem.mass.times(&w);
+    Ok(Pattern { w, momentum })
+}
+
+/// The free bodies as rigid ones.
+pub(super) struct RigidBodies {
+    is_free: Vec<bool>,
+    /// Mass and moment of inertia of every body.
+    inertia: Vec<[f64; 2]>,
+    /// Arms from the centres of mass, over all dofs.
+    arms: Vec<f64>,
+}
+
+impl RigidBodies {
+    /// The bodies at the displacements `u`.
+    pub fn new(problem: &StepProblem, u: &[f64]) -> Self {
+        let is_free: Vec<bool> = holds(problem).iter().map(|&h| h == Hold::Free).collect();
+        let body_of = problem.parts.of_nodes();
+        let mut sums = vec![[0.0; 3]; is_free.len()];
+        for (node, &body) in body_of.iter().enumerate() {
+            let (m, [x, y]) = (problem.mass.shares[node], problem.position(u, node));
+            add(&mut sums[body], [m, m * x, m * y]);
+        }
+        let arm = |(node, &body): (usize, &usize)| match (is_free[body], sums[body]) {
+            (true, [m, x, y]) => difference([x / m, y / m], problem.position(u, node)),
+            (false, _) => [0.0; 2],
+        };
+        let arms = body_of.iter().enumerate().flat_map(arm).collect();
+        let mut bodies = RigidBodies {
+            is_free,
+            inertia: sums.iter().map(|[m, ..]| [*m, 0.0]).collect(),
+            arms,
+        };
+        let weighted = problem.mass.times(&bodies.arms);
+        for (node, &body) in body_of.iter().enumerate() {
+            bodies.inertia[body][1] += dot(at(&bodies.arms, node), at(&weighted, node));
+        }
+        bodies
+    }
+
+    /// V_s over all dofs: in each direction the mean velocity of the supports of the body, or where it has none that of
+    /// its mass, when the velocities are `v`.
+    pub fn support_velocity(&self, problem: &StepProblem, v: &[f64]) -> Vec<f64> {
+        let body_of = problem.parts.of_nodes();
+        // sums of the velocities and their number, and of the momenta and masses
+        let mut held = vec![[[0.0; 2]; 2]; self.is_free.len()];
+        let mut moving = held.clone();
+        for dof in problem.unknowns.prescribed() {
+            let [sum, number] = &mut held[body_of[dof / 2]][dof % 2];
+            (*sum, *number) = (*sum + v[dof], *number + 1.0);
+        }
+        for (dof, v) in v.iter().enumerate() {
+            let m = problem.mass.shares[dof / 2];
+            let [sum, mass] = &mut moving[body_of[dof / 2]][dof % 2];
+            (*sum, *mass) = (*sum + m * v, *mass + m);
+        }
+        let mean = |[sum, number]: [f64; 2]| (number > 0.0).then(|| sum / number);
+        let of_dof = |dof: usize| {
+            let at = |sums: &[[[f64; 2]; 2]]| mean(sums[body_of[dof / 2]][dof % 2]);
+            at(&held).or_else(|| at(&moving)).unwrap_or(0.0)
+        };
+        (0..v.len()).map(of_dof).collect()
+    }
+
+    /// Sums of forces or momenta over the dofs of every body, and of their moments.
+    fn sums(&self, problem: &StepProblem, v: &[f64]) -> Vec<[f64; 3]> {
+        let mut sums = vec![[0.0; 3]; self.is_free.len()];
+        for (node, &body) in problem.parts.of_nodes().iter().enumerate() {
+            let [x, y] = at(v, node);
+            add(&mut sums[body], [x, y, cross(at(&self.arms, node), [x, y])]);
+        }
+        sums
+    }
+
+    /// Gives every free body the momenta of its load by a rigid motion of its own,
+    ///
+    /// ```text
+    /// w <- w + dv + domega e_z x r
+    /// sum p = (dt²/2) sum f,  sum r x p = (dt²/2) sum r x f,   eq. (6.7)
+    /// ```
+    ///
+    /// p = M w, f the load, r from the centre of mass. K* alone does not quite: it is that of another
+    /// configuration, holds contact stiffness, and its factors may have been turned with the bodies.
+    fn correct(&self, problem: &StepProblem, dt: f64, force: &[f64], w: &mut [f64]) {
+        let loads = self.sums(problem, force);
+        let own = self.sums(problem, &problem.mass.times(w));
+        let rates: Vec<[f64; 3]> = (0..loads.len())
+            .map(|body| {
+                let [mass, inertia] = self.inertia[body];
+                let missing = |k: usize| dt * dt / 2.0 * loads[body][k] - own[body][k];
+                match self.is_free[body] {
+                    true => [missing(0) / mass, missing(1) / mass, missing(2) / inertia],
+                    false => [0.0; 3],
+                }
+            })
+            .collect();
+        for (node, &body) in problem.parts.of_nodes().iter().enumerate() {
+            let ([vx, vy, omega], [x, y]) = (rates[body], at(&self.arms, node));
+            w[2 * node] += vx - omega * y;
+            w[2 * node + 1] += vy + omega * x;
+        }
+    }
+}
+
+/// x and y of a node.
+fn at(v: &[f64], node: usize) -> [f64; 2] {
+    [v[2 * node], v[2 * node + 1]]
+}
+
+fn add(sum: &mut [f64; 3], term: [f64; 3]) {
+    sum.iter_mut()
+        .zip(term)
+        .for_each(|(sum, term)| *sum += term);
+}
+
+/// Change of the shares, as a part of them, at which sweeps end: their total is exact in any case.
+const SWEPT: f64 = 1e-13;
+/// Most sweeps.
+const SWEEPS: usize = 1000;
+/// Momentum along a pattern, as a part of that of the energy to be given, that is round-off of a
+/// velocity of zero.
+const AT_REST: f64 = 1e-8;
+
+/// Signs of the shares: those of b, which strengthen the motion along each pattern and never reverse it; without any
+/// motion the pattern of the force is taken.
+pub(super) fn signs(a: &DMatrix<f64>, b: &[f64], energies: &[f64]) -> Vec<f64> {
+    let sign = |j: usize| {
+        let is_at_rest = b[j].abs() <= AT_REST * (2.0 * a[(j, j)] * energies[j]).sqrt();
+        if b[j] < 0.0 && !is_at_rest { -1.0 } else { 1.0 }
+    };
+    (0..b.len()).map(sign).collect()
+}
+
+/// Shares y of the patterns with the given signs,
+///
+/// ```text
+/// y_j (b_j + sum_k A_jk y_k / 2) = D_j,   eq. (6.9)
+/// ```
+///
+/// A_jk = w_j.M w_k (energy for y = 1), b_j = w_j.M V1 - s_j + c_j, `energies` D_j > 0. There is one solution for any
+/// signs of y: the minimum of a convex function, found coordinate by coordinate. A pattern without energy has no share.
+pub(super) fn shares(a: &DMatrix<f64>, b: &[f64], energies: &[f64], signs: &[f64]) -> Vec<f64> {
+    let n = b.len();
+    let mut y = vec![0.0; n];
+    for _ in 0..SWEEPS {
+        let mut change = 0.0_f64;
+        for j in 0..n {
+            let sign = signs[j];
+            let others: f64 = (0..n).filter(|&k| k != j).map(|k| a[(j, k)] * y[k]).sum();
+            let root = positive_root(a[(j, j)] / 2.0, sign * (b[j] + others / 2.0), energies[j]);
+            change = change.max((sign * root - y[j]).abs() / root.max(f64::MIN_POSITIVE));
+            y[j] = sign * root;
+        }
+        if change <= SWEPT {
+            break;
+        }
+    }
+    let has_pattern = |&j: &usize| y[j] != 0.0;
+    let energy = (0..n).filter(has_pattern).map(|j| energies[j]).sum();
+    scaled_to(a, b, energy, y)
+}
+
+/// The shares times the factor with which they give the whole energy.
+fn scaled_to(a: &DMatrix<f64>, b: &[f64], energy: f64, mut y: Vec<f64>) -> Vec<f64> {
+    let n = y.len();
+    let mut sums = [0.0; 2];
+    for j in 0..n {
+        sums[0] += y[j] * (0..n).map(|k| a[(j, k)] * y[k]).sum::<f64>() / 2.0;
+        sums[1] += y[j] * b[j];
+    }
+    let factor = positive_root(sums[0], sums[1], energy);
+    y.iter_mut().for_each(|y| *y *= factor);
+    y
+}
+
+/// The root y > 0 of a y² + b y = D for a, D > 0; 0 where there is no pattern, a = 0.
+fn positive_root(a: f64, b: f64, energy: f64) -> f64 {
+    if a <= 0.0 {
+        return 0.0;
+    }
+    let root = (b * b + 4.0 * a * energy).sqrt();
+    match b > 0.0 {
+        true => 2.0 * energy / (b + root),
+        false => (root - b) / (2.0 * a),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Energy that every share gives.
+    fn given(a: &DMatrix<f64>, b: &[f64], y: &[f64]) -> Vec<f64> {
+        let n = y.len();
+        let half = |j: usize| (0..n).map(|k| a[(j, k)] * y[k]).sum::<f64>() / 2.0;
+        (0..n).map(|j| y[j] * (b[j] + half(j))).collect()
+    }
+
+    proptest! {
+        /// Random patterns of 4 velocities, at most as many independent ones, also alike.
+        #[test]
+        fn every_share_gives_its_own_energy_and_strengthens_the_motion(
+            w in proptest::collection::vec(proptest::collection::vec(-1.0..1.0_f64, 4), 1..7),
+            v in proptest::collection::vec(-1.0..1.0_f64, 4),
+            d in proptest::collection::vec(0.001..1.0_f64, 7),
+        ) {
+            let dot = |p: &[f64], q: &[f64]| -> f64 { p.iter().zip(q).map(|(p, q)| p * q).sum() };
+            let n = w.len();
+            let a = DMatrix::from_fn(n, n, |j, k| dot(&w[j], &w[k]));
+            let b: Vec<f64> = w.iter().map(|w| dot(w, &v)).collect();
+            let y = shares(&a, &b, &d[..n], &signs(&a, &b, &d[..n]));
+            for (j, given) in given(&a, &b, &y).into_iter().enumerate() {
+                prop_assert!((given - d[j]).abs() < 1e-6, "{given} {}", d[j]);
+                prop_assert!(y[j] * b[j] >= 0.0);
+            }
+            let total: f64 = given(&a, &b, &y).iter().sum();
+            prop_assert!((total - d[..n].iter().sum::<f64>()).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_point_mass_keeps_its_speed_whenever_it_lands() {
+        // it lands after the part s of the increment and leaves it with -(1 - 2 s) of its speed of 1:
+        // mass 1, D = 2 s (1 - s)
+        for s in [0.0625, 0.25, 0.5, 0.75, 0.9375] {
+            let (v, d) = (1.0 - 2.0 * s, 2.0 * s * (1.0 - s));
+            let (a, b) = (DMatrix::from_element(1, 1, 4.0), [2.0 * v]);
+            let y = shares(&a, &b, &[d], &signs(&a, &b, &[d]))[0];
+            let expected = if s > 0.5 { -1.0 } else { 1.0 };
+            assert!((v + 2.0 * y - expected).abs() < 1e-15, "{s}");
+        }
+    }
+
+    #[test]
+    fn patterns_that_are_alike_share_alike_and_one_without_motion_has_none() {
+        let a = DMatrix::from_row_slice(3, 3, &[1.0, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
+        let y = shares(&a, &[0.5, 0.5, 0.0], &[0.1; 3], &[1.0; 3]);
+        assert!((y[0] - y[1]).abs() < 1e-12 && y[2] == 0.0, "{y:?}");
+    }
+}

@@ -1,0 +1,289 @@
+//! Rest of nodes without mass at the end of an increment in which pairs open. Section 6 of
+//! docs/theory.md, Releases.
+//!
+//! Nodes without mass that carry no contact force, with the stiffness that holds them. Section 6 of
+//! docs/theory.md, Releases.
+
+use std::collections::BTreeSet;
+
+use super::increment::{ContactForces, ContactSystem, Release, Solved};
+use super::results::State;
+use super::step::{FactoredMatrix, Interval, StepProblem, System, Workspace, difference, dot, sum};
+use crate::contact::tolerances::TIED_ROW;
+use crate::contact::{ClosedPair, ClosedPairs, Constraint, Corner, PairTarget};
+use crate::elements::Motion;
+use crate::linear::{Assembled, Transformation, larger, largest, linear_solver};
+
+/// Most Newton steps to the rest.
+const STEPS: usize = 10;
+/// Last Newton step beside the way from which on the next is round-off.
+const NEAR: f64 = 1e-6;
+/// Overlap, in lengths of the segment, that is round-off of positions.
+const OVERLAP: f64 = 1e-12;
+/// Round-off of displacements, and of the sums of a strain energy.
+const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
+
+/// Where an increment starts: its motion and the pairs closed there.
+pub(crate) struct ReleaseStart<'a> {
+    pub state: &'a State,
+    pub closed: &'a ClosedPairs,
+}
+
+/// Lets nodes without mass come to rest at the end of an increment in which pairs have opened, if they
+/// carry no force: the mid-point rule fixes the mean of start and end alone, so that their deviation from
+/// rest would change its sign in every increment. Where there is no rest, or a node would go through a
+/// surface on the way, they stay as they are. Gives what this takes.
+pub(crate) fn bring_to_rest(
+    problem: &StepProblem,
+    workspace: &mut Workspace,
+    start: ReleaseStart,
+    interval: Interval,
+    solved: &mut Solved,
+) -> Release {
+    if problem.redistribution.is_empty() {
+        return Release::default();
+    }
+    let still = &solved.forces.closed;
+    let has_opened = |pair: &&ClosedPair| still.of_slave(pair.key.slave_index).is_empty();
+    let opened: Vec<&ClosedPair> = start.closed.iter().filter(has_opened).collect();
+    if opened.is_empty() {
+        return Release::default();
+    }
+    let open = solved.forces.iter().filter(|(_, pair)| pair.is_none());
+    let mut releasing = Releasing {
+        problem,
+        workspace,
+        interval,
+        end: &solved.end,
+        free: FreeNodes::new(problem, solved, &opened),
+        held: still,
+        open: open.map(|(c, _)| untilted(c.source)).collect(),
+    };
+    let found = releasing.rest();
+    let safe = found.filter(|u| !releasing.goes_through(&start, u));
+    let found = safe.and_then(|u| Some((releasing.release(&u)?, u)));
+    let Some(((mut release, internal), u)) = found else {
+        return Release::default();
+    };
+    let at = problem.configurations(&u, &u);
+    let constraint = |pair: &&ClosedPair| {
+        let target = pair_target(problem, pair)?;
+        Some((Constraint::new(target, &at), pair.force))
+    };
+    release.opened = opened.iter().filter_map(constraint).collect();
+    (solved.end.u, solved.end.internal) = (u, internal);
+    release
+}
+
+/// A target whatever held the node at the start: the rest starts at the end.
+fn untilted(target: PairTarget) -> PairTarget {
+    PairTarget {
+        from: None,
+        ..target
+    }
+}
+
+/// The free nodes of an increment on their way to rest.
+struct Releasing<'a, 'm> {
+    problem: &'a StepProblem<'a>,
+    workspace: &'a mut Workspace<'m>,
+    interval: Interval,
+    /// State at the end of the increment before the rest.
+    end: &'a State,
+    free: FreeNodes,
+    /// The pairs closed there.
+    held: &'a ClosedPairs,
+    /// Targets of the open constraints of the last pass.
+    open: Vec<PairTarget>,
+}
+
+impl Releasing<'_, '_> {
+    /// Displacements with the free nodes at rest: W - R.u is least with all gaps >= min(g1, 0), by Newton
+    /// steps with the contact forces of the pairs that the nodes meet. None where they do not converge.
+    fn rest(&mut self) -> Option<Vec<f64>> {
+        let mut u = self.end.u.clone();
+        for _ in 0..STEPS {
+            let du = self.newton_step(&u)?;
+            u = sum(&u, &du);
+            let (step, way) = (largest(&du), largest(&difference(&u, &self.end.u)));
+            if step <= larger(NEAR * way, ROUND_OFF * largest(&u)) {
+                let overlaps = |c: &Constraint| c.gap < -OVERLAP * c.scale;
+                return (!self.constraints(&u).iter().any(overlaps)).then_some(u);
+            }
+        }
+        None
+    }
+
+    /// dU = K_ii^-1 (R - F + Bn^T Pn), eq. (6.12), Pn of the complementarity problem of the gaps.
+    fn newton_step(&mut self, u: &[f64]) -> Option<Vec<f64>> {
+        let (problem, end) = (self.problem, self.interval.end);
+        let motion = Motion::at(u, &self.end.internal);
+        let internal = problem.elements.internal_force(motion).ok()?;
+        let load = (problem.loads).at(problem.elements, end, u);
+        let mut constraints = self.constraints(u);
+        let (free, meter) = (&self.free, &mut self.workspace.meter);
+        let mut stiffness = meter.time(|t| &mut t.assembly, || free.stiffness(problem, motion));
+        let mut system = System::new(&mut stiffness, meter);
+        system.factorize().ok()?;
+        let mut forces = ContactForces::default();
+        forces.relinearize(&mut constraints);
+        let mut contact = ContactSystem {
+            map: &free.map,
+            system,
+            method: problem.method(),
+        };
+        let (still, r) = (vec![0.0; u.len()], difference(&load, &internal));
+        let mut du = Vec::new();
+        (forces.solve([&still, &r], None, &mut contact, &mut du)).ok()?;
+        contact.system.check().ok()?;
+        Some(du)
+    }
+
+    /// Constraints at the displacements `u` that the free nodes can close, those found anew and those of the
+    /// last pass, without friction, their gaps above what they may be.
+    fn constraints(&mut self, u: &[f64]) -> Vec<Constraint> {
+        let (start, held) = (&self.end.u, self.held.segments());
+        let (way, mut found) = ([start.as_slice(), u], Vec::new());
+        (self.workspace).constraints(self.problem, way, &[], (&held, None), &mut found);
+        let opens = |constraint: &Constraint| self.free.open(constraint);
+        let above_least = |constraint: Constraint| Constraint {
+            gap: constraint.gap - constraint.start_gap.min(0.0),
+            mu: 0.0,
+            ..constraint
+        };
+        let at = self.problem.configurations(start, u);
+        let kept = self.open.iter().map(|&target| Constraint::new(target, &at));
+        let mut all: Vec<Constraint> = found.into_iter().chain(kept).filter(opens).collect();
+        all.sort_by_key(|constraint| constraint.key);
+        all.dedup_by_key(|constraint| constraint.key);
+        all.into_iter().map(above_least).collect()
+    }
+
+    /// Whether a node has gone into a body on its straight path from the start to the displacements `u`.
+    fn goes_through(&mut self, start: &ReleaseStart, u: &[f64]) -> bool {
+        let unsolved = self.problem.unsolved(&difference(u, &start.state.u));
+        let closed = [start.closed, self.held];
+        let found = (self.workspace).find_penetration([&start.state.u, u], closed, &unsolved);
+        found.is_some()
+    }
+
+    /// What the rest at the displacements `u` takes, eq. (6.13), and the internal variables there; none if it would
+    /// give energy.
+    fn release(&self, u: &[f64]) -> Option<(Release, Vec<f64>)> {
+        let (elements, end) = (self.problem.elements, self.interval.end);
+        let before = elements.evaluate(&self.end.u, &self.end.internal);
+        let internal = (elements.update(Motion {
+            start: Some(&self.end.u),
+            ..Motion::at(u, &self.end.internal)
+        }))
+        .variables;
+        let after = elements.evaluate(u, &internal);
+        let both = before.iter().zip(&after);
+        let taken: f64 = both.map(|(b, a)| b.energy - a.energy).sum();
+        let strain: f64 = before.iter().map(|element| element.energy).sum();
+        let load = (self.problem.loads).at(elements, end, u);
+        let load_work = dot(&load, &difference(u, &self.end.u));
+        let loss = taken + load_work;
+        let release = Release {
+            loss,
+            load_work,
+            opened: Vec::new(),
+        };
+        (loss >= -ROUND_OFF * strain).then_some((release, internal))
+    }
+}
+
+/// The free nodes without mass of some bodies.
+pub(super) struct FreeNodes {
+    /// Their dofs as unknowns.
+    pub map: Transformation,
+    /// Elements at them.
+    elements: Vec<usize>,
+    /// Pattern of their stiffness.
+    pattern: Assembled,
+}
+
+impl FreeNodes {
+    /// Those of the bodies of the pairs `opened` that no closed pair holds at the end of an increment.
+    pub fn new(problem: &StepProblem, solved: &Solved, opened: &[&ClosedPair]) -> Self {
+        let is_free = free(problem, solved, opened);
+        let touches = |&element: &usize| {
+            let mut nodes = problem.elements.nodes(element).iter();
+            nodes.any(|&node| is_free[node])
+        };
+        let elements: Vec<usize> = (0..problem.elements.len()).filter(touches).collect();
+        let mut unknowns = 0;
+        let row = |dof: usize| match is_free[dof / 2] && problem.unknowns.depends(dof) {
+            true => {
+                unknowns += 1;
+                vec![(unknowns - 1, 1.0)]
+            }
+            false => Vec::new(),
+        };
+        let rows: Vec<_> = (0..2 * is_free.len()).map(row).collect();
+        let map = Transformation::new(unknowns, rows);
+        let of_node = |&node: &usize| [2 * node, 2 * node + 1];
+        let nodes = |&element: &usize| problem.elements.nodes(element);
+        let dofs = |element: &usize| nodes(element).iter().flat_map(of_node).collect();
+        let lists: Vec<Vec<usize>> = elements.iter().map(dofs).collect();
+        FreeNodes {
+            pattern: Assembled::new(&map, &lists),
+            map,
+            elements,
+        }
+    }
+
+    /// Their stiffness K_ii in the configuration of a motion.
+    pub fn stiffness(&self, problem: &StepProblem, motion: Motion) -> FactoredMatrix {
+        let mut k = self.pattern.clone();
+        for (list, &element) in self.elements.iter().enumerate() {
+            k.add(list, &problem.elements.tangent(element, motion), 1.0);
+        }
+        FactoredMatrix::new(linear_solver(problem.settings.solver), k, &self.map)
+    }
+
+    /// Whether the gap of a constraint depends on them.
+    pub fn open(&self, constraint: &Constraint) -> bool {
+        let rows = &constraint.derivative_rows().normal;
+        let mut entries = constraint.dofs.iter().zip(rows);
+        entries.any(|(&dof, b)| b.abs() > TIED_ROW && !self.map.row(dof).is_empty())
+    }
+}
+
+/// Which nodes are without mass, of the bodies of the pairs `opened`, and held by no closed pair.
+fn free(problem: &StepProblem, solved: &Solved, opened: &[&ClosedPair]) -> Vec<bool> {
+    let body_of = problem.parts.of_nodes();
+    let targets = opened.iter().filter_map(|pair| pair_target(problem, pair));
+    let nodes = targets.flat_map(|target| target.nodes);
+    let bodies: BTreeSet<usize> = nodes.map(|node| body_of[node]).collect();
+    let mut free = vec![false; body_of.len()];
+    for node in problem.redistribution.massless() {
+        free[node] = bodies.contains(&body_of[node]);
+    }
+    let acting = solved.forces.acting();
+    for node in acting.flat_map(|(constraint, _)| constraint.nodes()) {
+        free[node] = false;
+    }
+    free
+}
+
+/// Slave node and target of a closed pair.
+pub(super) fn pair_target(problem: &StepProblem, pair: &ClosedPair) -> Option<PairTarget> {
+    let mut slave = pair.key.slave_index;
+    for contact in problem.contacts {
+        let Some(&node) = contact.slaves.get(slave) else {
+            slave -= contact.slaves.len();
+            continue;
+        };
+        let [a, b] = contact.segments[pair.target.segment];
+        let end = |corner: Corner| contact.segments[corner.next][1];
+        return Some(PairTarget {
+            slave_index: pair.key.slave_index,
+            target: pair.target,
+            nodes: [node, a, b, pair.target.corner.map_or(b, end)],
+            from: None,
+            friction: contact.friction,
+        });
+    }
+    None
+}

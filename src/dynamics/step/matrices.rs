@@ -1,0 +1,463 @@
+//! System matrices of a step with their factors and compliances at the contacts: the effective
+//! stiffness K* of the passes and the mass of the impulses. Sections 4 and 6 of docs/theory.md.
+//!
+//! A system matrix of a step, K* or M, whose work is measured: solves, in one go or in parts, and its
+//! complementarity problems. Sections 4 and 5 of docs/theory.md.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DMatrix;
+
+use super::bodies::BodyAngles;
+use super::mass::unknown_mass;
+use super::meter::Meter;
+use super::step_problem::StepProblem;
+use crate::contact::{
+    ClosedPair, Compliance, Configurations, Constraint, DelassusSpace, Scope, frictional_lcp,
+};
+use crate::elements::{Motion, TangentPart};
+use crate::lcp::{
+    BlockIteration, ContactName, ContactState, Counters, FrictionalLcp, FrictionalSolution,
+    KeptFactors, LcpError, LcpMethod, solve_similar,
+};
+use crate::linear::{
+    AddedBlocks, Assembled, CheckedSolver, LinearError, LinearSolver, Rotation, Transformation,
+    larger, two_linear_solvers,
+};
+
+/// A symmetric matrix over the unknowns, factorised, with its compliance at the contacts.
+pub(crate) struct FactoredMatrix {
+    pub solver: CheckedSolver,
+    pub compliance: Compliance,
+    /// Factors of the last complementarity problems.
+    pub kept: BTreeMap<Scope, KeptFactors>,
+    /// Memory of its Delassus operators.
+    pub space: DelassusSpace,
+    /// Memory of its solves.
+    pub vectors: SolveVectors,
+}
+
+/// Vectors of a solve in parts, used again by the next.
+#[derive(Default)]
+pub(crate) struct SolveVectors {
+    /// Forces turned back, over all dofs.
+    pub forces: Vec<f64>,
+    /// Those of the response at the nodes of constraints.
+    pub response: ResponseVectors,
+}
+
+/// Vectors of the response at the nodes of some constraints.
+#[derive(Default)]
+pub(crate) struct ResponseVectors {
+    /// The nodes, increasing.
+    pub nodes: Vec<usize>,
+    /// What their dofs depend on, increasing.
+    pub unknowns: Vec<usize>,
+    /// Forces of the constraints in the right-hand side (unknown, force).
+    pub forces: Vec<(usize, f64)>,
+    /// Values at the unknowns.
+    pub values: Vec<f64>,
+    /// The response at the nodes, over all dofs; elsewhere nothing of meaning.
+    pub at_nodes: Vec<f64>,
+}
+
+impl FactoredMatrix {
+    /// A matrix over the unknowns of a map, without factors.
+    pub fn new(solver: Box<dyn LinearSolver>, matrix: Assembled, map: &Transformation) -> Self {
+        let solver = CheckedSolver::new(solver, matrix);
+        let compliance = Compliance::new(map.clone(), solver.groups());
+        FactoredMatrix {
+            solver,
+            compliance,
+            kept: BTreeMap::new(),
+            space: DelassusSpace::default(),
+            vectors: SolveVectors::default(),
+        }
+    }
+
+    /// Factorises the matrix again.
+    pub fn factorize(&mut self) -> Result<(), LinearError> {
+        self.compliance.renew(self.solver.groups());
+        self.solver.factorize()
+    }
+
+    /// Solves for the columns of the compliance that `constraints` need.
+    pub fn prepare(
+        &mut self,
+        scope: &Scope,
+        constraints: &[&Constraint],
+    ) -> Result<(), LinearError> {
+        let Self {
+            solver, compliance, ..
+        } = self;
+        compliance.prepare(scope, constraints, solver)
+    }
+}
+
+/// What K* is made of besides inertia.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum StiffnessForm {
+    /// Tangents of the elements and contact stiffness.
+    Tangent,
+    /// Tangents of the elements, with the closed constraints held.
+    Held,
+    /// Positive parts of the tangents, with the closed constraints held.
+    Positive,
+}
+
+impl StiffnessForm {
+    /// All, from the one with which passes converge fastest to the one that is never indefinite.
+    pub const ALL: [Self; 3] = [Self::Tangent, Self::Held, Self::Positive];
+
+    /// Part of the tangents of the elements.
+    fn part(self) -> TangentPart {
+        match self {
+            Self::Tangent | Self::Held => TangentPart::Whole,
+            Self::Positive => TangentPart::Positive,
+        }
+    }
+}
+
+/// Closed constraints of an iterate with their forces.
+pub(crate) struct ClosedConstraints<'a> {
+    pub acting: Vec<(&'a Constraint, &'a ClosedPair)>,
+    /// Configurations that they are linearised between.
+    pub at: Configurations<'a>,
+}
+
+/// The largest entry of the mass on the diagonal of nodes without mass: no impulse acts there, and M
+/// has factors.
+fn diagonal_of_massless(problem: &StepProblem, mass: &Assembled) -> AddedBlocks {
+    let most = mass.diagonal().fold(0.0, larger);
+    let mut blocks = AddedBlocks::default();
+    for node in problem.redistribution.massless() {
+        let diagonal = DMatrix::identity(2, 2) * most;
+        blocks.add(&problem.unknowns.map, &[2 * node, 2 * node + 1], &diagonal);
+    }
+    blocks
+}
+
+/// The effective matrix K* = theta2 K + (2/dt²) M, eq. (4.6), kept until it is assembled again, and
+/// the mass matrix, both over the unknowns of a step: T^T K* T and T^T M T.
+pub(crate) struct EffectiveStiffness {
+    /// K*.
+    pub k: FactoredMatrix,
+    /// M, factorised when an impulse first needs it, then with a diagonal at nodes without mass.
+    pub m: FactoredMatrix,
+    /// Angles of the bodies in K*.
+    angles: BodyAngles,
+    /// Length of the increments of K* (time).
+    dt: f64,
+    /// Largest diagonal entry of theta2 K, with damping, in every part (force/length).
+    pub stiffness: Vec<f64>,
+    /// Largest diagonal entry of (2/dt²) M in every part (force/length).
+    pub inertia: Vec<f64>,
+}
+
+impl EffectiveStiffness {
+    /// Both matrices for the unknowns of a step.
+    pub fn new(problem: &StepProblem) -> Self {
+        let StepProblem {
+            elements,
+            redistribution,
+            unknowns,
+            settings,
+            ..
+        } = problem;
+        let mass = unknown_mass(elements, redistribution, unknowns);
+        let massless = diagonal_of_massless(problem, &mass);
+        let [of_k, of_m] = two_linear_solvers(settings.solver);
+        let k = FactoredMatrix::new(of_k, mass.zeros(), &unknowns.map);
+        let mut m = FactoredMatrix::new(of_m, mass, &unknowns.map);
+        m.solver.add_blocks(massless);
+        EffectiveStiffness {
+            k,
+            m,
+            angles: BodyAngles::new(problem),
+            dt: f64::NAN,
+            stiffness: Vec::new(),
+            inertia: Vec::new(),
+        }
+    }
+
+    /// Length of the increments for which K* was assembled (time).
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// Whether K* is factorised for increments of length `dt`, or of a length that differs from it
+    /// by at most the relative difference `near`.
+    pub fn fits(&self, dt: f64, near: f64) -> bool {
+        self.k.solver.is_factorized() && (self.dt - dt).abs() <= near * dt
+    }
+
+    /// Assembles K* in the given configuration from the tangents of the elements or their positive
+    /// parts, without contact.
+    pub fn assemble(
+        &mut self,
+        problem: &StepProblem,
+        dt: f64,
+        motion: Motion,
+        form: StiffnessForm,
+    ) {
+        let StepProblem {
+            elements,
+            weights,
+            unknowns,
+            parts,
+            ..
+        } = problem;
+        // K* = theta2 K + (2/dt²) M, eq. (4.6)
+        let mass = self.m.solver.matrix();
+        let k = self.k.solver.matrix_mut();
+        k.clear();
+        let free = |element: usize| mass.depends_on(element);
+        elements.for_each_tangent(motion, form.part(), free, |element, tangent| {
+            k.add(element, tangent, weights.theta2)
+        });
+        // K* <- K* + Cd/dt, eq. (4.25)
+        if let Some(increment) = motion.increment {
+            elements.for_each_damping(increment, form.part(), |element, damping| {
+                k.add(element, damping, 1.0 / dt)
+            });
+        }
+        self.stiffness = parts.largest_diagonal(k, &unknowns.dof);
+        let c = 2.0 / (dt * dt);
+        let inertia = parts.largest_diagonal(mass, &unknowns.dof);
+        self.inertia = inertia.into_iter().map(|m| c * m).collect();
+        k.add_matrix(mass, c);
+        self.angles.assemble(problem, motion);
+        self.dt = dt;
+    }
+
+    /// Turns the factors of K* with the bodies, to the configuration of a motion, eq. (4.20).
+    pub fn turn(&mut self, problem: &StepProblem, motion: Motion) {
+        let angles = self.angles.since_assembly(problem, motion);
+        (self.k.compliance).turn(&angles, problem.parts.of_nodes());
+    }
+
+    /// Adds the stiffness of the closed constraints to K*, to be factorised next.
+    pub fn add_contact(&mut self, contact: &ClosedConstraints, form: StiffnessForm) {
+        let FactoredMatrix {
+            solver, compliance, ..
+        } = &mut self.k;
+        let diagonal: Vec<f64> = solver.matrix().diagonal().collect();
+        let map = compliance.map();
+        let mut blocks = AddedBlocks::default();
+        for (constraint, pair) in &contact.acting {
+            let k = match form {
+                // K* <- K* - Kc, eq. (4.12)
+                StiffnessForm::Tangent => -constraint.stiffness(pair.force, &contact.at),
+                // K* <- K* + gamma (Gn^T Gn + Gt^T Gt), gamma the largest K*_ii, eq. (4.13)
+                StiffnessForm::Held | StiffnessForm::Positive => {
+                    let unknowns = constraint.dofs.iter().flat_map(|&dof| map.row(dof));
+                    let gamma = unknowns.map(|term| diagonal[term.0]).fold(0.0, larger);
+                    constraint.hold(pair.state == ContactState::Stick) * gamma
+                }
+            };
+            blocks.add(map, &constraint.dofs, &k);
+        }
+        solver.add_blocks(blocks);
+    }
+}
+
+/// K* or M of a step with the meter of the work that is done with it.
+pub(crate) struct System<'a> {
+    matrix: &'a mut FactoredMatrix,
+    meter: &'a mut Meter,
+}
+
+impl<'a> System<'a> {
+    /// A matrix whose work is measured by `meter`.
+    pub fn new(matrix: &'a mut FactoredMatrix, meter: &'a mut Meter) -> Self {
+        System { matrix, meter }
+    }
+
+    /// Whether the factors are those of the current matrix.
+    pub fn is_factorized(&self) -> bool {
+        self.matrix.solver.is_factorized()
+    }
+
+    /// Factorises the matrix.
+    pub fn factorize(&mut self) -> Result<(), LinearError> {
+        let Self { matrix, meter } = self;
+        meter.time(|t| &mut t.factorization, || matrix.factorize())
+    }
+
+    /// The solution for the right-hand side `b`, over the unknowns.
+    pub fn solve(&mut self, b: &[f64]) -> Result<Vec<f64>, LinearError> {
+        let Self { matrix, meter } = self;
+        meter.time(|t| &mut t.solve, || matrix.solver.solve(b))
+    }
+
+    /// R T A^-1 T^T R^T f for the forces `f` over all dofs, A being the matrix and R the rotation of its
+    /// bodies, eq. (4.20).
+    pub fn respond(&mut self, map: &Transformation, f: &[f64]) -> Result<Vec<f64>, LinearError> {
+        self.begin(map, f)?;
+        let mut response = Vec::new();
+        self.end(map, &vec![0.0; f.len()], &mut response)?;
+        self.check()?;
+        Ok(response)
+    }
+
+    /// Begins the response to the forces `f`, in parts.
+    pub fn begin(&mut self, map: &Transformation, f: &[f64]) -> Result<(), LinearError> {
+        let Self { matrix, meter } = self;
+        let FactoredMatrix {
+            solver,
+            compliance,
+            vectors,
+            ..
+        } = &mut **matrix;
+        let SolveVectors { forces, .. } = vectors;
+        let rotation = compliance.rotation();
+        let write = |b: &mut Vec<f64>| {
+            if rotation.is_identity() {
+                map.write_restricted(f, b);
+            } else {
+                forces.clear();
+                forces.extend_from_slice(f);
+                rotation.turn_back(forces);
+                map.write_restricted(forces, b);
+            }
+        };
+        meter.time(|t| &mut t.solve, || solver.begin(write))
+    }
+
+    /// Writes A^-1 b for the right-hand side so far, at some unknowns, to `values`.
+    pub fn partial(&mut self, unknowns: &[usize], values: &mut Vec<f64>) {
+        let Self { matrix, meter } = self;
+        meter.time(|t| &mut t.solve, || matrix.solver.partial(unknowns, values));
+    }
+
+    /// Adds to the right-hand side at unknowns of the last part (unknown, value).
+    pub fn add(&mut self, b: &[(usize, f64)]) {
+        let Self { matrix, meter } = self;
+        meter.time(|t| &mut t.solve, || matrix.solver.add(b));
+    }
+
+    /// Ends the response and writes it, over all dofs, with `start` added to it; [`Self::check`] checks the
+    /// solution.
+    pub fn end(
+        &mut self,
+        map: &Transformation,
+        start: &[f64],
+        response: &mut Vec<f64>,
+    ) -> Result<(), LinearError> {
+        let Self { matrix, meter } = self;
+        let FactoredMatrix {
+            solver, compliance, ..
+        } = &mut **matrix;
+        let rotation = compliance.rotation();
+        let write = |q: &[f64]| {
+            if rotation.is_identity() {
+                map.write_sum(start, q, response);
+            } else {
+                response.clear();
+                response.resize(start.len(), 0.0);
+                map.add(q, response);
+                rotation.turn(response);
+                response.iter_mut().zip(start).for_each(|(r, s)| *r += s);
+            }
+        };
+        meter.time(|t| &mut t.solve, || solver.end().map(write))
+    }
+
+    /// Memory for the response at some nodes, which [`Self::give_back`] gives back.
+    pub fn take_vectors(&mut self) -> ResponseVectors {
+        std::mem::take(&mut self.matrix.vectors.response)
+    }
+
+    /// Gives memory back.
+    pub fn give_back(&mut self, response: ResponseVectors) {
+        self.matrix.vectors.response = response;
+    }
+
+    /// Checks the residual of the last solution.
+    pub fn check(&mut self) -> Result<(), LinearError> {
+        let Self { matrix, meter } = self;
+        meter.time(|t| &mut t.solve, || matrix.solver.check())
+    }
+
+    /// R of the bodies since the matrix was factorised.
+    pub fn rotation(&self) -> &Rotation {
+        self.matrix.compliance.rotation()
+    }
+
+    /// The bodies that a constraint acts on.
+    pub fn scope_of(&self, constraint: &Constraint) -> Scope {
+        self.matrix.compliance.scope_of(constraint)
+    }
+
+    /// The complementarity problem of constraints of a scope with the given gaps and slips without forces.
+    pub fn frictional_lcp(
+        &mut self,
+        scope: &Scope,
+        constraints: &[&Constraint],
+        constant_terms: &[[f64; 2]],
+    ) -> Result<FrictionalLcp, LinearError> {
+        let Self { matrix, meter } = self;
+        meter.time(|t| &mut t.solve, || matrix.prepare(scope, constraints))?;
+        let FactoredMatrix {
+            compliance, space, ..
+        } = &mut **matrix;
+        let pose = || frictional_lcp(constraints, (compliance, scope), constant_terms, space);
+        Ok(meter.time(|t| &mut t.contact, pose))
+    }
+
+    /// Solves a complementarity problem, starting from the states `warm`.
+    pub fn solve_lcp(
+        &mut self,
+        problem: &FrictionalLcp,
+        warm: &[ContactState],
+        method: LcpMethod,
+    ) -> Result<FrictionalSolution, LcpError> {
+        let Self { matrix, meter } = self;
+        let kept = matrix.kept.entry(Scope::All).or_default();
+        let solve = || solve_similar(problem, Some(warm), method, kept);
+        let solution = meter.time(|t| &mut t.lcp, solve)?;
+        self.meter.count_lcp(warm.len(), solution.counters);
+        Ok(solution)
+    }
+
+    /// Takes the memory of a complementarity problem that is not needed any more.
+    pub fn take_back(&mut self, problem: FrictionalLcp) {
+        self.matrix.space.take(problem);
+    }
+
+    /// Takes the memory of a solution that is not needed any more.
+    pub fn take_back_solution(&mut self, solution: FrictionalSolution) {
+        let kept = self.matrix.kept.entry(Scope::All).or_default();
+        kept.take(solution);
+    }
+
+    /// Solves the blocks of an iteration: the forces of all its contacts.
+    pub fn solve_blocks(
+        &mut self,
+        iteration: &mut BlockIteration,
+    ) -> Result<Vec<[f64; 2]>, LcpError> {
+        let solve = || iteration.forces().map(<[_]>::to_vec);
+        self.meter.time(|t| &mut t.lcp, solve)
+    }
+
+    /// Counts a complementarity problem that was solved by blocks.
+    pub fn count_lcp(&mut self, size: usize, work: Counters) {
+        self.meter.count_lcp(size, work);
+    }
+
+    /// Names the constraints of the next complementarity problem, each differently.
+    pub fn name_contacts(&mut self, names: impl Iterator<Item = ContactName>) {
+        let kept = self.matrix.kept.entry(Scope::All).or_default();
+        kept.name_contacts(names);
+    }
+
+    /// Takes the factors of the last complementarity problem of a scope.
+    pub fn take_kept(&mut self, scope: &Scope) -> KeptFactors {
+        self.matrix.kept.remove(scope).unwrap_or_default()
+    }
+
+    /// Keeps the factors of the last complementarity problem of a scope.
+    pub fn keep(&mut self, scope: Scope, kept: KeptFactors) {
+        self.matrix.kept.insert(scope, kept);
+    }
+}
