@@ -3,14 +3,15 @@
 
 use std::num::NonZero;
 use std::path::PathBuf;
+use std::sync::LazyLock;
 use std::thread;
 
 use clap::{ArgAction, Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
-use super::version::{LONG_VERSION, VERSION};
 use crate::diagnostics::Strictness;
 use crate::model::{Frames, SolverChoice};
-use crate::output::{Verbosity, Window};
+use crate::output::Verbosity;
+use crate::output::Window;
 
 /// Large-displacement dynamics of plane deformable bodies with exact contact and Coulomb friction.
 #[derive(Debug, Parser)]
@@ -247,3 +248,51 @@ fn positive_time(text: &str) -> Result<f64, String> {
         _ => Err("expected a time greater than 0".into()),
     }
 }
+
+/// Version of the program.
+pub(super) const NUMBER: &str = env!("CARGO_PKG_VERSION");
+
+/// Commit it was built from.
+pub(super) const COMMIT: &str = env!("STICKSLIP_COMMIT");
+
+/// Profile it was built with.
+pub(super) const PROFILE: &str = env!("STICKSLIP_PROFILE");
+
+/// Version, commit and profile.
+pub(super) const VERSION: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    " (",
+    env!("STICKSLIP_COMMIT"),
+    ", ",
+    env!("STICKSLIP_PROFILE"),
+    ")"
+);
+
+/// Licences of the libraries whose versions the build recorded.
+const LICENCES: [(&str, &str); 7] = [
+    ("clap", "MIT OR Apache-2.0"),
+    ("faer", "MIT"),
+    ("hdf5-metno", "MIT OR Apache-2.0"),
+    ("nalgebra", "Apache-2.0"),
+    ("rayon", "MIT OR Apache-2.0"),
+    ("sprs", "MIT OR Apache-2.0"),
+    ("sprs-ldl", "LGPL-2.1"),
+];
+
+/// [`VERSION`] and the libraries with versions and licences.
+pub(super) static LONG_VERSION: LazyLock<String> = LazyLock::new(|| {
+    let (major, minor, micro) = hdf5::library_version();
+    let mut lines = vec![
+        VERSION.to_owned(),
+        "licence MIT OR Apache-2.0".to_owned(),
+        "libraries:".to_owned(),
+        format!("  HDF5 {major}.{minor}.{micro} (BSD-3-Clause)"),
+    ];
+    for library in env!("STICKSLIP_LIBRARIES").split(';') {
+        let name = library.split(' ').next().unwrap_or_default();
+        let licence = LICENCES.iter().find(|(known, _)| *known == name);
+        let licence = licence.map_or("see its source", |(_, licence)| licence);
+        lines.push(format!("  {library} ({licence})"));
+    }
+    lines.join("\n")
+});

@@ -1,17 +1,12 @@
 //! Command line: `run`, `check`, `flatten`, `explain`, `info` and `lcp`.
 
+mod allocator;
 mod args;
 mod commands;
-mod connect;
 mod error;
-mod exit;
-mod file;
-mod memory;
+mod run;
 mod signals;
 mod terminal;
-#[cfg(test)]
-mod tests;
-mod version;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -19,11 +14,11 @@ use std::io::{self, Write};
 use clap::Parser;
 use clap::error::ErrorKind;
 
+pub use allocator::Allocator;
 use args::{Args, Command};
-use connect::Numerics;
+use commands::Numerics;
 use error::CliError;
-pub use exit::Exit;
-pub use memory::Allocator;
+pub use error::Exit;
 use terminal::{complain, on_screen};
 
 /// Runs the program with its arguments, the program's name first.
@@ -36,7 +31,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     let numerics = Numerics::connected();
     let done = match &args.command {
         Command::Run(args) => (signals::receive().map_err(CliError::Signals))
-            .and_then(|interrupt| commands::run(args, &typed(&arguments), &numerics, &interrupt)),
+            .and_then(|interrupt| run::run(args, &typed(&arguments), &numerics, &interrupt)),
         Command::Flatten(args) => commands::flatten(args),
         Command::Check(args) => commands::check(args, &numerics),
         Command::Explain(args) => commands::explain(args),

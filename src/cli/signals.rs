@@ -12,7 +12,7 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::iterator::Signals;
 use signal_hook::{flag, low_level};
 
-use super::exit::Exit;
+use super::error::Exit;
 use super::terminal::complain;
 use crate::output::Interrupt;
 

@@ -30,6 +30,8 @@ pub use step::{
     Support, SupportMotion, Traction, Variation,
 };
 
+use crate::vectors::polygon_area;
+
 /// A whole problem: the content of a deck, checked, with all names resolved to indices.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Model {
@@ -68,6 +70,31 @@ impl Model {
     /// What the deck calls an element: its number, or `Instance.number`.
     pub fn element_name(&self, element: usize) -> String {
         element_name(element, &self.mesh, &self.sets.instances)
+    }
+
+    /// Mass of an element: density x thickness x area.
+    pub fn element_mass(&self, element: &Element) -> f64 {
+        let section = &self.sections[element.section];
+        let density = self.materials[section.material].density;
+        density * section.thickness * polygon_area(self.mesh.corners(element))
+    }
+
+    /// Speed of longitudinal waves in an element (length/time).
+    pub fn wave_speed(&self, element: &Element) -> f64 {
+        let material = &self.materials[self.sections[element.section].material];
+        material.wave_speed(element.element_type.plane)
+    }
+
+    /// Whether the law of an element (index) is meant for small strains.
+    pub fn is_for_small_strains(&self, element: usize) -> bool {
+        let section = &self.sections[self.mesh.elements[element].section];
+        self.materials[section.material].law.is_for_small_strains()
+    }
+
+    /// Whether the mass of contact surfaces is redistributed in a step.
+    pub fn redistributes_mass(&self) -> bool {
+        let redistributes = |step: &Step| step.settings.contact_mass == ContactMass::Redistributed;
+        self.steps.iter().any(redistributes)
     }
 
     /// Whether the deck shall be read and checked only (`*NO ANALYSIS`).

@@ -6,7 +6,6 @@ mod adjustment;
 mod initial_gaps;
 mod initial_penetration;
 mod memory_need;
-mod normal_fan;
 mod prepared_model;
 mod redistribution;
 

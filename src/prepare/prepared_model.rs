@@ -7,7 +7,7 @@ use super::initial_penetration::report_penetrations;
 use super::redistribution::Redistribution;
 use crate::contact::{ContactSurfaces, contact_surfaces};
 use crate::diagnostics::Diagnostics;
-use crate::model::{ContactMass, Model, Step};
+use crate::model::{Model, Step};
 
 /// A model with its nodes adjusted, its contact surfaces and the initial gaps between them. Mesh and
 /// contacts stay as they are from here on.
@@ -42,9 +42,7 @@ impl PreparedModel {
             let moved = surfaces.into_iter();
             surfaces = moved.map(|contact| contact.with_sharp_corners(x)).collect();
         }
-        let is_redistributed =
-            |step: &Step| step.settings.contact_mass == ContactMass::Redistributed;
-        let redistribution = match model.steps.iter().any(is_redistributed) {
+        let redistribution = match model.redistributes_mass() {
             true => Redistribution::new(&model, &surfaces),
             false => Redistribution::default(),
         };

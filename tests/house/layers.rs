@@ -39,10 +39,11 @@ fn rank(name: &str) -> Option<usize> {
     LAYERS.iter().position(|layer| *layer == name)
 }
 
-/// The layer in which a source file lies; none of the files of the root.
+/// The layer of a source file, which lies in its folder or is the layer itself; none of `lib.rs` and
+/// `main.rs`.
 fn layer_of(path: &str) -> Option<&str> {
-    let (layer, _) = path.strip_prefix("src/")?.split_once('/')?;
-    Some(layer)
+    let layer = path.strip_prefix("src/")?.split(['/', '.']).next();
+    layer.filter(|layer| rank(layer).is_some())
 }
 
 #[test]

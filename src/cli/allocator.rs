@@ -2,11 +2,12 @@
 //! that says what was needed, not with an abort.
 
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::io::{self, Write};
+use std::io;
+use std::io::Write;
 
 use signal_hook::low_level;
 
-use super::exit::Exit;
+use super::error::Exit;
 use crate::output::memory_need;
 
 /// The allocator of the system. Where it has no memory the program ends with [`Exit::FileSystem`]; of

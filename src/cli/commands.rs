@@ -1,0 +1,299 @@
+//! The subcommands `check`, `explain`, `flatten`, `info` and `lcp`, and the reading of a deck, which they
+//! share with `run`.
+
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+use super::args::{CheckArgs, DeckArgs, ExplainArgs, FlattenArgs, InfoArgs, LcpArgs};
+use super::error::{CliError, Exit};
+use super::terminal::{coloured, complain, print};
+use crate::deck::{find_keyword, keywords};
+use crate::diagnostics::{Code, Diagnostics, Severity, Sources, Strictness, closest, wrapped};
+use crate::dynamics::{Observer, RunError, RunSummary};
+use crate::flat_deck::{flat_deck, reads_as};
+use crate::lcp::solve_json;
+use crate::output::ResultSummary;
+use crate::output::check_names;
+use crate::output::picture;
+use crate::output::regular_file;
+use crate::output::{ModelEcho, deck_line};
+use crate::prepare::{PreparedModel, prepare};
+use crate::{dynamics, reader};
+
+/// Reads a deck and describes its model.
+pub(super) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exit, CliError> {
+    let loaded = load(&args.deck, numerics)?;
+    complain_of(&loaded.all_messages);
+    let Some(model) = &loaded.model else {
+        print(&[deck_line_of(&args.deck.path, &loaded, None)])?;
+        return Ok(Exit::Rejected);
+    };
+    describe(&args.deck, &loaded, model)?;
+    if let Some(path) = &args.picture {
+        write_file(path, &picture(model.model(), args.window), args.overwrite)?;
+    }
+    Ok(Exit::Finished)
+}
+
+/// Prints what a deck holds and what it says about the increment.
+pub(super) fn describe(
+    deck: &DeckArgs,
+    loaded: &Loaded,
+    model: &PreparedModel,
+) -> Result<(), CliError> {
+    print(&[deck_line_of(&deck.path, loaded, None)])?;
+    check_names(model.model())?;
+    let echo = ModelEcho::new(model.model());
+    print(&echo.lines(model))?;
+    print(&echo.guide())
+}
+
+/// Reads a deck; a deck that cannot be opened is an error of the file system.
+pub(super) fn load(deck: &DeckArgs, numerics: &Numerics) -> Result<Loaded, CliError> {
+    openable(&deck.path)?;
+    Ok((numerics.load)(&deck.path, deck.strictness(), coloured()))
+}
+
+/// Refuses a deck that cannot be opened.
+pub(super) fn openable(path: &Path) -> Result<(), CliError> {
+    let opened = regular_file(path).map(|_| ());
+    opened.map_err(|source| CliError::Deck {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+/// Prints the errors and warnings of a deck.
+pub(super) fn complain_of(messages: &str) {
+    if !messages.is_empty() {
+        complain(messages);
+    }
+}
+
+/// The line about the deck; `log` names the file that holds its warnings.
+pub(super) fn deck_line_of(deck: &Path, loaded: &Loaded, log: Option<&Path>) -> String {
+    deck_line(
+        deck,
+        loaded.sources.files().len().saturating_sub(1),
+        loaded.sources.line_count(),
+        loaded.errors,
+        loaded.warnings,
+        log,
+    )
+}
+
+/// The page that has an example of every code.
+const MESSAGES: &str = include_str!("../../docs/messages.md");
+
+/// Explains keywords and codes of messages, one after the other: the longest beginning of the words is
+/// taken that is one of them.
+pub(super) fn explain(args: &ExplainArgs) -> Result<Exit, CliError> {
+    let mut rest = &args.words[..];
+    let mut texts = Vec::new();
+    while !rest.is_empty() {
+        let beginnings = (1..=rest.len()).rev().map(|count| rest.split_at(count));
+        let known = |(words, others): (&[String], _)| Some((explained(words)?, others));
+        let (text, others) = (beginnings.filter_map(known).next()).ok_or_else(|| unknown(rest))?;
+        texts.push(text.trim_end().to_owned());
+        rest = others;
+    }
+    print(&[texts.join("\n\n")])?;
+    Ok(Exit::Finished)
+}
+
+/// What some words mean: a code, or a keyword with or without its star.
+fn explained(words: &[String]) -> Option<String> {
+    let name = name(words);
+    let is_named = |code: &&Code| code.id().eq_ignore_ascii_case(&name);
+    let code = Code::ALL.iter().find(is_named);
+    let keyword = || find_keyword(&name).or_else(|| find_keyword(&name.replace(['-', '_'], " ")));
+    code.map(|code| explanation(*code))
+        .or_else(|| keyword().map(|keyword| keyword.explanation()))
+}
+
+/// The words as one, without the star of a keyword.
+fn name(words: &[String]) -> String {
+    let typed = words.join(" ");
+    typed.trim_start_matches('*').trim().to_owned()
+}
+
+/// Meaning, cause, cure and example of a code.
+fn explanation(code: Code) -> String {
+    let head = format!("{}: {}", code.id(), code.meaning());
+    let texts = [&head, code.cause(), code.cure()];
+    let text = texts.map(|text| wrapped(text, 0)).join("\n");
+    match example(code) {
+        Some(example) => format!("{text}\nexample (docs/messages.md has the decks)\n{example}"),
+        None => text,
+    }
+}
+
+/// The example of a code: a deck, or a change of one, and what the program says about it.
+fn example(code: Code) -> Option<String> {
+    let (_, entry) = MESSAGES.split_once(&format!("\n### {}\n", code.id()))?;
+    let entry = entry.split("\n### ").next()?;
+    // behind the paragraph of the cure
+    let (_, example) = entry.split_once("\n\nCure: ")?.1.split_once("\n\n")?;
+    let lines = example.lines().filter(|line| !line.starts_with("```"));
+    Some(lines.map(|line| format!("  {line}\n")).collect())
+}
+
+/// The error of words that begin with neither a keyword nor a code: all of them where they are like one,
+/// or the first.
+fn unknown(words: &[String]) -> CliError {
+    let known = || {
+        let codes = Code::ALL.iter().map(|code| code.id());
+        keywords().map(|keyword| keyword.name).chain(codes)
+    };
+    let beginnings = (1..=words.len()).rev().map(|count| &words[..count]);
+    let meant = |words: &[String]| closest(&name(words), known()).map(|meant| (words.len(), meant));
+    let (count, meant) = beginnings.filter_map(meant).next().unzip();
+    CliError::Unexplained {
+        word: words[..count.unwrap_or(1)].join(" "),
+        meant,
+    }
+}
+
+/// Writes a deck as one flat deck, after a test that this reads as the same model. What `check` rejects
+/// is rejected.
+pub(super) fn flatten(args: &FlattenArgs) -> Result<Exit, CliError> {
+    openable(&args.deck.path)?;
+    let mut sources = Sources::new();
+    let mut d = Diagnostics::with_strictness(args.deck.strictness());
+    let model = reader::read_model(&args.deck.path, &mut sources, &mut d);
+    // the flat deck has the nodes where the deck has them
+    let sound = model.filter(|model| prepare(model.clone(), &mut d).is_some());
+    let Some(model) = sound else {
+        complain_of(&d.render(&sources, coloured()));
+        return Ok(Exit::Rejected);
+    };
+    check_names(&model)?;
+    let text = flat_deck(&model);
+    if !reads_as(&text, &model) {
+        complain(
+            "error: this deck cannot be written as a flat deck that reads as the same model: in a step with \
+             AMPLITUDE=RAMP a load on a face ramps while another there, in the same direction, follows an amplitude",
+        );
+        return Ok(Exit::Rejected);
+    }
+    match &args.output {
+        Some(path) => write_file(path, &text, args.overwrite)?,
+        None => print(&[text.trim_end().to_owned()])?,
+    }
+    Ok(Exit::Finished)
+}
+
+/// Describes a result file.
+pub(super) fn info(args: &InfoArgs) -> Result<Exit, CliError> {
+    print(&ResultSummary::read(&args.result)?.lines())?;
+    Ok(Exit::Finished)
+}
+
+/// Solves a complementarity problem given as JSON and prints the answer as JSON.
+pub(super) fn lcp(args: &LcpArgs) -> Result<Exit, CliError> {
+    let text = regular_file(&args.problem).and_then(|_| fs::read_to_string(&args.problem));
+    let text = text.map_err(|source| CliError::Problem {
+        path: args.problem.clone(),
+        source,
+    })?;
+    let answer = solve_json(&text);
+    print(&[answer.text])?;
+    Ok(if answer.solved {
+        Exit::Finished
+    } else {
+        Exit::Stopped
+    })
+}
+
+/// Writes a file, whole or not at all; one that exists is replaced only where the user asks for it.
+/// What is not a regular file stays; in place of a link a file of its own is made.
+pub(super) fn write_file(path: &Path, text: &str, overwrite: bool) -> Result<(), CliError> {
+    let failed = |source| CliError::File {
+        path: path.to_owned(),
+        source,
+    };
+    match fs::symlink_metadata(path) {
+        Ok(_) if !overwrite => {
+            let path = path.to_owned();
+            return Err(CliError::Exists { path });
+        }
+        Ok(data) if !data.is_file() && !data.is_symlink() => {
+            return Err(failed(io::Error::other("it is not a regular file")));
+        }
+        Err(error) if error.kind() != ErrorKind::NotFound => return Err(failed(error)),
+        _ => {}
+    }
+    let draft = draft(path);
+    let written = fs::write(&draft, text).and_then(|()| fs::rename(&draft, path));
+    if written.is_err() {
+        // the first error is reported
+        let _ = fs::remove_file(&draft);
+    }
+    written.map_err(failed)
+}
+
+/// The name of a file until it is complete.
+fn draft(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".part");
+    path.with_file_name(name)
+}
+
+/// A deck as read.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Loaded {
+    /// The model, ready to run, when the deck has no errors.
+    pub model: Option<PreparedModel>,
+    /// Errors, warnings and notes for the screen of `check`.
+    pub all_messages: String,
+    /// The same for the screen of `run`, without those about differences from other codes.
+    pub messages: String,
+    /// The same without colour, for the log.
+    pub plain_messages: String,
+    /// Number of errors.
+    pub errors: usize,
+    /// Number of warnings.
+    pub warnings: usize,
+    /// The deck and the files it includes.
+    pub sources: Sources,
+}
+
+/// Reads a deck; messages coloured or not.
+type Load = fn(&Path, Strictness, bool) -> Loaded;
+/// Solves all steps of a model.
+type Solve = fn(&PreparedModel, &mut dyn Observer) -> Result<RunSummary, RunError>;
+
+/// Reader and solver, as the commands call them.
+pub(super) struct Numerics {
+    pub load: Load,
+    pub solve: Solve,
+}
+
+impl Numerics {
+    /// The reader and the solver of this program.
+    pub fn connected() -> Self {
+        Numerics {
+            load: read_deck,
+            solve: dynamics::run,
+        }
+    }
+}
+
+/// Reads and prepares a deck.
+fn read_deck(path: &Path, strictness: Strictness, colour: bool) -> Loaded {
+    let mut sources = Sources::new();
+    let mut d = Diagnostics::with_strictness(strictness);
+    let model = reader::read_model(path, &mut sources, &mut d);
+    let model = model.and_then(|model| prepare(model, &mut d));
+    let ours = d.without(Code::LongNumber);
+    Loaded {
+        model,
+        all_messages: d.render(&sources, colour),
+        messages: ours.render(&sources, colour),
+        plain_messages: ours.render(&sources, false),
+        errors: d.count(Severity::Error),
+        warnings: d.count(Severity::Warning),
+        sources,
+    }
+}

@@ -1,0 +1,756 @@
+//! The subcommand `run`: from the deck to the finished result files, however the run ends.
+
+use std::error::Error;
+
+use super::args::{COMMIT, NUMBER, PROFILE, RunArgs, processors};
+use super::commands::{Loaded, Numerics, complain_of, deck_line_of, describe, load};
+use super::error::{CliError, Exit};
+use super::signals;
+use super::terminal::print;
+use crate::dynamics::{Outcome, RunError};
+use crate::model::{Frames, SolverChoice, Step};
+use crate::output::RunRecord;
+use crate::output::Verbosity;
+use crate::output::check_memory;
+use crate::output::check_names;
+use crate::output::{Claim, JobFiles};
+use crate::output::{Interrupt, ResultWriter};
+use crate::output::{ModelEcho, frames, program_lines, solver};
+use crate::prepare::{MemoryNeed, PreparedModel};
+
+/// Solves a deck; `command` is the command as typed. The run ends early when `interrupt` requests
+/// it.
+pub(super) fn run(
+    args: &RunArgs,
+    command: &str,
+    numerics: &Numerics,
+    interrupt: &Interrupt,
+) -> Result<Exit, CliError> {
+    let mut loaded = load(&args.deck, numerics)?;
+    let Some(mut model) = loaded.model.take() else {
+        complain_of(&loaded.messages);
+        return Ok(Exit::Rejected);
+    };
+    if args.verbosity() != Verbosity::Quiet {
+        complain_of(&loaded.messages);
+    }
+    if model.model().is_check_only() {
+        return check_only(args, &loaded, &model);
+    }
+    check_names(model.model())?;
+    if interrupt.signal().is_some() {
+        return Ok(signals::exit(interrupt));
+    }
+    let need = MemoryNeed::new(&model);
+    check_memory(need)?;
+    let files = JobFiles::new(&args.deck.path, &args.output);
+    let claim = Claim::take(&files, args.overwrite)?;
+    let record = RunRecord {
+        memory_need: need.total(),
+        ..record(command, &loaded, start_threads(args.threads)?)
+    };
+    let notes = override_steps(args, model.steps_mut());
+    let mut writer = ResultWriter::create(model.model(), claim, &record, args.verbosity())?;
+    writer.heed(interrupt);
+    for line in header(args, &files, &loaded, &record, &model) {
+        writer.line(&line)?;
+    }
+    for note in &notes {
+        writer.line(note)?;
+    }
+    if !loaded.plain_messages.is_empty() {
+        writer.detail(loaded.plain_messages.trim_end())?;
+    }
+    writer.line("")?;
+    let exit = solve(&model, &mut writer, numerics, interrupt)?;
+    match writer.lost_screen() {
+        Some(error) if exit == Exit::Finished => Err(CliError::Screen(error)),
+        _ => Ok(exit),
+    }
+}
+
+/// Describes the model of a deck that shall not be solved; no file is touched.
+fn check_only(args: &RunArgs, loaded: &Loaded, model: &PreparedModel) -> Result<Exit, CliError> {
+    if args.verbosity() == Verbosity::Quiet {
+        check_names(model.model())?;
+        return Ok(Exit::Finished);
+    }
+    describe(&args.deck, loaded, model)?;
+    let line = "run      nothing was solved and no file written: the deck has *NO ANALYSIS";
+    print(&[line.to_owned()])?;
+    Ok(Exit::Finished)
+}
+
+/// Solves the model and completes the results.
+fn solve(
+    model: &PreparedModel,
+    writer: &mut ResultWriter,
+    numerics: &Numerics,
+    interrupt: &Interrupt,
+) -> Result<Exit, CliError> {
+    let solved = (numerics.solve)(model, writer);
+    let solved = solved.map_err(|RunError::Observer(error)| error);
+    let finished = solved.and_then(|summary| writer.finish(&summary).map(|()| summary.outcome));
+    match finished {
+        Ok(Outcome::Finished) => Ok(Exit::Finished),
+        Ok(Outcome::Stopped(_)) => Ok(Exit::Stopped),
+        Ok(Outcome::Interrupted) => Ok(signals::exit(interrupt)),
+        Err(source) => {
+            let kept = writer.kept();
+            let error = CliError::Broken { source, kept };
+            // The first error is reported below; completing the files may fail as well.
+            let _ = writer.detail(&format!("error: {error}"));
+            let _ = writer.abandon(error.exit() as u8);
+            Err(error)
+        }
+    }
+}
+
+/// Starts the threads of the program, this one being the first, and returns their number.
+fn start_threads(wanted: Option<usize>) -> Result<usize, CliError> {
+    let threads = wanted.unwrap_or_else(processors);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    if let Err(error) = pool.use_current_thread().build_global() {
+        // Where none are asked for, those that run already will do.
+        let run_already = error.source().is_none();
+        if wanted.is_some() || !run_already {
+            let reason = error.to_string();
+            return Err(CliError::Threads { threads, reason });
+        }
+    }
+    Ok(rayon::current_num_threads())
+}
+
+fn record(command: &str, loaded: &Loaded, threads: usize) -> RunRecord {
+    RunRecord {
+        version: NUMBER.into(),
+        commit: COMMIT.into(),
+        deck: loaded.sources.full_text(),
+        command: command.into(),
+        threads,
+        memory_need: 0,
+    }
+}
+
+/// The lines above the table of increments.
+fn header(
+    args: &RunArgs,
+    files: &JobFiles,
+    loaded: &Loaded,
+    record: &RunRecord,
+    model: &PreparedModel,
+) -> Vec<String> {
+    let mut lines = program_lines(record, PROFILE, &files.name, &model.model().title);
+    lines.push(deck_line_of(&args.deck.path, loaded, Some(&files.log)));
+    lines.extend(ModelEcho::new(model.model()).lines(model));
+    lines
+}
+
+/// Applies the command line to the steps; returns a note for each value of the deck that it
+/// replaces.
+fn override_steps(args: &RunArgs, steps: &mut [Step]) -> Vec<String> {
+    let mut notes = vec![];
+    for (i, step) in steps.iter_mut().enumerate() {
+        let number = i + 1;
+        if let Some(wanted) = args.frames() {
+            notes.extend(frames_note(number, &step.frames, &wanted));
+            step.frames = wanted;
+        }
+        if let Some(wanted) = args.solver.map(SolverChoice::from) {
+            notes.extend(solver_note(number, step.settings.solver, wanted));
+            step.settings.solver = wanted;
+        }
+    }
+    notes
+}
+
+fn frames_note(step: usize, deck: &Frames, wanted: &Frames) -> Option<String> {
+    (deck != wanted && *deck != Frames::Default).then(|| {
+        format!(
+            "override step {step}: {} as the command line says, not {} as the deck does",
+            frames(wanted),
+            frames(deck)
+        )
+    })
+}
+
+fn solver_note(step: usize, deck: SolverChoice, wanted: SolverChoice) -> Option<String> {
+    (deck != wanted).then(|| {
+        format!(
+            "override step {step}: solver {} as the command line says, not {} as the deck does",
+            solver(wanted),
+            solver(deck)
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::args::{Args, Command};
+    use super::*;
+    use crate::diagnostics::Sources;
+    use crate::dynamics::{
+        Cause, Cutback, FailedLcp, Failure, IncrementReport, NodalResults, NodeStatus, Observer,
+        Outcome, PassReport, RunError, RunSummary, SolverCounts, State, Timings, Worst,
+    };
+    use crate::elements::{ElementResult, Strained};
+    use crate::lcp::{FrictionalLcp, LcpError};
+    use crate::materials::Law;
+    use crate::model::{
+        Damping, Element, ElementType, Frames, Increments, Material, Mesh, Model, Procedure,
+        Section, Set, Settings, Step,
+    };
+    use crate::output::ResultSummary;
+    use clap::Parser;
+    use nalgebra::{DMatrix, DVector};
+    use std::cell;
+    use std::io;
+    use std::path::{Path, PathBuf};
+    use std::sync::Arc;
+    use tempfile::TempDir;
+
+    /// One square, one step of ten increments with a frame at its end.
+    fn square() -> Model {
+        Model {
+            mesh: Mesh {
+                node_labels: vec![1, 2, 3, 4],
+                coordinates: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
+                elements: vec![Element {
+                    label: 8,
+                    element_type: ElementType::CPS4,
+                    nodes: vec![0, 1, 2, 3].into(),
+                    section: 0,
+                }],
+            },
+            materials: vec![Material {
+                name: "M".into(),
+                law: Law::elastic(1.0, 0.0),
+                density: 1.0,
+                damping: Damping::default(),
+            }],
+            sections: vec![Section {
+                material: 0,
+                thickness: 1.0,
+            }],
+            steps: vec![Step {
+                name: None,
+                procedure: Procedure::Dynamic,
+                increments: Increments {
+                    dt: 0.1,
+                    period: 1.0,
+                    dt_min: 0.0,
+                    direct: true,
+                },
+                settings: Settings::default(),
+                supports: vec![],
+                point_loads: vec![],
+                body_forces: vec![],
+                pressures: vec![],
+                tractions: vec![],
+                frames: Frames::Count(1),
+            }],
+            ..Model::default()
+        }
+    }
+
+    fn loaded(model: Option<Model>) -> Loaded {
+        let mut sources = Sources::new();
+        sources.add("deck.inp", "*HEADING\n", None);
+        Loaded {
+            errors: usize::from(model.is_none()),
+            model: model.map(PreparedModel::new),
+            plain_messages: "warning: this is a test".into(),
+            sources,
+            ..Loaded::default()
+        }
+    }
+
+    fn report(increment: usize) -> IncrementReport {
+        IncrementReport {
+            increment,
+            step: 1,
+            time: 0.1 * increment as f64,
+            step_time: 0.1 * increment as f64,
+            dt: 0.1,
+            state: State {
+                u: vec![1.0; 8],
+                v: vec![0.0; 8],
+                a: vec![0.0; 8],
+                internal: vec![],
+            },
+            nodal: NodalResults {
+                reaction: vec![0.0; 8],
+                contact_force: vec![0.0; 8],
+                gap: vec![f64::NAN; 4],
+                status: vec![NodeStatus::None; 4],
+                concentrated: vec![0.0; 8],
+                pressure: vec![0.0; 4],
+                slip: vec![0.0; 4],
+                mass: vec![],
+            },
+            ends_step: increment == 10,
+            strain: Strained {
+                element: 0,
+                strain: 0.03 * increment as f64,
+            },
+            elements: Arc::new([ElementResult {
+                principal_strain: 0.03 * increment as f64,
+                ..ElementResult::default()
+            }]),
+            ..IncrementReport::default()
+        }
+    }
+
+    fn summary(outcome: Outcome, increments: usize) -> RunSummary {
+        RunSummary {
+            outcome,
+            increments,
+            cutbacks: 0,
+            events: 0,
+            solver: SolverCounts::default(),
+            timings: Timings::default(),
+        }
+    }
+
+    fn failure() -> Failure {
+        Failure {
+            increment: 4,
+            step: 1,
+            time: 0.3,
+            dt: 0.05,
+            cause: Cause::Inverted {
+                element: 0,
+                determinant: -0.1,
+            },
+            course: None,
+            worst: Some(Worst {
+                node: 2,
+                position: [1.5, 2.5],
+                quantity: "force residual",
+                value: 0.25,
+            }),
+            passes: vec![PassReport::default(); 2],
+            halvings: 1,
+        }
+    }
+
+    fn to_the_end(_: &PreparedModel, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+        for k in 0..=10 {
+            observer.increment(&report(k)).map_err(RunError::Observer)?;
+        }
+        Ok(summary(Outcome::Finished, 10))
+    }
+
+    fn to_a_stop(_: &PreparedModel, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+        for k in 0..=3 {
+            observer.increment(&report(k)).map_err(RunError::Observer)?;
+        }
+        let failure = failure();
+        let cutback = Cutback {
+            failure: failure.clone(),
+            next_dt: 0.05,
+        };
+        observer.cutback(&cutback).map_err(RunError::Observer)?;
+        Ok(summary(Outcome::Stopped(Box::new(failure)), 3))
+    }
+
+    fn to_an_unsolved_lcp(
+        _: &PreparedModel,
+        observer: &mut dyn Observer,
+    ) -> Result<RunSummary, RunError> {
+        observer.increment(&report(0)).map_err(RunError::Observer)?;
+        let mut failure = failure();
+        failure.cause = Cause::Lcp(Box::new(FailedLcp {
+            error: LcpError::PivotLimit { pivots: 9 },
+            problem: one_contact(),
+            pairs: vec![[3, 0, 1]; 6],
+        }));
+        Ok(summary(Outcome::Stopped(Box::new(failure)), 0))
+    }
+
+    fn to_a_passage(
+        _: &PreparedModel,
+        observer: &mut dyn Observer,
+    ) -> Result<RunSummary, RunError> {
+        observer.increment(&report(0)).map_err(RunError::Observer)?;
+        let mut failure = failure();
+        failure.cause = Cause::Crossed {
+            slave: 3,
+            segment: [0, 1],
+            prescribed: true,
+        };
+        Ok(summary(Outcome::Stopped(Box::new(failure)), 0))
+    }
+
+    fn one_contact() -> FrictionalLcp {
+        FrictionalLcp {
+            q: DMatrix::identity(2, 2),
+            gap: DVector::from_vec(vec![-1.0]),
+            slip: DVector::zeros(1),
+            mu: DVector::zeros(1),
+        }
+    }
+
+    fn to_a_full_disk(
+        _: &PreparedModel,
+        observer: &mut dyn Observer,
+    ) -> Result<RunSummary, RunError> {
+        observer.increment(&report(0)).map_err(RunError::Observer)?;
+        let full = io::Error::from(io::ErrorKind::StorageFull);
+        Err(RunError::Observer(full))
+    }
+
+    fn numerics() -> Numerics {
+        Numerics {
+            load: |_, _, _| loaded(Some(square())),
+            solve: to_the_end,
+        }
+    }
+
+    /// A folder with a deck in it.
+    struct Bench {
+        folder: TempDir,
+        interrupt: Interrupt,
+    }
+
+    impl Bench {
+        fn new() -> Self {
+            let folder = TempDir::new().expect("folder");
+            std::fs::write(folder.path().join("job.inp"), "*HEADING\n").expect("deck");
+            let interrupt = Interrupt::default();
+            Bench { folder, interrupt }
+        }
+
+        fn path(&self, name: &str) -> PathBuf {
+            self.folder.path().join(name)
+        }
+
+        fn run(&self, options: &[&str], numerics: &Numerics) -> Result<Exit, CliError> {
+            let deck = self.path("job.inp");
+            let out = self.path("out");
+            let fixed = [
+                "stickslip".as_ref(),
+                "run".as_ref(),
+                deck.as_os_str(),
+                "-o".as_ref(),
+                out.as_os_str(),
+            ];
+            let options = options.iter().map(|option| (*option).as_ref());
+            let args = Args::try_parse_from(fixed.into_iter().chain(options)).expect("arguments");
+            match args.command {
+                Command::Run(args) => {
+                    run(&args, "stickslip run job.inp", numerics, &self.interrupt)
+                }
+                other => panic!("{other:?}"),
+            }
+        }
+
+        fn summary(&self) -> ResultSummary {
+            ResultSummary::read(&self.path("out/job.vtkhdf")).expect("result")
+        }
+
+        fn log(&self) -> String {
+            std::fs::read_to_string(self.path("out/job.log")).expect("log")
+        }
+
+        fn touched(&self) -> bool {
+            Path::exists(&self.path("out"))
+        }
+    }
+
+    fn code(result: &Result<Exit, CliError>) -> Exit {
+        match result {
+            Ok(exit) => *exit,
+            Err(error) => error.exit(),
+        }
+    }
+
+    #[test]
+    fn a_run_to_the_end() {
+        let bench = Bench::new();
+        let exit = bench.run(&["-q"], &numerics());
+        assert_eq!(code(&exit), Exit::Finished);
+        let summary = bench.summary();
+        assert_eq!((summary.exit_status, summary.increments), (0, 10));
+        assert_eq!(summary.frames, [0.0, 1.0]);
+        let log = bench.log();
+        assert!(log.contains("warning: this is a test"), "{log}");
+        assert!(log.contains("done     in"), "{log}");
+        let warned = "warning  principal strain 0.210 in element 8 in increment 7\n";
+        assert_eq!(log.matches("principal strain").count(), 1, "{log}");
+        assert!(log.contains(warned), "{log}");
+        let most = "strain   largest principal 3.00e-01 in element 8 in increment 10\n";
+        assert!(log.contains(most), "{log}");
+        let paths = ["wrote", "warning"];
+        let mut lines = log
+            .lines()
+            .filter(|l| paths.iter().all(|p| !l.starts_with(p)));
+        assert!(lines.all(|line| line.len() <= 80), "{log}");
+    }
+
+    #[test]
+    fn the_command_line_wins_and_the_log_says_so() {
+        let bench = Bench::new();
+        let exit = bench.run(&["-q", "--frames", "5", "--solver", "sprs"], &numerics());
+        assert_eq!(code(&exit), Exit::Finished);
+        assert_eq!(bench.summary().frames.len(), 6);
+        let log = bench.log();
+        assert!(log.contains("output 5 frames as the command line says, not output 1 frame"));
+        assert!(log.contains("solver sprs as the command line says, not faer"));
+    }
+
+    #[test]
+    fn a_stop_leaves_the_last_good_state_and_says_where() {
+        let bench = Bench::new();
+        let solve = to_a_stop;
+        let numerics = Numerics {
+            solve,
+            ..numerics()
+        };
+        let exit = bench.run(&["-q"], &numerics);
+        assert_eq!(code(&exit), Exit::Stopped);
+        let summary = bench.summary();
+        assert_eq!((summary.exit_status, summary.increments), (1, 3));
+        assert_eq!(summary.frames, [0.0, report(3).time]);
+        let file = hdf5::File::open(bench.path("out/job.vtkhdf")).expect("result");
+        let points = file.group("VTKHDF/PointData").expect("fields");
+        for field in points.datasets().expect("fields") {
+            assert_eq!(
+                field.shape()[0],
+                2 * 4,
+                "{}: all of both frames",
+                field.name()
+            );
+        }
+        let log = bench.log();
+        for text in [
+            "cutback  increment 4 at 3.000e-01, dt 5.00e-02 -> 5.00e-02",
+            "stopped  increment 4 of step 1 failed at time 3.000000e-01",
+            "an element turned inside out",
+            "worst    node 3 at (1.50000e+00, 2.50000e+00): force residual 2.50e-01",
+            "element  8 with its centre at (1.50000e+00, 1.50000e+00)",
+            "material St. Venant-Kirchhoff gives way at 58 % of its length",
+            "tried    1 halving",
+            "job.vtkhdf is valid up to its last frame",
+            "time 3.000000e-01",
+        ] {
+            assert!(log.contains(text), "{text}\n{log}");
+        }
+    }
+
+    #[test]
+    fn a_stop_at_a_passage_names_the_node_and_the_segment() {
+        let bench = Bench::new();
+        let solve = to_a_passage;
+        let numerics = Numerics {
+            solve,
+            ..numerics()
+        };
+        assert_eq!(code(&bench.run(&["-q"], &numerics)), Exit::Stopped);
+        let log = bench.log();
+        assert!(log.contains("a node went through a segment"), "{log}");
+        let place = "node     4 at (1.00000e+00, 2.00000e+00) through the segment 1-2";
+        assert!(log.contains(place), "{log}");
+        let both = "both sides are prescribed: they are driven into each other";
+        assert!(log.contains(both), "{log}");
+    }
+
+    #[test]
+    fn an_unsolved_lcp_is_kept() {
+        let bench = Bench::new();
+        let solve = to_an_unsolved_lcp;
+        let numerics = Numerics {
+            solve,
+            ..numerics()
+        };
+        let exit = bench.run(&["-q"], &numerics);
+        assert_eq!(code(&exit), Exit::Stopped);
+        let json = std::fs::read_to_string(bench.path("out/job-lcp-4.json")).expect("problem");
+        assert_eq!(FrictionalLcp::from_json(&json), Ok(one_contact()));
+        let log = bench.log();
+        assert!(
+            log.contains("pairs    node 4 on segment 1-2, node 4 on segment 1-2, "),
+            "{log}"
+        );
+        assert!(log.contains("job-lcp-4.json holds the problem"), "{log}");
+    }
+
+    #[test]
+    fn a_rejected_deck_touches_no_file() {
+        let bench = Bench::new();
+        let load = |_: &Path, _, _| loaded(None);
+        let exit = bench.run(&["-q"], &Numerics { load, ..numerics() });
+        assert_eq!(code(&exit), Exit::Rejected);
+        assert!(!bench.touched());
+        let load = |_: &Path, _, _| {
+            let name = "A/B".into();
+            let mut model = square();
+            model.sets.elements = vec![Set {
+                name,
+                members: vec![0],
+            }];
+            loaded(Some(model))
+        };
+        let exit = bench.run(&["-q"], &Numerics { load, ..numerics() });
+        assert_eq!(code(&exit), Exit::Rejected);
+        assert!(!bench.touched());
+    }
+
+    #[test]
+    fn a_full_disk_and_a_folder_that_cannot_be_made() {
+        let bench = Bench::new();
+        let solve = to_a_full_disk;
+        let exit = bench.run(
+            &["-q"],
+            &Numerics {
+                solve,
+                ..numerics()
+            },
+        );
+        assert_eq!(code(&exit), Exit::FileSystem);
+        assert_eq!(bench.summary().exit_status, 4);
+        let text = exit.expect_err("a full disk").to_string();
+        let kept = "; the results up to time 0.000000e+00 are kept";
+        assert!(
+            text.starts_with("cannot write the results: ") && text.ends_with(kept),
+            "{text}"
+        );
+        let bench = Bench::new();
+        std::fs::write(bench.path("out"), "a file").expect("file");
+        let exit = bench.run(&["-q"], &numerics());
+        assert_eq!(code(&exit), Exit::FileSystem);
+    }
+
+    fn to_an_error_at_the_start(
+        _: &PreparedModel,
+        _: &mut dyn Observer,
+    ) -> Result<RunSummary, RunError> {
+        Err(RunError::Observer(io::ErrorKind::StorageFull.into()))
+    }
+
+    thread_local! {
+        /// The signal that arrives while [`until_told`] solves.
+        static INTERRUPT: (Interrupt, cell::Cell<i32>) = (Interrupt::default(), cell::Cell::new(0));
+    }
+
+    fn until_told(_: &PreparedModel, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
+        for k in 0..=10 {
+            if k == 3 {
+                INTERRUPT.with(|(interrupt, signal)| interrupt.request(signal.get()));
+            }
+            if observer.wants_stop() {
+                return Ok(summary(Outcome::Interrupted, k - 1));
+            }
+            observer.increment(&report(k)).map_err(RunError::Observer)?;
+        }
+        Ok(summary(Outcome::Finished, 10))
+    }
+
+    #[test]
+    fn earlier_results_stay_until_the_first_frame() {
+        let bench = Bench::new();
+        assert_eq!(code(&bench.run(&["-q"], &numerics())), Exit::Finished);
+        let read = |name: &str| std::fs::read(bench.path(name)).expect(name);
+        let names = ["out/job.vtkhdf", "out/job.sta", "out/job.log"];
+        let before = names.map(read);
+        let solve = to_an_error_at_the_start;
+        let fails = Numerics {
+            solve,
+            ..numerics()
+        };
+        let exit = bench.run(&["-q", "--overwrite"], &fails);
+        assert_eq!(code(&exit), Exit::FileSystem);
+        assert!(names.map(read) == before);
+        assert!(!bench.path("out/job.vtkhdf.part").exists());
+        // Without earlier results nothing is left at all.
+        let bench = Bench::new();
+        assert_eq!(code(&bench.run(&["-q"], &fails)), Exit::FileSystem);
+        let left = std::fs::read_dir(bench.path("out")).expect("folder");
+        assert_eq!(left.count(), 0);
+    }
+
+    #[test]
+    fn what_a_killed_start_leaves_is_in_nobodys_way() {
+        let bench = Bench::new();
+        std::fs::create_dir(bench.path("out")).expect("folder");
+        for name in ["out/job.log", "out/job.vtkhdf.part"] {
+            std::fs::write(bench.path(name), "").expect(name);
+        }
+        assert_eq!(code(&bench.run(&["-q"], &numerics())), Exit::Finished);
+        assert_eq!(bench.summary().frames, [0.0, 1.0]);
+        assert!(!bench.path("out/job.vtkhdf.part").exists());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_replaced_and_what_they_point_to_stays() {
+        let bench = Bench::new();
+        std::fs::create_dir(bench.path("out")).expect("folder");
+        std::fs::write(bench.path("precious"), "precious").expect("file");
+        for name in [
+            "out/job.log",
+            "out/job.sta",
+            "out/job.vtkhdf",
+            "out/job.vtkhdf.part",
+        ] {
+            std::os::unix::fs::symlink(bench.path("precious"), bench.path(name)).expect(name);
+        }
+        assert_eq!(code(&bench.run(&["-q"], &numerics())), Exit::FileSystem);
+        assert_eq!(
+            code(&bench.run(&["-q", "--overwrite"], &numerics())),
+            Exit::Finished
+        );
+        let kept = std::fs::read_to_string(bench.path("precious")).expect("file");
+        assert_eq!(
+            (kept.as_str(), bench.summary().increments),
+            ("precious", 10)
+        );
+    }
+
+    #[test]
+    fn an_interrupt_ends_the_run_with_a_frame_and_its_exit_code() {
+        for (signal, wanted) in [
+            (2, Exit::Interrupted),
+            (15, Exit::Terminated),
+            (1, Exit::HungUp),
+        ] {
+            let mut bench = Bench::new();
+            bench.interrupt = INTERRUPT.with(|(interrupt, number)| {
+                number.set(signal);
+                interrupt.request(0);
+                interrupt.clone()
+            });
+            let told = Numerics {
+                solve: until_told,
+                ..numerics()
+            };
+            assert_eq!(code(&bench.run(&["-q"], &told)), wanted);
+            let summary = bench.summary();
+            assert_eq!(summary.exit_status, wanted as i64);
+            assert_eq!(summary.frames, [0.0, report(2).time]);
+            let text = "asked for the end   increment 2 is the last";
+            assert!(bench.log().contains(text), "{}", bench.log());
+            // One that comes while the deck is read leaves nothing behind.
+            let bench = Bench::new();
+            bench.interrupt.request(signal);
+            assert_eq!(code(&bench.run(&["-q"], &numerics())), wanted);
+            assert!(!bench.touched());
+        }
+    }
+
+    #[test]
+    fn results_are_replaced_only_when_wanted() {
+        let bench = Bench::new();
+        std::fs::create_dir(bench.path("out")).expect("folder");
+        std::fs::write(bench.path("out/job.sta"), "old").expect("old result");
+        let exit = bench.run(&["-q"], &numerics());
+        assert_eq!(code(&exit), Exit::FileSystem);
+        assert!(exit.is_err_and(|error| error.to_string().contains("--overwrite")));
+        let kept = std::fs::read_to_string(bench.path("out/job.sta")).expect("old result");
+        assert_eq!(kept, "old");
+        let exit = bench.run(&["-q", "--overwrite"], &numerics());
+        assert_eq!(code(&exit), Exit::Finished);
+        let exit = bench.run(&["-q", "--overwrite"], &numerics());
+        assert_eq!(code(&exit), Exit::Finished);
+    }
+}

@@ -1,4 +1,0 @@
-//! `run` with a substitute reader and solver.
-
-mod files;
-mod run;
