@@ -1,8 +1,9 @@
 //! Errors in writing the files of a job, and the system's error behind a failure of the HDF5
 //! library.
 
-use std::io::{self, ErrorKind};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use thiserror::Error;
 
@@ -109,6 +110,22 @@ fn errno(text: &str) -> Option<i32> {
     let (_, rest) = text.split_once("errno = ")?;
     let end = rest.find(|c: char| !c.is_ascii_digit());
     rest.get(..end.unwrap_or(rest.len()))?.parse().ok()
+}
+
+/// Metadata of a regular, readable file. Other files are not opened: a fifo would wait for its
+/// writer.
+///
+/// # Errors
+/// The file does not exist, may not be read, or is not a regular file.
+pub fn regular_file(path: &Path) -> io::Result<fs::Metadata> {
+    let data = fs::metadata(path)?;
+    if data.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    if !data.is_file() {
+        return Err(io::Error::other("it is not a regular file"));
+    }
+    fs::File::open(path)?.metadata()
 }
 
 #[cfg(test)]

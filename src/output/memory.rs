@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use rustix::process::{Resource, getrlimit};
 
-use crate::output::text::bytes;
+use super::format::bytes;
 use crate::prepare::MemoryNeed;
 
 /// A run whose estimated need, divided by this, is not free is refused: the estimate may be too large by

@@ -1,32 +1,43 @@
 //! Result file, status file, log and screen.
 //!
 //! [`ResultWriter`] observes a run and writes the files of a job ([`JobFiles`]), which are claimed by
-//! one run at a time ([`Claim`]): `JOB.vtkhdf` (`result_file`: `grid`, `model`, `history`,
-//! `record`, `space`), `JOB.sta` (`status`), `JOB.log` (`log`) and the screen (`screen`,
-//! `progress`). `docs/output.md` describes them. [`picture`] draws a model that is not run.
+//! one run at a time ([`Claim`]): `JOB.vtkhdf` (`result_file`: `fields`, `model_group`, `history`,
+//! `run_record`, `space`), `JOB.sta` (`status`), `JOB.log` and the screen (`console`).
+//! `docs/output.md` describes them. [`picture`] draws a model that is not run.
 
+mod canvas;
+mod column;
+mod console;
+mod echo;
 mod error;
-mod file;
-mod frame;
+mod failure;
+mod fields;
+mod format;
 mod frames;
 mod history;
-mod interrupt;
 mod job;
 mod memory;
-mod pace;
+mod model_group;
+mod monitor;
 mod picture;
 mod result_file;
-mod summary;
-mod text;
+mod result_summary;
+mod run_record;
+mod space;
+mod status;
+mod strain;
+mod warnings;
 mod writer;
 
-pub use error::{NameError, OutputError, reason};
-pub use file::{Claim, RunRecord, UNFINISHED, check_names, contact_names, regular_file};
+pub use canvas::Window;
+pub use console::Verbosity;
+pub use echo::{ModelEcho, deck_line, frames, program_lines, solver};
+pub use error::{NameError, OutputError, reason, regular_file};
 pub use frames::{DEFAULT_FRAMES, FrameSchedule};
-pub use interrupt::Interrupt;
-pub use job::JobFiles;
+pub use job::{Claim, JobFiles};
 pub use memory::{MemoryError, check_memory, memory_need};
-pub use picture::{Window, picture};
-pub use summary::{ResultSummary, SummaryError, deck_line, program_lines};
-pub use text::{ModelEcho, Verbosity, frames, solver};
-pub use writer::ResultWriter;
+pub use model_group::{check_names, contact_names};
+pub use picture::picture;
+pub use result_summary::{ResultSummary, SummaryError};
+pub use run_record::{RunRecord, UNFINISHED};
+pub use writer::{Interrupt, ResultWriter};

@@ -2,16 +2,17 @@
 //! are written together, with disk space secured beforehand.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use std::{fs, io};
 
 use hdf5::{File, FileBuilder};
 
 use super::error::{at, io_error};
-use super::file::{Fields, Record, RunRecord, Space};
-use super::frame::Frame;
+use super::fields::Fields;
+use super::frames::Frame;
 use super::history::History;
-use super::pace::Pace;
+use super::run_record::{Record, RunRecord};
+use super::space::Space;
 use crate::dynamics::{IncrementReport, RunSummary};
 use crate::model::Model;
 
@@ -23,12 +24,12 @@ const WAITING_BYTES: [usize; 2] = [8 << 20, 2 << 20];
 const FRAMES_TO_HISTORY: usize = 4;
 
 /// `JOB.vtkhdf` while it is being written.
-pub(super) struct ResultFile {
+pub(super) struct ResultFile<'m> {
     /// Its final path.
     path: PathBuf,
     file: File,
-    fields: Fields,
-    history: History,
+    fields: Fields<'m>,
+    history: History<'m>,
     record: Record,
     space: Space,
     pace: Pace,
@@ -38,13 +39,13 @@ pub(super) struct ResultFile {
     is_broken: bool,
 }
 
-impl ResultFile {
+impl<'m> ResultFile<'m> {
     /// Creates the file as `draft`, or replaces it, with everything known before the run; messages
     /// name it `path`.
     pub fn create(
         draft: &Path,
         path: &Path,
-        model: &Model,
+        model: &'m Model,
         record: &RunRecord,
     ) -> io::Result<Self> {
         let builder = || {
@@ -72,10 +73,10 @@ impl ResultFile {
 
     fn build(
         file: &File,
-        model: &Model,
+        model: &'m Model,
         record: &RunRecord,
-    ) -> hdf5::Result<(Fields, History, Record)> {
-        super::file::model::write(file, model)?;
+    ) -> hdf5::Result<(Fields<'m>, History<'m>, Record)> {
+        super::model_group::write(file, model)?;
         let fields = Fields::create(file, model)?;
         let history = History::create(file, model)?;
         let record = Record::create(file, record)?;
@@ -84,8 +85,8 @@ impl ResultFile {
     }
 
     /// Appends the history row of an increment, which waits in memory.
-    pub fn history(&mut self, model: &Model, report: &IncrementReport) {
-        self.history.push(model, report);
+    pub fn history(&mut self, report: &IncrementReport) {
+        self.history.push(report);
     }
 
     /// Appends a frame, which waits in memory.
@@ -206,5 +207,81 @@ impl ResultFile {
     pub fn name_and_size(&self) -> (String, u64) {
         let name = self.path.display().to_string();
         (name, fs::metadata(&self.path).map_or(0, |data| data.len()))
+    }
+}
+
+/// Longest time for which results wait in memory while a run goes on.
+const LONGEST: Duration = Duration::from_secs(1);
+
+/// Time of a run as a multiple of that which its writes may take.
+const MULTIPLE: u32 = 30;
+
+/// Decides when to write: when all writes so far and another like the last one are short against the time of the run.
+/// Increments that take long are written at once.
+pub(super) struct Pace {
+    start: Instant,
+    /// End of the last write.
+    last: Option<Instant>,
+    /// Time of the run from which on the next write is due.
+    due: Duration,
+    /// Time that all writes have taken.
+    spent: Duration,
+}
+
+impl Pace {
+    /// The first write is due at once.
+    pub fn new() -> Self {
+        Pace {
+            start: Instant::now(),
+            last: None,
+            due: Duration::ZERO,
+            spent: Duration::ZERO,
+        }
+    }
+
+    /// Whether a write is due.
+    pub fn is_due(&self) -> bool {
+        self.start.elapsed() >= self.due
+    }
+
+    /// Whether the last write was some time ago.
+    pub fn is_late(&self) -> bool {
+        self.last.is_some_and(|last| last.elapsed() >= LONGEST)
+    }
+
+    /// Notes a write that began at `start` and has just ended.
+    pub fn written(&mut self, start: Instant) {
+        let end = Instant::now();
+        let write = end - start;
+        self.spent += write;
+        self.due = MULTIPLE * (self.spent + write);
+        self.last = Some(end);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn before(milliseconds: u64) -> Instant {
+        let time = Instant::now().checked_sub(Duration::from_millis(milliseconds));
+        time.expect("some time ago")
+    }
+
+    #[test]
+    fn writes_are_short_against_the_run_but_none_waits_for_long() {
+        let mut pace = Pace::new();
+        assert!(pace.is_due(), "the first");
+        pace.written(before(5));
+        assert!(!pace.is_due());
+        pace.start = before(5 * 2 * u64::from(MULTIPLE) - 100);
+        assert!(!pace.is_due(), "a second like the first");
+        pace.start = before(5 * 2 * u64::from(MULTIPLE) + 100);
+        assert!(pace.is_due(), "long enough a run for two");
+        pace.written(before(2000));
+        assert!(!pace.is_due());
+        assert!(!pace.is_late());
+        pace.last = Some(before(1001));
+        assert!(pace.is_late(), "a second");
     }
 }

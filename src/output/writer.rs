@@ -1,22 +1,25 @@
 //! The observer of a run: writes each increment to the result file, status file, log and screen, and
 //! completes them at the end.
 
-use std::fs;
-use std::io::{self, ErrorKind};
+use std::io::ErrorKind;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicI32, Ordering};
 use std::time::{Duration, Instant};
+use std::{fs, io};
 
+use super::console::{Console, Log, Verbosity};
 use super::error::{OutputError, at};
-use super::file::{Claim, RunRecord, check_names};
-use super::frame::LastState;
-use super::frames::FrameSchedule;
-use super::interrupt::Interrupt;
+use super::failure::{cutback_advice, cutback_lines, failure_lines};
+use super::format::{bytes, counted, scientific, wrap};
+use super::frames::{FrameSchedule, LastState};
+use super::job::Claim;
+use super::model_group::check_names;
+use super::monitor::{Monitor, Remarks, error_line, lcp_lines, timing_lines};
 use super::result_file::ResultFile;
-use super::summary::{Monitor, Remarks, error_line, lcp_lines, timing_lines};
-use super::text::{
-    Console, Log, StatusFile, Verbosity, bytes, counted, cutback_advice, cutback_lines,
-    failure_lines, scientific, warning_lines, wrap,
-};
+use super::run_record::RunRecord;
+use super::status::StatusFile;
+use super::strain::warning_lines;
 use crate::dynamics::{Cause, Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary};
 use crate::model::Model;
 
@@ -28,7 +31,7 @@ const LOGGED_CONTACT_ENERGIES: usize = 100;
 /// Writes the files of a run and its screen.
 pub struct ResultWriter<'a> {
     model: &'a Model,
-    result: ResultFile,
+    result: ResultFile<'a>,
     /// Created with the first frame.
     status: Option<StatusFile>,
     console: Console,
@@ -158,7 +161,7 @@ impl<'a> ResultWriter<'a> {
     fn record_increment(&mut self, report: &IncrementReport) -> io::Result<()> {
         let remarks = self.monitor.add(report);
         self.print_remarks(report, &remarks)?;
-        self.result.history(self.model, report);
+        self.result.history(report);
         self.last.set(report);
         let is_frame = self.schedule.is_due(report);
         if is_frame {
@@ -312,5 +315,40 @@ fn replace(path: &Path, text: &str) -> io::Result<()> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
         _ => fs::write(path, text),
+    }
+}
+
+/// A request from outside to end the run: the number of a signal, shared between its receiver and
+/// the run.
+#[derive(Debug, Clone, Default)]
+pub struct Interrupt {
+    /// 0 as long as there is none.
+    signal: Arc<AtomicI32>,
+}
+
+impl Interrupt {
+    /// Requests the end of the run.
+    pub fn request(&self, signal: i32) {
+        self.signal.store(signal, Ordering::Relaxed);
+    }
+
+    /// The signal that requests the end, if there is one.
+    pub fn signal(&self) -> Option<i32> {
+        Some(self.signal.load(Ordering::Relaxed)).filter(|&signal| signal != 0)
+    }
+
+    /// Exit status of a program that the signal ended, as shells give it: 128 + its number.
+    pub(super) fn exit_status(&self) -> u8 {
+        self.signal().map_or(0, |signal| 128 + signal as u8)
+    }
+
+    /// The signal's name.
+    pub(super) fn name(&self) -> &'static str {
+        match self.exit_status() {
+            129 => "SIGHUP",
+            130 => "SIGINT",
+            143 => "SIGTERM",
+            _ => "a signal",
+        }
     }
 }

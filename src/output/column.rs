@@ -1,0 +1,404 @@
+//! Groups, attributes and datasets of the result file: those that never change, and those that grow by
+//! rows, which wait in memory.
+
+use hdf5::plist::dataset_create::{AllocTime, FillTime};
+use hdf5::types::VarLenUnicode;
+use hdf5::{Attribute, Dataset, Extent, Extents, Group, H5Type, Hyperslab, Location, SliceOrIndex};
+use ndarray::{ArrayView, IxDyn};
+
+/// What a dataset holds: the dimension of its values, such as "length/time" ("1" for a pure number), and a
+/// sentence. They are its attributes `dimension` and `description`.
+pub(crate) type Meaning = (&'static str, &'static str);
+
+/// The attribute of `/history`, and of its groups of events, that counts their complete rows.
+pub(crate) const ROWS: &str = "rows";
+
+/// Creates a group that stores no modification time.
+pub(crate) fn group(parent: &Group, name: &str) -> hdf5::Result<Group> {
+    let builder = parent.create_group_builder();
+    builder.obj_track_times(false).create(name)
+}
+
+/// Writes the text attribute `name`; a NUL, which HDF5 cannot hold, becomes U+FFFD.
+pub(crate) fn text_attribute(at: &Location, name: &str, text: &str) -> hdf5::Result<()> {
+    let clean = text.replace('\0', "\u{fffd}").parse::<VarLenUnicode>();
+    let clean = clean.map_err(|_| hdf5::Error::from("text with a NUL character"))?;
+    set_attribute(at, name, clean)
+}
+
+/// Writes the scalar attribute `name`, a new one or over the old value.
+pub(crate) fn set_attribute<T: H5Type>(at: &Location, name: &str, value: T) -> hdf5::Result<()> {
+    if let Ok(attribute) = at.attr(name) {
+        return attribute.write_scalar(&value);
+    }
+    at.new_attr::<T>().create(name)?.write_scalar(&value)
+}
+
+/// Writes a dataset that never changes; the shape's product is the length of `data`.
+pub(crate) fn constant<T: H5Type>(
+    parent: &Group,
+    name: &str,
+    shape: &[usize],
+    data: &[T],
+    meaning: Meaning,
+) -> hdf5::Result<()> {
+    let builder = parent.new_dataset_builder().empty::<T>();
+    let builder = builder.shape(shape.to_vec()).obj_track_times(false);
+    let dataset = builder.create(name)?;
+    describe(&dataset, meaning)?;
+    match data.is_empty() {
+        true => Ok(()),
+        false => dataset.write_raw(data),
+    }
+}
+
+/// Gives a new dataset its two attributes.
+fn describe(dataset: &Dataset, (dimension, description): Meaning) -> hdf5::Result<()> {
+    text_attribute(dataset, "description", description)?;
+    text_attribute(dataset, "dimension", dimension)
+}
+
+/// Rows of a chunk of a dataset that grows by one row per increment: each chunk costs a call of the system.
+const CHUNK_ROWS: usize = 256;
+
+/// Largest chunk in bytes: well inside the library's chunk cache.
+const CHUNK_BYTES: usize = 1 << 16;
+
+/// Largest chunk in bytes of a field that most nodes have the same value of: small, since chunks
+/// with that value only are left out.
+const SPARSE_CHUNK_BYTES: usize = 1 << 11;
+
+/// Largest chunk in bytes of such a field in a small model, whose frames are not larger than the second
+/// number: there the number of chunks counts.
+const SMALL_CHUNK_BYTES: usize = 1 << 14;
+const SMALL_FRAME_BYTES: usize = 1 << 12;
+
+/// Bytes by which the index of a dataset may grow when rows are appended: a node of the library's
+/// tree of chunks and one for each of the levels above it (3.1 kB each with three dimensions).
+const INDEX: usize = 3 * 3200;
+
+/// Bytes of the index for a chunk: its part of a half-filled node.
+const INDEX_OF_CHUNK: usize = 100;
+
+/// A number of a dataset, with the value that rows have which are not written.
+pub(crate) trait Number: H5Type + Copy + Default + PartialEq {
+    /// The value of what is not written.
+    fn left_out(_nan: bool) -> Self {
+        Self::default()
+    }
+
+    /// Whether it is zero (or NaN, where that is the value of what is not written).
+    fn is_left_out(&self, _nan: bool) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl Number for u8 {}
+
+impl Number for i64 {}
+
+impl Number for f64 {
+    fn left_out(nan: bool) -> Self {
+        if nan { f64::NAN } else { 0.0 }
+    }
+
+    fn is_left_out(&self, nan: bool) -> bool {
+        match nan {
+            true => self.is_nan(),
+            false => self.to_bits() == 0,
+        }
+    }
+}
+
+/// What most rows of a dataset hold; chunks of nothing else take no space in the file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Mostly {
+    /// Any value.
+    Varied,
+    /// Any value, but the first row may come late.
+    Late,
+    /// Zero.
+    Zero,
+    /// NaN.
+    Nan,
+}
+
+/// Rows of a dataset, and how the file keeps them.
+pub(crate) struct Layout {
+    /// Shape of a row in the file; empty for a scalar.
+    row: Vec<usize>,
+    /// Shape of the part of a row that is written; the rest is zero.
+    given: Vec<usize>,
+    /// Rows of a chunk.
+    chunk_rows: usize,
+    /// Whether the library keeps chunks in its memory until it is flushed. What is written once, in large
+    /// pieces, it need not copy.
+    is_cached: bool,
+    mostly: Mostly,
+}
+
+impl Layout {
+    /// Rows that come one by one, with each increment or each event. Those of events have their tree of
+    /// chunks from the start, since the first event can come late ([`Mostly::Late`]).
+    pub fn one_by_one<T: Number>(row: &[usize], mostly: Mostly) -> Self {
+        let bytes = row.iter().product::<usize>() * size_of::<T>();
+        Layout {
+            row: row.to_vec(),
+            given: row.to_vec(),
+            chunk_rows: (CHUNK_BYTES / bytes.max(1)).clamp(1, CHUNK_ROWS),
+            is_cached: true,
+            mostly,
+        }
+    }
+
+    /// Rows that come in frames of `rows`, up to `frames` of them in a chunk. Of a row `given` components
+    /// are written and the others are zero.
+    pub fn in_frames<T: Number>(
+        row: &[usize],
+        given: &[usize],
+        mostly: Mostly,
+        [rows, frames]: [usize; 2],
+    ) -> Self {
+        let bytes = given.iter().product::<usize>() * size_of::<T>();
+        let most = match mostly {
+            Mostly::Varied | Mostly::Late => CHUNK_BYTES,
+            _ if rows * bytes <= SMALL_FRAME_BYTES => SMALL_CHUNK_BYTES,
+            Mostly::Zero | Mostly::Nan => SPARSE_CHUNK_BYTES,
+        };
+        Layout {
+            row: row.to_vec(),
+            given: given.to_vec(),
+            chunk_rows: (most / bytes.max(1)).clamp(1, (frames * rows).max(1)),
+            is_cached: false,
+            mostly,
+        }
+    }
+
+    /// Values of a row.
+    fn size(&self) -> usize {
+        self.given.iter().product()
+    }
+
+    /// Creates a dataset without rows.
+    fn create<T: Number>(
+        &self,
+        parent: &Group,
+        name: &str,
+        meaning: Meaning,
+    ) -> hdf5::Result<Dataset> {
+        // The tree of chunks is made with the first row, and stays when that is taken away.
+        let is_late = self.mostly == Mostly::Late;
+        let mut extents = vec![Extent::resizable(usize::from(is_late))];
+        extents.extend(self.row.iter().map(|&n| Extent::fixed(n)));
+        let (alloc_time, fill_time) = match is_late {
+            true => (AllocTime::Early, FillTime::Never),
+            false => (AllocTime::Incr, FillTime::IfSet),
+        };
+        let mut builder = parent.new_dataset_builder();
+        if !self.is_cached {
+            builder = builder.chunk_cache(1, 0, 1.0);
+        }
+        let dataset = builder
+            .obj_track_times(false)
+            .chunk(rows_of(self.chunk_rows, &self.given))
+            .fill_value(T::left_out(self.mostly == Mostly::Nan))
+            .alloc_time(Some(alloc_time))
+            .fill_time(fill_time)
+            .empty::<T>()
+            .shape(Extents::simple(extents))
+            .create(name)?;
+        dataset.resize(rows_of(0, &self.row))?;
+        describe(&dataset, meaning)?;
+        Ok(dataset)
+    }
+}
+
+/// Shape of a number of rows.
+fn rows_of(rows: usize, row: &[usize]) -> Vec<usize> {
+    [&[rows], row].concat()
+}
+
+/// A dataset that grows by rows; `values` appends to the rows that wait in memory those of a report.
+struct Column<T, F> {
+    dataset: Dataset,
+    layout: Layout,
+    values: F,
+    /// Rows in the file.
+    written: usize,
+    /// Values of the rows not in the file yet, one row after the other.
+    pending: Vec<T>,
+}
+
+impl<T: Number, F> Column<T, F> {
+    /// The next rows from `first` on, up to the border of a chunk, that are not left out. The first
+    /// chunk never is: with it the dataset gets its tree of chunks, to which its header then points
+    /// before frames are there that a run killed in the middle of a write could make unreadable.
+    fn next_block(&self, first: usize, end: usize) -> Option<[usize; 2]> {
+        let chunk_rows = self.layout.chunk_rows;
+        let border = |row: usize| ((row / chunk_rows + 1) * chunk_rows).min(end);
+        let nan = self.layout.mostly == Mostly::Nan;
+        let is_left_out = |start: usize| {
+            let mut values = self.values(start, border(start)).iter();
+            start > 0 && values.all(|value| value.is_left_out(nan))
+        };
+        let mut start = first;
+        while start < end && is_left_out(start) {
+            start = border(start);
+        }
+        let mut stop = start;
+        while stop < end && !is_left_out(stop) {
+            stop = border(stop);
+        }
+        (start < end).then_some([start, stop])
+    }
+
+    /// Values of the waiting rows from `start` to `stop`.
+    fn values(&self, start: usize, stop: usize) -> &[T] {
+        let size = self.layout.size();
+        &self.pending[(start - self.written) * size..(stop - self.written) * size]
+    }
+
+    fn write(&self, start: usize, stop: usize) -> hdf5::Result<()> {
+        let shape = rows_of(stop - start, &self.layout.given);
+        let view = ArrayView::from_shape(IxDyn(&shape), self.values(start, stop))
+            .map_err(|error| hdf5::Error::from(error.to_string()))?;
+        let mut ranges = vec![SliceOrIndex::from(start..stop)];
+        ranges.extend(self.layout.given.iter().map(|&n| SliceOrIndex::from(0..n)));
+        self.dataset.write_slice(view, Hyperslab::from(ranges))
+    }
+}
+
+/// A dataset that grows with the reports `R`, whatever its numbers are.
+trait Growing<R> {
+    /// Appends the rows of a report, which wait in memory.
+    fn push(&mut self, report: &R);
+
+    /// Writes the rows that wait.
+    fn flush(&mut self) -> hdf5::Result<()>;
+
+    /// Bytes by which the file may grow when `rows` rows are written.
+    fn growth(&self, rows: usize) -> usize;
+
+    /// Bytes of a row.
+    fn row_bytes(&self) -> usize;
+}
+
+impl<R, T: Number, F: FnMut(&R, &mut Vec<T>)> Growing<R> for Column<T, F> {
+    fn push(&mut self, report: &R) {
+        (self.values)(report, &mut self.pending);
+    }
+
+    fn flush(&mut self) -> hdf5::Result<()> {
+        let rows = self.pending.len() / self.layout.size().max(1);
+        if rows == 0 {
+            return Ok(());
+        }
+        let end = self.written + rows;
+        self.dataset.resize(rows_of(end, &self.layout.row))?;
+        let mut first = self.written;
+        while let Some([start, stop]) = self.next_block(first, end) {
+            self.write(start, stop)?;
+            first = stop;
+        }
+        self.written = end;
+        self.pending.clear();
+        Ok(())
+    }
+
+    fn growth(&self, rows: usize) -> usize {
+        let chunk_rows = self.layout.chunk_rows;
+        let chunks = rows / chunk_rows + 2;
+        chunks * (chunk_rows * Growing::<R>::row_bytes(self) + INDEX_OF_CHUNK) + INDEX
+    }
+
+    fn row_bytes(&self) -> usize {
+        self.layout.size() * size_of::<T>()
+    }
+}
+
+/// A number by which readers go: it is written after all that it counts.
+struct Count<R> {
+    attribute: Attribute,
+    /// Rows appended.
+    rows: usize,
+    /// Rows that a report has.
+    of: fn(&R) -> usize,
+}
+
+/// Datasets that grow together: each report `R` appends rows to every one.
+pub(crate) struct Columns<'m, R> {
+    all: Vec<Box<dyn Growing<R> + 'm>>,
+    counts: Vec<Count<R>>,
+}
+
+impl<'m, R> Columns<'m, R> {
+    /// None yet.
+    pub fn new() -> Self {
+        Columns {
+            all: Vec::new(),
+            counts: Vec::new(),
+        }
+    }
+
+    /// Creates a dataset; `values` appends what a report has to whole rows.
+    pub fn add<T: Number + 'm>(
+        &mut self,
+        at: &Group,
+        name: &str,
+        layout: Layout,
+        meaning: Meaning,
+        values: impl FnMut(&R, &mut Vec<T>) + 'm,
+    ) -> hdf5::Result<()> {
+        self.all.push(Box::new(Column {
+            dataset: layout.create::<T>(at, name, meaning)?,
+            layout,
+            values,
+            written: 0,
+            pending: Vec::new(),
+        }));
+        Ok(())
+    }
+
+    /// Creates the attribute `name` of a group, which counts rows.
+    pub fn count(&mut self, at: &Group, name: &str, of: fn(&R) -> usize) -> hdf5::Result<()> {
+        let attribute = at.new_attr::<i64>().create(name)?;
+        attribute.write_scalar(&0_i64)?;
+        let rows = 0;
+        self.counts.push(Count {
+            attribute,
+            rows,
+            of,
+        });
+        Ok(())
+    }
+
+    /// Appends the rows of a report, which wait in memory.
+    pub fn push(&mut self, report: &R) {
+        self.all.iter_mut().for_each(|column| column.push(report));
+        for count in &mut self.counts {
+            count.rows += (count.of)(report);
+        }
+    }
+
+    /// Writes the rows that wait, but not their number.
+    pub fn flush(&mut self) -> hdf5::Result<()> {
+        self.all.iter_mut().try_for_each(|column| column.flush())
+    }
+
+    /// Writes the numbers of rows.
+    pub fn note_counts(&self) -> hdf5::Result<()> {
+        let mut counts = self.counts.iter();
+        counts.try_for_each(|count| count.attribute.write_scalar(&(count.rows as i64)))
+    }
+
+    /// Bytes by which the file may grow when `rows` rows are written to each.
+    pub fn growth(&self, rows: usize) -> u64 {
+        let growth = self.all.iter().map(|column| column.growth(rows));
+        growth.sum::<usize>() as u64
+    }
+
+    /// Bytes of one row of each.
+    pub fn row_bytes(&self) -> usize {
+        self.all.iter().map(|column| column.row_bytes()).sum()
+    }
+}

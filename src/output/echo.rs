@@ -1,0 +1,359 @@
+//! The first lines of the screen: program, deck, and the model in a few lines, as `check` prints it too.
+
+use std::path::Path;
+
+use super::format::{counted, general, grouped, label, scientific, wrap, wrap_words};
+use super::frames::{DEFAULT_FRAMES, are_dense};
+use super::run_record::{RunRecord, utc_now};
+use super::status::monitored;
+use crate::model::{
+    Contact, Element, ElementType, Frames, Impact, ImpactTime, LandingRule, Model, Plane, Scheme,
+    Settings, SolverChoice, Step, SurfaceKind,
+};
+use crate::prepare::InitialGap;
+use crate::prepare::PreparedModel;
+
+/// Most nodes that are named.
+const MOST_NAMES: usize = 12;
+
+/// Numbers that describe a model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelEcho {
+    /// Mass of all bodies.
+    pub mass: f64,
+    /// Smallest coordinates (length).
+    pub lower: [f64; 2],
+    /// Largest coordinates (length).
+    pub upper: [f64; 2],
+    /// Shortest element edge (length).
+    pub shortest_edge: f64,
+    /// Largest speed of longitudinal waves (length/time).
+    pub wave_speed: f64,
+    /// Shortest transit time of a wave along an element's edge: a guide for the increment.
+    pub edge_time: f64,
+    /// Number of dofs prescribed in any step.
+    pub prescribed: usize,
+}
+
+impl ModelEcho {
+    /// Measures a model.
+    pub fn new(model: &Model) -> Self {
+        let mut echo = ModelEcho {
+            mass: 0.0,
+            lower: [f64::INFINITY; 2],
+            upper: [f64::NEG_INFINITY; 2],
+            shortest_edge: f64::INFINITY,
+            wave_speed: 0.0,
+            edge_time: f64::INFINITY,
+            prescribed: prescribed(model),
+        };
+        for x in &model.mesh.coordinates {
+            echo.lower = [echo.lower[0].min(x[0]), echo.lower[1].min(x[1])];
+            echo.upper = [echo.upper[0].max(x[0]), echo.upper[1].max(x[1])];
+        }
+        echo.mass = model
+            .mesh
+            .elements
+            .iter()
+            .fold(0.0, |mass, element| mass + model.element_mass(element));
+        echo.measure_edges(model);
+        echo
+    }
+
+    /// Sets edge, wave speed and their transit time.
+    fn measure_edges(&mut self, model: &Model) {
+        // elements of a section in plane stress and in plane strain
+        let planes = [Plane::Stress, Plane::Strain];
+        let group = |_, element: &Element| {
+            planes.len() * element.section + element.element_type.plane as usize
+        };
+        let edges = (model.mesh).shortest_sides(planes.len() * model.sections.len(), group);
+        let speeds = model.sections.iter().flat_map(|section| {
+            let material = &model.materials[section.material];
+            planes.map(|plane| material.wave_speed(plane))
+        });
+        for (edge, speed) in edges
+            .into_iter()
+            .zip(speeds)
+            .filter(|(edge, _)| edge.is_finite())
+        {
+            self.shortest_edge = self.shortest_edge.min(edge);
+            self.wave_speed = self.wave_speed.max(speed);
+            self.edge_time = self.edge_time.min(edge / speed);
+        }
+    }
+
+    /// The lines of the echo.
+    pub fn lines(&self, prepared: &PreparedModel) -> Vec<String> {
+        let model = prepared.model();
+        let mut lines = self.model_lines(model);
+        if model.contacts.is_empty() {
+            lines.push(label("contact", "none"));
+        }
+        for (contact, gaps) in model.contacts.iter().zip(prepared.initial_gaps()) {
+            lines.extend(contact_lines(model, contact, gaps));
+        }
+        lines.extend(mass_lines(prepared));
+        lines.extend(monitor_lines(model));
+        for (i, step) in model.steps.iter().enumerate() {
+            lines.extend(self.step_lines(i, step));
+        }
+        lines
+    }
+
+    /// What suits the waves of the model, an increment and the time in which they cross it, and that slow motion
+    /// asks for another increment.
+    pub fn guide(&self) -> Vec<String> {
+        let size = [0, 1].map(|i| self.upper[i] - self.lower[i]);
+        let crossing = size[0].hypot(size[1]) / self.wave_speed;
+        let pieces = [
+            format!("dt {} for waves and impacts:", general(self.edge_time, 2)),
+            "one crosses the shortest edge in it,".to_owned(),
+            format!("the model in {}", general(crossing, 2)),
+            "for slow motion as long as the motion allows".to_owned(),
+        ];
+        wrap("guide", &pieces)
+    }
+
+    fn model_lines(&self, model: &Model) -> Vec<String> {
+        let mesh = &model.mesh;
+        let range = |i: usize| {
+            let [lower, upper] = [self.lower[i], self.upper[i]].map(|x| general(x, 4));
+            format!("[{lower},{upper}]")
+        };
+        let kinds = kinds(&mesh.elements);
+        let size = [
+            counted(mesh.node_count(), "node"),
+            format!("{} ({kinds})", counted(mesh.elements.len(), "element")),
+            format!(
+                "{} dofs, {} fixed",
+                grouped(mesh.dof_count()),
+                grouped(self.prescribed)
+            ),
+            format!("mass {}", general(self.mass, 4)),
+        ];
+        let shape = [
+            format!("extents {} x {}", range(0), range(1)),
+            format!("shortest edge {}", general(self.shortest_edge, 3)),
+            format!("wave speed {}", general(self.wave_speed, 3)),
+        ];
+        let mut lines = wrap("model", &size);
+        lines.extend(wrap("", &shape));
+        if !model.equations.is_empty() {
+            let count = counted(model.equations.len(), "equation");
+            lines.push(label("", &format!("{count} between displacements")));
+        }
+        lines
+    }
+
+    fn step_lines(&self, index: usize, step: &Step) -> Vec<String> {
+        let increments = &step.increments;
+        let fixed = if increments.direct { " fixed" } else { "" };
+        let name = step.name.as_deref().unwrap_or_default();
+        let times = [
+            format!("{name} 0 .. {}", general(increments.period, 4))
+                .trim_start()
+                .to_owned(),
+            format!("dt {}{fixed}", general(increments.dt, 4)),
+            format!("edge/wave speed {}", general(self.edge_time, 2)),
+            frames(&step.frames),
+        ];
+        let settings = &step.settings;
+        let numerics = [
+            scheme(settings.scheme),
+            impact(settings),
+            format!("solver {}", solver(settings.solver)),
+        ];
+        let mut lines = wrap(&format!("step {}", index + 1), &times);
+        lines.extend(wrap("", &numerics));
+        if are_dense(step) {
+            lines.push(label(
+                "note",
+                "frames are asked for at shorter intervals than dt: every increment is one",
+            ));
+        }
+        lines
+    }
+}
+
+/// Name of a linear solver as typed on the command line.
+pub fn solver(choice: SolverChoice) -> &'static str {
+    match choice {
+        SolverChoice::Faer => "faer",
+        SolverChoice::Sprs => "sprs",
+    }
+}
+
+/// When frames are written, as text.
+pub fn frames(frames: &Frames) -> String {
+    match frames {
+        Frames::Default => format!("output {}", counted(DEFAULT_FRAMES, "frame")),
+        Frames::Count(count) => format!("output {}", counted(*count, "frame")),
+        Frames::Every(interval) => format!("output every {}", general(*interval, 4)),
+        Frames::Increments(count) => format!("output every {}", counted(*count, "increment")),
+        Frames::Times(times) => format!("output at {}", counted(times.len(), "time")),
+    }
+}
+
+fn scheme(scheme: Scheme) -> String {
+    match scheme {
+        Scheme::EnergyMomentum => "scheme energy-momentum".into(),
+        Scheme::Ss22 { theta1, theta2 } => format!(
+            "scheme SS22 theta1 {} theta2 {}",
+            general(theta1, 4),
+            general(theta2, 4)
+        ),
+    }
+}
+
+fn impact(settings: &Settings) -> String {
+    let impulses = match (settings.impact, settings.impact_time) {
+        (Impact::None, _) => "no impact impulses",
+        (Impact::Impulse, ImpactTime::Increment) => "impact impulses",
+        (Impact::Impulse, ImpactTime::Event) => "impact impulses at the times of impacts",
+    };
+    match settings.landing {
+        LandingRule::Plastic => impulses.to_owned(),
+        LandingRule::Return => format!("{impulses}, landing return"),
+    }
+}
+
+fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<String> {
+    let (slave, master) = (
+        &model.surfaces[contact.slave],
+        &model.surfaces[contact.master],
+    );
+    let edge = match master.kind {
+        SurfaceKind::Rigid(_) => "rigid edge",
+        SurfaceKind::Faces(_) | SurfaceKind::Nodes(_) => "edge",
+    };
+    let nodes = counted(slave.nodes(&model.mesh).len(), "node");
+    let edges = counted(master.segments(&model.mesh).len(), edge);
+    let sides = match contact.is_self_contact() {
+        true => format!("{} ({nodes}, {edges}) with itself", slave.name),
+        false => format!("{} ({nodes}) -> {} ({edges})", slave.name, master.name),
+    };
+    let pieces = [
+        sides,
+        contact.interaction.friction.to_string(),
+        smallest_gap(gaps),
+    ];
+    wrap("contact", &pieces)
+}
+
+/// Nodes without mass and the nodes of contact surfaces that keep theirs, where mass is redistributed.
+fn mass_lines(prepared: &PreparedModel) -> Vec<String> {
+    let (model, redistribution) = (prepared.model(), prepared.redistribution());
+    let kept = redistribution.kept();
+    if redistribution.is_empty() && kept.is_empty() {
+        return Vec::new();
+    }
+    let massless = redistribution.massless().len();
+    let mut text = format!(
+        "redistributed: {} without mass",
+        counted(massless, "contact node")
+    );
+    if !kept.is_empty() {
+        let label = |&node: &usize| model.node_name(node);
+        let mut names: Vec<String> = kept.iter().take(MOST_NAMES).map(label).collect();
+        if kept.len() > MOST_NAMES {
+            names.push(format!("and {} more", kept.len() - MOST_NAMES));
+        }
+        let names = names.join(", ");
+        text = format!("{text}, {} keep their mass: {names}", grouped(kept.len()));
+    }
+    wrap_words("mass", &text)
+}
+
+/// Displacements in the status file.
+fn monitor_lines(model: &Model) -> Vec<String> {
+    let names: Vec<String> = monitored(model).into_iter().map(|(name, _)| name).collect();
+    match names.is_empty() {
+        true => Vec::new(),
+        false => wrap("monitor", &names),
+    }
+}
+
+/// The smallest gap at the start.
+fn smallest_gap(gaps: &[InitialGap]) -> String {
+    match gaps.iter().map(|gap| gap.gap).reduce(f64::min) {
+        Some(gap) => format!("smallest gap {}", scientific(gap, 1)),
+        None => "no node faces its master".into(),
+    }
+}
+
+/// Names of the element types in the mesh.
+fn kinds(elements: &[Element]) -> String {
+    let mut types: Vec<ElementType> = Vec::new();
+    for element in elements {
+        if !types.contains(&element.element_type) {
+            types.push(element.element_type);
+        }
+    }
+    let mut names: Vec<String> = types.iter().map(ElementType::to_string).collect();
+    names.sort();
+    names.join(" ")
+}
+
+/// Number of dofs prescribed in any step.
+fn prescribed(model: &Model) -> usize {
+    let supports = model.steps.iter().flat_map(|step| &step.supports);
+    let mut dofs: Vec<usize> = supports.map(|support| support.dof).collect();
+    dofs.sort_unstable();
+    dofs.dedup();
+    dofs.len()
+}
+
+/// Program, job, time, threads and the deck's heading.
+pub fn program_lines(record: &RunRecord, profile: &str, job: &str, title: &str) -> Vec<String> {
+    let pieces = [
+        format!(" {} ({}, {profile})", record.version, record.commit),
+        format!("job {job}"),
+        utc_now(),
+        counted(record.threads, "thread"),
+    ];
+    let mut lines = wrap("stickslip", &pieces);
+    if !title.trim().is_empty() {
+        lines.push(label("title", title.trim()));
+    }
+    lines
+}
+
+/// The deck with its size and the number of errors and warnings; `log` holds the warnings.
+pub fn deck_line(
+    deck: &Path,
+    includes: usize,
+    lines: usize,
+    errors: usize,
+    warnings: usize,
+    log: Option<&Path>,
+) -> String {
+    let name = deck.file_name().unwrap_or_default().to_string_lossy();
+    let included = match includes {
+        0 => String::new(),
+        count => format!(" + {}", counted(count, "include")),
+    };
+    let log = match log.and_then(Path::file_name) {
+        Some(log) if warnings > 0 => format!(" (see {})", log.to_string_lossy()),
+        _ => String::new(),
+    };
+    let text = format!(
+        "{name}{included}, {}: {}, {}{log}",
+        counted(lines, "line"),
+        counted(errors, "error"),
+        counted(warnings, "warning"),
+    );
+    label("deck", &text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_line_is_no_lines() {
+        let line = |lines, errors| deck_line(Path::new("a/b.inp"), 1, lines, errors, 0, None);
+        assert!(line(1, 1).ends_with("b.inp + 1 include, 1 line: 1 error, 0 warnings"));
+        assert!(line(2, 0).ends_with("b.inp + 1 include, 2 lines: 0 errors, 0 warnings"));
+    }
+}

@@ -1,0 +1,675 @@
+//! Reports of failed attempts and of a stopped run: cause, course of the passes, worst place, and what to
+//! change.
+
+use super::format::{counted, general, scientific, wrap, wrap_words};
+use super::strain::inversion_hint;
+use crate::dynamics::{Alternation, Cause, Course, Cutback, FailedLcp, Failure, PassReport, Worst};
+use crate::elements::ElementResult;
+use crate::lcp::LcpError;
+use crate::model::{Model, Step};
+use crate::vectors::{cross, difference};
+
+/// Pairs of a complementarity problem that the text names.
+const SHOWN_PAIRS: usize = 4;
+/// Part of the area between the sides of a corner at which its element is crushed there.
+const CRUSHED_CORNER: f64 = 0.01;
+
+/// Increment, time, cause, worst place, advice, halvings and the passes; `u` and `elements` are the last
+/// converged displacement and the results of the elements there.
+pub(crate) fn failure_lines(
+    failure: &Failure,
+    model: &Model,
+    u: &[f64],
+    elements: &[ElementResult],
+) -> Vec<String> {
+    let time = scientific(failure.time, 6);
+    let (increment, step) = (failure.increment, failure.step);
+    let where_it_failed = match increment {
+        0 => format!("the start of step {step} failed at time {time}"),
+        _ => format!("increment {increment} of step {step} failed at time {time}"),
+    };
+    let what = [where_it_failed, failure.cause.to_string()];
+    let mut lines = wrap("stopped", &what);
+    if let Some(course) = &failure.course {
+        lines.extend(wrap_words("", &course_text(course, model)));
+    }
+    lines.extend(failure.worst.as_ref().map(|worst| worst_line(worst, model)));
+    lines.extend(place_line(&failure.cause, model, u));
+    if let Cause::Indefinite { node } = failure.cause {
+        lines.extend(body_line(node, model, elements));
+    }
+    let mut hints = hint(&failure.cause, model);
+    let crushed = crushed(&failure.cause, model, u);
+    if let Some(Crushed {
+        element,
+        node,
+        part,
+    }) = crushed
+    {
+        lines.extend(crushed_lines(element, node, part, model));
+        hints = inversion_hint(element, model);
+    }
+    lines.extend(hints.iter().map(|&line| line.to_owned()));
+    if crushed.is_none()
+        && let Some(advice) = advice(failure, model)
+    {
+        lines.extend(wrap_words("advice", &advice));
+    }
+    if increment > 0 {
+        lines.push(format!(
+            "tried    {} of the increment; the last attempt with dt {}",
+            counted(failure.halvings as usize, "halving"),
+            scientific(failure.dt, 3),
+        ));
+    }
+    if !failure.passes.is_empty() {
+        lines.push("passes   of the last attempt:".into());
+        lines.extend(pass_table(&failure.passes));
+    }
+    lines
+}
+
+fn worst_line(worst: &Worst, model: &Model) -> String {
+    format!(
+        "worst    node {} at {}: {} {}",
+        model.node_name(worst.node),
+        point(worst.position),
+        worst.quantity,
+        scientific(worst.value, 2),
+    )
+}
+
+/// Likely reasons of the cause.
+fn hint(cause: &Cause, model: &Model) -> &'static [&'static str] {
+    match *cause {
+        Cause::Inverted { element, .. } => inversion_hint(element, model),
+        Cause::Crossed {
+            prescribed: true, ..
+        } => &["         both sides are prescribed: they are driven into each other"],
+        _ => &[],
+    }
+}
+
+/// An element with a corner that is inside out, or nearly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Crushed {
+    element: usize,
+    /// At the corner.
+    node: usize,
+    /// Area between the sides of the corner beside that of the reference configuration.
+    part: f64,
+}
+
+/// The worst crushed element at the nodes of a contact that the cause names. The integration points lie
+/// inside an element and do not see its corners.
+fn crushed(cause: &Cause, model: &Model, u: &[f64]) -> Option<Crushed> {
+    let named: Vec<usize> = match cause {
+        Cause::Crossed { slave, segment, .. } => vec![*slave, segment[0], segment[1]],
+        Cause::Collapsed { segment } => segment.to_vec(),
+        Cause::Lcp(failed) => failed.pairs.iter().flatten().copied().collect(),
+        _ => return None,
+    };
+    let all = model.mesh.elements.iter().enumerate();
+    let at_contact = all.filter(|(_, element)| element.nodes.iter().any(|n| named.contains(n)));
+    let corners = at_contact.flat_map(|(index, element)| {
+        let count = element.nodes.len();
+        (0..count).map(move |k| {
+            let corner = [k, (k + 1) % count, (k + count - 1) % count].map(|k| element.nodes[k]);
+            let area = |at: &dyn Fn(usize) -> [f64; 2]| {
+                let [p, q, r] = corner.map(at);
+                cross(difference(p, q), difference(p, r))
+            };
+            let now = area(&|node| position(model, node, u));
+            let part = now / area(&|node| model.mesh.coordinates[node]);
+            Crushed {
+                element: index,
+                node: corner[0],
+                part,
+            }
+        })
+    });
+    corners
+        .filter(|corner| corner.part <= CRUSHED_CORNER)
+        .min_by(|p, q| p.part.total_cmp(&q.part))
+}
+
+/// What is crushed.
+fn crushed_lines(element: usize, node: usize, part: f64, model: &Model) -> Vec<String> {
+    let text = format!(
+        "element {} is crushed: at its corner, node {}, the area between its sides is {} of \
+         what it was (integration points do not see corners)",
+        model.element_name(element),
+        model.node_name(node),
+        general(part, 2),
+    );
+    wrap_words("cause", &text)
+}
+
+/// The element or node that the cause names.
+fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
+    match *cause {
+        Cause::Inverted { element, .. } => Some(format!(
+            "element  {} with its centre at {}",
+            model.element_name(element),
+            point(centre(model, element, u)),
+        )),
+        Cause::Crossed {
+            slave,
+            segment: [a, b],
+            ..
+        } => Some(format!(
+            "node     {} at {} through the segment {}-{}",
+            model.node_name(slave),
+            point(position(model, slave, u)),
+            model.node_name(a),
+            model.node_name(b),
+        )),
+        Cause::Collapsed { segment: [a, b] } => Some(format!(
+            "segment  {}-{} at {}",
+            model.node_name(a),
+            model.node_name(b),
+            point(position(model, a, u)),
+        )),
+        Cause::Lcp(ref failed) => Some(pairs_line(failed, model)),
+        Cause::Indefinite { node } | Cause::NotFinite { node, .. } => Some(format!(
+            "node     {} at {}",
+            model.node_name(node),
+            point(position(model, node, u)),
+        )),
+        _ => None,
+    }
+}
+
+/// The body of a node: its element there that is compressed most, with a set that holds the element.
+fn body_line(node: usize, model: &Model, results: &[ElementResult]) -> Option<String> {
+    let all = model.mesh.elements.iter().enumerate();
+    let own = all.filter(|(_, element)| element.nodes.contains(&node));
+    let strain = |index: usize| results.get(index).map_or(0.0, least_principal);
+    let (index, _) = own.min_by(|p, q| strain(p.0).total_cmp(&strain(q.0)))?;
+    let sets = (model.sets.elements.iter()).filter(|set| set.members.binary_search(&index).is_ok());
+    let set = sets.min_by_key(|set| set.members.len());
+    let of_set = set.map_or(String::new(), |set| format!(" of {}", set.name));
+    let strained = match strain(index) {
+        strain if strain < 0.0 => format!("compressed by the strain {}", general(strain, 2)),
+        _ => "not compressed".to_owned(),
+    };
+    let label = model.element_name(index);
+    Some(format!(
+        "element  {label}{of_set} at this node was {strained}"
+    ))
+}
+
+/// The smallest principal value of the mean strain of an element in the plane.
+fn least_principal(result: &ElementResult) -> f64 {
+    let [xx, yy, xy] = result.strain;
+    (xx + yy) / 2.0 - ((xx - yy) / 2.0).hypot(xy)
+}
+
+/// The first pairs of an unsolved complementarity problem: on a ray those that press against each
+/// other, else of all.
+fn pairs_line(failed: &FailedLcp, model: &Model) -> String {
+    let pairs: Vec<[usize; 3]> = match &failed.error {
+        LcpError::Ray { members, .. } if !members.is_empty() => members
+            .iter()
+            .filter_map(|&k| failed.pairs.get(k).copied())
+            .collect(),
+        _ => failed.pairs.clone(),
+    };
+    let label = |node: usize| model.node_name(node);
+    let text = |&[slave, a, b]: &[usize; 3]| {
+        format!("node {} on segment {}-{}", label(slave), label(a), label(b))
+    };
+    let mut texts: Vec<String> = pairs.iter().take(SHOWN_PAIRS).map(text).collect();
+    if let Some(more @ 1..) = pairs.len().checked_sub(SHOWN_PAIRS) {
+        texts.push(format!("{more} more"));
+    }
+    format!("pairs    {}", texts.join(", "))
+}
+
+/// Current position of a node.
+fn position(model: &Model, node: usize, u: &[f64]) -> [f64; 2] {
+    let [x, y] = model.mesh.coordinates[node];
+    match u.get(2 * node..2 * node + 2) {
+        Some(d) => [x + d[0], y + d[1]],
+        None => [x, y],
+    }
+}
+
+/// Mean of the current positions of an element's nodes.
+fn centre(model: &Model, element: usize, u: &[f64]) -> [f64; 2] {
+    let nodes = &model.mesh.elements[element].nodes;
+    let mut sum = [0.0; 2];
+    for &node in nodes {
+        let x = position(model, node, u);
+        sum = [sum[0] + x[0], sum[1] + x[1]];
+    }
+    sum.map(|s| s / nodes.len() as f64)
+}
+
+fn point([x, y]: [f64; 2]) -> String {
+    format!("({}, {})", scientific(x, 5), scientific(y, 5))
+}
+
+/// Halvings of an increment after which none is left.
+const NO_MORE_HALVINGS: u32 = 10;
+/// Correction, in tolerances, up to which one that becomes no smaller may be round-off.
+const NEAR_ROUND_OFF: f64 = 1e4;
+
+/// How the passes went, where they did not converge.
+pub(super) fn course_text(course: &Course, model: &Model) -> String {
+    match course {
+        Course::Growing { from } => format!("the corrections grew from pass {from} on"),
+        Course::Alternating(alternations) => alternation_text(alternations, model),
+        Course::Slow { rate, left } => format!(
+            "about {} needed: each correction is {} of the last",
+            match left {
+                1 => "1 more pass was".to_owned(),
+                _ => format!("{left} more passes were"),
+            },
+            general(*rate, 2),
+        ),
+        Course::Stagnant { correction } => format!(
+            "the corrections became no smaller than {}",
+            scientific(*correction, 1)
+        ),
+    }
+}
+
+/// The first slave node that went to and fro, and the number of others.
+fn alternation_text(alternations: &[Alternation], model: &Model) -> String {
+    let label = |node: usize| model.node_name(node);
+    let segment = |[a, b]: [usize; 2]| format!("{}-{}", label(a), label(b));
+    let first = alternations.first().map(|alternation| match *alternation {
+        Alternation::Closing([slave, a, b]) => format!(
+            "node {} opened and closed on segment {}",
+            label(slave),
+            segment([a, b])
+        ),
+        Alternation::Changing {
+            slave,
+            segments: [p, q],
+        } => format!(
+            "node {} went to and fro between segments {} and {}",
+            label(slave),
+            segment(p),
+            segment(q)
+        ),
+        Alternation::Sliding([slave, a, b]) => format!(
+            "node {} stuck and slid on segment {}",
+            label(slave),
+            segment([a, b])
+        ),
+    });
+    let others = match alternations.len() {
+        0 | 1 => String::new(),
+        count => format!(", as did {}", counted(count - 1, "other node")),
+    };
+    first.unwrap_or_default() + " from pass to pass" + &others
+}
+
+/// What to change; none where the cause has its own lines or says it all.
+pub(super) fn advice(failure: &Failure, model: &Model) -> Option<String> {
+    let step = model.steps.get(failure.step.wrapping_sub(1))?;
+    let text = match (&failure.cause, failure.course.as_deref()) {
+        (_, Some(Course::Slow { left, .. })) => {
+            let passes = step.settings.max_passes.saturating_add(*left);
+            format!("raise MAX PASSES of *STICKSLIP to {passes} or more")
+        }
+        (_, Some(Course::Stagnant { correction }))
+            if *correction <= NEAR_ROUND_OFF * step.settings.tolerance =>
+        {
+            format!(
+                "raise TOLERANCE of *STICKSLIP above {} if that is round-off",
+                scientific(*correction, 0)
+            )
+        }
+        (_, Some(Course::Alternating(all))) => alternation_advice(all)?.to_owned(),
+        (cause, _) => cause_advice(cause, model)?.to_owned(),
+    };
+    Some(match has_halvings_left(failure, step) {
+        true => text + "; or let it be halved further, by a smaller least increment of *DYNAMIC",
+        false => text,
+    })
+}
+
+/// Whether only the deck's least increment kept a stopped run from halving its increment again.
+fn has_halvings_left(failure: &Failure, step: &Step) -> bool {
+    !failure.cause.stays()
+        && failure.halvings < NO_MORE_HALVINGS
+        && failure.dt / 2.0 < step.increments.dt_min
+}
+
+fn alternation_advice(alternations: &[Alternation]) -> Option<&'static str> {
+    alternations.first().map(|alternation| match alternation {
+        Alternation::Closing(_) => {
+            "take smaller increments; where each surface is the slave of the other, leave out one of \
+             the two contacts"
+        }
+        Alternation::Changing { .. } => {
+            "take smaller increments, or a finer mesh where the surface bends there"
+        }
+        Alternation::Sliding(_) => "take smaller increments, or a smaller friction coefficient",
+    })
+}
+
+fn cause_advice(cause: &Cause, model: &Model) -> Option<&'static str> {
+    Some(match cause {
+        Cause::NotConverged | Cause::Diverged => {
+            "take smaller increments, a smaller load, or bring the load on more slowly (*AMPLITUDE)"
+        }
+        Cause::Indefinite { node } => match is_for_small_strains_at(*node, model) {
+            true => {
+                "take smaller increments, in which inertia holds the body, or a smaller load; for \
+                 large compression *HYPERELASTIC, NEO HOOKE in plane strain"
+            }
+            false => "take smaller increments, in which inertia holds the body, or a smaller load",
+        },
+        Cause::Collapsed { .. } => "take a smaller load, or a coarser mesh there",
+        Cause::Crossed {
+            prescribed: false, ..
+        } => "take smaller increments, or a finer mesh where the node went in",
+        Cause::GainedEnergy { .. } => "take smaller increments",
+        Cause::Unbalanced { is_round_off, .. } => match is_round_off {
+            true => {
+                "a body is so stiff that the round-off of its positions makes forces like those on it: \
+                 see whether stiffness, loads, lengths and times are in consistent units"
+            }
+            false => "lower the TOLERANCE of *STICKSLIP, or take smaller increments",
+        },
+        Cause::Lcp(failed) => match failed.error {
+            LcpError::Ray { .. } => {
+                "let supports and rigid surfaces not drive the bodies into each other there"
+            }
+            LcpError::NotFinite => "see whether loads, materials and times are in consistent units",
+            _ if failed.problem.mu.iter().any(|mu| *mu > 0.0) => {
+                "take smaller increments, or a smaller friction coefficient"
+            }
+            _ => "take smaller increments",
+        },
+        Cause::NotFinite { .. } => "see whether loads, materials and times are in consistent units",
+        Cause::Inverted { .. } | Cause::Crossed { .. } | Cause::LinearSolver(_) => return None,
+    })
+}
+
+fn is_for_small_strains_at(node: usize, model: &Model) -> bool {
+    let elements = model.mesh.elements.iter().enumerate();
+    let mut own = elements.filter(|(_, element)| element.nodes.contains(&node));
+    own.any(|(index, _)| model.is_for_small_strains(index))
+}
+
+/// The convergence table of an increment.
+pub(crate) fn pass_table(passes: &[PassReport]) -> Vec<String> {
+    if passes.is_empty() {
+        return vec![];
+    }
+    let header = "     pass  residual correction  active   stick     LCP  pivots".to_owned();
+    let row = |(i, pass): (usize, &PassReport)| {
+        format!(
+            "     {:>4}{:>10}{:>11}{:>8}{:>8}{:>8}{:>8}",
+            i + 1,
+            scientific(pass.residual, 2),
+            scientific(pass.correction, 2),
+            pass.active,
+            pass.stick,
+            pass.lcp_size,
+            pass.pivots,
+        )
+    };
+    let rows = passes.iter().enumerate().map(row);
+    std::iter::once(header).chain(rows).collect()
+}
+
+/// The lines about a cutback: increment, cause, and how the passes went.
+pub(crate) fn cutback_lines(cutback: &Cutback, model: &Model) -> Vec<String> {
+    let failure = &cutback.failure;
+    let pieces = [
+        format!(
+            "increment {} at {}, dt {} -> {}",
+            failure.increment,
+            scientific(failure.time, 3),
+            scientific(failure.dt, 2),
+            scientific(cutback.next_dt, 2),
+        ),
+        failure.cause.to_string(),
+    ];
+    let mut lines = wrap("cutback", &pieces);
+    let course = failure.course.as_deref();
+    lines.extend(
+        course
+            .into_iter()
+            .flat_map(|course| wrap_words("", &course_text(course, model))),
+    );
+    lines
+}
+
+/// What to change so that an attempt as the failed one need not be repeated; empty without advice.
+pub(crate) fn cutback_advice(cutback: &Cutback, model: &Model) -> Vec<String> {
+    let text = advice(&cutback.failure, model);
+    (text.into_iter())
+        .flat_map(|text| wrap_words("advice", &text))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::DMatrix;
+
+    use crate::dynamics::FailedLcp;
+    use crate::lcp::FrictionalLcp;
+    use crate::model::{Element, ElementType, Increments, Mesh, Procedure, Set, Settings};
+
+    #[test]
+    fn a_crushed_corner_at_a_contact_is_named() {
+        let mut model = Model::default();
+        model.mesh.coordinates = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        model.mesh.elements = vec![Element {
+            label: 7,
+            element_type: ElementType::CPE4,
+            nodes: vec![0, 1, 2, 3].into(),
+            section: 0,
+        }];
+        // node 2 goes through the diagonal: from there the sides to 3 and 1 are (-0.4, 0.6) and (0.6, -0.4)
+        let u = [0.0, 0.0, 0.0, 0.0, -0.6, -0.6, 0.0, 0.0];
+        let at = |segment: [usize; 2], u: &[f64]| crushed(&Cause::Collapsed { segment }, &model, u);
+        let found = at([1, 2], &u).expect("crushed");
+        assert_eq!((found.element, found.node), (0, 2));
+        assert!((found.part + 0.2).abs() < 1e-15, "{found:?}");
+        assert_eq!(at([1, 2], &[0.0; 8]), None, "as it was");
+        assert_eq!(at([8, 9], &u), None, "elsewhere");
+        assert_eq!(crushed(&Cause::NotConverged, &model, &u), None);
+    }
+
+    #[test]
+    fn an_indefinite_matrix_names_the_body_and_its_compression() {
+        let mut model = Model::default();
+        model.mesh.elements = (0..3)
+            .map(|k| Element {
+                label: 10 * (k as u64 + 1),
+                element_type: ElementType::CPE3,
+                nodes: vec![k, k + 1, k + 2].into(),
+                section: 0,
+            })
+            .collect();
+        let set = |name: &str, members: &[usize]| Set {
+            name: name.into(),
+            members: members.to_vec(),
+        };
+        model.sets.elements = vec![set("ALL", &[0, 1, 2]), set("BAR", &[1, 2])];
+        // the first two have node 1; principal strains of the second are -0.3 and 0.2
+        let strained = |strain| ElementResult {
+            strain,
+            ..ElementResult::default()
+        };
+        let results = [[-0.1, 0.0, 0.0], [-0.05, -0.05, 0.25], [-0.9, 0.0, 0.0]].map(strained);
+        let line = |node, results: &[ElementResult]| body_line(node, &model, results);
+        let expected = "element  20 of BAR at this node was compressed by the strain -0.3";
+        assert_eq!(line(1, &results).as_deref(), Some(expected));
+        let start = line(0, &[]).expect("before the first increment");
+        assert_eq!(start, "element  10 of ALL at this node was not compressed");
+        assert_eq!(line(9, &results), None, "a node without element");
+    }
+
+    /// Nodes 10, 20, ... and a step of at least 0.01 an increment, 25 passes at most.
+    fn model() -> Model {
+        let mesh = Mesh {
+            node_labels: (1..=6).map(|k| 10 * k).collect(),
+            coordinates: vec![[0.0; 2]; 6],
+            elements: vec![],
+        };
+        let step = Step {
+            name: None,
+            procedure: Procedure::Dynamic,
+            increments: Increments {
+                dt: 1.0,
+                period: 1.0,
+                dt_min: 0.01,
+                direct: false,
+            },
+            settings: Settings::default(),
+            supports: vec![],
+            point_loads: vec![],
+            body_forces: vec![],
+            pressures: vec![],
+            tractions: vec![],
+            frames: crate::model::Frames::Default,
+        };
+        Model {
+            mesh,
+            steps: vec![step],
+            ..Model::default()
+        }
+    }
+
+    fn failure(cause: Cause, course: Option<Course>, dt: f64) -> Failure {
+        Failure {
+            increment: 4,
+            step: 1,
+            time: 0.3,
+            dt,
+            cause,
+            course: course.map(Box::new),
+            worst: None,
+            passes: vec![],
+            halvings: 1,
+        }
+    }
+
+    #[test]
+    fn every_course_is_told_with_what_to_change() {
+        let nodes = [0, 1, 2];
+        let changing = Alternation::Changing {
+            slave: 0,
+            segments: [[1, 2], [2, 3]],
+        };
+        for (course, told, advised) in [
+            (
+                Course::Growing { from: 5 },
+                "grew from pass 5 on",
+                "*AMPLITUDE",
+            ),
+            (
+                Course::Slow {
+                    rate: 0.614,
+                    left: 12,
+                },
+                "about 12 more passes were needed: each correction is 0.61 of the last",
+                "MAX PASSES of *STICKSLIP to 62 or more",
+            ),
+            (
+                Course::Slow { rate: 0.1, left: 1 },
+                "about 1 more pass was needed",
+                "to 51 or more",
+            ),
+            (
+                Course::Stagnant { correction: 3e-9 },
+                "no smaller than 3.0e-09",
+                "TOLERANCE of *STICKSLIP above 3e-09",
+            ),
+            (
+                Course::Stagnant { correction: 3e-3 },
+                "no smaller than 3.0e-03",
+                "a smaller load",
+            ),
+            (
+                Course::Alternating(vec![changing]),
+                "node 10 went to and fro between segments 20-30 and 30-40 from pass to pass",
+                "a finer mesh",
+            ),
+            (
+                Course::Alternating(vec![Alternation::Closing(nodes), changing, changing]),
+                "node 10 opened and closed on segment 20-30 from pass to pass, as did 2 other nodes",
+                "leave out one",
+            ),
+            (
+                Course::Alternating(vec![Alternation::Sliding(nodes)]),
+                "node 10 stuck and slid on segment 20-30",
+                "friction coefficient",
+            ),
+        ] {
+            let text = course_text(&course, &model());
+            assert!(text.contains(told), "{text}");
+            let failure = failure(Cause::NotConverged, Some(course), 0.5);
+            let text = advice(&failure, &model()).expect("advice");
+            assert!(text.contains(advised) && !text.contains("halved"), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_least_increment_that_ends_the_halving_is_told() {
+        let advice = |dt| {
+            advice(
+                &failure(Cause::Collapsed { segment: [0, 1] }, None, dt),
+                &model(),
+            )
+        };
+        let [halved, least] = [0.02, 0.015].map(|dt| advice(dt).expect("advice"));
+        assert!(!halved.contains("least increment"), "{halved}");
+        assert!(least.starts_with("take a smaller load") && least.contains("least increment"));
+    }
+
+    #[test]
+    fn friction_is_advised_on_where_there_is_some() {
+        let of = |mu: f64, error: LcpError| {
+            let problem = FrictionalLcp {
+                q: DMatrix::identity(2, 2),
+                gap: vec![-1.0].into(),
+                slip: vec![0.0].into(),
+                mu: vec![mu].into(),
+            };
+            let pairs = vec![[0, 1, 2]];
+            let failed = FailedLcp {
+                error,
+                problem,
+                pairs,
+            };
+            let text = advice(&failure(Cause::Lcp(Box::new(failed)), None, 0.5), &model());
+            text.expect("advice").contains("friction")
+        };
+        let unsolved = || LcpError::PivotLimit { pivots: 9 };
+        assert!(of(0.3, unsolved()) && !of(0.0, unsolved()));
+        assert!(!of(0.3, LcpError::NotFinite));
+    }
+
+    #[test]
+    fn what_puts_a_balance_off_is_told() {
+        let text = |is_round_off| {
+            let cause = Cause::Unbalanced {
+                part: 0.1,
+                is_round_off,
+            };
+            advice(&failure(cause, None, 0.015), &model()).expect("advice")
+        };
+        assert!(text(true).contains("consistent units") && !text(true).contains("halved"));
+        assert!(text(false).contains("TOLERANCE") && text(false).contains("halved"));
+    }
+
+    #[test]
+    fn causes_with_lines_of_their_own_need_no_advice() {
+        let inverted = Cause::Inverted {
+            element: 0,
+            determinant: -1.0,
+        };
+        assert_eq!(advice(&failure(inverted, None, 0.5), &model()), None);
+    }
+}

@@ -1,0 +1,439 @@
+//! Group `/VTKHDF`: the field frames, as a temporal unstructured grid with a fixed mesh.
+
+use std::iter::repeat_n;
+
+use hdf5::Group;
+use hdf5::types::FixedAscii;
+
+use super::column::{Columns, Layout, Meaning, Mostly, Number, constant, group, set_attribute};
+use super::frames::{Frame, expected_frames};
+use super::model_group::{body_numbers, connectivity};
+use crate::elements::{ElementResult, MeanGradient};
+use crate::model::{Bodies, Mesh, Model};
+
+/// Cell type of VTK of a rigid segment.
+const VTK_LINE: u8 = 3;
+
+/// Most frames of a chunk: each chunk costs a call of the system.
+const CHUNK_FRAMES: usize = 32;
+
+/// Writes the field frames.
+pub(crate) struct Fields<'m> {
+    /// Datasets with a row per frame, and the number of frames.
+    steps: Columns<'m, Frame>,
+    points: FieldGroup<'m>,
+    cells: FieldGroup<'m>,
+    /// Frames appended.
+    frames: usize,
+    /// Those of them that wait in memory.
+    pending: usize,
+    /// Frames that wait in memory at most.
+    most_pending: usize,
+}
+
+impl Fields<'_> {
+    /// Creates the group with the reference mesh and no frame.
+    pub fn create(root: &Group, model: &Model) -> hdf5::Result<Self> {
+        let grid = group(root, "VTKHDF")?;
+        write_type(&grid)?;
+        let lines = model.rigid_segments();
+        write_mesh(&grid, &model.mesh, &lines)?;
+        let at = group(&grid, "Steps")?;
+        let mut steps = Columns::new();
+        steps.count(&at, "NSteps", |_| 1)?;
+        per_frame(&mut steps, &at, "Values", &[], TIME, |frame| frame.time)?;
+        for (name, row, text, value) in STEPS {
+            per_frame(&mut steps, &at, name, row, ("1", text), move |_| value)?;
+        }
+        let chunk = even_part(expected_frames(model), CHUNK_FRAMES);
+        let fields_of = |kind: &str, rows: usize| -> hdf5::Result<FieldGroup> {
+            Ok(FieldGroup {
+                data: group(&grid, &format!("{kind}Data"))?,
+                offsets: group(&at, &format!("{kind}DataOffsets"))?,
+                first_field: None,
+                first_rows: Columns::new(),
+                columns: Columns::new(),
+                rows,
+                chunk,
+            })
+        };
+        let mut points = fields_of("Point", model.mesh.node_count())?;
+        points.create_points(model)?;
+        let mut cells = fields_of("Cell", model.mesh.elements.len() + lines.len())?;
+        cells.create_cells(model, lines.len())?;
+        Ok(Fields {
+            steps,
+            points,
+            cells,
+            frames: 0,
+            pending: 0,
+            most_pending: 1,
+        })
+    }
+
+    /// Lets frames of up to `bytes` bytes wait in memory, or one.
+    pub fn let_wait(&mut self, bytes: usize) {
+        let frame = self.points.frame_bytes() + self.cells.frame_bytes();
+        self.most_pending = (bytes / frame.max(1)).max(1);
+    }
+
+    /// Appends a frame, which waits in memory.
+    pub fn push(&mut self, frame: &Frame) {
+        for fields in [&mut self.points, &mut self.cells] {
+            fields.columns.push(frame);
+            fields.first_rows.push(frame);
+        }
+        self.steps.push(frame);
+        self.frames += 1;
+        self.pending += 1;
+    }
+
+    /// Frames appended.
+    pub fn count(&self) -> usize {
+        self.frames
+    }
+
+    /// Frames that wait in memory.
+    pub fn pending(&self) -> usize {
+        self.pending
+    }
+
+    /// Whether no further frame may wait.
+    pub fn is_full(&self) -> bool {
+        self.pending >= self.most_pending
+    }
+
+    /// Writes the frames that wait, but not their number.
+    pub fn flush(&mut self) -> hdf5::Result<()> {
+        for fields in [&mut self.points, &mut self.cells] {
+            fields.columns.flush()?;
+            fields.first_rows.flush()?;
+        }
+        self.steps.flush()?;
+        self.pending = 0;
+        Ok(())
+    }
+
+    /// Writes the number of frames.
+    pub fn note_count(&self) -> hdf5::Result<()> {
+        self.steps.note_counts()
+    }
+
+    /// Bytes by which the file may grow until the frames are written.
+    pub fn growth(&self) -> u64 {
+        let frames = self.most_pending;
+        let of = |fields: &FieldGroup| {
+            fields.columns.growth(frames * fields.rows) + fields.first_rows.growth(frames)
+        };
+        of(&self.points) + of(&self.cells) + self.steps.growth(frames)
+    }
+}
+
+/// Creates a dataset with a value of every frame, in a row of the given shape.
+fn per_frame<'m, T: Number + 'm>(
+    all: &mut Columns<'m, Frame>,
+    at: &Group,
+    name: &str,
+    row: &[usize],
+    meaning: Meaning,
+    mut value: impl FnMut(&Frame) -> T + 'm,
+) -> hdf5::Result<()> {
+    let layout = Layout::one_by_one::<T>(row, Mostly::Varied);
+    all.add(at, name, layout, meaning, move |frame, values| {
+        values.push(value(frame));
+    })
+}
+
+/// Fields of the nodes (`PointData`), or of the cells (`CellData`): elements, then segments of rigid surfaces.
+struct FieldGroup<'m> {
+    data: Group,
+    /// Group of the first rows of the frames: one dataset, linked under the name of every field.
+    offsets: Group,
+    first_field: Option<&'static str>,
+    first_rows: Columns<'m, Frame>,
+    columns: Columns<'m, Frame>,
+    /// Rows of a frame.
+    rows: usize,
+    /// Frames of a chunk of the fields, where these are short.
+    chunk: usize,
+}
+
+/// Shape of a row of a field, and of the part of it that is written; the rest is zero.
+type Row = (&'static [usize], &'static [usize]);
+
+const SCALAR: Row = (&[], &[]);
+/// A symmetric tensor in the plane: xx yy xy.
+const PLANE_TENSOR: Row = (&[3], &[3]);
+/// A vector in the plane, whose third component is zero.
+const IN_SPACE: Row = (&[3], &[2]);
+
+impl FieldGroup<'_> {
+    /// Bytes of a frame.
+    fn frame_bytes(&self) -> usize {
+        self.rows * self.columns.row_bytes()
+    }
+}
+
+impl<'m> FieldGroup<'m> {
+    /// Creates a field with the first rows of its frames; `values` appends what a frame has to whole rows.
+    fn add<T: Number + 'm>(
+        &mut self,
+        name: &'static str,
+        (row, given): Row,
+        mostly: Mostly,
+        meaning: Meaning,
+        values: impl FnMut(&Frame, &mut Vec<T>) + 'm,
+    ) -> hdf5::Result<()> {
+        match self.first_field {
+            Some(first) => self.offsets.link_hard(first, name)?,
+            None => {
+                let (mut end, rows) = (0, self.rows as i64);
+                let at = &self.offsets;
+                per_frame(&mut self.first_rows, at, name, &[], FIRST_ROW, move |_| {
+                    end += rows;
+                    end - rows
+                })?;
+                self.first_field = Some(name);
+            }
+        }
+        let layout = Layout::in_frames::<T>(row, given, mostly, [self.rows, self.chunk]);
+        self.columns.add(&self.data, name, layout, meaning, values)
+    }
+
+    fn create_points(&mut self, model: &Model) -> hdf5::Result<()> {
+        let [nodal, concentrated] = [&NODAL[..], &CONCENTRATED];
+        let is_asked = model.sets.fields.concentrated_load;
+        let tables = [nodal, if is_asked { concentrated } else { &[] }].into_iter();
+        for &(name, row, mostly, dimension, text, of) in tables.flatten() {
+            self.add(name, row, mostly, (dimension, text), move |frame, v| {
+                v.extend_from_slice(of(frame));
+            })?;
+        }
+        self.add(
+            "CONTACT_STATUS",
+            SCALAR,
+            Mostly::Zero,
+            STATUS,
+            |frame, v| {
+                v.extend(frame.nodal.status.iter().map(|&status| status as u8));
+            },
+        )?;
+        if model.redistributes_mass() {
+            self.add("CONTACT_MASS", SCALAR, Mostly::Zero, MASS, |frame, v| {
+                v.extend(frame.nodal.mass.iter().map(|&mass| mass as u8));
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Creates the fields of cells; `lines` rigid segments are the last of them and have NaN.
+    fn create_cells(&mut self, model: &Model, lines: usize) -> hdf5::Result<()> {
+        let bodies = Bodies::new(&model.mesh).of_element.into_iter().map(Some);
+        let bodies = body_numbers(bodies.chain(repeat_n(None, lines)));
+        constant(&self.data, "BODY", &[bodies.len()], &bodies, BODY)?;
+        let at = &self.offsets;
+        // the same in all frames
+        per_frame(&mut self.first_rows, at, "BODY", &[], FIRST_ROW, |_| 0_i64)?;
+        let varied = Mostly::Varied;
+        for (name, meaning, of) in TENSORS {
+            self.add(name, PLANE_TENSOR, varied, meaning, move |frame, v| {
+                v.extend(frame.elements.iter().flat_map(of));
+                v.extend(repeat_n(f64::NAN, 3 * lines));
+            })?;
+        }
+        for (name, meaning, of) in SCALARS {
+            self.add(name, SCALAR, varied, meaning, move |frame, v| {
+                v.extend(frame.elements.iter().map(of));
+                v.extend(repeat_n(f64::NAN, lines));
+            })?;
+        }
+        let elements = &model.mesh.elements;
+        let gradients = elements.iter().map(|e| MeanGradient::new(&model.mesh, e));
+        if model.sets.fields.energy_density {
+            let thickness = elements.iter().map(|e| model.sections[e.section].thickness);
+            let volumes = gradients
+                .clone()
+                .zip(thickness)
+                .map(|(mean, t)| mean.area * t);
+            let volumes: Vec<f64> = volumes.collect();
+            self.add("ENER", SCALAR, varied, ENERGY_DENSITY, move |frame, v| {
+                let elements = frame.elements.iter().zip(&volumes);
+                v.extend(elements.map(|(e, volume)| e.energy / *volume));
+                v.extend(repeat_n(f64::NAN, lines));
+            })?;
+        }
+        if model.sets.fields.logarithmic_strain {
+            let gradients: Vec<MeanGradient> = gradients.collect();
+            self.add(
+                "LE",
+                PLANE_TENSOR,
+                varied,
+                LOGARITHMIC_STRAIN,
+                move |frame, v| {
+                    let u = &frame.state.u;
+                    v.extend(gradients.iter().flat_map(|mean| mean.logarithmic_strain(u)));
+                    v.extend(repeat_n(f64::NAN, 3 * lines));
+                },
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// Size of each part when `count` is divided evenly into as few parts as there can be of up to `most`.
+fn even_part(count: usize, most: usize) -> usize {
+    let parts = count.div_ceil(most).max(1);
+    count.div_ceil(parts).max(1)
+}
+
+/// Attributes by which readers know the group.
+fn write_type(grid: &Group) -> hdf5::Result<()> {
+    let version = grid.new_attr::<i64>().shape([2]).create("Version")?;
+    version.write_raw(&[2i64, 3])?;
+    let name = FixedAscii::<16>::from_ascii("UnstructuredGrid")
+        .map_err(|error| hdf5::Error::from(error.to_string()))?;
+    set_attribute(grid, "Type", name)
+}
+
+/// The reference mesh, and lines between its nodes as the last cells.
+fn write_mesh(grid: &Group, mesh: &Mesh, lines: &[[usize; 2]]) -> hdf5::Result<()> {
+    let mut connectivity = connectivity(mesh);
+    connectivity.extend(lines.as_flattened().iter().map(|&node| node as i64));
+    let topologies = || mesh.elements.iter().map(|e| e.element_type.topology());
+    let sizes = mesh.elements.iter().map(|element| element.nodes.len());
+    let mut offsets = vec![0];
+    for size in sizes.chain(repeat_n(2, lines.len())) {
+        offsets.push(offsets[offsets.len() - 1] + size as i64);
+    }
+    let types: Vec<u8> = topologies().map(|topology| topology.vtk_cell).collect();
+    let types = [types, vec![VTK_LINE; lines.len()]].concat();
+    let points = mesh.coordinates.iter().flat_map(|x| [x[0], x[1], 0.0]);
+    let points: Vec<f64> = points.collect();
+    for (name, count, text) in [
+        ("NumberOfPoints", mesh.node_count(), "number of nodes N"),
+        (
+            "NumberOfCells",
+            types.len(),
+            "number of elements and rigid segments",
+        ),
+        (
+            "NumberOfConnectivityIds",
+            connectivity.len(),
+            "length of the connectivity",
+        ),
+    ] {
+        constant(grid, name, &[1], &[count as i64], ("1", text))?;
+    }
+    let text = ("length", "reference coordinates");
+    constant(grid, "Points", &[mesh.node_count(), 3], &points, text)?;
+    let text = ("1", "node indices of all cells, one cell after the other");
+    constant(
+        grid,
+        "Connectivity",
+        &[connectivity.len()],
+        &connectivity,
+        text,
+    )?;
+    let text = ("1", "where each cell's nodes start in the connectivity");
+    constant(grid, "Offsets", &[offsets.len()], &offsets, text)?;
+    let text = (
+        "1",
+        "cell type: 3 rigid segment, 5 triangle, 9 quadrilateral",
+    );
+    constant(grid, "Types", &[types.len()], &types, text)
+}
+
+const TIME: Meaning = ("time", "time of the frame");
+const FIRST_ROW: Meaning = ("1", "first row of the frame");
+const STATUS: Meaning = (
+    "1",
+    "contact status as slave: 0 none, 1 open, 2 stick, 3 slip",
+);
+const MASS: Meaning = (
+    "1",
+    "mass: 0 own, 1 own at a contact surface, 2 carried by other nodes",
+);
+const BODY: Meaning = ("1", "body of the cell, -1 for rigid segments");
+pub(crate) const STRESS: Meaning = (
+    "force/length^2",
+    "Cauchy stress xx yy xy, mean over the element",
+);
+pub(crate) const ACROSS: Meaning = (
+    "force/length^2",
+    "Cauchy stress across the thickness, mean over the element",
+);
+const VON_MISES: Meaning = ("force/length^2", "von Mises stress of S and S33");
+pub(crate) const STRAIN: Meaning = (
+    "1",
+    "Green-Lagrange strain xx yy xy (xy: tensor component), mean over the element",
+);
+pub(crate) const ENERGY_DENSITY: Meaning = (
+    "energy/length^3",
+    "strain energy over the volume of the undeformed element",
+);
+pub(crate) const LOGARITHMIC_STRAIN: Meaning = (
+    "1",
+    "logarithmic strain xx yy xy (xy: tensor component) of the element's mean deformation gradient",
+);
+
+/// Datasets of `Steps` with the same number for all frames: name, shape of a row, meaning, number.
+#[rustfmt::skip]
+const STEPS: [(&str, &[usize], &str, i64); 5] = [
+    ("NumberOfParts", &[], "grids of the frame", 1),
+    ("PartOffsets", &[], "first grid of the frame", 0),
+    ("PointOffsets", &[], "first node of the frame's grid", 0),
+    ("CellOffsets", &[1], "first cell of the frame's grid", 0),
+    ("ConnectivityIdOffsets", &[1], "first entry of the frame's connectivity", 0),
+];
+
+/// A field of the nodes: name, row, what most rows hold, dimension, meaning and values.
+type NodalField = (
+    &'static str,
+    Row,
+    Mostly,
+    &'static str,
+    &'static str,
+    fn(&Frame) -> &[f64],
+);
+
+#[rustfmt::skip]
+const NODAL: [NodalField; 8] = [
+    ("U", IN_SPACE, Mostly::Varied, "length", "displacement", |f| &f.state.u),
+    ("V", IN_SPACE, Mostly::Varied, "length/time", "velocity", |f| &f.state.v),
+    ("A", IN_SPACE, Mostly::Varied, "length/time^2", "acceleration", |f| &f.state.a),
+    ("RF", IN_SPACE, Mostly::Zero, "force", "support reaction", |f| &f.nodal.reaction),
+    ("CONTACT_FORCE", IN_SPACE, Mostly::Zero, "force", "contact force on the node", |f| &f.nodal.contact_force),
+    ("GAP", SCALAR, Mostly::Nan, "length",
+     "gap of the slave node to its segment, NaN without candidate", |f| &f.nodal.gap),
+    ("CONTACT_PRESSURE", SCALAR, Mostly::Nan, "force/length^2",
+     "contact pressure at slave nodes, NaN at others", |f| &f.nodal.pressure),
+    ("SLIP", SCALAR, Mostly::Nan, "length",
+     "slip accumulated since the start at slave nodes, NaN at others", |f| &f.nodal.slip),
+];
+
+/// On request.
+#[rustfmt::skip]
+const CONCENTRATED: [NodalField; 1] = [
+    ("CF", IN_SPACE, Mostly::Zero, "force", "concentrated loads on the node", |f| &f.nodal.concentrated),
+];
+
+const TENSORS: [(&str, Meaning, fn(&ElementResult) -> [f64; 3]); 2] =
+    [("S", STRESS, |e| e.stress), ("E", STRAIN, |e| e.strain)];
+
+const SCALARS: [(&str, Meaning, fn(&ElementResult) -> f64); 2] = [
+    ("S33", ACROSS, |e| e.across),
+    ("MISES", VON_MISES, ElementResult::von_mises),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::even_part;
+
+    #[test]
+    fn frames_are_divided_evenly_into_few_chunks() {
+        let cases = [(0, 1), (1, 1), (32, 32), (33, 17), (101, 26), (1001, 32)];
+        for (frames, expected) in cases {
+            assert_eq!(even_part(frames, 32), expected, "{frames}");
+        }
+    }
+}

@@ -1,0 +1,668 @@
+//! Group `/history`: energies and solver, nodes, elements, bodies, contacts and rigid surfaces, one row per
+//! increment, row 0 being the start; impacts, returns and touches, one row per event.
+
+use hdf5::Group;
+
+use super::column::{Columns, Layout, Meaning, Mostly, ROWS, constant, group};
+use super::fields::{ACROSS, ENERGY_DENSITY, LOGARITHMIC_STRAIN, STRAIN, STRESS};
+use super::model_group::contact_names;
+use super::strain::SmallStrainElements;
+use crate::dynamics::{
+    BodyResult, ContactOnBody, ContactResultant, Energy, IncrementReport, Landing, Momentum,
+    ReturnedImpulse, RigidReaction, SolverCounts, Touch,
+};
+use crate::elements::{ElementInertia, ElementResult, MeanGradient};
+use crate::model::{Bodies, Contact, HistorySet, LandingRule, Model, RigidBody, Set, Step};
+
+/// What a dataset holds of a record `Q`.
+enum Value<Q> {
+    Real(fn(&Q) -> f64),
+    Vector(fn(&Q) -> [f64; 2]),
+    Tensor(fn(&Q) -> [f64; 3]),
+    Count(fn(&Q) -> usize),
+    Flag(fn(&Q) -> bool),
+    /// A node by its index, told by its number in the deck.
+    Node(fn(&Q) -> usize),
+    Segment(fn(&Q) -> [usize; 2]),
+    /// Two bodies; -1 for none.
+    Bodies(fn(&Q) -> [Option<usize>; 2]),
+}
+
+use Value::{Count, Flag, Node, Real, Segment, Tensor, Vector};
+
+/// A dataset of the records `Q`: name, dimension, what it holds, and its value.
+type Entry<Q> = (&'static str, &'static str, &'static str, Value<Q>);
+
+/// Writes the history.
+pub(crate) struct History<'m> {
+    model: &'m Model,
+    columns: Columns<'m, IncrementReport>,
+    /// Rows that wait in memory.
+    rows: usize,
+    /// Rows that wait in memory at most.
+    most_rows: usize,
+}
+
+impl<'m> History<'m> {
+    /// Creates the group without rows.
+    pub fn create(root: &Group, model: &'m Model) -> hdf5::Result<Self> {
+        let at = group(root, "history")?;
+        let mut history = History {
+            model,
+            columns: Columns::new(),
+            rows: 0,
+            most_rows: 1,
+        };
+        history.columns.count(&at, ROWS, |_| 1)?;
+        history.table(&at, &[], &INCREMENT, |r, each| each(r))?;
+        history.table(&group(&at, "energy")?, &[], &ENERGY, |r, each| {
+            each(&r.energy)
+        })?;
+        history.create_momentum(&group(&at, "momentum")?)?;
+        let bodies = [Bodies::new(&model.mesh).count];
+        history.table(&group(&at, "bodies")?, &bodies, &BODY, |r, each| {
+            r.bodies.iter().for_each(each);
+        })?;
+        history.create_strain(&group(&at, "strain")?)?;
+        let contacts = group(&at, "contact")?;
+        for (k, (contact, name)) in model.contacts.iter().zip(contact_names(model)).enumerate() {
+            history.create_contact(&group(&contacts, &name)?, k, contact, &bodies)?;
+        }
+        history.create_events(&at)?;
+        let surfaces = group(&at, "rigid")?;
+        for (k, body) in model.rigid_bodies.iter().enumerate() {
+            let name = &model.surfaces[body.surface].name;
+            history.create_rigid(&group(&surfaces, name)?, k, body)?;
+        }
+        let nodes = group(&at, "nodes")?;
+        for (asked, set) in requested(&model.sets.history, &model.sets.nodes) {
+            history.create_nodes(&group(&nodes, &set.name)?, &set.members, asked.each_member)?;
+        }
+        let elements = group(&at, "elements")?;
+        for (asked, set) in requested(&model.sets.element_history, &model.sets.elements) {
+            let at = group(&elements, &set.name)?;
+            history.create_elements(&at, &set.members, asked.each_member)?;
+        }
+        history.table(&group(&at, "solver")?, &[], &SOLVER, |r, each| {
+            each(&r.solver)
+        })?;
+        Ok(history)
+    }
+
+    /// Creates a dataset of reals; `values` appends the row of a report.
+    fn add(
+        &mut self,
+        at: &Group,
+        name: &str,
+        row: &[usize],
+        meaning: Meaning,
+        values: impl FnMut(&IncrementReport, &mut Vec<f64>) + 'm,
+    ) -> hdf5::Result<()> {
+        let layout = Layout::one_by_one::<f64>(row, Mostly::Varied);
+        self.columns.add(at, name, layout, meaning, values)
+    }
+
+    /// Creates the datasets of a table, with a row per increment; `records` is the shape of the records in a
+    /// row, which `each` visits one after the other.
+    fn table<Q: 'm>(
+        &mut self,
+        at: &Group,
+        records: &[usize],
+        entries: &[Entry<Q>],
+        each: impl Fn(&IncrementReport, &mut dyn FnMut(&Q)) + Copy + 'm,
+    ) -> hdf5::Result<()> {
+        self.rows_of(at, records, Mostly::Varied, entries, each)
+    }
+
+    /// Creates the datasets of a table, with a row per event.
+    fn events<Q: 'm>(
+        &mut self,
+        at: &Group,
+        entries: &[Entry<Q>],
+        each: impl Fn(&IncrementReport, &mut dyn FnMut(&Q)) + Copy + 'm,
+    ) -> hdf5::Result<()> {
+        self.rows_of(at, &[], Mostly::Late, entries, each)
+    }
+
+    fn rows_of<Q: 'm>(
+        &mut self,
+        at: &Group,
+        records: &[usize],
+        mostly: Mostly,
+        entries: &[Entry<Q>],
+        each: impl Fn(&IncrementReport, &mut dyn FnMut(&Q)) + Copy + 'm,
+    ) -> hdf5::Result<()> {
+        let label = |node: usize| self.model.mesh.node_labels[node] as i64;
+        let number = |body: Option<usize>| body.map_or(-1, |body| body as i64);
+        let all = &mut self.columns;
+        for &(name, dimension, text, ref value) in entries {
+            let about = (dimension, text);
+            let reals = |row: &[usize]| Layout::one_by_one::<f64>(&[records, row].concat(), mostly);
+            let counts =
+                |row: &[usize]| Layout::one_by_one::<i64>(&[records, row].concat(), mostly);
+            match *value {
+                Real(of) => all.add(at, name, reals(&[]), about, move |r, v| {
+                    each(r, &mut |q| v.push(of(q)));
+                }),
+                Vector(of) => all.add(at, name, reals(&[2]), about, move |r, v| {
+                    each(r, &mut |q| v.extend(of(q)));
+                }),
+                Tensor(of) => all.add(at, name, reals(&[3]), about, move |r, v| {
+                    each(r, &mut |q| v.extend(of(q)));
+                }),
+                Count(of) => all.add(at, name, counts(&[]), about, move |r, v| {
+                    each(r, &mut |q| v.push(of(q) as i64));
+                }),
+                Node(of) => all.add(at, name, counts(&[]), about, move |r, v| {
+                    each(r, &mut |q| v.push(label(of(q))));
+                }),
+                Segment(of) => all.add(at, name, counts(&[2]), about, move |r, v| {
+                    each(r, &mut |q| v.extend(of(q).map(label)));
+                }),
+                Value::Bodies(of) => all.add(at, name, counts(&[2]), about, move |r, v| {
+                    each(r, &mut |q| v.extend(of(q).map(number)));
+                }),
+                Flag(of) => {
+                    let flags = Layout::one_by_one::<u8>(records, mostly);
+                    all.add(at, name, flags, about, move |r, v: &mut Vec<u8>| {
+                        each(r, &mut |q| v.push(of(q).into()));
+                    })
+                }
+            }?;
+        }
+        Ok(())
+    }
+
+    /// `/history/momentum`.
+    fn create_momentum(&mut self, at: &Group) -> hdf5::Result<()> {
+        self.table(at, &[], &MOMENTUM, |r, each| each(&r.momentum))?;
+        if self.model.redistributes_mass() {
+            self.table(at, &[], &CONSISTENT, |r, each| each(&r.momentum))?;
+        }
+        Ok(())
+    }
+
+    /// `/history/strain`: largest principal strain of all elements, and of those with a law for small
+    /// strains.
+    fn create_strain(&mut self, at: &Group) -> hdf5::Result<()> {
+        self.table(at, &[], &LARGEST_STRAIN, |r, each| each(r))?;
+        let limited = SmallStrainElements::new(self.model);
+        let name = "largest_principal_elastic";
+        self.add(at, name, &[], LARGEST_ELASTIC, move |r, v| {
+            v.push(limited.most_strained(r).strain);
+        })
+    }
+
+    /// `/history/contact/<SLAVE>_<MASTER>`.
+    fn create_contact(
+        &mut self,
+        at: &Group,
+        k: usize,
+        contact: &Contact,
+        bodies: &[usize],
+    ) -> hdf5::Result<()> {
+        let own = move |r: &IncrementReport, each: &mut dyn FnMut(&ContactResultant)| {
+            r.contacts.get(k).into_iter().for_each(each);
+        };
+        self.table(at, &[], &CONTACT, own)?;
+        let mut rigid = self.model.rigid_bodies.iter();
+        if rigid.any(|body| body.surface == contact.master) {
+            self.table(at, &[], &REFERENCE_MOMENT, own)?;
+        }
+        if contact.is_self_contact() {
+            self.table(at, bodies, &CONTACT_ON_BODY, move |r, each| {
+                own(r, &mut |contact| contact.bodies.iter().for_each(&mut *each));
+            })?;
+        }
+        Ok(())
+    }
+
+    /// `/history/impacts`: one row per landing; `/history/returns`: one row per pair and increment in which it
+    /// is given energy back; `/history/touches`: one row per contact of two bodies that has ended.
+    fn create_events(&mut self, at: &Group) -> hdf5::Result<()> {
+        let impacts = group(at, "impacts")?;
+        self.columns.count(&impacts, ROWS, |r| r.landings.len())?;
+        self.events(&impacts, &IMPACT, |r, each| {
+            (r.landings.iter()).for_each(|landing| each(&(r.increment, *landing)));
+        })?;
+        let gives_back = |step: &Step| step.settings.landing == LandingRule::Return;
+        if self.model.steps.iter().any(gives_back) {
+            let returns = group(at, "returns")?;
+            self.columns.count(&returns, ROWS, |r| r.returns.len())?;
+            self.events(&returns, &RETURN, |r, each| {
+                (r.returns.iter()).for_each(|returned| each(&(r.increment, *returned)));
+            })?;
+        }
+        let touches = group(at, "touches")?;
+        self.columns.count(&touches, ROWS, |r| r.touches.len())?;
+        self.events(&touches, &TOUCH, |r, each| {
+            r.touches.iter().for_each(each);
+        })
+    }
+
+    /// `/history/rigid/<SURFACE>`: a rigid surface at its reference node.
+    fn create_rigid(&mut self, at: &Group, k: usize, body: &RigidBody) -> hdf5::Result<()> {
+        let node = body.reference;
+        let label = self.model.mesh.node_labels[node] as i64;
+        let text = ("1", "node number of the reference node");
+        constant(at, "node", &[1], &[label], text)?;
+        let x = self.model.mesh.coordinates[node];
+        let text = ("length", "position of the reference node");
+        self.add(at, "position", &[2], text, move |r, v| {
+            v.extend((0..2).map(|i| x[i] + r.state.u[2 * node + i]));
+        })?;
+        for (name, dimension, text, vector) in REFERENCE_NODE {
+            self.add(at, name, &[2], (dimension, text), move |r, v| {
+                v.extend_from_slice(&vector(r)[2 * node..2 * node + 2]);
+            })?;
+        }
+        self.table(at, &[], &REACTION, move |r, each| {
+            r.rigid.get(k).into_iter().for_each(each);
+        })
+    }
+
+    /// `/history/nodes/<NSET>`; values of every node where these are asked for, sums and means.
+    fn create_nodes(
+        &mut self,
+        at: &Group,
+        nodes: &'m [usize],
+        each_member: bool,
+    ) -> hdf5::Result<()> {
+        let labels = nodes
+            .iter()
+            .map(|&node| self.model.mesh.node_labels[node] as i64);
+        let labels: Vec<i64> = labels.collect();
+        let text = ("1", "node numbers of the deck");
+        constant(at, "labels", &[labels.len()], &labels, text)?;
+        if each_member {
+            for (name, dimension, text, vector) in OF_NODE {
+                let row = [nodes.len(), 2];
+                self.add(at, name, &row, (dimension, text), move |r, v| {
+                    v.extend(pick(nodes, vector(r)).flatten());
+                })?;
+            }
+        }
+        let sums = group(at, "sum")?;
+        for (name, dimension, text, vector) in SUMS_OF_NODES {
+            self.add(&sums, name, &[2], (dimension, text), move |r, v| {
+                v.extend(sum(nodes, vector(r)));
+            })?;
+        }
+        let (means, count) = (group(at, "mean")?, nodes.len() as f64);
+        for (name, dimension, text, vector) in MEANS_OF_NODES {
+            self.add(&means, name, &[2], (dimension, text), move |r, v| {
+                v.extend(sum(nodes, vector(r)).map(|sum| sum / count));
+            })?;
+        }
+        Ok(())
+    }
+
+    /// `/history/elements/<ELSET>`; values of every element where these are asked for, and sums.
+    fn create_elements(
+        &mut self,
+        at: &Group,
+        elements: &'m [usize],
+        each_member: bool,
+    ) -> hdf5::Result<()> {
+        let mesh = &self.model.mesh;
+        let labels = elements.iter().map(|&e| mesh.elements[e].label as i64);
+        let (labels, count): (Vec<i64>, _) = (labels.collect(), [elements.len()]);
+        let text = ("1", "element numbers of the deck");
+        constant(at, "labels", &count, &labels, text)?;
+        let inertia = || elements.iter().map(|&e| ElementInertia::new(self.model, e));
+        let volumes: Vec<f64> = inertia().map(|own| own.volume).collect();
+        let text = ("length^3", "volume of the undeformed element");
+        constant(at, "EVOL", &count, &volumes, text)?;
+        let (own, of_each): (Vec<_>, Vec<_>) = (inertia().collect(), inertia().collect());
+        let sums = group(at, "sum")?;
+        let text = ("energy", "strain energy of the set");
+        self.add(&sums, "ELSE", &[], text, |r, v| {
+            v.push(elements.iter().map(|&e| r.elements[e].energy).sum());
+        })?;
+        let text = ("energy", "kinetic energy of the set");
+        self.add(&sums, "ELKE", &[], text, move |r, v| {
+            v.push(own.iter().map(|own| own.kinetic_energy(&r.state.v)).sum());
+        })?;
+        if !each_member {
+            return Ok(());
+        }
+        self.table(at, &count, &ELEMENT, |r, each| {
+            elements.iter().for_each(|&e| each(&r.elements[e]));
+        })?;
+        let gradients = elements
+            .iter()
+            .map(|&e| MeanGradient::new(mesh, &mesh.elements[e]));
+        let gradients: Vec<MeanGradient> = gradients.collect();
+        let row = [elements.len(), 3];
+        self.add(at, "LE", &row, LOGARITHMIC_STRAIN, move |r, v| {
+            let strain = gradients
+                .iter()
+                .map(|mean| mean.logarithmic_strain(&r.state.u));
+            v.extend(strain.flatten());
+        })?;
+        self.add(at, "ENER", &count, ENERGY_DENSITY, move |r, v| {
+            let each = elements.iter().zip(&volumes);
+            v.extend(each.map(|(&e, volume)| r.elements[e].energy / volume));
+        })?;
+        let text = (
+            "energy",
+            "kinetic energy of the element with its consistent mass",
+        );
+        self.add(at, "ELKE", &count, text, move |r, v| {
+            v.extend(of_each.iter().map(|own| own.kinetic_energy(&r.state.v)));
+        })
+    }
+
+    /// Lets rows of up to `bytes` bytes wait in memory, or one.
+    pub fn let_wait(&mut self, bytes: usize) {
+        self.most_rows = (bytes / self.columns.row_bytes()).max(1);
+    }
+
+    /// Appends the row of an increment, which waits in memory.
+    pub fn push(&mut self, report: &IncrementReport) {
+        self.columns.push(report);
+        let events = [
+            report.landings.len(),
+            report.returns.len(),
+            report.touches.len(),
+        ];
+        self.rows += events.into_iter().fold(1, usize::max);
+    }
+
+    /// Whether no further row may wait.
+    pub fn is_full(&self) -> bool {
+        self.rows >= self.most_rows
+    }
+
+    /// Writes the rows that wait, but not their number.
+    pub fn flush(&mut self) -> hdf5::Result<()> {
+        self.rows = 0;
+        self.columns.flush()
+    }
+
+    /// Writes the numbers of rows.
+    pub fn note_counts(&self) -> hdf5::Result<()> {
+        self.columns.note_counts()
+    }
+
+    /// Bytes by which the file may grow until the rows are written.
+    pub fn growth(&self) -> u64 {
+        self.columns.growth(self.most_rows)
+    }
+}
+
+/// The requested sets in the order of the model; an empty set has no history.
+fn requested<'m>(
+    asked: &'m [HistorySet],
+    sets: &'m [Set],
+) -> impl Iterator<Item = (&'m HistorySet, &'m Set)> {
+    let mut asked: Vec<&HistorySet> = asked.iter().collect();
+    asked.sort_unstable_by_key(|asked| asked.set);
+    let sets = asked.into_iter().map(|asked| (asked, &sets[asked.set]));
+    sets.filter(|(_, set)| !set.members.is_empty())
+}
+
+/// Both components of `values` at each of the `nodes`.
+fn pick<'a>(nodes: &'a [usize], values: &'a [f64]) -> impl Iterator<Item = [f64; 2]> + 'a {
+    (nodes.iter()).map(|&node| [values[2 * node], values[2 * node + 1]])
+}
+
+/// Sum of `values` over the `nodes`.
+fn sum(nodes: &[usize], values: &[f64]) -> [f64; 2] {
+    pick(nodes, values).fold([0.0; 2], |[x, y], v| [x + v[0], y + v[1]])
+}
+
+// The tables of the datasets.
+
+#[rustfmt::skip]
+const INCREMENT: [Entry<IncrementReport>; 3] = [
+    ("time", "time", "time at the end of the increment", Real(|r| r.time)),
+    ("dt", "time", "length of the increment", Real(|r| r.dt)),
+    ("step", "1", "number of the step, from 1", Count(|r| r.step)),
+];
+
+#[rustfmt::skip]
+const ENERGY: [Entry<Energy>; 12] = [
+    ("kinetic", "energy", "kinetic energy", Real(|e| e.kinetic)),
+    ("strain", "energy", "strain energy", Real(|e| e.strain)),
+    ("external_work", "energy",
+     "work of the loads and of the supports' prescribed motion since the start", Real(|e| e.external_work)),
+    ("normal_contact_work", "energy",
+     "work of the normal contact forces since the start", Real(|e| e.normal_contact_work)),
+    ("friction_dissipation", "energy",
+     "energy dissipated by friction since the start", Real(|e| e.friction_dissipation)),
+    ("impact_loss", "energy",
+     "kinetic energy taken by the impact impulses since the start", Real(|e| e.impact_loss)),
+    ("landing_return", "energy",
+     "kinetic energy given back after landings since the start", Real(|e| e.landing_return)),
+    ("release_loss", "energy",
+     "strain energy lost by nodes without mass after releases since the start", Real(|e| e.release_loss)),
+    ("damping", "energy",
+     "energy dissipated by the damping of the materials since the start", Real(|e| e.damping)),
+    ("material_dissipation", "energy",
+     "energy dissipated by the materials since the start", Real(|e| e.material_dissipation)),
+    ("numerical_dissipation", "energy",
+     "energy dissipated by the integration scheme since the start", Real(|e| e.numerical_dissipation)),
+    ("balance", "energy",
+     "what is left of the energy balance: only the unconverged residual", Real(|e| e.balance)),
+];
+
+#[rustfmt::skip]
+const MOMENTUM: [Entry<Momentum>; 4] = [
+    ("linear", "mass*length/time", "linear momentum", Vector(|m| m.linear)),
+    ("damped_linear", "mass*length/time",
+     "linear momentum taken by mass-proportional damping since the start", Vector(|m| m.damped_linear)),
+    ("angular", "mass*length^2/time", "angular momentum about the origin", Real(|m| m.angular)),
+    ("damped_angular", "mass*length^2/time",
+     "angular momentum taken by mass-proportional damping since the start", Real(|m| m.damped_angular)),
+];
+
+/// With redistributed mass; where no node gives its mass up it is the other.
+#[rustfmt::skip]
+const CONSISTENT: [Entry<Momentum>; 1] = [
+    ("consistent_angular", "mass*length^2/time", "angular momentum about the origin of the consistent mass",
+     Real(|m| m.consistent_angular.unwrap_or(m.angular))),
+];
+
+#[rustfmt::skip]
+const BODY: [Entry<BodyResult>; 7] = [
+    ("center", "length", "centre of mass", Vector(|b| b.center)),
+    ("velocity", "length/time", "velocity of the centre of mass", Vector(|b| b.velocity)),
+    ("contact_force", "force", "force of all contacts on the body", Vector(|b| b.contact_force)),
+    ("angular_velocity", "1/time",
+     "angular momentum about the centre of mass over the moment of inertia", Real(|b| b.angular_velocity)),
+    ("kinetic", "energy", "kinetic energy", Real(|b| b.kinetic)),
+    ("strain", "energy", "strain energy", Real(|b| b.strain)),
+    ("contact_moment", "force*length",
+     "moment of the contact force about the centre of mass", Real(|b| b.contact_moment)),
+];
+
+#[rustfmt::skip]
+const LARGEST_STRAIN: [Entry<IncrementReport>; 1] = [
+    ("largest_principal", "1",
+     "largest absolute principal value of the Green-Lagrange strain in the plane, of all integration points",
+     Real(|r| r.strain.strain)),
+];
+const LARGEST_ELASTIC: Meaning = (
+    "1",
+    "the same of elements with a St. Venant-Kirchhoff material (*ELASTIC); 0 without any",
+);
+
+#[rustfmt::skip]
+const CONTACT: [Entry<ContactResultant>; 26] = [
+    ("force", "force", "contact force on the slave surface", Vector(|c| c.force)),
+    ("moment", "force*length", "moment of the force about the origin", Real(|c| c.moment)),
+    ("normal", "force", "sum of the normal forces Pn", Real(|c| c.normal)),
+    ("tangential", "force", "sum of the tangential forces Pt", Real(|c| c.tangential)),
+    ("min_gap", "length", "smallest gap of the candidate pairs, NaN without", Real(|c| c.min_gap)),
+    ("cone_violation", "1", "max(|Pt| - mu Pn, 0) / max(Pn)", Real(|c| c.cone_violation)),
+    ("impulse_cone_violation", "1",
+     "the same of the total impulses of the pairs in the increment, with impacts and what is given back",
+     Real(|c| c.impulse_cone_violation)),
+    ("normal_work", "energy",
+     "work of the normal contact forces since the start", Real(|c| c.normal_work)),
+    ("handover_work", "energy",
+     "the part of it of nodes that landed where others of the same bodies had opened", Real(|c| c.handover_work)),
+    ("friction_dissipation", "energy",
+     "energy dissipated by friction since the start", Real(|c| c.friction_dissipation)),
+    ("landing_return", "energy",
+     "kinetic energy given back after its landings and releases since the start", Real(|c| c.landing_return)),
+    ("release_loss", "energy",
+     "energy that nodes without mass lost after its releases since the start", Real(|c| c.release_loss)),
+    ("closed", "1", "pairs with Pn > 0", Count(|c| c.closed)),
+    ("sticking", "1", "closed pairs that do not slip", Count(|c| c.sticking)),
+    ("impulse", "force*time", "impulse on the slave surface in the increment", Vector(|c| c.impulse.vector)),
+    ("normal_impulse", "force*time",
+     "sum of dt Pn + Phi and of return impulses in the increment", Real(|c| c.impulse.normal)),
+    ("tangential_impulse", "force*time",
+     "sum of dt Pt + Psi and of return impulses in the increment", Real(|c| c.impulse.tangential)),
+    ("impact_normal_impulse", "force*time",
+     "sum of Phi in the increment", Real(|c| c.impulse.impact_normal)),
+    ("impact_tangential_impulse", "force*time",
+     "sum of Psi in the increment", Real(|c| c.impulse.impact_tangential)),
+    ("return_impulse", "force*time",
+     "sum of the normal impulses of landing returns in the increment", Real(|c| c.impulse.landing_return)),
+    ("impulse_sum", "force*time",
+     "impulse on the slave surface since the start", Vector(|c| c.impulse_sum.vector)),
+    ("normal_impulse_sum", "force*time",
+     "sum of dt Pn + Phi and of return impulses since the start", Real(|c| c.impulse_sum.normal)),
+    ("tangential_impulse_sum", "force*time",
+     "sum of dt Pt + Psi since the start", Real(|c| c.impulse_sum.tangential)),
+    ("impact_normal_impulse_sum", "force*time",
+     "sum of Phi since the start", Real(|c| c.impulse_sum.impact_normal)),
+    ("impact_tangential_impulse_sum", "force*time",
+     "sum of Psi since the start", Real(|c| c.impulse_sum.impact_tangential)),
+    ("return_impulse_sum", "force*time",
+     "sum of the normal impulses of landing returns since the start", Real(|c| c.impulse_sum.landing_return)),
+];
+
+/// Of a rigid master.
+#[rustfmt::skip]
+const REFERENCE_MOMENT: [Entry<ContactResultant>; 1] = [
+    ("reference_moment", "force*length", "moment of the force about the reference node of the master",
+     Real(|c| c.reference_moment)),
+];
+
+/// Of a surface that touches itself.
+#[rustfmt::skip]
+const CONTACT_ON_BODY: [Entry<ContactOnBody>; 2] = [
+    ("body_force", "force", "force of this contact on each body", Vector(|b| b.force)),
+    ("body_moment", "force*length", "moment of that force about the origin", Real(|b| b.moment)),
+];
+
+/// A landing with its increment.
+#[rustfmt::skip]
+const IMPACT: [Entry<(usize, Landing)>; 6] = [
+    ("time", "time", "time of the landing", Real(|(_, l)| l.time)),
+    ("xi", "1", "place on the segment: 0 at its first node, 1 at its second", Real(|(_, l)| l.xi)),
+    ("approach_speed", "length/time", "-dg/dt just before the landing", Real(|(_, l)| l.approach_speed)),
+    ("increment", "1", "increment of the landing", Count(|(increment, _)| *increment)),
+    ("slave", "1", "node number of the slave node", Node(|(_, l)| l.slave)),
+    ("segment", "1", "node numbers of the segment's ends", Segment(|(_, l)| l.segment)),
+];
+
+/// A return with its increment.
+#[rustfmt::skip]
+const RETURN: [Entry<(usize, ReturnedImpulse)>; 8] = [
+    ("time", "time", "time at the end of the increment", Real(|(_, r)| r.time)),
+    ("normal", "force*time",
+     "total normal impulse of the pair in the increment: dt Pn + Phi and what is given back",
+     Real(|(_, r)| r.normal)),
+    ("tangential", "force*time",
+     "total tangential impulse of the pair in the increment", Real(|(_, r)| r.tangential)),
+    ("returned_normal", "force*time", "normal impulse that gives back", Real(|(_, r)| r.returned_normal)),
+    ("returned_tangential", "force*time",
+     "tangential impulse that gives back", Real(|(_, r)| r.returned_tangential)),
+    ("increment", "1", "increment", Count(|(increment, _)| *increment)),
+    ("slave", "1", "node number of the slave node", Node(|(_, r)| r.slave)),
+    ("segment", "1", "node numbers of the segment's ends", Segment(|(_, r)| r.segment)),
+];
+
+#[rustfmt::skip]
+const TOUCH: [Entry<Touch>; 10] = [
+    ("start", "time", "time at the start of its first increment", Real(|t| t.start)),
+    ("end", "time", "time at the end of its last increment", Real(|t| t.end)),
+    ("impulse", "force*time", "size of the impulse on each of the bodies", Real(|t| t.impulse)),
+    ("energy", "energy",
+     "kinetic energy of the approach if the bodies rebound with its speed, J^2/(8 m); 0 where both are held",
+     Real(|t| t.energy)),
+    ("first", "1", "its first increment", Count(|t| t.first)),
+    ("last", "1", "its last increment", Count(|t| t.last)),
+    ("nodes", "1", "most nodes of one side in contact at a time", Count(|t| t.nodes)),
+    ("corner", "1", "1 where it reached a corner of an outline", Count(|t| t.is_at_corner.into())),
+    ("bodies", "1", "its bodies; -1 for a rigid surface", Value::Bodies(|t| t.bodies)),
+    ("node", "1", "number of a slave node that landed first", Node(|t| t.node)),
+];
+
+/// A vector over the dofs in a report, with name, dimension and meaning of its dataset.
+type VectorEntry = (
+    &'static str,
+    &'static str,
+    &'static str,
+    fn(&IncrementReport) -> &[f64],
+);
+
+#[rustfmt::skip]
+const REFERENCE_NODE: [VectorEntry; 2] = [
+    ("U", "length", "displacement of the reference node", |r| &r.state.u),
+    ("V", "length/time", "velocity of the reference node", |r| &r.state.v),
+];
+
+#[rustfmt::skip]
+const REACTION: [Entry<RigidReaction>; 2] = [
+    ("force", "force", "reaction: the force that holds the surface", Vector(|r| r.force)),
+    ("moment", "force*length", "moment of the reaction about the reference node", Real(|r| r.moment)),
+];
+
+#[rustfmt::skip]
+const OF_NODE: [VectorEntry; 3] = [
+    ("U", "length", "displacement", |r| &r.state.u),
+    ("V", "length/time", "velocity", |r| &r.state.v),
+    ("RF", "force", "support reaction", |r| &r.nodal.reaction),
+];
+
+#[rustfmt::skip]
+const SUMS_OF_NODES: [VectorEntry; 3] = [
+    ("RF", "force", "sum of the support reactions", |r| &r.nodal.reaction),
+    ("CF", "force", "sum of the concentrated loads", |r| &r.nodal.concentrated),
+    ("CONTACT_FORCE", "force", "sum of the contact forces on the nodes", |r| &r.nodal.contact_force),
+];
+
+#[rustfmt::skip]
+const MEANS_OF_NODES: [VectorEntry; 3] = [
+    ("U", "length", "mean displacement", |r| &r.state.u),
+    ("V", "length/time", "mean velocity", |r| &r.state.v),
+    ("A", "length/time^2", "mean acceleration", |r| &r.state.a),
+];
+
+#[rustfmt::skip]
+const ELEMENT: [Entry<ElementResult>; 5] = [
+    ("S", STRESS.0, STRESS.1, Tensor(|e| e.stress)),
+    ("E", STRAIN.0, STRAIN.1, Tensor(|e| e.strain)),
+    ("S33", ACROSS.0, ACROSS.1, Real(|e| e.across)),
+    ("MISES", "force/length^2", "von Mises stress of the mean stresses", Real(ElementResult::von_mises)),
+    ("ELSE", "energy", "strain energy of the element", Real(|e| e.energy)),
+];
+
+#[rustfmt::skip]
+const SOLVER: [Entry<SolverCounts>; 14] = [
+    ("passes", "1", "predictor and corrector passes", Count(|s| s.passes)),
+    ("lcps", "1", "complementarity problems solved", Count(|s| s.lcps)),
+    ("lcp_size", "1", "largest number of pairs in one of them", Count(|s| s.lcp_size)),
+    ("pivots", "1", "pivots of Lemke's method", Count(|s| s.pivots)),
+    ("active_set_iterations", "1", "iterations of the active-set method", Count(|s| s.active_set_iterations)),
+    ("gauss_seidel_sweeps", "1", "sweeps of the Gauss-Seidel method", Count(|s| s.gauss_seidel_sweeps)),
+    ("lemke_calls", "1", "calls of Lemke's method", Count(|s| s.lemke_calls)),
+    ("factorizations", "1", "factorisations of the effective matrix", Count(|s| s.factorizations)),
+    ("residual", "1", "relative force residual of the last pass", Real(|s| s.residual)),
+    ("overlap", "1",
+     "largest overlap of an open pair at the end, in lengths of its segment", Real(|s| s.violation.overlap)),
+    ("gap_violation", "1",
+     "largest gap of a closed pair at the end, in lengths of its segment", Real(|s| s.violation.gap)),
+    ("slip_violation", "1",
+     "largest slip of a sticking pair in the increment, in lengths of its segment", Real(|s| s.violation.slip)),
+    ("penetration", "1",
+     "largest penetration at the end, of an open pair or of edges that cross, in lengths of the edge",
+     Real(|s| s.violation.penetration)),
+    ("converged", "1", "1 when the increment converged, else 0", Flag(|s| s.converged)),
+];

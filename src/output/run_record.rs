@@ -1,0 +1,146 @@
+//! Group `/run`: program, deck and command of the run, its times and its end.
+//!
+//! The calendar is computed from the number of days by Hinnant's algorithm (`civil_from_days`,
+//! "chrono-compatible low-level date algorithms").
+
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use hdf5::Group;
+use sha2::{Digest, Sha256};
+
+use super::column::{group, set_attribute, text_attribute};
+use super::memory::peak_memory;
+use crate::dynamics::{RunSummary, Timings};
+
+/// Value of `exit_status` until the run ends.
+pub const UNFINISHED: i64 = -1;
+
+/// Program, deck and command of a run.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct RunRecord {
+    /// Version of the program.
+    pub version: String,
+    /// Commit it was built from.
+    pub commit: String,
+    /// Full text of the deck, includes in place.
+    pub deck: String,
+    /// The command as typed.
+    pub command: String,
+    /// Number of threads.
+    pub threads: usize,
+    /// Bytes of memory that the run was estimated to need.
+    pub memory_need: u64,
+}
+
+/// Writes the run record.
+pub(crate) struct Record {
+    at: Group,
+}
+
+impl Record {
+    /// Creates the group with everything known at the start.
+    pub fn create(root: &Group, record: &RunRecord) -> hdf5::Result<Self> {
+        let at = group(root, "run")?;
+        let text = |name, value: &str| text_attribute(&at, name, value);
+        text("program", "stickslip")?;
+        text("version", &record.version)?;
+        text("commit", &record.commit)?;
+        text("deck", &record.deck)?;
+        text("deck_sha256", &sha256(&record.deck))?;
+        text("command", &record.command)?;
+        text("started", &utc_now())?;
+        text("finished", "")?;
+        set_attribute(&at, "exit_status", UNFINISHED)?;
+        set_attribute(&at, "threads", record.threads as i64)?;
+        set_attribute(&at, "memory_need", record.memory_need as i64)?;
+        Ok(Record { at })
+    }
+
+    /// Completes the record.
+    pub fn finish(
+        &self,
+        summary: &RunSummary,
+        exit_status: u8,
+        output: f64,
+        total: f64,
+    ) -> hdf5::Result<()> {
+        for (name, seconds) in phases(&summary.timings) {
+            set_attribute(&self.at, &format!("seconds_{name}"), seconds)?;
+        }
+        set_attribute(&self.at, "seconds_output", output)?;
+        set_attribute(&self.at, "seconds_total", total)?;
+        set_attribute(&self.at, "increments", summary.increments as i64)?;
+        set_attribute(&self.at, "cutbacks", summary.cutbacks as i64)?;
+        set_attribute(&self.at, "events", summary.events as i64)?;
+        if let Some(peak) = peak_memory() {
+            set_attribute(&self.at, "peak_memory", peak as i64)?;
+        }
+        self.close(exit_status)
+    }
+
+    /// Marks the end of the run.
+    pub fn close(&self, exit_status: u8) -> hdf5::Result<()> {
+        text_attribute(&self.at, "finished", &utc_now())?;
+        set_attribute(&self.at, "exit_status", i64::from(exit_status))
+    }
+}
+
+/// Phases of a run with their wall-clock seconds.
+pub(crate) fn phases(timings: &Timings) -> [(&'static str, f64); 6] {
+    [
+        ("assembly", timings.assembly.as_secs_f64()),
+        ("factorization", timings.factorization.as_secs_f64()),
+        ("solve", timings.solve.as_secs_f64()),
+        ("search", timings.search.as_secs_f64()),
+        ("contact", timings.contact.as_secs_f64()),
+        ("lcp", timings.lcp.as_secs_f64()),
+    ]
+}
+
+fn sha256(text: &str) -> String {
+    (Sha256::digest(text.as_bytes()).iter())
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
+}
+
+/// The time now as `2026-05-01T10:12:33Z`.
+pub(crate) fn utc_now() -> String {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH);
+    utc(since.map_or(0, |d| d.as_secs()))
+}
+
+/// The time `seconds` after 1970-01-01T00:00:00Z.
+fn utc(seconds: u64) -> String {
+    let (days, rest) = (seconds / 86_400, seconds % 86_400);
+    let (year, month, day) = date(days);
+    let (hour, minute, second) = (rest / 3600, rest / 60 % 60, rest % 60);
+    format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z")
+}
+
+/// Date of the proleptic Gregorian calendar `days` after 1970-01-01; years are counted from
+/// March, in eras of 400 years.
+fn date(days: u64) -> (u64, u64, u64) {
+    let days = days + 719_468;
+    let (era, day_of_era) = (days / 146_097, days % 146_097);
+    let year_of_era =
+        (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
+    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+    let month_from_march = (5 * day_of_year + 2) / 153;
+    let day = day_of_year - (153 * month_from_march + 2) / 5 + 1;
+    let month = (month_from_march + 2) % 12 + 1;
+    let year = year_of_era + era * 400 + u64::from(month <= 2);
+    (year, month, day)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn known_times() {
+        assert_eq!(utc(0), "1970-01-01T00:00:00Z");
+        assert_eq!(utc(951_782_400), "2000-02-29T00:00:00Z");
+        assert_eq!(utc(1_777_630_353), "2026-05-01T10:12:33Z");
+        assert_eq!(utc(4_107_542_399), "2100-02-28T23:59:59Z");
+    }
+}

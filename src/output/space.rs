@@ -1,0 +1,136 @@
+//! Disk space reserved for a growing result file, and the end of the file that its superblock notes.
+//! Source: HDF5 File Format Specification 3.0, section II.A (superblock, version 0).
+
+use std::fs::File;
+use std::io;
+use std::io::ErrorKind;
+use std::os::unix::fs::FileExt;
+use std::path::Path;
+
+use rustix::fs::{FallocateFlags, fallocate, fstatvfs};
+use rustix::io::Errno;
+use rustix::process::{Resource, getrlimit};
+
+/// Bytes for the attributes that complete the record of the run.
+const CLOSING: u64 = 1 << 16;
+
+/// First bytes of an HDF5 file, up to the version of its superblock.
+const SUPERBLOCK_0: [u8; 9] = *b"\x89HDF\r\n\x1a\n\0";
+
+/// Where a superblock of version 0 notes the end of the file.
+const END_OF_FILE: u64 = 40;
+
+/// The end of the file in its superblock before and while the library writes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct End {
+    before: u64,
+    ahead: u64,
+}
+
+/// Reserves disk space for the rows to be written next, and fails beforehand when there is none.
+pub(crate) struct Space {
+    file: File,
+    /// End of the reserved part of the file.
+    kept: u64,
+}
+
+impl Space {
+    /// For a result file without rows.
+    pub fn new(path: &Path) -> io::Result<Self> {
+        Ok(Space {
+            file: File::options().read(true).write(true).open(path)?,
+            kept: 0,
+        })
+    }
+
+    /// Reserves the space for a file that may grow by `growth` bytes, and by the record, until it is
+    /// written through.
+    ///
+    /// # Errors
+    /// The disk is full, or the file would become larger than it may.
+    pub fn ensure(&mut self, growth: u64) -> io::Result<()> {
+        let size = self.file.metadata()?.len();
+        let room = growth + CLOSING;
+        let end = size + room;
+        if end <= self.kept {
+            return Ok(());
+        }
+        if getrlimit(Resource::Fsize)
+            .current
+            .is_some_and(|limit| end > limit)
+        {
+            return Err(ErrorKind::FileTooLarge.into());
+        }
+        match fallocate(&self.file, FallocateFlags::KEEP_SIZE, size, room) {
+            Err(full @ (Errno::NOSPC | Errno::DQUOT | Errno::FBIG)) => return Err(full.into()),
+            Err(_) => self.ask(room)?,
+            Ok(()) => {}
+        }
+        self.kept = end;
+        Ok(())
+    }
+
+    /// Where the file system cannot reserve space: checks that enough is free now.
+    fn ask(&self, room: u64) -> io::Result<()> {
+        match fstatvfs(&self.file) {
+            Ok(disk) if disk.f_bavail.saturating_mul(disk.f_frsize) < room => {
+                Err(ErrorKind::StorageFull.into())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Moves the end of the file to the end of the reserved space, ahead of all that the library may
+    /// write in one go. None where the superblock is not of version 0.
+    pub fn move_end_ahead(&self) -> io::Result<Option<End>> {
+        let mut first = [0; SUPERBLOCK_0.len()];
+        self.file.read_exact_at(&mut first, 0)?;
+        if first != SUPERBLOCK_0 {
+            return Ok(None);
+        }
+        let end = End {
+            before: self.end()?,
+            ahead: self.file.metadata()?.len().max(self.kept),
+        };
+        self.file.set_len(end.ahead)?;
+        self.note_end(end.ahead)?;
+        Ok(Some(end))
+    }
+
+    /// Cuts the file at its end, as the library has noted it; where it had nothing to note, the end is
+    /// where it was before.
+    pub fn settle_end(&self, end: Option<End>) -> io::Result<()> {
+        let Some(End { before, ahead }) = end else {
+            return Ok(());
+        };
+        if self.end()? == ahead {
+            self.note_end(before)?;
+        }
+        self.file.set_len(self.end()?)
+    }
+
+    fn end(&self) -> io::Result<u64> {
+        let mut bytes = [0; 8];
+        self.file.read_exact_at(&mut bytes, END_OF_FILE)?;
+        Ok(u64::from_le_bytes(bytes))
+    }
+
+    fn note_end(&self, end: u64) -> io::Result<()> {
+        self.file.write_all_at(&end.to_le_bytes(), END_OF_FILE)
+    }
+
+    /// Notes that the library has written, which may have released reserved space.
+    pub fn written(&mut self) {
+        self.kept = 0;
+    }
+
+    /// Releases the space reserved beyond the end of the file.
+    pub fn release(&mut self) {
+        self.kept = 0;
+        // After a failure the space stays reserved until the file is removed; the results are complete.
+        let _ = self
+            .file
+            .metadata()
+            .and_then(|data| self.file.set_len(data.len()));
+    }
+}

@@ -1,0 +1,591 @@
+//! Where the energy of a run has gone, and warnings about a whole run: printed at its end, and by `info`
+//! from the result file.
+
+use super::format::{counted, general, scientific, wrap, wrap_words};
+use super::model_group::BodyTimes;
+use super::strain::LARGE;
+use crate::dynamics::{Energy, Touch};
+use crate::model::ALL_EXTERIOR;
+
+/// Energy balance, relative to the largest energy, above which a run is warned about.
+const BALANCE: f64 = 1e-8;
+/// Number of increments in the transit time of the shortest edge beyond which the errors of the mesh
+/// dominate.
+const MANY: f64 = 100.0;
+/// Number of increments that resolve the longest period well.
+const ENOUGH: f64 = 20.0;
+
+/// Figures of a whole run that warnings are made from.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Findings {
+    /// Largest energy balance as a part of the largest energy.
+    pub balance: f64,
+    /// Where the energy has gone.
+    pub losses: Losses,
+    /// Largest principal strain in a material for small strains, where it is known.
+    pub strain: Option<f64>,
+    /// Names of the contacts that never closed, sorted.
+    pub open: Vec<String>,
+    /// The touches that matter.
+    pub touches: Touches,
+    /// Length of the longest increment; 0 without any.
+    pub dt: f64,
+    /// Last time.
+    pub time: f64,
+    /// Transit times of waves in the bodies, where they are known.
+    pub bodies: Vec<BodyTimes>,
+}
+
+impl Findings {
+    /// The warnings, each a sentence that says what to do, in lines of the screen.
+    pub fn lines(&self) -> Vec<String> {
+        let mut texts: Vec<String> = self.balance_text().into_iter().collect();
+        texts.extend(self.losses.advice());
+        let others = [
+            self.touches.brief_text(),
+            self.touches.narrow_text(),
+            self.strain_text(),
+            self.long_text(),
+            self.short_text(),
+        ];
+        texts.extend(others.into_iter().flatten());
+        texts.extend(self.open.iter().map(|name| self.open_text(name)));
+        texts
+            .iter()
+            .flat_map(|text| wrap_words("warning", text))
+            .collect()
+    }
+
+    fn balance_text(&self) -> Option<String> {
+        let is_small = self.balance <= BALANCE;
+        (!is_small).then(|| {
+            format!(
+                "the energy balance is off by {} of the largest energy, above {}: lower the \
+                 TOLERANCE of *STICKSLIP or the increment",
+                scientific(self.balance, 1),
+                scientific(BALANCE, 0),
+            )
+        })
+    }
+
+    fn strain_text(&self) -> Option<String> {
+        let strain = self.strain.filter(|&strain| strain > LARGE)?;
+        Some(format!(
+            "the largest principal strain is {}, above {}, where a St. Venant-Kirchhoff material \
+             (*ELASTIC) is too stiff in tension and too soft in compression: trust no forces there; \
+             choose a material for large strains (*HYPERELASTIC, NEO HOOKE) or lower the loads",
+            general(strain, 4),
+            general(LARGE, 1),
+        ))
+    }
+
+    /// An increment longer than the longest period 2 L/c of longitudinal vibration: the vibration of
+    /// no body is resolved.
+    fn long_text(&self) -> Option<String> {
+        let longest = self.bodies.iter().map(|times| 2.0 * times.body);
+        let period = longest.reduce(f64::max)?;
+        (self.dt > period).then(|| {
+            format!(
+                "increments of {} are longer than a wave takes to and fro through the slowest body \
+                 ({}), so that no vibration is resolved: choose about {} if it matters",
+                general(self.dt, 2),
+                general(period, 2),
+                general(period / ENOUGH, 1),
+            )
+        })
+    }
+
+    /// An increment in which a wave covers a small part of the shortest edge: errors of the mesh
+    /// dominate.
+    fn short_text(&self) -> Option<String> {
+        let shortest = self.bodies.iter().map(|times| times.edge);
+        let edge = shortest.reduce(f64::min)?;
+        (self.dt > 0.0 && self.dt * MANY < edge).then(|| {
+            format!(
+                "even the longest increment ({}) is less than a {}th of the time a wave takes along \
+                 the shortest edge ({}), which makes nothing more accurate: choose up to {}",
+                general(self.dt, 2),
+                general(MANY, 1),
+                general(edge, 2),
+                general(edge, 1),
+            )
+        })
+    }
+
+    fn open_text(&self, name: &str) -> String {
+        format!(
+            "contact {name} never closed up to time {}: if its surfaces should have met, see that \
+             the faces of each look at the other",
+            general(self.time, 4),
+        )
+    }
+}
+
+/// Names of the contacts that never closed, sorted, from the names of all and whether they did.
+/// Of two contacts between the same surfaces with slave and master exchanged, one that closed is
+/// enough; so is any contact of general contact.
+pub(crate) fn never_closed(contacts: &[(String, bool)]) -> Vec<String> {
+    let has_closed = |wanted: &str| {
+        contacts
+            .iter()
+            .any(|(name, closed)| *closed && name == wanted)
+    };
+    let other_way_round = |name: &str| {
+        let mut cuts = name.match_indices('_');
+        cuts.any(|(i, _)| has_closed(&format!("{}_{}", &name[i + 1..], &name[..i])))
+    };
+    let is_general = |name: &str| name.starts_with(ALL_EXTERIOR);
+    let mut general = contacts.iter().filter(|(name, _)| is_general(name));
+    let has_met = general.any(|(_, closed)| *closed);
+    let is_met = |name: &str| other_way_round(name) || (has_met && is_general(name));
+    let open = contacts
+        .iter()
+        .filter(|(_, closed)| !closed)
+        .map(|(name, _)| name);
+    let mut open: Vec<String> = open.filter(|name| !is_met(name)).cloned().collect();
+    open.sort();
+    open
+}
+
+/// Part of the largest energy that is too small to be told.
+const ROUND_OFF: f64 = 1e-10;
+/// Part of the largest energy that is warned about.
+const MUCH: f64 = 0.01;
+
+/// Energies that have left the bodies since the start, as parts of the largest energy or external work;
+/// negative ones were put in.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Losses {
+    /// Taken by the normal contact forces: nodes that land within increments.
+    pub clipping: f64,
+    /// The part of the clipping of nodes that land where others of the same bodies have opened.
+    pub handover: f64,
+    /// Taken by the impact impulses: the mass of the nodes that land.
+    pub node_mass: f64,
+    /// Taken from nodes without mass as they come to rest after a release.
+    pub release: f64,
+    /// Given back after landings and releases, as a negative loss.
+    pub returned: f64,
+    /// Taken by the damping of the materials.
+    pub damping: f64,
+    /// Taken by friction.
+    pub friction: f64,
+    /// Taken by the materials.
+    pub materials: f64,
+    /// Taken by the scheme of the time integration.
+    pub scheme: f64,
+}
+
+impl Losses {
+    /// The losses of a ledger beside the largest energy or external work, with the normal work of nodes that take the
+    /// place of others.
+    pub fn new(energy: &Energy, handover_work: f64, largest: f64) -> Self {
+        Losses {
+            clipping: part(-energy.normal_contact_work, largest),
+            handover: part(-handover_work, largest),
+            node_mass: part(energy.impact_loss, largest),
+            release: part(energy.release_loss, largest),
+            returned: part(-energy.landing_return, largest),
+            damping: part(energy.damping, largest),
+            friction: part(energy.friction_dissipation, largest),
+            materials: part(energy.material_dissipation, largest),
+            scheme: part(energy.numerical_dissipation, largest),
+        }
+    }
+
+    /// The losses that count, in percent, in lines of the screen; none where nothing is lost.
+    pub fn lines(&self) -> Vec<String> {
+        let all = [
+            ("clipping", self.clipping),
+            ("node mass", self.node_mass),
+            ("release", self.release),
+            ("returned", self.returned),
+            ("damping", self.damping),
+            ("friction", self.friction),
+            ("materials", self.materials),
+            ("scheme", self.scheme),
+        ];
+        let counts = |&(_, part): &(&str, f64)| part.is_nan() || part.abs() > ROUND_OFF;
+        let percent = |(name, part): (&str, f64)| format!("{name} {} %", general(100.0 * part, 2));
+        let told: Vec<String> = all.into_iter().filter(counts).map(percent).collect();
+        match told.is_empty() {
+            true => Vec::new(),
+            false => wrap("lost", &told),
+        }
+    }
+
+    /// What takes less, and its price, for each loss that is more than a hundredth.
+    pub fn advice(&self) -> Vec<String> {
+        let landings = self.clipping + self.release + self.returned;
+        let landed = match self.is_handover() {
+            true => (
+                "nodes that take each other's place in lasting contact, as in rolling and sliding, took",
+                "choose smaller increments or smaller elements at the surface; LANDING=RETURN would \
+                 turn the loss into vibrations of the mesh",
+            ),
+            false => (
+                "nodes that land within increments took",
+                "choose LANDING=RETURN of *STICKSLIP (a solve for each landing; bodies go on \
+                 bouncing and ringing), IMPACT TIME=EVENT (more increments) or smaller increments",
+            ),
+        };
+        let rings = match self.is_handover() && self.returned < 0.0 {
+            true => self.handover,
+            false => 0.0,
+        };
+        let texts = [
+            (landings, landed.0, landed.1),
+            (
+                rings,
+                "LANDING=RETURN makes forces ring: to nodes that take each other's place in lasting contact, \
+                 as in rolling and sliding, it gave back",
+                "choose LANDING=PLASTIC with smaller increments or smaller elements at the surface",
+            ),
+            (
+                -landings,
+                "the normal contact forces put in",
+                "choose smaller increments, or SCHEME=ENERGY-MOMENTUM",
+            ),
+            (
+                self.node_mass,
+                "impulses that stop the mass of landing nodes took",
+                "choose CONTACT MASS=REDISTRIBUTED with LANDING=RETURN (shifts the highest \
+                 frequencies; bodies go on bouncing and ringing; layers of one or two elements keep \
+                 their mass) or a finer mesh at the surface",
+            ),
+            (
+                self.scheme.abs(),
+                "the time integration scheme changed the energy by",
+                "choose SCHEME=ENERGY-MOMENTUM, which keeps it (vibrations stay too), or smaller \
+                 increments",
+            ),
+        ];
+        let text = |(part, what, choice): (f64, &str, &str)| {
+            let is_small = part <= MUCH;
+            (!is_small).then(|| {
+                let part = scientific(part, 1);
+                let limit = general(MUCH, 1);
+                format!("{what} {part} of the largest energy, above {limit}: {choice}")
+            })
+        };
+        texts.into_iter().filter_map(text).collect()
+    }
+
+    /// Whether most of what landings take is that of nodes that take each other's place.
+    fn is_handover(&self) -> bool {
+        self.handover > self.clipping / 2.0
+    }
+}
+
+/// `value / whole`; 0 where `value` is 0, whatever the whole.
+pub(crate) fn part(value: f64, whole: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value / whole }
+}
+
+/// Part of the largest energy from which on the approach of two bodies matters.
+const MATTERS: f64 = 0.01;
+/// Increments of a touch, landing to rebound, from which on its course is resolved; also the most between two
+/// touches of the same bodies that count as one.
+const ENOUGH_INCREMENTS: usize = 10;
+/// Increments of a touch that suit it.
+const GOOD_INCREMENTS: f64 = 20.0;
+/// Nodes of a touch, where no corner bounds it, from which on its pressure has a shape.
+const ENOUGH_NODES: usize = 4;
+
+/// The touches of a run that matter and are not resolved.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Touches {
+    /// Number of touches that matter.
+    all: usize,
+    /// Those of too few increments: their number and the one with the fewest.
+    brief: Worst,
+    /// Those of too few nodes.
+    narrow: Worst,
+}
+
+/// Number of touches that are not resolved, and the worst.
+type Worst = Option<(usize, Touch)>;
+
+impl Touches {
+    /// Of all touches of a run those that matter beside its largest energy.
+    pub fn new(all: &[Touch], largest: f64) -> Self {
+        let mut touches: Vec<Touch> = Vec::new();
+        for touch in all {
+            let same = |before: &&mut Touch| before.bodies == touch.bodies;
+            match touches.iter_mut().rev().find(same) {
+                Some(before) if touch.first - before.last <= ENOUGH_INCREMENTS => {
+                    join(before, touch);
+                }
+                _ => touches.push(*touch),
+            }
+        }
+        touches.retain(|touch| touch.energy > MATTERS * largest);
+        let brief = |touch: &&Touch| increments(touch) < ENOUGH_INCREMENTS;
+        let narrow = |touch: &&Touch| touch.nodes < ENOUGH_NODES && !touch.is_at_corner;
+        Touches {
+            all: touches.len(),
+            brief: worst(touches.iter().filter(brief), increments),
+            narrow: worst(touches.iter().filter(narrow), |touch| touch.nodes),
+        }
+    }
+
+    /// Increments as long as a landing and its rebound.
+    pub fn brief_text(&self) -> Option<String> {
+        let (count, touch) = self.brief?;
+        let increments = counted(increments(&touch), "increment");
+        let dt = (touch.end - touch.start) / GOOD_INCREMENTS;
+        Some(format!(
+            "{count} of {} from landing to rebound took less than {ENOUGH_INCREMENTS} increments (one \
+             {increments}, from time {}), so that forces and rebounds are not resolved, whatever energy is \
+             kept: choose increments of about {}",
+            counted(self.all, "contact"),
+            general(touch.start, 4),
+            general(dt, 1),
+        ))
+    }
+
+    /// Contacts of round surfaces narrower than a few elements.
+    pub fn narrow_text(&self) -> Option<String> {
+        let (count, touch) = self.narrow?;
+        Some(format!(
+            "{count} of {} from landing to rebound had less than {ENOUGH_NODES} nodes in contact at a \
+             time (one {}, from time {}), so that stiffness and duration of the contact are those of the \
+             mesh: choose a finer mesh at the surface",
+            counted(self.all, "contact"),
+            touch.nodes,
+            general(touch.start, 4),
+        ))
+    }
+}
+
+/// Increments from the landing to the rebound.
+fn increments(touch: &Touch) -> usize {
+    touch.last + 1 - touch.first
+}
+
+/// Makes one touch of two of the same bodies.
+fn join(touch: &mut Touch, next: &Touch) {
+    touch.last = next.last;
+    touch.end = next.end;
+    touch.nodes = touch.nodes.max(next.nodes);
+    touch.is_at_corner |= next.is_at_corner;
+    touch.impulse += next.impulse;
+    // the energies go with the squares of the impulses
+    touch.energy = (touch.energy.sqrt() + next.energy.sqrt()).powi(2);
+}
+
+fn worst<'t>(touches: impl Iterator<Item = &'t Touch> + Clone, of: fn(&Touch) -> usize) -> Worst {
+    let worst = touches.clone().min_by_key(|touch| of(touch))?;
+    Some((touches.count(), *worst))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A run without warnings: 20 increments in the longest period of the slowest body.
+    fn sound() -> Findings {
+        Findings {
+            balance: 1e-10,
+            losses: Losses {
+                clipping: 0.001,
+                ..Losses::default()
+            },
+            strain: Some(0.1),
+            open: vec![],
+            touches: Touches::default(),
+            dt: 0.1,
+            time: 1.0,
+            bodies: vec![
+                BodyTimes {
+                    edge: 0.05,
+                    body: 0.2,
+                },
+                BodyTimes {
+                    edge: 0.1,
+                    body: 1.0,
+                },
+            ],
+        }
+    }
+
+    fn text(findings: &Findings) -> String {
+        let lines = findings.lines();
+        assert!(lines.iter().all(|line| line.len() <= 80), "{lines:?}");
+        let words: Vec<&str> = lines
+            .iter()
+            .flat_map(|line| line.split_whitespace())
+            .collect();
+        words.join(" ")
+    }
+
+    #[test]
+    fn a_sound_run_is_not_warned_about() {
+        assert_eq!(text(&sound()), "");
+        let old = Findings {
+            strain: None,
+            bodies: vec![],
+            ..sound()
+        };
+        assert_eq!(text(&old), "", "of a file without these datasets");
+    }
+
+    #[test]
+    fn a_contact_that_closed_the_other_way_round_has_met() {
+        let contacts = |closed: [bool; 3]| -> Vec<(String, bool)> {
+            let names = ["UP_X_LOW", "LOW_UP_X", "A_B"].map(str::to_owned);
+            names.into_iter().zip(closed).collect()
+        };
+        assert_eq!(never_closed(&contacts([false, true, true])), [""; 0]);
+        assert_eq!(never_closed(&contacts([false, true, false])), ["A_B"]);
+        let general = [("ALL_EXTERIOR", false), ("ALL_EXTERIOR_FLOOR", true)];
+        let general = general.map(|(name, closed)| (name.to_owned(), closed));
+        assert_eq!(never_closed(&general), [""; 0]);
+        assert_eq!(
+            never_closed(&contacts([false; 3])),
+            ["A_B", "LOW_UP_X", "UP_X_LOW"]
+        );
+    }
+
+    #[test]
+    fn each_warning_stands_alone() {
+        let warns = |change: fn(&mut Findings), words: &str| {
+            let mut findings = sound();
+            change(&mut findings);
+            let text = text(&findings);
+            assert!(text.contains(words), "{text}");
+            assert_eq!(text.matches("warning").count(), 1, "{text}");
+        };
+        warns(|f| f.balance = 2e-8, "off by 2.0e-08 of the largest");
+        warns(|f| f.balance = f64::NAN, "off by nan");
+        warns(
+            |f| f.losses.clipping = 0.45,
+            "4.5e-01 of the largest energy",
+        );
+        warns(|f| f.strain = Some(0.35), "strain is 0.35, above 0.2");
+        warns(|f| f.dt = 2.1, "(2), so that no vibration");
+        warns(|f| f.dt = 4e-4, "longest increment (0.0004) is less");
+        warns(|f| f.open = vec!["A_B".into()], "contact A_B never closed");
+    }
+
+    /// A ledger that lost 2 of 10 to landings and half a unit to the mass of nodes.
+    fn energy() -> Energy {
+        Energy {
+            normal_contact_work: -2.0,
+            impact_loss: 0.5,
+            friction_dissipation: 4e-10,
+            ..Energy::default()
+        }
+    }
+
+    #[test]
+    fn losses_are_told_in_percent_without_round_off() {
+        let lines = Losses::new(&energy(), 0.0, 10.0).lines();
+        assert_eq!(lines, ["lost     clipping 20 %   node mass 5 %"]);
+        assert!(Losses::new(&Energy::default(), 0.0, 0.0).lines().is_empty());
+        let lost = Energy {
+            numerical_dissipation: f64::NAN,
+            ..energy()
+        };
+        assert!(Losses::new(&lost, 0.0, 10.0).lines()[0].ends_with("scheme nan %"));
+    }
+
+    #[test]
+    fn each_loss_has_its_remedy() {
+        let advice = |change: fn(&mut Energy)| {
+            let mut energy = energy();
+            change(&mut energy);
+            Losses::new(&energy, 0.0, 10.0).advice()
+        };
+        let both = advice(|_| {});
+        assert!(both[0].contains("2.0e-01 of the largest") && both[0].contains("LANDING=RETURN"));
+        assert!(both[1].contains("5.0e-02 of the largest") && both[1].contains("finer mesh"));
+        assert_eq!(both.len(), 2);
+        let returned = advice(|e| (e.landing_return, e.release_loss) = (2.05, 0.06));
+        assert_eq!(returned, both[1..], "what was given back is not lost");
+        let put_in = advice(|e| (e.normal_contact_work, e.impact_loss) = (2.0, 0.0));
+        assert!(put_in[0].contains("put in 2.0e-01"), "{put_in:?}");
+        let scheme = advice(|e| {
+            *e = Energy {
+                numerical_dissipation: -3.0,
+                ..Energy::default()
+            }
+        });
+        assert!(
+            scheme[0].contains("changed the energy by 3.0e-01"),
+            "{scheme:?}"
+        );
+        let user = advice(|e| {
+            *e = Energy {
+                damping: 5.0,
+                friction_dissipation: 5.0,
+                ..Energy::default()
+            }
+        });
+        assert!(user.is_empty(), "what the deck asks for");
+    }
+
+    #[test]
+    fn nodes_that_take_each_others_place_ask_for_smaller_increments() {
+        let mut rolling = energy();
+        rolling.impact_loss = 0.0;
+        let [taken] = &Losses::new(&rolling, -1.5, 10.0).advice()[..] else {
+            panic!("one warning");
+        };
+        assert!(taken.contains("2.0e-01 of the largest energy"), "{taken}");
+        assert!(taken.contains("choose smaller increments or"), "{taken}");
+        rolling.landing_return = 2.0;
+        let [rings] = &Losses::new(&rolling, -1.5, 10.0).advice()[..] else {
+            panic!("one warning");
+        };
+        assert!(
+            rings.contains("makes forces ring") && rings.contains("1.5e-01"),
+            "{rings}"
+        );
+        assert!(
+            Losses::new(&rolling, -0.5, 10.0).advice().is_empty(),
+            "bounces"
+        );
+    }
+
+    /// A touch of 20 increments with five nodes.
+    fn touch() -> Touch {
+        Touch {
+            bodies: [Some(0), Some(1)],
+            node: 3,
+            start: 0.5,
+            end: 0.7,
+            first: 51,
+            last: 70,
+            nodes: 5,
+            impulse: 1.0,
+            energy: 1.0,
+            ..Touch::default()
+        }
+    }
+
+    #[test]
+    fn touches_that_matter_are_told_where_they_are_not_resolved() {
+        let texts = |change: fn(&mut Touch)| {
+            let mut changed = touch();
+            change(&mut changed);
+            let touches = Touches::new(&[touch(), changed], 2.0);
+            [touches.brief_text(), touches.narrow_text()].map(Option::unwrap_or_default)
+        };
+        let later = |t: &mut Touch| (t.first, t.last) = (100, 104);
+        let [brief, narrow] = texts(later);
+        assert!(brief.starts_with("1 of 2 contacts") && brief.contains("one 5 increments"));
+        assert!(brief.contains("increments of about 0.01"), "{brief}");
+        assert_eq!(narrow, "");
+        let [brief, narrow] = texts(|t| (t.bodies, t.nodes) = ([None, Some(1)], 3));
+        assert!(narrow.contains("(one 3, from time 0.5)"), "{narrow}");
+        assert_eq!(brief, "");
+        for harmless in [
+            |t: &mut Touch| (t.first, t.last) = (75, 76),
+            |t: &mut Touch| (t.first, t.last, t.energy) = (100, 101, 0.01),
+            |t: &mut Touch| (t.bodies, t.nodes, t.is_at_corner) = ([None; 2], 2, true),
+        ] {
+            assert_eq!(texts(harmless), [""; 2], "resolved, weak or at a corner");
+        }
+    }
+}
