@@ -10,8 +10,7 @@ use clap::{ArgAction, Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
 use crate::diagnostics::Strictness;
 use crate::model::{Frames, SolverChoice};
-use crate::output::Verbosity;
-use crate::output::Window;
+use crate::output::{Verbosity, Window};
 
 /// Large-displacement dynamics of plane deformable bodies with exact contact and Coulomb friction.
 #[derive(Debug, Parser)]

@@ -1,9 +1,9 @@
 //! The subcommands `check`, `explain`, `flatten`, `info` and `lcp`, and the reading of a deck, which they
 //! share with `run`.
 
+use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::{fs, io};
 
 use super::args::{CheckArgs, DeckArgs, ExplainArgs, FlattenArgs, InfoArgs, LcpArgs};
 use super::error::{CliError, Exit};
@@ -13,11 +13,9 @@ use crate::diagnostics::{Code, Diagnostics, Severity, Sources, Strictness, close
 use crate::dynamics::{Observer, RunError, RunSummary};
 use crate::flat_deck::{flat_deck, reads_as};
 use crate::lcp::solve_json;
-use crate::output::ResultSummary;
-use crate::output::check_names;
-use crate::output::picture;
-use crate::output::regular_file;
-use crate::output::{ModelEcho, deck_line};
+use crate::output::{
+    FileError, ModelEcho, ResultSummary, check_names, deck_line, not_regular, picture, regular_file,
+};
 use crate::prepare::{PreparedModel, prepare};
 use crate::{dynamics, reader};
 
@@ -57,11 +55,8 @@ pub(super) fn load(deck: &DeckArgs, numerics: &Numerics) -> Result<Loaded, CliEr
 
 /// Refuses a deck that cannot be opened.
 pub(super) fn openable(path: &Path) -> Result<(), CliError> {
-    let opened = regular_file(path).map(|_| ());
-    opened.map_err(|source| CliError::Deck {
-        path: path.to_owned(),
-        source,
-    })
+    regular_file(path).map_err(FileError::new("read the deck", path))?;
+    Ok(())
 }
 
 /// Prints the errors and warnings of a deck.
@@ -193,10 +188,7 @@ pub(super) fn info(args: &InfoArgs) -> Result<Exit, CliError> {
 /// Solves a complementarity problem given as JSON and prints the answer as JSON.
 pub(super) fn lcp(args: &LcpArgs) -> Result<Exit, CliError> {
     let text = regular_file(&args.problem).and_then(|_| fs::read_to_string(&args.problem));
-    let text = text.map_err(|source| CliError::Problem {
-        path: args.problem.clone(),
-        source,
-    })?;
+    let text = text.map_err(FileError::new("read", &args.problem))?;
     let answer = solve_json(&text);
     print(&[answer.text])?;
     Ok(if answer.solved {
@@ -209,19 +201,16 @@ pub(super) fn lcp(args: &LcpArgs) -> Result<Exit, CliError> {
 /// Writes a file, whole or not at all; one that exists is replaced only where the user asks for it.
 /// What is not a regular file stays; in place of a link a file of its own is made.
 pub(super) fn write_file(path: &Path, text: &str, overwrite: bool) -> Result<(), CliError> {
-    let failed = |source| CliError::File {
-        path: path.to_owned(),
-        source,
-    };
+    let failed = FileError::new("write", path);
     match fs::symlink_metadata(path) {
         Ok(_) if !overwrite => {
             let path = path.to_owned();
             return Err(CliError::Exists { path });
         }
         Ok(data) if !data.is_file() && !data.is_symlink() => {
-            return Err(failed(io::Error::other("it is not a regular file")));
+            return Err(failed(not_regular()).into());
         }
-        Err(error) if error.kind() != ErrorKind::NotFound => return Err(failed(error)),
+        Err(error) if error.kind() != ErrorKind::NotFound => return Err(failed(error).into()),
         _ => {}
     }
     let draft = draft(path);
@@ -230,7 +219,7 @@ pub(super) fn write_file(path: &Path, text: &str, overwrite: bool) -> Result<(),
         // the first error is reported
         let _ = fs::remove_file(&draft);
     }
-    written.map_err(failed)
+    Ok(written.map_err(failed)?)
 }
 
 /// The name of a file until it is complete.

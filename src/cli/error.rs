@@ -7,9 +7,7 @@ use std::process::ExitCode;
 
 use thiserror::Error;
 
-use crate::output::MemoryError;
-use crate::output::SummaryError;
-use crate::output::{NameError, OutputError, reason};
+use crate::output::{FileError, MemoryError, NameError, OutputError, SummaryError, reason};
 
 /// Exit codes of the program: a contract with scripts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,14 +41,9 @@ impl From<Exit> for ExitCode {
 /// Why a command failed.
 #[derive(Debug, Error)]
 pub(super) enum CliError {
-    /// The deck cannot be read.
-    #[error("cannot read the deck {}: {}", path.display(), reason(source))]
-    Deck {
-        /// The deck.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
+    /// A file cannot be read or written: a deck, a complementarity problem, or what the command makes.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// A name of the deck is not possible in the result file.
     #[error(transparent)]
     Name(#[from] NameError),
@@ -80,14 +73,6 @@ pub(super) enum CliError {
     /// The result file cannot be read.
     #[error(transparent)]
     Summary(#[from] SummaryError),
-    /// A complementarity problem cannot be read.
-    #[error("cannot read {}: {}", path.display(), reason(source))]
-    Problem {
-        /// Its file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
     /// There is no keyword and no code of this name.
     #[error(
         "{word} is neither a keyword nor the code of a message{}",
@@ -99,26 +84,18 @@ pub(super) enum CliError {
         /// What was probably meant.
         meant: Option<&'static str>,
     },
-    /// A file that the command makes cannot be written.
-    #[error("cannot write {}: {}", path.display(), reason(source))]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
     /// A file that the command makes exists.
     #[error("{} exists already; --overwrite replaces it", path.display())]
     Exists {
-        /// The file.
+        /// The file that exists.
         path: PathBuf,
     },
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
-        /// Their number.
+        /// Number of threads asked for.
         threads: usize,
-        /// Why.
+        /// The reason that the library gives.
         reason: String,
     },
 }
@@ -129,17 +106,7 @@ impl CliError {
         match self {
             CliError::Name(_) | CliError::Output(OutputError::Name(_)) => Exit::Rejected,
             CliError::Threads { .. } | CliError::Unexplained { .. } => Exit::Usage,
-            CliError::Deck { .. }
-            | CliError::Problem { .. }
-            | CliError::Memory(_)
-            | CliError::File { .. }
-            | CliError::Exists { .. }
-            | CliError::Output(_)
-            | CliError::Write(_)
-            | CliError::Broken { .. }
-            | CliError::Screen(_)
-            | CliError::Signals(_)
-            | CliError::Summary(_) => Exit::FileSystem,
+            _ => Exit::FileSystem,
         }
     }
 }

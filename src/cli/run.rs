@@ -9,13 +9,10 @@ use super::signals;
 use super::terminal::print;
 use crate::dynamics::{Outcome, RunError};
 use crate::model::{Frames, SolverChoice, Step};
-use crate::output::RunRecord;
-use crate::output::Verbosity;
-use crate::output::check_memory;
-use crate::output::check_names;
-use crate::output::{Claim, JobFiles};
-use crate::output::{Interrupt, ResultWriter};
-use crate::output::{ModelEcho, frames, program_lines, solver};
+use crate::output::{
+    Claim, Interrupt, JobFiles, ModelEcho, ResultWriter, RunRecord, Verbosity, check_memory,
+    check_names, frames, program_lines, solver,
+};
 use crate::prepare::{MemoryNeed, PreparedModel};
 
 /// Solves a deck; `command` is the command as typed. The run ends early when `interrupt` requests

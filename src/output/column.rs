@@ -332,7 +332,7 @@ pub(crate) struct Columns<'m, R> {
 }
 
 impl<'m, R> Columns<'m, R> {
-    /// None yet.
+    /// No datasets yet.
     pub fn new() -> Self {
         Columns {
             all: Vec::new(),

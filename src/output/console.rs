@@ -35,7 +35,7 @@ pub(crate) struct Console {
     verbosity: Verbosity,
     table: Table,
     progress: Progress,
-    log: Log,
+    pub log: Log,
 }
 
 impl Console {
@@ -58,8 +58,8 @@ impl Console {
     /// log of a verbose run; `error` is the relative energy balance.
     pub fn increment(&mut self, report: &IncrementReport, error: f64) -> io::Result<()> {
         if self.verbosity == Verbosity::Verbose {
-            self.detail(&increment_line(report))?;
-            self.passes(&report.passes)?;
+            self.log.line(&increment_line(report))?;
+            self.log.passes(&report.passes)?;
         }
         if self.table.shows(report) {
             if let Some(header) = self.table.header() {
@@ -102,11 +102,6 @@ impl Console {
         self.lost.is_some()
     }
 
-    /// Begins the log with the lines so far.
-    pub fn begin_log(&mut self) -> io::Result<()> {
-        self.log.begin()
-    }
-
     /// Prints a line that even a quiet run shows, on the standard error.
     pub fn alarm(&mut self, text: &str) -> io::Result<()> {
         if self.verbosity == Verbosity::Quiet {
@@ -114,16 +109,6 @@ impl Console {
             let _ = writeln!(io::stderr(), "{text}");
         }
         self.line(text)
-    }
-
-    /// Writes a line to the log only.
-    pub fn detail(&mut self, text: &str) -> io::Result<()> {
-        self.log.line(text)
-    }
-
-    /// Writes the passes of an increment to the log.
-    pub fn passes(&mut self, passes: &[PassReport]) -> io::Result<()> {
-        self.log.passes(passes)
     }
 
     /// Removes the live line.
@@ -237,11 +222,11 @@ const TOLD: f64 = 0.01;
 /// The live line below the table; nothing when the output is not a terminal.
 pub(crate) struct Progress {
     bar: Option<ProgressBar>,
-    course: Course,
+    nominal: NominalIncrements,
 }
 
 /// The nominal increments of a run and when it began.
-struct Course {
+struct NominalIncrements {
     /// Period and nominal increments of every step.
     steps: Vec<(f64, f64)>,
     started: Instant,
@@ -251,7 +236,7 @@ impl Progress {
     /// A live line, or none.
     pub fn new(model: &Model, live: bool) -> Self {
         let steps = model.steps.iter().map(|step| step.increments);
-        let course = Course {
+        let nominal = NominalIncrements {
             steps: steps
                 .map(|i| (i.period, (i.period / i.dt).ceil()))
                 .collect(),
@@ -262,15 +247,15 @@ impl Progress {
             bar.set_style(style());
             bar
         });
-        Progress { bar, course }
+        Progress { bar, nominal }
     }
 
     /// Shows an increment.
     pub fn show(&self, report: &IncrementReport) {
         let Some(bar) = &self.bar else { return };
-        let course = &self.course;
-        let part = course.part(report.step, report.step_time);
-        bar.set_message(course.text(report, part, course.started.elapsed()));
+        let nominal = &self.nominal;
+        let part = nominal.part(report.step, report.step_time);
+        bar.set_message(nominal.text(report, part, nominal.started.elapsed()));
         bar.set_position((part * TICKS as f64) as u64);
     }
 
@@ -290,7 +275,7 @@ impl Progress {
     }
 }
 
-impl Course {
+impl NominalIncrements {
     /// Part of the nominal increments that are done at a time of a step, counted from 1.
     fn part(&self, step: usize, step_time: f64) -> f64 {
         let before = self.steps.iter().take(step.saturating_sub(1));
@@ -441,7 +426,7 @@ mod tests {
 
     /// The line of a run of two steps, 100 and 300 increments, at a time of a step.
     fn line(step: usize, step_time: f64, seconds: u64) -> (String, f64) {
-        let course = Course {
+        let nominal = NominalIncrements {
             steps: vec![(1.0, 100.0), (0.5, 300.0)],
             started: Instant::now(),
         };
@@ -451,9 +436,9 @@ mod tests {
             step_time,
             ..IncrementReport::default()
         };
-        let part = course.part(step, step_time);
+        let part = nominal.part(step, step_time);
         (
-            course.text(&report, part, Duration::from_secs(seconds)),
+            nominal.text(&report, part, Duration::from_secs(seconds)),
             part,
         )
     }

@@ -10,8 +10,7 @@ use crate::model::{
     Contact, Element, ElementType, Frames, Impact, ImpactTime, LandingRule, Model, Plane, Scheme,
     Settings, SolverChoice, Step, SurfaceKind,
 };
-use crate::prepare::InitialGap;
-use crate::prepare::PreparedModel;
+use crate::prepare::{InitialGap, PreparedModel};
 
 /// Most nodes that are named.
 const MOST_NAMES: usize = 12;

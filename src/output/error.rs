@@ -19,32 +19,49 @@ pub enum OutputError {
         list(files)
     )]
     Exists {
-        /// The files.
+        /// The files that exist.
         files: Vec<PathBuf>,
     },
     /// Another run of the job is in progress.
     #[error("{} belongs to a run that is still going on", path.display())]
     Held {
-        /// Its locked file.
+        /// The file that it has locked.
         path: PathBuf,
     },
-    /// A fifo, a device or a folder has the name of a file of the job.
-    #[error("cannot write {}: it is not a regular file", path.display())]
-    NotRegular {
-        /// Its path.
-        path: PathBuf,
-    },
-    /// A file or folder could not be created.
-    #[error("cannot create {}: {}", path.display(), reason(source))]
-    Create {
-        /// The file or folder.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
+    /// A file or folder could not be created, or something else has its name.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// A file could not be written; the error names it.
     #[error("cannot write the results: {0}")]
     Write(#[from] io::Error),
+}
+
+/// A file or folder that cannot be used.
+#[derive(Debug, Error)]
+#[error("cannot {what} {}: {}", path.display(), reason(source))]
+pub struct FileError {
+    /// What was to be done, such as "read".
+    pub what: &'static str,
+    /// The file or folder.
+    pub path: PathBuf,
+    /// The system's reason.
+    pub source: io::Error,
+}
+
+impl FileError {
+    /// The error of doing something with `path`.
+    pub fn new(what: &'static str, path: &Path) -> impl Fn(io::Error) -> Self {
+        move |source| FileError {
+            what,
+            path: path.to_owned(),
+            source,
+        }
+    }
+}
+
+/// The error of a fifo, a device or a folder in place of a file.
+pub fn not_regular() -> io::Error {
+    io::Error::other("it is not a regular file")
 }
 
 /// A name that is not possible in the result file.
@@ -56,18 +73,8 @@ pub enum OutputError {
 pub struct NameError {
     /// What has the name, such as "node set".
     pub what: &'static str,
-    /// The name.
+    /// The name in the deck.
     pub name: String,
-}
-
-impl OutputError {
-    /// The result of creating `path`.
-    pub(super) fn at(path: &Path) -> impl Fn(io::Error) -> Self + '_ {
-        move |source| OutputError::Create {
-            path: path.to_owned(),
-            source,
-        }
-    }
 }
 
 fn list(files: &[PathBuf]) -> String {
@@ -123,7 +130,7 @@ pub fn regular_file(path: &Path) -> io::Result<fs::Metadata> {
         return Err(io::ErrorKind::IsADirectory.into());
     }
     if !data.is_file() {
-        return Err(io::Error::other("it is not a regular file"));
+        return Err(not_regular());
     }
     fs::File::open(path)?.metadata()
 }

@@ -411,16 +411,19 @@ const NODAL: [NodalField; 8] = [
      "slip accumulated since the start at slave nodes, NaN at others", |f| &f.nodal.slip),
 ];
 
-/// On request.
+/// A field that a deck has to ask for.
 #[rustfmt::skip]
 const CONCENTRATED: [NodalField; 1] = [
     ("CF", IN_SPACE, Mostly::Zero, "force", "concentrated loads on the node", |f| &f.nodal.concentrated),
 ];
 
-const TENSORS: [(&str, Meaning, fn(&ElementResult) -> [f64; 3]); 2] =
+/// A field of the elements: name, meaning and value.
+type ElementField<T> = (&'static str, Meaning, fn(&ElementResult) -> T);
+
+const TENSORS: [ElementField<[f64; 3]>; 2] =
     [("S", STRESS, |e| e.stress), ("E", STRAIN, |e| e.strain)];
 
-const SCALARS: [(&str, Meaning, fn(&ElementResult) -> f64); 2] = [
+const SCALARS: [ElementField<f64>; 2] = [
     ("S33", ACROSS, |e| e.across),
     ("MISES", VON_MISES, ElementResult::von_mises),
 ];

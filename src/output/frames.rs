@@ -136,7 +136,7 @@ pub(crate) struct Frame {
 
 impl Frame {
     /// Copies the results of an increment, reusing the allocated memory.
-    fn set(&mut self, report: &IncrementReport) {
+    pub fn set(&mut self, report: &IncrementReport) {
         let (state, nodal) = (&report.state, &report.nodal);
         self.time = report.time;
         self.state.u.clone_from(&state.u);
@@ -151,27 +151,6 @@ impl Frame {
         self.nodal.slip.clone_from(&nodal.slip);
         self.nodal.mass.clone_from(&nodal.mass);
         self.elements.clone_from(&report.elements);
-    }
-}
-
-/// The last good state: the final frame of a run that stops.
-#[derive(Default)]
-pub(super) struct LastState {
-    pub frame: Frame,
-    /// Whether it is a frame.
-    pub is_written: bool,
-}
-
-impl LastState {
-    /// Stores the end of an increment, which is not yet a frame.
-    pub fn set(&mut self, report: &IncrementReport) {
-        self.frame.set(report);
-        self.is_written = false;
-    }
-
-    /// Notes that the state is a frame.
-    pub fn set_written(&mut self) {
-        self.is_written = true;
     }
 }
 

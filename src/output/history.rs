@@ -33,7 +33,7 @@ use Value::{Count, Flag, Node, Real, Segment, Tensor, Vector};
 /// A dataset of the records `Q`: name, dimension, what it holds, and its value.
 type Entry<Q> = (&'static str, &'static str, &'static str, Value<Q>);
 
-/// Writes the history.
+/// Writes the datasets of the history.
 pub(crate) struct History<'m> {
     model: &'m Model,
     columns: Columns<'m, IncrementReport>,
@@ -173,7 +173,7 @@ impl<'m> History<'m> {
         Ok(())
     }
 
-    /// `/history/momentum`.
+    /// `/history/momentum`; that of the consistent mass where the mass is redistributed.
     fn create_momentum(&mut self, at: &Group) -> hdf5::Result<()> {
         self.table(at, &[], &MOMENTUM, |r, each| each(&r.momentum))?;
         if self.model.redistributes_mass() {
@@ -412,8 +412,6 @@ fn sum(nodes: &[usize], values: &[f64]) -> [f64; 2] {
     pick(nodes, values).fold([0.0; 2], |[x, y], v| [x + v[0], y + v[1]])
 }
 
-// The tables of the datasets.
-
 #[rustfmt::skip]
 const INCREMENT: [Entry<IncrementReport>; 3] = [
     ("time", "time", "time at the end of the increment", Real(|r| r.time)),
@@ -457,7 +455,7 @@ const MOMENTUM: [Entry<Momentum>; 4] = [
      "angular momentum taken by mass-proportional damping since the start", Real(|m| m.damped_angular)),
 ];
 
-/// With redistributed mass; where no node gives its mass up it is the other.
+/// Redistributed mass has this dataset too; where no node gives its mass up it is `angular`.
 #[rustfmt::skip]
 const CONSISTENT: [Entry<Momentum>; 1] = [
     ("consistent_angular", "mass*length^2/time", "angular momentum about the origin of the consistent mass",
@@ -536,14 +534,14 @@ const CONTACT: [Entry<ContactResultant>; 26] = [
      "sum of the normal impulses of landing returns since the start", Real(|c| c.impulse_sum.landing_return)),
 ];
 
-/// Of a rigid master.
+/// A contact whose master is rigid has this dataset too.
 #[rustfmt::skip]
 const REFERENCE_MOMENT: [Entry<ContactResultant>; 1] = [
     ("reference_moment", "force*length", "moment of the force about the reference node of the master",
      Real(|c| c.reference_moment)),
 ];
 
-/// Of a surface that touches itself.
+/// A surface that touches itself has these datasets too.
 #[rustfmt::skip]
 const CONTACT_ON_BODY: [Entry<ContactOnBody>; 2] = [
     ("body_force", "force", "force of this contact on each body", Vector(|b| b.force)),

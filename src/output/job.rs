@@ -10,7 +10,7 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-use super::error::{OutputError, at};
+use super::error::{FileError, OutputError, at, not_regular};
 
 /// The files of a job.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -138,7 +138,7 @@ impl Claim {
         let draft = self.files.draft();
         match fs::remove_file(&draft) {
             Err(error) if error.kind() != ErrorKind::NotFound => {
-                Err(OutputError::at(&draft)(error))
+                Err(FileError::new("create", &draft)(error).into())
             }
             _ => Ok(draft),
         }
@@ -175,7 +175,7 @@ fn refuse(files: Vec<PathBuf>) -> Result<(), OutputError> {
 fn create_folder(file: &Path) -> Result<(), OutputError> {
     match file.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => {
-            fs::create_dir_all(folder).map_err(OutputError::at(folder))
+            Ok(fs::create_dir_all(folder).map_err(FileError::new("create", folder))?)
         }
         _ => Ok(()),
     }
@@ -187,11 +187,10 @@ fn clear(files: &JobFiles) -> Result<(), OutputError> {
     for path in files.existing() {
         match fs::symlink_metadata(path) {
             Ok(data) if data.is_symlink() => {
-                fs::remove_file(path).map_err(OutputError::at(path))?;
+                fs::remove_file(path).map_err(FileError::new("create", path))?;
             }
             Ok(data) if !data.is_file() => {
-                let path = path.to_owned();
-                return Err(OutputError::NotRegular { path });
+                return Err(FileError::new("write", path)(not_regular()).into());
             }
             _ => {}
         }
@@ -208,9 +207,9 @@ fn locked_log(path: &Path, overwrite: bool) -> Result<File, OutputError> {
             Err(error) if error.kind() == ErrorKind::AlreadyExists => match how.open(path) {
                 // The file was removed in between: try again.
                 Err(error) if error.kind() == ErrorKind::NotFound => continue,
-                old => (old.map_err(OutputError::at(path))?, false),
+                old => (old.map_err(FileError::new("create", path))?, false),
             },
-            new => (new.map_err(OutputError::at(path))?, true),
+            new => (new.map_err(FileError::new("create", path))?, true),
         };
         match log.try_lock() {
             Err(TryLockError::WouldBlock) => {

@@ -32,7 +32,7 @@ mod writer;
 pub use canvas::Window;
 pub use console::Verbosity;
 pub use echo::{ModelEcho, deck_line, frames, program_lines, solver};
-pub use error::{NameError, OutputError, reason, regular_file};
+pub use error::{FileError, NameError, OutputError, not_regular, reason, regular_file};
 pub use frames::{DEFAULT_FRAMES, FrameSchedule};
 pub use job::{Claim, JobFiles};
 pub use memory::{MemoryError, check_memory, memory_need};

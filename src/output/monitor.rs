@@ -21,8 +21,13 @@ use crate::model::{Bodies, Equation, Model};
 pub(crate) struct Monitor {
     /// Energy balance, energy from contact, momentum.
     pub balance: Balance,
-    watch: Watch,
     strain: StrainWatch,
+    /// Whether each contact has closed, or been struck.
+    closed: Vec<bool>,
+    touches: Vec<Touch>,
+    /// Length of the longest increment, and the last time.
+    dt: f64,
+    time: f64,
     /// Failed attempts since the last increment.
     failed_attempts: usize,
     cutbacks: usize,
@@ -46,8 +51,11 @@ impl Monitor {
     pub fn new(model: &Model) -> Self {
         Monitor {
             balance: Balance::new(model),
-            watch: Watch::default(),
             strain: StrainWatch::new(model),
+            closed: vec![false; model.contacts.len()],
+            touches: Vec::new(),
+            dt: 0.0,
+            time: 0.0,
             failed_attempts: 0,
             cutbacks: 0,
             kinds: Vec::new(),
@@ -59,9 +67,12 @@ impl Monitor {
     /// Enters an accepted increment.
     pub fn add(&mut self, report: &IncrementReport) -> Remarks {
         let contact_energy = self.balance.add(report);
-        self.watch.add(report);
+        self.touches.extend(&report.touches);
+        self.dt = larger(self.dt, report.dt);
+        self.time = report.time;
         self.landings += report.landings.len();
-        for contact in &report.contacts {
+        for (closed, contact) in self.closed.iter_mut().zip(&report.contacts) {
+            *closed |= contact.closed > 0 || contact.impulse.impact_normal > 0.0;
             let [force, impulse] = &mut self.cone_violations;
             *force = larger(*force, contact.cone_violation);
             *impulse = larger(*impulse, contact.impulse_cone_violation);
@@ -128,9 +139,24 @@ impl Monitor {
         line
     }
 
-    /// The warnings at the end of the run.
+    /// The warnings at the end of the run; large strains are reported at their increment.
     pub fn warnings(&self, model: &Model) -> Vec<String> {
-        self.watch.findings(model, &self.balance).lines()
+        let closed = self.closed.iter().copied();
+        let contacts: Vec<(String, bool)> = contact_names(model).into_iter().zip(closed).collect();
+        let findings = Findings {
+            balance: self.balance.worst(),
+            losses: self.balance.losses(),
+            strain: None,
+            open: match self.dt > 0.0 {
+                true => never_closed(&contacts),
+                false => Vec::new(),
+            },
+            touches: Touches::new(&self.touches, self.balance.largest),
+            dt: self.dt,
+            time: self.time,
+            bodies: body_times(model, &Bodies::new(&model.mesh)),
+        };
+        findings.lines()
     }
 }
 
@@ -162,9 +188,9 @@ pub(crate) struct Balance {
 /// those that a pair enters with a negative gap.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct ContactEnergy {
-    /// Their number.
+    /// Number of these increments.
     pub count: usize,
-    /// The energy put in.
+    /// The energy that contact put in.
     pub energy: f64,
 }
 
@@ -226,11 +252,6 @@ impl Balance {
     /// `balance` as a part of the largest energy so far.
     pub fn relative(&self, balance: f64) -> f64 {
         part(balance, self.largest)
-    }
-
-    /// Largest energy or external work so far.
-    pub fn largest(&self) -> f64 {
-        self.largest
     }
 
     /// The worst balance so far as a part of the largest energy.
@@ -329,48 +350,6 @@ pub(crate) fn lcp_lines(solver: &SolverCounts) -> Vec<String> {
         counted(solver.lemke_calls, "Lemke solve"),
     ];
     wrap("LCP", &pieces)
-}
-
-/// Follows what the warnings at the end of a run are made from.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Watch {
-    /// Whether each contact has closed, or been struck.
-    closed: Vec<bool>,
-    touches: Vec<Touch>,
-    dt: f64,
-    time: f64,
-}
-
-impl Watch {
-    /// Enters an increment.
-    pub fn add(&mut self, report: &IncrementReport) {
-        self.closed.resize(report.contacts.len(), false);
-        for (closed, contact) in self.closed.iter_mut().zip(&report.contacts) {
-            *closed |= contact.closed > 0 || contact.impulse.impact_normal > 0.0;
-        }
-        self.touches.extend(&report.touches);
-        self.dt = larger(self.dt, report.dt);
-        self.time = report.time;
-    }
-
-    /// The findings of the run; large strains are reported at their increment.
-    pub fn findings(&self, model: &Model, balance: &Balance) -> Findings {
-        let closed = self.closed.iter().copied();
-        let contacts: Vec<(String, bool)> = contact_names(model).into_iter().zip(closed).collect();
-        Findings {
-            balance: balance.worst(),
-            losses: balance.losses(),
-            strain: None,
-            open: match self.dt > 0.0 {
-                true => never_closed(&contacts),
-                false => Vec::new(),
-            },
-            touches: Touches::new(&self.touches, balance.largest()),
-            dt: self.dt,
-            time: self.time,
-            bodies: body_times(model, &Bodies::new(&model.mesh)),
-        }
-    }
 }
 
 #[cfg(test)]

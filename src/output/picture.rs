@@ -142,7 +142,7 @@ impl Picture<'_> {
             self.canvas.explain(symbol(pen), text);
             if is_slave || matches!(surface.kind, SurfaceKind::Nodes(_)) {
                 let mut spacing = Spacing::new(6.0);
-                for node in surface.ends(&self.model.mesh) {
+                for node in surface.nodes(&self.model.mesh) {
                     if let Some(at) = self.canvas.room(self.x[node], &mut spacing) {
                         self.canvas.dot(at, 2.2, pen.0);
                     }
@@ -197,7 +197,7 @@ impl Picture<'_> {
         let (place, normal) = match parts.get(parts.len() / 2) {
             Some(&[a, b]) => (middle([a, b]), project(a, a, b).normal),
             None => {
-                let nodes = surface.ends(&self.model.mesh).into_iter();
+                let nodes = surface.nodes(&self.model.mesh).into_iter();
                 let mut places = nodes.map(|node| self.x[node]);
                 match places.find(|&place| self.canvas.shows(place)) {
                     Some(place) => (place, [0.0, 1.0]),

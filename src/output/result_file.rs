@@ -11,7 +11,7 @@ use super::error::{at, io_error};
 use super::fields::Fields;
 use super::frames::Frame;
 use super::history::History;
-use super::run_record::{Record, RunRecord};
+use super::run_record::{RecordWriter, RunRecord};
 use super::space::Space;
 use crate::dynamics::{IncrementReport, RunSummary};
 use crate::model::Model;
@@ -25,12 +25,12 @@ const FRAMES_TO_HISTORY: usize = 4;
 
 /// `JOB.vtkhdf` while it is being written.
 pub(super) struct ResultFile<'m> {
-    /// Its final path.
+    /// Its path once the first frame is complete.
     path: PathBuf,
     file: File,
     fields: Fields<'m>,
     history: History<'m>,
-    record: Record,
+    record: RecordWriter,
     space: Space,
     pace: Pace,
     /// Time of the last frame.
@@ -75,11 +75,11 @@ impl<'m> ResultFile<'m> {
         file: &File,
         model: &'m Model,
         record: &RunRecord,
-    ) -> hdf5::Result<(Fields<'m>, History<'m>, Record)> {
+    ) -> hdf5::Result<(Fields<'m>, History<'m>, RecordWriter)> {
         super::model_group::write(file, model)?;
         let fields = Fields::create(file, model)?;
         let history = History::create(file, model)?;
-        let record = Record::create(file, record)?;
+        let record = RecordWriter::create(file, record)?;
         file.flush()?;
         Ok((fields, history, record))
     }

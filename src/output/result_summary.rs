@@ -1,6 +1,5 @@
 //! A finished or running job as read back from its result file: the content of `info`.
 
-use std::io;
 use std::path::{Path, PathBuf};
 
 use hdf5::types::VarLenUnicode;
@@ -8,7 +7,7 @@ use hdf5::{Dataset, FileBuilder, Group, H5Type};
 use thiserror::Error;
 
 use super::column::ROWS;
-use super::error::{reason, regular_file};
+use super::error::{FileError, regular_file};
 use super::format::{bytes, counted, general, label, scientific, wrap};
 use super::model_group::BodyTimes;
 use super::monitor::error_line;
@@ -21,19 +20,14 @@ use crate::linear::{larger, largest};
 #[derive(Debug, Error)]
 pub enum SummaryError {
     /// The file does not exist or may not be read.
-    #[error("cannot read {}: {}", path.display(), reason(source))]
-    Open {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
+    #[error(transparent)]
+    Open(#[from] FileError),
     /// The file is not a complete result file of this program.
     #[error("{} is not a result file of stickslip: {source}", path.display())]
     Content {
-        /// The file.
+        /// The file that was read.
         path: PathBuf,
-        /// Why.
+        /// The reason that the library gives.
         source: hdf5::Error,
     },
 }
@@ -41,7 +35,7 @@ pub enum SummaryError {
 /// Figures of a result file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResultSummary {
-    /// The file.
+    /// The file that was read.
     pub path: PathBuf,
     /// Its size in bytes.
     pub size: u64,
@@ -94,16 +88,12 @@ pub struct ResultSummary {
 impl ResultSummary {
     /// Reads a result file.
     pub fn read(path: &Path) -> Result<Self, SummaryError> {
-        let open = |source| SummaryError::Open {
-            path: path.to_owned(),
-            source,
-        };
-        let size = regular_file(path).map_err(open)?.len();
+        let data = regular_file(path).map_err(FileError::new("read", path))?;
         let content = |source| SummaryError::Content {
             path: path.to_owned(),
             source,
         };
-        Self::read_file(path, size).map_err(content)
+        Self::read_file(path, data.len()).map_err(content)
     }
 
     fn read_file(path: &Path, size: u64) -> hdf5::Result<Self> {

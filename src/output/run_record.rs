@@ -33,11 +33,11 @@ pub struct RunRecord {
 }
 
 /// Writes the run record.
-pub(crate) struct Record {
+pub(crate) struct RecordWriter {
     at: Group,
 }
 
-impl Record {
+impl RecordWriter {
     /// Creates the group with everything known at the start.
     pub fn create(root: &Group, record: &RunRecord) -> hdf5::Result<Self> {
         let at = group(root, "run")?;
@@ -53,7 +53,7 @@ impl Record {
         set_attribute(&at, "exit_status", UNFINISHED)?;
         set_attribute(&at, "threads", record.threads as i64)?;
         set_attribute(&at, "memory_need", record.memory_need as i64)?;
-        Ok(Record { at })
+        Ok(RecordWriter { at })
     }
 
     /// Completes the record.

@@ -35,7 +35,7 @@ pub(crate) fn inversion_hint(element: usize, model: &Model) -> &'static [&'stati
 pub(crate) struct SmallStrainElements(Vec<usize>);
 
 impl SmallStrainElements {
-    /// Those of `model`.
+    /// The elements of a model whose law is meant for small strains.
     pub fn new(model: &Model) -> Self {
         let all = 0..model.mesh.elements.len();
         let is_limited = |&element: &usize| model.is_for_small_strains(element);

@@ -148,7 +148,7 @@ pub(crate) fn never_closed(contacts: &[(String, bool)]) -> Vec<String> {
 }
 
 /// Part of the largest energy that is too small to be told.
-const ROUND_OFF: f64 = 1e-10;
+const NEGLIGIBLE: f64 = 1e-10;
 /// Part of the largest energy that is warned about.
 const MUCH: f64 = 0.01;
 
@@ -205,7 +205,7 @@ impl Losses {
             ("materials", self.materials),
             ("scheme", self.scheme),
         ];
-        let counts = |&(_, part): &(&str, f64)| part.is_nan() || part.abs() > ROUND_OFF;
+        let counts = |&(_, part): &(&str, f64)| part.is_nan() || part.abs() > NEGLIGIBLE;
         let percent = |(name, part): (&str, f64)| format!("{name} {} %", general(100.0 * part, 2));
         let told: Vec<String> = all.into_iter().filter(counts).map(percent).collect();
         match told.is_empty() {

@@ -12,7 +12,7 @@ use super::console::{Console, Log, Verbosity};
 use super::error::{OutputError, at};
 use super::failure::{cutback_advice, cutback_lines, failure_lines};
 use super::format::{bytes, counted, scientific, wrap};
-use super::frames::{FrameSchedule, LastState};
+use super::frames::{Frame, FrameSchedule};
 use super::job::Claim;
 use super::model_group::check_names;
 use super::monitor::{Monitor, Remarks, error_line, lcp_lines, timing_lines};
@@ -37,7 +37,9 @@ pub struct ResultWriter<'a> {
     console: Console,
     schedule: FrameSchedule<'a>,
     monitor: Monitor,
-    last: LastState,
+    /// The last good state: the final frame of a run that stops.
+    last: Frame,
+    is_last_written: bool,
     started: Instant,
     /// Time spent on output.
     spent: Duration,
@@ -64,7 +66,8 @@ impl<'a> ResultWriter<'a> {
             console: Console::new(model, verbosity, log),
             schedule: FrameSchedule::new(model),
             monitor: Monitor::new(model),
-            last: LastState::default(),
+            last: Frame::default(),
+            is_last_written: false,
             started,
             spent: started.elapsed(),
             interrupt: Interrupt::default(),
@@ -98,7 +101,7 @@ impl<'a> ResultWriter<'a> {
         if self.status.is_none() {
             self.claim.publish()?;
             self.status = Some(StatusFile::create(&self.claim.files().status, self.model)?);
-            self.console.begin_log()?;
+            self.console.log.begin()?;
         }
         Ok(())
     }
@@ -110,15 +113,16 @@ impl<'a> ResultWriter<'a> {
 
     /// Writes a line to the log only.
     pub fn detail(&mut self, text: &str) -> io::Result<()> {
-        self.console.detail(text)
+        self.console.log.line(text)
     }
 
     /// Ends the run: the last good state of a stopped run, the record and the closing lines.
     pub fn finish(&mut self, summary: &RunSummary) -> io::Result<()> {
         let start = Instant::now();
         self.console.finish();
-        if summary.outcome != Outcome::Finished {
-            self.write_last_state()?;
+        let has_state = !self.last.state.u.is_empty();
+        if summary.outcome != Outcome::Finished && !self.is_last_written && has_state {
+            self.result.frame(&self.last);
         }
         self.result.write()?;
         self.publish()?;
@@ -148,25 +152,15 @@ impl<'a> ResultWriter<'a> {
         self.result.abandon(exit_status)
     }
 
-    fn write_last_state(&mut self) -> io::Result<()> {
-        let last = &mut self.last;
-        if last.is_written || last.frame.state.u.is_empty() {
-            return Ok(());
-        }
-        self.result.frame(&last.frame);
-        last.set_written();
-        Ok(())
-    }
-
     fn record_increment(&mut self, report: &IncrementReport) -> io::Result<()> {
         let remarks = self.monitor.add(report);
         self.print_remarks(report, &remarks)?;
         self.result.history(report);
         self.last.set(report);
         let is_frame = self.schedule.is_due(report);
+        self.is_last_written = is_frame;
         if is_frame {
-            self.result.frame(&self.last.frame);
-            self.last.set_written();
+            self.result.frame(&self.last);
         }
         self.result.write_when_due()?;
         match is_frame {
@@ -206,12 +200,11 @@ impl<'a> ResultWriter<'a> {
         }
         let part = scientific(balance.relative(energy), 1);
         let energy = scientific(energy, 2);
-        self.console.detail(&format!(
+        self.console.log.line(&format!(
             "contact  put energy in in increment {increment}: {energy}, {part} of the largest"
         ))?;
         if count == LOGGED_CONTACT_ENERGIES {
-            self.console
-                .detail("         further such increments are counted only")?;
+            (self.console.log).line("         further such increments are counted only")?;
         }
         Ok(())
     }
@@ -226,7 +219,7 @@ impl<'a> ResultWriter<'a> {
         for line in lines {
             match count <= SCREEN_CUTBACKS {
                 true => self.console.line(&line)?,
-                false => self.console.detail(&line)?,
+                false => self.console.log.line(&line)?,
             }
         }
         if count == SCREEN_CUTBACKS {
@@ -237,7 +230,7 @@ impl<'a> ResultWriter<'a> {
     }
 
     fn print_failure(&mut self, failure: &Failure) -> io::Result<()> {
-        let last = &self.last.frame;
+        let last = &self.last;
         let lines = failure_lines(failure, self.model, &last.state.u, &last.elements);
         self.alarm(lines)?;
         if let Cause::Lcp(failed) = &failure.cause {
@@ -265,7 +258,7 @@ impl<'a> ResultWriter<'a> {
             0 => vec![format!("{name} has no frame")],
             _ => vec![
                 format!("{name} is valid up to its last frame"),
-                format!("time {}", scientific(self.last.frame.time, 6)),
+                format!("time {}", scientific(self.last.time, 6)),
             ],
         };
         self.alarm(wrap("results", &pieces))
@@ -302,7 +295,7 @@ impl Observer for ResultWriter<'_> {
 
     fn cutback(&mut self, cutback: &Cutback) -> io::Result<()> {
         self.print_cutback(cutback)?;
-        self.console.passes(&cutback.failure.passes)
+        self.console.log.passes(&cutback.failure.passes)
     }
 
     fn wants_stop(&self) -> bool {
