@@ -30,6 +30,7 @@ pub trait Formulation {
 
 /// Internal force F = int B_L^T S dOmega, eq. (2.5) (paper eq. 12), 2 x N (force), with the smallest
 /// determinant of the deformation gradient.
+#[inline]
 pub fn internal_force<F: Formulation, const N: usize, const P: usize>(
     element: &Reference<N, P>,
     material: &impl StressAtPoints,

@@ -56,7 +56,7 @@ impl Viscosity {
 /// change.
 impl StressAtPoints for Viscosity {
     /// S_d dt, eq. (4.23)
-    #[inline]
+    #[inline(always)]
     fn stress(&self, _point: usize, strains: &Strains) -> Matrix2<f64> {
         let Strains::Between(e0, e1) = strains else {
             return Matrix2::zeros();
@@ -75,7 +75,7 @@ impl StressAtPoints for Viscosity {
     }
 
     /// 2 V of eq. (4.25), positive definite: without the change of G and J_m, which is of first order in dE.
-    #[inline]
+    #[inline(always)]
     fn tangent(&self, _point: usize, strains: &Strains) -> Matrix3<f64> {
         let Strains::Between(e0, e1) = strains else {
             return Matrix3::zeros();
