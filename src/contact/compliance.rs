@@ -201,7 +201,7 @@ impl Compliance {
         }
     }
 
-    /// Entries of normal and tangential row at the dofs of a node, times R, eq. (4.20).
+    /// Entries of normal and tangential row at the dofs of a node, times R, eq. (4.16).
     fn turned_back(&self, dofs: &[usize], rows: &Rows, node: usize) -> [[f64; 2]; 2] {
         let Rows { normal, tangential } = rows;
         let mut normal = [normal[2 * node], normal[2 * node + 1]];

@@ -43,7 +43,7 @@ fn assert_none(offences: &[String]) {
 }
 
 #[test]
-fn numbers_increase_within_their_sections() {
+fn numbers_count_the_equations_of_their_sections() {
     let theory = read(THEORY);
     assert!(equations(&theory).len() > 12);
     assert_none(&misnumbered(&theory));

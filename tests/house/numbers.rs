@@ -41,7 +41,7 @@ pub fn equations(theory: &str) -> Vec<(usize, Number)> {
         .collect()
 }
 
-/// Numbers that are not those of their section, or not larger than the ones before.
+/// Numbers that are not those of their section, or do not count its equations from 1 without gaps.
 pub fn misnumbered(theory: &str) -> Vec<String> {
     let headings: Vec<(usize, usize)> = (theory.lines().enumerate())
         .filter_map(|(k, line)| {
@@ -50,7 +50,7 @@ pub fn misnumbered(theory: &str) -> Vec<String> {
         })
         .collect();
     let mut offences = Vec::new();
-    let mut last = None;
+    let mut last: Option<Number> = None;
     for (line, number) in equations(theory) {
         let section = headings.iter().rfind(|(heading, _)| *heading < line);
         let section = section.map(|(_, section)| *section);
@@ -59,8 +59,12 @@ pub fn misnumbered(theory: &str) -> Vec<String> {
                 "line {line}: {number} stands in section {section:?}"
             ));
         }
-        if last.is_some_and(|last| last >= number) {
-            offences.push(format!("line {line}: {number} does not increase"));
+        let before = last.filter(|last| last.section == number.section);
+        let next = before.map_or(1, |last| last.equation + 1);
+        if number.equation != next {
+            offences.push(format!(
+                "line {line}: {number} has the place of number {next}"
+            ));
         }
         last = Some(number);
     }
@@ -127,10 +131,11 @@ mod tests {
             let [a, b, c] = numbers.map(|n| format!("    f  ({n})\n"));
             format!("## 2. A\n{a}{b}## 3. B\n{c}")
         };
-        assert!(misnumbered(&theory(["2.1", "2.3", "3.1"])).is_empty());
+        assert!(misnumbered(&theory(["2.1", "2.2", "3.1"])).is_empty());
         for wrong in [
             ["2.1", "2.1", "3.1"],
-            ["2.2", "2.1", "3.1"],
+            ["2.1", "2.3", "3.1"],
+            ["2.1", "2.2", "3.2"],
             ["2.1", "2.2", "2.3"],
             ["2.1", "3.1", "3.2"],
         ] {
