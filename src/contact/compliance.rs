@@ -1,6 +1,6 @@
-//! Compliance at the contacts: the entries of an inverse W that the Delassus operator
-//! Q = G T W T^T B^T needs, W being K*^-1 in a pass and M^-1 for impulses. Sections 5 and 6 of
-//! docs/theory.md.
+//! Compliance at the contacts: the entries of an inverse W that the Delassus operator Q = G T W T^T B^T needs, W
+//! being K*^-1 in a pass and M^-1 for impulses. Sections 5 and 6 of docs/theory.md; docs/numerics.md, Compliance of
+//! the pairs.
 //!
 //! What gaps and slips of constraints take from forces at the unknowns of one block of the compliance, and
 //! that of contact forces: the two products of the Delassus operator, eq. (5.1). Section 5 of docs/theory.md.
@@ -201,7 +201,7 @@ impl Compliance {
         }
     }
 
-    /// Entries of normal and tangential row at the dofs of a node, times R, eq. (4.16).
+    /// Entries of normal and tangential row at the dofs of a node, times R (docs/numerics.md, Turned factors).
     fn turned_back(&self, dofs: &[usize], rows: &Rows, node: usize) -> [[f64; 2]; 2] {
         let Rows { normal, tangential } = rows;
         let mut normal = [normal[2 * node], normal[2 * node + 1]];

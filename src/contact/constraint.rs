@@ -173,7 +173,7 @@ impl Constraint {
         self.product(&self.derivative_rows().tangential, |dof| v[dof])
     }
 
-    /// A gap or slip of the pair (length), 0 where it is nothing beside the segment, eq. (4.23): what a motion has died away to
+    /// A gap or slip of the pair (length), 0 where it is nothing beside the segment, eq. (4.21): what a motion has died away to
     /// must not become the scale of a complementarity problem, whose forces would underflow.
     pub fn resolved(&self, length: f64) -> f64 {
         match length.abs() < NOTHING * self.scale {

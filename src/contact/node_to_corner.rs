@@ -1,5 +1,5 @@
 //! Constraint of a slave node at a convex corner, from those of the two segments that meet there.
-//! Section 10 of docs/theory.md, Node against node.
+//! Section 10 of docs/theory.md, Corner against corner.
 
 use super::constraint::{Configurations, Constraint, RowPair};
 use super::node_to_segment::segment_rows;

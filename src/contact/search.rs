@@ -1,5 +1,5 @@
 //! Candidate search between slave nodes and segments, after Zhong & Nilsson (1989), with lists
-//! that stay valid over several increments. Section 10 of docs/theory.md, Territories.
+//! that stay valid over several increments. Section 10 of docs/theory.md, Candidate search.
 
 use super::geometry::{ContactSurfaces, position};
 use super::tolerances::{

@@ -1,12 +1,11 @@
 //! Selection of contact targets: the segments and convex corners that constrain a slave node, with
-//! rules for convex and concave corners and for thin bodies. Section 10 of docs/theory.md, Targets.
+//! rules for convex and concave corners and for thin bodies. Section 10 of docs/theory.md, Contact targets.
 //!
 //! Kinematics of a slave node relative to nearby segments, at the start of the increment and at
-//! the iterate: the tests by which its contact targets are selected. Section 10 of docs/theory.md,
-//! Targets.
+//! the iterate: the tests by which its contact targets are selected. Section 10 of docs/theory.md, Contact targets.
 //!
 //! Node-to-node contact: the common normal of a slave node and a convex corner, from the
-//! intersection of their normal cones. Section 10 of docs/theory.md, Node against node.
+//! intersection of their normal cones. Section 10 of docs/theory.md, Corner against corner.
 
 use smallvec::{SmallVec, smallvec};
 

@@ -460,7 +460,7 @@ impl Elements {
     }
 
     /// Force of damping F_d in an increment of length `dt` with the displacement increment `d`, eq.
-    /// (4.18), 2 N entries.
+    /// (4.16), 2 N entries.
     pub fn damping_force(&self, increment: Increment, d: &[f64], dt: f64) -> Vec<f64> {
         let impulses = self.of_damped(|element, damping| damping.impulse(element, increment, d));
         let mut force = self.sum_of_damped(&impulses);
@@ -475,13 +475,13 @@ impl Elements {
     }
 
     /// Energy d.F_d that damping dissipates in an increment of length `dt` with the displacement
-    /// increment `d`, eq. (4.20) (force length).
+    /// increment `d`, eq. (4.18) (force length).
     pub fn damping_dissipation(&self, increment: Increment, d: &[f64], dt: f64) -> f64 {
         let work = |element: &_, damping: &ElementDamping| damping.work(element, increment, d);
         self.of_damped(work).iter().sum::<f64>() / dt
     }
 
-    /// Calls `add(element, c)` with the damping matrix of every damped element in order, eq. (4.21), or
+    /// Calls `add(element, c)` with the damping matrix of every damped element in order, eq. (4.19), or
     /// its positive part, c being D x D column by column (force time/length).
     pub fn for_each_damping(
         &self,

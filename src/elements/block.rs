@@ -1,5 +1,5 @@
 //! Elements of one shape and material side by side: internal force, tangent, and the results of
-//! [`crate::elements::ElementResult`]. Section 2 of docs/theory.md.
+//! [`crate::elements::ElementResult`]. Section 2 of docs/theory.md; docs/numerics.md, Sweeps over elements.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]

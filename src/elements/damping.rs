@@ -27,7 +27,7 @@ impl ElementDamping {
         (viscosity.is_some() || mass.is_some()).then_some(ElementDamping { viscosity, mass })
     }
 
-    /// F_d dt, eq. (4.18): int B_L^T S_d dt dOmega with B_L of the mid configuration, and alpha M d.
+    /// F_d dt, eq. (4.16): int B_L^T S_d dt dOmega with B_L of the mid configuration, and alpha M d.
     pub fn impulse(&self, element: &AnyElement, increment: Increment, d: &[f64]) -> ElementVector {
         let mut impulse = self.mass_impulse(element, d);
         if let Some(viscosity) = &self.viscosity {
@@ -37,7 +37,7 @@ impl ElementDamping {
         impulse
     }
 
-    /// alpha M d, eq. (4.18).
+    /// alpha M d, eq. (4.16).
     pub fn mass_impulse(&self, element: &AnyElement, d: &[f64]) -> ElementVector {
         let (mut impulse, nodes) = ([0.0; MAX_DOFS], element.nodes());
         for (a, b, m) in self.mass_entries(nodes.len()) {
@@ -48,7 +48,7 @@ impl ElementDamping {
         impulse
     }
 
-    /// int S_d dt:dE dOmega + d.(alpha M d), eq. (4.20).
+    /// int S_d dt:dE dOmega + d.(alpha M d), eq. (4.18).
     pub fn work(&self, element: &AnyElement, increment: Increment, d: &[f64]) -> f64 {
         let viscosity = self.viscosity.as_ref();
         let viscous = viscosity.map_or(0.0, |v| element.work(v, between(increment)));
@@ -57,7 +57,7 @@ impl ElementDamping {
         viscous + of_mass.sum::<f64>()
     }
 
-    /// Cd = alpha M + 1/2 (int B_L^T 2 V B_L + B_NL^T S_d dt B_NL dOmega), eq. (4.21), or its
+    /// Cd = alpha M + 1/2 (int B_L^T 2 V B_L + B_NL^T S_d dt B_NL dOmega), eq. (4.19), or its
     /// positive part.
     pub fn matrix(
         &self,

@@ -1,9 +1,9 @@
 //! Frictional problems of many contacts by blocks: each block is solved exactly with the forces of the others held,
 //! until the motion that it expects is that under the forces of all; accelerated by the last steps (Anderson 1965) in
-//! the form of generalised conjugate residuals. Section 8 of docs/theory.md, Blocks.
+//! the form of generalised conjugate residuals. docs/numerics.md, Blocks.
 //!
 //! Ten bodies with 2000 pairs on one strip take 0.4 s per increment with it. As one problem the first increment took
-//! 420 s, nearly all of them for the compliance between the bodies through the strip (docs/performance.md).
+//! 420 s, nearly all of them for the compliance between the bodies through the strip (docs/numerics.md).
 
 use super::dense::{add_sizes, axpy, dot, max_abs};
 use super::hybrid::{LcpMethod, solve_similar};

@@ -1,6 +1,6 @@
 //! Factors of a system of some contact states, kept for similar ones: the same with Q a little different, with other
-//! states of some contacts, or with some contacts more or less, which add a border. Section 8 of docs/theory.md, The
-//! hybrid.
+//! states of some contacts, or with some contacts more or less, which add a border. docs/numerics.md, Kept factors of
+//! a complementarity problem.
 
 use bumpalo::Bump;
 
@@ -19,7 +19,7 @@ const LARGEST: f64 = 1e3;
 ///
 /// ```text
 /// [ A  B ] [ x ]   [ r ]      x = A^-1 (r - B y)
-/// [ C  D ] [ y ] = [ s ],     (D - C A^-1 B) y = s - C A^-1 r,     eq. (8.7)
+/// [ C  D ] [ y ] = [ s ],     (D - C A^-1 B) y = s - C A^-1 r
 /// ```
 ///
 /// A contact that closes, or begins to stick, brings its force as a y with its row of Q; one that opens, or
@@ -344,7 +344,7 @@ impl<'a> Similar<'a> {
         x.iter_mut().zip(columns).for_each(|(x, unit)| *x *= unit);
         let size = x.len();
         if let Some(complement) = &self.complement {
-            // y, and x - A^-1 B y, eq. (8.7)
+            // y, and x - A^-1 B y
             let of_rows = of_border.iter().zip(self.border_rows.chunks_exact(size));
             let mut y = list(self.arena, of_rows.map(|(row, c)| entry(row) - dot(c, &x)));
             complement.solve(&mut y);

@@ -1,5 +1,5 @@
 //! Numbers of several elements side by side, on which one instruction of the processor acts, and a material without
-//! internal variables at one integration point of each of them. Section 2 of docs/theory.md.
+//! internal variables at one integration point of each of them. docs/numerics.md, Sweeps over elements.
 
 use std::array::from_fn;
 use std::ops::{Add, AddAssign, Div, Mul, Sub};

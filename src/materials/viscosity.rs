@@ -40,7 +40,7 @@ impl Viscosity {
         }
     }
 
-    /// G and 1/J_m of eq. (4.19) between two strains.
+    /// G and 1/J_m of eq. (4.17) between two strains.
     #[inline]
     fn halfway(e0: &Matrix2<f64>, e1: &Matrix2<f64>) -> (Matrix2<f64>, f64) {
         let ratio = |e: &Matrix2<f64>| (1.0 + 2.0 * e.trace() + 4.0 * e.determinant()).sqrt();
@@ -55,7 +55,7 @@ impl Viscosity {
 /// Stresses are taken over the length of the increment (force time/length^2). There are none at a strain that does not
 /// change.
 impl StressAtPoints for Viscosity {
-    /// S_d dt, eq. (4.19)
+    /// S_d dt, eq. (4.17)
     #[inline(always)]
     fn stress(&self, _point: usize, strains: &Strains) -> Matrix2<f64> {
         let Strains::Between(e0, e1) = strains else {
@@ -74,7 +74,7 @@ impl StressAtPoints for Viscosity {
         )
     }
 
-    /// 2 V of eq. (4.21), positive definite: without the change of G and J_m, which is of first order in dE.
+    /// 2 V of eq. (4.19), positive definite: without the change of G and J_m, which is of first order in dE.
     #[inline(always)]
     fn tangent(&self, _point: usize, strains: &Strains) -> Matrix3<f64> {
         let Strains::Between(e0, e1) = strains else {

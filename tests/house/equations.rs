@@ -1,10 +1,11 @@
 //! Equations of docs/theory.md and what refers to them: numbers, citations in the source, the table
-//! of docs/architecture.md, and the items that both documents name.
+//! of docs/architecture.md, and the items and subjects that these documents and docs/numerics.md name.
 //!
 //! `BLESS=1 cargo test --test house` brings the line numbers of the table up to date.
 
 use crate::names::{Tree, missing};
 use crate::numbers::{Number, citations, equations, misnumbered, references};
+use crate::subjects::unknown;
 use crate::table::{HEADING, updated};
 use std::collections::BTreeSet;
 use std::fs;
@@ -27,6 +28,7 @@ const MAIN_EQUATIONS: [&str; 12] = [
 ];
 
 const THEORY: &str = "docs/theory.md";
+const NUMERICS: &str = "docs/numerics.md";
 const ARCHITECTURE: &str = "docs/architecture.md";
 
 fn read(path: &str) -> String {
@@ -64,9 +66,9 @@ fn citations_name_equations_that_exist() {
     for (path, text) in tree().rust_files("src/") {
         check(path, citations(text));
     }
-    check(THEORY, references(&theory));
-    let architecture = read(ARCHITECTURE);
-    check(ARCHITECTURE, references(&architecture));
+    for path in [THEORY, NUMERICS, ARCHITECTURE] {
+        check(path, references(&read(path)));
+    }
     assert_none(&offences);
 }
 
@@ -86,9 +88,29 @@ fn every_number_is_cited() {
 }
 
 #[test]
+fn named_subjects_exist() {
+    let (tree, mut offences) = (tree(), Vec::new());
+    for page in [THEORY, NUMERICS] {
+        let name = page.trim_start_matches("docs/");
+        let page = read(page);
+        let mut check = |path: &str, text: &str, is_source| {
+            let subjects = unknown(text, is_source, (name, &page)).into_iter();
+            offences.extend(subjects.map(|s| format!("{path}: {name} has no subject `{s}`")));
+        };
+        for (path, text) in tree.rust_files("src/").chain(tree.rust_files("tests/")) {
+            check(path, text, true);
+        }
+        for path in [THEORY, NUMERICS, ARCHITECTURE, "docs/performance.md"] {
+            check(path, &read(path), false);
+        }
+    }
+    assert_none(&offences);
+}
+
+#[test]
 fn named_items_exist() {
     let (tree, mut offences) = (tree(), Vec::new());
-    for path in [THEORY, ARCHITECTURE] {
+    for path in [THEORY, NUMERICS, ARCHITECTURE] {
         let names = missing(&read(path), &tree).into_iter();
         offences.extend(names.map(|(line, name)| format!("{path}:{line}: there is no `{name}`")));
     }

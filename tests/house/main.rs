@@ -7,4 +7,5 @@ mod layers;
 mod names;
 mod numbers;
 mod sources;
+mod subjects;
 mod table;

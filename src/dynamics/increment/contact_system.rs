@@ -2,11 +2,10 @@
 //! contact forces of a pass, M for the impulses. Sections 5 and 6 of docs/theory.md.
 //!
 //! Complementarity problems of many constraints by blocks, one for each set of bodies that constraints are
-//! between; what the forces of all do to all is computed by the solve that is under way. Section 8 of
-//! docs/theory.md, Blocks.
+//! between; what the forces of all do to all is computed by the solve that is under way. docs/numerics.md, Blocks.
 //!
 //! The correction of a pass while its solve goes on: gaps and slips at the contacts are known before its
-//! end, and contact forces join its right-hand side. Section 5 of docs/theory.md, One solve.
+//! end, and contact forces join its right-hand side. docs/numerics.md, Solves of a pass.
 
 use std::collections::BTreeMap;
 

@@ -1,8 +1,8 @@
 //! Velocity jump at the start of an increment: the set of pairs that take impact impulses,
 //! iterated along with the passes. Section 6 of docs/theory.md (paper eq. 30).
 //!
-//! Whether the rows of an iterate are so near those that impulses were solved with that these may stay. Section 6 of
-//! docs/theory.md.
+//! Whether the rows of an iterate are so near those that impulses were solved with that these may stay.
+//! docs/numerics.md, Kept impulses.
 
 use std::borrow::Cow;
 

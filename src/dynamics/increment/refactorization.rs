@@ -1,5 +1,5 @@
-//! When K* is factorised anew: by the measured rate of the corrections. Section 4 of docs/theory.md,
-//! Factors.
+//! When K* is factorised anew: by the measured rate of the corrections. docs/numerics.md, Kept factors of the
+//! stiffness.
 
 use crate::dynamics::results::Cause;
 use crate::model::Factorization;

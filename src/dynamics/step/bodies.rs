@@ -1,4 +1,4 @@
-//! Angles of bodies, by which the factors of K* turn with them. Section 4 of docs/theory.md, Turned
+//! Angles of bodies, by which the factors of K* turn with them. docs/numerics.md, Turned
 //! factors.
 //!
 //! How bodies are held by supports and equations.
@@ -53,7 +53,7 @@ impl BodyAngles {
     /// Mean rotation of every body in the configuration of a motion (rad), in the energy-momentum form
     /// that halfway:
     ///
-    /// phi = atan2(sum m r0 x r, sum m r0.r), eq. (4.17), r from any point, since sum m r0 = 0
+    /// phi = atan2(sum m r0 x r, sum m r0.r), r from any point, since sum m r0 = 0
     fn angles(&self, problem: &StepProblem, motion: Motion) -> PerBody {
         let u = |dof: usize| match motion.start {
             Some(start) => (start[dof] + motion.end[dof]) / 2.0,

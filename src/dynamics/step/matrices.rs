@@ -215,7 +215,7 @@ impl EffectiveStiffness {
         elements.for_each_tangent(motion, form.part(), free, |element, tangent| {
             k.add(element, tangent, weights.theta2)
         });
-        // K* <- K* + Cd/dt, eq. (4.21)
+        // K* <- K* + Cd/dt, eq. (4.19)
         if let Some(increment) = motion.increment {
             elements.for_each_damping(increment, form.part(), |element, damping| {
                 k.add(element, damping, 1.0 / dt)
@@ -230,7 +230,7 @@ impl EffectiveStiffness {
         self.dt = dt;
     }
 
-    /// Turns the factors of K* with the bodies, to the configuration of a motion, eq. (4.16).
+    /// Turns the factors of K* with the bodies, to the configuration of a motion (docs/numerics.md, Turned factors).
     pub fn turn(&mut self, problem: &StepProblem, motion: Motion) {
         let angles = self.angles.since_assembly(problem, motion);
         (self.k.compliance).turn(&angles, problem.parts.of_nodes());
@@ -291,7 +291,7 @@ impl<'a> System<'a> {
     }
 
     /// R T A^-1 T^T R^T f for the forces `f` over all dofs, A being the matrix and R the rotation of its
-    /// bodies, eq. (4.16).
+    /// bodies (docs/numerics.md, Turned factors).
     pub fn respond(&mut self, map: &Transformation, f: &[f64]) -> Result<Vec<f64>, LinearError> {
         self.begin(map, f)?;
         let mut response = Vec::new();

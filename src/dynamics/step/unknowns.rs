@@ -259,7 +259,7 @@ impl<'m> Supports<'m> {
                 value,
                 amplitude,
             } => {
-                // a, and its first and second integral since the start of the step, eq. (4.22)
+                // a, and its first and second integral since the start of the step, eq. (4.20)
                 let [a, first, second] = at.integrals(self.model, amplitude);
                 match rate {
                     Rate::Velocity => [from + value * first, value * a],

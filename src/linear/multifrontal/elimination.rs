@@ -1,6 +1,6 @@
 //! Numerical factorisation, front by front from the leaves of the elimination forest to its roots (Duff & Reid 1983),
 //! branches side by side; what is added up in the fronts: entries of the matrix, and what eliminating the supernodes
-//! below has left. Section 5 of docs/theory.md, Branches.
+//! below has left. docs/numerics.md, Factorisation.
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;

@@ -1,6 +1,6 @@
 //! LDL^T factors limb by limb, packed in the order in which substitutions read them, in memory with large pages where
 //! the system has them: substitutions read the entries from one end to the other, and a processor reads ahead within a
-//! page only. Section 5 of docs/theory.md, One solve and Branches.
+//! page only. docs/numerics.md, Order in memory.
 
 use std::ops::{Deref, DerefMut};
 

@@ -1,5 +1,5 @@
 //! Dense elimination of the columns of a supernode from its front, in panels of columns with vector
-//! instructions. Section 5 of docs/theory.md, Branches.
+//! instructions. docs/numerics.md, Factorisation.
 
 use std::ops::Range;
 

@@ -1,10 +1,10 @@
-//! Multifrontal LDL^T factorisation (Duff & Reid 1983), substitutions and parts of the inverse, branch by branch of the
-//! elimination forest. Approximate minimum degree order (Amestoy, Davis & Duff 1996) and symbolic analysis by faer, once
-//! for each pattern. Section 5 of docs/theory.md, One solve and Branches.
+//! Multifrontal LDL^T factorisation (Duff & Reid 1983), substitutions and parts of the inverse, branch by branch of
+//! the elimination forest. Approximate minimum degree order (Amestoy, Davis & Duff 1996) and symbolic analysis by
+//! faer, once for each pattern. docs/numerics.md, Factorisation.
 //!
-//! It is own code for its speed: on the matrix of two blocks with 132 612 dofs a factorisation takes 86 ms, where faer's
-//! takes 152, and 45 on two threads, where faer's gains nothing; a solve takes 6.9 ms instead of 20
-//! (docs/performance.md).
+//! It is own code for its speed: on the matrix of two blocks with 132 612 dofs a factorisation takes 86 ms, where
+//! faer's takes 152, and 45 on two threads, where faer's gains nothing; a solve takes 6.9 ms instead of 20
+//! (docs/numerics.md).
 
 mod elimination;
 mod factor;

@@ -1,5 +1,5 @@
 //! Selected entries of the inverse from packed LDL^T factors: multifrontal forward
-//! substitution along the paths of the elimination tree. Section 5 of docs/theory.md.
+//! substitution along the paths of the elimination tree. docs/numerics.md, Compliance of the pairs.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::factor::{Factor, LimbFactor, Place};
 
 /// A column of L^-1 E whose entries above are all smaller than this ends there: what it would add to the
-/// inverse is below round-off, see section 5 of docs/theory.md. The unit vectors have no dimension.
+/// inverse is below round-off, see docs/numerics.md, Compliance of the pairs. The unit vectors have no dimension.
 const NEGLIGIBLE: f64 = 1e-25;
 
 /// Columns that are handled together, on one thread.

@@ -1,5 +1,5 @@
 //! Forward and backward substitution with packed LDL^T factors, of all unknowns or of those on the
-//! paths of some to the root of the elimination tree. Section 5 of docs/theory.md, One solve.
+//! paths of some to the root of the elimination tree. docs/numerics.md, Solves of a pass.
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;

@@ -1,4 +1,5 @@
-//! Elements that lie over each other, within a body or of two bodies. Section 10 of docs/theory.md, Overlap.
+//! Elements that lie over each other, within a body or of two bodies. Section 10 of docs/theory.md, Overlap of
+//! elements.
 //!
 //! Where elements lie over each other, the boundary of a body meets that of another or its own, or a body
 //! lies wholly inside. At a place where boundaries meet, an element with an exterior side there and one
