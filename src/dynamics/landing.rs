@@ -12,7 +12,6 @@ use super::results::{Cause, State};
 use super::step::{ClosedConstraints, StepProblem, Workspace, difference, dot, sum};
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::contact::{ClosedPair, Constraint, ConstraintKey, Rows};
-use crate::model::LandingRule;
 
 /// Part of the force of a landing by which a return may pull, as round-off of a force that is taken back as a whole.
 const ROUND_OFF: f64 = 1e-9;
@@ -28,7 +27,7 @@ pub(crate) fn return_landings(
     (start, dt): (&State, f64),
     solved: &mut Solved,
 ) -> Result<Returned, Cause> {
-    if problem.settings.landing == LandingRule::Plastic {
+    if !problem.returns_landings() {
         return Ok(Returned::default());
     }
     let landings: Vec<_> = (solved.forces.acting())
@@ -138,7 +137,7 @@ pub(super) fn factorize_anew(
     solved: &Solved,
 ) -> Result<(), Cause> {
     let u1 = sum(&start.u, &solved.d);
-    let motion = (problem.weights).motion(start, &u1, &solved.equilibrium.u_theta);
+    let motion = (problem.integration).motion(start, &u1, &solved.equilibrium.u_theta);
     let closed = ClosedConstraints {
         acting: solved.forces.acting().collect(),
         at: problem.configurations(&start.u, &u1),
@@ -248,7 +247,7 @@ pub(crate) fn return_release(
     solved: &mut Solved,
     (release, returned): (Release, &mut Returned),
 ) -> Result<(), Cause> {
-    if problem.settings.landing == LandingRule::Return && release.loss > 0.0 {
+    if problem.returns_landings() && release.loss > 0.0 {
         if returned.pairs.is_empty() {
             factorize_anew(problem, workspace, (start, dt), solved)?;
         }

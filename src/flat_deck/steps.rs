@@ -63,15 +63,18 @@ fn head(step: &Step, loads: &LoadCards, lines: &mut DeckWriter) {
         dt_min,
         direct,
     } = step.increments;
-    let Procedure::Dynamic = step.procedure;
+    let procedure = match step.procedure {
+        Procedure::Dynamic => "DYNAMIC",
+        Procedure::Static => "STATIC",
+    };
     match direct {
         true => {
-            lines.card("DYNAMIC", ["DIRECT".to_owned()]);
+            lines.card(procedure, ["DIRECT".to_owned()]);
             lines.row([dt, period, dt_min].map(number));
         }
         // the largest increment says that they do not grow
         false => {
-            lines.card("DYNAMIC", []);
+            lines.card(procedure, []);
             lines.row([dt, period, dt_min, dt].map(number));
         }
     }

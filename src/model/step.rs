@@ -33,6 +33,8 @@ pub struct Step {
 pub enum Procedure {
     /// The equation of motion, integrated implicitly in time (`*DYNAMIC`).
     Dynamic,
+    /// Equilibrium without inertia, damping and impacts (`*STATIC`).
+    Static,
 }
 
 /// Time increments of a step.

@@ -355,7 +355,7 @@ impl<'m> Attempt<'_, 'm> {
 
     /// Writes d_p and theta2 K d_p.
     fn move_supports(&mut self, pass: usize, vectors: &mut Vectors) {
-        let (problem, weights) = (self.problem, &self.problem.weights);
+        let (problem, integration) = (self.problem, &self.problem.integration);
         let Vectors {
             equilibrium: Equilibrium { u_theta, .. },
             u,
@@ -371,9 +371,9 @@ impl<'m> Attempt<'_, 'm> {
         force.clear();
         force.resize(u.len(), 0.0);
         if d_p.iter().any(|d| *d != 0.0) {
-            let motion = weights.motion(self.start, u, u_theta);
+            let motion = integration.motion(self.start, u, u_theta);
             let product = (self.workspace).tangent_product(problem, motion, d_p);
-            (force.iter_mut().zip(&product)).for_each(|(f, k)| *f = weights.theta2 * k);
+            (force.iter_mut().zip(&product)).for_each(|(f, k)| *f = integration.theta2 * k);
         }
     }
 
@@ -386,7 +386,7 @@ impl<'m> Attempt<'_, 'm> {
     ) -> Result<(), Cause> {
         let (problem, dt) = (self.problem, self.interval.dt);
         let fits = (self.workspace.stiffness).fits(dt, self.set.length_tolerance());
-        let motion = (problem.weights).motion(self.start, u, &equilibrium.u_theta);
+        let motion = (problem.integration).motion(self.start, u, &equilibrium.u_theta);
         if fits && !factors.are_worn() {
             self.workspace.turn(problem, motion);
             return Ok(());
@@ -479,10 +479,13 @@ impl<'m> Attempt<'_, 'm> {
             self.equilibrium(&v0p, [&u, d], &mut equilibrium)?;
         }
         let v0p = v0p.v0p.into_owned();
-        // V1 = (2/dt) d - V0+, eq. (4.2); of what is prescribed from the amplitude
+        // V1 = (2/dt) d - V0+, eq. (4.2); of what is prescribed from the amplitude; at rest in a static step
         let rate = 2.0 / self.interval.dt;
         let mut v: Vec<f64> = d.iter().zip(&v0p).map(|(d, v0p)| rate * d - v0p).collect();
         (self.problem.unknowns).prescribe(self.interval.end, &mut u, &mut v);
+        if !self.problem.integration.has_rates {
+            v.fill(0.0);
+        }
         let Updated {
             variables: internal,
             dissipated,

@@ -16,7 +16,6 @@ use crate::dynamics::results::{Cause, State};
 use crate::dynamics::step::{Equilibrium, StartVelocity, StepProblem, Workspace};
 use crate::lcp::ContactState;
 use crate::linear::larger;
-use crate::model::Impact;
 
 /// Changes of the set of pairs with impulses after which it is kept.
 const SET_CHANGES: usize = 5;
@@ -73,11 +72,11 @@ impl Impulses {
         before: &Before,
     ) -> Result<(), Cause> {
         let dt = before.dt;
-        if problem.settings.impact == Impact::None {
+        if !problem.has_impulses() {
             return Ok(());
         }
         // rows of the start do not change with the iterate
-        let at_start = problem.weights.impulses_at_start();
+        let at_start = problem.integration.impulses_at_start();
         let configurations = problem.configurations(&start.u, &start.u);
         let rows = |constraint: &Constraint| match at_start {
             true => constraint.at_start(&configurations).with_force_rows(),
@@ -145,7 +144,7 @@ impl Impulses {
         before: &Before,
     ) -> Result<StartVelocity<'a>, Cause> {
         self.solve(problem, workspace, constraints, start, before)?;
-        match problem.weights.lags() {
+        match problem.integration.lags() {
             true => self.velocity(problem, workspace, start),
             false => Ok(StartVelocity {
                 v0p: Cow::Borrowed(&start.v),
@@ -186,7 +185,7 @@ impl Impulses {
     /// Takes over the pairs in contact after a pass; whether they are the same as before, and the impulses theirs. After
     /// some changes the set is kept: impulses of any set take energy, never give it.
     pub fn rest(&mut self, problem: &StepProblem, closed: &ClosedPairs) -> bool {
-        let rest = problem.settings.impact == Impact::None
+        let rest = !problem.has_impulses()
             || self.free_keys(closed).eq(self.free_keys(&self.closed))
             || self.changes >= SET_CHANGES;
         self.at_rest = rest;

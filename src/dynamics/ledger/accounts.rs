@@ -109,7 +109,7 @@ impl Accounts {
         report.returns = (self.contacts).enter_returns(both, interval, &mut contacts);
         (self.contacts).enter(problem, bodies, solved, interval.dt, &mut contacts);
         let mut nodal = nodal_results(problem, solved);
-        let (theta1, Interval { start, end, .. }) = (problem.weights.theta1, interval);
+        let (theta1, Interval { start, end, .. }) = (problem.integration.theta1, interval);
         nodal.concentrated = problem.loads.concentrated(theta1, start, end, u.len());
         nodal.pressure = self.faces.pressure(problem, u, &solved.forces);
         nodal.slip.clone_from(&self.contacts.slip);
@@ -125,12 +125,12 @@ impl Accounts {
     /// Adds the momentum that mass-proportional damping takes in an increment: alpha M d, which acts
     /// halfway, eq. (9.10).
     fn enter_damping(&mut self, problem: &StepProblem, solved: &Solved) {
-        if !problem.elements.has_damping() {
+        if !problem.has_damping() {
             return;
         }
         let (d, u_theta) = (&solved.d, &solved.equilibrium.u_theta);
         // U0 + d/2: U_theta where nodes without mass may have gone on from U0 + d to their rest
-        let halfway: Vec<f64> = match problem.weights.energy_momentum {
+        let halfway: Vec<f64> = match problem.integration.energy_momentum {
             true => u_theta.clone(),
             false => solved
                 .end

@@ -154,7 +154,10 @@ impl Ledger {
         e.external_work += load_work + returned.support_work;
         // d.F_d, D, and d.F - (W1 - W0) - d.F_d - D, eq. (9.5), W1 that before the rest
         let (u1, dissipated) = (sum(&start.u, d), solved.material_dissipation);
-        let damping = (problem.elements).damping_dissipation([&start.u, &u1], d, dt);
+        let damping = match problem.has_damping() {
+            true => (problem.elements).damping_dissipation([&start.u, &u1], d, dt),
+            false => 0.0,
+        };
         e.damping += damping;
         e.material_dissipation += dissipated;
         let strain1 = e.strain + loss - load_work;
@@ -291,7 +294,7 @@ pub(crate) fn check_balance(
 /// a convex corner on to a segment with g0 < 0, and that segment holds it because the corner turns
 /// concave in the same increment. Nodes that the mesh places inside are left out.
 fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) -> f64 {
-    if !problem.weights.energy_momentum {
+    if !problem.integration.energy_momentum {
         return 0.0;
     }
     let Solved { d, forces, .. } = solved;

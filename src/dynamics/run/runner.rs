@@ -15,7 +15,7 @@ use crate::dynamics::results::{
 };
 use crate::dynamics::step::{Discretization, StepPlace, StepProblem, Workspace};
 use crate::elements::most_strained;
-use crate::model::{ImpactTime, Procedure, Step};
+use crate::model::Step;
 use crate::prepare::PreparedModel;
 
 /// Most halvings of an increment; a further failure stops the run.
@@ -53,10 +53,10 @@ pub fn run(prepared: &PreparedModel, observer: &mut dyn Observer) -> Result<RunS
 }
 
 /// The time control of a nominal increment.
-fn time_control(when: ImpactTime, nominal: NominalIncrement) -> Box<dyn TimeControl> {
-    match when {
-        ImpactTime::Increment => Box::new(Bisection::new(nominal)),
-        ImpactTime::Event => Box::new(ImpactControl::new(nominal)),
+fn time_control(problem: &StepProblem, nominal: NominalIncrement) -> Box<dyn TimeControl> {
+    match problem.ends_at_impacts() {
+        true => Box::new(ImpactControl::new(nominal)),
+        false => Box::new(Bisection::new(nominal)),
     }
 }
 
@@ -101,19 +101,17 @@ impl<'m, 'o> Runner<'m, 'o> {
         }
     }
 
-    /// Runs a step by its procedure; returns how it ends.
+    /// Runs a step; returns how it ends.
     fn step(&mut self, step: &'m Step, place: StepPlace) -> Result<Outcome, RunError> {
         let problem = StepProblem::new(self.discretization, step, [&self.state.u, &self.state.v]);
         let mut workspace = Workspace::new(&problem);
-        let outcome = match step.procedure {
-            Procedure::Dynamic => self.dynamic(&problem, &mut workspace, step, place),
-        };
+        let outcome = self.increments(&problem, &mut workspace, step, place);
         self.summary.timings.add(&workspace.meter.timings);
         outcome
     }
 
-    /// Dynamics: the acceleration of the start, then all increments.
-    fn dynamic(
+    /// The motion of the start, then all increments.
+    fn increments(
         &mut self,
         problem: &StepProblem<'m>,
         workspace: &mut Workspace<'m>,
@@ -141,7 +139,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         workspace: &mut Workspace<'m>,
         nominal: NominalIncrement,
     ) -> Result<Outcome, RunError> {
-        let mut control = time_control(problem.settings.impact_time, nominal);
+        let mut control = time_control(problem, nominal);
         while let Some(span) = control.next() {
             if self.observer.wants_stop() {
                 return Ok(Outcome::Interrupted);
@@ -263,18 +261,23 @@ impl<'m, 'o> Runner<'m, 'o> {
         Ok(())
     }
 
-    /// Completes the start state (velocity of supports and equations, acceleration) and reports it,
-    /// or gives the failure when it is not finite.
+    /// Completes the start state (velocity of supports and equations, acceleration; at rest in a static step) and
+    /// reports it, or gives the failure when it is not finite.
     fn start(
         &mut self,
         problem: &StepProblem,
         workspace: &mut Workspace,
         place: StepPlace,
     ) -> Result<Option<Failure>, RunError> {
-        let now = place.time_point(0.0);
-        problem.unknowns.prescribe_velocity(now, &mut self.state.v);
-        problem.follow_donors(&mut self.state.v);
-        self.state.a = workspace.start_acceleration(problem, &self.state, now);
+        match problem.integration.has_rates {
+            true => {
+                let now = place.time_point(0.0);
+                problem.unknowns.prescribe_velocity(now, &mut self.state.v);
+                problem.follow_donors(&mut self.state.v);
+                self.state.a = workspace.start_acceleration(problem, &self.state, now);
+            }
+            false => self.state.v.fill(0.0),
+        }
         self.ledger = Ledger::new(problem, &self.state);
         if let Some(failure) = start_failure(&self.state, &self.ledger, place) {
             return Ok(Some(failure));

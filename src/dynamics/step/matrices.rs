@@ -202,7 +202,7 @@ impl EffectiveStiffness {
     ) {
         let StepProblem {
             elements,
-            weights,
+            integration,
             unknowns,
             parts,
             ..
@@ -213,7 +213,7 @@ impl EffectiveStiffness {
         k.clear();
         let free = |element: usize| mass.depends_on(element);
         elements.for_each_tangent(motion, form.part(), free, |element, tangent| {
-            k.add(element, tangent, weights.theta2)
+            k.add(element, tangent, integration.theta2)
         });
         // K* <- K* + Cd/dt, eq. (4.19)
         if let Some(increment) = motion.increment {
@@ -222,10 +222,12 @@ impl EffectiveStiffness {
             });
         }
         self.stiffness = parts.largest_diagonal(k, &unknowns.dof);
-        let c = 2.0 / (dt * dt);
+        let c = integration.mass_factor(dt);
         let inertia = parts.largest_diagonal(mass, &unknowns.dof);
         self.inertia = inertia.into_iter().map(|m| c * m).collect();
-        k.add_matrix(mass, c);
+        if c != 0.0 {
+            k.add_matrix(mass, c);
+        }
         self.angles.assemble(problem, motion);
         self.dt = dt;
     }

@@ -2,12 +2,12 @@
 //! workspace of its increments.
 
 mod bodies;
+mod integration;
 mod loads;
 mod mass;
 mod matrices;
 mod meter;
 mod parts;
-mod scheme;
 mod step_problem;
 mod unknowns;
 mod workspace;

@@ -6,10 +6,10 @@
 
 use std::borrow::Cow;
 
+use super::integration::Integration;
 use super::loads::{Interval, Loads};
 use super::mass::Mass;
 use super::parts::{Parts, Run};
-use super::scheme::Weights;
 use super::unknowns::Unknowns;
 use crate::contact::tolerances::COLLAPSED_LENGTH;
 use crate::contact::{
@@ -19,7 +19,7 @@ use crate::dynamics::results::{Cause, State};
 use crate::elements::{Elements, Motion};
 use crate::lcp::LcpMethod;
 use crate::linear::{LinearError, largest};
-use crate::model::{Model, Settings, Step};
+use crate::model::{Impact, ImpactTime, LandingRule, Model, Settings, Step};
 use crate::prepare::{PreparedModel, Redistribution};
 use crate::vectors::distance;
 
@@ -32,7 +32,7 @@ pub(crate) struct StepProblem<'m> {
     pub parts: &'m Parts,
     pub contacts: &'m [ContactSurfaces],
     pub settings: Settings,
-    pub weights: Weights,
+    pub integration: Integration,
     pub unknowns: Unknowns<'m>,
     /// Unknowns of the parts.
     pub parts_of_unknowns: Vec<Run>,
@@ -108,7 +108,7 @@ impl<'m> StepProblem<'m> {
             parts,
             contacts,
             settings: step.settings,
-            weights: Weights::new(step.settings.scheme),
+            integration: Integration::new(step),
             parts_of_unknowns: parts.of_unknowns(&unknowns.dof),
             unknowns,
             loads: Loads::new(model, step, redistribution),
@@ -120,6 +120,26 @@ impl StepProblem<'_> {
     /// Solver of the complementarity problems.
     pub fn method(&self) -> LcpMethod {
         self.settings.lcp.into()
+    }
+
+    /// Whether damping acts.
+    pub fn has_damping(&self) -> bool {
+        self.integration.has_rates && self.elements.has_damping()
+    }
+
+    /// Whether impact impulses act.
+    pub fn has_impulses(&self) -> bool {
+        self.integration.has_rates && self.settings.impact == Impact::Impulse
+    }
+
+    /// Whether impacts end subincrements.
+    pub fn ends_at_impacts(&self) -> bool {
+        self.integration.has_rates && self.settings.impact_time == ImpactTime::Event
+    }
+
+    /// Whether what landings take is given back.
+    pub fn returns_landings(&self) -> bool {
+        self.integration.has_rates && self.settings.landing == LandingRule::Return
     }
 
     /// V <- P V: nodes without mass follow their donors, except where they are prescribed.
@@ -181,11 +201,12 @@ impl StepProblem<'_> {
     /// # Errors
     /// [`Cause::Inverted`] with the first element that is.
     pub fn check_end(&self, end: &State) -> Result<(), Cause> {
-        let Weights {
+        let Integration {
             theta1,
             theta2,
             energy_momentum,
-        } = self.weights;
+            ..
+        } = self.integration;
         if energy_momentum || [theta1, theta2] == [1.0; 2] {
             return Ok(());
         }
@@ -216,7 +237,7 @@ impl StepProblem<'_> {
     /// The configurations between which constraints of the scheme are linearised.
     pub fn configurations<'a>(&'a self, u0: &'a [f64], u: &'a [f64]) -> Configurations<'a> {
         Configurations {
-            form: self.weights.row_form(),
+            form: self.integration.row_form(),
             x: &self.model.mesh.coordinates,
             u0,
             u,
@@ -253,16 +274,16 @@ impl StepProblem<'_> {
             internal,
             ..
         } = equilibrium;
-        (self.weights).write_displacement([&start.u, d, v0p], interval.dt, u_theta);
-        let motion = self.weights.motion(start, u, u_theta);
+        (self.integration).write_displacement([&start.u, d, v0p], interval.dt, u_theta);
+        let motion = self.integration.motion(start, u, u_theta);
         self.elements.write_internal_force(motion, internal)?;
-        if self.elements.has_damping() {
+        if self.has_damping() {
             let damping = (self.elements).damping_force([&start.u, u], d, interval.dt);
             internal.iter_mut().zip(&damping).for_each(|(f, c)| *f += c);
         }
         // without loads it is zero as it was made
         if !self.loads.are_none() {
-            let theta1 = self.weights.theta1;
+            let theta1 = self.integration.theta1;
             (self.loads).write_weighted(self.elements, theta1, interval, u_theta, load);
         }
         Ok(())
@@ -283,9 +304,13 @@ impl StepProblem<'_> {
             inertia,
             ..
         } = equilibrium;
+        // without inertia they are zero as they were made
+        if !self.integration.has_rates {
+            return equilibrium.set_out_of_balance();
+        }
         // A = (2/dt²) (d - dt V0+), eq. (4.1); at supports (V1 - V0)/dt, eq. (4.9)
         let dt = interval.dt;
-        let c = 2.0 / (dt * dt);
+        let c = self.integration.mass_factor(dt);
         for (a, (d, v0p)) in acceleration.iter_mut().zip(d.iter().zip(v0p.iter())) {
             *a = c * (d - dt * v0p);
         }

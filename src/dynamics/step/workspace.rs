@@ -90,10 +90,10 @@ impl<'m> Workspace<'m> {
         motion: Motion,
         x: &[f64],
     ) -> Vec<f64> {
-        let (elements, theta2) = (problem.elements, problem.weights.theta2);
+        let (elements, theta2) = (problem.elements, problem.integration.theta2);
         let weight = 1.0 / (theta2 * self.stiffness.dt());
         let product = || match motion.increment {
-            Some(increment) if elements.has_damping() => {
+            Some(increment) if problem.has_damping() => {
                 let damping = elements.damping_product(increment, x);
                 let damping: Vec<f64> = damping.iter().map(|c| weight * c).collect();
                 sum(&elements.tangent_product(motion, x), &damping)

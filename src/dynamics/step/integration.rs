@@ -1,31 +1,44 @@
-//! Weights and configurations of the time integration schemes: SS22 of Zienkiewicz, Wood & Hine
-//! (1984) and the energy-momentum form of Simo & Tarnow (1992). Section 4 of docs/theory.md.
+//! What an increment is balanced with, by the procedure of its step: weights and configurations of the
+//! schemes SS22 of Zienkiewicz, Wood & Hine (1984) and the energy-momentum form of Simo & Tarnow (1992), and
+//! whether anything depends on rates. Section 4 of docs/theory.md.
 
 use crate::contact::RowForm;
 use crate::dynamics::results::State;
 use crate::elements::Motion;
-use crate::model::Scheme;
+use crate::model::{Procedure, Scheme, Step};
 
-/// The single-step scheme SS22 with its weights, or the energy-momentum form of its mid-point rule.
+/// The single-step scheme SS22 with its weights, or the energy-momentum form of its mid-point rule; a static
+/// step is SS22 with both weights 1 without rates.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Weights {
+pub(crate) struct Integration {
     pub theta1: f64,
     pub theta2: f64,
     pub energy_momentum: bool,
+    /// Whether inertia, damping and impulses take part.
+    pub has_rates: bool,
 }
 
-impl Weights {
-    pub fn new(scheme: Scheme) -> Self {
-        match scheme {
-            Scheme::EnergyMomentum => Weights {
+impl Integration {
+    /// That of a step.
+    pub fn new(step: &Step) -> Self {
+        match (step.procedure, step.settings.scheme) {
+            (Procedure::Static, _) => Integration {
+                theta1: 1.0,
+                theta2: 1.0,
+                energy_momentum: false,
+                has_rates: false,
+            },
+            (Procedure::Dynamic, Scheme::EnergyMomentum) => Integration {
                 theta1: 0.5,
                 theta2: 0.5,
                 energy_momentum: true,
+                has_rates: true,
             },
-            Scheme::Ss22 { theta1, theta2 } => Weights {
+            (Procedure::Dynamic, Scheme::Ss22 { theta1, theta2 }) => Integration {
                 theta1,
                 theta2,
                 energy_momentum: false,
+                has_rates: true,
             },
         }
     }
@@ -49,6 +62,14 @@ impl Weights {
         self.theta1 != self.theta2
     }
 
+    /// Factor of M in K* for increments of length `dt`: 2/dt², eq. (4.6); 0 in a static step (1/time^2).
+    pub fn mass_factor(&self, dt: f64) -> f64 {
+        match self.has_rates {
+            true => 2.0 / (dt * dt),
+            false => 0.0,
+        }
+    }
+
     /// U_theta = U0 + theta2 d + (theta1 - theta2) dt V0+, d = U - U0, eq. (4.3).
     pub fn write_displacement(&self, [u0, d, v0p]: [&[f64]; 3], dt: f64, u_theta: &mut [f64]) {
         let lag = (self.theta1 - self.theta2) * dt;
@@ -60,7 +81,7 @@ impl Weights {
     /// The motion at which internal force and tangent are evaluated: U_theta, in the energy-momentum form
     /// from U0 to U1.
     pub fn motion<'a>(&self, start: &'a State, u1: &'a [f64], u_theta: &'a [f64]) -> Motion<'a> {
-        let increment = Some([start.u.as_slice(), u1]);
+        let increment = (self.has_rates).then_some([start.u.as_slice(), u1]);
         match self.energy_momentum {
             true => Motion {
                 start: Some(&start.u),
