@@ -19,10 +19,12 @@ import bench_reader
 import numpy as np
 from bench_decks import GROUPS, SIZES, Bench, group
 from bench_runs import PHASES, CcxRun, Measured, bandwidth, measure, run_ccx
-from command import Fault, finish, positive_integer
 from measured_run import check_program
-from program import ROOT, binary
+from repository import ROOT
 from sample_decks import runner
+from stickslip.command import finish, positive_integer
+from stickslip.errors import Fault
+from stickslip.program import binary
 
 PAGE = ROOT / "docs" / "performance.md"
 BEGIN, END = "<!-- {name}: begin -->\n", "<!-- {name}: end -->\n"
@@ -158,7 +160,9 @@ def parse() -> argparse.Namespace:
     add("program", type=Path, nargs="?", metavar="PROGRAM", help="instead of the release build")
     add("--against", type=Path, metavar="OTHER", help="program to compare with in the same run")
     help_ = "which decks (default examples blocks)"
-    add("--groups", nargs="+", choices=(*GROUPS, "read"), default=["examples", "blocks"], help=help_)
+    add(
+        "--groups", nargs="+", choices=(*GROUPS, "read"), default=["examples", "blocks"], help=help_
+    )
     help_ = f"elements along the two blocks (default {' '.join(map(str, SIZES))})"
     add("--sizes", type=positive_integer, nargs="+", default=SIZES, metavar="N", help=help_)
     help_ = "scheme of the two blocks (default the energy-momentum scheme)"

@@ -5,10 +5,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from cards import card, dry, elastic, step
-from deck import Deck
-from program import ROOT
-from quads import Grid
+from repository import ROOT
+from stickslip.cards import card, dry, elastic, step
+from stickslip.deck import Deck
+from stickslip.quads import Grid
 
 sys.path.insert(0, str(ROOT / "verification" / "convergence"))
 

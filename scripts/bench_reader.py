@@ -9,11 +9,11 @@ from multiprocessing import get_context
 from pathlib import Path
 
 from bench_runs import COLLECTED, MISSING_VALGRIND
-from cards import card, dry, elastic, step
-from command import Fault
 from measured_run import Usage, wait
-from quads import Grid
 from sample_decks import runner
+from stickslip.cards import card, dry, elastic, step
+from stickslip.errors import Fault
+from stickslip.quads import Grid
 
 NODES = 1_000_000
 COUNTED = 100_000

@@ -10,9 +10,9 @@ from time import process_time
 
 import numpy as np
 from bench_decks import Bench
-from command import Fault
 from measured_run import Run, run, wait
-from results import Results
+from stickslip.errors import Fault
+from stickslip.result import Result
 
 COLLECTED = re.compile(r"Collected : (\d+)")
 """What callgrind writes to its standard error: the instructions."""
@@ -62,12 +62,12 @@ def measure(program: Path, bench: Bench, folder: Path, count: bool = False) -> M
 
 def read(ended: Run, instructions: float) -> Measured:
     """Reads what a run has counted from its results."""
-    with Results(ended.result) as results:
-        solver, record = results.solver, results.run
+    with Result(ended.result) as results:
+        solver, record = results.history.solver, results.run
         total = float(record["seconds_total"])
         return Measured(
             ended.seconds,
-            len(results.time) - 1,
+            len(results.history.time) - 1,
             int(solver["passes"].sum()),
             int(solver["factorizations"].sum()),
             # the system's figure contains what the process was before it became the program

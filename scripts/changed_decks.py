@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 from itertools import count
 
 import numpy as np
-from command import Fault
-from deck import Card, Deck
 from numpy.typing import NDArray
+from stickslip.deck import Card, Deck
+from stickslip.errors import Fault
 
 Array = NDArray[np.float64]
 

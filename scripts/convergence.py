@@ -17,12 +17,13 @@ from math import inf
 from pathlib import Path
 
 import numpy as np
-from command import Fault, finish, one_line, positive, positive_integer
-from deck import Deck
 from measured_run import Run, check_program, run
 from numpy.typing import NDArray
-from results import Array, Results
 from sample_decks import Sample, examples, given, runner, verification_cases
+from stickslip.command import finish, positive, positive_integer
+from stickslip.deck import Deck
+from stickslip.errors import Fault, one_line
+from stickslip.result import Array, Result
 
 LIMIT = 60.0
 """Seconds of processor time of a run."""
@@ -90,9 +91,9 @@ class Convergence:
         """Reads the result file and the log of a run."""
         if ended.code not in GOOD_ENDS and not ended.was_stopped:
             raise Fault(f"exit code {ended.code}: {ended.complaint}")
-        with Results(ended.result) as results:
-            solver = results.solver
-            columns = results.time, solver["passes"], solver["factorizations"]
+        with Result(ended.result) as results:
+            solver = results.history.solver
+            columns = results.history.time, solver["passes"], solver["factorizations"]
         log = ended.result.with_suffix(".log").read_text().splitlines()
         return cls(*(column[1:] for column in columns), cut_attempts(log), ended)
 

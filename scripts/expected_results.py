@@ -1,4 +1,4 @@
-"""Results of a deck as someone else sees them: moved, turned, mirrored, boosted, in other units.
+"""Result of a deck as someone else sees them: moved, turned, mirrored, boosted, in other units.
 
 `Seen` reads all histories and frames of a result; `expected` says what they are after a `Change`;
 `deviations` compares them with what a run has given, row by row.
@@ -10,10 +10,10 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from deck import Deck
 from numpy.typing import NDArray
 from rescale import Units, dimension
-from results import OPEN
+from stickslip.deck import Deck
+from stickslip.result import OPEN
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]

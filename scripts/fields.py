@@ -6,9 +6,9 @@ from functools import partial
 
 import numpy as np
 from matplotlib.colors import Normalize
-from results import Array, Results
+from stickslip.result import Array, Result
 
-Shown = tuple[Results, int]
+Shown = tuple[Result, int]
 """A result and one of its frames."""
 
 
@@ -16,52 +16,52 @@ Shown = tuple[Results, int]
 class Field:
     """A scalar per element, or per edge of the outlines."""
 
-    label: Callable[[Results], str]
+    label: Callable[[Result], str]
     """What it is, as far as the result holds it."""
-    values: Callable[[Results, int], Array]
+    values: Callable[[Result, int], Array]
     """Values per element or edge in a frame; NaN where there is none."""
     on_edges: bool = False
 
 
-def magnitude(name: str, results: Results, frame: int) -> Array:
+def magnitude(name: str, results: Result, frame: int) -> Array:
     """Element means of the magnitude of a vector at the nodes."""
-    length = np.linalg.norm(results.point_field(name, frame), axis=1)
+    length = np.linalg.norm(results.frames[frame][name], axis=1)
     return np.array([length[cell].mean() for cell in results.cells])
 
 
-def von_mises(results: Results, frame: int) -> Array:
+def von_mises(results: Result, frame: int) -> Array:
     """Von Mises stress; without the stress across the thickness where the result has none."""
-    if results.has_field("MISES"):
-        return results.cell_field("MISES", frame)
-    xx, yy, xy = results.cell_field("S", frame).T
+    if "MISES" in results.frames.fields:
+        return results.frames[frame]["MISES"]
+    xx, yy, xy = results.frames[frame]["S"].T
     # syy = 0 across the thickness: plane stress
     return np.sqrt(xx**2 - xx * yy + yy**2 + 3 * xy**2)
 
 
-def von_mises_label(results: Results) -> str:
+def von_mises_label(results: Result) -> str:
     """Says when the stress across the thickness is not in it."""
-    if results.has_field("MISES"):
+    if "MISES" in results.frames.fields:
         return "von Mises stress"
     return "von Mises stress of the stresses in the plane"
 
 
-def mean_stress(results: Results, frame: int) -> Array:
+def mean_stress(results: Result, frame: int) -> Array:
     """Mean of the two normal stresses in the plane."""
-    return results.cell_field("S", frame)[:, :2].mean(axis=1)
+    return results.frames[frame]["S"][:, :2].mean(axis=1)
 
 
-def on_outline(name: str, results: Results, frame: int) -> Array:
+def on_outline(name: str, results: Result, frame: int) -> Array:
     """Means of a scalar of slave nodes on the edges of the outlines.
 
     An edge with one node that has no value takes that of the other one.
     """
-    ends = results.point_field(name, frame)[results.boundary]
+    ends = results.frames[frame][name][results.boundary]
     known = np.isfinite(ends)
     total = np.where(known, ends, 0.0).sum(axis=1)
     return np.where(known.any(axis=1), total / np.maximum(known.sum(axis=1), 1), np.nan)
 
 
-def _plain(text: str) -> Callable[[Results], str]:
+def _plain(text: str) -> Callable[[Result], str]:
     return lambda _: text
 
 

@@ -12,7 +12,7 @@ from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
-from quads import Mesh, disc, ring
+from stickslip.quads import Mesh, disc, ring
 
 Array = NDArray[np.float64]
 
@@ -29,9 +29,7 @@ def element_matrices(x: Array) -> tuple[Array, Array]:
     """Stiffness (8 x 8) and mass per direction (4 x 4) of a quadrilateral."""
     factor = YOUNG / ((1 + POISSON) * (1 - 2 * POISSON))
     shear = (1 - 2 * POISSON) / 2
-    law = factor * np.array(
-        [[1 - POISSON, POISSON, 0], [POISSON, 1 - POISSON, 0], [0, 0, shear]]
-    )
+    law = factor * np.array([[1 - POISSON, POISSON, 0], [POISSON, 1 - POISSON, 0], [0, 0, shear]])
     stiffness, mass = np.zeros((8, 8)), np.zeros((4, 4))
     signs = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
     for xi in GAUSS:

@@ -23,13 +23,15 @@ from pathlib import Path
 import changed_decks as changed
 import numpy as np
 from changed_decks import Unchangeable
-from command import Fault, finish, one_line, positive, positive_integer
-from deck import Card, Deck
 from expected_results import Array, Change, Deviations, Seen, deviations
 from measured_run import Run, run
-from program import ROOT, binary
+from repository import ROOT
 from rescale import Units, rescale
 from sample_decks import Sample, all_samples, given
+from stickslip.command import finish, positive, positive_integer
+from stickslip.deck import Card, Deck
+from stickslip.errors import Fault, one_line
+from stickslip.program import binary
 
 TOLERANCE = 1e-9
 """Largest deviation of what has one answer, relative to the largest value of its dimension."""

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from command import Fault
+from stickslip.errors import Fault
 
 POLL = 0.02
 """Seconds between two looks at a running program."""

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from command import Fault
 from numpy.typing import NDArray
-from results import Array, Results
+from stickslip.errors import Fault
+from stickslip.result import Array, Result
 
 Integers = NDArray[np.int64]
 
@@ -31,8 +31,8 @@ class Outline:
         return cls(nodes, one[:, 1], two[:, 0])
 
 
-def outlines(results: Results) -> list[Outline]:
-    """The outlines of all bodies, in the order of `Results.body`.
+def outlines(results: Result) -> list[Outline]:
+    """The outlines of all bodies, in the order of `Result.body`.
 
     A Fault names a node in which elements touch with their corners only: what is inside is not
     defined there.

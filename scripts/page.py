@@ -12,7 +12,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
-from results import Array
+from stickslip.result import Array
 
 WIDTH, HEIGHT = 11.0, 7.7
 """Largest page that is filled; one with very many panels is higher."""

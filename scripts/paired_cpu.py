@@ -13,9 +13,10 @@ from math import sqrt
 from pathlib import Path
 from statistics import median, variance
 
-from command import Fault, finish, positive_integer
 from measured_run import check_program, run
 from sample_decks import Sample, examples, given
+from stickslip.command import finish, positive_integer
+from stickslip.errors import Fault
 
 ALLOWED = 1.03
 """Largest ratio over all decks."""

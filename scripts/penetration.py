@@ -21,9 +21,7 @@ from collections.abc import Set
 from dataclasses import dataclass
 from pathlib import Path
 
-import command
 import numpy as np
-from numpy.typing import NDArray
 from outlines import (
     LIMIT,
     Integers,
@@ -35,7 +33,8 @@ from outlines import (
     winding,
 )
 from profiles import Profile, nearest, passed, profiles, sunk
-from results import Array, Results
+from stickslip import command
+from stickslip.result import Array, Result
 
 Gone = Set[tuple[int, int]]
 """Bodies that have gone through obstacles: numbers of both."""
@@ -200,14 +199,14 @@ def _apart(one: tuple[Array, Array], two: tuple[Array, Array]) -> bool:
     return bool((one[0] > two[1]).any() or (two[0] > one[1]).any())
 
 
-def follow(results: Results) -> list[Overlap]:
+def follow(results: Result) -> list[Overlap]:
     """The overlap in every frame."""
     bodies, obstacles = outlines(results), profiles(results)
     found: list[Overlap] = []
     gone: Gone = frozenset()
-    before = results.positions(0)
-    for frame in range(len(results.frame_times)):
-        position = results.positions(frame)
+    before = results.frames[0].positions
+    for frame in range(len(results.frames)):
+        position = results.frames[frame].positions
         gone = still_gone(before, position, bodies, obstacles, gone)
         found.append(compare(position, bodies, obstacles, gone))
         before = position
@@ -227,9 +226,9 @@ def still_gone(
     }
 
 
-def describe(results: Results, frame: int, overlap: Overlap) -> str:
+def describe(results: Result, frame: int, overlap: Overlap) -> str:
     """What was found in a frame in words."""
-    text = f"frame {frame:4}, t = {results.frame_times[frame]:<10.6g} "
+    text = f"frame {frame:4}, t = {results.frames[frame].time:<10.6g} "
     parts = []
     if overlap.deepest is not None:
         parts.append(f"node {_words(overlap.deepest, results, frame)}")
@@ -244,15 +243,15 @@ def describe(results: Results, frame: int, overlap: Overlap) -> str:
     return text + "; ".join(parts)
 
 
-def _words(found: Intrusion, results: Results, frame: int) -> str:
-    x, y = results.positions(frame)[found.node]
+def _words(found: Intrusion, results: Result, frame: int) -> str:
+    x, y = results.frames[frame].positions[found.node]
     return (
         f"{results.node_labels[found.node]} at ({x:.6g}, {y:.6g}) is {found.depth:.3g} element"
         f" sizes ({found.distance:.3g}) behind {_place(found, results)}"
     )
 
 
-def _place(found: Intrusion, results: Results) -> str:
+def _place(found: Intrusion, results: Result) -> str:
     one, two = (results.node_labels[node] for node in found.edge)
     if found.body is None:
         return f"rigid segment {one}-{two}"
@@ -267,7 +266,7 @@ def main() -> int:
     arguments = parser.parse_args()
     limit_holds = True
     for path in arguments.result:
-        with Results(path) as results:
+        with Result(path) as results:
             found = follow(results)
             worst = max(range(len(found)), key=lambda frame: found[frame].depth)
             crossings = sum(frame.crossings > 0 for frame in found)

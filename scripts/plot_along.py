@@ -11,21 +11,21 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-import command
 import matplotlib.pyplot as plt
 import numpy as np
 import style
-from command import Fault
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from plot_motion import chosen_times, shown_at
-from results import Array, Results
+from stickslip import command
+from stickslip.errors import Fault
+from stickslip.result import Array, Result
 
 MOST = 8
 """More lines of nodes than this are refused: they would find no room."""
 
 
-def chains(results: Results, nodes: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+def chains(results: Result, nodes: NDArray[np.int64]) -> list[NDArray[np.int64]]:
     """The given nodes as lines along the outlines, body on the left; closed ones end where they begin."""
     chosen = np.isin(results.boundary, nodes).all(axis=1)
     following = {int(a): int(b) for a, b in results.boundary[chosen]}
@@ -40,10 +40,10 @@ def chains(results: Results, nodes: NDArray[np.int64]) -> list[NDArray[np.int64]
     return found
 
 
-def field(results: Results, name: str, frame: int) -> Array:
+def field(results: Result, name: str, frame: int) -> Array:
     """A scalar at the nodes, or a component of a vector as in CONTACT_FORCE:2."""
     path, _, component = name.partition(":")
-    values = results.point_field(path, frame)
+    values = results.frames[frame][path]
     if values.ndim == 1 and not component:
         return values
     if values.ndim == 2 and component in ("1", "2"):
@@ -52,16 +52,16 @@ def field(results: Results, name: str, frame: int) -> Array:
     raise Fault(f"{path} is a {kind} the component")
 
 
-def abscissa(results: Results, line: NDArray[np.int64], frame: int, against: str) -> Array:
+def abscissa(results: Result, line: NDArray[np.int64], frame: int, against: str) -> Array:
     """Length along the line in the undeformed mesh, or the current x or y."""
     if against != "length":
-        return results.positions(frame)[line, "xy".index(against)]
+        return results.frames[frame].positions[line, "xy".index(against)]
     steps = np.linalg.norm(np.diff(results.coordinates[line], axis=0), axis=1)
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
 def draw(
-    results: Results, lines: list[NDArray[np.int64]], frames: Sequence[int], name: str, against: str
+    results: Result, lines: list[NDArray[np.int64]], frames: Sequence[int], name: str, against: str
 ) -> Figure:
     """Axes for each line, a curve for each frame."""
     figure, axes = plt.subplots(
@@ -74,7 +74,7 @@ def draw(
         for frame, colour in zip(frames, style.colours(len(frames))):
             across = abscissa(results, line, frame, against)
             values = field(results, name, frame)[line]
-            time = results.frame_times[frame]
+            time = results.frames[frame].time
             at.plot(across, values, ".-", ms=4, color=colour, label=f"t = {time:.4g}")
         at.set_ylabel(name)
     axes[0, 0].legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
@@ -97,11 +97,11 @@ def main() -> None:
     parser.add_argument("-o", "--output", type=Path, help="picture to write")
     parser.add_argument("--dpi", type=command.positive, help="pixels per inch of the picture")
     arguments = parser.parse_args()
-    results = Results(arguments.result)
+    results = Result(arguments.result)
     if arguments.nset:
         nodes = results.node_set(arguments.nset)
     else:
-        nodes = np.flatnonzero(np.isfinite(results.point_field("SLIP", 0)))
+        nodes = np.flatnonzero(np.isfinite(results.frames[0]["SLIP"]))
     lines = chains(results, nodes)
     times = chosen_times(results, arguments.times, arguments.interval)
     frames = [frame for _, frame in shown_at(results, times)]

@@ -19,15 +19,16 @@ from itertools import cycle
 from pathlib import Path
 from textwrap import fill
 
-import command
 import matplotlib.pyplot as plt
 import numpy as np
 import style
-from histories import find, listed
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from results import Array, Results
+from stickslip import command
+from stickslip.errors import Fault
+from stickslip.quantity import find, listed
+from stickslip.result import Array, Result
 
 LEDGER = (
     ("kinetic", "kinetic", 1),
@@ -49,12 +50,12 @@ LINES = ("-", "--", ":", "-.")
 LEAST = 1e-18
 """Least value in logarithmic axes."""
 
-Plot = Callable[[Axes, Results], None]
+Plot = Callable[[Axes, Result], None]
 
 
-def energy(axes: Axes, results: Results) -> None:
+def energy(axes: Axes, results: Result) -> None:
     """Where the energy is: the accounts stacked, negative ones below zero, and what was put in."""
-    account = results.energy
+    account = results.history.energy
     start = account["kinetic"][0] + account["strain"][0]
     coloured = zip(LEDGER, style.ACCOUNTS)
     entered = [(entry, colour) for entry, colour in coloured if account[entry[0]].any()]
@@ -62,37 +63,43 @@ def energy(axes: Axes, results: Results) -> None:
     labels = [label for (_, label, _), _ in entered]
     colours = [colour for _, colour in entered]
     look = {"colors": colours, "alpha": 0.85, "linewidth": 0}
-    axes.stackplot(results.time, np.maximum(parts, 0.0), labels=labels, **look)
-    axes.stackplot(results.time, np.minimum(parts, 0.0), **look)
-    axes.plot(results.time, start + account["external_work"], "k--", lw=1, label="put in")
+    axes.stackplot(results.history.time, np.maximum(parts, 0.0), labels=labels, **look)
+    axes.stackplot(results.history.time, np.minimum(parts, 0.0), **look)
+    axes.plot(results.history.time, start + account["external_work"], "k--", lw=1, label="put in")
     axes.set_ylabel("energy")
 
 
-def relative_balance(results: Results) -> Array:
+def relative_balance(results: Result) -> Array:
     """The energy balance, relative to the largest energy."""
-    return np.abs(results.energy["balance"]) / (results.largest_energy or 1.0)
+    return np.abs(results.history.energy["balance"]) / (results.history.energy.largest or 1.0)
 
 
-def balance(axes: Axes, results: Results) -> None:
+def balance(axes: Axes, results: Result) -> None:
     """The relative energy balance."""
-    axes.semilogy(results.time, np.maximum(relative_balance(results), LEAST), color="k", lw=0.7)
+    axes.semilogy(
+        results.history.time, np.maximum(relative_balance(results), LEAST), color="k", lw=0.7
+    )
     axes.set_ylabel("|balance| /\nlargest energy")
 
 
-def linear_momentum(axes: Axes, results: Results) -> None:
+def linear_momentum(axes: Axes, results: Result) -> None:
     """Both components; round-off is drawn as zero."""
-    for label, values in zip("xy", results.linear_momentum.T):
-        axes.plot(results.time, values, label=label)
-    speed = np.linalg.norm(results.point_field("V", 0), axis=1).max()
-    kinetic = 2.0 * results.energy["kinetic"][0]
-    flat(axes, np.abs(results.linear_momentum).max(), kinetic / speed if speed else 0.0)
+    for label, values in zip("xy", results.history.momentum.linear.T):
+        axes.plot(results.history.time, values, label=label)
+    speed = np.linalg.norm(results.frames[0]["V"], axis=1).max()
+    kinetic = 2.0 * results.history.energy["kinetic"][0]
+    flat(axes, np.abs(results.history.momentum.linear).max(), kinetic / speed if speed else 0.0)
     axes.set_ylabel("linear\nmomentum")
 
 
-def angular_momentum(axes: Axes, results: Results) -> None:
+def angular_momentum(axes: Axes, results: Result) -> None:
     """Angular momentum; round-off is drawn as zero."""
-    axes.plot(results.time, results.angular_momentum, color="k")
-    flat(axes, np.ptp(results.angular_momentum), np.abs(results.angular_momentum).max())
+    axes.plot(results.history.time, results.history.momentum.angular, color="k")
+    flat(
+        axes,
+        np.ptp(results.history.momentum.angular),
+        np.abs(results.history.momentum.angular).max(),
+    )
     axes.set_ylabel("angular momentum\nabout the origin")
 
 
@@ -106,24 +113,24 @@ def flat(axes: Axes, change: float, scale: float) -> None:
     axes.ticklabel_format(axis="y", useOffset=False)
 
 
-def contact_force(axes: Axes, results: Results) -> None:
+def contact_force(axes: Axes, results: Result) -> None:
     """Normal and tangential resultant of each contact."""
-    axes.set_prop_cycle(color=style.colours(max(2 * len(results.contacts), 2)))
-    for contact in results.contacts.values():
-        prefix = f"{contact.name}: " if len(results.contacts) > 1 else ""
-        axes.plot(results.time, contact.normal, lw=0.8, label=f"{prefix}normal")
-        axes.plot(results.time, contact.tangential, lw=0.8, label=f"{prefix}tangential")
+    axes.set_prop_cycle(color=style.colours(max(2 * len(results.contact), 2)))
+    for contact in results.contact.values():
+        prefix = f"{contact.name}: " if len(results.contact) > 1 else ""
+        axes.plot(results.history.time, contact.normal, lw=0.8, label=f"{prefix}normal")
+        axes.plot(results.history.time, contact.tangential, lw=0.8, label=f"{prefix}tangential")
     axes.set_ylabel("contact force")
 
 
-def contact_state(axes: Axes, results: Results) -> None:
+def contact_state(axes: Axes, results: Result) -> None:
     """Number of closed and of sticking pairs."""
-    axes.set_prop_cycle(color=style.colours(max(2 * len(results.contacts), 2)))
-    for contact in results.contacts.values():
-        prefix = f"{contact.name}: " if len(results.contacts) > 1 else ""
-        axes.plot(results.time, contact.closed, lw=0.8, label=f"{prefix}closed")
-        axes.plot(results.time, contact.sticking, lw=0.8, label=f"{prefix}sticking")
-    axes.update_datalim([(results.time[0], 0.0), (results.time[0], 1.0)])
+    axes.set_prop_cycle(color=style.colours(max(2 * len(results.contact), 2)))
+    for contact in results.contact.values():
+        prefix = f"{contact.name}: " if len(results.contact) > 1 else ""
+        axes.plot(results.history.time, contact.closed, lw=0.8, label=f"{prefix}closed")
+        axes.plot(results.history.time, contact.sticking, lw=0.8, label=f"{prefix}sticking")
+    axes.update_datalim([(results.history.time[0], 0.0), (results.history.time[0], 1.0)])
     axes.yaxis.set_major_locator(MaxNLocator(nbins=4, integer=True))
     axes.set_ylabel("pairs")
 
@@ -141,11 +148,11 @@ def legend_beside(axes: Sequence[Axes]) -> None:
             line.set_linewidth(1.8)  # thin ones have pale colours
 
 
-def draw(all_results: list[Results]) -> Figure:
+def draw(all_results: list[Result]) -> Figure:
     """One column per result, all with the same scales."""
     rows: list[tuple[Plot, float]] = [(energy, 2.0), (balance, 1.0)]
     rows += [(linear_momentum, 1.0), (angular_momentum, 1.0)]
-    if any(results.contacts for results in all_results):
+    if any(results.contact for results in all_results):
         rows += [(contact_force, 1.2), (contact_state, 0.9)]
     heights = [height for _, height in rows]
     figure, axes = plt.subplots(
@@ -170,23 +177,26 @@ def draw(all_results: list[Results]) -> Figure:
     return figure
 
 
-def losses(results: Results) -> Array:
+def losses(results: Result) -> Array:
     """Energy that impacts, the scheme and the normal contact forces have taken."""
-    account = results.energy
+    account = results.history.energy
     others = account["impact_loss"] + account["numerical_dissipation"]
     return others - account["normal_contact_work"]
 
 
-def total(results: Results, field: str) -> Array:
+def total(results: Result, field: str) -> Array:
     """Sum of a resultant over all contacts."""
-    contacts = results.contacts.values()
+    contacts = results.contact.values()
     return sum((getattr(contact, field) for contact in contacts), np.zeros(results.rows))
 
 
-COMPARED: tuple[tuple[str, Callable[[Results], Array]], ...] = (
-    ("kinetic energy", lambda results: results.energy["kinetic"]),
-    ("strain energy", lambda results: results.energy["strain"]),
-    ("energy dissipated\nby friction", lambda results: results.energy["friction_dissipation"]),
+COMPARED: tuple[tuple[str, Callable[[Result], Array]], ...] = (
+    ("kinetic energy", lambda results: results.history.energy["kinetic"]),
+    ("strain energy", lambda results: results.history.energy["strain"]),
+    (
+        "energy dissipated\nby friction",
+        lambda results: results.history.energy["friction_dissipation"],
+    ),
     ("energy lost to impacts,\nscheme, contact", losses),
     ("|balance| /\nlargest energy", lambda results: np.maximum(relative_balance(results), LEAST)),
     ("normal contact force", lambda results: total(results, "normal")),
@@ -195,15 +205,15 @@ COMPARED: tuple[tuple[str, Callable[[Results], Array]], ...] = (
 """What is compared between results: title, values."""
 
 
-def compare(all_results: list[Results]) -> Figure:
-    """Results on top of each other: one line each."""
-    touching = any(results.contacts for results in all_results)
+def compare(all_results: list[Result]) -> Figure:
+    """Result on top of each other: one line each."""
+    touching = any(results.contact for results in all_results)
     rows = COMPARED if touching else COMPARED[:5]
     figure, axes = plt.subplots(len(rows), 1, figsize=(9, 1.0 + 1.6 * len(rows)), sharex=True)
     for at, (title, values) in zip(axes, rows):
         at.set_prop_cycle(color=style.colours(len(all_results)))
         for name, results in zip(names(all_results), all_results):
-            at.plot(results.time, values(results), lw=0.9, label=name)
+            at.plot(results.history.time, values(results), lw=0.9, label=name)
         at.set_ylabel(title)
         if title.startswith("|"):
             at.set_yscale("log")
@@ -213,7 +223,7 @@ def compare(all_results: list[Results]) -> Figure:
     return figure
 
 
-def draw_named(all_results: list[Results], along: str, rows: list[list[str]]) -> Figure:
+def draw_named(all_results: list[Result], along: str, rows: list[list[str]]) -> Figure:
     """Histories against another one: axes for each row of names, a line for each of its names."""
     figure, axes = plt.subplots(
         len(rows), 1, figsize=(9, 0.8 + 3.4 * len(rows)), sharex=True, squeeze=False
@@ -226,14 +236,14 @@ def draw_named(all_results: list[Results], along: str, rows: list[list[str]]) ->
     return figure
 
 
-def draw_row(axes: Axes, all_results: list[Results], along: str, shown: list[str]) -> list[str]:
+def draw_row(axes: Axes, all_results: list[Result], along: str, shown: list[str]) -> list[str]:
     """Draws the histories of one row; returns the titles of the abscissa."""
     abscissae, ordinates = {}, {}
     colours = iter(style.colours(len(all_results) * len(shown)))
     for job, results in zip(names(all_results), all_results):
         across = find(results, along)
         if not across.alone:
-            raise command.Fault(f"{along} is a vector: say which component, as in {along}:1")
+            raise Fault(f"{along} is a vector: say which component, as in {along}:1")
         (x,) = across.parts.values()
         abscissae[across.title] = None
         for name in shown:
@@ -248,7 +258,7 @@ def draw_row(axes: Axes, all_results: list[Results], along: str, shown: list[str
     return list(abscissae)
 
 
-def names(all_results: Sequence[Results]) -> list[str]:
+def names(all_results: Sequence[Result]) -> list[str]:
     """Names of the jobs; where two are the same, with their folders."""
     jobs = [results.job for results in all_results]
     if len(set(jobs)) == len(jobs):
@@ -256,10 +266,10 @@ def names(all_results: Sequence[Results]) -> list[str]:
     return [str(results.path.with_suffix("")) for results in all_results]
 
 
-def span(all_results: list[Results]) -> tuple[float, float]:
+def span(all_results: list[Result]) -> tuple[float, float]:
     """From the first to the last time of all results."""
-    first = min(results.time[0] for results in all_results)
-    last = max(results.time[-1] for results in all_results)
+    first = min(results.history.time[0] for results in all_results)
+    last = max(results.history.time[-1] for results in all_results)
     return float(first), float(last if last > first else first + 1.0)
 
 
@@ -280,7 +290,7 @@ def main() -> None:
     arguments = parser.parse_args()
     if arguments.x != "time" and not arguments.y:
         parser.error("--x needs --y")
-    all_results = [Results(path) for path in arguments.result]
+    all_results = [Result(path) for path in arguments.result]
     if arguments.list:
         print("\n".join(name for results in all_results for name in listed(results)))
         return

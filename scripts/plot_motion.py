@@ -13,11 +13,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import command
 import matplotlib.pyplot as plt
 import numpy as np
 import style
-from command import Fault
 from fields import FIELDS, Colouring, Shown
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -25,8 +23,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from page import Legends, Page
 from PIL import Image
-from results import Array, Results
 from shapes import VECTORS, Arrows, draw_overlay, draw_shape, limits, status_legend
+from stickslip import command
+from stickslip.errors import Fault
+from stickslip.result import Array, Result
 
 MOST = 100
 """A page with more panels is refused."""
@@ -72,7 +72,7 @@ class Scene:
         else:
             self.legends = Legends(entries)
 
-    def draw(self, axes: Axes, results: Results, frame: int) -> None:
+    def draw(self, axes: Axes, results: Result, frame: int) -> None:
         """One frame."""
         draw_shape(axes, results, frame, self.colouring)
         if self.arrows:
@@ -106,7 +106,7 @@ def panels(rows: Sequence[Sequence[Shown]], look: Look, columns: int | None = No
             axes = page.panel(at, column, final)
             scene.draw(axes, results, frame)
             name = f"{results.job},  " if len(rows) > 1 and (at, column) == places[0] else ""
-            axes.set_title(f"{name}t = {results.frame_times[frame]:.4g}", pad=4)
+            axes.set_title(f"{name}t = {results.frames[frame].time:.4g}", pad=4)
     return page.figure
 
 
@@ -117,7 +117,7 @@ def shades(count: int) -> Array:
 
 def time_legend(shown: Sequence[Shown]) -> list[Line2D]:
     """The colours of the times."""
-    times = [results.frame_times[frame] for results, frame in shown]
+    times = [results.frames[frame].time for results, frame in shown]
     colours = shades(len(times))
     return [Line2D([], [], color=c, label=f"t = {t:.4g}") for t, c in zip(times, colours)]
 
@@ -185,7 +185,7 @@ def pictures_of(
         canvas.restore_region(background)
         for axes, (results, frame) in zip(grid, row):
             scene.draw(axes, results, frame)
-            axes.set_title(f"{results.job},  t = {results.frame_times[frame]:.4g}", pad=4)
+            axes.set_title(f"{results.job},  t = {results.frames[frame].time:.4g}", pad=4)
             drawn = [*axes.collections, *axes.texts]
             for artist in sorted([*drawn, axes.title], key=lambda artist: artist.get_zorder()):
                 axes.draw_artist(artist)
@@ -194,12 +194,10 @@ def pictures_of(
         yield Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
 
 
-def animate(
-    all_results: Sequence[Results], look: Look, path: Path, frames_per_second: int
-) -> None:
+def animate(all_results: Sequence[Result], look: Look, path: Path, frames_per_second: int) -> None:
     """Writes an animation of all frames of the first result; others are shown at its times."""
-    times = all_results[0].frame_times
-    rows = [[(each, each.nearest_frame(time)) for each in all_results] for time in times]
+    times = all_results[0].frames.times
+    rows = [[(each, each.frames.nearest(time).index) for each in all_results] for time in times]
     scene = Scene([each for row in rows for each in row], look)
     page = Page(len(all_results), scene.box, scene.legends)
     columns = page.grid.columns
@@ -210,11 +208,11 @@ def animate(
     print(f"wrote {path}")
 
 
-def chosen_times(results: Results, times: list[float] | None, interval: float | None) -> Array:
+def chosen_times(results: Result, times: list[float] | None, interval: float | None) -> Array:
     """The given times, or multiples of an interval, or six times of the whole run."""
     if times:
         return np.array(times)
-    first, end = float(results.frame_times[0]), float(results.frame_times[-1])
+    first, end = float(results.frames.times[0]), float(results.frames.times[-1])
     if interval is None:
         return np.linspace(first, end, 6)
     count = (end - first) / interval
@@ -223,9 +221,9 @@ def chosen_times(results: Results, times: list[float] | None, interval: float | 
     return first + interval * np.arange(int(count + 1e-9) + 1)
 
 
-def shown_at(results: Results, times: Iterable[float]) -> list[Shown]:
+def shown_at(results: Result, times: Iterable[float]) -> list[Shown]:
     """Frames nearest to the given times, each once."""
-    return [(results, frame) for frame in sorted({results.nearest_frame(t) for t in times})]
+    return [(results, frame) for frame in sorted({results.frames.nearest(t).index for t in times})]
 
 
 def window(text: str) -> Box:
@@ -273,7 +271,7 @@ def main() -> None:
     film = arguments.animation
     if film:
         check_film(film)
-    all_results = [Results(path) for path in arguments.result]
+    all_results = [Result(path) for path in arguments.result]
     if arguments.output or not film:
         first = all_results[0]
         times = chosen_times(first, arguments.times, arguments.interval)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from outlines import LIMIT, Integers, Outline, distances, side, winding
-from results import Array, Results
+from stickslip.result import Array, Result
 
 Flags = NDArray[np.bool_]
 
@@ -47,7 +47,7 @@ class Profile:
         return turn
 
 
-def profiles(results: Results) -> list[Profile]:
+def profiles(results: Result) -> list[Profile]:
     """The chains of all rigid surfaces."""
     following = {int(a): int(b) for a, b in results.rigid}
     reached = set(following.values())

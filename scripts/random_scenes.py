@@ -10,11 +10,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import scene_shapes as shapes
-from cards import card
 from numpy.random import Generator
-from quads import Mesh
-from results import Array
 from scene_shapes import Shape
+from stickslip.cards import card
+from stickslip.quads import Mesh
+from stickslip.result import Array
 
 POISSON, DENSITY, GRAVITY = 0.3, 1.0, 9.81
 FRICTION = (0.0, 0.1, 0.3, 0.6, 1.0)
@@ -75,10 +75,7 @@ class Scene:
         return "".join(
             [
                 *(mesh.mesh(kind) for mesh in meshes),
-                *(
-                    _material(mesh.name, body, material)
-                    for mesh, body in zip(meshes, bodies)
-                ),
+                *(_material(mesh.name, body, material) for mesh, body in zip(meshes, bodies)),
                 *(_profile(*item, references[item[0]]) for item in self.profiles.items()),
                 card("SURFACE INTERACTION, NAME=DRY"),
                 card("FRICTION", (self.friction,)),

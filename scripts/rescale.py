@@ -16,9 +16,9 @@ from itertools import chain, repeat
 from pathlib import Path
 from typing import Any
 
-import command
-from command import Fault
-from deck import Card, Deck, fields, fold
+from stickslip import command
+from stickslip.deck import Card, Deck, fields, fold
+from stickslip.errors import Fault
 
 BASE: dict[str, "Dimension"] = {
     "1": (0, 0, 0),

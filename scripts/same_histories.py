@@ -17,11 +17,12 @@ from math import ceil
 from pathlib import Path
 
 import h5py
-from command import Fault, finish, one_line, positive, positive_integer
-from deck import Deck
 from differences import Comparison, Difference, Files, Span, frames_until, status_difference
 from measured_run import Run, check_program, run
 from sample_decks import Sample, all_samples, given, quick_samples
+from stickslip.command import finish, positive, positive_integer
+from stickslip.deck import Deck
+from stickslip.errors import Fault, one_line
 
 LIMIT = 20.0
 QUICK_LIMIT = 4.0

@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from command import Fault
-from deck import Deck
-from program import ROOT
+from repository import ROOT
+from stickslip.deck import Deck
+from stickslip.errors import Fault
 
 sys.path.insert(0, str(ROOT / "verification"))
 

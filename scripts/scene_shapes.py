@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.random import Generator
-from results import Array
+from stickslip.result import Array
 
 Corners = tuple[int, int, int, int]
 Curve = Callable[[Array], Array]
@@ -44,9 +44,7 @@ def rectangle(
 def _lattice(nx: int, ny: int) -> list[Corners]:
     row = nx + 1
     corners = (0, 1, row + 1, row)
-    return [
-        tuple(j * row + i + corner for corner in corners) for j in range(ny) for i in range(nx)
-    ]
+    return [tuple(j * row + i + corner for corner in corners) for j in range(ny) for i in range(nx)]
 
 
 def disc(side: int, radius: float) -> Shape:

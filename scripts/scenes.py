@@ -20,13 +20,13 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import command
 import numpy as np
 import penetration
 from measured_run import run
-from program import STOPPED, binary
 from random_scenes import INCREMENTS, KINDS, MATERIALS
-from results import Results
+from stickslip import command
+from stickslip.program import STOPPED, binary
+from stickslip.result import Result
 
 GAIN = 1e-10
 """Gain of energy, relative to the largest account, that is not round-off."""
@@ -103,13 +103,13 @@ class Trial:
             ended = f"not done in {self.limit:g} s"
         elif ran.code not in (0, STOPPED):
             return Outcome(seed, "; ".join(settings), f"exit code {ran.code}: {ended}")
-        with Results(ran.result) as results:
+        with Result(ran.result) as results:
             overlaps = penetration.follow(results)
             return Outcome(
                 seed,
                 "; ".join(settings),
                 ended,
-                len(results.time) - 1,
+                len(results.history.time) - 1,
                 int(results.run["cutbacks"]),
                 gain(results),
                 "SCHEME=SS22" not in settings,
@@ -120,12 +120,12 @@ class Trial:
             )
 
 
-def gain(results: Results) -> float:
+def gain(results: Result) -> float:
     """Rise of kinetic and strain energy without external work, beside the largest account."""
-    energy = results.energy
+    energy = results.history.energy
     total = energy["kinetic"] + energy["strain"] - energy["external_work"]
     rise = float((total - np.minimum.accumulate(total)).max())
-    return rise / (results.largest_energy or 1.0)
+    return rise / (results.history.energy.largest or 1.0)
 
 
 def _message(text: str) -> str:

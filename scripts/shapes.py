@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
-from results import SLIP, STICK, Array, Results
+from stickslip.result import SLIP, STICK, Array, Result
 
 BACKGROUND, EDGE, MARK, ARROW = "#eef1f4", "#40464d", "#d1495b", "#111111"
 
@@ -50,17 +50,17 @@ class Arrows:
     def of(cls, name: str, shown: Sequence[Shown]) -> "Arrows":
         """Scale that makes the largest arrow a tenth of the picture."""
         largest = max(
-            float(np.linalg.norm(results.point_field(name, frame), axis=1).max())
+            float(np.linalg.norm(results.frames[frame][name], axis=1).max())
             for results, frame in shown
         )
         low, high = limits(shown)
         extent = float((high - low).max()) or 1.0
         return cls(name, largest, (largest or 1.0) / (0.1 * extent), extent / CROWD)
 
-    def draw(self, axes: Axes, results: Results, frame: int) -> None:
+    def draw(self, axes: Axes, results: Result, frame: int) -> None:
         """The arrows of a frame, forces at all nodes that bear them."""
-        vector = results.point_field(self.name, frame)
-        position = results.positions(frame)
+        vector = results.frames[frame][self.name]
+        position = results.frames[frame].positions
         nodes = results.drawn[np.linalg.norm(vector[results.drawn], axis=1) > 0.0]
         if self.name in ("U", "V", "A"):
             nodes = self._thinned(nodes, position)
@@ -76,10 +76,10 @@ class Arrows:
             zorder=6,
         )
 
-    def tips(self, results: Results, frame: int) -> Array:
+    def tips(self, results: Result, frame: int) -> Array:
         """Where the arrows end [nodes, 2]."""
-        vector = results.point_field(self.name, frame)[results.drawn]
-        return results.positions(frame)[results.drawn] + vector / self.per_length
+        vector = results.frames[frame][self.name][results.drawn]
+        return results.frames[frame].positions[results.drawn] + vector / self.per_length
 
     def _thinned(self, nodes: NDArray[np.int64], position: Array) -> NDArray[np.int64]:
         """One node of each square of a lattice."""
@@ -93,9 +93,9 @@ class Arrows:
         return [Line2D([], [], label=label, **look)]
 
 
-def draw_shape(axes: Axes, results: Results, frame: int, colouring: Colouring | None) -> None:
+def draw_shape(axes: Axes, results: Result, frame: int, colouring: Colouring | None) -> None:
     """The deformed mesh in one frame, its outline and the nodes in contact."""
-    position = results.positions(frame)
+    position = results.frames[frame].positions
     on_edges = colouring is not None and colouring.field.on_edges
     on_cells = colouring is not None and not on_edges
     bodies = PolyCollection([position[cell] for cell in results.cells])
@@ -117,13 +117,13 @@ def draw_shape(axes: Axes, results: Results, frame: int, colouring: Colouring | 
     axes.add_collection(LineCollection(position[results.rigid], colors=EDGE, linewidths=1.6))
     if on_edges:
         return  # marks of the nodes would cover the coloured edges
-    status = results.point_field("CONTACT_STATUS", frame)
+    status = results.frames[frame]["CONTACT_STATUS"]
     for value, face in ((STICK, MARK), (SLIP, "white")):
         at = position[status == value]
         axes.scatter(*at.T, s=11, facecolor=face, edgecolor=MARK, linewidth=0.9, zorder=5)
 
 
-def mesh_line(axes: Axes, results: Results) -> float:
+def mesh_line(axes: Axes, results: Result) -> float:
     """Width of the lines of the mesh in points: at most a thirtieth of an edge, none below that.
 
     Lines of a fine mesh would drown the colours of its elements.
@@ -139,7 +139,7 @@ def status_legend(shown: Sequence[Shown]) -> list[Artist]:
     found = {
         int(value)
         for results, frame in shown
-        for value in np.unique(results.point_field("CONTACT_STATUS", frame))
+        for value in np.unique(results.frames[frame]["CONTACT_STATUS"])
     }
     look = {"marker": "o", "markersize": 3.6, "markeredgecolor": MARK, "linestyle": "none"}
     return [
@@ -154,14 +154,14 @@ def limits(shown: Sequence[Shown], arrows: Arrows | None = None) -> tuple[Array,
 
     Corners of rigid surfaces are in it where they are near: at most AROUND sizes of the box away.
     """
-    positions = [results.positions(frame)[results.in_cells] for results, frame in shown]
+    positions = [results.frames[frame].positions[results.in_cells] for results, frame in shown]
     if arrows is not None:
         positions += [arrows.tips(*each) for each in shown]
     low = np.min([place.min(axis=0) for place in positions], axis=0)
     high = np.max([place.max(axis=0) for place in positions], axis=0)
     around = AROUND * float((high - low).max())
     for results, frame in shown:
-        corner = results.positions(frame)[np.unique(results.rigid)]
+        corner = results.frames[frame].positions[np.unique(results.rigid)]
         near = ((corner > low - around) & (corner < high + around)).all(axis=1)
         positions.append(corner[near])
     low = np.min([place.min(axis=0, initial=np.inf) for place in positions], axis=0)
@@ -176,14 +176,14 @@ def draw_overlay(axes: Axes, shown: Sequence[Shown], shades: Sequence[Array]) ->
     Bodies that hardly move are drawn once, grey.
     """
     results = shown[0][0]
-    travel = [np.linalg.norm(results.point_field("U", frame), axis=1) for _, frame in shown]
+    travel = [np.linalg.norm(results.frames[frame]["U"], axis=1) for _, frame in shown]
     way = np.max(travel, axis=0)
     bodies = range(results.body.max() + 1)
     farthest = np.array([way[results.body == body].max() for body in bodies])
     moving = (farthest > 0.01 * way.max())[results.body]
 
     def draw(frame: int, select: NDArray[np.bool_], face: object, edge: object) -> None:
-        position = results.positions(frame)
+        position = results.frames[frame].positions
         cells = [position[cell] for cell in results.cells if select[cell[0]]]
         outline = position[[side for side in results.boundary if select[side[0]]]]
         rigid = position[[side for side in results.rigid if select[side[0]]]]

@@ -15,18 +15,19 @@ import re
 import resource
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-import command
 import h5py
 import numpy as np
-from deck import FREE_TEXT, Card, Deck, fields
-from program import ROOT, binary
+from repository import ROOT
+from stickslip import command
+from stickslip.deck import FREE_TEXT, Card, Deck, fields
+from stickslip.errors import Fault
+from stickslip.program import binary
 
 LARGEST = 8_000
 """Characters of the largest deck that is a seed."""
@@ -77,7 +78,7 @@ def seeds() -> dict[str, str]:
         for path in sorted((ROOT / folder).rglob("*.inp")):
             try:
                 deck = Deck.read(path)
-            except (command.Fault, OSError):
+            except (Fault, OSError):
                 continue  # a test of what happens to such decks
             shorten(deck)
             text = deck.text()

@@ -9,11 +9,11 @@ if not os.environ.get("DISPLAY"):
     matplotlib.use("Agg")
 
 import numpy as np  # noqa: E402
-from command import Fault, one_line  # noqa: E402
 from cycler import cycler  # noqa: E402
 from matplotlib.colors import to_hex  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from PIL import Image  # noqa: E402
+from stickslip.errors import Fault, one_line  # noqa: E402
 
 MOST_PIXELS = 1e8
 """Larger pictures are refused: they would need gigabytes of memory."""
@@ -23,12 +23,13 @@ ACCOUNTS = (*COLOURS[:4], "#9acd32", "#c38d5a", "#222222", *COLOURS[4:])
 """Colours of the accounts of the energy ledger."""
 
 
-
 def colours(count: int) -> list[str]:
     """So many colours that differ: those of the figures, or more of them from a colour map."""
     if count <= len(COLOURS):
         return list(COLOURS[:count])
-    return [to_hex(colour) for colour in matplotlib.colormaps["turbo"](np.linspace(0.04, 0.96, count))]
+    return [
+        to_hex(colour) for colour in matplotlib.colormaps["turbo"](np.linspace(0.04, 0.96, count))
+    ]
 
 
 matplotlib.rcParams.update(

@@ -21,7 +21,8 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from program import ROOT, binary
+from repository import ROOT
+from stickslip.program import binary
 
 DECK = ROOT / "tests" / "decks" / "drop.inp"
 JOB = "job"
@@ -120,7 +121,7 @@ class Bench:
 
     @property
     def reference(self) -> Path:
-        """Results of an undisturbed run."""
+        """Result of an undisturbed run."""
         return self.folder / "reference"
 
     def prepare(self) -> None:

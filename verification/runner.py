@@ -19,11 +19,11 @@ import numpy as np
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "scripts")]
 
-import program  # noqa: E402
-from deck import Deck  # noqa: E402
-from results import Results  # noqa: E402
+from stickslip import program  # noqa: E402
+from stickslip.deck import Deck  # noqa: E402
+from stickslip.result import Result  # noqa: E402
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ class Verification:
     cases: list[Case]
     limits: dict[str, Limit]
     reuse: bool
-    results: dict[str, Results] = field(default_factory=dict)
+    results: dict[str, Result] = field(default_factory=dict)
     failures: int = 0
     checks: list[Sequence[str]] = field(default_factory=list)
     tables: list[str] = field(default_factory=list)
@@ -131,7 +131,7 @@ class Verification:
             for case, (path, code) in zip(self.cases, pool.map(self._run_case, self.cases)):
                 self.check("exit code of the run", case.name, code)
                 if path is not None:
-                    self.results[case.name] = Results(path)
+                    self.results[case.name] = Result(path)
         self.cases = [case for case in self.cases if case.name in self.results]
 
     def _run_case(self, case: Case) -> tuple[Path | None, int]:
@@ -139,7 +139,7 @@ class Verification:
         output = self.output / "runs"
         path = output / f"{case.name}.vtkhdf"
         if self.reuse and path.exists():
-            with Results(path) as results:
+            with Result(path) as results:
                 return path, int(results.run["exit_status"])
         print(f"running {case.name}", flush=True)
         options = ["--threads", "1"]
@@ -150,12 +150,12 @@ class Verification:
         changed = case.changed_deck(self.decks, self.output / "decks" / case.name)
         deck = changed.write(output / f"{case.name}.inp")
         try:
-            return program.run(deck, output, *options), 0
+            return program.run(deck, output, *options).path, 0
         except program.RunFailed as failure:
             print(failure)
             return path if failure.code == program.STOPPED else None, failure.code
 
-    def group(self, name: str) -> Iterator[tuple[Case, Results]]:
+    def group(self, name: str) -> Iterator[tuple[Case, Result]]:
         """The cases of a group with their results."""
         for case in self.cases:
             if case.group == name:
@@ -176,14 +176,14 @@ class Verification:
         `accuracy` is added to the name of the energy balance: for runs with a limit of their own.
         """
         results = self.results[name]
-        failed = int((results.solver["converged"] == 0).sum())
+        failed = int((results.history.solver["converged"] == 0).sum())
         self.check("increments not converged", name, failed)
-        if results.contacts:
-            gaps = [np.nan_to_num(contact.min_gap) for contact in results.contacts.values()]
+        if results.contact:
+            gaps = [np.nan_to_num(contact.min_gap) for contact in results.contact.values()]
             self.check("deepest gap / element size", name, min(float(np.min(gaps)), 0.0) / edge)
-            cones = [contact.cone_violation for contact in results.contacts.values()]
+            cones = [contact.cone_violation for contact in results.contact.values()]
             self.check("violation of Coulomb's cone", name, float(np.max(cones)))
-        balance = np.abs(results.energy["balance"]).max() / results.largest_energy
+        balance = np.abs(results.history.energy["balance"]).max() / results.history.energy.largest
         self.check(f"energy balance / largest energy{accuracy}", name, float(balance))
 
     def table(self, title: str, header: Sequence[str], rows: Sequence[Sequence[object]]) -> None:

@@ -6,11 +6,11 @@ from pathlib import Path
 from random import Random
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "scripts"))
+sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from cards import card, dry, elastic, step  # noqa: E402
-from deck import write_to_folder  # noqa: E402
-from quads import Grid, Mesh, disc  # noqa: E402
+from stickslip.cards import card, dry, elastic, step  # noqa: E402
+from stickslip.deck import write_to_folder  # noqa: E402
+from stickslip.quads import Grid, Mesh, disc  # noqa: E402
 
 YOUNG, POISSON, DENSITY, THICKNESS = 4000.0, 0.3, 1.0, 1.0
 GRAVITY, FRICTION = 10.0, 0.3

@@ -5,11 +5,11 @@ from math import cos, radians, sin
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "scripts"))
+sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from cards import card  # noqa: E402
-from deck import write_to_folder  # noqa: E402
-from quads import Grid, outline  # noqa: E402
+from stickslip.cards import card  # noqa: E402
+from stickslip.deck import write_to_folder  # noqa: E402
+from stickslip.quads import Grid, outline  # noqa: E402
 
 YOUNG, POISSON, THICKNESS = 1e4, 0.3, 1.0
 DENSITY = {"PLATE": 1.0, "BULLET": 0.2}

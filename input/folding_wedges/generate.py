@@ -5,9 +5,9 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "scripts"))
+sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from deck import write_to_folder  # noqa: E402
+from stickslip.deck import write_to_folder  # noqa: E402
 
 YOUNG, POISSON, DENSITY = 210000.0, 0.3, 7.85e-9
 LENGTH, THIN, SLOPE = 100.0, 8.0, 0.1
@@ -88,7 +88,9 @@ def surface(name: str, instance: str, side: str, members: Iterable[int]) -> str:
     internal = f"_{name}_{side}"
     return "".join(
         [
-            card(f"Elset, elset={internal}, internal, instance={instance}, generate", span(members)),
+            card(
+                f"Elset, elset={internal}, internal, instance={instance}, generate", span(members)
+            ),
             card(f"Surface, type=ELEMENT, name={name}", f"{internal}, {side}"),
         ]
     )

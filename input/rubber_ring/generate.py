@@ -4,11 +4,11 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "scripts"))
+sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from cards import card, dry, step  # noqa: E402
-from deck import write_to_folder  # noqa: E402
-from quads import outline, ring  # noqa: E402
+from stickslip.cards import card, dry, step  # noqa: E402
+from stickslip.deck import write_to_folder  # noqa: E402
+from stickslip.quads import outline, ring  # noqa: E402
 
 C10, D1, DENSITY, THICKNESS = 100.0, 2.0e-3, 1.0, 1.0
 """Shear modulus 2 C10 = 200, bulk modulus 2/D1 = 1000."""

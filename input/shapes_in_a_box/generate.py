@@ -6,11 +6,11 @@ from pathlib import Path
 from random import Random
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "scripts"))
+sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from cards import card, elastic, step  # noqa: E402
-from deck import write_to_folder  # noqa: E402
-from quads import Grid, Mesh  # noqa: E402
+from stickslip.cards import card, elastic, step  # noqa: E402
+from stickslip.deck import write_to_folder  # noqa: E402
+from stickslip.quads import Grid, Mesh  # noqa: E402
 
 YOUNG, POISSON, DENSITY, THICKNESS = 6000.0, 0.3, 1.0, 1.0
 GRAVITY, SPEED = 9.81, 3.0
@@ -77,9 +77,7 @@ def shape(chance: Random, name: str, centre: tuple[float, float], after: Grid | 
         for j in range(row * parts, (row + 1) * parts)
         for i in range(column * parts, (column + 1) * parts)
     ]
-    flat = [
-        (edge * (i - 0.5 * wide * parts), edge * (j - 0.5 * tall * parts)) for i, j in index
-    ]
+    flat = [(edge * (i - 0.5 * wide * parts), edge * (j - 0.5 * tall * parts)) for i, j in index]
     nodes = [
         (centre[0] + x * cos(turn) - y * sin(turn), centre[1] + x * sin(turn) + y * cos(turn))
         for x, y in flat

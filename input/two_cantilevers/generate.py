@@ -5,10 +5,10 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "scripts"))
+sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from cards import card, elastic  # noqa: E402
-from quads import Grid  # noqa: E402
+from stickslip.cards import card, elastic  # noqa: E402
+from stickslip.quads import Grid  # noqa: E402
 
 YOUNG = 4000.0
 POISSON = 0.3

@@ -1,6 +1,7 @@
 """Paths, and the fixture that runs decks once per session."""
 
 import hashlib
+import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -8,10 +9,11 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "scripts")]
+os.environ["PYTHONPATH"] = str(ROOT / "python")  # of the scripts that tests start
 
-import program  # noqa: E402
-from deck import Deck  # noqa: E402
+from stickslip import program  # noqa: E402
+from stickslip.deck import Deck  # noqa: E402
 
 Job = Callable[..., Path]
 
@@ -37,7 +39,7 @@ def job(tmp_path_factory: pytest.TempPathFactory) -> Job:
         if key not in done:
             name = hashlib.sha256(text.encode()).hexdigest()[:12]
             path = deck.write(folder / f"{name}.inp")
-            done[key] = program.run(path, folder / str(len(done)), *options)
+            done[key] = program.run(path, folder / str(len(done)), *options).path
         return done[key]
 
     return run

@@ -4,9 +4,9 @@ import runpy
 from math import cos, pi, sin
 from pathlib import Path
 
-from cards import card, elastic, step
-from deck import Card, Deck
-from quads import Grid
+from stickslip.cards import card, elastic, step
+from stickslip.deck import Card, Deck
+from stickslip.quads import Grid
 
 ROOT = Path(__file__).resolve().parents[2]
 BLOCK = ROOT / "input" / "block_slope"

@@ -5,11 +5,11 @@ import subprocess
 import sys
 from pathlib import Path
 
-import program
 import pytest
 from conftest import ROOT
-from deck import Card
 from decks import CANTILEVERS, CORNERS, shortened
+from stickslip import program
+from stickslip.deck import Card
 
 FAULTY = """\
 #!{python}

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from compare import datasets, dimension
 from conftest import ROOT, Job
-from deck import Deck
 from decks import BLOCK, CANTILEVERS, SHAPES, parse, shortened
-from results import ENERGIES, Results
+from stickslip.deck import Deck
+from stickslip.history import ENERGIES
+from stickslip.result import Result
 
 FRAMES = 5
 EXAMPLES = {
@@ -250,16 +251,18 @@ def test_run_record(example: tuple) -> None:
 
 
 def test_history_and_frames_agree(example: tuple) -> None:
-    with Results(example[0]) as results:
-        history = results.nodes(example[3][0])
+    with Result(example[0]) as results:
+        history = results.history.nodes[example[3][0]]
         index = np.searchsorted(results.node_labels, history.labels)
-        last = len(results.frame_times) - 1
-        assert results.frame_times[last] == results.time[-1]
-        assert np.array_equal(results.point_field("U", last)[index], history.U[-1])
-        assert np.array_equal(results.point_field("V", last)[index], history.V[-1])
+        last = len(results.frames) - 1
+        assert results.frames.times[last] == results.history.time[-1]
+        assert np.array_equal(results.frames[last]["U"][index], history.U[-1])
+        assert np.array_equal(results.frames[last]["V"][index], history.V[-1])
 
 
 def test_every_increment_converged_and_the_ledger_closes(example: tuple) -> None:
-    with Results(example[0]) as results:
-        assert results.solver["converged"].all()
-        assert np.abs(results.energy["balance"]).max() < 1e-8 * results.largest_energy
+    with Result(example[0]) as results:
+        assert results.history.solver["converged"].all()
+        assert (
+            np.abs(results.history.energy["balance"]).max() < 1e-8 * results.history.energy.largest
+        )

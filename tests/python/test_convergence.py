@@ -6,11 +6,10 @@ import sys
 from pathlib import Path
 
 import convergence
-import program
 import pytest
 from conftest import ROOT
 from decks import CANTILEVERS, CORNERS, shortened
-from results import Results
+from stickslip import program
 from test_compared_programs import compare, faulty_program
 
 LOG = """\
@@ -48,10 +47,13 @@ def deck(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_counts_are_those_of_the_results(deck: Path, tmp_path: Path) -> None:
-    with Results(program.run(deck, tmp_path)) as results:
-        rows, cutbacks = len(results.time) - 1, int(results.run["cutbacks"])
-        passes, most = results.solver["passes"].sum(), results.solver["passes"].max()
-        factorizations = int(results.solver["factorizations"].sum())
+    with program.run(deck, tmp_path) as results:
+        rows, cutbacks = len(results.history.time) - 1, int(results.run["cutbacks"])
+        passes, most = (
+            results.history.solver["passes"].sum(),
+            results.history.solver["passes"].max(),
+        )
+        factorizations = int(results.history.solver["factorizations"].sum())
     assert rows > 40 and cutbacks > 0
     code, text = compare("convergence.py", program.binary(), deck)
     assert code == 0, text

@@ -5,11 +5,11 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from command import Fault
 from conftest import Job
 from decks import BLOCK, CANTILEVERS, parse, shortened
-from histories import find
-from results import Results
+from stickslip.errors import Fault
+from stickslip.quantity import find
+from stickslip.result import Result
 
 STRETCHED = """*NODE, NSET=ALL
 1, 0., 0.
@@ -106,12 +106,12 @@ def test_frames_and_energies(path: Path, tmp_path: Path, job: Job) -> None:
                     energy = file["history/bodies"][theirs][:, body]
                     assert np.allclose(elements["sum"][ours][:], energy, rtol=1e-10, atol=0.0)
         assert seen.any()
-    with Results(result) as results:
+    with Result(result) as results:
         name, labels = sets[0], results.read(f"history/elements/{sets[0]}/labels")
         (part,) = find(results, f"elements/{name}[{labels[-1]}]/S:2").parts.values()
-        assert np.array_equal(part, results.history(f"elements/{name}/S")[:, -1, 1])
+        assert np.array_equal(part, results.history[f"elements/{name}/S"][:, -1, 1])
         (part,) = find(results, f"elements/{name}/ELSE").parts.values()
-        assert np.allclose(part, results.history(f"elements/{name}/sum/ELSE"))
+        assert np.allclose(part, results.history[f"elements/{name}/sum/ELSE"])
 
 
 def test_names_hold_where_a_result_has_only_sums_and_means(tmp_path: Path, job: Job) -> None:
@@ -121,7 +121,7 @@ def test_names_hold_where_a_result_has_only_sums_and_means(tmp_path: Path, job: 
     for totals in ("", ", TOTALS=ONLY"):
         text = STRETCHED.replace("*EL PRINT", asked.format(totals))
         text = text.replace("ELSET=BODY\nS,", f"ELSET=BODY{totals}\nS,")
-        all_results.append(Results(job(parse(text, tmp_path))))
+        all_results.append(Result(job(parse(text, tmp_path))))
     each, only = all_results
     assert "nodes/RIGHT/U" in each.histories and "nodes/RIGHT/U" not in only.histories
     for name in ("nodes/RIGHT/U:1", "nodes/RIGHT/V:1", "nodes/RIGHT/RF:1", "elements/BODY/ELKE"):

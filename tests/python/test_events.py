@@ -2,8 +2,8 @@
 
 import pytest
 from conftest import ROOT, Job
-from deck import Deck
-from results import Results
+from stickslip.deck import Deck
+from stickslip.result import Result
 
 BEAM = ROOT / "tests/decks/beam_lands_with_events.inp"
 """A beam without mass at its surface lands on a rigid floor with a hollow vertex."""
@@ -19,19 +19,19 @@ ALL = EVENTS | {"LANDING": "RETURN", "LCP": "LEMKE", "FACTORIZATION": "EVERY PAS
 def test_a_beam_lands_round_a_hollow_vertex(job: Job, settings: dict[str, str]) -> None:
     deck = Deck.read(BEAM)
     deck.set_settings(**settings)
-    with Results(job(deck)) as results:
+    with Result(job(deck)) as results:
         ended(results, 1)
 
 
 def test_corners_of_a_stack_hold_each_other(job: Job) -> None:
     deck = Deck.read(STACK)
     deck.set_increments(deck.dt, 49)
-    with Results(job(deck)) as results:
+    with Result(job(deck)) as results:
         ended(results, 0)
 
 
-def ended(results: Results, cutbacks: int) -> None:
+def ended(results: Result, cutbacks: int) -> None:
     """The run went to its end, with so many cutbacks at most, and kept its balance."""
     record = results.file["run"].attrs
     assert record["exit_status"] == 0 and record["cutbacks"] <= cutbacks
-    assert abs(results.energy["balance"]).max() < 1e-10 * results.largest_energy
+    assert abs(results.history.energy["balance"]).max() < 1e-10 * results.history.energy.largest

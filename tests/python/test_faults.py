@@ -6,18 +6,18 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-import command
 import h5py
 import numpy as np
 import penetration
 import plot_history
 import plot_motion
-import program
 import pytest
-from command import FAULT, Fault
 from conftest import ROOT, Job
 from decks import CANTILEVERS, shortened
-from results import Results
+from stickslip import command, program
+from stickslip.command import FAULT
+from stickslip.errors import Fault
+from stickslip.result import Result
 
 MAINS = {
     "plot_motion": plot_motion.main,
@@ -125,8 +125,8 @@ def test_positions_that_are_no_numbers(script: str, value: float, result: Path, 
 def test_the_largest_energy_drops_no_nan(account: str, result: Path) -> None:
     with h5py.File(result, "r+") as file:
         file[f"history/energy/{account}"][3] = float("nan")
-    with Results(result) as results:
-        assert np.isnan(results.largest_energy)
+    with Result(result) as results:
+        assert np.isnan(results.history.energy.largest)
 
 
 def test_a_file_without_history(result: Path, run: Run) -> None:
@@ -152,9 +152,9 @@ def test_rows_and_frames_that_are_not_complete_are_left_out(result: Path) -> Non
     with h5py.File(result, "r+") as file:
         for name in ("history/time", "VTKHDF/Steps/Values", "VTKHDF/PointData/V"):
             file[name].resize(len(file[name]) + 1, axis=0)
-    with Results(result) as results:
-        assert (len(results.time), len(results.frame_times)) == (41, 5)
-        assert len(results.energy["kinetic"]) == len(results.dt) == 41
+    with Result(result) as results:
+        assert (len(results.history.time), len(results.frames)) == (41, 5)
+        assert len(results.history.energy["kinetic"]) == len(results.history.dt) == 41
 
 
 def test_rows_beyond_those_that_the_file_counts_are_left_out(result: Path) -> None:
@@ -164,14 +164,14 @@ def test_rows_beyond_those_that_the_file_counts_are_left_out(result: Path) -> No
         if isinstance(item, h5py.Dataset) and item.maxshape[:1] == (None,):
             item.resize(2 * len(item) + 7, axis=0)
 
-    with Results(result) as results:
-        landings = len(results.impacts["time"])
+    with Result(result) as results:
+        landings = len(results.history.impacts["time"])
     told = info(result)
     with h5py.File(result, "r+") as file:
         file.visititems(grow)
-    with Results(result) as results:
-        assert (len(results.time), len(results.frame_times)) == (41, 5)
-        assert len(results.impacts["time"]) == landings
+    with Result(result) as results:
+        assert (len(results.history.time), len(results.frames)) == (41, 5)
+        assert len(results.history.impacts["time"]) == landings
     assert info(result)[1:] == told[1:]
 
 

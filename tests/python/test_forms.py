@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from changed_decks import Unchangeable
 from conftest import ROOT, Job
-from deck import Deck
 from expected_results import Change, Deviations, Seen, deviations
 from invariance import FORMS, TOLERANCE, Settings, flat, judge
-from program import binary
 from sample_decks import Sample, all_samples
+from stickslip.deck import Deck
+from stickslip.program import binary
 
 DECKS = (
     # a rigid surface that moves

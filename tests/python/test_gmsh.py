@@ -7,9 +7,9 @@ from pathlib import Path
 import gmsh
 import h5py
 import numpy as np
-import program
 import pytest
-from cards import card, dry, elastic, step
+from stickslip import program
+from stickslip.cards import card, dry, elastic, step
 
 SIZES = {"BASE": (-2.0, -1.0, 4.0, 1.0), "BLOCK": (-0.5, 0.01, 1.0, 1.0)}
 """Left, bottom, width and height of the two rectangles."""
@@ -80,7 +80,7 @@ def test_a_mesh_of_gmsh_runs_with_contact(tmp_path: Path, quads: bool, nodes: bo
     assert "T3D2" in written and "Line1" in written
     path = tmp_path / "block.inp"
     path.write_text(deck(nodes))
-    with h5py.File(program.run(path, tmp_path / "out")) as file:
+    with h5py.File(program.run(path, tmp_path / "out").path) as file:
         assert file["run"].attrs["exit_status"] == 0
         time = file["history/time"][-1]
         velocity = file["history/bodies/velocity"][-1, 1, 1]

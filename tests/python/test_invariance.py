@@ -1,12 +1,12 @@
-"""Results depend neither on the units, nor on the linear solver, nor on the threads."""
+"""Result depend neither on the units, nor on the linear solver, nor on the threads."""
 
 import pytest
 from compare import differences, largest_deviations, scaled_differences
 from conftest import Job
-from deck import Deck
 from decks import BAR, BLOCK, CANTILEVERS, SCHEMES, shortened
 from rescale import Units, rescale
-from results import Results
+from stickslip.deck import Deck
+from stickslip.result import Result
 
 CENTIMETRES_TO_METRES = Units(length=0.01)
 POWERS_OF_TWO = [
@@ -32,8 +32,8 @@ def deck(request: pytest.FixtureRequest) -> Deck:
 
 def has_contact(deck: Deck, job: Job) -> bool:
     """Whether the span compared holds contact at all."""
-    with Results(job(deck)) as results:
-        return any(contact.closed.any() for contact in results.contacts.values())
+    with Result(job(deck)) as results:
+        return any(contact.closed.any() for contact in results.contact.values())
 
 
 @pytest.mark.parametrize("units", POWERS_OF_TWO, ids=["length", "mass", "time", "all"])

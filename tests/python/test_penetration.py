@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import penetration
 import pytest
-from command import Fault
 from conftest import ROOT, Job
 from decks import CANTILEVERS, parse, shortened
 from outlines import Outline, outlines, side
 from penetration import Overlap, compare, in_obstacle, still_gone
 from profiles import Profile
-from results import Results
+from stickslip.errors import Fault
+from stickslip.result import Result
 
 Points = list[tuple[float, float]]
 
@@ -162,7 +162,7 @@ def test_an_outline_that_touches_itself_in_a_node_is_refused(job: Job, tmp_path:
         "*ELEMENT, TYPE=CPS4, ELSET=BODY\n91, 3, 93, 92, 91\n"
         "*STEP, NLGEOM\n*DYNAMIC, DIRECT\n1e-5, 1e-5\n*END STEP\n"
     )
-    with Results(job(parse(pinched, tmp_path))) as results:
+    with Result(job(parse(pinched, tmp_path))) as results:
         with pytest.raises(Fault, match="touch in corners only, at node 3:"):
             outlines(results)
 

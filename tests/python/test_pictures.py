@@ -9,33 +9,33 @@ import numpy as np
 import plot_along
 import plot_history
 import pytest
-from command import Fault
 from conftest import ROOT, Job
-from deck import Deck
 from decks import CANTILEVERS, RINGS, parse, shortened
 from fields import FIELDS, Colouring, usual
-from histories import find, listed
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 from matplotlib.quiver import Quiver
 from PIL import Image
 from plot_motion import Look, animate, chosen_times, overlay, panels, shown_at
-from results import Results
+from stickslip.deck import Deck
+from stickslip.errors import Fault
+from stickslip.quantity import find, listed
+from stickslip.result import Result
 
 PLAIN = Look()
 
 
 @pytest.fixture
-def contact(job: Job) -> Results:
+def contact(job: Job) -> Result:
     """Case A of the cantilevers, up to the contact."""
-    return Results(job(shortened(CANTILEVERS / "A_mu04.inp", 300)))
+    return Result(job(shortened(CANTILEVERS / "A_mu04.inp", 300)))
 
 
 @pytest.fixture
-def other(job: Job) -> Results:
+def other(job: Job) -> Result:
     """The same without friction."""
-    return Results(job(shortened(CANTILEVERS / "A_mu00.inp", 300)))
+    return Result(job(shortened(CANTILEVERS / "A_mu00.inp", 300)))
 
 
 @pytest.fixture(autouse=True)
@@ -48,8 +48,8 @@ def close_figures() -> object:
 # Histories.
 
 
-def test_histories_by_name(contact: Results) -> None:
-    tip = contact.nodes("UPPER_TIP")
+def test_histories_by_name(contact: Result) -> None:
+    tip = contact.history.nodes["UPPER_TIP"]
     (part,) = find(contact, "nodes/UPPER_TIP/U:2").parts.values()
     assert np.array_equal(part, tip.U[:, :, 1].mean(axis=1))
     (part,) = find(contact, f"nodes/UPPER_TIP[{tip.labels[1]}]/U:1").parts.values()
@@ -74,20 +74,20 @@ def test_histories_by_name(contact: Results) -> None:
         ("a:b", "no name of a history"),
     ],
 )
-def test_names_that_there_are_not(contact: Results, name: str, words: str) -> None:
+def test_names_that_there_are_not(contact: Result, name: str, words: str) -> None:
     with pytest.raises(Fault) as fault:
         find(contact, name)
     assert words in str(fault.value)
 
 
-def test_every_listed_history_is_found(contact: Results) -> None:
+def test_every_listed_history_is_found(contact: Result) -> None:
     names = listed(contact)
     assert "energy/kinetic" in names and "nodes/UPPER_TIP/U:1 to :2" in names
     for name in names:
         find(contact, name.partition(" ")[0].replace("[BODY]", "[0]"))
 
 
-def test_one_column_for_each_body(contact: Results, tmp_path: Path) -> None:
+def test_one_column_for_each_body(contact: Result, tmp_path: Path) -> None:
     path = Path(shutil.copy(contact.path, tmp_path / "bodies.vtkhdf"))
     rows = contact.rows
     with h5py.File(path, "r+") as file:
@@ -97,7 +97,7 @@ def test_one_column_for_each_body(contact: Results, tmp_path: Path) -> None:
                 del history[name]
         history["bodies/kinetic"] = np.arange(2.0 * rows).reshape(rows, 2)
         history["bodies/velocity"] = np.arange(4.0 * rows).reshape(rows, 2, 2)
-    with Results(path) as results:
+    with Result(path) as results:
         both = find(results, "bodies/kinetic").parts
         assert list(both) == ["body 0", "body 1"]
         assert np.array_equal(find(results, "bodies/kinetic[1]").parts[""], both["body 1"])
@@ -110,7 +110,7 @@ def test_one_column_for_each_body(contact: Results, tmp_path: Path) -> None:
             assert words in str(fault.value)
 
 
-def test_a_history_against_another(contact: Results, other: Results) -> None:
+def test_a_history_against_another(contact: Result, other: Result) -> None:
     along, shown = "nodes/UPPER_TIP/U:2", "contact/UPPER_FACE_LOWER_FACE/force:1"
     figure = plot_history.draw_named([contact, other], along, [[shown], ["energy/kinetic"]])
     first, second = figure.axes
@@ -127,12 +127,12 @@ def test_a_history_against_another(contact: Results, other: Results) -> None:
         plot_history.draw_named([contact], "momentum/linear", [["time"]])
 
 
-def test_results_of_one_name_are_told_apart(contact: Results) -> None:
+def test_results_of_one_name_are_told_apart(contact: Result) -> None:
     assert plot_history.names([contact]) == [contact.job]
     assert plot_history.names([contact, contact])[0] == str(contact.path.with_suffix(""))
 
 
-def test_results_side_by_side_have_the_same_scales(contact: Results, other: Results) -> None:
+def test_results_side_by_side_have_the_same_scales(contact: Result, other: Result) -> None:
     figure = plot_history.draw([contact, other])
     left, right = figure.axes[0:-1:2], figure.axes[1::2]
     assert len(left) == len(right) == 6
@@ -141,28 +141,28 @@ def test_results_side_by_side_have_the_same_scales(contact: Results, other: Resu
         assert one.get_legend() is None, "one legend, on the right"
 
 
-def test_results_on_top_of_each_other(contact: Results, other: Results) -> None:
+def test_results_on_top_of_each_other(contact: Result, other: Result) -> None:
     figure = plot_history.compare([contact, other])
     kinetic = figure.axes[0]
     assert [len(axes.lines) for axes in figure.axes] == [2] * 7
-    assert np.array_equal(kinetic.lines[1].get_ydata(), other.energy["kinetic"])
+    assert np.array_equal(kinetic.lines[1].get_ydata(), other.history.energy["kinetic"])
     words = [text.get_text() for text in kinetic.get_legend().get_texts()]
     assert words == plot_history.names([contact, other])
 
 
-def test_the_stacked_accounts_sum_up_to_what_was_put_in(contact: Results) -> None:
+def test_the_stacked_accounts_sum_up_to_what_was_put_in(contact: Result) -> None:
     _, axes = plt.subplots()
     plot_history.energy(axes, contact)
-    account = contact.energy
+    account = contact.history.energy
     put_in = account["kinetic"][0] + account["strain"][0] + account["external_work"]
     parts = sum(sign * account[name] for name, _, sign in plot_history.LEDGER)
-    assert np.abs(parts - put_in).max() < 1e-9 * contact.largest_energy
+    assert np.abs(parts - put_in).max() < 1e-9 * contact.history.energy.largest
     tops = [layer.get_paths()[0].vertices[:, 1] for layer in axes.collections]
     assert max(top.max() for top in tops) == pytest.approx(put_in.max(), rel=1e-9)
 
 
 def test_round_off_of_a_momentum_looks_like_nothing(job: Job) -> None:
-    with Results(job(shortened(RINGS / "rings_mu02.inp", 40, "default"))) as results:
+    with Result(job(shortened(RINGS / "rings_mu02.inp", 40, "default"))) as results:
         _, axes = plt.subplots(2)
         plot_history.linear_momentum(axes[0], results)
         plot_history.angular_momentum(axes[1], results)
@@ -186,20 +186,22 @@ def shapes(figure: Figure) -> list[Axes]:
 
 
 @pytest.mark.parametrize("count", [1, 4, 6, 8])
-def test_panels_of_a_long_model_fill_their_page(other: Results, count: int) -> None:
+def test_panels_of_a_long_model_fill_their_page(other: Result, count: int) -> None:
     figure = panels([shown_at(other, np.linspace(0.0, 0.5, count))], Look("von-mises"))
     assert filled(figure) > 0.55
     assert figure.get_size_inches().max() <= 11.0
 
 
-def test_an_overlay_of_a_long_model_fills_its_page(other: Results) -> None:
+def test_an_overlay_of_a_long_model_fills_its_page(other: Result) -> None:
     assert filled(overlay([shown_at(other, [0.0, 0.5])])) > 0.65
 
 
-def test_legends_stand_beside_the_mesh_when_there_is_something_in_them(contact: Results) -> None:
+def test_legends_stand_beside_the_mesh_when_there_is_something_in_them(contact: Result) -> None:
     start = panels([[(contact, 0)]], PLAIN)
     assert start.legends == []
-    touching = panels([shown_at(contact, contact.frame_times[::10])], Look(vectors="CONTACT_FORCE"))
+    touching = panels(
+        [shown_at(contact, contact.frames.times[::10])], Look(vectors="CONTACT_FORCE")
+    )
     touching.canvas.draw()
     (legend,) = touching.legends
     words = [text.get_text() for text in legend.get_texts()]
@@ -210,7 +212,7 @@ def test_legends_stand_beside_the_mesh_when_there_is_something_in_them(contact: 
     assert all(axes.get_legend() is None for axes in touching.axes)
 
 
-def test_several_results_have_one_scale(contact: Results, other: Results) -> None:
+def test_several_results_have_one_scale(contact: Result, other: Result) -> None:
     rows = [shown_at(results, np.array([0.0, 2.0, 4.0])) for results in (contact, other)]
     figure = panels(rows, Look("von-mises"))
     shown = shapes(figure)
@@ -221,28 +223,28 @@ def test_several_results_have_one_scale(contact: Results, other: Results) -> Non
     assert shown[3].get_title().startswith(other.job)
 
 
-def test_vectors_are_drawn_as_arrows(contact: Results) -> None:
-    last = len(contact.frame_times) - 1
+def test_vectors_are_drawn_as_arrows(contact: Result) -> None:
+    last = len(contact.frames) - 1
     for name, most in (("V", len(contact.coordinates)), ("CONTACT_FORCE", 3)):
         figure = panels([[(contact, last)]], Look(vectors=name))
         (quiver,) = (each for each in figure.axes[0].collections if isinstance(each, Quiver))
         assert 0 < quiver.N <= most
         drawn = np.stack([quiver.U, quiver.V], axis=1)
-        vectors = contact.point_field(name, last)
+        vectors = contact.frames[last][name]
         assert all((vectors == arrow).all(axis=1).any() for arrow in drawn)
         assert (drawn != 0.0).any(axis=1).all()
 
 
 def test_without_contact_there_are_no_arrows_and_no_marks(job: Job) -> None:
     deck = shortened(CANTILEVERS / "A_mu04.inp", 3)
-    with Results(job(deck, "--frames", "1")) as results:
+    with Result(job(deck, "--frames", "1")) as results:
         figure = panels([[(results, 0), (results, 1)]], Look(vectors="CONTACT_FORCE"))
         assert "longest 0" in figure.legends[0].get_texts()[0].get_text()
 
 
-def test_von_mises_says_what_it_is(contact: Results, tmp_path: Path) -> None:
+def test_von_mises_says_what_it_is(contact: Result, tmp_path: Path) -> None:
     path = Path(shutil.copy(contact.path, tmp_path / "stress.vtkhdf"))
-    cells, frames = len(contact.cells), len(contact.frame_times)
+    cells, frames = len(contact.cells), len(contact.frames)
     true = np.arange(float(cells * frames))
     with h5py.File(path, "r+") as file:
         grid = file["VTKHDF"]
@@ -250,22 +252,22 @@ def test_von_mises_says_what_it_is(contact: Results, tmp_path: Path) -> None:
             if name in grid:
                 del grid[name]
     field = FIELDS["von-mises"]
-    with Results(path) as results:
-        xx, yy, xy = results.cell_field("S", 1).T
+    with Result(path) as results:
+        xx, yy, xy = results.frames[1]["S"].T
         plane = np.sqrt(xx**2 - xx * yy + yy**2 + 3 * xy**2)
         assert np.array_equal(field.values(results, 1), plane)
         assert "in the plane" in Colouring.of("von-mises", [(results, 1)]).label
     with h5py.File(path, "r+") as file:
         file["VTKHDF/CellData/MISES"] = true
         file["VTKHDF/Steps/CellDataOffsets/MISES"] = np.arange(frames) * cells
-    with Results(path) as results:
+    with Result(path) as results:
         assert np.array_equal(field.values(results, 1), true[cells : 2 * cells])
         assert Colouring.of("von-mises", [(results, 1)]).label == "von Mises stress"
 
 
-def test_fields_of_slave_nodes_colour_the_outline(contact: Results, tmp_path: Path) -> None:
+def test_fields_of_slave_nodes_colour_the_outline(contact: Result, tmp_path: Path) -> None:
     path = Path(shutil.copy(contact.path, tmp_path / "slip.vtkhdf"))
-    nodes, frames = len(contact.coordinates), len(contact.frame_times)
+    nodes, frames = len(contact.coordinates), len(contact.frames)
     slid = np.full(nodes * frames, np.nan)
     edge = contact.boundary[0]
     slid[nodes + edge] = 1.0, 3.0
@@ -276,7 +278,7 @@ def test_fields_of_slave_nodes_colour_the_outline(contact: Results, tmp_path: Pa
                 del grid[name]
         grid["PointData/SLIP"] = slid
         grid["Steps/PointDataOffsets/SLIP"] = np.arange(frames) * nodes
-    with Results(path) as results:
+    with Result(path) as results:
         values = FIELDS["slip"].values(results, 1)
         assert values[0] == 2.0
         assert sorted(values[np.isfinite(values)]) == [1.0, 2.0, 3.0], "with the edges beside it"
@@ -285,8 +287,8 @@ def test_fields_of_slave_nodes_colour_the_outline(contact: Results, tmp_path: Pa
         assert len(figure.axes) == 3
 
 
-def test_nodes_in_contact_do_not_cover_coloured_edges(contact: Results) -> None:
-    last = int(np.argmax([(contact.point_field("CONTACT_STATUS", k) > 1).any() for k in range(9)]))
+def test_nodes_in_contact_do_not_cover_coloured_edges(contact: Result) -> None:
+    last = int(np.argmax([(contact.frames[k]["CONTACT_STATUS"] > 1).any() for k in range(9)]))
     shown = [[(contact, last)]]
     marked, coloured = panels(shown, PLAIN), panels(shown, Look("contact-pressure"))
     kinds = [[type(each) for each in figure.axes[0].collections] for figure in (marked, coloured)]
@@ -301,14 +303,14 @@ def test_a_frame_that_is_a_peak_does_not_set_the_colours() -> None:
     assert usual(np.zeros(3)) == 0.0
 
 
-def test_ends_of_the_colours_can_be_given(contact: Results) -> None:
-    last = len(contact.frame_times) - 1
+def test_ends_of_the_colours_can_be_given(contact: Result) -> None:
+    last = len(contact.frames) - 1
     colouring = Colouring.of("von-mises", [(contact, last)], (0.0, 1e-3))
     assert (colouring.norm.vmin, colouring.norm.vmax, colouring.extend) == (0.0, 1e-3, "max")
     assert ", largest " in colouring.label
 
 
-def test_lines_of_a_fine_mesh_do_not_drown_its_colours(contact: Results) -> None:
+def test_lines_of_a_fine_mesh_do_not_drown_its_colours(contact: Result) -> None:
     near = np.array([0.0, 0.0]), np.array([1.0, 1.0])
     far = np.array([-900.0, -900.0]), np.array([900.0, 900.0])
     widths = [
@@ -319,15 +321,15 @@ def test_lines_of_a_fine_mesh_do_not_drown_its_colours(contact: Results) -> None
 
 
 def test_an_animation_has_every_frame(job: Job, tmp_path: Path) -> None:
-    with Results(job(shortened(CANTILEVERS / "A_mu04.inp", 3), "--frames", "3")) as results:
+    with Result(job(shortened(CANTILEVERS / "A_mu04.inp", 3), "--frames", "3")) as results:
         animate([results], Look("von-mises"), tmp_path / "motion.gif", 15)
         with Image.open(tmp_path / "motion.gif") as film:
-            assert film.n_frames == len(results.frame_times)
+            assert film.n_frames == len(results.frames)
             film.seek(film.n_frames - 1)
             assert np.asarray(film.convert("RGB")).std() > 3.0
 
 
-def test_many_lines_have_colours_of_their_own(contact: Results) -> None:
+def test_many_lines_have_colours_of_their_own(contact: Result) -> None:
     names = [name for name in listed(contact) if name.startswith("energy/")]
     figure = plot_history.draw_named([contact], "time", [names])
     colours = [line.get_color() for line in figure.axes[0].lines]
@@ -335,11 +337,11 @@ def test_many_lines_have_colours_of_their_own(contact: Results) -> None:
 
 
 def test_pressure_along_a_surface(job: Job) -> None:
-    with Results(job(shortened(RINGS / "rings_mu02.inp", 120))) as results:
-        nodes = np.flatnonzero(np.isfinite(results.point_field("SLIP", 0)))
+    with Result(job(shortened(RINGS / "rings_mu02.inp", 120))) as results:
+        nodes = np.flatnonzero(np.isfinite(results.frames[0]["SLIP"]))
         lines = plot_along.chains(results, nodes)
         assert sorted(np.concatenate([np.unique(line) for line in lines])) == sorted(nodes)
-        last = len(results.frame_times) - 1
+        last = len(results.frames) - 1
         figure = plot_along.draw(results, lines, [0, last], "CONTACT_PRESSURE", "length")
         (start, end) = figure.axes[0].lines
         assert not np.nan_to_num(start.get_ydata()).any()
@@ -348,21 +350,21 @@ def test_pressure_along_a_surface(job: Job) -> None:
             plot_along.field(results, "U", 0)
 
 
-def test_times(contact: Results) -> None:
+def test_times(contact: Result) -> None:
     assert chosen_times(contact, None, 2.0).tolist() == [0.0, 2.0, 4.0]
     assert len(chosen_times(contact, None, None)) == 6
     with pytest.raises(Fault, match="100 at most"):
         chosen_times(contact, None, 1e-3)
     assert shown_at(contact, [1e9, -1.0, 0.0]) == [
         (contact, 0),
-        (contact, len(contact.frame_times) - 1),
+        (contact, len(contact.frames) - 1),
     ]
 
 
 def test_the_view_follows_the_bodies(job: Job, tmp_path: Path) -> None:
     deck = (ROOT / "tests/decks/rigid_floor.inp").read_text()
     far = deck.replace("*RIGID BODY", "LINE, 1000., 0.\n*RIGID BODY", 1)
-    with Results(job(parse(far, tmp_path))) as results:
+    with Result(job(parse(far, tmp_path))) as results:
         low, high = panels([[(results, 0)]], PLAIN).axes[0].get_xlim()
         assert high - low < 30.0
         window = np.array([0.0, 1.0]), np.array([2.0, 4.0])
@@ -371,7 +373,7 @@ def test_the_view_follows_the_bodies(job: Job, tmp_path: Path) -> None:
 
 
 def test_rigid_surfaces_are_in_the_picture(job: Job) -> None:
-    with Results(job(Deck.read(ROOT / "tests/decks/rigid_floor.inp"))) as results:
+    with Result(job(Deck.read(ROOT / "tests/decks/rigid_floor.inp"))) as results:
         figure = panels([[(results, 0)]], PLAIN)
         low, high = figure.axes[0].get_xlim()
         assert low < -3.0 and high > 5.0

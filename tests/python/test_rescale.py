@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from command import FAULT
 from compare import scaled_differences
 from conftest import ROOT, Job
-from deck import Card, Deck, fields, fold
 from decks import parse
 from rescale import TABLE, Units, Unscalable, is_meant, rescale
-from results import Results
+from stickslip.command import FAULT
+from stickslip.deck import Card, Deck, fields, fold
+from stickslip.result import Result
 
 EVERY_CARD = ROOT / "tests/decks/every_card.inp"
 ASSEMBLY = ROOT / "tests/decks/assembly.inp"
@@ -81,8 +81,8 @@ def test_words_of_loads_and_profiles_are_all_used() -> None:
 )
 def test_every_card_in_other_units_gives_the_same_bits(units: Units, job: Job) -> None:
     deck = Deck.read(EVERY_CARD)
-    with Results(job(deck)) as results:
-        closed = [name for name, contact in results.contacts.items() if contact.closed.any()]
+    with Result(job(deck)) as results:
+        closed = [name for name, contact in results.contact.items() if contact.closed.any()]
     assert len(closed) >= 2, "the pair and general contact"
     assert scaled_differences(job(deck), job(rescale(deck, units)), units) == []
 

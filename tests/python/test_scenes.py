@@ -7,8 +7,8 @@ import pytest
 import random_scenes
 import scene_shapes
 from outlines import LIMIT
-from results import Array
 from scenes import GAIN, Trial
+from stickslip.result import Array
 
 INCREMENTS = 100
 SCENES = [("falling", seed) for seed in (0, 2, 3, 4, 5, 6, 7, 8, 9, 10)]

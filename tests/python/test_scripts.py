@@ -9,11 +9,9 @@ from unittest.mock import patch
 
 import matplotlib.image
 import matplotlib.pyplot as plt
-import program
 import pytest
 from compare import differences
 from conftest import ROOT, Job
-from deck import Deck
 from decks import (
     BAR,
     BLOCK,
@@ -30,6 +28,8 @@ from decks import (
     shortened,
 )
 from rescale import Units, rescale
+from stickslip import program
+from stickslip.deck import Deck
 
 
 def script(name: str, *arguments: object) -> None:
@@ -130,7 +130,7 @@ def test_no_two_decks_write_the_same_files() -> None:
 def test_a_flattened_deck_is_the_same_deck(job: Job, tmp_path: Path) -> None:
     flat = Deck.read(BAR / "em_impulse.inp")
     assert not flat.find("INCLUDE")
-    original = program.run(BAR / "em_impulse.inp", tmp_path)
+    original = program.run(BAR / "em_impulse.inp", tmp_path).path
     assert differences(original, job(flat)) == []
 
 

@@ -4,8 +4,8 @@ import os
 import subprocess
 import sys
 
-import program
 from conftest import ROOT
+from stickslip import program
 
 
 def test_torture() -> None:

@@ -4,19 +4,22 @@ from math import atan, tan
 
 import numpy as np
 from conftest import Job
-from deck import Deck
 from decks import WEDGES, generated
-from results import Results
+from stickslip.deck import Deck
+from stickslip.result import Result
 
 
 def test_the_driving_force_is_that_of_rigid_wedges_and_they_lock(job: Job) -> None:
     wedges = generated(WEDGES)
     start, drive = wedges["RAMP"], wedges["DRIVE"]
-    with Results(job(Deck.read(WEDGES / "folding_wedges.inp"))) as results:
-        time = results.time
-        push = results.nodes("Push")
-        balance = np.abs(results.energy["balance"]).max() / results.energy["external_work"].max()
-    force, way = push.RF[:, :, 0].sum(axis=1), push.U[:, :, 0].mean(axis=1)
+    with Result(job(Deck.read(WEDGES / "folding_wedges.inp"))) as results:
+        time = results.history.time
+        push = results.history.nodes["Push"]
+        force, way = push.RF[:, :, 0].sum(axis=1), push.U[:, :, 0].mean(axis=1)
+        balance = (
+            np.abs(results.history.energy["balance"]).max()
+            / results.history.energy["external_work"].max()
+        )
     middle = np.abs(time - start - 0.5 * drive) < 0.2 * drive
     load = wedges["PRESSURE"] * wedges["LENGTH"]
     # F = W tan(slope + friction angle)

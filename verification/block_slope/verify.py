@@ -14,8 +14,8 @@ import style  # noqa: E402
 from page import Legends, Page  # noqa: E402
 from plot_motion import shades, shown_at, time_legend  # noqa: E402
 from pointmass import Array, PointMass  # noqa: E402
-from results import Results  # noqa: E402
 from shapes import draw_overlay, limits  # noqa: E402
+from stickslip.result import Result  # noqa: E402
 
 slope = runner.load(DECKS / "generate.py")
 
@@ -35,8 +35,8 @@ def point_mass(friction: float) -> PointMass:
 class Centre:
     """Motion of the block's mass centre, along the slope and normal to it."""
 
-    def __init__(self, results: Results) -> None:
-        history = results.nodes("BLOCK")
+    def __init__(self, results: Result) -> None:
+        history = results.history.nodes["BLOCK"]
         index = {int(label): i for i, label in enumerate(results.node_labels)}
         nodes = np.array([index[int(label)] for label in history.labels])
         # Row sums of the mass matrix: equal elements give a quarter to each of their nodes.
@@ -53,28 +53,28 @@ class Centre:
         return 0.5 * slope.MASS * (self.velocity**2).sum(axis=1)
 
 
-def landing_time(results: Results) -> float:
+def landing_time(results: Result) -> float:
     """Time of the first landing."""
-    return float(results.impacts["time"].min())
+    return float(results.history.impacts["time"].min())
 
 
-def after_first_impact(results: Results) -> int:
+def after_first_impact(results: Result) -> int:
     """Row of the last increment with contact in the first impact."""
-    (contact,) = results.contacts.values()
+    (contact,) = results.contact.values()
     start = landing_time(results)
-    touching = (contact.closed > 0) & (results.time <= start + IMPACT)
+    touching = (contact.closed > 0) & (results.history.time <= start + IMPACT)
     return int(np.flatnonzero(touching)[-1])
 
 
-def rebound(results: Results) -> float:
+def rebound(results: Result) -> float:
     """Speed of the mass centre normal to the slope after the first impact / landing speed."""
     speed = Centre(results).velocity[after_first_impact(results), 1]
     return float(speed / point_mass(0.0).landing_speed)
 
 
-def accounts(results: Results) -> dict[str, Array]:
+def accounts(results: Result) -> dict[str, Array]:
     """Where the energy is: accounts that sum up to what was put in."""
-    account = results.energy
+    account = results.history.energy
     rigid = Centre(results).kinetic
     return {
         "motion of the mass centre": rigid,
@@ -94,7 +94,7 @@ def check_main(verification: runner.Verification) -> None:
         verification.check("landing time", case.name, case.flight + landing_time(results))
         if case.deck == "block_slope_mu00.inp" and case.flight == 0.0:
             along = Centre(results).displacement[1:, 0]
-            reference = point_mass(0.0).displacement(results.time[1:])[:, 0]
+            reference = point_mass(0.0).displacement(results.history.time[1:])[:, 0]
             deviation = float((np.abs(along - reference) / reference).max())
             verification.check("deviation along the slope, mu = 0", case.name, deviation)
 
@@ -109,7 +109,9 @@ def tabulate_energy(verification: runner.Verification) -> None:
             header = ["case", "when", "put in", *parts]
             for when, row in (("first impact", after_first_impact(results)), ("end", -1)):
                 values = [float(part[row]) for part in parts.values()]
-                rows.append((case.name, when, float(results.energy["external_work"][row]), *values))
+                rows.append(
+                    (case.name, when, float(results.history.energy["external_work"][row]), *values)
+                )
     if rows:
         verification.table("Where the energy went", header, rows)
 
@@ -119,14 +121,14 @@ def tabulate_tumbling(verification: runner.Verification) -> None:
     rows = []
     for group in LABELS:
         for case, results in verification.group(group):
-            history = results.nodes("BLOCK")
+            history = results.history.nodes["BLOCK"]
             nodes = np.searchsorted(results.node_labels, history.labels)
             face = np.isin(nodes, results.node_set("BLOCK_FACE"))
             position = (results.coordinates[nodes] + history.U) @ FRAME
             along, out = (position[:, face][:, -1] - position[:, face][:, 0]).T
             turned = np.degrees(np.unwrap(np.arctan2(out, along)))[-1]
             others = position[:, ~face, 1].min(axis=1)
-            inside = results.time[others < 0.0]
+            inside = results.history.time[others < 0.0]
             touch = float(inside[0]) if inside.size else "never"
             rows.append((case.name, float(turned), float(others.min()), touch))
     verification.table(
@@ -165,12 +167,14 @@ def draw_displacement(verification: runner.Verification) -> None:
         for colour, (case, results) in zip(style.COLOURS, verification.group(group)):
             friction = slope.FRICTION[Path(case.deck).stem]
             computed = Centre(results).displacement @ FRAME.T
-            reference = point_mass(friction).displacement(results.time) @ FRAME.T
+            reference = point_mass(friction).displacement(results.history.time) @ FRAME.T
             for row in range(2):
                 axes[row, column].plot(
-                    results.time, computed[:, row], color=colour, label=f"mu = {friction}"
+                    results.history.time, computed[:, row], color=colour, label=f"mu = {friction}"
                 )
-                axes[row, column].plot(results.time, reference[:, row], "--", color=colour, lw=0.8)
+                axes[row, column].plot(
+                    results.history.time, reference[:, row], "--", color=colour, lw=0.8
+                )
         axes[0, column].plot([], [], "k--", lw=0.8, label="point mass, elastic")
         axes[0, column].set_title(label)
         axes[0, column].legend()
@@ -208,9 +212,19 @@ def draw_energy(verification: runner.Verification) -> None:
             parts = accounts(results)
             at = axes[row, column]
             at.stackplot(
-                results.time, list(parts.values()), labels=list(parts), alpha=0.85, linewidth=0
+                results.history.time,
+                list(parts.values()),
+                labels=list(parts),
+                alpha=0.85,
+                linewidth=0,
             )
-            at.plot(results.time, results.energy["external_work"], "k--", lw=1, label="put in")
+            at.plot(
+                results.history.time,
+                results.history.energy["external_work"],
+                "k--",
+                lw=1,
+                label="put in",
+            )
             friction = slope.FRICTION[Path(case.deck).stem]
             at.set_title(f"mu = {friction}; {label}", fontsize=9)
             at.set_ylabel("energy (kg cm$^2$/s$^2$)")
@@ -225,7 +239,7 @@ def draw_rebound(verification: runner.Verification) -> None:
     speed = point_mass(0.0).landing_speed
     for case, results in verification.group("study"):
         row = 1 if case.scheme == "default" else 0
-        time = 1e3 * (case.flight + results.time - point_mass(0.0).landing)
+        time = 1e3 * (case.flight + results.history.time - point_mass(0.0).landing)
         normal = Centre(results).velocity[:, 1] / speed
         edge, dt = 0.5 / case.refine, slope.DT / case.divide
         for column, shown in enumerate((case.divide == 1, case.refine == 1)):

@@ -12,7 +12,7 @@ import numpy as np  # noqa: E402
 import penetration  # noqa: E402
 import style  # noqa: E402
 from plot_motion import Look, panels, shown_at  # noqa: E402
-from results import Array, Results  # noqa: E402
+from stickslip.result import Array, Result  # noqa: E402
 
 MOTION = {
     "rings_mu02": (0.0, 0.6, 1.2, 2.0, 3.0, 4.0),
@@ -30,7 +30,7 @@ FLOOR = 1e-18
 """Least value in logarithmic pictures."""
 
 
-def element_size(results: Results) -> float:
+def element_size(results: Result) -> float:
     """Length of the shortest edge."""
     place = results.coordinates
     return min(
@@ -39,63 +39,63 @@ def element_size(results: Results) -> float:
     )
 
 
-def momentum_changes(results: Results) -> tuple[Array, Array]:
+def momentum_changes(results: Result) -> tuple[Array, Array]:
     """Changes of the linear and the angular momentum at every increment, relative.
 
     The scale is the sum of m |v| at the start, which is 2 T / |v| as all nodes start with about
     the same speed; times the size of the model.
     """
-    speed = float(np.linalg.norm(results.point_field("V", 0), axis=1).max())
-    scale = 2 * float(results.energy["kinetic"][0]) / speed
+    speed = float(np.linalg.norm(results.frames[0]["V"], axis=1).max())
+    scale = 2 * float(results.history.energy["kinetic"][0]) / speed
     size = float(np.ptp(results.coordinates, axis=0).max())
-    linear = results.linear_momentum - results.linear_momentum[0]
-    angular = results.angular_momentum - results.angular_momentum[0]
+    linear = results.history.momentum.linear - results.history.momentum.linear[0]
+    angular = results.history.momentum.angular - results.history.momentum.angular[0]
     return np.linalg.norm(linear, axis=1) / scale, np.abs(angular) / (scale * size)
 
 
-def energy(results: Results) -> Array:
+def energy(results: Result) -> Array:
     """Kinetic and strain energy at every increment, without the work put in from outside."""
-    account = results.energy
+    account = results.history.energy
     return account["kinetic"] + account["strain"] - account["external_work"]
 
 
-def rise(results: Results) -> float:
+def rise(results: Result) -> float:
     """Largest rise of the energy above what it has been."""
     total = energy(results)
     return float((total - np.minimum.accumulate(total)).max())
 
 
-def put_in(results: Results) -> float:
+def put_in(results: Result) -> float:
     """Work of the normal contact forces in increments in which it is positive, against the largest
     energy."""
-    account = results.energy
+    account = results.history.energy
     works = np.diff(account["normal_contact_work"])
     largest = max(np.abs(account[name]).max() for name in ("kinetic", "strain", "external_work"))
     return float(works[works > 0.0].sum() / largest)
 
 
-def imbalance(results: Results) -> float:
+def imbalance(results: Result) -> float:
     """Largest sum of all contact forces of a frame against the sum of their magnitudes."""
     worst = 0.0
-    for frame in range(len(results.frame_times)):
-        force = results.point_field("CONTACT_FORCE", frame)
+    for frame in range(len(results.frames)):
+        force = results.frames[frame]["CONTACT_FORCE"]
         size = float(np.linalg.norm(force, axis=1).sum())
         if size > 0.0:
             worst = max(worst, float(np.linalg.norm(force.sum(axis=0))) / size)
     return worst
 
 
-def above(results: Results) -> float:
+def above(results: Result) -> float:
     """Height of the bullet's centre above that of the plate at the end, in plate lengths."""
-    position = results.positions(len(results.frame_times) - 1)
+    position = results.frames[-1].positions
     bullet, plate = (position[results.node_set(name)] for name in ("BULLET", "PLATE"))
     gap = bullet[:, 1].mean() - plate[:, 1].mean()
     return float(gap / np.ptp(plate[:, 0]))
 
 
-def outside(results: Results) -> int:
+def outside(results: Result) -> int:
     """Nodes of bodies that are not between the walls and above the floor at the end."""
-    position = results.positions(len(results.frame_times) - 1)
+    position = results.frames[-1].positions
     box = results.node_set("BOX")
     bodies = np.setdiff1d(np.arange(len(position)), box)
     x, y = position[bodies].T
@@ -103,7 +103,7 @@ def outside(results: Results) -> int:
     return int(((np.abs(x) > width) | (y < position[box][:, 1].min())).sum())
 
 
-def check(verification: runner.Verification, case: runner.Case, results: Results) -> list[object]:
+def check(verification: runner.Verification, case: runner.Case, results: Result) -> list[object]:
     """Checks one case; its row of the table."""
     name = case.name
     verification.check_run(name, element_size(results))
@@ -117,7 +117,7 @@ def check(verification: runner.Verification, case: runner.Case, results: Results
         print(f"      {penetration.describe(results, worst, overlaps[worst])}")
     verification.check("sum of contact forces / their magnitudes", name, imbalance(results))
     verification.check("energy that contact put in / largest", name, put_in(results))
-    account = results.energy
+    account = results.history.energy
     if case.group == "free":
         linear, angular = momentum_changes(results)
         verification.check("change of linear momentum", name, float(linear.max()))
@@ -133,17 +133,17 @@ def check(verification: runner.Verification, case: runner.Case, results: Results
         verification.check(
             "energy at rest / kinetic energy before", name, float(kinetic[-1] / kinetic.max())
         )
-    closed = sum(contact.closed for contact in results.contacts.values())
+    closed = sum(contact.closed for contact in results.contact.values())
     return [
         name,
-        len(results.time) - 1,
+        len(results.history.time) - 1,
         int(results.run["cutbacks"]),
         float(results.run["seconds_total"]),
         int(np.max(closed)),
         depth,
-        rise(results) / results.largest_energy,
+        rise(results) / results.history.energy.largest,
         *(
-            float(account[entry][-1] / results.largest_energy)
+            float(account[entry][-1] / results.history.energy.largest)
             for entry in ("friction_dissipation", "impact_loss", "normal_contact_work")
         ),
     ]
@@ -154,8 +154,8 @@ def tabulate_corners(verification: runner.Verification) -> None:
     rows = []
     for case, results in verification.group("free"):
         if case.name.startswith("corners"):
-            frame = len(results.frame_times) - 1
-            x, y = results.point_field("V", frame)[results.node_set("UPPER")].mean(axis=0)
+            frame = len(results.frames) - 1
+            x, y = results.frames[frame]["V"][results.node_set("UPPER")].mean(axis=0)
             rows.append((case.name, float(x), float(y)))
     verification.table("Mean velocity of the upper square at the end", ("case", "x", "y"), rows)
 
@@ -165,7 +165,7 @@ def draw_conservation(verification: runner.Verification) -> None:
     figure, axes = plt.subplots(3, 1, figsize=(8, 8))
     for case, results in verification.group("free"):
         label = {"label": case.name, "lw": 0.8}
-        part = results.time / results.time[-1]
+        part = results.history.time / results.history.time[-1]
         for axis, change in zip(axes, momentum_changes(results)):
             axis.semilogy(part, np.maximum(change, FLOOR), **label)
         axes[2].plot(part, energy(results) / energy(results)[0], **label)

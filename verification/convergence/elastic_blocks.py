@@ -1,8 +1,8 @@
 """Elastic bodies that are pressed on each other: blocks sheared, at rest, or dropped; a long bar."""
 
-from cards import card, dry, elastic, step
-from quads import Grid, facing_blocks, outline
 from settings import ramp, settings
+from stickslip.cards import card, dry, elastic, step
+from stickslip.quads import Grid, facing_blocks, outline
 
 
 def two_blocks(

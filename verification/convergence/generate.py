@@ -5,12 +5,12 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-sys.path[:0] = [str(ROOT / "scripts"), str(HERE)]
+sys.path[:0] = [str(ROOT / "python"), str(HERE)]
 
 import elastic_blocks  # noqa: E402
 import masonry  # noqa: E402
 import stiff_bodies  # noqa: E402
-from deck import write_to_folder  # noqa: E402
+from stickslip.deck import write_to_folder  # noqa: E402
 
 PROBLEMS = {
     "two_blocks": elastic_blocks.two_blocks,

@@ -2,8 +2,8 @@
 
 from math import cos, pi, sin
 
-from cards import card, dry, elastic, step
-from quads import Grid
+from stickslip.cards import card, dry, elastic, step
+from stickslip.quads import Grid
 
 GRAVITY = 9.81
 

@@ -5,9 +5,9 @@ The Courant number c dt / h, with c = sqrt(E / rho), sets the stiffness; h is an
 
 from math import cos, sin
 
-from cards import card, dry, elastic, step
-from quads import Grid, outline
 from settings import ramp, settings
+from stickslip.cards import card, dry, elastic, step
+from stickslip.quads import Grid, outline
 
 GRAVITY = 10.0
 

@@ -9,7 +9,7 @@ sys.path.insert(0, str(HERE.parent))
 
 import runner  # noqa: E402  (first: it finds the modules of scripts/)
 import numpy as np  # noqa: E402
-from results import Results  # noqa: E402
+from stickslip.result import Result  # noqa: E402
 
 MASONRY = ("stack", "arch", "card_house")
 """Groups of bodies on bodies."""
@@ -18,7 +18,7 @@ LOOSE, STIFF = 1e-7, 1e3
 """Tolerance and Courant number from which the energy balance has a limit of its own."""
 
 
-def element_size(results: Results) -> float:
+def element_size(results: Result) -> float:
     """Length of the shortest edge."""
     place = results.coordinates
     return min(
@@ -35,19 +35,19 @@ def accuracy(case: runner.Case) -> str:
     return ", stiff body, SS22" if is_stiff and case.parameters.get("scheme") == "ss22" else ""
 
 
-def first_cutback(results: Results) -> str:
+def first_cutback(results: Result) -> str:
     """The first cutback with its cause, as the log tells it; nothing without any."""
     log = results.path.with_suffix(".log").read_text()
     found = re.search(r"^cutback +(.*)\n +(.*)", log, re.M)
     return f"{found[1]}: {found[2]}" if found else ""
 
 
-def check(verification: runner.Verification, case: runner.Case, results: Results) -> list[object]:
+def check(verification: runner.Verification, case: runner.Case, results: Result) -> list[object]:
     """Checks one case; its row of the table."""
     name = case.name
     verification.check_run(name, element_size(results), accuracy(case))
-    passes = results.solver["passes"][1:]
-    factorizations = int(results.solver["factorizations"].sum())
+    passes = results.history.solver["passes"][1:]
+    factorizations = int(results.history.solver["factorizations"].sum())
     cutbacks = int(results.run["cutbacks"])
     on_bodies = ", bodies on bodies" if case.group in MASONRY else ""
     verification.check(f"cutbacks{on_bodies}", name, cutbacks)
@@ -55,9 +55,9 @@ def check(verification: runner.Verification, case: runner.Case, results: Results
     verification.check(f"mean passes{sheared}", name, float(passes.mean()))
     verification.check("largest number of passes", name, int(passes.max()))
     if case.group == "rotation":
-        turn = results.time[-1] / 0.3  # it turns by 1 rad in a unit of time
+        turn = results.history.time[-1] / 0.3  # it turns by 1 rad in a unit of time
         verification.check("factorisations per 0.3 rad", name, factorizations / turn)
-    balance = np.abs(results.energy["balance"]).max() / results.largest_energy
+    balance = np.abs(results.history.energy["balance"]).max() / results.history.energy.largest
     return [
         name,
         len(passes),

@@ -12,7 +12,7 @@ import runner  # noqa: E402  (first: it finds the modules of scripts/)
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 import style  # noqa: E402
-from results import Array, Results  # noqa: E402
+from stickslip.result import Array, Result  # noqa: E402
 
 bar = runner.load(HERE / "generate.py")
 
@@ -27,9 +27,9 @@ def closed_form(time: Array) -> Array:
     return AMPLITUDE * np.exp(-bar.RATIO * bar.OMEGA * time) * np.sin(DAMPED * time)
 
 
-def motion(results: Results) -> Array:
+def motion(results: Result) -> Array:
     """Displacement of the free end of a run."""
-    return results.nodes("END").U[:, :, 0].mean(axis=1)
+    return results.history.nodes["END"].U[:, :, 0].mean(axis=1)
 
 
 def peaks(time: Array, u: Array) -> tuple[Array, Array]:
@@ -51,11 +51,11 @@ class Figures:
     numerical: float
 
     @classmethod
-    def of(cls, results: Results) -> "Figures":
+    def of(cls, results: Result) -> "Figures":
         """Measures a run; all but the deviation, of the amplitude, relative to the closed form."""
-        time, u = results.time, motion(results)
+        time, u = results.history.time, motion(results)
         at, heights = peaks(time, u)
-        account = results.energy
+        account = results.history.energy
         energy = account["kinetic"] + account["strain"]
         lost = energy[0] - energy[-1]
         return cls(
@@ -72,7 +72,9 @@ def draw(verification: runner.Verification) -> None:
     figure, axes = plt.subplots(figsize=(9, 4))
     for case in verification.cases:
         results = verification.results[case.name]
-        axes.plot(results.time / bar.PERIOD, motion(results) / AMPLITUDE, lw=0.9, label=case.name)
+        axes.plot(
+            results.history.time / bar.PERIOD, motion(results) / AMPLITUDE, lw=0.9, label=case.name
+        )
     time = np.linspace(0.0, bar.PERIODS * bar.PERIOD, 1201)
     axes.plot(time / bar.PERIOD, closed_form(time) / AMPLITUDE, "k--", lw=0.7, label="closed form")
     for sign in (1, -1):

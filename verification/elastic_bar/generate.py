@@ -5,11 +5,11 @@ from math import sqrt
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "scripts"))
+sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from cards import card, elastic  # noqa: E402
-from deck import write_to_folder  # noqa: E402
-from quads import Grid  # noqa: E402
+from stickslip.cards import card, elastic  # noqa: E402
+from stickslip.deck import write_to_folder  # noqa: E402
+from stickslip.quads import Grid  # noqa: E402
 
 YOUNG = 1000.0
 DENSITY = 1.0

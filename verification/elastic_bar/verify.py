@@ -11,7 +11,7 @@ import runner  # noqa: E402  (first: it finds the modules of scripts/)
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 import style  # noqa: E402
-from results import Results  # noqa: E402
+from stickslip.result import Result  # noqa: E402
 
 bar = runner.load(HERE / "generate.py")
 
@@ -34,15 +34,15 @@ class Figures:
     energy: float
 
     @classmethod
-    def of(cls, results: Results) -> "Figures":
+    def of(cls, results: Result) -> "Figures":
         """Measures a run; forces are relative to rho c v0, speeds to v0."""
-        (contact,) = results.contacts.values()
-        landing = float(results.impacts["time"].min())
-        closed = results.time[contact.closed > 0]
-        middle = np.abs(results.time - landing - 0.5 * TRANSIT) <= 0.2 * TRANSIT
+        (contact,) = results.contact.values()
+        landing = float(results.history.impacts["time"].min())
+        closed = results.history.time[contact.closed > 0]
+        middle = np.abs(results.history.time - landing - 0.5 * TRANSIT) <= 0.2 * TRANSIT
         force = contact.normal[middle] / FORCE
         speed = mean_speed(results)
-        account = results.energy
+        account = results.history.energy
         total = account["kinetic"] + account["strain"]
         return cls(
             landing,
@@ -55,11 +55,11 @@ class Figures:
         )
 
 
-def mean_speed(results: Results) -> np.ndarray:
+def mean_speed(results: Result) -> np.ndarray:
     """Speed of the bar's mass centre: two rows of equal elements, end nodes count half."""
     weight = np.ones(bar.ELEMENTS + 1)
     weight[[0, -1]] = 0.5
-    speed = results.nodes("BAR").V[:, :, 0].reshape(len(results.time), 2, -1)
+    speed = results.history.nodes["BAR"].V[:, :, 0].reshape(len(results.history.time), 2, -1)
     return (speed.mean(axis=1) @ weight) / bar.ELEMENTS
 
 
@@ -72,11 +72,11 @@ def draw(verification: runner.Verification) -> None:
             results = verification.results.get(f"{scheme}_{impact}")
             if results is None:
                 continue
-            (contact,) = results.contacts.values()
+            (contact,) = results.contact.values()
             look = {"color": style.COLOURS[0 if impact == "impulse" else 1]}
             look["lw"] = 1.4 if impact == "impulse" else 0.8
-            force.plot(results.time, contact.normal / FORCE, label=label, **look)
-            speed.plot(results.time, mean_speed(results) / bar.SPEED, label=label, **look)
+            force.plot(results.history.time, contact.normal / FORCE, label=label, **look)
+            speed.plot(results.history.time, mean_speed(results) / bar.SPEED, label=label, **look)
         wall = [0, LANDING, LANDING, LANDING + TRANSIT, LANDING + TRANSIT, 1.5 * TRANSIT]
         force.plot(wall, [0, 0, 1, 1, 0, 0], "k--", lw=0.8, label="wave theory")
         force.axvspan(LANDING + 0.3 * TRANSIT, LANDING + 0.7 * TRANSIT, color="#eeeeee", zorder=0)

@@ -5,11 +5,11 @@ from math import ceil, sqrt
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "scripts"))
+sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from cards import card, dry, elastic, step  # noqa: E402
-from deck import write_to_folder  # noqa: E402
-from quads import Grid, Mesh, disc, outline, ring  # noqa: E402
+from stickslip.cards import card, dry, elastic, step  # noqa: E402
+from stickslip.deck import write_to_folder  # noqa: E402
+from stickslip.quads import Grid, Mesh, disc, outline, ring  # noqa: E402
 
 DECKS = ("box", "bar", "rings")
 

@@ -10,7 +10,7 @@ import runner  # noqa: E402  (first: it finds the modules of scripts/)
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 import style  # noqa: E402
-from results import Array, Results  # noqa: E402
+from stickslip.result import Array, Result  # noqa: E402
 
 impact = runner.load(HERE / "generate.py")
 
@@ -19,42 +19,42 @@ FORCE = impact.WAVE_SPEED * impact.SPEED * impact.DEPTH
 IMPULSE = 2 * impact.LENGTH * impact.DEPTH * impact.SPEED
 
 
-def energy(results: Results) -> Array:
+def energy(results: Result) -> Array:
     """T + W as a part of its value at the start."""
-    total = results.energy["kinetic"] + results.energy["strain"]
+    total = results.history.energy["kinetic"] + results.history.energy["strain"]
     return total / total[0]
 
 
-def not_returned(results: Results) -> float:
+def not_returned(results: Result) -> float:
     """What contact forces and releases have taken and was not given back, as a part of the energy."""
-    account = results.energy
+    account = results.history.energy
     taken = account["release_loss"] - account["normal_contact_work"] - account["landing_return"]
-    return float(np.abs(taken[-1]) / results.largest_energy)
+    return float(np.abs(taken[-1]) / results.history.energy.largest)
 
 
-def unshared(results: Results) -> float:
+def unshared(results: Result) -> float:
     """What the contacts of the ledger's returns and releases lack or have too much of, of the energy."""
     worst = 0.0
     for name in ("landing_return", "release_loss"):
-        shares = [results.history(f"contact/{contact}/{name}") for contact in results.contacts]
-        worst = max(worst, float(np.abs(sum(shares) - results.energy[name]).max()))
-    return worst / results.largest_energy
+        shares = [results.history[f"contact/{contact}/{name}"] for contact in results.contact]
+        worst = max(worst, float(np.abs(sum(shares) - results.history.energy[name]).max()))
+    return worst / results.history.energy.largest
 
 
-def momentum_error(results: Results) -> float:
+def momentum_error(results: Result) -> float:
     """Largest change of the momenta, beside the mass times the speed at the start."""
-    linear = np.abs(results.linear_momentum - results.linear_momentum[0]).max()
-    angular = np.abs(results.angular_momentum - results.angular_momentum[0]).max()
-    return float(max(linear, angular)) / (2.0 * results.energy["kinetic"][0]) ** 0.5
+    linear = np.abs(results.history.momentum.linear - results.history.momentum.linear[0]).max()
+    angular = np.abs(results.history.momentum.angular - results.history.momentum.angular[0]).max()
+    return float(max(linear, angular)) / (2.0 * results.history.energy["kinetic"][0]) ** 0.5
 
 
-def wall(results: Results) -> tuple[float, float, float]:
+def wall(results: Result) -> tuple[float, float, float]:
     """Mean force in the middle of the contact and its deviation, over rho c v0; impulse over 2 m v0."""
-    (contact,) = results.contacts.values()
-    landing = float(results.impacts["time"].min())
-    middle = np.abs(results.time - landing - 0.5 * TRANSIT) <= 0.2 * TRANSIT
+    (contact,) = results.contact.values()
+    landing = float(results.history.impacts["time"].min())
+    middle = np.abs(results.history.time - landing - 0.5 * TRANSIT) <= 0.2 * TRANSIT
     force = contact.normal[middle] / FORCE
-    impulse = results.history(f"contact/{contact.name}/normal_impulse_sum")[-1] / IMPULSE
+    impulse = results.history[f"contact/{contact.name}/normal_impulse_sum"][-1] / IMPULSE
     return float(force.mean()), float(force.std()), float(impulse)
 
 
@@ -66,7 +66,7 @@ def draw(verification: runner.Verification) -> None:
         for case in verification.cases:
             if deck in case.deck:
                 results = verification.results[case.name]
-                at.plot(results.time, energy(results), label=case.name)
+                at.plot(results.history.time, energy(results), label=case.name)
         at.set(ylabel="energy / energy at the start", title=deck)
         at.legend(fontsize="small")
     axes[-1, 0].set_xlabel("time")
@@ -97,9 +97,9 @@ def main() -> int:
                 verification.check("mean force / rho c v0", case.name, force)
             verification.check("impulse / change of momentum", case.name, change(results))
             walls.append((case.name, force, scatter, impulse))
-        passes = float(results.solver["passes"][1:].mean())
-        landings = len(results.impacts["time"])
-        rows.append((case.name, float(results.time[-1]), float(kept[-1]), landings, passes))
+        passes = float(results.history.solver["passes"][1:].mean())
+        landings = len(results.history.impacts["time"])
+        rows.append((case.name, float(results.history.time[-1]), float(kept[-1]), landings, passes))
     header = ("case", "time", "energy kept", "landings", "passes")
     verification.table("Bodies that bounce", header, rows)
     verification.table("Bar on a wall", ("case", "force", "deviation", "impulse"), walls)
@@ -107,11 +107,13 @@ def main() -> int:
     return verification.finish()
 
 
-def change(results: Results) -> float:
+def change(results: Result) -> float:
     """Impulse of the contact on the bar over the change of its momentum."""
-    (contact,) = results.contacts.values()
-    impulse = results.history(f"contact/{contact.name}/impulse_sum")[-1, 0]
-    return float(impulse / (results.linear_momentum[-1, 0] - results.linear_momentum[0, 0]))
+    (contact,) = results.contact.values()
+    impulse = results.history[f"contact/{contact.name}/impulse_sum"][-1, 0]
+    return float(
+        impulse / (results.history.momentum.linear[-1, 0] - results.history.momentum.linear[0, 0])
+    )
 
 
 if __name__ == "__main__":

@@ -12,16 +12,16 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 import style  # noqa: E402
 from plot_motion import Look, panels, shown_at  # noqa: E402
-from results import Array, Results  # noqa: E402
+from stickslip.result import Array, Result  # noqa: E402
 
 beams = runner.load(DECKS / "generate.py")
 
 LABELS = {"paper": "SS22 (1, 1), the paper's scheme", "default": "energy-momentum, the default"}
 
 
-def tip(results: Results, name: str = "UPPER_TIP") -> Array:
+def tip(results: Result, name: str = "UPPER_TIP") -> Array:
     """Displacement of the middle of an end face [I, 2]."""
-    history = results.nodes(name)
+    history = results.history.nodes[name]
     return history.U[:, len(history.labels) // 2]
 
 
@@ -35,7 +35,7 @@ def draw_displacement(verification: runner.Verification, name: str, label: str) 
                 friction = beams.FRICTION[Path(case.deck).stem[2:]]
                 for row in range(2):
                     axes[row, column].plot(
-                        results.time,
+                        results.history.time,
                         tip(results, name)[:, row],
                         line,
                         color=colour,
@@ -65,10 +65,12 @@ def sequence(verification: runner.Verification, group: str, kind: str) -> list[r
     return first + [case for case, _ in verification.group(f"{group}_{kind}")]
 
 
-def deviation(results: Results, reference: Results) -> float:
+def deviation(results: Result, reference: Result) -> float:
     """Largest distance of the upper tip's paths, at the increments of the coarser run."""
     other = tip(reference)
-    at = np.stack([np.interp(results.time, reference.time, other[:, i]) for i in range(2)], axis=1)
+    at = np.stack(
+        [np.interp(results.history.time, reference.time, other[:, i]) for i in range(2)], axis=1
+    )
     return float(np.linalg.norm(tip(results) - at, axis=1).max())
 
 
@@ -84,7 +86,7 @@ def study_convergence(verification: runner.Verification) -> None:
                 results = verification.results[case.name]
                 edge, dt = 0.5 / case.refine, beams.DT / case.divide
                 label = f"dt {dt:g}" if kind == "dt" else f"edge {edge:g}"
-                axes[row, column].plot(results.time, tip(results)[:, 1], label=label)
+                axes[row, column].plot(results.history.time, tip(results)[:, 1], label=label)
                 if results is not finest:
                     rows.append((group, kind, edge, dt, deviation(results, finest)))
             axes[row, column].set_title(f"{LABELS[group]}; A, mu = 0.4", fontsize=9)
@@ -106,7 +108,7 @@ def tabulate(verification: runner.Verification) -> None:
     for group in LABELS:
         for case, results in verification.group(group):
             upper, lower = tip(results)[-1], tip(results, "LOWER_TIP")[-1]
-            account = results.energy
+            account = results.history.energy
             rows.append(
                 (
                     case.name,

@@ -7,17 +7,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NoReturn
 
+from stickslip.errors import Fault, one_line
+
 FAULT = 2
 """Exit code after a fault; argparse's own."""
-
-
-class Fault(Exception):
-    """An error that the user can correct; its text is one line."""
-
-
-def one_line(error: BaseException) -> str:
-    """The text of an error without line ends."""
-    return " ".join(str(error).split()) or type(error).__name__
 
 
 def finish(main: Callable[[], int | None]) -> NoReturn:

@@ -35,7 +35,10 @@ def elastic(
     return "".join(
         [
             material("ELASTIC", young, poisson, density, **damping),
-            *(card(f"SOLID SECTION, ELSET={name}, MATERIAL=ELASTIC", (thickness,)) for name in sets),
+            *(
+                card(f"SOLID SECTION, ELSET={name}, MATERIAL=ELASTIC", (thickness,))
+                for name in sets
+            ),
         ]
     )
 

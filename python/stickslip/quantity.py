@@ -12,8 +12,9 @@ import re
 from dataclasses import dataclass
 
 import numpy as np
-from command import Fault
-from results import Array, Results
+
+from stickslip.errors import Fault
+from stickslip.result import Array, Result
 
 NAME = re.compile(r"(?P<path>[^:]*)(?::(?P<component>\d+))?")
 SETS = re.compile(
@@ -26,12 +27,15 @@ BODIES = re.compile(r"(?P<path>.+)\[(?P<body>\d+)\]")
 PER_BODY = re.compile(r"bodies/\w+|contact/.+/body_\w+")
 """Histories with one column for each body."""
 
+MEMBERS = re.compile(r"(nodes|elements)/[^/]+/\w+")
+"""Histories with one column for each member of a set."""
+
 DIRECTIONS = ("x", "y")
 """Names of the components of a vector in the plane."""
 
 
 @dataclass(frozen=True)
-class History:
+class Quantity:
     """A named history: what it is, and its components."""
 
     quantity: str
@@ -51,17 +55,17 @@ class History:
         return len(self.parts) == 1
 
 
-def find(results: Results, name: str) -> History:
+def find(result: Result, name: str) -> Quantity:
     """The history of this name; a Fault says which there are when there is none."""
     matched = NAME.fullmatch(name)
     if matched is None:
         raise Fault(f"{name} is no name of a history: such are energy/kinetic, nodes/TIP/U:2")
-    data, quantity = _selected(results, matched["path"])
+    data, quantity = _selected(result, matched["path"])
     component = matched["component"]
     if data.ndim == 1:
         if component is not None:
             raise Fault(f"{matched['path']} has no components: leave out the :{component}")
-        return History(quantity, {"": data})
+        return Quantity(quantity, {"": data})
     if data.ndim != 2:
         raise Fault(f"{name}: say of which, as in {matched['path']}[0]")
     bodies = PER_BODY.fullmatch(matched["path"]) is not None
@@ -70,42 +74,42 @@ def find(results: Results, name: str) -> History:
         names = list(DIRECTIONS)
     parts = dict(zip(names, data.T))
     if component is None:
-        return History(quantity, parts)
+        return Quantity(quantity, parts)
     if not 1 <= int(component) <= len(parts):
         raise Fault(f"{matched['path']} has the components 1 to {len(parts)}, not {component}")
     chosen = names[int(component) - 1]
-    return History(quantity, {chosen: parts[chosen]})
+    return Quantity(quantity, {chosen: parts[chosen]})
 
 
-def listed(results: Results) -> list[str]:
+def listed(result: Result) -> list[str]:
     """All names of histories, with their components."""
     names = []
-    for path, data in results.histories.items():
+    for path, data in result.histories.items():
         each = "[BODY]" if PER_BODY.fullmatch(path) else ""
-        columns = each or path.startswith("elements/") and "/sum/" not in path
+        columns = each or path.startswith("elements/") and MEMBERS.fullmatch(path)
         plain = data.ndim == (2 if columns else 1)
         names.append(f"{path}{each}" if plain else f"{path}{each}:1 to :{data.shape[-1]}")
     return sorted(names)
 
 
-def _selected(results: Results, path: str) -> tuple[Array, str]:
+def _selected(result: Result, path: str) -> tuple[Array, str]:
     """Values [I] or [I, components] of a path with its brackets, and what they are."""
-    if path not in results.histories:
+    if path not in result.histories:
         plain = re.sub(r"\[-?\d+\]", "", path)
         for pattern, select in ((SETS, _of_member), (BODIES, _of_body)):
             matched = pattern.fullmatch(path)
-            if matched and plain in results.histories:
-                return select(results, plain, matched)
+            if matched and plain in result.histories:
+                return select(result, plain, matched)
         for kind in ("mean", "sum"):
             place, _, field = path.rpartition("/")
-            if f"{place}/{kind}/{field}" in results.histories:
-                return _selected(results, f"{place}/{kind}/{field}")
-        raise Fault(f"{results.path} has no history {path}: {_alternatives(results, plain)}")
-    matched, data = SETS.fullmatch(path), results.history(path)
+            if f"{place}/{kind}/{field}" in result.histories:
+                return _selected(result, f"{place}/{kind}/{field}")
+        raise Fault(f"{result.path} has no history {path}: {_alternatives(result, plain)}")
+    matched, data = SETS.fullmatch(path), result.history[path]
     if matched and data.ndim > 1:
-        return _of_set(data, _description(results, path), matched)
+        return _of_set(data, _description(result, path), matched)
     place = path.rpartition("/")[0].partition("/")[2]
-    return data, ", ".join(filter(None, (_description(results, path), place)))
+    return data, ", ".join(filter(None, (_description(result, path), place)))
 
 
 def _of_set(data: Array, what: str, matched: re.Match[str]) -> tuple[Array, str]:
@@ -118,43 +122,43 @@ def _of_set(data: Array, what: str, matched: re.Match[str]) -> tuple[Array, str]
     return data.mean(axis=1), f"{what}, mean over {name}"
 
 
-def _of_member(results: Results, path: str, matched: re.Match[str]) -> tuple[Array, str]:
+def _of_member(result: Result, path: str, matched: re.Match[str]) -> tuple[Array, str]:
     """One node or element of a set."""
     kind, member = matched["kind"], matched["member"]
-    labels = results.read(f"history/{kind}s/{matched['set']}/labels")
+    labels = result.read(f"history/{kind}s/{matched['set']}/labels")
     at = np.flatnonzero(labels == int(member))
     if len(at) == 0:
         raise Fault(f"{kind} {member} is not in {matched['set']}: {_few(labels)}")
-    what = _description(results, path)
-    return results.history(path)[:, at[0]], f"{what} of {kind} {member}"
+    what = _description(result, path)
+    return result.history[path][:, at[0]], f"{what} of {kind} {member}"
 
 
-def _of_body(results: Results, path: str, matched: re.Match[str]) -> tuple[Array, str]:
+def _of_body(result: Result, path: str, matched: re.Match[str]) -> tuple[Array, str]:
     """One body of a history that has one column for each."""
-    data, body = results.history(path), int(matched["body"])
+    data, body = result.history[path], int(matched["body"])
     if data.ndim < 2 or body >= data.shape[1]:
         count = data.shape[1] if data.ndim > 1 else 0
         raise Fault(f"{path} has {count} bodies, counted from 0: there is no [{body}]")
-    return data[:, body], f"{_description(results, path)}, body {body}"
+    return data[:, body], f"{_description(result, path)}, body {body}"
 
 
-def _description(results: Results, path: str) -> str:
+def _description(result: Result, path: str) -> str:
     """What a dataset says it is, without the explanation after a colon."""
     if path == "time":
         return path
-    text = results.histories[path].attrs.get("description", path)
+    text = result.histories[path].attrs.get("description", path)
     return str(text).partition(":")[0]
 
 
-def _alternatives(results: Results, path: str) -> str:
+def _alternatives(result: Result, path: str) -> str:
     """What there is where the path leaves what exists."""
     there = ""
     for part in path.split("/"):
         deeper = f"{there}{part}/"
-        if not any(name.startswith(deeper) for name in results.histories):
+        if not any(name.startswith(deeper) for name in result.histories):
             break
         there = deeper
-    below = [name[len(there) :] for name in results.histories if name.startswith(there)]
+    below = [name[len(there) :] for name in result.histories if name.startswith(there)]
     names = ", ".join(sorted({name.partition("/")[0] for name in below}))
     return f"{there.rstrip('/')} has {names}" if there else f"there are {names}"
 

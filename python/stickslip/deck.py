@@ -5,11 +5,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from command import Fault
-
+from stickslip.errors import Fault
 
 FREE_TEXT = ("HEADING", "STEP")
 """Keywords whose data lines are text."""
+
+
+PROCEDURES = ("DYNAMIC", "STATIC")
+"""Keywords whose data line has the increment and the duration of a step."""
 
 
 @dataclass
@@ -86,6 +89,14 @@ class Deck:
     def period(self) -> float:
         """Duration of the only step."""
         return float(self.one("DYNAMIC").rows[0][1])
+
+    @property
+    def duration(self) -> float | None:
+        """Time of all steps; None where it is no plain number."""
+        try:
+            return sum(float(card.rows[0][1]) for card in self.cards if card.keyword in PROCEDURES)
+        except (IndexError, ValueError):
+            return None
 
     def set_increments(self, dt: float, count: int) -> None:
         """Gives the only step `count` increments of `dt`."""

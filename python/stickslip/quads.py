@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from math import cos, pi, sin, sqrt
 
-from cards import card
+from stickslip.cards import card
 
 
 class Grid:

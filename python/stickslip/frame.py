@@ -1,0 +1,155 @@
+"""Frames of a result: all fields at one time (docs/output.md, /VTKHDF)."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.errors import Fault, Missing
+
+if TYPE_CHECKING:
+    import pyvista
+
+    from stickslip.result import Result
+
+Array = NDArray[np.float64]
+
+LARGEST = 1e150
+"""Largest position whose square is a number."""
+
+ROUND_OFF = 1e-9
+"""Times that differ by this part of the duration are the same."""
+
+
+@dataclass(frozen=True)
+class Frame(Mapping[str, Any]):
+    """Fields by name at one time: `frame["U"]` [N, 2] at the nodes, `frame["S"]` [E, 3] of elements.
+
+    Vectors lose their third component, which is 0. Stresses and strains are means over the
+    elements, (xx, yy, xy).
+    """
+
+    result: "Result"
+    index: int
+
+    @property
+    def time(self) -> float:
+        """Time of the frame."""
+        return float(self.result.frames.times[self.index])
+
+    @property
+    def positions(self) -> Array:
+        """Current coordinates of the nodes [N, 2]; a Fault when areas overflow."""
+        positions = self.result.coordinates + self["U"]
+        if not (np.abs(positions) < LARGEST).all():
+            place = f"{self.result.path}: frame {self.index}"
+            raise Fault(f"{place} has positions that are no numbers or huge")
+        return positions
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        kind = self.result.frames.kind(name)
+        rows = self.full(name)
+        if kind == "PointData":
+            return rows[:, :2] if rows.ndim == 2 else rows
+        return rows[: len(self.result.cells)]
+
+    def full(self, name: str) -> NDArray[Any]:
+        """A field as it stands in the file: with third components and rigid segments."""
+        frames = self.result.frames
+        kind = frames.kind(name)
+        first = frames.first_row(kind, name, self.index)
+        return self.result.read(f"VTKHDF/{kind}/{name}", first, first + frames.sizes[kind])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.result.frames.fields)
+
+    def __len__(self) -> int:
+        return len(self.result.frames.fields)
+
+    def __repr__(self) -> str:
+        return f"<frame {self.index} of {self.result.path}: t = {self.time:g}, {', '.join(self)}>"
+
+    __hash__ = object.__hash__
+
+    def to_pyvista(self) -> "pyvista.UnstructuredGrid":
+        """The frame as a grid of PyVista, in the reference configuration, with all fields.
+
+        `grid.warp_by_vector("U")` is the deformed shape. Needs the package pyvista.
+        """
+        from stickslip.convert import to_pyvista
+
+        return to_pyvista(self)
+
+
+class Frames(Sequence[Frame]):
+    """The complete frames of a result, in the order of time."""
+
+    def __init__(self, result: "Result") -> None:
+        self._result = result
+        nodes = len(result.coordinates)
+        self.sizes = {"PointData": nodes, "CellData": len(result.cells) + len(result.rigid)}
+        """Rows of a frame in the nodal and in the element fields."""
+        self.fields: dict[str, str] = {}
+        """Fields by name, with the group that holds them: PointData or CellData."""
+        with result.reading("frames"):
+            grid = result.file["VTKHDF"]
+            steps = grid["Steps"]
+            self._offsets = {
+                (kind, name): data[()]
+                for kind in self.sizes
+                for name, data in steps[f"{kind}Offsets"].items()
+            }
+            frames = min(int(steps.attrs["NSteps"]), len(steps["Values"]))
+            for kind, size in self.sizes.items():
+                for name, data in grid[kind].items():
+                    self.fields[name] = kind
+                    if (kind, name) in self._offsets:
+                        ends = self._offsets[kind, name] + size
+                        frames = min(frames, int((ends <= len(data)).sum()))
+        if frames == 0:
+            raise Fault(f"{result.path} has no frame yet")
+        self.times: Array = result.read("VTKHDF/Steps/Values")[:frames]
+        """Times of the frames [F]."""
+
+    def kind(self, name: str) -> str:
+        """Whether a field is PointData or CellData."""
+        if name not in self.fields:
+            there = ", ".join(self.fields)
+            raise Missing(f"{self._result.path} has no field {name}; there are {there}")
+        return self.fields[name]
+
+    def first_row(self, kind: str, name: str, index: int) -> int:
+        """First row of a frame in a field; one that does not change is there once."""
+        offsets = self._offsets.get((kind, name))
+        return 0 if offsets is None else int(offsets[index])
+
+    def nearest(self, time: float) -> Frame:
+        """The frame nearest to a time, however far away."""
+        return self[int(np.abs(self.times - time).argmin())]
+
+    def at(self, time: float) -> Frame:
+        """The frame nearest to a time of the run; a Fault when no frame comes after it."""
+        first, last = float(self.times[0]), float(self.times[-1])
+        margin = ROUND_OFF * max(last - first, abs(last))
+        if not first - margin <= time <= last + margin:
+            path = self._result.path
+            raise Fault(f"{path} has frames from t = {first:g} to {last:g}, none at {time:g}")
+        return self.nearest(time)
+
+    @overload
+    def __getitem__(self, index: int) -> Frame: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Frame]: ...
+    def __getitem__(self, index: int | slice) -> Frame | list[Frame]:
+        places = range(len(self))[index]
+        if isinstance(places, range):
+            return [Frame(self._result, place) for place in places]
+        return Frame(self._result, places)
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} frames of {self._result.path}: t = {self.times[0]:g} to {self.times[-1]:g}>"

@@ -1,0 +1,259 @@
+"""Runs the program: `run` solves a deck, `check` reads it; what the program says becomes exceptions."""
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from stickslip.deck import Deck
+from stickslip.errors import Fault
+from stickslip.result import Result
+
+STOPPED = 1
+"""Exit code of a run that stopped in the solve: the results up to there are valid."""
+
+REJECTED = 2
+"""Exit code of a run whose deck was rejected."""
+
+POLL = 0.1
+"""Seconds between two looks at a running program."""
+
+OPTIONS = ("frames", "every", "solver", "threads")
+"""Options of `stickslip run` with a value."""
+
+FLAGS = ("strict", "lenient", "verbose")
+"""Options of `stickslip run` without a value."""
+
+
+@dataclass(frozen=True)
+class Diagnostic:
+    """An error or warning of the deck."""
+
+    severity: str
+    """`error` or `warning`."""
+    code: str
+    """Such as `D108`; `stickslip explain D108` tells what it means."""
+    message: str
+    file: str = ""
+    line: int = 0
+    """Line and column in the file, from 1; 0 where the message has no place."""
+    column: int = 0
+
+
+class RunFailed(Fault):
+    """The program ended with an exit code other than 0."""
+
+    def __init__(self, message: str, code: int, result: Path) -> None:
+        super().__init__(message)
+        self.message = message
+        """What the program wrote to its standard error, lines kept."""
+        self.code = code
+        """Exit code (docs/output.md); minus the number of the signal that killed the program."""
+        self.path = result
+        """Where the result is, if there is one."""
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """Errors and warnings of the deck."""
+        return diagnostics(self.message)
+
+
+class DeckRejected(RunFailed):
+    """The deck has errors: `diagnostics` holds them."""
+
+
+class RunStopped(RunFailed):
+    """The run stopped in the solve, or by a signal: `result` is valid up to there."""
+
+    @property
+    def result(self) -> Result:
+        """The result up to where the run stopped; a Fault when it stopped before its first frame."""
+        return Result(self.path)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a run is."""
+
+    time: float
+    """Time at the end of the last increment."""
+    end: float | None
+    """Time at which the deck ends, where it can be told."""
+    increment: int
+    seconds: float
+    """Wall-clock time since the start."""
+
+    @property
+    def part(self) -> float | None:
+        """The part of the deck's time that is done."""
+        return self.time / self.end if self.end else None
+
+
+def binary() -> Path:
+    """The program: $STICKSLIP, the one installed with this package, on the path, or built in a checkout."""
+    if "STICKSLIP" in os.environ:
+        return Path(os.environ["STICKSLIP"])
+    name = "stickslip.exe" if os.name == "nt" else "stickslip"
+    root = Path(__file__).resolve().parents[2]
+    target = Path(os.environ.get("CARGO_TARGET_DIR", root / "target"))
+    found = shutil.which(name)
+    places = [Path(sys.executable).with_name(name), target / "release" / name]
+    if not (root / "Cargo.toml").exists():
+        places.pop()
+    for place in [*places, *([Path(found)] if found else [])]:
+        if place.exists():
+            return place
+    raise Fault(
+        "the program stickslip is not found: install it, name it in the environment variable"
+        " STICKSLIP, or run 'cargo build --release' in a checkout"
+    )
+
+
+def run(
+    deck: Deck | Path | str,
+    output: Path | str = ".",
+    *words: str,
+    job: str = "job",
+    overwrite: bool = True,
+    progress: bool | Callable[[Progress], object] = False,
+    **options: object,
+) -> Result:
+    """Solves a deck, a file or a `Deck`, and returns its result.
+
+    The results go to the folder `output`, under the name of the deck's file, or `job` for a `Deck`,
+    which is written there too. `options` are those of `stickslip run`: frames, every, solver,
+    threads with a value; strict, lenient, verbose as True. `words` are options as they are typed.
+    `progress` prints how far the run is, or is called with a `Progress` some times a second. Raises
+    DeckRejected, RunStopped or RunFailed.
+    """
+    folder = Path(output)
+    folder.mkdir(parents=True, exist_ok=True)
+    path = deck.write(folder / f"{job}.inp") if isinstance(deck, Deck) else Path(deck)
+    command = [str(binary()), "run", str(path), "-o", str(folder), "-q", *_words(options), *words]
+    if overwrite:
+        command.append("--overwrite")
+    result = folder / f"{job_name(path)}.vtkhdf"
+    watch = _watch(path, result, progress) if progress else None
+    with tempfile.TemporaryFile("w+", errors="replace") as errors:
+        code = _wait(subprocess.Popen(command, stdin=subprocess.DEVNULL, stderr=errors), watch)
+        errors.seek(0)
+        message = errors.read().strip()
+    if code == 0:
+        return Result(result)
+    text = message or f"{' '.join(command)}: exit code {code}"
+    if code == REJECTED:
+        raise DeckRejected(text, code, result)
+    if code == STOPPED or code > 128:
+        raise RunStopped(text, code, result)
+    raise RunFailed(text, code, result)
+
+
+def check(deck: Deck | Path | str) -> list[Diagnostic]:
+    """Reads a deck without solving it; returns its warnings, or raises DeckRejected."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = deck.write(Path(folder) / "job.inp") if isinstance(deck, Deck) else Path(deck)
+        command = [str(binary()), "check", str(path)]
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        if done.returncode == REJECTED:
+            raise DeckRejected(done.stderr.strip(), done.returncode, path)
+        if done.returncode:
+            raise RunFailed(done.stderr.strip(), done.returncode, path)
+        return diagnostics(done.stdout + done.stderr)
+
+
+def diagnostics(text: str) -> list[Diagnostic]:
+    """Errors and warnings of a deck in what the program writes."""
+    pattern = re.compile(
+        r"^(error|warning)\[(\w+)\]: (.*)(?:\n\s*--> (.*):(\d+):(\d+)$)?", flags=re.MULTILINE
+    )
+    found = []
+    for severity, code, message, file, line, column in pattern.findall(text):
+        found.append(Diagnostic(severity, code, message, file, int(line or 0), int(column or 0)))
+    return found
+
+
+def job_name(deck: Path) -> str:
+    """Name of the job of a deck: that of its file without `.inp`."""
+    return deck.stem if deck.suffix.lower() == ".inp" else deck.name
+
+
+def _words(options: dict[str, object]) -> list[str]:
+    """Options of the command line."""
+    words = []
+    for name, value in options.items():
+        if name not in OPTIONS + FLAGS:
+            raise TypeError(f"run has no option {name}: it has {', '.join(OPTIONS + FLAGS)}")
+        if value is True and name in FLAGS:
+            words.append(f"--{name}")
+        elif value is not None and value is not False:
+            words += [f"--{name}", str(value)]
+    return words
+
+
+def _wait(process: subprocess.Popen[bytes], watch: Callable[[bool], None] | None) -> int:
+    """Waits for the end of a run, which ends in order when this process is interrupted."""
+    try:
+        while watch and process.poll() is None:
+            watch(False)
+            time.sleep(POLL)
+        code = process.wait()
+    except BaseException:
+        process.send_signal(signal.SIGTERM)
+        process.wait()
+        raise
+    if watch:
+        watch(True)
+    return code
+
+
+def _watch(
+    deck: Path, result: Path, progress: bool | Callable[[Progress], object]
+) -> Callable[[bool], None]:
+    """What looks at the status file of a run and tells how far it is."""
+    tell = progress if callable(progress) else _print
+    status, start, end = result.with_suffix(".sta"), time.monotonic(), Deck.read(deck).duration
+    began = time.time()
+    last = -1
+
+    def watch(ended: bool) -> None:
+        nonlocal last
+        increment, when = _last_increment(status, began)
+        if increment > last:
+            last = increment
+            tell(Progress(when, end, increment, time.monotonic() - start))
+        if ended and tell is _print:
+            print(file=sys.stderr)
+
+    return watch
+
+
+def _last_increment(status: Path, began: float) -> tuple[int, float]:
+    """Number and time of the last increment in a status file that this run has written."""
+    try:
+        with status.open("rb") as file:
+            if os.fstat(file.fileno()).st_mtime < began - 1.0:
+                return 0, 0.0
+            file.seek(max(0, os.fstat(file.fileno()).st_size - 4096))
+            lines = file.read().decode(errors="replace").splitlines(keepends=True)
+        row = [line for line in lines if line.endswith("\n") and line[:1] == " "][-1].split()
+        return int(row[1]), float(row[6])
+    except (OSError, IndexError, ValueError):
+        return 0, 0.0
+
+
+def _print(progress: Progress) -> None:
+    """One line that is written over and over."""
+    text = f"increment {progress.increment}, t = {progress.time:.6g}"
+    if progress.end:
+        left = (
+            progress.seconds * (progress.end / progress.time - 1.0) if progress.time > 0.0 else 0.0
+        )
+        text += f" of {progress.end:.6g}, {left:.0f} s left"
+    print(f"\r{text:<70}", end="", file=sys.stderr, flush=True)

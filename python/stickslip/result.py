@@ -1,0 +1,291 @@
+"""Result files `JOB.vtkhdf` (see docs/output.md), read with h5py alone.
+
+The file of a running or killed job is read up to the rows and frames that are complete. What cannot be
+read is told as a `Fault`.
+"""
+
+from collections.abc import Iterable, Iterator, Sized
+from contextlib import contextmanager
+from functools import cached_property
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.errors import Fault, one_line
+from stickslip.frame import Frame, Frames
+from stickslip.history import Array, Contacts, History, Integers
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+NONE, OPEN, STICK, SLIP = range(4)
+"""Values of CONTACT_STATUS."""
+
+EVENTS = ("impacts", "returns", "touches")
+"""Groups of the history with one row per event."""
+
+
+class Result:
+    """A result file.
+
+    >>> result = Result("job.vtkhdf")
+    >>> result.history.energy.kinetic          # one row per increment
+    >>> result.contact["SLAVE_MASTER"].force
+    >>> result.frame(0.5)["MISES"]             # one value per element
+    """
+
+    def __init__(self, path: Path | str) -> None:
+        self.path = Path(path)
+        self.file = _open(self.path)
+        missing = [name for name in ("VTKHDF", "model", "history", "run") if name not in self.file]
+        if missing:
+            self.file.close()
+            raise Fault(f"{self.path} is no result of stickslip: it has no group /{missing[0]}")
+
+    def __enter__(self) -> "Result":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.file.close()
+
+    def __repr__(self) -> str:
+        return f"Result({str(self.path)!r})"
+
+    @property
+    def job(self) -> str:
+        """Name of the job."""
+        return self.path.stem
+
+    def read(self, name: str, start: int | None = None, end: int | None = None) -> NDArray[Any]:
+        """A dataset by its path in the file, or rows of it."""
+        with self.reading(name):
+            data = self.file[name]
+            return data[()] if start is None and end is None else data[start:end]
+
+    @contextmanager
+    def reading(self, name: str) -> Iterator[None]:
+        """Tells what goes wrong while `name` is read: a file can be damaged or being written."""
+        if not self.file:
+            raise Fault(f"{self.path} is closed: read {name} before")
+        try:
+            yield
+        except KeyError:
+            raise Fault(f"{self.path} has no {name}") from None
+        except (OSError, RuntimeError, ValueError, TypeError) as error:
+            raise Fault(f"{self.path}: {name} cannot be read: {one_line(error)}") from None
+
+    # The model.
+
+    @cached_property
+    def coordinates(self) -> Array:
+        """Reference coordinates [N, 2]."""
+        return self.read("model/coordinates")
+
+    @cached_property
+    def node_labels(self) -> Integers:
+        """Node numbers of the deck [N]."""
+        return self.read("model/node_labels")
+
+    @cached_property
+    def element_labels(self) -> Integers:
+        """Element numbers of the deck [E]."""
+        return self.read("model/element_labels")
+
+    @cached_property
+    def cells(self) -> list[Integers]:
+        """Node indices of each element."""
+        connectivity = self.read("VTKHDF/Connectivity")
+        offsets = self.read("VTKHDF/Offsets")[: len(self.element_labels) + 1]
+        return [connectivity[a:b] for a, b in zip(offsets[:-1], offsets[1:])]
+
+    @cached_property
+    def rigid(self) -> Integers:
+        """Segments of rigid surfaces, [segments, 2] node indices, obstacle on the left."""
+        end = self.read("VTKHDF/Offsets")[len(self.cells)]
+        return self.read("VTKHDF/Connectivity")[end:].reshape(-1, 2)
+
+    @cached_property
+    def drawn(self) -> Integers:
+        """Nodes of elements and of rigid surfaces."""
+        return np.unique(np.concatenate([*self.cells, self.rigid.ravel()]))
+
+    @cached_property
+    def in_cells(self) -> Integers:
+        """Nodes of elements."""
+        return np.unique(np.concatenate(self.cells))
+
+    @cached_property
+    def edge_length(self) -> float:
+        """Median length of the edges of the undeformed mesh."""
+        way = [self.coordinates[cell] - self.coordinates[np.roll(cell, -1)] for cell in self.cells]
+        return float(np.median(np.linalg.norm(np.concatenate(way), axis=1)))
+
+    @cached_property
+    def boundary(self) -> Integers:
+        """Edges that belong to one element only, [edges, 2] node indices, body on the left."""
+        edges = {(int(a), int(b)) for cell in self.cells for a, b in zip(cell, np.roll(cell, -1))}
+        return np.array(sorted(edge for edge in edges if edge[::-1] not in edges))
+
+    @cached_property
+    def body(self) -> Integers:
+        """Number of the body (connected elements) that each node belongs to [N]."""
+        body = np.arange(len(self.coordinates))
+        settled = False
+        while not settled:
+            settled = True
+            for cell in self.cells:
+                lowest = body[cell].min()
+                if (body[cell] != lowest).any():
+                    body[cell] = lowest
+                    settled = False
+        return np.unique(body, return_inverse=True)[1]
+
+    def node_set(self, name: str) -> Integers:
+        """Node indices of a set."""
+        return self.read(f"model/node_sets/{name}")
+
+    def element_set(self, name: str) -> Integers:
+        """Element indices of a set."""
+        return self.read(f"model/element_sets/{name}")
+
+    # Histories.
+
+    @cached_property
+    def history(self) -> History:
+        """Histories: `history.energy.kinetic`, `history.nodes["TIP"].U`, `history["energy/kinetic"]`."""
+        return History(self, "history")
+
+    @property
+    def contact(self) -> Contacts:
+        """Histories of the contacts by name, `SLAVE_MASTER`."""
+        return self.history.contact
+
+    @cached_property
+    def histories(self) -> dict[str, h5py.Dataset]:
+        """All datasets with one row per increment, by their paths below /history."""
+        found: dict[str, h5py.Dataset] = {}
+
+        def visit(name: str, item: object) -> None:
+            top, last = name.partition("/")[0], name.rpartition("/")[2]
+            other = top in EVENTS or last in ("labels", "node", "EVOL")
+            if isinstance(item, h5py.Dataset) and item.ndim > 0 and not other:
+                found[name] = item
+
+        with self.reading("history"):
+            self.file["history"].visititems(visit)
+        return found
+
+    @cached_property
+    def rows(self) -> int:
+        """Complete rows of all histories."""
+        rows = self._complete("history", self.histories.values())
+        if rows == 0:
+            raise Fault(f"{self.path} has no history yet")
+        return rows
+
+    def _complete(self, group: str, datasets: Iterable[Sized]) -> int:
+        """Complete rows of the datasets of a group; files of older programs do not say it."""
+        rows = min(map(len, datasets), default=0)
+        return min(rows, int(self.file[group].attrs.get("rows", rows)))
+
+    def complete_rows(self, path: str) -> NDArray[Any]:
+        """The complete rows of a dataset by its path in the file, which starts with `history/`."""
+        name = path.removeprefix("history/")
+        event = name.partition("/")[0]
+        if name in self.histories:
+            rows = self.rows
+        elif event in EVENTS:
+            rows = self._complete(f"history/{event}", self.file[f"history/{event}"].values())
+        else:
+            return self.read(path)
+        return self.read(path)[:rows]
+
+    def quantity(self, name: str) -> Array:
+        """A history by the name that plots and sweeps use, such as `nodes/TIP/U:2` (see `quantity`).
+
+        Shape [I], or [I, components] for a vector.
+        """
+        from stickslip.quantity import find
+
+        parts = list(find(self, name).parts.values())
+        return parts[0] if len(parts) == 1 else np.column_stack(parts)
+
+    def to_dataframe(self) -> "pandas.DataFrame":
+        """All histories as a table, one row per increment. Needs the package pandas."""
+        from stickslip.convert import to_dataframe
+
+        return to_dataframe(self)
+
+    def to_xarray(self, *fields: str) -> "xarray.Dataset":
+        """All histories, and the named fields of all frames. Needs the package xarray."""
+        from stickslip.convert import to_xarray
+
+        return to_xarray(self, fields)
+
+    # Frames.
+
+    @cached_property
+    def frames(self) -> Frames:
+        """All complete frames."""
+        return Frames(self)
+
+    def frame(self, time: float) -> Frame:
+        """The frame nearest to a time of the run; a Fault for times before and after the frames."""
+        return self.frames.at(time)
+
+    # The run.
+
+    @property
+    def deck(self) -> str:
+        """Full text of the deck."""
+        return str(self.file["run"].attrs["deck"])
+
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings of the run, from the log beside the result; none where there is no log."""
+        log = self.path.with_suffix(".log")
+        if not log.exists():
+            return []
+        found: list[str] = []
+        is_open = False
+        for line in log.read_text(errors="replace").splitlines():
+            if line.startswith("warning"):
+                found.append(line.removeprefix("warning").strip())
+            elif is_open and line.startswith("         "):
+                found[-1] += " " + line.strip()
+            is_open = line.startswith("warning") or is_open and line.startswith("         ")
+        return found
+
+    @property
+    def run(self) -> dict[str, object]:
+        """Attributes of the run record."""
+        return dict(self.file["run"].attrs)
+
+
+def _open(path: Path) -> h5py.File:
+    """Opens a file that may be being written: without a lock."""
+    if not path.exists():
+        raise Fault(f"there is no file {path}")
+    if not path.is_file():
+        kind = "a folder" if path.is_dir() else "no regular file"
+        raise Fault(f"{path} is {kind}: a result JOB.vtkhdf is needed")
+    with path.open("rb"):
+        pass  # a file that may not be read is told by the system
+    if not h5py.is_hdf5(path):
+        raise Fault(f"{path} is no HDF5 file: results are named JOB.vtkhdf")
+    try:
+        return h5py.File(path, "r", locking=False)
+    except OSError as error:
+        text = one_line(error)
+        reason = "it is cut short" if "truncated" in text else text
+        raise Fault(f"{path} cannot be opened: {reason}") from None
