@@ -134,15 +134,17 @@ pub(super) static CONDITIONS: &[Keyword] = &[
         Scope::Model,
         Data::Required(&[row("node or node set, direction, coefficient").repeating(3)]),
         &[INPUT],
-        "Linear equations between displacements, a1 u1 + a2 u2 + ... = 0 at all times: the number of \
-         terms on a line, then node or node set, direction, coefficient of each, four terms on a line; \
-         any number of equations. Sets give an equation for every node, in the order of the numbers; \
-         those after the first have as many nodes, or one. The first term is eliminated: no *BOUNDARY \
-         may prescribe it and no other equation eliminate it; the others may be prescribed, or \
-         eliminated by other equations. A node without element moves as its equations say. RF of a \
-         prescribed term holds the force that its support exerts through the equations; at all other \
-         terms RF is 0. The first terms start with the velocities that follow from those of the others. \
-         The ratio of two coefficients lies between 1e-50 and 1e50.",
+        "Linear equations between displacements: a1 u1 + a2 u2 + ... = 0 at all times. An \
+         equation begins with the number of its terms on a line. Then follow node or node set, \
+         direction and coefficient of each term, four terms on a line. A card may hold any number \
+         of equations. Sets give an equation for every node, in the order of the numbers; a later \
+         set of the equation has as many nodes as the first one, or one node. The first term is \
+         eliminated: no *BOUNDARY may prescribe it, and no other equation may eliminate it. The \
+         other terms may be prescribed, or eliminated by other equations. A node without element \
+         moves as its equations say. RF of a prescribed term holds the force that its support \
+         exerts through the equations; RF is 0 at all other terms. At the start the velocity of a \
+         first term follows from the velocities of the others. The ratio of two coefficients lies \
+         between 1e-50 and 1e50.",
         "*EQUATION\n\
          2\n\
          13, 2, 1., 14, 2, -1.",
@@ -200,10 +202,11 @@ pub(super) static CONDITIONS: &[Keyword] = &[
             P::value("REGION TYPE", "not supported").refused(),
             P::flag("USER", "not supported").refused(),
         ],
-        "Prescribed displacements, velocities or accelerations: node or node set, first direction, \
-         last direction, value; or a node set with XSYMM, YSYMM, ZSYMM, XASYMM, YASYMM, ZASYMM, PINNED or ENCASTRE. \
-         Without amplitude a displacement grows linearly over the step. Directions 3 to 6 may be \
-         given with value zero.",
+        "Prescribed displacements, velocities or accelerations: node or node set, first \
+         direction, last direction, value. A node set may also have XSYMM, YSYMM, ZSYMM, XASYMM, \
+         YASYMM, ZASYMM, PINNED or ENCASTRE in place of directions and value. Without amplitude a \
+         displacement grows linearly over the step. Directions 3 to 6 may be given with value \
+         zero.",
         "*BOUNDARY\n\
          NFIX, 1, 2",
     ),
@@ -235,9 +238,10 @@ pub(super) static CONDITIONS: &[Keyword] = &[
                 .saying(1, &["TRVEC1", "TRVEC2", "TRVEC3", "TRVEC4"]),
         ]),
         &[OP, AMPLITUDE, TIME_DELAY, FOLLOWER],
-        "Loads on elements (empty first field: on all): GRAV, acceleration, dx, dy; BX or BY, \
-         force per reference volume; P1 to P4, pressure into the body that follows the face; TRVEC1 \
-         to TRVEC4, traction on the face, dx, dy, which keeps its direction (with FOLLOWER=NO).",
+        "Loads on elements; an empty first field stands for all elements. GRAV has the \
+         acceleration and its direction dx, dy. BX and BY are forces per reference volume. P1 to \
+         P4 are pressures into the body, which follow the face. TRVEC1 to TRVEC4 are tractions on \
+         the face in the direction dx, dy, which stays as it is (with FOLLOWER=NO).",
         "*DLOAD\n\
          EBLOCK, GRAV, 9810., 0., -1., 0.\n\
          3, P3, 2.5",
@@ -263,8 +267,9 @@ pub(super) static CONDITIONS: &[Keyword] = &[
                 "whether the resultant is kept",
             ),
         ],
-        "Loads on surfaces: P, pressure into the body that follows the face; TRVEC, traction per \
-         reference area, dx, dy with FOLLOWER=NO.",
+        "Loads on surfaces. P is a pressure into the body, which follows the face. TRVEC is a \
+         traction per reference area in the direction dx, dy, which stays as it is (with \
+         FOLLOWER=NO).",
         "*DSLOAD\n\
          STOP, P, 2.5",
     ),

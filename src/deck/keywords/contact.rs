@@ -117,8 +117,9 @@ pub(super) static CONTACT: &[Keyword] = &[
             P::flag("SMALL SLIDING", "sliding is finite").warned(),
             P::value(
                 "ADJUST",
-                "largest clearance, or node set, of the slave nodes that are moved onto the master \
-                 before the start, free of strain; with a clearance those inside the master too",
+                "slave nodes that are moved onto the master before the start, free of strain: \
+                 those of a node set, or those within a largest clearance and those inside the \
+                 master",
             )
             .measuring("length or name"),
             P::flag("TIED", "surfaces cannot be tied yet").refused(),
@@ -137,11 +138,11 @@ pub(super) static CONTACT: &[Keyword] = &[
             P::flag("LINEAR", SMOOTHING).warned(),
             P::value("OP", "contact pairs hold for all steps").refused(),
         ],
-        "Slave surface, master surface; one contact per row. The master consists of faces; both \
-         orders of two surfaces may be given. One surface alone touches itself. Nodes that start \
-         inside the master body by more than 0.001 of the shorter of both sides' edges are an \
-         error unless ADJUST= moves them; a pair of which no node faces the master at the start is \
-         a warning.",
+        "Slave surface, master surface; one contact per row. The master consists of faces. Both \
+         orders of two surfaces may be given. One surface alone touches itself. It is an error if \
+         a node starts inside the master body by more than 0.001 of the shorter of both sides' \
+         edges, unless ADJUST= moves it. It is a warning if no node of a pair faces the master at \
+         the start.",
         "*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE\n\
          SBOT, STOP",
     ),
@@ -162,10 +163,10 @@ pub(super) static CONTACT: &[Keyword] = &[
             "ALL EXTERIOR",
             "all faces that belong to one element only; required",
         )],
-        "What takes part in general contact: a surface ALL_EXTERIOR is made, which touches itself and \
-         every rigid surface. The nodes of a *CONTACT PAIR with a rigid surface are held by the pair, \
-         with its interaction, and left out of general contact with that surface; rigid surfaces do not \
-         touch each other.",
+        "What takes part in general contact: a surface ALL_EXTERIOR is made, which touches itself \
+         and every rigid surface. Where a *CONTACT PAIR joins nodes to a rigid surface, they obey \
+         the pair with its interaction, and general contact leaves them out with that surface. \
+         Rigid surfaces do not touch each other.",
         GENERAL_CONTACT,
     ),
     Keyword::read(
@@ -214,9 +215,9 @@ pub(super) static CONTACT: &[Keyword] = &[
             P::value("SEARCH NSET", "all nodes are searched").refused(),
         ],
         "Moves nodes of general contact that start inside another body onto its surface, free of \
-         strain; with SEARCH ABOVE= those above it too. Of two surfaces that mesh into each other the \
-         nodes that lie deepest are moved first, the others only if they are still inside. It acts \
-         where *CONTACT INITIALIZATION ASSIGNMENT names it.",
+         strain. With SEARCH ABOVE= nodes above the surface are moved too. Where two surfaces \
+         mesh into each other, the deepest nodes are moved first, and the others only if they are \
+         still inside. The card acts where *CONTACT INITIALIZATION ASSIGNMENT names it.",
         INITIALIZATION,
     ),
     Keyword::read(

@@ -5,7 +5,7 @@ use super::types::{Data, Keyword, Parameter as P, Scope, Unread, Value as V, row
 
 const ONLY_NEO_HOOKE: &str =
     "only NEO HOOKE is supported: C10, D1 with C10 = mu/2, D1 = 2/K of small strains";
-const THERMAL_DATA: &str = "Material data of heat conduction without temperatures.";
+const THERMAL_DATA: &str = "There are no temperatures.";
 const SECTION: &str = "Elements have solid sections: use *SOLID SECTION.";
 const SOLID: &str = "*SOLID SECTION, ELSET=EBASE, MATERIAL=STEEL\n\
          1.";
@@ -56,10 +56,10 @@ pub(super) static MATERIALS: &[Keyword] = &[
             ],
             "symmetry",
         )],
-        "E, nu of a St. Venant-Kirchhoff material: second Piola-Kirchhoff stress linear in the \
-         Green-Lagrange strain, as in CalculiX; Abaqus' law agrees for small strains. In plane strain \
-         elements lock from nu = 0.45 on (warning). A temperature in the third field has no effect \
-         (warning).",
+        "E, nu of a St. Venant-Kirchhoff material: its second Piola-Kirchhoff stress is linear in \
+         the Green-Lagrange strain, as in CalculiX. Abaqus' law agrees for small strains. In \
+         plane strain elements lock from nu = 0.45 on (warning). A temperature in the third field \
+         has no effect (warning).",
     "*ELASTIC\n\
          210000., 0.3"),
     Keyword::read(
@@ -93,12 +93,13 @@ pub(super) static MATERIALS: &[Keyword] = &[
                 "moduli that the data line gives",
             ),
         ],
-        "C10, D1 of a neo-Hookean material, for large strains in plane strain: U = C10 (Ibar1 - 3) + \
-         (J - 1)^2/D1; at small strains the shear modulus is mu = 2 C10, the bulk modulus K = 2/D1. D1 is \
-         required and positive: an incompressible material (D1 = 0) and plane stress are errors. A \
-         material has *ELASTIC or *HYPERELASTIC. Where (3 K - 2 mu)/(6 K + 2 mu), Poisson's ratio at small \
-         strains, is 0.45 or more, elements lock unless their section has FORMULATION=MEAN DILATATION \
-         (warning). A temperature in the third field has no effect (warning).",
+        "C10, D1 of a neo-Hookean material, for large strains in plane strain: U = C10 (Ibar1 - \
+         3) + (J - 1)^2/D1. At small strains the shear modulus is mu = 2 C10, and the bulk \
+         modulus K = 2/D1. D1 is positive: an incompressible material (D1 = 0) is an error, and \
+         so is plane stress. A material has either *ELASTIC or *HYPERELASTIC. Poisson's ratio at \
+         small strains is (3 K - 2 mu)/(6 K + 2 mu). Where it is 0.45 or more, elements lock \
+         unless their section has FORMULATION=MEAN DILATATION (warning). A temperature in the \
+         third field has no effect (warning).",
     "*HYPERELASTIC, NEO HOOKE\n\
          0.5, 0.04"),
     Keyword::read(
@@ -136,7 +137,7 @@ pub(super) static MATERIALS: &[Keyword] = &[
             .refused(),
         ],
         "Damping of a material (Rayleigh): at least one of ALPHA (1/time) and BETA (time), not \
-         negative. Outside materials it is that of all that have none of their own. What it dissipates is a term of the energy balance.",
+         negative. A card outside materials holds for all materials that have no card of their own. What it dissipates is a term of the energy balance.",
     "*DAMPING, BETA=1.E-7"),
     Keyword::read(
         "SOLID SECTION",

@@ -175,10 +175,12 @@ pub(super) static MESH: &[Keyword] = &[
             P::value("COMBINE", "list the faces in one surface").refused(),
             P::flag("CROP", "list the faces in one surface").refused(),
         ],
-        "A surface: faces S1 = side 1-2, S2 = 2-3, S3 = 3-4 (triangle: 3-1), S4 = 4-1; without a \
-         face the free sides, and those that line elements name. The outside of a rigid profile lies on the left of the way from START, \
-         the obstacle on the right; an arc (less than 180 degrees) is cut into equal chords of at \
-         most 1 degree, 3.8e-5 of its radius off the arc at most.",
+        "A surface, made of faces of elements or of a rigid profile. The faces are S1 = side 1-2, \
+         S2 = 2-3, S3 = 3-4 (triangle: 3-1) and S4 = 4-1. An element set without a face stands \
+         for its free sides, and for the sides that its line elements name. The obstacle of a \
+         rigid profile lies on the right of the way from START, the outside on the left. An arc \
+         is less than 180 degrees. It is cut into equal chords of at most 1 degree, which are off \
+         the arc by at most 3.8e-5 of its radius.",
         "*SURFACE, NAME=STOP\n\
          EBASE, S3",
     ),
@@ -204,9 +206,9 @@ pub(super) static MESH: &[Keyword] = &[
             .ignored(),
             P::optional("ISOTHERMAL", "there are no temperatures").ignored(),
         ],
-        "Moves a rigid surface, or elements, with a reference node, whose directions 1 and 2 are \
-         prescribed in every step; the body does not turn. Points of a rigid surface become nodes without element, numbered from the \
-         largest node number of the deck on.",
+        "Moves a rigid surface, or elements, with a reference node. Directions 1 and 2 of this \
+         node are prescribed in every step, and the body does not turn. Points of a rigid surface \
+         become nodes without element; their numbers follow the largest node number of the deck.",
         "*NODE, NSET=NREF\n\
          100, 0., -5.\n\
          *SURFACE, NAME=FLOOR, TYPE=SEGMENTS\n\

@@ -112,9 +112,9 @@ pub(super) static STEPS: &[Keyword] = &[
             P::value("SOLVER", "use *STICKSLIP, SOLVER=").warned(),
             P::flag("RELATIVE TO ABSOLUTE", OTHER_SOLVER).warned(),
         ],
-        "A dynamic step: increment, duration, smallest increment, largest increment. Increments that \
-         fail are halved; none grows beyond the first, with DIRECT or without (a warning without). The \
-         largest increment bounds the first one, and has no effect with DIRECT (warning).",
+        "A dynamic step: increment, duration, smallest increment, largest increment. Increments \
+         that fail are halved. None becomes longer than the first, also without DIRECT (warning). \
+         The largest increment bounds the first one; with DIRECT it has no effect (warning).",
         "*DYNAMIC, DIRECT\n\
          1.E-7, 1.E-4",
     ),
