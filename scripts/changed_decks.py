@@ -295,6 +295,9 @@ def _turned_supports(deck: Deck, matrix: Array) -> Deck:
     }
     if indirect & references:
         raise Unchangeable("a rigid surface has supports that do not move alike")
+    masses = {card.parameters.get("CONTACTMASS") for card in deck.find("STICKSLIP")}
+    if indirect and "REDISTRIBUTED" in masses:
+        raise Unchangeable("nodes of equations keep their mass")
     stand_in = dict(zip(sorted(indirect, key=int), map(str, count(_largest_label(deck) + 1))))
     after: list[Supports] = []
     for held in before:

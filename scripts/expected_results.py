@@ -49,6 +49,9 @@ TENSORS = (*STRAINS, "S")
 HANDED = re.compile(r"\w*(tangential\w*|angular|angular_velocity|moment)")
 """Scalars that a mirror turns round."""
 
+OF_CONSISTENT_MASS = ("ELKE", "consistent_angular")
+"""What a boost changes by momenta of the consistent mass, which no history has."""
+
 OF_BODIES = re.compile(r"history/bodies/\w+|history/contact/.+/body_\w+")
 
 
@@ -262,7 +265,7 @@ def expected(old: Seen, name: str, change: Change, theta: float) -> NDArray | No
         if own == "linear":
             new += change.velocity * old["model/bodies/mass"].sum()
         return new * factor
-    if own == "ELKE" and change.is_boost:
+    if own in OF_CONSISTENT_MASS and change.is_boost:
         return None
     if own in ("kinetic", "external_work"):
         return _energy(old, name, change) * factor
