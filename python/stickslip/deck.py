@@ -1,7 +1,7 @@
 """Decks as cards: read with the files they name, change, write as one file."""
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -46,12 +46,23 @@ class Deck:
     @classmethod
     def read(cls, path: Path | str) -> "Deck":
         """Reads a deck; data lines from files named with INPUT= are inserted."""
+        path = Path(path)
+        return cls._of(_lines(_text(path), path.parent, path.parent), str(path))
+
+    @classmethod
+    def parse(cls, text: str, folder: Path | str = ".") -> "Deck":
+        """A deck from its text; files that it names are looked for in a folder."""
+        return cls._of(_lines(text, Path(folder), Path(folder)), "the deck")
+
+    @classmethod
+    def _of(cls, lines: Iterable[str], name: str) -> "Deck":
+        """A deck from its logical lines."""
         cards: list[Card] = []
-        for line in _lines(Path(path), Path(path).parent):
+        for line in lines:
             if line.startswith("*"):
                 cards.append(Card(fold(fields(line)[0][1:]), line))
             elif not cards:
-                raise Fault(f"{path}: data before the first keyword: {line}")
+                raise Fault(f"{name}: data before the first keyword: {line}")
             elif cards[-1].keyword in FREE_TEXT:
                 cards[-1].rows.append([line])
             else:
@@ -115,28 +126,33 @@ class Deck:
                 self.cards.insert(place, Card("STICKSLIP", "*STICKSLIP" + text))
 
 
-def _lines(path: Path, main: Path, depth: int = 0) -> list[str]:
-    """Logical lines of a deck without comments and empty lines, with those of included files."""
+def _text(path: Path) -> str:
+    """The text of a file of a deck."""
+    return path.read_text(encoding="utf-8-sig", errors="replace")
+
+
+def _lines(text: str, folder: Path, main: Path, depth: int = 0) -> list[str]:
+    """Logical lines of a file without comments and empty lines, with those of included files."""
     if depth > 9:
-        raise Fault(f"{path}: includes are nested too deep")
+        raise Fault(f"{folder}: includes are nested too deep")
     lines: list[str] = []
     is_open = False
-    for text in path.read_text(encoding="utf-8-sig", errors="replace").splitlines():
-        line = text.strip()
+    for physical in text.splitlines():
+        line = physical.strip()
         if not line or line.startswith("**"):
             continue
         if is_open and not line.startswith("*"):
             lines[-1] = f"{lines[-1]} {line}"
         else:
-            _read_input(lines, path, main, depth)
+            _read_input(lines, folder, main, depth)
             lines.append(line)
         starts = line.startswith("*") or is_open
         is_open = starts and line.endswith(",")
-    _read_input(lines, path, main, depth)
+    _read_input(lines, folder, main, depth)
     return lines
 
 
-def _read_input(lines: list[str], path: Path, main: Path, depth: int) -> None:
+def _read_input(lines: list[str], folder: Path, main: Path, depth: int) -> None:
     """Puts the lines of a file in the place of the INPUT= of the last line, a keyword line."""
     if not lines or not lines[-1].startswith("*"):
         return
@@ -147,8 +163,9 @@ def _read_input(lines: list[str], path: Path, main: Path, depth: int) -> None:
     if not inputs:
         return
     name = inputs[0].partition("=")[2].strip().strip('"')
-    near = path.parent / name
-    more = _lines(near if near.exists() else main / name, main, depth + 1)
+    near = folder / name
+    path = near if near.exists() else main / name
+    more = _lines(_text(path), path.parent, main, depth + 1)
     kept = [part for part in head if part not in inputs]
     lines[-1:] = more if fold(head[0]) == "*INCLUDE" else [", ".join(kept), *more]
 

@@ -10,6 +10,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from stickslip.deck import Deck
@@ -114,6 +115,13 @@ def binary() -> Path:
         "the program stickslip is not found: install it, name it in the environment variable"
         " STICKSLIP, or run 'cargo build --release' in a checkout"
     )
+
+
+@cache
+def version() -> str:
+    """First line of what the program says of itself: name, version and commit."""
+    done = subprocess.run([binary(), "--version"], capture_output=True, text=True)
+    return done.stdout.partition("\n")[0]
 
 
 def run(

@@ -1,0 +1,112 @@
+"""Pictures of a study: histories of all points on top of each other, numbers against parameters."""
+
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import numpy as np  # noqa: E402
+from matplotlib.axes import Axes  # noqa: E402
+from matplotlib.figure import Figure  # noqa: E402
+
+from stickslip.errors import Fault  # noqa: E402
+from stickslip.result import Result  # noqa: E402
+from stickslip.sweep.quantities import Quantity  # noqa: E402
+from stickslip.sweep.table import Table  # noqa: E402
+
+MOST = 12
+"""A legend with more entries is left out."""
+
+
+def draw_all(table: Table, folder: Path) -> Iterator[Path]:
+    """Writes a picture of each history, and of each number against each parameter that varies."""
+    for history in dict.fromkeys(quantity.history for quantity in table.quantities):
+        if figure := histories(table, Quantity(history, "last")):
+            yield _save(figure, folder / f"{_file_name(history)}.png")
+    varying = [name for name in table.parameters if len(set(table.column(name))) > 1]
+    for quantity in table.quantities:
+        for name in varying:
+            figure = against(table, quantity, name, [other for other in varying if other != name])
+            yield _save(figure, folder / f"{_file_name(str(quantity))}_against_{name}.png")
+
+
+def histories(table: Table, quantity: Quantity) -> Figure | None:
+    """A history of all points against the time, coloured by the first parameter; None without any."""
+    figure, axes = _axes("time", quantity.history)
+    colours = _colours(table.column(table.parameters[0]))
+    for row, colour in zip(table.rows, colours):
+        if not row["result"]:
+            continue
+        label = ", ".join(f"{name} = {_text(row[name])}" for name in table.parameters)
+        try:
+            with Result(row["result"]) as result:
+                axes.plot(
+                    result.history.time, quantity.series(result), lw=0.9, color=colour, label=label
+                )
+        except Fault:
+            continue  # the table tells why
+    if not axes.lines:
+        return None
+    _legend(axes)
+    return figure
+
+
+def against(table: Table, quantity: Quantity, name: str, others: Sequence[str]) -> Figure:
+    """A number against a parameter: one line for each combination of the others.
+
+    Points that lie on no lattice make no lines.
+    """
+    figure, axes = _axes(name, str(quantity))
+    groups: dict[tuple[Any, ...], list[tuple[Any, float]]] = {}
+    for row in table.rows:
+        key = tuple(row[other] for other in others)
+        groups.setdefault(key, []).append((row[name], row[str(quantity)]))
+    is_lattice = len(groups) < len(table.rows)
+    if not is_lattice:
+        groups = {(): [point for points in groups.values() for point in points]}
+    for key, points in groups.items():
+        points.sort(key=lambda point: (isinstance(point[0], str), point[0]))
+        label = ", ".join(f"{other} = {_text(value)}" for other, value in zip(others, key))
+        axes.plot(*zip(*points), "o-" if is_lattice else "o", ms=3, lw=0.9, label=label)
+    _legend(axes)
+    return figure
+
+
+def _axes(across: str, up: str) -> tuple[Figure, Axes]:
+    figure = Figure(figsize=(7.5, 4.5), layout="constrained")
+    axes = figure.add_subplot(xlabel=across, ylabel=up)
+    axes.grid(color="#dddddd", linewidth=0.6)
+    axes.spines[["top", "right"]].set_visible(False)
+    return figure, axes
+
+
+def _legend(axes: Axes) -> None:
+    """A legend beside the axes if it is short."""
+    labels = [line.get_label() for line in axes.lines]
+    if 1 < len(labels) <= MOST:
+        axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=8)
+
+
+def _colours(values: list[Any]) -> list[Any]:
+    """Colours in the order of the values."""
+    different = sorted(set(values), key=lambda value: (isinstance(value, str), value))
+    shades = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.9, len(different)))
+    return [shades[different.index(value)] for value in values]
+
+
+def _text(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def _file_name(text: str) -> str:
+    return re.sub(r"[^\w.@-]+", "_", text)
+
+
+def _save(figure: Figure, path: Path) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=130)
+    return path

@@ -1,0 +1,129 @@
+"""One point of a study, as a worker of the cluster runs it.
+
+A point has a folder named after its deck. A run has a folder of its own beside it, which gets the point's
+name when the run has ended: what a killed worker leaves is never taken for a result.
+"""
+
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import uuid
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from stickslip.deck import Deck
+from stickslip.errors import Fault, one_line
+from stickslip.parameters import with_parameters
+from stickslip.program import REJECTED, STOPPED, binary, version
+from stickslip.result import Result
+from stickslip.sweep.points import Point
+
+ROW = "row.json"
+"""What is known of a point that has ended: exit status, warnings, message, seconds."""
+
+ENDED = (0, STOPPED, REJECTED)
+"""Exit codes that the same deck has every time: such points are not run again."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """A run of a study."""
+
+    folder: Path
+    """Folder of the study, which all workers see."""
+    name: str
+    """Name of the point's folder."""
+    values: Point
+    options: tuple[str, ...]
+    """Options of `stickslip run`."""
+    memory: int | None
+    """Bytes of address space that the run may have."""
+
+    @property
+    def place(self) -> Path:
+        """Folder of the point."""
+        return self.folder / "points" / self.name
+
+    @property
+    def result(self) -> Path:
+        """The result file, where there is one."""
+        return self.place / f"{self.name}.vtkhdf"
+
+    def row(self) -> dict[str, Any] | None:
+        """What is known of the point if it has ended."""
+        try:
+            return json.loads((self.place / ROW).read_text())
+        except (OSError, ValueError):
+            return None
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether it need not run again."""
+        row = self.row()
+        return row is not None and row["exit_status"] in ENDED
+
+
+def point_name(deck: Deck, options: Sequence[str]) -> str:
+    """A name that changes with the deck, the options that change the result, and the program."""
+    text = "\n".join([version(), *options, deck.text()])
+    return hashlib.sha256(text.encode()).hexdigest()[:12]
+
+
+def solve(task: Task, template: Path) -> str:
+    """Runs a point; what goes wrong with it stands in its row. Returns the point's name."""
+    own = task.place.with_name(f"{task.name}.{uuid.uuid4().hex[:8]}")
+    own.mkdir(parents=True)
+    try:
+        row = _run(task, template, own)
+        (own / ROW).write_text(json.dumps(row))
+        shutil.rmtree(task.place, ignore_errors=True)
+        try:
+            own.rename(task.place)
+        except OSError:
+            if task.row() is None:  # else another worker has run the same point
+                raise
+    finally:
+        shutil.rmtree(own, ignore_errors=True)
+    return task.name
+
+
+def _run(task: Task, template: Path, folder: Path) -> dict[str, Any]:
+    """Runs the program in a folder."""
+    row: dict[str, Any] = {"values": task.values}
+    try:
+        deck = with_parameters(Deck.read(template), task.values)
+        path = deck.write(folder / f"{task.name}.inp")
+        command = [str(binary()), "run", str(path), "-o", str(folder), "-q", *task.options]
+    except Fault as fault:
+        return {**row, "exit_status": REJECTED, "message": one_line(fault), "warnings": []}
+    done = subprocess.run(
+        _bounded(command, task.memory), stdin=subprocess.DEVNULL, capture_output=True, text=True
+    )
+    warnings: list[str] = []
+    seconds = None
+    try:
+        with Result(folder / f"{task.name}.vtkhdf") as result:
+            warnings, seconds = result.warnings, float(result.run.get("seconds_total", "nan"))
+    except Fault:
+        pass  # there is none: the exit status tells why
+    message = done.stderr.strip().replace(str(folder), str(task.place))
+    return {
+        **row,
+        "exit_status": done.returncode,
+        "message": message if done.returncode else "",
+        "warnings": warnings,
+        "seconds": seconds,
+    }
+
+
+def _bounded(command: list[str], memory: int | None) -> list[str]:
+    """The command with bounded memory, and on Linux such that it ends when the worker is killed."""
+    if memory is not None:
+        command = ["sh", "-c", 'ulimit -v "$0" && exec "$@"', str(memory // 1024), *command]
+    if os.name == "posix" and (setpriv := shutil.which("setpriv")):
+        command = [setpriv, "--pdeathsig", "KILL", *command]
+    return command

@@ -1,0 +1,93 @@
+"""The outcome of a study: one row for each point, as CSV and Parquet."""
+
+import csv
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import nan
+from pathlib import Path
+from typing import Any
+
+from stickslip.errors import Fault, one_line
+from stickslip.result import Result
+from stickslip.sweep.point import Task
+from stickslip.sweep.quantities import Quantity
+
+LOST = -1
+"""Exit status of a point whose run has not ended."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows in the order of the points."""
+
+    parameters: list[str]
+    quantities: list[Quantity]
+    rows: list[dict[str, Any]]
+    """Parameters, exit_status, warnings, message, seconds, quantities, result (a path or empty)."""
+
+    @classmethod
+    def of(
+        cls, tasks: Sequence[Task], lost: Mapping[str, str], quantities: list[Quantity]
+    ) -> "Table":
+        """Reads what the runs have left. `lost` tells why there is no row for some."""
+        rows = [_row(task, lost, quantities) for task in tasks]
+        return cls(list(tasks[0].values), quantities, rows)
+
+    @property
+    def columns(self) -> list[str]:
+        """Names of the columns."""
+        quantities = [str(quantity) for quantity in self.quantities]
+        known = ("exit_status", "warnings", "message", "seconds")
+        return [*self.parameters, *known, *quantities, "result"]
+
+    @property
+    def failed(self) -> int:
+        """Points with a message: the run failed, or a quantity is missing."""
+        return sum(bool(row["message"]) for row in self.rows)
+
+    def column(self, name: str) -> list[Any]:
+        """The values of a column."""
+        return [row[name] for row in self.rows]
+
+    def write(self, folder: Path | str) -> list[Path]:
+        """Writes `table.csv`, and `table.parquet` where the package pyarrow is installed."""
+        path = Path(folder) / "table.csv"
+        with path.open("w", newline="") as file:
+            writer = csv.DictWriter(file, self.columns)
+            writer.writeheader()
+            writer.writerows(self.rows)
+        try:
+            import pyarrow
+            import pyarrow.parquet
+        except ImportError:
+            return [path]
+        columns = {name: self.column(name) for name in self.columns}
+        whole = path.with_suffix(".parquet")
+        pyarrow.parquet.write_table(pyarrow.table(columns), whole)
+        return [path, whole]
+
+
+def _row(task: Task, lost: Mapping[str, str], quantities: list[Quantity]) -> dict[str, Any]:
+    """The row of a point."""
+    known = task.row() or {}
+    if task.name in lost:
+        known = {"exit_status": LOST, "message": lost[task.name]}
+    found = {str(quantity): nan for quantity in quantities}
+    message = known.get("message", "the point was not run")
+    path = ""
+    if task.result.exists() and task.name not in lost:
+        path = str(task.result)
+        try:
+            with Result(task.result) as result:
+                found = {str(quantity): quantity.of(result) for quantity in quantities}
+        except Fault as fault:
+            message = message or one_line(fault)
+    return {
+        **task.values,
+        "exit_status": known.get("exit_status", LOST),
+        "warnings": "; ".join(known.get("warnings", ())),
+        "message": message,
+        "seconds": known.get("seconds"),
+        **found,
+        "result": path,
+    }

@@ -1,0 +1,354 @@
+"""Parameter studies: their points, and clusters of Dask whose workers are killed on the way."""
+
+import csv
+import math
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from decks import CANTILEVERS
+from stickslip import Deck, Fault, Result, run
+from stickslip.parameters import with_parameters
+from stickslip.program import binary
+from stickslip.sweep import Settings, latin_hypercube, product, read_points, sweep
+from stickslip.sweep.__main__ import main, memory
+from stickslip.sweep.engine import duration
+from stickslip.sweep.points import varied
+from stickslip.sweep.quantities import Quantity
+
+psutil = pytest.importorskip("psutil")  # comes with distributed
+distributed = pytest.importorskip("distributed")
+
+MU = varied("mu=0:0.5:11")[1]
+DT = [0.015, 0.0125, 0.01]
+TIP, WORK = "nodes/UPPER_TIP/U:2@min", "energy/friction_dissipation@last"
+END = 1.5
+
+
+@pytest.fixture
+def arm() -> Deck:
+    """The cantilevers with the parameters mu and dt, up to the first contacts."""
+    deck = Deck.read(CANTILEVERS / "A_mu04.inp")
+    deck.one("FRICTION").rows = [["<mu>"]]
+    deck.one("DYNAMIC").rows = [["<dt>", repr(END)]]
+    return deck
+
+
+@pytest.fixture
+def study(arm: Deck, tmp_path: Path) -> Path:
+    """A folder of a study in which a fresh deck stands."""
+    arm.write(tmp_path / "arm.inp")
+    return tmp_path
+
+
+def kill_a_worker(told: list[int]) -> Callable[[str], None]:
+    """Kills, when 3 points have ended, a process of this machine that is running a point."""
+    own = os.getpid()
+
+    def tell(text: str) -> None:
+        if not text.startswith("3 of"):
+            return
+        for _ in range(500):
+            for process in psutil.Process(own).children(recursive=True):
+                if process.name() == binary().name[:15] and process.ppid() != own:
+                    worker = process.parent()
+                    assert worker is not None
+                    worker.kill()
+                    told.append(process.pid)
+                    return
+            time.sleep(0.01)
+
+    return tell
+
+
+def check_table(table: list[dict[str, str]]) -> None:
+    """All 33 points have ended, in their order, with results that agree with their parameters."""
+    assert [(float(row["mu"]), float(row["dt"])) for row in table] == [
+        (mu, dt) for mu in MU for dt in DT
+    ]
+    for row in table:
+        assert row["exit_status"] == "0" and row["message"] == "", row
+        with Result(row["result"]) as result:
+            assert result.history.time[-1] == pytest.approx(END)
+            assert result.history.dt[1] == pytest.approx(float(row["dt"]))
+            assert f"*FRICTION\n{float(row['mu'])!r}\n" in result.deck
+            assert float(row[TIP]) == result.quantity("nodes/UPPER_TIP/U:2").min()
+            assert float(row[WORK]) == result.history.energy.friction_dissipation[-1]
+        assert (float(row[WORK]) > 0.0) == (row["mu"] != "0.0")
+
+
+def read_table(folder: Path) -> list[dict[str, str]]:
+    with (folder / "table.csv").open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def ended(folder: Path) -> dict[str, float]:
+    """When each point of a study has ended."""
+    return {path.parent.name: path.stat().st_mtime_ns for path in folder.glob("points/*/row.json")}
+
+
+@dataclass(frozen=True)
+class Done:
+    """A command that has ended."""
+
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+Command = Callable[..., Done]
+
+
+@pytest.fixture
+def command(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Command:
+    """The command stickslip-sweep, run in this process."""
+
+    def call(*words: object) -> Done:
+        monkeypatch.setattr(sys, "argv", ["stickslip-sweep", *map(str, words)])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        return Done(int(ended.value.code or 0), *capfd.readouterr())
+
+    return call
+
+
+@pytest.fixture(scope="module")
+def here() -> Iterator[str]:
+    """Address of a scheduler in this process, with one worker: it starts faster than processes."""
+    look = {"dashboard_address": None, "silence_logs": "CRITICAL"}
+    with distributed.LocalCluster(1, 1, processes=False, **look) as cluster:
+        yield cluster.scheduler_address
+
+
+def test_a_study_is_whole_though_a_worker_is_killed(arm: Deck, tmp_path: Path) -> None:
+    """33 points on this machine; the killed point is run again, and once all are there none is."""
+    points = product({"mu": MU, "dt": DT})
+    killed: list[int] = []
+    settings = Settings(workers=2, options=("--frames", "2"), tell=kill_a_worker(killed))
+    table = sweep(arm, points, tmp_path, [TIP, WORK], settings)
+    assert len(killed) == 1 and not psutil.pid_exists(killed[0]), "the run ends with its worker"
+    table.write(tmp_path)
+    assert table.failed == 0
+    check_table(read_table(tmp_path))
+    first = ended(tmp_path)
+    assert len(first) == 33
+    texts: list[str] = []
+    again = sweep(arm, points, tmp_path, [TIP, WORK], replace(settings, tell=texts.append))
+    assert texts == ["33 points, 33 have ended before"]
+    assert ended(tmp_path) == first and again == table
+    # another parameter more: only what is new is run
+    more = [*points[:3], {"mu": 0.7, "dt": 0.015}]
+    sweep(arm, more, tmp_path, [TIP], replace(settings, tell=texts.append))
+    assert texts[1] == "4 points, 3 have ended before" and len(ended(tmp_path)) == 34
+
+
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
+    """A scheduler and two workers as processes of their own: its address, and the workers."""
+    file = tmp_path / "scheduler.json"
+    dask = [sys.executable, "-m", "dask"]
+    names = ["--scheduler-file", str(file)]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    start = [*dask, "scheduler", *names, "--port", "0", "--no-dashboard", "--host", "127.0.0.1"]
+    processes = [subprocess.Popen(start, **quiet)]
+    work = [*dask, "worker", *names, "--nthreads", "1", "--no-nanny", "--no-dashboard"]
+    processes += [subprocess.Popen(work, cwd=tmp_path, **quiet) for _ in range(2)]
+    end = time.monotonic() + 60.0
+    address = None
+    while address is None and time.monotonic() < end:
+        time.sleep(0.05)
+        if file.exists():
+            address = re.search(r'"address": "([^"]+)"', file.read_text())
+    assert address is not None
+    yield address[1], processes[1:]
+    for process in processes:
+        process.kill()
+        process.wait()
+
+
+def test_a_scheduler_of_its_own_loses_a_worker(
+    study: Path, command: Command, cluster: tuple[str, list[subprocess.Popen[bytes]]]
+) -> None:
+    """The same study by command on two workers, one of which is killed; with table and pictures."""
+    address, workers = cluster
+    words = ["--vary", "mu=0:0.5:11", "--vary", "dt=0.015,0.0125,0.01", "-q", TIP, "-q", WORK]
+    line = [study / "arm.inp", *words, "--frames", 2, "-o", study / "out"]
+    line += ["--scheduler", address]
+    running = subprocess.Popen(
+        [sys.executable, "-m", "stickslip.sweep", *map(str, line)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert running.stderr is not None
+    said = []
+    for text in running.stderr:
+        said.append(text)
+        if text.startswith("3 of"):
+            workers[0].send_signal(signal.SIGKILL)
+    assert running.wait() == 0, said
+    assert workers[0].wait() == -signal.SIGKILL
+    assert any(re.fullmatch(r"20 of 33 points, 0 failed, .* left\n", text) for text in said)
+    check_table(read_table(study / "out"))
+    pictures = {path.name for path in study.glob("out/plots/*.png")}
+    assert {"nodes_UPPER_TIP_U_2.png", "energy_friction_dissipation@last_against_mu.png"} < pictures
+    first = ended(study / "out")
+    done = command(*line)
+    assert done.returncode == 0 and done.stderr == "33 points, 33 have ended before\n"
+    assert ended(study / "out") == first
+    parquet = pytest.importorskip("pyarrow.parquet").read_table(study / "out" / "table.parquet")
+    assert parquet["mu"].to_pylist() == [mu for mu in MU for _ in DT]
+    assert parquet[WORK].to_pylist() == [float(row[WORK]) for row in read_table(study / "out")]
+
+
+def test_a_failing_point_is_a_row_with_its_message(
+    study: Path, here: str, command: Command
+) -> None:
+    (study / "points.csv").write_text("mu, dt\n0.1, 0.015\n-1, 0.015\n0.2, 0.5\n")
+    line = [study / "arm.inp", "--points", study / "points.csv", "-q", TIP, "-o", study]
+    done = command(*line, "--scheduler", here, "--no-plots")
+    assert done.returncode == 1
+    good, rejected, coarse = read_table(study)
+    assert good["exit_status"] == "0" and good["message"] == ""
+    assert rejected["exit_status"] == "2" and "error[" in rejected["message"]
+    assert math.isnan(float(rejected[TIP])) and rejected["result"] == ""
+    assert "mu = -1.0, dt = 0.015: error[" in done.stdout
+    assert coarse["exit_status"] in ("0", "1")
+    # too little memory is no property of the point: it is run again when it has enough
+    small = [study / "arm.inp", "--vary", "mu=0.3", "--vary", "dt=0.015", "-q", TIP, "-o", study]
+    done = command(*small, "--scheduler", here, "--no-plots", "--memory", "20MB")
+    assert done.returncode == 1 and read_table(study)[0]["exit_status"] not in ("0", "1", "2")
+    done = command(*small, "--scheduler", here, "--no-plots", "--memory", "8GB")
+    assert done.returncode == 0 and read_table(study)[0]["exit_status"] == "0"
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        ([], "what shall vary?"),
+        (["--vary", "mu"], "NAME=VALUES is needed"),
+        (["--vary", "mu=0:1"], "FROM:TO:COUNT"),
+        (["--vary", "mu=0,1", "--vary", "mu=2"], "--vary names mu twice"),
+        (["--vary", "mu=0:1:2"], "the deck's parameter <DT> has no value"),
+        (
+            ["--vary", "mu=0", "--vary", "dt=0.1", "--vary", "e=1"],
+            "no parameter <e>: it uses DT, MU",
+        ),
+        (["--vary", "mu=0:1:2", "--latin-hypercube", "3"], "a Latin hypercube needs FROM:TO"),
+        (["--vary", "mu=0", "--vary", "dt=0.1", "-q", "energy/kinetic@least"], "one of last, min"),
+        (["--points", "no.csv"], "No such file"),
+    ],
+)
+def test_a_wrong_command_is_told_before_anything_runs(
+    study: Path, command: Command, words: list[str], text: str
+) -> None:
+    done = command(study / "arm.inp", *words, "-o", study / "out")
+    assert done.returncode == 2 and text in done.stderr, done.stderr
+    assert not (study / "out").exists()
+
+
+def test_points(tmp_path: Path) -> None:
+    assert varied("mu=0:0.5:3") == ("mu", [0.0, 0.25, 0.5])
+    assert varied("mesh=a.inc,b.inc") == ("mesh", ["a.inc", "b.inc"])
+    assert product({"a": [1.0, 2.0], "b": [3.0]}) == [{"a": 1.0, "b": 3.0}, {"a": 2.0, "b": 3.0}]
+    (tmp_path / "p.csv").write_text("mu,name\n0.1,x\n0.2\n")
+    with pytest.raises(Fault, match="p.csv:3: as many values"):
+        read_points(tmp_path / "p.csv")
+    (tmp_path / "p.csv").write_text("mu,name\n0.1,x\n")
+    assert read_points(tmp_path / "p.csv") == [{"mu": 0.1, "name": "x"}]
+    assert memory("2GB") == 2 * memory("1000MB") == 2_000_000_000
+    assert [duration(s) for s in (4.6, 61.0, 7300.0)] == ["5 s", "1 min 1 s", "2 h 1 min"]
+
+
+def test_a_latin_hypercube_has_one_point_in_each_stripe() -> None:
+    points = latin_hypercube({"mu": (0.0, 0.5), "e": (-2.0, 8.0)}, 20, seed=3)
+    for name, low, width in (("mu", 0.0, 0.5), ("e", -2.0, 10.0)):
+        stripes = [int(20 * (point[name] - low) / width) for point in points]
+        assert sorted(stripes) == list(range(20)) != stripes
+    assert points == latin_hypercube({"mu": (0.0, 0.5), "e": (-2.0, 8.0)}, 20, seed=3)
+    assert points != latin_hypercube({"mu": (0.0, 0.5), "e": (-2.0, 8.0)}, 20, seed=4)
+
+
+def test_parameters_are_replaced_everywhere_and_exactly() -> None:
+    text = "*PARAMETER\nMu = 0.25\n*HEADING\nmu <MU>\n*FRICTION\n< mu >\n*AMPLITUDE, NAME=<name>\n0, <t>\n"
+    values = {"t": 1.0 / 3.0, "name": "A"}
+    deck = with_parameters(Deck.parse(text), values)
+    assert (
+        deck.text()
+        == "*HEADING\nmu 0.25\n*FRICTION\n0.25\n*AMPLITUDE, NAME=A\n0, 0.3333333333333333\n"
+    )
+    assert "*FRICTION\n0.5\n" in with_parameters(Deck.parse(text), {**values, "mu": 0.5}).text()
+    with pytest.raises(Fault, match="<NAME>, <T> has no value"):
+        with_parameters(Deck.parse(text), {})
+    with pytest.raises(Fault, match="no parameter <nu>: it uses MU, NAME, T"):
+        with_parameters(Deck.parse(text), {**values, "nu": 1.0})
+    with pytest.raises(Fault, match="is no number"):
+        with_parameters(Deck.parse("*PARAMETER\na = 2 * b\n*HEADING\n<a>\n"), {})
+
+
+def test_what_is_taken_of_a_history(study: Path) -> None:
+    with run(
+        with_parameters(Deck.read(study / "arm.inp"), {"mu": 0.1, "dt": 0.1}), study
+    ) as result:
+        tip = result.history.nodes["UPPER_TIP"].U[:, :, 1].mean(axis=1)
+        for word, value in (("min", tip.min()), ("peak", np.abs(tip).max()), ("last", tip[-1])):
+            assert Quantity.parse(f"nodes/UPPER_TIP/U:2@{word}").of(result) == value
+        with pytest.raises(Fault, match="say which component"):
+            Quantity.parse("nodes/UPPER_TIP/U").of(result)
+
+
+def examples(language: str) -> list[str]:
+    """Blocks of a language in docs/sweeps.md."""
+    text = (ROOT / "docs" / "sweeps.md").read_text()
+    return re.findall(rf"```{language}\n(.*?)```", text, flags=re.DOTALL)
+
+
+@pytest.fixture
+def shorter(study: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The deck of docs/sweeps.md, with fewer increments, in the current folder."""
+    deck = Deck.read(study / "arm.inp")
+    deck.one("DYNAMIC").rows = [["0.1", repr(END)]]
+    deck.write(study / "arm.inp")
+    monkeypatch.chdir(study)
+    return study
+
+
+def test_the_example_of_optuna(shorter: Path) -> None:
+    pytest.importorskip("optuna").logging.set_verbosity(30)
+    (code,) = [text for text in examples("python") if "optuna" in text]
+    names: dict[str, object] = {}
+    exec(code, names)
+    assert len(list(shorter.glob("optuna/*.vtkhdf"))) == 10
+    assert names["study"].best_value == min(trial.value for trial in names["study"].trials)
+
+
+def test_the_example_of_snakemake(shorter: Path) -> None:
+    pytest.importorskip("snakemake")
+    (code,) = examples("snakemake")
+    (shorter / "Snakefile").write_text(code)
+    line = [sys.executable, "-m", "snakemake", "--cores", "1", "--quiet", "all"]
+    done = subprocess.run(line, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    results = sorted(shorter.glob("snakemake/*.vtkhdf"))
+    assert [path.stem for path in results] == ["0.0", "0.2", "0.4"]
+    assert "*FRICTION\n0.2\n" in Result(results[1]).deck
+
+
+def test_the_commands_of_the_document(shorter: Path, here: str, command: Command) -> None:
+    """Every command that needs no cluster of one's own runs as it stands."""
+    lines = [line for block in examples("sh") for line in block.splitlines()]
+    ours = [line for line in lines if line.startswith("stickslip-sweep ") and "ADDRESS" not in line]
+    assert len(ours) > 2
+    (shorter / "points.csv").write_text("mu\n0.1\n0.3\n")
+    for line in ours:
+        done = command(*line.replace(":11", ":2").split()[1:], "--scheduler", here)
+        assert done.returncode == 0, f"{line}\n{done.stderr}"
