@@ -131,6 +131,8 @@ pub(crate) struct Layout {
     given: Vec<usize>,
     /// Rows of a chunk.
     chunk_rows: usize,
+    /// Rows that a report has; of a dataset of events, at least.
+    rows: usize,
     /// Whether the library keeps chunks in its memory until it is flushed. What is written once, in large
     /// pieces, it need not copy.
     is_cached: bool,
@@ -146,6 +148,7 @@ impl Layout {
             row: row.to_vec(),
             given: row.to_vec(),
             chunk_rows: (CHUNK_BYTES / bytes.max(1)).clamp(1, CHUNK_ROWS),
+            rows: 1,
             is_cached: true,
             mostly,
         }
@@ -169,6 +172,7 @@ impl Layout {
             row: row.to_vec(),
             given: given.to_vec(),
             chunk_rows: (most / bytes.max(1)).clamp(1, (frames * rows).max(1)),
+            rows,
             is_cached: false,
             mostly,
         }
@@ -270,22 +274,25 @@ impl<T: Number, F> Column<T, F> {
 
 /// A dataset that grows with the reports `R`, whatever its numbers are.
 trait Growing<R> {
-    /// Appends the rows of a report, which wait in memory.
-    fn push(&mut self, report: &R);
+    /// Appends the rows of a report, which wait in memory; returns how many reports usually have as many.
+    fn push(&mut self, report: &R) -> usize;
 
     /// Writes the rows that wait.
     fn flush(&mut self) -> hdf5::Result<()>;
 
-    /// Bytes by which the file may grow when `rows` rows are written.
-    fn growth(&self, rows: usize) -> usize;
+    /// Bytes by which the file may grow when the rows of so many reports are written.
+    fn growth(&self, reports: usize) -> usize;
 
-    /// Bytes of a row.
-    fn row_bytes(&self) -> usize;
+    /// Bytes of the rows of a report.
+    fn report_bytes(&self) -> usize;
 }
 
 impl<R, T: Number, F: FnMut(&R, &mut Vec<T>)> Growing<R> for Column<T, F> {
-    fn push(&mut self, report: &R) {
+    fn push(&mut self, report: &R) -> usize {
+        let before = self.pending.len();
         (self.values)(report, &mut self.pending);
+        let values = self.layout.rows * self.layout.size();
+        (self.pending.len() - before).div_ceil(values.max(1))
     }
 
     fn flush(&mut self) -> hdf5::Result<()> {
@@ -305,14 +312,16 @@ impl<R, T: Number, F: FnMut(&R, &mut Vec<T>)> Growing<R> for Column<T, F> {
         Ok(())
     }
 
-    fn growth(&self, rows: usize) -> usize {
-        let chunk_rows = self.layout.chunk_rows;
-        let chunks = rows / chunk_rows + 2;
-        chunks * (chunk_rows * Growing::<R>::row_bytes(self) + INDEX_OF_CHUNK) + INDEX
+    fn growth(&self, reports: usize) -> usize {
+        let Layout {
+            chunk_rows, rows, ..
+        } = self.layout;
+        let chunks = reports * rows / chunk_rows + 2;
+        chunks * (chunk_rows * self.layout.size() * size_of::<T>() + INDEX_OF_CHUNK) + INDEX
     }
 
-    fn row_bytes(&self) -> usize {
-        self.layout.size() * size_of::<T>()
+    fn report_bytes(&self) -> usize {
+        self.layout.rows * self.layout.size() * size_of::<T>()
     }
 }
 
@@ -329,6 +338,10 @@ struct Count<R> {
 pub(crate) struct Columns<'m, R> {
     all: Vec<Box<dyn Growing<R> + 'm>>,
     counts: Vec<Count<R>>,
+    /// Reports whose rows wait in memory; one with many events counts as several.
+    waiting: usize,
+    /// Reports that wait at most.
+    most: usize,
 }
 
 impl<'m, R> Columns<'m, R> {
@@ -337,7 +350,25 @@ impl<'m, R> Columns<'m, R> {
         Columns {
             all: Vec::new(),
             counts: Vec::new(),
+            waiting: 0,
+            most: 1,
         }
+    }
+
+    /// Lets rows of up to `bytes` bytes wait in memory, or those of one report.
+    pub fn let_wait(&mut self, bytes: usize) {
+        let report: usize = self.all.iter().map(|column| column.report_bytes()).sum();
+        self.most = (bytes / report.max(1)).max(1);
+    }
+
+    /// Whether rows wait.
+    pub fn is_waiting(&self) -> bool {
+        self.waiting > 0
+    }
+
+    /// Whether no further rows may wait.
+    pub fn is_full(&self) -> bool {
+        self.waiting >= self.most
     }
 
     /// Creates a dataset; `values` appends what a report has to whole rows.
@@ -374,7 +405,8 @@ impl<'m, R> Columns<'m, R> {
 
     /// Appends the rows of a report, which wait in memory.
     pub fn push(&mut self, report: &R) {
-        self.all.iter_mut().for_each(|column| column.push(report));
+        let reports = self.all.iter_mut().map(|column| column.push(report));
+        self.waiting += reports.fold(1, usize::max);
         for count in &mut self.counts {
             count.rows += (count.of)(report);
         }
@@ -382,6 +414,7 @@ impl<'m, R> Columns<'m, R> {
 
     /// Writes the rows that wait, but not their number.
     pub fn flush(&mut self) -> hdf5::Result<()> {
+        self.waiting = 0;
         self.all.iter_mut().try_for_each(|column| column.flush())
     }
 
@@ -391,14 +424,9 @@ impl<'m, R> Columns<'m, R> {
         counts.try_for_each(|count| count.attribute.write_scalar(&(count.rows as i64)))
     }
 
-    /// Bytes by which the file may grow when `rows` rows are written to each.
-    pub fn growth(&self, rows: usize) -> u64 {
-        let growth = self.all.iter().map(|column| column.growth(rows));
+    /// Bytes by which the file may grow until the rows are written.
+    pub fn growth(&self) -> u64 {
+        let growth = self.all.iter().map(|column| column.growth(self.most));
         growth.sum::<usize>() as u64
-    }
-
-    /// Bytes of one row of each.
-    pub fn row_bytes(&self) -> usize {
-        self.all.iter().map(|column| column.row_bytes()).sum()
     }
 }

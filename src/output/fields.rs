@@ -17,116 +17,36 @@ const VTK_LINE: u8 = 3;
 /// Most frames of a chunk: each chunk costs a call of the system.
 const CHUNK_FRAMES: usize = 32;
 
-/// Writes the field frames.
-pub(crate) struct Fields<'m> {
-    /// Datasets with a row per frame, and the number of frames.
-    steps: Columns<'m, Frame>,
-    points: FieldGroup<'m>,
-    cells: FieldGroup<'m>,
-    /// Frames appended.
-    frames: usize,
-    /// Those of them that wait in memory.
-    pending: usize,
-    /// Frames that wait in memory at most.
-    most_pending: usize,
-}
-
-impl Fields<'_> {
-    /// Creates the group with the reference mesh and no frame.
-    pub fn create(root: &Group, model: &Model) -> hdf5::Result<Self> {
-        let grid = group(root, "VTKHDF")?;
-        write_type(&grid)?;
-        let lines = model.rigid_segments();
-        write_mesh(&grid, &model.mesh, &lines)?;
-        let at = group(&grid, "Steps")?;
-        let mut steps = Columns::new();
-        steps.count(&at, "NSteps", |_| 1)?;
-        per_frame(&mut steps, &at, "Values", &[], TIME, |frame| frame.time)?;
-        for (name, row, text, value) in STEPS {
-            per_frame(&mut steps, &at, name, row, ("1", text), move |_| value)?;
-        }
-        let chunk = even_part(expected_frames(model), CHUNK_FRAMES);
-        let fields_of = |kind: &str, rows: usize| -> hdf5::Result<FieldGroup> {
-            Ok(FieldGroup {
-                data: group(&grid, &format!("{kind}Data"))?,
-                offsets: group(&at, &format!("{kind}DataOffsets"))?,
-                first_field: None,
-                first_rows: Columns::new(),
-                columns: Columns::new(),
-                rows,
-                chunk,
-            })
-        };
-        let mut points = fields_of("Point", model.mesh.node_count())?;
-        points.create_points(model)?;
-        let mut cells = fields_of("Cell", model.mesh.elements.len() + lines.len())?;
-        cells.create_cells(model, lines.len())?;
-        Ok(Fields {
-            steps,
-            points,
-            cells,
-            frames: 0,
-            pending: 0,
-            most_pending: 1,
+/// Creates the group with the reference mesh and no frame; returns the datasets that grow with the frames.
+pub(crate) fn create<'m>(root: &Group, model: &Model) -> hdf5::Result<Columns<'m, Frame>> {
+    let grid = group(root, "VTKHDF")?;
+    write_type(&grid)?;
+    let lines = model.rigid_segments();
+    write_mesh(&grid, &model.mesh, &lines)?;
+    let at = group(&grid, "Steps")?;
+    let mut steps = Columns::new();
+    steps.count(&at, "NSteps", |_| 1)?;
+    per_frame(&mut steps, &at, "Values", &[], TIME, |frame| frame.time)?;
+    for (name, row, text, value) in STEPS {
+        per_frame(&mut steps, &at, name, row, ("1", text), move |_| value)?;
+    }
+    let chunk = even_part(expected_frames(model), CHUNK_FRAMES);
+    let fields_of = |kind: &str, rows: usize, columns| -> hdf5::Result<FieldGroup> {
+        Ok(FieldGroup {
+            data: group(&grid, &format!("{kind}Data"))?,
+            offsets: group(&at, &format!("{kind}DataOffsets"))?,
+            first_field: None,
+            columns,
+            rows,
+            chunk,
         })
-    }
-
-    /// Lets frames of up to `bytes` bytes wait in memory, or one.
-    pub fn let_wait(&mut self, bytes: usize) {
-        let frame = self.points.frame_bytes() + self.cells.frame_bytes();
-        self.most_pending = (bytes / frame.max(1)).max(1);
-    }
-
-    /// Appends a frame, which waits in memory.
-    pub fn push(&mut self, frame: &Frame) {
-        for fields in [&mut self.points, &mut self.cells] {
-            fields.columns.push(frame);
-            fields.first_rows.push(frame);
-        }
-        self.steps.push(frame);
-        self.frames += 1;
-        self.pending += 1;
-    }
-
-    /// Frames appended.
-    pub fn count(&self) -> usize {
-        self.frames
-    }
-
-    /// Frames that wait in memory.
-    pub fn pending(&self) -> usize {
-        self.pending
-    }
-
-    /// Whether no further frame may wait.
-    pub fn is_full(&self) -> bool {
-        self.pending >= self.most_pending
-    }
-
-    /// Writes the frames that wait, but not their number.
-    pub fn flush(&mut self) -> hdf5::Result<()> {
-        for fields in [&mut self.points, &mut self.cells] {
-            fields.columns.flush()?;
-            fields.first_rows.flush()?;
-        }
-        self.steps.flush()?;
-        self.pending = 0;
-        Ok(())
-    }
-
-    /// Writes the number of frames.
-    pub fn note_count(&self) -> hdf5::Result<()> {
-        self.steps.note_counts()
-    }
-
-    /// Bytes by which the file may grow until the frames are written.
-    pub fn growth(&self) -> u64 {
-        let frames = self.most_pending;
-        let of = |fields: &FieldGroup| {
-            fields.columns.growth(frames * fields.rows) + fields.first_rows.growth(frames)
-        };
-        of(&self.points) + of(&self.cells) + self.steps.growth(frames)
-    }
+    };
+    let mut points = fields_of("Point", model.mesh.node_count(), steps)?;
+    points.create_points(model)?;
+    let cells = model.mesh.elements.len() + lines.len();
+    let mut cells = fields_of("Cell", cells, points.columns)?;
+    cells.create_cells(model, lines.len())?;
+    Ok(cells.columns)
 }
 
 /// Creates a dataset with a value of every frame, in a row of the given shape.
@@ -150,7 +70,7 @@ struct FieldGroup<'m> {
     /// Group of the first rows of the frames: one dataset, linked under the name of every field.
     offsets: Group,
     first_field: Option<&'static str>,
-    first_rows: Columns<'m, Frame>,
+    /// These fields and the datasets created before them.
     columns: Columns<'m, Frame>,
     /// Rows of a frame.
     rows: usize,
@@ -167,13 +87,6 @@ const PLANE_TENSOR: Row = (&[3], &[3]);
 /// A vector in the plane, whose third component is zero.
 const IN_SPACE: Row = (&[3], &[2]);
 
-impl FieldGroup<'_> {
-    /// Bytes of a frame.
-    fn frame_bytes(&self) -> usize {
-        self.rows * self.columns.row_bytes()
-    }
-}
-
 impl<'m> FieldGroup<'m> {
     /// Creates a field with the first rows of its frames; `values` appends what a frame has to whole rows.
     fn add<T: Number + 'm>(
@@ -189,7 +102,7 @@ impl<'m> FieldGroup<'m> {
             None => {
                 let (mut end, rows) = (0, self.rows as i64);
                 let at = &self.offsets;
-                per_frame(&mut self.first_rows, at, name, &[], FIRST_ROW, move |_| {
+                per_frame(&mut self.columns, at, name, &[], FIRST_ROW, move |_| {
                     end += rows;
                     end - rows
                 })?;
@@ -233,7 +146,7 @@ impl<'m> FieldGroup<'m> {
         constant(&self.data, "BODY", &[bodies.len()], &bodies, BODY)?;
         let at = &self.offsets;
         // the same in all frames
-        per_frame(&mut self.first_rows, at, "BODY", &[], FIRST_ROW, |_| 0_i64)?;
+        per_frame(&mut self.columns, at, "BODY", &[], FIRST_ROW, |_| 0_i64)?;
         let varied = Mostly::Varied;
         for (name, meaning, of) in TENSORS {
             self.add(name, PLANE_TENSOR, varied, meaning, move |frame, v| {

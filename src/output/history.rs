@@ -33,25 +33,19 @@ use Value::{Count, Flag, Node, Real, Segment, Tensor, Vector};
 /// A dataset of the records `Q`: name, dimension, what it holds, and its value.
 type Entry<Q> = (&'static str, &'static str, &'static str, Value<Q>);
 
-/// Writes the datasets of the history.
+/// The datasets of the history while they are created.
 pub(crate) struct History<'m> {
     model: &'m Model,
     columns: Columns<'m, IncrementReport>,
-    /// Rows that wait in memory.
-    rows: usize,
-    /// Rows that wait in memory at most.
-    most_rows: usize,
 }
 
 impl<'m> History<'m> {
     /// Creates the group without rows.
-    pub fn create(root: &Group, model: &'m Model) -> hdf5::Result<Self> {
+    pub fn create(root: &Group, model: &'m Model) -> hdf5::Result<Columns<'m, IncrementReport>> {
         let at = group(root, "history")?;
         let mut history = History {
             model,
             columns: Columns::new(),
-            rows: 0,
-            most_rows: 1,
         };
         history.columns.count(&at, ROWS, |_| 1)?;
         history.table(&at, &[], &INCREMENT, |r, each| each(r))?;
@@ -86,7 +80,7 @@ impl<'m> History<'m> {
         history.table(&group(&at, "solver")?, &[], &SOLVER, |r, each| {
             each(&r.solver)
         })?;
-        Ok(history)
+        Ok(history.columns)
     }
 
     /// Creates a dataset of reals; `values` appends the row of a report.
@@ -351,43 +345,6 @@ impl<'m> History<'m> {
         self.add(at, "ELKE", &count, text, move |r, v| {
             v.extend(of_each.iter().map(|own| own.kinetic_energy(&r.state.v)));
         })
-    }
-
-    /// Lets rows of up to `bytes` bytes wait in memory, or one.
-    pub fn let_wait(&mut self, bytes: usize) {
-        self.most_rows = (bytes / self.columns.row_bytes()).max(1);
-    }
-
-    /// Appends the row of an increment, which waits in memory.
-    pub fn push(&mut self, report: &IncrementReport) {
-        self.columns.push(report);
-        let events = [
-            report.landings.len(),
-            report.returns.len(),
-            report.touches.len(),
-        ];
-        self.rows += events.into_iter().fold(1, usize::max);
-    }
-
-    /// Whether no further row may wait.
-    pub fn is_full(&self) -> bool {
-        self.rows >= self.most_rows
-    }
-
-    /// Writes the rows that wait, but not their number.
-    pub fn flush(&mut self) -> hdf5::Result<()> {
-        self.rows = 0;
-        self.columns.flush()
-    }
-
-    /// Writes the numbers of rows.
-    pub fn note_counts(&self) -> hdf5::Result<()> {
-        self.columns.note_counts()
-    }
-
-    /// Bytes by which the file may grow until the rows are written.
-    pub fn growth(&self) -> u64 {
-        self.columns.growth(self.most_rows)
     }
 }
 

@@ -7,8 +7,9 @@ use std::{fs, io};
 
 use hdf5::{File, FileBuilder};
 
+use super::column::Columns;
 use super::error::{at, io_error};
-use super::fields::Fields;
+use super::fields;
 use super::frames::Frame;
 use super::history::History;
 use super::run_record::{RecordWriter, RunRecord};
@@ -28,11 +29,13 @@ pub(super) struct ResultFile<'m> {
     /// Its path once the first frame is complete.
     path: PathBuf,
     file: File,
-    fields: Fields<'m>,
-    history: History<'m>,
+    fields: Columns<'m, Frame>,
+    history: Columns<'m, IncrementReport>,
     record: RecordWriter,
     space: Space,
     pace: Pace,
+    /// Number of frames.
+    frames: usize,
     /// Time of the last frame.
     frame_time: f64,
     /// Whether the library has failed, so that the content of the file is unknown.
@@ -54,12 +57,20 @@ impl<'m> ResultFile<'m> {
                 .create(draft)
         };
         let file = builder().map_err(io_error).map_err(at(path))?;
-        let parts = Self::build(&file, model, record);
-        let (fields, history, record) = parts.map_err(io_error).map_err(at(path))?;
+        let parts = || {
+            super::model_group::write(&file, model)?;
+            let fields = fields::create(&file, model)?;
+            let history = History::create(&file, model)?;
+            let record = RecordWriter::create(&file, record)?;
+            file.flush()?;
+            Ok((fields, history, record))
+        };
+        let (fields, history, record) = parts().map_err(io_error).map_err(at(path))?;
         let mut result = ResultFile {
             path: path.to_owned(),
             space: Space::new(draft).map_err(at(path))?,
             pace: Pace::new(),
+            frames: 0,
             frame_time: 0.0,
             fields,
             history,
@@ -71,19 +82,6 @@ impl<'m> ResultFile<'m> {
         Ok(result)
     }
 
-    fn build(
-        file: &File,
-        model: &'m Model,
-        record: &RunRecord,
-    ) -> hdf5::Result<(Fields<'m>, History<'m>, RecordWriter)> {
-        super::model_group::write(file, model)?;
-        let fields = Fields::create(file, model)?;
-        let history = History::create(file, model)?;
-        let record = RecordWriter::create(file, record)?;
-        file.flush()?;
-        Ok((fields, history, record))
-    }
-
     /// Appends the history row of an increment, which waits in memory.
     pub fn history(&mut self, report: &IncrementReport) {
         self.history.push(report);
@@ -92,6 +90,7 @@ impl<'m> ResultFile<'m> {
     /// Appends a frame, which waits in memory.
     pub fn frame(&mut self, frame: &Frame) {
         self.fields.push(frame);
+        self.frames += 1;
         self.frame_time = frame.time;
     }
 
@@ -99,7 +98,7 @@ impl<'m> ResultFile<'m> {
     /// the last write was some time ago.
     pub fn write_when_due(&mut self) -> io::Result<()> {
         let is_much = self.fields.is_full() || self.history.is_full();
-        let has_frame = self.fields.pending() > 0;
+        let has_frame = self.fields.is_waiting();
         match is_much || (has_frame && self.pace.is_due()) || self.pace.is_late() {
             true => self.write_through(),
             false => Ok(()),
@@ -123,7 +122,7 @@ impl<'m> ResultFile<'m> {
         let written = (self.fields.flush()).and_then(|()| self.history.flush());
         self.checked(written)?;
         self.flush()?;
-        let counted = (self.fields.note_count()).and_then(|()| self.history.note_counts());
+        let counted = (self.fields.note_counts()).and_then(|()| self.history.note_counts());
         self.checked(counted)?;
         self.flush()
     }
@@ -167,7 +166,7 @@ impl<'m> ResultFile<'m> {
 
     /// Time of the last frame that can be read once what waits is written; none without any.
     pub fn readable_time(&self) -> Option<f64> {
-        (self.fields.count() > 0 && !self.is_broken).then_some(self.frame_time)
+        (self.frames > 0 && !self.is_broken).then_some(self.frame_time)
     }
 
     /// Reserves disk space for the rows that may wait next: many, or fewer where the disk is nearly full.
@@ -198,9 +197,9 @@ impl<'m> ResultFile<'m> {
         done.map_err(io_error).map_err(at(&self.path))
     }
 
-    /// Frames in the file.
+    /// Number of frames.
     pub fn frames(&self) -> usize {
-        self.fields.count()
+        self.frames
     }
 
     /// Name and size for the last line on the screen.
