@@ -58,6 +58,17 @@ pub fn polygon_area(corners: impl IntoIterator<Item = [f64; 2]>) -> f64 {
     terms.sum::<f64>() / 2.0
 }
 
+/// Smallest and largest coordinates of some points; infinite without any.
+pub fn extents(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2] {
+    let nothing = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    points.into_iter().fold(nothing, |[low, high], x| {
+        [
+            [0, 1].map(|i| f64::min(low[i], x[i])),
+            [0, 1].map(|i| f64::max(high[i], x[i])),
+        ]
+    })
+}
+
 /// Members of the groups that are not split further.
 const GROUP: usize = 8;
 /// Growth of a distance, as a part of it, that covers its round-off.

@@ -57,6 +57,21 @@ impl<'a> Text<'a> {
         }
     }
 
+    /// Its value as a real number for which `is_fine`; reports one that breaks this `rule`, and anything else.
+    pub fn real_that(
+        &self,
+        is_fine: impl Fn(f64) -> bool,
+        rule: &str,
+        code: Code,
+        d: &mut Diagnostics,
+    ) -> Option<f64> {
+        let value = self.real(d)?;
+        if !is_fine(value) {
+            d.error(code, self.span, format!("{rule}, found {}", self.text));
+        }
+        is_fine(value).then_some(value)
+    }
+
     /// Warns of forms of numbers that other codes read differently, of each once in a deck.
     fn remark_on_form(&self, letterless: bool, d: &mut Diagnostics) {
         if letterless {

@@ -57,15 +57,15 @@ impl Mesh {
     }
 
     /// Length of the shortest side in each of `count` groups of elements, to which `group` assigns
-    /// them by their index; infinite where there is none.
-    pub fn shortest_sides(
+    /// them; infinite where there is none.
+    pub(super) fn shortest_sides(
         &self,
         count: usize,
-        group: impl Fn(usize, &Element) -> usize,
+        group: impl Fn(&Element) -> usize,
     ) -> Vec<f64> {
         let (mut squares, mut lengths) = (vec![f64::INFINITY; count], vec![f64::INFINITY; count]);
-        for (index, element) in self.elements.iter().enumerate() {
-            let group = group(index, element);
+        for element in &self.elements {
+            let group = group(element);
             let square = self.shortest_square(element);
             match square.is_normal() {
                 true => squares[group] = squares[group].min(square),
@@ -219,9 +219,12 @@ pub struct Element {
     pub element_type: ElementType,
     /// Node indices, as many as the type has: the corners counter-clockwise, then those between them.
     pub nodes: Nodes,
-    /// Index into `Model::sections`.
+    /// Index into `Model::sections`; [`NO_SECTION`] until it is known.
     pub section: usize,
 }
+
+/// Section of an element that has none yet.
+pub const NO_SECTION: usize = usize::MAX;
 
 impl Element {
     /// Number of sides, and of corners.

@@ -21,7 +21,7 @@ pub use contact::{
 };
 pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub(crate) use mesh::sides;
-pub use mesh::{Bodies, Element, ElementsAtNodes, Face, Mesh, Nodes, Set};
+pub use mesh::{Bodies, Element, ElementsAtNodes, Face, Mesh, NO_SECTION, Nodes, Set};
 pub use sets::{HistorySet, Instance, NamedSets, RequestedFields, element_name, node_name};
 pub use side::{Segment, Side, SideNodes};
 pub use step::{
@@ -144,6 +144,49 @@ impl Material {
             Plane::Strain => (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
         };
         (young * factor / self.density).sqrt()
+    }
+}
+
+/// Edges of the elements and the waves along them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EdgeScales {
+    /// The shortest edge (length); infinite without elements.
+    pub shortest: f64,
+    /// Largest speed of longitudinal waves (length/time).
+    pub wave_speed: f64,
+    /// Shortest time of a wave along an edge; infinite without a material.
+    pub time: f64,
+}
+
+impl EdgeScales {
+    /// Measures the elements of a mesh, not all of which need have a section.
+    pub fn new(mesh: &Mesh, sections: &[Section], materials: &[Material]) -> Self {
+        // elements of a section in plane stress and in plane strain; at last those without section
+        let planes = [Plane::Stress, Plane::Strain];
+        let group = |element: &Element| {
+            let section = element.section.min(sections.len());
+            let plane = element.element_type.plane as usize;
+            (planes.len() * section + plane).min(planes.len() * sections.len())
+        };
+        let edges = mesh.shortest_sides(planes.len() * sections.len() + 1, group);
+        let speeds = sections.iter().flat_map(|section| {
+            let material = &materials[section.material];
+            planes.map(|plane| material.wave_speed(plane))
+        });
+        let used = edges
+            .iter()
+            .zip(speeds)
+            .filter(|(edge, _)| edge.is_finite());
+        let nothing = EdgeScales {
+            shortest: edges.iter().copied().fold(f64::INFINITY, f64::min),
+            wave_speed: 0.0,
+            time: f64::INFINITY,
+        };
+        used.fold(nothing, |scales, (edge, speed)| EdgeScales {
+            wave_speed: scales.wave_speed.max(speed),
+            time: scales.time.min(edge / speed),
+            ..scales
+        })
     }
 }
 

@@ -7,10 +7,11 @@ use super::frames::{DEFAULT_FRAMES, are_dense};
 use super::run_record::{RunRecord, utc_now};
 use super::status::monitored;
 use crate::model::{
-    Contact, Element, ElementType, Frames, Impact, ImpactTime, LandingRule, Model, Plane, Scheme,
-    Settings, SolverChoice, Step, SurfaceKind,
+    Contact, EdgeScales, Element, ElementType, Frames, Impact, ImpactTime, LandingRule, Model,
+    Scheme, Settings, SolverChoice, Step, SurfaceKind,
 };
 use crate::prepare::{InitialGap, PreparedModel};
+use crate::vectors::extents;
 
 /// Most nodes that are named.
 const MOST_NAMES: usize = 12;
@@ -24,12 +25,8 @@ pub struct ModelEcho {
     pub lower: [f64; 2],
     /// Largest coordinates (length).
     pub upper: [f64; 2],
-    /// Shortest element edge (length).
-    pub shortest_edge: f64,
-    /// Largest speed of longitudinal waves (length/time).
-    pub wave_speed: f64,
-    /// Shortest transit time of a wave along an element's edge: a guide for the increment.
-    pub edge_time: f64,
+    /// Edges of the elements; the time of a wave along one is a guide for the increment.
+    pub edges: EdgeScales,
     /// Number of dofs prescribed in any step.
     pub prescribed: usize,
 }
@@ -37,48 +34,14 @@ pub struct ModelEcho {
 impl ModelEcho {
     /// Measures a model.
     pub fn new(model: &Model) -> Self {
-        let mut echo = ModelEcho {
-            mass: 0.0,
-            lower: [f64::INFINITY; 2],
-            upper: [f64::NEG_INFINITY; 2],
-            shortest_edge: f64::INFINITY,
-            wave_speed: 0.0,
-            edge_time: f64::INFINITY,
+        let [lower, upper] = extents(model.mesh.coordinates.iter().copied());
+        let elements = model.mesh.elements.iter();
+        ModelEcho {
+            mass: elements.fold(0.0, |mass, element| mass + model.element_mass(element)),
+            lower,
+            upper,
+            edges: EdgeScales::new(&model.mesh, &model.sections, &model.materials),
             prescribed: prescribed(model),
-        };
-        for x in &model.mesh.coordinates {
-            echo.lower = [echo.lower[0].min(x[0]), echo.lower[1].min(x[1])];
-            echo.upper = [echo.upper[0].max(x[0]), echo.upper[1].max(x[1])];
-        }
-        echo.mass = model
-            .mesh
-            .elements
-            .iter()
-            .fold(0.0, |mass, element| mass + model.element_mass(element));
-        echo.measure_edges(model);
-        echo
-    }
-
-    /// Sets edge, wave speed and their transit time.
-    fn measure_edges(&mut self, model: &Model) {
-        // elements of a section in plane stress and in plane strain
-        let planes = [Plane::Stress, Plane::Strain];
-        let group = |_, element: &Element| {
-            planes.len() * element.section + element.element_type.plane as usize
-        };
-        let edges = (model.mesh).shortest_sides(planes.len() * model.sections.len(), group);
-        let speeds = model.sections.iter().flat_map(|section| {
-            let material = &model.materials[section.material];
-            planes.map(|plane| material.wave_speed(plane))
-        });
-        for (edge, speed) in edges
-            .into_iter()
-            .zip(speeds)
-            .filter(|(edge, _)| edge.is_finite())
-        {
-            self.shortest_edge = self.shortest_edge.min(edge);
-            self.wave_speed = self.wave_speed.max(speed);
-            self.edge_time = self.edge_time.min(edge / speed);
         }
     }
 
@@ -104,9 +67,9 @@ impl ModelEcho {
     /// asks for another increment.
     pub fn guide(&self) -> Vec<String> {
         let size = [0, 1].map(|i| self.upper[i] - self.lower[i]);
-        let crossing = size[0].hypot(size[1]) / self.wave_speed;
+        let crossing = size[0].hypot(size[1]) / self.edges.wave_speed;
         let pieces = [
-            format!("dt {} for waves and impacts:", general(self.edge_time, 2)),
+            format!("dt {} for waves and impacts:", general(self.edges.time, 2)),
             "one crosses the shortest edge in it,".to_owned(),
             format!("the model in {}", general(crossing, 2)),
             "for slow motion as long as the motion allows".to_owned(),
@@ -133,8 +96,8 @@ impl ModelEcho {
         ];
         let shape = [
             format!("extents {} x {}", range(0), range(1)),
-            format!("shortest edge {}", general(self.shortest_edge, 3)),
-            format!("wave speed {}", general(self.wave_speed, 3)),
+            format!("shortest edge {}", general(self.edges.shortest, 3)),
+            format!("wave speed {}", general(self.edges.wave_speed, 3)),
         ];
         let mut lines = wrap("model", &size);
         lines.extend(wrap("", &shape));
@@ -154,7 +117,7 @@ impl ModelEcho {
                 .trim_start()
                 .to_owned(),
             format!("dt {}{fixed}", general(increments.dt, 4)),
-            format!("edge/wave speed {}", general(self.edge_time, 2)),
+            format!("edge/wave speed {}", general(self.edges.time, 2)),
             frames(&step.frames),
         ];
         let settings = &step.settings;

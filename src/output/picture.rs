@@ -8,6 +8,7 @@ use crate::contact::project;
 use crate::model::{
     Bodies, Element, Face, Model, Rate, Support, SupportMotion, Surface, SurfaceKind,
 };
+use crate::vectors::extents;
 
 /// Fills of the materials, in turn.
 const FILLS: [&str; 6] = [
@@ -79,17 +80,6 @@ fn about_bodies(model: &Model) -> Window {
         [0, 1].map(|i| all[0][i].max(bodies[0][i] - beyond)),
         [0, 1].map(|i| all[1][i].min(bodies[1][i] + beyond)),
     ])
-}
-
-/// Smallest and largest coordinates of some places.
-fn extents(places: impl Iterator<Item = Location>) -> [[f64; 2]; 2] {
-    let nothing = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    places.fold(nothing, |[low, high], x| {
-        [
-            [0, 1].map(|i| f64::min(low[i], x[i])),
-            [0, 1].map(|i| f64::max(high[i], x[i])),
-        ]
-    })
 }
 
 /// A picture being drawn.

@@ -287,12 +287,7 @@ fn first_three(row: Line, cx: &mut Context) -> Option<[f64; 3]> {
 }
 
 /// The number of a field, which must be positive; `what` it is.
-pub(super) fn positive(field: Text, what: &str, cx: &mut Context) -> Option<f64> {
-    let value = field.real(cx.d)?;
-    if value > 0.0 {
-        return Some(value);
-    }
-    let message = format!("{what} must be positive, found {}", field.text);
-    cx.error(Code::AmplitudeTable, field.span, message);
-    None
+fn positive(field: Text, what: &str, cx: &mut Context) -> Option<f64> {
+    let rule = format!("{what} must be positive");
+    field.real_that(|x| x > 0.0, &rule, Code::AmplitudeTable, cx.d)
 }

@@ -52,19 +52,15 @@ pub(crate) fn read(
 /// A clearance or a node set.
 fn adjust(card: &Card, sets: &Sets, cx: &mut Context) -> Option<Adjust> {
     let value = card.value("ADJUST")?;
-    match value.as_real() {
-        None => sets.node_names.find(value, cx).map(Adjust::Nodes),
-        Some(clearance) if clearance >= 0.0 => Some(Adjust::Within(Reach {
-            above: clearance,
-            below: f64::INFINITY,
-            clearance: 0.0,
-        })),
-        Some(_) => {
-            let message = format!("the clearance must not be negative, found {}", value.text);
-            cx.error(Code::BadValue, value.span, message);
-            None
-        }
+    if value.as_real().is_none() {
+        return sets.node_names.find(value, cx).map(Adjust::Nodes);
     }
+    let rule = "the clearance must not be negative";
+    Some(Adjust::Within(Reach {
+        above: value.real_that(|x| x >= 0.0, rule, Code::BadValue, cx.d)?,
+        below: f64::INFINITY,
+        clearance: 0.0,
+    }))
 }
 
 fn report_adjusted_self_contact(contact: Option<&Contact>, card: &Card, cx: &mut Context) {
@@ -236,13 +232,8 @@ fn law(card: &Card, cx: &mut Context) -> Option<Friction> {
 /// A field that is not negative; `what` it is.
 fn not_negative(row: Line, index: usize, what: &str, cx: &mut Context) -> Option<f64> {
     let field = row.required(index, what, cx.d)?;
-    let value = field.real(cx.d)?;
-    if value < 0.0 {
-        let message = format!("{what} must not be negative, found {}", field.text);
-        cx.error(Code::FrictionRange, field.span, message);
-        return None;
-    }
-    Some(value)
+    let rule = format!("{what} must not be negative");
+    field.real_that(|x| x >= 0.0, &rule, Code::FrictionRange, cx.d)
 }
 
 /// Reads general contact and adds its surface: contact of the surface with itself and with every
@@ -432,9 +423,14 @@ fn initializations(outline: &Outline, block: &CardBlock, cx: &mut Context) -> Na
 
 /// Which nodes are moved and where to: those inside, unless the card says more.
 fn reach(card: &Card, cx: &mut Context) -> Option<Reach> {
-    let mut or = |name: &str, default: f64| match card.has(name) {
-        true => length(card, name, cx),
-        false => Some(default),
+    let mut or = |name: &str, default: f64| {
+        let rule = format!("{name} must not be negative");
+        match card.has(name) {
+            true => card
+                .value(name)?
+                .real_that(|x| x >= 0.0, &rule, Code::BadValue, cx.d),
+            false => Some(default),
+        }
     };
     let (above, below) = (or("SEARCH ABOVE", 0.0), or("SEARCH BELOW", f64::INFINITY));
     let clearance = or("INITIAL CLEARANCE", 0.0);
@@ -443,18 +439,6 @@ fn reach(card: &Card, cx: &mut Context) -> Option<Reach> {
         below: below?,
         clearance: clearance?,
     })
-}
-
-/// A parameter that is not negative.
-fn length(card: &Card, name: &str, cx: &mut Context) -> Option<f64> {
-    let text = card.value(name)?;
-    let value = text.real(cx.d)?;
-    if value < 0.0 {
-        let message = format!("{name} must not be negative, found {}", text.text);
-        cx.error(Code::BadValue, text.span, message);
-        return None;
-    }
-    Some(value)
 }
 
 /// The name in `, , name`, where `what` it names; the empty fields stand for all surfaces.

@@ -8,17 +8,24 @@ use crate::diagnostics::{Code, Span};
 use crate::materials::{Law, NeoHooke, Plane};
 use crate::model::{Damping, Material, Section};
 
+/// Places of a material for messages.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MaterialPlaces {
+    /// `*MATERIAL`.
+    pub material: Span,
+    /// What Poisson's ratio follows from.
+    pub poisson: Span,
+    /// Mass-proportional damping.
+    pub damping: Span,
+}
+
 /// A material as far as the deck gives it.
 struct Draft {
     name: String,
-    span: Span,
-    /// Place of what Poisson's ratio follows from.
-    poisson_span: Span,
+    places: MaterialPlaces,
     law: Constant<Law>,
     density: Constant<f64>,
     damping: Damping,
-    /// Place of mass-proportional damping.
-    damping_span: Span,
 }
 
 /// The materials of a deck before their sections are known.
@@ -33,7 +40,8 @@ impl Drafts {
     pub fn read(outline: &Outline, cx: &mut Context) -> Self {
         let mut names = Names::new("material");
         let mut all = Vec::new();
-        let general = general_damping(outline, cx);
+        // damping of the materials that have none of their own: a card outside materials
+        let general = damping(&outline.model_cards("DAMPING"), cx);
         for block in outline.blocks("MATERIAL") {
             if let Some(name) = names.new_name(block.head, cx) {
                 all.push(draft(name.typed.clone(), block, general, cx));
@@ -41,21 +49,6 @@ impl Drafts {
             }
         }
         Drafts { names, all }
-    }
-
-    /// Places of the materials.
-    pub fn spans(&self) -> Vec<Span> {
-        self.all.iter().map(|draft| draft.span).collect()
-    }
-
-    /// Places of what their Poisson's ratios follow from.
-    pub fn poisson_spans(&self) -> Vec<Span> {
-        self.all.iter().map(|draft| draft.poisson_span).collect()
-    }
-
-    /// Places of their mass-proportional damping.
-    pub fn damping_spans(&self) -> Vec<Span> {
-        self.all.iter().map(|draft| draft.damping_span).collect()
     }
 
     /// Reports constants that a material in use lacks.
@@ -70,67 +63,70 @@ impl Drafts {
         }
     }
 
-    /// The materials, with unknown constants as zero, which a model without errors never has in use.
-    pub fn complete(self, cx: &mut Context) -> Vec<Material> {
-        let drafts = self.all.into_iter();
-        drafts.map(|draft| draft.complete(cx)).collect()
+    /// The materials, with unknown constants as zero, which a model without errors never has in use, and
+    /// their places.
+    pub fn complete(self, cx: &mut Context) -> (Vec<Material>, Vec<MaterialPlaces>) {
+        let complete = self.all.into_iter().map(|draft| {
+            let material = Material {
+                name: draft.name,
+                law: draft.law.given().unwrap_or(Law::elastic(0.0, 0.0)),
+                density: draft.density.given().unwrap_or(0.0),
+                damping: draft.damping,
+            };
+            hint_at_units(&material, draft.places.material, cx);
+            (material, draft.places)
+        });
+        complete.unzip()
     }
 }
 
 /// A material; `general` is the damping of one that has none of its own.
-fn draft(name: String, block: &CardBlock, general: Option<Placed>, cx: &mut Context) -> Draft {
+fn draft(
+    name: String,
+    block: &CardBlock,
+    general: Option<(Damping, Span)>,
+    cx: &mut Context,
+) -> Draft {
+    let material = block.head.span;
     let density = block.parts_of("DENSITY");
     cx.only_once(&density);
-    let damping = own_damping(block, cx).or(general);
-    let (damping, damping_span) = damping.unwrap_or((Damping::default(), block.head.span));
+    let own = damping(&block.parts_of("DAMPING"), cx);
+    let (damping, damping_place) = own.or(general).unwrap_or((Damping::default(), material));
     Draft {
         name,
-        span: block.head.span,
-        poisson_span: poisson_span(block).unwrap_or(block.head.span),
+        places: MaterialPlaces {
+            material,
+            poisson: poisson_span(block).unwrap_or(material),
+            damping: damping_place,
+        },
         law: law(block, cx),
         density: constant(&density, density_row, cx),
         damping,
-        damping_span,
     }
 }
 
 /// `rho[, T]`
 fn density_row(row: Line, cx: &mut Context) -> Option<f64> {
     row.at_most(2, cx.d);
-    let density = row.real(0, "the density", cx.d);
+    let density = row.required(0, "the density", cx.d);
     temperature(row, 1, cx)?;
-    let density = density?;
-    if density <= 0.0 {
-        out_of_range("the density must be positive", row, 0, cx);
-        return None;
-    }
-    Some(density)
+    let rule = "the density must be positive";
+    density?.real_that(|rho| rho > 0.0, rule, Code::MaterialRange, cx.d)
 }
 
 impl Draft {
     fn report_incomplete(&self, cx: &mut Context) {
-        let mut missing = Vec::new();
-        if self.law == Constant::Missing {
-            missing.push("*ELASTIC");
-        }
-        if self.density == Constant::Missing {
-            missing.push("*DENSITY");
-        }
-        if !missing.is_empty() {
-            let message = format!("material {} lacks {}", self.name, missing.join(" and "));
-            cx.error(Code::IncompleteMaterial, self.span, message);
-        }
-    }
-
-    fn complete(self, cx: &mut Context) -> Material {
-        let material = Material {
-            name: self.name,
-            law: self.law.given().unwrap_or(Law::elastic(0.0, 0.0)),
-            density: self.density.given().unwrap_or(0.0),
-            damping: self.damping,
+        let missing = match (
+            self.law == Constant::Missing,
+            self.density == Constant::Missing,
+        ) {
+            (true, true) => "*ELASTIC and *DENSITY",
+            (true, false) => "*ELASTIC",
+            (false, true) => "*DENSITY",
+            (false, false) => return,
         };
-        hint_at_units(&material, self.span, cx);
-        material
+        let message = format!("material {} lacks {missing}", self.name);
+        cx.error(Code::IncompleteMaterial, self.places.material, message);
     }
 }
 
@@ -149,7 +145,7 @@ fn hint_at_units(material: &Material, span: Span, cx: &mut Context) {
 const KEYWORDS: [&str; 2] = ["ELASTIC", "HYPERELASTIC"];
 
 /// The one law of a material.
-pub(super) fn law(block: &CardBlock, cx: &mut Context) -> Constant<Law> {
+fn law(block: &CardBlock, cx: &mut Context) -> Constant<Law> {
     let is_law = |card: &&&Card| KEYWORDS.contains(&card.keyword.name);
     let mut cards = block.parts.iter().filter(is_law);
     let Some(first) = cards.next() else {
@@ -166,7 +162,7 @@ pub(super) fn law(block: &CardBlock, cx: &mut Context) -> Constant<Law> {
 }
 
 /// Place of what Poisson's ratio follows from: the second constant of the law.
-pub(super) fn poisson_span(block: &CardBlock) -> Option<Span> {
+fn poisson_span(block: &CardBlock) -> Option<Span> {
     let mut cards = block.parts.iter();
     let card = cards.find(|card| KEYWORDS.contains(&card.keyword.name))?;
     Some(card.rows.first()?.get(1)?.span)
@@ -185,19 +181,17 @@ fn report_second(first: &Card, card: &Card, cx: &mut Context) {
 /// `E, nu[, T]`
 fn elastic_row(row: Line, cx: &mut Context) -> Option<Law> {
     row.at_most(3, cx.d);
-    let young = row.real(0, "Young's modulus", cx.d);
-    let poisson = row.real_or(1, 0.0, cx.d);
+    let code = Code::MaterialRange;
+    let young = row.required(0, "Young's modulus", cx.d).and_then(|field| {
+        let rule = "Young's modulus must be positive";
+        field.real_that(|young| young > 0.0, rule, code, cx.d)
+    });
+    let poisson = row.get(1).map_or(Some(0.0), |field| {
+        let rule = "Poisson's ratio must lie between -1 and 0.5";
+        field.real_that(|nu| -1.0 < nu && nu < 0.5, rule, code, cx.d)
+    });
     temperature(row, 2, cx)?;
-    let (young, poisson) = (young?, poisson?);
-    if young <= 0.0 {
-        out_of_range("Young's modulus must be positive", row, 0, cx);
-        return None;
-    }
-    if poisson <= -1.0 || poisson >= 0.5 {
-        out_of_range("Poisson's ratio must lie between -1 and 0.5", row, 1, cx);
-        return None;
-    }
-    Some(Law::elastic(young, poisson))
+    Some(Law::elastic(young?, poisson?))
 }
 
 /// The law of `*HYPERELASTIC`, which must say NEO HOOKE. What a faulty keyword line gives is not
@@ -218,14 +212,11 @@ fn hyperelastic(card: &Card, cx: &mut Context) -> Constant<Law> {
 /// `C10, D1[, T]`
 fn neo_hooke_row(row: Line, cx: &mut Context) -> Option<Law> {
     row.at_most(3, cx.d);
-    let c10 = row.real(0, "C10", cx.d);
-    let d1 = row.real_or(1, 0.0, cx.d);
+    let c10 = row.required(0, "C10", cx.d);
     temperature(row, 2, cx)?;
-    let (c10, d1) = (c10?, d1?);
-    if c10 <= 0.0 {
-        out_of_range("C10 must be positive", row, 0, cx);
-        return None;
-    }
+    let rule = "C10 must be positive";
+    let c10 = c10?.real_that(|c10| c10 > 0.0, rule, Code::MaterialRange, cx.d)?;
+    let d1 = row.real_or(1, 0.0, cx.d)?;
     if d1 <= 0.0 {
         report_d1(d1, row, cx);
         return None;
@@ -259,53 +250,32 @@ fn report_d1(d1: f64, row: Line, cx: &mut Context) {
     );
 }
 
-/// Damping with the place of the part in proportion to the mass.
-pub(super) type Placed = (Damping, Span);
-
-/// Damping of a material of its own.
-pub(super) fn own_damping(block: &CardBlock, cx: &mut Context) -> Option<Placed> {
-    only(&block.parts_of("DAMPING"), cx)
-}
-
-/// Damping of the materials that have none of their own: a card outside materials.
-pub(super) fn general_damping(outline: &Outline, cx: &mut Context) -> Option<Placed> {
-    only(&outline.model_cards("DAMPING"), cx)
-}
-
-/// What a card gives that may appear once.
-fn only(cards: &[&Card], cx: &mut Context) -> Option<Placed> {
+/// The damping that a card gives which may appear once, with the place of the part in proportion to the mass.
+fn damping(cards: &[&Card], cx: &mut Context) -> Option<(Damping, Span)> {
     cx.only_once(cards);
     let card = cards.first()?;
-    report_empty(card, cx);
-    let damping = Damping {
-        alpha: factor(card, "ALPHA", cx),
-        beta: factor(card, "BETA", cx),
-    };
-    Some((damping, card.span_of("ALPHA")))
-}
-
-/// Reports a card that gives nothing.
-fn report_empty(card: &Card, cx: &mut Context) {
     if !card.faulty && !card.has("ALPHA") && !card.has("BETA") {
         let message = "*DAMPING has neither ALPHA nor BETA";
         cx.error(Code::MissingParameter, card.span, message)
             .help("ALPHA damps in proportion to the mass, BETA to the elasticity");
     }
-}
-
-/// A factor that may not be negative; 0 where it is not given.
-fn factor(card: &Card, name: &str, cx: &mut Context) -> f64 {
-    let value = card.real(name, cx.d).unwrap_or(0.0);
-    if let (true, Some(typed)) = (value < 0.0, card.value(name)) {
-        let message = format!("{name} must not be negative, found {}", typed.text);
-        cx.error(Code::MaterialRange, card.span_of(name), message);
-    }
-    value.max(0.0)
+    let mut factor = |name: &str| {
+        let rule = format!("{name} must not be negative");
+        let given = card.value(name);
+        let factor =
+            given.and_then(|text| text.real_that(|x| x >= 0.0, &rule, Code::MaterialRange, cx.d));
+        factor.unwrap_or(0.0)
+    };
+    let damping = Damping {
+        alpha: factor("ALPHA"),
+        beta: factor("BETA"),
+    };
+    Some((damping, card.span_of("ALPHA")))
 }
 
 /// A constant of a material.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Constant<T> {
+enum Constant<T> {
     Missing,
     Wrong,
     Given(T),
@@ -322,7 +292,7 @@ impl<T> Constant<T> {
 }
 
 /// The constant that all rows of a card agree on.
-pub(super) fn constant<T: PartialEq + Copy>(
+fn constant<T: PartialEq + Copy>(
     cards: &[&Card],
     read: fn(Line, &mut Context) -> Option<T>,
     cx: &mut Context,
@@ -345,14 +315,6 @@ pub(super) fn constant<T: PartialEq + Copy>(
 }
 
 /// A temperature in field `index`, which may be any: the rows of all temperatures are alike.
-pub(super) fn temperature(row: Line, index: usize, cx: &mut Context) -> Option<()> {
+fn temperature(row: Line, index: usize, cx: &mut Context) -> Option<()> {
     row.real_or(index, 0.0, cx.d).map(|_| ())
-}
-
-/// Reports the number in a field, if it is there.
-pub(super) fn out_of_range(rule: &str, row: Line, index: usize, cx: &mut Context) {
-    if let Some(field) = row.get(index) {
-        let message = format!("{rule}, found {}", field.text);
-        cx.error(Code::MaterialRange, field.span, message);
-    }
 }

@@ -29,12 +29,11 @@ pub(crate) use steps::{CONTACT_MASS, FACTORIZATION, IMPACT, IMPACT_TIME, LANDING
 
 use crate::deck::{self, Card, Deck};
 use crate::diagnostics::{Code, Diagnostics, Sources};
-use crate::model::{ElementsAtNodes, Instance, Mesh, Model, NamedSets};
+use crate::model::{EdgeScales, ElementsAtNodes, Instance, Model, NamedSets};
 use boundary::Targets;
 use context::Context;
 use outline::Outline;
 use output::Histories;
-use sections::Properties;
 use sets::Sets;
 use std::path::Path;
 
@@ -71,10 +70,13 @@ fn read(cx: &mut Context) -> Model {
     drop(at_nodes);
     mesh_index.add_points(&surfaces.rigid_points);
     let rigid_bodies = rigid_bodies::read(&outline, &mesh_index, &sets, &surfaces, cx);
-    let properties = sections::read(&outline, &mesh_index, &sets, cx);
+    let properties = sections::read(&outline, &mut mesh_index, &sets, cx);
     checks::magnitudes(&mesh_index, &properties, cx);
     let contacts = contact::read(&outline, &mesh_index, &sets, &mut surfaces, cx);
-    checks::thickness(&contacts, &surfaces, &properties, cx);
+    let (sections, mesh) = (&properties.sections, &mesh_index.mesh);
+    checks::thickness(&contacts, &surfaces.all, sections, mesh, cx);
+    let edges = EdgeScales::new(mesh, sections, &properties.materials);
+    let guide = Some(edges.time).filter(|time| time.is_finite() && *time > 0.0);
     let amplitudes = amplitudes::read(cx);
     let targets = Targets {
         mesh_index: &mesh_index,
@@ -82,14 +84,13 @@ fn read(cx: &mut Context) -> Model {
         amplitudes: &amplitudes,
         rigid_bodies: &rigid_bodies,
     };
-    let checks::Shortest { side, time: guide } = checks::shortest(&mesh_index.mesh, &properties);
     let steps = steps::read(&outline, targets, &surfaces, guide, cx);
     let equations = equations::read(&outline, targets, &steps.all, cx);
     let initial_velocity = boundary::initial_velocity(&outline, targets, &steps.at_start, cx);
     equations::check_velocities(&equations, &initial_velocity, &steps.at_start, targets, cx);
     let model = Model {
         title: title(&outline),
-        mesh: with_sections(mesh_index.mesh, &properties),
+        mesh: mesh_index.mesh,
         sets: named_sets(sets, steps.histories, mesh_index.instances),
         surfaces: surfaces.all,
         materials: properties.materials,
@@ -106,8 +107,8 @@ fn read(cx: &mut Context) -> Model {
     };
     let all: [&dyn Fn(&mut Context); 7] = [
         &|cx| checks::amplitudes(&model, &amplitudes.spans, cx),
-        &|cx| checks::braked_flight(&model, &properties.damping_spans, cx),
-        &|cx| checks::coincident_nodes(&model, side, &mesh_index.places, cx),
+        &|cx| checks::braked_flight(&model, &properties.places, cx),
+        &|cx| checks::coincident_nodes(&model, edges.shortest, &mesh_index.places, cx),
         &|cx| checks::fixed_slaves(&model, cx),
         &|cx| checks::proportion(&model.steps, &outline.steps, guide, cx),
         &|cx| checks::overlap(&model, &mesh_index.places, cx),
@@ -151,15 +152,6 @@ fn title(outline: &Outline) -> String {
         .flat_map(|card| card.rows.iter())
         .map(|row| row.text.trim());
     lines.collect::<Vec<_>>().join(" ")
-}
-
-fn with_sections(mut mesh: Mesh, properties: &Properties) -> Mesh {
-    let types = properties.element_types.iter().enumerate();
-    for (element, (index, &element_type)) in mesh.elements.iter_mut().zip(types) {
-        element.section = properties.section_of(index).unwrap_or(0);
-        element.element_type = element_type;
-    }
-    mesh
 }
 
 /// Warns about parameters that the reader has not used.

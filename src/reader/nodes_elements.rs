@@ -11,7 +11,8 @@ use super::names::Labelled;
 use super::outline::Outline;
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span, closest};
-use crate::model::{Element, ElementType, Face, Mesh, Nodes, Plane};
+use crate::model::{Element, ElementType, Face, Mesh, NO_SECTION, Nodes, Plane};
+use crate::vectors::extents;
 use smallvec::SmallVec;
 use std::collections::{BTreeSet, HashMap};
 
@@ -237,7 +238,7 @@ impl MeshReading {
                     label,
                     element_type,
                     nodes,
-                    section: 0,
+                    section: NO_SECTION,
                 });
             }
             ElementKind::Line => {
@@ -303,18 +304,14 @@ impl MeshReading {
             return;
         }
         let mesh = &self.mesh_index.mesh;
-        let range = |values: &mut dyn Iterator<Item = f64>| {
-            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-                (low.min(value), high.max(value))
-            })
-        };
-        let [x, y] = [0, 1].map(|i| range(&mut mesh.coordinates.iter().map(|at| at[i])));
-        let z = range(&mut (0..mesh.node_count()).map(|node| self.height(node)));
-        let size = (x.1 - x.0).max(y.1 - y.0);
-        if z.1 - z.0 > 1e-9 * size {
+        let [low, high] = extents(mesh.coordinates.iter().copied());
+        let size = (high[0] - low[0]).max(high[1] - low[1]);
+        let heights = (0..mesh.node_count()).map(|node| [self.height(node); 2]);
+        let [[low, _], [high, _]] = extents(heights);
+        if high - low > 1e-9 * size {
             let is_off = |&node: &usize| self.height(node) != self.height(0);
             let off = (0..mesh.node_count()).find(is_off).unwrap_or(0);
-            let message = format!("the mesh is not plane: z runs from {} to {}", z.0, z.1);
+            let message = format!("the mesh is not plane: z runs from {low} to {high}");
             if let Some(row) = row_of(mesh.node_labels[off], outline, cx) {
                 cx.error(Code::NotPlanar, row.span(), message);
             }

@@ -200,13 +200,12 @@ fn count(card: &Card, name: &str, least: i64, cx: &mut Context) -> Option<usize>
 }
 
 fn time_interval(card: &Card, cx: &mut Context) -> Option<Frames> {
-    let interval = card.real("TIME INTERVAL", cx.d)?;
-    if interval <= 0.0 {
-        let message = format!("TIME INTERVAL must be positive, found {}", shown(interval));
-        cx.error(Code::OutputTimes, card.span_of("TIME INTERVAL"), message);
-        return None;
-    }
-    Some(Frames::Every(interval))
+    let (interval, rule) = (
+        card.value("TIME INTERVAL")?,
+        "TIME INTERVAL must be positive",
+    );
+    let interval = interval.real_that(|t| t > 0.0, rule, Code::OutputTimes, cx.d);
+    interval.map(Frames::Every)
 }
 
 /// Warns that `*RESTART` writes nothing.

@@ -2,31 +2,47 @@
 //! materials.
 
 use super::context::Context;
-use super::materials::{Drafts, out_of_range};
+use super::materials::{Drafts, MaterialPlaces};
 use super::mesh_index::MeshIndex;
 use super::names::Names;
 use super::outline::Outline;
 use super::sets::Sets;
 use crate::deck::Card;
-use crate::diagnostics::{Code, Span};
+use crate::diagnostics::Code;
 use crate::materials::Plane;
-use crate::model::{Element, ElementType, Formulation, Material, Section};
-use std::num::NonZeroU32;
+use crate::model::{Element, ElementType, Formulation, Material, NO_SECTION, Section};
 
 /// Materials and sections.
+#[derive(Default)]
 pub(crate) struct Properties {
     /// Materials in the order of their names.
     pub materials: Vec<Material>,
+    /// Their places.
+    pub places: Vec<MaterialPlaces>,
     /// Sections.
     pub sections: Vec<Section>,
-    /// Section of each element, counted from 1.
-    section_of: Vec<Option<NonZeroU32>>,
-    /// Type of each element, in the formulation of its section.
-    pub element_types: Vec<ElementType>,
-    /// Places of the materials.
-    pub material_spans: Vec<Span>,
-    /// Places of their mass-proportional damping.
-    pub damping_spans: Vec<Span>,
+}
+
+/// Reads materials and sections, and gives these to the elements.
+pub(super) fn read(
+    outline: &Outline,
+    mesh_index: &mut MeshIndex,
+    sets: &Sets,
+    cx: &mut Context,
+) -> Properties {
+    let drafts = Drafts::read(outline, cx);
+    let mut properties = Properties::default();
+    let mut complete = true;
+    for card in outline.model_cards("SOLID SECTION") {
+        let section = section(card, &drafts.names, cx);
+        complete &= properties.assign(section, card, mesh_index, sets, cx);
+    }
+    report_without_section(complete, mesh_index, cx);
+    drafts.report_incomplete(&properties.sections, cx);
+    (properties.materials, properties.places) = drafts.complete(cx);
+    properties.report_plane_stress(mesh_index, cx);
+    properties.report_locking(mesh_index, cx);
+    properties
 }
 
 /// `*SOLID SECTION`, with `thickness` on its data line.
@@ -34,13 +50,13 @@ fn section(card: &Card, materials: &Names, cx: &mut Context) -> Option<Section> 
     let material = card.required("MATERIAL", cx.d);
     let material = material.and_then(|name| materials.find(name, cx));
     let row = card.rows.first();
-    let thickness = row.map_or(Some(1.0), |row| row.real_or(0, 1.0, cx.d));
-    if let (Some(row), Some(value)) = (row, thickness) {
+    if let Some(row) = row {
         row.at_most(1, cx.d);
-        if value <= 0.0 {
-            out_of_range("the thickness must be positive", row, 0, cx);
-        }
     }
+    let rule = "the thickness must be positive";
+    let thickness = row.and_then(|row| row.get(0)).map_or(Some(1.0), |field| {
+        field.real_that(|t| t > 0.0, rule, Code::MaterialRange, cx.d)
+    });
     if let Some(extra) = card.rows.get(1) {
         let message = "*SOLID SECTION has one data line, the thickness";
         cx.error(Code::StrayData, extra.span(), message);
@@ -52,46 +68,12 @@ fn section(card: &Card, materials: &Names, cx: &mut Context) -> Option<Section> 
 }
 
 impl Properties {
-    /// No materials and sections yet.
-    pub(super) fn new(elements: &[Element], material_spans: Vec<Span>) -> Self {
-        Properties {
-            materials: Vec::new(),
-            sections: Vec::new(),
-            section_of: vec![None; elements.len()],
-            element_types: elements.iter().map(|e| e.element_type).collect(),
-            material_spans,
-            damping_spans: Vec::new(),
-        }
-    }
-
-    /// Section of an element.
-    pub fn section_of(&self, element: usize) -> Option<usize> {
-        let section = self.section_of.get(element).copied().flatten();
-        section.map(|number| number.get() as usize - 1)
-    }
-
-    /// Reads the sections and gives them to their elements.
-    pub(super) fn read_sections(
-        &mut self,
-        outline: &Outline,
-        materials: &Names,
-        (mesh_index, sets): (&MeshIndex, &Sets),
-        cx: &mut Context,
-    ) {
-        let mut complete = true;
-        for card in outline.model_cards("SOLID SECTION") {
-            let section = section(card, materials, cx);
-            complete &= self.assign(section, card, mesh_index, sets, cx);
-        }
-        self.report_without_section(complete, mesh_index, cx);
-    }
-
     /// Gives a section to its elements; says whether all of the card could be read.
     fn assign(
         &mut self,
         section: Option<Section>,
         card: &Card,
-        mesh_index: &MeshIndex,
+        mesh_index: &mut MeshIndex,
         sets: &Sets,
         cx: &mut Context,
     ) -> bool {
@@ -104,16 +86,15 @@ impl Properties {
         let elements = sets.elements_of(set, mesh_index, cx);
         let complete = section.is_some() && cx.errors() == errors;
         if card.choice("FORMULATION") == Some("MEAN DILATATION") {
-            self.set_mean_dilatation(&elements, card, mesh_index, cx);
+            set_mean_dilatation(&elements, card, mesh_index, cx);
         }
         let index = self.sections.len();
         self.sections.extend(section);
         let mut taken = Vec::new();
         for &element in elements.iter() {
-            match self.section_of.get_mut(element) {
-                Some(Some(_)) => taken.push(element),
-                Some(free) => *free = NonZeroU32::new(index as u32 + 1),
-                None => {}
+            match &mut mesh_index.mesh.elements[element].section {
+                free @ &mut NO_SECTION => *free = index,
+                _ => taken.push(element),
             }
         }
         if let Some(&first) = taken.first() {
@@ -126,56 +107,43 @@ impl Properties {
         }
         complete
     }
+}
 
-    /// Gives elements one volume strain each; all must be CPE4.
-    fn set_mean_dilatation(
-        &mut self,
-        elements: &[usize],
-        card: &Card,
-        mesh_index: &MeshIndex,
-        cx: &mut Context,
-    ) {
-        for &index in elements {
-            let Some(element_type) = self.element_types.get_mut(index) else {
-                continue;
-            };
-            if *element_type == ElementType::CPE4 {
-                element_type.formulation = Formulation::MeanDilatation;
-            } else if element_type.formulation == Formulation::Displacement {
-                let label = mesh_index.element_name(index);
-                let name = element_type.name();
-                let message = format!("MEAN DILATATION is for CPE4: element {label} is {name}");
-                cx.error(Code::ElementType, card.span_of("FORMULATION"), message)
-                    .help(
-                        "give other elements a section of their own with FORMULATION=DISPLACEMENT",
-                    );
-                return;
-            }
+/// Gives elements one volume strain each; all must be CPE4.
+fn set_mean_dilatation(
+    elements: &[usize],
+    card: &Card,
+    mesh_index: &mut MeshIndex,
+    cx: &mut Context,
+) {
+    for &index in elements {
+        let element_type = &mut mesh_index.mesh.elements[index].element_type;
+        if *element_type == ElementType::CPE4 {
+            element_type.formulation = Formulation::MeanDilatation;
+        } else if element_type.formulation == Formulation::Displacement {
+            let (name, label) = (element_type.name(), mesh_index.element_name(index));
+            let message = format!("MEAN DILATATION is for CPE4: element {label} is {name}");
+            cx.error(Code::ElementType, card.span_of("FORMULATION"), message)
+                .help("give other elements a section of their own with FORMULATION=DISPLACEMENT");
+            return;
         }
     }
+}
 
-    /// Reports elements without section, unless a section could not be read.
-    fn report_without_section(&self, complete: bool, mesh_index: &MeshIndex, cx: &mut Context) {
-        let bare = || {
-            self.section_of
-                .iter()
-                .enumerate()
-                .filter(|(_, s)| s.is_none())
-        };
-        let is_cause = complete || !cx.d.has_errors();
-        let Some((first, _)) = bare().next().filter(|_| is_cause) else {
-            return;
-        };
+/// Reports elements without section, unless a section could not be read.
+fn report_without_section(complete: bool, mesh_index: &MeshIndex, cx: &mut Context) {
+    let elements = || mesh_index.mesh.elements.iter();
+    let bare = elements().position(|element| element.section == NO_SECTION);
+    let is_cause = complete || !cx.d.has_errors();
+    if let Some(first) = bare.filter(|_| is_cause && !cx.may_lack_cards()) {
         let name = mesh_index.element_name(first);
-        if !cx.may_lack_cards() {
-            let message = match bare().count() {
-                1 => format!("element {name} has no section"),
-                n => format!("{n} elements have no section, the first is {name}"),
-            };
-            let span = mesh_index.places[first];
-            cx.error(Code::NoSection, span, message)
-                .help("give them a material and a thickness with *SOLID SECTION");
-        }
+        let is_bare = |element: &&Element| element.section == NO_SECTION;
+        let message = match elements().filter(is_bare).count() {
+            1 => format!("element {name} has no section"),
+            n => format!("{n} elements have no section, the first is {name}"),
+        };
+        cx.error(Code::NoSection, mesh_index.places[first], message)
+            .help("give them a material and a thickness with *SOLID SECTION");
     }
 }
 
@@ -184,22 +152,25 @@ impl Properties {
 const LOCKING: f64 = 0.45;
 
 impl Properties {
+    /// Material (index) of an element.
+    fn material_of(&self, element: &Element) -> Option<usize> {
+        Some(self.sections.get(element.section)?.material)
+    }
+
     /// Reports materials in plane stress elements that are for plane strain only.
-    pub(super) fn report_plane_stress(&self, mesh_index: &MeshIndex, cx: &mut Context) {
-        let types = self.element_types.iter().enumerate();
-        for (index, _) in types.filter(|(_, of)| of.plane == Plane::Stress) {
-            let section = self.section_of(index).and_then(|s| self.sections.get(s));
-            let material = section.and_then(|s| self.materials.get(s.material));
-            if let Some(material) = material
-                && !material.law.has_plane_stress()
-            {
+    fn report_plane_stress(&self, mesh_index: &MeshIndex, cx: &mut Context) {
+        for (index, element) in mesh_index.mesh.elements.iter().enumerate() {
+            if element.element_type.plane == Plane::Strain {
+                continue;
+            }
+            let material = self.material_of(element).map(|m| &self.materials[m]);
+            if let Some(material) = material.filter(|material| !material.law.has_plane_stress()) {
                 let message = format!(
                     "element {} is in plane stress, material {} is for plane strain only",
                     mesh_index.element_name(index),
                     material.name
                 );
-                let span = mesh_index.places[index];
-                cx.error(Code::PlaneStrainOnly, span, message)
+                cx.error(Code::PlaneStrainOnly, mesh_index.places[index], message)
                     .help("take CPE elements, or *ELASTIC");
                 return;
             }
@@ -208,19 +179,20 @@ impl Properties {
 
     /// Warns about nearly incompressible materials in plane strain, at their Poisson's ratios; in
     /// plane stress the thickness gives way and nothing locks.
-    pub(super) fn report_locking(&self, poisson_spans: &[Span], cx: &mut Context) {
+    fn report_locking(&self, mesh_index: &MeshIndex, cx: &mut Context) {
         let mut locks = vec![false; self.materials.len()];
-        for (index, element_type) in self.element_types.iter().enumerate() {
-            let section = self.section_of(index).and_then(|s| self.sections.get(s));
-            let locks = section.and_then(|s| locks.get_mut(s.material));
-            if let (Plane::Strain, Formulation::Displacement, Some(locks)) =
-                (element_type.plane, element_type.formulation, locks)
-            {
-                *locks = true;
+        for element in &mesh_index.mesh.elements {
+            let element_type = element.element_type;
+            if let (Plane::Strain, Formulation::Displacement, Some(material)) = (
+                element_type.plane,
+                element_type.formulation,
+                self.material_of(element),
+            ) {
+                locks[material] = true;
             }
         }
-        let materials = self.materials.iter().zip(poisson_spans).zip(locks);
-        for ((material, &span), _) in materials.filter(|(_, locks)| *locks) {
+        let materials = self.materials.iter().zip(&self.places).zip(locks);
+        for ((material, places), _) in materials.filter(|(_, locks)| *locks) {
             let poisson = material.law.small_strain().poisson;
             if poisson >= LOCKING {
                 let message = format!(
@@ -228,7 +200,7 @@ impl Properties {
                     material.name,
                     (poisson * 1e6).round() / 1e6
                 );
-                cx.warning(Code::Locking, span, message).help(
+                cx.warning(Code::Locking, places.poisson, message).help(
                     "CPE3 and CPE4 are integrated fully: from nu = 0.45 on they are too stiff, the \
                      more so the closer nu is to 0.5; CPE4 is not with FORMULATION=MEAN DILATATION \
                      on its *SOLID SECTION",
@@ -236,23 +208,4 @@ impl Properties {
             }
         }
     }
-}
-
-/// Reads materials and sections.
-pub(super) fn read(
-    outline: &Outline,
-    mesh_index: &MeshIndex,
-    sets: &Sets,
-    cx: &mut Context,
-) -> Properties {
-    let drafts = Drafts::read(outline, cx);
-    let mut properties = Properties::new(&mesh_index.mesh.elements, drafts.spans());
-    properties.read_sections(outline, &drafts.names, (mesh_index, sets), cx);
-    drafts.report_incomplete(&properties.sections, cx);
-    let poisson_spans = drafts.poisson_spans();
-    properties.damping_spans = drafts.damping_spans();
-    properties.materials = drafts.complete(cx);
-    properties.report_plane_stress(mesh_index, cx);
-    properties.report_locking(&poisson_spans, cx);
-    properties
 }

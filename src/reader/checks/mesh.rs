@@ -2,8 +2,9 @@
 //! nothing joins.
 
 use crate::diagnostics::{Code, Span};
-use crate::model::{Element, ElementsAtNodes, Equation, Mesh, Model, Plane, sides};
+use crate::model::{ElementsAtNodes, Equation, Mesh, Model, Plane, sides};
 use crate::reader::context::Context;
+use crate::reader::materials::MaterialPlaces;
 use crate::reader::mesh_index::MeshIndex;
 use crate::reader::sections::Properties;
 use crate::vectors::{cross, difference, distance, dot, polygon_area};
@@ -124,8 +125,8 @@ pub(crate) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &m
     if cx.d.has_errors() {
         return;
     }
-    let materials = properties.materials.iter().zip(&properties.material_spans);
-    for (index, (material, &span)) in materials.enumerate() {
+    let materials = properties.materials.iter().zip(&properties.places);
+    for (index, (material, &MaterialPlaces { material: span, .. })) in materials.enumerate() {
         let is_used = properties.sections.iter().any(|s| s.material == index);
         let speed = material.wave_speed(Plane::Strain);
         if is_used && !speed.is_normal() {
@@ -136,19 +137,16 @@ pub(crate) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &m
     let mut total = 0.0;
     // mass per area, and stiffness
     let of_sections = properties.sections.iter().map(|section| {
-        let material = properties.materials.get(section.material)?;
+        let material = &properties.materials[section.material];
         let stiffness = material.law.small_strain().young * section.thickness;
-        Some((material.density * section.thickness, stiffness))
+        (material.density * section.thickness, stiffness)
     });
-    let of_sections: Vec<Option<(f64, f64)>> = of_sections.collect();
+    let of_sections: Vec<(f64, f64)> = of_sections.collect();
     for (index, element) in mesh_index.mesh.elements.iter().enumerate() {
-        let section = properties
-            .section_of(index)
-            .and_then(|s| of_sections.get(s));
-        let Some(&Some((density, stiffness))) = section else {
+        let Some(&(density, stiffness)) = of_sections.get(element.section) else {
             continue;
         };
-        let area = area(element, &mesh_index.mesh);
+        let area = polygon_area(mesh_index.mesh.corners(element));
         let mass = density * area;
         total += mass;
         if [area, stiffness, mass, total]
@@ -175,15 +173,6 @@ pub(super) fn unusable(what: &str, value: f64, span: Span, cx: &mut Context) {
     let message = format!("{what} is {value:e}: it cannot be computed with");
     cx.error(Code::Magnitude, span, message)
         .help("choose units in which the numbers of the deck are not so extreme");
-}
-
-/// Area of an element.
-fn area(element: &Element, mesh: &Mesh) -> f64 {
-    let at = |node: usize| mesh.coordinates[node];
-    match *element.corners() {
-        [a, b, c, d] => polygon_area([a, b, c, d].map(at)),
-        ref nodes => polygon_area(nodes.iter().map(|&node| at(node))),
-    }
 }
 
 /// Distance below which nodes lie at the same place, in lengths of the shortest element side: the

@@ -8,7 +8,5 @@ mod overlap;
 
 pub(super) use amplitudes::amplitudes;
 pub(super) use mesh::{coincident_nodes, magnitudes, mesh};
-pub(super) use model::{
-    Shortest, braked_flight, fixed_slaves, motion, proportion, shortest, thickness,
-};
+pub(super) use model::{braked_flight, fixed_slaves, motion, proportion, thickness};
 pub(super) use overlap::overlap;

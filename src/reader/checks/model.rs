@@ -2,59 +2,22 @@
 //! something that moves, damping of bodies in free flight, slaves that contact cannot move, and the
 //! thickness of both sides of a contact.
 
-use crate::diagnostics::{Code, Span};
+use crate::diagnostics::Code;
 use crate::model::{
-    ALL_EXTERIOR, Bodies, Contact, Element, Equation, Load, Mesh, Model, Plane, Step,
-    SupportMotion, SurfaceKind,
+    ALL_EXTERIOR, Bodies, Contact, Equation, Face, Load, Mesh, Model, Section, Step, SupportMotion,
+    Surface, SurfaceKind,
 };
 use crate::reader::context::Context;
+use crate::reader::materials::MaterialPlaces;
 use crate::reader::outline::StepCards;
-use crate::reader::sections::Properties;
-use crate::reader::surfaces::Surfaces;
 use std::collections::BTreeSet;
 
 /// Sides that waves cross in one increment, above which the increment cannot be meant: implicit
 /// increments of slow motions reach some thousands.
 const MOST_SIDES: f64 = 1e6;
 
-/// The shortest side of an element, and the shortest time in which a wave crosses a side.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Shortest {
-    /// Length; infinite without elements.
-    pub side: f64,
-    /// Time; none without a material.
-    pub time: Option<f64>,
-}
-
-/// The shortest side, and the shortest time in which a wave crosses one.
-pub(crate) fn shortest(mesh: &Mesh, properties: &Properties) -> Shortest {
-    // elements of a section in plane stress and in plane strain; at last those without section
-    let planes = [Plane::Stress, Plane::Strain];
-    let last = planes.len() * properties.sections.len();
-    let group = |index: usize, element: &Element| {
-        let section = properties.section_of(index);
-        section
-            .map_or(last, |s| {
-                planes.len() * s + element.element_type.plane as usize
-            })
-            .min(last)
-    };
-    let sides = mesh.shortest_sides(last + 1, group);
-    let speeds = properties.sections.iter().flat_map(|section| {
-        let material = properties.materials.get(section.material);
-        planes.map(|plane| material.map(|material| material.wave_speed(plane)))
-    });
-    let times = sides.iter().zip(speeds);
-    let times = times.filter_map(|(side, speed)| Some(side / speed?));
-    let time = times.reduce(f64::min);
-    Shortest {
-        side: sides.iter().copied().fold(f64::INFINITY, f64::min),
-        time: time.filter(|time| time.is_finite() && *time > 0.0),
-    }
-}
-
 /// Warns about steps that end before a wave has crossed the shortest side of an element, and about
-/// increments in which it crosses more than a million of them; `guide` is the [`shortest`] time.
+/// increments in which it crosses more than a million of them; `guide` is the shortest time.
 pub(crate) fn proportion(
     steps: &[Step],
     cards: &[StepCards],
@@ -132,7 +95,7 @@ fn acts<T>(loads: &[Load<T>]) -> bool {
 }
 
 /// Warns where mass-proportional damping takes momentum from bodies that have no support in a step.
-pub(crate) fn braked_flight(model: &Model, damping_spans: &[Span], cx: &mut Context) {
+pub(crate) fn braked_flight(model: &Model, places: &[MaterialPlaces], cx: &mut Context) {
     if model.materials.iter().all(|m| m.damping.alpha == 0.0) {
         return;
     }
@@ -143,7 +106,7 @@ pub(crate) fn braked_flight(model: &Model, damping_spans: &[Span], cx: &mut Cont
     for (element, &body) in elements.filter(|(_, body)| !is_held[**body]) {
         braked[model.sections[element.section].material].insert(body);
     }
-    for ((material, braked), &span) in model.materials.iter().zip(&braked).zip(damping_spans) {
+    for ((material, braked), places) in model.materials.iter().zip(&braked).zip(places) {
         let count = braked.len();
         if material.damping.alpha > 0.0 && count > 0 {
             let bodies = if count == 1 { "a body" } else { "bodies" };
@@ -151,7 +114,7 @@ pub(crate) fn braked_flight(model: &Model, damping_spans: &[Span], cx: &mut Cont
                 "ALPHA of material {} takes momentum from {bodies} without support",
                 material.name
             );
-            cx.warning(Code::BrakedFlight, span, message).help(
+            cx.warning(Code::BrakedFlight, places.damping, message).help(
                 "it acts against the velocity, that of free flight too; BETA damps vibration alone \
                  and keeps momentum",
             );
@@ -215,13 +178,14 @@ fn prescribed_throughout(steps: &[Step]) -> BTreeSet<usize> {
 /// Warns where the two sides of a contact differ in thickness.
 pub(crate) fn thickness(
     contacts: &[Contact],
-    surfaces: &Surfaces,
-    properties: &Properties,
+    surfaces: &[Surface],
+    sections: &[Section],
+    mesh: &Mesh,
     cx: &mut Context,
 ) {
     for contact in contacts {
-        let sides = [contact.slave, contact.master];
-        let [slave, master] = sides.map(|s| range_of_thickness(s, surfaces, properties));
+        let range = |surface: usize| range_of_thickness(surface, surfaces, sections, mesh);
+        let [slave, master] = [contact.slave, contact.master].map(range);
         if let (Some(slave), Some(master)) = (slave, master)
             && (slave != master || slave.0 < slave.1 && contact.is_self_contact())
         {
@@ -234,17 +198,15 @@ pub(crate) fn thickness(
 
 fn range_of_thickness(
     surface: usize,
-    surfaces: &Surfaces,
-    properties: &Properties,
+    surfaces: &[Surface],
+    sections: &[Section],
+    mesh: &Mesh,
 ) -> Option<(f64, f64)> {
-    let SurfaceKind::Faces(faces) = &surfaces.all.get(surface)?.kind else {
+    let SurfaceKind::Faces(faces) = &surfaces[surface].kind else {
         return None;
     };
-    let all = faces.iter().filter_map(|face| {
-        properties
-            .sections
-            .get(properties.section_of(face.element)?)
-    });
+    let section = |face: &Face| sections.get(mesh.elements[face.element].section);
+    let all = faces.iter().filter_map(section);
     let all: Vec<f64> = all.map(|section| section.thickness).collect();
     let low = all.iter().copied().reduce(f64::min)?;
     Some((low, all.iter().copied().fold(low, f64::max)))

@@ -9,7 +9,7 @@
 use crate::diagnostics::{Code, Span};
 use crate::model::{ALL_EXTERIOR, Contact, ElementsAtNodes, Face, Mesh, Model};
 use crate::reader::context::Context;
-use crate::vectors::{Circle, CircleTree, cross, difference, distance, dot};
+use crate::vectors::{Circle, CircleTree, cross, difference, distance, dot, extents};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Width of a common part, in widths of the narrower element in every direction, above which elements lie
@@ -295,16 +295,8 @@ fn holds(mesh: &Mesh, element: usize, place: [f64; 2]) -> bool {
 
 /// A circle about some places.
 fn about(places: &[[f64; 2]]) -> Circle {
-    let extent = |i: usize| {
-        let along = places.iter().map(|x| x[i]);
-        along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-            (low.min(x), high.max(x))
-        })
-    };
-    let centre = [0, 1].map(|i| {
-        let (low, high) = extent(i);
-        low + (high - low) / 2.0
-    });
+    let [low, high] = extents(places.iter().copied());
+    let centre = [0, 1].map(|i| low[i] + (high[i] - low[i]) / 2.0);
     let radius = places
         .iter()
         .map(|&x| distance(centre, x))
