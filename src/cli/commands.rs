@@ -22,14 +22,14 @@ use crate::{dynamics, reader};
 /// Reads a deck and describes its model.
 pub(super) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exit, CliError> {
     let loaded = load(&args.deck, numerics)?;
-    complain_of(&loaded.all_messages);
+    complain(&loaded.all_messages);
     let Some(model) = &loaded.model else {
-        print(&[deck_line_of(&args.deck.path, &loaded, None)])?;
+        print(&[loaded.line(&args.deck.path, None)])?;
         return Ok(Exit::Rejected);
     };
     describe(&args.deck, &loaded, model)?;
     if let Some(path) = &args.picture {
-        write_file(path, &picture(model.model(), args.window), args.overwrite)?;
+        write_file(path, &picture(&model.model, args.window), args.overwrite)?;
     }
     Ok(Exit::Finished)
 }
@@ -40,9 +40,9 @@ pub(super) fn describe(
     loaded: &Loaded,
     model: &PreparedModel,
 ) -> Result<(), CliError> {
-    print(&[deck_line_of(&deck.path, loaded, None)])?;
-    check_names(model.model())?;
-    let echo = ModelEcho::new(model.model());
+    print(&[loaded.line(&deck.path, None)])?;
+    check_names(&model.model)?;
+    let echo = ModelEcho::new(&model.model);
     print(&echo.lines(model))?;
     print(&echo.guide())
 }
@@ -54,28 +54,9 @@ pub(super) fn load(deck: &DeckArgs, numerics: &Numerics) -> Result<Loaded, CliEr
 }
 
 /// Refuses a deck that cannot be opened.
-pub(super) fn openable(path: &Path) -> Result<(), CliError> {
+fn openable(path: &Path) -> Result<(), CliError> {
     regular_file(path).map_err(FileError::new("read the deck", path))?;
     Ok(())
-}
-
-/// Prints the errors and warnings of a deck.
-pub(super) fn complain_of(messages: &str) {
-    if !messages.is_empty() {
-        complain(messages);
-    }
-}
-
-/// The line about the deck; `log` names the file that holds its warnings.
-pub(super) fn deck_line_of(deck: &Path, loaded: &Loaded, log: Option<&Path>) -> String {
-    deck_line(
-        deck,
-        loaded.sources.files().len().saturating_sub(1),
-        loaded.sources.line_count(),
-        loaded.errors,
-        loaded.warnings,
-        log,
-    )
 }
 
 /// The page that has an example of every code.
@@ -160,7 +141,7 @@ pub(super) fn flatten(args: &FlattenArgs) -> Result<Exit, CliError> {
     // the flat deck has the nodes where the deck has them
     let sound = model.filter(|model| prepare(model.clone(), &mut d).is_some());
     let Some(model) = sound else {
-        complain_of(&d.render(&sources, coloured()));
+        complain(&d.render(&sources, coloured()));
         return Ok(Exit::Rejected);
     };
     check_names(&model)?;
@@ -246,6 +227,13 @@ pub(super) struct Loaded {
     pub warnings: usize,
     /// The deck and the files it includes.
     pub sources: Sources,
+}
+
+impl Loaded {
+    /// The line about the deck; `log` names the file that holds its warnings.
+    pub fn line(&self, deck: &Path, log: Option<&Path>) -> String {
+        deck_line(deck, &self.sources, [self.errors, self.warnings], log)
+    }
 }
 
 /// Reads a deck; messages coloured or not.

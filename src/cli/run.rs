@@ -3,10 +3,10 @@
 use std::error::Error;
 
 use super::args::{COMMIT, NUMBER, PROFILE, RunArgs, processors};
-use super::commands::{Loaded, Numerics, complain_of, deck_line_of, describe, load};
+use super::commands::{Loaded, Numerics, describe, load};
 use super::error::{CliError, Exit};
 use super::signals;
-use super::terminal::print;
+use super::terminal::{complain, print};
 use crate::dynamics::{Outcome, RunError};
 use crate::model::{Frames, SolverChoice, Step};
 use crate::output::{
@@ -25,16 +25,16 @@ pub(super) fn run(
 ) -> Result<Exit, CliError> {
     let mut loaded = load(&args.deck, numerics)?;
     let Some(mut model) = loaded.model.take() else {
-        complain_of(&loaded.messages);
+        complain(&loaded.messages);
         return Ok(Exit::Rejected);
     };
     if args.verbosity() != Verbosity::Quiet {
-        complain_of(&loaded.messages);
+        complain(&loaded.messages);
     }
-    if model.model().is_check_only() {
+    if model.model.is_check_only() {
         return check_only(args, &loaded, &model);
     }
-    check_names(model.model())?;
+    check_names(&model.model)?;
     if interrupt.signal().is_some() {
         return Ok(signals::exit(interrupt));
     }
@@ -43,11 +43,15 @@ pub(super) fn run(
     let files = JobFiles::new(&args.deck.path, &args.output);
     let claim = Claim::take(&files, args.overwrite)?;
     let record = RunRecord {
+        version: NUMBER.into(),
+        commit: COMMIT.into(),
+        deck: loaded.sources.full_text(),
+        command: command.into(),
+        threads: start_threads(args.threads)?,
         memory_need: need.total(),
-        ..record(command, &loaded, start_threads(args.threads)?)
     };
-    let notes = override_steps(args, model.steps_mut());
-    let mut writer = ResultWriter::create(model.model(), claim, &record, args.verbosity())?;
+    let notes = override_steps(args, &mut model.model.steps);
+    let mut writer = ResultWriter::create(&model.model, claim, &record, args.verbosity())?;
     writer.heed(interrupt);
     for line in header(args, &files, &loaded, &record, &model) {
         writer.line(&line)?;
@@ -69,7 +73,7 @@ pub(super) fn run(
 /// Describes the model of a deck that shall not be solved; no file is touched.
 fn check_only(args: &RunArgs, loaded: &Loaded, model: &PreparedModel) -> Result<Exit, CliError> {
     if args.verbosity() == Verbosity::Quiet {
-        check_names(model.model())?;
+        check_names(&model.model)?;
         return Ok(Exit::Finished);
     }
     describe(&args.deck, loaded, model)?;
@@ -118,17 +122,6 @@ fn start_threads(wanted: Option<usize>) -> Result<usize, CliError> {
     Ok(rayon::current_num_threads())
 }
 
-fn record(command: &str, loaded: &Loaded, threads: usize) -> RunRecord {
-    RunRecord {
-        version: NUMBER.into(),
-        commit: COMMIT.into(),
-        deck: loaded.sources.full_text(),
-        command: command.into(),
-        threads,
-        memory_need: 0,
-    }
-}
-
 /// The lines above the table of increments.
 fn header(
     args: &RunArgs,
@@ -137,9 +130,9 @@ fn header(
     record: &RunRecord,
     model: &PreparedModel,
 ) -> Vec<String> {
-    let mut lines = program_lines(record, PROFILE, &files.name, &model.model().title);
-    lines.push(deck_line_of(&args.deck.path, loaded, Some(&files.log)));
-    lines.extend(ModelEcho::new(model.model()).lines(model));
+    let mut lines = program_lines(record, PROFILE, &files.name, &model.model.title);
+    lines.push(loaded.line(&args.deck.path, Some(&files.log)));
+    lines.extend(ModelEcho::new(&model.model).lines(model));
     lines
 }
 
@@ -147,38 +140,27 @@ fn header(
 /// replaces.
 fn override_steps(args: &RunArgs, steps: &mut [Step]) -> Vec<String> {
     let mut notes = vec![];
-    for (i, step) in steps.iter_mut().enumerate() {
-        let number = i + 1;
+    for (step, number) in steps.iter_mut().zip(1..) {
+        let mut note = |wanted: String, deck: String| {
+            notes.push(format!(
+                "override step {number}: {wanted} as the command line says, not {deck} as the deck does"
+            ));
+        };
         if let Some(wanted) = args.frames() {
-            notes.extend(frames_note(number, &step.frames, &wanted));
+            if step.frames != wanted && step.frames != Frames::Default {
+                note(frames(&wanted), frames(&step.frames));
+            }
             step.frames = wanted;
         }
         if let Some(wanted) = args.solver.map(SolverChoice::from) {
-            notes.extend(solver_note(number, step.settings.solver, wanted));
-            step.settings.solver = wanted;
+            let name = |choice| format!("solver {}", solver(choice));
+            let deck = std::mem::replace(&mut step.settings.solver, wanted);
+            if deck != wanted {
+                note(name(wanted), name(deck));
+            }
         }
     }
     notes
-}
-
-fn frames_note(step: usize, deck: &Frames, wanted: &Frames) -> Option<String> {
-    (deck != wanted && *deck != Frames::Default).then(|| {
-        format!(
-            "override step {step}: {} as the command line says, not {} as the deck does",
-            frames(wanted),
-            frames(deck)
-        )
-    })
-}
-
-fn solver_note(step: usize, deck: SolverChoice, wanted: SolverChoice) -> Option<String> {
-    (deck != wanted).then(|| {
-        format!(
-            "override step {step}: solver {} as the command line says, not {} as the deck does",
-            solver(wanted),
-            solver(deck)
-        )
-    })
 }
 
 #[cfg(test)]

@@ -20,9 +20,11 @@ pub(super) fn on_screen(printed: io::Result<()>) -> Result<(), CliError> {
     }
 }
 
-/// Prints to the standard error; failures are ignored.
+/// Prints a text, if there is one, to the standard error; failures are ignored.
 pub(super) fn complain(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{}", text.trim_end());
+    if !text.is_empty() {
+        let _ = writeln!(io::stderr().lock(), "{}", text.trim_end());
+    }
 }
 
 /// Whether messages on the standard error are coloured.

@@ -6,6 +6,7 @@ use super::format::{counted, general, grouped, label, scientific, wrap, wrap_wor
 use super::frames::{DEFAULT_FRAMES, are_dense};
 use super::run_record::{RunRecord, utc_now};
 use super::status::monitored;
+use crate::diagnostics::Sources;
 use crate::model::{
     Contact, EdgeScales, Element, ElementType, Frames, Impact, ImpactTime, LandingRule, Model,
     Scheme, Settings, SolverChoice, Step, SurfaceKind,
@@ -47,12 +48,12 @@ impl ModelEcho {
 
     /// The lines of the echo.
     pub fn lines(&self, prepared: &PreparedModel) -> Vec<String> {
-        let model = prepared.model();
+        let model = &prepared.model;
         let mut lines = self.model_lines(model);
         if model.contacts.is_empty() {
             lines.push(label("contact", "none"));
         }
-        for (contact, gaps) in model.contacts.iter().zip(prepared.initial_gaps()) {
+        for (contact, gaps) in model.contacts.iter().zip(&prepared.gaps) {
             lines.extend(contact_lines(model, contact, gaps));
         }
         lines.extend(mass_lines(prepared));
@@ -205,7 +206,7 @@ fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<S
 
 /// Nodes without mass and the nodes of contact surfaces that keep theirs, where mass is redistributed.
 fn mass_lines(prepared: &PreparedModel) -> Vec<String> {
-    let (model, redistribution) = (prepared.model(), prepared.redistribution());
+    let (model, redistribution) = (&prepared.model, &prepared.redistribution);
     let kept = redistribution.kept();
     if redistribution.is_empty() && kept.is_empty() {
         return Vec::new();
@@ -284,16 +285,14 @@ pub fn program_lines(record: &RunRecord, profile: &str, job: &str, title: &str) 
 /// The deck with its size and the number of errors and warnings; `log` holds the warnings.
 pub fn deck_line(
     deck: &Path,
-    includes: usize,
-    lines: usize,
-    errors: usize,
-    warnings: usize,
+    sources: &Sources,
+    [errors, warnings]: [usize; 2],
     log: Option<&Path>,
 ) -> String {
     let name = deck.file_name().unwrap_or_default().to_string_lossy();
-    let included = match includes {
-        0 => String::new(),
-        count => format!(" + {}", counted(count, "include")),
+    let included = match sources.files().len() {
+        0 | 1 => String::new(),
+        count => format!(" + {}", counted(count - 1, "include")),
     };
     let log = match log.and_then(Path::file_name) {
         Some(log) if warnings > 0 => format!(" (see {})", log.to_string_lossy()),
@@ -301,7 +300,7 @@ pub fn deck_line(
     };
     let text = format!(
         "{name}{included}, {}: {}, {}{log}",
-        counted(lines, "line"),
+        counted(sources.line_count(), "line"),
         counted(errors, "error"),
         counted(warnings, "warning"),
     );
@@ -314,8 +313,13 @@ mod tests {
 
     #[test]
     fn one_line_is_no_lines() {
-        let line = |lines, errors| deck_line(Path::new("a/b.inp"), 1, lines, errors, 0, None);
-        assert!(line(1, 1).ends_with("b.inp + 1 include, 1 line: 1 error, 0 warnings"));
-        assert!(line(2, 0).ends_with("b.inp + 1 include, 2 lines: 0 errors, 0 warnings"));
+        let line = |included: &str, errors| {
+            let mut sources = Sources::new();
+            sources.add("b.inp", "*INCLUDE", None);
+            sources.add("c.inp", included, None);
+            deck_line(Path::new("a/b.inp"), &sources, [errors, 0], None)
+        };
+        assert!(line("", 1).ends_with("b.inp + 1 include, 1 line: 1 error, 0 warnings"));
+        assert!(line("**", 0).ends_with("b.inp + 1 include, 2 lines: 0 errors, 0 warnings"));
     }
 }

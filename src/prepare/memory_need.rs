@@ -47,7 +47,7 @@ pub struct MemoryNeed {
 impl MemoryNeed {
     /// Estimates what a run of a model needs.
     pub fn new(prepared: &PreparedModel) -> Self {
-        let mesh = &prepared.model().mesh;
+        let mesh = &prepared.model.mesh;
         let neighbours = neighbours(mesh);
         let dofs = mesh.dof_count();
         // 2 x 2 entries for each pair of nodes
@@ -96,8 +96,8 @@ impl NearPairs {
 /// What near pairs need: all of them, or, where that is much less, those between the same bodies, whose
 /// problems are then solved by blocks.
 fn contact(prepared: &PreparedModel) -> u64 {
-    let bodies = Bodies::new(&prepared.model().mesh).of_node;
-    let gaps = prepared.initial_gaps().iter().flatten();
+    let bodies = Bodies::new(&prepared.model.mesh).of_node;
+    let gaps = prepared.gaps.iter().flatten();
     let (mut all, mut blocks) = (NearPairs::default(), BTreeMap::new());
     for gap in gaps.filter(|gap| gap.gap.abs() <= gap.length) {
         all.add(gap);

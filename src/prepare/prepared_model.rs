@@ -7,17 +7,23 @@ use super::initial_penetration::report_penetrations;
 use super::redistribution::Redistribution;
 use crate::contact::{ContactSurfaces, contact_surfaces};
 use crate::diagnostics::Diagnostics;
-use crate::model::{Model, Step};
+use crate::model::Model;
 
 /// A model with its nodes adjusted, its contact surfaces and the initial gaps between them. Mesh and
-/// contacts stay as they are from here on.
+/// contacts stay as they are from here on; the settings of steps may change.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PreparedModel {
-    model: Model,
-    surfaces: Vec<ContactSurfaces>,
-    gaps: Vec<Vec<InitialGap>>,
-    adjusted: Vec<Adjusted>,
-    redistribution: Redistribution,
+    /// The model, nodes adjusted.
+    pub model: Model,
+    /// Surfaces of every contact.
+    pub surfaces: Vec<ContactSurfaces>,
+    /// Gaps of the slave nodes of each contact in the reference configuration; nodes that face no
+    /// segment are left out.
+    pub gaps: Vec<Vec<InitialGap>>,
+    /// Moved nodes, contact by contact.
+    pub adjusted: Vec<Adjusted>,
+    /// Nodes without mass, and those that carry it.
+    pub redistribution: Redistribution,
 }
 
 /// Prepares a model; reports adjusted nodes, elements that the adjustment spoils, and initial
@@ -54,36 +60,5 @@ impl PreparedModel {
             redistribution,
             model,
         }
-    }
-
-    /// The model, nodes adjusted.
-    pub fn model(&self) -> &Model {
-        &self.model
-    }
-
-    /// Steps, to change their settings.
-    pub fn steps_mut(&mut self) -> &mut [Step] {
-        &mut self.model.steps
-    }
-
-    /// Surfaces of every contact.
-    pub fn contact_surfaces(&self) -> &[ContactSurfaces] {
-        &self.surfaces
-    }
-
-    /// Gaps of the slave nodes of each contact in the reference configuration; nodes that face no
-    /// segment are left out.
-    pub fn initial_gaps(&self) -> &[Vec<InitialGap>] {
-        &self.gaps
-    }
-
-    /// Nodes without mass, and those that carry it.
-    pub fn redistribution(&self) -> &Redistribution {
-        &self.redistribution
-    }
-
-    /// Moved nodes, contact by contact.
-    pub fn adjusted(&self) -> &[Adjusted] {
-        &self.adjusted
     }
 }

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::contact::ContactSurfaces;
-use crate::model::{Face, Mesh, Model};
+use crate::model::{ElementsAtNodes, Face, Mesh, Model};
 use crate::vectors::{angle, difference, length, polygon_area};
 
 /// Rings of elements round a node in which its donors are looked for: the wider where the narrower do
@@ -118,17 +118,12 @@ impl Redistribution {
 /// Elements round every node.
 struct Neighbours<'m> {
     mesh: &'m Mesh,
-    elements: Vec<Vec<usize>>,
+    elements: ElementsAtNodes,
 }
 
 impl<'m> Neighbours<'m> {
     fn new(mesh: &'m Mesh) -> Self {
-        let mut elements = vec![Vec::new(); mesh.node_count()];
-        for (i, element) in mesh.elements.iter().enumerate() {
-            for &node in &element.nodes {
-                elements[node].push(i);
-            }
-        }
+        let elements = ElementsAtNodes::new(mesh);
         Neighbours { mesh, elements }
     }
 
@@ -152,8 +147,8 @@ impl<'m> Neighbours<'m> {
     fn within(&self, node: usize, rings: usize) -> Vec<usize> {
         let mut nodes = vec![node];
         for _ in 0..rings {
-            let elements = nodes.iter().flat_map(|&node| &self.elements[node]);
-            let of_element = |&element: &usize| &self.mesh.elements[element].nodes;
+            let elements = nodes.iter().flat_map(|&node| self.elements.of(node));
+            let of_element = |element: usize| &self.mesh.elements[element].nodes;
             nodes = elements.flat_map(of_element).copied().collect();
             nodes.sort_unstable();
             nodes.dedup();

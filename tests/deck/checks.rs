@@ -245,9 +245,9 @@ fn curved_surfaces_that_mesh_into_each_other_start_with_an_initialization() {
         let (model, d) = pin_in_a_hole(clearance, &fit);
         let model = model.expect("no errors");
         assert!(!d.has_errors() && d.iter().any(|item| item.code == Code::Adjusted));
-        let moved = model.adjusted()[0];
+        let moved = model.adjusted[0];
         assert!(moved.largest < 0.014 && moved.count <= 64, "{moved:?}");
-        let gaps = model.initial_gaps()[0].iter();
+        let gaps = model.gaps[0].iter();
         let deepest = gaps
             .map(|gap| gap.gap / gap.edge)
             .fold(f64::INFINITY, f64::min);

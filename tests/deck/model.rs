@@ -681,7 +681,7 @@ fn adjusted_by(contact: &str) -> ([f64; 2], usize) {
         .replacen("12, 3., 1.1", "12, 3., 0.95", 1)
         .replacen(PAIR, contact, 1);
     let prepared = PreparedModel::new(read(&deck).0);
-    let (model, moved) = (prepared.model(), prepared.adjusted());
+    let (model, moved) = (&prepared.model, &prepared.adjusted);
     let height = |label: u64| {
         let found = model.mesh.node_labels.iter().position(|&l| l == label);
         model.mesh.coordinates[found.expect("node")][1]

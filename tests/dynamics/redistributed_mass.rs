@@ -21,7 +21,7 @@ fn redistributed() -> Settings {
 /// Nodes without mass.
 fn massless(model: &Model) -> Vec<usize> {
     let prepared = PreparedModel::new(model.clone());
-    prepared.redistribution().massless().collect()
+    prepared.redistribution.massless().collect()
 }
 
 /// No increment ends with an overlap, gains energy, or opens the balance; no node loses its velocity.

@@ -95,7 +95,7 @@ fn a_foil_is_not_inside_itself() {
     each(|ratio, layers, triangles| {
         for lifts in [&[0.0][..], &[0.0, 1.0], &[0.0, 1.5], &[0.0, 1.0, 1.0]] {
             let (model, _) = foils(ratio, layers, triangles, lifts);
-            let deepest = PreparedModel::new(model).initial_gaps()[0]
+            let deepest = PreparedModel::new(model).gaps[0]
                 .iter()
                 .map(|gap| -gap.gap / gap.edge)
                 .fold(0.0, f64::max);
@@ -113,7 +113,7 @@ fn a_foil_pressed_into_another_is_told() {
             // the lower side of the second from both sides of the first, whichever is nearer
             let expected = thickness * f64::min(part, 1.0 - part);
             let prepared = PreparedModel::new(model);
-            let found = &prepared.initial_gaps()[0];
+            let found = &prepared.gaps[0];
             let node = foils[1].node(1, 0);
             let gap = found.iter().find(|gap| gap.slave == node).expect("a gap");
             let error = (-gap.gap - expected).abs();

@@ -101,7 +101,7 @@ fn checked_run(mut model: Model, step: Step) -> Keep {
     let mut keep = Keep::default();
     let summary = run(&prepared, &mut keep).expect("the observer never fails");
     assert_eq!(summary.outcome, Outcome::Finished);
-    let elements = Elements::new(prepared.model());
+    let elements = Elements::new(&prepared.model);
     let start = keep.reports[0].energy.kinetic;
     for pair in keep.reports.windows(2) {
         let [before, after] = [&pair[0], &pair[1]];

@@ -37,7 +37,7 @@ pub fn run(prepared: &PreparedModel, observer: &mut dyn Observer) -> Result<RunS
     let discretization = Discretization::new(prepared);
     let mut runner = Runner::new(&discretization, observer);
     let mut start = 0.0;
-    for (index, step) in prepared.model().steps.iter().enumerate() {
+    for (index, step) in prepared.model.steps.iter().enumerate() {
         let place = StepPlace {
             number: index + 1,
             start,

@@ -201,10 +201,7 @@ mod tests {
 
     /// Displacements of a turn of the first block by an angle about its first node.
     fn turned(prepared: &PreparedModel, angle: f64) -> Vec<f64> {
-        let (x, [sin, cos]) = (
-            &prepared.model().mesh.coordinates,
-            [angle.sin(), angle.cos()],
-        );
+        let (x, [sin, cos]) = (&prepared.model.mesh.coordinates, [angle.sin(), angle.cos()]);
         let turn = |[x, y]: &[f64; 2]| [(cos - 1.0) * x - sin * y, sin * x + (cos - 1.0) * y];
         let mut u: Vec<f64> = x.iter().take(NODES).flat_map(turn).collect();
         u.resize(DOFS, 0.0);

@@ -389,12 +389,12 @@ pub(crate) struct Discretization<'m> {
 impl<'m> Discretization<'m> {
     /// The discretization of a model.
     pub fn new(prepared: &'m PreparedModel) -> Self {
-        let model = prepared.model();
+        let model = &prepared.model;
         let elements = Elements::new(model);
-        let redistribution = prepared.redistribution();
+        let redistribution = &prepared.redistribution;
         Discretization {
             model,
-            contacts: prepared.contact_surfaces(),
+            contacts: &prepared.surfaces,
             mass: Mass::new(&elements, redistribution, model.mesh.node_count()),
             redistribution,
             parts: Parts::new(model),
