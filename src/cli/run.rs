@@ -153,10 +153,12 @@ fn override_steps(args: &RunArgs, steps: &mut [Step]) -> Vec<String> {
             step.frames = wanted;
         }
         if let Some(wanted) = args.solver.map(SolverChoice::from) {
-            let name = |choice| format!("solver {}", solver(choice));
             let deck = std::mem::replace(&mut step.settings.solver, wanted);
             if deck != wanted {
-                note(name(wanted), name(deck));
+                note(
+                    format!("solver {}", solver(wanted)),
+                    solver(deck).to_owned(),
+                );
             }
         }
     }

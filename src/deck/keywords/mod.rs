@@ -2,13 +2,9 @@
 //! by name, and the documents made from it.
 
 mod common;
-mod conditions;
-mod contact;
 mod documents;
-mod materials;
-mod mesh;
-mod output;
 mod steps;
+mod table;
 mod types;
 
 pub use documents::{dimensions_json, keyword_reference};
@@ -19,22 +15,19 @@ use std::collections::HashMap;
 use std::sync::LazyLock;
 use types::Unread;
 
-const FAMILIES: [(&[Keyword], &[Unread]); 7] = [
-    (mesh::MESH, mesh::UNREAD_MESH),
-    (mesh::ASSEMBLY, &[]),
-    (materials::MATERIALS, materials::UNREAD_MATERIALS),
-    (contact::CONTACT, contact::UNREAD_CONTACT),
-    (conditions::CONDITIONS, conditions::UNREAD_CONDITIONS),
-    (steps::STEPS, steps::UNREAD_STEPS),
-    (output::OUTPUT, output::UNREAD_OUTPUT),
-];
-
 static ALL: LazyLock<Vec<Keyword>> = LazyLock::new(|| {
     let mut all = Vec::new();
-    for (read, unread) in FAMILIES {
-        all.extend(read);
-        all.extend(unread.iter().flat_map(Unread::keywords));
+    for text in [
+        include_str!("mesh.txt"),
+        include_str!("materials.txt"),
+        include_str!("contact.txt"),
+        include_str!("conditions.txt"),
+    ] {
+        all.extend(table::read(text));
     }
+    all.extend(steps::STEPS);
+    all.extend(steps::UNREAD_STEPS.iter().flat_map(Unread::keywords));
+    all.extend(table::read(include_str!("output.txt")));
     all
 });
 

@@ -138,14 +138,6 @@ impl Unread {
         Unread { example, ..self }
     }
 
-    /// The same with words only in their parameters and data lines.
-    pub(super) const fn of_words(self) -> Unread {
-        Unread {
-            data: Data::Words,
-            ..self
-        }
-    }
-
     /// The keywords.
     pub(super) fn keywords(&self) -> impl Iterator<Item = Keyword> {
         let Unread {
@@ -407,34 +399,5 @@ impl RowForm {
                     holds: Quantity::Plain,
                 },
             })
-    }
-
-    /// The same with the last so many fields repeated along the line.
-    pub(super) const fn repeating(self, repeating: usize) -> RowForm {
-        RowForm { repeating, ..self }
-    }
-
-    /// The same for lines under this value of a parameter.
-    pub(super) const fn under(self, parameter: &'static str, value: &'static str) -> RowForm {
-        RowForm {
-            parameter: Some((parameter, value)),
-            ..self
-        }
-    }
-
-    /// The same for lines that say one of these words in a field, which counts from 0.
-    pub(super) const fn saying(self, field: usize, words: &'static [&'static str]) -> RowForm {
-        RowForm {
-            word: Some((field, words)),
-            ..self
-        }
-    }
-
-    /// The same for the first data line only.
-    pub(super) const fn first(self) -> RowForm {
-        RowForm {
-            first: true,
-            ..self
-        }
     }
 }

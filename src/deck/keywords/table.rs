@@ -1,0 +1,196 @@
+//! The keyword table from its texts, `mesh.txt` and the others beside this file, one for each family of
+//! keywords:
+//!
+//! ```text
+//! *AMPLITUDE @ anywhere, required             where it stands, and its data lines
+//! | under DEFINITION=DECAY | first | A0, A    a kind of data line: which lines, and their fields
+//! - TIME=: which time                         a parameter with a value; TIME alone takes none, TIME[=] may
+//!   = STEP TIME: since the start of the step  a word that its value may be
+//! - SMOOTH= [length] warned: they stay sharp  what its value measures, and that it is not read
+//! - INPUT as *NODE                            the parameter of a keyword before
+//! A function of time.                         what the keyword says
+//! > *AMPLITUDE, NAME=PUSH                     lines of a deck that use it
+//!
+//! *FILTER, *PRINT @ warned                    keywords that are not read
+//! ```
+//!
+//! A line that begins with four blanks continues the one before; lines with two stars are comments.
+
+use super::types::{Data, Keyword, Parameter, RowForm, Scope, Status, Takes, Value};
+
+/// The keywords of a text, in its order.
+pub(super) fn read(text: &'static str) -> Vec<Keyword> {
+    let mut all: Vec<Keyword> = Vec::new();
+    for entry in lines(text).chunk_by(|_, line| !line.starts_with('*')) {
+        let (head, of_entry) = entry.split_first().unwrap_or((&"", &[]));
+        let (names, what) = head.split_once(" @ ").unwrap_or((head, ""));
+        let (status, scope, data) = treatment(what);
+        let with = |mark: &'static str| {
+            of_entry
+                .iter()
+                .filter_map(move |line| line.strip_prefix(mark))
+        };
+        let forms = with("| ").map(form).collect::<Vec<_>>().leak();
+        let is_sentence = |line: &&&str| !line.starts_with(['|', '-', ' ', '>']);
+        let keyword = Keyword {
+            name: "",
+            status,
+            scope,
+            data: match data {
+                "rows" => Data::Rows(forms),
+                "required" => Data::Required(forms),
+                "text" => Data::Text,
+                "words" => Data::Words,
+                "skipped" => Data::Skipped,
+                _ => Data::None,
+            },
+            parameters: parameters(of_entry, &all),
+            text: of_entry.iter().find(is_sentence).unwrap_or(&""),
+            example: with("> ").collect::<Vec<_>>().join("\n").leak(),
+        };
+        all.extend(names.split(", ").map(|name| Keyword {
+            name: name.trim_start_matches('*'),
+            ..keyword
+        }));
+    }
+    all
+}
+
+/// The lines with those that continue them, without comments.
+fn lines(text: &'static str) -> Vec<&'static str> {
+    let mut lines: Vec<String> = Vec::new();
+    let is_said = |line: &&str| !line.is_empty() && !line.starts_with("**");
+    for line in text.lines().filter(is_said) {
+        match (line.strip_prefix("    "), lines.last_mut()) {
+            (Some(more), Some(last)) => last.extend([" ", more]),
+            _ => lines.push(line.to_owned()),
+        }
+    }
+    lines.into_iter().map(|line| &*line.leak()).collect()
+}
+
+/// What is done with a keyword, where it stands, and its data lines.
+fn treatment(what: &'static str) -> (Status, Scope, &'static str) {
+    let (place, data) = what.split_once(", ").unwrap_or((what, "skipped"));
+    if let ("", status @ (Status::Ignored | Status::Warned | Status::Refused)) = with_status(place)
+    {
+        return (status, Scope::Anywhere, data);
+    }
+    let scope = match place.strip_prefix("under *") {
+        Some(block) => match block.strip_suffix(" or model") {
+            Some(block) => Scope::BlockOrModel(block),
+            None => Scope::Block(block),
+        },
+        None => match place {
+            "step" => Scope::Step,
+            "anywhere" => Scope::Anywhere,
+            "assembly" => Scope::Assembly,
+            _ => Scope::Model,
+        },
+    };
+    (Status::Read, scope, data)
+}
+
+/// What stands before the status at the end of a text, and the status.
+fn with_status(text: &'static str) -> (&'static str, Status) {
+    let all = [
+        ("ignored", Status::Ignored),
+        ("warned", Status::Warned),
+        ("refused", Status::Refused),
+    ];
+    let found = all.into_iter().find_map(|(word, status)| {
+        let before = text.strip_suffix(word)?;
+        (before.is_empty() || before.ends_with(' ')).then_some((before.trim_end(), status))
+    });
+    found.unwrap_or((text, Status::Read))
+}
+
+/// The parameters of an entry; `known` are the keywords before.
+fn parameters(lines: &[&'static str], known: &[Keyword]) -> &'static [Parameter] {
+    let mut all: Vec<Parameter> = Vec::new();
+    for (index, line) in lines.iter().enumerate() {
+        let Some(line) = line.strip_prefix("- ") else {
+            continue;
+        };
+        if let Some((name, keyword)) = line.split_once(" as *") {
+            let keyword = known.iter().find(|known| known.name == keyword);
+            all.extend(keyword.and_then(|keyword| keyword.parameter(name)));
+            continue;
+        }
+        let (head, text) = line.split_once(": ").unwrap_or((line, ""));
+        let (head, status) = with_status(head);
+        let (head, measures) = match head
+            .strip_suffix(']')
+            .and_then(|head| head.split_once(" ["))
+        {
+            Some(measured) => measured,
+            None => (head, ""),
+        };
+        let words = lines
+            .iter()
+            .skip(index + 1)
+            .map_while(|line| line.strip_prefix("  = "));
+        let values: Vec<Value> = words.map(value).collect();
+        let (name, takes) = if let Some(name) = head.strip_suffix("[=]") {
+            (
+                name,
+                match values.is_empty() {
+                    true => Takes::Optional,
+                    false => Takes::OptionalChoice(values.leak()),
+                },
+            )
+        } else if let Some(name) = head.strip_suffix('=') {
+            (
+                name,
+                match values.is_empty() {
+                    true => Takes::Value,
+                    false => Takes::Choice(values.leak()),
+                },
+            )
+        } else {
+            (head, Takes::Nothing)
+        };
+        all.push(Parameter {
+            name,
+            takes,
+            measures,
+            status,
+            text,
+        });
+    }
+    all.leak()
+}
+
+/// `WORD status: text`
+fn value(line: &'static str) -> Value {
+    let (head, text) = line.split_once(": ").unwrap_or((line, ""));
+    let (name, status) = with_status(head);
+    Value { name, status, text }
+}
+
+/// `condition | condition | fields`
+fn form(line: &'static str) -> RowForm {
+    let (conditions, fields) = line.rsplit_once(" | ").unwrap_or(("", line));
+    let mut form = RowForm {
+        parameter: None,
+        word: None,
+        first: false,
+        fields,
+        repeating: 0,
+    };
+    for condition in conditions.split(" | ") {
+        match condition.split_once(' ') {
+            Some(("under", which)) => {
+                form.parameter = Some(which.split_once('=').unwrap_or((which, "")));
+            }
+            Some(("word", which)) => {
+                let (field, words) = which.split_once(' ').unwrap_or((which, ""));
+                let words: Vec<&str> = words.split(' ').collect();
+                form.word = Some((field.parse().unwrap_or(0), words.leak()));
+            }
+            Some(("repeat", count)) => form.repeating = count.parse().unwrap_or(0),
+            _ => form.first |= condition == "first",
+        }
+    }
+    form
+}
