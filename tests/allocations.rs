@@ -14,6 +14,7 @@ use stickslip::model::{
     Support, SupportMotion,
 };
 
+// shared with tests/dynamics, which use all of it
 #[allow(dead_code)]
 #[path = "dynamics/blocks.rs"]
 mod blocks;

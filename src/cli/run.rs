@@ -112,7 +112,7 @@ fn start_threads(wanted: Option<usize>) -> Result<usize, CliError> {
     let threads = wanted.unwrap_or_else(processors);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
     if let Err(error) = pool.use_current_thread().build_global() {
-        // Where none are asked for, those that run already will do.
+        // Without --threads the threads are used that the process has started already.
         let run_already = error.source().is_none();
         if wanted.is_some() || !run_already {
             let reason = error.to_string();

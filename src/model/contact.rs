@@ -183,6 +183,9 @@ pub struct Equation {
 }
 
 impl Equation {
+    /// Sum of terms of an equation, relative to their sizes, that counts as zero.
+    pub const ROUND_OFF: f64 = 1e-12;
+
     /// The eliminated dof and the dofs that it follows.
     pub fn dofs(&self) -> impl Iterator<Item = usize> + '_ {
         std::iter::once(self.dof).chain(self.terms.iter().map(|&(dof, _)| dof))

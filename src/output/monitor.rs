@@ -160,9 +160,6 @@ impl Monitor {
     }
 }
 
-/// Sum of the coefficients of an equation, relative to their sizes, that counts as zero.
-const SUM_ROUND_OFF: f64 = 1e-12;
-
 /// Follows the energy balance, the energy that contact puts in and, of a free model, the momentum.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Balance {
@@ -281,7 +278,7 @@ fn keeps_momentum(equation: &Equation) -> bool {
         (*sum, *size) = (*sum + c, *size + f64::abs(c));
     }
     sums.iter()
-        .all(|[sum, size]| sum.abs() <= SUM_ROUND_OFF * size)
+        .all(|[sum, size]| sum.abs() <= Equation::ROUND_OFF * size)
 }
 
 /// Time of the run and the parts of its phases; `output` and `total` are wall-clock times in

@@ -70,6 +70,8 @@ pub struct ResultSummary {
     pub frames: Vec<f64>,
     /// Last value of each energy.
     pub energy: Energy,
+    /// Accounts of the energy that an older file does not have.
+    unrecorded: Vec<&'static str>,
     /// Largest energy or external work of the history.
     pub largest_energy: f64,
     /// Largest absolute balance of the history.
@@ -104,7 +106,7 @@ impl ResultSummary {
         let (run, history) = (file.group("run")?, file.group("history")?);
         let times: Vec<f64> = column(&history, "time")?;
         let steps: Vec<i64> = column(&history, "step")?;
-        let (energy, largest_energy) = read_energy(&history.group("energy")?)?;
+        let (energy, unrecorded, largest_energy) = read_energy(&history.group("energy")?)?;
         let balance: Vec<f64> = column(&history, "energy/balance")?;
         let contacts = history.group("contact")?;
         let losses = Losses::new(&energy, read_handovers(&contacts)?, largest_energy);
@@ -129,6 +131,7 @@ impl ResultSummary {
             time: times.last().copied().unwrap_or(0.0),
             frames: read_frames(&file)?,
             energy,
+            unrecorded,
             largest_energy,
             worst_balance: largest(&balance),
             residual: largest(&column::<f64>(&history, "solver/residual")?),
@@ -210,7 +213,11 @@ impl ResultSummary {
         let told = ACCOUNTS.iter().filter_map(|(name, account)| {
             let value = *account(&mut energy);
             let is_told = value != 0.0 || !RARE_ACCOUNTS.contains(name);
-            is_told.then(|| format!("{} {}", name.replace('_', " "), scientific(value, 4)))
+            let value = match self.unrecorded.contains(name) {
+                true => "not recorded".to_owned(),
+                false => scientific(value, 4),
+            };
+            is_told.then(|| format!("{} {value}", name.replace('_', " ")))
         });
         let pieces: Vec<String> = told.collect();
         let mut lines = wrap("energy", &pieces);
@@ -243,12 +250,14 @@ const ACCOUNTS: [Account; 11] = [
 /// Accounts that most runs have no entry in: told where they are not zero.
 const RARE_ACCOUNTS: [&str; 3] = ["landing_return", "release_loss", "damping"];
 
-/// Last value of each energy, and the largest that counts as the balance's scale. Accounts that an older
-/// file lacks are zero.
-fn read_energy(at: &Group) -> hdf5::Result<(Energy, f64)> {
-    let (mut energy, mut scale) = (Energy::default(), 0.0);
+/// Last value of each energy, the accounts that an older file lacks, which are zero, and the largest energy
+/// that counts as the balance's scale.
+fn read_energy(at: &Group) -> hdf5::Result<(Energy, Vec<&'static str>, f64)> {
+    let (mut energy, mut unrecorded, mut scale) = (Energy::default(), Vec::new(), 0.0);
     for (k, (name, account)) in ACCOUNTS.iter().enumerate() {
-        let values: Vec<f64> = match k < 3 || at.link_exists(name) {
+        let is_recorded = k < 3 || at.link_exists(name);
+        unrecorded.extend((!is_recorded).then_some(*name));
+        let values: Vec<f64> = match is_recorded {
             true => column(at, name)?,
             false => Vec::new(),
         };
@@ -257,7 +266,7 @@ fn read_energy(at: &Group) -> hdf5::Result<(Energy, f64)> {
         }
         *account(&mut energy) = values.last().copied().unwrap_or(0.0);
     }
-    Ok((energy, scale))
+    Ok((energy, unrecorded, scale))
 }
 
 /// Figures that the warnings are made from; datasets that older files lack are left out.

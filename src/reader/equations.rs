@@ -12,9 +12,6 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Terms on a data line; each takes three fields.
 const TERMS_PER_LINE: usize = 4;
 
-/// Sum of velocities, relative to its largest terms, that counts as zero.
-const ROUND_OFF: f64 = 1e-12;
-
 /// Largest ratio of two displacements of an equation, and the inverse of the smallest: its square, which stiffness
 /// and mass are multiplied by, and their products stay within the range of numbers.
 const LARGEST_RATIO: f64 = 1e50;
@@ -310,7 +307,7 @@ pub(crate) fn check_velocities(
         let (sum, size) = parts.fold((0.0, of(*dof).abs()), |(sum, size), part| {
             (sum + part, size + part.abs())
         });
-        if (sum - of(*dof)).abs() > ROUND_OFF * size {
+        if (sum - of(*dof)).abs() > Equation::ROUND_OFF * size {
             let message = format!("{} does not start with its velocity", name(*dof, targets));
             cx.warning(Code::BadEquation, *span, message)
                 .help("it starts with what follows from the other terms");

@@ -3,6 +3,7 @@
 
 use std::fs;
 use std::process::{Child, Command, Stdio};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use super::{Bench, DROP};
@@ -41,8 +42,22 @@ impl Bench {
     }
 }
 
+/// Longest time that a run may take to end by itself.
+const PATIENCE: Duration = Duration::from_secs(120);
+
 /// Exit code and standard error of a program that ends by itself.
-fn end(run: Child) -> (i32, String) {
+fn end(mut run: Child) -> (i32, String) {
+    let start = Instant::now();
+    while run.try_wait().expect("a state").is_none() {
+        if start.elapsed() > PATIENCE {
+            run.kill().expect("killed");
+            panic!(
+                "the run has not ended in {PATIENCE:?}: if it was sent a signal, the shell that started the \
+                 tests ignores it, and so does every program below that shell"
+            );
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
     let output = run.wait_with_output().expect("ended");
     let code = output.status.code().expect("ended by itself");
     (code, String::from_utf8_lossy(&output.stderr).into_owned())

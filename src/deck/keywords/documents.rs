@@ -2,10 +2,9 @@
 //! dimensions as JSON for programs that change the units of a deck.
 
 use super::keywords;
-use super::types::{
-    Data, Field, Keyword, Parameter, Quantity, RowForm, Scope, Status, Takes, Value,
-};
+use super::types::{Data, Field, Keyword, Parameter, Quantity, RowForm, Scope, Status, Takes};
 use crate::diagnostics::wrapped;
+use serde_json::{Map, Value as Json, json};
 use std::fmt::Write;
 
 /// Markdown text of the keyword reference: a table of what is read, each keyword by itself, and
@@ -13,7 +12,7 @@ use std::fmt::Write;
 pub fn keyword_reference() -> String {
     let read: Vec<&Keyword> = keywords().filter(|k| k.status == Status::Read).collect();
     let mut text = String::from(HEAD);
-    text.push_str("## What is read\n\n| keyword | |\n|---|---|\n");
+    text.push_str("## Keywords that are read\n\n| keyword | |\n|---|---|\n");
     for keyword in &read {
         push_entry(&mut text, keyword);
     }
@@ -22,9 +21,12 @@ pub fn keyword_reference() -> String {
         push_keyword(&mut text, keyword);
     }
     let others = [
-        (Status::Refused, "What stops with an error"),
-        (Status::Warned, "What is left out with a warning"),
-        (Status::Ignored, "What is left out silently"),
+        (Status::Refused, "Keywords that stop with an error"),
+        (Status::Warned, "Keywords that are left out with a warning"),
+        (
+            Status::Ignored,
+            "Keywords that are left out without a warning",
+        ),
     ];
     for (status, title) in others {
         push_list(&mut text, status, title);
@@ -54,7 +56,7 @@ A deck is a text file, ASCII or UTF-8.
 An error stops the run before it begins. These are errors:
 
 * a keyword, parameter or value that this page does not list;
-* a field beyond those that a data line has;
+* a data line with more fields than its keyword reads;
 * a NUL byte, or a line of more than 65536 bytes (Abaqus reads 256);
 * a wave speed, or the area, stiffness or mass of an element, that overflows or vanishes in
   floating-point numbers.
@@ -281,7 +283,7 @@ fn condition(form: &RowForm) -> String {
 }
 
 /// What the numbers of accepted keywords measure, as JSON: an object with an entry for every
-/// keyword.
+/// keyword, each on a line.
 pub fn dimensions_json() -> String {
     let entries: Vec<String> = keywords().filter_map(entry).collect();
     format!("{{\n{}\n}}\n", entries.join(",\n"))
@@ -289,86 +291,54 @@ pub fn dimensions_json() -> String {
 
 /// The entry of a keyword; `None` if what it holds is not known.
 fn entry(keyword: &Keyword) -> Option<String> {
-    let parameters = keyword.parameters.iter();
-    let taken = parameters.filter(|parameter| parameter.status != Status::Refused);
-    let parameters = taken.map(|parameter| {
-        let value = measure(parameter);
-        format!("    \"{}\": {value}", parameter.name)
-    });
-    let content = match keyword.data {
-        Data::Skipped => return None,
-        Data::Words => "  \"anything\": true".to_string(),
-        Data::Text => object("parameters", parameters) + ",\n  \"text\": true",
-        data => {
-            let rows = data.forms().iter().map(row);
-            object("parameters", parameters) + ",\n" + &list("rows", rows)
+    let taken = |status: Status| status != Status::Refused;
+    let parameters = keyword.parameters.iter().filter(|p| taken(p.status));
+    let measure = |parameter: &Parameter| match parameter.values() {
+        [] => quantity(parameter.holds()),
+        values => {
+            let taken = values.iter().filter(|value| taken(value.status));
+            taken.map(|value| value.name).collect()
         }
     };
-    Some(format!(" \"{}\": {{\n{content}\n }}", keyword.name))
+    let parameters: Map<String, Json> = parameters
+        .map(|parameter| (parameter.name.to_string(), measure(parameter)))
+        .collect();
+    let content = match keyword.data {
+        Data::Skipped => return None,
+        Data::Words => json!({"anything": true}),
+        Data::Text => json!({"parameters": parameters, "text": true}),
+        data => {
+            let rows: Vec<Json> = data.forms().iter().map(row).collect();
+            json!({"parameters": parameters, "rows": rows})
+        }
+    };
+    Some(format!("\"{}\": {content}", keyword.name))
 }
 
-fn measure(parameter: &Parameter) -> String {
-    match parameter.values() {
-        [] => quantity(parameter.holds()),
-        values => words(values),
+fn row(form: &RowForm) -> Json {
+    let fields: Vec<Json> = form.fields().map(|field| quantity(field.holds)).collect();
+    let mut row = json!({"fields": fields});
+    if let Some(parameter) = form.parameter {
+        row["parameter"] = json!(parameter);
     }
-}
-
-/// The accepted words of a parameter's values.
-fn words(values: &[Value]) -> String {
-    let taken = values
-        .iter()
-        .filter(|value| value.status != Status::Refused);
-    let words: Vec<String> = taken.map(|value| format!("\"{}\"", value.name)).collect();
-    format!("[{}]", words.join(", "))
-}
-
-fn object(name: &str, lines: impl Iterator<Item = String>) -> String {
-    bracketed(name, lines, ["{", "}"])
-}
-
-fn list(name: &str, lines: impl Iterator<Item = String>) -> String {
-    bracketed(name, lines, ["[", "]"])
-}
-
-fn bracketed(name: &str, lines: impl Iterator<Item = String>, [open, close]: [&str; 2]) -> String {
-    let lines: Vec<String> = lines.collect();
-    match lines.is_empty() {
-        true => format!("  \"{name}\": {open}{close}"),
-        false => format!("  \"{name}\": {open}\n{}\n  {close}", lines.join(",\n")),
-    }
-}
-
-fn row(form: &RowForm) -> String {
-    let mut text = String::from("    {");
-    if let Some((name, value)) = form.parameter {
-        let _ = write!(text, "\"parameter\": [\"{name}\", \"{value}\"], ");
-    }
-    if let Some((index, words)) = form.word {
-        let words: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
-        let _ = write!(text, "\"word\": [{index}, [{}]], ", words.join(", "));
+    if let Some(word) = form.word {
+        row["word"] = json!(word);
     }
     if form.first {
-        text.push_str("\"first\": true, ");
+        row["first"] = json!(true);
     }
-    let fields: Vec<String> = form.fields().map(|f| quantity(f.holds)).collect();
-    let _ = write!(text, "\"fields\": [{}]", fields.join(", "));
     if form.repeating > 0 {
-        let _ = write!(text, ", \"repeating\": {}", form.repeating);
+        row["repeating"] = json!(form.repeating);
     }
-    text + "}"
+    row
 }
 
-fn quantity(quantity: Quantity) -> String {
+fn quantity(quantity: Quantity) -> Json {
     match quantity {
-        Quantity::Plain => "null".to_string(),
-        Quantity::Of(dimension) => format!("\"{dimension}\""),
-        Quantity::OfOr(dimension, default) => {
-            format!("{{\"dimension\": \"{dimension}\", \"default\": \"{default}\"}}")
-        }
-        Quantity::OrName(dimension) => {
-            format!("{{\"dimension\": \"{dimension}\", \"or_name\": true}}")
-        }
-        Quantity::Unknown => "\"unknown\"".to_string(),
+        Quantity::Plain => Json::Null,
+        Quantity::Of(dimension) => json!(dimension),
+        Quantity::OfOr(dimension, default) => json!({"dimension": dimension, "default": default}),
+        Quantity::OrName(dimension) => json!({"dimension": dimension, "or_name": true}),
+        Quantity::Unknown => json!("unknown"),
     }
 }

@@ -169,7 +169,10 @@ pub(super) static STEPS: &[Keyword] = &[
             P::choice(
                 "CONTACT MASS",
                 &[
-                    V::read("CONSISTENT", "that of the elements (default)"),
+                    V::read(
+                        "CONSISTENT",
+                        "every node has its part of the mass of its elements (default)",
+                    ),
                     V::read(
                         "REDISTRIBUTED",
                         "carried by the nodes behind the surface: no node lands with mass",
