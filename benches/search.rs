@@ -66,7 +66,13 @@ fn main() {
         group.bench_function(BenchmarkId::new("pairs", n), |bencher| {
             bencher.iter(|| {
                 search.cover(black_box(&u));
-                find_targets(&search, [&u, &u], [], (&[], None), &mut pairs);
+                find_targets(
+                    &search,
+                    [&u, &u],
+                    &[],
+                    (&ClosedPairs::default(), None),
+                    &mut pairs,
+                );
                 pairs.len()
             });
         });

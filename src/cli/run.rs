@@ -257,7 +257,7 @@ mod tests {
                 u: vec![1.0; 8],
                 v: vec![0.0; 8],
                 a: vec![0.0; 8],
-                internal: vec![],
+                ..State::default()
             },
             nodal: NodalResults {
                 reaction: vec![0.0; 8],

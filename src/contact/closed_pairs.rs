@@ -2,10 +2,9 @@
 //! contact. It starts the next complementarity problem, chooses the pairs of impulses, and tells the
 //! tunnelling check and the landings which nodes are in contact. Sections 5 and 6 of docs/theory.md.
 
-use std::ops::Range;
-
-use super::constraint::{Constraint, ConstraintKey};
-use super::targets::ContactTarget;
+use super::constraint::{Configurations, Constraint};
+use super::keys::{ConstraintKey, SlaveKey};
+use super::targets::PairTarget;
 use crate::lcp::ContactState;
 
 /// A pair in contact.
@@ -13,8 +12,8 @@ use crate::lcp::ContactState;
 pub struct ClosedPair {
     /// Its constraint.
     pub key: ConstraintKey,
-    /// What its slave node touches.
-    pub target: ContactTarget,
+    /// What its constraint was made from.
+    pub(super) source: PairTarget,
     /// Pn and Pt (force), or the impulses Phi and Psi.
     pub force: [f64; 2],
     /// Whether it sticks or slides.
@@ -26,23 +25,20 @@ impl ClosedPair {
     pub fn new(constraint: &Constraint, force: [f64; 2], state: ContactState) -> Self {
         ClosedPair {
             key: constraint.key,
-            target: constraint.source.target,
+            source: constraint.source,
             force,
             state,
         }
     }
 
-    /// A pair of a slave node and a segment that touch, as yet without force.
-    pub fn touching(slave_index: usize, segment: usize) -> Self {
-        ClosedPair {
-            key: ConstraintKey {
-                slave_index,
-                segment,
-            },
-            target: ContactTarget::face(segment),
-            force: [0.0; 2],
-            state: ContactState::Stick,
-        }
+    /// Its constraint between other configurations, at whose start the same target holds it.
+    pub fn constraint(&self, at: &Configurations) -> Constraint {
+        Constraint::new(self.source.untilted(), at)
+    }
+
+    /// Its nodes; one may come twice.
+    pub fn nodes(&self) -> [usize; 4] {
+        self.source.nodes
     }
 }
 
@@ -78,10 +74,9 @@ impl ClosedPairs {
         self.0.iter()
     }
 
-    /// Slave index and segment of all pairs.
-    pub fn segments(&self) -> Vec<[usize; 2]> {
-        let of_pair = |pair: &ClosedPair| [pair.key.slave_index, pair.key.segment];
-        self.0.iter().map(of_pair).collect()
+    /// Their keys, increasing.
+    pub fn keys(&self) -> impl Iterator<Item = ConstraintKey> {
+        self.0.iter().map(|pair| pair.key)
     }
 
     /// Number of pairs.
@@ -100,14 +95,9 @@ impl ClosedPairs {
         self.0.iter().filter(sticks).count()
     }
 
-    /// Place of a pair among the others, or the place where it would stand.
-    pub fn position(&self, key: ConstraintKey) -> Result<usize, usize> {
-        self.0.binary_search_by_key(&key, |pair| pair.key)
-    }
-
     /// Whether a constraint is closed.
     pub fn closes(&self, key: ConstraintKey) -> bool {
-        self.position(key).is_ok()
+        self.find(key).is_some()
     }
 
     /// Normal and tangential force of a constraint; zero of an open one.
@@ -118,43 +108,20 @@ impl ClosedPairs {
     /// State of a constraint; a node that has come to another segment keeps the one it had.
     pub fn state(&self, key: ConstraintKey) -> ContactState {
         self.find(key)
-            .or(self.of_slave(key.slave_index).first())
+            .or(self.of_slave(key.slave).first())
             .map_or(ContactState::Open, |pair| pair.state)
     }
 
-    /// Whether one of the segments of a constraint is that of a closed pair of its slave node.
-    pub fn has_segment_of(&self, constraint: &Constraint) -> bool {
-        let slave_index = constraint.key.slave_index;
-        let mut segments = constraint.source.target.segments();
-        segments.any(|segment| {
-            self.closes(ConstraintKey {
-                slave_index,
-                segment,
-            })
-        })
-    }
-
     /// The pairs of a slave node.
-    pub fn of_slave(&self, slave_index: usize) -> &[ClosedPair] {
-        &self.0[self.range_of_slave(slave_index)]
-    }
-
-    /// Places of the pairs of a slave node.
-    pub fn range_of_slave(&self, slave_index: usize) -> Range<usize> {
-        let is_before = |pair: &ClosedPair| pair.key.slave_index < slave_index;
-        let from = self.0.partition_point(is_before);
-        let is_own = |pair: &&ClosedPair| pair.key.slave_index == slave_index;
-        from..from + self.0[from..].iter().take_while(is_own).count()
-    }
-
-    /// Adds a pair at its place unless it is there.
-    pub fn insert(&mut self, pair: ClosedPair) {
-        if let Err(place) = self.position(pair.key) {
-            self.0.insert(place, pair);
-        }
+    pub fn of_slave(&self, slave: SlaveKey) -> &[ClosedPair] {
+        let from = self.0.partition_point(|pair| pair.key.slave < slave);
+        let is_own = |pair: &&ClosedPair| pair.key.slave == slave;
+        let count = self.0[from..].iter().take_while(is_own).count();
+        &self.0[from..from + count]
     }
 
     fn find(&self, key: ConstraintKey) -> Option<&ClosedPair> {
-        self.position(key).ok().map(|place| &self.0[place])
+        let place = self.0.binary_search_by_key(&key, |pair| pair.key).ok()?;
+        Some(&self.0[place])
     }
 }

@@ -11,22 +11,13 @@ use std::array::from_fn;
 use smallvec::SmallVec;
 
 use super::geometry::position;
-use super::pairing::PairTarget;
+use super::keys::{ConstraintKey, NodeAtSegment};
+use super::targets::PairTarget;
 use super::tolerances::NOTHING;
 
 /// One value for every dof of a constraint: stored in place up to the eight dofs of a corner, on
 /// the heap beyond.
 pub type PerDof<T> = SmallVec<[T; 8]>;
-
-/// What identifies a constraint through passes and increments.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ConstraintKey {
-    /// Number of the slave node among those of all contacts.
-    pub slave_index: usize,
-    /// Segment in its contact, at a corner that before it. A kind with one constraint for each slave
-    /// node gives the same number to all.
-    pub segment: usize,
-}
 
 /// A normal and a tangential row over the dofs of a constraint.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,9 +96,8 @@ pub struct Constraint {
     pub mu: f64,
     /// Length that gaps are relative to: that of the segment.
     pub scale: f64,
-    /// The slave node and target it was made from. Only the contact layer and reports of contact
-    /// read it.
-    pub source: PairTarget,
+    /// The slave node and target it was made from.
+    pub(super) source: PairTarget,
 }
 
 impl Constraint {
@@ -125,10 +115,7 @@ impl Constraint {
         let d = dofs.map(|dof| at.u[dof] - at.u0[dof]);
         let product = |row: &[f64; N]| -> f64 { row.iter().zip(&d).map(|(b, d)| b * d).sum() };
         Constraint {
-            key: ConstraintKey {
-                slave_index: source.slave_index,
-                segment: source.target.segment,
-            },
+            key: source.key,
             dofs: in_place(dofs),
             slave_dofs: 2,
             force_rows: force.rows(),
@@ -154,6 +141,16 @@ impl Constraint {
             force_rows: self.force_rows.clone(),
             other_derivative_rows: None,
             ..*self
+        }
+    }
+
+    /// The same constraint with another gap and slip, relative to another length.
+    pub fn with_gap_and_slip(&self, [gap, slip]: [f64; 2], scale: f64) -> Self {
+        Constraint {
+            gap,
+            slip,
+            scale,
+            ..self.clone()
         }
     }
 
@@ -203,6 +200,40 @@ impl Constraint {
     /// Its nodes, slave nodes first.
     pub fn nodes(&self) -> impl Iterator<Item = usize> {
         self.dofs.chunks_exact(2).map(|dofs| dofs[0] / 2)
+    }
+
+    /// A slave node and the segment that it meets, at a corner that before it: what messages name.
+    pub fn pair(&self) -> NodeAtSegment {
+        let [s, a, b, _] = self.source.nodes;
+        NodeAtSegment {
+            key: self.key,
+            nodes: [s, a, b],
+        }
+    }
+
+    /// The same; at a corner, with the segment whose normal has the larger weight.
+    pub fn nearer_pair(&self) -> NodeAtSegment {
+        let [s, a, b, c] = self.source.nodes;
+        let nodes = match self.source.target.corner {
+            Some(corner) if corner.weight > 0.5 => [s, b, c],
+            _ => [s, a, b],
+        };
+        NodeAtSegment {
+            key: self.key,
+            nodes,
+        }
+    }
+
+    /// The keys that its slave node has at each of its segments: at a corner, two.
+    pub fn segments(&self) -> impl Iterator<Item = ConstraintKey> {
+        let slave = self.key.slave;
+        let segments = self.source.target.segments();
+        segments.map(move |segment| ConstraintKey { slave, segment })
+    }
+
+    /// Whether friction does not depend on the slip rate.
+    pub fn has_constant_friction(&self) -> bool {
+        self.source.friction.is_constant()
     }
 
     /// Its slave nodes.

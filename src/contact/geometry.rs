@@ -75,6 +75,12 @@ impl<'a> Positions<'a> {
         let ([x, y], [u, v]) = (self.x[node], self.u[node]);
         [x + u, y + v]
     }
+
+    /// Projection of a node on a segment; `nodes` are slave, a and b.
+    pub fn place(&self, nodes: [usize; 3]) -> Projection {
+        let [s, a, b] = nodes.map(|node| self.of(node));
+        project(s, a, b)
+    }
 }
 
 /// Position of a node: reference coordinates plus displacement.

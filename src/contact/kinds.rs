@@ -1,7 +1,7 @@
 //! Kinds of contact constraints: which kind is made for which target. Section 3 of docs/theory.md.
 
 use super::constraint::{Configurations, Constraint};
-use super::pairing::PairTarget;
+use super::targets::PairTarget;
 use super::{node_to_corner, node_to_segment};
 
 impl Constraint {
@@ -23,6 +23,11 @@ impl Constraint {
             mu: self.mu,
             ..Constraint::new(source, start)
         }
+    }
+
+    /// The same constraint between other configurations, at whose start the same target holds the node.
+    pub fn untilted(&self, at: &Configurations) -> Self {
+        Constraint::new(self.source.untilted(), at)
     }
 
     /// The same constraint between other configurations.

@@ -1,12 +1,14 @@
 //! Contact of slave nodes with segments and corners: surfaces, search, targets, constraints and
 //! their complementarity problem, crossing and tunnelling.
 
+mod active_constraints;
 mod closed_pairs;
 mod compliance;
 mod constraint;
 mod crossing;
 mod delassus;
 mod geometry;
+mod keys;
 mod kinds;
 mod node_to_corner;
 mod node_to_segment;
@@ -16,21 +18,25 @@ mod seam_tests;
 mod search;
 mod stiffness;
 mod targets;
+#[cfg(test)]
+pub(crate) mod testing;
 pub(crate) mod tolerances;
 mod tunnelling;
 #[cfg(test)]
 mod tunnelling_tests;
 
+pub use active_constraints::{ActiveConstraints, ConstraintSet};
 pub use closed_pairs::{ClosedPair, ClosedPairs};
 pub use compliance::{Compliance, Scope};
-pub use constraint::{Configurations, Constraint, ConstraintKey, PerDof, RowForm, Rows};
+pub use constraint::{Configurations, Constraint, PerDof, RowForm, Rows};
 pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
 pub use delassus::{DelassusSpace, frictional_lcp};
 pub(crate) use geometry::position;
 pub use geometry::{
     Along, ContactSurfaces, Interior, Positions, Projection, contact_surfaces, project,
 };
-pub use pairing::{PairTarget, find_targets};
+pub use keys::{ConstraintKey, NodeAtSegment, SlaveKey};
+pub use pairing::find_targets;
 pub use search::{Candidate, ListedSlave, Search, Territory, all_segments};
-pub use targets::{ContactTarget, Corner, SlaveNode, common_normal};
-pub use tunnelling::{Penetration, crossed_edges, find_penetration};
+pub use targets::{ContactTarget, Corner, PairTarget, SlaveNode, common_normal};
+pub use tunnelling::{crossed_edges, find_penetration};

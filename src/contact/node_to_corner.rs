@@ -3,8 +3,8 @@
 
 use super::constraint::{Configurations, Constraint, RowPair};
 use super::node_to_segment::segment_rows;
-use super::pairing::PairTarget;
 use super::targets::Corner;
+use super::targets::PairTarget;
 
 /// The constraint at the corner b between the segments from a to b and from b to c; nodes s, a, b, c.
 ///
@@ -53,9 +53,8 @@ fn at_last_nodes([sx, sy, bx, by, cx, cy]: [f64; 6]) -> [f64; 8] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::RowForm;
     use crate::contact::targets::ContactTarget;
-    use crate::model::Friction;
+    use crate::contact::{RowForm, testing};
 
     /// Corner of a roof, displaced, on which the node 0 has come to lie.
     const ROOF: [[f64; 2]; 4] = [[0.3, 1.1], [2.0, 0.1], [0.3, 1.1], [-0.8, 0.9]];
@@ -65,17 +64,11 @@ mod tests {
             next: 1,
             weight: 0.3,
         };
-        let source = PairTarget {
-            slave_index: 0,
-            target: ContactTarget {
-                segment: 0,
-                corner: Some(corner),
-                from: None,
-            },
-            nodes: [0, 1, 2, 3],
-            from: None,
-            friction: Friction::constant(0.3),
+        let target = ContactTarget {
+            corner: Some(corner),
+            ..ContactTarget::face(0)
         };
+        let source = testing::pair(target, [0, 1, 2, 3]);
         let (x, u0) = (&ROOF, &[0.0; 8]);
         Constraint::new(source, &Configurations { form, x, u0, u })
     }

@@ -3,7 +3,7 @@
 
 use super::constraint::{Configurations, Constraint, RowForm, RowPair};
 use super::geometry::{Projection, project};
-use super::pairing::PairTarget;
+use super::targets::PairTarget;
 use super::targets::{position_round_off, rise};
 use crate::vectors::{cross, difference, dot};
 
@@ -193,7 +193,7 @@ mod tests {
     use super::super::constraint::Rows;
     use super::*;
     use crate::contact::geometry::position;
-    use crate::contact::targets::ContactTarget;
+    use crate::contact::testing;
     use crate::model::Friction;
 
     const X: [[f64; 2]; 3] = [[0.7, 0.4], [2.0, 0.1], [-0.5, -0.2]];
@@ -201,13 +201,7 @@ mod tests {
     const U1: [f64; 6] = [-0.4, -0.35, 0.3, 0.2, 0.25, -0.3];
 
     fn between(form: RowForm, u0: &[f64], u: &[f64]) -> Constraint {
-        let source = PairTarget {
-            slave_index: 0,
-            target: ContactTarget::face(0),
-            nodes: [0, 1, 2, 2],
-            from: None,
-            friction: Friction::constant(0.3),
-        };
+        let source = testing::face(Friction::constant(0.3));
         let x = &X;
         Constraint::new(source, &Configurations { form, x, u0, u })
     }
@@ -254,11 +248,8 @@ mod tests {
             let x = [[0.0, height], [0.0; 2], [-1.0, 0.0], [1.0, 0.0]];
             let u = [-slip, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
             let source = PairTarget {
-                slave_index: 0,
-                target: ContactTarget::face(0),
-                nodes: [0, 1, 2, 2],
                 from: Some([3, 1]),
-                friction: Friction::constant(0.3),
+                ..testing::face(Friction::constant(0.3))
             };
             let form = RowForm::DiscreteGradient;
             let u0 = &[0.0; 8];

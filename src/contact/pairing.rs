@@ -3,72 +3,49 @@
 
 use smallvec::SmallVec;
 
+use super::closed_pairs::ClosedPairs;
+use super::constraint::Constraint;
 use super::geometry::Positions;
+use super::keys::NodeAtSegment;
 use super::search::{ListedSlave, Search};
-use super::targets::{ContactTarget, SlaveNode, Targets};
+use super::targets::{ContactTarget, PairTarget, SlaveNode, Targets};
 use super::tolerances::KEPT_BEYOND_ENDS;
-use crate::model::Friction;
-
-/// Which slave node meets which segment, or which corner.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PairTarget {
-    /// Place of the slave node among all slave nodes of all contacts.
-    pub slave_index: usize,
-    /// Segment in its contact, or corner.
-    pub target: ContactTarget,
-    /// Nodes: slave s, segment ends a and b, and c, the end of the next segment behind a corner;
-    /// without corner it is b again.
-    pub nodes: [usize; 4],
-    /// Ends of the segment that held the node at the start, where it has slid on from there.
-    pub from: Option<[usize; 2]>,
-    /// Coulomb friction.
-    pub friction: Friction,
-}
-
-impl PairTarget {
-    /// Ends of its segment; at a corner, of that whose normal has the larger weight.
-    pub fn nearer_segment(&self) -> [usize; 2] {
-        let [_, a, b, c] = self.nodes;
-        match self.target.corner {
-            Some(corner) if corner.weight > 0.5 => [b, c],
-            _ => [a, b],
-        }
-    }
-}
 
 /// Writes the pairs of all contacts between the displacements `u0` of the start of an increment and `u`
-/// of an iterate, which the search covers; increasing by slave index and segment, as those `before`,
-/// of the last pass. `held` are slave index and segment of the pairs closed at the start, increasing.
+/// of an iterate, which the search covers, with increasing keys, as the constraints `before`,
+/// of the last pass. `held` are the pairs closed at the start.
 /// With `kept`, targets are kept up to this overrun beyond their ends (segment lengths) even if others hold the
 /// node now: passes that go to and fro across a corner come to rest with it.
 ///
 /// A node that has just left its segment by a little and finds no other keeps it: whether it has
 /// slid off is decided by the end of the increment, not by one of its passes.
-pub fn find_targets<'p>(
+pub fn find_targets(
     search: &Search,
     [u0, u]: [&[f64]; 2],
-    before: impl IntoIterator<Item = &'p PairTarget>,
-    (held, kept): (&[[usize; 2]], Option<f64>),
+    before: &[Constraint],
+    (held, kept): (&ClosedPairs, Option<f64>),
     pairs: &mut Vec<PairTarget>,
 ) {
     let [start, now] = [u0, u].map(|u| Positions::new(search.coordinates(), u));
-    let (mut before, mut held) = (before.into_iter().peekable(), held);
+    let mut before = before
+        .iter()
+        .map(|constraint| &constraint.source)
+        .peekable();
     pairs.clear();
     for listed in search.slaves() {
-        let index = listed.slave_index;
-        let others = |[slave, _]: &[usize; 2]| *slave > index;
-        let (held_by, rest) = held.split_at(held.iter().position(others).unwrap_or(held.len()));
-        held = rest;
+        let held_by = held.of_slave(listed.key).iter();
+        let held_by: SmallVec<[usize; 4]> =
+            held_by.map(|pair| pair.source.target.segment).collect();
         let node = SlaveNode {
             surfaces: listed.surfaces,
             start,
             now,
-            slave: listed.slave,
-            held_by,
+            slave: listed.key.slave,
+            held_by: &held_by,
         };
         let found = node.targets(listed.candidates());
         let mut own = Targets::new();
-        while let Some(pair) = before.next_if(|pair| pair.slave_index <= index) {
+        while let Some(pair) = before.next_if(|pair| pair.key.slave <= listed.key) {
             own.push(pair.target);
         }
         let keeps = !own.is_empty() && (kept.is_some() || found.is_empty());
@@ -99,12 +76,15 @@ fn keep(node: &SlaveNode, found: &Targets, beyond: f64, targets: &mut Targets) {
 
 fn pair_target(listed: &ListedSlave, target: ContactTarget) -> PairTarget {
     let surfaces = listed.surfaces;
-    let [a, b] = surfaces.segments[target.segment];
+    let NodeAtSegment {
+        key,
+        nodes: [s, a, b],
+    } = listed.at(target.segment);
     let c = target.corner.map_or(b, |v| surfaces.segments[v.next][1]);
     PairTarget {
-        slave_index: listed.slave_index,
+        key,
         target,
-        nodes: [listed.node(), a, b, c],
+        nodes: [s, a, b, c],
         from: target.from.map(|i| surfaces.segments[i]),
         friction: surfaces.friction,
     }
@@ -124,23 +104,19 @@ fn remove_twins(pairs: &mut Vec<PairTarget>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::targets::Corner;
+    use crate::contact::{Rows, targets::Corner, testing};
 
     #[test]
     fn the_nearer_segment_at_a_corner_is_that_of_the_larger_weight() {
-        let at = |corner: Option<f64>| PairTarget {
-            slave_index: 0,
-            target: ContactTarget {
-                corner: corner.map(|weight| Corner { next: 1, weight }),
-                ..ContactTarget::face(0)
-            },
-            nodes: [9, 1, 2, 3],
-            from: None,
-            friction: Friction::default(),
+        let nearer = |corner: Option<f64>| {
+            let mut constraint = testing::made_up(&[0; 8], Rows::new(&[0.0; 8], &[0.0; 8]));
+            constraint.source.nodes = [9, 1, 2, 3];
+            constraint.source.target.corner = corner.map(|weight| Corner { next: 1, weight });
+            constraint.nearer_pair().nodes
         };
-        assert_eq!(at(None).nearer_segment(), [1, 2]);
-        assert_eq!(at(Some(0.3)).nearer_segment(), [1, 2]);
-        assert_eq!(at(Some(0.7)).nearer_segment(), [2, 3]);
+        assert_eq!(nearer(None), [9, 1, 2]);
+        assert_eq!(nearer(Some(0.3)), [9, 1, 2]);
+        assert_eq!(nearer(Some(0.7)), [9, 2, 3]);
     }
 
     #[test]

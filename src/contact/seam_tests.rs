@@ -4,12 +4,11 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::compliance::{Compliance, Scope};
-use super::constraint::{Constraint, ConstraintKey, PerDof, Rows};
+use super::constraint::{Constraint, Rows};
 use super::delassus::{DelassusSpace, frictional_lcp};
-use super::pairing::PairTarget;
-use super::targets::ContactTarget;
+use super::testing;
 use crate::linear::{Assembled, CheckedSolver, Transformation, linear_solver};
-use crate::model::{Friction, SolverChoice};
+use crate::model::SolverChoice;
 
 /// Dofs of the made-up constraint.
 const DOFS: usize = 14;
@@ -23,27 +22,14 @@ fn made_up(count: usize, rows: [RowsByDof; 2]) -> Constraint {
         let [normal, tangential] = row.map(|entry| (0..count).map(entry).collect::<Vec<_>>());
         Rows::new(&normal, &tangential)
     });
+    let dofs: Vec<usize> = (0..count).collect();
     Constraint {
-        key: ConstraintKey {
-            slave_index: count,
-            segment: 0,
-        },
-        dofs: (0..count).collect::<PerDof<usize>>(),
+        key: testing::key(count, 0),
         slave_dofs: 6,
         other_derivative_rows: (force != derivative).then_some(derivative),
-        force_rows: force,
         gap: -7.0,
-        start_gap: 0.0,
         slip: 0.5,
-        mu: 0.5,
-        scale: 1.0,
-        source: PairTarget {
-            slave_index: count,
-            target: ContactTarget::face(0),
-            nodes: [0, 1, 2, 2],
-            from: None,
-            friction: Friction::constant(0.5),
-        },
+        ..testing::made_up(&dofs, force)
     }
 }
 

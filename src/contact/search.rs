@@ -2,6 +2,8 @@
 //! that stay valid over several increments. Section 10 of docs/theory.md, Candidate search.
 
 use super::geometry::{ContactSurfaces, position};
+use super::keys::NodeAtSegment;
+use super::keys::{ConstraintKey, SlaveKey};
 use super::tolerances::{
     PAIRING_REACH, PROJECTION_BEYOND_ENDS, SEARCH_MARGIN, SEARCH_MARGIN_PER_MOTION,
 };
@@ -94,16 +96,15 @@ impl<'m> Search<'m> {
 
     /// The slave nodes of all contacts with their candidates, in the order of their numbers.
     pub fn slaves(&self) -> impl Iterator<Item = ListedSlave<'_, 'm>> {
-        let of_contact = |territory: &'_ Territory<'m>| 0..territory.contact.slaves.len();
-        let territories = self.territories.iter();
-        let all = territories.flat_map(move |t| of_contact(t).map(move |slave| (t, slave)));
-        all.enumerate()
-            .map(|(slave_index, (territory, slave))| ListedSlave {
-                slave_index,
-                surfaces: territory.contact,
-                slave,
+        let territories = self.territories.iter().enumerate();
+        territories.flat_map(|(contact, territory)| {
+            let surfaces = territory.contact;
+            (0..surfaces.slaves.len()).map(move |slave| ListedSlave {
+                key: SlaveKey { contact, slave },
+                surfaces,
                 territory,
             })
+        })
     }
 
     /// Reference coordinates of the nodes.
@@ -120,24 +121,34 @@ impl<'m> Search<'m> {
 /// A slave node with the segments that the search lists for it.
 #[derive(Clone, Copy)]
 pub struct ListedSlave<'a, 'm> {
-    /// Number of the slave node among those of all contacts.
-    pub slave_index: usize,
+    /// What identifies it.
+    pub key: SlaveKey,
     /// Surfaces of its contact.
     pub surfaces: &'m ContactSurfaces,
-    /// Number of the slave node in its contact.
-    pub slave: usize,
     territory: &'a Territory<'m>,
 }
 
 impl<'a> ListedSlave<'a, '_> {
     /// The node.
     pub fn node(&self) -> usize {
-        self.surfaces.slaves[self.slave]
+        self.surfaces.slaves[self.key.slave]
+    }
+
+    /// The node with a segment of its contact.
+    pub fn at(&self, segment: usize) -> NodeAtSegment {
+        let [a, b] = self.surfaces.segments[segment];
+        NodeAtSegment {
+            key: ConstraintKey {
+                slave: self.key,
+                segment,
+            },
+            nodes: [self.node(), a, b],
+        }
     }
 
     /// Its candidates, with increasing segments.
     pub fn candidates(&self) -> impl Iterator<Item = Candidate> + Clone + use<'a> {
-        self.territory.candidates(self.slave)
+        self.territory.candidates(self.key.slave)
     }
 }
 

@@ -199,9 +199,8 @@ fn products() -> [Matrix4<f64>; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::pairing::PairTarget;
-    use crate::contact::targets::{ContactTarget, Corner};
-    use crate::model::Friction;
+    use crate::contact::targets::{ContactTarget, Corner, PairTarget};
+    use crate::contact::testing;
 
     /// A node at a roof, and the foot of the segment before it.
     const X: [[f64; 2]; 5] = [[0.7, 0.4], [2.0, 0.1], [0.3, 0.9], [-0.8, 0.7], [3.0, -0.6]];
@@ -212,11 +211,8 @@ mod tests {
 
     fn target(target: ContactTarget, nodes: [usize; 4], from: Option<[usize; 2]>) -> PairTarget {
         PairTarget {
-            slave_index: 0,
-            target,
-            nodes,
             from,
-            friction: Friction::constant(0.3),
+            ..testing::pair(target, nodes)
         }
     }
 

@@ -11,6 +11,7 @@ use smallvec::{SmallVec, smallvec};
 
 use super::crossing::{Crossing, Direction, Motion, crossings};
 use super::geometry::{Along, ContactSurfaces, Positions, Projection, project};
+use super::keys::ConstraintKey;
 use super::search::Candidate;
 use super::tolerances::{
     CLOSED_GAP, CONE_MISS, CORNER_TIP, CORNER_ZONE, FACING_SINE, FOLDED_CORNER_SINE, GENTLE_SINE,
@@ -18,6 +19,7 @@ use super::tolerances::{
     STRAIGHT_SINE,
 };
 use crate::linear::largest;
+use crate::model::Friction;
 use crate::vectors::{angle, cross, difference, dot};
 
 /// What a slave node must not penetrate: a segment, or the corner at its end.
@@ -55,6 +57,29 @@ impl ContactTarget {
         [Some(self.segment), self.corner.map(|v| v.next)]
             .into_iter()
             .flatten()
+    }
+}
+
+/// Which slave node meets which segment, or which corner.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PairTarget {
+    /// Key of their constraint.
+    pub key: ConstraintKey,
+    /// Segment in its contact, or corner.
+    pub target: ContactTarget,
+    /// Nodes: slave s, segment ends a and b, and c, the end of the next segment behind a corner;
+    /// without corner it is b again.
+    pub nodes: [usize; 4],
+    /// Ends of the segment that held the node at the start, where it has slid on from there.
+    pub from: Option<[usize; 2]>,
+    /// Coulomb friction.
+    pub friction: Friction,
+}
+
+impl PairTarget {
+    /// The same target, whatever held the node at the start.
+    pub(super) fn untilted(self) -> Self {
+        PairTarget { from: None, ..self }
     }
 }
 
@@ -254,7 +279,7 @@ impl SlaveNode<'_> {
     /// The segment of a run that the node is over, if it has slid there, across corners of gentle turn,
     /// from another that it was over at the start.
     fn slid_on(&self, run: &[usize]) -> Option<ContactTarget> {
-        let held = self.held_by.iter().map(|&[_, i]| i);
+        let held = self.held_by.iter().copied();
         let slid_from = |i: usize| {
             if (-SLID..=1.0 + SLID).contains(&self.xi(i)) {
                 return None;
@@ -442,8 +467,8 @@ pub struct SlaveNode<'a> {
     pub now: Positions<'a>,
     /// Index of the slave node in its contact.
     pub slave: usize,
-    /// Slave index and segment of the pairs of the node that were closed at the start.
-    pub held_by: &'a [[usize; 2]],
+    /// Segments of the pairs of the node that were closed at the start.
+    pub held_by: &'a [usize],
 }
 
 impl SlaveNode<'_> {

@@ -7,26 +7,15 @@
 use super::closed_pairs::ClosedPairs;
 use super::crossing::{Crossing, Direction, Motion, crossings};
 use super::geometry::{Along, ContactSurfaces, Projection, position, project};
+use super::keys::NodeAtSegment;
+use super::keys::SlaveKey;
 use super::search::Search;
 use super::tolerances::{CORNER_CLIP_DEPTH, DEPTH_ROUND_OFF, SEGMENT_END};
 use crate::linear::{larger, largest};
 use crate::vectors::{cross, difference};
 
-/// A slave node that has penetrated a body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Penetration {
-    /// Slave node.
-    pub slave: usize,
-    /// Ends of the segment through which it entered.
-    pub segment: [usize; 2],
-    /// Place of the slave node among all slave nodes of all contacts.
-    pub slave_index: usize,
-    /// Number of the segment in its contact.
-    pub number: usize,
-}
-
 /// The first slave node that penetrates a body on its straight path from the displacements `u0` to
-/// `u1`, if there is one. The search must cover the paths; `closed` are the pairs in contact before
+/// `u1`, if there is one, with the segment through which it has entered. The search must cover the paths; `closed` are the pairs in contact before
 /// the increment and at its end; `unsolved` is the error of every node's displacement that the
 /// tolerance of the increment allows (length), a depth that does not count.
 ///
@@ -37,7 +26,7 @@ pub fn find_penetration(
     [u0, u1]: [&[f64]; 2],
     closed: [&ClosedPairs; 2],
     unsolved: &[f64],
-) -> Option<Penetration> {
+) -> Option<NodeAtSegment> {
     let x = search.coordinates();
     let mut events = Vec::new();
     for listed in search.slaves() {
@@ -46,7 +35,7 @@ pub fn find_penetration(
             x,
             u: [u0, u1],
             slave: listed.node(),
-            slave_index: listed.slave_index,
+            key: listed.key,
             closed,
             unsolved,
         };
@@ -57,12 +46,7 @@ pub fn find_penetration(
         }
         let ends_inside = || path.ends_inside(listed.candidates().map(|c| c.segment));
         if let Some(segment) = path.entry(&mut events).or_else(ends_inside) {
-            return Some(Penetration {
-                slave: path.slave,
-                segment: path.contact.segments[segment],
-                slave_index: path.slave_index,
-                number: segment,
-            });
+            return Some(listed.at(segment));
         }
     }
     None
@@ -74,7 +58,7 @@ struct NodePath<'a> {
     x: &'a [[f64; 2]],
     u: [&'a [f64]; 2],
     slave: usize,
-    slave_index: usize,
+    key: SlaveKey,
     /// Closed pairs before the increment and at its end.
     closed: [&'a ClosedPairs; 2],
     unsolved: &'a [f64],
@@ -83,13 +67,13 @@ struct NodePath<'a> {
 impl NodePath<'_> {
     /// Whether the node was in contact before the increment.
     fn was_held(&self) -> bool {
-        !self.closed[0].of_slave(self.slave_index).is_empty()
+        !self.closed[0].of_slave(self.key).is_empty()
     }
 
     /// Segments that hold the node at the end.
     fn held_by(&self) -> impl Iterator<Item = usize> {
-        let pairs = self.closed[1].of_slave(self.slave_index).iter();
-        pairs.flat_map(|pair| pair.target.segments())
+        let pairs = self.closed[1].of_slave(self.key).iter();
+        pairs.flat_map(|pair| pair.source.target.segments())
     }
 
     fn motions(&self, segment: usize) -> [Motion; 3] {
@@ -287,7 +271,7 @@ pub fn crossed_edges(search: &Search, u: &[f64]) -> f64 {
     let mut most = 0.0;
     for listed in search.slaves() {
         let slave = listed.node();
-        let Some(adjacent) = listed.surfaces.adjacent[listed.slave] else {
+        let Some(adjacent) = listed.surfaces.adjacent[listed.key.slave] else {
             continue;
         };
         for candidate in listed.candidates() {

@@ -1,9 +1,11 @@
 //! Tests of the tunnelling check: a node at a thin plate, a concave corner, a sinking roof.
 
-use super::closed_pairs::{ClosedPair, ClosedPairs};
+use super::closed_pairs::ClosedPairs;
 use super::geometry::ContactSurfaces;
+use super::keys::NodeAtSegment;
 use super::search::Search;
-use super::tunnelling::{Penetration, find_penetration};
+use super::testing::{closed_pair, key};
+use super::tunnelling::find_penetration;
 use crate::model::Friction;
 
 /// A plate from (0, 0) to (8, 0.5) with segments of length 1 along and 0.5 across, its body on
@@ -33,7 +35,11 @@ fn passes_of(closed: bool, from: [f64; 2], to: [f64; 2], contact: Contact) -> Op
         contact.closed().each_ref(),
         &vec![0.0; x.len()],
     )
-    .map(|entry| entry.segment)
+    .map(
+        |NodeAtSegment {
+             nodes: [_, a, b], ..
+         }| [a, b],
+    )
 }
 
 fn passes(from: [f64; 2], to: [f64; 2], contact: Contact) -> Option<[usize; 2]> {
@@ -49,8 +55,8 @@ struct Contact {
 
 impl Contact {
     fn closed(self) -> [ClosedPairs; 2] {
-        let before = self.before.then(|| ClosedPair::touching(0, 0));
-        let now = self.now.map(|segment| ClosedPair::touching(0, segment));
+        let before = self.before.then(|| closed_pair(0, 0));
+        let now = self.now.map(|segment| closed_pair(0, segment));
         [before, now].map(|pair| pair.into_iter().collect())
     }
 }
@@ -101,8 +107,11 @@ fn what_other_bodies_leave_unsolved_is_no_excuse() {
         let mut unsolved = vec![0.0; x.len()];
         unsolved[fast] = 0.2;
         let closed = FREE.closed();
-        find_penetration(&search, [&u0, &u1], closed.each_ref(), &unsolved)
-            .map(|entry| entry.segment)
+        find_penetration(&search, [&u0, &u1], closed.each_ref(), &unsolved).map(
+            |NodeAtSegment {
+                 nodes: [_, a, b], ..
+             }| [a, b],
+        )
     };
     // 0.1 deep: a node far away, those of the segment, the node itself
     assert_eq!(entry(1), Some(TOP));
@@ -191,11 +200,9 @@ fn a_hollow_corner_holds_a_node_with_both_sides() {
         let closed = held(true, 0).closed();
         find_penetration(&search, [&u0, &u1], closed.each_ref(), &[0.0; 4])
     };
-    let through = Penetration {
-        slave: 0,
-        segment: [2, 3],
-        slave_index: 0,
-        number: 1,
+    let through = NodeAtSegment {
+        key: key(0, 1),
+        nodes: [0, 2, 3],
     };
     assert_eq!(entry(0.1), None);
     assert_eq!(entry(0.21), Some(through));
@@ -222,7 +229,7 @@ fn a_node_may_not_end_inside_a_vertex_that_has_become_a_hollow() {
     let u1 = move_to(end);
     search.cover_path(&u0, &u1);
     let entry = find_penetration(&search, [&u0, &u1], closed.each_ref(), &[0.0; 4]);
-    assert_eq!(entry.map(|p| p.segment), Some([2, 3]));
+    assert_eq!(entry.map(|p| p.nodes), Some([0, 2, 3]));
     // in the concave corner
     let above = [[-0.2, -0.2], end[1], end[2], end[3]];
     let u1 = move_to(above);

@@ -4,16 +4,14 @@
 //! Time of an impact: the length tau of a subincrement at whose end a gap that stays out of the constraints
 //! is zero, eq. (6.4), bracketed and interpolated. Section 6 of docs/theory.md, Impacts as events, item 3.
 
-use super::increment::{
-    ActiveConstraints, Attempt, ConstraintSet, Failed, NodeAtSegment, Path, Solved,
-};
+use super::increment::{Attempt, Failed, Path, Solved};
 use super::ledger::motion;
 use super::results::State;
 use super::step::{Interval, StepProblem, TimePoint, Workspace};
 use crate::contact::tolerances::{CLOSED_GAP, CROSSING_BEYOND_ENDS, IMPACT_GAP};
 use crate::contact::{
-    ClosedPairs, Constraint, Crossing, Direction, Penetration, Projection, crossings,
-    line_crossings,
+    ActiveConstraints, ClosedPairs, Constraint, ConstraintSet, Crossing, Direction, NodeAtSegment,
+    Projection, crossings, line_crossings,
 };
 
 /// Part of a nominal increment within which impacts are taken together; no subincrement is
@@ -40,8 +38,6 @@ pub(crate) struct Subincrements<'a, 'm> {
     pub problem: &'a StepProblem<'m>,
     pub workspace: &'a mut Workspace<'m>,
     pub start: &'a State,
-    /// The pairs that carried forces up to the start.
-    pub contact: &'a ClosedPairs,
     /// What is left of the increment.
     pub rest: Interval,
     /// Length of the nominal increment.
@@ -131,7 +127,7 @@ impl<'m> Subincrements<'_, 'm> {
         let search = &mut self.workspace.search;
         search.start(&self.start.v, rest);
         search.cover(&self.start.u);
-        let mut active = ActiveConstraints::new(self.problem, search, &self.start.u, self.contact);
+        let mut active = ActiveConstraints::new(search, &self.start.u, &self.start.contact);
         let mut impact = ImpactTime::new(&self.start.u);
         let (mut tau, mut guess, mut before) = (rest, None, None);
         let mut entries = Vec::new();
@@ -165,7 +161,7 @@ impl<'m> Subincrements<'_, 'm> {
             impact.take_in(trial, is_before);
             // a node that has just bounced off has hardly a gap at the start: there its motion tells
             let expected = |entry: &Entry| {
-                let gap = |u: &[f64]| self.problem.place(u, entry.pair.nodes).gap;
+                let gap = |u: &[f64]| self.problem.positions(u).place(entry.pair.nodes).gap;
                 let root = impact.root(gap).filter(|root| *root >= group);
                 root.unwrap_or(entry.time)
             };
@@ -190,7 +186,7 @@ impl<'m> Subincrements<'_, 'm> {
                 if at_start.is_empty() {
                     at_end
                         .iter()
-                        .for_each(|entry| active.join(entry.pair.slave_index));
+                        .for_each(|entry| active.join(entry.pair.key.slave()));
                 }
                 (impact, before, guess) = (ImpactTime::new(&self.start.u), None, Some(path));
                 tau = rest;
@@ -198,7 +194,10 @@ impl<'m> Subincrements<'_, 'm> {
                 continue;
             }
             let is_met = |entry: &Entry| {
-                let place = self.problem.place(&solved.end.u, entry.pair.nodes);
+                let place = self
+                    .problem
+                    .positions(&solved.end.u)
+                    .place(entry.pair.nodes);
                 place.gap.abs() <= IMPACT_GAP * place.length
             };
             let is_near = |root: f64| (root - tau).abs() <= ACCURACY * self.nominal;
@@ -244,7 +243,10 @@ impl<'m> Subincrements<'_, 'm> {
     }
 
     fn join_at_start(&self, active: &mut ActiveConstraints, entry: Entry) {
-        let p = self.problem.place(&self.start.u, entry.pair.nodes);
+        let p = self
+            .problem
+            .positions(&self.start.u)
+            .place(entry.pair.nodes);
         active.join_at_start(entry.pair, p.normal);
     }
 
@@ -264,28 +266,25 @@ impl<'m> Subincrements<'_, 'm> {
             duration: tau,
             end: if solved.is_some() { tau } else { 0.0 },
         };
-        let constraints = solved.map_or(&[][..], |solved| solved.forces.constraints.as_slice());
-        let counts = |c: &&Constraint| active.is_held(problem, u0, c);
+        let constraints = solved.map_or(&[][..], |solved| {
+            solved.contact.forces.constraints.as_slice()
+        });
+        let counts = |c: &&Constraint| active.is_held(problem.positions(u0), c);
         let (counting, left_out): (Vec<_>, Vec<_>) = constraints.iter().partition(counts);
         let has_constraint = |slave: usize| counting.iter().any(|c| c.keeps_out(slave));
         // between its ends the motion is an estimate: what is in front at the end has not gone in
         let ends_behind = |pair: &NodeAtSegment| {
-            solved.is_none_or(|solved| problem.place(&solved.end.u, pair.nodes).gap < 0.0)
+            solved.is_none_or(|solved| problem.positions(&solved.end.u).place(pair.nodes).gap < 0.0)
         };
         let is_kept = |pair: &NodeAtSegment, place: &Projection| {
-            active.holds(pair.slave_index, place)
+            active.holds(pair.key.slave(), place)
                 && (solved.is_none()
-                    || active.has_joined(pair.slave_index)
+                    || active.has_joined(pair.key.slave())
                     || has_constraint(pair.nodes[0]))
         };
         let mut entries: Vec<Entry> = Vec::new();
         for c in left_out {
-            let [s, a, b, _] = c.source.nodes;
-            let pair = NodeAtSegment {
-                slave_index: c.key.slave_index,
-                segment: c.key.segment,
-                nodes: [s, a, b],
-            };
+            let pair = c.pair();
             if c.gap < -CLOSED_GAP * c.scale && problem.unknowns.moves(&pair.nodes) {
                 let time = motion.overlap(problem, u0, pair);
                 entries.extend(time.map(|time| Entry { pair, time }));
@@ -296,9 +295,9 @@ impl<'m> Subincrements<'_, 'm> {
             search.cover_path(u0, &motion.displacement(u0));
             for listed in search.slaves() {
                 for candidate in listed.candidates() {
-                    let pair = NodeAtSegment::new(&listed, candidate.segment);
+                    let pair = listed.at(candidate.segment);
                     let [s, a, b] = pair.nodes;
-                    let place = problem.place(u0, pair.nodes);
+                    let place = problem.positions(u0).place(pair.nodes);
                     let may_enter = motion.may_meet(&place, pair.nodes)
                         && s != a
                         && s != b
@@ -328,21 +327,10 @@ impl<'m> Subincrements<'_, 'm> {
         solved: &Solved,
     ) -> Option<Entry> {
         let (problem, u0) = (self.problem, &self.start.u);
-        let closed = [self.contact, &solved.forces.closed];
+        let closed = [&self.start.contact, &solved.end.contact];
         let unsolved = problem.unsolved(&solved.d);
-        let found = (self.workspace).find_penetration([u0, &solved.end.u], closed, &unsolved)?;
-        let Penetration {
-            slave,
-            segment: [a, b],
-            slave_index,
-            number,
-        } = found;
-        let pair = NodeAtSegment {
-            slave_index,
-            segment: number,
-            nodes: [slave, a, b],
-        };
-        if active.has_joined(slave_index) || !problem.unknowns.moves(&pair.nodes) {
+        let pair = (self.workspace).find_penetration([u0, &solved.end.u], closed, &unsolved)?;
+        if active.has_joined(pair.key.slave()) || !problem.unknowns.moves(&pair.nodes) {
             return None;
         }
         let through = FreeMotion {
@@ -368,7 +356,7 @@ impl<'m> Subincrements<'_, 'm> {
             set,
             guess,
         };
-        let solved = attempt.solve(self.contact);
+        let solved = attempt.solve();
         solved.map_err(|failed| Box::new((interval, failed)))
     }
 

@@ -6,7 +6,7 @@
 
 use nalgebra::DMatrix;
 
-use super::increment::{PairReturn, Release, Returned, Solved};
+use super::increment::{PairReturn, Release, Solved};
 use super::patterns::{FrictionLoad, Pattern, ReturnLoad, RigidBodies, pattern, shares, signs};
 use super::results::{Cause, State};
 use super::step::{ClosedConstraints, StepProblem, Workspace, difference, dot, sum};
@@ -26,11 +26,11 @@ pub(crate) fn return_landings(
     workspace: &mut Workspace,
     (start, dt): (&State, f64),
     solved: &mut Solved,
-) -> Result<Returned, Cause> {
+) -> Result<(), Cause> {
     if !problem.returns_landings() {
-        return Ok(Returned::default());
+        return Ok(());
     }
-    let landings: Vec<_> = (solved.forces.acting())
+    let landings: Vec<_> = (solved.contact.forces.acting())
         .filter_map(|(constraint, pair)| landing(problem, solved, dt, constraint, pair))
         .collect();
     let (pairs, loads): (Vec<_>, Vec<_>) = landings.into_iter().unzip();
@@ -40,11 +40,9 @@ pub(crate) fn return_landings(
     let GivenBack { y, support_work } = give_back(problem, workspace, dt, solved, &loads)?;
     let both = pairs.into_iter().zip(loads).zip(y);
     let share = |((pair, load), y): ((LandedPair, ReturnLoad), f64)| pair.share(&load, dt, y);
-    Ok(Returned {
-        pairs: both.filter_map(share).collect(),
-        support_work,
-        ..Returned::default()
-    })
+    solved.returned.pairs = both.filter_map(share).collect();
+    solved.returned.support_work = support_work;
+    Ok(())
 }
 
 /// A pair that lands.
@@ -139,7 +137,7 @@ pub(super) fn factorize_anew(
     let u1 = sum(&start.u, &solved.d);
     let motion = (problem.integration).motion(start, &u1, &solved.equilibrium.u_theta);
     let closed = ClosedConstraints {
-        acting: solved.forces.acting().collect(),
+        acting: solved.contact.forces.acting().collect(),
         at: problem.configurations(&start.u, &u1),
     };
     let factorized = workspace.factorize(problem, dt, motion, &closed);
@@ -245,10 +243,10 @@ pub(crate) fn return_release(
     workspace: &mut Workspace,
     (start, dt): (&State, f64),
     solved: &mut Solved,
-    (release, returned): (Release, &mut Returned),
+    release: Release,
 ) -> Result<(), Cause> {
     if problem.returns_landings() && release.loss > 0.0 {
-        if returned.pairs.is_empty() {
+        if solved.returned.pairs.is_empty() {
             factorize_anew(problem, workspace, (start, dt), solved)?;
         }
         let mut force = vec![0.0; solved.d.len()];
@@ -268,10 +266,10 @@ pub(crate) fn return_release(
                 least: 0.0,
             }],
         )?;
-        returned.support_work += support_work;
-        returned.pairs.extend(parts(&release, dt * dt / 2.0 * y[0]));
+        solved.returned.support_work += support_work;
+        (solved.returned.pairs).extend(parts(&release, dt * dt / 2.0 * y[0]));
     }
-    returned.release = release;
+    solved.returned.release = release;
     Ok(())
 }
 

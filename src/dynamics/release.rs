@@ -10,7 +10,7 @@ use super::increment::{ContactForces, ContactSystem, Release, Solved};
 use super::results::State;
 use super::step::{FactoredMatrix, Interval, StepProblem, System, Workspace, difference, dot, sum};
 use crate::contact::tolerances::TIED_ROW;
-use crate::contact::{ClosedPair, ClosedPairs, Constraint, Corner, PairTarget};
+use crate::contact::{ClosedPair, Constraint};
 use crate::elements::Motion;
 use crate::linear::{Assembled, Transformation, larger, largest, linear_solver};
 
@@ -23,12 +23,6 @@ const OVERLAP: f64 = 1e-12;
 /// Round-off of displacements, and of the sums of a strain energy.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
-/// Where an increment starts: its motion and the pairs closed there.
-pub(crate) struct ReleaseStart<'a> {
-    pub state: &'a State,
-    pub closed: &'a ClosedPairs,
-}
-
 /// Lets nodes without mass come to rest at the end of an increment in which pairs have opened, if they
 /// carry no force: the mid-point rule fixes the mean of start and end alone, so that their deviation from
 /// rest would change its sign in every increment. Where there is no rest, or a node would go through a
@@ -36,51 +30,42 @@ pub(crate) struct ReleaseStart<'a> {
 pub(crate) fn bring_to_rest(
     problem: &StepProblem,
     workspace: &mut Workspace,
-    start: ReleaseStart,
+    start: &State,
     interval: Interval,
     solved: &mut Solved,
 ) -> Release {
     if problem.redistribution.is_empty() {
         return Release::default();
     }
-    let still = &solved.forces.closed;
-    let has_opened = |pair: &&ClosedPair| still.of_slave(pair.key.slave_index).is_empty();
-    let opened: Vec<&ClosedPair> = start.closed.iter().filter(has_opened).collect();
+    let still = &solved.end.contact;
+    let has_opened = |pair: &&ClosedPair| still.of_slave(pair.key.slave()).is_empty();
+    let opened: Vec<&ClosedPair> = start.contact.iter().filter(has_opened).collect();
     if opened.is_empty() {
         return Release::default();
     }
-    let open = solved.forces.iter().filter(|(_, pair)| pair.is_none());
+    let open = solved
+        .contact
+        .forces
+        .iter()
+        .filter(|(_, pair)| pair.is_none());
     let mut releasing = Releasing {
         problem,
         workspace,
         interval,
         end: &solved.end,
         free: FreeNodes::new(problem, solved, &opened),
-        held: still,
-        open: open.map(|(c, _)| untilted(c.source)).collect(),
+        open: open.map(|(c, _)| c.clone()).collect(),
     };
     let found = releasing.rest();
-    let safe = found.filter(|u| !releasing.goes_through(&start, u));
+    let safe = found.filter(|u| !releasing.goes_through(start, u));
     let found = safe.and_then(|u| Some((releasing.release(&u)?, u)));
     let Some(((mut release, internal), u)) = found else {
         return Release::default();
     };
     let at = problem.configurations(&u, &u);
-    let constraint = |pair: &&ClosedPair| {
-        let target = pair_target(problem, pair)?;
-        Some((Constraint::new(target, &at), pair.force))
-    };
-    release.opened = opened.iter().filter_map(constraint).collect();
+    release.opened = (opened.iter().map(|pair| (pair.constraint(&at), pair.force))).collect();
     (solved.end.u, solved.end.internal) = (u, internal);
     release
-}
-
-/// A target whatever held the node at the start: the rest starts at the end.
-fn untilted(target: PairTarget) -> PairTarget {
-    PairTarget {
-        from: None,
-        ..target
-    }
 }
 
 /// The free nodes of an increment on their way to rest.
@@ -91,10 +76,8 @@ struct Releasing<'a, 'm> {
     /// State at the end of the increment before the rest.
     end: &'a State,
     free: FreeNodes,
-    /// The pairs closed there.
-    held: &'a ClosedPairs,
-    /// Targets of the open constraints of the last pass.
-    open: Vec<PairTarget>,
+    /// The open constraints of the last pass.
+    open: Vec<Constraint>,
 }
 
 impl Releasing<'_, '_> {
@@ -142,17 +125,23 @@ impl Releasing<'_, '_> {
     /// Constraints at the displacements `u` that the free nodes can close, those found anew and those of the
     /// last pass, without friction, their gaps above what they may be.
     fn constraints(&mut self, u: &[f64]) -> Vec<Constraint> {
-        let (start, held) = (&self.end.u, self.held.segments());
+        let start = &self.end.u;
         let (way, mut found) = ([start.as_slice(), u], Vec::new());
-        (self.workspace).constraints(self.problem, way, &[], (&held, None), &mut found);
+        (self.workspace).constraints(
+            self.problem,
+            way,
+            &[],
+            (&self.end.contact, None),
+            &mut found,
+        );
         let opens = |constraint: &Constraint| self.free.open(constraint);
-        let above_least = |constraint: Constraint| Constraint {
-            gap: constraint.gap - constraint.start_gap.min(0.0),
-            mu: 0.0,
-            ..constraint
+        let above_least = |mut constraint: Constraint| {
+            constraint.gap -= constraint.start_gap.min(0.0);
+            constraint.mu = 0.0;
+            constraint
         };
         let at = self.problem.configurations(start, u);
-        let kept = self.open.iter().map(|&target| Constraint::new(target, &at));
+        let kept = self.open.iter().map(|constraint| constraint.untilted(&at));
         let mut all: Vec<Constraint> = found.into_iter().chain(kept).filter(opens).collect();
         all.sort_by_key(|constraint| constraint.key);
         all.dedup_by_key(|constraint| constraint.key);
@@ -160,10 +149,10 @@ impl Releasing<'_, '_> {
     }
 
     /// Whether a node has gone into a body on its straight path from the start to the displacements `u`.
-    fn goes_through(&mut self, start: &ReleaseStart, u: &[f64]) -> bool {
-        let unsolved = self.problem.unsolved(&difference(u, &start.state.u));
-        let closed = [start.closed, self.held];
-        let found = (self.workspace).find_penetration([&start.state.u, u], closed, &unsolved);
+    fn goes_through(&mut self, start: &State, u: &[f64]) -> bool {
+        let unsolved = self.problem.unsolved(&difference(u, &start.u));
+        let closed = [&start.contact, &self.end.contact];
+        let found = (self.workspace).find_penetration([&start.u, u], closed, &unsolved);
         found.is_some()
     }
 
@@ -253,37 +242,15 @@ impl FreeNodes {
 /// Which nodes are without mass, of the bodies of the pairs `opened`, and held by no closed pair.
 fn free(problem: &StepProblem, solved: &Solved, opened: &[&ClosedPair]) -> Vec<bool> {
     let body_of = problem.parts.of_nodes();
-    let targets = opened.iter().filter_map(|pair| pair_target(problem, pair));
-    let nodes = targets.flat_map(|target| target.nodes);
+    let nodes = opened.iter().flat_map(|pair| pair.nodes());
     let bodies: BTreeSet<usize> = nodes.map(|node| body_of[node]).collect();
     let mut free = vec![false; body_of.len()];
     for node in problem.redistribution.massless() {
         free[node] = bodies.contains(&body_of[node]);
     }
-    let acting = solved.forces.acting();
+    let acting = solved.contact.forces.acting();
     for node in acting.flat_map(|(constraint, _)| constraint.nodes()) {
         free[node] = false;
     }
     free
-}
-
-/// Slave node and target of a closed pair.
-pub(super) fn pair_target(problem: &StepProblem, pair: &ClosedPair) -> Option<PairTarget> {
-    let mut slave = pair.key.slave_index;
-    for contact in problem.contacts {
-        let Some(&node) = contact.slaves.get(slave) else {
-            slave -= contact.slaves.len();
-            continue;
-        };
-        let [a, b] = contact.segments[pair.target.segment];
-        let end = |corner: Corner| contact.segments[corner.next][1];
-        return Some(PairTarget {
-            slave_index: pair.key.slave_index,
-            target: pair.target,
-            nodes: [node, a, b, pair.target.corner.map_or(b, end)],
-            from: None,
-            friction: contact.friction,
-        });
-    }
-    None
 }

@@ -15,12 +15,12 @@ use std::sync::Arc;
 use std::time::Duration;
 use std::{fmt, io};
 
-use crate::contact::Constraint;
+use crate::contact::{ClosedPairs, Constraint};
 use crate::elements::{ElementResult, Inverted, Strained};
 use crate::lcp::{FrictionalLcp, LcpError};
 use crate::linear::LinearError;
 
-/// Motion at one time, `2 N` entries each, and what the materials remember.
+/// Motion at one time, `2 N` entries each, what the materials remember, and the pairs in contact.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct State {
     /// Displacement (length).
@@ -32,6 +32,8 @@ pub struct State {
     /// Internal variables of the materials at all integration points, element by element: accepted or
     /// dropped with the rest of the state.
     pub internal: Vec<f64>,
+    /// The pairs that carry a force.
+    pub contact: ClosedPairs,
 }
 
 /// Contact status of a node as slave; a node that is slave of several pairs shows the highest.
@@ -546,14 +548,10 @@ impl FailedLcp {
         problem: FrictionalLcp,
         constraints: &[&Constraint],
     ) -> Self {
-        let nodes = |constraint: &&Constraint| {
-            let [s, a, b, _] = constraint.source.nodes;
-            [s, a, b]
-        };
         FailedLcp {
             error,
             problem,
-            pairs: constraints.iter().map(nodes).collect(),
+            pairs: constraints.iter().map(|c| c.pair().nodes).collect(),
         }
     }
 }

@@ -273,7 +273,7 @@ mod tests {
         let states = (0..CONTACTS).map(|i| [Stick, SlipPlus, Open, SlipMinus, Stick][i % 5]);
         let states: Vec<ContactState> = states.collect();
         let mut kept = KeptFactors::default();
-        kept.name_contacts(names.iter().map(|&name| [name, 0]));
+        kept.name_contacts(names.iter().map(|&name| [name, 0, 0]));
         let arena = Bump::new();
         forces(&scaled(&names, 1.0, &arena), &states, &mut kept).expect("regular");
         (kept, names, states)
@@ -286,7 +286,7 @@ mod tests {
         states: &[ContactState],
         compliance: f64,
     ) -> Option<f64> {
-        kept.name_contacts(names.iter().map(|&name| [name, 0]));
+        kept.name_contacts(names.iter().map(|&name| [name, 0, 0]));
         let arena = Bump::new();
         let scaled = scaled(names, compliance, &arena);
         let unknowns = unknowns(&scaled, states);
@@ -367,7 +367,7 @@ mod tests {
         let far: Vec<usize> = names.iter().map(|name| 50 * name).collect();
         let arena = Bump::new();
         let other = scaled(&far, 1.0, &arena);
-        kept.name_contacts(names.iter().map(|&name| [name, 0]));
+        kept.name_contacts(names.iter().map(|&name| [name, 0, 0]));
         let unknowns = unknowns(&other, &states);
         let similar = Similar::of(&kept, &other, &states, &unknowns).expect("the same states");
         assert!(from_similar(&other, &states, &unknowns, |b| similar.solve(b)).is_none());
@@ -384,7 +384,7 @@ mod tests {
         states.insert(1, Stick);
         let arena = Bump::new();
         let twice = scaled(&names, 1.0, &arena);
-        kept.name_contacts((0..names.len()).map(|i| [i.max(1) - 1, usize::from(i == 1)]));
+        kept.name_contacts((0..names.len()).map(|i| [i.max(1) - 1, usize::from(i == 1), 0]));
         let (p, v) = forces(&twice, &states, &mut kept).expect("shared");
         let closed = (0..names.len()).filter(|i| states[*i].is_closed());
         assert!(closed.clone().all(|i| v[i].abs() < 1e-10 * max_abs(&p)));

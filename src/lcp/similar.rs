@@ -376,7 +376,7 @@ fn units<'a>(kept: &Kept, system: &System, change: &Change, arena: &'a Bump) -> 
 }
 
 /// What tells a contact from others through a row of similar problems.
-pub type ContactName = [usize; 2];
+pub type ContactName = [usize; 3];
 
 /// Factors of the system of some states, and the memory of the solves.
 #[derive(Default)]
@@ -432,7 +432,7 @@ impl<'a> System<'a> {
         System {
             names: match names.len() == n {
                 true => names,
-                false => list(scaled.arena, (0..n).map(|i| [i, 0])).into_bump_slice(),
+                false => list(scaled.arena, (0..n).map(|i| [i, 0, 0])).into_bump_slice(),
             },
             states,
             slides: slides.into_bump_slice(),

@@ -177,7 +177,7 @@ pub fn report(k: usize) -> IncrementReport {
             u: ramp(1.0),
             v: ramp(2.0),
             a: ramp(3.0),
-            internal: vec![],
+            ..State::default()
         },
         nodal: nodal(k, ramp(4.0), ramp(5.0)),
         elements: vec![ElementResult::default(); 3].into(),

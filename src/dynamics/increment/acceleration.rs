@@ -1,7 +1,6 @@
 //! Acceleration of passes that converge slowly, by what the last ones have changed (Anderson 1965). Section 4 of
 //! docs/theory.md, Acceleration.
 
-use crate::contact::ClosedPairs;
 use crate::dynamics::step::Parts;
 
 /// Rate of the corrections above which passes are slow.
@@ -35,8 +34,6 @@ impl Step {
 /// What the last passes with the same closed pairs say about the solution.
 #[derive(Debug, Default)]
 pub(super) struct Acceleration {
-    /// Slave index and segment of the closed pairs.
-    closed: Vec<[usize; 2]>,
     last: Option<Step>,
     /// Changes from pass to pass, their corrections orthonormal.
     changes: Vec<Step>,
@@ -44,18 +41,18 @@ pub(super) struct Acceleration {
 
 impl Acceleration {
     /// Writes the correction dU of a pass from the iterate d anew where passes are slow. `correction` is its
-    /// largest value beside the increment, `rate` that beside the one of the pass before.
+    /// largest value beside the increment, `rate` that beside the one of the pass before, and
+    /// both may have closed the same pairs.
     pub fn improve(
         &mut self,
         parts: &Parts,
         d: &[f64],
-        closed: &ClosedPairs,
+        same_pairs: bool,
         [correction, rate, tolerance]: [f64; 3],
         du: &mut [f64],
     ) {
-        let segments = closed.segments();
-        if segments != self.closed || rate.is_nan() || rate > JUMP {
-            (self.last, self.closed) = (None, segments);
+        if !same_pairs || rate.is_nan() || rate > JUMP {
+            self.last = None;
             self.changes.clear();
         }
         if rate > SLOW && correction > ROUND_OFF * tolerance {

@@ -2,17 +2,18 @@
 //! Section 4 of docs/theory.md (paper eqs 27, 29 and 36 to 49).
 
 use super::acceleration::Acceleration;
-use super::active_constraints::ConstraintSet;
 use super::contact_forces::ContactForces;
+use super::contact_states::ContactStates;
 use super::contact_system::ContactSystem;
 use super::convergence::{Iterate, Pass, Residual};
 use super::equal_forces::EqualForces;
-use super::impulses::{Before, Impulses};
+use super::impulses::Before;
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
+use super::returned::Returned;
 use super::rigid_predictor::rigid_predictor;
 use super::trace::{Failed, Trace};
-use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED, PROJECTION_BEYOND_ENDS};
-use crate::contact::{ClosedPairs, Constraint};
+use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED};
+use crate::contact::{ClosedPairs, ConstraintSet};
 use crate::dynamics::results::{Cause, PassReport, State};
 use crate::dynamics::step::{
     ClosedConstraints, EffectiveStiffness, Equilibrium, Interval, StartVelocity, StepProblem,
@@ -27,6 +28,9 @@ const SLOW_PASSES: usize = 10;
 /// Most halvings of a correction that turns an element inside out.
 const HALVINGS: i32 = 6;
 
+/// Relative difference of lengths between which subincrements between impacts share the factors of K*.
+const SAME_LENGTH: f64 = 1e-3;
+
 /// Overrun beyond the ends of a segment (segment lengths) up to which slave nodes keep their targets in a pass, even
 /// if others hold them now.
 fn kept_beyond_ends(pass: usize) -> Option<f64> {
@@ -39,6 +43,15 @@ fn kept_beyond_ends(pass: usize) -> Option<f64> {
     }
 }
 
+/// Relative difference of lengths within which factors of K* are kept: the trials for the time of an impact differ
+/// by little.
+fn length_tolerance(set: ConstraintSet) -> f64 {
+    match set {
+        ConstraintSet::All => 0.0,
+        ConstraintSet::Active(_) => SAME_LENGTH,
+    }
+}
+
 /// A converged increment.
 #[derive(Default)]
 pub(crate) struct Solved {
@@ -48,18 +61,16 @@ pub(crate) struct Solved {
     pub v0p: Vec<f64>,
     /// Forces in equilibrium.
     pub equilibrium: Equilibrium,
-    /// Contact forces.
-    pub forces: ContactForces,
-    /// Pairs that touched at the start, where impacts end the subincrements.
-    pub touching: ClosedPairs,
-    /// Impact impulses at the start.
-    pub impulses: ContactForces,
+    /// Contact forces and impact impulses.
+    pub contact: ContactStates,
     /// Motion at the end.
     pub end: State,
     /// Energy that the materials have dissipated.
     pub material_dissipation: f64,
     /// Its passes.
     pub passes: Vec<PassReport>,
+    /// What is given back once it has converged.
+    pub returned: Returned,
 }
 
 /// The motion of a converged increment between its ends, which another attempt from the same start may begin
@@ -89,7 +100,7 @@ impl Solved {
         Path {
             a: a.collect(),
             v: self.v0p.clone(),
-            closed: self.forces.closed.clone(),
+            closed: self.end.contact.clone(),
         }
     }
 }
@@ -102,10 +113,14 @@ impl Solved {
         let pass = Pass {
             equilibrium: &self.equilibrium,
             support_force: &none,
-            contact: &self.forces,
+            contact: &self.contact.forces,
             displacements: [&self.end.u, &self.d, &none],
         };
-        let scales = pass.scales(problem, stiffness, &self.forces.resultant(none.len()));
+        let scales = pass.scales(
+            problem,
+            stiffness,
+            &self.contact.forces.resultant(none.len()),
+        );
         let diagonals = stiffness.stiffness.iter().zip(&stiffness.inertia);
         let parts = scales.noise_and_way().zip(diagonals);
         parts
@@ -121,12 +136,6 @@ struct Vectors {
     equilibrium: Equilibrium,
     /// Displacement U of the iterate.
     u: Vec<f64>,
-    /// Slave index and segment of the pairs closed at the start.
-    held: Vec<[usize; 2]>,
-    /// Its constraints until the contact forces take them over, then those of the pass before.
-    found: Vec<Constraint>,
-    /// Its constraints that do not count.
-    left_out: Vec<Constraint>,
     /// What the predictor leaves of the supports' motion, d_p.
     d_p: Vec<f64>,
     /// Its force theta2 K d_p.
@@ -150,19 +159,16 @@ pub(crate) struct Attempt<'a, 'm> {
 }
 
 impl<'m> Attempt<'_, 'm> {
-    /// Solves the increment; `before` are the pairs closed in the last one.
-    pub fn solve(mut self, before: &ClosedPairs) -> Result<Solved, Failed> {
+    /// Solves the increment.
+    pub fn solve(mut self) -> Result<Solved, Failed> {
         let mut trace = Trace::new(self.problem.settings.max_passes);
-        let mut vectors = Vectors {
-            held: before.segments(),
-            ..Vectors::default()
-        };
+        let mut vectors = Vectors::default();
         let mut failed = Cause::NotConverged;
         for &rule in FactorRule::order(self.problem.settings.factorization) {
             trace.begin();
             (self.workspace.search).start(&self.start.v, self.interval.dt);
             let mut factors = Refactorization::new(rule, self.problem.settings.tolerance);
-            match self.passes(before, &mut factors, &mut trace, &mut vectors) {
+            match self.passes(&mut factors, &mut trace, &mut vectors) {
                 Ok(solved) => {
                     return Ok(Solved {
                         passes: trace.passes,
@@ -179,15 +185,13 @@ impl<'m> Attempt<'_, 'm> {
     /// Predictor and correctors, which share one form (paper eqs 27, 29 and 36 to 49).
     fn passes(
         &mut self,
-        before: &ClosedPairs,
         factors: &mut Refactorization,
         trace: &mut Trace,
         v: &mut Vectors,
     ) -> Result<Solved, Cause> {
         let (problem, start, dt) = (self.problem, self.start, self.interval.dt);
-        let closed = self.guess.map_or(before, |path| &path.closed);
-        let mut contact = ContactForces::without_constraints(closed);
-        let mut impulses = Impulses::new(closed, self.set);
+        let closed = self.guess.map_or(&start.contact, |path| &path.closed);
+        let mut contact = ContactStates::new(closed, self.set);
         let mut equal_forces = EqualForces::new(problem.settings.tolerance);
         let mut acceleration = Acceleration::default();
         // the passes start from the rigid motion of the bodies, or from a motion that is known
@@ -201,73 +205,66 @@ impl<'m> Attempt<'_, 'm> {
             }
             // g, Dt and their rows, V0+ and r in the iterate U = U0 + d
             let settled = number >= SEARCHING_PASSES;
-            self.evaluate(
-                number,
-                &mut d,
-                &contact,
-                &mut impulses,
-                trace.correction(),
-                v,
-            )?;
+            let pass = (number, trace.correction());
+            self.evaluate(pass, &mut d, &mut contact, v)?;
             trace.balance((problem.unknowns).largest_restricted(&v.equilibrium.out_of_balance));
 
             // the forces at hand may balance r and close the gaps of the iterate
-            contact.relinearize(&mut v.found);
-            let iterate = Iterate::new(&v.equilibrium, &contact, [&v.u, &d]);
+            contact.relinearize();
+            let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
             let state = [settled, factors.stagnate()];
-            let may_end = impulses.are_at_rest() && factors.are_near();
+            let may_end = contact.impulses.are_at_rest() && factors.are_near();
             if may_end && self.is_solved(&iterate, state, &mut v.residual, trace)? {
-                return self.finish(&d, contact, impulses, v, true);
+                return self.finish(&d, contact, v, true);
             }
 
             // K* of eq. (4.6), and d_p at the supports, which takes the force theta2 K d_p
-            self.refresh(factors, v, &contact)?;
+            self.refresh(factors, v, &contact.forces)?;
             self.supports(number, v);
 
             // Pn, Pt of the complementarity problem, eq. (5.2);
             // dU = d_p + K*^-1 (r - theta2 K d_p + Bn^T Pn + Bt^T Pt), eq. (4.7)
             let weight = equal_forces.weight(settled);
-            contact.solve([&v.d_p, &v.load], weight, &mut self.k_star(), &mut v.du)?;
+            (contact.forces).solve([&v.d_p, &v.load], weight, &mut self.k_star(), &mut v.du)?;
 
             // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales
-            let iterate = Iterate::new(&v.equilibrium, &contact, [&v.u, &d]);
+            let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
             let pass = iterate.pass(&v.support_force, &v.du);
             let has_converged = self.measure(&pass, &mut v.residual, trace)?;
 
-            let ends = impulses.rest(problem, &contact.closed) && has_converged;
+            let ends = contact.rest(problem) && has_converged;
             let correction = trace.correction();
             if !ends {
                 equal_forces.take_in(correction, settled);
                 factors.take_in(correction)?;
                 if number >= SLOW_PASSES {
                     let progress = [correction, factors.rate(), problem.settings.tolerance];
-                    acceleration.improve(problem.parts, &d, &contact.closed, progress, &mut v.du);
+                    let same_pairs = contact.forces.are_of_same_pairs();
+                    acceleration.improve(problem.parts, &d, same_pairs, progress, &mut v.du);
                 }
             }
             // d <- d + dU, eq. (4.7)
             d.iter_mut().zip(&v.du).for_each(|(d, du)| *d += du);
             if ends {
-                return self.finish(&d, contact, impulses, v, false);
+                return self.finish(&d, contact, v, false);
             }
         }
         Err(Cause::NotConverged)
     }
 
     /// Evaluates the iterate U = U0 + d: constraints, impulses and forces. Where the last correction turns an
-    /// element inside out, what it changes beside the motion of the supports is halved. `correction` is that of
-    /// the pass before, beside its scale.
+    /// element inside out, what it changes beside the motion of the supports is halved. Of the pass its number
+    /// and the correction of the pass before, beside its scale.
     fn evaluate(
         &mut self,
-        pass: usize,
+        pass: (usize, f64),
         d: &mut [f64],
-        contact: &ContactForces,
-        impulses: &mut Impulses,
-        correction: f64,
+        contact: &mut ContactStates,
         v: &mut Vectors,
     ) -> Result<(), Cause> {
-        let halvings = if pass == 0 { 0 } else { HALVINGS };
+        let halvings = if pass.0 == 0 { 0 } else { HALVINGS };
         for halving in 1..=halvings {
-            match self.evaluate_at(pass, d, contact, impulses, correction, v) {
+            match self.evaluate_at(pass, d, contact, v) {
                 Err(Cause::Inverted { .. } | Cause::Collapsed { .. }) => {}
                 other => return other,
             }
@@ -276,47 +273,39 @@ impl<'m> Attempt<'_, 'm> {
                 *d -= part * (du - d_p);
             }
         }
-        self.evaluate_at(pass, d, contact, impulses, correction, v)
+        self.evaluate_at(pass, d, contact, v)
     }
 
     /// Evaluates the iterate as it is.
     fn evaluate_at(
         &mut self,
-        pass: usize,
+        (pass, correction): (usize, f64),
         d: &[f64],
-        contact: &ContactForces,
-        impulses: &mut Impulses,
-        correction: f64,
+        contact: &mut ContactStates,
         v: &mut Vectors,
     ) -> Result<(), Cause> {
         let (problem, start) = (self.problem, self.start);
         // g, Dt and their rows in the iterate U = U0 + d
         write_sum(&start.u, d, &mut v.u);
-        self.constraints(v, contact, kept_beyond_ends(pass))?;
+        problem.check_segments(&v.u)?;
+        let of_set = (self.set, kept_beyond_ends(pass));
+        contact.find(
+            problem,
+            self.workspace,
+            (start, self.interval.dt),
+            &v.u,
+            of_set,
+        );
 
         // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1)
         let last = Before::new(&v.equilibrium, correction, self.interval.dt);
-        let v0p = impulses.start_velocity(problem, self.workspace, &v.found, start, &last)?;
+        let ContactStates {
+            impulses, found, ..
+        } = contact;
+        let v0p = impulses.start_velocity(problem, self.workspace, found, start, &last)?;
 
         // r = R_theta - F(U_theta) - M A, eq. (4.5)
         self.equilibrium(&v0p, [&v.u, d], &mut v.equilibrium)
-    }
-
-    /// Writes the constraints of the iterate, `last` being those of the pass before: those that count, and the
-    /// others.
-    fn constraints(
-        &mut self,
-        v: &mut Vectors,
-        last: &ContactForces,
-        kept: Option<f64>,
-    ) -> Result<(), Cause> {
-        let (problem, u0, u) = (self.problem, &self.start.u, &v.u);
-        problem.check_segments(u)?;
-        let (before, dt) = (&last.constraints, self.interval.dt);
-        (self.workspace).constraints(problem, [u0, u], before, (&v.held, kept), &mut v.found);
-        (v.found.iter_mut()).for_each(|constraint| constraint.take_slip_rate(dt));
-        (self.set).split(problem, u0, &mut v.found, &mut v.left_out);
-        Ok(())
     }
 
     /// Writes load, internal force and inertia of the iterate U = U0 + d.
@@ -385,7 +374,7 @@ impl<'m> Attempt<'_, 'm> {
         contact: &ContactForces,
     ) -> Result<(), Cause> {
         let (problem, dt) = (self.problem, self.interval.dt);
-        let fits = (self.workspace.stiffness).fits(dt, self.set.length_tolerance());
+        let fits = (self.workspace.stiffness).fits(dt, length_tolerance(self.set));
         let motion = (problem.integration).motion(self.start, u, &equilibrium.u_theta);
         if fits && !factors.are_worn() {
             self.workspace.turn(problem, motion);
@@ -443,33 +432,17 @@ impl<'m> Attempt<'_, 'm> {
         Ok(has_converged)
     }
 
-    /// The constraints that did not count, without those that a free node past a corner, or at it, is
-    /// behind: the line of the segment that it came from.
-    fn outside<'c>(
-        &self,
-        left_out: &'c [Constraint],
-        u: &[f64],
-    ) -> impl Iterator<Item = &'c Constraint> {
-        let is_over = move |constraint: &Constraint| {
-            let [s, a, b, _] = constraint.source.nodes;
-            let xi = self.problem.place(u, [s, a, b]).xi;
-            xi.min(1.0 - xi) > PROJECTION_BEYOND_ENDS
-        };
-        left_out.iter().filter(move |c| c.gap >= 0.0 || is_over(c))
-    }
-
     /// Motion and forces at the end of a converged increment d from the vectors of its last pass; whether their
     /// equilibrium is that of U0 + d.
     fn finish(
         &mut self,
         d: &[f64],
-        mut forces: ContactForces,
-        impulses: Impulses,
+        mut contact: ContactStates,
         v: &mut Vectors,
         is_balanced: bool,
     ) -> Result<Solved, Cause> {
-        forces.add_open(self.outside(&v.left_out, &v.u).cloned());
-        let v0p = impulses.velocity(self.problem, self.workspace, self.start)?;
+        contact.take_left_out(self.problem, &v.u);
+        let v0p = (contact.impulses).velocity(self.problem, self.workspace, self.start)?;
         let mut u = sum(&self.start.u, d);
         let mut equilibrium = std::mem::take(&mut v.equilibrium);
         if is_balanced {
@@ -498,18 +471,18 @@ impl<'m> Attempt<'_, 'm> {
             v,
             a: equilibrium.acceleration.clone(),
             internal,
+            contact: contact.forces.closed.clone(),
         };
         end.check_finite()?;
         Ok(Solved {
             d: d.to_vec(),
             v0p,
             equilibrium,
-            forces,
-            touching: impulses.touching,
-            impulses: impulses.acting,
+            contact,
             end,
             material_dissipation: dissipated,
             passes: Vec::new(),
+            returned: Returned::default(),
         })
     }
 }

@@ -1,7 +1,9 @@
 //! Contact forces of a pass, the solution of a frictional complementarity problem of the
 //! constraints of the iterate. Section 5 of docs/theory.md (paper eqs 36 to 47).
 
-use super::contact_system::{Chosen, ContactSystem, Guess, Response};
+use smallvec::SmallVec;
+
+use super::contact_system::{ContactSystem, FEW, Guess, Response};
 use crate::contact::tolerances::SETTLED_OVERLAP;
 use crate::contact::{ClosedPair, ClosedPairs, Constraint};
 use crate::dynamics::results::Cause;
@@ -17,16 +19,14 @@ pub(crate) struct ContactForces {
     pub problem_size: usize,
     /// Pivots of its solution.
     pub pivots: usize,
-    pub(super) choice: Choice,
+    choice: Choice,
 }
 
 /// Which constraints are in the complementarity problem of a pass, in memory that the next one uses again.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Choice {
+struct Choice {
     /// Whether each of them is.
     inside: Vec<bool>,
-    /// Their places.
-    places: Vec<usize>,
     /// Gaps and slips without forces.
     free: Vec<[f64; 2]>,
     /// Gaps and slips with them.
@@ -58,9 +58,9 @@ impl ContactForces {
         self.acting().count() == self.closed.len()
     }
 
-    /// Adds constraints that carry no force.
-    pub fn add_open(&mut self, constraints: impl IntoIterator<Item = Constraint>) {
-        self.constraints.extend(constraints);
+    /// Whether the last pass has closed the same pairs as the one before.
+    pub fn are_of_same_pairs(&self) -> bool {
+        self.closed.keys().eq(self.choice.before.keys())
     }
 
     /// All constraints with the closed pair that belongs to each, if any.
@@ -117,7 +117,6 @@ impl ContactForces {
         let mut choice = std::mem::take(&mut self.choice);
         let Choice {
             inside,
-            places,
             free,
             after,
             terms,
@@ -131,31 +130,26 @@ impl ContactForces {
         inside.extend(self.constraints.iter().map(was_closed));
         // g + Gn y and Dt + Gt y, eq. (5.2)
         let mut response = Response::begin(system, [d_p, r], &self.constraints)?;
-        response.gaps_and_slips(system, &self.constraints, free);
+        response.gaps_and_slips(system, self.constraints.iter(), free);
         let mut entered = inside.contains(&true) || self.enter(inside, free, overlap);
         while entered {
-            places.clear();
-            places.extend((0..inside.len()).filter(|&k| inside[k]));
-            let all = &self.constraints;
-            let chosen = Chosen { all, places };
-            let constraints = chosen.constraints();
+            let constraints: SmallVec<[_; FEW]> = chosen(&self.constraints, inside).collect();
+            terms.clear();
+            terms.extend(chosen(free, inside));
             guess.take_over(&constraints, before, weight);
-            let closed = &mut self.closed;
-            let by_bodies = system.solve_by_bodies(&mut response, &chosen, free, guess, closed)?;
-            self.pivots += match by_bodies {
-                Some(pivots) => pivots,
-                None => {
-                    terms.clear();
-                    terms.extend(chosen.places.iter().map(|&k| free[k]));
-                    system.solve(&constraints, terms, guess, closed)?
-                }
-            };
-            self.problem_size = chosen.places.len();
+            self.pivots += system.solve(
+                &constraints,
+                terms,
+                guess,
+                &mut self.closed,
+                Some(&mut response),
+            )?;
+            self.problem_size = constraints.len();
             let acting = self
                 .acting()
                 .map(|(constraint, pair)| (constraint, pair.force));
             response.set_forces(system, acting);
-            response.gaps_and_slips(system, &self.constraints, after);
+            response.gaps_and_slips(system, self.constraints.iter(), after);
             entered = self.enter(inside, after, overlap);
         }
         self.choice = choice;
@@ -176,14 +170,23 @@ impl ContactForces {
     }
 }
 
+/// The entries of those constraints that are in the problem.
+fn chosen<'c, 'i, T>(
+    all: &'c [T],
+    inside: &'i [bool],
+) -> impl Iterator<Item = &'c T> + use<'c, 'i, T> {
+    let numbered = all.iter().zip(inside).filter(|(_, inside)| **inside);
+    numbered.map(|(entry, _)| entry)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{ConstraintKey, ContactTarget, PairTarget, Rows};
+    use crate::contact::{Rows, testing};
     use crate::dynamics::step::{FactoredMatrix, Meter, System};
     use crate::lcp::{ContactState, LcpMethod};
     use crate::linear::{Assembled, Transformation, linear_solver};
-    use crate::model::{Friction, SolverChoice};
+    use crate::model::SolverChoice;
 
     const DOFS: usize = 14;
 
@@ -192,29 +195,13 @@ mod tests {
     fn wide(mu: f64) -> Constraint {
         let sign = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
         let row = |entry: &dyn Fn(usize) -> f64| (0..DOFS).map(entry).collect::<Vec<f64>>();
+        let dofs: Vec<usize> = (0..DOFS).collect();
         let derivative = Rows::new(&row(&|_| 0.5), &row(&|k| 0.125 + 0.25 * sign(k)));
-        Constraint {
-            key: ConstraintKey {
-                slave_index: 3,
-                segment: 0,
-            },
-            dofs: (0..DOFS).collect(),
-            slave_dofs: 6,
-            force_rows: Rows::new(&row(&|_| 1.0), &row(&sign)),
-            other_derivative_rows: Some(derivative),
-            gap: -7.0,
-            start_gap: 0.0,
-            slip: 0.5,
-            mu,
-            scale: 1.0,
-            source: PairTarget {
-                slave_index: 3,
-                target: ContactTarget::face(0),
-                nodes: [0, 1, 2, 2],
-                from: None,
-                friction: Friction::constant(mu),
-            },
-        }
+        let mut wide = testing::made_up(&dofs, Rows::new(&row(&|_| 1.0), &row(&sign)));
+        wide.slave_dofs = 6;
+        wide.other_derivative_rows = Some(derivative);
+        (wide.gap, wide.slip, wide.mu) = (-7.0, 0.5, mu);
+        wide
     }
 
     /// Forces and correction of the constraint with W = 1/2 and y = 1/2 at every dof, by both methods.

@@ -9,14 +9,13 @@
 
 use std::collections::BTreeMap;
 
-use smallvec::SmallVec;
-
 use super::equal_forces::FIRST_WEIGHT;
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, Scope};
 use crate::dynamics::results::{Cause, FailedLcp};
 use crate::dynamics::step::{ResponseVectors, System};
 use crate::lcp::{
-    BlockIteration, BlockStart, ContactState, FrictionalLcp, LcpBlock, LcpMethod, Progress,
+    BlockIteration, BlockStart, ContactName, ContactState, FrictionalLcp, LcpBlock, LcpMethod,
+    Progress,
 };
 use crate::linear::{LinearError, Transformation};
 
@@ -72,19 +71,26 @@ impl Guess {
 
 impl ContactSystem<'_> {
     /// Forces of the given constraints from the constant terms of their gaps and slips: the pairs that carry one are
-    /// `closed`; returns the pivots that it took.
+    /// `closed`; returns the pivots that it took. With their response, many are solved by blocks where that gains.
     ///
     /// Where a problem with derivative rows has no solution, that with the force rows in their place is
     /// solved: Q is then symmetric and the theorem of section 8 holds, so that a ray says that pairs
     /// contradict each other. Where pairs are so nearly one that round-off spoils both problems, the answer
     /// near the forces before is taken.
-    pub fn solve(
+    pub(super) fn solve(
         &mut self,
         constraints: &[&Constraint],
         constant_terms: &[[f64; 2]],
         guess: &Guess,
         closed: &mut ClosedPairs,
+        response: Option<&mut Response>,
     ) -> Result<usize, Cause> {
+        if let Some(response) = response
+            && let Some(pivots) =
+                self.solve_by_bodies(response, constraints, constant_terms, guess, closed)?
+        {
+            return Ok(pivots);
+        }
         let solved = self.solve_with_rows(constraints, constant_terms, guess, closed);
         match &solved {
             Err(Cause::Lcp(failed)) if guess.has_forces_only() && !failed.is_contradiction() => {
@@ -159,9 +165,8 @@ impl ContactSystem<'_> {
 }
 
 /// What tells constraints from others in a row of complementarity problems.
-pub(super) fn names(constraints: &[&Constraint]) -> impl Iterator<Item = [usize; 2]> {
-    let keys = constraints.iter().map(|constraint| constraint.key);
-    keys.map(|key| [key.slave_index, key.segment])
+pub(super) fn names(constraints: &[&Constraint]) -> impl Iterator<Item = ContactName> {
+    constraints.iter().map(|constraint| constraint.key.into())
 }
 
 /// The constraints that carry a force.
@@ -193,53 +198,15 @@ fn add_proximal_term(problem: &mut FrictionalLcp, forces: &[[f64; 2]], weight: f
 const LEAST: usize = 100;
 
 /// Constraints whose list takes no memory from the system.
-const FEW: usize = 128;
+pub(super) const FEW: usize = 128;
 
 /// Part of the entries of Q within the blocks at most, or blocks gain nothing.
 const WITHIN: f64 = 0.25;
 
-/// Whether a problem of so many constraints may be solved by blocks.
-pub(super) fn is_large(count: usize) -> bool {
-    count >= LEAST
-}
-
-/// The constraints that enter a problem, by their places among all.
-pub(super) struct Chosen<'a> {
-    pub all: &'a [Constraint],
-    pub places: &'a [usize],
-}
-
-impl<'a> Chosen<'a> {
-    /// The constraints that enter.
-    pub fn constraints(&self) -> SmallVec<[&'a Constraint; FEW]> {
-        self.places.iter().map(|&place| &self.all[place]).collect()
-    }
-
-    /// Whether their problem is to be solved by blocks.
-    pub fn are_by_bodies(&self, system: &ContactSystem) -> bool {
-        self.by_bodies(system).is_some()
-    }
-
-    /// Their positions by the bodies that they are between, if their problem is to be solved by blocks.
-    fn by_bodies(&self, system: &ContactSystem) -> Option<BTreeMap<Scope, Vec<usize>>> {
-        if !is_large(self.places.len()) || system.method != LcpMethod::Hybrid {
-            return None;
-        }
-        let mut blocks: BTreeMap<Scope, Vec<usize>> = BTreeMap::new();
-        for (k, constraint) in self.constraints().into_iter().enumerate() {
-            let scope = system.system.scope_of(constraint);
-            blocks.entry(scope).or_default().push(k);
-        }
-        let square = |count: usize| (count as f64).powi(2);
-        let within: f64 = blocks.values().map(|block| square(block.len())).sum();
-        (within <= WITHIN * square(self.places.len())).then_some(blocks)
-    }
-}
-
 /// Gaps and slips of the constraints of a problem under any forces.
 struct Motion<'r, 'a> {
     response: &'r mut Response<'a>,
-    chosen: &'r Chosen<'r>,
+    constraints: &'r [&'r Constraint],
     /// eps Q_kk of eq. (5.3), zero without a weight.
     held: Vec<[f64; 2]>,
     /// P^0 of eq. (5.3).
@@ -249,52 +216,68 @@ struct Motion<'r, 'a> {
 impl Motion<'_, '_> {
     /// g + G W B^T P + eps diag(Q) (P - P^0), g being gaps and slips without these forces.
     fn under(&mut self, system: &mut ContactSystem, forces: &[[f64; 2]]) -> Vec<[f64; 2]> {
-        let acting = self.chosen.constraints().into_iter();
-        self.response
-            .set_forces(system, acting.zip(forces.iter().copied()));
+        let constraints = self.constraints.iter().copied();
+        let acting = constraints.clone().zip(forces.iter().copied());
+        self.response.set_forces(system, acting);
         let mut all = Vec::new();
-        (self.response).gaps_and_slips(system, self.chosen.all, &mut all);
-        let of = |(k, &place): (usize, &usize)| {
-            let held = |i: usize| self.held[k][i] * (forces[k][i] - self.near[k][i]);
-            [0, 1].map(|i| all[place][i] + held(i))
-        };
-        self.chosen.places.iter().enumerate().map(of).collect()
+        self.response.gaps_and_slips(system, constraints, &mut all);
+        for (k, at) in all.iter_mut().enumerate() {
+            *at = [0, 1].map(|i| at[i] + self.held[k][i] * (forces[k][i] - self.near[k][i]));
+        }
+        all
     }
 }
 
 impl ContactSystem<'_> {
-    /// Forces of the chosen constraints by blocks, `free` being gaps and slips of all constraints without
+    /// Positions of constraints by the bodies that they are between, if their problem is to be solved by blocks.
+    pub(super) fn by_bodies(
+        &self,
+        constraints: &[&Constraint],
+    ) -> Option<BTreeMap<Scope, Vec<usize>>> {
+        if constraints.len() < LEAST || self.method != LcpMethod::Hybrid {
+            return None;
+        }
+        let mut blocks: BTreeMap<Scope, Vec<usize>> = BTreeMap::new();
+        for (k, constraint) in constraints.iter().enumerate() {
+            let scope = self.system.scope_of(constraint);
+            blocks.entry(scope).or_default().push(k);
+        }
+        let square = |count: usize| (count as f64).powi(2);
+        let within: f64 = blocks.values().map(|block| square(block.len())).sum();
+        (within <= WITHIN * square(constraints.len())).then_some(blocks)
+    }
+
+    /// Forces of constraints by blocks, `free` being their gaps and slips without
     /// them: the pairs that carry one are `closed`. The pivots that it took; none where blocks gain nothing or are
     /// coupled too strongly.
-    pub(super) fn solve_by_bodies(
+    fn solve_by_bodies(
         &mut self,
         response: &mut Response,
-        chosen: &Chosen,
+        constraints: &[&Constraint],
         free: &[[f64; 2]],
         guess: &Guess,
         closed: &mut ClosedPairs,
     ) -> Result<Option<usize>, Cause> {
-        let Some(by_bodies) = chosen.by_bodies(self) else {
+        let Some(by_bodies) = self.by_bodies(constraints) else {
             return Ok(None);
         };
-        let count = chosen.places.len();
+        let count = constraints.len();
         let near = (guess.forces.clone()).unwrap_or_else(|| vec![[0.0; 2]; count]);
-        let (blocks, held) = self.blocks(chosen, &by_bodies, guess)?;
+        let (blocks, held) = self.blocks(constraints, &by_bodies, guess)?;
         let mut motion = Motion {
             response,
-            chosen,
+            constraints,
             held,
             near: near.clone(),
         };
-        let free: Vec<[f64; 2]> = chosen.places.iter().map(|&place| free[place]).collect();
         let start = BlockStart {
             states: guess.states.clone(),
             motion: match guess.forces {
                 Some(_) => motion.under(self, &near),
-                None => free.clone(),
+                None => free.to_vec(),
             },
             forces: near,
-            free,
+            free: free.to_vec(),
         };
         let mut iteration = BlockIteration::new(blocks, start, self.method);
         let mut progress = Progress::GoesOn;
@@ -313,18 +296,17 @@ impl ContactSystem<'_> {
             return Ok(None);
         }
         let forces = solution.forces.into_iter();
-        closed.set(closed_of(&chosen.constraints(), forces, &solution.states));
+        closed.set(closed_of(constraints, forces, &solution.states));
         Ok(Some(solution.counters.pivots))
     }
 
     /// The blocks, with eps Q_kk of all constraints.
     fn blocks(
         &mut self,
-        chosen: &Chosen,
+        all: &[&Constraint],
         by_bodies: &BTreeMap<Scope, Vec<usize>>,
         guess: &Guess,
     ) -> Result<(Vec<LcpBlock>, Vec<[f64; 2]>), LinearError> {
-        let all = chosen.constraints();
         let mut held = vec![[0.0; 2]; all.len()];
         let mut blocks = Vec::with_capacity(by_bodies.len());
         for (scope, contacts) in by_bodies {
@@ -388,10 +370,10 @@ impl<'a> Response<'a> {
     }
 
     /// Writes g + Gn y and Dt + Gt y of every constraint, y being the response so far, 0 where that is nothing.
-    pub fn gaps_and_slips(
+    pub fn gaps_and_slips<'c>(
         &mut self,
         system: &mut ContactSystem,
-        constraints: &[Constraint],
+        constraints: impl Iterator<Item = &'c Constraint>,
         found: &mut Vec<[f64; 2]>,
     ) {
         let start = self.start;
@@ -418,7 +400,7 @@ impl<'a> Response<'a> {
             [c.gap + c.gap_change(y), c.slip + c.slip_change(y)].map(|length| c.resolved(length))
         };
         found.clear();
-        found.extend(constraints.iter().map(after));
+        found.extend(constraints.map(after));
     }
 
     /// Takes forces of the given constraints into the right-hand side, in place of those

@@ -193,7 +193,7 @@ impl<'a> Scales<'a> {
             ContactState::Stick => pt.abs() - most,
             _ => (pt.abs() - most).abs(),
         };
-        constraint.source.friction.is_constant() || excess <= self.tolerance * most
+        constraint.has_constant_friction() || excess <= self.tolerance * most
     }
 
     /// Whether a pass with the correction dU closes the gaps of its closed pairs, as far as open pairs may
@@ -460,7 +460,7 @@ impl<'a> Iterate<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Configurations, ConstraintKey, ContactTarget, PairTarget, RowForm, Rows};
+    use crate::contact::{Configurations, RowForm, Rows, testing};
     use crate::model::{Friction, Mesh, Model};
     use crate::prepare::redistribution_tests::block;
 
@@ -477,13 +477,7 @@ mod tests {
         friction: Friction,
         closed: Option<([f64; 2], ContactState)>,
     ) -> bool {
-        let source = PairTarget {
-            slave_index: 0,
-            target: ContactTarget::face(0),
-            nodes: [0, 1, 2, 2],
-            from: None,
-            friction,
-        };
+        let source = testing::face(friction);
         let mut u = [0.0; 6];
         // the tangent of the segment from 0 to -2 is -x
         (u[0], u[1]) = (-slip, gap);
@@ -546,29 +540,9 @@ mod tests {
 
     /// A node over ground, at dofs 0 and 1, with the gap given.
     fn over_ground(gap: f64) -> Constraint {
-        let key = ConstraintKey {
-            slave_index: 0,
-            segment: 0,
-        };
-        Constraint {
-            key,
-            dofs: [0, 1].into_iter().collect(),
-            slave_dofs: 2,
-            force_rows: Rows::new(&[0.0, 1.0], &[1.0, 0.0]),
-            other_derivative_rows: None,
-            gap,
-            start_gap: gap,
-            slip: 0.0,
-            mu: 0.5,
-            scale: 1.0,
-            source: PairTarget {
-                slave_index: 0,
-                target: ContactTarget::face(0),
-                nodes: [0, 1, 2, 2],
-                from: None,
-                friction: Friction::constant(0.5),
-            },
-        }
+        let mut constraint = testing::made_up(&[0, 1], Rows::new(&[0.0, 1.0], &[1.0, 0.0]));
+        (constraint.gap, constraint.start_gap) = (gap, gap);
+        constraint
     }
 
     /// A pair that is open, or closed in a state.

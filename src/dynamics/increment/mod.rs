@@ -1,9 +1,9 @@
 //! One increment: passes, contact forces, impulses, convergence.
 
 mod acceleration;
-mod active_constraints;
 mod attempt;
 mod contact_forces;
+mod contact_states;
 mod contact_system;
 mod convergence;
 mod equal_forces;
@@ -13,9 +13,9 @@ mod returned;
 mod rigid_predictor;
 mod trace;
 
-pub(crate) use active_constraints::{ActiveConstraints, ConstraintSet, NodeAtSegment};
 pub(crate) use attempt::{Attempt, Path, Solved};
 pub(crate) use contact_forces::ContactForces;
+pub(crate) use contact_states::ContactStates;
 pub(crate) use contact_system::ContactSystem;
-pub(crate) use returned::{PairReturn, Release, Returned};
+pub(crate) use returned::{PairReturn, Release};
 pub(crate) use trace::Failed;

@@ -6,7 +6,7 @@
 use std::collections::VecDeque;
 
 use super::contact_forces::ContactForces;
-use crate::contact::{ClosedPair, Constraint};
+use crate::contact::{ClosedPair, Constraint, NodeAtSegment, SlaveKey};
 use crate::dynamics::results::{Alternation, Cause, Course, PassReport, Worst};
 use crate::lcp::ContactState;
 use crate::model::Settings;
@@ -177,9 +177,7 @@ const RECENT: usize = 3;
 /// A closed pair after a pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Touch {
-    slave_index: usize,
-    /// Slave, segment ends a and b.
-    nodes: [usize; 3],
+    pair: NodeAtSegment,
     state: ContactState,
 }
 
@@ -201,17 +199,13 @@ impl ContactHistory {
 
     /// Takes in the pairs after a pass.
     pub fn add(&mut self, contact: &ContactForces) {
-        let touch = |(constraint, pair): (&Constraint, &ClosedPair)| {
-            let [s, a, b, _] = constraint.source.nodes;
-            Touch {
-                slave_index: pair.key.slave_index,
-                nodes: [s, a, b],
-                // without friction it is all the same whether a pair slides
-                state: match constraint.mu {
-                    0.0 => ContactState::Stick,
-                    _ => pair.state,
-                },
-            }
+        let touch = |(constraint, pair): (&Constraint, &ClosedPair)| Touch {
+            pair: constraint.pair(),
+            // without friction it is all the same whether a pair slides
+            state: match constraint.mu {
+                0.0 => ContactState::Stick,
+                _ => pair.state,
+            },
         };
         self.push(contact.acting().map(touch));
     }
@@ -246,10 +240,10 @@ impl ContactHistory {
         })
     }
 
-    /// The slave nodes that went to and fro, with increasing slave indices.
+    /// The slave nodes that went to and fro, in the order of their keys.
     pub fn alternations(&self) -> Vec<Alternation> {
-        let all = self.touches.iter().map(|touch| touch.slave_index);
-        let mut slaves: Vec<usize> = all.collect();
+        let all = self.touches.iter().map(|touch| touch.pair.key.slave());
+        let mut slaves: Vec<SlaveKey> = all.collect();
         slaves.sort_unstable();
         slaves.dedup();
         slaves
@@ -259,9 +253,9 @@ impl ContactHistory {
     }
 
     /// The two states between which a slave node went to and fro, if it did.
-    fn of_slave(&self, slave_index: usize) -> Option<Alternation> {
+    fn of_slave(&self, slave: SlaveKey) -> Option<Alternation> {
         let own = |touches: &[Touch]| -> Vec<Touch> {
-            let is_own = |touch: &&Touch| touch.slave_index == slave_index;
+            let is_own = |touch: &&Touch| touch.pair.key.slave() == slave;
             touches.iter().filter(is_own).copied().collect()
         };
         let states: Vec<Vec<Touch>> = self.passes().map(own).collect();
@@ -280,8 +274,8 @@ impl ContactHistory {
 /// What differs between two states of a slave node; none if nothing does.
 fn alternation(p: &[Touch], q: &[Touch]) -> Option<Alternation> {
     let without = |p: &[Touch], q: &[Touch]| {
-        let is_other = |touch: &&Touch| q.iter().all(|other| other.nodes != touch.nodes);
-        p.iter().find(is_other).map(|touch| touch.nodes)
+        let is_other = |touch: &&Touch| q.iter().all(|other| other.pair.nodes != touch.pair.nodes);
+        p.iter().find(is_other).map(|touch| touch.pair.nodes)
     };
     match (without(p, q), without(q, p)) {
         (Some([slave, a, b]), Some([_, c, d])) => Some(Alternation::Changing {
@@ -291,8 +285,8 @@ fn alternation(p: &[Touch], q: &[Touch]) -> Option<Alternation> {
         (Some(nodes), None) | (None, Some(nodes)) => Some(Alternation::Closing(nodes)),
         (None, None) => {
             let slides = |touch: &&Touch| q.iter().all(|other| other != *touch);
-            let pair = p.iter().find(slides)?;
-            Some(Alternation::Sliding(pair.nodes))
+            let touch = p.iter().find(slides)?;
+            Some(Alternation::Sliding(touch.pair.nodes))
         }
     }
 }
@@ -361,15 +355,16 @@ mod tests {
 #[cfg(test)]
 mod alternation_tests {
     use super::*;
+    use crate::contact::testing;
     use ContactState::{SlipPlus, Stick};
 
     /// A node on segment number `segment`, of nodes `segment` and `segment + 1`.
-    fn touch(slave_index: usize, segment: usize, state: ContactState) -> Touch {
-        Touch {
-            slave_index,
-            nodes: [100 + slave_index, segment, segment + 1],
-            state,
-        }
+    fn touch(slave: usize, segment: usize, state: ContactState) -> Touch {
+        let pair = NodeAtSegment {
+            key: testing::key(slave, 0),
+            nodes: [100 + slave, segment, segment + 1],
+        };
+        Touch { pair, state }
     }
 
     fn alternations(passes: &[&[Touch]]) -> Vec<Alternation> {

@@ -6,8 +6,8 @@ use super::bodies::{BodyMasses, Moving, RigidSurfaces, momentum};
 use super::contact_ledger::ContactLedger;
 use super::energy::Ledger;
 use super::nodal_results::{SlaveFaces, contact_resultants, nodal_results, node_masses};
-use super::touches::{Sides, Touches};
-use crate::dynamics::increment::{Returned, Solved};
+use super::touches::Touches;
+use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{
     ContactOnBody, ContactResultant, IncrementReport, Momentum, NodalResults, NodeStatus,
     RigidReaction, State,
@@ -34,7 +34,6 @@ impl Accounts {
     pub fn new(discretization: &Discretization) -> Self {
         let Discretization {
             model,
-            contacts,
             mass,
             elements,
             redistribution,
@@ -51,7 +50,7 @@ impl Accounts {
         Accounts {
             bodies: BodyMasses::new(model, mass),
             rigid: RigidSurfaces::new(model),
-            contacts: ContactLedger::new(model, contacts, faces.start.clone()),
+            contacts: ContactLedger::new(model, faces.start.clone()),
             touches: Touches::new(&model.mesh),
             consistent: (!redistribution.is_empty()).then(consistent),
             faces,
@@ -91,7 +90,7 @@ impl Accounts {
     pub fn enter(
         &mut self,
         problem: &StepProblem,
-        (solved, returned): (&Solved, &Returned),
+        solved: &Solved,
         interval: Interval,
         ledger: &Ledger,
     ) -> IncrementReport {
@@ -100,18 +99,13 @@ impl Accounts {
         let u = &solved.equilibrium.u_theta;
         let mut contacts = contact_resultants(problem, solved);
         let bodies = &self.bodies.bodies;
-        let sides = Sides {
-            bodies,
-            contact_of: &self.contacts.contact_of,
-        };
-        let both = (solved, returned);
-        report.touches = (self.touches).enter(problem, &sides, both, interval, &mut contacts);
-        report.returns = (self.contacts).enter_returns(both, interval, &mut contacts);
+        report.touches = (self.touches).enter(problem, bodies, solved, interval, &mut contacts);
+        report.returns = (self.contacts).enter_returns(solved, interval, &mut contacts);
         (self.contacts).enter(problem, bodies, solved, interval.dt, &mut contacts);
         let mut nodal = nodal_results(problem, solved);
         let (theta1, Interval { start, end, .. }) = (problem.integration.theta1, interval);
         nodal.concentrated = problem.loads.concentrated(theta1, start, end, u.len());
-        nodal.pressure = self.faces.pressure(problem, u, &solved.forces);
+        nodal.pressure = self.faces.pressure(problem, u, &solved.contact.forces);
         nodal.slip.clone_from(&self.contacts.slip);
         report.rigid = self.rigid.collect(problem, u, &mut nodal.reaction);
         (self.bodies).add_contact(problem, u, &nodal.contact_force, &mut report.bodies);

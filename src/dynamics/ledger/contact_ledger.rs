@@ -5,9 +5,8 @@
 
 use std::collections::BTreeMap;
 
-use super::nodal_results::contact_of_slave_indices;
-use crate::contact::{Constraint, ConstraintKey, ContactSurfaces, Search, crossed_edges};
-use crate::dynamics::increment::{PairReturn, Returned, Solved};
+use crate::contact::{Constraint, ConstraintKey, Search, crossed_edges};
+use crate::dynamics::increment::{PairReturn, Solved};
 use crate::dynamics::results::{
     ContactImpulse, ContactOnBody, ContactResultant, ContactViolation, ReturnedImpulse, State,
 };
@@ -33,23 +32,20 @@ pub(crate) struct ContactLedger {
     contacts: Vec<Sums>,
     /// `N` entries; NaN at all nodes but slave nodes.
     pub slip: Vec<f64>,
-    /// Contact of every slave index.
-    pub contact_of: Vec<usize>,
     /// Reference node of every contact whose master is a rigid surface.
     reference: Vec<Option<usize>>,
 }
 
 impl ContactLedger {
     /// Opens the ledger; `slip` is the slip of every node accumulated so far.
-    pub fn new(model: &Model, surfaces: &[ContactSurfaces], slip: Vec<f64>) -> Self {
+    pub fn new(model: &Model, slip: Vec<f64>) -> Self {
         let reference = |master: usize| {
             let mut bodies = model.rigid_bodies.iter();
             bodies.find(|body| body.surface == master)
         };
         ContactLedger {
-            contacts: vec![Sums::default(); surfaces.len()],
+            contacts: vec![Sums::default(); model.contacts.len()],
             slip,
-            contact_of: contact_of_slave_indices(surfaces),
             reference: (model.contacts.iter())
                 .map(|contact| reference(contact.master).map(|body| body.reference))
                 .collect(),
@@ -72,8 +68,8 @@ impl ContactLedger {
                 result.bodies = vec![ContactOnBody::default(); bodies.count];
             }
         }
-        for (constraint, pair) in solved.forces.acting() {
-            let contact = self.contact_of[pair.key.slave_index];
+        for (constraint, pair) in solved.contact.forces.acting() {
+            let contact = pair.key.contact();
             let [pn, pt] = pair.force;
             // Pn.(Bn d) and -Pt.(Bt d)
             let sums = &mut self.contacts[contact];
@@ -86,8 +82,8 @@ impl ContactLedger {
                 add_to_bodies(problem, bodies, u, forces, &mut result.bodies);
             }
         }
-        for (constraint, pair) in solved.impulses.acting() {
-            let impulse = &mut resultants[self.contact_of[pair.key.slave_index]].impulse;
+        for (constraint, pair) in solved.contact.impulses.acting() {
+            let impulse = &mut resultants[pair.key.contact()].impulse;
             let [phi, psi] = pair.force;
             impulse.add(constraint, [phi, psi]);
             impulse.impact_normal += phi;
@@ -114,27 +110,27 @@ impl ContactLedger {
     /// pairs.
     pub fn enter_returns(
         &mut self,
-        (solved, returned): (&Solved, &Returned),
+        solved: &Solved,
         interval: Interval,
         resultants: &mut [ContactResultant],
     ) -> Vec<ReturnedImpulse> {
-        for pair in &returned.pairs {
-            let contact = self.contact_of[pair.key.slave_index];
+        for pair in &solved.returned.pairs {
+            let contact = pair.key.contact();
             self.contacts[contact].landing_return += pair.energy;
             self.contacts[contact].friction_dissipation -= pair.friction;
             resultants[contact].impulse.add_return(pair);
         }
-        for (key, loss) in returned.release.losses() {
-            self.contacts[self.contact_of[key.slave_index]].release_loss += loss;
+        for (key, loss) in solved.returned.release.losses() {
+            self.contacts[key.contact()].release_loss += loss;
         }
-        if returned.pairs.is_empty() {
+        if solved.returned.pairs.is_empty() {
             return Vec::new();
         }
-        let totals = total_impulses(solved, returned, interval.dt);
-        self.measure_cones(&totals, resultants);
+        let totals = total_impulses(solved, interval.dt);
+        Self::measure_cones(&totals, resultants);
         let total = |pair: &PairReturn| {
             let (constraint, [normal, tangential, _]) = totals.get(&pair.key)?;
-            let [slave, a, b, _] = constraint.source.nodes;
+            let [slave, a, b] = constraint.pair().nodes;
             Some(ReturnedImpulse {
                 time: interval.end.total,
                 slave,
@@ -145,15 +141,15 @@ impl ContactLedger {
                 returned_tangential: pair.tangential,
             })
         };
-        returned.pairs.iter().filter_map(total).collect()
+        solved.returned.pairs.iter().filter_map(total).collect()
     }
 
     /// How far the total impulses are from Coulomb's cone, contact by contact. Without returns they are in it, as
     /// forces and impacts each are.
-    fn measure_cones(&self, totals: &Totals, resultants: &mut [ContactResultant]) {
+    fn measure_cones(totals: &Totals, resultants: &mut [ContactResultant]) {
         let mut largest = vec![0.0_f64; resultants.len()];
         for (key, (constraint, [normal, tangential, size])) in totals {
-            let contact = self.contact_of[key.slave_index];
+            let contact = key.contact();
             let outside = larger(tangential.abs() - constraint.mu * normal, -normal);
             let violation = &mut resultants[contact].impulse_cone_violation;
             *violation = larger(*violation, outside);
@@ -170,7 +166,7 @@ impl ContactLedger {
     /// pairs, the largest.
     fn slide(&mut self, solved: &Solved) {
         let mut increments = vec![0.0_f64; self.slip.len()];
-        for (constraint, _) in solved.forces.acting() {
+        for (constraint, _) in solved.contact.forces.acting() {
             let slip = constraint.tangential_motion(&solved.d).abs();
             for node in constraint.slave_nodes() {
                 increments[node] = increments[node].max(slip);
@@ -187,22 +183,22 @@ impl ContactLedger {
 type Totals<'s> = BTreeMap<ConstraintKey, (&'s Constraint, [f64; 3])>;
 
 /// Total impulses dt P + (Phi, Psi) and what is given back, pair by pair.
-fn total_impulses<'s>(solved: &'s Solved, returned: &'s Returned, dt: f64) -> Totals<'s> {
+fn total_impulses<'s>(solved: &'s Solved, dt: f64) -> Totals<'s> {
     let mut totals = Totals::new();
     let mut add = |constraint: &'s Constraint, impulse: [f64; 2]| {
         let (_, sum) = (totals.entry(constraint.key)).or_insert((constraint, [0.0; 3]));
         add_impulse(sum, impulse);
     };
-    for (constraint, pair) in solved.forces.acting() {
+    for (constraint, pair) in solved.contact.forces.acting() {
         add(constraint, pair.force.map(|p| dt * p));
     }
-    for (constraint, pair) in solved.impulses.acting() {
+    for (constraint, pair) in solved.contact.impulses.acting() {
         add(constraint, pair.force);
     }
-    for (constraint, _) in &returned.release.opened {
+    for (constraint, _) in &solved.returned.release.opened {
         add(constraint, [0.0; 2]);
     }
-    for pair in &returned.pairs {
+    for pair in &solved.returned.pairs {
         if let Some((_, sum)) = totals.get_mut(&pair.key) {
             add_impulse(sum, [pair.normal, pair.tangential]);
         }
@@ -280,7 +276,7 @@ pub(crate) fn contact_violation(
     let at = problem.configurations(&start.u, &solved.end.u);
     let of_pair =
         |constraint: &Constraint, state| violation_of_pair(&constraint.relinearized(&at), state);
-    let pairs = solved.forces.iter();
+    let pairs = solved.contact.forces.iter();
     let largest = pairs
         .map(|(constraint, pair)| of_pair(constraint, pair.map(|pair| pair.state)))
         .fold(ContactViolation::default(), ContactViolation::larger);
@@ -315,18 +311,12 @@ fn violation_of_pair(constraint: &Constraint, state: Option<ContactState>) -> Co
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Configurations, ContactTarget, PairTarget, RowForm};
+    use crate::contact::{Configurations, RowForm, testing};
     use crate::model::Friction;
 
     /// Violation of a node at 1/4 of a segment of length 2, with the given gap and slip.
     fn violation([gap, slip]: [f64; 2], mu: f64, state: Option<ContactState>) -> ContactViolation {
-        let source = PairTarget {
-            slave_index: 0,
-            target: ContactTarget::face(0),
-            nodes: [0, 1, 2, 2],
-            from: None,
-            friction: Friction::constant(mu),
-        };
+        let source = testing::face(Friction::constant(mu));
         let mut u = [0.0; 6];
         (u[0], u[1]) = (slip, gap);
         let at = Configurations {

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::contact::Constraint;
 use crate::contact::tolerances::CLOSED_GAP;
-use crate::dynamics::increment::{Returned, Solved};
+use crate::dynamics::increment::{ContactStates, Solved};
 use crate::dynamics::results::{Cause, Energy, State};
 use crate::dynamics::step::{EffectiveStiffness, Equilibrium, StepProblem, difference, dot, sum};
 use crate::elements::ElementResult;
@@ -90,14 +90,14 @@ impl Ledger {
         mut self,
         problem: &StepProblem,
         start: &State,
-        (solved, returned): (&Solved, &Returned),
+        solved: &Solved,
         dt: f64,
     ) -> Result<Self, Cause> {
         let Solved {
             d,
             v0p,
             end,
-            forces,
+            contact: ContactStates { forces, .. },
             ..
         } = solved;
         let Equilibrium {
@@ -109,12 +109,10 @@ impl Ledger {
         // -Phi.(Bn V) - Psi.(Bt V), V = (V0 + V0+)/2, eq. (9.4); at supports V0.(M (V0+ - V0) - B^T Phi)
         // of eq. (9.1), with what equations pass on to them
         if v0p != &start.v {
-            let [impulse, change] = [
-                solved.impulses.resultant(d.len()),
-                problem.mass.times(&difference(v0p, &start.v)),
-            ];
-            self.energy.impact_loss -= dot(&sum(&start.v, v0p), &impulse) / 2.0;
-            let reaction = difference(&change, &impulse);
+            let impulse = solved.contact.impulses.resultant();
+            let change = problem.mass.times(&difference(v0p, &start.v));
+            self.energy.impact_loss -= dot(&sum(&start.v, v0p), impulse) / 2.0;
+            let reaction = difference(&change, impulse);
             let reaction = problem.unknowns.passed_on(&reaction);
             let prescribed = problem.unknowns.prescribed();
             self.energy.external_work += prescribed.map(|p| start.v[p] * reaction[p]).sum::<f64>();
@@ -147,6 +145,7 @@ impl Ledger {
         }
         // what landings and releases are given back, with the work of the supports on the way, eq. (6.10), and of
         // friction that is taken back, eq. (6.11), R and the work of the loads on the way to rest, eq. (6.13)
+        let returned = &solved.returned;
         let (loss, load_work) = (returned.release.loss, returned.release.load_work);
         e.landing_return += returned.energy();
         e.friction_dissipation -= returned.friction();
@@ -297,14 +296,12 @@ fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) 
     if !problem.integration.energy_momentum {
         return 0.0;
     }
-    let Solved { d, forces, .. } = solved;
-    let works = forces.acting().map(|(constraint, pair)| {
-        let [slave, a, b, _] = constraint.source.nodes;
-        let p = problem.place(&start.u, [slave, a, b]);
+    let works = (solved.contact.forces.acting()).map(|(constraint, pair)| {
+        let p = problem.positions(&start.u).place(constraint.pair().nodes);
         let was_beyond = !(0.0..=1.0).contains(&p.xi) && p.gap < -CLOSED_GAP * p.length;
         // Pn (Bn d) of a pair that was behind, beyond the ends, eq. (7.7)
         let work = if was_beyond {
-            pair.force[0] * constraint.normal_motion(d)
+            pair.force[0] * constraint.normal_motion(&solved.d)
         } else {
             0.0
         };

@@ -7,8 +7,8 @@
 use std::collections::BTreeSet;
 
 use crate::contact::{
-    ClosedPair, ClosedPairs, Configurations, Constraint, ContactSurfaces, Crossing, Direction,
-    Motion, PairTarget, RowForm, crossings, line_crossings, project,
+    ClosedPair, Configurations, Constraint, Crossing, Direction, Motion, RowForm, crossings,
+    line_crossings, project,
 };
 use crate::dynamics::increment::{ContactForces, Solved};
 use crate::dynamics::results::{
@@ -28,7 +28,7 @@ const STRUCK: f64 = 1e-9;
 /// their own nodes.
 pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResults {
     let dofs = solved.d.len();
-    let contact_force = solved.forces.resultant(dofs);
+    let contact_force = solved.contact.forces.resultant(dofs);
     let Equilibrium {
         load,
         internal,
@@ -51,7 +51,7 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         mass: node_masses(problem),
         ..NodalResults::default()
     };
-    for (constraint, pair) in solved.forces.iter() {
+    for (constraint, pair) in solved.contact.forces.iter() {
         let gap = end_gap(problem, solved, constraint);
         let status = match pair.map(|pair| pair.state) {
             None => NodeStatus::Open,
@@ -103,9 +103,8 @@ pub(crate) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
     };
     let mut resultants = vec![none; problem.contacts.len()];
     let mut largest_normal = vec![0.0_f64; resultants.len()];
-    let contact_of = contact_of_slave_indices(problem.contacts);
-    for (constraint, pair) in solved.forces.iter() {
-        let contact = contact_of[constraint.key.slave_index];
+    for (constraint, pair) in solved.contact.forces.iter() {
+        let contact = constraint.key.contact();
         let r = &mut resultants[contact];
         r.min_gap = r.min_gap.min(end_gap(problem, solved, constraint));
         let Some(pair) = pair else { continue };
@@ -131,63 +130,58 @@ pub(crate) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
     resultants
 }
 
-/// The contact of every slave index.
-pub(crate) fn contact_of_slave_indices(contacts: &[ContactSurfaces]) -> Vec<usize> {
-    let numbered = contacts.iter().enumerate();
-    numbered
-        .flat_map(|(c, surfaces)| std::iter::repeat_n(c, surfaces.slaves.len()))
-        .collect()
-}
-
 /// Pairs that carry force now, or were struck at the start, and were open before: time and place
 /// from the second-order motion of the start (paper eq. 50), with the exact condition of crossing.
 pub(crate) fn landings(
     problem: &StepProblem,
     start: &State,
-    before: &ClosedPairs,
     solved: &Solved,
     interval: Interval,
 ) -> Vec<Landing> {
     let fastest = problem.parts.largest_of_bodies(&start.v);
     let landing_of = |(constraint, pair): (&Constraint, Option<&ClosedPair>)| {
         let least = STRUCK * problem.parts.most(&fastest, constraint.nodes());
-        let touched = solved.touching.closes(constraint.key);
+        let touched = solved.contact.impulses.touches(constraint.key);
         let is_struck = || {
             let rows = constraint.at_start(&end_rows_at(problem, &start.u));
             let [before, after] = [&start.v, &solved.v0p].map(|v| rows.gap_change(v));
             before < -least && after > before + least
         };
-        let was_closed = !before.of_slave(constraint.key.slave_index).is_empty();
+        let was_closed = !start.contact.of_slave(constraint.key.slave()).is_empty();
         let lands = !was_closed && (pair.is_some() || (touched && is_struck()));
-        lands.then(|| landing(problem, start, &constraint.source, interval, touched))
+        lands.then(|| landing(problem, start, constraint, interval, touched))
     };
-    solved.forces.iter().filter_map(landing_of).collect()
+    solved
+        .contact
+        .forces
+        .iter()
+        .filter_map(landing_of)
+        .collect()
 }
 
 fn landing(
     problem: &StepProblem,
     start: &State,
-    pair: &PairTarget,
+    constraint: &Constraint,
     interval: Interval,
     touched: bool,
 ) -> Landing {
-    let segment = pair.nearer_segment();
-    let [s, a, b] = [pair.nodes[0], segment[0], segment[1]];
-    let motions = [s, a, b].map(|node| motion(problem, &start.u, &start.v, &start.a, node));
+    let [slave, a, b] = constraint.nearer_pair().nodes;
+    let motions = [slave, a, b].map(|node| motion(problem, &start.u, &start.v, &start.a, node));
     let tau = match impact_time(&motions, interval.dt) {
         // it touches at the start and does not cross
         tau if touched && tau == interval.dt => 0.0,
         tau => tau,
     };
-    let [s, a, b] = motions.map(|m| m.at(tau));
-    let p = project(s, a, b);
+    let [x_s, x_a, x_b] = motions.map(|m| m.at(tau));
+    let p = project(x_s, x_a, x_b);
     // -e_n.(v_s - (1 - xi) v_a - xi v_b)
-    let [s, a, b] = motions.map(|m| m.velocity_at(tau));
-    let relative = |i: usize| s[i] - (1.0 - p.xi) * a[i] - p.xi * b[i];
+    let [v_s, v_a, v_b] = motions.map(|m| m.velocity_at(tau));
+    let relative = |i: usize| v_s[i] - (1.0 - p.xi) * v_a[i] - p.xi * v_b[i];
     Landing {
         time: interval.start.total + tau,
-        slave: pair.nodes[0],
-        segment,
+        slave,
+        segment: [a, b],
         xi: p.xi,
         approach_speed: -(p.normal[0] * relative(0) + p.normal[1] * relative(1)),
     }

@@ -4,8 +4,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::contact::tolerances::CLOSED_GAP;
-use crate::contact::{ClosedPair, Constraint};
-use crate::dynamics::increment::{Returned, Solved};
+use crate::contact::{ClosedPair, Constraint, SlaveKey};
+use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{ContactResultant, Touch};
 use crate::dynamics::step::{Hold, Interval, StepProblem, holds};
 use crate::model::{Bodies, Mesh};
@@ -36,8 +36,8 @@ struct UnderWay {
     touch: Touch,
     /// Impulse on the first partner.
     impulse: [f64; 2],
-    /// Slave indices closed at the end of the last increment.
-    closed: BTreeSet<usize>,
+    /// Slave nodes closed at the end of the last increment.
+    closed: BTreeSet<SlaveKey>,
     /// Nodes that have opened and whose place none has taken.
     opened: usize,
 }
@@ -57,33 +57,33 @@ impl Touches {
     pub fn enter(
         &mut self,
         problem: &StepProblem,
-        sides: &Sides,
-        (solved, returned): (&Solved, &Returned),
+        bodies: &Bodies,
+        solved: &Solved,
         interval: Interval,
         contacts: &mut [ContactResultant],
     ) -> Vec<Touch> {
         self.increments += 1;
         let mut pairs: BTreeMap<[Partner; 2], Vec<(&Constraint, &ClosedPair)>> = BTreeMap::new();
-        for (constraint, pair) in solved.forces.acting() {
-            let of_both = pairs.entry(sides.partners(constraint).0).or_default();
+        for (constraint, pair) in solved.contact.forces.acting() {
+            let of_both = pairs.entry(partners(bodies, constraint).0).or_default();
             of_both.push((constraint, pair));
         }
         for (both, pairs) in &pairs {
             let under_way = (self.under_way.entry(*both))
                 .or_insert_with(|| UnderWay::begin(*both, pairs, interval, self.increments));
             under_way.touch.last = self.increments;
-            under_way.measure(sides, pairs, &self.corners);
-            for (index, work) in under_way.hand_over(pairs, &solved.d) {
-                contacts[sides.contact_of[index]].handover_work += work;
+            under_way.measure(bodies, pairs, &self.corners);
+            for (slave, work) in under_way.hand_over(pairs, &solved.d) {
+                contacts[slave.contact()].handover_work += work;
             }
         }
-        self.add_impulses(sides, (solved, returned), interval.dt);
+        self.add_impulses(bodies, solved, interval.dt);
         let has_ended = |under_way: &UnderWay| under_way.touch.last < self.increments;
         let ended: Vec<[Partner; 2]> = (self.under_way.iter())
             .filter(|(_, under_way)| has_ended(under_way))
             .map(|(both, _)| *both)
             .collect();
-        let masses = FreeMasses::new(problem, sides.bodies);
+        let masses = FreeMasses::new(problem, bodies);
         let end = |both| {
             let under_way = self.under_way.remove(&both)?;
             Some(under_way.end(interval.start.total, masses.reduced(both)))
@@ -92,20 +92,25 @@ impl Touches {
     }
 
     /// Adds the impulses of an increment of length `dt`: dt P + (Phi, Psi), and what is given back.
-    fn add_impulses(&mut self, sides: &Sides, (solved, returned): (&Solved, &Returned), dt: f64) {
-        let forces = (solved.forces.acting()).map(|(c, pair)| (c, pair.force.map(|p| dt * p)));
-        let impulses = solved.impulses.acting().map(|(c, pair)| (c, pair.force));
+    fn add_impulses(&mut self, bodies: &Bodies, solved: &Solved, dt: f64) {
+        let forces =
+            (solved.contact.forces.acting()).map(|(c, pair)| (c, pair.force.map(|p| dt * p)));
+        let impulses = solved
+            .contact
+            .impulses
+            .acting()
+            .map(|(c, pair)| (c, pair.force));
         for (constraint, impulse) in forces.chain(impulses) {
-            let (both, sign) = sides.partners(constraint);
+            let (both, sign) = partners(bodies, constraint);
             if let Some(under_way) = self.under_way.get_mut(&both) {
                 let vectors = constraint.slave_forces(impulse);
                 vectors.for_each(|(_, vector)| under_way.add(sign, vector));
             }
         }
-        let opened = returned.release.opened.iter().map(|(c, _)| c);
-        let constraints = (solved.forces.acting().map(|(c, _)| c)).chain(opened);
-        let of_keys: BTreeMap<_, _> = constraints.map(|c| (c.key, sides.partners(c))).collect();
-        for pair in &returned.pairs {
+        let opened = solved.returned.release.opened.iter().map(|(c, _)| c);
+        let constraints = (solved.contact.forces.acting().map(|(c, _)| c)).chain(opened);
+        let of_keys: BTreeMap<_, _> = constraints.map(|c| (c.key, partners(bodies, c))).collect();
+        for pair in &solved.returned.pairs {
             if let Some((both, sign)) = of_keys.get(&pair.key)
                 && let Some(under_way) = self.under_way.get_mut(both)
             {
@@ -115,25 +120,16 @@ impl Touches {
     }
 }
 
-/// What the surfaces of contacts belong to.
-pub(crate) struct Sides<'a> {
-    pub bodies: &'a Bodies,
-    /// Contact of every slave index.
-    pub contact_of: &'a [usize],
-}
-
-impl Sides<'_> {
-    /// The two partners of a constraint in their order, and 1 where the slave is the first, else -1.
-    fn partners(&self, constraint: &Constraint) -> ([Partner; 2], f64) {
-        let [s, a, ..] = constraint.source.nodes;
-        let side = |node: usize| match self.bodies.of_node[node] {
-            Some(body) => Partner::Body(body),
-            None => Partner::Surface(self.contact_of[constraint.key.slave_index]),
-        };
-        match [side(s), side(a)] {
-            [p, q] if p <= q => ([p, q], 1.0),
-            [p, q] => ([q, p], -1.0),
-        }
+/// The two partners of a constraint in their order, and 1 where the slave is the first, else -1.
+fn partners(bodies: &Bodies, constraint: &Constraint) -> ([Partner; 2], f64) {
+    let [s, a, _] = constraint.pair().nodes;
+    let side = |node: usize| match bodies.of_node[node] {
+        Some(body) => Partner::Body(body),
+        None => Partner::Surface(constraint.key.contact()),
+    };
+    match [side(s), side(a)] {
+        [p, q] if p <= q => ([p, q], 1.0),
+        [p, q] => ([q, p], -1.0),
     }
 }
 
@@ -148,7 +144,7 @@ impl UnderWay {
         UnderWay {
             touch: Touch {
                 bodies: both.map(Partner::body),
-                node: pairs[0].0.source.nodes[0],
+                node: pairs[0].0.pair().nodes[0],
                 start: interval.start.total,
                 first: increment,
                 ..Touch::default()
@@ -157,17 +153,21 @@ impl UnderWay {
         }
     }
 
-    /// Nodes that land where others have opened before, by slave indices, with the work Pn (Bn d) of their landings.
+    /// Nodes that land where others have opened before, with the work Pn (Bn d) of their landings.
     /// Where more land than have opened, all have their share: which of them come first would be a matter of order.
-    fn hand_over(&mut self, pairs: &[(&Constraint, &ClosedPair)], d: &[f64]) -> Vec<(usize, f64)> {
-        let closed: BTreeSet<usize> = pairs.iter().map(|(c, _)| c.key.slave_index).collect();
+    fn hand_over(
+        &mut self,
+        pairs: &[(&Constraint, &ClosedPair)],
+        d: &[f64],
+    ) -> Vec<(SlaveKey, f64)> {
+        let closed: BTreeSet<SlaveKey> = pairs.iter().map(|(c, _)| c.key.slave()).collect();
         self.opened += self.closed.difference(&closed).count();
         let landing = |(constraint, pair): &(&Constraint, &ClosedPair)| {
-            let (index, way) = (constraint.key.slave_index, constraint.normal_motion(d));
-            let lands = -way > CLOSED_GAP * constraint.scale && !self.closed.contains(&index);
-            lands.then(|| (index, pair.force[0] * way))
+            let (slave, way) = (constraint.key.slave(), constraint.normal_motion(d));
+            let lands = -way > CLOSED_GAP * constraint.scale && !self.closed.contains(&slave);
+            lands.then(|| (slave, pair.force[0] * way))
         };
-        let mut landings: Vec<(usize, f64)> = pairs.iter().filter_map(landing).collect();
+        let mut landings: Vec<(SlaveKey, f64)> = pairs.iter().filter_map(landing).collect();
         let handed_over = self.opened.min(landings.len());
         let share = handed_over as f64 / landings.len().max(1) as f64;
         landings.iter_mut().for_each(|(_, work)| *work *= share);
@@ -177,13 +177,12 @@ impl UnderWay {
     }
 
     /// Takes in how many nodes of one side are closed, and whether the contact reaches a corner.
-    fn measure(&mut self, sides: &Sides, pairs: &[(&Constraint, &ClosedPair)], corners: &[bool]) {
+    fn measure(&mut self, bodies: &Bodies, pairs: &[(&Constraint, &ClosedPair)], corners: &[bool]) {
         let mut slaves = [BTreeSet::new(), BTreeSet::new()];
         for (constraint, _) in pairs {
-            let is_first = sides.partners(constraint).1 > 0.0;
-            slaves[usize::from(is_first)].insert(constraint.source.nodes[0]);
-            let mut nodes = constraint.source.nodes.iter();
-            self.touch.is_at_corner |= nodes.any(|&node| corners[node]);
+            let is_first = partners(bodies, constraint).1 > 0.0;
+            slaves[usize::from(is_first)].insert(constraint.pair().nodes[0]);
+            self.touch.is_at_corner |= constraint.nodes().any(|node| corners[node]);
         }
         let most = slaves.iter().map(BTreeSet::len).fold(0, usize::max);
         self.touch.nodes = self.touch.nodes.max(most);

@@ -2,36 +2,34 @@
 //! do not. Section 4 of docs/theory.md, Cutback.
 
 use super::time_control::NominalIncrement;
-use crate::contact::{ClosedPairs, Penetration};
+use crate::contact::NodeAtSegment;
 use crate::dynamics::events::{FailedSubincrement, Subincrement};
-use crate::dynamics::increment::{Failed, Returned, Solved};
+use crate::dynamics::increment::{Failed, Solved};
 use crate::dynamics::landing::{return_landings, return_release};
 use crate::dynamics::ledger::{Ledger, check_balance, check_energy_gain};
-use crate::dynamics::release::{ReleaseStart, bring_to_rest};
+use crate::dynamics::release::bring_to_rest;
 use crate::dynamics::results::{Cause, Failure, State};
 use crate::dynamics::step::{Interval, StepPlace, StepProblem, Workspace};
 
 /// Most halvings of an increment because of the energy that contact puts in.
 const GAIN_HALVINGS: u32 = 5;
 
-/// Where a subincrement starts from: motion, closed pairs and energies at the end of the last one.
+/// Where a subincrement starts from: state and energies at the end of the last one.
 #[derive(Clone, Copy)]
 pub(crate) struct Before<'a> {
     pub state: &'a State,
-    pub closed: &'a ClosedPairs,
     pub ledger: &'a Ledger,
 }
 
-/// An accepted subincrement, what is given back after it, and the ledger with its energies.
+/// An accepted subincrement and the ledger with its energies.
 pub(crate) struct Accepted {
     pub subincrement: Subincrement,
-    pub returned: Returned,
     pub ledger: Ledger,
 }
 
 impl Accepted {
-    /// Accepts a converged subincrement, `halvings` times halved, of the `nominal` increment, if it passes
-    /// the checks.
+    /// Finishes a converged subincrement, `halvings` times halved, of the `nominal` increment, and accepts it if it
+    /// passes the checks.
     pub fn new(
         problem: &StepProblem,
         workspace: &mut Workspace,
@@ -44,16 +42,20 @@ impl Accepted {
             interval, solved, ..
         } = &mut subincrement;
         let may_be_halved = halvings < GAIN_HALVINGS && interval.dt / 2.0 >= nominal.dt_min;
-        match checked(
-            problem,
-            workspace,
-            before,
-            (*interval, solved),
-            may_be_halved,
-        ) {
-            Ok((returned, ledger)) => Ok(Accepted {
+        let finished = finish_motion(problem, workspace, before.state, *interval, solved);
+        let accepted = finished.and_then(|()| {
+            accept(
+                problem,
+                workspace,
+                before,
+                interval.dt,
+                solved,
+                may_be_halved,
+            )
+        });
+        match accepted {
+            Ok(ledger) => Ok(Accepted {
                 subincrement,
-                returned,
                 ledger,
             }),
             Err(cause) => Err(Box::new((
@@ -69,36 +71,42 @@ impl Accepted {
     }
 }
 
-/// Checks a converged increment, brings released nodes to rest, gives back what landings and releases have
-/// taken and enters it in the ledger: no element may be turned inside out, no node may have gone through a surface, the
-/// energies must be finite and in balance, and contact must put in none where the increment may be halved for that.
-fn checked(
+/// Finishes the motion of a converged increment: brings released nodes to rest and gives back what landings and
+/// releases have taken. No element may be turned inside out, no node may have gone through a surface.
+fn finish_motion(
     problem: &StepProblem,
     workspace: &mut Workspace,
-    before: Before,
-    (interval, solved): (Interval, &mut Solved),
-    may_be_halved: bool,
-) -> Result<(Returned, Ledger), Cause> {
-    let start = ReleaseStart {
-        state: before.state,
-        closed: before.closed,
-    };
+    start: &State,
+    interval: Interval,
+    solved: &mut Solved,
+) -> Result<(), Cause> {
     let release = bring_to_rest(problem, workspace, start, interval, solved);
     problem.check_end(&solved.end)?;
-    check_paths(problem, workspace, before, solved)?;
-    let dt = interval.dt;
-    let from = (before.state, dt);
-    let mut returned = return_landings(problem, workspace, from, solved)?;
-    return_release(problem, workspace, from, solved, (release, &mut returned))?;
+    check_paths(problem, workspace, start, solved)?;
+    let from = (start, interval.dt);
+    return_landings(problem, workspace, from, solved)?;
+    return_release(problem, workspace, from, solved, release)?;
     problem.follow_donors(&mut solved.end.v);
     problem.follow_donors(&mut solved.end.a);
-    let ledger = before.ledger.clone();
-    let ledger = ledger.with(problem, before.state, (solved, &returned), dt)?;
+    Ok(())
+}
+
+/// Enters a finished increment of length `dt` in the ledger: the energies must be finite and in balance, and contact
+/// must put in none where the increment may be halved for that.
+fn accept(
+    problem: &StepProblem,
+    workspace: &Workspace,
+    before: Before,
+    dt: f64,
+    solved: &Solved,
+    may_be_halved: bool,
+) -> Result<Ledger, Cause> {
+    let ledger = (before.ledger.clone()).with(problem, before.state, solved, dt)?;
     if may_be_halved {
         check_energy_gain(problem, before.state, &ledger, solved)?;
     }
     check_balance(problem, &workspace.stiffness, &ledger, solved)?;
-    Ok((returned, ledger))
+    Ok(ledger)
 }
 
 /// No node may have gone into a body on its straight path from U0 to U1. What the tolerance of the
@@ -106,19 +114,18 @@ fn checked(
 fn check_paths(
     problem: &StepProblem,
     workspace: &mut Workspace,
-    before: Before,
+    start: &State,
     solved: &Solved,
 ) -> Result<(), Cause> {
-    let unsolved = problem.unsolved(&solved.d);
-    let (u0, u1) = (&before.state.u, &solved.end.u);
-    let closed = [before.closed, &solved.forces.closed];
-    let found = workspace.find_penetration([u0, u1], closed, &unsolved);
-    found.map_or(Ok(()), |Penetration { slave, segment, .. }| {
-        let [a, b] = segment;
+    let (end, unsolved) = (&solved.end, problem.unsolved(&solved.d));
+    let closed = [&start.contact, &end.contact];
+    let found = workspace.find_penetration([&start.u, &end.u], closed, &unsolved);
+    found.map_or(Ok(()), |NodeAtSegment { nodes, .. }| {
+        let [slave, a, b] = nodes;
         Err(Cause::Crossed {
             slave,
-            segment,
-            prescribed: !problem.unknowns.moves(&[slave, a, b]),
+            segment: [a, b],
+            prescribed: !problem.unknowns.moves(&nodes),
         })
     })
 }

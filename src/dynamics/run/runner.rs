@@ -63,9 +63,8 @@ fn time_control(problem: &StepProblem, nominal: NominalIncrement) -> Box<dyn Tim
 /// A run in progress.
 struct Runner<'m, 'o> {
     discretization: &'m Discretization<'m>,
-    /// Motion, closed pairs and energies at the end of the last increment.
+    /// State and energies at the end of the last increment.
     state: State,
-    contact: ClosedPairs,
     ledger: Ledger,
     accounts: Accounts,
     summary: RunSummary,
@@ -85,8 +84,8 @@ impl<'m, 'o> Runner<'m, 'o> {
                 v: model.initial_velocity.clone(),
                 a: vec![0.0; model.mesh.dof_count()],
                 internal: elements.initial_variables(),
+                contact: ClosedPairs::default(),
             },
-            contact: ClosedPairs::default(),
             ledger: Ledger::default(),
             accounts: Accounts::new(discretization),
             summary: RunSummary {
@@ -148,7 +147,6 @@ impl<'m, 'o> Runner<'m, 'o> {
             let attempt = self.attempt(problem, workspace, span, nominal.length);
             let before = Before {
                 state: &self.state,
-                closed: &self.contact,
                 ledger: &self.ledger,
             };
             let checked = attempt.and_then(|found| {
@@ -189,7 +187,6 @@ impl<'m, 'o> Runner<'m, 'o> {
             problem,
             workspace,
             start: &self.state,
-            contact: &self.contact,
             rest: span.interval,
             nominal,
         };
@@ -219,7 +216,6 @@ impl<'m, 'o> Runner<'m, 'o> {
         place: StepPlace,
         Accepted {
             subincrement,
-            returned,
             ledger,
         }: Accepted,
     ) -> Result<(), RunError> {
@@ -228,7 +224,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             solved,
             is_cut,
         } = subincrement;
-        let accounted = (self.accounts).enter(problem, (&solved, &returned), interval, &ledger);
+        let accounted = (self.accounts).enter(problem, &solved, interval, &ledger);
         let solver = SolverCounts {
             violation: contact_violation(problem, &workspace.search, &self.state, &solved),
             converged: true,
@@ -248,7 +244,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             contact_energy: ledger.contact_energy,
             strain: most_strained(&ledger.elements),
             elements: ledger.elements.clone(),
-            landings: landings(problem, &self.state, &self.contact, &solved, interval),
+            landings: landings(problem, &self.state, &solved, interval),
             solver,
             passes: solved.passes,
             state: solved.end,
@@ -256,7 +252,6 @@ impl<'m, 'o> Runner<'m, 'o> {
         };
         self.observer.increment(&report)?;
         self.ledger = ledger;
-        self.contact = solved.forces.closed;
         self.state = report.state;
         Ok(())
     }

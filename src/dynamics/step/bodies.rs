@@ -122,14 +122,12 @@ pub(crate) fn holds(problem: &StepProblem) -> Vec<Hold> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{
-        Constraint, ConstraintKey, ContactTarget, PairTarget, PerDof, Rows, Scope,
-    };
+    use crate::contact::{Constraint, Rows, Scope, testing};
     use crate::dynamics::step::{ClosedConstraints, Discretization, Workspace};
     use crate::materials::{Law, SaintVenantKirchhoff};
     use crate::model::{
-        Damping, Element, ElementType, Frames, Friction, Increments, Material, Model, Procedure,
-        Section, Settings, Step, Support, SupportMotion,
+        Damping, Element, ElementType, Frames, Increments, Material, Model, Procedure, Section,
+        Settings, Step, Support, SupportMotion,
     };
     use crate::prepare::PreparedModel;
 
@@ -215,29 +213,9 @@ mod tests {
                 |phase: f64| [0.0, 1.0, 2.0, 3.0, 4.0, 5.0].map(|k| (phase + shift + k).sin());
             Rows::new(&row(0.1), &row(0.8))
         };
-        let source = PairTarget {
-            slave_index: 0,
-            target: ContactTarget::face(0),
-            nodes: [0; 4],
-            from: None,
-            friction: Friction::constant(0.5),
-        };
-        Constraint {
-            key: ConstraintKey {
-                slave_index: 0,
-                segment: 0,
-            },
-            dofs: CONSTRAINED.into_iter().collect::<PerDof<usize>>(),
-            slave_dofs: 2,
-            force_rows: rows(0.0),
-            other_derivative_rows: Some(rows(0.3)),
-            gap: 0.0,
-            start_gap: 0.0,
-            slip: 0.0,
-            mu: 0.5,
-            scale: 1.0,
-            source,
-        }
+        let mut constraint = testing::made_up(&CONSTRAINED, rows(0.0));
+        constraint.other_derivative_rows = Some(rows(0.3));
+        constraint
     }
 
     /// The response to unit forces at all dofs, column by column, and the Delassus matrix of a

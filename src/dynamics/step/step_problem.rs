@@ -13,7 +13,7 @@ use super::parts::{Parts, Run};
 use super::unknowns::Unknowns;
 use crate::contact::tolerances::COLLAPSED_LENGTH;
 use crate::contact::{
-    Configurations, Constraint, ContactSurfaces, PairTarget, Projection, position, project,
+    Configurations, Constraint, ContactSurfaces, PairTarget, Positions, position,
 };
 use crate::dynamics::results::{Cause, State};
 use crate::elements::{Elements, Motion};
@@ -160,10 +160,9 @@ impl StepProblem<'_> {
         position(&self.model.mesh.coordinates, u, node)
     }
 
-    /// Projection of a node on a segment; `nodes` are slave, a and b.
-    pub fn place(&self, u: &[f64], nodes: [usize; 3]) -> Projection {
-        let [s, a, b] = nodes.map(|node| self.position(u, node));
-        project(s, a, b)
+    /// Current positions of all nodes.
+    pub fn positions<'a>(&'a self, u: &'a [f64]) -> Positions<'a> {
+        Positions::new(&self.model.mesh.coordinates, u)
     }
 
     /// Why K* has no factors.

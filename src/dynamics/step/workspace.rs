@@ -6,7 +6,7 @@ use super::matrices::{ClosedConstraints, EffectiveStiffness, StiffnessForm, Syst
 use super::meter::Meter;
 use super::step_problem::{StepProblem, difference, sum};
 use crate::contact::{
-    ClosedPairs, Constraint, PairTarget, Penetration, Search, find_penetration, find_targets,
+    ClosedPairs, Constraint, NodeAtSegment, PairTarget, Search, find_penetration, find_targets,
 };
 use crate::dynamics::results::State;
 use crate::elements::Motion;
@@ -104,14 +104,14 @@ impl<'m> Workspace<'m> {
     }
 
     /// Writes the constraints between the displacements `u0` and `u` of an increment, `before` being those of
-    /// the last pass and `held` slave index and segment of the pairs closed at the start. With `kept`, slave
+    /// the last pass and `held` the pairs closed at the start. With `kept`, slave
     /// nodes keep their targets up to this overrun beyond the ends (segment lengths).
     pub fn constraints(
         &mut self,
         problem: &StepProblem,
         increment: [&[f64]; 2],
         before: &[Constraint],
-        (held, kept): (&[[usize; 2]], Option<f64>),
+        (held, kept): (&ClosedPairs, Option<f64>),
         constraints: &mut Vec<Constraint>,
     ) {
         let Workspace {
@@ -121,7 +121,6 @@ impl<'m> Workspace<'m> {
             ..
         } = self;
         meter.time(|t| &mut t.search, || search.cover(increment[1]));
-        let before = before.iter().map(|constraint| &constraint.source);
         let write = || {
             find_targets(search, increment, before, (held, kept), pairs);
             problem.constraints(pairs, increment, constraints);
@@ -161,7 +160,7 @@ impl<'m> Workspace<'m> {
         [u0, u1]: [&[f64]; 2],
         closed: [&ClosedPairs; 2],
         unsolved: &[f64],
-    ) -> Option<Penetration> {
+    ) -> Option<NodeAtSegment> {
         let Workspace { search, meter, .. } = self;
         meter.time(|t| &mut t.search, || search.cover_path(u0, u1));
         meter.time(

@@ -1,20 +1,17 @@
 //! Active constraints of a subincrement in event-driven integration. Section 6 of docs/theory.md,
 //! Impacts as events, items 1 and 4.
 
-use crate::contact::tolerances::{
-    CLOSED_GAP, FACING_ALIKE_COSINE, INITIAL_DEPTH, PROJECTION_BEYOND_ENDS,
-};
-use crate::contact::{
-    ClosedPair, ClosedPairs, Constraint, ConstraintKey, ListedSlave, Projection, Search,
-};
-use crate::dynamics::step::StepProblem;
-
-/// Relative difference of lengths between which subincrements between impacts share the factors of K*.
-const SAME_LENGTH: f64 = 1e-3;
+use super::closed_pairs::ClosedPairs;
+use super::constraint::Constraint;
+use super::geometry::{Positions, Projection};
+use super::keys::NodeAtSegment;
+use super::keys::{ConstraintKey, SlaveKey};
+use super::search::{ListedSlave, Search};
+use super::tolerances::{CLOSED_GAP, FACING_ALIKE_COSINE, INITIAL_DEPTH, PROJECTION_BEYOND_ENDS};
 
 /// Which pairs are constraints in a subincrement.
 #[derive(Clone, Copy)]
-pub(crate) enum ConstraintSet<'a> {
+pub enum ConstraintSet<'a> {
     /// All pairs: nodes land within the subincrement.
     All,
     /// The active ones: nodes of the others land at its end, at the next impact.
@@ -22,58 +19,28 @@ pub(crate) enum ConstraintSet<'a> {
 }
 
 impl ConstraintSet<'_> {
-    /// Leaves the constraints that count; writes the others.
+    /// Leaves the constraints that count, by the positions of the start; writes the others.
     pub fn split(
         self,
-        problem: &StepProblem,
-        u0: &[f64],
+        start: Positions,
         constraints: &mut Vec<Constraint>,
         left_out: &mut Vec<Constraint>,
     ) {
         left_out.clear();
         if let ConstraintSet::Active(active) = self {
-            let is_free = |constraint: &mut Constraint| !active.is_held(problem, u0, constraint);
+            let is_free = |constraint: &mut Constraint| !active.is_held(start, constraint);
             left_out.extend(constraints.extract_if(.., is_free));
         }
     }
 
-    /// The pairs that touch at the start because an impact ended the subincrement before.
-    pub fn touching(self) -> ClosedPairs {
+    /// The pairs that touch at the start because an impact ended the subincrement before; increasing.
+    pub fn touching(self) -> Vec<ConstraintKey> {
         match self {
-            ConstraintSet::All => ClosedPairs::default(),
-            ConstraintSet::Active(active) => active.touching.clone(),
-        }
-    }
-
-    /// Relative difference of lengths within which factors of K* are kept: the trials for the time of
-    /// an impact differ by little.
-    pub fn length_tolerance(self) -> f64 {
-        match self {
-            ConstraintSet::All => 0.0,
-            ConstraintSet::Active(_) => SAME_LENGTH,
-        }
-    }
-}
-
-/// A slave node and a segment.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct NodeAtSegment {
-    /// Place of the slave node among all slave nodes of all contacts.
-    pub slave_index: usize,
-    /// Segment in its contact.
-    pub segment: usize,
-    /// The slave node and the ends of the segment.
-    pub nodes: [usize; 3],
-}
-
-impl NodeAtSegment {
-    /// A slave node of the search with one of its segments.
-    pub fn new(listed: &ListedSlave, segment: usize) -> Self {
-        let [a, b] = listed.surfaces.segments[segment];
-        NodeAtSegment {
-            slave_index: listed.slave_index,
-            segment,
-            nodes: [listed.node(), a, b],
+            ConstraintSet::All => Vec::new(),
+            ConstraintSet::Active(active) => {
+                let touching = active.touching.iter();
+                touching.map(|touching| touching.pair.key).collect()
+            }
         }
     }
 }
@@ -84,27 +51,31 @@ impl NodeAtSegment {
 /// A node that touches may slide on to other segments that face nearly the same way, or that it was
 /// not in front of; that is no impact. One that runs against a wall meets it later.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct ActiveConstraints {
-    /// The pairs of slave nodes and segments that touch at the start.
-    touching: ClosedPairs,
-    /// Normals of these segments, in the same order.
-    normals: Vec<[f64; 2]>,
-    /// Slave node and ends of the segment of these pairs; increasing.
-    nodes: Vec<[usize; 3]>,
-    /// Slave indices that have joined, with all their segments; increasing.
-    joined: Vec<usize>,
+pub struct ActiveConstraints {
+    /// The pairs that touch at the start, with increasing keys.
+    touching: Vec<Touching>,
+    /// Slave nodes that have joined, with all their segments; increasing.
+    joined: Vec<SlaveKey>,
+}
+
+/// A slave node and a segment that touch, with the normal of the segment.
+#[derive(Debug, Clone, Copy)]
+struct Touching {
+    pair: NodeAtSegment,
+    normal: [f64; 2],
 }
 
 impl ActiveConstraints {
     /// The pairs that touch in the displacements `u0`, which the search covers; `before` are those
     /// that carried forces up to then.
-    pub fn new(problem: &StepProblem, search: &Search, u0: &[f64], before: &ClosedPairs) -> Self {
+    pub fn new(search: &Search, u0: &[f64], before: &ClosedPairs) -> Self {
+        let start = Positions::new(search.coordinates(), u0);
         let mut active = ActiveConstraints::default();
         for listed in search.slaves() {
             for candidate in listed.candidates() {
-                let segment = candidate.segment;
-                if let Some(normal) = touched_normal(problem, u0, &listed, segment, before) {
-                    active.add(NodeAtSegment::new(&listed, segment), normal);
+                let pair = listed.at(candidate.segment);
+                if let Some(normal) = touched_normal(start, &listed, pair, before) {
+                    active.add(pair, normal);
                 }
             }
         }
@@ -114,90 +85,80 @@ impl ActiveConstraints {
     /// Takes in a slave node that lands soon after the start.
     pub fn join_at_start(&mut self, pair: NodeAtSegment, normal: [f64; 2]) {
         self.add(pair, normal);
-        self.join(pair.slave_index);
+        self.join(pair.key.slave);
     }
 
     /// Takes in a slave node that lands within the subincrement.
-    pub fn join(&mut self, slave_index: usize) {
-        if let Err(at) = self.joined.binary_search(&slave_index) {
-            self.joined.insert(at, slave_index);
+    pub fn join(&mut self, slave: SlaveKey) {
+        if let Err(at) = self.joined.binary_search(&slave) {
+            self.joined.insert(at, slave);
         }
     }
 
     /// Whether a slave node has joined with all its segments.
-    pub fn has_joined(&self, slave_index: usize) -> bool {
-        self.joined.binary_search(&slave_index).is_ok()
+    pub fn has_joined(&self, slave: SlaveKey) -> bool {
+        self.joined.binary_search(&slave).is_ok()
     }
 
     /// Whether a slave node is kept out of a segment that has the place `start` relative to it at the
     /// start.
-    pub fn holds(&self, slave_index: usize, start: &Projection) -> bool {
-        if self.has_joined(slave_index) {
+    pub fn holds(&self, slave: SlaveKey, start: &Projection) -> bool {
+        if self.has_joined(slave) {
             return true;
         }
-        let own = &self.normals[self.touching.range_of_slave(slave_index)];
+        let from = (self.touching).partition_point(|touching| touching.pair.key.slave < slave);
+        let is_own = |touching: &&Touching| touching.pair.key.slave == slave;
+        let mut own = self.touching[from..].iter().take_while(is_own).peekable();
         let is_behind = start.gap <= CLOSED_GAP * start.length;
-        let faces_alike =
-            |n: &[f64; 2]| n[0] * start.normal[0] + n[1] * start.normal[1] >= FACING_ALIKE_COSINE;
-        !own.is_empty() && (is_behind || own.iter().any(faces_alike))
+        let faces_alike = |Touching { normal: n, .. }: &Touching| {
+            n[0] * start.normal[0] + n[1] * start.normal[1] >= FACING_ALIKE_COSINE
+        };
+        own.peek().is_some() && (is_behind || own.any(faces_alike))
     }
 
     /// Whether the slave node of a constraint is kept out of its segment, or of one of those at its corner,
     /// or the node of the corner out of a segment of the slave node: two nodes that are each other's corner
     /// are one constraint.
-    pub fn is_held(&self, problem: &StepProblem, u0: &[f64], constraint: &Constraint) -> bool {
-        let source = &constraint.source;
+    pub fn is_held(&self, start: Positions, constraint: &Constraint) -> bool {
+        let (source, slave) = (&constraint.source, constraint.key.slave);
         let [s, a, b, c] = source.nodes;
-        let is_held = |nodes| self.holds(source.slave_index, &problem.place(u0, nodes));
+        let is_held = |nodes| self.holds(slave, &start.place(nodes));
         is_held([s, a, b])
             || (source.target.corner.is_some() && (is_held([s, b, c]) || self.touches_end(b, s)))
     }
 
     /// Whether a slave node touches a segment that ends at another node.
     fn touches_end(&self, slave: usize, end: usize) -> bool {
-        let from = self.nodes.partition_point(|[s, _, _]| *s < slave);
-        let own = self.nodes[from..]
-            .iter()
-            .take_while(|[s, _, _]| *s == slave);
-        own.into_iter().any(|[_, a, b]| [*a, *b].contains(&end))
+        let mut pairs = self.touching.iter().map(|touching| touching.pair.nodes);
+        pairs.any(|[s, a, b]| s == slave && [a, b].contains(&end))
     }
 
     /// Adds a pair that touches with the given normal.
-    fn add(&mut self, at: NodeAtSegment, normal: [f64; 2]) {
-        let pair = ClosedPair::touching(at.slave_index, at.segment);
-        if let Err(place) = self.touching.position(pair.key) {
-            self.touching.insert(pair);
-            self.normals.insert(place, normal);
-        }
-        if let Err(place) = self.nodes.binary_search(&at.nodes) {
-            self.nodes.insert(place, at.nodes);
+    fn add(&mut self, pair: NodeAtSegment, normal: [f64; 2]) {
+        let place = (self.touching).binary_search_by_key(&pair.key, |touching| touching.pair.key);
+        if let Err(place) = place {
+            self.touching.insert(place, Touching { pair, normal });
         }
     }
 }
 
-/// Normal of a segment that a slave node touches at the displacements `u0`, or touched `before`.
+/// Normal of a segment that a slave node touches at the start, or touched `before`.
 fn touched_normal(
-    problem: &StepProblem,
-    u0: &[f64],
+    start: Positions,
     listed: &ListedSlave,
-    segment: usize,
+    pair: NodeAtSegment,
     before: &ClosedPairs,
 ) -> Option<[f64; 2]> {
-    let (surfaces, slave) = (listed.surfaces, listed.node());
-    let [a, b] = surfaces.segments[segment];
+    let [slave, a, b] = pair.nodes;
     if slave == a || slave == b {
         return None;
     }
-    let p = problem.place(u0, [slave, a, b]);
+    let p = start.place(pair.nodes);
     let is_inside = || {
-        let at = |node: usize| problem.position(u0, node);
-        p.gap >= -CLOSED_GAP * p.length || surfaces.interior.takes_in([a, b], slave, at)
+        let at = |node: usize| start.of(node);
+        p.gap >= -CLOSED_GAP * p.length || listed.surfaces.interior.takes_in([a, b], slave, at)
     };
-    let key = ConstraintKey {
-        slave_index: listed.slave_index,
-        segment,
-    };
-    ((touches(&p) && is_inside()) || before.closes(key)).then_some(p.normal)
+    ((touches(&p) && is_inside()) || before.closes(pair.key)).then_some(p.normal)
 }
 
 fn touches(p: &Projection) -> bool {
@@ -209,9 +170,15 @@ fn touches(p: &Projection) -> bool {
 mod tests {
     use super::*;
 
+    const SLAVE: SlaveKey = SlaveKey {
+        contact: 0,
+        slave: 3,
+    };
     const AT: NodeAtSegment = NodeAtSegment {
-        slave_index: 3,
-        segment: 7,
+        key: ConstraintKey {
+            slave: SLAVE,
+            segment: 7,
+        },
         nodes: [0, 1, 2],
     };
 
@@ -229,8 +196,9 @@ mod tests {
             tangent: [-y, x],
             normal: [x, y],
         };
-        assert!(!active.holds(2, &start), "a node that touches nothing");
-        active.holds(3, &start)
+        let other = SlaveKey { slave: 2, ..SLAVE };
+        assert!(!active.holds(other, &start), "a node that touches nothing");
+        active.holds(SLAVE, &start)
     }
 
     #[test]
@@ -275,7 +243,11 @@ mod tests {
             let mut active = ActiveConstraints::default();
             active.add(AT, [1.0, 0.0]);
             for (part, is_held) in [(-0.1, true), (5e-10, true), (2e-9, false)] {
-                assert_eq!(active.holds(3, &at(part)), is_held, "{part:e} {length:e}");
+                assert_eq!(
+                    active.holds(SLAVE, &at(part)),
+                    is_held,
+                    "{part:e} {length:e}"
+                );
             }
         }
     }

@@ -1,0 +1,57 @@
+//! What identifies constraints and slave nodes through passes and increments.
+
+use crate::lcp::ContactName;
+
+/// What identifies a slave node among those of all contacts: a node may be slave in several.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SlaveKey {
+    /// Contact of the model.
+    pub(super) contact: usize,
+    /// Number of the slave node in its contact.
+    pub(super) slave: usize,
+}
+
+impl SlaveKey {
+    /// Number of the contact of the model.
+    pub fn contact(self) -> usize {
+        self.contact
+    }
+}
+
+/// What identifies a constraint through passes and increments. The rest of the program compares keys and asks
+/// them for what they share with others; it does not know what they are made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ConstraintKey {
+    pub(super) slave: SlaveKey,
+    /// Segment in its contact, at a corner that before it. A kind with one constraint for each slave
+    /// node gives the same number to all.
+    pub(super) segment: usize,
+}
+
+impl ConstraintKey {
+    /// Number of the contact of the model.
+    pub fn contact(self) -> usize {
+        self.slave.contact
+    }
+
+    /// What it shares with the other constraints of its slave node.
+    pub fn slave(self) -> SlaveKey {
+        self.slave
+    }
+}
+
+/// Factors of complementarity problems are kept for constraints of the same names.
+impl From<ConstraintKey> for ContactName {
+    fn from(ConstraintKey { slave, segment }: ConstraintKey) -> Self {
+        [slave.contact, slave.slave, segment]
+    }
+}
+
+/// A slave node and a segment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NodeAtSegment {
+    /// Key of their constraint.
+    pub key: ConstraintKey,
+    /// The slave node and the ends of the segment.
+    pub nodes: [usize; 3],
+}

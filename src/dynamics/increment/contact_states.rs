@@ -1,0 +1,75 @@
+//! What an increment knows of its pairs, by their keys: constraint, contact force and state, impulse, and what
+//! touches at its start. The pairs closed at the start are those of its state.
+
+use super::contact_forces::ContactForces;
+use super::impulses::Impulses;
+use crate::contact::tolerances::PROJECTION_BEYOND_ENDS;
+use crate::contact::{ClosedPairs, Constraint, ConstraintSet};
+use crate::dynamics::results::State;
+use crate::dynamics::step::{StepProblem, Workspace};
+
+/// The pairs of an increment.
+#[derive(Default)]
+pub(crate) struct ContactStates {
+    /// Contact forces of the last pass: Pn, Pt.
+    pub forces: ContactForces,
+    /// Impact impulses at the start: Phi, Psi.
+    pub impulses: Impulses,
+    /// Constraints of the iterate until they are taken over, then those of the pass before.
+    pub found: Vec<Constraint>,
+    /// Its constraints that do not count.
+    pub left_out: Vec<Constraint>,
+}
+
+impl ContactStates {
+    /// The pairs before the passes, some of them closed and some that touch.
+    pub fn new(closed: &ClosedPairs, set: ConstraintSet) -> Self {
+        ContactStates {
+            forces: ContactForces::without_constraints(closed),
+            impulses: Impulses::new(closed, set.touching()),
+            ..ContactStates::default()
+        }
+    }
+
+    /// Writes the constraints of the iterate U in an increment of length `dt`: those that count, and the others. With
+    /// `kept`, slave nodes keep their targets up to this overrun beyond the ends (segment lengths).
+    pub fn find(
+        &mut self,
+        problem: &StepProblem,
+        workspace: &mut Workspace,
+        (start, dt): (&State, f64),
+        u: &[f64],
+        (set, kept): (ConstraintSet, Option<f64>),
+    ) {
+        let (last, held) = (&self.forces.constraints, (&start.contact, kept));
+        workspace.constraints(problem, [&start.u, u], last, held, &mut self.found);
+        (self.found.iter_mut()).for_each(|constraint| constraint.take_slip_rate(dt));
+        set.split(
+            problem.positions(&start.u),
+            &mut self.found,
+            &mut self.left_out,
+        );
+    }
+
+    /// Takes over the constraints of the iterate, with the forces at hand.
+    pub fn relinearize(&mut self) {
+        self.forces.relinearize(&mut self.found);
+    }
+
+    /// Whether the pairs closed by the last pass are those that have impulses, and these are exact.
+    pub fn rest(&mut self, problem: &StepProblem) -> bool {
+        self.impulses.rest(problem, &self.forces)
+    }
+
+    /// Takes the constraints that did not count among the others at the end of an increment, without those that a free
+    /// node past a corner, or at it, is behind: the line of the segment that it came from.
+    pub fn take_left_out(&mut self, problem: &StepProblem, u: &[f64]) {
+        let at = problem.positions(u);
+        let is_over = |constraint: &Constraint| {
+            let xi = at.place(constraint.pair().nodes).xi;
+            xi.min(1.0 - xi) > PROJECTION_BEYOND_ENDS
+        };
+        let left_out = self.left_out.drain(..);
+        (self.forces.constraints).extend(left_out.filter(|c| c.gap >= 0.0 || is_over(c)));
+    }
+}
