@@ -1,14 +1,13 @@
 //! Acceleration of passes that converge slowly, by what the last ones have changed (Anderson 1965). Section 4 of
 //! docs/theory.md, Acceleration.
 
+use super::equal_forces::ROUND_OFF;
 use crate::dynamics::step::Parts;
 
 /// Rate of the corrections above which passes are slow.
 const SLOW: f64 = 0.1;
 /// Rate above which the last passes say nothing about the next.
 const JUMP: f64 = 2.0;
-/// Correction, in tolerances, below which differences of corrections may be round-off.
-const ROUND_OFF: f64 = 100.0;
 /// Changes that are remembered.
 const MEMORY: usize = 5;
 /// Part of a change of the correction, beside what is along those before, below which it is round-off.

@@ -26,7 +26,7 @@ const PATIENCE: usize = 25;
 /// Passes after which those that follow are accelerated, and slave nodes that go to and fro between two targets keep both.
 const SLOW_PASSES: usize = 10;
 /// Most halvings of a correction that turns an element inside out.
-const HALVINGS: i32 = 6;
+const CORRECTION_HALVINGS: i32 = 6;
 
 /// Relative difference of lengths between which subincrements between impacts share the factors of K*.
 const SAME_LENGTH: f64 = 1e-3;
@@ -262,7 +262,7 @@ impl<'m> Attempt<'_, 'm> {
         contact: &mut ContactStates,
         v: &mut Vectors,
     ) -> Result<(), Cause> {
-        let halvings = if pass.0 == 0 { 0 } else { HALVINGS };
+        let halvings = if pass.0 == 0 { 0 } else { CORRECTION_HALVINGS };
         for halving in 1..=halvings {
             match self.evaluate_at(pass, d, contact, v) {
                 Err(Cause::Inverted { .. } | Cause::Collapsed { .. }) => {}

@@ -12,7 +12,7 @@ const CRAWLING: f64 = 0.7;
 /// The weight then.
 const WEIGHT_OF_CRAWLING: f64 = 1e-9;
 /// Correction, in tolerances, that is round-off where it does not become smaller.
-const ROUND_OFF: f64 = 100.0;
+pub(super) const ROUND_OFF: f64 = 100.0;
 
 /// Weight eps of eq. (5.3) from pass to pass.
 ///

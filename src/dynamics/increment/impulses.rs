@@ -533,7 +533,7 @@ mod tests {
                 let mut contact = ContactForces::without_constraints(&pairs([0]));
                 let constraint = testing::made_up(&[dof, dof + 1], rows());
                 contact.relinearize(&mut vec![constraint]);
-                Impulses::default().rest(problem, &contact)
+                Impulses::new(&pairs([]), Vec::new()).rest(problem, &contact)
             };
             let has_mass = |node: &usize| !problem.redistribution.is_massless(*node);
             let other = (0..16).find(has_mass).expect("a node with mass");
