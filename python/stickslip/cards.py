@@ -6,7 +6,9 @@ from collections.abc import Sequence
 def card(keyword: str, *rows: Sequence[object]) -> str:
     """Text of one card: its keyword line and data lines; floats are written with repr."""
     lines = ["*" + keyword]
-    lines += [", ".join(repr(x) if isinstance(x, float) else str(x) for x in row) for row in rows]
+    lines += [
+        ", ".join(repr(float(x)) if isinstance(x, float) else str(x) for x in row) for row in rows
+    ]
     return "\n".join(lines) + "\n"
 
 

@@ -6,20 +6,20 @@ from pathlib import Path
 import h5py
 import matplotlib.pyplot as plt
 import numpy as np
-import plot_along
-import plot_history
 import pytest
 from conftest import ROOT, Job
 from decks import CANTILEVERS, RINGS, parse, shortened
-from fields import FIELDS, Colouring, usual
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 from matplotlib.quiver import Quiver
 from PIL import Image
-from plot_motion import Look, animate, chosen_times, overlay, panels, shown_at
 from stickslip.deck import Deck
 from stickslip.errors import Fault
+from stickslip.plot import along as plot_along
+from stickslip.plot import history as plot_history
+from stickslip.plot.fields import FIELDS, Colouring, usual
+from stickslip.plot.motion import Look, animate, chosen_times, overlay, panels, shown_at
 from stickslip.quantity import find, listed
 from stickslip.result import Result
 

@@ -124,7 +124,7 @@ def command(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) 
 @pytest.fixture(scope="module")
 def here() -> Iterator[str]:
     """Address of a scheduler in this process, with one worker: it starts faster than processes."""
-    look = {"dashboard_address": None, "silence_logs": "CRITICAL"}
+    look = {"dashboard_address": ":0", "silence_logs": "CRITICAL"}
     with distributed.LocalCluster(1, 1, processes=False, **look) as cluster:
         yield cluster.scheduler_address
 
@@ -138,6 +138,7 @@ def test_a_study_is_whole_though_a_worker_is_killed(arm: Deck, tmp_path: Path) -
     assert len(killed) == 1 and not psutil.pid_exists(killed[0]), "the run ends with its worker"
     table.write(tmp_path)
     assert table.failed == 0
+    assert len(list(tmp_path.glob("points/*"))) == 33, "what the killed worker has left is gone"
     check_table(read_table(tmp_path))
     first = ended(tmp_path)
     assert len(first) == 33

@@ -115,7 +115,7 @@ def _client(settings: Settings, count: int) -> "Iterator[Client]":
             n_workers=min(workers, count),
             threads_per_worker=1,
             memory_limit=None,
-            dashboard_address=None,
+            dashboard_address=":0",
             silence_logs="CRITICAL",
         ) as cluster,
         Client(cluster, set_as_default=False) as client,

@@ -11,6 +11,8 @@ matplotlib.use("Agg")
 
 import numpy as np  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
+from matplotlib.cm import ScalarMappable  # noqa: E402
+from matplotlib.colors import Normalize  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 
 from stickslip.errors import Fault  # noqa: E402
@@ -19,25 +21,31 @@ from stickslip.sweep.quantities import Quantity  # noqa: E402
 from stickslip.sweep.table import Table  # noqa: E402
 
 MOST = 12
-"""A legend with more entries is left out."""
+"""Instead of a legend with more entries there is a scale of colours."""
+
+SHADES = matplotlib.colormaps["viridis"]
 
 
-def draw_all(table: Table, folder: Path) -> Iterator[Path]:
+def draw_all(table: Table, folder: Path | str) -> Iterator[Path]:
     """Writes a picture of each history, and of each number against each parameter that varies."""
     for history in dict.fromkeys(quantity.history for quantity in table.quantities):
         if figure := histories(table, Quantity(history, "last")):
-            yield _save(figure, folder / f"{_file_name(history)}.png")
+            yield _save(figure, Path(folder) / f"{_file_name(history)}.png")
     varying = [name for name in table.parameters if len(set(table.column(name))) > 1]
     for quantity in table.quantities:
         for name in varying:
-            figure = against(table, quantity, name, [other for other in varying if other != name])
-            yield _save(figure, folder / f"{_file_name(str(quantity))}_against_{name}.png")
+            others = [other for other in varying if other != name]
+            if figure := against(table, quantity, name, others):
+                yield _save(
+                    figure, Path(folder) / f"{_file_name(str(quantity))}_against_{name}.png"
+                )
 
 
 def histories(table: Table, quantity: Quantity) -> Figure | None:
     """A history of all points against the time, coloured by the first parameter; None without any."""
     figure, axes = _axes("time", quantity.history)
-    colours = _colours(table.column(table.parameters[0]))
+    first = table.column(table.parameters[0])
+    colours = _colours(first)
     for row, colour in zip(table.rows, colours):
         if not row["result"]:
             continue
@@ -51,15 +59,20 @@ def histories(table: Table, quantity: Quantity) -> Figure | None:
             continue  # the table tells why
     if not axes.lines:
         return None
+    if len(axes.lines) > MOST and not any(isinstance(value, str) for value in first):
+        scale = ScalarMappable(Normalize(min(first), max(first)), SHADES)
+        figure.colorbar(scale, ax=axes, label=table.parameters[0])
     _legend(axes)
     return figure
 
 
-def against(table: Table, quantity: Quantity, name: str, others: Sequence[str]) -> Figure:
+def against(table: Table, quantity: Quantity, name: str, others: Sequence[str]) -> Figure | None:
     """A number against a parameter: one line for each combination of the others.
 
-    Points that lie on no lattice make no lines.
+    Points that lie on no lattice make no lines. None where there is no number.
     """
+    if np.isnan(table.column(str(quantity))).all():
+        return None
     figure, axes = _axes(name, str(quantity))
     groups: dict[tuple[Any, ...], list[tuple[Any, float]]] = {}
     for row in table.rows:
@@ -92,10 +105,11 @@ def _legend(axes: Axes) -> None:
 
 
 def _colours(values: list[Any]) -> list[Any]:
-    """Colours in the order of the values."""
-    different = sorted(set(values), key=lambda value: (isinstance(value, str), value))
-    shades = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.9, len(different)))
-    return [shades[different.index(value)] for value in values]
+    """A colour for each value: numbers on a scale, texts one after the other."""
+    if any(isinstance(value, str) for value in values):
+        different = sorted(map(str, set(values)))
+        return [SHADES(different.index(str(value)) / len(different)) for value in values]
+    return list(SHADES(Normalize(min(values), max(values))(values)))
 
 
 def _text(value: Any) -> str:

@@ -87,7 +87,8 @@ def solve(task: Task, template: Path) -> str:
             if task.row() is None:  # else another worker has run the same point
                 raise
     finally:
-        shutil.rmtree(own, ignore_errors=True)
+        for left in task.folder.glob(f"points/{task.name}.*"):  # also of workers that were killed
+            shutil.rmtree(left, ignore_errors=True)
     return task.name
 
 

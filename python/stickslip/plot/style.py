@@ -13,6 +13,7 @@ from cycler import cycler  # noqa: E402
 from matplotlib.colors import to_hex  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from PIL import Image  # noqa: E402
+
 from stickslip.errors import Fault, one_line  # noqa: E402
 
 MOST_PIXELS = 1e8

@@ -4,12 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from fields import Colouring, Shown
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
+
+from stickslip.plot.fields import Colouring, Shown
 from stickslip.result import SLIP, STICK, Array, Result
 
 BACKGROUND, EDGE, MARK, ARROW = "#eef1f4", "#40464d", "#d1495b", "#111111"

@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 from matplotlib.colors import Normalize
+
 from stickslip.result import Array, Result
 
 Shown = tuple[Result, int]

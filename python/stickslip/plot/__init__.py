@@ -1,0 +1,1 @@
+"""Pictures of results with matplotlib: motion, histories, fields along a line."""

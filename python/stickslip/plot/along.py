@@ -1,0 +1,127 @@
+"""Draws a field at the nodes along a line, at some times: the contact pressure along a surface.
+
+The nodes are those of a node set (--nset), or else all slave nodes. They are joined along the outlines of
+the bodies; where they make several lines, each has axes of its own, but for lines on which the field is
+zero at all times shown. The abscissa is the length along
+the line in the undeformed mesh, or with --against the current x or y.
+Without -o the picture goes next to the result, as JOB_along.png.
+"""
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from stickslip import command
+from stickslip.errors import Fault
+from stickslip.plot import style
+from stickslip.plot.motion import chosen_times, shown_at
+from stickslip.result import Array, Result
+
+MOST = 8
+"""More lines of nodes than this are refused: they would find no room."""
+
+
+def chains(results: Result, nodes: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+    """The given nodes as lines along the outlines, body on the left; closed ones end where they begin."""
+    chosen = np.isin(results.boundary, nodes).all(axis=1)
+    following = {int(a): int(b) for a, b in results.boundary[chosen]}
+    starts = [a for a in following if a not in set(following.values())]
+    found = []
+    while following:
+        node = starts.pop(0) if starts else next(iter(following))
+        line = [node]
+        while line[-1] in following:
+            line.append(following.pop(line[-1]))
+        found.append(np.array(line))
+    return found
+
+
+def field(results: Result, name: str, frame: int) -> Array:
+    """A scalar at the nodes, or a component of a vector as in CONTACT_FORCE:2."""
+    path, _, component = name.partition(":")
+    values = results.frames[frame][path]
+    if values.ndim == 1 and not component:
+        return values
+    if values.ndim == 2 and component in ("1", "2"):
+        return values[:, int(component) - 1]
+    kind = "scalar: leave out" if values.ndim == 1 else f"vector: {path}:1 or {path}:2 name"
+    raise Fault(f"{path} is a {kind} the component")
+
+
+def abscissa(results: Result, line: NDArray[np.int64], frame: int, against: str) -> Array:
+    """Length along the line in the undeformed mesh, or the current x or y."""
+    if against != "length":
+        return results.frames[frame].positions[line, "xy".index(against)]
+    steps = np.linalg.norm(np.diff(results.coordinates[line], axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def draw(
+    results: Result, lines: list[NDArray[np.int64]], frames: Sequence[int], name: str, against: str
+) -> Figure:
+    """Axes for each line, a curve for each frame."""
+    figure, axes = plt.subplots(
+        len(lines), 1, figsize=(8, 0.8 + 2.6 * len(lines)), squeeze=False, sharey=True
+    )
+    for at, line in zip(axes[:, 0], lines):
+        first, last = results.node_labels[line[[0, -1]]]
+        ring = f"whole outline from node {first}"
+        at.set_title(ring if first == last else f"nodes {first} to {last}", loc="left")
+        for frame, colour in zip(frames, style.colours(len(frames))):
+            across = abscissa(results, line, frame, against)
+            values = field(results, name, frame)[line]
+            time = results.frames[frame].time
+            at.plot(across, values, ".-", ms=4, color=colour, label=f"t = {time:.4g}")
+        at.set_ylabel(name)
+    axes[0, 0].legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
+    axes[-1, 0].set_xlabel("length along the line" if against == "length" else against)
+    figure.suptitle(results.job)
+    return figure
+
+
+def run() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("result", type=Path, help="result file JOB.vtkhdf")
+    parser.add_argument("--field", default="CONTACT_PRESSURE", help="field at the nodes")
+    parser.add_argument("--nset", help="node set whose nodes are taken")
+    parser.add_argument("--times", type=command.finite, nargs="+", help="times (nearest frames)")
+    parser.add_argument("--interval", type=command.positive, help="0, INTERVAL, 2 INTERVAL...")
+    parser.add_argument("--against", choices=("length", "x", "y"), default="length")
+    parser.add_argument("-o", "--output", type=Path, help="picture to write")
+    parser.add_argument("--dpi", type=command.positive, help="pixels per inch of the picture")
+    arguments = parser.parse_args()
+    results = Result(arguments.result)
+    if arguments.nset:
+        nodes = results.node_set(arguments.nset)
+    else:
+        nodes = np.flatnonzero(np.isfinite(results.frames[0]["SLIP"]))
+    lines = chains(results, nodes)
+    times = chosen_times(results, arguments.times, arguments.interval)
+    frames = [frame for _, frame in shown_at(results, times)]
+    if not lines:
+        what = f"nodes of {arguments.nset}" if arguments.nset else "slave nodes"
+        raise Fault(f"{results.path}: no edge of an outline joins two {what}")
+    shown = [field(results, arguments.field, frame) for frame in frames]
+    lines = [line for line in lines if any(np.nan_to_num(v[line]).any() for v in shown)] or lines
+    if len(lines) > MOST:
+        raise Fault(f"the nodes make {len(lines)} lines, {MOST} at most are drawn: give --nset")
+    figure = draw(results, lines, frames, arguments.field, arguments.against)
+    path = arguments.output or results.path.with_name(f"{results.job}_along.png")
+    style.save(figure, path, arguments.dpi)
+
+
+def main() -> None:
+    """Entry point."""
+    command.finish(run)
+
+
+if __name__ == "__main__":
+    main()

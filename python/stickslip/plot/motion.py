@@ -1,0 +1,296 @@
+"""Draws the motion of results: deformed shapes at chosen times, or an animation.
+
+Each time has a panel of its own, or, with --overlay, all times of a result stand in one panel.
+Several results stand below each other, with the same limits and the same colours. Slave nodes in
+contact are marked: filled where they stick, hollow where they slide. Without -o the picture goes
+next to the first result, as JOB_motion.png; --animation alone writes no picture.
+"""
+
+import argparse
+import shutil
+import subprocess
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from PIL import Image
+
+from stickslip import command
+from stickslip.errors import Fault
+from stickslip.plot import style
+from stickslip.plot.fields import FIELDS, Colouring, Shown
+from stickslip.plot.page import Legends, Page
+from stickslip.plot.shapes import VECTORS, Arrows, draw_overlay, draw_shape, limits, status_legend
+from stickslip.result import Array, Result
+
+MOST = 100
+"""A page with more panels is refused."""
+
+FILMS = (".mp4", ".m4v", ".mov", ".mkv", ".avi", ".webm")
+"""Animations that ffmpeg writes."""
+
+FILM_DPI = 90
+"""Pixels per inch of animations."""
+
+
+Box = tuple[Array, Array]
+"""Lower left and upper right corner."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """What is drawn besides the shapes."""
+
+    field: str | None = None
+    """Name of the field that colours the bodies."""
+    vectors: str | None = None
+    """Name of the vector field whose arrows are drawn."""
+    ends: tuple[float, float] | None = None
+    """Ends of the colour scale."""
+    window: Box | None = None
+    """Part of the plane that is shown."""
+
+
+class Scene:
+    """Frames drawn with one scale of everything."""
+
+    def __init__(self, shown: Sequence[Shown], look: Look) -> None:
+        colouring = Colouring.of(look.field, shown, look.ends) if look.field else None
+        self.colouring = colouring
+        self.arrows = Arrows.of(look.vectors, shown) if look.vectors else None
+        self.box = look.window or limits(shown, self.arrows)
+        marked = colouring is None or not colouring.field.on_edges
+        entries = status_legend(shown) if marked else []
+        entries += self.arrows.legend() if self.arrows else []
+        if colouring:
+            self.legends = Legends(entries, colouring.norm, colouring.label, colouring.extend)
+        else:
+            self.legends = Legends(entries)
+
+    def draw(self, axes: Axes, results: Result, frame: int) -> None:
+        """One frame."""
+        draw_shape(axes, results, frame, self.colouring)
+        if self.arrows:
+            self.arrows.draw(axes, results, frame)
+
+
+def panels(rows: Sequence[Sequence[Shown]], look: Look, columns: int | None = None) -> Figure:
+    """A page with a panel for each frame.
+
+    Those of a single row are arranged as they fill the page best, or in `columns`; of several
+    rows each begins a new line of panels.
+    """
+    shown = [each for row in rows for each in row]
+    if len(shown) > MOST:
+        raise Fault(f"{len(shown)} panels find no room on a page: {MOST} at most")
+    scene = Scene(shown, look)
+    columns = columns or (max(map(len, rows)) if len(rows) > 1 else None)
+    if columns is None:
+        page = Page(len(shown), scene.box, scene.legends)
+        columns = page.grid.columns
+    else:
+        columns = min(columns, max(map(len, rows)))
+        lines = sum(-(-len(row) // columns) for row in rows)
+        page = Page((lines, columns), scene.box, scene.legends)
+    line = 0
+    for row in rows:
+        places = [(line + i // columns, i % columns) for i in range(len(row))]
+        line = places[-1][0] + 1
+        for (at, column), (results, frame) in zip(places, row):
+            final = line == page.grid.rows and (at + 1, column) not in places
+            axes = page.panel(at, column, final)
+            scene.draw(axes, results, frame)
+            name = f"{results.job},  " if len(rows) > 1 and (at, column) == places[0] else ""
+            axes.set_title(f"{name}t = {results.frames[frame].time:.4g}", pad=4)
+    return page.figure
+
+
+def shades(count: int) -> Array:
+    """Colours of times [count, 4]."""
+    return plt.get_cmap("plasma")(np.linspace(0.0, 0.85, count))
+
+
+def time_legend(shown: Sequence[Shown]) -> list[Line2D]:
+    """The colours of the times."""
+    times = [results.frames[frame].time for results, frame in shown]
+    colours = shades(len(times))
+    return [Line2D([], [], color=c, label=f"t = {t:.4g}") for t, c in zip(times, colours)]
+
+
+def overlay(rows: Sequence[Sequence[Shown]], window: Box | None = None) -> Figure:
+    """A page with a panel for each result, all its frames in it."""
+    legends = Legends(time_legend(max(rows, key=len)))
+    box = window or limits([each for row in rows for each in row])
+    page = Page(len(rows), box, legends)
+    columns = page.grid.columns
+    for i, row in enumerate(rows):
+        axes = page.panel(i // columns, i % columns, i + columns >= len(rows))
+        draw_overlay(axes, row, shades(len(row)))
+        axes.set_title(row[0][0].job, pad=4)
+    return page.figure
+
+
+def check_film(path: Path) -> None:
+    """A Fault unless an animation of this name can be written."""
+    if path.suffix == ".gif":
+        return
+    if path.suffix not in FILMS:
+        raise Fault(f"{path}: an animation is a .gif, or with ffmpeg one of {' '.join(FILMS)}")
+    if shutil.which("ffmpeg") is None:
+        raise Fault(
+            f"{path}: a {path.suffix} needs ffmpeg, which is not installed"
+            " (Debian, Ubuntu: apt-get install ffmpeg); a .gif needs nothing"
+        )
+
+
+def write_film(path: Path, pictures: Iterable[Image.Image], frames_per_second: int) -> None:
+    """Writes pictures of one size as a .gif, or through ffmpeg."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if path.suffix == ".gif":
+        first, *others = pictures
+        palette = first.quantize(256)
+        others = [picture.quantize(palette=palette, dither=0) for picture in others]
+        duration = round(1000 / frames_per_second)
+        palette.save(path, save_all=True, append_images=others, duration=duration, loop=0)
+        return
+    pictures = iter(pictures)
+    first = next(pictures)
+    width, height = first.size
+    command_line = ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"]
+    command_line += ["-s", f"{width}x{height}", "-r", str(frames_per_second), "-i", "-"]
+    command_line += ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", str(path)]
+    with subprocess.Popen(command_line, stdin=subprocess.PIPE) as process:
+        assert process.stdin is not None
+        for picture in (first, *pictures):
+            process.stdin.write(picture.tobytes())
+        process.stdin.close()
+    if process.returncode:
+        raise Fault(f"{path}: ffmpeg ended with code {process.returncode}")
+
+
+def pictures_of(
+    page: Page, grid: Sequence[Axes], scene: Scene, rows: Sequence[Sequence[Shown]]
+) -> Iterator[Image.Image]:
+    """A picture for each row of frames. Axes and legends are drawn once, the bodies in each."""
+    canvas = FigureCanvasAgg(page.figure)
+    page.figure.set_dpi(FILM_DPI)
+    canvas.draw()
+    background = canvas.copy_from_bbox(page.figure.bbox)
+    for row in rows:
+        canvas.restore_region(background)
+        for axes, (results, frame) in zip(grid, row):
+            scene.draw(axes, results, frame)
+            axes.set_title(f"{results.job},  t = {results.frames[frame].time:.4g}", pad=4)
+            drawn = [*axes.collections, *axes.texts]
+            for artist in sorted([*drawn, axes.title], key=lambda artist: artist.get_zorder()):
+                axes.draw_artist(artist)
+            for artist in drawn:
+                artist.remove()
+        yield Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+
+
+def animate(all_results: Sequence[Result], look: Look, path: Path, frames_per_second: int) -> None:
+    """Writes an animation of all frames of the first result; others are shown at its times."""
+    times = all_results[0].frames.times
+    rows = [[(each, each.frames.nearest(time).index) for each in all_results] for time in times]
+    scene = Scene([each for row in rows for each in row], look)
+    page = Page(len(all_results), scene.box, scene.legends)
+    columns = page.grid.columns
+    places = [divmod(i, columns) for i in range(len(all_results))]
+    grid = [page.panel(*place, place[0] == places[-1][0]) for place in places]
+    write_film(path, pictures_of(page, grid, scene, rows), frames_per_second)
+    plt.close(page.figure)
+    print(f"wrote {path}")
+
+
+def chosen_times(results: Result, times: list[float] | None, interval: float | None) -> Array:
+    """The given times, or multiples of an interval, or six times of the whole run."""
+    if times:
+        return np.array(times)
+    first, end = float(results.frames.times[0]), float(results.frames.times[-1])
+    if interval is None:
+        return np.linspace(first, end, 6)
+    count = (end - first) / interval
+    if count > MOST:
+        raise Fault(f"--interval {interval:g} asks for {count:.0f} panels: {MOST} at most")
+    return first + interval * np.arange(int(count + 1e-9) + 1)
+
+
+def shown_at(results: Result, times: Iterable[float]) -> list[Shown]:
+    """Frames nearest to the given times, each once."""
+    return [(results, frame) for frame in sorted({results.frames.nearest(t).index for t in times})]
+
+
+def window(text: str) -> Box:
+    """Four numbers X0,X1,Y0,Y1, as a type of argparse."""
+    x0, x1, y0, y1 = command.numbers(4)(text)
+    if not (x0 < x1 and y0 < y1):
+        raise argparse.ArgumentTypeError(f"{text} is empty: give X0,X1,Y0,Y1 with X0 < X1, Y0 < Y1")
+    return np.array((x0, y0)), np.array((x1, y1))
+
+
+def arguments_of_command_line() -> argparse.Namespace:
+    """Options of the command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("result", type=Path, nargs="+", help="result files JOB.vtkhdf")
+    parser.add_argument(
+        "--times", type=command.finite, nargs="+", help="times to show (nearest frames)"
+    )
+    parser.add_argument("--interval", type=command.positive, help="show 0, INTERVAL, 2 INTERVAL..")
+    parser.add_argument("--field", choices=[*FIELDS, "none"], default="von-mises")
+    parser.add_argument(
+        "--range", type=command.numbers(2), metavar="LOW,HIGH", help="ends of the colour scale"
+    )
+    parser.add_argument(
+        "--window", type=window, metavar="X0,X1,Y0,Y1", help="part of the plane to show"
+    )
+    parser.add_argument("--vectors", choices=VECTORS, help="draw this vector field as arrows")
+    parser.add_argument("--forces", action="store_true", help="the same as --vectors CONTACT_FORCE")
+    parser.add_argument("--columns", type=command.positive_integer, help="panels side by side")
+    parser.add_argument("--overlay", action="store_true", help="one panel, coloured by time")
+    parser.add_argument("-o", "--output", type=Path, help="picture to write")
+    parser.add_argument("--dpi", type=command.positive, help="pixels per inch of the picture")
+    parser.add_argument("--animation", type=Path, help="animation to write (.gif, .mp4)")
+    parser.add_argument(
+        "--fps", type=command.positive_integer, default=15, help="frames per second"
+    )
+    return parser.parse_args()
+
+
+def run() -> None:
+    """Command line."""
+    arguments = arguments_of_command_line()
+    vectors = arguments.vectors or ("CONTACT_FORCE" if arguments.forces else None)
+    field = None if arguments.field == "none" else arguments.field
+    look = Look(field, vectors, arguments.range, arguments.window)
+    film = arguments.animation
+    if film:
+        check_film(film)
+    all_results = [Result(path) for path in arguments.result]
+    if arguments.output or not film:
+        first = all_results[0]
+        times = chosen_times(first, arguments.times, arguments.interval)
+        rows = [shown_at(results, times) for results in all_results]
+        if arguments.overlay:
+            figure = overlay(rows, arguments.window)
+        else:
+            figure = panels(rows, look, arguments.columns)
+        path = arguments.output or first.path.with_name(f"{first.job}_motion.png")
+        style.save(figure, path, arguments.dpi)
+    if film:
+        animate(all_results, look, film, arguments.fps)
+
+
+def main() -> None:
+    """Entry point."""
+    command.finish(run)
+
+
+if __name__ == "__main__":
+    main()
