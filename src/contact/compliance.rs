@@ -160,6 +160,11 @@ impl Compliance {
         &self.map
     }
 
+    /// T, of which the rows of bodies that turn change with the iterate.
+    pub fn map_mut(&mut self) -> &mut Transformation {
+        &mut self.map
+    }
+
     /// Calls `add` with the entries of the rows of a constraint, turned back with R^T, that are not all
     /// zero; it must have been prepared in the scope.
     pub(super) fn for_each_entry(
@@ -184,7 +189,8 @@ impl Compliance {
                 if force == [0.0; 2] && derivative == [0.0; 2] {
                     continue;
                 }
-                for &(unknown, c) in self.map.row(dof) {
+                let terms = self.map.row(dof).iter().zip(self.map.derivative_row(dof));
+                for (&(unknown, c), (_, of_derivative)) in terms {
                     if let Some((at, block)) = Block::of(blocks, self.groups[unknown])
                         && let Some(found) = block.place(unknown, place + 1)
                     {
@@ -193,7 +199,7 @@ impl Compliance {
                             place,
                             block: at,
                             force: force.map(|entry| c * entry),
-                            derivative: derivative.map(|entry| c * entry),
+                            derivative: derivative.map(|entry| of_derivative * entry),
                         });
                     }
                 }

@@ -61,7 +61,7 @@ pub(super) fn pattern(
     bodies: &RigidBodies,
     force: &[f64],
 ) -> Result<Pattern, Cause> {
-    let mut w = (workspace.k()).respond(&problem.unknowns.map, force)?;
+    let mut w = (workspace.k()).respond(force)?;
     bodies.correct(problem, dt, force, &mut w);
     let momentum = problem.mass.times(&w);
     Ok(Pattern { w, momentum })

@@ -111,7 +111,6 @@ impl Releasing<'_, '_> {
         let mut forces = ContactForces::default();
         forces.relinearize(&mut constraints);
         let mut contact = ContactSystem {
-            map: &free.map,
             system,
             method: problem.method(),
         };

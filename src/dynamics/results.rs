@@ -152,13 +152,21 @@ pub struct BodyResult {
     pub contact_moment: f64,
 }
 
-/// Reaction that holds a rigid surface.
+/// Reaction that holds a rigid body, and the motion of one that turns.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RigidReaction {
     /// Force.
     pub force: [f64; 2],
     /// Its moment about the reference node (force length).
     pub moment: f64,
+    /// Angle since the start (rad).
+    pub angle: f64,
+    /// Angular velocity (1/time).
+    pub angular_velocity: f64,
+    /// Position of the centre of mass.
+    pub center: [f64; 2],
+    /// Kinetic energy.
+    pub kinetic: f64,
 }
 
 /// Work of the solver in an increment or in a whole run, and the errors of its answer.
@@ -233,6 +241,25 @@ pub struct IncrementReport {
     pub solver: SolverCounts,
     /// Its passes.
     pub passes: Vec<PassReport>,
+}
+
+impl IncrementReport {
+    /// Leaves out what vectors over the dofs hold beyond those of so many nodes.
+    pub fn keep_nodes(&mut self, nodes: usize) {
+        let (state, nodal) = (&mut self.state, &mut self.nodal);
+        for vector in [
+            &mut state.u,
+            &mut state.v,
+            &mut state.a,
+            &mut nodal.reaction,
+            &mut nodal.concentrated,
+            &mut nodal.contact_force,
+        ] {
+            vector.truncate(2 * nodes);
+        }
+        nodal.gap.truncate(nodes);
+        nodal.status.truncate(nodes);
+    }
 }
 
 /// An attempt at an increment that failed and is repeated with half the length.

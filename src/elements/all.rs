@@ -40,6 +40,8 @@ enum Place {
     Chunk(u32, u32),
     /// Among the parts (index).
     Part(u32),
+    /// Among the elements of rigid bodies that turn (index), which no sweep visits.
+    Rigid(u32),
 }
 
 /// All elements of a model, ready for integration. Displacements are vectors of 2 N entries.
@@ -56,6 +58,8 @@ pub struct Elements {
     places: Vec<(u32, Place)>,
     pub(super) chunks: Vec<AnyChunk>,
     pub(super) parts: Vec<Part>,
+    /// Elements of rigid bodies that turn.
+    rigid: Vec<AnyElement>,
     /// Elements with damping, increasing.
     pub(super) damped: Vec<(usize, ElementDamping)>,
     pub(super) dofs: usize,
@@ -97,13 +101,18 @@ impl Elements {
             places: vec![(0, Place::Part(0)); elements.len()],
             chunks: Vec::new(),
             parts: Vec::new(),
+            rigid: Vec::new(),
             damped: Vec::new(),
-            dofs: model.mesh.dof_count(),
+            dofs: model.dof_count(),
             space: Mutex::default(),
         };
         for element in elements {
             all.nodes.extend(&element.nodes);
             all.starts.push(all.nodes.len());
+        }
+        let mut is_rigid = vec![false; elements.len()];
+        for &element in model.turning_bodies().flat_map(|(_, body)| &body.elements) {
+            is_rigid[element] = true;
         }
         let body = model.mesh.bodies();
         let body = |&element: &usize| body[elements[element].nodes[0]];
@@ -115,6 +124,12 @@ impl Elements {
                 density: material.density,
                 thickness: section.thickness,
             };
+            of_kind.retain(|&element| {
+                if is_rigid[element] {
+                    all.enter_rigid(model, &kind, element);
+                }
+                !is_rigid[element]
+            });
             of_kind.sort_by_key(body);
             let bodies = of_kind.chunk_by(|a, b| body(a) == body(b));
             let chunks = bodies.flat_map(|of_body| of_body.chunks(MAX_CHUNK));
@@ -127,7 +142,7 @@ impl Elements {
             }
             all.kinds.push(kind);
         }
-        for (index, element) in elements.iter().enumerate() {
+        for (index, element) in elements.iter().enumerate().filter(|(e, _)| !is_rigid[*e]) {
             let material = &model.materials[model.sections[element.section].material];
             let plane = element.element_type.plane;
             let damping = ElementDamping::new(|| all.element(index), material, plane);
@@ -165,6 +180,24 @@ impl Elements {
         });
     }
 
+    /// Takes in an element of the next kind that has no strain.
+    fn enter_rigid(&mut self, model: &Model, kind: &Kind, index: usize) {
+        let (number, place) = (self.kinds.len() as u32, self.rigid.len() as u32);
+        self.places[index] = (number, Place::Rigid(place));
+        let Mesh {
+            coordinates,
+            elements,
+            ..
+        } = &model.mesh;
+        let element = AnyElement::new(&elements[index], coordinates, kind.thickness);
+        self.rigid.push(element);
+    }
+
+    /// Whether an element belongs to a rigid body that turns.
+    pub fn is_rigid(&self, element: usize) -> bool {
+        matches!(self.places[element].1, Place::Rigid(_))
+    }
+
     /// Number of internal variables of all points.
     pub(super) fn variable_count(&self) -> usize {
         self.parts.last().map_or(0, |part| part.variables.end)
@@ -181,13 +214,14 @@ impl Elements {
                 self.chunks[chunk as usize].element(place as usize, self.nodes(element))
             }
             Place::Part(part) => self.parts[part as usize].element,
+            Place::Rigid(place) => self.rigid[place as usize],
         }
     }
 
     /// The material of one element with its internal variables among those of all elements.
     pub(super) fn material<'a>(&'a self, element: usize, variables: &'a [f64]) -> Committed<'a> {
         match self.places[element].1 {
-            Place::Chunk(..) => Committed::new(&self.kind(element).law, &[]),
+            Place::Chunk(..) | Place::Rigid(_) => Committed::new(&self.kind(element).law, &[]),
             Place::Part(part) => self.parts[part as usize].material(variables),
         }
     }
@@ -377,7 +411,7 @@ impl Elements {
             true => a,
             false => b,
         };
-        let all = (0..self.len()).map(of);
+        let all = (0..self.len()).filter(|&e| !self.is_rigid(e)).map(of);
         let none = Inverted {
             element: 0,
             determinant: f64::INFINITY,
@@ -444,7 +478,7 @@ impl Elements {
     /// at whose nodes `v` is zero cost nothing.
     pub fn tangent_product(&self, motion: Motion, v: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; self.dofs];
-        for element in 0..self.len() {
+        for element in (0..self.len()).filter(|&e| !self.is_rigid(e)) {
             let moves = |&node: &usize| v[2 * node] != 0.0 || v[2 * node + 1] != 0.0;
             if self.nodes(element).iter().any(moves) {
                 let k = self.whole_tangent(element, motion);

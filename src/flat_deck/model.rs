@@ -5,8 +5,8 @@ use super::lines::{DeckWriter, name, named, number, set};
 use crate::materials::{Law, NeoHooke, SaintVenantKirchhoff};
 use crate::model::{
     ALL_EXTERIOR, Adjust, Amplitude, Contact, Curve, Damping, Element, Equation, Face, Formulation,
-    Friction, Interaction, Material, Mesh, Model, Reach, RigidBody, Section, Set, Signal,
-    SurfaceKind, TimeBase,
+    Friction, Interaction, Material, Mesh, Model, Reach, Section, Set, Signal, SurfaceKind,
+    TimeBase,
 };
 
 /// Terms of an equation on a data line.
@@ -38,60 +38,18 @@ fn write_contacts(model: &Model, lines: &mut DeckWriter) {
             initialization(reach, lines);
         }
     }
-    for &RigidBody { surface, reference } in &model.rigid_bodies {
-        let surface = named("ANALYTICAL SURFACE", &model.surfaces[surface].name);
-        let label = model.mesh.node_labels[reference];
-        lines.card("RIGID BODY", [surface, set("REF NODE", label)]);
+    for body in &model.rigid_bodies {
+        let parameter = match body.surface {
+            Some(_) => "ANALYTICAL SURFACE",
+            None => "ELSET",
+        };
+        let label = model.mesh.node_labels[body.reference];
+        let name = named(parameter, &body.name);
+        lines.card("RIGID BODY", [name, set("REF NODE", label)]);
     }
-    rigid_elements(model, lines);
     for equation in &model.equations {
         write_equation(equation, model, lines);
     }
-}
-
-/// Rigid bodies of elements whose reference node belongs to nothing else. The model knows them by
-/// their supports alone: one element that moves with the node keeps the node in the deck.
-fn rigid_elements(model: &Model, lines: &mut DeckWriter) {
-    let mut is_kept = vec![false; first_of_rigid(model)];
-    let of_elements = model.mesh.elements.iter().flat_map(|e| &e.nodes).copied();
-    let of_surfaces = model.rigid_bodies.iter().map(|body| body.reference);
-    let of_equations = model.equations.iter().flat_map(Equation::dofs);
-    for node in of_elements
-        .chain(of_surfaces)
-        .chain(of_equations.map(|dof| dof / 2))
-    {
-        is_kept[node] = true;
-    }
-    let alone = is_kept.iter().enumerate().filter(|(_, kept)| !**kept);
-    for (reference, _) in alone {
-        let follows = |element: &&Element| {
-            let mut nodes = element.nodes.iter();
-            nodes.all(|&node| moves_with(node, reference, model))
-        };
-        if let Some(element) = model.mesh.elements.iter().find(follows) {
-            let label = model.mesh.node_labels[reference];
-            lines.card(
-                "RIGID BODY",
-                [set("ELSET", element.label), set("REF NODE", label)],
-            );
-        }
-    }
-}
-
-/// Whether two nodes are prescribed alike in all steps.
-fn moves_with(node: usize, other: usize, model: &Model) -> bool {
-    model.steps.iter().all(|step| {
-        let motion = |dof: usize| {
-            let found = step
-                .supports
-                .binary_search_by_key(&dof, |support| support.dof);
-            found.ok().map(|index| step.supports[index].motion)
-        };
-        (0..2).all(|i| {
-            let both = [node, other].map(|node| motion(2 * node + i));
-            both[0].is_some() && both[0] == both[1]
-        })
-    })
 }
 
 /// The different interactions in the order of the contacts.

@@ -5,7 +5,8 @@ use super::lines::{DeckWriter, named, number, set};
 use super::model::{elements_field, first_of_rigid};
 use crate::model::{
     Amplitude, BodyForce, Frames, HistorySet, Increments, Load, Model, NamedSets, PointLoad,
-    Pressure, Procedure, Rate, Scheme, Settings, Step, Support, SupportMotion, Traction, Variation,
+    Pressure, Procedure, Rate, RigidBody, Scheme, Settings, Step, Support, SupportMotion, Traction,
+    Variation,
 };
 use crate::reader::{self, carried_loads};
 use std::collections::HashMap;
@@ -47,6 +48,11 @@ fn initial_velocity(model: &Model, lines: &mut DeckWriter) {
 }
 
 fn dof_fields(dof: usize, model: &Model) -> [String; 2] {
+    let mut bodies = model.turning_bodies();
+    if let Some((body, _)) = bodies.find(|(_, turning)| model.angle_of(turning) == dof) {
+        let label = model.mesh.node_labels[body.reference];
+        return [label.to_string(), "6".to_owned()];
+    }
     let label = model.mesh.node_labels[dof / 2];
     [label.to_string(), (dof % 2 + 1).to_string()]
 }
@@ -125,7 +131,7 @@ fn own_supports(step: &Step, model: &Model) -> Vec<Support> {
     let own = step
         .supports
         .iter()
-        .filter(|support| support.dof / 2 < first);
+        .filter(|support| support.dof / 2 < first || support.dof >= model.mesh.dof_count());
     own.copied().collect()
 }
 
@@ -186,6 +192,18 @@ fn write_supports(now: &[Support], carried: &[Support], model: &Model, lines: &m
         let alike = |a: &&Support, b: &&Support| a.dof / 2 == b.dof / 2 && a.motion == b.motion;
         for supports in of_card.chunk_by(alike) {
             support_row(supports, model, lines);
+        }
+    }
+    // elements that do not turn would be free to
+    let rigid = model.rigid_bodies.iter();
+    let held: Vec<&RigidBody> = rigid
+        .filter(|body| body.surface.is_none() && body.turning.is_none())
+        .collect();
+    if !held.is_empty() && !now.is_empty() {
+        lines.card("BOUNDARY", []);
+        for body in held {
+            let label = model.mesh.node_labels[body.reference].to_string();
+            lines.row([label, "6".to_owned()]);
         }
     }
 }
@@ -360,8 +378,8 @@ impl Entry {
 
 fn point_load(load: &Load<PointLoad>, model: &Model) -> Entry {
     let PointLoad { dof } = load.at;
-    let label = model.mesh.node_labels[dof / 2];
-    Entry::new(label.to_string(), (dof % 2 + 1).to_string(), load)
+    let [label, direction] = dof_fields(dof, model);
+    Entry::new(label, direction, load)
 }
 
 fn body_force(load: &Load<BodyForce>) -> Entry {

@@ -28,6 +28,8 @@ type SharedPattern = CsMatBase<f64, usize, Arc<[usize]>, Arc<[usize]>, Vec<f64>>
 pub struct Assembled {
     matrix: SharedPattern,
     positions: Arc<Positions>,
+    /// Coefficients of the terms of T that couplings take.
+    coefficients: Vec<f64>,
 }
 
 /// Where the entries of the element matrices are added.
@@ -54,8 +56,8 @@ struct Coupling {
     entry: usize,
     /// Its position in the values.
     position: u32,
-    /// Product of the two coefficients.
-    coefficient: f64,
+    /// Terms of its row and its column, whose coefficients are multiplied.
+    terms: [u32; 2],
 }
 
 /// Columns of a matrix by their rows, increasing.
@@ -189,12 +191,14 @@ impl Positions {
             let position = match (map.row(row), map.row(column)) {
                 (&[(row, 1.0)], &[(column, 1.0)]) => pattern.position(row, column),
                 (rows, columns) => {
-                    for &(column, c) in columns {
-                        self.couplings.extend(rows.iter().map(|&(row, r)| Coupling {
+                    let first = [row, column].map(|dof| map.first_term(dof) as u32);
+                    for (&(column, _), c) in columns.iter().zip(first[1]..) {
+                        let rows = rows.iter().zip(first[0]..);
+                        self.couplings.extend(rows.map(|(&(row, _), r)| Coupling {
                             element,
                             entry,
                             position: pattern.position(row, column),
-                            coefficient: r * c,
+                            terms: [r, c],
                         }));
                     }
                     DISTRIBUTED
@@ -229,11 +233,24 @@ impl Assembled {
             positions.place(&pattern, map, dofs);
         }
         positions.positions.shrink_to_fit();
+        let coefficients = match positions.couplings.is_empty() {
+            true => Vec::new(),
+            false => map.coefficients().collect(),
+        };
         let values = vec![0.0; pattern.rows.len()];
         let (starts, rows) = (pattern.starts.into(), pattern.rows.into());
         Assembled {
             matrix: CsMatBase::new_csc((n, n), starts, rows, values),
             positions: Arc::new(positions),
+            coefficients,
+        }
+    }
+
+    /// Takes the coefficients of the terms of T; its pattern is that of the map that this was made with.
+    pub fn set_coefficients(&mut self, map: &Transformation) {
+        if !self.coefficients.is_empty() {
+            self.coefficients.clear();
+            self.coefficients.extend(map.coefficients());
         }
     }
 
@@ -266,7 +283,8 @@ impl Assembled {
         }
         for coupling in self.positions.couplings(element) {
             let position = coupling.position as usize;
-            values[position] += coupling.coefficient * factor * k[coupling.entry];
+            let [row, column] = coupling.terms.map(|term| self.coefficients[term as usize]);
+            values[position] += row * column * factor * k[coupling.entry];
         }
     }
 

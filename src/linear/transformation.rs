@@ -10,7 +10,9 @@ use super::{larger, largest};
 /// The matrix T of u = T q + g: every dof is a sum of terms c q_k.
 ///
 /// A free dof has a row of the identity, a prescribed one an empty row, one that follows others by
-/// an equation a row with their coefficients.
+/// an equation a row with their coefficients. A dof of a body that turns follows its angle too, by a
+/// coefficient that changes with the iterate: the one that forces act by takes the difference of start
+/// and iterate exactly, the other is the derivative at the iterate (section 11).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transformation {
     unknowns: usize,
@@ -18,6 +20,8 @@ pub struct Transformation {
     starts: Vec<usize>,
     /// Unknown and coefficient of every term, row by row.
     terms: Vec<(usize, f64)>,
+    /// Coefficients of the derivatives, where they are others than those of the terms.
+    derivatives: Option<Vec<f64>>,
     /// Dofs of the unknowns one after the other, where all rows are empty or of the identity.
     selected: Option<Vec<Range<usize>>>,
 }
@@ -34,6 +38,7 @@ impl Transformation {
             unknowns,
             starts,
             terms,
+            derivatives: None,
             selected: None,
         };
         map.selected = map.selection();
@@ -70,6 +75,37 @@ impl Transformation {
     /// Terms (unknown, coefficient) of a dof.
     pub fn row(&self, dof: usize) -> &[(usize, f64)] {
         &self.terms[self.starts[dof]..self.starts[dof + 1]]
+    }
+
+    /// Derivatives (unknown, coefficient) of a dof.
+    pub fn derivative_row(&self, dof: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.derivatives_in(self.starts[dof]..self.starts[dof + 1])
+    }
+
+    /// Derivatives in a range of the terms.
+    fn derivatives_in(&self, range: Range<usize>) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let of = self.derivatives.as_deref();
+        range.map(move |i| (self.terms[i].0, of.map_or(self.terms[i].1, |of| of[i])))
+    }
+
+    /// Sets the coefficients of the last term of a dof: that by which forces act, and the derivative.
+    pub fn set_last(&mut self, dof: usize, [force, derivative]: [f64; 2]) {
+        let Some(last) = self.starts[dof + 1].checked_sub(1) else {
+            return;
+        };
+        let own = || self.terms.iter().map(|term| term.1).collect();
+        self.derivatives.get_or_insert_with(own)[last] = derivative;
+        self.terms[last].1 = force;
+    }
+
+    /// Coefficients of all terms.
+    pub(super) fn coefficients(&self) -> impl Iterator<Item = f64> + '_ {
+        self.terms.iter().map(|term| term.1)
+    }
+
+    /// Place of the first term of a dof among all terms.
+    pub(super) fn first_term(&self, dof: usize) -> usize {
+        self.starts[dof]
     }
 
     /// Terms of all dofs.
@@ -133,7 +169,7 @@ impl Transformation {
         }
     }
 
-    /// Writes v + T q, v over all dofs.
+    /// Writes v + T q, v over all dofs, T of the derivatives.
     pub fn write_sum(&self, v: &[f64], q: &[f64], sum: &mut Vec<f64>) {
         sum.clear();
         let Some(selected) = &self.selected else {
@@ -152,7 +188,7 @@ impl Transformation {
         sum.extend_from_slice(&v[sum.len()..]);
     }
 
-    /// Adds T q to a vector v over all dofs.
+    /// Adds T q to a vector v over all dofs, T of the derivatives.
     pub fn add(&self, q: &[f64], v: &mut [f64]) {
         if let Some(selected) = &self.selected {
             let mut rest = q;
@@ -163,8 +199,8 @@ impl Transformation {
             }
             return;
         }
-        for (row, value) in self.rows().zip(v) {
-            for &(unknown, c) in row {
+        for (ends, value) in self.starts.windows(2).zip(v) {
+            for (unknown, c) in self.derivatives_in(ends[0]..ends[1]) {
                 *value += c * q[unknown];
             }
         }

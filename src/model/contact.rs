@@ -192,11 +192,32 @@ impl Equation {
     }
 }
 
-/// A rigid surface and the node that it moves with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// A rigid body and the node that it moves with: one with a rigid surface, or one that turns.
+///
+/// Elements of a body that does not turn are known by the supports of their nodes.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct RigidBody {
-    /// Index of the rigid surface.
-    pub surface: usize,
+    /// Name of its surface or set in the deck.
+    pub name: String,
+    /// Index of its rigid surface, if it has one.
+    pub surface: Option<usize>,
     /// Reference node (index).
     pub reference: usize,
+    /// Nodes that move with it, increasing, without the reference node.
+    pub nodes: Vec<usize>,
+    /// Its motion, if it turns.
+    pub turning: Option<TurningBody>,
+}
+
+/// A rigid body with an angle of its own, prescribed or free.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TurningBody {
+    /// Number among the bodies that turn.
+    pub number: usize,
+    /// Its elements (indices, increasing), which have mass and no strain.
+    pub elements: Vec<usize>,
+    /// Nodes with the masses that they carry beside the elements (mass).
+    pub masses: Vec<(usize, f64)>,
+    /// Moment of inertia beside that of elements and masses (mass length^2).
+    pub rotary_inertia: f64,
 }

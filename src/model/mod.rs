@@ -2,7 +2,8 @@
 //! contacts, constraints, steps with loads and settings. Sections 1 to 4 of docs/theory.md.
 //!
 //! Everything is indexed from 0 in the order of the deck. Vectors over degrees of freedom hold
-//! `2 N` entries, dof `2 n + i` being direction i (0 = x, 1 = y) of node n.
+//! `2 N` entries, dof `2 n + i` being direction i (0 = x, 1 = y) of node n. A rigid body that turns has
+//! two more nodes, which only these vectors know: its centre of mass, and one whose direction 0 is its angle.
 
 mod amplitude;
 mod contact;
@@ -17,7 +18,7 @@ use crate::materials::{Law, SmallStrainModuli};
 pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
 pub use contact::{
     ALL_EXTERIOR, Adjust, Contact, Equation, Friction, Interaction, Reach, RigidBody, Surface,
-    SurfaceKind,
+    SurfaceKind, TurningBody,
 };
 pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub(crate) use mesh::sides;
@@ -53,11 +54,12 @@ pub struct Model {
     pub amplitudes: Vec<Amplitude>,
     /// Equations between displacements, sorted by the dof that they eliminate, each at most once.
     pub equations: Vec<Equation>,
-    /// Initial velocity, `2 N` entries (length/time).
+    /// Initial velocity, `2 N` entries (length/time), then those of the bodies that turn, with their
+    /// angular velocity (1/time).
     pub initial_velocity: Vec<f64>,
     /// Steps in order.
     pub steps: Vec<Step>,
-    /// Rigid surfaces with their reference nodes.
+    /// Rigid surfaces with their reference nodes, and bodies that turn.
     pub rigid_bodies: Vec<RigidBody>,
 }
 
@@ -70,6 +72,27 @@ impl Model {
     /// What the deck calls an element: its number, or `Instance.number`.
     pub fn element_name(&self, element: usize) -> String {
         element_name(element, &self.mesh, &self.sets.instances)
+    }
+
+    /// The rigid bodies that turn, in the order of their numbers.
+    pub fn turning_bodies(&self) -> impl Iterator<Item = (&RigidBody, &TurningBody)> {
+        let bodies = self.rigid_bodies.iter();
+        bodies.filter_map(|body| Some((body, body.turning.as_ref()?)))
+    }
+
+    /// Number of degrees of freedom: 2 of every node, and 4 of every body that turns.
+    pub fn dof_count(&self) -> usize {
+        self.mesh.dof_count() + 4 * self.turning_bodies().count()
+    }
+
+    /// The node that is the centre of mass of a body that turns.
+    pub fn centre_of(&self, body: &TurningBody) -> usize {
+        self.mesh.node_count() + 2 * body.number
+    }
+
+    /// The dof that is the angle of a body that turns.
+    pub fn angle_of(&self, body: &TurningBody) -> usize {
+        2 * (self.centre_of(body) + 1)
     }
 
     /// Mass of an element: density x thickness x area.

@@ -65,8 +65,7 @@ impl<'m> History<'m> {
         history.create_events(&at)?;
         let surfaces = group(&at, "rigid")?;
         for (k, body) in model.rigid_bodies.iter().enumerate() {
-            let name = &model.surfaces[body.surface].name;
-            history.create_rigid(&group(&surfaces, name)?, k, body)?;
+            history.create_rigid(&group(&surfaces, &body.name)?, k, body)?;
         }
         let nodes = group(&at, "nodes")?;
         for (asked, set) in requested(&model.sets.history, &model.sets.nodes) {
@@ -200,7 +199,7 @@ impl<'m> History<'m> {
         };
         self.table(at, &[], &CONTACT, own)?;
         let mut rigid = self.model.rigid_bodies.iter();
-        if rigid.any(|body| body.surface == contact.master) {
+        if rigid.any(|body| body.surface == Some(contact.master)) {
             self.table(at, &[], &REFERENCE_MOMENT, own)?;
         }
         if contact.is_self_contact() {
@@ -250,9 +249,13 @@ impl<'m> History<'m> {
                 v.extend_from_slice(&vector(r)[2 * node..2 * node + 2]);
             })?;
         }
-        self.table(at, &[], &REACTION, move |r, each| {
+        let own = move |r: &IncrementReport, each: &mut dyn FnMut(&RigidReaction)| {
             r.rigid.get(k).into_iter().for_each(each);
-        })
+        };
+        if body.turning.is_some() {
+            self.table(at, &[], &TURNING, own)?;
+        }
+        self.table(at, &[], &REACTION, own)
     }
 
     /// `/history/nodes/<NSET>`; values of every node where these are asked for, sums and means.
@@ -565,8 +568,17 @@ const REFERENCE_NODE: [VectorEntry; 2] = [
 
 #[rustfmt::skip]
 const REACTION: [Entry<RigidReaction>; 2] = [
-    ("force", "force", "reaction: the force that holds the surface", Vector(|r| r.force)),
+    ("force", "force", "reaction: the force that holds the body", Vector(|r| r.force)),
     ("moment", "force*length", "moment of the reaction about the reference node", Real(|r| r.moment)),
+];
+
+/// A body that turns has these datasets too.
+#[rustfmt::skip]
+const TURNING: [Entry<RigidReaction>; 4] = [
+    ("angle", "1", "angle since the start, in radians", Real(|r| r.angle)),
+    ("angular_velocity", "1/time", "angular velocity", Real(|r| r.angular_velocity)),
+    ("center", "length", "position of the centre of mass", Vector(|r| r.center)),
+    ("kinetic", "energy", "kinetic energy", Real(|r| r.kinetic)),
 ];
 
 #[rustfmt::skip]

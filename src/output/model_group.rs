@@ -142,7 +142,7 @@ pub fn check_names(model: &Model) -> Result<(), NameError> {
         check("surface", &model.surfaces[contact.master].name)?;
     }
     for body in &model.rigid_bodies {
-        check("surface", &model.surfaces[body.surface].name)?;
+        check("surface", &body.name)?;
     }
     Ok(())
 }

@@ -212,15 +212,16 @@ impl Picture<'_> {
             if self.canvas.shows(place) {
                 let [x, y] = self.canvas.at(place);
                 self.canvas.dot([x, y], 5.0, REFERENCE.0);
-                let name = &self.model.surfaces[body.surface].name;
+                let name = &body.name;
                 self.canvas
                     .label([x + 9.0, y + 16.0], "start", REFERENCE.0, name);
             }
-            let text = "reference node of a rigid surface";
+            let text = "reference node of a rigid body";
             self.canvas.explain(Symbol::Dotted(REFERENCE), text);
         }
         let mut held: BTreeMap<usize, [Option<f64>; 2]> = BTreeMap::new();
-        for support in self.model.steps.iter().flat_map(|step| &step.supports) {
+        let supports = self.model.steps.iter().flat_map(|step| &step.supports);
+        for support in supports.filter(|support| support.dof / 2 < self.x.len()) {
             let largest = &mut held.entry(support.dof / 2).or_default()[support.dof % 2];
             let (way, before) = (way(support, self.model), largest.unwrap_or(0.0));
             *largest = Some(if way.abs() > before.abs() {
@@ -381,7 +382,8 @@ fn way(support: &Support, model: &Model) -> f64 {
 /// Forces by node, of all steps.
 fn point_loads(model: &Model) -> Vec<Vector> {
     let mut forces: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
-    for load in model.steps.iter().flat_map(|step| &step.point_loads) {
+    let loads = model.steps.iter().flat_map(|step| &step.point_loads);
+    for load in loads.filter(|load| load.at.dof < model.mesh.dof_count()) {
         forces.entry(load.at.dof / 2).or_default()[load.at.dof % 2] = load.magnitude;
     }
     let x = &model.mesh.coordinates;

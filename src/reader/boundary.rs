@@ -5,7 +5,7 @@ use super::amplitudes::Amplitudes;
 use super::context::Context;
 use super::mesh_index::MeshIndex;
 use super::outline::Outline;
-use super::rigid_bodies::Rigid;
+use super::rigid_bodies::{self, Rigid};
 use super::sets::Sets;
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span, closest};
@@ -25,10 +25,19 @@ pub(crate) struct Targets<'a> {
     pub rigid_bodies: &'a [Rigid],
 }
 
+impl Targets<'_> {
+    /// Dof of the angle of the rigid body whose reference node this is.
+    pub fn angle_at(&self, node: usize) -> Option<usize> {
+        rigid_bodies::angle_at(node, self.rigid_bodies, &self.mesh_index.mesh)
+    }
+}
+
 /// A direction of displacement or rotation that the deck names.
 pub(crate) enum Direction {
     /// A direction in the plane: 0 is x, 1 is y.
     Plane(usize),
+    /// The rotation in the plane.
+    Rotation,
     /// A displacement or rotation out of the plane.
     OutOfPlane,
 }
@@ -148,9 +157,16 @@ impl Supports {
         }
         let motion = quantity.motion(prescribed.value);
         for node in nodes.unwrap_or_default() {
+            let held = Prescription { motion, step };
             for &direction in &prescribed.directions {
-                let held = Prescription { motion, step };
                 self.hold(2 * node + direction, held, row.span(), cx);
+            }
+            if prescribed.turns {
+                match targets.angle_at(node) {
+                    Some(angle) => self.hold(angle, held, row.span(), cx),
+                    None if prescribed.value != 0.0 => return report_no_angle(prescribed.span, cx),
+                    None => {}
+                }
             }
         }
     }
@@ -165,9 +181,18 @@ impl Supports {
     }
 }
 
+/// Only the reference node of a rigid body turns.
+fn report_no_angle(span: Span, cx: &mut Context) {
+    let message =
+        "only directions 1 and 2 can move, and direction 6 of the reference node of a rigid body";
+    cx.error(Code::BadDof, span, message);
+}
+
 /// Directions and value of a row of `*BOUNDARY`.
 struct Prescribed {
     directions: Vec<usize>,
+    /// Whether direction 6 is one of them, the angle of a rigid body.
+    turns: bool,
     value: f64,
     span: Span,
 }
@@ -175,10 +200,11 @@ struct Prescribed {
 fn prescribed(row: Line, cx: &mut Context) -> Option<Prescribed> {
     let first = row.required(1, "the first direction", cx.d)?;
     if first.text.starts_with(|c: char| c.is_ascii_alphabetic()) {
-        let directions = named_directions(first, cx)?;
+        let (directions, turns) = named_directions(first, cx)?;
         row.at_most(2, cx.d);
         return Some(Prescribed {
             directions,
+            turns,
             value: 0.0,
             span: first.span,
         });
@@ -192,38 +218,38 @@ fn prescribed(row: Line, cx: &mut Context) -> Option<Prescribed> {
         cx.error(Code::BadDof, last.span, message);
         return None;
     }
-    if high > 2 && value != 0.0 {
-        let message = "only directions 1 and 2 can move";
-        cx.error(Code::BadDof, last.span, message);
+    if value != 0.0 && high > 2 && [low, high] != [6; 2] {
+        report_no_angle(last.span, cx);
         return None;
     }
     Some(Prescribed {
         directions: (low..=high.min(2)).map(|dof| dof - 1).collect(),
+        turns: high == 6,
         value,
         span,
     })
 }
 
-/// Names of supports and the directions that they fix in the plane; Abaqus Keywords Reference,
-/// *BOUNDARY.
-const NAMED: [(&str, &[usize]); 8] = [
-    ("XSYMM", &[0]),
-    ("YSYMM", &[1]),
-    ("ZSYMM", &[]),
-    ("XASYMM", &[1]),
-    ("YASYMM", &[0]),
-    ("ZASYMM", &[0, 1]),
-    ("PINNED", &[0, 1]),
-    ("ENCASTRE", &[0, 1]),
+/// Names of supports, the directions that they fix in the plane, and whether they fix direction 6; Abaqus Keywords
+/// Reference, *BOUNDARY.
+const NAMED: [(&str, &[usize], bool); 8] = [
+    ("XSYMM", &[0], true),
+    ("YSYMM", &[1], true),
+    ("ZSYMM", &[], false),
+    ("XASYMM", &[1], false),
+    ("YASYMM", &[0], false),
+    ("ZASYMM", &[0, 1], true),
+    ("PINNED", &[0, 1], false),
+    ("ENCASTRE", &[0, 1], true),
 ];
 
 /// Directions that a named support fixes; reports other names.
-fn named_directions(name: Text, cx: &mut Context) -> Option<Vec<usize>> {
+fn named_directions(name: Text, cx: &mut Context) -> Option<(Vec<usize>, bool)> {
     let key = name.name_key();
-    if let Some((_, directions)) = NAMED.iter().find(|(known, _)| *known == key) {
-        return Some(directions.to_vec());
+    if let Some((_, directions, turns)) = NAMED.iter().find(|named| named.0 == key) {
+        return Some((directions.to_vec(), *turns));
     }
-    let names = NAMED.iter().map(|&(known, _)| known);
+    let names = NAMED.iter().map(|named| named.0);
     let message = format!("{} is neither a direction nor a named support", name.text);
     let list = names.clone().collect::<Vec<_>>().join(", ");
     let help = format!("directions are numbers; the named supports are {list}");
@@ -240,8 +266,9 @@ fn dof_number(field: Text, cx: &mut Context) -> Option<usize> {
         return usize::try_from(number).ok();
     }
     let message = format!("plane elements have no degree of freedom {number}");
-    cx.error(Code::BadDof, field.span, message)
-        .help("1 is x, 2 is y; 3 to 6 are accepted with the value zero");
+    cx.error(Code::BadDof, field.span, message).help(
+        "1 is x, 2 is y, 6 the angle of a rigid body; others are accepted with the value zero",
+    );
     None
 }
 
@@ -249,25 +276,34 @@ fn dof_number(field: Text, cx: &mut Context) -> Option<usize> {
 pub(crate) fn direction(field: Text, cx: &mut Context) -> Option<Direction> {
     Some(match dof_number(field, cx)? {
         number @ 1..=2 => Direction::Plane(number - 1),
+        6 => Direction::Rotation,
         _ => Direction::OutOfPlane,
     })
 }
 
-/// The direction of a row whose value acts there; out of the plane it must be zero.
-pub(crate) fn row_direction(row: Line, value: f64, cx: &mut Context) -> Option<usize> {
+/// The dofs of some nodes in the direction of a row whose value acts there; out of the plane, and in direction 6 of a
+/// node that is no reference node of a rigid body, it must be zero.
+pub(crate) fn row_dofs(
+    row: Line,
+    nodes: &[usize],
+    value: f64,
+    targets: Targets,
+    cx: &mut Context,
+) -> Option<Vec<usize>> {
     let field = row.required(1, "the direction", cx.d)?;
-    match direction(field, cx)? {
-        Direction::Plane(direction) => Some(direction),
-        Direction::OutOfPlane if value == 0.0 => None,
-        Direction::OutOfPlane => {
-            cx.error(
-                Code::BadDof,
-                field.span,
-                "only directions 1 and 2 lie in the plane",
-            );
-            None
+    let dofs: Option<Vec<usize>> = match direction(field, cx)? {
+        Direction::Plane(direction) => {
+            Some(nodes.iter().map(|node| 2 * node + direction).collect())
         }
+        Direction::Rotation => nodes.iter().map(|&node| targets.angle_at(node)).collect(),
+        Direction::OutOfPlane => None,
+    };
+    if dofs.is_none() && value != 0.0 {
+        let message = "only directions 1 and 2 lie in the plane, and direction 6 at the reference node \
+                       of a rigid body";
+        cx.error(Code::BadDof, field.span, message);
     }
+    dofs
 }
 
 /// Reads initial velocities, `2 N` entries; `supports` hold at the start.
@@ -277,23 +313,31 @@ pub(crate) fn initial_velocity(
     supports: &[Support],
     cx: &mut Context,
 ) -> Vec<f64> {
-    let mut velocity = vec![0.0; targets.mesh_index.mesh.dof_count()];
+    let dofs = targets.mesh_index.mesh.dof_count() + 4 * targets.rigid_bodies.len();
+    let mut velocity = vec![0.0; dofs];
     let mut places = BTreeMap::new();
     for card in outline.model_cards("INITIAL CONDITIONS") {
         card.required("TYPE", cx.d);
-        if card.choice("TYPE") != Some("VELOCITY") {
-            continue;
-        }
-        for row in card.rows.iter() {
-            for (dof, value) in velocity_row(row, targets, cx) {
+        let rows: Vec<(Span, Vec<(usize, f64)>)> = match card.choice("TYPE") {
+            Some("VELOCITY") => (card.rows.iter())
+                .map(|row| (row.span(), velocity_row(row, targets, cx)))
+                .collect(),
+            Some("ROTATING VELOCITY") => {
+                let found = rotating_velocity(card, targets, cx);
+                found.into_iter().collect()
+            }
+            _ => continue,
+        };
+        for (span, values) in rows {
+            for (dof, value) in values {
                 if let Some(entry) = velocity.get_mut(dof) {
                     *entry = value;
-                    places.insert(dof, row.span());
+                    places.insert(dof, span);
                 }
             }
         }
     }
-    report_supported(&velocity, &places, supports, targets.mesh_index, cx);
+    report_supported(&velocity, &places, supports, targets, cx);
     velocity
 }
 
@@ -305,20 +349,74 @@ fn is_given(support: &Support) -> bool {
     rate == Rate::Velocity
 }
 
+/// `node or set, angular velocity, vx, vy, vz` and the axis, `xa, ya, za, xb, yb, zb`.
+fn rotating_velocity(
+    card: &Card,
+    targets: Targets,
+    cx: &mut Context,
+) -> Option<(Span, Vec<(usize, f64)>)> {
+    let mut rows = card.rows.iter();
+    let row = rows.next()?;
+    row.at_most(5, cx.d);
+    let target = row.required(0, "a node or node set", cx.d);
+    let nodes = target.map(|field| targets.sets.nodes_of(field, targets.mesh_index, cx));
+    let omega = row.real(1, "the angular velocity", cx.d);
+    let v = [2, 3, 4].map(|i| row.real_or(i, 0.0, cx.d));
+    let Some(axis) = rows.next() else {
+        let message = "the axis is missing: x, y, z of a point on it, and of another";
+        cx.error(Code::MissingData, row.span(), message);
+        return None;
+    };
+    axis.at_most(6, cx.d);
+    if let Some(extra) = rows.next() {
+        let message = "a card has one set with its axis";
+        cx.error(Code::StrayData, extra.span(), message)
+            .help("give a card for each set");
+    }
+    let [x, y, z] = [0, 1, 2].map(|i| axis.real_or(i, 0.0, cx.d));
+    let a = [x?, y?, z?];
+    let mut sign = 1.0;
+    if axis.get(3).is_some() {
+        let b = [3, 4, 5].map(|i| axis.real_or(i, 0.0, cx.d));
+        let b = [b[0]?, b[1]?, b[2]?];
+        if a[..2] != b[..2] || a[2] == b[2] {
+            let message = "the axis is not normal to the plane";
+            cx.error(Code::BadValue, axis.span(), message);
+            return None;
+        }
+        sign = (b[2] - a[2]).signum();
+    }
+    let [vx, vy, vz] = v;
+    if vz? != 0.0 {
+        let message = "only x and y lie in the plane";
+        cx.error(Code::BadDof, row.span_at(4), message);
+        return None;
+    }
+    let (nodes, omega, own) = (nodes?, sign * omega?, [vx?, vy?]);
+    let coordinates = &targets.mesh_index.mesh.coordinates;
+    let of_node = |node: usize| {
+        let [x, y] = coordinates[node];
+        let angle = targets.angle_at(node).map(|dof| (dof, omega));
+        let v = [own[0] - omega * (y - a[1]), own[1] + omega * (x - a[0])];
+        [(2 * node, v[0]), (2 * node + 1, v[1])]
+            .into_iter()
+            .chain(angle)
+    };
+    Some((row.span(), nodes.into_iter().flat_map(of_node).collect()))
+}
+
 /// `node or set, direction, velocity`
 fn velocity_row(row: Line, targets: Targets, cx: &mut Context) -> Vec<(usize, f64)> {
     row.at_most(3, cx.d);
     let target = row.required(0, "a node or node set", cx.d);
     let nodes = target.map(|field| targets.sets.nodes_of(field, targets.mesh_index, cx));
     let value = row.real(2, "the velocity", cx.d);
-    let direction = row_direction(row, value.unwrap_or(0.0), cx);
-    match (nodes, direction, value) {
-        (Some(nodes), Some(direction), Some(value)) => nodes
-            .into_iter()
-            .map(|node| (2 * node + direction, value))
-            .collect(),
-        _ => Vec::new(),
-    }
+    let nodes = nodes.unwrap_or_default();
+    let dofs = row_dofs(row, &nodes, value.unwrap_or(0.0), targets, cx);
+    let both = dofs.zip(value);
+    both.map_or(Vec::new(), |(dofs, value)| {
+        dofs.into_iter().map(|dof| (dof, value)).collect()
+    })
 }
 
 /// Reports initial velocities of supported dofs, which move as prescribed from the start.
@@ -326,7 +424,7 @@ fn report_supported(
     velocity: &[f64],
     places: &BTreeMap<usize, Span>,
     supports: &[Support],
-    mesh_index: &MeshIndex,
+    targets: Targets,
     cx: &mut Context,
 ) {
     let mut rows: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
@@ -343,12 +441,10 @@ fn report_supported(
     }
     for (span, dofs) in rows {
         let Some(first) = dofs.first() else { continue };
-        let label = mesh_index.node_name(first / 2);
+        let name = rigid_bodies::dof_name(*first, targets.rigid_bodies, targets.mesh_index);
         let message = format!(
-            "{} degrees of freedom with this velocity are prescribed, the first is node {label} \
-             direction {}",
+            "{} degrees of freedom with this velocity are prescribed, the first is {name}",
             dofs.len(),
-            first % 2 + 1
         );
         cx.error(Code::VelocityOnSupport, span, message)
             .help("give the velocity to free nodes only");

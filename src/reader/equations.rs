@@ -110,7 +110,7 @@ fn term(row: Line, first: usize, targets: Targets, cx: &mut Context) -> Option<T
     let field = row.required(first + 1, "the direction", cx.d);
     let axis = field.and_then(|field| match direction(field, cx)? {
         Direction::Plane(axis) => Some(axis),
-        Direction::OutOfPlane => {
+        Direction::Rotation | Direction::OutOfPlane => {
             let message = "only directions 1 and 2 lie in the plane";
             cx.error(Code::BadDof, field.span, message);
             None

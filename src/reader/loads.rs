@@ -1,6 +1,6 @@
 //! `*CLOAD`, `*DLOAD` and `*DSLOAD`, and loads as they are carried from step to step.
 
-use super::boundary::{Targets, row_direction};
+use super::boundary::{Targets, row_dofs};
 use super::context::Context;
 use super::surfaces::{Surfaces, side_count};
 use crate::deck::{Card, Line, Text};
@@ -126,10 +126,9 @@ impl LoadHistories {
         let target = row.required(0, "a node or node set", cx.d);
         let nodes = target.map(|field| sets.nodes_of(field, mesh_index, cx));
         let force = row.real(2, "the force", cx.d);
-        let direction = row_direction(row, force.unwrap_or(0.0), cx);
-        let (direction, force) = (direction?, force?);
-        for node in nodes? {
-            let dof = 2 * node + direction;
+        let dofs = row_dofs(row, &nodes?, force.unwrap_or(0.0), source.targets, cx);
+        let (dofs, force) = (dofs?, force?);
+        for dof in dofs {
             let at = PointLoad { dof };
             self.points
                 .add(dof, at, force, source.amplitude, source.context);

@@ -21,12 +21,34 @@ pub(crate) struct MeshIndex {
     pub elements: Labels,
     /// Faces of the plane elements that the line elements name.
     pub lines: Vec<Face>,
+    /// Point elements, whose indices follow those of the line elements.
+    pub points: Vec<Point>,
     /// Places of the plane elements.
     pub places: Vec<Span>,
     /// Node sets named on `*NODE`.
     pub node_groups: Vec<Group>,
     /// Element sets named on `*ELEMENT`.
     pub element_groups: Vec<Group>,
+}
+
+/// An element at one node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Point {
+    /// What it has.
+    pub kind: PointKind,
+    /// Its node.
+    pub node: usize,
+    /// Where it is defined.
+    pub span: Span,
+}
+
+/// What a point element has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum PointKind {
+    /// Mass (`MASS`).
+    Mass,
+    /// Rotary inertia (`ROTARYI`).
+    RotaryInertia,
 }
 
 /// A set named where its members are defined.
@@ -66,6 +88,7 @@ impl Default for MeshIndex {
             nodes: Labels::new("node", Code::UndefinedNode),
             elements: Labels::new("element", Code::UndefinedElement),
             lines: Vec::new(),
+            points: Vec::new(),
             places: Vec::new(),
             node_groups: Vec::new(),
             element_groups: Vec::new(),
@@ -119,6 +142,9 @@ impl MeshIndex {
             for node in &mut element.nodes {
                 *node = numbers[*node].unwrap_or(*node);
             }
+        }
+        for point in &mut self.points {
+            point.node = numbers[point.node].unwrap_or(point.node);
         }
         let mut kept = used.iter();
         self.mesh.node_labels.retain(|_| kept.next() == Some(&true));

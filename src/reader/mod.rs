@@ -84,9 +84,12 @@ fn read(cx: &mut Context) -> Model {
         amplitudes: &amplitudes,
         rigid_bodies: &rigid_bodies,
     };
-    let steps = steps::read(&outline, targets, &surfaces, guide, cx);
+    let mut steps = steps::read(&outline, targets, &surfaces, guide, cx);
+    let mut initial_velocity = boundary::initial_velocity(&outline, targets, &steps.at_start, cx);
+    let all = &mut steps.all;
+    let bodies = rigid_bodies::complete(&rigid_bodies, &mesh_index, all, &mut initial_velocity, cx);
     let equations = equations::read(&outline, targets, &steps.all, cx);
-    let initial_velocity = boundary::initial_velocity(&outline, targets, &steps.at_start, cx);
+    rigid_bodies::check(&rigid_bodies, &bodies, (&steps.all, &equations), cx);
     equations::check_velocities(&equations, &initial_velocity, &steps.at_start, targets, cx);
     let model = Model {
         title: title(&outline),
@@ -103,7 +106,7 @@ fn read(cx: &mut Context) -> Model {
             .collect(),
         initial_velocity,
         steps: steps.all,
-        rigid_bodies: rigid_bodies::bodies(&rigid_bodies),
+        rigid_bodies: bodies,
     };
     let all: [&dyn Fn(&mut Context); 7] = [
         &|cx| checks::amplitudes(&model, &amplitudes.spans, cx),

@@ -6,7 +6,7 @@
 use super::context::Context;
 use super::label::{LabelList, LabelMap};
 use super::mesh_index;
-use super::mesh_index::{Group, MeshIndex};
+use super::mesh_index::{Group, MeshIndex, Point, PointKind};
 use super::names::Labelled;
 use super::outline::Outline;
 use crate::deck::{Card, Line, Text};
@@ -55,6 +55,7 @@ struct MeshReading {
     /// Last lines of line elements, and of plane ones that are defined again.
     other_lines: LabelMap<u32>,
     lines: Vec<LineElement>,
+    points: Vec<(PointKind, LineElement)>,
 }
 
 impl MeshReading {
@@ -245,6 +246,10 @@ impl MeshReading {
                 self.other_lines.insert(label, span.line);
                 self.lines.push(LineElement { label, nodes, span });
             }
+            ElementKind::Point(kind) => {
+                self.other_lines.insert(label, span.line);
+                self.points.push((kind, LineElement { label, nodes, span }));
+            }
         }
     }
 
@@ -284,6 +289,7 @@ impl MeshReading {
         let mesh = &self.mesh_index.mesh;
         let (keyword, before) = match (mesh.node_count() == 0, mesh.elements.is_empty()) {
             (true, _) => ("NODE", None),
+            (false, true) if !self.points.is_empty() => return,
             (false, true) => ("ELEMENT", outline.model_cards("NODE").pop()),
             (false, false) => return,
         };
@@ -329,11 +335,26 @@ impl MeshReading {
         for node in references.iter().filter_map(index) {
             used[node] = true;
         }
+        for &node in self.points.iter().flat_map(|(_, point)| &point.nodes) {
+            used[node] = true;
+        }
         if used.contains(&false) {
             self.report_unused(&used, outline, cx);
         }
         let mut mesh_index = self.mesh_index;
         add_lines(&self.lines, &used, &mut mesh_index, cx);
+        for (kind, point) in self.points {
+            let number = mesh_index.mesh.elements.len() + mesh_index.lines.len();
+            let labelled = Labelled::new(number + mesh_index.points.len());
+            mesh_index.elements.insert(point.label, labelled);
+            mesh_index
+                .points
+                .extend(point.nodes.first().map(|&node| Point {
+                    kind,
+                    node,
+                    span: point.span,
+                }));
+        }
         if used.contains(&false) {
             mesh_index.keep_nodes(&used);
         }
@@ -395,6 +416,8 @@ pub(super) enum ElementKind {
     Plane(ElementType),
     /// Two nodes that name a side of a plane element.
     Line,
+    /// A node with mass or inertia.
+    Point(PointKind),
 }
 
 impl ElementKind {
@@ -403,6 +426,7 @@ impl ElementKind {
         match self {
             ElementKind::Plane(element_type) => element_type.topology().nodes,
             ElementKind::Line => 2,
+            ElementKind::Point(_) => 1,
         }
     }
 }
@@ -412,6 +436,11 @@ pub(super) fn element_kind(name: Text, cx: &mut Context) -> Option<ElementKind> 
     let folded = name.name_key();
     if ["T2D2", "T3D2", "B21", "B31"].contains(&folded.as_str()) {
         return Some(ElementKind::Line);
+    }
+    match folded.as_str() {
+        "MASS" => return Some(ElementKind::Point(PointKind::Mass)),
+        "ROTARYI" => return Some(ElementKind::Point(PointKind::RotaryInertia)),
+        _ => {}
     }
     let known = ElementType::from_name(&folded).or_else(|| unusable(name, &folded, cx));
     known.map(ElementKind::Plane)
@@ -538,7 +567,7 @@ fn report_plane_stress(mesh_index: &MeshIndex, cx: &mut Context) {
     }
 }
 
-/// Labels that may be those of reference nodes or of nodes of equations; `groups` are the node
+/// Labels that may be those of nodes of rigid bodies or of equations; `groups` are the node
 /// sets of `*NODE` by their names, as compared, with the labels of their members.
 pub(super) fn labels_needed(
     outline: &Outline,
@@ -567,15 +596,17 @@ pub(super) fn labels_needed(
     labels
 }
 
-/// Fields that name a reference node, or a node or node set of an equation.
+/// Fields that name a reference node or the nodes of a rigid body, or a node or node set of an equation.
 fn fields<'a>(outline: &Outline<'a>) -> Vec<Text<'a>> {
     let bodies = outline.model_cards("RIGID BODY").into_iter();
     let equations = outline.model_cards("EQUATION").into_iter();
     // a line of one field is the number of terms
     let rows = equations.flat_map(|card| card.rows.iter());
     let terms = rows.filter(|row| row.get(1).is_some());
+    let names = ["REF NODE", "NSET", "PIN NSET", "TIE NSET"];
     bodies
-        .filter_map(|card| card.value("REF NODE"))
+        .flat_map(|card| names.map(|name| card.value(name)))
+        .flatten()
         .chain(terms.flat_map(|row| row.fields().step_by(3)))
         .collect()
 }

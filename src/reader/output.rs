@@ -354,7 +354,7 @@ pub(super) fn monitored(card: &Card, targets: Targets, cx: &mut Context) -> Opti
     let dof = dof?;
     match (node, direction(dof, cx)?) {
         (node, Direction::Plane(direction)) => Some(2 * node? + direction),
-        (_, Direction::OutOfPlane) => {
+        (_, Direction::Rotation | Direction::OutOfPlane) => {
             let message = format!("direction {} is not in the status file", dof.text);
             cx.warning(Code::IgnoredVariable, dof.span, message)
                 .help("1 is x, 2 is y");

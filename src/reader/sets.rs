@@ -24,14 +24,18 @@ pub(crate) struct Sets {
     pub elements: Vec<Set>,
     /// Faces that the line elements of the element sets name.
     pub lines: Vec<Vec<Face>>,
+    /// Point elements of the element sets.
+    points: Vec<Vec<usize>>,
 }
 
 impl Sets {
-    /// Whether an element set holds line elements and no others.
+    /// Whether an element set holds line or point elements and no others.
     pub fn holds_lines_only(&self, set: usize) -> bool {
         let lines = self.lines.get(set);
         let elements = self.elements.get(set);
-        lines.is_some_and(|lines| !lines.is_empty())
+        let points = self.points.get(set);
+        (lines.is_some_and(|lines| !lines.is_empty())
+            || points.is_some_and(|points| !points.is_empty()))
             && elements.is_some_and(|set| set.members.is_empty())
     }
 
@@ -79,6 +83,18 @@ impl Sets {
         elements
     }
 
+    /// The point elements that a field names.
+    pub fn points_of(&self, field: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<usize> {
+        if cx.is_number(field) {
+            let found = mesh_index.elements.find(field, cx);
+            return point_numbers(found.as_slice(), mesh_index);
+        }
+        let set = self.element_names.find(field, cx);
+        set.and_then(|index| self.points.get(index))
+            .cloned()
+            .unwrap_or_default()
+    }
+
     /// The element, or the elements of the set, that a field names, and the faces that line elements
     /// among them name.
     pub fn elements_and_lines_of(
@@ -108,13 +124,22 @@ fn report_lines(field: Text, cx: &mut Context) {
 
 /// Plane elements, and the faces that line elements name.
 fn split(members: Vec<usize>, mesh_index: &MeshIndex) -> (Vec<usize>, Vec<Face>) {
-    if mesh_index.lines.is_empty() {
+    if mesh_index.lines.is_empty() && mesh_index.points.is_empty() {
         return (members, Vec::new());
     }
     let count = mesh_index.mesh.elements.len();
     let (elements, lines): (Vec<_>, Vec<_>) = members.into_iter().partition(|&m| m < count);
     let faces = lines.iter().filter_map(|m| mesh_index.lines.get(m - count));
     (elements, faces.copied().collect())
+}
+
+/// Numbers of the point elements among the members of a set.
+fn point_numbers(members: &[usize], mesh_index: &MeshIndex) -> Vec<usize> {
+    let first = mesh_index.mesh.elements.len() + mesh_index.lines.len();
+    members
+        .iter()
+        .filter_map(|member| member.checked_sub(first))
+        .collect()
 }
 
 /// Element sets and the faces that their line elements name.
@@ -139,6 +164,8 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
     elements.fill(cx);
     let element_names = elements.names;
     let element_sets = resolve(&element_names, elements.drafts, cx);
+    let of_set = |set: &Set| point_numbers(&set.members, mesh_index);
+    let points = element_sets.iter().map(of_set).collect();
     let (element_sets, lines) = split_sets(element_sets, mesh_index);
 
     let mut nodes = SetFamily::new("node set", &mesh_index.nodes);
@@ -152,6 +179,7 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
         element_names,
         elements: element_sets,
         lines,
+        points,
     };
     let mut drafts = nodes.drafts;
     for (index, source) in nodes.from_elements {

@@ -5,7 +5,6 @@ use super::context::Context;
 use super::loads::{LoadHistories, Operation, StepContext};
 use super::outline::{Outline, StepCards};
 use super::output::{Histories, Requests, restart};
-use super::rigid_bodies;
 use super::surfaces::Surfaces;
 use crate::deck::{Card, Line};
 use crate::diagnostics::{Code, shown};
@@ -104,13 +103,7 @@ impl StepReader<'_> {
         self.own_settings(cards, number, cx);
         self.conditions(cards, context, cx);
         self.requests.cards(&cards.cards, self.targets, cx);
-        let mut supports = self.supports.list();
-        let Targets {
-            rigid_bodies,
-            mesh_index,
-            ..
-        } = self.targets;
-        rigid_bodies::follow(rigid_bodies, mesh_index, number, &mut supports, cx);
+        let supports = self.supports.list();
         at_start.get_or_insert_with(|| supports.clone());
         let name = cards.head.value("NAME").and_then(|name| name.name(cx.d));
         let step = increments.map(|increments| Step {

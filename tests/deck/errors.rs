@@ -377,7 +377,7 @@ fn rigid_surfaces_that_cannot_be() {
         profile("START, 4.\n"),
         profile("START, 4., 1.1\nLINE, 0., 1.1\n"),
         rigid(LINE, "", "*BOUNDARY\n100, 1\n"),
-        rigid(LINE, "", "*BOUNDARY\n100, 1, 2\n100, 6, 6, 0.1\n"),
+        rigid(LINE, "", "*BOUNDARY\n100, 1, 2\nNFIX, 6, 6, 0.1\n"),
         rigid(
             LINE,
             "*RIGID BODY, ANALYTICAL SURFACE=FLOOR, REF NODE=100\n",

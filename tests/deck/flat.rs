@@ -347,7 +347,7 @@ fn surfaces_called_as_that_of_general_contact() {
 #[test]
 fn rigid_elements_with_a_reference_node_apart() {
     let cards = "*NODE\n100, 0., -5.\n*RIGID BODY, ELSET=EBASE, REF NODE=100\n*AMPLITUDE, NAME=A\n\
-                 0., 0., 1., 1.\n*BOUNDARY\n100, 1, 2";
+                 0., 0., 1., 1.\n*BOUNDARY\n100, 1, 6";
     let deck = SHARED.replacen("*BOUNDARY\nNFIX, 1, 2", cards, 1);
     round_trip(read(&deck));
     let moved = "*BOUNDARY, AMPLITUDE=A\n100, 1, 1, 0.3\n*DLOAD";

@@ -272,7 +272,7 @@ fn friction_may_decay_with_the_slip_rate() {
 
 #[test]
 fn elements_move_rigidly_with_a_reference_node() {
-    let step = "*BOUNDARY\n90, 1\n*BOUNDARY, TYPE=VELOCITY\n90, 2, 2, 0.5";
+    let step = "*BOUNDARY\n90, 1\n90, 6\n*BOUNDARY, TYPE=VELOCITY\n90, 2, 2, 0.5";
     let card = "*NODE\n90, 5., 5.\n*RIGID BODY, ELSET=BODY, REF NODE=90";
     let text = SQUARE.replacen("*BOUNDARY\nFOOT, 1, 2\n", "", 1);
     assert_ne!(text, SQUARE);
@@ -292,7 +292,10 @@ fn elements_move_rigidly_with_a_reference_node() {
         let motions = [0, 1].map(|i| motion(2 * node + i));
         assert_eq!(motions, [Some(SupportMotion::Ramp { to: 0.0 }), Some(up)]);
     }
-    assert!(model.rigid_bodies.is_empty());
+    let [body] = &model.rigid_bodies[..] else {
+        panic!("one rigid body");
+    };
+    assert_eq!((body.reference, body.turning.as_ref()), (4, None));
 }
 
 #[test]
@@ -760,8 +763,11 @@ fn a_rigid_surface_moves_with_its_reference_node() {
     }
     assert_eq!(model.initial_velocity.len(), 2 * nodes);
     let body = RigidBody {
-        surface: model.contacts[0].master,
+        name: "FLOOR".into(),
+        surface: Some(model.contacts[0].master),
         reference: nodes - 4,
+        nodes: vec![a, b, c],
+        turning: None,
     };
     assert_eq!(model.rigid_bodies, [body]);
 }

@@ -30,4 +30,5 @@ mod rigid;
 mod scales;
 mod subincrements;
 mod thin;
+mod turning;
 mod unbalanced;

@@ -164,6 +164,7 @@ impl<'m> Attempt<'_, 'm> {
         let mut trace = Trace::new(self.problem.settings.max_passes);
         let mut vectors = Vectors::default();
         let mut failed = Cause::NotConverged;
+        (self.workspace.stiffness).start(self.problem, &self.start.u);
         for &rule in FactorRule::order(self.problem.settings.factorization) {
             trace.begin();
             (self.workspace.search).start(&self.start.v, self.interval.dt);
@@ -207,7 +208,8 @@ impl<'m> Attempt<'_, 'm> {
             let settled = number >= SEARCHING_PASSES;
             let pass = (number, trace.correction());
             self.evaluate(pass, &mut d, &mut contact, v)?;
-            trace.balance((problem.unknowns).largest_restricted(&v.equilibrium.out_of_balance));
+            let map = self.workspace.stiffness.k.map();
+            trace.balance(map.largest_restricted(&v.equilibrium.out_of_balance));
 
             // the forces at hand may balance r and close the gaps of the iterate
             contact.relinearize();
@@ -280,13 +282,17 @@ impl<'m> Attempt<'_, 'm> {
     fn evaluate_at(
         &mut self,
         (pass, correction): (usize, f64),
-        d: &[f64],
+        d: &mut [f64],
         contact: &mut ContactStates,
         v: &mut Vectors,
     ) -> Result<(), Cause> {
         let (problem, start) = (self.problem, self.start);
-        // g, Dt and their rows in the iterate U = U0 + d
+        // positions and rows of bodies that turn, eq. (11.1) and eq. (11.3), g, Dt and their rows in the iterate U = U0 + d
+        let turning = &problem.unknowns.turning;
+        turning.follow(&start.u, d);
         write_sum(&start.u, d, &mut v.u);
+        turning.turn([&start.u, d], &mut v.u);
+        (self.workspace.stiffness).write_rows(problem, [&start.u, d]);
         problem.check_segments(&v.u)?;
         let of_set = (self.set, kept_beyond_ends(pass));
         contact.find(
@@ -323,7 +329,6 @@ impl<'m> Attempt<'_, 'm> {
     /// K* with its contact problems.
     fn k_star(&mut self) -> ContactSystem<'_> {
         ContactSystem {
-            map: &self.problem.unknowns.map,
             system: self.workspace.k(),
             method: self.problem.method(),
         }
@@ -444,6 +449,7 @@ impl<'m> Attempt<'_, 'm> {
         contact.take_left_out(self.problem, &v.u);
         let v0p = (contact.impulses).velocity(self.problem, self.workspace, self.start)?;
         let mut u = sum(&self.start.u, d);
+        (self.problem.unknowns.turning).turn([&self.start.u, d], &mut u);
         let mut equilibrium = std::mem::take(&mut v.equilibrium);
         if is_balanced {
             // its impulses may have stood beside V0

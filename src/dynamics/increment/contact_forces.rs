@@ -217,7 +217,6 @@ mod tests {
         matrix.factorize().expect("positive definite");
         let mut meter = Meter::default();
         let mut system = ContactSystem {
-            map: &map,
             system: System::new(&mut matrix, &mut meter),
             method,
         };

@@ -17,12 +17,10 @@ use crate::lcp::{
     BlockIteration, BlockStart, ContactName, ContactState, FrictionalLcp, LcpBlock, LcpMethod,
     Progress,
 };
-use crate::linear::{LinearError, Transformation};
+use crate::linear::LinearError;
 
 /// A system matrix with what its complementarity problems need.
 pub(crate) struct ContactSystem<'a> {
-    /// T of the unknowns.
-    pub map: &'a Transformation,
     pub system: System<'a>,
     pub method: LcpMethod,
 }
@@ -156,9 +154,9 @@ impl ContactSystem<'_> {
 
     /// y + W load, both over all dofs, W being the inverse of the matrix.
     pub fn respond(&mut self, y: &[f64], load: &[f64]) -> Result<Vec<f64>, LinearError> {
-        self.system.begin(self.map, load)?;
+        self.system.begin(load)?;
         let mut response = Vec::new();
-        self.system.end(self.map, y, &mut response)?;
+        self.system.end(y, &mut response)?;
         self.system.check()?;
         Ok(response)
     }
@@ -361,11 +359,11 @@ impl<'a> Response<'a> {
         } = &mut vectors;
         replace(nodes, constraints.iter().flat_map(Constraint::nodes));
         let dofs = nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]);
-        let terms = dofs.flat_map(|dof| system.map.row(dof));
+        let terms = dofs.flat_map(|dof| system.system.map().row(dof));
         replace(unknowns, terms.map(|term| term.0));
         forces.clear();
         at_nodes.resize(start.len(), 0.0);
-        system.system.begin(system.map, f)?;
+        system.system.begin(f)?;
         Ok(Response { start, vectors })
     }
 
@@ -388,8 +386,8 @@ impl<'a> Response<'a> {
         let value = |unknown: &usize| values[unknowns.partition_point(|u| u < unknown)];
         for &node in nodes.iter() {
             let of_dof = |dof: usize| -> f64 {
-                let terms = system.map.row(dof).iter();
-                terms.map(|(unknown, c)| c * value(unknown)).sum()
+                let terms = system.system.map().derivative_row(dof);
+                terms.map(|(unknown, c)| c * value(&unknown)).sum()
             };
             let mut own = [of_dof(2 * node), of_dof(2 * node + 1)];
             system.system.rotation().turn_node(node, &mut own);
@@ -417,7 +415,7 @@ impl<'a> Response<'a> {
             for (node, mut force) in constraint.nodal_forces(force) {
                 system.system.rotation().turn_node_back(node, &mut force);
                 for (dof, force) in [2 * node, 2 * node + 1].into_iter().zip(force) {
-                    let terms = system.map.row(dof).iter();
+                    let terms = system.system.map().row(dof).iter();
                     forces.extend(terms.map(|&(unknown, c)| (unknown, c * force)));
                 }
             }
@@ -436,7 +434,7 @@ impl<'a> Response<'a> {
         response: &mut Vec<f64>,
     ) -> Result<(), LinearError> {
         system.system.give_back(self.vectors);
-        system.system.end(system.map, self.start, response)
+        system.system.end(self.start, response)
     }
 }
 

@@ -310,7 +310,7 @@ impl Pass<'_> {
             let all = r.iter().zip(forces[0]).zip(forces[1]);
             to.extend(all.map(|((r, s), c)| r - s + c));
         };
-        problem.unknowns.map.write_restricted_by(sum, values);
+        stiffness.k.map().write_restricted_by(sum, values);
         let errors = Errors {
             residual: (problem.parts).largest_of_unknowns(&problem.parts_of_unknowns, values),
             correction: problem.parts.largest_of_bodies(du),

@@ -113,7 +113,13 @@ impl Impulses {
         self.forces.closed = closed;
         match self.forces.closed.is_empty() {
             true => self.resultant.clear(),
-            false => (self.forces).write_resultant(start.v.len(), &mut self.resultant),
+            false => {
+                (self.forces).write_resultant(start.v.len(), &mut self.resultant);
+                // on bodies that turn they act by the arms of the start
+                let nothing = vec![0.0; start.v.len()];
+                let turning = &problem.unknowns.turning;
+                turning.hand_over([&start.u, &nothing], false, &mut self.resultant);
+            }
         }
         Ok(())
     }
@@ -220,7 +226,6 @@ fn has_mass(problem: &StepProblem, constraint: &Constraint) -> bool {
 /// M with its complementarity problems.
 fn mass_system<'a>(problem: &'a StepProblem, workspace: &'a mut Workspace) -> ContactSystem<'a> {
     ContactSystem {
-        map: &problem.unknowns.map,
         system: workspace.m(),
         method: problem.method(),
     }

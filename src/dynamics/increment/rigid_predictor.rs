@@ -33,6 +33,8 @@ pub(super) fn rigid_predictor(
     interval: Interval,
 ) -> Vec<f64> {
     let mut d = vec![0.0; start.u.len()];
+    let is_prescribed = |dof: usize| problem.unknowns.is_prescribed(dof);
+    (problem.unknowns.turning).predict(&start.v, interval.dt, &mut d, is_prescribed);
     let holds = holds(problem);
     let all_are_held = holds.iter().all(|&hold| hold == Hold::Held);
     if all_are_held || start.v.iter().all(|&v| v == 0.0) {

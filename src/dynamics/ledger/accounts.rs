@@ -37,18 +37,19 @@ impl Accounts {
             mass,
             elements,
             redistribution,
+            turning,
             ..
         } = discretization;
         let faces = SlaveFaces::new(model);
         let consistent = || {
             Mass::new(
-                elements,
+                (elements, turning),
                 &Redistribution::default(),
-                model.mesh.node_count(),
+                mass.shares.len(),
             )
         };
         Accounts {
-            bodies: BodyMasses::new(model, mass),
+            bodies: BodyMasses::new(model, mass, turning),
             rigid: RigidSurfaces::new(model),
             contacts: ContactLedger::new(model, faces.start.clone()),
             touches: Touches::new(&model.mesh),
@@ -81,7 +82,11 @@ impl Accounts {
                 mass: node_masses(problem),
             },
             contacts: problem.model.contacts.iter().map(of_contact).collect(),
-            rigid: vec![RigidReaction::default(); self.rigid.count()],
+            rigid: {
+                let mut rigid = vec![RigidReaction::default(); self.rigid.count()];
+                self.rigid.set_motion(problem, state, &mut rigid);
+                rigid
+            },
             ..self.moving(problem, state, ledger)
         }
     }
@@ -108,6 +113,8 @@ impl Accounts {
         nodal.pressure = self.faces.pressure(problem, u, &solved.contact.forces);
         nodal.slip.clone_from(&self.contacts.slip);
         report.rigid = self.rigid.collect(problem, u, &mut nodal.reaction);
+        self.rigid
+            .set_motion(problem, &solved.end, &mut report.rigid);
         (self.bodies).add_contact(problem, u, &nodal.contact_force, &mut report.bodies);
         IncrementReport {
             nodal,

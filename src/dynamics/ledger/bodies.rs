@@ -2,14 +2,17 @@
 //!
 //! Resultant reactions of rigid surfaces at their reference nodes. Section 9 of docs/theory.md.
 
-use crate::dynamics::results::{BodyResult, Momentum, RigidReaction};
-use crate::dynamics::step::{Mass, StepProblem};
+use crate::dynamics::results::{BodyResult, Momentum, RigidReaction, State};
+use crate::dynamics::step::{Mass, StepProblem, TurningBody};
 use crate::elements::ElementResult;
 use crate::model::{Bodies, Model, RigidBody};
+use crate::vectors::dot;
 
 /// Masses of the bodies of a model, constant over a run.
 pub(crate) struct BodyMasses {
     pub bodies: Bodies,
+    /// Bodies of elements that turn: the body, the centre of mass and the moment of inertia about it.
+    turning: Vec<(usize, usize, f64)>,
     /// Mass of every body.
     mass: Vec<f64>,
     /// Row sums of the consistent mass matrix, `N` entries: int rho h_a dOmega.
@@ -26,19 +29,26 @@ pub(crate) struct Moving<'a> {
 
 impl BodyMasses {
     /// Masses of the bodies of a model.
-    pub fn new(model: &Model, mass: &Mass) -> Self {
+    pub fn new(model: &Model, mass: &Mass, turning: &[TurningBody]) -> Self {
         let bodies = Bodies::new(&model.mesh);
-        let share = mass.shares.clone();
-        let mut of_body = vec![0.0; bodies.count];
-        for (share, body) in share.iter().zip(&bodies.of_node) {
-            if let Some(body) = *body {
-                of_body[body] += share;
-            }
+        let with_elements = model.turning_bodies().zip(turning);
+        let turning = with_elements.filter_map(|((_, body), turning)| {
+            let element = *body.elements.first()?;
+            Some((bodies.of_element[element], turning.centre, turning.inertia))
+        });
+        let mut masses = BodyMasses {
+            turning: turning.collect(),
+            mass: vec![0.0; bodies.count],
+            share: mass.shares.clone(),
+            bodies,
+        };
+        let mut of_body = std::mem::take(&mut masses.mass);
+        for (node, body) in masses.nodes() {
+            of_body[body] += masses.share[node];
         }
         BodyMasses {
-            bodies,
             mass: of_body,
-            share,
+            ..masses
         }
     }
 
@@ -70,7 +80,15 @@ impl BodyMasses {
             result.angular_velocity += arms[i] * p[j] - arms[j] * p[i];
             result.kinetic += (v[i] * p[i] + v[j] * p[j]) / 2.0;
         }
-        let inertia = self.moments_of_inertia(problem, &arms);
+        let mut inertia = self.moments_of_inertia(problem, &arms);
+        // I and omega of the bodies that turn, about their own centres of mass
+        for &(body, centre, own) in &self.turning {
+            let spin = 2 * (centre + 1);
+            let rate = own.sqrt() * v[spin] / own_length(problem, spin);
+            results[body].angular_velocity += own.sqrt() * rate;
+            results[body].kinetic += rate * rate / 2.0;
+            inertia[body] += own;
+        }
         for (body, result) in results.iter_mut().enumerate() {
             result.velocity = result.velocity.map(|p| p / self.mass[body]);
             result.angular_velocity /= inertia[body];
@@ -104,7 +122,10 @@ impl BodyMasses {
     /// Nodes of bodies, with their bodies.
     fn nodes(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let numbered = self.bodies.of_node.iter().enumerate();
-        numbered.filter_map(|(node, body)| Some((node, (*body)?)))
+        let centres = self.turning.iter().map(|&(body, centre, _)| (centre, body));
+        numbered
+            .filter_map(|(node, body)| Some((node, (*body)?)))
+            .chain(centres)
     }
 
     /// Centres of mass.
@@ -134,11 +155,28 @@ impl BodyMasses {
     }
 }
 
+/// Length of the body that turns by an angle.
+fn own_length(problem: &StepProblem, spin: usize) -> f64 {
+    let mut bodies = problem.unknowns.turning.bodies.iter();
+    bodies
+        .find(|body| body.spin == spin)
+        .map_or(1.0, |body| body.length)
+}
+
 /// Linear momentum sum p and angular momentum sum x cross p about the origin of all bodies, p = M
 /// V.
 pub(crate) fn momentum(problem: &StepProblem, u: &[f64], p: &[f64]) -> Momentum {
     let mut momentum = Momentum::default();
-    for node in 0..problem.model.mesh.node_count() {
+    let bodies = problem.unknowns.turning.bodies.iter();
+    // I omega, which is L times what belongs to s = L c
+    bodies.for_each(|body| momentum.angular += body.length * p[body.spin]);
+    let centres = problem
+        .unknowns
+        .turning
+        .bodies
+        .iter()
+        .map(|body| body.centre);
+    for node in (0..problem.model.mesh.node_count()).chain(centres) {
         let position = problem.position(u, node);
         let [px, py] = [p[2 * node], p[2 * node + 1]];
         momentum.linear[0] += px;
@@ -148,15 +186,16 @@ pub(crate) fn momentum(problem: &StepProblem, u: &[f64], p: &[f64]) -> Momentum 
     momentum
 }
 
-/// The rigid surfaces of a model with their nodes.
+/// The rigid bodies of a model with a rigid surface, or that turn, and the nodes of those that do not.
 pub(crate) struct RigidSurfaces(Vec<(RigidBody, Vec<usize>)>);
 
 impl RigidSurfaces {
-    /// Those that have a reference node.
+    /// Those of a model.
     pub fn new(model: &Model) -> Self {
         let with_nodes = |body: &RigidBody| {
-            let surface = &model.surfaces[body.surface];
-            (*body, surface.nodes(&model.mesh))
+            let surface = body.surface.filter(|_| body.turning.is_none());
+            let nodes = surface.map(|surface| model.surfaces[surface].nodes(&model.mesh));
+            (body.clone(), nodes.unwrap_or_default())
         };
         RigidSurfaces(model.rigid_bodies.iter().map(with_nodes).collect())
     }
@@ -166,9 +205,25 @@ impl RigidSurfaces {
         self.0.len()
     }
 
+    /// Sets the motion of the bodies that turn.
+    pub fn set_motion(&self, problem: &StepProblem, state: &State, rigid: &mut [RigidReaction]) {
+        for ((body, _), result) in self.0.iter().zip(rigid) {
+            let Some(turning) = &body.turning else {
+                continue;
+            };
+            let own = &problem.unknowns.turning.bodies[turning.number];
+            let v = [0, 1].map(|i| state.v[2 * own.centre + i]);
+            result.angle = state.u[own.spin] / own.length;
+            result.angular_velocity = state.v[own.spin] / own.length;
+            result.center = problem.position(&state.u, own.centre);
+            result.kinetic =
+                (own.mass * dot(v, v) + own.inertia * result.angular_velocity.powi(2)) / 2.0;
+        }
+    }
+
     /// Moves the reactions from the nodes of the surfaces to the reference nodes, in the
     /// configuration of displacements `u`: the force sum R_a and the moment sum (x_a - x_ref) x
-    /// R_a, eq. (9.9).
+    /// R_a, eq. (9.9). Those of bodies that turn are there already, with the moment at the angle.
     pub fn collect(
         &self,
         problem: &StepProblem,
@@ -178,6 +233,12 @@ impl RigidSurfaces {
         let of_surface = |(body, nodes): &(RigidBody, Vec<usize>)| {
             let center = problem.position(u, body.reference);
             let mut sum = RigidReaction::default();
+            if let Some(turning) = &body.turning {
+                let own = &problem.unknowns.turning.bodies[turning.number];
+                sum.force = [0, 1].map(|i| reaction[2 * body.reference + i]);
+                sum.moment = reaction[own.spin] * own.length;
+                return sum;
+            }
             for &node in nodes {
                 let [fx, fy] = [2 * node, 2 * node + 1].map(|p| std::mem::take(&mut reaction[p]));
                 let x = problem.position(u, node);

@@ -41,7 +41,7 @@ impl ContactLedger {
     pub fn new(model: &Model, slip: Vec<f64>) -> Self {
         let reference = |master: usize| {
             let mut bodies = model.rigid_bodies.iter();
-            bodies.find(|body| body.surface == master)
+            bodies.find(|body| body.surface == Some(master))
         };
         ContactLedger {
             contacts: vec![Sums::default(); model.contacts.len()],

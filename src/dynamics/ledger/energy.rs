@@ -106,13 +106,16 @@ impl Ledger {
             inertia,
             ..
         } = &solved.equilibrium;
+        let turning = &problem.unknowns.turning;
         // -Phi.(Bn V) - Psi.(Bt V), V = (V0 + V0+)/2, eq. (9.4); at supports V0.(M (V0+ - V0) - B^T Phi)
         // of eq. (9.1), with what equations pass on to them
         if v0p != &start.v {
             let impulse = solved.contact.impulses.resultant();
             let change = problem.mass.times(&difference(v0p, &start.v));
             self.energy.impact_loss -= dot(&sum(&start.v, v0p), impulse) / 2.0;
-            let reaction = difference(&change, impulse);
+            let mut reaction = difference(&change, impulse);
+            let nothing = vec![0.0; d.len()];
+            turning.hand_over([&start.u, &nothing], false, &mut reaction);
             let reaction = problem.unknowns.passed_on(&reaction);
             let prescribed = problem.unknowns.prescribed();
             self.energy.external_work += prescribed.map(|p| start.v[p] * reaction[p]).sum::<f64>();
@@ -130,9 +133,30 @@ impl Ledger {
         // what equations pass on to them
         e.external_work += dot(d, load);
         let contact = &forces.resultant(d.len());
+        let handed_over = |force: &Vec<f64>, keeps_driven| {
+            let mut force = force.clone();
+            turning.hand_over([&end.u, d], keeps_driven, &mut force);
+            force
+        };
+        let at_poles;
+        let [load, internal, contact] = match turning.is_empty() {
+            true => [load, internal, contact],
+            false => {
+                // what the mass of a body that is free in some direction asks of its supports acts on d
+                let carried = handed_over(inertia, true);
+                let passed = |p: &usize| d[*p] * (carried[*p] - inertia[*p]);
+                e.external_work += problem
+                    .unknowns
+                    .prescribed()
+                    .map(|p| passed(&p))
+                    .sum::<f64>();
+                at_poles = [load, internal, contact].map(|force| handed_over(force, false));
+                at_poles.each_ref()
+            }
+        };
         let [load, internal, inertia, contact] =
             [load, internal, inertia, contact].map(|force| problem.unknowns.passed_on(force));
-        for p in problem.unknowns.prescribed() {
+        for p in problem.unknowns.prescribed().chain(turning.driven_dofs()) {
             let v_mid = (v0p[p] + end.v[p]) / 2.0;
             e.external_work +=
                 dt * v_mid * inertia[p] + d[p] * (internal[p] - load[p] - contact[p]);

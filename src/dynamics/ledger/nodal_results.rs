@@ -37,7 +37,9 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
     } = &solved.equilibrium;
     // M A + F - R - B^T P at the supports, with what equations pass on to them, eq. (9.12)
     let missing = |p: usize| inertia[p] + internal[p] - load[p] - contact_force[p];
-    let missing: Vec<f64> = (0..dofs).map(missing).collect();
+    let mut missing: Vec<f64> = (0..dofs).map(missing).collect();
+    let turning = &problem.unknowns.turning;
+    turning.hand_over([&solved.end.u, &solved.d], false, &mut missing);
     let passed_on = problem.unknowns.passed_on(&missing);
     let mut reaction = vec![0.0; dofs];
     for p in problem.unknowns.prescribed() {

@@ -60,6 +60,16 @@ fn time_control(problem: &StepProblem, nominal: NominalIncrement) -> Box<dyn Tim
     }
 }
 
+/// Velocities of a model, with those of angles as the unknowns have them.
+fn initial_velocity(discretization: &Discretization) -> Vec<f64> {
+    let mut v = discretization.model.initial_velocity.clone();
+    v.resize(discretization.model.dof_count(), 0.0);
+    for body in &discretization.turning {
+        v[body.spin] *= body.length;
+    }
+    v
+}
+
 /// A run in progress.
 struct Runner<'m, 'o> {
     discretization: &'m Discretization<'m>,
@@ -80,9 +90,9 @@ impl<'m, 'o> Runner<'m, 'o> {
         Runner {
             discretization,
             state: State {
-                u: vec![0.0; model.mesh.dof_count()],
-                v: model.initial_velocity.clone(),
-                a: vec![0.0; model.mesh.dof_count()],
+                u: vec![0.0; model.dof_count()],
+                v: initial_velocity(discretization),
+                a: vec![0.0; model.dof_count()],
                 internal: elements.initial_variables(),
                 contact: ClosedPairs::default(),
             },
@@ -233,7 +243,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         self.summary.solver.add(&solver);
         self.summary.increments += 1;
         self.summary.events += usize::from(is_cut);
-        let report = IncrementReport {
+        let mut report = IncrementReport {
             increment: self.summary.increments,
             step: place.number,
             time: interval.end.total,
@@ -250,9 +260,14 @@ impl<'m, 'o> Runner<'m, 'o> {
             state: solved.end,
             ..accounted
         };
+        let all_dofs = self
+            .discretization
+            .has_more_dofs()
+            .then(|| report.state.clone());
+        report.keep_nodes(self.discretization.model.mesh.node_count());
         self.observer.increment(&report)?;
         self.ledger = ledger;
-        self.state = report.state;
+        self.state = all_dofs.unwrap_or(report.state);
         Ok(())
     }
 
@@ -267,7 +282,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         match problem.integration.has_rates {
             true => {
                 let now = place.time_point(0.0);
-                problem.unknowns.prescribe_velocity(now, &mut self.state.v);
+                let State { u, v, .. } = &mut self.state;
+                problem.unknowns.prescribe_velocity(now, u, v);
                 problem.follow_donors(&mut self.state.v);
                 self.state.a = workspace.start_acceleration(problem, &self.state, now);
             }
@@ -278,7 +294,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             return Ok(Some(failure));
         }
         let (state, ledger) = (&self.state, &self.ledger);
-        let report = IncrementReport {
+        let mut report = IncrementReport {
             step: place.number,
             energy: self.ledger.energy,
             solver: SolverCounts::at_start(),
@@ -286,6 +302,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             elements: ledger.elements.clone(),
             ..self.accounts.start(problem, state, ledger)
         };
+        report.keep_nodes(self.discretization.model.mesh.node_count());
         self.observer.increment(&report)?;
         Ok(None)
     }

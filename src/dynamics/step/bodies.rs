@@ -23,7 +23,7 @@ pub(crate) struct BodyAngles {
 impl BodyAngles {
     /// The bodies of a step, at the angle 0.
     pub fn new(problem: &StepProblem) -> Self {
-        let (x, body_of) = (&problem.model.mesh.coordinates, problem.parts.of_nodes());
+        let (x, body_of) = (&problem.coordinates, problem.parts.of_nodes());
         let mass = &problem.mass.shares;
         let centres = centres(problem, mass);
         let holds = holds(problem);
@@ -59,7 +59,7 @@ impl BodyAngles {
             Some(start) => (start[dof] + motion.end[dof]) / 2.0,
             None => motion.end[dof],
         };
-        let (x, body_of) = (&problem.model.mesh.coordinates, problem.parts.of_nodes());
+        let (x, body_of) = (&problem.coordinates, problem.parts.of_nodes());
         let mut sums: SmallVec<[[f64; 2]; 8]> = smallvec![[0.0; 2]; self.assembled.len()];
         for &(node, arm) in &self.arms {
             let r = [x[node][0] + u(2 * node), x[node][1] + u(2 * node + 1)];
@@ -75,7 +75,7 @@ impl BodyAngles {
 fn centres(problem: &StepProblem, mass: &[f64]) -> Vec<[f64; 2]> {
     let mut sums = vec![[0.0; 3]; problem.parts.bodies()];
     for (node, &body) in problem.parts.of_nodes().iter().enumerate() {
-        let (m, [x, y]) = (mass[node], problem.model.mesh.coordinates[node]);
+        let (m, [x, y]) = (mass[node], problem.coordinates[node]);
         for (sum, term) in sums[body].iter_mut().zip([m, m * x, m * y]) {
             *sum += term;
         }
@@ -220,12 +220,12 @@ mod tests {
 
     /// The response to unit forces at all dofs, column by column, and the Delassus matrix of a
     /// constraint.
-    fn responses(problem: &StepProblem, workspace: &mut Workspace) -> Vec<f64> {
+    fn responses(workspace: &mut Workspace) -> Vec<f64> {
         let mut all = Vec::new();
         for dof in 0..DOFS {
             let mut force = vec![0.0; DOFS];
             force[dof] = 1.0;
-            let response = workspace.k().respond(&problem.unknowns.map, &force);
+            let response = workspace.k().respond(&force);
             all.extend(response.expect("solved"));
         }
         let constraint = constraint();
@@ -258,7 +258,7 @@ mod tests {
         let second = fresh.factorize(&problem, 0.1, after, &contact);
         first.and(second).expect("positive definite");
         kept.turn(&problem, after);
-        let [kept, fresh] = [&mut kept, &mut fresh].map(|w| responses(&problem, w));
+        let [kept, fresh] = [&mut kept, &mut fresh].map(|w| responses(w));
         let size = fresh.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
         let differences = kept.iter().zip(&fresh).map(|(a, b)| (a - b).abs());
         differences.fold(0.0, f64::max) / size

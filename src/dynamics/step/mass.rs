@@ -1,6 +1,7 @@
 //! Global mass matrices over the nodes and over the unknowns. Section 2 of
 //! docs/theory.md.
 
+use super::turning::TurningBody;
 use super::unknowns::Unknowns;
 use crate::elements::Elements;
 use crate::linear::{Assembled, NodalMatrix, Transformation};
@@ -15,9 +16,13 @@ pub(crate) struct Mass {
 }
 
 impl Mass {
-    /// Mass of all elements of a model with `nodes` nodes.
-    pub fn new(elements: &Elements, redistribution: &Redistribution, nodes: usize) -> Self {
-        let nodal = nodal_mass(elements, redistribution, nodes);
+    /// Mass of all elements of a model, and of its bodies that turn, with `nodes` nodes.
+    pub fn new(
+        (elements, bodies): (&Elements, &[TurningBody]),
+        redistribution: &Redistribution,
+        nodes: usize,
+    ) -> Self {
+        let nodal = nodal_mass((elements, bodies), redistribution, nodes);
         let mut mass = Mass {
             nodal: NodalMatrix::new(nodal.matrix()),
             shares: Vec::new(),
@@ -41,8 +46,12 @@ impl Mass {
 }
 
 /// M of a model with `nodes` nodes, over the nodes.
-fn nodal_mass(elements: &Elements, redistribution: &Redistribution, nodes: usize) -> Assembled {
-    let masses = ElementMasses::new(elements, redistribution);
+fn nodal_mass(
+    (elements, bodies): (&Elements, &[TurningBody]),
+    redistribution: &Redistribution,
+    nodes: usize,
+) -> Assembled {
+    let masses = Masses::new((elements, bodies), redistribution);
     let mut nodal = Assembled::new(&Transformation::identity(nodes), &masses.nodes);
     for (list, m) in &masses.of_elements {
         nodal.add(*list, m, 1.0);
@@ -55,22 +64,29 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Masses of the elements over the nodes that carry them.
-struct ElementMasses {
-    /// Lists of nodes: those of every element, then for each with massless nodes those that carry it.
+/// Masses of elements and bodies that turn over the nodes that carry them.
+pub(super) struct Masses {
+    /// Lists of nodes: those of every element, none of a rigid one, then for each with massless nodes those that carry
+    /// it, then centre and angle of every body that turns.
     nodes: Vec<Vec<usize>>,
-    /// List of every element's mass, and the mass, n x n column by column.
+    /// List of every mass, and the mass, n x n column by column.
     of_elements: Vec<(usize, Vec<f64>)>,
 }
 
-impl ElementMasses {
-    fn new(elements: &Elements, redistribution: &Redistribution) -> Self {
-        let nodes = (0..elements.len()).map(|e| elements.nodes(e).to_vec());
-        let mut masses = ElementMasses {
+impl Masses {
+    pub fn new(
+        (elements, bodies): (&Elements, &[TurningBody]),
+        redistribution: &Redistribution,
+    ) -> Self {
+        let nodes = (0..elements.len()).map(|e| match elements.is_rigid(e) {
+            true => Vec::new(),
+            false => elements.nodes(e).to_vec(),
+        });
+        let mut masses = Masses {
             nodes: nodes.collect(),
             of_elements: Vec::with_capacity(elements.len()),
         };
-        for element in 0..elements.len() {
+        for element in (0..elements.len()).filter(|&e| !elements.is_rigid(e)) {
             let (own, m) = (elements.nodes(element), elements.mass(element));
             if own.iter().any(|&node| redistribution.is_massless(node)) {
                 let (carriers, m) = carried(own, &m, redistribution);
@@ -80,7 +96,23 @@ impl ElementMasses {
                 masses.of_elements.push((element, m));
             }
         }
+        // m at the centre, I/L² at s = L c
+        for body in bodies.iter().filter(|body| body.mass > 0.0) {
+            let of_angle = body.inertia / (body.length * body.length);
+            for (node, m) in [(body.centre, body.mass), (body.centre + 1, of_angle)] {
+                masses.of_elements.push((masses.nodes.len(), vec![m]));
+                masses.nodes.push(vec![node]);
+            }
+        }
         masses
+    }
+
+    /// Adds them to a matrix over unknowns that was made with their lists.
+    pub fn add_to(&self, mass: &mut Assembled) {
+        for (list, m) in &self.of_elements {
+            let n = self.nodes[*list].len();
+            mass.add(*list, &in_both_directions(m, n), 1.0);
+        }
     }
 }
 
@@ -112,20 +144,12 @@ fn carried(own: &[usize], m: &[f64], redistribution: &Redistribution) -> (Vec<us
 
 /// Mass matrix T^T M T over the unknowns of a step. Its pattern is that of the elements too, which come
 /// first among what it is assembled from.
-pub(crate) fn unknown_mass(
-    elements: &Elements,
-    redistribution: &Redistribution,
-    unknowns: &Unknowns,
-) -> Assembled {
-    let masses = ElementMasses::new(elements, redistribution);
+pub(super) fn unknown_mass(masses: &Masses, unknowns: &Unknowns) -> Assembled {
     let of_node = |&node: &usize| [2 * node, 2 * node + 1];
     let of_list = |nodes: &Vec<usize>| nodes.iter().flat_map(of_node).collect();
     let lists: Vec<Vec<usize>> = masses.nodes.iter().map(of_list).collect();
     let mut mass = Assembled::new(&unknowns.map, &lists);
-    for (list, m) in &masses.of_elements {
-        let n = masses.nodes[*list].len();
-        mass.add(*list, &in_both_directions(m, n), 1.0);
-    }
+    masses.add_to(&mut mass);
     mass
 }
 
@@ -154,7 +178,7 @@ mod tests {
         let model = block([10, 9], is_triangular, has);
         let (elements, nodes) = (Elements::new(&model), model.mesh.node_count());
         let masses = [Redistribution::default(), redistribution(&model)].map(|redistribution| {
-            let dense = nodal_mass(&elements, &redistribution, nodes)
+            let dense = nodal_mass((&elements, &[]), &redistribution, nodes)
                 .matrix()
                 .to_dense();
             DMatrix::from_fn(nodes, nodes, |i, j| dense[[i, j]])

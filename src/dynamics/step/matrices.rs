@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use nalgebra::DMatrix;
 
 use super::bodies::BodyAngles;
-use super::mass::unknown_mass;
+use super::mass::{Masses, unknown_mass};
 use super::meter::Meter;
 use super::step_problem::StepProblem;
 use crate::contact::{
@@ -75,6 +75,11 @@ impl FactoredMatrix {
         }
     }
 
+    /// T at the iterate.
+    pub fn map(&self) -> &Transformation {
+        self.compliance.map()
+    }
+
     /// Factorises the matrix again.
     pub fn factorize(&mut self) -> Result<(), LinearError> {
         self.compliance.renew(self.solver.groups());
@@ -137,6 +142,12 @@ fn diagonal_of_massless(problem: &StepProblem, mass: &Assembled) -> AddedBlocks 
     blocks
 }
 
+/// Masses of the elements and bodies of a step.
+fn masses(problem: &StepProblem) -> Masses {
+    let bodies = problem.unknowns.turning.bodies;
+    Masses::new((problem.elements, bodies), problem.redistribution)
+}
+
 /// The effective matrix K* = theta2 K + (2/dt²) M, eq. (4.6), kept until it is assembled again, and
 /// the mass matrix, both over the unknowns of a step: T^T K* T and T^T M T.
 pub(crate) struct EffectiveStiffness {
@@ -158,13 +169,9 @@ impl EffectiveStiffness {
     /// Both matrices for the unknowns of a step.
     pub fn new(problem: &StepProblem) -> Self {
         let StepProblem {
-            elements,
-            redistribution,
-            unknowns,
-            settings,
-            ..
+            unknowns, settings, ..
         } = problem;
-        let mass = unknown_mass(elements, redistribution, unknowns);
+        let mass = unknown_mass(&masses(problem), unknowns);
         let massless = diagonal_of_massless(problem, &mass);
         let [of_k, of_m] = two_linear_solvers(settings.solver);
         let k = FactoredMatrix::new(of_k, mass.zeros(), &unknowns.map);
@@ -177,6 +184,32 @@ impl EffectiveStiffness {
             dt: f64::NAN,
             stiffness: Vec::new(),
             inertia: Vec::new(),
+        }
+    }
+
+    /// Sets the rows of T of bodies that turn in K* to those of the increment `d` from `u0`.
+    pub fn write_rows(&mut self, problem: &StepProblem, increment: [&[f64]; 2]) {
+        let turning = &problem.unknowns.turning;
+        turning.write_rows(increment, self.k.compliance.map_mut());
+    }
+
+    /// Sets the rows of T of bodies that turn in M to those of the start of an increment, and M with them where it
+    /// changes.
+    pub fn start(&mut self, problem: &StepProblem, u0: &[f64]) {
+        let turning = &problem.unknowns.turning;
+        if turning.is_empty() {
+            return;
+        }
+        let map = self.m.compliance.map_mut();
+        turning.write_rows([u0, &vec![0.0; u0.len()]], map);
+        if turning.turn_mass() {
+            let mass = self.m.solver.matrix_mut();
+            mass.set_coefficients(self.m.compliance.map());
+            mass.clear();
+            masses(problem).add_to(mass);
+            self.m
+                .solver
+                .add_blocks(diagonal_of_massless(problem, self.m.solver.matrix()));
         }
     }
 
@@ -210,6 +243,7 @@ impl EffectiveStiffness {
         // K* = theta2 K + (2/dt²) M, eq. (4.6)
         let mass = self.m.solver.matrix();
         let k = self.k.solver.matrix_mut();
+        k.set_coefficients(self.k.compliance.map());
         k.clear();
         let free = |element: usize| mass.depends_on(element);
         elements.for_each_tangent(motion, form.part(), free, |element, tangent| {
@@ -294,16 +328,16 @@ impl<'a> System<'a> {
 
     /// R T A^-1 T^T R^T f for the forces `f` over all dofs, A being the matrix and R the rotation of its
     /// bodies (docs/numerics.md, Turned factors).
-    pub fn respond(&mut self, map: &Transformation, f: &[f64]) -> Result<Vec<f64>, LinearError> {
-        self.begin(map, f)?;
+    pub fn respond(&mut self, f: &[f64]) -> Result<Vec<f64>, LinearError> {
+        self.begin(f)?;
         let mut response = Vec::new();
-        self.end(map, &vec![0.0; f.len()], &mut response)?;
+        self.end(&vec![0.0; f.len()], &mut response)?;
         self.check()?;
         Ok(response)
     }
 
     /// Begins the response to the forces `f`, in parts.
-    pub fn begin(&mut self, map: &Transformation, f: &[f64]) -> Result<(), LinearError> {
+    pub fn begin(&mut self, f: &[f64]) -> Result<(), LinearError> {
         let Self { matrix, meter } = self;
         let FactoredMatrix {
             solver,
@@ -312,7 +346,7 @@ impl<'a> System<'a> {
             ..
         } = &mut **matrix;
         let SolveVectors { forces, .. } = vectors;
-        let rotation = compliance.rotation();
+        let (map, rotation) = (compliance.map(), compliance.rotation());
         let write = |b: &mut Vec<f64>| {
             if rotation.is_identity() {
                 map.write_restricted(f, b);
@@ -340,17 +374,12 @@ impl<'a> System<'a> {
 
     /// Ends the response and writes it, over all dofs, with `start` added to it; [`Self::check`] checks the
     /// solution.
-    pub fn end(
-        &mut self,
-        map: &Transformation,
-        start: &[f64],
-        response: &mut Vec<f64>,
-    ) -> Result<(), LinearError> {
+    pub fn end(&mut self, start: &[f64], response: &mut Vec<f64>) -> Result<(), LinearError> {
         let Self { matrix, meter } = self;
         let FactoredMatrix {
             solver, compliance, ..
         } = &mut **matrix;
-        let rotation = compliance.rotation();
+        let (map, rotation) = (compliance.map(), compliance.rotation());
         let write = |q: &[f64]| {
             if rotation.is_identity() {
                 map.write_sum(start, q, response);
@@ -379,6 +408,11 @@ impl<'a> System<'a> {
     pub fn check(&mut self) -> Result<(), LinearError> {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.solver.check())
+    }
+
+    /// T at the iterate.
+    pub fn map(&self) -> &Transformation {
+        self.matrix.map()
     }
 
     /// R of the bodies since the matrix was factorised.

@@ -9,6 +9,7 @@ mod matrices;
 mod meter;
 mod parts;
 mod step_problem;
+mod turning;
 mod unknowns;
 mod workspace;
 
@@ -25,4 +26,5 @@ pub(crate) use step_problem::{
     Discretization, Equilibrium, StartVelocity, StepProblem, check_finite, difference, sum,
     write_difference, write_sum,
 };
+pub(crate) use turning::TurningBody;
 pub(crate) use workspace::Workspace;

@@ -59,7 +59,7 @@ impl Parts {
         let sections = sections(model);
         let (mut bodies, mut parts) = (HashMap::new(), HashMap::new());
         let (mut body, mut part, mut body_of) = (Vec::new(), Vec::new(), Vec::new());
-        let connected = united(model.mesh.bodies(), &model.equations);
+        let connected = united(bodies_of(model), &model.equations);
         for (first, sections) in connected.into_iter().zip(sections) {
             let count = bodies.len();
             let number = *bodies.entry(first).or_insert(count);
@@ -152,10 +152,33 @@ impl Parts {
     }
 }
 
+/// First node of the body of every node, with the bodies that turn.
+fn bodies_of(model: &Model) -> Vec<usize> {
+    let mut first = model.mesh.bodies();
+    first.extend(first.len()..model.dof_count() / 2);
+    for group in turning_groups(model) {
+        unite(&mut first, &group);
+    }
+    (0..first.len()).map(|node| root(&first, node)).collect()
+}
+
+/// The nodes of every body that turns, with its reference node, its centre of mass and its angle.
+fn turning_groups(model: &Model) -> impl Iterator<Item = Vec<usize>> + '_ {
+    model.turning_bodies().map(|(rigid, body)| {
+        let centre = model.centre_of(body);
+        let others = rigid.nodes.iter().copied();
+        others
+            .chain([rigid.reference, centre, centre + 1])
+            .collect()
+    })
+}
+
 /// Sections of the elements around every node and the nodes of its equations, increasing.
 fn sections(model: &Model) -> Vec<Vec<usize>> {
-    let nodes = model.mesh.node_count();
-    let cluster = united((0..nodes).collect(), &model.equations);
+    let nodes = model.dof_count() / 2;
+    let mut cluster: Vec<usize> = (0..nodes).collect();
+    turning_groups(model).for_each(|group| unite(&mut cluster, &group));
+    let cluster = united(cluster, &model.equations);
     let mut sections = vec![Vec::new(); nodes];
     for element in &model.mesh.elements {
         for &node in &element.nodes {
@@ -172,19 +195,28 @@ fn sections(model: &Model) -> Vec<Vec<usize>> {
 /// First node of the group of every node after equations have united groups; `first` holds the
 /// first nodes of the groups before.
 fn united(mut first: Vec<usize>, equations: &[Equation]) -> Vec<usize> {
-    let own = |first: &[usize], mut node: usize| {
-        while first[node] != node {
-            node = first[node];
-        }
-        node
-    };
     for equation in equations {
         for &(dof, _) in &equation.terms {
-            let [a, b] = [equation.dof / 2, dof / 2].map(|node| own(&first, node));
-            first[a.max(b)] = a.min(b);
+            unite(&mut first, &[equation.dof / 2, dof / 2]);
         }
     }
-    (0..first.len()).map(|node| own(&first, node)).collect()
+    (0..first.len()).map(|node| root(&first, node)).collect()
+}
+
+/// First node of the group of a node.
+fn root(first: &[usize], mut node: usize) -> usize {
+    while first[node] != node {
+        node = first[node];
+    }
+    node
+}
+
+/// Unites the groups of some nodes.
+fn unite(first: &mut [usize], nodes: &[usize]) {
+    for pair in nodes.windows(2) {
+        let [a, b] = [pair[0], pair[1]].map(|node| root(first, node));
+        first[a.max(b)] = a.min(b);
+    }
 }
 
 /// Largest absolute value of every group, given by its runs; `values` over all dofs.

@@ -10,6 +10,7 @@ use super::integration::Integration;
 use super::loads::{Interval, Loads};
 use super::mass::Mass;
 use super::parts::{Parts, Run};
+use super::turning::TurningBody;
 use super::unknowns::Unknowns;
 use crate::contact::tolerances::COLLAPSED_LENGTH;
 use crate::contact::{
@@ -26,6 +27,8 @@ use crate::vectors::distance;
 /// The equation of motion of a step.
 pub(crate) struct StepProblem<'m> {
     pub model: &'m Model,
+    /// Reference coordinates of the nodes, with those of the bodies that turn.
+    pub coordinates: &'m [[f64; 2]],
     pub elements: &'m Elements,
     pub mass: &'m Mass,
     pub redistribution: &'m Redistribution,
@@ -98,10 +101,13 @@ impl<'m> StepProblem<'m> {
             mass,
             redistribution,
             parts,
+            turning,
+            coordinates,
         } = discretization;
-        let unknowns = Unknowns::new(model, elements, step, start);
+        let unknowns = Unknowns::new(model, (elements, turning), step, start);
         StepProblem {
             model,
+            coordinates,
             elements,
             mass,
             redistribution,
@@ -157,7 +163,7 @@ impl StepProblem<'_> {
 
     /// Current position of a node.
     pub fn position(&self, u: &[f64], node: usize) -> [f64; 2] {
-        position(&self.model.mesh.coordinates, u, node)
+        position(self.coordinates, u, node)
     }
 
     /// Current positions of all nodes.
@@ -237,7 +243,7 @@ impl StepProblem<'_> {
     pub fn configurations<'a>(&'a self, u0: &'a [f64], u: &'a [f64]) -> Configurations<'a> {
         Configurations {
             form: self.integration.row_form(),
-            x: &self.model.mesh.coordinates,
+            x: self.coordinates,
             u0,
             u,
         }
@@ -284,6 +290,7 @@ impl StepProblem<'_> {
         if !self.loads.are_none() {
             let theta1 = self.integration.theta1;
             (self.loads).write_weighted(self.elements, theta1, interval, u_theta, load);
+            self.unknowns.turning.scale_moments(d, load);
         }
         Ok(())
     }
@@ -314,6 +321,8 @@ impl StepProblem<'_> {
             *a = c * (d - dt * v0p);
         }
         (self.unknowns).prescribe_acceleration(interval.end, &start.v, dt, acceleration);
+        let turning = &self.unknowns.turning;
+        turning.drive([&start.u, d], &start.v, dt, acceleration);
         self.mass.write_product(acceleration, inertia);
         // the part -(2/dt) J of impulses J = M (V0+ - V0) that are not in V0+ yet
         for (inertia, impulse) in inertia.iter_mut().zip(*impulse) {
@@ -383,21 +392,37 @@ pub(crate) struct Discretization<'m> {
     pub mass: Mass,
     pub redistribution: &'m Redistribution,
     pub parts: Parts,
+    pub turning: Vec<TurningBody>,
+    /// Reference coordinates of the nodes, then of the bodies that turn.
+    pub coordinates: Vec<[f64; 2]>,
 }
 
 impl<'m> Discretization<'m> {
+    /// Whether there are dofs beside those of the nodes.
+    pub fn has_more_dofs(&self) -> bool {
+        !self.turning.is_empty()
+    }
+
     /// The discretization of a model.
     pub fn new(prepared: &'m PreparedModel) -> Self {
         let model = &prepared.model;
         let elements = Elements::new(model);
         let redistribution = &prepared.redistribution;
+        let turning = TurningBody::all(model, &elements);
+        let mut coordinates = model.mesh.coordinates.clone();
+        for body in &turning {
+            let centre = body.centre_from(coordinates[body.reference]);
+            coordinates.extend([centre; 2]);
+        }
         Discretization {
             model,
             contacts: &prepared.surfaces,
-            mass: Mass::new(&elements, redistribution, model.mesh.node_count()),
+            mass: Mass::new((&elements, &turning), redistribution, coordinates.len()),
             redistribution,
             parts: Parts::new(model),
             elements,
+            turning,
+            coordinates,
         }
     }
 }

@@ -8,8 +8,9 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::loads::TimePoint;
-use crate::contact::Constraint;
+use super::turning::{Turning, TurningBody};
 use crate::contact::tolerances::TIED_ROW;
+use crate::contact::{Constraint, PerDof};
 use crate::elements::Elements;
 use crate::linear::Transformation;
 use crate::model::{Equation, Model, Rate, Step, SupportMotion};
@@ -17,34 +18,50 @@ use crate::model::{Equation, Model, Rate, Step, SupportMotion};
 /// The unknowns q of a step, U = T q + g(t), eq. (3.7): the displacements of the free dofs.
 ///
 /// A free dof has a row of the identity in T, a support an empty one and its prescribed motion in
-/// g, and a dof of an equation the sum of the rows, and of the g, that it follows.
+/// g, and a dof of an equation the sum of the rows, and of the g, that it follows. A node of a body that turns
+/// follows the pole and the angle of the body, by rows that change with the iterate.
 pub(crate) struct Unknowns<'m> {
-    /// T.
+    /// T, with the rows of bodies that turn those of the start of the analysis.
     pub map: Transformation,
+    /// Bodies that turn.
+    pub turning: Turning<'m>,
     /// Dof of every unknown.
     pub dof: Vec<usize>,
     supports: Supports<'m>,
     equations: &'m [Equation],
-    /// Supports and dofs of equations: where forces of constraints act; increasing.
+    /// Supports, dofs of equations and nodes of bodies that turn: where forces of constraints act; increasing.
     constrained: Vec<usize>,
 }
 
 impl<'m> Unknowns<'m> {
     /// Unknowns of a step that starts with the displacements `u` and velocities `v`.
-    pub fn new(model: &'m Model, elements: &Elements, step: &'m Step, [u, v]: [&[f64]; 2]) -> Self {
+    pub fn new(
+        model: &'m Model,
+        (elements, bodies): (&Elements, &'m [TurningBody]),
+        step: &'m Step,
+        [u, v]: [&[f64]; 2],
+    ) -> Self {
         let equations = model.equations.as_slice();
-        let free = free_dofs(elements, equations, step, u.len());
+        let turning = Turning::new(bodies, |dof| {
+            let supports = &step.supports;
+            supports
+                .binary_search_by_key(&dof, |support| support.dof)
+                .is_ok()
+        });
+        let free = free_dofs(elements, equations, &turning, step, u.len());
         let dof: Vec<usize> = (0..u.len()).filter(|&dof| free[dof]).collect();
         let of_supports = step.supports.iter().map(|support| support.dof);
         let mut constrained: Vec<usize> = of_supports
             .chain(equations.iter().flat_map(Equation::dofs))
+            .chain(turning.followers().map(|[dof, ..]| dof))
             .collect();
         constrained.sort_unstable();
         constrained.dedup();
         Unknowns {
-            map: transformation(&dof, equations, u.len()),
+            map: transformation(&dof, equations, &turning, u.len()),
+            turning,
             dof,
-            supports: Supports::new(model, step, [u, v]),
+            supports: Supports::new(model, bodies, step, [u, v]),
             equations,
             constrained,
         }
@@ -64,6 +81,12 @@ impl<'m> Unknowns<'m> {
     /// Whether the gap of a constraint can change. Where equations tie the node to the segment it
     /// cannot: Gn T is zero but for round-off.
     pub fn opens(&self, constraint: &Constraint) -> bool {
+        if !self.turning.is_empty() {
+            let nodes: PerDof<usize> = constraint.nodes().collect();
+            if self.turning.are_of_one_body(&nodes) {
+                return false;
+            }
+        }
         if self.equations.is_empty() {
             return true;
         }
@@ -77,27 +100,20 @@ impl<'m> Unknowns<'m> {
         row.values().any(|entry: &f64| entry.abs() > TIED_ROW)
     }
 
-    /// T^T v: the share of every unknown in forces on all dofs.
-    pub fn restrict(&self, v: &[f64]) -> Vec<f64> {
-        self.map.restrict(v)
-    }
-
-    /// The largest absolute value of T^T v, NaN where one is.
-    pub fn largest_restricted(&self, v: &[f64]) -> f64 {
-        self.map.largest_restricted(v)
-    }
-
-    /// Adds T q to a vector over all dofs.
-    pub fn add(&self, q: &[f64], v: &mut [f64]) {
-        self.map.add(q, v);
-    }
-
     /// Prescribed dofs.
     pub fn prescribed(&self) -> impl Iterator<Item = usize> + '_ {
         self.supports.dofs()
     }
 
-    /// Supports and dofs of equations, increasing: where forces of constraints act.
+    /// Whether a dof is prescribed.
+    pub fn is_prescribed(&self, dof: usize) -> bool {
+        let supports = &self.supports.step.supports;
+        supports
+            .binary_search_by_key(&dof, |support| support.dof)
+            .is_ok()
+    }
+
+    /// Supports, dofs of equations and nodes of bodies that turn, increasing: where forces of constraints act.
     pub fn constrained(&self) -> &[usize] {
         &self.constrained
     }
@@ -108,6 +124,8 @@ impl<'m> Unknowns<'m> {
         for (dof, prescribed, _) in self.supports.motion(end) {
             d[dof] = prescribed - u[dof];
         }
+        self.turning.rotations(&mut d);
+        self.turning.follow(u, &mut d);
         self.follow(&mut d);
         d
     }
@@ -117,15 +135,24 @@ impl<'m> Unknowns<'m> {
         for (dof, u1, v1) in self.supports.motion(at) {
             (u[dof], v[dof]) = (u1, v1);
         }
+        self.turning.place(u);
+        self.move_bodies(u, v);
         self.follow(u);
         self.follow(v);
     }
 
-    /// Gives supports their velocity, and the dofs of equations the one that follows.
-    pub fn prescribe_velocity(&self, at: TimePoint, v: &mut [f64]) {
+    /// Gives the nodes of bodies that turn the velocities of their bodies at displacements `u`.
+    pub fn move_bodies(&self, u: &[f64], v: &mut [f64]) {
+        self.turning.move_with(u, v, |dof| self.is_prescribed(dof));
+    }
+
+    /// Gives supports their velocity at the start of the analysis, and bodies that turn and the dofs of equations the
+    /// one that follows.
+    pub fn prescribe_velocity(&self, at: TimePoint, u: &[f64], v: &mut [f64]) {
         for (dof, _, v1) in self.supports.motion(at) {
             v[dof] = v1;
         }
+        self.turning.start(u, v);
         self.follow(v);
     }
 
@@ -171,13 +198,21 @@ impl<'m> Unknowns<'m> {
 
 /// Which dofs are free: those of nodes with elements, and those that such a dof follows, except
 /// supports and dofs that follow others.
-fn free_dofs(elements: &Elements, equations: &[Equation], step: &Step, dofs: usize) -> Vec<bool> {
+fn free_dofs(
+    elements: &Elements,
+    equations: &[Equation],
+    turning: &Turning,
+    step: &Step,
+    dofs: usize,
+) -> Vec<bool> {
     let mut free = vec![false; dofs];
     for element in 0..elements.len() {
         for &node in elements.nodes(element) {
             (free[2 * node], free[2 * node + 1]) = (true, true);
         }
     }
+    turning.followers().for_each(|[dof, ..]| free[dof] = false);
+    turning.leading().for_each(|dof| free[dof] = true);
     let has_element = free.clone();
     for equation in equations.iter().filter(|e| has_element[e.dof]) {
         for &(dof, _) in &equation.terms {
@@ -191,8 +226,16 @@ fn free_dofs(elements: &Elements, equations: &[Equation], step: &Step, dofs: usi
     free
 }
 
-/// T for unknowns with the given dofs.
-fn transformation(dof_of: &[usize], equations: &[Equation], dofs: usize) -> Transformation {
+/// Coefficient of an angle until an iterate sets it: any but the 1 of a row of the identity.
+const UNSET: f64 = 2.0;
+
+/// T for unknowns with the given dofs; the last terms of the nodes of bodies that turn are those of the angles.
+fn transformation(
+    dof_of: &[usize],
+    equations: &[Equation],
+    turning: &Turning,
+    dofs: usize,
+) -> Transformation {
     let mut rows = vec![Vec::new(); dofs];
     for (unknown, &dof) in dof_of.iter().enumerate() {
         rows[dof] = vec![(unknown, 1.0)];
@@ -204,6 +247,10 @@ fn transformation(dof_of: &[usize], equations: &[Equation], dofs: usize) -> Tran
         });
         rows[*dof] = free.collect();
     }
+    for [dof, pole, angle] in turning.followers() {
+        let of_angle = rows[angle].iter().map(|&(unknown, _)| (unknown, UNSET));
+        rows[dof] = rows[pole].iter().copied().chain(of_angle).collect();
+    }
     Transformation::new(dof_of.len(), rows)
 }
 
@@ -213,14 +260,33 @@ pub(super) struct Supports<'m> {
     step: &'m Step,
     /// Displacement and velocity of every support at the start of the step.
     from: Vec<[f64; 2]>,
+    /// What the motion of every support is multiplied by: 1, at an angle the length of its body.
+    units: Vec<f64>,
 }
 
 impl<'m> Supports<'m> {
     /// Supports of a step that starts with the displacements `u` and velocities `v`.
-    pub fn new(model: &'m Model, step: &'m Step, [u, v]: [&[f64]; 2]) -> Self {
-        let dofs = step.supports.iter().map(|support| support.dof);
-        let from = dofs.map(|dof| [u[dof], v[dof]]).collect();
-        Supports { model, step, from }
+    pub fn new(
+        model: &'m Model,
+        bodies: &[TurningBody],
+        step: &'m Step,
+        [u, v]: [&[f64]; 2],
+    ) -> Self {
+        let unit = |dof: usize| {
+            let turns = bodies.iter().find(|body| body.spin == dof);
+            turns.map_or(1.0, |body| body.length)
+        };
+        let dofs = || step.supports.iter().map(|support| support.dof);
+        let units: Vec<f64> = dofs().map(unit).collect();
+        let from = dofs().zip(&units);
+        Supports {
+            model,
+            step,
+            from: from
+                .map(|(dof, unit)| [u[dof] / unit, v[dof] / unit])
+                .collect(),
+            units,
+        }
     }
 
     /// Prescribed dofs.
@@ -231,10 +297,10 @@ impl<'m> Supports<'m> {
     /// Dof, displacement and velocity of every support: from the amplitude and its derivative or its
     /// integrals.
     pub fn motion(&self, at: TimePoint) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
-        let supports = self.step.supports.iter().zip(&self.from);
-        supports.map(move |(support, &from)| {
+        let supports = self.step.supports.iter().zip(&self.from).zip(&self.units);
+        supports.map(move |((support, &from), unit)| {
             let [u, v] = self.displacement_and_velocity(support.motion, from, at);
-            (support.dof, u, v)
+            (support.dof, unit * u, unit * v)
         })
     }
 

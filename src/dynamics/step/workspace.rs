@@ -142,13 +142,17 @@ impl<'m> Workspace<'m> {
             return a;
         };
         let load = (problem.loads).at(problem.elements, now, &start.u);
+        let mut load = load;
+        problem.unknowns.turning.scale_moments(&a, &mut load);
         let mut r = difference(&load, &internal);
         problem.redistribution.hand_on(&mut r);
-        let r = problem.unknowns.restrict(&r);
+        self.stiffness.start(problem, &start.u);
+        let map = self.stiffness.m.map().clone();
+        let r = map.restrict(&r);
         let mut mass = self.m();
         // The acceleration only improves the estimate of the first landings.
         if let Ok(acceleration) = mass.factorize().and_then(|()| mass.solve(&r)) {
-            problem.unknowns.add(&acceleration, &mut a);
+            map.add(&acceleration, &mut a);
             problem.follow_donors(&mut a);
         }
         a

@@ -131,7 +131,7 @@ fn held_in_all_steps(model: &Model, bodies: &Bodies) -> Vec<bool> {
         let mut held = vec![false; bodies.count];
         for body in dofs
             .chain(tied.iter().copied())
-            .filter_map(|dof| bodies.of_node[dof / 2])
+            .filter_map(|dof| *bodies.of_node.get(dof / 2)?)
         {
             held[body] = true;
         }

@@ -1,0 +1,153 @@
+//! Rigid bodies that turn: by a prescribed angle, and freely, in contact.
+
+use stickslip::diagnostics::{Diagnostics, Sources};
+use stickslip::dynamics::IncrementReport;
+use stickslip::model::Model;
+use stickslip::{deck, reader};
+
+use crate::blocks::run_to_end;
+
+/// The model of a deck.
+fn read(text: &str) -> Model {
+    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+    let deck = deck::parse_str("deck.inp", text, &mut sources, &mut d);
+    let model = reader::build(&deck, &mut d);
+    model.unwrap_or_else(|| panic!("{}", d.render(&sources, false)))
+}
+
+/// A square of one element with the side 2a about a point, its material, and its skin.
+fn square(first: usize, [x, y]: [f64; 2], a: f64, name: &str) -> String {
+    let corners = [[-a, -a], [a, -a], [a, a], [-a, a]];
+    let nodes = corners
+        .iter()
+        .enumerate()
+        .map(|(i, corner)| format!("{}, {}, {}\n", first + i, x + corner[0], y + corner[1]));
+    let sides: String = (1..=4).map(|side| format!("{name}, S{side}\n")).collect();
+    format!(
+        "*NODE\n{}*ELEMENT, TYPE=CPS4, ELSET={name}\n{first}, {first}, {}, {}, {}\n\
+         *SOLID SECTION, ELSET={name}, MATERIAL=M\n1.\n*SURFACE, NAME=S{name}\n{sides}",
+        nodes.collect::<String>(),
+        first + 1,
+        first + 2,
+        first + 3,
+    )
+}
+
+const MATERIAL: &str = "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n*DENSITY\n1.\n";
+
+fn largest(reports: &[IncrementReport], f: impl Fn(&IncrementReport) -> f64) -> f64 {
+    reports.iter().map(f).fold(0.0, f64::max)
+}
+
+/// Largest energy balance, beside the largest energy.
+fn unbalanced(reports: &[IncrementReport]) -> f64 {
+    let energy = largest(reports, |r| {
+        (r.energy.kinetic + r.energy.strain).max(r.energy.external_work.abs())
+    });
+    largest(reports, |r| r.energy.balance.abs()) / energy
+}
+
+/// A rigid bar turns about its middle by 1.5 within the step and throws a free block.
+#[test]
+fn a_driven_polygon_throws_a_block() {
+    let profile = "*NODE\n100, 0., 0.\n*SURFACE, NAME=BAR, TYPE=SEGMENTS\nSTART, -2., -0.1\n\
+                   LINE, -2., 0.1\nLINE, 2., 0.1\nLINE, 2., -0.1\nLINE, -2., -0.1\n\
+                   *RIGID BODY, ANALYTICAL SURFACE=BAR, REF NODE=100\n";
+    let text = format!(
+        "{}{MATERIAL}{profile}*SURFACE INTERACTION, NAME=I\n*FRICTION\n0.3\n\
+         *CONTACT PAIR, INTERACTION=I\nSE, BAR\n\
+         *AMPLITUDE, NAME=A, DEFINITION=SMOOTH STEP\n0., 0., 1., 1.\n*STEP, NLGEOM\n\
+         *DYNAMIC, DIRECT\n0.01, 1.\n*BOUNDARY\n100, 1, 2\n*BOUNDARY, AMPLITUDE=A\n\
+         100, 6, 6, 1.5\n*END STEP\n",
+        square(1, [1.4, 0.5], 0.2, "E"),
+    );
+    let model = read(&text);
+    let (keep, _) = run_to_end(&model);
+    let reports = &keep.reports;
+    // node 5 is the reference node, those of the bar follow it
+    let corners = [[-2.0, -0.1], [-2.0, 0.1], [2.0, 0.1], [2.0, -0.1]];
+    let nodes = model.mesh.node_count();
+    let last = reports.last().expect("increments");
+    let (sin, cos) = 1.5_f64.sin_cos();
+    for (k, [x, y]) in corners.into_iter().enumerate() {
+        let node = (0..nodes).find(|&n| model.mesh.coordinates[n] == [x, y]);
+        let node = node.unwrap_or_else(|| panic!("corner {k}"));
+        let expected = [cos * x - sin * y - x, sin * x + cos * y - y];
+        for (u, expected) in last.state.u[2 * node..].iter().zip(expected) {
+            assert!((u - expected).abs() < 1e-14);
+        }
+    }
+    assert_eq!(last.state.u.len(), 2 * nodes);
+    assert!(reports.iter().any(|r| r.contacts[0].closed > 0));
+    assert!(unbalanced(reports) < 1e-12, "{:e}", unbalanced(reports));
+    // the moment that drives the bar is that of the contact force on it
+    let moment = largest(reports, |r| r.rigid[0].moment.abs());
+    assert!(moment > 1.0);
+    for report in reports {
+        let [rigid, contact] = [report.rigid[0].moment, report.contacts[0].reference_moment];
+        assert!(
+            (rigid - contact).abs() < 1e-10 * moment,
+            "{rigid} {contact}"
+        );
+    }
+    assert!(last.energy.kinetic > 1.0);
+}
+
+/// Two free rigid squares collide off their centres and slide along each other.
+#[test]
+fn free_bodies_keep_their_momenta() {
+    let text = format!(
+        "{}{}{MATERIAL}*NODE\n100, 0., 0.\n200, 3., 0.8\n*RIGID BODY, ELSET=A, REF NODE=100\n\
+         *RIGID BODY, ELSET=B, REF NODE=200\n*SURFACE INTERACTION, NAME=I\n*FRICTION\n0.3\n\
+         *CONTACT PAIR, INTERACTION=I\nSA, SB\nSB, SA\n\
+         *INITIAL CONDITIONS, TYPE=VELOCITY\n100, 1, 2.\n100, 6, 0.7\n200, 1, -1.\n200, 6, -1.1\n\
+         *STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.02, 2.\n*END STEP\n",
+        square(1, [0.0, 0.0], 0.5, "A"),
+        square(11, [3.0, 0.8], 0.6, "B"),
+    );
+    let (keep, _) = run_to_end(&read(&text));
+    let reports = &keep.reports;
+    assert!(
+        reports
+            .iter()
+            .any(|r| r.contacts.iter().any(|c| c.closed > 0))
+    );
+    let start = &reports[0].momentum;
+    assert!((start.linear[0] - (2.0 - 1.44)).abs() < 1e-14);
+    let energy = |r: &IncrementReport| r.energy.kinetic;
+    for pair in reports.windows(2) {
+        let now = &pair[1].momentum;
+        (0..2).for_each(|i| assert!((now.linear[i] - start.linear[i]).abs() < 1e-12));
+        assert!(
+            (now.angular - start.angular).abs() < 1e-12,
+            "{}",
+            now.angular - start.angular
+        );
+        assert!(energy(&pair[1]) <= energy(&pair[0]) * (1.0 + 1e-13));
+    }
+    assert!(unbalanced(reports) < 1e-12, "{:e}", unbalanced(reports));
+}
+
+/// A square pinned at a corner swings under gravity: a rigid body whose centre of mass follows its
+/// reference node.
+#[test]
+fn a_pinned_body_swings() {
+    let text = format!(
+        "{}{MATERIAL}*RIGID BODY, ELSET=A, REF NODE=1\n*BOUNDARY\n1, 1, 2\n\
+         *STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 3.\n*DLOAD\nA, GRAV, 9.81, 0., -1.\n*END STEP\n",
+        square(1, [0.5, 0.5], 0.5, "A"),
+    );
+    let (keep, _) = run_to_end(&read(&text));
+    let reports = &keep.reports;
+    // its passes leave a residual, which is the balance
+    assert!(unbalanced(reports) < 1e-10, "{:e}", unbalanced(reports));
+    for report in reports {
+        let u = &report.state.u;
+        let corner = |n: usize, x: [f64; 2]| [x[0] + u[2 * n], x[1] + u[2 * n + 1]];
+        assert_eq!(corner(0, [0.0; 2]), [0.0; 2]);
+        let [x, y] = corner(2, [1.0, 1.0]);
+        assert!((x.hypot(y) - 2.0_f64.sqrt()).abs() < 1e-13);
+    }
+    // it swings through: the centre comes lower than the pin
+    assert!(reports.iter().any(|r| r.bodies[0].center[1] < -0.7));
+}
