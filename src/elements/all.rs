@@ -111,7 +111,10 @@ impl Elements {
             all.starts.push(all.nodes.len());
         }
         let mut is_rigid = vec![false; elements.len()];
-        for &element in model.turning_bodies().flat_map(|(_, body)| &body.elements) {
+        for &element in model
+            .turning_bodies()
+            .flat_map(|(rigid, _)| &rigid.elements)
+        {
             is_rigid[element] = true;
         }
         let body = model.mesh.bodies();

@@ -41,14 +41,45 @@ fn write_contacts(model: &Model, lines: &mut DeckWriter) {
     for body in &model.rigid_bodies {
         let parameter = match body.surface {
             Some(_) => "ANALYTICAL SURFACE",
+            None if body.elements.is_empty() => "NSET",
             None => "ELSET",
         };
         let label = model.mesh.node_labels[body.reference];
         let name = named(parameter, &body.name);
         lines.card("RIGID BODY", [name, set("REF NODE", label)]);
     }
+    point_elements(model, lines);
     for equation in &model.equations {
         write_equation(equation, model, lines);
+    }
+}
+
+/// Masses and rotary inertia of the bodies that turn, as elements with numbers after the largest one.
+fn point_elements(model: &Model, lines: &mut DeckWriter) {
+    let mut label = model
+        .mesh
+        .elements
+        .iter()
+        .map(|e| e.label)
+        .max()
+        .unwrap_or(0);
+    let mut write = |element_type: &str, keyword: &str, node: usize, row: Vec<String>| {
+        label += 1;
+        let name = format!("{element_type}-{label}");
+        let parameters = [set("TYPE", element_type), set("ELSET", &name)];
+        lines.card("ELEMENT", parameters);
+        lines.row([label.to_string(), model.mesh.node_labels[node].to_string()]);
+        lines.card(keyword, [set("ELSET", &name)]);
+        lines.row(row);
+    };
+    for (rigid, body) in model.turning_bodies() {
+        for &(node, mass) in &body.masses {
+            write("MASS", "MASS", node, vec![number(mass)]);
+        }
+        if body.rotary_inertia > 0.0 {
+            let row = vec![String::new(), String::new(), number(body.rotary_inertia)];
+            write("ROTARYI", "ROTARY INERTIA", rigid.reference, row);
+        }
     }
 }
 

@@ -205,6 +205,8 @@ pub struct RigidBody {
     pub reference: usize,
     /// Nodes that move with it, increasing, without the reference node.
     pub nodes: Vec<usize>,
+    /// Its elements (indices, increasing), which have mass and no strain.
+    pub elements: Vec<usize>,
     /// Its motion, if it turns.
     pub turning: Option<TurningBody>,
 }
@@ -214,8 +216,6 @@ pub struct RigidBody {
 pub struct TurningBody {
     /// Number among the bodies that turn.
     pub number: usize,
-    /// Its elements (indices, increasing), which have mass and no strain.
-    pub elements: Vec<usize>,
     /// Nodes with the masses that they carry beside the elements (mass).
     pub masses: Vec<(usize, f64)>,
     /// Moment of inertia beside that of elements and masses (mass length^2).

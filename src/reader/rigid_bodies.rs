@@ -345,11 +345,11 @@ pub(crate) fn complete(
         surface: rigid.surface,
         reference: rigid.reference,
         nodes: rigid.nodes.clone(),
+        elements: rigid.elements.clone(),
         turning: match *motion {
             Motion::Translates => None,
             Motion::Turns(number) => Some(TurningBody {
                 number,
-                elements: rigid.elements.clone(),
                 masses: rigid.masses.clone(),
                 rotary_inertia: rigid.rotary_inertia,
             }),

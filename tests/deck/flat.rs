@@ -355,6 +355,42 @@ fn rigid_elements_with_a_reference_node_apart() {
 }
 
 #[test]
+fn rigid_bodies_that_turn() {
+    let cards = "*NODE, NSET=NREF\n100, 0., -5.\n*RIGID BODY, ELSET=EBASE, REF NODE=100\n\
+                 *ELEMENT, TYPE=MASS, ELSET=EM\n901, 100\n*MASS, ELSET=EM\n2.5\n\
+                 *ELEMENT, TYPE=ROTARYI, ELSET=ER\n902, 100\n*ROTARY INERTIA, ELSET=ER\n, , 0.4\n\
+                 *INITIAL CONDITIONS, TYPE=ROTATING VELOCITY\nNREF, 12.5, 1., 0., 0.\n\
+                 0., 0., 0., 0., 0., 1.\n*AMPLITUDE, NAME=A\n0., 0., 1., 1.";
+    let deck = SHARED.replacen("*BOUNDARY\nNFIX, 1, 2", cards, 1);
+    let model = read(&deck);
+    let [body] = &model.rigid_bodies[..] else {
+        panic!("one rigid body");
+    };
+    let turning = body.turning.as_ref().expect("turns");
+    assert_eq!(turning.rotary_inertia, 0.4);
+    assert_eq!(turning.masses, [(body.reference, 2.5)]);
+    let velocity = |dof: usize| model.initial_velocity[dof];
+    assert_eq!(velocity(model.angle_of(turning)), 12.5);
+    // 1 + 12.5 x 5 and 0: the reference node is 5 below the axis
+    assert_eq!(
+        [0, 1].map(|i| velocity(2 * body.reference + i)),
+        [63.5, 0.0]
+    );
+    round_trip(model);
+    let driven =
+        "*BOUNDARY\n100, 1, 2\n*BOUNDARY, AMPLITUDE=A\n100, 6, 6, 0.3\n*CLOAD\n100, 1, 5.\n*DLOAD";
+    let still = deck.replacen(
+        "*INITIAL CONDITIONS",
+        "*BOUNDARY\n100, 1, 2\n*INITIAL CONDITIONS",
+        1,
+    );
+    let still = still.replacen("NREF, 12.5, 1., 0., 0.", "NREF, 0., 0., 0., 0.", 1);
+    round_trip(read(&still.replacen("*DLOAD", driven, 1)));
+    let loaded = "*CLOAD\n100, 6, 5.\n*DLOAD";
+    round_trip(read(&deck.replacen("*DLOAD", loaded, 1)));
+}
+
+#[test]
 fn friction_that_decays() {
     for decay in ["0.3, 0.1, 5.", "0.3, 0.3, 5.", "0.3, 0.1, 0."] {
         let card = format!("*FRICTION, EXPONENTIAL DECAY\n{decay}");

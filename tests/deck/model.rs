@@ -767,6 +767,7 @@ fn a_rigid_surface_moves_with_its_reference_node() {
         surface: Some(model.contacts[0].master),
         reference: nodes - 4,
         nodes: vec![a, b, c],
+        elements: vec![],
         turning: None,
     };
     assert_eq!(model.rigid_bodies, [body]);

@@ -128,6 +128,54 @@ fn free_bodies_keep_their_momenta() {
     assert!(unbalanced(reports) < 1e-12, "{:e}", unbalanced(reports));
 }
 
+/// A free square with its reference node off its centre under a dead moment M: omega = M t/I, and M does the work of
+/// the angle.
+#[test]
+fn a_moment_turns_a_body_about_its_centre_of_mass() {
+    let text = format!(
+        "{}{MATERIAL}*NODE\n100, 0.3, -0.4\n*RIGID BODY, ELSET=A, REF NODE=100\n\
+         *STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.005, 0.5\n*CLOAD\n100, 6, 3.\n*END STEP\n",
+        square(1, [0.0, 0.0], 0.5, "A"),
+    );
+    let (keep, _) = run_to_end(&read(&text));
+    let last = keep.reports.last().expect("increments");
+    let body = &last.rigid[0];
+    // I = 1/6 of the unit square with the density 1
+    assert!(
+        (body.angular_velocity - 9.0).abs() < 1e-3,
+        "{}",
+        body.angular_velocity
+    );
+    assert!((body.kinetic - 3.0 * body.angle).abs() < 1e-11 * body.kinetic);
+    assert!((last.energy.external_work - 3.0 * body.angle).abs() < 1e-11 * body.kinetic);
+    for (center, velocity) in body.center.iter().zip(last.bodies[0].velocity) {
+        assert!(center.abs() < 1e-14 && velocity.abs() < 1e-14);
+    }
+    assert!((last.bodies[0].angular_velocity - body.angular_velocity).abs() < 1e-12);
+    assert!(unbalanced(&keep.reports) < 1e-11);
+}
+
+/// A profile with the mass and the inertia of point elements rolls over a block that rests on a base, as master.
+#[test]
+fn a_profile_with_mass_falls_on_to_a_block() {
+    let text = format!(
+        "{}{MATERIAL}*NODE\n100, 0.1, 1.3\n*SURFACE, NAME=WEDGE, TYPE=SEGMENTS\nSTART, 1.1, 1.8\n\
+         LINE, 0.1, 0.8\nLINE, -0.9, 1.8\nLINE, 1.1, 1.8\n\
+         *RIGID BODY, ANALYTICAL SURFACE=WEDGE, REF NODE=100\n\
+         *ELEMENT, TYPE=MASS, ELSET=EM\n901, 100\n*MASS, ELSET=EM\n2.\n\
+         *ELEMENT, TYPE=ROTARYI, ELSET=ER\n902, 100\n*ROTARY INERTIA, ELSET=ER\n, , 0.4\n\
+         *SURFACE INTERACTION, NAME=I\n*FRICTION\n0.3\n*CONTACT PAIR, INTERACTION=I\nSE, WEDGE\n\
+         *BOUNDARY\n1, 1, 2\n2, 1, 2\n\
+         *STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.005, 1.\n*CLOAD\n100, 2, -20.\n*END STEP\n",
+        square(1, [0.0, 0.0], 0.5, "E"),
+    );
+    let (keep, _) = run_to_end(&read(&text));
+    let reports = &keep.reports;
+    assert!(unbalanced(reports) < 1e-10, "{:e}", unbalanced(reports));
+    assert!(reports.iter().all(|r| r.rigid[0].force == [0.0; 2]));
+    assert!(largest(reports, |r| r.rigid[0].kinetic) > 1.0);
+}
+
 /// A square pinned at a corner swings under gravity: a rigid body whose centre of mass follows its
 /// reference node.
 #[test]

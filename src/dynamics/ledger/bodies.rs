@@ -32,8 +32,8 @@ impl BodyMasses {
     pub fn new(model: &Model, mass: &Mass, turning: &[TurningBody]) -> Self {
         let bodies = Bodies::new(&model.mesh);
         let with_elements = model.turning_bodies().zip(turning);
-        let turning = with_elements.filter_map(|((_, body), turning)| {
-            let element = *body.elements.first()?;
+        let turning = with_elements.filter_map(|((rigid, _), turning)| {
+            let element = *rigid.elements.first()?;
             Some((bodies.of_element[element], turning.centre, turning.inertia))
         });
         let mut masses = BodyMasses {

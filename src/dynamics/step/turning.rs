@@ -58,7 +58,7 @@ impl TurningBody {
         // mass, its moments and int rho (X - X_ref)² dOmega from the consistent mass
         let arm = |node: usize| difference(x[rigid.reference], x[node]);
         let (mut mass, mut moment, mut square) = (0.0, [0.0; 2], 0.0);
-        for &element in &body.elements {
+        for &element in &rigid.elements {
             let (nodes, m) = (elements.nodes(element), elements.mass(element));
             for (j, &b) in nodes.iter().enumerate() {
                 for (i, &a) in nodes.iter().enumerate() {
