@@ -289,7 +289,6 @@ impl MeshReading {
         let mesh = &self.mesh_index.mesh;
         let (keyword, before) = match (mesh.node_count() == 0, mesh.elements.is_empty()) {
             (true, _) => ("NODE", None),
-            (false, true) if !self.points.is_empty() => return,
             (false, true) => ("ELEMENT", outline.model_cards("NODE").pop()),
             (false, false) => return,
         };
