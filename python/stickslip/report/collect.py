@@ -1,0 +1,421 @@
+"""What a page shows of a result: mesh, fields of the frames, histories, surfaces, figures of the run."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.report.pack import Packed
+from stickslip.result import EVENTS, Result
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+EDGE_PARTS = 2000.0
+"""Displacements are accurate to a part of the mesh's shortest usual edge."""
+
+WAY_PARTS = 20000.0
+"""Displacements are accurate to a part of the largest displacement."""
+
+MOST_ROWS = 20000
+"""Longer histories show the smallest and the largest value of equal parts of the increments."""
+
+CHECKS = (
+    ("solver/residual", "force residual of the last pass, part of the largest force"),
+    ("solver/overlap", "overlap of an open pair, lengths of its segment"),
+    ("solver/gap_violation", "gap of a closed pair, lengths of its segment"),
+    ("solver/slip_violation", "slip of a sticking pair, lengths of its segment"),
+    ("solver/penetration", "penetration by nodes or edges, lengths of the edge"),
+    ("cone_violation", "force outside Coulomb's cone, part of the largest normal force"),
+    ("impulse_cone_violation", "impulse outside Coulomb's cone, part of the largest normal impulse"),
+)
+"""Histories that check an increment, with what they measure; those without a slash belong to each contact."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What of a result goes into the page."""
+
+    fields: tuple[str, ...] | None = None
+    """Names of the fields of the frames; None for all."""
+    frames: int | None = None
+    """At most so many frames, evenly chosen; None for all."""
+
+
+def _field_values(result: Result, name: str, frames: Whole) -> Array:
+    """A field [frames, nodes or cells, ...] of the chosen frames."""
+    return np.stack([result.frames[int(frame)].full(name) for frame in frames])
+
+
+def collect(path: Path, packed: Packed, choice: Choice) -> dict[str, Any]:
+    """Everything of a result."""
+    with Result(path) as result:
+        frames = _chosen(len(result.frames), choice.frames)
+        mesh = _mesh(result)
+        surfaces = _surfaces(result, mesh)
+        fields = _fields(result, frames, choice.fields, packed)
+        return {
+            **_record(result, frames),
+            "mesh": _pack_mesh(result, mesh, packed),
+            "motion": _motion(result, frames, mesh, None, packed),
+            "fields": fields,
+            "surfaces": surfaces,
+            "histories": _histories(result, packed),
+            "checks": _checks(result),
+            "deck": result.deck,
+        }
+
+
+def collect_outline(path: Path, packed: Packed, choice: Choice) -> dict[str, Any]:
+    """What is laid over another result: outlines in motion, pressure along surfaces, histories."""
+    with Result(path) as result:
+        frames = _chosen(len(result.frames), choice.frames)
+        mesh = _mesh(result)
+        drawn = np.unique(np.concatenate([mesh.outline.ravel(), mesh.rigid.ravel()]))
+        place = np.full(len(result.coordinates), -1)
+        place[drawn] = np.arange(len(drawn))
+        coordinates = result.coordinates[drawn]
+        fields = _fields(result, frames, ("CONTACT_PRESSURE",), packed)
+        for each in fields:
+            each["only"] = packed.whole(place[_contact_nodes(result)])
+        surfaces = _surfaces(result, mesh)
+        for surface in surfaces:
+            surface["nodes"] = [int(place[node]) for node in surface["nodes"]]
+        return {
+            **_record(result, frames),
+            "mesh": {
+                "nodes": len(drawn),
+                "coordinates": packed.bits(coordinates - _middle(result)),
+                "middle": _middle(result).tolist(),
+                "outline": packed.whole(place[mesh.outline]),
+                "rigid": packed.whole(place[mesh.rigid]),
+            },
+            "motion": _motion(result, frames, mesh, drawn, packed),
+            "fields": fields,
+            "surfaces": surfaces,
+            "histories": _histories(result, packed),
+        }
+
+
+# The run.
+
+
+def _record(result: Result, frames: Whole) -> dict[str, Any]:
+    """Name, times of the frames and record of the run."""
+    record = {name: _plain(value) for name, value in result.run.items() if name != "deck"}
+    return {
+        "job": result.job,
+        "heading": _heading(result.deck),
+        "run": record,
+        "bytes": result.path.stat().st_size,
+        "elements": len(result.element_labels),
+        "nodes": len(result.coordinates),
+        "bodies": len(result.read("model/bodies/mass")),
+        "increments": result.rows - 1,
+        "landings": len(result.complete_rows("history/impacts/time")),
+        "steps": int(result.history["step"].max(initial=1)),
+        "end": float(result.history["time"][-1]),
+        "framesInFile": len(result.frames),
+        "times": result.frames.times[frames].tolist(),
+    }
+
+
+def _plain(value: Any) -> Any:
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _heading(deck: str) -> str:
+    """The lines under *HEADING."""
+    lines = deck.splitlines()
+    for number, line in enumerate(lines):
+        if line.strip().upper().replace(" ", "").startswith("*HEADING"):
+            text = []
+            for each in lines[number + 1 :]:
+                if each.lstrip().startswith("*"):
+                    break
+                text.append(each.strip())
+            return " ".join(text)
+    return ""
+
+
+def _chosen(frames: int, most: int | None) -> Whole:
+    """Indices of at most `most` frames, evenly chosen, the first and the last among them."""
+    if most is None or frames <= most:
+        return np.arange(frames)
+    return np.unique(np.rint(np.linspace(0, frames - 1, max(most, 2))).astype(np.int64))
+
+
+# The mesh.
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Elements and what is drawn of them."""
+
+    connectivity: Whole
+    """Node indices of all elements, one element after the other."""
+    offsets: Whole
+    """Where each element's nodes start [E + 1]."""
+    outline: Whole
+    """Edges of one element only [., 2], the body on the left."""
+    inner: Whole
+    """The other edges, each once [., 2]."""
+    rigid: Whole
+    """Segments of rigid surfaces [., 2]."""
+
+
+def _mesh(result: Result) -> Mesh:
+    offsets = result.read("VTKHDF/Offsets")
+    connectivity = result.read("VTKHDF/Connectivity")
+    elements = len(result.element_labels)
+    end = offsets[elements]
+    rigid = connectivity[end:].reshape(-1, 2)
+    connectivity, offsets = connectivity[:end], offsets[: elements + 1]
+    following = np.arange(1, end + 1)
+    following[offsets[1:] - 1] = offsets[:-1]
+    edges = np.stack([connectivity, connectivity[following]], axis=1)
+    ordered = np.sort(edges, axis=1)
+    _, first, count = np.unique(ordered, axis=0, return_index=True, return_counts=True)
+    return Mesh(connectivity, offsets, edges[first[count == 1]], edges[first[count > 1]], rigid)
+
+
+def _middle(result: Result) -> Array:
+    """Point that coordinates are given from, so that float32 is enough for them."""
+    coordinates = result.coordinates
+    return 0.5 * (coordinates.min(axis=0) + coordinates.max(axis=0))
+
+
+def _pack_mesh(result: Result, mesh: Mesh, packed: Packed) -> dict[str, Any]:
+    coordinates = result.coordinates
+    middle = _middle(result)
+    return {
+        "nodes": len(result.coordinates),
+        "elements": len(result.element_labels),
+        "coordinates": packed.bits(coordinates - middle),
+        "middle": middle.tolist(),
+        "nodeLabels": packed.whole(result.node_labels[:, None]),
+        "elementLabels": packed.whole(result.element_labels[:, None]),
+        "body": packed.whole(result.read("model/bodies/element")[:, None]),
+        "nodeBody": packed.whole(result.read("model/bodies/node")[:, None]),
+        "connectivity": packed.whole(mesh.connectivity[:, None]),
+        "offsets": packed.whole(mesh.offsets[:, None]),
+        "outline": packed.whole(mesh.outline),
+        "inner": packed.whole(mesh.inner),
+        "rigid": packed.whole(mesh.rigid),
+    }
+
+
+def _motion(
+    result: Result, frames: Whole, mesh: Mesh, only: Whole | None, packed: Packed
+) -> dict[str, Any]:
+    """Displacements [frames, 2 nodes] of all nodes or some."""
+    displacement = _field_values(result, "U", frames)[:, :, :2]
+    coordinates = result.coordinates
+    ends = coordinates[np.concatenate([mesh.outline, mesh.inner, mesh.rigid])]
+    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    edge = float(np.quantile(length, 0.02)) if len(length) else 0.0
+    usable = np.nan_to_num(displacement, nan=0.0, posinf=0.0, neginf=0.0)
+    largest = float(np.abs(usable).max(initial=0.0))
+    steps = [part for part in (edge / EDGE_PARTS, largest / WAY_PARTS) if part > 0.0]
+    if only is not None:
+        usable = usable[:, only]
+    return packed.linear(usable.reshape(len(frames), -1), min(steps, default=1.0))
+
+
+# Fields.
+
+COMPONENTS = {"U": 2, "V": 2, "A": 2, "RF": 2, "CONTACT_FORCE": 2, "CF": 2}
+"""Components in the plane of the vectors at nodes, whose third one is 0."""
+
+
+def _fields(
+    result: Result, frames: Whole, names: tuple[str, ...] | None, packed: Packed
+) -> list[dict[str, Any]]:
+    """Fields [frames, places components] at nodes and in elements; places without any value are left out."""
+    found = []
+    for name, kind in result.frames.fields.items():
+        if name in ("U", "BODY") or (names is not None and name not in names):
+            continue
+        values = _field_values(result, name, frames)
+        if kind == "CellData":
+            values = values[:, : len(result.element_labels)]
+        values = values.reshape(*values.shape[:2], -1)[:, :, : COMPONENTS.get(name)]
+        attributes = result.file[f"VTKHDF/{kind}/{name}"].attrs
+        found.append(_field(kind, name, attributes, values, packed))
+    return found
+
+
+def _field(kind: str, name: str, attributes: Any, values: Array, packed: Packed) -> dict[str, Any]:
+    whole = values.dtype.kind in "iu"
+    empty = 0.0 if whole or not np.isnan(values).any() else np.nan
+    used = (~np.isnan(values) if np.isnan(empty) else values != 0).any(axis=(0, 2))
+    places = np.flatnonzero(used)
+    described: dict[str, Any] = {
+        "name": name,
+        "at": "nodes" if kind == "PointData" else "elements",
+        "description": str(attributes.get("description", "")),
+        "dimension": str(attributes.get("dimension", "1")),
+        "components": values.shape[2],
+        "empty": None if np.isnan(empty) else 0,
+    }
+    if len(places) < 0.8 * values.shape[1]:
+        values = values[:, places]
+        described["only"] = packed.whole(places[:, None])
+    flat = values.reshape(len(values), -1)
+    described["values"] = packed.whole(flat) if whole else packed.curved(flat)
+    return described
+
+
+# Surfaces.
+
+
+def _contact_nodes(result: Result) -> Whole:
+    """Nodes that carry a contact pressure in a frame."""
+    known = np.zeros(len(result.coordinates), dtype=bool)
+    for frame in result.frames:
+        known |= np.isfinite(frame["CONTACT_PRESSURE"])
+    return np.flatnonzero(known)
+
+
+def _surfaces(result: Result, mesh: Mesh) -> list[dict[str, Any]]:
+    """Chains of edges between slave nodes: name, nodes and reference arc length.
+
+    A chain that is closed begins where it carries the smallest pressure, so that what is pressed is in one piece.
+    """
+    slave = np.zeros(len(result.coordinates), dtype=bool)
+    most = np.zeros(len(result.coordinates))
+    for frame in result.frames:
+        slave |= ~np.isnan(frame["SLIP"])
+        most = np.fmax(most, frame["CONTACT_PRESSURE"])
+    sets = {name: set(result.node_set(name).tolist()) for name in result.file["model/node_sets"]}
+    body = result.read("model/bodies/node")
+    bodies = len(result.read("model/bodies/mass"))
+    found: list[dict[str, Any]] = []
+    for chain in _chains(mesh.outline[slave[mesh.outline].all(axis=1)]):
+        if chain[0] == chain[-1]:
+            chain = _opened(chain, most)
+        way = np.linalg.norm(np.diff(result.coordinates[chain], axis=0), axis=1)
+        holding = [name for name, nodes in sets.items() if nodes.issuperset(chain)]
+        name = min(holding, key=lambda each: len(sets[each]), default="")
+        if not name or len(sets[name]) > 2 * len(chain):
+            name = f"body {body[chain[0]]}" if bodies > 1 else "surface"
+        again = sum(each["name"].split(" (")[0] == name for each in found)
+        found.append(
+            {
+                "name": f"{name} ({again + 1})" if again else name,
+                "nodes": [int(node) for node in chain],
+                "along": np.concatenate([[0.0], np.cumsum(way)]).tolist(),
+                "largest": float(most[chain].max(initial=0.0)),
+            }
+        )
+    return sorted(found, key=lambda surface: -surface["largest"])
+
+
+def _chains(edges: Whole) -> list[list[int]]:
+    """Ways along the edges [., 2] from start to end; a closed one ends where it starts."""
+    following: dict[int, list[int]] = {}
+    for start, end in edges.tolist():
+        following.setdefault(start, []).append(end)
+    ends = set(edges[:, 1].tolist())
+    starts = [node for node in following if node not in ends] + list(following)
+    chains = []
+    for start in starts:
+        while following.get(start):
+            chain = [start]
+            while following.get(chain[-1]):
+                chain.append(following[chain[-1]].pop())
+            chains.append(chain)
+    return chains
+
+
+def _opened(chain: list[int], pressure: Array) -> list[int]:
+    """A closed chain that begins in the middle of its longest part without pressure."""
+    ring = np.array(chain[:-1])
+    free = pressure[ring] <= 0.0
+    best, start = 0, int(np.argmin(pressure[ring]))
+    run = 0
+    for place in range(2 * len(ring)):
+        run = min(run + 1, len(ring)) if free[place % len(ring)] else 0
+        if run > best:
+            best, start = run, (place - run // 2) % len(ring)
+    turned = np.roll(ring, -start)
+    return [*turned.tolist(), int(turned[0])]
+
+
+# Histories.
+
+
+def _histories(result: Result, packed: Packed) -> dict[str, Any]:
+    """All histories with one row per increment, by their paths below /history."""
+    found: list[dict[str, Any]] = []
+    rows = result.rows
+    parts = None
+    if rows > MOST_ROWS:
+        parts = np.linspace(0, rows, MOST_ROWS // 2 + 1).astype(np.int64)
+    for name, item in result.histories.items():
+        if name == "time":
+            continue
+        values = item[:rows].reshape(rows, -1).astype(np.float64)
+        described: dict[str, Any] = {
+            "name": name,
+            "dimension": str(item.attrs.get("dimension", "1")),
+            "shape": list(item.shape[1:]),
+            "labels": _labels(item),
+            "zero": not values.any(),
+        }
+        if not described["zero"]:
+            described["values"] = packed.bits(_thinned(values, parts))
+        found.append(described)
+    time = result.history["time"]
+    if parts is not None:
+        time = np.stack([time[parts[:-1]], time[parts[1:] - 1]], axis=1).ravel()
+    return {"time": packed.bits(time[:, None]), "thinned": parts is not None, "all": found}
+
+
+def _labels(item: h5py.Dataset) -> list[int]:
+    """Numbers of the nodes or elements whose histories a dataset holds."""
+    labels = item.parent.get("labels")
+    return labels[:].tolist() if labels is not None and item.ndim > 1 and item.shape[1] == len(labels) else []
+
+
+def _thinned(values: Array, parts: Whole | None) -> Array:
+    """The smallest and the largest value of each part of the rows, in the order in which they occur."""
+    if parts is None:
+        return values
+    rows = []
+    for start, end in zip(parts[:-1], parts[1:]):
+        part = np.nan_to_num(values[start:end])
+        low, high = part.argmin(axis=0), part.argmax(axis=0)
+        first, second = np.minimum(low, high), np.maximum(low, high)
+        rows += [np.take_along_axis(values[start:end], each[None], axis=0)[0] for each in (first, second)]
+    return np.array(rows)
+
+
+def _checks(result: Result) -> list[dict[str, Any]]:
+    """The largest value of every check of the increments, and where it is."""
+    time = result.history["time"]
+    found = []
+
+    def add(name: str, text: str, of: str, values: Array) -> None:
+        if len(values) == 0 or np.isnan(values).all():
+            return
+        row = int(np.nanargmax(np.abs(values)))
+        where = {"increment": row, "time": float(time[row])}
+        found.append({"name": name, "text": text, "of": of, "largest": float(abs(values[row])), **where})
+
+    for name, text in CHECKS:
+        if name in result.histories:
+            add(name, text, "", result.history[name])
+        for contact in result.contact:
+            if f"contact/{contact}/{name}" in result.histories:
+                add(f"contact/{contact}/{name}", text, contact, result.contact[contact][name])
+    names = [name for name in result.histories if name.startswith("energy/")]
+    energies = {name: result.history[name] for name in names}
+    balance = energies.pop("energy/balance")
+    largest = max((float(np.nanmax(np.abs(each), initial=0.0)) for each in energies.values()), default=0.0)
+    if largest > 0.0:
+        add("energy/balance", "energy balance, part of the largest energy", "", balance / largest)
+    return found

@@ -1,0 +1,234 @@
+// Scalars that colour the bodies, made from the fields of the frames, and the ranges of their colours.
+
+const NONE = 3e38; // stands for "no value" on the graphics card, which need not know NaN
+
+const NAMES = {
+  U: "displacement",
+  V: "velocity",
+  A: "acceleration",
+  RF: "reaction",
+  CONTACT_FORCE: "contact force",
+  CF: "concentrated load",
+  GAP: "gap",
+  CONTACT_PRESSURE: "contact pressure",
+  SLIP: "accumulated slip",
+  CONTACT_MASS: "mass of contact nodes",
+  S: "stress",
+  S33: "stress across the thickness",
+  MISES: "von Mises stress",
+  E: "Green-Lagrange strain",
+  LE: "logarithmic strain",
+  ENER: "strain energy density",
+};
+
+const VECTOR = [
+  ["magnitude", "magnitude", (d, i) => Math.hypot(d[i], d[i + 1])],
+  ["x", "x", (d, i) => d[i]],
+  ["y", "y", (d, i) => d[i + 1]],
+];
+
+const radius = (d, i) => Math.hypot(0.5 * (d[i] - d[i + 1]), d[i + 2]);
+const TENSOR = [
+  ["xx", "xx", (d, i) => d[i]],
+  ["yy", "yy", (d, i) => d[i + 1]],
+  ["xy", "xy", (d, i) => d[i + 2]],
+  ["max", "largest principal in the plane", (d, i) => 0.5 * (d[i] + d[i + 1]) + radius(d, i)],
+  ["min", "smallest principal in the plane", (d, i) => 0.5 * (d[i] + d[i + 1]) - radius(d, i)],
+  ["mean", "mean in the plane", (d, i) => 0.5 * (d[i] + d[i + 1])],
+];
+
+const ALONE = [["", "", (d, i) => d[i]]];
+
+/** A field [frames, places, components] of the page, unpacked when it is asked for. */
+class Field {
+  constructor(description, places) {
+    Object.assign(this, description);
+    this.places = places;
+    this.data = null;
+  }
+
+  /** Values and the places that have any; the promise is kept. */
+  load() {
+    this.loading ??= (async () => {
+      const only = this.only ? await unpacked(this.only) : null;
+      const data = await unpacked(this.values);
+      this.index = null;
+      if (only) {
+        this.index = new Int32Array(this.places).fill(-1);
+        only.forEach((place, i) => (this.index[place] = i));
+      }
+      this.onlyPlaces = only;
+      this.data = data;
+      this.columns = this.values.columns;
+    })();
+    return this.loading;
+  }
+
+  /** Start of a place's components in a frame; -1 where it has none. */
+  startOf(frame, place) {
+    const i = this.index ? this.index[place] : place;
+    return i < 0 ? -1 : frame * this.columns + i * this.components;
+  }
+
+  /** A component of a place in a frame. */
+  value(frame, place, component = 0) {
+    const start = this.startOf(frame, place);
+    return start < 0 ? (this.empty === null ? NaN : 0) : this.data[start + component];
+  }
+}
+
+/** A number for each node or element: a component of a field, or what is made of its components. */
+class Scalar {
+  constructor(field, part, text, of) {
+    this.field = field;
+    this.id = part ? `${field.name}:${part}` : field.name;
+    const name = NAMES[field.name] ?? field.name.toLowerCase().replaceAll("_", " ");
+    this.group = name;
+    this.label = text ? `${name}, ${text}` : name;
+    this.short = text || name;
+    this.of = of;
+    this.at = field.at;
+    this.onEdges = field.at === "nodes" && field.empty === null;
+  }
+
+  value(frame, place) {
+    const start = this.field.startOf(frame, place);
+    return start < 0 ? (this.field.empty === null ? NaN : 0) : this.of(this.field.data, start);
+  }
+
+  /** All values of a frame; NONE where there is none. */
+  fill(frame, into) {
+    const { field, of } = this;
+    const { data, columns, components, index, places } = field;
+    const empty = field.empty === null ? NONE : 0;
+    const start = frame * columns;
+    for (let place = 0; place < places; place++) {
+      const i = index ? index[place] : place;
+      const value = i < 0 ? NaN : of(data, start + i * components);
+      into[place] = i < 0 ? empty : Number.isFinite(value) ? value : NONE;
+    }
+  }
+
+  /** Values that are there and not 0 in a frame, sorted. */
+  sorted(frame) {
+    const { data, columns, components } = this.field;
+    const places = columns / components;
+    const found = new Float32Array(places);
+    let count = 0;
+    for (let i = 0; i < places; i++) {
+      const value = this.of(data, frame * columns + i * components);
+      if (Number.isFinite(value) && value !== 0) found[count++] = value;
+    }
+    return found.subarray(0, count).sort();
+  }
+
+  /** Smallest and largest value of all frames with their frames, and ends of colours without peaks. */
+  range(frames) {
+    if (this.found) return this.found;
+    const found = { least: 0, most: 0, leastFrame: 0, mostFrame: 0 };
+    const { data, columns, components } = this.field;
+    const every = Math.max(1, Math.ceil(frames / 60));
+    const lows = [];
+    const highs = [];
+    for (let frame = 0; frame < frames; frame++) {
+      for (let i = frame * columns; i < (frame + 1) * columns; i += components) {
+        const value = this.of(data, i);
+        if (value < found.least) [found.least, found.leastFrame] = [value, frame];
+        if (value > found.most) [found.most, found.mostFrame] = [value, frame];
+      }
+      if (frame % every === 0 || frame === frames - 1) {
+        const sorted = this.sorted(frame);
+        lows.push(-frameEnd(sorted, -1));
+        highs.push(frameEnd(sorted, 1));
+      }
+    }
+    found.low = -usual(lows, -found.least);
+    found.high = usual(highs, found.most);
+    return (this.found = found);
+  }
+}
+
+/** Largest value of a frame towards one side without the fiftieth of its places that stands out. */
+function frameEnd(sorted, side) {
+  if (sorted.length === 0) return 0;
+  const end = side > 0 ? sorted[sorted.length - 1] : sorted[0];
+  const from = Math.floor(0.02 * (sorted.length - 1)) + (sorted.length > 20 ? 1 : 0);
+  const inner = side > 0 ? sorted[sorted.length - 1 - from] : sorted[from];
+  const most = 1.4 * Math.max(0, side * inner);
+  return side * Math.max(0, Math.min(side * end, most || side * end));
+}
+
+/** Largest of the ends of frames [frames] without the frames that are peaks. */
+function usual(ends, all) {
+  const positive = ends.filter((end) => end > 0).sort((a, b) => a - b);
+  if (positive.length === 0) return Math.max(all, 0);
+  const quartile = positive[Math.floor(0.75 * (positive.length - 1))];
+  return Math.min(positive[positive.length - 1], 2 * quartile);
+}
+
+/** All scalars of the fields. */
+function scalarsOf(fields) {
+  const scalars = [];
+  for (const field of fields) {
+    if (field.name === "CONTACT_STATUS" || field.values.columns === 0) continue;
+    const parts = field.components === 1 ? ALONE : field.components === 2 ? VECTOR : TENSOR;
+    for (const [part, text, of] of parts) scalars.push(new Scalar(field, part, text, of));
+  }
+  return scalars;
+}
+
+/** A result of the page with what is needed to draw it. */
+class Result {
+  constructor(described) {
+    Object.assign(this, described);
+    this.frames = this.times.length;
+    const motion = { name: "U", at: "nodes", components: 2, empty: 0, dimension: "length", values: this.motion };
+    this.displacement = new Field(motion, this.mesh.nodes);
+    this.fields = [motion, ...this.fields].map(
+      (each) => new Field(each, each.at === "nodes" ? this.mesh.nodes : this.mesh.elements),
+    );
+    this.fields[0] = this.displacement;
+    this.scalars = scalarsOf(this.fields);
+  }
+
+  /** Unpacks the mesh, its motion and what belongs to contact. */
+  async load() {
+    const { mesh } = this;
+    for (const [name, value] of Object.entries(mesh)) {
+      if (value && typeof value === "object" && "blob" in value) mesh[name] = await unpacked(value);
+    }
+    const contact = ["CONTACT_STATUS", "CONTACT_PRESSURE", "CONTACT_FORCE"];
+    await Promise.all(this.fields.filter((f) => f.name === "U" || contact.includes(f.name)).map((f) => f.load()));
+    this.time = await unpacked(this.histories.time);
+  }
+
+  field(name) {
+    return this.fields.find((field) => field.name === name && field.values.columns > 0) ?? null;
+  }
+
+  scalar(id) {
+    return this.scalars.find((scalar) => scalar.id === id) ?? null;
+  }
+
+  /** Positions [2 nodes] in a frame, from the middle of the mesh, with displacements so many times. */
+  positions(frame, scale, into) {
+    const { coordinates, nodes } = this.mesh;
+    const { data } = this.displacement;
+    const start = frame * 2 * nodes;
+    for (let i = 0; i < 2 * nodes; i++) into[i] = coordinates[i] + scale * data[start + i];
+  }
+
+  /** Frame that is last at or before a time. */
+  frameAt(time) {
+    let frame = 0;
+    while (frame + 1 < this.frames && this.times[frame + 1] <= time * (1 + 1e-9)) frame++;
+    return frame;
+  }
+
+  /** Frame that is nearest to a time. */
+  nearestFrame(time) {
+    const before = this.frameAt(time);
+    const after = Math.min(before + 1, this.frames - 1);
+    return Math.abs(this.times[after] - time) < Math.abs(this.times[before] - time) ? after : before;
+  }
+}

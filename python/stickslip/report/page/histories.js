@@ -1,0 +1,232 @@
+// The charts of the page: energies, momenta, contact forces, work of the solver, surfaces, nodes, any history.
+
+/** Curves of histories by name for a result and what is laid over it. */
+async function curves(page, wanted) {
+  const series = [];
+  let colour = 0;
+  for (const { name, column = 0, label, each = null } of wanted) {
+    for (const [k, histories] of page.histories.entries()) {
+      if (!histories.has(name)) continue;
+      let values = await histories.column(name, column);
+      if (each) values = values.map((value) => (value === null ? null : each(value)));
+      const text = page.histories.length > 1 ? `${label} (${page.results[k].job})` : label;
+      series.push({ label: text, values, x: histories.time, colour, dash: k > 0 });
+    }
+    colour++;
+  }
+  return { series, x: page.histories[0].time };
+}
+
+/** Axis text: a name and the dimension. */
+function axisText(text, dimension) {
+  const of = dimensionText(dimension);
+  return of ? `${text} (${of})` : text;
+}
+
+/** Histories of names that are not 0 in every result. */
+function present(page, names) {
+  return names.filter((name) => page.histories.some((each) => each.has(name) && !each.zero(name)));
+}
+
+function energyChart(page) {
+  const names = page.histories[0].under("energy/").filter((name) => name !== "energy/balance");
+  const wanted = (chosen) => present(page, chosen).map((name) => ({ name, label: words(name) }));
+  const lost = names.filter((name) => !/kinetic|strain|external/.test(name));
+  const bodies = page.results[0].bodies;
+  const variants = [
+    ["all accounts", names],
+    ["stored and put in", ["energy/kinetic", "energy/strain", "energy/external_work"]],
+    ["what has left the bodies", lost],
+  ];
+  const made = variants
+    .filter(([, chosen]) => present(page, chosen).length)
+    .map(([name, chosen]) => ({ name, make: async () => ({ ...(await curves(page, wanted(chosen))), axis: "energy" }) }));
+  for (const part of ["kinetic", "strain"]) {
+    if (bodies < 2 || bodies > 8) break;
+    const each = Array.from({ length: bodies }, (_, body) => ({ name: `bodies/${part}`, column: body, label: `body ${body}` }));
+    made.push({ name: `${part} energy of the bodies`, make: async () => ({ ...(await curves(page, each)), axis: "energy" }) });
+  }
+  const chart = new Chart(page, "Energies", made);
+  if (page.results[0].histories.thinned) {
+    chart.note.textContent = "Long run: every curve shows the smallest and the largest value of equal groups of increments.";
+  }
+  return chart;
+}
+
+function momentumChart(page) {
+  const linear = ["x", "y"].map((axis, column) => ({ name: "momentum/linear", column, label: `linear, ${axis}` }));
+  const angular = [{ name: "momentum/angular", label: "angular" }];
+  return new Chart(page, "Momenta", [
+    { name: "linear", make: async () => ({ ...(await curves(page, linear)), axis: axisText("momentum", page.histories[0].dimension("momentum/linear")) }) },
+    { name: "angular, about the origin", make: async () => ({ ...(await curves(page, angular)), axis: axisText("momentum", page.histories[0].dimension("momentum/angular")) }) },
+  ]);
+}
+
+/** Names of the contacts of a result. */
+function contactsOf(page) {
+  return [...new Set(page.histories[0].under("contact/").map((name) => name.split("/")[1]))];
+}
+
+function contactChart(page) {
+  const contacts = contactsOf(page);
+  if (contacts.length === 0) return null;
+  const variants = [];
+  if (contacts.length > 1) {
+    const normal = contacts.map((contact) => ({ name: `contact/${contact}/normal`, label: contact }));
+    variants.push({ name: "normal forces of all contacts", make: async () => ({ ...(await curves(page, normal)), axis: "force" }) });
+  }
+  for (const contact of contacts) {
+    const at = (name) => `contact/${contact}/${name}`;
+    const forces = [
+      { name: at("normal"), label: "normal" },
+      { name: at("tangential"), label: "tangential" },
+    ];
+    const parts = ["x", "y"].map((axis, column) => ({ name: at("force"), column, label: `force, ${axis}` }));
+    const pairs = ["closed", "sticking"].map((name) => ({ name: at(name), label: name }));
+    const gap = [{ name: at("min_gap"), label: "smallest gap" }];
+    for (const [text, wanted, axis] of [["normal and tangential", forces, "force"], ["force in x and y", parts, "force"], ["pairs in contact", pairs, "pairs"], ["smallest gap", gap, "length"]]) {
+      variants.push({ name: `${contact}: ${text}`, make: async () => ({ ...(await curves(page, wanted)), axis }) });
+    }
+  }
+  return new Chart(page, "Contact", variants);
+}
+
+function solverChart(page) {
+  const work = ["solver/lcp_size", "solver/pivots", "solver/active_set_iterations", "solver/factorizations"];
+  const checks = page.results[0].checks.map(({ name }) => name);
+  const named = (names) => present(page, names).map((name) => ({ name, label: words(name) }));
+  const size = (value) => Math.abs(value) || null;
+  const variants = [
+    { name: "passes of an increment", make: async () => ({ ...(await curves(page, [{ name: "solver/passes", label: "passes" }])), axis: "passes" }) },
+    { name: "length of an increment", make: async () => ({ ...(await curves(page, [{ name: "dt", label: "increment" }])), axis: "time" }) },
+    { name: "complementarity problems", make: async () => ({ ...(await curves(page, named(work))), axis: "count" }) },
+    {
+      name: "checks",
+      make: async () => {
+        const wanted = present(page, checks).map((name) => ({ name, label: name.startsWith("energy") ? "energy balance" : words(name), each: size }));
+        return { ...(await curves(page, wanted)), axis: "error", log: true };
+      },
+    },
+  ];
+  return new Chart(page, "Solver", variants);
+}
+
+/** Contact pressure along a surface in the frame, and the largest of all frames. */
+function surfaceChart(page) {
+  const surfaces = page.results[0].surfaces.filter((surface) => surface.largest > 0);
+  if (surfaces.length === 0) return null;
+  const pressure = (result, surface, frame) => {
+    const field = result.field("CONTACT_PRESSURE");
+    return surface.nodes.map((node) => field?.value(frame, node) || 0);
+  };
+  const largest = (result, surface) => {
+    const most = surface.nodes.map(() => 0);
+    for (let frame = 0; frame < result.frames; frame++) {
+      pressure(result, surface, frame).forEach((value, i) => (most[i] = Math.max(most[i], value)));
+    }
+    return most;
+  };
+  const same = (surface) => page.other?.surfaces.find((each) => each.name === surface.name && each.nodes.length);
+  const now = (surface, frame) => {
+    const own = { label: "now", values: pressure(page.result, surface, frame), x: surface.along, colour: 0, points: surface.nodes.length < 80 };
+    const laid = same(surface);
+    if (!laid) return [own];
+    const at = page.other.nearestFrame(page.result.times[frame]);
+    return [own, { label: `now (${page.other.job})`, values: pressure(page.other, laid, at), x: laid.along, colour: 1, dash: true }];
+  };
+  const variants = surfaces.map((surface) => ({
+    name: `${surface.name} (node ${page.result.mesh.nodeLabels[surface.nodes[0]]} to ${page.result.mesh.nodeLabels[surface.nodes.at(-1)]})`,
+    make: async () => {
+      const most = { label: "largest of all frames", values: largest(page.result, surface), x: surface.along, colour: 0, faint: true };
+      const series = [most, ...now(surface, page.view.frame)];
+      return { series, x: surface.along, axis: "pressure (force/length²)", along: "way along the undeformed surface (length)", surface };
+    },
+  }));
+  const chart = new Chart(page, "Contact pressure along a surface", variants);
+  page.view.on(() => {
+    if (!chart.made?.surface) return;
+    if (same(chart.made.surface)) {
+      chart.build();
+      return;
+    }
+    chart.setValues([chart.plot.data[1], now(chart.made.surface, page.view.frame)[0].values]);
+    chart.plot.redraw(false);
+  });
+  return chart;
+}
+
+/** Fields of the chosen nodes over the frames. */
+function nodeChart(page) {
+  const quantities = page.result.scalars.filter((scalar) => scalar.at === "nodes");
+  const variants = quantities.map((scalar) => ({
+    name: scalar.label,
+    make: async () => {
+      await scalar.field.load();
+      const series = page.view.picked.map((node, colour) => ({
+        label: `node ${page.result.mesh.nodeLabels[node]}`,
+        values: page.result.times.map((_, frame) => {
+          const value = scalar.value(frame, node);
+          return Number.isFinite(value) ? value : null;
+        }),
+        x: page.result.times,
+        colour,
+        points: page.result.frames < 60,
+      }));
+      const note = series.length ? `From the ${page.result.frames} frames.` : "Click a node in the picture, or give its number.";
+      return { series: series.length ? series : [{ label: "", values: page.result.times.map(() => null), colour: 0 }], x: page.result.times, axis: axisText(scalar.label, scalar.field.dimension), note };
+    },
+  }));
+  const chart = new Chart(page, "Chosen nodes", variants);
+  const start = quantities.findIndex((scalar) => scalar.id === "U:y");
+  chart.select.value = String(Math.max(start, 0));
+  const input = make("input", { type: "text", inputmode: "numeric", placeholder: "node", size: 6, "aria-label": "number of a node" });
+  const add = () => {
+    const node = page.result.mesh.nodeLabels.indexOf(Number(input.value));
+    input.setCustomValidity(node < 0 || !input.value ? "there is no node of this number" : "");
+    if (!input.reportValidity()) return;
+    page.pick(node, true);
+    input.value = "";
+  };
+  input.addEventListener("keydown", (event) => event.key === "Enter" && add());
+  input.addEventListener("input", () => input.setCustomValidity(""));
+  chart.tools.append(input, make("button", { type: "button", onclick: add }, "add"), make("button", { type: "button", onclick: () => page.unpick() }, "clear"));
+  return chart;
+}
+
+/** Any history of the file. */
+function anyChart(page) {
+  const histories = page.histories[0];
+  const groups = new Map();
+  for (const name of histories.byName.keys()) {
+    const group = name.includes("/") ? name.slice(0, name.lastIndexOf("/")) : "increments";
+    if (!groups.has(group)) groups.set(group, []);
+    histories.columns(name).slice(0, 400).forEach((text, column) => {
+      groups.get(group).push([`${name}|${column}`, text ? `${words(name)}: ${text}` : words(name)]);
+    });
+  }
+  const chosen = [];
+  const start = ["rigid/", "nodes/", "bodies/center"].map((each) => histories.under(each).find((name) => !histories.zero(name) && !/node$/.test(name))).find(Boolean);
+  if (start) chosen.push(`${start}|${Math.min(1, histories.columns(start).length - 1)}`);
+  const make_ = async () => {
+    const wanted = chosen.map((each) => {
+      const [name, column] = each.split("|");
+      const text = histories.columns(name)[Number(column)];
+      const short = name.split("/").slice(-2).join("/");
+      return { name, column: Number(column), label: text ? `${short}: ${text}` : short };
+    });
+    const made = await curves(page, wanted);
+    const dimensions = [...new Set(wanted.map(({ name }) => histories.dimension(name)))];
+    if (made.series.length === 0) made.series.push({ label: "", values: Array.from(histories.time, () => null), colour: 0 });
+    return { ...made, axis: dimensions.map(dimensionText).join(", ") };
+  };
+  const chart = new Chart(page, "Any history", [{ name: "", make: make_ }], "Choosing a history adds its curve; every increment is in it.");
+  const select = make("select", { "aria-label": "history to add" });
+  fillSelect(select, [["", [["", "add a history ..."]]], ...groups]);
+  select.addEventListener("change", () => {
+    if (select.value && !chosen.includes(select.value)) chosen.push(select.value);
+    select.value = "";
+    chart.build();
+  });
+  chart.tools.append(select, make("button", { type: "button", onclick: () => (chosen.splice(0), chart.build()) }, "clear"));
+  return chart;
+}
