@@ -97,6 +97,12 @@ need_gmsh() {
             "(Debian: libglu1-mesa libxcursor1 libxft2 libxinerama1)"
 }
 
+# The browser in which the report page is tested; without it these tests say that they are skipped.
+need_browser() {
+    command -v chromium >/dev/null || command -v google-chrome >/dev/null || debian_install chromium ||
+        say "no Chromium: the tests of the report page in a browser are skipped"
+}
+
 # Builds the program, with cargo's progress on a terminal; sets PROGRAM to its path.
 need_program() {
     need_rust

@@ -1,0 +1,9 @@
+"""The report page of a result: one HTML file that works offline (docs/report.md).
+
+`stickslip-report RESULT.vtkhdf` writes it, and so does `python -m stickslip.report`.
+"""
+
+from stickslip.report.collect import Choice
+from stickslip.report.page import page_of
+
+__all__ = ["Choice", "page_of"]

@@ -235,6 +235,8 @@ def _fields(
     result: Result, frames: Whole, names: tuple[str, ...] | None, packed: Packed
 ) -> list[dict[str, Any]]:
     """Fields [frames, places components] at nodes and in elements; places without any value are left out."""
+    for name in names or ():
+        result.frames.kind(name)  # a Fault where there is no such field
     found = []
     for name, kind in result.frames.fields.items():
         if name in ("U", "BODY") or (names is not None and name not in names):

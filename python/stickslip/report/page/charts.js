@@ -112,6 +112,7 @@ class Chart {
     const joined = tables.size > 1;
     const data = joined ? uPlot.join([...tables.values()]) : [...tables.values()][0] ?? [[], []];
     this.plot?.destroy();
+    this.line = null;
     this.plotted.replaceChildren();
     this.note.textContent = shown.note ?? this.note.textContent;
     this.plot = new uPlot(this.options(shown, ordered, joined), data, this.plotted);
@@ -136,6 +137,7 @@ class Chart {
       width: Math.max(200, this.plotted.clientWidth),
       height: CHART_HEIGHT,
       legend: { live: true },
+      hooks: { draw: [() => this.mark()] },
       cursor: { sync: shown.along ? undefined : { key: "time" }, drag: { x: true, y: false }, points: { size: 6 } },
       scales: { x: { time: false }, y: { distr: shown.log ? 3 : 1, range: shown.log ? undefined : span } },
       axes: [
@@ -163,7 +165,7 @@ class Chart {
 
   /** The line at the time of the frame. */
   mark() {
-    if (!this.plot || !this.made || this.made.along) {
+    if (!this.line || !this.made || this.made.along) {
       if (this.line) this.line.hidden = true;
       return;
     }

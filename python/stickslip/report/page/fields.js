@@ -1,6 +1,6 @@
 // Scalars that colour the bodies, made from the fields of the frames, and the ranges of their colours.
 
-const NONE = 3e38; // stands for "no value" on the graphics card, which need not know NaN
+const NONE = 3e38; // stands for "no value"
 
 const NAMES = {
   U: "displacement",

@@ -9,12 +9,11 @@ async function curves(page, wanted) {
       if (!histories.has(name)) continue;
       let values = await histories.column(name, column);
       if (each) values = values.map((value) => (value === null ? null : each(value)));
-      const text = page.histories.length > 1 ? `${label} (${page.results[k].job})` : label;
-      series.push({ label: text, values, x: histories.time, colour, dash: k > 0 });
+      series.push({ label: k > 0 ? `${label}, other` : label, values, x: histories.time, colour, dash: k > 0 });
     }
     colour++;
   }
-  return { series, x: page.histories[0].time };
+  return { series, x: page.histories[0].time, note: page.other ? `Dashed: ${page.other.job}.` : undefined };
 }
 
 /** Axis text: a name and the dimension. */
@@ -132,14 +131,15 @@ function surfaceChart(page) {
     const laid = same(surface);
     if (!laid) return [own];
     const at = page.other.nearestFrame(page.result.times[frame]);
-    return [own, { label: `now (${page.other.job})`, values: pressure(page.other, laid, at), x: laid.along, colour: 1, dash: true }];
+    return [own, { label: "now, other", values: pressure(page.other, laid, at), x: laid.along, colour: 1, dash: true }];
   };
   const variants = surfaces.map((surface) => ({
     name: `${surface.name} (node ${page.result.mesh.nodeLabels[surface.nodes[0]]} to ${page.result.mesh.nodeLabels[surface.nodes.at(-1)]})`,
     make: async () => {
       const most = { label: "largest of all frames", values: largest(page.result, surface), x: surface.along, colour: 0, faint: true };
       const series = [most, ...now(surface, page.view.frame)];
-      return { series, x: surface.along, axis: "pressure (force/length²)", along: "way along the undeformed surface (length)", surface };
+      const note = same(surface) ? `Dashed: ${page.other.job}.` : undefined;
+      return { series, note, x: surface.along, axis: "pressure (force/length²)", along: "way along the undeformed surface (length)", surface };
     },
   }));
   const chart = new Chart(page, "Contact pressure along a surface", variants);

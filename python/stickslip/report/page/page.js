@@ -175,6 +175,7 @@ class Page {
       "=": () => view.zoom(1.25),
       "-": () => view.zoom(0.8),
       0: () => view.fit(),
+      f: () => view.fit(true),
       l: click("lines"),
       c: click("states"),
       p: click("pressure"),
@@ -241,7 +242,7 @@ class Page {
     byId("warnings").append(warnings.length ? make("ul", { class: "warnings" }, ...warnings) : make("p", { class: "note" }, none));
     this.checkTable();
     byId("deck").textContent = result.deck;
-    const notes = [`${counted(result.frames)} of ${counted(result.framesInFile)} frames`, `drawn with ${this.view.painter.name}`];
+    const notes = [`${counted(result.frames)} of ${counted(result.framesInFile)} frames`];
     if (this.version) notes.unshift(this.version);
     byId("about").textContent = notes.join(" · ");
   }

@@ -39,7 +39,7 @@ class View {
   prepare() {
     const { result, other } = this;
     const canvas = byId("bodies");
-    this.painter = ShadedPainter.on(canvas) ?? new FlatPainter(canvas);
+    this.painter = new Painter(canvas);
     this.layer = this.painter.layer(result.mesh);
     if (other) this.otherLayer = this.painter.layer(other.mesh);
     const { connectivity, inner, outline, coordinates } = result.mesh;
@@ -211,53 +211,54 @@ class View {
     const ink = styleColour("ink");
     const camera = this.eye();
     this.seen = camera;
-    result.positions(frame, look.scale, layer.positions.data);
+    result.positions(frame, look.scale, layer.positions);
     const coloured = look.scalar === "bodies" || (look.scalar?.field.data ?? null) !== null;
     const onEdges = coloured && look.scalar.onEdges;
     const ends = coloured ? this.ends() : null;
     if (coloured) {
       const map = this.mapName(ends);
       if (map !== this.mapShown) painter.colours(colourTable((this.mapShown = map)));
-      if (look.scalar === "bodies") result.mesh.body.forEach((body, i) => (layer.values.data[i] = (body % 8) + 0.5));
-      else look.scalar.fill(frame, layer.values.data);
+      if (look.scalar === "bodies") result.mesh.body.forEach((body, i) => (layer.values[i] = (body % 8) + 0.5));
+      else look.scalar.fill(frame, layer.values);
     }
     painter.begin(camera, ground);
-    painter.update(layer, coloured);
+    painter.place(layer);
     const range = ends ? [ends.low, ends.high] : [0, 1];
-    const plain = fourNumbers(styleColour("body"));
+    const plain = styleColour("body");
     const atNodes = coloured && look.scalar.at === "nodes";
     painter.drawFaces(layer, { plain, coloured: coloured && !onEdges, atNodes, range });
     if (look.lines && this.edge * camera.scale >= LINES_FROM) {
       const opacity = Math.min(0.35, 0.08 + 0.008 * this.edge * camera.scale);
-      painter.drawEdges(layer, "inner", 0.8, { plain: fourNumbers(ink, opacity) });
+      painter.drawEdges(layer, "inner", 0.8, { plain: ink, opacity });
     }
     const thin = this.edge * camera.scale < 2 ? 0.7 : 1.2;
-    painter.drawEdges(layer, "outline", thin, { plain: fourNumbers(ink, 0.75) });
+    painter.drawEdges(layer, "outline", thin, { plain: ink, opacity: 0.75 });
     if (onEdges) painter.drawEdges(layer, "outline", 5, { plain, coloured: true, range });
-    painter.drawEdges(layer, "rigid", 2.5, { plain: fourNumbers(styleColour("rigid")) });
-    if (this.other && look.other) this.drawOther(camera);
+    painter.drawEdges(layer, "rigid", 2.5, { plain: styleColour("rigid") });
+    if (this.other && look.other) this.drawOther();
+    painter.end();
     this.drawMarks(camera, ends);
   }
 
   /** Outlines of the other result at the nearest of its frames. */
   drawOther() {
     const { painter, other, otherLayer } = this;
-    const positions = otherLayer.positions.data;
+    const { positions } = otherLayer;
     other.positions(other.nearestFrame(this.result.times[this.frame]), this.look.scale, positions);
     const [dx, dy] = [0, 1].map((k) => other.mesh.middle[k] - this.result.mesh.middle[k]);
     for (let i = 0; i < other.mesh.nodes; i++) {
       positions[2 * i] += dx;
       positions[2 * i + 1] += dy;
     }
-    painter.update(otherLayer, false);
-    const plain = fourNumbers(styleColour("other"));
+    painter.place(otherLayer);
+    const plain = styleColour("other");
     painter.drawEdges(otherLayer, "outline", 1.8, { plain });
     painter.drawEdges(otherLayer, "rigid", 1.8, { plain });
   }
 
   /** Place of a node in the picture. */
   spot(node) {
-    const { data } = this.layer.positions;
+    const data = this.layer.positions;
     const { seen } = this;
     return [
       seen.width / 2 + (data[2 * node] - seen.x) * seen.scale,
@@ -292,7 +293,7 @@ class View {
   /** Element that holds a point; -1 where none does. */
   elementAt(px, py) {
     const { connectivity, offsets, elements } = this.result.mesh;
-    const { data } = this.layer.positions;
+    const data = this.layer.positions;
     for (let cell = 0; cell < elements; cell++) {
       let inside = false;
       let before = connectivity[offsets[cell + 1] - 1];
@@ -310,7 +311,7 @@ class View {
   /** Node nearest to a place of the picture within some pixels; -1 where there is none. */
   nodeAt(x, y, within = 12) {
     const [px, py] = this.point(x, y);
-    const { data } = this.layer.positions;
+    const data = this.layer.positions;
     let [best, least] = [-1, (within / this.seen.scale) ** 2];
     for (const node of this.deformable) {
       const distance = (data[2 * node] - px) ** 2 + (data[2 * node + 1] - py) ** 2;
@@ -337,7 +338,7 @@ class View {
       const at = look.scalar.at === "nodes" ? node : element;
       if (at >= 0) lines.push([look.scalar.label, number(look.scalar.value(frame, at))]);
     }
-    const { data } = this.layer.positions;
+    const data = this.layer.positions;
     const place = node >= 0 ? [data[2 * node], data[2 * node + 1]] : [px, py];
     lines.push(["position", place.map((each, k) => number(each + middle[k])).join(", ")]);
     if (node >= 0) {

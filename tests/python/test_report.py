@@ -1,0 +1,436 @@
+"""The report page: what it holds, and what it does in a browser."""
+
+import base64
+import html.parser
+import json
+import shutil
+import subprocess
+import sys
+import zlib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+from conftest import ROOT, Job
+from decks import CANTILEVERS, COLUMN, oblique_impact, shortened, spinning_bar
+from stickslip.deck import Deck
+from stickslip.errors import Fault
+from stickslip.report import Choice, page_of
+from stickslip.report.pack import FINE, Packed
+from stickslip.result import Result
+
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+
+QUIET = (
+    "--no-sandbox",
+    "--disable-gpu",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+)
+"""Options of a Chromium that runs as any user, without a graphics card, and asks nobody for anything."""
+
+RUBBER = ROOT / "input" / "rubber_ring"
+
+
+# Decks.
+
+
+def two_bodies(job: Job, folder: Path) -> Path:
+    return job(shortened(CANTILEVERS / "A_mu04.inp", 300))
+
+
+def without_friction(job: Job, folder: Path) -> Path:
+    return job(shortened(CANTILEVERS / "A_mu00.inp", 300))
+
+
+def rigid_surface(job: Job, folder: Path) -> Path:
+    return job(shortened(RUBBER / "rubber_ring_mu05.inp", 60, "default"))
+
+
+def self_contact(job: Job, folder: Path) -> Path:
+    return job(shortened(COLUMN / "column_mu02.inp", 20, "default"))
+
+
+def free_bodies(job: Job, folder: Path) -> Path:
+    return job(oblique_impact(0.3, folder))
+
+
+def no_contact(job: Job, folder: Path) -> Path:
+    return job(spinning_bar(folder))
+
+
+def stopped(job: Job, folder: Path) -> Path:
+    """What a run leaves that stops in the solve."""
+    path = folder / "stopped.vtkhdf"
+    shutil.copy(two_bodies(job, folder), path)
+    with h5py.File(path, "r+") as file:
+        file["VTKHDF/Steps"].attrs["NSteps"] = 8
+        file["history"].attrs["rows"] = 25
+        file["run"].attrs["exit_status"] = 1
+    return path
+
+
+def one_frame(job: Job, folder: Path) -> Path:
+    """What a run leaves that is killed after its first frame."""
+    path = folder / "one_frame.vtkhdf"
+    shutil.copy(two_bodies(job, folder), path)
+    with h5py.File(path, "r+") as file:
+        file["VTKHDF/Steps"].attrs["NSteps"] = 1
+        file["history"].attrs["rows"] = 1
+        file["run"].attrs["exit_status"] = -1
+    return path
+
+
+KINDS = {
+    each.__name__: each
+    for each in (two_bodies, rigid_surface, self_contact, free_bodies, no_contact, stopped, one_frame)
+}
+
+
+# Arrays.
+
+
+def unpacked(packed: Packed, described: dict[str, Any]) -> np.ndarray:
+    """What decode.js makes of an array."""
+    count = described["rows"] * described["columns"]
+    planes = np.frombuffer(zlib.decompress(base64.b64decode(packed.blobs[described["blob"]])), np.uint8)
+    folded = np.zeros((count, 4), np.uint8)
+    folded[:, : described["planes"]] = planes.reshape(described["planes"], count).T
+    unsigned = folded.view("<u4").ravel()
+    whole = ((unsigned >> 1).astype(np.int32) ^ -(unsigned & 1).astype(np.int32)).reshape(described["rows"], described["columns"])
+    for _ in range(described["order"]):
+        whole = np.cumsum(whole, axis=0, dtype=np.int32)
+    if described["map"] == "bits":
+        return whole.view(np.float32)
+    if described["map"] == "linear":
+        return whole * described["step"]
+    values = described["small"] * np.sinh(whole * described["fine"])
+    values[whole == described["none"]] = np.nan
+    return values
+
+
+@pytest.fixture
+def walk() -> np.ndarray:
+    """Numbers of many sizes, smooth from row to row in a part of the columns."""
+    random = np.random.default_rng(3)
+    smooth = np.sin(np.linspace(0.0, 6.0, 90)[:, None] * np.arange(1, 5)) * 10.0 ** np.arange(-3, 1)
+    return np.concatenate([smooth, random.normal(size=(90, 7)) * 10.0 ** random.integers(-6, 6, (90, 7))], axis=1)
+
+
+def test_arrays_keep_what_they_promise(walk: np.ndarray) -> None:
+    packed = Packed()
+    linear = unpacked(packed, packed.linear(walk, 1e-3))
+    assert np.abs(linear - walk).max() <= 0.5001e-3
+    holes = walk.copy()
+    holes[3, 2] = holes[80, 9] = np.nan
+    described = packed.curved(holes)
+    curved = unpacked(packed, described)
+    assert np.array_equal(np.isnan(curved), np.isnan(holes))
+    error = np.abs(curved - holes)
+    assert np.nanmax(error / np.maximum(np.abs(holes), described["small"])) < 0.75 * FINE
+    assert np.array_equal(unpacked(packed, packed.bits(walk)), walk.astype(np.float32))
+    assert np.array_equal(unpacked(packed, packed.whole(np.array([[5, -7], [2**29, 0]]))), [[5, -7], [2**29, 0]])
+
+
+@pytest.mark.parametrize("values", [np.zeros((4, 3)), np.full((4, 3), np.nan), np.zeros((4, 0)), np.array([[1e300, -1e-300]])])
+def test_arrays_without_much_in_them(values: np.ndarray) -> None:
+    packed = Packed()
+    back = unpacked(packed, packed.curved(values))
+    assert back.shape == values.shape and np.allclose(back, values, rtol=1e-3, equal_nan=True)
+
+
+# The file.
+
+
+class Tags(html.parser.HTMLParser):
+    """Elements of a page by their ids, and the addresses that it would load."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.loaded: list[str] = []
+        self.ids: list[str] = []
+        self.data = ""
+        self.inside = False
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        values = dict(attributes)
+        self.loaded += [values[name] or "" for name in ("src", "href") if name in values]
+        self.ids += [values["id"] or ""] if "id" in values else []
+        self.inside = values.get("id") == "data"
+
+    def handle_data(self, data: str) -> None:
+        if self.inside:
+            self.data += data
+
+    def handle_endtag(self, tag: str) -> None:
+        self.inside = False
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_page_is_one_file_that_loads_nothing(kind: str, job: Job, tmp_path: Path) -> None:
+    path = KINDS[kind](job, tmp_path)
+    tags = Tags(page_of([path]))
+    assert all(address.startswith(("#", "data:")) for address in tags.loaded), tags.loaded
+    assert len(tags.ids) == len(set(tags.ids))
+    (result,) = json.loads(tags.data)["results"]
+    expected = Result(path)
+    assert result["times"] == expected.frames.times.tolist()
+    assert result["increments"] == expected.rows - 1
+    assert result["deck"] == expected.deck
+
+
+def test_equal_results_give_equal_pages(job: Job, tmp_path: Path) -> None:
+    path = rigid_surface(job, tmp_path)
+    assert page_of([path]) == page_of([path])
+
+
+def test_fields_and_frames_are_chosen(job: Job, tmp_path: Path) -> None:
+    path = two_bodies(job, tmp_path)
+    (result,) = json.loads(Tags(page_of([path], Choice(("MISES", "V"), 7))).data)["results"]
+    assert [field["name"] for field in result["fields"]] == ["V", "MISES"]
+    times = Result(path).frames.times
+    assert len(result["times"]) == 7 and result["times"][0] == times[0] and result["times"][-1] == times[-1]
+    with pytest.raises(Fault, match="no field MISSES"):
+        page_of([path], Choice(("MISSES",)))
+
+
+def test_the_command(job: Job, tmp_path: Path) -> None:
+    def command(*words: object) -> subprocess.CompletedProcess[str]:
+        line = [sys.executable, "-m", "stickslip.report", *map(str, words)]
+        return subprocess.run(line, capture_output=True, text=True, cwd=tmp_path)
+
+    path = stopped(job, tmp_path)
+    done = command(path)
+    assert done.returncode == 0 and (tmp_path / "stopped.html").stat().st_size > 100_000, done.stderr
+    assert done.stdout.startswith(f"wrote {tmp_path}/stopped.html (")
+    (tmp_path / "text.vtkhdf").write_text("no result")
+    for words in ([tmp_path / "none.vtkhdf"], [tmp_path / "text.vtkhdf"], [path, "-o", "page.txt"], [path, "--fields", "X"]):
+        done = command(*words)
+        assert done.returncode == 2 and "error: " in done.stderr and "Traceback" not in done.stderr, done.stderr
+        assert done.stderr.count("\n") == 1
+
+
+# In a browser.
+
+Shown = Callable[..., Any]
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    """Chromium, started once."""
+    sync_api = pytest.importorskip("playwright.sync_api", reason="the Python package playwright is not installed")
+    if CHROMIUM is None:
+        pytest.skip("no Chromium is installed (Debian: apt-get install chromium)")
+    with sync_api.sync_playwright() as playwright:
+        started = playwright.chromium.launch(executable_path=CHROMIUM, args=QUIET)
+        yield started
+        started.close()
+
+
+@pytest.fixture
+def shown(browser: Any, job: Job, tmp_path: Path) -> Iterator[Shown]:
+    """Opens the page of results, and asks at the end that the browser had nothing to complain about."""
+    complaints: list[str] = []
+    contexts = []
+
+    def show(*paths: Path, **settings: Any) -> Any:
+        file = tmp_path / "page.html"
+        file.write_text(page_of(paths), encoding="utf-8")
+        size = {"width": 800, "height": 560}
+        context = browser.new_context(viewport=size, offline=True, **settings)
+        contexts.append(context)
+        page = context.new_page()
+        page.on("console", lambda message: complaints.append(message.text) if message.type in ("error", "warning") else None)
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("request", lambda request: None if request.url.startswith(("file:", "data:", "blob:")) else complaints.append(request.url))
+        page.goto(file.as_uri())
+        page.wait_for_selector("body[data-ready=yes]")
+        return page
+
+    yield show
+    for context in contexts:
+        context.close()
+    assert complaints == []
+
+
+def picture(page: Any) -> str:
+    """The bodies as they are drawn now."""
+    return page.evaluate("(page.view.draw(), document.getElementById('bodies').toDataURL())")
+
+
+def charts(page: Any) -> list[int]:
+    """Numbers of points of all charts, which are drawn wherever they stand."""
+    page.evaluate("Promise.all(page.charts.map((chart) => ((chart.seen = true), chart.build())))")
+    return page.evaluate("page.charts.map((chart) => chart.plot.data[0].length)")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_it_plays_and_changes_its_field(kind: str, shown: Shown, job: Job, tmp_path: Path) -> None:
+    page = shown(KINDS[kind](job, tmp_path))
+    frames = page.evaluate("page.result.frames")
+    first = picture(page)
+    if frames == 1:
+        assert page.locator("#play").is_disabled()
+    else:
+        page.select_option("#speed", "4")
+        page.evaluate("page.player.go(page.result.frameAt(0.8 * page.result.end))")
+        page.keyboard.press("Space")
+        page.wait_for_function(f"page.view.frame === {frames - 1} && !page.player.playing")
+        page.keyboard.press("Home")
+        assert page.evaluate("page.view.frame") == 0 and picture(page) == first
+        page.keyboard.press("ArrowRight")
+        page.keyboard.press("Shift+ArrowRight")
+        assert page.evaluate("page.view.frame") == min(11, frames - 1)
+        assert picture(page) != first
+        page.select_option("#field", "S:yy")
+        page.wait_for_function("page.view.look.scalar.id === 'S:yy'")
+        before = picture(page)
+        page.select_option("#field", "V:magnitude")
+        page.wait_for_function("page.view.look.scalar.id === 'V:magnitude'")
+        assert picture(page) != before
+    points = charts(page)
+    assert len(points) >= 5 and all(points), points
+
+
+def test_values_under_the_mouse_are_those_of_the_file(shown: Shown, job: Job, tmp_path: Path) -> None:
+    path = two_bodies(job, tmp_path)
+    page = shown(path)
+    frame = page.evaluate("page.result.frames") - 1
+    page.keyboard.press("End")
+    page.evaluate("page.view.draw()")
+    expected = Result(path).frames[frame]
+    for element in (0, 17, 70):
+        nodes = Result(path).cells[element]
+        spots = page.evaluate("(nodes) => nodes.map((node) => page.view.spot(node))", nodes.tolist())
+        x, y = np.mean(spots, axis=0)
+        page.hover("#overlay", position={"x": x, "y": y})
+        lines = dict(zip(page.locator("#tip dt").all_inner_texts(), page.locator("#tip dd").all_inner_texts()))
+        assert lines["element"].split(",")[0] == str(Result(path).element_labels[element])
+        assert float(lines["von Mises stress"]) == pytest.approx(expected["MISES"][element], rel=1e-3)
+    for field in ("MISES", "S", "V", "U", "CONTACT_FORCE"):
+        values = page.evaluate(
+            """async ([name, frame]) => {
+                const field = page.result.field(name);
+                await field.load();
+                return Array.from({ length: field.places }, (_, i) =>
+                    Array.from({ length: field.components }, (_, k) => field.value(frame, i, k)));
+            }""",
+            [field, frame],
+        )
+        exact = expected[field].reshape(len(values), -1)
+        size = np.abs(exact).max()
+        assert np.allclose(values, exact, rtol=FINE, atol=1e-4 * size), field
+    page.mouse.move(5, 5)
+    assert page.locator("#tip").is_hidden()
+
+
+def test_window_zoom_nodes_range_and_theme(shown: Shown, job: Job, tmp_path: Path) -> None:
+    page = shown(two_bodies(job, tmp_path), color_scheme="dark")
+    scale = "page.view.camera.scale"
+    whole = page.evaluate(scale)
+    box = page.locator("#overlay").bounding_box()
+    page.mouse.move(box["x"] + 200, box["y"] + 150)
+    page.mouse.wheel(0, -400)
+    page.wait_for_function(f"{scale} > {1.5 * whole}")
+    page.keyboard.press("0")
+    assert page.evaluate(scale) == pytest.approx(whole)
+    page.keyboard.press("w")
+    page.mouse.down()
+    page.mouse.move(box["x"] + 320, box["y"] + 250)
+    page.mouse.up()
+    assert page.evaluate(scale) > 2.0 * whole
+    page.keyboard.press("0")
+    page.evaluate("page.view.draw()")
+    x, y = page.evaluate("page.view.spot(20)")
+    page.click("#overlay", position={"x": x, "y": y})
+    page.get_by_label("number of a node").fill("3")
+    page.get_by_role("button", name="add").click()
+    labels = page.evaluate("page.view.picked.map((node) => page.result.mesh.nodeLabels[node])")
+    assert len(labels) == 2 and labels[1] == 3
+    page.wait_for_function("page.nodes.plot?.series.length === 3")
+    page.fill("#high", "5")
+    page.press("#high", "Tab")
+    page.wait_for_function("page.view.ends().high === 5")
+    assert page.evaluate("document.getElementById('range').value") == "own"
+    dark = picture(page)
+    page.click("#theme")
+    assert picture(page) != dark
+
+
+def test_elements_fill_their_pixels_without_gaps(shown: Shown, job: Job, tmp_path: Path) -> None:
+    page = shown(no_contact(job, tmp_path))
+    missed = page.evaluate(
+        """(() => {
+            const { view } = page;
+            Object.assign(view.look, { scalar: null, lines: false });
+            view.setFrame(view.result.frames - 1);
+            const { painter } = view;
+            const edges = painter.drawEdges;
+            painter.drawEdges = () => {};
+            view.draw();
+            painter.drawEdges = edges;
+            const body = pixelOf(bytesOf(styleColour("body")));
+            let missed = 0;
+            for (let row = 0; row < painter.height; row += 3) {
+                for (let column = 0; column < painter.width; column += 3) {
+                    const [x, y] = [column + 0.5, row + 0.5].map((each) => each / view.seen.density);
+                    const inside = view.elementAt(...view.point(x, y)) >= 0;
+                    if (inside !== (painter.pixels[row * painter.width + column] === body)) missed++;
+                }
+            }
+            return missed;
+        })()"""
+    )
+    assert missed == 0
+
+
+def test_a_peak_does_not_set_the_colours(shown: Shown, job: Job, tmp_path: Path) -> None:
+    path = tmp_path / "peak.vtkhdf"
+    shutil.copy(two_bodies(job, tmp_path), path)
+    with h5py.File(path, "r+") as file:
+        stress = file["VTKHDF/CellData/MISES"]
+        usual = np.nanmax(stress)
+        cells = len(file["VTKHDF/Types"])
+        stress[5 * cells + 3] = 1e4 * usual
+    page = shown(path)
+    ends = page.evaluate("page.view.ends()")
+    assert 0.1 * usual < ends["high"] <= 1.01 * usual
+    assert ends["most"] == pytest.approx(1e4 * usual, rel=1e-3) and ends["mostFrame"] == 5
+    page.select_option("#range", "full")
+    page.wait_for_function(f"page.view.ends().high > {9e3 * usual}")
+
+
+def test_a_second_result_is_laid_over_the_first(shown: Shown, job: Job, tmp_path: Path) -> None:
+    page = shown(two_bodies(job, tmp_path), without_friction(job, tmp_path))
+    page.keyboard.press("End")
+    both = picture(page)
+    page.uncheck("#other")
+    assert picture(page) != both
+    assert all(charts(page))
+    labels = page.evaluate("page.charts[1].plot.series.map((series) => series.label)")
+    assert labels == ["t", "normal", "tangential", "normal, other", "tangential, other"]
+
+
+def test_chart_and_picture_show_the_same_time(shown: Shown, job: Job, tmp_path: Path) -> None:
+    page = shown(two_bodies(job, tmp_path))
+    charts(page)
+    over = page.locator(".chart .u-over").first
+    over.scroll_into_view_if_needed()
+    box = over.bounding_box()
+    over.click(position={"x": box["width"] / 2, "y": box["height"] / 2})
+    middle = page.evaluate("page.result.nearestFrame(page.charts[0].plot.posToVal(%s, 'x'))" % (box["width"] / 2))
+    assert page.evaluate("page.view.frame") == middle > 0
+
+
+def test_a_deck_with_markup_in_it_stays_text(shown: Shown, job: Job, tmp_path: Path) -> None:
+    text = spinning_bar(tmp_path).text().replace("spinning, vibrating bar", "a </script><b>bold</b> &amp; {{data}} bar")
+    path = tmp_path / "markup.inp"
+    path.write_text(text)
+    page = shown(job(Deck.read(path)))
+    assert page.inner_text("#heading") == "a </script><b>bold</b> &amp; {{data}} bar"
