@@ -22,7 +22,9 @@ from stickslip.report import Choice, page_of
 from stickslip.report.pack import FINE, Packed
 from stickslip.result import Result
 
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+CHROMIUM = next(
+    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
+)
 
 QUIET = (
     "--no-sandbox",
@@ -32,7 +34,7 @@ QUIET = (
     "--disable-component-update",
     "--disable-sync",
 )
-"""Options of a Chromium that runs as any user, without a graphics card, and asks nobody for anything."""
+"""Options of a Chromium that runs as any user, without a graphics card or a network."""
 
 RUBBER = ROOT / "input" / "rubber_ring"
 
@@ -88,7 +90,15 @@ def one_frame(job: Job, folder: Path) -> Path:
 
 KINDS = {
     each.__name__: each
-    for each in (two_bodies, rigid_surface, self_contact, free_bodies, no_contact, stopped, one_frame)
+    for each in (
+        two_bodies,
+        rigid_surface,
+        self_contact,
+        free_bodies,
+        no_contact,
+        stopped,
+        one_frame,
+    )
 }
 
 
@@ -98,11 +108,15 @@ KINDS = {
 def unpacked(packed: Packed, described: dict[str, Any]) -> np.ndarray:
     """What decode.js makes of an array."""
     count = described["rows"] * described["columns"]
-    planes = np.frombuffer(zlib.decompress(base64.b64decode(packed.blobs[described["blob"]])), np.uint8)
+    planes = np.frombuffer(
+        zlib.decompress(base64.b64decode(packed.blobs[described["blob"]])), np.uint8
+    )
     folded = np.zeros((count, 4), np.uint8)
     folded[:, : described["planes"]] = planes.reshape(described["planes"], count).T
     unsigned = folded.view("<u4").ravel()
-    whole = ((unsigned >> 1).astype(np.int32) ^ -(unsigned & 1).astype(np.int32)).reshape(described["rows"], described["columns"])
+    whole = ((unsigned >> 1).astype(np.int32) ^ -(unsigned & 1).astype(np.int32)).reshape(
+        described["rows"], described["columns"]
+    )
     for _ in range(described["order"]):
         whole = np.cumsum(whole, axis=0, dtype=np.int32)
     if described["map"] == "bits":
@@ -119,7 +133,9 @@ def walk() -> np.ndarray:
     """Numbers of many sizes, smooth from row to row in a part of the columns."""
     random = np.random.default_rng(3)
     smooth = np.sin(np.linspace(0.0, 6.0, 90)[:, None] * np.arange(1, 5)) * 10.0 ** np.arange(-3, 1)
-    return np.concatenate([smooth, random.normal(size=(90, 7)) * 10.0 ** random.integers(-6, 6, (90, 7))], axis=1)
+    return np.concatenate(
+        [smooth, random.normal(size=(90, 7)) * 10.0 ** random.integers(-6, 6, (90, 7))], axis=1
+    )
 
 
 def test_arrays_keep_what_they_promise(walk: np.ndarray) -> None:
@@ -134,10 +150,15 @@ def test_arrays_keep_what_they_promise(walk: np.ndarray) -> None:
     error = np.abs(curved - holes)
     assert np.nanmax(error / np.maximum(np.abs(holes), described["small"])) < 0.75 * FINE
     assert np.array_equal(unpacked(packed, packed.bits(walk)), walk.astype(np.float32))
-    assert np.array_equal(unpacked(packed, packed.whole(np.array([[5, -7], [2**29, 0]]))), [[5, -7], [2**29, 0]])
+    assert np.array_equal(
+        unpacked(packed, packed.whole(np.array([[5, -7], [2**29, 0]]))), [[5, -7], [2**29, 0]]
+    )
 
 
-@pytest.mark.parametrize("values", [np.zeros((4, 3)), np.full((4, 3), np.nan), np.zeros((4, 0)), np.array([[1e300, -1e-300]])])
+@pytest.mark.parametrize(
+    "values",
+    [np.zeros((4, 3)), np.full((4, 3), np.nan), np.zeros((4, 0)), np.array([[1e300, -1e-300]])],
+)
 def test_arrays_without_much_in_them(values: np.ndarray) -> None:
     packed = Packed()
     back = unpacked(packed, packed.curved(values))
@@ -195,7 +216,11 @@ def test_fields_and_frames_are_chosen(job: Job, tmp_path: Path) -> None:
     (result,) = json.loads(Tags(page_of([path], Choice(("MISES", "V"), 7))).data)["results"]
     assert [field["name"] for field in result["fields"]] == ["V", "MISES"]
     times = Result(path).frames.times
-    assert len(result["times"]) == 7 and result["times"][0] == times[0] and result["times"][-1] == times[-1]
+    assert (
+        len(result["times"]) == 7
+        and result["times"][0] == times[0]
+        and result["times"][-1] == times[-1]
+    )
     with pytest.raises(Fault, match="no field MISSES"):
         page_of([path], Choice(("MISSES",)))
 
@@ -207,12 +232,21 @@ def test_the_command(job: Job, tmp_path: Path) -> None:
 
     path = stopped(job, tmp_path)
     done = command(path)
-    assert done.returncode == 0 and (tmp_path / "stopped.html").stat().st_size > 100_000, done.stderr
+    assert done.returncode == 0 and (tmp_path / "stopped.html").stat().st_size > 100_000, (
+        done.stderr
+    )
     assert done.stdout.startswith(f"wrote {tmp_path}/stopped.html (")
     (tmp_path / "text.vtkhdf").write_text("no result")
-    for words in ([tmp_path / "none.vtkhdf"], [tmp_path / "text.vtkhdf"], [path, "-o", "page.txt"], [path, "--fields", "X"]):
+    for words in (
+        [tmp_path / "none.vtkhdf"],
+        [tmp_path / "text.vtkhdf"],
+        [path, "-o", "page.txt"],
+        [path, "--fields", "X"],
+    ):
         done = command(*words)
-        assert done.returncode == 2 and "error: " in done.stderr and "Traceback" not in done.stderr, done.stderr
+        assert (
+            done.returncode == 2 and "error: " in done.stderr and "Traceback" not in done.stderr
+        ), done.stderr
         assert done.stderr.count("\n") == 1
 
 
@@ -224,7 +258,9 @@ Shown = Callable[..., Any]
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Any]:
     """Chromium, started once."""
-    sync_api = pytest.importorskip("playwright.sync_api", reason="the Python package playwright is not installed")
+    sync_api = pytest.importorskip(
+        "playwright.sync_api", reason="the Python package playwright is not installed"
+    )
     if CHROMIUM is None:
         pytest.skip("no Chromium is installed (Debian: apt-get install chromium)")
     with sync_api.sync_playwright() as playwright:
@@ -235,7 +271,7 @@ def browser() -> Iterator[Any]:
 
 @pytest.fixture
 def shown(browser: Any, job: Job, tmp_path: Path) -> Iterator[Shown]:
-    """Opens the page of results, and asks at the end that the browser had nothing to complain about."""
+    """Opens the page of results, and asks at the end that the browser did not complain."""
     complaints: list[str] = []
     contexts = []
 
@@ -246,9 +282,21 @@ def shown(browser: Any, job: Job, tmp_path: Path) -> Iterator[Shown]:
         context = browser.new_context(viewport=size, offline=True, **settings)
         contexts.append(context)
         page = context.new_page()
-        page.on("console", lambda message: complaints.append(message.text) if message.type in ("error", "warning") else None)
+        page.on(
+            "console",
+            lambda message: (
+                complaints.append(message.text) if message.type in ("error", "warning") else None
+            ),
+        )
         page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("request", lambda request: None if request.url.startswith(("file:", "data:", "blob:")) else complaints.append(request.url))
+        page.on(
+            "request",
+            lambda request: (
+                None
+                if request.url.startswith(("file:", "data:", "blob:"))
+                else complaints.append(request.url)
+            ),
+        )
         page.goto(file.as_uri())
         page.wait_for_selector("body[data-ready=yes]")
         return page
@@ -298,7 +346,9 @@ def test_it_plays_and_changes_its_field(kind: str, shown: Shown, job: Job, tmp_p
     assert len(points) >= 5 and all(points), points
 
 
-def test_values_under_the_mouse_are_those_of_the_file(shown: Shown, job: Job, tmp_path: Path) -> None:
+def test_values_under_the_mouse_are_those_of_the_file(
+    shown: Shown, job: Job, tmp_path: Path
+) -> None:
     path = two_bodies(job, tmp_path)
     page = shown(path)
     frame = page.evaluate("page.result.frames") - 1
@@ -307,12 +357,20 @@ def test_values_under_the_mouse_are_those_of_the_file(shown: Shown, job: Job, tm
     expected = Result(path).frames[frame]
     for element in (0, 17, 70):
         nodes = Result(path).cells[element]
-        spots = page.evaluate("(nodes) => nodes.map((node) => page.view.spot(node))", nodes.tolist())
+        spots = page.evaluate(
+            "(nodes) => nodes.map((node) => page.view.spot(node))", nodes.tolist()
+        )
         x, y = np.mean(spots, axis=0)
         page.hover("#overlay", position={"x": x, "y": y})
-        lines = dict(zip(page.locator("#tip dt").all_inner_texts(), page.locator("#tip dd").all_inner_texts()))
+        lines = dict(
+            zip(
+                page.locator("#tip dt").all_inner_texts(), page.locator("#tip dd").all_inner_texts()
+            )
+        )
         assert lines["element"].split(",")[0] == str(Result(path).element_labels[element])
-        assert float(lines["von Mises stress"]) == pytest.approx(expected["MISES"][element], rel=1e-3)
+        assert float(lines["von Mises stress"]) == pytest.approx(
+            expected["MISES"][element], rel=1e-3
+        )
     for field in ("MISES", "S", "V", "U", "CONTACT_FORCE"):
         values = page.evaluate(
             """async ([name, frame]) => {
@@ -379,9 +437,11 @@ def test_elements_fill_their_pixels_without_gaps(shown: Shown, job: Job, tmp_pat
             let missed = 0;
             for (let row = 0; row < painter.height; row += 3) {
                 for (let column = 0; column < painter.width; column += 3) {
-                    const [x, y] = [column + 0.5, row + 0.5].map((each) => each / view.seen.density);
+                    const x = (column + 0.5) / view.seen.density;
+                    const y = (row + 0.5) / view.seen.density;
                     const inside = view.elementAt(...view.point(x, y)) >= 0;
-                    if (inside !== (painter.pixels[row * painter.width + column] === body)) missed++;
+                    const pixel = painter.pixels[row * painter.width + column];
+                    if (inside !== (pixel === body)) missed++;
                 }
             }
             return missed;
@@ -424,12 +484,18 @@ def test_chart_and_picture_show_the_same_time(shown: Shown, job: Job, tmp_path: 
     over.scroll_into_view_if_needed()
     box = over.bounding_box()
     over.click(position={"x": box["width"] / 2, "y": box["height"] / 2})
-    middle = page.evaluate("page.result.nearestFrame(page.charts[0].plot.posToVal(%s, 'x'))" % (box["width"] / 2))
+    middle = page.evaluate(
+        "page.result.nearestFrame(page.charts[0].plot.posToVal(%s, 'x'))" % (box["width"] / 2)
+    )
     assert page.evaluate("page.view.frame") == middle > 0
 
 
 def test_a_deck_with_markup_in_it_stays_text(shown: Shown, job: Job, tmp_path: Path) -> None:
-    text = spinning_bar(tmp_path).text().replace("spinning, vibrating bar", "a </script><b>bold</b> &amp; {{data}} bar")
+    text = (
+        spinning_bar(tmp_path)
+        .text()
+        .replace("spinning, vibrating bar", "a </script><b>bold</b> &amp; {{data}} bar")
+    )
     path = tmp_path / "markup.inp"
     path.write_text(text)
     page = shown(job(Deck.read(path)))

@@ -1,4 +1,4 @@
-"""Writes the page of a result: one HTML file that works offline, with motion, charts, checks and warnings."""
+"""Writes the page of a result: one HTML file that works offline (docs/report.md)."""
 
 import argparse
 from pathlib import Path
@@ -17,9 +17,18 @@ def arguments_of_command_line() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="stickslip-report", description=__doc__)
     parser.add_argument("result", type=Path, help="result file JOB.vtkhdf")
     parser.add_argument("other", type=Path, nargs="?", help="a second result, laid over the first")
-    parser.add_argument("-o", "--output", type=Path, help="page to write (default: JOB.html beside the result)")
-    parser.add_argument("--frames", type=frames, metavar="N", help="at most N frames, evenly chosen (default: all)")
-    parser.add_argument("--fields", type=names, metavar="NAMES", help="fields of the frames, as MISES,V (default: all)")
+    parser.add_argument(
+        "-o", "--output", type=Path, help="page to write (default: JOB.html beside the result)"
+    )
+    parser.add_argument(
+        "--frames", type=frames, metavar="N", help="at most N frames, evenly chosen (default: all)"
+    )
+    parser.add_argument(
+        "--fields",
+        type=names,
+        metavar="NAMES",
+        help="fields of the frames, as MISES,V (default: all)",
+    )
     return parser.parse_args()
 
 

@@ -1,4 +1,4 @@
-"""What a page shows of a result: mesh, fields of the frames, histories, surfaces, figures of the run."""
+"""What a page shows of a result: mesh, fields of the frames, surfaces, histories, run."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.report.pack import Packed
-from stickslip.result import EVENTS, Result
+from stickslip.result import Result
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -30,9 +30,12 @@ CHECKS = (
     ("solver/slip_violation", "slip of a sticking pair, lengths of its segment"),
     ("solver/penetration", "penetration by nodes or edges, lengths of the edge"),
     ("cone_violation", "force outside Coulomb's cone, part of the largest normal force"),
-    ("impulse_cone_violation", "impulse outside Coulomb's cone, part of the largest normal impulse"),
+    (
+        "impulse_cone_violation",
+        "impulse outside Coulomb's cone, part of the largest normal impulse",
+    ),
 )
-"""Histories that check an increment, with what they measure; those without a slash belong to each contact."""
+"""Histories that check an increment, with what they measure; without a slash those of contacts."""
 
 
 @dataclass(frozen=True)
@@ -234,7 +237,7 @@ COMPONENTS = {"U": 2, "V": 2, "A": 2, "RF": 2, "CONTACT_FORCE": 2, "CF": 2}
 def _fields(
     result: Result, frames: Whole, names: tuple[str, ...] | None, packed: Packed
 ) -> list[dict[str, Any]]:
-    """Fields [frames, places components] at nodes and in elements; places without any value are left out."""
+    """Fields [frames, places components]; places without any value are left out."""
     for name in names or ():
         result.frames.kind(name)  # a Fault where there is no such field
     found = []
@@ -285,7 +288,7 @@ def _contact_nodes(result: Result) -> Whole:
 def _surfaces(result: Result, mesh: Mesh) -> list[dict[str, Any]]:
     """Chains of edges between slave nodes: name, nodes and reference arc length.
 
-    A chain that is closed begins where it carries the smallest pressure, so that what is pressed is in one piece.
+    A chain that is closed begins where nothing presses it, so that what is pressed is in one piece.
     """
     slave = np.zeros(len(result.coordinates), dtype=bool)
     most = np.zeros(len(result.coordinates))
@@ -380,11 +383,15 @@ def _histories(result: Result, packed: Packed) -> dict[str, Any]:
 def _labels(item: h5py.Dataset) -> list[int]:
     """Numbers of the nodes or elements whose histories a dataset holds."""
     labels = item.parent.get("labels")
-    return labels[:].tolist() if labels is not None and item.ndim > 1 and item.shape[1] == len(labels) else []
+    return (
+        labels[:].tolist()
+        if labels is not None and item.ndim > 1 and item.shape[1] == len(labels)
+        else []
+    )
 
 
 def _thinned(values: Array, parts: Whole | None) -> Array:
-    """The smallest and the largest value of each part of the rows, in the order in which they occur."""
+    """The smallest and the largest value of each part of the rows, in their order."""
     if parts is None:
         return values
     rows = []
@@ -392,7 +399,9 @@ def _thinned(values: Array, parts: Whole | None) -> Array:
         part = np.nan_to_num(values[start:end])
         low, high = part.argmin(axis=0), part.argmax(axis=0)
         first, second = np.minimum(low, high), np.maximum(low, high)
-        rows += [np.take_along_axis(values[start:end], each[None], axis=0)[0] for each in (first, second)]
+        rows += [
+            np.take_along_axis(values[start:end], each[None], axis=0)[0] for each in (first, second)
+        ]
     return np.array(rows)
 
 
@@ -406,7 +415,9 @@ def _checks(result: Result) -> list[dict[str, Any]]:
             return
         row = int(np.nanargmax(np.abs(values)))
         where = {"increment": row, "time": float(time[row])}
-        found.append({"name": name, "text": text, "of": of, "largest": float(abs(values[row])), **where})
+        found.append(
+            {"name": name, "text": text, "of": of, "largest": float(abs(values[row])), **where}
+        )
 
     for name, text in CHECKS:
         if name in result.histories:
@@ -417,7 +428,9 @@ def _checks(result: Result) -> list[dict[str, Any]]:
     names = [name for name in result.histories if name.startswith("energy/")]
     energies = {name: result.history[name] for name in names}
     balance = energies.pop("energy/balance")
-    largest = max((float(np.nanmax(np.abs(each), initial=0.0)) for each in energies.values()), default=0.0)
+    largest = max(
+        (float(np.nanmax(np.abs(each), initial=0.0)) for each in energies.values()), default=0.0
+    )
     if largest > 0.0:
         add("energy/balance", "energy balance, part of the largest energy", "", balance / largest)
     return found

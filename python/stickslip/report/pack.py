@@ -1,10 +1,11 @@
 """Arrays as short text for a page.
 
-An array becomes whole numbers q, whose differences from row to row are small; their bytes are sorted by significance,
-deflated and written in base64. `page/decode.js` undoes it. Three maps lead from values to whole numbers:
+An array becomes whole numbers q, whose differences from row to row are small; their bytes are sorted
+by significance, deflated and written in base64. `page/decode.js` undoes it. Three maps lead from values
+to whole numbers:
 
 * `linear`  v = step q, the error is at most step/2;
-* `curved`  v = small sinh(fine q), the error is at most fine/2 of the value, or small fine/2 where that is more;
+* `curved`  v = small sinh(fine q), the error is about fine/2 of the value, or of `small` where that is more;
 * `bits`    q is the bit pattern of v as a float32.
 """
 
@@ -38,7 +39,11 @@ class Packed:
         """Values [rows, columns] that need an absolute accuracy; there may be no NaN."""
         largest = float(np.abs(values).max(initial=0.0))
         step = max(step, largest / LARGEST_WHOLE)
-        whole = np.rint(np.asarray(values, dtype=np.float64) / step) if step > 0 else np.zeros(values.shape)
+        whole = (
+            np.rint(np.asarray(values, dtype=np.float64) / step)
+            if step > 0
+            else np.zeros(values.shape)
+        )
         return self._add(whole.astype(np.int32), {"map": "linear", "step": step})
 
     def whole(self, values: Array) -> dict[str, Any]:
@@ -60,7 +65,9 @@ class Packed:
         whole[finite] = np.rint(np.arcsinh(values[finite] / small) / FINE)
         none = int(np.abs(whole).max(initial=0.0)) + 1
         whole[~finite] = none
-        return self._add(whole.astype(np.int32), {"map": "curved", "small": small, "fine": FINE, "none": none})
+        return self._add(
+            whole.astype(np.int32), {"map": "curved", "small": small, "fine": FINE, "none": none}
+        )
 
     def bits(self, values: Array) -> dict[str, Any]:
         """Values [rows, columns] as float32."""
@@ -86,6 +93,9 @@ def _shortest(whole: NDArray[np.int32]) -> tuple[int, NDArray[np.int32]]:
     for _ in ORDERS[1:]:
         previous = candidates[-1]
         candidates.append(np.concatenate([previous[:1], previous[1:] - previous[:-1]]))
-    bits = [np.log2(1.0 + np.abs(each[:: max(1, len(each) // 40)].astype(np.float64))).sum() for each in candidates]
+    bits = [
+        np.log2(1.0 + np.abs(each[:: max(1, len(each) // 40)].astype(np.float64))).sum()
+        for each in candidates
+    ]
     order = int(np.argmin(bits))
     return order, candidates[order]

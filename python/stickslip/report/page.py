@@ -35,8 +35,15 @@ def page_of(paths: Sequence[Path], choice: Choice = Choice()) -> str:
     """The page of a result, with a second one laid over it if two paths are given."""
     packed = Packed()
     first, *others = paths
-    results = [collect(first, packed, choice), *(collect_outline(each, packed, choice) for each in others)]
-    data = {"results": results, "info": info_of(first), "version": results[0]["run"].get("program", "")}
+    results = [
+        collect(first, packed, choice),
+        *(collect_outline(each, packed, choice) for each in others),
+    ]
+    data = {
+        "results": results,
+        "info": info_of(first),
+        "version": results[0]["run"].get("program", ""),
+    }
     data["version"] = f"{data['version']} {results[0]['run'].get('version', '')}".strip()
     style = _file("uplot/uPlot.min.css") + _file("page.css")
     licence = "\n".join(f"// {line}".rstrip() for line in _file("uplot/LICENSE").splitlines())
@@ -45,7 +52,8 @@ def page_of(paths: Sequence[Path], choice: Choice = Choice()) -> str:
         "style": style,
         "data": json.dumps(data, allow_nan=False).replace("<", "\\u003c"),
         "blobs": "\n".join(
-            f'<script type="text/plain" id="blob{i}">{blob}</script>' for i, blob in enumerate(packed.blobs)
+            f'<script type="text/plain" id="blob{i}">{blob}</script>'
+            for i, blob in enumerate(packed.blobs)
         ),
         "charts": f"{licence}\n{_file('uplot/uPlot.iife.min.js')}",
         "script": '"use strict";\n' + "\n".join(map(_file, SCRIPTS)),
@@ -63,12 +71,19 @@ def _file(name: str) -> str:
 
 
 def info_of(path: Path) -> dict[str, Any]:
-    """What `stickslip info` says of a result: lines [name, text] and warnings; `missing` says why there are none."""
+    """What `stickslip info` says of a result: lines [name, text], warnings, and what is missing."""
     try:
-        done = subprocess.run([str(binary()), "info", str(path)], capture_output=True, text=True, check=False)
-        missing = f"stickslip info failed: {' '.join(done.stderr.split())}" if done.returncode else None
+        done = subprocess.run(
+            [str(binary()), "info", str(path)], capture_output=True, text=True, check=False
+        )
+        missing = (
+            f"stickslip info failed: {' '.join(done.stderr.split())}" if done.returncode else None
+        )
     except Fault:
-        missing = "The program stickslip was not found when this page was written: summary and warnings are missing."
+        missing = (
+            "The program stickslip was not found when this page was written:"
+            " summary and warnings are missing."
+        )
     if missing:
         return {"lines": [], "warnings": [], "missing": missing}
     lines: list[list[str]] = []
@@ -79,5 +94,8 @@ def info_of(path: Path) -> dict[str, Any]:
         elif lines:
             lines[-1][1] += (" " if lines[-1][0] == "warning" else "\n") + text
     warnings = [text for name, text in lines if name == "warning"]
-    return {"lines": [each for each in lines if each[0] != "warning"], "warnings": warnings, "missing": None}
-
+    return {
+        "lines": [each for each in lines if each[0] != "warning"],
+        "warnings": warnings,
+        "missing": None,
+    }
