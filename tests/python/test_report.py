@@ -435,8 +435,8 @@ def test_elements_fill_their_pixels_without_gaps(shown: Shown, job: Job, tmp_pat
             painter.drawEdges = edges;
             const body = pixelOf(bytesOf(styleColour("body")));
             let missed = 0;
-            for (let row = 0; row < painter.height; row += 3) {
-                for (let column = 0; column < painter.width; column += 3) {
+            for (let row = 0; row < painter.height; row += 5) {
+                for (let column = 0; column < painter.width; column += 5) {
                     const x = (column + 0.5) / view.seen.density;
                     const y = (row + 0.5) / view.seen.density;
                     const inside = view.elementAt(...view.point(x, y)) >= 0;

@@ -1,11 +1,12 @@
 """Arrays as short text for a page.
 
-An array becomes whole numbers q, whose differences from row to row are small; their bytes are sorted
-by significance, deflated and written in base64. `page/decode.js` undoes it. Three maps lead from values
-to whole numbers:
+An array becomes whole numbers q, whose differences from row to row are small. Their bytes are
+sorted by significance, deflated and written in base64; `page/decode.js` undoes it. Three maps lead
+from values to whole numbers:
 
 * `linear`  v = step q, the error is at most step/2;
-* `curved`  v = small sinh(fine q), the error is about fine/2 of the value, or of `small` where that is more;
+* `curved`  v = small sinh(fine q), the error is about fine/2 of the value, or of `small` where that
+            is more;
 * `bits`    q is the bit pattern of v as a float32.
 """
 

@@ -80,6 +80,7 @@ class Chart {
     new IntersectionObserver((entries, observer) => {
       if (!entries.some((entry) => entry.isIntersecting)) return;
       observer.disconnect();
+      if (this.seen) return;
       this.seen = true;
       this.build();
     }, { rootMargin: "300px" }).observe(this.card);
