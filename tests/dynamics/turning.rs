@@ -176,6 +176,33 @@ fn a_profile_with_mass_falls_on_to_a_block() {
     assert!(largest(reports, |r| r.rigid[0].kinetic) > 1.0);
 }
 
+/// A square that is pushed along a floor and let go comes to rest for good: the last slip leaves no velocity.
+#[test]
+fn a_slip_that_ends_leaves_no_velocity() {
+    let text = format!(
+        "{}{MATERIAL}*NODE\n100, 0., 0.5\n200, 0., -1.\n\
+         *SURFACE, NAME=FLOOR, TYPE=SEGMENTS\nSTART, -9., 0.\nLINE, 9., 0.\n\
+         *RIGID BODY, ANALYTICAL SURFACE=FLOOR, REF NODE=200\n*RIGID BODY, ELSET=A, REF NODE=100\n\
+         *SURFACE INTERACTION, NAME=I\n*FRICTION\n0.3\n*CONTACT PAIR, INTERACTION=I\nSA, FLOOR\n\
+         *BOUNDARY\n200, 1, 2\n*INITIAL CONDITIONS, TYPE=VELOCITY\n100, 1, 1.\n\
+         *STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 1.\n*DLOAD\nA, GRAV, 9.81, 0., -1.\n*END STEP\n",
+        square(1, [0.0, 0.5], 0.5, "A"),
+    );
+    let (keep, _) = run_to_end(&read(&text));
+    let reports = &keep.reports;
+    assert!(unbalanced(reports) < 1e-11, "{:e}", unbalanced(reports));
+    // it stops after v0/(mu g) = 0.34
+    let resting = reports.iter().filter(|r| r.time > 0.36);
+    for report in resting {
+        let fastest = report
+            .state
+            .v
+            .iter()
+            .fold(0.0_f64, |most, v| most.max(v.abs()));
+        assert!(fastest < 1e-12, "{} {fastest:e}", report.time);
+    }
+}
+
 /// A square pinned at a corner swings under gravity: a rigid body whose centre of mass follows its
 /// reference node.
 #[test]

@@ -37,7 +37,20 @@ pub(crate) struct Impulses {
     are_exact: bool,
     /// J = Bn^T Phi + Bt^T Psi over all dofs; empty where nothing strikes.
     resultant: Vec<f64>,
+    /// The pairs that stuck in the last pass, with their normal forces; increasing.
+    sticking: Vec<(ConstraintKey, f64)>,
 }
+
+/// The pairs that stick, with their normal forces.
+fn sticking(closed: &ClosedPairs) -> Vec<(ConstraintKey, f64)> {
+    let stuck = closed
+        .iter()
+        .filter(|pair| pair.state == ContactState::Stick);
+    stuck.map(|pair| (pair.key, pair.force[0])).collect()
+}
+
+/// Speed of approach, as a part of the largest speed at a pair, up to which it neither lands nor opens.
+const RESTING: f64 = 1e-9;
 
 impl Impulses {
     /// Starts with the pairs that were closed in the last increment, and those that touch at the start.
@@ -46,6 +59,7 @@ impl Impulses {
             closed: before.keys().collect(),
             touching,
             are_exact: true,
+            sticking: sticking(before),
             ..Impulses::default()
         }
     }
@@ -99,7 +113,11 @@ impl Impulses {
             v0: &start.v,
         };
         let [steady_part, exact_part] = steady.tolerances();
-        let part = self.part_of_change(&steady);
+        let held = self.held(problem, &start.v, dt);
+        let part = match held.iter().any(|impulse| *impulse > 0.0) {
+            true => f64::INFINITY,
+            false => self.part_of_change(&steady),
+        };
         self.are_exact = part <= exact_part;
         if part <= steady_part {
             return Ok(());
@@ -108,7 +126,7 @@ impl Impulses {
         let system = mass_system(problem, workspace);
         let states = (self.of_iterate.iter()).map(|c| self.state(c, &start.v, dt));
         let states = states.collect();
-        let closed = impulses(&self.of_iterate, states, &start.v, dt, system)?;
+        let closed = held_impulses(&self.of_iterate, held, states, &start.v, dt, system)?;
         self.forces.relinearize(&mut self.of_iterate);
         self.forces.closed = closed;
         match self.forces.closed.is_empty() {
@@ -122,6 +140,26 @@ impl Impulses {
             }
         }
         Ok(())
+    }
+
+    /// Impulses P0 = dt Pn of the constraints of bodies that turn that stuck in the last pass and neither land nor open,
+    /// zero of all others, eq. (11.5); none where no body turns.
+    fn held(&self, problem: &StepProblem, v0: &[f64], dt: f64) -> Vec<f64> {
+        let turning = &problem.unknowns.turning;
+        let of_pair = |constraint: &Constraint| {
+            let stuck = (self.sticking).binary_search_by_key(&constraint.key, |stuck| stuck.0);
+            let Ok(at) = stuck else { return 0.0 };
+            let speeds = constraint.dofs.iter().map(|&dof| v0[dof].abs());
+            let rests = approach(constraint, v0, dt).abs() <= RESTING * speeds.fold(0.0, larger);
+            match rests && constraint.mu > 0.0 && constraint.nodes().any(|n| turning.moves(n)) {
+                true => dt * self.sticking[at].1,
+                false => 0.0,
+            }
+        };
+        match turning.is_empty() {
+            true => Vec::new(),
+            false => self.of_iterate.iter().map(of_pair).collect(),
+        }
     }
 
     /// By which part of the largest forces the impulses with the rows of the iterate differ from those at hand: any
@@ -193,6 +231,10 @@ impl Impulses {
     /// Takes over the pairs in contact after a pass; whether they are the same as before, and the impulses theirs. After
     /// some changes the set is kept: impulses of any set take energy, never give it.
     pub fn rest(&mut self, problem: &StepProblem, contact: &ContactForces) -> bool {
+        self.sticking = match problem.unknowns.turning.is_empty() {
+            true => Vec::new(),
+            false => sticking(&contact.closed),
+        };
         let constraints = contact.constraints.iter();
         let massless: Vec<ConstraintKey> =
             (constraints.filter(|c| !has_mass(problem, c)).map(|c| c.key)).collect();
@@ -248,7 +290,7 @@ fn impulses(
     states: Vec<ContactState>,
     v0: &[f64],
     dt: f64,
-    mut system: ContactSystem,
+    system: &mut ContactSystem,
 ) -> Result<ClosedPairs, Cause> {
     // Gn V0 + (2/dt) max(g0, 0) and Gt V0, eq. (6.2); 0 where what they make of an increment is nothing
     let resolved = |c: &Constraint, rate: f64| match c.resolved(dt * rate) {
@@ -280,12 +322,51 @@ fn impulses(
     };
     let posed: Vec<Constraint> = constraints.iter().zip(&given).map(posed).collect();
     let nothing = vec![0.0; v0.len()];
-    let mut response = Response::begin(&mut system, [&nothing, &nothing], &posed)?;
+    let mut response = Response::begin(system, [&nothing, &nothing], &posed)?;
     let all: Vec<&Constraint> = posed.iter().collect();
     let mut free = Vec::new();
-    response.gaps_and_slips(&mut system, posed.iter(), &mut free);
+    response.gaps_and_slips(system, posed.iter(), &mut free);
     system.solve(&all, &free, &guess, &mut closed, Some(&mut response))?;
     Ok(closed)
+}
+
+/// The impulses of constraints of which some hold P0, with Phi + P0 >= 0 in the place of Phi, eq. (11.5): V0 - M^-1 Bn^T P0 is
+/// the velocity without them. Where one would pull with all of P0 its pair holds nothing.
+fn held_impulses(
+    constraints: &[Constraint],
+    mut held: Vec<f64>,
+    states: Vec<ContactState>,
+    v0: &[f64],
+    dt: f64,
+    mut system: ContactSystem,
+) -> Result<ClosedPairs, Cause> {
+    while held.iter().any(|impulse| *impulse > 0.0) {
+        if !system.system.is_factorized() {
+            system.system.factorize()?;
+        }
+        let mut taken = vec![0.0; v0.len()];
+        for (constraint, impulse) in constraints.iter().zip(&held) {
+            constraint.add_force([-impulse, 0.0], &mut taken);
+        }
+        let v = system.respond(v0, &taken)?;
+        let closed = impulses(constraints, states.clone(), &v, dt, &mut system)?;
+        let mut all_push = true;
+        for (constraint, impulse) in constraints.iter().zip(&mut held) {
+            if *impulse > 0.0 && closed.keys().all(|key| key != constraint.key) {
+                (*impulse, all_push) = (0.0, false);
+            }
+        }
+        if all_push {
+            let less = closed.iter().map(|pair| {
+                let at = constraints.iter().position(|c| c.key == pair.key);
+                let mut less = *pair;
+                less.force[0] -= at.map_or(0.0, |at| held[at]);
+                less
+            });
+            return Ok(less.collect());
+        }
+    }
+    impulses(constraints, states, v0, dt, &mut system)
 }
 
 /// Part of the tolerance of forces by which impulses may differ from those with the rows of the iterate where an

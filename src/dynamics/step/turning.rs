@@ -204,6 +204,11 @@ impl<'m> Turning<'m> {
         all.any(|(body, pole)| body.mass > 0.0 && pole != body.centre)
     }
 
+    /// Whether a node belongs to a body that turns.
+    pub fn moves(&self, node: usize) -> bool {
+        self.body_of.get(node).copied().flatten().is_some()
+    }
+
     /// The bodies with their poles.
     fn with_poles(&self) -> impl Iterator<Item = (&'m TurningBody, usize)> + '_ {
         self.bodies.iter().zip(self.poles.iter().copied())
