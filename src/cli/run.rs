@@ -220,6 +220,7 @@ mod tests {
                     dt: 0.1,
                     period: 1.0,
                     dt_min: 0.0,
+                    dt_max: f64::INFINITY,
                     direct: true,
                 },
                 settings: Settings::default(),

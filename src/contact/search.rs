@@ -89,6 +89,12 @@ impl<'m> Search<'m> {
         }
     }
 
+    /// Distance up to which nodes at rest pair with segments at rest in every contact (length); infinite without one.
+    pub fn reach(&self) -> f64 {
+        let reaches = self.territories.iter().map(|territory| territory.reach);
+        reaches.fold(f64::INFINITY, f64::min)
+    }
+
     /// The contacts with their candidates.
     pub fn territories(&self) -> &[Territory<'m>] {
         &self.territories

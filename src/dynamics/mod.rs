@@ -14,6 +14,6 @@ pub use results::{
     Alternation, BodyResult, Cause, ContactImpulse, ContactOnBody, ContactResultant,
     ContactViolation, Course, Cutback, Energy, FailedLcp, Failure, IncrementReport, Landing,
     Momentum, NodalResults, NodeMass, NodeStatus, Observer, Outcome, PassReport, ReturnedImpulse,
-    RigidReaction, RunSummary, SolverCounts, State, Timings, Touch, Worst,
+    RigidReaction, RunSummary, SolverCounts, State, Timings, Touch, Unbalanced, Worst,
 };
 pub use run::{RunError, run};

@@ -510,6 +510,18 @@ pub enum Cause {
         /// Its ends (indices).
         segment: [usize; 2],
     },
+    /// A body that contact alone holds is not in balance, whatever the forces of contact.
+    Unbalanceable(Box<Unbalanced>),
+    /// The equilibrium is not stable.
+    Unstable {
+        /// Node (index) whose pivot is not positive.
+        node: usize,
+    },
+    /// A static increment leads much farther than the last one of the same load: to another equilibrium.
+    Jump {
+        /// Node (index) that moves most.
+        node: usize,
+    },
     /// The effective matrix is not positive definite.
     Indefinite {
         /// Node (index) whose pivot is not positive.
@@ -550,6 +562,21 @@ pub enum Cause {
         /// Node (index) of the value, or the node that moves most.
         node: usize,
     },
+}
+
+/// A body that is not in balance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unbalanced {
+    /// One of its nodes (index).
+    pub node: usize,
+    /// Force that is left over.
+    pub force: [f64; 2],
+    /// Its moment about the mean of the nodes (force length).
+    pub moment: f64,
+    /// Rigid motion that the body is about to make: displacement of that place and angle (length; rad).
+    pub motion: [f64; 3],
+    /// Distance of its farthest node from there (length).
+    pub size: f64,
 }
 
 /// A complementarity problem without solution, of a pass or of the impulses.
@@ -630,6 +657,14 @@ impl fmt::Display for Cause {
                 )
             }
             Cause::Collapsed { .. } => write!(f, "a segment shrank to a point"),
+            Cause::Unbalanceable(_) => write!(f, "a body is not in equilibrium"),
+            Cause::Unstable { .. } => write!(f, "the equilibrium is not stable"),
+            Cause::Jump { .. } => {
+                write!(
+                    f,
+                    "a body jumps to another equilibrium: its load has reached a limit"
+                )
+            }
             Cause::Indefinite { .. } => write!(f, "the effective matrix is not positive definite"),
             Cause::Crossed { .. } => write!(f, "a node went through a segment"),
             Cause::GainedEnergy { part } => {

@@ -61,12 +61,18 @@ fn dof_fields(dof: usize, model: &Model) -> [String; 2] {
 fn head(step: &Step, loads: &LoadCards, lines: &mut DeckWriter) {
     let mut parameters = vec!["NLGEOM".to_owned()];
     parameters.extend(step.name.as_ref().map(|name| named("NAME", name)));
-    parameters.extend(loads.ramp().then(|| set("AMPLITUDE", "RAMP")));
+    let ramps = loads.ramp();
+    let amplitude = match step.procedure {
+        Procedure::Dynamic => ramps.then_some("RAMP"),
+        Procedure::Static => (!ramps).then_some("STEP"),
+    };
+    parameters.extend(amplitude.map(|amplitude| set("AMPLITUDE", amplitude)));
     lines.card_of("STEP", &parameters);
     let Increments {
         dt,
         period,
         dt_min,
+        dt_max,
         direct,
     } = step.increments;
     let procedure = match step.procedure {
@@ -78,10 +84,10 @@ fn head(step: &Step, loads: &LoadCards, lines: &mut DeckWriter) {
             lines.card(procedure, ["DIRECT".to_owned()]);
             lines.row([dt, period, dt_min].map(number));
         }
-        // the largest increment says that they do not grow
+        // in a dynamic step the largest increment says that they do not grow
         false => {
             lines.card(procedure, []);
-            lines.row([dt, period, dt_min, dt].map(number));
+            lines.row([dt, period, dt_min, dt_max].map(number));
         }
     }
 }

@@ -44,8 +44,11 @@ pub struct Increments {
     pub dt: f64,
     /// Duration T of the step (time).
     pub period: f64,
-    /// Smallest increment a cutback may reach (time); 0 by default.
+    /// Smallest increment a cutback may reach (time); by default 0, in a static step without DIRECT 1e-5 of the
+    /// duration, or the increment if that is smaller.
     pub dt_min: f64,
+    /// Largest increment (time); those of a dynamic step do not grow.
+    pub dt_max: f64,
     /// Whether the deck requests fixed increments (DIRECT).
     pub direct: bool,
 }

@@ -9,7 +9,7 @@ use super::status::monitored;
 use crate::diagnostics::Sources;
 use crate::model::{
     Contact, EdgeScales, Element, ElementType, Frames, Impact, ImpactTime, LandingRule, Model,
-    Scheme, Settings, SolverChoice, Step, SurfaceKind,
+    Procedure, Scheme, Settings, SolverChoice, Step, SurfaceKind,
 };
 use crate::prepare::{InitialGap, PreparedModel};
 use crate::vectors::extents;
@@ -122,11 +122,12 @@ impl ModelEcho {
             frames(&step.frames),
         ];
         let settings = &step.settings;
-        let numerics = [
-            scheme(settings.scheme),
-            impact(settings),
-            format!("solver {}", solver(settings.solver)),
-        ];
+        let own = match step.procedure {
+            Procedure::Static => vec!["static".to_owned()],
+            Procedure::Dynamic => vec![scheme(settings.scheme), impact(settings)],
+        };
+        let solver = format!("solver {}", solver(settings.solver));
+        let numerics: Vec<String> = own.into_iter().chain([solver]).collect();
         let mut lines = wrap(&format!("step {}", index + 1), &times);
         lines.extend(wrap("", &numerics));
         if are_dense(step) {

@@ -3,10 +3,12 @@
 
 use super::format::{counted, general, scientific, wrap, wrap_words};
 use super::strain::inversion_hint;
-use crate::dynamics::{Alternation, Cause, Course, Cutback, FailedLcp, Failure, PassReport, Worst};
+use crate::dynamics::{
+    Alternation, Cause, Course, Cutback, FailedLcp, Failure, PassReport, Unbalanced, Worst,
+};
 use crate::elements::ElementResult;
 use crate::lcp::LcpError;
-use crate::model::{Model, Step};
+use crate::model::{Model, Procedure, Step};
 use crate::vectors::{cross, difference};
 
 /// Pairs of a complementarity problem that the text names.
@@ -35,6 +37,7 @@ pub(crate) fn failure_lines(
     }
     lines.extend(failure.worst.as_ref().map(|worst| worst_line(worst, model)));
     lines.extend(place_line(&failure.cause, model, u));
+    lines.extend(unbalanced_lines(&failure.cause, model));
     if let Cause::Indefinite { node } = failure.cause {
         lines.extend(body_line(node, model, elements));
     }
@@ -56,9 +59,14 @@ pub(crate) fn failure_lines(
         lines.extend(wrap_words("advice", &advice));
     }
     if increment > 0 {
+        let steps = &model.steps;
+        let cut = match steps.get(step.wrapping_sub(1)).map(|step| step.procedure) {
+            Some(Procedure::Static) => "cut",
+            _ => "halving",
+        };
         lines.push(format!(
             "tried    {} of the increment; the last attempt with dt {}",
-            counted(failure.halvings as usize, "halving"),
+            counted(failure.halvings as usize, cut),
             scientific(failure.dt, 3),
         ));
     }
@@ -170,14 +178,49 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
             model.node_name(b),
             point(position(model, a, u)),
         )),
+
         Cause::Lcp(ref failed) => Some(pairs_line(failed, model)),
-        Cause::Indefinite { node } | Cause::NotFinite { node, .. } => Some(format!(
+        Cause::Indefinite { node }
+        | Cause::Unstable { node }
+        | Cause::Jump { node }
+        | Cause::NotFinite { node, .. } => Some(format!(
             "node     {} at {}",
             model.node_name(node),
             point(position(model, node, u)),
         )),
         _ => None,
     }
+}
+
+/// The body that is not in balance: what is left over, and how it is about to move.
+fn unbalanced_lines(cause: &Cause, model: &Model) -> Vec<String> {
+    let Cause::Unbalanceable(unbalanced) = cause else {
+        return Vec::new();
+    };
+    let Unbalanced {
+        node,
+        force,
+        moment,
+        motion: [x, y, angle],
+        size,
+    } = **unbalanced;
+    let (way, turn) = (x.hypot(y), angle.abs() * size);
+    let motion = match turn > way {
+        true if angle > 0.0 => "turn to the left".to_owned(),
+        true => "turn to the right".to_owned(),
+        false => format!(
+            "slide along ({}, {})",
+            general(x / way, 3),
+            general(y / way, 3)
+        ),
+    };
+    let text = format!(
+        "of node {}: the force {} and the moment {} about its middle are left over; it is about to {motion}",
+        model.node_name(node),
+        point(force),
+        scientific(moment, 2),
+    );
+    wrap_words("body", &text)
 }
 
 /// The body of a node: its element there that is compressed most, with a set that holds the element.
@@ -324,10 +367,15 @@ pub(super) fn advice(failure: &Failure, model: &Model) -> Option<String> {
             )
         }
         (_, Some(Course::Alternating(all))) => alternation_advice(all)?.to_owned(),
+        (Cause::NotConverged | Cause::Diverged, _) if step.procedure == Procedure::Static => {
+            "the load may have reached a limit: go on with *DYNAMIC from the last increment, or prescribe a \
+             displacement in place of the load"
+                .to_owned()
+        }
         (cause, _) => cause_advice(cause, model)?.to_owned(),
     };
     Some(match has_halvings_left(failure, step) {
-        true => text + "; or let it be halved further, by a smaller least increment of *DYNAMIC",
+        true => text + "; or let it be cut further, by a smaller least increment of the step",
         false => text,
     })
 }
@@ -356,6 +404,12 @@ fn cause_advice(cause: &Cause, model: &Model) -> Option<&'static str> {
     Some(match cause {
         Cause::NotConverged | Cause::Diverged => {
             "take smaller increments, a smaller load, or bring the load on more slowly (*AMPLITUDE)"
+        }
+        Cause::Unbalanceable(_) => {
+            "hold the body with a support, let friction or another body hold it, or go on with *DYNAMIC"
+        }
+        Cause::Unstable { .. } | Cause::Jump { .. } => {
+            "go on with *DYNAMIC from the last increment, or prescribe a displacement in place of the load"
         }
         Cause::Indefinite { node } => match is_for_small_strains_at(*node, model) {
             true => {
@@ -524,6 +578,7 @@ mod tests {
                 dt: 1.0,
                 period: 1.0,
                 dt_min: 0.01,
+                dt_max: f64::INFINITY,
                 direct: false,
             },
             settings: Settings::default(),

@@ -164,6 +164,7 @@ mod tests {
             dt: 0.1,
             period,
             dt_min: 0.0,
+            dt_max: f64::INFINITY,
             direct: true,
         };
         let step = Step {

@@ -25,7 +25,7 @@ pub(crate) struct Monitor {
     /// Whether each contact has closed, or been struck.
     closed: Vec<bool>,
     touches: Vec<Touch>,
-    /// Length of the longest increment, and the last time.
+    /// Length of the longest increment at whose end something moves, not that of a static step, and the last time.
     dt: f64,
     time: f64,
     /// Failed attempts since the last increment.
@@ -68,7 +68,9 @@ impl Monitor {
     pub fn add(&mut self, report: &IncrementReport) -> Remarks {
         let contact_energy = self.balance.add(report);
         self.touches.extend(&report.touches);
-        self.dt = larger(self.dt, report.dt);
+        if report.energy.kinetic != 0.0 {
+            self.dt = larger(self.dt, report.dt);
+        }
         self.time = report.time;
         self.landings += report.landings.len();
         for (closed, contact) in self.closed.iter_mut().zip(&report.contacts) {
@@ -147,7 +149,7 @@ impl Monitor {
             balance: self.balance.worst(),
             losses: self.balance.losses(),
             strain: None,
-            open: match self.dt > 0.0 {
+            open: match self.time > 0.0 {
                 true => never_closed(&contacts),
                 false => Vec::new(),
             },

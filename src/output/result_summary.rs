@@ -284,12 +284,14 @@ fn read_findings(
     let strain: Option<Vec<f64>> = ["largest_principal_elastic", "largest_principal"]
         .iter()
         .find_map(|name| column(&history, &format!("strain/{name}")).ok());
-    let dt = largest(&increments);
+    let kinetic: Vec<f64> = column(&history, "energy/kinetic").unwrap_or_default();
+    let moving = increments.iter().zip(&kinetic).filter(|(_, t)| **t != 0.0);
+    let dt = moving.map(|(dt, _)| *dt).fold(0.0, larger);
     Ok(Findings {
         balance,
         losses,
         strain: strain.map(|strain| largest(&strain)),
-        open: match dt > 0.0 {
+        open: match times.last().is_some_and(|time| *time > 0.0) {
             true => read_open(&history.group("contact")?)?,
             false => Vec::new(),
         },

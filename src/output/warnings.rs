@@ -28,7 +28,7 @@ pub(crate) struct Findings {
     pub open: Vec<String>,
     /// The touches that matter.
     pub touches: Touches,
-    /// Length of the longest increment; 0 without any.
+    /// Length of the longest increment at whose end something moves; 0 without any, as in static steps.
     pub dt: f64,
     /// Last time.
     pub time: f64,
@@ -40,7 +40,9 @@ impl Findings {
     /// The warnings, each a sentence that says what to do, in lines of the screen.
     pub fn lines(&self) -> Vec<String> {
         let mut texts: Vec<String> = self.balance_text().into_iter().collect();
-        texts.extend(self.losses.advice());
+        if self.dt > 0.0 {
+            texts.extend(self.losses.advice());
+        }
         let others = [
             self.touches.brief_text(),
             self.touches.narrow_text(),

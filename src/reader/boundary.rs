@@ -9,7 +9,7 @@ use super::rigid_bodies::{self, Rigid};
 use super::sets::Sets;
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span, closest};
-use crate::model::{Amplitude, Rate, Support, SupportMotion};
+use crate::model::{Amplitude, Procedure, Rate, Step, Support, SupportMotion};
 use std::collections::BTreeMap;
 
 /// Objects of the model that supports and loads refer to.
@@ -339,6 +339,19 @@ pub(crate) fn initial_velocity(
     }
     report_supported(&velocity, &places, supports, targets, cx);
     velocity
+}
+
+/// Warns about initial velocities before a static step, which is at rest.
+pub(crate) fn check_start(outline: &Outline, first: Option<&Step>, cx: &mut Context) {
+    let is_velocity = |card: &&Card| card.choice("TYPE") == Some("VELOCITY");
+    let mut cards = outline.model_cards("INITIAL CONDITIONS").into_iter();
+    if let (Some(card), Some(Procedure::Static)) =
+        (cards.find(is_velocity), first.map(|s| s.procedure))
+    {
+        let message = "these velocities have no effect: the first step is static";
+        cx.d.warning_once(Code::IgnoredParameter, card.span, message)
+            .help("give them to a model whose first step is dynamic");
+    }
 }
 
 /// Whether a support has its velocity at the start from what is prescribed; an acceleration leaves it.

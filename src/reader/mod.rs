@@ -90,6 +90,7 @@ fn read(cx: &mut Context) -> Model {
     let bodies = rigid_bodies::complete(&rigid_bodies, &mesh_index, all, &mut initial_velocity, cx);
     let equations = equations::read(&outline, targets, &steps.all, cx);
     rigid_bodies::check(&rigid_bodies, &bodies, (&steps.all, &equations), cx);
+    boundary::check_start(&outline, steps.all.first(), cx);
     equations::check_velocities(&equations, &initial_velocity, &steps.at_start, targets, cx);
     let model = Model {
         title: title(&outline),

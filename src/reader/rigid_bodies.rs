@@ -381,14 +381,21 @@ pub(crate) fn check(
         let returns = (steps.iter()).any(|step| step.settings.landing == LandingRule::Return);
         let redistributes =
             (steps.iter()).any(|step| step.settings.contact_mass == ContactMass::Redistributed);
+        let is_static = (steps.iter()).any(|step| step.procedure == Procedure::Static);
         let options = [
+            (is_static, "a static step"),
             (returns, "LANDING=RETURN"),
             (redistributes, "CONTACT MASS=REDISTRIBUTED"),
         ];
         for (_, option) in options.into_iter().filter(|(is_asked, _)| *is_asked) {
             let message = format!("{} turns, which {option} does not know", rigid.name);
-            cx.error(Code::RigidSurface, rigid.span, message)
-                .help("leave it out of *STICKSLIP");
+            let help = match option {
+                "a static step" => {
+                    "hold its rotation, direction 6 of its reference node, or use *DYNAMIC"
+                }
+                _ => "leave it out of *STICKSLIP",
+            };
+            cx.error(Code::RigidSurface, rigid.span, message).help(help);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! `*STEP`, `*DYNAMIC` and `*STICKSLIP`; the state of supports, loads and settings from step to step.
+//! `*STEP`, `*STATIC`, `*DYNAMIC` and `*STICKSLIP`; the state of supports, loads and settings from step to step.
 
 use super::boundary::{Supports, Targets};
 use super::context::Context;
@@ -94,11 +94,12 @@ impl StepReader<'_> {
         cx: &mut Context,
     ) -> Option<Step> {
         self.check_nonlinear(cards.head, cx);
-        let context = StepContext {
-            step: number,
-            ramp: cards.head.choice("AMPLITUDE") == Some("RAMP"),
+        let (procedure, increments) = self.procedure(cards, cx);
+        let ramp = match cards.head.choice("AMPLITUDE") {
+            Some(amplitude) => amplitude == "RAMP",
+            None => procedure == Procedure::Static,
         };
-        let increments = self.procedure(cards, cx);
+        let context = StepContext { step: number, ramp };
         let period = increments.map_or(0.0, |increments| increments.period);
         self.own_settings(cards, number, cx);
         self.conditions(cards, context, cx);
@@ -108,7 +109,12 @@ impl StepReader<'_> {
         let name = cards.head.value("NAME").and_then(|name| name.name(cx.d));
         let step = increments.map(|increments| Step {
             supports,
-            ..self.build(name.map(|n| n.typed), increments, number == self.last)
+            ..self.build(
+                name.map(|n| n.typed),
+                procedure,
+                increments,
+                number == self.last,
+            )
         });
         if number < self.last {
             self.end(period);
@@ -116,10 +122,16 @@ impl StepReader<'_> {
         step
     }
 
-    fn build(&mut self, name: Option<String>, increments: Increments, is_last: bool) -> Step {
+    fn build(
+        &mut self,
+        name: Option<String>,
+        procedure: Procedure,
+        increments: Increments,
+        is_last: bool,
+    ) -> Step {
         let mut step = Step {
             name,
-            procedure: Procedure::Dynamic,
+            procedure,
             increments,
             settings: self.settings,
             supports: Vec::new(),
@@ -150,23 +162,31 @@ impl StepReader<'_> {
     }
 
     /// Reads the procedure of a step; reports a missing or second one.
-    fn procedure(&mut self, cards: &StepCards, cx: &mut Context) -> Option<Increments> {
-        let found = named(cards, "DYNAMIC");
+    fn procedure(
+        &mut self,
+        cards: &StepCards,
+        cx: &mut Context,
+    ) -> (Procedure, Option<Increments>) {
+        let is_procedure = |card: &&Card| ["STATIC", "DYNAMIC"].contains(&card.keyword.name);
+        let found: Vec<&Card> = cards.cards.iter().copied().filter(is_procedure).collect();
         cx.only_once(&found);
         let Some(card) = found.first() else {
             if !cx.may_lack_cards() {
                 let message = "this step has no procedure";
                 cx.error(Code::StepStructure, cards.head.span, message)
-                    .help("add *DYNAMIC with the increment and the duration");
+                    .help("add *STATIC or *DYNAMIC with the increment and the duration");
             }
-            return None;
+            return (Procedure::Dynamic, None);
         };
+        if card.keyword.name == "STATIC" {
+            return (Procedure::Static, static_increments(card, cx));
+        }
         match card.choice("IMPACT") {
             Some("NO") => self.settings.impact = Impact::None,
             Some(_) => self.settings.impact = Impact::Impulse,
             None => {}
         }
-        increments(card, self.guide, cx)
+        (Procedure::Dynamic, increments(card, self.guide, cx))
     }
 
     fn own_settings(&mut self, cards: &StepCards, number: usize, cx: &mut Context) {
@@ -235,6 +255,51 @@ fn increments(card: &Card, guide: Option<f64>, cx: &mut Context) -> Option<Incre
         dt,
         period,
         dt_min,
+        dt_max: dt,
+        direct,
+    })
+}
+
+/// Part of the duration of a static step that its increments are not cut below by default.
+const LEAST_STATIC: f64 = 1e-5;
+
+/// `[dt[, T[, smallest dt[, largest dt]]]]` of a static step: T is 1 by default, dt the whole.
+fn static_increments(card: &Card, cx: &mut Context) -> Option<Increments> {
+    let direct = card.has("DIRECT") && card.choice("DIRECT") != Some("NO");
+    let Some(row) = card.rows.first() else {
+        return Some(Increments {
+            dt: 1.0,
+            period: 1.0,
+            dt_min: if direct { 0.0 } else { LEAST_STATIC },
+            dt_max: 1.0,
+            direct,
+        });
+    };
+    row.at_most(4, cx.d);
+    if let Some(extra) = card.rows.get(1) {
+        cx.error(Code::StrayData, extra.span(), "*STATIC has one data line");
+    }
+    let period = row.real_or(1, 1.0, cx.d);
+    let first = row.real_or(0, period.unwrap_or(1.0), cx.d);
+    let (dt, period) = (first?, period?);
+    let least = if direct {
+        0.0
+    } else {
+        dt.min(LEAST_STATIC * period)
+    };
+    let (dt_min, dt_max) = (row.real_or(2, least, cx.d), row.real_or(3, period, cx.d));
+    let (dt_min, dt_max) = (dt_min?, dt_max?);
+    check_times(row, dt, period, dt_min, dt_max, cx)?;
+    if direct {
+        let help = "with DIRECT increments keep their size but for cutbacks";
+        row.without_effect(3, "this largest increment has no effect", help, cx.d);
+        note_short_end(row, dt, period, cx);
+    }
+    Some(Increments {
+        dt: if direct { dt } else { dt.min(dt_max) },
+        period,
+        dt_min,
+        dt_max: if direct { dt } else { dt_max },
         direct,
     })
 }

@@ -442,7 +442,7 @@ fn follow_ups_of_a_reported_cause_are_not_reported() {
         ("*SURFACE, NAME=TOP", "*SURFACE, NAME=TOP, TYPE=SEGMENTS"),
         ("*SOLID SECTION", "*SHELL SECTION"),
         ("*SOLID SECTION", "*XYZZY"),
-        ("*DYNAMIC, DIRECT", "*STATIC"),
+        ("*DYNAMIC, DIRECT", "*VISCO"),
         ("*DYNAMIC, DIRECT", "*XYZZY"),
         ("*STEP, NLGEOM", "*XYZZY"),
         ("*STEP, NLGEOM", "*STPE, NLGEOM"),

@@ -75,9 +75,9 @@ fn keywords_and_codes_are_explained() {
         "{text}"
     );
     assert!(text.lines().all(|line| line.len() <= 80), "{text}");
-    let (_, text, _) = explain(&["STATIC"]);
+    let (_, text, _) = explain(&["VISCO"]);
     assert!(
-        text.starts_with("*STATIC: stops with an error\n\nSteps are dynamic"),
+        text.starts_with("*VISCO: stops with an error\n\nSteps are static or dynamic"),
         "{text}"
     );
     assert!(text.contains("in its place\n  *DYNAMIC"), "{text}");

@@ -199,6 +199,7 @@ pub fn step(dt: f64, count: usize, settings: Settings, mut supports: Vec<Support
             dt,
             period: dt * count as f64,
             dt_min: 0.0,
+            dt_max: f64::INFINITY,
             direct: true,
         },
         settings,

@@ -28,6 +28,7 @@ mod redistributed_mass;
 mod rest;
 mod rigid;
 mod scales;
+mod statics;
 mod subincrements;
 mod thin;
 mod turning;

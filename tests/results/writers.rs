@@ -143,6 +143,7 @@ fn step() -> Step {
             dt: 0.1,
             period: 1.0,
             dt_min: 0.0,
+            dt_max: f64::INFINITY,
             direct: true,
         },
         settings: Settings::default(),

@@ -5,7 +5,8 @@ use super::types::{Data, Keyword, Parameter as P, Scope, Unread, Value as V, row
 
 const UNSCALED: &str = "Masses are not scaled: remove it, implicit increments do not need it.";
 const INTEGRATOR: &str = "the time integration is that of *STICKSLIP, SCHEME=";
-const PROCEDURE: &str = "Steps are dynamic: use *DYNAMIC.";
+const PROCEDURE: &str = "Steps are static or dynamic: use *STATIC or *DYNAMIC.";
+const NO_STABILIZE: &str = "there is no artificial damping: bodies held by contact alone need none";
 const DYNAMIC: &str = "*DYNAMIC, DIRECT\n\
          1.E-7, 1.E-4";
 
@@ -28,8 +29,8 @@ pub(super) static STEPS: &[Keyword] = &[
             P::choice(
                 "AMPLITUDE",
                 &[
-                    V::read("STEP", "at once (default)"),
-                    V::read("RAMP", "linearly over the step"),
+                    V::read("STEP", "at once (default of dynamic steps)"),
+                    V::read("RAMP", "linearly over the step (default of static steps)"),
                 ],
                 "how loads without amplitude reach their magnitude",
             ),
@@ -54,6 +55,52 @@ pub(super) static STEPS: &[Keyword] = &[
         "*STEP, NLGEOM\n\
          *DYNAMIC, DIRECT\n\
          1.E-7, 1.E-4\n\
+         *END STEP",
+    ),
+    Keyword::read(
+        "STATIC",
+        Scope::Step,
+        Data::Rows(&[row(
+            "first increment [time], duration [time], smallest increment [time], \
+                    largest increment [time]",
+        )]),
+        &[
+            P::optional_choice(
+                "DIRECT",
+                &[
+                    V::read("YES", "(default)"),
+                    V::read("NO", "the same as no DIRECT"),
+                    V::refused(
+                        "NO STOP",
+                        "an increment that does not converge is not accepted",
+                    ),
+                ],
+                "increments of fixed size",
+            ),
+            P::flag(
+                "RIKS",
+                "where a load has its largest value, go on with *DYNAMIC",
+            )
+            .refused(),
+            P::optional("STABILIZE", NO_STABILIZE).warned(),
+            P::value("FACTOR", NO_STABILIZE).warned(),
+            P::value("ALLSDTOL", NO_STABILIZE).warned(),
+            P::value("CONTINUE", NO_STABILIZE).warned(),
+            P::flag("ADIABATIC", "there are no temperatures").refused(),
+            P::value("SOLVER", "use *STICKSLIP, SOLVER=").warned(),
+            P::flag("TIME RESET", "times go on from step to step").refused(),
+            P::value("TOTAL TIME AT START", "times go on from step to step").refused(),
+            P::flag("LONG TERM", "there is no creep").refused(),
+            P::flag("FULLY PLASTIC", "there is no plasticity").refused(),
+        ],
+        "A static step: equilibrium without inertia, damping and impacts, at the end of every increment exact with \
+         contact and friction. First increment (the duration by default), duration (1 by default), smallest \
+         increment (1e-5 of the duration by default), largest increment. Increments that fail are cut to a \
+         quarter; after two increments of at most five passes they grow by half. With DIRECT they keep their size, \
+         and those that fail are halved. Loads without amplitude grow linearly over the step.",
+        "*STEP, NLGEOM\n\
+         *STATIC\n\
+         0.1, 1.\n\
          *END STEP",
     ),
     Keyword::read(
@@ -90,7 +137,7 @@ pub(super) static STEPS: &[Keyword] = &[
                 &[
                     V::warned("TRANSIENT FIDELITY", INTEGRATOR),
                     V::warned("MODERATE DISSIPATION", INTEGRATOR),
-                    V::refused("QUASI-STATIC", "steps are dynamic"),
+                    V::refused("QUASI-STATIC", "use *STATIC, or *DYNAMIC with *DAMPING"),
                 ],
                 "kind of problem",
             ),
@@ -262,7 +309,7 @@ pub(super) static UNREAD_STEPS: &[Unread] = &[
         "The mesh stays as it is.",
     ),
     Unread::refused(
-        "STATIC, VISCO, FREQUENCY, COMPLEX FREQUENCY, MODAL DYNAMIC, BUCKLE, \
+        "VISCO, FREQUENCY, COMPLEX FREQUENCY, MODAL DYNAMIC, BUCKLE, \
          STEADY STATE DYNAMICS, RESPONSE SPECTRUM, RANDOM RESPONSE, DIRECT CYCLIC, \
          HEAT TRANSFER, COUPLED TEMPERATURE-DISPLACEMENT, DYNAMIC TEMPERATURE-DISPLACEMENT, \
          UNCOUPLED TEMPERATURE-DISPLACEMENT, COUPLED THERMAL-ELECTRICAL, ELECTROMAGNETICS, \

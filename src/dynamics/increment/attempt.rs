@@ -13,13 +13,14 @@ use super::returned::Returned;
 use super::rigid_predictor::rigid_predictor;
 use super::trace::{Failed, Trace};
 use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED};
-use crate::contact::{ClosedPairs, ConstraintSet};
+use crate::contact::{ClosedPairs, Constraint, ConstraintKey, ConstraintSet};
 use crate::dynamics::results::{Cause, PassReport, State};
 use crate::dynamics::step::{
     ClosedConstraints, EffectiveStiffness, Equilibrium, Interval, StartVelocity, StepProblem,
-    Workspace, sum, write_difference, write_sum,
+    Workspace, add_pin_forces, difference, sum, write_difference, write_sum,
 };
 use crate::elements::{Motion, Updated};
+use crate::linear::largest;
 
 /// Passes of an attempt that are made in any case; further ones only while they will end within MAX PASSES.
 const PATIENCE: usize = 25;
@@ -67,6 +68,8 @@ pub(crate) struct Solved {
     pub end: State,
     /// Energy that the materials have dissipated.
     pub material_dissipation: f64,
+    /// Largest displacement increment after the first pass, by the tangent of its start (length).
+    pub tangent_way: f64,
     /// Its passes.
     pub passes: Vec<PassReport>,
     /// What is given back once it has converged.
@@ -93,6 +96,15 @@ impl Path {
 }
 
 impl Solved {
+    /// The motion of a static increment of length `dt` at a constant rate, which the next one begins with.
+    pub fn static_path(&self, dt: f64) -> Path {
+        Path {
+            v: self.d.iter().map(|d| d / dt).collect(),
+            a: vec![0.0; self.d.len()],
+            closed: self.end.contact.clone(),
+        }
+    }
+
     /// The motion of an increment of length `dt`, A = (2/dt²) (d - dt V0+), eq. (4.1).
     pub fn path(&self, dt: f64) -> Path {
         let both = self.d.iter().zip(&self.v0p);
@@ -144,7 +156,64 @@ struct Vectors {
     load: Vec<f64>,
     /// Correction dU.
     du: Vec<f64>,
+    /// Largest displacement increment after the first pass.
+    tangent_way: f64,
     residual: Residual,
+}
+
+/// Steps in a pass that take the forces of pins out.
+const PIN_STEPS: usize = 20;
+/// The least of them before forces count as settled.
+const LEAST_PIN_STEPS: usize = 4;
+/// Parts of the stiffness of pins with which they are made, one after the other.
+const SOFTER: [f64; 3] = [1.0, 1e-2, 1e-4];
+/// Forces of pins that are none, beside the other forces.
+const PIN_FORCE: f64 = 1e-13;
+/// Those that the next pass may take out.
+const SMALL_PIN_FORCE: f64 = 1e-8;
+/// Change of forces of pins, beside them, that become no smaller.
+const SETTLED_PIN: f64 = 1e-3;
+/// Passes with the same closed pairs in which forces of pins stay after which there is no equilibrium.
+const FREE_PASSES: usize = 3;
+/// Constraints that the stiffness of pins is taken from.
+const NEAR: usize = 12;
+
+/// Passes in a row in which forces of pins stay.
+#[derive(Default)]
+struct FreePasses {
+    count: usize,
+    closed: Vec<ConstraintKey>,
+}
+
+impl FreePasses {
+    /// A pass has balanced its bodies.
+    fn ends(&mut self) {
+        self.count = 0;
+    }
+
+    /// Takes in a pass that has not; whether there is no equilibrium: with closed pairs at once, as a body that tips
+    /// or slides would look for another one in the passes that follow.
+    fn fail(&mut self, contact: &ContactForces) -> bool {
+        let closed = contact
+            .closed
+            .iter()
+            .map(|pair| pair.key)
+            .collect::<Vec<_>>();
+        self.count = if closed == self.closed {
+            self.count + 1
+        } else {
+            1
+        };
+        self.closed = closed;
+        !self.closed.is_empty() || self.count >= FREE_PASSES
+    }
+}
+
+/// The constraints with the smallest gaps in their lengths.
+fn nearest(contact: &ContactForces) -> Vec<Constraint> {
+    let mut all: Vec<&Constraint> = contact.constraints.iter().collect();
+    all.sort_by(|a, b| (a.gap / a.scale).total_cmp(&(b.gap / b.scale)));
+    all.into_iter().take(NEAR).cloned().collect()
 }
 
 /// An attempt at one increment.
@@ -165,9 +234,13 @@ impl<'m> Attempt<'_, 'm> {
         let mut vectors = Vectors::default();
         let mut failed = Cause::NotConverged;
         (self.workspace.stiffness).start(self.problem, &self.start.u);
-        for &rule in FactorRule::order(self.problem.settings.factorization) {
+        for &rule in self.factor_rules() {
             trace.begin();
-            (self.workspace.search).start(&self.start.v, self.interval.dt);
+            let v = match self.guess {
+                Some(path) if !self.problem.integration.has_rates => &path.v,
+                _ => &self.start.v,
+            };
+            (self.workspace.search).start(v, self.interval.dt);
             let mut factors = Refactorization::new(rule, self.problem.settings.tolerance);
             match self.passes(&mut factors, &mut trace, &mut vectors) {
                 Ok(solved) => {
@@ -183,6 +256,16 @@ impl<'m> Attempt<'_, 'm> {
         Err(trace.failed(failed, self.problem.settings.tolerance))
     }
 
+    /// Rules of the factors in the order in which they are tried: in a static step, whose tangent is exact, new ones
+    /// in every pass, from the motion of the last increment and then from rest.
+    fn factor_rules(&self) -> &'static [FactorRule] {
+        match (self.problem.integration.has_rates, self.guess) {
+            (true, _) => FactorRule::order(self.problem.settings.factorization),
+            (false, Some(_)) => &[FactorRule::EveryPass, FactorRule::EveryPass],
+            (false, None) => &[FactorRule::EveryPass],
+        }
+    }
+
     /// Predictor and correctors, which share one form (paper eqs 27, 29 and 36 to 49).
     fn passes(
         &mut self,
@@ -195,6 +278,7 @@ impl<'m> Attempt<'_, 'm> {
         let mut contact = ContactStates::new(closed, self.set);
         let mut equal_forces = EqualForces::new(problem.settings.tolerance);
         let mut acceleration = Acceleration::default();
+        let mut free = FreePasses::default();
         // the passes start from the rigid motion of the bodies, or from a motion that is known
         let mut d = match self.guess {
             Some(path) => path.displacement(dt),
@@ -227,7 +311,15 @@ impl<'m> Attempt<'_, 'm> {
             // Pn, Pt of the complementarity problem, eq. (5.2);
             // dU = d_p + K*^-1 (r - theta2 K d_p + Bn^T Pn + Bt^T Pt), eq. (4.7)
             let weight = equal_forces.weight(settled);
-            (contact.forces).solve([&v.d_p, &v.load], weight, &mut self.k_star(), &mut v.du)?;
+            match self.workspace.pins.are_none() {
+                true => (contact.forces).solve(
+                    [&v.d_p, &v.load],
+                    weight,
+                    &mut self.k_star(),
+                    &mut v.du,
+                )?,
+                false => self.iterate_pins(&mut contact.forces, weight, &mut free, v)?,
+            }
 
             // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales
             let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
@@ -235,6 +327,7 @@ impl<'m> Attempt<'_, 'm> {
             let has_converged = self.measure(&pass, &mut v.residual, trace)?;
 
             let ends = contact.rest(problem) && has_converged;
+            self.move_finitely(v);
             let correction = trace.correction();
             if !ends {
                 equal_forces.take_in(correction, settled);
@@ -247,6 +340,9 @@ impl<'m> Attempt<'_, 'm> {
             }
             // d <- d + dU, eq. (4.7)
             d.iter_mut().zip(&v.du).for_each(|(d, du)| *d += du);
+            if number == 0 {
+                v.tangent_way = largest(&d);
+            }
             if ends {
                 return self.finish(&d, contact, v, false);
             }
@@ -324,6 +420,81 @@ impl<'m> Attempt<'_, 'm> {
         let (problem, start, interval) = (self.problem, self.start, self.interval);
         let evaluate = || problem.equilibrium(start, v0p, iterate, interval, equilibrium);
         (self.workspace.meter).time(|t| &mut t.assembly, evaluate)
+    }
+
+    /// Contact forces and correction of a pass in which pins hold bodies that no support holds: pinned where the
+    /// forces p of the pins, a' p, let the body move as it would without them.
+    ///
+    /// ```text
+    /// dU = y + W (B^T P + S a' p),  f = a' (S^T dU - p),  p <- S^T dU  until f vanishes    eq. (12.5)
+    /// ```
+    fn iterate_pins(
+        &mut self,
+        contact: &mut ContactForces,
+        weight: Option<f64>,
+        free: &mut FreePasses,
+        v: &mut Vectors,
+    ) -> Result<(), Cause> {
+        let problem = self.problem;
+        let near = nearest(contact);
+        let near: Vec<&Constraint> = near.iter().collect();
+        let dofs: Vec<usize> = self.workspace.pins.dofs().collect();
+        let mut p = vec![0.0; dofs.len()];
+        let mut stays = None;
+        // where f vanishes slowly, pins are too stiff for the contact that holds the body
+        'rounds: for part in SOFTER {
+            let stiffness = (self.workspace)
+                .soften(problem, &near, part)
+                .map_err(|error| problem.unsolvable(error))?;
+            let mut forces: Vec<Vec<f64>> = Vec::new();
+            let mut left = f64::INFINITY;
+            for step in 0..PIN_STEPS {
+                let mut load = v.load.clone();
+                add_pin_forces(&self.workspace.pins, &stiffness, &p, &mut load);
+                contact.solve([&v.d_p, &load], weight, &mut self.k_star(), &mut v.du)?;
+                let moved: Vec<f64> = dofs.iter().map(|&dof| v.du[dof]).collect();
+                let carried = |k: usize| stiffness[k] * (moved[k] - p[k]);
+                let force: Vec<f64> = (0..dofs.len()).map(carried).collect();
+                p = moved;
+                let Equilibrium { load, internal, .. } = &v.equilibrium;
+                let of_pairs = contact.acting().map(|(_, pair)| pair.force[0]);
+                let others = [largest(load), largest(internal)]
+                    .into_iter()
+                    .chain(of_pairs);
+                left = largest(&force) / others.fold(0.0, f64::max);
+                // without any force there is nothing to carry
+                if left.is_nan() || left <= PIN_FORCE {
+                    free.ends();
+                    return Ok(());
+                }
+                if let Some(before) = step.checked_sub(2).map(|before| &forces[before])
+                    && step >= LEAST_PIN_STEPS
+                    && left > SMALL_PIN_FORCE
+                    && largest(&difference(&force, before)) < SETTLED_PIN * largest(&force)
+                {
+                    stays = Some(force);
+                    break 'rounds;
+                }
+                forces.push(force);
+            }
+            if left <= SMALL_PIN_FORCE {
+                free.ends();
+                return Ok(());
+            }
+        }
+        match stays {
+            Some(force) if free.fail(contact) => {
+                Err((self.workspace.pins).unbalanceable(problem, &v.u, &v.du, &force))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Makes the rigid part of the correction of a pinned body a finite motion.
+    fn move_finitely(&self, v: &mut Vectors) {
+        let at = |node: usize| self.problem.position(&v.u, node);
+        let reach = self.workspace.search.reach();
+        self.workspace.pins.make_finite(&at, reach, &mut v.du);
     }
 
     /// K* with its contact problems.
@@ -458,6 +629,7 @@ impl<'m> Attempt<'_, 'm> {
             self.equilibrium(&v0p, [&u, d], &mut equilibrium)?;
         }
         let v0p = v0p.v0p.into_owned();
+        let tangent_way = v.tangent_way;
         // V1 = (2/dt) d - V0+, eq. (4.2); of what is prescribed from the amplitude; at rest in a static step
         let rate = 2.0 / self.interval.dt;
         let mut v: Vec<f64> = d.iter().zip(&v0p).map(|(d, v0p)| rate * d - v0p).collect();
@@ -487,6 +659,7 @@ impl<'m> Attempt<'_, 'm> {
             contact,
             end,
             material_dissipation: dissipated,
+            tangent_way,
             passes: Vec::new(),
             returned: Returned::default(),
         })

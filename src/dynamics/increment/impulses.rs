@@ -569,6 +569,7 @@ mod tests {
                 dt: DT,
                 period: 1.0,
                 dt_min: 0.0,
+                dt_max: f64::INFINITY,
                 direct: true,
             },
             settings,

@@ -102,11 +102,20 @@ impl Accounts {
         self.enter_damping(problem, solved);
         let mut report = self.moving(problem, &solved.end, ledger);
         let u = &solved.equilibrium.u_theta;
+        // forces that act in no time give no impulse
+        let interval = match problem.integration.has_rates {
+            true => interval,
+            false => Interval {
+                dt: 0.0,
+                ..interval
+            },
+        };
         let mut contacts = contact_resultants(problem, solved);
         let bodies = &self.bodies.bodies;
         report.touches = (self.touches).enter(problem, bodies, solved, interval, &mut contacts);
         report.returns = (self.contacts).enter_returns(solved, interval, &mut contacts);
-        (self.contacts).enter(problem, bodies, solved, interval.dt, &mut contacts);
+        let both = (solved, &ledger.works[..]);
+        (self.contacts).enter(problem, bodies, both, interval.dt, &mut contacts);
         let mut nodal = nodal_results(problem, solved);
         let (theta1, Interval { start, end, .. }) = (problem.integration.theta1, interval);
         nodal.concentrated = problem.loads.concentrated(theta1, start, end, u.len());

@@ -5,6 +5,7 @@
 
 use std::collections::BTreeMap;
 
+use super::pair_work::PairWork;
 use crate::contact::{Constraint, ConstraintKey, Search, crossed_edges};
 use crate::dynamics::increment::{PairReturn, Solved};
 use crate::dynamics::results::{
@@ -57,7 +58,7 @@ impl ContactLedger {
         &mut self,
         problem: &StepProblem,
         bodies: &Bodies,
-        solved: &Solved,
+        (solved, works): (&Solved, &[PairWork]),
         dt: f64,
         resultants: &mut [ContactResultant],
     ) {
@@ -68,13 +69,14 @@ impl ContactLedger {
                 result.bodies = vec![ContactOnBody::default(); bodies.count];
             }
         }
+        for work in works {
+            let sums = &mut self.contacts[work.key.contact()];
+            sums.normal_work += work.normal;
+            sums.friction_dissipation += work.friction;
+        }
         for (constraint, pair) in solved.contact.forces.acting() {
             let contact = pair.key.contact();
             let [pn, pt] = pair.force;
-            // Pn.(Bn d) and -Pt.(Bt d)
-            let sums = &mut self.contacts[contact];
-            sums.normal_work += pn * constraint.normal_motion(&solved.d);
-            sums.friction_dissipation -= pt * constraint.tangential_motion(&solved.d);
             let result = &mut resultants[contact];
             result.impulse.add(constraint, [dt * pn, dt * pt]);
             if !result.bodies.is_empty() {

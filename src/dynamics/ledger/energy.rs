@@ -6,6 +6,7 @@
 
 use std::sync::Arc;
 
+use super::pair_work::{EndForces, PairWork, steady_works};
 use crate::contact::Constraint;
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::dynamics::increment::{ContactStates, Solved};
@@ -32,6 +33,10 @@ pub(crate) struct Ledger {
     pub contact_energy: Option<f64>,
     /// Largest kinetic or strain energy or external work so far.
     pub scale: f64,
+    /// Work of the pairs in the last increment.
+    pub works: Vec<PairWork>,
+    /// Forces at the end of the last increment, in a static step.
+    pub end: Option<EndForces>,
     /// T + W at the start of the analysis.
     start: f64,
 }
@@ -59,6 +64,20 @@ impl Ledger {
         ledger.enter_bodies(problem, start, &elements);
         ledger.elements = elements.into();
         ledger
+    }
+
+    /// Goes on to a step of another procedure at a state, whose velocities have become those of the step: what a body
+    /// loses as it comes to rest is numerical dissipation, what supports give as they begin to move is their work.
+    pub fn change_procedure(&mut self, problem: &StepProblem, state: &State) {
+        problem.mass.write_product(&state.v, &mut self.momentum);
+        let kinetic = dot(&state.v, &self.momentum) / 2.0;
+        let e = &mut self.energy;
+        let change = kinetic - e.kinetic;
+        e.kinetic = kinetic;
+        match problem.integration.has_rates {
+            true => e.external_work += change,
+            false => e.numerical_dissipation -= change,
+        }
     }
 
     /// Takes in the kinetic energy of every body in a state, and the strain energy of every element.
@@ -128,6 +147,14 @@ impl Ledger {
         let (strain0, contact_work0) = (e.strain, e.normal_contact_work);
         e.strain = self.elements.iter().map(|element| element.energy).sum();
         e.kinetic = dot(&end.v, &self.momentum) / 2.0;
+        if !problem.integration.has_rates {
+            self.enter_equilibrium(problem, start, solved, strain0)?;
+            return Ok(Ledger {
+                contact_energy: None,
+                ..self.balanced(end, contact_work0)?
+            });
+        }
+        let e = &mut self.energy;
 
         // d.R_theta, and at supports dt V_mid,p (M A)_p + d_p (F - R - B^T P)_p, eq. (9.1), with
         // what equations pass on to them
@@ -161,11 +188,10 @@ impl Ledger {
             e.external_work +=
                 dt * v_mid * inertia[p] + d[p] * (internal[p] - load[p] - contact[p]);
         }
-        // Pn.(Bn d), eq. (9.2), and -Pt.(Bt d), eq. (9.3)
-        for (constraint, pair) in forces.acting() {
-            let [pn, pt] = pair.force;
-            e.normal_contact_work += pn * constraint.normal_motion(d);
-            e.friction_dissipation -= pt * constraint.tangential_motion(d);
+        self.works = steady_works(solved);
+        for work in &self.works {
+            e.normal_contact_work += work.normal;
+            e.friction_dissipation += work.friction;
         }
         // what landings and releases are given back, with the work of the supports on the way, eq. (6.10), and of
         // friction that is taken back, eq. (6.11), R and the work of the loads on the way to rest, eq. (6.13)
@@ -186,7 +212,65 @@ impl Ledger {
         let strain1 = e.strain + loss - load_work;
         e.numerical_dissipation +=
             dot(d, &solved.equilibrium.internal) - (strain1 - strain0) - damping - dissipated;
+        self.end = None;
+        self.balanced(end, contact_work0)
+    }
 
+    /// Enters the work of a static increment that started from `start` with the strain energy `strain0`: between two
+    /// equilibria loads, internal force and normal contact forces act with the mean of both, eq. (12.6) and eq. (12.7).
+    fn enter_equilibrium(
+        &mut self,
+        problem: &StepProblem,
+        start: &State,
+        solved: &Solved,
+        strain0: f64,
+    ) -> Result<(), Cause> {
+        let Solved {
+            d,
+            equilibrium,
+            contact,
+            ..
+        } = solved;
+        let before = match self.end.take() {
+            Some(before) => before,
+            None => EndForces::at(problem, start)?,
+        };
+        let end = EndForces::new(
+            equilibrium.load.clone(),
+            equilibrium.internal.clone(),
+            &contact.forces,
+        );
+        let e = &mut self.energy;
+        // d.(R0 + R1)/2, and at supports d_p ((F - R - B^T P)0 + (F - R - B^T P)1)_p/2, eq. (12.6)
+        e.external_work += EndForces::trapezoid(d, [&before.load, &end.load]);
+        for forces in [&before, &end] {
+            let missing = forces.missing(d.len());
+            let missing = problem.unknowns.passed_on(&missing);
+            for p in problem.unknowns.prescribed() {
+                e.external_work += d[p] * missing[p] / 2.0;
+            }
+        }
+        let (works, kept) = before.works(solved, &end);
+        for work in &works {
+            e.normal_contact_work += work.normal;
+            e.friction_dissipation += work.friction;
+        }
+        self.works = works;
+        // d.(F0 + F1)/2 - (W1 - W0) - D, and what the mean force of a pair differs from that of its slip
+        let dissipated = solved.material_dissipation;
+        e.material_dissipation += dissipated;
+        e.numerical_dissipation += EndForces::trapezoid(d, [&before.internal, &end.internal])
+            - (e.strain - strain0)
+            - dissipated
+            - kept;
+        self.end = Some(end);
+        Ok(())
+    }
+
+    /// The ledger with its balance in a state, `contact_work0` being the work of the normal contact forces before the
+    /// increment.
+    fn balanced(mut self, end: &State, contact_work0: f64) -> Result<Self, Cause> {
+        let e = &mut self.energy;
         // T + W less what they were at the start and every term above, eq. (9.6)
         e.balance = e.kinetic + e.strain - self.start - e.external_work - e.normal_contact_work
             + e.friction_dissipation

@@ -5,6 +5,7 @@ mod bodies;
 mod contact_ledger;
 mod energy;
 mod nodal_results;
+mod pair_work;
 mod touches;
 
 pub(crate) use accounts::Accounts;

@@ -63,6 +63,7 @@ fn step(dt: f64, count: usize) -> Step {
             dt,
             period: dt * count as f64,
             dt_min: 0.0,
+            dt_max: f64::INFINITY,
             direct: true,
         },
         settings: Settings::default(),

@@ -5,21 +5,32 @@ use std::io;
 
 use super::acceptance::{Accepted, Before, failure, start_failure};
 use super::time_control::{
-    Bisection, ImpactControl, NominalIncrement, Span, TimeControl, nominal_increments,
+    Automatic, Bisection, Ended, ImpactControl, NominalIncrement, Span, TimeControl,
+    nominal_increments,
 };
 use crate::contact::ClosedPairs;
+use crate::contact::ConstraintSet;
 use crate::dynamics::events::{FailedSubincrement, Subincrement, Subincrements};
+use crate::dynamics::increment::{Attempt, Failed, Path, Solved};
 use crate::dynamics::ledger::{Accounts, Ledger, contact_violation, landings};
 use crate::dynamics::results::{
-    Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State, Timings,
+    Cause, Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State,
+    Timings,
 };
-use crate::dynamics::step::{Discretization, StepPlace, StepProblem, Workspace};
-use crate::elements::most_strained;
-use crate::model::Step;
+use crate::dynamics::step::{
+    ClosedConstraints, Discretization, Interval, StepPlace, StepProblem, Workspace,
+};
+use crate::elements::{Motion, most_strained};
+use crate::linear::largest;
+use crate::model::{Procedure, Step};
 use crate::prepare::PreparedModel;
 
-/// Most halvings of an increment; a further failure stops the run.
-const HALVINGS: u32 = 10;
+/// Displacement of a static increment, beside that at the rate of the last one, from which on it may be a jump.
+const FAR: f64 = 5.0;
+/// Displacement increment beside the displacements from which on it counts.
+const COUNTS: f64 = 0.01;
+/// Displacement beside that of a longer increment, both at their rate, up to which it is none.
+const SHRINKS: f64 = 1.5;
 
 /// Errors that end a run, apart from a failed increment.
 #[derive(Debug, thiserror::Error)]
@@ -76,6 +87,14 @@ struct Runner<'m, 'o> {
     /// State and energies at the end of the last increment.
     state: State,
     ledger: Ledger,
+    /// Largest displacement increment and length of a static increment that has led too far (length; time).
+    rejected: Option<[f64; 2]>,
+    /// Prescribed dofs of the last static step.
+    supported: Vec<usize>,
+    /// Procedure of the step before.
+    procedure: Procedure,
+    /// The motion of the last increment, in a static step.
+    path: Option<Path>,
     accounts: Accounts,
     summary: RunSummary,
     observer: &'o mut dyn Observer,
@@ -97,6 +116,10 @@ impl<'m, 'o> Runner<'m, 'o> {
                 contact: ClosedPairs::default(),
             },
             ledger: Ledger::default(),
+            supported: Vec::new(),
+            rejected: None,
+            procedure: Procedure::Dynamic,
+            path: None,
             accounts: Accounts::new(discretization),
             summary: RunSummary {
                 outcome: Outcome::Finished,
@@ -112,11 +135,34 @@ impl<'m, 'o> Runner<'m, 'o> {
 
     /// Runs a step; returns how it ends.
     fn step(&mut self, step: &'m Step, place: StepPlace) -> Result<Outcome, RunError> {
-        let problem = StepProblem::new(self.discretization, step, [&self.state.u, &self.state.v]);
+        let mut problem =
+            StepProblem::new(self.discretization, step, [&self.state.u, &self.state.v]);
+        self.release_supports(&mut problem);
         let mut workspace = Workspace::new(&problem);
+        self.path = None;
         let outcome = self.increments(&problem, &mut workspace, step, place);
         self.summary.timings.add(&workspace.meter.timings);
         outcome
+    }
+
+    /// Lets the forces of the supports that a static step has not any more fade over it.
+    fn release_supports(&mut self, problem: &mut StepProblem) {
+        if problem.integration.has_rates {
+            return;
+        }
+        if let Some(end) = &mut self.ledger.end {
+            let missing = end.missing(self.state.u.len());
+            let released = self
+                .supported
+                .iter()
+                .filter(|dof| problem.unknowns.is_free(**dof));
+            let released: Vec<(usize, f64)> = released.map(|&dof| (dof, missing[dof])).collect();
+            released
+                .iter()
+                .for_each(|&(dof, force)| end.load[dof] += force);
+            problem.loads.release(released);
+        }
+        self.supported = problem.unknowns.prescribed().collect();
     }
 
     /// The motion of the start, then all increments.
@@ -132,8 +178,19 @@ impl<'m, 'o> Runner<'m, 'o> {
         {
             return Ok(Outcome::Stopped(Box::new(failure)));
         }
+        if place.number > 1 && self.procedure != step.procedure {
+            self.begin_motion(problem, workspace, place);
+            self.ledger.change_procedure(problem, &self.state);
+        }
+        self.procedure = step.procedure;
+        if step.procedure == Procedure::Static && !step.increments.direct {
+            let mut control = Automatic::new(place, step.increments);
+            let nominal = control.nominal();
+            return self.increment(problem, workspace, nominal, &mut control);
+        }
         for nominal in nominal_increments(place, step.increments) {
-            let end = self.increment(problem, workspace, nominal)?;
+            let control = &mut *time_control(problem, nominal);
+            let end = self.increment(problem, workspace, nominal, control)?;
             if end != Outcome::Finished {
                 return Ok(end);
             }
@@ -147,8 +204,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         problem: &StepProblem<'m>,
         workspace: &mut Workspace<'m>,
         nominal: NominalIncrement,
+        control: &mut dyn TimeControl,
     ) -> Result<Outcome, RunError> {
-        let mut control = time_control(problem, nominal);
         while let Some(span) = control.next() {
             if self.observer.wants_stop() {
                 return Ok(Outcome::Interrupted);
@@ -165,16 +222,26 @@ impl<'m, 'o> Runner<'m, 'o> {
             match checked {
                 Ok(accepted) => {
                     let Subincrement {
-                        interval, is_cut, ..
+                        interval,
+                        is_cut,
+                        ref solved,
                     } = accepted.subincrement;
-                    control.accepted(&interval, is_cut);
+                    let how = Ended {
+                        at_impact: is_cut,
+                        passes: solved.passes.len(),
+                    };
+                    control.accepted(&interval, how);
                     self.accept(problem, workspace, nominal.place, accepted)?;
                 }
                 Err(failed) => {
+                    let dt = failed.0.dt;
+                    let may_be_cut = control.may_be_cut(dt, nominal.dt_min);
                     control.failed(&failed.0);
+                    let next_dt = control.next().map_or(dt, |span| span.interval.dt);
                     let number = self.summary.increments + 1;
                     let failure = failure(number, nominal.place, *failed, halvings);
-                    if let Some(failure) = self.cut_back(failure, nominal.dt_min)? {
+                    let next_dt = may_be_cut.then_some(next_dt);
+                    if let Some(failure) = self.cut_back(failure, next_dt)? {
                         return Ok(Outcome::Stopped(Box::new(failure)));
                     }
                 }
@@ -186,13 +253,16 @@ impl<'m, 'o> Runner<'m, 'o> {
     /// Solves a span, or its part up to the next impact; `nominal` is the length of the nominal
     /// increment.
     fn attempt(
-        &self,
+        &mut self,
         problem: &StepProblem<'m>,
         workspace: &mut Workspace<'m>,
         span: Span,
         nominal: f64,
     ) -> Result<Subincrement, FailedSubincrement> {
         workspace.meter.counts = SolverCounts::default();
+        if !problem.integration.has_rates {
+            return self.equilibrium(problem, workspace, span.interval);
+        }
         let mut subincrements = Subincrements {
             problem,
             workspace,
@@ -206,13 +276,96 @@ impl<'m, 'o> Runner<'m, 'o> {
         }
     }
 
-    /// Reports a failed attempt that is to be repeated with half its length; returns it when
-    /// halves would fail too, or it may not be halved again.
-    fn cut_back(&mut self, failure: Failure, dt_min: f64) -> Result<Option<Failure>, RunError> {
-        let next_dt = failure.dt / 2.0;
-        if failure.cause.stays() || failure.halvings == HALVINGS || next_dt < dt_min {
-            return Ok(Some(failure));
+    /// Solves an increment of a static step, from the motion of the last one.
+    fn equilibrium(
+        &mut self,
+        problem: &StepProblem<'m>,
+        workspace: &mut Workspace<'m>,
+        interval: Interval,
+    ) -> Result<Subincrement, FailedSubincrement> {
+        let attempt = Attempt {
+            problem,
+            workspace,
+            start: &self.state,
+            interval,
+            set: ConstraintSet::All,
+            guess: self.path.as_ref(),
+        };
+        let fail = |failed| Box::new((interval, failed));
+        let solved = attempt.solve().map_err(fail)?;
+        let checked = self
+            .check_stability(problem, workspace, &solved)
+            .and_then(|()| self.check_way(workspace, &solved, interval.dt));
+        match checked {
+            Ok(()) => Ok(Subincrement {
+                interval,
+                solved,
+                is_cut: false,
+            }),
+            Err(cause) => Err(fail(Failed {
+                cause,
+                course: None,
+                worst: None,
+                passes: solved.passes,
+            })),
         }
+    }
+
+    /// The equilibrium at the end of a static increment must be stable.
+    fn check_stability(
+        &self,
+        problem: &StepProblem,
+        workspace: &mut Workspace,
+        solved: &Solved,
+    ) -> Result<(), Cause> {
+        let end = &solved.end;
+        let contact = ClosedConstraints {
+            acting: solved.contact.forces.acting().collect(),
+            at: problem.configurations(&self.state.u, &end.u),
+        };
+        let motion = Motion::at(&end.u, &end.internal);
+        let stable = workspace.check_stability(problem, motion, &contact);
+        stable.map_err(|error| match problem.unsolvable(error) {
+            Cause::Indefinite { node } => Cause::Unstable { node },
+            other => other,
+        })
+    }
+
+    /// A static increment must not lead to another equilibrium: much farther than at the rate of the last increment,
+    /// in the first one than by its tangent, unless the way becomes shorter with the increment. Bodies that contact
+    /// alone holds may move freely up to it.
+    fn check_way(&mut self, workspace: &Workspace, solved: &Solved, dt: f64) -> Result<(), Cause> {
+        let expected = match &self.path {
+            Some(path) => dt * largest(&path.v),
+            None => solved.tangent_way,
+        };
+        let way = largest(&solved.d);
+        let shrinks = |[before, dt_before]: [f64; 2]| way <= SHRINKS * before * dt / dt_before;
+        let counts = way > COUNTS * largest(&solved.end.u);
+        let is_far = workspace.pins.are_none() && counts && way > FAR * expected;
+        if !is_far || self.rejected.is_some_and(shrinks) {
+            self.rejected = None;
+            return Ok(());
+        }
+        self.rejected = Some([way, dt]);
+        let size = |dof: &usize| solved.d[*dof].abs();
+        let most = (0..solved.d.len()).max_by(|i, k| size(i).total_cmp(&size(k)));
+        Err(Cause::Jump {
+            node: most.unwrap_or(0) / 2,
+        })
+    }
+
+    /// Reports a failed attempt that is to be repeated with a smaller length; returns it when
+    /// that would fail too, or there is none.
+    fn cut_back(
+        &mut self,
+        failure: Failure,
+        next_dt: Option<f64>,
+    ) -> Result<Option<Failure>, RunError> {
+        let next_dt = match next_dt {
+            Some(next_dt) if !failure.cause.stays() => next_dt,
+            _ => return Ok(Some(failure)),
+        };
         self.summary.cutbacks += 1;
         self.observer.cutback(&Cutback { failure, next_dt })?;
         Ok(None)
@@ -234,6 +387,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             solved,
             is_cut,
         } = subincrement;
+        let path = (!problem.integration.has_rates).then(|| solved.static_path(interval.dt));
         let accounted = (self.accounts).enter(problem, &solved, interval, &ledger);
         let solver = SolverCounts {
             violation: contact_violation(problem, &workspace.search, &self.state, &solved),
@@ -254,7 +408,10 @@ impl<'m, 'o> Runner<'m, 'o> {
             contact_energy: ledger.contact_energy,
             strain: most_strained(&ledger.elements),
             elements: ledger.elements.clone(),
-            landings: landings(problem, &self.state, &solved, interval),
+            landings: match problem.integration.has_rates {
+                true => landings(problem, &self.state, &solved, interval),
+                false => Vec::new(),
+            },
             solver,
             passes: solved.passes,
             state: solved.end,
@@ -266,9 +423,27 @@ impl<'m, 'o> Runner<'m, 'o> {
             .then(|| report.state.clone());
         report.keep_nodes(self.discretization.model.mesh.node_count());
         self.observer.increment(&report)?;
+        self.path = path;
         self.ledger = ledger;
         self.state = all_dofs.unwrap_or(report.state);
         Ok(())
+    }
+
+    /// Velocity of supports and equations, and acceleration, at the start of a dynamic step that is not the
+    /// continuation of another; at rest at that of a static one.
+    fn begin_motion(&mut self, problem: &StepProblem, workspace: &mut Workspace, place: StepPlace) {
+        if !problem.integration.has_rates {
+            self.state.v.fill(0.0);
+            self.state.a.fill(0.0);
+            return;
+        }
+        let now = place.time_point(0.0);
+        let State { u, v, .. } = &mut self.state;
+        problem.unknowns.prescribe_velocity(now, u, v);
+        problem.follow_donors(&mut self.state.v);
+        let dofs = self.state.u.len();
+        let contact = (self.ledger.end.as_ref()).map_or(vec![0.0; dofs], |end| end.contact(dofs));
+        self.state.a = workspace.start_acceleration(problem, &self.state, &contact, now);
     }
 
     /// Completes the start state (velocity of supports and equations, acceleration; at rest in a static step) and
@@ -279,16 +454,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         workspace: &mut Workspace,
         place: StepPlace,
     ) -> Result<Option<Failure>, RunError> {
-        match problem.integration.has_rates {
-            true => {
-                let now = place.time_point(0.0);
-                let State { u, v, .. } = &mut self.state;
-                problem.unknowns.prescribe_velocity(now, u, v);
-                problem.follow_donors(&mut self.state.v);
-                self.state.a = workspace.start_acceleration(problem, &self.state, now);
-            }
-            false => self.state.v.fill(0.0),
-        }
+        self.begin_motion(problem, workspace, place);
         self.ledger = Ledger::new(problem, &self.state);
         if let Some(failure) = start_failure(&self.state, &self.ledger, place) {
             return Ok(Some(failure));

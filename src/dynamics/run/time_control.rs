@@ -28,12 +28,29 @@ pub(crate) trait TimeControl {
     /// Number of halvings of the next subincrement.
     fn halvings(&self) -> u32;
 
-    /// Continues from the end of an accepted interval, which an impact may have ended.
-    fn accepted(&mut self, interval: &Interval, ends_at_impact: bool);
+    /// Continues from the end of an accepted interval.
+    fn accepted(&mut self, interval: &Interval, how: Ended);
 
-    /// Halves an interval that failed.
+    /// Cuts an interval that failed.
     fn failed(&mut self, interval: &Interval);
+
+    /// Whether an interval of this length may be cut once more; `dt_min` is the least of the step.
+    fn may_be_cut(&self, dt: f64, dt_min: f64) -> bool {
+        self.halvings() < HALVINGS && dt / 2.0 >= dt_min
+    }
 }
+
+/// How an accepted interval ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Ended {
+    /// Whether an impact has ended it.
+    pub at_impact: bool,
+    /// Passes that it took.
+    pub passes: usize,
+}
+
+/// Most halvings of an increment; a further failure stops the run.
+const HALVINGS: u32 = 10;
 
 /// A step's duration counts as a multiple of its increment within this relative difference.
 const WHOLE: f64 = 1e-6;
@@ -133,7 +150,7 @@ impl TimeControl for Bisection {
         self.halvings
     }
 
-    fn accepted(&mut self, _: &Interval, _: bool) {
+    fn accepted(&mut self, _: &Interval, _: Ended) {
         self.part += 1;
         while self.halvings > 0 && self.part.is_multiple_of(2) {
             (self.part, self.halvings) = (self.part / 2, self.halvings - 1);
@@ -192,9 +209,9 @@ impl TimeControl for ImpactControl {
         self.ends.len().saturating_sub(1) as u32
     }
 
-    fn accepted(&mut self, interval: &Interval, ends_at_impact: bool) {
+    fn accepted(&mut self, interval: &Interval, how: Ended) {
         self.from = interval.end.step;
-        if ends_at_impact {
+        if how.at_impact {
             self.events += 1;
         } else {
             self.ends.pop();
@@ -206,9 +223,112 @@ impl TimeControl for ImpactControl {
     }
 }
 
+/// Passes up to which an increment is easy.
+const EASY_PASSES: usize = 5;
+/// Easy increments after which they grow.
+const EASY_INCREMENTS: u32 = 2;
+/// Growth of an increment after easy ones.
+const GROWTH: f64 = 1.5;
+/// Part of an increment that is tried after it has failed.
+const CUT: f64 = 0.25;
+/// Part of an increment that is not left over for one of its own.
+const LEFT_OVER: f64 = 1e-6;
+
+/// Automatic increments of a whole static step: cut to a quarter where one fails, larger after easy ones.
+pub(crate) struct Automatic {
+    /// The step.
+    nominal: NominalIncrement,
+    dt_max: f64,
+    from: f64,
+    dt: f64,
+    /// Easy increments in a row.
+    easy: u32,
+    /// Cuts since the last accepted increment.
+    cuts: u32,
+}
+
+impl Automatic {
+    /// Starts with the first increment of a step.
+    pub fn new(place: StepPlace, increments: Increments) -> Self {
+        Automatic {
+            nominal: NominalIncrement {
+                place,
+                from: 0.0,
+                to: place.period,
+                length: increments.dt,
+                dt_min: increments.dt_min,
+            },
+            dt_max: increments.dt_max,
+            from: 0.0,
+            dt: increments.dt,
+            easy: 0,
+            cuts: 0,
+        }
+    }
+
+    /// The step as one increment.
+    pub fn nominal(&self) -> NominalIncrement {
+        self.nominal
+    }
+}
+
+impl TimeControl for Automatic {
+    fn next(&self) -> Option<Span> {
+        let left = self.nominal.to - self.from;
+        let ends = self.dt >= left * (1.0 - LEFT_OVER);
+        let end = if ends {
+            self.nominal.to
+        } else {
+            self.from + self.dt
+        };
+        (left > 0.0).then(|| Span {
+            interval: Interval {
+                start: self.nominal.place.time_point(self.from),
+                end: self.nominal.place.time_point(end),
+                dt: end - self.from,
+            },
+            until_impact: false,
+        })
+    }
+
+    fn halvings(&self) -> u32 {
+        self.cuts
+    }
+
+    fn accepted(&mut self, interval: &Interval, how: Ended) {
+        let is_easy = self.cuts == 0 && how.passes <= EASY_PASSES;
+        (self.from, self.cuts) = (interval.end.step, 0);
+        self.easy = if is_easy { self.easy + 1 } else { 0 };
+        if self.easy >= EASY_INCREMENTS {
+            self.dt = (GROWTH * self.dt).min(self.dt_max);
+            self.easy = 0;
+        }
+    }
+
+    fn failed(&mut self, interval: &Interval) {
+        self.dt = CUT * interval.dt;
+        self.cuts += 1;
+        self.easy = 0;
+    }
+
+    fn may_be_cut(&self, dt: f64, dt_min: f64) -> bool {
+        CUT * dt >= dt_min
+    }
+}
+
 #[cfg(test)]
 mod nominal_tests {
     use super::*;
+
+    /// Ends of subincrements.
+    pub const SMOOTH: Ended = Ended {
+        at_impact: false,
+        passes: 4,
+    };
+    pub const IMPACT: Ended = Ended {
+        at_impact: true,
+        passes: 4,
+    };
 
     /// The increment from 0.3 to 0.4 of a step that starts at 2.
     pub fn nominal() -> NominalIncrement {
@@ -243,6 +363,7 @@ mod nominal_tests {
             dt: 0.1,
             period: 0.25,
             dt_min: 0.0,
+            dt_max: f64::INFINITY,
             direct: true,
         };
         let all: Vec<NominalIncrement> = nominal_increments(place, increments).collect();
@@ -265,7 +386,7 @@ mod nominal_tests {
 
 #[cfg(test)]
 mod tests {
-    use super::nominal_tests::nominal;
+    use super::nominal_tests::{SMOOTH, nominal};
     use super::*;
 
     #[test]
@@ -278,7 +399,7 @@ mod tests {
                 control.failed(&interval);
             } else {
                 lengths.push(interval.dt);
-                control.accepted(&interval, false);
+                control.accepted(&interval, SMOOTH);
             }
         }
         assert_eq!(lengths, [0.025, 0.025, 0.05]);
@@ -288,7 +409,7 @@ mod tests {
 
 #[cfg(test)]
 mod impact_control_tests {
-    use super::nominal_tests::nominal;
+    use super::nominal_tests::{IMPACT, SMOOTH, nominal};
     use super::*;
 
     /// The first part of an interval, up to an impact.
@@ -311,14 +432,14 @@ mod impact_control_tests {
             span.interval
         };
         let whole = next(&control);
-        control.accepted(&up_to(whole, 0.02), true);
+        control.accepted(&up_to(whole, 0.02), IMPACT);
         let rest = next(&control);
         control.failed(&rest);
         assert_eq!(control.halvings(), 1);
         let half = next(&control);
-        control.accepted(&half, false);
+        control.accepted(&half, SMOOTH);
         let other = next(&control);
-        control.accepted(&other, false);
+        control.accepted(&other, SMOOTH);
         assert_eq!(control.next(), None);
         assert_eq!(lengths, [100.0, 80.0, 40.0, 40.0]);
         assert_eq!(other.end, whole.end);
@@ -336,7 +457,7 @@ mod impact_control_tests {
         assert_eq!(with_events, [true, true, false]);
         while let Some(span) = control.next() {
             with_events.push(span.until_impact);
-            control.accepted(&span.interval, false);
+            control.accepted(&span.interval, SMOOTH);
         }
         assert_eq!(with_events[3..], [false, false, true, true]);
     }
@@ -351,10 +472,47 @@ mod impact_control_tests {
         }) = control.next()
         {
             count += 1;
-            control.accepted(&up_to(interval, 1e-4), true);
+            control.accepted(&up_to(interval, 1e-4), IMPACT);
         }
         assert_eq!(count, MOST_EVENTS);
         let rest = control.next().expect("the rest");
         assert_eq!(rest.interval.end, nominal().place.time_point(nominal().to));
+    }
+}
+
+#[cfg(test)]
+mod automatic_tests {
+    use super::nominal_tests::{SMOOTH, nominal};
+    use super::*;
+
+    #[test]
+    fn increments_grow_after_easy_ones_and_are_cut_to_a_quarter() {
+        let increments = Increments {
+            dt: 0.1,
+            period: 1.0,
+            dt_min: 1e-3,
+            dt_max: 0.3,
+            direct: false,
+        };
+        let mut control = Automatic::new(nominal().place, increments);
+        let (mut lengths, mut has_failed) = (Vec::new(), false);
+        while let Some(Span { interval, .. }) = control.next() {
+            if interval.end.step > 0.5 && !has_failed {
+                has_failed = true;
+                assert!(control.may_be_cut(interval.dt, 1e-3));
+                control.failed(&interval);
+                continue;
+            }
+            lengths.push((interval.dt * 1e4).round() / 1e4);
+            control.accepted(&interval, SMOOTH);
+        }
+        assert_eq!(lengths[..4], [0.1, 0.1, 0.15, 0.15]);
+        // what is left ends the step
+        assert_eq!(
+            lengths[4..],
+            [0.05625, 0.0563, 0.0563, 0.0844, 0.0844, 0.1266, 0.0919]
+                .map(|length: f64| (length * 1e4_f64).round() / 1e4)[..]
+        );
+        assert_eq!(lengths.iter().sum::<f64>(), 1.0);
     }
 }

@@ -71,6 +71,8 @@ pub(crate) struct Loads<'m> {
     model: &'m Model,
     step: &'m Step,
     redistribution: &'m Redistribution,
+    /// Forces of supports that the step has not any more (dof, force), which fade over it.
+    released: Vec<(usize, f64)>,
 }
 
 impl<'m> Loads<'m> {
@@ -79,7 +81,13 @@ impl<'m> Loads<'m> {
             model,
             step,
             redistribution,
+            released: Vec::new(),
         }
+    }
+
+    /// Lets the forces of supports that the step has not any more fade over it (dof, force).
+    pub fn release(&mut self, forces: Vec<(usize, f64)>) {
+        self.released = forces;
     }
 
     /// Whether the step has no loads.
@@ -95,6 +103,7 @@ impl<'m> Loads<'m> {
             && body_forces.is_empty()
             && tractions.is_empty()
             && pressures.is_empty()
+            && self.released.is_empty()
     }
 
     /// External load R_theta = (1 - theta1) R(t0) + theta1 R(t1), eq. (4.4), follower pressures in the
@@ -136,6 +145,9 @@ impl<'m> Loads<'m> {
     fn add_concentrated(&self, weight: f64, at: TimePoint, r: &mut [f64]) {
         for load in &self.step.point_loads {
             r[load.at.dof] += weight * at.magnitude(self.model, load);
+        }
+        for &(dof, force) in &self.released {
+            r[dof] += weight * force * (1.0 - at.step / at.period);
         }
     }
 

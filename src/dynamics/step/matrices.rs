@@ -11,6 +11,7 @@ use nalgebra::DMatrix;
 use super::bodies::BodyAngles;
 use super::mass::{Masses, unknown_mass};
 use super::meter::Meter;
+use super::pins::{Pins, Softening, pin_columns};
 use super::step_problem::StepProblem;
 use crate::contact::{
     ClosedPair, Compliance, Configurations, Constraint, DelassusSpace, Scope, frictional_lcp,
@@ -35,6 +36,8 @@ pub(crate) struct FactoredMatrix {
     pub space: DelassusSpace,
     /// Memory of its solves.
     pub vectors: SolveVectors,
+    /// What its inverse differs by from that of its factors.
+    softening: Option<Softening>,
 }
 
 /// Vectors of a solve in parts, used again by the next.
@@ -72,6 +75,7 @@ impl FactoredMatrix {
             kept: BTreeMap::new(),
             space: DelassusSpace::default(),
             vectors: SolveVectors::default(),
+            softening: None,
         }
     }
 
@@ -82,6 +86,7 @@ impl FactoredMatrix {
 
     /// Factorises the matrix again.
     pub fn factorize(&mut self) -> Result<(), LinearError> {
+        self.softening = None;
         self.compliance.renew(self.solver.groups());
         self.solver.factorize()
     }
@@ -99,6 +104,11 @@ impl FactoredMatrix {
     }
 }
 
+/// Stiffness of closed constraints beside the largest K*_ii, and that of pins beside K*_ii, where the stability of an
+/// equilibrium is asked: motions that nothing resists are neutral.
+const AS_RIGID: f64 = 1e3;
+const NEUTRAL: f64 = 1e-10;
+
 /// What K* is made of besides inertia.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum StiffnessForm {
@@ -108,6 +118,9 @@ pub(crate) enum StiffnessForm {
     Held,
     /// Positive parts of the tangents, with the closed constraints held.
     Positive,
+    /// Tangents of the elements and contact stiffness, with the closed constraints held as good as rigidly: definite
+    /// where a static equilibrium is stable.
+    Stability,
 }
 
 impl StiffnessForm {
@@ -117,7 +130,7 @@ impl StiffnessForm {
     /// Part of the tangents of the elements.
     fn part(self) -> TangentPart {
         match self {
-            Self::Tangent | Self::Held => TangentPart::Whole,
+            Self::Tangent | Self::Held | Self::Stability => TangentPart::Whole,
             Self::Positive => TangentPart::Positive,
         }
     }
@@ -157,6 +170,10 @@ pub(crate) struct EffectiveStiffness {
     pub m: FactoredMatrix,
     /// Angles of the bodies in K*.
     angles: BodyAngles,
+    /// What K* is made of.
+    pub form: StiffnessForm,
+    /// Stiffness of the pins in K* (force/length).
+    pub pin: f64,
     /// Length of the increments of K* (time).
     dt: f64,
     /// Largest diagonal entry of theta2 K, with damping, in every part (force/length).
@@ -181,6 +198,8 @@ impl EffectiveStiffness {
             k,
             m,
             angles: BodyAngles::new(problem),
+            form: StiffnessForm::Tangent,
+            pin: 0.0,
             dt: f64::NAN,
             stiffness: Vec::new(),
             inertia: Vec::new(),
@@ -272,8 +291,15 @@ impl EffectiveStiffness {
         (self.k.compliance).turn(&angles, problem.parts.of_nodes());
     }
 
-    /// Adds the stiffness of the closed constraints to K*, to be factorised next.
-    pub fn add_contact(&mut self, contact: &ClosedConstraints, form: StiffnessForm) {
+    /// Adds the stiffness of the closed constraints to K*, to be factorised next, and that of pins at rigid motions.
+    pub fn add_contact(
+        &mut self,
+        problem: &StepProblem,
+        contact: &ClosedConstraints,
+        form: StiffnessForm,
+        pins: &Pins,
+    ) {
+        self.form = form;
         let FactoredMatrix {
             solver, compliance, ..
         } = &mut self.k;
@@ -285,13 +311,35 @@ impl EffectiveStiffness {
                 // K* <- K* - Kc, eq. (4.12)
                 StiffnessForm::Tangent => -constraint.stiffness(pair.force, &contact.at),
                 // K* <- K* + gamma (Gn^T Gn + Gt^T Gt), gamma the largest K*_ii, eq. (4.13)
-                StiffnessForm::Held | StiffnessForm::Positive => {
+                StiffnessForm::Held | StiffnessForm::Positive | StiffnessForm::Stability => {
                     let unknowns = constraint.dofs.iter().flat_map(|&dof| map.row(dof));
                     let gamma = unknowns.map(|term| diagonal[term.0]).fold(0.0, larger);
-                    constraint.hold(pair.state == ContactState::Stick) * gamma
+                    let rigid = match form {
+                        StiffnessForm::Stability => AS_RIGID,
+                        _ => 1.0,
+                    };
+                    // a pair that slides one way holds the other way
+                    let sticks = pair.state == ContactState::Stick
+                        || (form == StiffnessForm::Stability && constraint.mu > 0.0);
+                    let held = constraint.hold(sticks) * (rigid * gamma);
+                    match form != StiffnessForm::Positive && !problem.integration.has_rates {
+                        true => held - constraint.stiffness(pair.force, &contact.at),
+                        false => held,
+                    }
                 }
             };
             blocks.add(map, &constraint.dofs, &k);
+        }
+        // K* <- K* + S a S^T, a the mean K*_ii, eq. (12.2)
+        if !pins.are_none() {
+            self.pin = diagonal.iter().map(|k| k.abs()).sum::<f64>() / diagonal.len() as f64;
+            let part = match form {
+                StiffnessForm::Stability => NEUTRAL,
+                _ => 1.0,
+            };
+            let stiffness = DMatrix::from_element(1, 1, part * self.pin);
+            pins.dofs()
+                .for_each(|dof| blocks.add(map, &[dof], &stiffness));
         }
         solver.add_blocks(blocks);
     }
@@ -320,6 +368,31 @@ impl<'a> System<'a> {
         meter.time(|t| &mut t.factorization, || matrix.factorize())
     }
 
+    /// Softens the pins of a problem, `constraints` being some of the pairs, from the stiffness `a` that they have in
+    /// the factors; gives their stiffness a', the given part of that of eq. (12.3).
+    pub fn soften(
+        &mut self,
+        problem: &StepProblem,
+        pins: &Pins,
+        [a, part]: [f64; 2],
+        constraints: &[&Constraint],
+    ) -> Result<Vec<f64>, LinearError> {
+        let map = &problem.unknowns.map;
+        self.matrix.softening = None;
+        let columns = pin_columns(pins, map, |b| self.solve(b))?;
+        let none = vec![[0.0; 2]; constraints.len()];
+        let lcp = self.frictional_lcp(&Scope::All, constraints, &none)?;
+        let numbered = constraints.iter().enumerate();
+        let compliances: Vec<_> = numbered.map(|(j, &c)| (c, lcp.q[(j, j)])).collect();
+        self.take_back(lcp);
+        let dofs = 2 * problem.model.mesh.node_count();
+        let both = (map, problem.parts);
+        let softening = Softening::new(pins, both, [a, part], columns, &compliances, dofs);
+        let stiffness = softening.stiffness.clone();
+        self.matrix.softening = Some(softening);
+        Ok(stiffness)
+    }
+
     /// The solution for the right-hand side `b`, over the unknowns.
     pub fn solve(&mut self, b: &[f64]) -> Result<Vec<f64>, LinearError> {
         let Self { matrix, meter } = self;
@@ -343,6 +416,7 @@ impl<'a> System<'a> {
             solver,
             compliance,
             vectors,
+            softening,
             ..
         } = &mut **matrix;
         let SolveVectors { forces, .. } = vectors;
@@ -356,6 +430,9 @@ impl<'a> System<'a> {
                 rotation.turn_back(forces);
                 map.write_restricted(forces, b);
             }
+            if let Some(softening) = softening {
+                softening.begin(b);
+            }
         };
         meter.time(|t| &mut t.solve, || solver.begin(write))
     }
@@ -364,12 +441,18 @@ impl<'a> System<'a> {
     pub fn partial(&mut self, unknowns: &[usize], values: &mut Vec<f64>) {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.solver.partial(unknowns, values));
+        if let Some(softening) = &matrix.softening {
+            softening.correct(unknowns, values);
+        }
     }
 
     /// Adds to the right-hand side at unknowns of the last part (unknown, value).
     pub fn add(&mut self, b: &[(usize, f64)]) {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.solver.add(b));
+        if let Some(softening) = &mut matrix.softening {
+            softening.add(b);
+        }
     }
 
     /// Ends the response and writes it, over all dofs, with `start` added to it; [`Self::check`] checks the
@@ -377,10 +460,15 @@ impl<'a> System<'a> {
     pub fn end(&mut self, start: &[f64], response: &mut Vec<f64>) -> Result<(), LinearError> {
         let Self { matrix, meter } = self;
         let FactoredMatrix {
-            solver, compliance, ..
+            solver,
+            compliance,
+            softening,
+            ..
         } = &mut **matrix;
         let (map, rotation) = (compliance.map(), compliance.rotation());
         let write = |q: &[f64]| {
+            let softened = softening.as_ref().map(|softening| softening.corrected(q));
+            let q = softened.as_deref().unwrap_or(q);
             if rotation.is_identity() {
                 map.write_sum(start, q, response);
             } else {
@@ -435,9 +523,19 @@ impl<'a> System<'a> {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.prepare(scope, constraints))?;
         let FactoredMatrix {
-            compliance, space, ..
+            compliance,
+            space,
+            softening,
+            ..
         } = &mut **matrix;
-        let pose = || frictional_lcp(constraints, (compliance, scope), constant_terms, space);
+        let pose = || {
+            let all = (&*compliance, scope);
+            let mut problem = frictional_lcp(constraints, all, constant_terms, space);
+            if let Some(softening) = softening {
+                softening.soften(constraints, &mut problem.q);
+            }
+            problem
+        };
         Ok(meter.time(|t| &mut t.contact, pose))
     }
 

@@ -8,6 +8,7 @@ mod mass;
 mod matrices;
 mod meter;
 mod parts;
+mod pins;
 mod step_problem;
 mod turning;
 mod unknowns;
@@ -22,6 +23,7 @@ pub(crate) use matrices::{
 #[cfg(test)]
 pub(crate) use meter::Meter;
 pub(crate) use parts::{Parts, PerBody};
+pub(crate) use pins::add_pin_forces;
 pub(crate) use step_problem::{
     Discretization, Equilibrium, StartVelocity, StepProblem, check_finite, difference, sum,
     write_difference, write_sum,

@@ -4,6 +4,7 @@
 use super::loads::TimePoint;
 use super::matrices::{ClosedConstraints, EffectiveStiffness, StiffnessForm, System};
 use super::meter::Meter;
+use super::pins::Pins;
 use super::step_problem::{StepProblem, difference, sum};
 use crate::contact::{
     ClosedPairs, Constraint, NodeAtSegment, PairTarget, Search, find_penetration, find_targets,
@@ -17,6 +18,8 @@ pub(crate) struct Workspace<'m> {
     pub stiffness: EffectiveStiffness,
     pub search: Search<'m>,
     pub meter: Meter,
+    /// What holds rigid motions in K*.
+    pub pins: Pins,
     /// The pairs of the last pass.
     pairs: Vec<PairTarget>,
 }
@@ -29,6 +32,7 @@ impl<'m> Workspace<'m> {
             stiffness: EffectiveStiffness::new(problem),
             search: Search::new(problem.contacts, x),
             meter: Meter::default(),
+            pins: Pins::new(problem),
             pairs: Vec::new(),
         }
     }
@@ -36,6 +40,24 @@ impl<'m> Workspace<'m> {
     /// The effective stiffness K*.
     pub fn k(&mut self) -> System<'_> {
         System::new(&mut self.stiffness.k, &mut self.meter)
+    }
+
+    /// Softens the pins in K*^-1 by what some constraints see of them; gives their stiffness there, which is
+    /// the given part of that of eq. (12.3).
+    pub fn soften(
+        &mut self,
+        problem: &StepProblem,
+        constraints: &[&Constraint],
+        part: f64,
+    ) -> Result<Vec<f64>, LinearError> {
+        let Workspace {
+            stiffness,
+            meter,
+            pins,
+            ..
+        } = self;
+        let stiffness_of_pins = [stiffness.pin, part];
+        System::new(&mut stiffness.k, meter).soften(problem, pins, stiffness_of_pins, constraints)
     }
 
     /// The mass M.
@@ -58,11 +80,14 @@ impl<'m> Workspace<'m> {
         let mut result = Ok(());
         for form in StiffnessForm::ALL {
             let Workspace {
-                stiffness, meter, ..
+                stiffness,
+                meter,
+                pins,
+                ..
             } = &mut *self;
             let assemble = || {
                 stiffness.assemble(problem, dt, motion, form);
-                stiffness.add_contact(contact, form);
+                stiffness.add_contact(problem, contact, form, pins);
             };
             meter.time(|t| &mut t.assembly, assemble);
             meter.counts.factorizations += 1;
@@ -72,6 +97,36 @@ impl<'m> Workspace<'m> {
             }
         }
         result
+    }
+
+    /// Checks that an equilibrium is stable where the last K* does not say so: without pins, and closed pairs held.
+    ///
+    /// # Errors
+    /// That K* is not positive definite.
+    pub fn check_stability(
+        &mut self,
+        problem: &StepProblem,
+        motion: Motion,
+        contact: &ClosedConstraints,
+    ) -> Result<(), LinearError> {
+        if self.pins.are_none() && self.stiffness.form == StiffnessForm::Tangent {
+            return Ok(());
+        }
+        let form = StiffnessForm::Stability;
+        let dt = self.stiffness.dt();
+        let Workspace {
+            stiffness,
+            meter,
+            pins,
+            ..
+        } = &mut *self;
+        let assemble = || {
+            stiffness.assemble(problem, dt, motion, form);
+            stiffness.add_contact(problem, contact, form, pins);
+        };
+        meter.time(|t| &mut t.assembly, assemble);
+        meter.counts.factorizations += 1;
+        self.k().factorize()
     }
 
     /// Turns the factors of K* with the bodies, to the configuration of a motion.
@@ -128,12 +183,13 @@ impl<'m> Workspace<'m> {
         meter.time(|t| &mut t.contact, write);
     }
 
-    /// Acceleration at the start of the analysis, M A = R - F, the supports being at rest; forces on nodes
+    /// Acceleration at the start of a motion, M A = R + B^T P - F, the supports being at rest; forces on nodes
     /// without mass go to those that carry it.
     pub fn start_acceleration(
         &mut self,
         problem: &StepProblem,
         start: &State,
+        contact: &[f64],
         now: TimePoint,
     ) -> Vec<f64> {
         let mut a = vec![0.0; start.u.len()];
@@ -144,7 +200,7 @@ impl<'m> Workspace<'m> {
         let load = (problem.loads).at(problem.elements, now, &start.u);
         let mut load = load;
         problem.unknowns.turning.scale_moments(&a, &mut load);
-        let mut r = difference(&load, &internal);
+        let mut r = sum(&difference(&load, &internal), contact);
         problem.redistribution.hand_on(&mut r);
         self.stiffness.start(problem, &start.u);
         let map = self.stiffness.m.map().clone();

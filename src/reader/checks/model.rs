@@ -4,8 +4,8 @@
 
 use crate::diagnostics::Code;
 use crate::model::{
-    ALL_EXTERIOR, Bodies, Contact, Equation, Face, Load, Mesh, Model, Section, Step, SupportMotion,
-    Surface, SurfaceKind,
+    ALL_EXTERIOR, Bodies, Contact, Equation, Face, Load, Mesh, Model, Procedure, Section, Step,
+    SupportMotion, Surface, SurfaceKind,
 };
 use crate::reader::context::Context;
 use crate::reader::materials::MaterialPlaces;
@@ -27,7 +27,8 @@ pub(crate) fn proportion(
     let Some(guide) = guide else {
         return;
     };
-    for (step, cards) in steps.iter().zip(cards) {
+    let timed = |(step, _): &(&Step, _)| step.procedure == Procedure::Dynamic;
+    for (step, cards) in steps.iter().zip(cards).filter(timed) {
         let mut procedures = cards.cards.iter();
         let card = procedures.find(|card| card.keyword.name == "DYNAMIC");
         let row = card.and_then(|card| card.rows.first());

@@ -1,0 +1,140 @@
+//! Work of the contact forces of an increment, pair by pair. Section 9 of docs/theory.md.
+
+use std::collections::BTreeMap;
+
+use crate::contact::{Constraint, ConstraintKey, SlaveKey};
+use crate::dynamics::increment::{ContactForces, Solved};
+use crate::dynamics::results::{Cause, State};
+use crate::dynamics::step::{StepProblem, difference, dot};
+use crate::elements::Motion;
+
+/// Work of the contact forces of a pair in an increment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PairWork {
+    /// The pair.
+    pub key: ConstraintKey,
+    /// That of the normal force.
+    pub normal: f64,
+    /// Energy that friction dissipates.
+    pub friction: f64,
+}
+
+/// Work of the pairs in an increment whose forces act all the time:
+///
+/// ```text
+/// Pn.(Bn d), eq. (9.2), and -Pt.(Bt d), eq. (9.3)
+/// ```
+pub(super) fn steady_works(solved: &Solved) -> Vec<PairWork> {
+    let work = |(constraint, [pn, pt]): (&Constraint, [f64; 2])| PairWork {
+        key: constraint.key,
+        normal: pn * constraint.normal_motion(&solved.d),
+        friction: -(pt * constraint.tangential_motion(&solved.d)),
+    };
+    let acting = solved
+        .contact
+        .forces
+        .acting()
+        .map(|(c, pair)| (c, pair.force));
+    acting.map(work).collect()
+}
+
+/// Forces of an equilibrium, from which the work of the next static increment begins.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct EndForces {
+    /// Load and internal force over all dofs (force).
+    pub load: Vec<f64>,
+    pub internal: Vec<f64>,
+    /// The pairs in contact with their forces.
+    pairs: Vec<(Constraint, [f64; 2])>,
+}
+
+impl EndForces {
+    /// Those with the given contact forces.
+    pub fn new(load: Vec<f64>, internal: Vec<f64>, forces: &ContactForces) -> Self {
+        let acting = forces.acting().map(|(c, pair)| (c.clone(), pair.force));
+        EndForces {
+            load,
+            internal,
+            pairs: acting.collect(),
+        }
+    }
+
+    /// Those of a state that no static increment has led to: what its internal force balances counts as load.
+    pub fn at(problem: &StepProblem, state: &State) -> Result<Self, Cause> {
+        let motion = Motion::at(&state.u, &state.internal);
+        let internal = problem.elements.internal_force(motion)?;
+        Ok(EndForces {
+            load: internal.clone(),
+            internal,
+            pairs: Vec::new(),
+        })
+    }
+
+    /// F - R - B^T P over all dofs: the force of supports and equations (force).
+    pub fn missing(&self, dofs: usize) -> Vec<f64> {
+        let mut missing = difference(&self.internal, &self.load);
+        let contact = self.contact(dofs);
+        missing.iter_mut().zip(&contact).for_each(|(f, p)| *f -= p);
+        missing
+    }
+
+    /// Contact force over all dofs (force).
+    pub fn contact(&self, dofs: usize) -> Vec<f64> {
+        let mut force = vec![0.0; dofs];
+        for (constraint, pair) in &self.pairs {
+            constraint.add_force(*pair, &mut force);
+        }
+        force
+    }
+
+    /// Sum of the normal forces of every slave node.
+    fn normal_forces(&self) -> BTreeMap<SlaveKey, f64> {
+        let mut sums = BTreeMap::new();
+        for (constraint, [pn, _]) in &self.pairs {
+            *sums.entry(constraint.key.slave()).or_insert(0.0) += pn;
+        }
+        sums
+    }
+
+    /// Work of the pairs in a static increment from these forces to those of its end, and what of the trapezoid's
+    /// work of tangential forces friction does not dissipate:
+    ///
+    /// ```text
+    /// (Pn0.(Bn0 d) + Pn1.(Bn1 d))/2,  -(1 + Pn0/Pn1)/2 Pt1.(Bt1 d)                       eq. (12.7)
+    /// ```
+    ///
+    /// A pair that slides has |Pt| = mu Pn all the way, and Pn is linear: it slides with the mean force.
+    pub fn works(&self, solved: &Solved, end: &EndForces) -> (Vec<PairWork>, f64) {
+        let d = &solved.d;
+        let (before, after) = (self.normal_forces(), end.normal_forces());
+        let mean = |slave: SlaveKey| {
+            let of = |sums: &BTreeMap<SlaveKey, f64>| sums.get(&slave).copied().unwrap_or(0.0);
+            let (p0, p1) = (of(&before), of(&after));
+            if p1 > 0.0 { (1.0 + p0 / p1) / 2.0 } else { 1.0 }
+        };
+        let mut tangential = 0.0;
+        let mut works = Vec::new();
+        for (forces, is_end) in [(self, false), (end, true)] {
+            for (constraint, [pn, pt]) in &forces.pairs {
+                let work = pt * constraint.tangential_motion(d);
+                tangential += work / 2.0;
+                works.push(PairWork {
+                    key: constraint.key,
+                    normal: pn * constraint.normal_motion(d) / 2.0,
+                    friction: if is_end {
+                        -mean(constraint.key.slave()) * work
+                    } else {
+                        0.0
+                    },
+                });
+            }
+        }
+        let friction: f64 = works.iter().map(|work| work.friction).sum();
+        (works, tangential + friction)
+    }
+
+    /// Work of a force that is linear between its two values, on the way d.
+    pub fn trapezoid(d: &[f64], [from, to]: [&[f64]; 2]) -> f64 {
+        (dot(d, from) + dot(d, to)) / 2.0
+    }
+}

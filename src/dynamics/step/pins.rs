@@ -1,0 +1,451 @@
+//! Pins of static steps: stiffness at a few dofs that holds the rigid motions which supports leave free, softened in
+//! the complementarity problems and iterated out. Section 4 of docs/theory.md, Static steps.
+
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+
+use super::bodies::{Hold, holds};
+use super::parts::Parts;
+use super::step_problem::StepProblem;
+use crate::contact::Constraint;
+use crate::dynamics::results::{Cause, Unbalanced};
+use crate::linear::{LinearError, Transformation, larger, largest};
+use crate::model::Equation;
+
+/// Largest motion of a node, and angle (rad), by which a pass moves a body as a rigid one: of the reach of the search.
+const LARGEST_WAY: f64 = 0.8;
+const LARGEST_ANGLE: f64 = 0.2;
+/// Part of the largest eigenvalue up to which a rigid motion is free.
+const FREE: f64 = 1e-10;
+/// Compliance of pins in the complementarity problems beside that of the pairs of their body: much softer ones leave
+/// problems with friction several solutions.
+const SOFT: f64 = 1e2;
+/// Least and largest stiffness of pins there, beside that in K*.
+const SOFTEST: f64 = 1e-6;
+const STIFFEST: f64 = 1e3;
+
+/// The pins of a step.
+#[derive(Default)]
+pub(crate) struct Pins {
+    bodies: Vec<PinnedBody>,
+}
+
+/// A body with rigid motions that no support holds.
+struct PinnedBody {
+    body: usize,
+    nodes: Vec<usize>,
+    /// Whether it has no support, or is pinned at a node.
+    hold: Hold,
+    /// Free motions: two translations and the rotation about the pole in units of the body's size, column by column.
+    free: DMatrix<f64>,
+    /// Size of the body (length).
+    size: f64,
+    /// Dofs that are pinned, one per free motion.
+    dofs: Vec<usize>,
+}
+
+impl Pins {
+    /// Those of a static step; in a dynamic one inertia holds all bodies.
+    pub fn new(problem: &StepProblem) -> Self {
+        if problem.integration.has_rates {
+            return Pins::default();
+        }
+        let (parts, unknowns) = (problem.parts, &problem.unknowns);
+        let holds = holds(problem);
+        let mut nodes = vec![Vec::new(); parts.bodies()];
+        let mut has_unknowns = vec![false; parts.bodies()];
+        for (node, &body) in parts.of_nodes().iter().enumerate() {
+            nodes[body].push(node);
+        }
+        for &dof in &unknowns.dof {
+            has_unknowns[parts.of_nodes()[dof / 2]] = true;
+        }
+        let pinned = |(body, nodes): (usize, Vec<usize>)| {
+            let movable = has_unknowns[body] && nodes.len() > 1;
+            movable.then(|| PinnedBody::new(problem, body, nodes, holds[body]))?
+        };
+        Pins {
+            bodies: nodes.into_iter().enumerate().filter_map(pinned).collect(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn are_none(&self) -> bool {
+        self.bodies.is_empty()
+    }
+
+    /// The pinned dofs.
+    pub fn dofs(&self) -> impl Iterator<Item = usize> + '_ {
+        self.bodies
+            .iter()
+            .flat_map(|body| body.dofs.iter().copied())
+    }
+
+    /// Body of every pinned dof.
+    fn bodies(&self) -> impl Iterator<Item = usize> + '_ {
+        let all = self.bodies.iter();
+        all.flat_map(|body| body.dofs.iter().map(move |_| body.body))
+    }
+
+    /// That bodies are not in balance with the forces `f` left at their pins, which make the correction `du` at the
+    /// displacements `u`: the body with the largest.
+    pub fn unbalanceable(&self, problem: &StepProblem, u: &[f64], du: &[f64], f: &[f64]) -> Cause {
+        let at = |node: usize| problem.position(u, node);
+        let mut first = 0;
+        let mut most = (0.0, Cause::NotConverged);
+        for body in &self.bodies {
+            let own = &f[first..first + body.dofs.len()];
+            first += body.dofs.len();
+            let size = largest(own);
+            if size >= most.0 {
+                most = (size, body.unbalanceable(&at, du, own));
+            }
+        }
+        most.1
+    }
+
+    /// Makes the rigid part of a correction a finite motion of bodies that turn, and limits it to what the search
+    /// for contact sees; whether it is limited. `at` are the positions of the iterate.
+    pub fn make_finite(&self, at: &dyn Fn(usize) -> [f64; 2], reach: f64, du: &mut [f64]) -> bool {
+        let mut is_limited = false;
+        for body in &self.bodies {
+            is_limited |= body.make_finite(at, reach, du);
+        }
+        is_limited
+    }
+}
+
+impl PinnedBody {
+    fn new(problem: &StepProblem, body: usize, nodes: Vec<usize>, hold: Hold) -> Option<Self> {
+        let (model, unknowns) = (problem.model, &problem.unknowns);
+        let x = |node: usize| model.mesh.coordinates[node];
+        let pole = pole(hold, &nodes, &x);
+        let size = nodes
+            .iter()
+            .map(|&node| distance(pole, x(node)))
+            .fold(0.0, larger);
+        let row = |dof: usize| motion_row(dof, pole, size, &x);
+        // what supports and equations ask of a rigid motion
+        let mut gram = Matrix3::zeros();
+        let own = |dof: usize| nodes.binary_search(&(dof / 2)).is_ok();
+        for dof in unknowns.prescribed().filter(|&dof| own(dof)) {
+            gram += row(dof) * row(dof).transpose();
+        }
+        for Equation { dof, terms } in model.equations.iter().filter(|e| own(e.dof)) {
+            let of_terms: Vector3<f64> = terms.iter().map(|&(to, c)| c * row(to)).sum();
+            let asked = row(*dof) - of_terms;
+            gram += asked * asked.transpose();
+        }
+        let eigen = gram.symmetric_eigen();
+        let least = FREE * nodes.len() as f64;
+        let free: Vec<_> = (0..3)
+            .filter(|&k| eigen.eigenvalues[k] <= least)
+            .map(|k| eigen.eigenvectors.column(k).into_owned())
+            .collect();
+        if free.is_empty() {
+            return None;
+        }
+        let free = DMatrix::from_fn(3, free.len(), |i, k| free[k][i]);
+        let candidates = unknowns.dof.iter().copied().filter(|&dof| own(dof));
+        let dofs = independent_dofs(candidates.collect(), &free, row)?;
+        Some(PinnedBody {
+            body,
+            nodes,
+            hold,
+            free,
+            size,
+            dofs,
+        })
+    }
+
+    fn unbalanceable(&self, at: &dyn Fn(usize) -> [f64; 2], du: &[f64], f: &[f64]) -> Cause {
+        let pole = pole(self.hold, &self.nodes, at);
+        let (mut force, mut moment) = ([0.0; 2], 0.0);
+        for (&dof, &f) in self.dofs.iter().zip(f) {
+            let row = motion_row(dof, pole, self.size, at);
+            force[dof % 2] += f;
+            moment += row[2] * self.size * f;
+        }
+        let motion = self.motion(at, pole, du).unwrap_or_default();
+        Cause::Unbalanceable(Box::new(Unbalanced {
+            node: self.dofs[0] / 2,
+            force,
+            moment,
+            motion: [motion[0], motion[1], motion[2] / self.size],
+            size: self.size,
+        }))
+    }
+
+    /// Rigid part of a correction: Z_p^-1 dU_p
+    fn motion(
+        &self,
+        at: &dyn Fn(usize) -> [f64; 2],
+        pole: [f64; 2],
+        du: &[f64],
+    ) -> Option<Vector3<f64>> {
+        let row = |dof: usize| motion_row(dof, pole, self.size, at);
+        let m = self.dofs.len();
+        let seen = |i: usize, k: usize| row(self.dofs[i]).dot(&self.free.fixed_view::<3, 1>(0, k));
+        let z = DMatrix::from_fn(m, m, seen);
+        let moved = DVector::from_fn(m, |i, _| du[self.dofs[i]]);
+        let part = z.lu().solve(&moved)?;
+        let motion = &self.free * part;
+        Some(Vector3::new(motion[0], motion[1], motion[2]))
+    }
+
+    fn make_finite(&self, at: &dyn Fn(usize) -> [f64; 2], reach: f64, du: &mut [f64]) -> bool {
+        let pole = pole(self.hold, &self.nodes, at);
+        let Some(motion) = self.motion(at, pole, du) else {
+            return false;
+        };
+        let [tx, ty, angle] = [motion[0], motion[1], motion[2] / self.size];
+        let arm = |node: usize| [at(node)[0] - pole[0], at(node)[1] - pole[1]];
+        let linear = |node: usize| {
+            let [x, y] = arm(node);
+            [tx - angle * y, ty + angle * x]
+        };
+        let way = |node: &usize| linear(*node)[0].hypot(linear(*node)[1]);
+        let most = self.nodes.iter().map(way).fold(0.0, larger);
+        let turns = self.hold != Hold::Held;
+        let mut part = 1.0_f64;
+        if most > LARGEST_WAY * reach {
+            part = LARGEST_WAY * reach / most;
+        }
+        if angle.abs() > LARGEST_ANGLE {
+            part = part.min(LARGEST_ANGLE / angle.abs());
+        }
+        if !part.is_finite() || (part == 1.0 && !turns) {
+            return false;
+        }
+        let (sin, cos) = (part * angle).sin_cos();
+        for &node in &self.nodes {
+            let ([x, y], [lx, ly]) = (arm(node), linear(node));
+            let to = match turns {
+                true => [
+                    part * tx + (cos - 1.0) * x - sin * y,
+                    part * ty + sin * x + (cos - 1.0) * y,
+                ],
+                false => [part * lx, part * ly],
+            };
+            du[2 * node] += to[0] - lx;
+            du[2 * node + 1] += to[1] - ly;
+        }
+        part < 1.0
+    }
+}
+
+/// What a body turns about: the node that it is pinned at, or the mean of its nodes.
+fn pole(hold: Hold, nodes: &[usize], x: &dyn Fn(usize) -> [f64; 2]) -> [f64; 2] {
+    if let Hold::Pinned(node) = hold {
+        return x(node);
+    }
+    let mut sum = [0.0; 2];
+    for &node in nodes {
+        let [px, py] = x(node);
+        sum = [sum[0] + px, sum[1] + py];
+    }
+    sum.map(|sum| sum / nodes.len() as f64)
+}
+
+/// Motion of a dof in two translations and a rotation about a pole that moves places at the given distance by 1.
+fn motion_row(
+    dof: usize,
+    pole: [f64; 2],
+    size: f64,
+    x: &dyn Fn(usize) -> [f64; 2],
+) -> Vector3<f64> {
+    let [px, py] = x(dof / 2);
+    match dof % 2 {
+        0 => Vector3::new(1.0, 0.0, -(py - pole[1]) / size),
+        _ => Vector3::new(0.0, 1.0, (px - pole[0]) / size),
+    }
+}
+
+/// As many dofs as there are free motions, by a pivoted QR factorisation of what they see of them.
+fn independent_dofs(
+    dofs: Vec<usize>,
+    free: &DMatrix<f64>,
+    row: impl Fn(usize) -> Vector3<f64>,
+) -> Option<Vec<usize>> {
+    let seen = |&dof: &usize| free.transpose() * row(dof);
+    let mut rows: Vec<_> = dofs.iter().map(seen).collect();
+    let mut chosen = Vec::new();
+    for _ in 0..free.ncols() {
+        let largest = |i: &usize, k: &usize| rows[*i].norm().total_cmp(&rows[*k].norm());
+        let at = (0..rows.len()).max_by(largest)?;
+        let direction = rows[at].clone().try_normalize(f64::EPSILON)?;
+        chosen.push(dofs[at]);
+        for row in &mut rows {
+            let part = row.dot(&direction);
+            *row -= &direction * part;
+        }
+    }
+    Some(chosen)
+}
+
+fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
+    (p[0] - q[0]).hypot(p[1] - q[1])
+}
+
+/// W = K'^-1 from the factors of K_r, of which K' differs by the stiffness of the pins,
+///
+/// ```text
+/// W b = K_r^-1 b - V C V^T b,  V = K_r^-1 S,  C = (1/(a' - a) + S^T V)^-1            eq. (12.4)
+/// ```
+pub(crate) struct Softening {
+    /// Columns of V over the unknowns.
+    columns: Vec<Vec<f64>>,
+    /// C.
+    c: DMatrix<f64>,
+    /// V^T b of the solve that is under way.
+    projected: Vec<f64>,
+    /// Stiffness a' of the pins (force/length).
+    pub stiffness: Vec<f64>,
+    /// Columns of V over all dofs.
+    of_dofs: Vec<Vec<f64>>,
+}
+
+impl Softening {
+    /// That of pins of the stiffness `a` whose columns of V are given; `compliances` are Qnn of some pairs.
+    ///
+    /// ```text
+    /// q = max (Qnn_jj - a |(Gn V)_j|²),  z = max |a (Gn V)_j|²,  a' = z/(100 q)     eq. (12.3)
+    /// ```
+    pub fn new(
+        pins: &Pins,
+        (map, parts): (&Transformation, &Parts),
+        [a, part]: [f64; 2],
+        columns: Vec<Vec<f64>>,
+        compliances: &[(&Constraint, f64)],
+        dofs: usize,
+    ) -> Self {
+        let expand = |column: &Vec<f64>| {
+            let mut all = vec![0.0; dofs];
+            map.add(column, &mut all);
+            all
+        };
+        let of_dofs: Vec<Vec<f64>> = columns.iter().map(expand).collect();
+        let bodies: Vec<usize> = pins.bodies().collect();
+        let soft = |body: usize| {
+            let (mut q, mut z) = (0.0_f64, 0.0_f64);
+            for (constraint, compliance) in compliances {
+                if constraint
+                    .nodes()
+                    .all(|node| parts.of_nodes()[node] != body)
+                {
+                    continue;
+                }
+                let of_body = of_dofs
+                    .iter()
+                    .zip(&bodies)
+                    .filter(|(_, other)| **other == body);
+                let seen: f64 = of_body.map(|(v, _)| constraint.gap_change(v).powi(2)).sum();
+                q = q.max(compliance - a * seen);
+                z = z.max(a * a * seen);
+            }
+            match q > 0.0 {
+                true => (part * z / (SOFT * q)).clamp(SOFTEST * a, STIFFEST * a),
+                false => SOFTEST * a,
+            }
+        };
+        let stiffness: Vec<f64> = bodies.iter().map(|&body| soft(body)).collect();
+        let unknown = |dof: usize| map.row(dof).first().map_or(0, |term| term.0);
+        let unknowns: Vec<usize> = pins.dofs().map(unknown).collect();
+        let m = columns.len();
+        let mut c = DMatrix::from_fn(m, m, |i, k| columns[k][unknowns[i]]);
+        for (k, soft) in stiffness.iter().enumerate() {
+            let difference = match soft - a {
+                0.0 => -f64::EPSILON * a,
+                difference => difference,
+            };
+            c[(k, k)] += 1.0 / difference;
+        }
+        let c = c.try_inverse().unwrap_or_else(|| DMatrix::zeros(m, m));
+        Softening {
+            columns,
+            c,
+            projected: vec![0.0; m],
+            stiffness,
+            of_dofs,
+        }
+    }
+
+    /// A right-hand side over the unknowns begins.
+    pub fn begin(&mut self, b: &[f64]) {
+        for (projected, column) in self.projected.iter_mut().zip(&self.columns) {
+            *projected = column.iter().zip(b).map(|(v, b)| v * b).sum();
+        }
+    }
+
+    /// Adds to the right-hand side (unknown, value).
+    pub fn add(&mut self, b: &[(usize, f64)]) {
+        for (projected, column) in self.projected.iter_mut().zip(&self.columns) {
+            *projected += b.iter().map(|&(at, value)| column[at] * value).sum::<f64>();
+        }
+    }
+
+    /// C V^T b
+    fn parts(&self) -> Vec<f64> {
+        let m = self.projected.len();
+        let row = |i: usize| (0..m).map(|k| self.c[(i, k)] * self.projected[k]).sum();
+        (0..m).map(row).collect()
+    }
+
+    /// Makes K_r^-1 b at some unknowns W b.
+    pub fn correct(&self, unknowns: &[usize], values: &mut [f64]) {
+        for (part, column) in self.parts().iter().zip(&self.columns) {
+            for (&at, value) in unknowns.iter().zip(values.iter_mut()) {
+                *value -= part * column[at];
+            }
+        }
+    }
+
+    /// W b for K_r^-1 b over all unknowns.
+    pub fn corrected(&self, solution: &[f64]) -> Vec<f64> {
+        let mut solution = solution.to_vec();
+        for (part, column) in self.parts().iter().zip(&self.columns) {
+            for (value, v) in solution.iter_mut().zip(column) {
+                *value -= part * v;
+            }
+        }
+        solution
+    }
+
+    /// Makes G K_r^-1 B^T of some constraints G W B^T.
+    pub fn soften(&self, constraints: &[&Constraint], q: &mut DMatrix<f64>) {
+        let (n, m) = (constraints.len(), self.columns.len());
+        type Row = fn(&Constraint, &[f64]) -> f64;
+        let seen = |normal: Row, tangential: Row| {
+            DMatrix::from_fn(2 * n, m, |i, k| match i < n {
+                true => normal(constraints[i], &self.of_dofs[k]),
+                false => tangential(constraints[i - n], &self.of_dofs[k]),
+            })
+        };
+        let g = seen(Constraint::gap_change, Constraint::slip_change);
+        let b = seen(Constraint::normal_motion, Constraint::tangential_motion);
+        *q -= g * &self.c * b.transpose();
+    }
+}
+
+/// Adds the stiffness of all pins to the forces of a pass: a' p at the pinned dofs.
+pub(crate) fn add_pin_forces(pins: &Pins, stiffness: &[f64], p: &[f64], force: &mut [f64]) {
+    for ((dof, a), p) in pins.dofs().zip(stiffness).zip(p) {
+        force[dof] += a * p;
+    }
+}
+
+/// The columns V = K_r^-1 S.
+pub(crate) fn pin_columns(
+    pins: &Pins,
+    map: &Transformation,
+    mut solve: impl FnMut(&[f64]) -> Result<Vec<f64>, LinearError>,
+) -> Result<Vec<Vec<f64>>, LinearError> {
+    let mut columns = Vec::new();
+    for dof in pins.dofs() {
+        let mut b = vec![0.0; map.unknowns()];
+        for &(at, c) in map.row(dof) {
+            b[at] = c;
+        }
+        columns.push(solve(&b)?);
+    }
+    Ok(columns)
+}

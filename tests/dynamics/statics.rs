@@ -1,0 +1,134 @@
+//! Static steps: bodies that contact alone holds, loads that have no equilibrium, steps in any order.
+
+use crate::blocks::Keep;
+use stickslip::deck;
+use stickslip::diagnostics::{Diagnostics, Sources};
+use stickslip::dynamics::{Cause, Failure, Outcome, run};
+use stickslip::prepare::PreparedModel;
+use stickslip::reader;
+
+/// A run of a deck: what it has reported, and why it stopped.
+fn run_deck(text: &str) -> (Keep, Option<Failure>) {
+    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+    let deck = deck::parse_str("deck.inp", text, &mut sources, &mut d);
+    let model = reader::build(&deck, &mut d);
+    let model = model.unwrap_or_else(|| panic!("{}", d.render(&sources, false)));
+    let mut keep = Keep::default();
+    let summary = run(&PreparedModel::new(model), &mut keep).expect("the observer never fails");
+    let failure = match summary.outcome {
+        Outcome::Stopped(failure) => Some(*failure),
+        _ => None,
+    };
+    (keep, failure)
+}
+
+/// A square that nothing but contact holds on a fixed one, and its steps.
+fn on_floor(height: f64, friction: f64, steps: &str) -> String {
+    let [low, high] = [height, height + 1.0];
+    format!(
+        "*NODE\n1, -2., -1.\n2, 4., -1.\n3, 4., 0.\n4, -2., 0.\n\
+         5, 0., {low:?}\n6, 1., {low:?}\n7, 1., {high:?}\n8, 0., {high:?}\n\
+         *ELEMENT, TYPE=CPE4, ELSET=FLOOR\n1, 1, 2, 3, 4\n*ELEMENT, TYPE=CPE4, ELSET=BODY\n2, 5, 6, 7, 8\n\
+         *NSET, NSET=ROOF\n7, 8\n*NSET, NSET=GROUND\n1, 2, 3, 4\n\
+         *SURFACE, NAME=TOP\nFLOOR, S3\n*SURFACE, NAME=SOLE\nBODY, S1\n\
+         *MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n*DENSITY\n1.\n\
+         *SOLID SECTION, ELSET=FLOOR, MATERIAL=M\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n\
+         *SURFACE INTERACTION, NAME=DRY\n*FRICTION\n{friction:?}\n*CONTACT PAIR, INTERACTION=DRY\nSOLE, TOP\n\
+         *BOUNDARY\nGROUND, 1, 2\n{steps}"
+    )
+}
+
+const WEIGHT: &str = "*STEP, NLGEOM\n*STATIC\n1., 1.\n*DLOAD\nBODY, GRAV, 1., 0., -1.\n*END STEP\n";
+
+/// Gravity at the angle of a slope of 20 degrees.
+fn slope() -> String {
+    let (sin, cos) = 20.0_f64.to_radians().sin_cos();
+    format!(
+        "*STEP, NLGEOM\n*STATIC\n1., 1.\n*DLOAD\nBODY, GRAV, 1., {sin:?}, {:?}\n*END STEP\n",
+        -cos
+    )
+}
+
+#[test]
+fn a_block_slides_on_a_slope_where_friction_ends() {
+    let tangent = 20.0_f64.to_radians().tan();
+    let (keep, failure) = run_deck(&on_floor(0.0, tangent + 1e-5, &slope()));
+    assert_eq!(failure, None);
+    let last = keep.reports.last().expect("reports");
+    assert!(last.solver.passes <= 5, "{}", last.solver.passes);
+    let weight = last.contacts[0].force[0].hypot(last.contacts[0].force[1]);
+    assert!((weight - 1.0).abs() < 1e-9, "{weight}");
+    let (_, failure) = run_deck(&on_floor(0.0, tangent - 1e-5, &slope()));
+    let failure = failure.expect("there is no equilibrium");
+    assert_eq!(failure.passes.len(), 0, "it is seen in the first pass");
+    let Cause::Unbalanceable(unbalanced) = failure.cause else {
+        panic!("{:?}", failure.cause);
+    };
+    assert!(
+        unbalanced.force[0] > 0.0 && unbalanced.motion[0] > 0.0,
+        "down the slope"
+    );
+}
+
+#[test]
+fn a_block_falls_to_the_floor_that_is_near() {
+    let (keep, failure) = run_deck(&on_floor(0.3, 0.3, WEIGHT));
+    assert_eq!(failure, None);
+    let last = keep.reports.last().expect("reports");
+    assert!((last.contacts[0].force[1] - 1.0).abs() < 1e-9);
+    assert!(last.state.v.iter().all(|&v| v == 0.0));
+    assert!(last.energy.balance.abs() < 1e-10);
+}
+
+#[test]
+fn no_load_leaves_a_free_body_where_it_is() {
+    let (keep, failure) = run_deck(&on_floor(0.0, 0.3, "*STEP, NLGEOM\n*STATIC\n*END STEP\n"));
+    assert_eq!(failure, None);
+    let last = keep.reports.last().expect("reports");
+    assert!(last.state.u.iter().all(|&u| u == 0.0));
+}
+
+#[test]
+fn a_dynamic_step_goes_on_from_an_equilibrium_without_a_kick() {
+    let steps = format!(
+        "{WEIGHT}*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 0.2\n*END STEP\n*STEP, NLGEOM\n*STATIC\n0.5, 1.\n\
+         *BOUNDARY\nROOF, 2, 2, -0.05\n*END STEP\n"
+    );
+    let (keep, failure) = run_deck(&on_floor(0.0, 0.3, &steps));
+    assert_eq!(failure, None);
+    let energy = keep.reports[1].energy.strain;
+    for report in keep.reports.iter().filter(|report| report.step == 2) {
+        assert!(
+            report.energy.kinetic < 1e-18 * energy,
+            "{:e}",
+            report.energy.kinetic
+        );
+    }
+    let last = keep.reports.last().expect("reports");
+    assert!(last.contacts[0].force[1] > 10.0);
+    assert!(last.energy.balance.abs() < 1e-10 * last.energy.strain);
+}
+
+#[test]
+fn a_support_that_goes_gives_its_force_back_over_the_step() {
+    let steps = "*STEP, NLGEOM\n*STATIC\n0.5, 1.\n*BOUNDARY\nROOF, 2, 2, -0.05\nROOF, 1, 1\n*END STEP\n\
+                 *STEP, NLGEOM\n*STATIC, DIRECT\n0.5, 1.\n*BOUNDARY, OP=NEW\nGROUND, 1, 2\n*DLOAD\nBODY, GRAV, 1., 0., -1.\n\
+                 *END STEP\n";
+    let (keep, failure) = run_deck(&on_floor(0.0, 0.3, steps));
+    assert_eq!(failure, None);
+    let forces: Vec<f64> = keep
+        .reports
+        .iter()
+        .map(|r| r.contacts[0].force[1])
+        .collect();
+    let [.., pressed, half, last] = forces[..] else {
+        panic!("increments");
+    };
+    assert!(
+        (half - (pressed / 2.0 + 0.5)).abs() < 1e-9 * pressed,
+        "{half} {pressed}"
+    );
+    assert!((last - 1.0).abs() < 1e-9 * pressed);
+    let energy = keep.reports.last().expect("reports").energy;
+    assert!(energy.balance.abs() < 1e-10 * pressed);
+}
