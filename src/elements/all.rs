@@ -9,6 +9,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use rayon::prelude::*;
 
 use super::chunk::{BlockTangents, MAX_CHUNK, TangentSweep};
+use super::connector::PlacedConnector;
 use super::damping::ElementDamping;
 use super::element::{AnyChunk, AnyElement};
 use super::formulation::ElementResult;
@@ -62,6 +63,8 @@ pub struct Elements {
     rigid: Vec<AnyElement>,
     /// Elements with damping, increasing.
     pub(super) damped: Vec<(usize, ElementDamping)>,
+    /// Springs and dashpots, whose places in lists follow those of the elements.
+    connectors: Vec<PlacedConnector>,
     pub(super) dofs: usize,
     pub(super) space: Mutex<Space>,
 }
@@ -103,6 +106,7 @@ impl Elements {
             parts: Vec::new(),
             rigid: Vec::new(),
             damped: Vec::new(),
+            connectors: Vec::new(),
             dofs: model.dof_count(),
             space: Mutex::default(),
         };
@@ -151,6 +155,8 @@ impl Elements {
             let damping = ElementDamping::new(|| all.element(index), material, plane);
             all.damped.extend(damping.map(|damping| (index, damping)));
         }
+        let placed = |connector| PlacedConnector::new(connector, &model.mesh.coordinates);
+        all.connectors = model.connectors.iter().map(placed).collect();
         all
     }
 
@@ -242,6 +248,17 @@ impl Elements {
     /// Node indices of an element.
     pub fn nodes(&self, element: usize) -> &[usize] {
         &self.nodes[self.starts[element]..self.starts[element + 1]]
+    }
+
+    /// Nodes of every element, then of every spring and dashpot.
+    pub fn connected(&self) -> impl Iterator<Item = &[usize]> {
+        let elements = (0..self.len()).map(|element| self.nodes(element));
+        elements.chain(self.connectors.iter().map(PlacedConnector::nodes))
+    }
+
+    /// Energy that all springs store at displacements `u` (force length).
+    pub fn spring_energy(&self, u: &[f64]) -> f64 {
+        self.connectors.iter().map(|spring| spring.energy(u)).sum()
     }
 
     /// Density of an element (mass/length^3).
@@ -344,8 +361,8 @@ impl Elements {
         results
     }
 
-    /// Internal force F at the end of a motion, or its energy-momentum form from start to end, 2 N
-    /// entries.
+    /// Internal force F of elements and springs at the end of a motion, or its energy-momentum form from start to
+    /// end, 2 N entries.
     ///
     /// # Errors
     /// The first element that is turned inside out.
@@ -378,6 +395,9 @@ impl Elements {
             for (dof, force) in part.element.dofs().zip(force) {
                 total[dof] += *force;
             }
+        }
+        for spring in &self.connectors {
+            add_vector(spring.nodes(), &spring.force(motion), total);
         }
         Ok(())
     }
@@ -429,9 +449,9 @@ impl Elements {
         self.space.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Calls `add(element, k)` with the tangent of every element that is `wanted`, and maybe of others
+    /// Calls `add(place, k)` with the tangent of every element and spring that is `wanted`, and maybe of others
     /// beside them, or its positive part, k being D x D column by column, in the configuration of
-    /// [`Self::internal_force`].
+    /// [`Self::internal_force`]. The places are those of [`Self::connected`].
     pub fn for_each_tangent(
         &self,
         motion: Motion,
@@ -461,6 +481,9 @@ impl Elements {
                 add(part.index, &k[..d * d]);
             }
         }
+        for (place, spring) in (self.len()..).zip(&self.connectors) {
+            add(place, &spring.tangent(motion, part));
+        }
     }
 
     /// Tangent of one element in the configuration of [`Self::internal_force`], D x D column by column.
@@ -488,12 +511,22 @@ impl Elements {
                 add_product(self.nodes(element), &k, v, &mut product);
             }
         }
+        for spring in &self.connectors {
+            let k = spring.tangent(motion, TangentPart::Whole);
+            add_product(spring.nodes(), &k, v, &mut product);
+        }
         product
     }
 
-    /// Whether any element is damped.
+    /// Whether any element is damped, or there is a dashpot.
     pub fn has_damping(&self) -> bool {
-        !self.damped.is_empty()
+        !self.damped.is_empty() || self.dashpots().next().is_some()
+    }
+
+    /// The dashpots with their places behind the elements.
+    fn dashpots(&self) -> impl Iterator<Item = (usize, &PlacedConnector)> {
+        let all = (self.len()..).zip(&self.connectors);
+        all.filter(|(_, connector)| connector.is_dashpot())
     }
 
     /// Force of damping F_d in an increment of length `dt` with the displacement increment `d`, eq.
@@ -501,6 +534,9 @@ impl Elements {
     pub fn damping_force(&self, increment: Increment, d: &[f64], dt: f64) -> Vec<f64> {
         let impulses = self.of_damped(|element, damping| damping.impulse(element, increment, d));
         let mut force = self.sum_of_damped(&impulses);
+        for (_, dashpot) in self.dashpots() {
+            add_vector(dashpot.nodes(), &dashpot.impulse(increment, dt), &mut force);
+        }
         force.iter_mut().for_each(|f| *f /= dt);
         force
     }
@@ -515,14 +551,18 @@ impl Elements {
     /// increment `d`, eq. (4.18) (force length).
     pub fn damping_dissipation(&self, increment: Increment, d: &[f64], dt: f64) -> f64 {
         let work = |element: &_, damping: &ElementDamping| damping.work(element, increment, d);
-        self.of_damped(work).iter().sum::<f64>() / dt
+        let dashpots = self
+            .dashpots()
+            .map(|(_, dashpot)| dashpot.work(increment, dt));
+        (self.of_damped(work).iter().sum::<f64>() + dashpots.sum::<f64>()) / dt
     }
 
-    /// Calls `add(element, c)` with the damping matrix of every damped element in order, eq. (4.19), or
+    /// Calls `add(place, c)` with the damping matrix of every damped element and dashpot in order in an increment of
+    /// length `dt`, eq. (4.19), or
     /// its positive part, c being D x D column by column (force time/length).
     pub fn for_each_damping(
         &self,
-        increment: Increment,
+        (increment, dt): (Increment, f64),
         part: TangentPart,
         mut add: impl FnMut(usize, &[f64]),
     ) {
@@ -531,14 +571,21 @@ impl Elements {
             let d = 2 * self.nodes(*element).len();
             add(*element, &c[..d * d]);
         }
+        for (place, dashpot) in self.dashpots() {
+            add(place, &dashpot.damping(increment, dt));
+        }
     }
 
-    /// Cd v with the damping matrix, 2 N entries.
-    pub fn damping_product(&self, increment: Increment, v: &[f64]) -> Vec<f64> {
+    /// Cd v with the damping matrix in an increment of length `dt`, 2 N entries.
+    pub fn damping_product(&self, increment: Increment, dt: f64, v: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; self.dofs];
         for (element, damping) in &self.damped {
             let c = damping.matrix(&self.element(*element), increment, TangentPart::Whole);
             add_product(self.nodes(*element), &c, v, &mut product);
+        }
+        for (_, dashpot) in self.dashpots() {
+            let c = dashpot.damping(increment, dt);
+            add_product(dashpot.nodes(), &c, v, &mut product);
         }
         product
     }
@@ -554,9 +601,7 @@ impl Elements {
     fn sum_of_damped(&self, vectors: &[ElementVector]) -> Vec<f64> {
         let mut sum = vec![0.0; self.dofs];
         for ((element, _), vector) in self.damped.iter().zip(vectors) {
-            for (dof, value) in dofs(self.nodes(*element)).zip(vector) {
-                sum[dof] += value;
-            }
+            add_vector(self.nodes(*element), vector, &mut sum);
         }
         sum
     }
@@ -567,8 +612,15 @@ pub(super) fn dofs(nodes: &[usize]) -> impl Iterator<Item = usize> + '_ {
     nodes.iter().flat_map(|n| [2 * n, 2 * n + 1])
 }
 
+/// Adds the vector of an element with these nodes to a sum over all dofs.
+fn add_vector(nodes: &[usize], vector: &[f64], sum: &mut [f64]) {
+    for (dof, value) in dofs(nodes).zip(vector) {
+        sum[dof] += value;
+    }
+}
+
 /// Adds k v to a product over all dofs, k being a matrix of an element with these nodes.
-fn add_product(nodes: &[usize], k: &ElementMatrix, v: &[f64], product: &mut [f64]) {
+fn add_product(nodes: &[usize], k: &[f64], v: &[f64], product: &mut [f64]) {
     let d = 2 * nodes.len();
     for (j, column) in dofs(nodes).enumerate() {
         for (i, row) in dofs(nodes).enumerate() {

@@ -239,7 +239,7 @@ mod tests {
             // exact where the strain does not change; else B_L of the end stands on its right
             let u = wave(0.1, 1.3);
             let mut matrix = vec![0.0; DOFS * DOFS];
-            elements.for_each_damping([&u, &u], TangentPart::Whole, |element, c| {
+            elements.for_each_damping(([&u, &u], 1.0), TangentPart::Whole, |element, c| {
                 let nodes = elements.nodes(element).iter();
                 let dofs: Vec<usize> = nodes.flat_map(|n| [2 * n, 2 * n + 1]).collect();
                 for (j, &column) in dofs.iter().enumerate() {

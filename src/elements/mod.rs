@@ -6,6 +6,7 @@
 mod all;
 mod block;
 mod chunk;
+mod connector;
 mod damping;
 mod displacement;
 mod element;
@@ -16,6 +17,7 @@ mod shapes;
 mod solid;
 
 pub use all::{Elements, Inverted, Updated};
+pub use connector::{ConnectorState, PlacedConnector};
 pub use element::ElementInertia;
 pub use formulation::{ElementResult, Strained, most_strained};
 pub use mean_gradient::MeanGradient;

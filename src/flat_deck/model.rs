@@ -4,9 +4,9 @@
 use super::lines::{DeckWriter, name, named, number, set};
 use crate::materials::{Law, NeoHooke, SaintVenantKirchhoff};
 use crate::model::{
-    ALL_EXTERIOR, Adjust, Amplitude, Contact, Curve, Damping, Element, Equation, Face, Formulation,
-    Friction, Interaction, Material, Mesh, Model, Reach, Section, Set, Signal, SurfaceKind,
-    TimeBase,
+    ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorLaw, Contact, Curve, Damping, Direction,
+    Element, Equation, Face, ForceCurve, Formulation, Friction, Interaction, Material, Mesh, Model,
+    Reach, Section, Set, Signal, SurfaceKind, TimeBase,
 };
 
 /// Terms of an equation on a data line.
@@ -16,6 +16,7 @@ const TERMS: usize = 4;
 pub(super) fn write(model: &Model, lines: &mut DeckWriter) {
     write_mesh(model, lines);
     write_properties(model, lines);
+    write_connectors(model, lines);
     write_amplitudes(&model.amplitudes, lines);
     write_contacts(model, lines);
 }
@@ -56,13 +57,9 @@ fn write_contacts(model: &Model, lines: &mut DeckWriter) {
 
 /// Masses and rotary inertia of the bodies that turn, as elements with numbers after the largest one.
 fn point_elements(model: &Model, lines: &mut DeckWriter) {
-    let mut label = model
-        .mesh
-        .elements
-        .iter()
-        .map(|e| e.label)
-        .max()
-        .unwrap_or(0);
+    let elements = model.mesh.elements.iter().map(|element| element.label);
+    let connectors = model.connectors.iter().map(|connector| connector.label);
+    let mut label = elements.chain(connectors).max().unwrap_or(0);
     let mut write = |element_type: &str, keyword: &str, node: usize, row: Vec<String>| {
         label += 1;
         let name = format!("{element_type}-{label}");
@@ -397,6 +394,53 @@ fn new_set(index: usize, members: &[usize], model: &Model, lines: &mut DeckWrite
         .collect();
     lines.list(&labels);
     name
+}
+
+/// Writes springs and dashpots, those that follow each other and are alike together.
+fn write_connectors(model: &Model, lines: &mut DeckWriter) {
+    let alike = |a: &Connector, b: &Connector| {
+        let what = |c: &Connector| (c.type_name(), c.direction, c.law);
+        what(a) == what(b) && a.curve == b.curve
+    };
+    for (index, group) in model.connectors.chunk_by(alike).enumerate() {
+        let Connector {
+            direction,
+            law,
+            curve,
+            ..
+        } = &group[0];
+        let set_name = format!("CONNECTORS-{}", index + 1);
+        let (set_of, kind) = (named("ELSET", &set_name), set("TYPE", group[0].type_name()));
+        lines.card("ELEMENT", [kind, set_of.clone()]);
+        for Connector { label, nodes, .. } in group {
+            let nodes = nodes.iter().map(|&node| model.mesh.node_labels[node]);
+            lines.row(
+                std::iter::once(*label)
+                    .chain(nodes)
+                    .map(|label| label.to_string()),
+            );
+        }
+        let keyword = match law {
+            ConnectorLaw::Spring => "SPRING",
+            ConnectorLaw::Dashpot => "DASHPOT",
+        };
+        match curve {
+            ForceCurve::Linear(_) => lines.card(keyword, [set_of]),
+            ForceCurve::Table(_) => lines.card(keyword, [set_of, "NONLINEAR".to_owned()]),
+        }
+        if let Direction::Fixed(both) = direction {
+            let count = group[0].nodes.len();
+            lines.row(both.iter().take(count).map(|axis| (axis + 1).to_string()));
+        }
+        match curve {
+            ForceCurve::Linear(factor) => lines.row([number(*factor)]),
+            ForceCurve::Table(points) => {
+                for &[at, force] in points {
+                    lines.row([force, at].map(number));
+                }
+            }
+        }
+    }
 }
 
 /// Points on a data line.

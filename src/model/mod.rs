@@ -6,6 +6,7 @@
 //! two more nodes, which only these vectors know: its centre of mass, and one whose direction 0 is its angle.
 
 mod amplitude;
+mod connector;
 mod contact;
 mod element_type;
 mod mesh;
@@ -16,6 +17,7 @@ mod step;
 pub use crate::materials::Plane;
 use crate::materials::{Law, SmallStrainModuli};
 pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
+pub use connector::{Connector, ConnectorLaw, Direction, ForceCurve};
 pub use contact::{
     ALL_EXTERIOR, Adjust, Contact, Equation, Friction, Interaction, Reach, RigidBody, Surface,
     SurfaceKind, TurningBody,
@@ -48,6 +50,8 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// Sections: material and thickness of elements.
     pub sections: Vec<Section>,
+    /// Springs and dashpots.
+    pub connectors: Vec<Connector>,
     /// Contacts: one per data line of `*CONTACT PAIR`, then general contact.
     pub contacts: Vec<Contact>,
     /// Amplitude curves.

@@ -8,8 +8,8 @@ use super::run_record::{RunRecord, utc_now};
 use super::status::monitored;
 use crate::diagnostics::Sources;
 use crate::model::{
-    Contact, EdgeScales, Element, ElementType, Frames, Impact, ImpactTime, LandingRule, Model,
-    Procedure, Scheme, Settings, SolverChoice, Step, SurfaceKind,
+    Connector, ConnectorLaw, Contact, EdgeScales, Element, ElementType, Frames, Impact, ImpactTime,
+    LandingRule, Model, Procedure, Scheme, Settings, SolverChoice, Step, SurfaceKind,
 };
 use crate::prepare::{InitialGap, PreparedModel};
 use crate::vectors::extents;
@@ -102,6 +102,17 @@ impl ModelEcho {
         ];
         let mut lines = wrap("model", &size);
         lines.extend(wrap("", &shape));
+        if !model.connectors.is_empty() {
+            let is_spring = |c: &&Connector| c.law == ConnectorLaw::Spring;
+            let springs = model.connectors.iter().filter(is_spring).count();
+            let counts = [
+                (springs, "spring"),
+                (model.connectors.len() - springs, "dashpot"),
+            ];
+            let counts = counts.into_iter().filter(|(count, _)| *count > 0);
+            let counts: Vec<String> = counts.map(|(count, what)| counted(count, what)).collect();
+            lines.push(label("", &counts.join("  ")));
+        }
         if !model.equations.is_empty() {
             let count = counted(model.equations.len(), "equation");
             lines.push(label("", &format!("{count} between displacements")));

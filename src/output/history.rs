@@ -1,6 +1,8 @@
 //! Group `/history`: energies and solver, nodes, elements, bodies, contacts and rigid surfaces, one row per
 //! increment, row 0 being the start; impacts, returns and touches, one row per event.
 
+use std::sync::Arc;
+
 use hdf5::Group;
 
 use super::column::{Columns, Layout, Meaning, Mostly, ROWS, constant, group};
@@ -11,7 +13,9 @@ use crate::dynamics::{
     BodyResult, ContactOnBody, ContactResultant, Energy, IncrementReport, Landing, Momentum,
     ReturnedImpulse, RigidReaction, SolverCounts, Touch,
 };
-use crate::elements::{ElementInertia, ElementResult, MeanGradient};
+use crate::elements::{
+    ConnectorState, ElementInertia, ElementResult, MeanGradient, PlacedConnector,
+};
 use crate::model::{Bodies, Contact, HistorySet, LandingRule, Model, RigidBody, Set, Step};
 
 /// What a dataset holds of a record `Q`.
@@ -62,6 +66,7 @@ impl<'m> History<'m> {
         for (k, (contact, name)) in model.contacts.iter().zip(contact_names(model)).enumerate() {
             history.create_contact(&group(&contacts, &name)?, k, contact, &bodies)?;
         }
+        history.create_connectors(&at)?;
         history.create_events(&at)?;
         let surfaces = group(&at, "rigid")?;
         for (k, body) in model.rigid_bodies.iter().enumerate() {
@@ -205,6 +210,33 @@ impl<'m> History<'m> {
         if contact.is_self_contact() {
             self.table(at, bodies, &CONTACT_ON_BODY, move |r, each| {
                 own(r, &mut |contact| contact.bodies.iter().for_each(&mut *each));
+            })?;
+        }
+        Ok(())
+    }
+
+    /// `/history/connectors`: springs and dashpots; absent where there are none.
+    fn create_connectors(&mut self, at: &Group) -> hdf5::Result<()> {
+        let Model {
+            connectors, mesh, ..
+        } = self.model;
+        if connectors.is_empty() {
+            return Ok(());
+        }
+        let (at, count) = (group(at, "connectors")?, [connectors.len()]);
+        let labels: Vec<i64> = connectors.iter().map(|c| c.label as i64).collect();
+        let text = (
+            "1",
+            "element numbers of the springs and dashpots in the deck",
+        );
+        constant(&at, "labels", &count, &labels, text)?;
+        let placed = |c| PlacedConnector::new(c, &mesh.coordinates);
+        let placed: Arc<[PlacedConnector]> = connectors.iter().map(placed).collect();
+        for (name, dimension, text, of) in CONNECTOR {
+            let placed = placed.clone();
+            self.add(&at, name, &count, (dimension, text), move |r, v| {
+                let states = placed.iter().map(|c| c.state(&r.state.u, &r.state.v));
+                v.extend(states.map(|state| of(&state)));
             })?;
         }
         Ok(())
@@ -379,10 +411,19 @@ const INCREMENT: [Entry<IncrementReport>; 3] = [
     ("step", "1", "number of the step, from 1", Count(|r| r.step)),
 ];
 
+type OfConnector = fn(&ConnectorState) -> f64;
+
+#[rustfmt::skip]
+const CONNECTOR: [(&str, &str, &str, OfConnector); 3] = [
+    ("elongation", "length", "elongation", |c| c.elongation),
+    ("rate", "length/time", "rate of the elongation", |c| c.rate),
+    ("force", "force", "force, positive where it pulls the nodes together", |c| c.force),
+];
+
 #[rustfmt::skip]
 const ENERGY: [Entry<Energy>; 12] = [
     ("kinetic", "energy", "kinetic energy", Real(|e| e.kinetic)),
-    ("strain", "energy", "strain energy", Real(|e| e.strain)),
+    ("strain", "energy", "strain energy, with that of springs", Real(|e| e.strain)),
     ("external_work", "energy",
      "work of the loads and of the supports' prescribed motion since the start", Real(|e| e.external_work)),
     ("normal_contact_work", "energy",
@@ -396,7 +437,7 @@ const ENERGY: [Entry<Energy>; 12] = [
     ("release_loss", "energy",
      "strain energy lost by nodes without mass after releases since the start", Real(|e| e.release_loss)),
     ("damping", "energy",
-     "energy dissipated by the damping of the materials since the start", Real(|e| e.damping)),
+     "energy dissipated by the damping of the materials and by dashpots since the start", Real(|e| e.damping)),
     ("material_dissipation", "energy",
      "energy dissipated by the materials since the start", Real(|e| e.material_dissipation)),
     ("numerical_dissipation", "energy",

@@ -158,12 +158,17 @@ impl<'m> Neighbours<'m> {
 }
 
 /// Nodes of the contact surfaces of deformable bodies, increasing, each with whether it may be without
-/// mass: nodes at the edge of a hole may not, nor those that equations tie.
+/// mass: nodes at the edge of a hole may not, nor those that equations, springs and dashpots tie.
 pub(super) fn contact_nodes(model: &Model, contacts: &[ContactSurfaces]) -> Vec<(usize, bool)> {
     let mesh = &model.mesh;
     let mut may = outer_nodes(mesh);
-    for dof in model.equations.iter().flat_map(|equation| equation.dofs()) {
-        if let Some(may) = &mut may[dof / 2] {
+    let equations = model.equations.iter().flat_map(|equation| equation.dofs());
+    let connectors = model
+        .connectors
+        .iter()
+        .flat_map(|connector| &connector.nodes);
+    for node in equations.map(|dof| dof / 2).chain(connectors.copied()) {
+        if let Some(may) = &mut may[node] {
             *may = false;
         }
     }

@@ -2,9 +2,10 @@
 //! and the places of the elements. Nodes and elements of instances get numbers of the program's own, as
 //! their numbers in the part appear in every instance.
 
+use super::connectors::ConnectorElement;
 use super::context::Context;
 use super::label::{LabelList, instance_of, number_of};
-use super::names::Labels;
+use super::names::{Labelled, Labels};
 use crate::deck::{Card, Name};
 use crate::diagnostics::{Code, Span};
 use crate::model::{Face, Instance, Mesh, element_name, node_name};
@@ -17,12 +18,15 @@ pub(crate) struct MeshIndex {
     pub instances: Vec<Instance>,
     /// Labels of the nodes.
     pub nodes: Labels,
-    /// Labels of the elements; the indices of line elements follow those of the plane ones.
+    /// Labels of the elements; the indices of line elements follow those of the plane ones, and those of springs and
+    /// dashpots follow these.
     pub elements: Labels,
     /// Faces of the plane elements that the line elements name.
     pub lines: Vec<Face>,
     /// Point elements, whose indices follow those of the line elements.
     pub points: Vec<Point>,
+    /// Springs and dashpots.
+    pub connectors: Vec<ConnectorElement>,
     /// Places of the plane elements.
     pub places: Vec<Span>,
     /// Node sets named on `*NODE`.
@@ -89,6 +93,7 @@ impl Default for MeshIndex {
             elements: Labels::new("element", Code::UndefinedElement),
             lines: Vec::new(),
             points: Vec::new(),
+            connectors: Vec::new(),
             places: Vec::new(),
             node_groups: Vec::new(),
             element_groups: Vec::new(),
@@ -129,6 +134,14 @@ impl MeshIndex {
         self.places.reserve(count);
     }
 
+    /// Numbers springs and dashpots after the point elements.
+    pub fn number_connectors(&mut self) {
+        let first = self.mesh.elements.len() + self.lines.len() + self.points.len();
+        for (index, connector) in (first..).zip(&self.connectors) {
+            self.elements.insert(connector.label, Labelled::new(index));
+        }
+    }
+
     /// Takes out the nodes that are not used and numbers the others anew.
     pub fn keep_nodes(&mut self, used: &[bool]) {
         let mut count = 0;
@@ -138,10 +151,10 @@ impl MeshIndex {
         });
         let numbers: Vec<Option<usize>> = numbers.collect();
         self.nodes.renumber(&numbers);
-        for element in &mut self.mesh.elements {
-            for node in &mut element.nodes {
-                *node = numbers[*node].unwrap_or(*node);
-            }
+        let elements = self.mesh.elements.iter_mut().flat_map(|e| &mut e.nodes);
+        let connectors = self.connectors.iter_mut().flat_map(|c| &mut c.nodes);
+        for node in elements.chain(connectors) {
+            *node = numbers[*node].unwrap_or(*node);
         }
         for point in &mut self.points {
             point.node = numbers[point.node].unwrap_or(point.node);

@@ -7,6 +7,7 @@
 mod amplitudes;
 mod boundary;
 mod checks;
+mod connectors;
 mod contact;
 mod context;
 mod equations;
@@ -84,6 +85,7 @@ fn read(cx: &mut Context) -> Model {
         amplitudes: &amplitudes,
         rigid_bodies: &rigid_bodies,
     };
+    let connectors = connectors::read(&outline, targets, cx);
     let mut steps = steps::read(&outline, targets, &surfaces, guide, cx);
     let mut initial_velocity = boundary::initial_velocity(&outline, targets, &steps.at_start, cx);
     let all = &mut steps.all;
@@ -99,6 +101,7 @@ fn read(cx: &mut Context) -> Model {
         surfaces: surfaces.all,
         materials: properties.materials,
         sections: properties.sections,
+        connectors,
         contacts,
         amplitudes: amplitudes.named.all,
         equations: equations
@@ -126,9 +129,9 @@ fn read(cx: &mut Context) -> Model {
     model
 }
 
-/// The sets of the model: element sets without those that hold line elements only.
+/// The sets of the model: element sets without those that hold no plane elements but others.
 fn named_sets(sets: Sets, histories: Histories, instances: Vec<Instance>) -> NamedSets {
-    let is_kept = |&set: &usize| !sets.holds_lines_only(set);
+    let is_kept = |&set: &usize| !sets.holds_others_only(set);
     let kept: Vec<usize> = (0..sets.elements.len()).filter(is_kept).collect();
     let mut element_history = histories.elements;
     for asked in &mut element_history {

@@ -3,6 +3,7 @@
 //! A line element names the side of a plane element with the same nodes, as the boundary curves do that
 //! a mesh generator writes; it has no stiffness and no section.
 
+use super::connectors::{ConnectorElement, ConnectorKind};
 use super::context::Context;
 use super::label::{LabelList, LabelMap};
 use super::mesh_index;
@@ -16,7 +17,7 @@ use crate::vectors::extents;
 use smallvec::SmallVec;
 use std::collections::{BTreeSet, HashMap};
 
-/// Reads nodes and elements; leaves out nodes of neither an element, a rigid surface nor an
+/// Reads nodes and elements; leaves out nodes of neither an element, a spring, a rigid surface nor an
 /// equation.
 pub(crate) fn read<'a>(outline: &Outline<'a>, cx: &mut Context<'a>) -> MeshIndex {
     let errors = cx.errors();
@@ -250,6 +251,15 @@ impl MeshReading {
                 self.other_lines.insert(label, span.line);
                 self.points.push((kind, LineElement { label, nodes, span }));
             }
+            ElementKind::Connector(kind) => {
+                self.other_lines.insert(label, span.line);
+                self.mesh_index.connectors.push(ConnectorElement {
+                    label,
+                    kind,
+                    nodes: nodes.to_vec(),
+                    span,
+                });
+            }
         }
     }
 
@@ -330,6 +340,10 @@ impl MeshReading {
         for &node in mesh.elements.iter().flat_map(|element| &element.nodes) {
             used[node] = true;
         }
+        let connectors = self.mesh_index.connectors.iter();
+        for &node in connectors.flat_map(|connector| &connector.nodes) {
+            used[node] = true;
+        }
         let index = |label: &u64| nodes.get(*label).and_then(Labelled::index);
         for node in references.iter().filter_map(index) {
             used[node] = true;
@@ -354,6 +368,7 @@ impl MeshReading {
                     span: point.span,
                 }));
         }
+        mesh_index.number_connectors();
         if used.contains(&false) {
             mesh_index.keep_nodes(&used);
         }
@@ -417,6 +432,8 @@ pub(super) enum ElementKind {
     Line,
     /// A node with mass or inertia.
     Point(PointKind),
+    /// A spring or dashpot.
+    Connector(ConnectorKind),
 }
 
 impl ElementKind {
@@ -426,6 +443,7 @@ impl ElementKind {
             ElementKind::Plane(element_type) => element_type.topology().nodes,
             ElementKind::Line => 2,
             ElementKind::Point(_) => 1,
+            ElementKind::Connector(kind) => kind.nodes(),
         }
     }
 }
@@ -440,6 +458,9 @@ pub(super) fn element_kind(name: Text, cx: &mut Context) -> Option<ElementKind> 
         "MASS" => return Some(ElementKind::Point(PointKind::Mass)),
         "ROTARYI" => return Some(ElementKind::Point(PointKind::RotaryInertia)),
         _ => {}
+    }
+    if let Some(kind) = ConnectorKind::from_name(&folded) {
+        return Some(ElementKind::Connector(kind));
     }
     let known = ElementType::from_name(&folded).or_else(|| unusable(name, &folded, cx));
     known.map(ElementKind::Plane)

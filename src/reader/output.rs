@@ -324,16 +324,16 @@ impl Histories {
 }
 
 impl MemberKind {
-    /// The set of a name; none that holds line elements only, with a warning.
+    /// The set of a name; none that holds no plane elements but others, with a warning.
     fn set(self, name: Text, sets: &Sets, cx: &mut Context) -> Option<usize> {
         let set = match self {
             MemberKind::Nodes => return sets.node_names.find(name, cx),
             MemberKind::Elements => sets.element_names.find(name, cx)?,
         };
-        if sets.holds_lines_only(set) {
-            let message = format!("{} holds line elements only: it has no history", name.text);
+        if sets.holds_others_only(set) {
+            let message = format!("{} holds no plane elements: it has no history", name.text);
             cx.warning(Code::IgnoredVariable, name.span, message)
-                .help("line elements name faces, they carry no stress");
+                .help("line elements name faces; springs and dashpots have a history of their own");
             return None;
         }
         Some(set)

@@ -20,23 +20,24 @@ pub(crate) struct Sets {
     pub unsorted: BTreeSet<String>,
     /// Names of the element sets.
     pub element_names: Names,
-    /// Element sets in the order of their names, without line elements.
+    /// Element sets in the order of their names: their plane elements.
     pub elements: Vec<Set>,
     /// Faces that the line elements of the element sets name.
     pub lines: Vec<Vec<Face>>,
     /// Point elements of the element sets.
     points: Vec<Vec<usize>>,
+    /// Springs and dashpots of the element sets (indices among these).
+    pub connectors: Vec<Vec<usize>>,
 }
 
 impl Sets {
-    /// Whether an element set holds line or point elements and no others.
-    pub fn holds_lines_only(&self, set: usize) -> bool {
-        let lines = self.lines.get(set);
+    /// Whether an element set holds line or point elements, springs or dashpots, and no plane elements.
+    pub fn holds_others_only(&self, set: usize) -> bool {
+        let lines = self.lines.get(set).is_some_and(|lines| !lines.is_empty());
+        let others = [&self.points, &self.connectors];
+        let others = others.map(|all| all.get(set).is_some_and(|all| !all.is_empty()));
         let elements = self.elements.get(set);
-        let points = self.points.get(set);
-        (lines.is_some_and(|lines| !lines.is_empty())
-            || points.is_some_and(|points| !points.is_empty()))
-            && elements.is_some_and(|set| set.members.is_empty())
+        (lines || others.contains(&true)) && elements.is_some_and(|set| set.members.is_empty())
     }
 
     /// The node, or the nodes of the set, that a field names.
@@ -69,7 +70,7 @@ impl Sets {
         }
     }
 
-    /// The element, or the elements of the set, that a field names; reports line elements alone.
+    /// The plane element, or the elements of the set, that a field names; reports others alone.
     pub fn elements_of(
         &self,
         field: Text,
@@ -87,7 +88,7 @@ impl Sets {
     pub fn points_of(&self, field: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<usize> {
         if cx.is_number(field) {
             let found = mesh_index.elements.find(field, cx);
-            return point_numbers(found.as_slice(), mesh_index);
+            return split(found.into_iter().collect(), mesh_index).points;
         }
         let set = self.element_names.find(field, cx);
         set.and_then(|index| self.points.get(index))
@@ -96,7 +97,7 @@ impl Sets {
     }
 
     /// The element, or the elements of the set, that a field names, and the faces that line elements
-    /// among them name.
+    /// among them name; reports springs and dashpots alone.
     pub fn elements_and_lines_of(
         &self,
         field: Text,
@@ -105,14 +106,29 @@ impl Sets {
     ) -> (Cow<'_, [usize]>, Vec<Face>) {
         if cx.is_number(field) {
             let found = mesh_index.elements.find(field, cx);
-            let (elements, lines) = split(found.into_iter().collect(), mesh_index);
-            return (Cow::Owned(elements), lines);
+            let members = split(found.into_iter().collect(), mesh_index);
+            if !members.connectors.is_empty() {
+                report_connectors(field, cx);
+            }
+            return (Cow::Owned(members.elements), members.lines);
         }
         let set = self.element_names.find(field, cx);
-        let lines = set.and_then(|index| self.lines.get(index)).cloned();
+        let lines = set.and_then(|index| self.lines.get(index));
         let elements = members(&self.elements, set);
-        (Cow::Borrowed(elements), lines.unwrap_or_default())
+        let connectors = set.and_then(|index| self.connectors.get(index));
+        let is_empty = elements.is_empty() && lines.is_none_or(|lines| lines.is_empty());
+        if is_empty && connectors.is_some_and(|all| !all.is_empty()) {
+            report_connectors(field, cx);
+        }
+        (Cow::Borrowed(elements), lines.cloned().unwrap_or_default())
     }
+}
+
+/// Reports springs and dashpots where plane elements are needed.
+fn report_connectors(field: Text, cx: &mut Context) {
+    let message = format!("{} stands for springs and dashpots only", field.text);
+    cx.error(Code::ElementType, field.span, message)
+        .help("they have neither a section nor sides: name plane elements");
 }
 
 /// Reports line elements where plane ones are needed.
@@ -122,33 +138,53 @@ fn report_lines(field: Text, cx: &mut Context) {
         .help("they name sides of plane elements, in rows of *SURFACE without a face");
 }
 
-/// Plane elements, and the faces that line elements name.
-fn split(members: Vec<usize>, mesh_index: &MeshIndex) -> (Vec<usize>, Vec<Face>) {
-    if mesh_index.lines.is_empty() && mesh_index.points.is_empty() {
-        return (members, Vec::new());
+/// What an element set holds.
+#[derive(Default)]
+struct Members {
+    /// Plane elements.
+    elements: Vec<usize>,
+    /// Faces that line elements name.
+    lines: Vec<Face>,
+    /// Point elements, among these.
+    points: Vec<usize>,
+    /// Springs and dashpots, among these.
+    connectors: Vec<usize>,
+}
+
+/// The members of each family.
+fn split(members: Vec<usize>, mesh_index: &MeshIndex) -> Members {
+    let MeshIndex {
+        mesh,
+        lines,
+        points,
+        connectors,
+        ..
+    } = mesh_index;
+    if lines.is_empty() && points.is_empty() && connectors.is_empty() {
+        return Members {
+            elements: members,
+            ..Members::default()
+        };
     }
-    let count = mesh_index.mesh.elements.len();
-    let (elements, lines): (Vec<_>, Vec<_>) = members.into_iter().partition(|&m| m < count);
-    let faces = lines.iter().filter_map(|m| mesh_index.lines.get(m - count));
-    (elements, faces.copied().collect())
-}
-
-/// Numbers of the point elements among the members of a set.
-fn point_numbers(members: &[usize], mesh_index: &MeshIndex) -> Vec<usize> {
-    let first = mesh_index.mesh.elements.len() + mesh_index.lines.len();
-    members
-        .iter()
-        .filter_map(|member| member.checked_sub(first))
-        .collect()
-}
-
-/// Element sets and the faces that their line elements name.
-fn split_sets(sets: Vec<Set>, mesh_index: &MeshIndex) -> (Vec<Set>, Vec<Vec<Face>>) {
-    let split = sets.into_iter().map(|Set { name, members }| {
-        let (members, lines) = split(members, mesh_index);
-        (Set { name, members }, lines)
-    });
-    split.unzip()
+    let (elements, others): (Vec<_>, Vec<_>) =
+        (members.into_iter()).partition(|&m| m < mesh.elements.len());
+    let of_points = mesh.elements.len() + lines.len();
+    let of_connectors = of_points + points.len();
+    let mut split = Members {
+        elements,
+        ..Members::default()
+    };
+    for member in others {
+        if let Some(connector) = member.checked_sub(of_connectors) {
+            split.connectors.push(connector);
+        } else if let Some(point) = member.checked_sub(of_points) {
+            split.points.push(point);
+        } else {
+            let line = lines.get(member - mesh.elements.len());
+            split.lines.extend(line.copied());
+        }
+    }
+    split
 }
 
 fn members(sets: &[Set], index: Option<usize>) -> &[usize] {
@@ -164,9 +200,15 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
     elements.fill(cx);
     let element_names = elements.names;
     let element_sets = resolve(&element_names, elements.drafts, cx);
-    let of_set = |set: &Set| point_numbers(&set.members, mesh_index);
-    let points = element_sets.iter().map(of_set).collect();
-    let (element_sets, lines) = split_sets(element_sets, mesh_index);
+    let (mut element_sets, mut lines) = (element_sets, Vec::new());
+    let (mut points, mut connectors) = (Vec::new(), Vec::new());
+    for set in &mut element_sets {
+        let members = split(std::mem::take(&mut set.members), mesh_index);
+        set.members = members.elements;
+        lines.push(members.lines);
+        points.push(members.points);
+        connectors.push(members.connectors);
+    }
 
     let mut nodes = SetFamily::new("node set", &mesh_index.nodes);
     nodes.add_groups(&mesh_index.node_groups);
@@ -180,6 +222,7 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
         elements: element_sets,
         lines,
         points,
+        connectors,
     };
     let mut drafts = nodes.drafts;
     for (index, source) in nodes.from_elements {
@@ -195,6 +238,13 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
             let lines = sets.lines.get(set).map_or(&[][..], |lines| lines);
             let ends = lines.iter().flat_map(|face| face.nodes(&mesh_index.mesh));
             draft.members.extend(ends);
+            let connectors = sets.connectors.get(set).map_or(&[][..], |all| all);
+            let connectors = connectors
+                .iter()
+                .filter_map(|&k| mesh_index.connectors.get(k));
+            draft
+                .members
+                .extend(connectors.flat_map(|element| &element.nodes));
         }
     }
     sets.nodes = resolve(&sets.node_names, drafts, cx);

@@ -19,6 +19,12 @@ use crate::linear::{larger, largest};
 /// so far: forces and displacements are converged to 1e-11 (`TOLERANCE`), and pairs add up.
 pub(super) const CONTACT_WORK_ROUND_OFF: f64 = 1e-10;
 
+/// Energy that elements, whose results are given, and springs store in a state (force length).
+fn strain_energy(problem: &StepProblem, state: &State, elements: &[ElementResult]) -> f64 {
+    let of_elements: f64 = elements.iter().map(|element| element.energy).sum();
+    of_elements + problem.elements.spring_energy(&state.u)
+}
+
 /// Energy ledger: every term is computed on its own, so that the balance shows what is wrong.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Ledger {
@@ -47,7 +53,7 @@ impl Ledger {
         let momentum = problem.mass.times(&start.v);
         let kinetic = dot(&start.v, &momentum) / 2.0;
         let elements = problem.elements.evaluate(&start.u, &start.internal);
-        let strain = elements.iter().map(|element| element.energy).sum();
+        let strain = strain_energy(problem, start, &elements);
         let energy = Energy {
             kinetic,
             strain,
@@ -145,7 +151,7 @@ impl Ledger {
         self.elements = elements.into();
         let e = &mut self.energy;
         let (strain0, contact_work0) = (e.strain, e.normal_contact_work);
-        e.strain = self.elements.iter().map(|element| element.energy).sum();
+        e.strain = strain_energy(problem, end, &self.elements);
         e.kinetic = dot(&end.v, &self.momentum) / 2.0;
         if !problem.integration.has_rates {
             self.enter_equilibrium(problem, start, solved, strain0)?;

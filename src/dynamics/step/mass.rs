@@ -66,8 +66,8 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// Masses of elements and bodies that turn over the nodes that carry them.
 pub(super) struct Masses {
-    /// Lists of nodes: those of every element, none of a rigid one, then for each with massless nodes those that carry
-    /// it, then centre and angle of every body that turns.
+    /// Lists of nodes: those of every element, none of a rigid one, and of every spring and dashpot, then for each with
+    /// massless nodes those that carry it, then centre and angle of every body that turns.
     nodes: Vec<Vec<usize>>,
     /// List of every mass, and the mass, n x n column by column.
     of_elements: Vec<(usize, Vec<f64>)>,
@@ -78,9 +78,11 @@ impl Masses {
         (elements, bodies): (&Elements, &[TurningBody]),
         redistribution: &Redistribution,
     ) -> Self {
-        let nodes = (0..elements.len()).map(|e| match elements.is_rigid(e) {
-            true => Vec::new(),
-            false => elements.nodes(e).to_vec(),
+        let nodes = elements.connected().enumerate().map(|(place, nodes)| {
+            match place < elements.len() && elements.is_rigid(place) {
+                true => Vec::new(),
+                false => nodes.to_vec(),
+            }
         });
         let mut masses = Masses {
             nodes: nodes.collect(),

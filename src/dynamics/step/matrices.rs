@@ -270,7 +270,7 @@ impl EffectiveStiffness {
         });
         // K* <- K* + Cd/dt, eq. (4.19)
         if let Some(increment) = motion.increment {
-            elements.for_each_damping(increment, form.part(), |element, damping| {
+            elements.for_each_damping((increment, dt), form.part(), |element, damping| {
                 k.add(element, damping, 1.0 / dt)
             });
         }

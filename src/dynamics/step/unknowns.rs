@@ -211,10 +211,8 @@ fn free_dofs(
     dofs: usize,
 ) -> Vec<bool> {
     let mut free = vec![false; dofs];
-    for element in 0..elements.len() {
-        for &node in elements.nodes(element) {
-            (free[2 * node], free[2 * node + 1]) = (true, true);
-        }
+    for &node in elements.connected().flatten() {
+        (free[2 * node], free[2 * node + 1]) = (true, true);
     }
     turning.followers().for_each(|[dof, ..]| free[dof] = false);
     turning.leading().for_each(|dof| free[dof] = true);

@@ -149,7 +149,7 @@ impl<'m> Workspace<'m> {
         let weight = 1.0 / (theta2 * self.stiffness.dt());
         let product = || match motion.increment {
             Some(increment) if problem.has_damping() => {
-                let damping = elements.damping_product(increment, x);
+                let damping = elements.damping_product(increment, self.stiffness.dt(), x);
                 let damping: Vec<f64> = damping.iter().map(|c| weight * c).collect();
                 sum(&elements.tangent_product(motion, x), &damping)
             }

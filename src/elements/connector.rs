@@ -1,0 +1,385 @@
+//! Springs and dashpots: force, tangent, stored and dissipated energy. Section 2 of docs/theory.md, Springs and
+//! dashpots.
+//!
+//! Vectors of a connector have two entries for each of its nodes, as those of elements have.
+
+use nalgebra::{Matrix2, Vector2};
+use smallvec::SmallVec;
+
+use super::solid::{Increment, Motion, TangentPart};
+use crate::model::{Connector, ConnectorLaw, Direction};
+
+/// Two entries for each node.
+pub(super) type ConnectorVector = SmallVec<[f64; 4]>;
+/// D x D entries column by column.
+pub(super) type ConnectorMatrix = SmallVec<[f64; 16]>;
+
+/// Elongation of a connector and its derivative by the displacements at its first node; at the second it is the
+/// opposite along a line.
+struct Elongation {
+    /// l - L (length).
+    value: f64,
+    /// Its gradient at each node.
+    gradient: [Vector2<f64>; 2],
+    /// r = x_2 - x_1 and its length, along a line.
+    line: Option<(Vector2<f64>, f64)>,
+}
+
+/// A connector at a time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ConnectorState {
+    /// Elongation (length).
+    pub elongation: f64,
+    /// Rate of the elongation (length/time).
+    pub rate: f64,
+    /// Force, positive where it pulls its nodes together (force).
+    pub force: f64,
+}
+
+/// A connector between nodes in their places.
+#[derive(Debug, Clone)]
+pub struct PlacedConnector {
+    connector: Connector,
+    /// X_2 - X_1 of the reference configuration (length).
+    reference: Vector2<f64>,
+}
+
+impl PlacedConnector {
+    /// A connector between nodes at the coordinates `x`.
+    pub fn new(connector: &Connector, x: &[[f64; 2]]) -> Self {
+        let at = |node: usize| Vector2::from(x[node]);
+        let reference = match connector.nodes[..] {
+            [a, b] => at(b) - at(a),
+            _ => Vector2::zeros(),
+        };
+        PlacedConnector {
+            connector: connector.clone(),
+            reference,
+        }
+    }
+
+    /// Its nodes.
+    pub(super) fn nodes(&self) -> &[usize] {
+        &self.connector.nodes
+    }
+
+    /// Whether it is a dashpot.
+    pub(super) fn is_dashpot(&self) -> bool {
+        self.connector.law == ConnectorLaw::Dashpot
+    }
+
+    /// Its elongation, the rate of it and its force at displacements `u` and velocities `v`.
+    pub fn state(&self, u: &[f64], v: &[f64]) -> ConnectorState {
+        let at = self.at(u);
+        let along = self.nodes().iter().zip(&at.gradient);
+        let rate = along.map(|(&node, g)| g.x * v[2 * node] + g.y * v[2 * node + 1]);
+        let rate = rate.sum();
+        let follows = if self.is_dashpot() { rate } else { at.value };
+        ConnectorState {
+            elongation: at.value,
+            rate,
+            force: self.connector.curve.at(follows),
+        }
+    }
+
+    fn at(&self, u: &[f64]) -> Elongation {
+        let nodes = self.nodes();
+        let of = |node: usize| Vector2::new(u[2 * node], u[2 * node + 1]);
+        match (self.connector.direction, nodes) {
+            (Direction::Line, &[a, b]) => {
+                let r = self.reference + of(b) - of(a);
+                let l = r.norm();
+                let n = r / l;
+                Elongation {
+                    value: l - self.reference.norm(),
+                    gradient: [-n, n],
+                    line: Some((r, l)),
+                }
+            }
+            (Direction::Fixed([i, j]), nodes) => {
+                let axis = |i: usize| Vector2::ith(i, 1.0);
+                let value = |(node, i): (&usize, usize)| u[2 * node + i];
+                let first = nodes.first().map_or(0.0, |node| value((node, i)));
+                let second = nodes.get(1).map_or(0.0, |node| value((node, j)));
+                Elongation {
+                    value: first - second,
+                    gradient: [axis(i), -axis(j)],
+                    line: None,
+                }
+            }
+            (Direction::Line, _) => Elongation {
+                value: 0.0,
+                gradient: [Vector2::zeros(); 2],
+                line: None,
+            },
+        }
+    }
+
+    /// The elongations l0 and l1 at the ends of a motion, and a vector g at each node with g.d = l1 - l0, the
+    /// discrete gradient of the elongation, eq. (2.20):
+    ///
+    /// ```text
+    /// along a line  (r0 + r1)/(|r0| + |r1|)
+    /// ```
+    fn between(&self, u0: &[f64], u1: &[f64]) -> ([f64; 2], [Vector2<f64>; 2]) {
+        let [start, end] = [self.at(u0), self.at(u1)];
+        let gradient = match (start.line, end.line) {
+            (Some((r0, l0)), Some((r1, l1))) => {
+                let n = (r0 + r1) / (l0 + l1);
+                [-n, n]
+            }
+            _ => end.gradient,
+        };
+        ([start.value, end.value], gradient)
+    }
+
+    fn vector(&self, factor: f64, gradient: &[Vector2<f64>; 2]) -> ConnectorVector {
+        let nodes = gradient.iter().take(self.nodes().len());
+        nodes.flat_map(|g| [factor * g.x, factor * g.y]).collect()
+    }
+
+    /// The matrix of a connector whose block at one node is `block` along a line; a factor times g_a g_b^T in fixed
+    /// directions.
+    fn matrix(&self, block: impl Fn(usize, usize) -> Matrix2<f64>) -> ConnectorMatrix {
+        let count = self.nodes().len();
+        let mut matrix = SmallVec::new();
+        for b in 0..count {
+            for j in 0..2 {
+                for a in 0..count {
+                    for i in 0..2 {
+                        matrix.push(block(a, b)[(i, j)]);
+                    }
+                }
+            }
+        }
+        matrix
+    }
+
+    /// Internal force of a spring at the end of a motion, F(l1) dl/du, or its energy-momentum form from start to
+    /// end, eq. (2.20): the mean of F between l0 and l1 along the discrete gradient.
+    pub(super) fn force(&self, motion: Motion) -> ConnectorVector {
+        let curve = &self.connector.curve;
+        if self.is_dashpot() {
+            return self.vector(0.0, &[Vector2::zeros(); 2]);
+        }
+        match motion.start {
+            Some(start) => {
+                let ([l0, l1], gradient) = self.between(start, motion.end);
+                self.vector(curve.mean(l0, l1), &gradient)
+            }
+            None => {
+                let at = self.at(motion.end);
+                self.vector(curve.at(at.value), &at.gradient)
+            }
+        }
+    }
+
+    /// Symmetric part of the tangent of [`Self::force`], twice it in the energy-momentum form as for elements, or
+    /// its positive part, eq. (2.21).
+    pub(super) fn tangent(&self, motion: Motion, part: TangentPart) -> ConnectorMatrix {
+        let curve = &self.connector.curve;
+        if self.is_dashpot() {
+            return self.matrix(|_, _| Matrix2::zeros());
+        }
+        let at = self.at(motion.end);
+        let (slope, force, direction, length) = match motion.start {
+            Some(start) => {
+                let ([l0, l1], gradient) = self.between(start, motion.end);
+                let length = match (self.at(start).line, at.line) {
+                    (Some((_, l0)), Some((_, l1))) => (l0 + l1) / 2.0,
+                    _ => f64::INFINITY,
+                };
+                let slope = 2.0 * curve.mean_slope(l0, l1);
+                (slope, curve.mean(l0, l1), gradient, length)
+            }
+            None => {
+                let length = at.line.map_or(f64::INFINITY, |(_, l)| l);
+                (
+                    curve.slope(at.value),
+                    curve.at(at.value),
+                    at.gradient,
+                    length,
+                )
+            }
+        };
+        let (slope, geometric) = match part {
+            TangentPart::Whole => (slope, force / length),
+            TangentPart::Positive => (slope.max(0.0), (force / length).max(0.0)),
+        };
+        let fixed = at.line.is_none();
+        self.matrix(|a, b| {
+            // F' g g1^T + F/l (1 - g g1^T), its symmetric part
+            let both = direction[a] * at.gradient[b].transpose();
+            let both = (both + at.gradient[a] * direction[b].transpose()) / 2.0;
+            let sign = if a == b { 1.0 } else { -1.0 };
+            match fixed {
+                true => slope * both,
+                false => (slope - geometric) * both + Matrix2::identity() * (sign * geometric),
+            }
+        })
+    }
+
+    /// Energy that a spring stores at displacements `u` (force length).
+    pub(super) fn energy(&self, u: &[f64]) -> f64 {
+        match self.connector.law {
+            ConnectorLaw::Spring => self.connector.curve.integral(0.0, self.at(u).value),
+            ConnectorLaw::Dashpot => 0.0,
+        }
+    }
+
+    /// Impulse of a dashpot in an increment of length `dt`, dt F((l1 - l0)/dt) along the discrete gradient, eq.
+    /// (2.22) (force time).
+    pub(super) fn impulse(&self, [u0, u1]: Increment, dt: f64) -> ConnectorVector {
+        let ([l0, l1], gradient) = self.between(u0, u1);
+        let force = self.connector.curve.at((l1 - l0) / dt);
+        self.vector(dt * force, &gradient)
+    }
+
+    /// Energy that a dashpot dissipates in an increment of length `dt`, times `dt`: (l1 - l0) F dt.
+    pub(super) fn work(&self, [u0, u1]: Increment, dt: f64) -> f64 {
+        let ([l0, l1], _) = self.between(u0, u1);
+        (l1 - l0) * dt * self.connector.curve.at((l1 - l0) / dt)
+    }
+
+    /// Damping matrix of a dashpot, dF/dv g g^T, the part of eq. (2.22) that is never indefinite
+    /// (force time/length).
+    pub(super) fn damping(&self, [u0, u1]: Increment, dt: f64) -> ConnectorMatrix {
+        let ([l0, l1], gradient) = self.between(u0, u1);
+        let slope = self.connector.curve.slope((l1 - l0) / dt).max(0.0);
+        self.matrix(|a, b| slope * gradient[a] * gradient[b].transpose())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::ForceCurve;
+
+    const X: [[f64; 2]; 2] = [[0.3, -0.2], [1.1, 0.7]];
+    const U0: [f64; 4] = [0.1, 0.05, -0.2, 0.3];
+    const U1: [f64; 4] = [-0.3, 0.4, 0.6, -0.1];
+
+    fn connectors(law: ConnectorLaw) -> Vec<PlacedConnector> {
+        let table = ForceCurve::Table(vec![[-2.0, -3.0], [-0.05, -0.5], [0.1, 0.4], [2.0, 1.0]]);
+        let directions = [Direction::Line, Direction::Fixed([0, 1])];
+        let of = |direction| {
+            [ForceCurve::Linear(7.0), table.clone()].map(|curve| {
+                let nodes = SmallVec::from_slice(&[0, 1]);
+                let connector = Connector {
+                    label: 1,
+                    nodes,
+                    direction,
+                    law,
+                    curve,
+                };
+                PlacedConnector::new(&connector, &X)
+            })
+        };
+        let mut all: Vec<PlacedConnector> = directions.into_iter().flat_map(of).collect();
+        let mut grounded = all[2].clone();
+        grounded.connector.nodes.truncate(1);
+        all.push(grounded);
+        all
+    }
+
+    fn between() -> Motion<'static> {
+        Motion {
+            start: Some(&U0),
+            ..Motion::at(&U1, &[])
+        }
+    }
+
+    fn dot(a: &[f64], b: &[f64]) -> f64 {
+        a.iter().zip(b).map(|(a, b)| a * b).sum()
+    }
+
+    /// d from U0 to U1.
+    fn d() -> Vec<f64> {
+        U1.iter().zip(U0).map(|(a, b)| a - b).collect()
+    }
+
+    #[test]
+    fn energy_momentum_forces_do_the_work_that_is_stored_or_dissipated() {
+        for spring in connectors(ConnectorLaw::Spring) {
+            let work = dot(&d(), &spring.force(between()));
+            assert!((work - (spring.energy(&U1) - spring.energy(&U0))).abs() < 1e-14);
+        }
+        for dashpot in connectors(ConnectorLaw::Dashpot) {
+            let (work, dt) = (dashpot.work([&U0, &U1], 0.1), 0.1);
+            assert!((dot(&d(), &dashpot.impulse([&U0, &U1], dt)) - work).abs() < 1e-14);
+            assert_eq!(dashpot.energy(&U1), 0.0);
+            assert!(dashpot.force(between()).iter().all(|f| *f == 0.0));
+        }
+    }
+
+    #[test]
+    fn forces_along_a_line_have_no_resultant_and_no_moment() {
+        let [spring, dashpot] =
+            [ConnectorLaw::Spring, ConnectorLaw::Dashpot].map(|law| connectors(law).swap_remove(1));
+        for f in [spring.force(between()), dashpot.impulse([&U0, &U1], 0.1)] {
+            let mid = |i: usize| X[i / 2][i % 2] + (U0[i] + U1[i]) / 2.0;
+            let moment = mid(0) * f[1] - mid(1) * f[0] + mid(2) * f[3] - mid(3) * f[2];
+            assert!((f[0] + f[2]).abs() + (f[1] + f[3]).abs() < 1e-15 && moment.abs() < 1e-15);
+            assert!(f[0].abs() > 0.01);
+        }
+    }
+
+    /// Symmetric part of the derivative of a vector by the displacements of the end.
+    fn symmetric_derivative(of: impl Fn(&[f64]) -> ConnectorVector) -> Vec<f64> {
+        let n = of(&U1).len();
+        let h = 1e-6;
+        let column = |j: usize| {
+            let at = |step: f64| {
+                let mut u = U1;
+                u[j] += step;
+                of(&u)
+            };
+            let (up, down) = (at(h), at(-h));
+            (0..n)
+                .map(|i| (up[i] - down[i]) / (2.0 * h))
+                .collect::<Vec<_>>()
+        };
+        let columns: Vec<Vec<f64>> = (0..n).map(column).collect();
+        let both = |k: usize| (columns[k / n][k % n] + columns[k % n][k / n]) / 2.0;
+        (0..n * n).map(both).collect()
+    }
+
+    fn assert_near(k: &[f64], derivative: &[f64], factor: f64) {
+        for (k, derivative) in k.iter().zip(derivative) {
+            assert!((k - factor * derivative).abs() < 1e-7, "{k} {derivative}");
+        }
+    }
+
+    #[test]
+    fn tangents_are_derivatives_of_forces() {
+        for spring in connectors(ConnectorLaw::Spring) {
+            let k = spring.tangent(Motion::at(&U1, &[]), TangentPart::Whole);
+            let force = |u: &[f64]| spring.force(Motion::at(u, &[]));
+            assert_near(&k, &symmetric_derivative(force), 1.0);
+            let k = spring.tangent(between(), TangentPart::Whole);
+            let force = |u: &[f64]| {
+                spring.force(Motion {
+                    start: Some(&U0),
+                    ..Motion::at(u, &[])
+                })
+            };
+            assert_near(&k, &symmetric_derivative(force), 2.0);
+        }
+        // the matrix of dashpots leaves the turning of their line out
+        for dashpot in connectors(ConnectorLaw::Dashpot).drain(2..) {
+            let c = dashpot.damping([&U0, &U1], 0.1);
+            let impulse = |u: &[f64]| dashpot.impulse([&U0, u], 0.1);
+            assert_near(&c, &symmetric_derivative(impulse), 1.0);
+        }
+    }
+
+    #[test]
+    fn state_has_the_rate_of_the_elongation() {
+        let spring = &connectors(ConnectorLaw::Spring)[0];
+        let (v, h) = ([0.3, -0.1, 0.2, 0.5], 1e-6);
+        let moved: Vec<f64> = U1.iter().zip(v).map(|(u, v)| u + h * v).collect();
+        let [now, then] = [&U1[..], &moved].map(|u| spring.state(u, &v));
+        assert!(((then.elongation - now.elongation) / h - now.rate).abs() < 1e-5);
+        assert!((now.force - 7.0 * now.elongation).abs() < 1e-14);
+    }
+}

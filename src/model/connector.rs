@@ -1,0 +1,178 @@
+//! Springs and dashpots: forces between two nodes, or a node and the ground, that follow from their distance
+//! or from its rate. Section 2 of docs/theory.md.
+
+use smallvec::SmallVec;
+
+/// A spring or dashpot (`*SPRING`, `*DASHPOT`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Connector {
+    /// Element number of the deck.
+    pub label: u64,
+    /// Its node, whose other end is the ground, or its two nodes.
+    pub nodes: SmallVec<[usize; 2]>,
+    /// What its elongation is.
+    pub direction: Direction,
+    /// What its force follows.
+    pub law: ConnectorLaw,
+    /// Its force.
+    pub curve: ForceCurve,
+}
+
+impl Connector {
+    /// The name of its type: `SPRINGA`, `DASHPOT1` ...
+    pub fn type_name(&self) -> String {
+        let family = match self.law {
+            ConnectorLaw::Spring => "SPRING",
+            ConnectorLaw::Dashpot => "DASHPOT",
+        };
+        let form = match (self.direction, self.nodes.len()) {
+            (Direction::Line, _) => "A",
+            (Direction::Fixed(_), 1) => "1",
+            (Direction::Fixed(_), _) => "2",
+        };
+        format!("{family}{form}")
+    }
+}
+
+/// What the elongation of a connector is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// The distance of its nodes less that of the reference configuration; the line turns with them.
+    Line,
+    /// The displacement of the first node in the first direction (0 = x, 1 = y) less that of the second node
+    /// in the second.
+    Fixed([usize; 2]),
+}
+
+/// What the force of a connector follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ConnectorLaw {
+    /// The elongation; it is stored.
+    Spring,
+    /// The rate of the elongation; it is dissipated.
+    Dashpot,
+}
+
+/// Force over an elongation (length) or its rate (length/time).
+#[derive(Debug, Clone, PartialEq)]
+pub enum ForceCurve {
+    /// In proportion, with this factor: k (force/length) or c (force time/length).
+    Linear(f64),
+    /// Piecewise linear between points (elongation or rate, force) that increase; constant beyond.
+    Table(Vec<[f64; 2]>),
+}
+
+impl ForceCurve {
+    /// F(x).
+    pub fn at(&self, x: f64) -> f64 {
+        match self {
+            ForceCurve::Linear(k) => k * x,
+            ForceCurve::Table(points) => {
+                let next = points.partition_point(|[at, _]| *at <= x);
+                match (
+                    next.checked_sub(1).map(|last| points[last]),
+                    points.get(next),
+                ) {
+                    (Some([a, f]), Some([b, g])) => f + (g - f) * ((x - a) / (b - a)),
+                    (Some([_, f]), None) => f,
+                    (None, Some([_, f])) => *f,
+                    (None, None) => 0.0,
+                }
+            }
+        }
+    }
+
+    /// dF/dx, to the right of a point of the table.
+    pub fn slope(&self, x: f64) -> f64 {
+        match self {
+            ForceCurve::Linear(k) => *k,
+            ForceCurve::Table(points) => {
+                let next = points.partition_point(|[at, _]| *at <= x);
+                match (
+                    next.checked_sub(1).map(|last| points[last]),
+                    points.get(next),
+                ) {
+                    (Some([a, f]), Some([b, g])) => (g - f) / (b - a),
+                    _ => 0.0,
+                }
+            }
+        }
+    }
+
+    /// The integral of F from `a` to `b`.
+    pub fn integral(&self, a: f64, b: f64) -> f64 {
+        if a > b {
+            return -self.integral(b, a);
+        }
+        match self {
+            ForceCurve::Linear(k) => k * (b - a) * (b / 2.0 + a / 2.0),
+            ForceCurve::Table(points) => {
+                let between = points
+                    .iter()
+                    .map(|[at, _]| *at)
+                    .filter(|&at| a < at && at < b);
+                let mut from = a;
+                let mut sum = 0.0;
+                for to in between.chain([b]) {
+                    sum += (to - from) * (self.at(from) + self.at(to)) / 2.0;
+                    from = to;
+                }
+                sum
+            }
+        }
+    }
+
+    /// The mean of F between `a` and `b`.
+    pub fn mean(&self, a: f64, b: f64) -> f64 {
+        let within = match self {
+            ForceCurve::Linear(_) => true,
+            ForceCurve::Table(points) => {
+                let (low, high) = (a.min(b), a.max(b));
+                !points.iter().any(|&[at, _]| low < at && at < high)
+            }
+        };
+        match within {
+            // exact on one piece, also where a and b are near each other
+            true => (self.at(a) + self.at(b)) / 2.0,
+            false => self.integral(a, b) / (b - a),
+        }
+    }
+
+    /// d mean(a, b)/db = (F(b) - mean)/(b - a); half the slope where the two are one.
+    pub fn mean_slope(&self, a: f64, b: f64) -> f64 {
+        let slope = (self.at(b) - self.mean(a, b)) / (b - a);
+        match slope.is_finite() {
+            true => slope,
+            false => self.slope(b) / 2.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn forces_means_and_energies_of_a_table() {
+        let curve = ForceCurve::Table(vec![[-1.0, -4.0], [0.0, 0.0], [2.0, 2.0]]);
+        for (x, f, slope) in [
+            (-2.0, -4.0, 0.0),
+            (-0.5, -2.0, 4.0),
+            (1.0, 1.0, 1.0),
+            (3.0, 2.0, 0.0),
+        ] {
+            assert_eq!((curve.at(x), curve.slope(x)), (f, slope));
+        }
+        // 1/2 4 1 below, 1/2 2 2 + 2 1 above
+        assert_eq!(curve.integral(-1.0, 0.0), -2.0);
+        assert_eq!(curve.integral(0.0, 3.0), 4.0);
+        assert_eq!(curve.integral(3.0, -1.0), -2.0);
+        assert_eq!(curve.mean(-1.0, 3.0), 0.5);
+        assert_eq!(curve.mean(0.5, 0.5), 0.5);
+        let (a, b, h) = (-0.7, 1.3, 1e-6);
+        let difference = (curve.mean(a, b + h) - curve.mean(a, b - h)) / (2.0 * h);
+        assert!((curve.mean_slope(a, b) - difference).abs() < 1e-9);
+        assert_eq!(curve.mean_slope(1.0, 1.0), 0.5);
+        assert_eq!(ForceCurve::Linear(3.0).integral(1.0, 2.0), 4.5);
+    }
+}

@@ -1,0 +1,302 @@
+//! `*SPRING` and `*DASHPOT`: what the force of elements of the types SPRINGA, SPRING1, DASHPOT2 ... follows.
+//! Section 2 of docs/theory.md.
+
+use super::boundary::{self, Targets};
+use super::context::Context;
+use super::label::{instance_of, number_of};
+use super::mesh_index::MeshIndex;
+use super::outline::Outline;
+use crate::deck::{Card, Line};
+use crate::diagnostics::{Code, Span};
+use crate::model::{Connector, ConnectorLaw, Direction, ForceCurve};
+
+/// An element of the deck that is a spring or a dashpot.
+pub(super) struct ConnectorElement {
+    /// Label of the element.
+    pub label: u64,
+    /// Its type.
+    pub kind: ConnectorKind,
+    /// Its nodes (indices).
+    pub nodes: Vec<usize>,
+    /// Its place.
+    pub span: Span,
+}
+
+/// A type of springs or dashpots.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct ConnectorKind {
+    law: ConnectorLaw,
+    /// `1`, `2` or `A`.
+    form: char,
+}
+
+impl ConnectorKind {
+    /// The type with this folded name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        let families = [
+            ("SPRING", ConnectorLaw::Spring),
+            ("DASHPOT", ConnectorLaw::Dashpot),
+        ];
+        families.into_iter().find_map(|(family, law)| {
+            match name.strip_prefix(family)? {
+                "1" => Some('1'),
+                "2" => Some('2'),
+                "A" => Some('A'),
+                _ => None,
+            }
+            .map(|form| ConnectorKind { law, form })
+        })
+    }
+
+    /// Number of nodes.
+    pub fn nodes(self) -> usize {
+        if self.form == '1' { 1 } else { 2 }
+    }
+
+    /// The keyword that gives its force.
+    fn keyword(self) -> &'static str {
+        keyword(self.law)
+    }
+}
+
+fn keyword(law: ConnectorLaw) -> &'static str {
+    match law {
+        ConnectorLaw::Spring => "SPRING",
+        ConnectorLaw::Dashpot => "DASHPOT",
+    }
+}
+
+/// Reads the forces of all springs and dashpots, in the order of the elements.
+pub(super) fn read(outline: &Outline, targets: Targets, cx: &mut Context) -> Vec<Connector> {
+    let mesh_index = targets.mesh_index;
+    let mut all: Vec<Option<Connector>> = vec![None; mesh_index.connectors.len()];
+    let errors = cx.errors();
+    for law in [ConnectorLaw::Spring, ConnectorLaw::Dashpot] {
+        for card in outline.model_cards(keyword(law)) {
+            card_of(card, law, targets, &mut all, cx);
+        }
+    }
+    let elements = || mesh_index.connectors.iter().zip(&all);
+    if let Some((element, _)) = elements().find(|(_, connector)| connector.is_none())
+        && cx.errors() == errors
+        && !cx.may_lack_cards()
+    {
+        let (keyword, name) = (element.kind.keyword(), cx.named(element.label));
+        let message = format!("element {name} has no *{keyword}");
+        cx.error(Code::NoSection, element.span, message)
+            .help(format!("give its force with *{keyword}, ELSET="));
+    }
+    report_short(mesh_index, &all, cx);
+    let mut all: Vec<Connector> = all.into_iter().flatten().collect();
+    number_instances(mesh_index, &mut all);
+    all
+}
+
+/// Gives springs and dashpots of instances numbers behind all others.
+fn number_instances(mesh_index: &MeshIndex, all: &mut [Connector]) {
+    let elements = mesh_index.mesh.elements.iter().map(|element| element.label);
+    let connectors = all.iter().map(|connector| connector.label);
+    let mut last = elements.chain(connectors).max().unwrap_or(0);
+    for (connector, element) in all.iter_mut().zip(&mesh_index.connectors) {
+        if instance_of(element.label) > 0 {
+            last += 1;
+            connector.label = last;
+        }
+    }
+}
+
+/// Gives the force of a card to its elements.
+fn card_of(
+    card: &Card,
+    law: ConnectorLaw,
+    targets: Targets,
+    all: &mut [Option<Connector>],
+    cx: &mut Context,
+) {
+    let Targets {
+        mesh_index, sets, ..
+    } = targets;
+    let Some(name) = card.required("ELSET", cx.d) else {
+        return;
+    };
+    let Some(set) = sets.element_names.find(name, cx) else {
+        return;
+    };
+    let members = sets.connectors.get(set).map_or(&[][..], |members| members);
+    let elements = || members.iter().filter_map(|&k| mesh_index.connectors.get(k));
+    let Some(first) = elements().next() else {
+        if !cx.may_lack_cards() && !mesh_index.elements.incomplete {
+            let family = keyword(law);
+            let message = format!("{} holds no {family} elements", name.text);
+            cx.error(Code::ElementType, name.span, message)
+                .help(format!(
+                    "name a set of elements of TYPE={family}A, {family}1 or {family}2"
+                ));
+        }
+        return;
+    };
+    let kind = ConnectorKind { law, ..first.kind };
+    if let Some(other) = elements().find(|element| element.kind != kind) {
+        let message = format!(
+            "the elements of {} must be of one type: element {} is another than element {}",
+            name.text,
+            cx.named(other.label),
+            cx.named(first.label)
+        );
+        cx.error(Code::ElementType, name.span, message)
+            .help("give springs and dashpots of each type a set and a card of their own");
+        return;
+    }
+    let Some((direction, curve)) = force(card, kind, cx) else {
+        return;
+    };
+    for &k in members {
+        let (Some(element), Some(connector)) = (mesh_index.connectors.get(k), all.get_mut(k))
+        else {
+            continue;
+        };
+        if connector.is_some() {
+            let name = cx.named(element.label);
+            let message = format!("element {name} has a *{} already", kind.keyword());
+            cx.error(Code::TwoSections, card.span_of("ELSET"), message);
+            return;
+        }
+        *connector = Some(Connector {
+            label: number_of(element.label),
+            nodes: element.nodes.iter().copied().collect(),
+            direction,
+            law,
+            curve: curve.clone(),
+        });
+    }
+}
+
+/// Direction and force that the rows of a card give: the directions of nodes first, but for types that act along a
+/// line.
+fn force(card: &Card, kind: ConnectorKind, cx: &mut Context) -> Option<(Direction, ForceCurve)> {
+    let mut rows = card.rows.iter().peekable();
+    let is_blank = |row: &Line| row.fields().all(|field| field.is_empty());
+    let direction = match kind.form {
+        'A' => {
+            rows.next_if(is_blank);
+            Some(Direction::Line)
+        }
+        _ => rows.next().and_then(|row| directions(row, kind, cx)),
+    };
+    let Some(first) = rows.next() else {
+        if !card.faulty {
+            let message = match kind.form {
+                'A' => format!("*{} needs a row with its force", kind.keyword()),
+                _ => format!(
+                    "*{} needs two rows: the direction at each node, and the force",
+                    kind.keyword()
+                ),
+            };
+            cx.error(Code::MissingData, card.span, message);
+        }
+        return None;
+    };
+    let curve = match card.has("NONLINEAR") {
+        true => table(first, rows, cx),
+        false => linear(first, rows.next(), kind, cx),
+    };
+    Some((direction?, curve?))
+}
+
+/// `direction of node 1, direction of node 2`
+fn directions(row: Line, kind: ConnectorKind, cx: &mut Context) -> Option<Direction> {
+    row.at_most(kind.nodes(), cx.d);
+    let mut both = [0; 2];
+    for (k, axis) in both.iter_mut().take(kind.nodes()).enumerate() {
+        let field = row.required(k, "the direction, 1 or 2", cx.d)?;
+        *axis = match boundary::direction(field, cx)? {
+            boundary::Direction::Plane(axis) => axis,
+            boundary::Direction::Rotation | boundary::Direction::OutOfPlane => {
+                let message = "only directions 1 and 2 lie in the plane";
+                cx.error(Code::BadDof, field.span, message);
+                return None;
+            }
+        };
+    }
+    Some(Direction::Fixed(both))
+}
+
+/// `k`, for springs the stiffness, for dashpots the coefficient.
+fn linear(
+    row: Line,
+    more: Option<Line>,
+    kind: ConnectorKind,
+    cx: &mut Context,
+) -> Option<ForceCurve> {
+    let what = match kind.law {
+        ConnectorLaw::Spring => "the stiffness",
+        ConnectorLaw::Dashpot => "the coefficient",
+    };
+    let factor = row.real(0, what, cx.d)?;
+    row.at_most(1, cx.d);
+    if let Some(more) = more {
+        let message = format!("{what} is one number: it depends on nothing");
+        cx.error(Code::StrayData, more.span(), message)
+            .help("with NONLINEAR rows are force, elongation");
+    }
+    if factor < 0.0 {
+        let message = format!("{what} must not be negative, found {factor}");
+        cx.error(Code::MaterialRange, row.span_at(0), message);
+        return None;
+    }
+    Some(ForceCurve::Linear(factor))
+}
+
+/// `force, elongation or its rate`, which increases.
+fn table<'a>(
+    first: Line<'a>,
+    rest: impl Iterator<Item = Line<'a>>,
+    cx: &mut Context,
+) -> Option<ForceCurve> {
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    let mut complete = true;
+    for row in std::iter::once(first).chain(rest) {
+        row.at_most(2, cx.d);
+        let force = row.real(0, "the force", cx.d);
+        let at = row.real(1, "the elongation or its rate", cx.d);
+        let (Some(force), Some(at)) = (force, at) else {
+            complete = false;
+            continue;
+        };
+        if points.last().is_some_and(|[last, _]| at <= *last) {
+            let message = "the second field must increase from row to row";
+            cx.error(Code::BadNumber, row.span_at(1), message)
+                .help("rows are force, elongation: the force comes first");
+            return None;
+        }
+        points.push([at, force]);
+    }
+    if points.len() == 1 {
+        let message = "a table has two rows at least";
+        cx.error(Code::MissingData, first.span(), message)
+            .help("without NONLINEAR one row gives a factor");
+        return None;
+    }
+    complete.then_some(ForceCurve::Table(points))
+}
+
+/// Reports connectors along a line whose nodes are at one place: they have no direction.
+fn report_short(mesh_index: &MeshIndex, all: &[Option<Connector>], cx: &mut Context) {
+    let coordinates = &mesh_index.mesh.coordinates;
+    for (element, connector) in mesh_index.connectors.iter().zip(all) {
+        if let Some(Connector {
+            direction: Direction::Line,
+            nodes,
+            ..
+        }) = connector
+            && let [a, b] = nodes[..]
+            && coordinates[a] == coordinates[b]
+        {
+            let name = cx.named(element.label);
+            let message =
+                format!("the nodes of element {name} are at one place: it has no direction");
+            cx.error(Code::BadShape, element.span, message)
+                .help("a type that ends in 2 acts in a fixed direction");
+        }
+    }
+}
