@@ -123,7 +123,10 @@ fn card_of(
         return;
     };
     let members = sets.connectors.get(set).map_or(&[][..], |members| members);
-    let elements = || members.iter().filter_map(|&k| mesh_index.connectors.get(k));
+    let elements = || {
+        let all = members.iter().filter_map(|&k| mesh_index.connectors.get(k));
+        all.filter(|element| element.kind.law == law)
+    };
     let Some(first) = elements().next() else {
         if !cx.may_lack_cards() && !mesh_index.elements.incomplete {
             let family = keyword(law);
@@ -135,7 +138,7 @@ fn card_of(
         }
         return;
     };
-    let kind = ConnectorKind { law, ..first.kind };
+    let kind = first.kind;
     if let Some(other) = elements().find(|element| element.kind != kind) {
         let message = format!(
             "the elements of {} must be of one type: element {} is another than element {}",
