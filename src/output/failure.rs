@@ -715,8 +715,8 @@ mod tests {
             };
             advice(&failure(cause, None, 0.015), &model()).expect("advice")
         };
-        assert!(text(true).contains("consistent units") && !text(true).contains("halved"));
-        assert!(text(false).contains("TOLERANCE") && text(false).contains("halved"));
+        assert!(text(true).contains("consistent units") && !text(true).contains("cut further"));
+        assert!(text(false).contains("TOLERANCE") && text(false).contains("cut further"));
     }
 
     #[test]
