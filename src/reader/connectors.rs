@@ -4,60 +4,11 @@
 use super::boundary::{self, Targets};
 use super::context::Context;
 use super::label::{instance_of, number_of};
-use super::mesh_index::MeshIndex;
+use super::mesh_index::{ConnectorKind, MeshIndex};
 use super::outline::Outline;
 use crate::deck::{Card, Line};
-use crate::diagnostics::{Code, Span};
+use crate::diagnostics::Code;
 use crate::model::{Connector, ConnectorLaw, Direction, ForceCurve};
-
-/// An element of the deck that is a spring or a dashpot.
-pub(super) struct ConnectorElement {
-    /// Label of the element.
-    pub label: u64,
-    /// Its type.
-    pub kind: ConnectorKind,
-    /// Its nodes (indices).
-    pub nodes: Vec<usize>,
-    /// Its place.
-    pub span: Span,
-}
-
-/// A type of springs or dashpots.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct ConnectorKind {
-    law: ConnectorLaw,
-    /// `1`, `2` or `A`.
-    form: char,
-}
-
-impl ConnectorKind {
-    /// The type with this folded name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        let families = [
-            ("SPRING", ConnectorLaw::Spring),
-            ("DASHPOT", ConnectorLaw::Dashpot),
-        ];
-        families.into_iter().find_map(|(family, law)| {
-            match name.strip_prefix(family)? {
-                "1" => Some('1'),
-                "2" => Some('2'),
-                "A" => Some('A'),
-                _ => None,
-            }
-            .map(|form| ConnectorKind { law, form })
-        })
-    }
-
-    /// Number of nodes.
-    pub fn nodes(self) -> usize {
-        if self.form == '1' { 1 } else { 2 }
-    }
-
-    /// The keyword that gives its force.
-    fn keyword(self) -> &'static str {
-        keyword(self.law)
-    }
-}
 
 fn keyword(law: ConnectorLaw) -> &'static str {
     match law {
@@ -81,7 +32,7 @@ pub(super) fn read(outline: &Outline, targets: Targets, cx: &mut Context) -> Vec
         && cx.errors() == errors
         && !cx.may_lack_cards()
     {
-        let (keyword, name) = (element.kind.keyword(), cx.named(element.label));
+        let (keyword, name) = (keyword(element.kind.law), cx.named(element.label));
         let message = format!("element {name} has no *{keyword}");
         cx.error(Code::NoSection, element.span, message)
             .help(format!("give its force with *{keyword}, ELSET="));
@@ -160,7 +111,7 @@ fn card_of(
         };
         if connector.is_some() {
             let name = cx.named(element.label);
-            let message = format!("element {name} has a *{} already", kind.keyword());
+            let message = format!("element {name} has a *{} already", keyword(kind.law));
             cx.error(Code::TwoSections, card.span_of("ELSET"), message);
             return;
         }
@@ -189,10 +140,10 @@ fn force(card: &Card, kind: ConnectorKind, cx: &mut Context) -> Option<(Directio
     let Some(first) = rows.next() else {
         if !card.faulty {
             let message = match kind.form {
-                'A' => format!("*{} needs a row with its force", kind.keyword()),
+                'A' => format!("*{} needs a row with its force", keyword(kind.law)),
                 _ => format!(
                     "*{} needs two rows: the direction at each node, and the force",
-                    kind.keyword()
+                    keyword(kind.law)
                 ),
             };
             cx.error(Code::MissingData, card.span, message);

@@ -2,13 +2,12 @@
 //! and the places of the elements. Nodes and elements of instances get numbers of the program's own, as
 //! their numbers in the part appear in every instance.
 
-use super::connectors::ConnectorElement;
 use super::context::Context;
 use super::label::{LabelList, instance_of, number_of};
 use super::names::{Labelled, Labels};
 use crate::deck::{Card, Name};
 use crate::diagnostics::{Code, Span};
-use crate::model::{Face, Instance, Mesh, element_name, node_name};
+use crate::model::{ConnectorLaw, Face, Instance, Mesh, element_name, node_name};
 
 /// The mesh, with the numbers and sets that the deck gives to its nodes and elements.
 pub(crate) struct MeshIndex {
@@ -53,6 +52,51 @@ pub(crate) enum PointKind {
     Mass,
     /// Rotary inertia (`ROTARYI`).
     RotaryInertia,
+}
+
+/// An element of the deck that is a spring or a dashpot.
+pub(crate) struct ConnectorElement {
+    /// Label of the element.
+    pub label: u64,
+    /// Its type.
+    pub kind: ConnectorKind,
+    /// Its nodes (indices).
+    pub nodes: Vec<usize>,
+    /// Its place.
+    pub span: Span,
+}
+
+/// A type of springs or dashpots.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct ConnectorKind {
+    /// What its force follows.
+    pub law: ConnectorLaw,
+    /// `1`, `2` or `A`.
+    pub form: char,
+}
+
+impl ConnectorKind {
+    /// The type with this folded name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        let families = [
+            ("SPRING", ConnectorLaw::Spring),
+            ("DASHPOT", ConnectorLaw::Dashpot),
+        ];
+        families.into_iter().find_map(|(family, law)| {
+            match name.strip_prefix(family)? {
+                "1" => Some('1'),
+                "2" => Some('2'),
+                "A" => Some('A'),
+                _ => None,
+            }
+            .map(|form| ConnectorKind { law, form })
+        })
+    }
+
+    /// Number of nodes.
+    pub fn nodes(self) -> usize {
+        if self.form == '1' { 1 } else { 2 }
+    }
 }
 
 /// A set named where its members are defined.

@@ -3,11 +3,10 @@
 //! A line element names the side of a plane element with the same nodes, as the boundary curves do that
 //! a mesh generator writes; it has no stiffness and no section.
 
-use super::connectors::{ConnectorElement, ConnectorKind};
 use super::context::Context;
 use super::label::{LabelList, LabelMap};
 use super::mesh_index;
-use super::mesh_index::{Group, MeshIndex, Point, PointKind};
+use super::mesh_index::{ConnectorElement, ConnectorKind, Group, MeshIndex, Point, PointKind};
 use super::names::Labelled;
 use super::outline::Outline;
 use crate::deck::{Card, Line, Text};

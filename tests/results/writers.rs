@@ -38,6 +38,7 @@ pub fn deck_text() -> String {
 pub fn model() -> Model {
     Model {
         title: "two squares and a triangle".into(),
+        connectors: Vec::new(),
         mesh: mesh(),
         sets: NamedSets {
             nodes: vec![set("ALL", 0..7), set("TIP", [6]), set("NOTHING", [])],
