@@ -119,6 +119,32 @@ def test_a_table_of_a_dashpot_limits_its_force(tmp_path: Path) -> None:
     assert np.abs(history["bodies/velocity"][:, 0, 0] - exact).max() < 1e-9
 
 
+def test_springs_hold_a_block_in_a_static_step_and_it_stays_in_a_dynamic_one(tmp_path: Path) -> None:
+    """Forces of the springs balance the weight; a dynamic step from there moves nothing."""
+    springs = "*NODE\n90, 0.05, 1.\n*ELEMENT, TYPE=SPRINGA, ELSET=LINES\n50, 90, 3\n51, 90, 4\n*SPRING, ELSET=LINES\n\n100."
+    sides = "*ELEMENT, TYPE=SPRING1, ELSET=SIDES\n52, 1\n53, 2\n*SPRING, ELSET=SIDES\n1\n50."
+    steps = "*BOUNDARY\n90, 1, 2\n*STEP, NLGEOM\n*STATIC\n0.2, 1.\n*DLOAD\nB1, GRAV, 10., 0.6, -0.8\n*END STEP\n"
+    steps += "*STEP, NLGEOM, INC=1000\n*DYNAMIC, DIRECT\n0.01, 2.\n*END STEP\n"
+    deck = tmp_path / "deck.inp"
+    deck.write_text("\n".join([STIFF, block(1, 0.0, 0.0), springs, sides, steps]))
+    done = subprocess.run(
+        [binary(), "run", deck, "-o", tmp_path, "-q"], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    with h5py.File(tmp_path / "deck.vtkhdf") as file:
+        history = file["history"]
+        static = history["step"][:] == 1
+        force = history["connectors/force"][static][-1]
+        kinetic = history["energy/kinetic"][~static]
+        assert kinetic.max() < 1e-20 * history["energy/strain"][-1]
+        held = history["connectors/force"][~static]
+        assert np.abs(held - force).max() < 1e-9 * np.abs(force).max()
+        elongation = history["connectors/elongation"][static][-1]
+        assert np.allclose(force, [100.0, 100.0, 50.0, 50.0] * elongation, rtol=1e-12)
+        work, strain = history["energy/external_work"][-1], history["energy/strain"][-1]
+        assert abs(work - strain) < 2e-3 * strain  # the trapezoid of five increments
+
+
 FAULTS = [
     ("*ELEMENT, TYPE=SPRINGA, ELSET=S\n50, 3, 11", "element 50 has no *SPRING"),
     ("*ELEMENT, TYPE=SPRINGA, ELSET=S\n50, 3, 11\n*SPRING, ELSET=B1\n\n3.", "B1 holds no SPRING elements"),
