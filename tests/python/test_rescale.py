@@ -17,6 +17,10 @@ from stickslip.result import Result
 
 EVERY_CARD = ROOT / "tests/decks/every_card.inp"
 ASSEMBLY = ROOT / "tests/decks/assembly.inp"
+CONNECTIONS = ROOT / "tests/decks/connections.inp"
+STATIC_STEPS = ROOT / "tests/decks/static_steps.inp"
+ALL_CARDS = [EVERY_CARD, ASSEMBLY, CONNECTIONS, STATIC_STEPS]
+"""Decks that use every keyword, and every number with a dimension."""
 EXAMPLES = sorted((ROOT / "input").glob("*/*.inp"))
 POWERS_OF_TWO = [Units(length=2.0**7), Units(mass=2.0**-11), Units(time=2.0**5)]
 ALL_AT_ONCE = Units(2.0**-6, 2.0**9, 2.0**-13)
@@ -44,7 +48,7 @@ def is_used(form: dict[str, Any], field: int, card: Card) -> bool:
 
 
 def test_the_deck_uses_every_keyword_that_is_read() -> None:
-    used = {card.keyword for path in (EVERY_CARD, ASSEMBLY) for card in Deck.read(path).cards}
+    used = {card.keyword for path in ALL_CARDS for card in Deck.read(path).cards}
     assert "*INCLUDE" in EVERY_CARD.read_text()
     # with *NO ANALYSIS the deck would not run
     assert read_keywords() - used - {"INCLUDE", "NOANALYSIS"} == set()
@@ -52,7 +56,7 @@ def test_the_deck_uses_every_keyword_that_is_read() -> None:
 
 
 def test_the_deck_uses_every_number_that_has_a_dimension() -> None:
-    decks = [Deck.read(EVERY_CARD), Deck.read(ASSEMBLY)]
+    decks = [Deck.read(path) for path in ALL_CARDS]
     unused = []
     for keyword, entry in TABLE.items():
         cards = [card for deck in decks for card in deck.find(keyword)]
@@ -67,11 +71,11 @@ def test_the_deck_uses_every_number_that_has_a_dimension() -> None:
 
 
 def test_words_of_loads_and_profiles_are_all_used() -> None:
-    deck = Deck.read(EVERY_CARD)
+    decks = [Deck.read(path) for path in ALL_CARDS]
     for keyword, entry in TABLE.items():
         for form in entry.get("rows", []):
             index, words = form.get("word", (0, []))
-            rows = [row for card in deck.find(keyword) for row in card.rows]
+            rows = [row for deck in decks for card in deck.find(keyword) for row in card.rows]
             said = {fold(row[index]) for row in rows if index < len(row)}
             assert set(words) <= said, keyword
 
@@ -87,8 +91,9 @@ def test_every_card_in_other_units_gives_the_same_bits(units: Units, job: Job) -
     assert scaled_differences(job(deck), job(rescale(deck, units)), units) == []
 
 
-def test_an_assembly_in_other_units_gives_the_same_bits(job: Job) -> None:
-    deck = Deck.read(ASSEMBLY)
+@pytest.mark.parametrize("path", ALL_CARDS[1:], ids=lambda path: path.stem)
+def test_other_decks_of_cards_in_other_units_give_the_same_bits(path: Path, job: Job) -> None:
+    deck = Deck.read(path)
     assert scaled_differences(job(deck), job(rescale(deck, ALL_AT_ONCE)), ALL_AT_ONCE) == []
 
 
@@ -181,7 +186,7 @@ def test_files_of_data_lines_are_read_in_their_place(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "named"),
     [
-        ("*SPRING\n1.\n", "SPRING"),
+        ("*JOINT\n1.\n", "JOINT"),
         ("*PHYSICAL CONSTANTS, ABSOLUTE ZERO=-273.\n", "PHYSICAL CONSTANTS"),
         ("*NODE, COLOUR=3\n1, 0., 0.\n", "COLOUR of \\*NODE"),
         ("*CONTACT PAIR, INTER=D\nA, B\n", "INTER of \\*CONTACT PAIR"),

@@ -84,9 +84,9 @@ impl BodyMasses {
         // I and omega of the bodies that turn, about their own centres of mass
         for &(body, centre, own) in &self.turning {
             let spin = 2 * (centre + 1);
-            let rate = own.sqrt() * v[spin] / own_length(problem, spin);
-            results[body].angular_velocity += own.sqrt() * rate;
-            results[body].kinetic += rate * rate / 2.0;
+            let omega = v[spin] / own_length(problem, spin);
+            results[body].angular_velocity += own * omega;
+            results[body].kinetic += own * omega * omega / 2.0;
             inertia[body] += own;
         }
         for (body, result) in results.iter_mut().enumerate() {
