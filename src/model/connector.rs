@@ -19,6 +19,15 @@ pub struct Connector {
 }
 
 impl Connector {
+    /// Whether its forces on its nodes have no resultant.
+    pub fn has_no_resultant(&self) -> bool {
+        let alike = match self.direction {
+            Direction::Line => true,
+            Direction::Fixed([first, second]) => first == second,
+        };
+        alike && self.nodes.len() == 2
+    }
+
     /// The name of its type: `SPRINGA`, `DASHPOT1` ...
     pub fn type_name(&self) -> String {
         let family = match self.law {

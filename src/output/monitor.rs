@@ -15,7 +15,7 @@ use crate::dynamics::{
 };
 use crate::elements::Strained;
 use crate::linear::larger;
-use crate::model::{Bodies, Equation, Model};
+use crate::model::{Bodies, Connector, Equation, Model};
 
 /// Follows a run.
 pub(crate) struct Monitor {
@@ -176,7 +176,9 @@ pub(crate) struct Balance {
     contact_energy: ContactEnergy,
     /// Momentum at the start of a model without external forces.
     start: Option<Momentum>,
-    /// Largest linear momentum so far.
+    /// Mass of all bodies.
+    mass: f64,
+    /// Largest sqrt(2 M T) so far, which the linear momenta of all bodies do not exceed.
     momentum: f64,
     /// Largest change of the linear momentum so far, what mass-proportional damping took put back.
     drift: f64,
@@ -197,6 +199,7 @@ impl Balance {
     /// The balance of a model's run.
     pub fn new(model: &Model) -> Self {
         let free = model.equations.iter().all(keeps_momentum)
+            && model.connectors.iter().all(Connector::has_no_resultant)
             && model.steps.iter().all(|step| {
                 step.supports.is_empty()
                     && step.point_loads.is_empty()
@@ -204,8 +207,12 @@ impl Balance {
                     && step.pressures.is_empty()
                     && step.tractions.is_empty()
             });
+        let elements = model.mesh.elements.iter();
+        let bodies = model.turning_bodies().flat_map(|(_, body)| &body.masses);
+        let of_points: f64 = bodies.map(|(_, mass)| mass).sum();
         Balance {
             free,
+            mass: of_points + elements.map(|e| model.element_mass(e)).sum::<f64>(),
             ..Balance::default()
         }
     }
@@ -224,6 +231,8 @@ impl Balance {
         }
         self.worst = larger(self.worst, balance.abs());
         if self.free {
+            let most = (2.0 * self.mass * kinetic).sqrt();
+            self.momentum = larger(self.momentum, most);
             self.add_momentum(report.momentum);
         }
         self.last = report.energy;
@@ -244,7 +253,6 @@ impl Balance {
         let [dx, dy] = momentum.damped_linear;
         let [x, y] = [momentum.linear[0] + dx, momentum.linear[1] + dy];
         let [x0, y0] = self.start.get_or_insert(momentum).linear;
-        self.momentum = larger(self.momentum, x.hypot(y));
         self.drift = larger(self.drift, (x - x0).hypot(y - y0));
     }
 
@@ -263,7 +271,7 @@ impl Balance {
         Losses::new(&self.last, self.handover_work, self.largest)
     }
 
-    /// The change of a free model's linear momentum as a part of its largest value.
+    /// The change of a free model's linear momentum as a part of the largest momenta of its bodies.
     pub fn momentum_drift(&self) -> Option<f64> {
         self.free.then(|| part(self.drift, self.momentum))
     }

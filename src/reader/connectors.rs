@@ -4,11 +4,11 @@
 use super::boundary::{self, Targets};
 use super::context::Context;
 use super::label::{instance_of, number_of};
-use super::mesh_index::{ConnectorKind, MeshIndex};
+use super::mesh_index::{ConnectorElement, ConnectorKind, MeshIndex};
 use super::outline::Outline;
 use crate::deck::{Card, Line};
 use crate::diagnostics::Code;
-use crate::model::{Connector, ConnectorLaw, Direction, ForceCurve};
+use crate::model::{Connector, ConnectorLaw, Direction, ForceCurve, Model, Procedure, Step};
 
 fn keyword(law: ConnectorLaw) -> &'static str {
     match law {
@@ -41,6 +41,47 @@ pub(super) fn read(outline: &Outline, targets: Targets, cx: &mut Context) -> Vec
     let mut all: Vec<Connector> = all.into_iter().flatten().collect();
     number_instances(mesh_index, &mut all);
     all
+}
+
+/// Reports nodes of springs and dashpots that nothing gives a mass in a dynamic step: those of no element, no rigid
+/// body and no equation, which are not held in both directions.
+pub(super) fn check(model: &Model, elements: &[ConnectorElement], cx: &mut Context) {
+    let mut has_mass = vec![false; model.mesh.node_count()];
+    let of_elements = model
+        .mesh
+        .elements
+        .iter()
+        .flat_map(|element| &element.nodes);
+    let bodies = model.rigid_bodies.iter();
+    let bodies = bodies.flat_map(|body| body.nodes.iter().copied().chain([body.reference]));
+    let equations = model.equations.iter().flat_map(|equation| equation.dofs());
+    for node in (of_elements.copied())
+        .chain(bodies)
+        .chain(equations.map(|dof| dof / 2))
+    {
+        has_mass[node] = true;
+    }
+    let dynamic = |step: &&Step| matches!(step.procedure, Procedure::Dynamic);
+    let is_held = |node: usize| {
+        model.steps.iter().filter(dynamic).all(|step| {
+            let held = |dof: usize| {
+                step.supports
+                    .binary_search_by_key(&dof, |support| support.dof)
+            };
+            (0..2).all(|i| held(2 * node + i).is_ok())
+        })
+    };
+    for (connector, element) in model.connectors.iter().zip(elements) {
+        let mut nodes = connector.nodes.iter();
+        if let Some(&node) = nodes.find(|&&node| !has_mass[node] && !is_held(node)) {
+            let (name, label) = (model.node_name(node), connector.label);
+            let message =
+                format!("node {name} of element {label} has no mass: nothing else is there");
+            cx.error(Code::UnusedNode, element.span, message)
+                .help("hold it with *BOUNDARY in directions 1 and 2, or take a node of a body");
+            return;
+        }
+    }
 }
 
 /// Gives springs and dashpots of instances numbers behind all others.

@@ -112,7 +112,8 @@ fn read(cx: &mut Context) -> Model {
         steps: steps.all,
         rigid_bodies: bodies,
     };
-    let all: [&dyn Fn(&mut Context); 7] = [
+    let all: [&dyn Fn(&mut Context); 8] = [
+        &|cx| connectors::check(&model, &mesh_index.connectors, cx),
         &|cx| checks::amplitudes(&model, &amplitudes.spans, cx),
         &|cx| checks::braked_flight(&model, &properties.places, cx),
         &|cx| checks::coincident_nodes(&model, edges.shortest, &mesh_index.places, cx),

@@ -1,6 +1,7 @@
 """Springs and dashpots against closed forms of the scheme, in decks of stiff blocks."""
 
 import math
+import re
 import subprocess
 from pathlib import Path
 
@@ -80,12 +81,15 @@ def test_two_blocks_on_a_spring_keep_energy_and_momenta(tmp_path: Path, table: b
     rows = "-9., -1.\n0., 0.\n1., 0.1\n9., 0.3" if table else "30."
     option = ", NONLINEAR" if table else ""
     spring = f"*ELEMENT, TYPE=SPRINGA, ELSET=S\n50, 3, 11\n*SPRING, ELSET=S{option}\n\n{rows}"
-    cards = [block(1, 0.0, 0.0), block(11, 0.9, 0.0), spring, velocity(1, 0.2, -1.0), velocity(11, 0.0, 1.5)]
+    cards = [block(1, 0.0, 0.0), block(11, 0.9, 0.0), spring, velocity(1, 0.2, -1.5), velocity(11, -0.2, 1.5)]
     history = run(tmp_path, *cards, dt=0.02, end=10.0)
     energy = history["energy/kinetic"][:] + history["energy/strain"][:]
     assert np.abs(energy - energy[0]).max() < 1e-10 * energy[0]
     linear, angular = history["momentum/linear"][:], history["momentum/angular"][:]
     assert np.abs(linear - linear[0]).max() < 1e-11
+    log = (tmp_path / "deck.log").read_text()
+    drift = re.search(r"momentum (\S+)", log.partition("energy balance")[2])
+    assert drift is not None and float(drift[1]) < 1e-11
     assert np.abs(angular - angular[0]).max() < 1e-11
     assert history["energy/strain"][:].max() > 0.05 * energy[0]
     assert np.abs(history["connectors/elongation"][:]).max() > 0.1
@@ -152,6 +156,7 @@ FAULTS = [
     ("*ELEMENT, TYPE=SPRING1, ELSET=S\n50, 3\n*SPRING, ELSET=S\n1", "needs two rows"),
     ("*ELEMENT, TYPE=SPRINGA, ELSET=S\n50, 3, 11\n*SPRING, ELSET=S\n-3.", "must not be negative"),
     ("*ELEMENT, TYPE=SPRINGA, ELSET=S\n50, 3, 11\n*SPRING, ELSET=S, NONLINEAR\n1., 2.\n2., 1.", "must increase"),
+    ("*NODE\n90, 2., 0.\n*ELEMENT, TYPE=SPRINGA, ELSET=S\n50, 3, 90\n*SPRING, ELSET=S\n3.", "node 90 of element 50 has no mass"),
     ("*ELEMENT, TYPE=SPRINGA, ELSET=S\n50, 3, 11\n*DASHPOT, ELSET=S\n1.", "S holds no DASHPOT elements"),
 ]
 
