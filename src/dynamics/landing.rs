@@ -7,14 +7,13 @@
 use nalgebra::DMatrix;
 
 use super::increment::{PairReturn, Release, Solved};
-use super::patterns::{FrictionLoad, Pattern, ReturnLoad, RigidBodies, pattern, shares, signs};
+use super::patterns::{
+    FrictionLoad, Pattern, ReturnLoad, RigidBodies, given, pattern, shares, signs,
+};
 use super::results::{Cause, State};
 use super::step::{ClosedConstraints, StepProblem, Workspace, difference, dot, sum};
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::contact::{ClosedPair, Constraint, ConstraintKey, Rows};
-
-/// Part of the force of a landing by which a return may pull, as round-off of a force that is taken back as a whole.
-const ROUND_OFF: f64 = 1e-9;
 
 /// Gives back what the landings of a converged increment of length `dt` from `start` have taken, where the step
 /// asks for it (`LANDING=RETURN`).
@@ -37,13 +36,19 @@ pub(crate) fn return_landings(
     if !pairs.is_empty() {
         factorize_anew(problem, workspace, (start, dt), solved)?;
     }
-    let GivenBack { y, support_work } = give_back(problem, workspace, dt, solved, &loads)?;
-    let both = pairs.into_iter().zip(loads).zip(y);
-    let share = |((pair, load), y): ((LandedPair, ReturnLoad), f64)| pair.share(&load, dt, y);
-    solved.returned.pairs = both.filter_map(share).collect();
-    solved.returned.support_work = support_work;
+    let given = give_back(problem, workspace, dt, solved, &loads)?;
+    let both = pairs.iter().zip(&loads);
+    let shares = both.zip(given.y).zip(given.energies);
+    let share = |(((pair, load), y), energy): (((&LandedPair, &ReturnLoad), f64), f64)| {
+        pair.share(load, dt, y, energy)
+    };
+    solved.returned.pairs = shares.filter_map(share).collect();
+    solved.returned.support_work = given.support_work;
     Ok(())
 }
+
+/// Part of the energy of a load below which what is left of it is round-off.
+const REST: f64 = 1e-12;
 
 /// A pair that lands.
 struct LandedPair {
@@ -57,16 +62,16 @@ struct LandedPair {
 impl LandedPair {
     /// What it is given by the share y of its load: the impulse (dt²/2) y along the normal, and along its
     /// friction where y takes a part of its force back.
-    fn share(&self, load: &ReturnLoad, dt: f64, y: f64) -> Option<PairReturn> {
+    fn share(&self, load: &ReturnLoad, dt: f64, y: f64, energy: f64) -> Option<PairReturn> {
         let normal = dt * dt / 2.0 * y;
         let (tangential, friction) = match &load.friction {
             Some(friction) if y < 0.0 => (normal * self.ratio, -y * friction.work),
             _ => (0.0, 0.0),
         };
         let [n, t] = self.rows;
-        (y != 0.0).then(|| PairReturn {
+        (energy != 0.0).then(|| PairReturn {
             key: self.key,
-            energy: load.energy,
+            energy,
             friction,
             normal,
             tangential,
@@ -101,7 +106,7 @@ fn landing(
         both.for_each(|(&dof, b)| force[dof] += factor * b);
         force
     };
-    // (Pt/Pn) Gt^T, c = -dt Pt (Bt d)/(2 Pn), eq. (6.11)
+    // (Pt/Pn) Gt^T, c = -dt Pt (Bt d)/(2 Pn), eq. (6.13)
     let ratio = pt / pn;
     let friction = (pt != 0.0).then(|| FrictionLoad {
         force: load(tangential, ratio),
@@ -119,7 +124,8 @@ fn landing(
             force,
             friction,
             energy,
-            least: -2.0 * pn / dt * (1.0 + ROUND_OFF),
+            // (6.11)
+            most: 2.0 * pn / dt,
         },
     ))
 }
@@ -149,6 +155,8 @@ pub(super) fn factorize_anew(
 pub(super) struct GivenBack {
     /// Share of every pattern.
     pub y: Vec<f64>,
+    /// Energy that each share has given.
+    pub energies: Vec<f64>,
     /// Work of the supports, which hold their velocity (energy).
     pub support_work: f64,
 }
@@ -194,13 +202,10 @@ pub(super) fn give_back(
         DMatrix::from_fn(n, n, |j, k| dot(&patterns[j].w, &patterns[k].momentum))
     };
     let energies: Vec<f64> = loads.iter().map(|load| load.energy).collect();
-    let mut signs = signs(&products(&patterns), &b, &energies);
+    let signs = signs(&products(&patterns), &b, &energies);
     // what takes a force back takes its friction back, with its work
-    let mut alone = Vec::new();
     for (j, load) in loads.iter().enumerate() {
-        let friction = load.friction.as_ref().filter(|_| signs[j] < 0.0);
-        alone.push(friction.map(|_| (patterns[j].clone(), b[j], s[j])));
-        if let Some(friction) = friction {
+        if let Some(friction) = load.friction.as_ref().filter(|_| signs[j] < 0.0) {
             let of_friction = respond(&friction.force)?;
             let (b_j, s_j) = motion(&of_friction, &friction.force);
             patterns[j].add(&of_friction);
@@ -208,28 +213,67 @@ pub(super) fn give_back(
             s[j] += s_j;
         }
     }
-    // a pair that would have to pull is sent off along its normal instead
-    let y = loop {
-        let y = shares(&products(&patterns), &b, &energies, &signs);
-        let pulls = |&j: &usize| y[j] < loads[j].least;
-        let pulling: Vec<usize> = (0..y.len()).filter(pulls).collect();
-        if pulling.is_empty() {
-            break y;
-        }
-        for j in pulling {
-            signs[j] = 1.0;
-            if let Some((pattern, b_j, s_j)) = alone[j].take() {
-                (patterns[j], b[j], s[j]) = (pattern, b_j, s_j);
-            }
-        }
-    };
+    let a = products(&patterns);
+    let most: Vec<f64> = loads.iter().map(|load| load.most).collect();
+    let y = shares(&a, &b, &energies, &signs, &most);
     for (Pattern { w, .. }, y) in patterns.iter().zip(&y) {
         v.iter_mut().zip(w).for_each(|(v, w)| *v += y * w);
     }
+    let mut given = given(&a, &b, &y);
+    give_rests(problem, &bodies, v, loads, &mut given);
     Ok(GivenBack {
         support_work: dot(&s, &y),
+        energies: given,
         y,
     })
+}
+
+/// Gives what loads have left of their energies to the vibration of their free bodies, and enters it in what is `given`:
+///
+/// ```text
+/// V1 <- V1 + z V',  sum M V' = 0,  sum r x M V' = 0
+/// (z + z²/2) V'.M V' = sum (D_j - G_j),   eq. (6.12)
+/// ```
+///
+/// A rest larger than the energy of the vibration is lost.
+fn give_rests(
+    problem: &StepProblem,
+    bodies: &RigidBodies,
+    v: &mut [f64],
+    loads: &[ReturnLoad],
+    given: &mut [f64],
+) {
+    let body_of = problem.parts.of_nodes();
+    let rests: Vec<f64> = loads
+        .iter()
+        .zip(&*given)
+        .map(|(load, g)| load.energy - g)
+        .collect();
+    let has_rest = |j: &usize| rests[*j] > REST * loads[*j].energy;
+    let mut vibrates = vec![false; body_of.iter().max().map_or(0, |last| last + 1)];
+    for j in (0..loads.len()).filter(has_rest) {
+        let loaded = loads[j]
+            .force
+            .iter()
+            .enumerate()
+            .filter(|(_, f)| **f != 0.0);
+        loaded.for_each(|(dof, _)| vibrates[body_of[dof / 2]] = true);
+    }
+    let mut vibration = bodies.vibration(problem, v);
+    let others = vibration.iter_mut().enumerate();
+    others
+        .filter(|(dof, _)| !vibrates[body_of[dof / 2]])
+        .for_each(|(_, v)| *v = 0.0);
+    let energy = dot(&vibration, &problem.mass.times(&vibration)) / 2.0;
+    let rest: f64 = rests.iter().sum();
+    if energy > 0.0 && rest <= energy {
+        let z = (1.0 + rest / energy).sqrt() - 1.0;
+        v.iter_mut().zip(&vibration).for_each(|(v, w)| *v += z * w);
+        given
+            .iter_mut()
+            .zip(rests)
+            .for_each(|(given, rest)| *given += rest);
+    }
 }
 
 /// Enters the release at the end of an increment of length `dt` from `start` and, where the step asks for it
@@ -254,7 +298,7 @@ pub(crate) fn return_release(
             constraint.add_force(*pair, &mut force);
         }
         let energy = release.loss;
-        let GivenBack { y, support_work } = give_back(
+        let given = give_back(
             problem,
             workspace,
             dt,
@@ -263,19 +307,20 @@ pub(crate) fn return_release(
                 force,
                 friction: None,
                 energy,
-                least: 0.0,
+                most: 2.0 / dt,
             }],
         )?;
-        solved.returned.support_work += support_work;
-        (solved.returned.pairs).extend(parts(&release, dt * dt / 2.0 * y[0]));
+        solved.returned.support_work += given.support_work;
+        let impulse = dt * dt / 2.0 * given.y[0];
+        (solved.returned.pairs).extend(parts(&release, impulse, given.energies[0]));
     }
     solved.returned.release = release;
     Ok(())
 }
 
-/// What every pair has of a return whose load is `factor` times the forces before.
-fn parts(release: &Release, factor: f64) -> Vec<PairReturn> {
-    if factor == 0.0 {
+/// What every pair has of a return of `energy` whose load is `factor` times the forces before.
+fn parts(release: &Release, factor: f64, energy: f64) -> Vec<PairReturn> {
+    if energy == 0.0 {
         return Vec::new();
     }
     let whole: f64 = release.opened.iter().map(|(_, force)| force[0]).sum();
@@ -286,7 +331,7 @@ fn parts(release: &Release, factor: f64) -> Vec<PairReturn> {
         }
         PairReturn {
             key: constraint.key,
-            energy: release.loss * force[0] / whole,
+            energy: energy * force[0] / whole,
             friction: 0.0,
             normal: factor * force[0],
             tangential: factor * force[1],

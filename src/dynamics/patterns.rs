@@ -18,8 +18,8 @@ pub(crate) struct ReturnLoad {
     pub friction: Option<FrictionLoad>,
     /// Energy to be given back.
     pub energy: f64,
-    /// Least share: it takes all of the force of the increment back.
-    pub least: f64,
+    /// Largest share, of either sign: its impulse is that of the force of the increment.
+    pub most: f64,
 }
 
 /// The friction that goes with a load.
@@ -127,6 +127,23 @@ impl RigidBodies {
         (0..v.len()).map(of_dof).collect()
     }
 
+    /// What the velocities `v` of the free bodies have besides a rigid motion, over all dofs: its momenta are zero.
+    ///
+    /// Bodies that are not free have none.
+    pub fn vibration(&self, problem: &StepProblem, v: &[f64]) -> Vec<f64> {
+        let mut vibration = v.to_vec();
+        self.correct(problem, 0.0, &vec![0.0; v.len()], &mut vibration);
+        let body_of = problem.parts.of_nodes();
+        let of_dof = |(dof, v): (usize, f64)| {
+            if self.is_free[body_of[dof / 2]] {
+                v
+            } else {
+                0.0
+            }
+        };
+        vibration.into_iter().enumerate().map(of_dof).collect()
+    }
+
     /// Sums of forces or momenta over the dofs of every body, and of their moments.
     fn sums(&self, problem: &StepProblem, v: &[f64]) -> Vec<[f64; 3]> {
         let mut sums = vec![[0.0; 3]; self.is_free.len()];
@@ -199,43 +216,43 @@ pub(super) fn signs(a: &DMatrix<f64>, b: &[f64], energies: &[f64]) -> Vec<f64> {
 /// Shares y of the patterns with the given signs,
 ///
 /// ```text
-/// y_j (b_j + sum_k A_jk y_k / 2) = D_j,   eq. (6.9)
+/// y_j (b_j + sum_k A_jk y_k / 2) = D_j  or  |y_j| = Y_j,   eq. (6.9)
 /// ```
 ///
-/// A_jk = w_j.M w_k (energy for y = 1), b_j = w_j.M V1 - s_j + c_j, `energies` D_j > 0. There is one solution for any
-/// signs of y: the minimum of a convex function, found coordinate by coordinate. A pattern without energy has no share.
-pub(super) fn shares(a: &DMatrix<f64>, b: &[f64], energies: &[f64], signs: &[f64]) -> Vec<f64> {
+/// A_jk = w_j.M w_k (energy for y = 1), b_j = w_j.M V1 - s_j + c_j, `energies` D_j > 0, `most` Y_j. There is one solution
+/// for any signs of y where no Y_j is reached: the minimum of a convex function, found coordinate by coordinate. A pattern
+/// without energy has no share, nor has one whose share would take energy at Y_j.
+pub(super) fn shares(
+    a: &DMatrix<f64>,
+    b: &[f64],
+    energies: &[f64],
+    signs: &[f64],
+    most: &[f64],
+) -> Vec<f64> {
     let n = b.len();
-    let mut y = vec![0.0; n];
+    let (mut y, mut has_share) = (vec![0.0; n], vec![true; n]);
     for _ in 0..SWEEPS {
         let mut change = 0.0_f64;
-        for j in 0..n {
-            let sign = signs[j];
+        for j in (0..n).filter(|&j| has_share[j]).collect::<Vec<_>>() {
             let others: f64 = (0..n).filter(|&k| k != j).map(|k| a[(j, k)] * y[k]).sum();
-            let root = positive_root(a[(j, j)] / 2.0, sign * (b[j] + others / 2.0), energies[j]);
-            change = change.max((sign * root - y[j]).abs() / root.max(f64::MIN_POSITIVE));
-            y[j] = sign * root;
+            let (a, b) = (a[(j, j)] / 2.0, signs[j] * (b[j] + others / 2.0));
+            let root = positive_root(a, b, energies[j]).min(most[j]);
+            has_share[j] = b + a * root > 0.0;
+            let share = if has_share[j] { root } else { 0.0 };
+            change = change.max((signs[j] * share - y[j]).abs() / share.max(f64::MIN_POSITIVE));
+            y[j] = signs[j] * share;
         }
         if change <= SWEPT {
             break;
         }
     }
-    let has_pattern = |&j: &usize| y[j] != 0.0;
-    let energy = (0..n).filter(has_pattern).map(|j| energies[j]).sum();
-    scaled_to(a, b, energy, y)
+    y
 }
 
-/// The shares times the factor with which they give the whole energy.
-fn scaled_to(a: &DMatrix<f64>, b: &[f64], energy: f64, mut y: Vec<f64>) -> Vec<f64> {
-    let n = y.len();
-    let mut sums = [0.0; 2];
-    for j in 0..n {
-        sums[0] += y[j] * (0..n).map(|k| a[(j, k)] * y[k]).sum::<f64>() / 2.0;
-        sums[1] += y[j] * b[j];
-    }
-    let factor = positive_root(sums[0], sums[1], energy);
-    y.iter_mut().for_each(|y| *y *= factor);
-    y
+/// Energy that every share gives, y_j (b_j + sum_k A_jk y_k/2): their sum is what all of them change, eq. (6.9).
+pub(super) fn given(a: &DMatrix<f64>, b: &[f64], y: &[f64]) -> Vec<f64> {
+    let half = |j: usize| (0..y.len()).map(|k| a[(j, k)] * y[k]).sum::<f64>() / 2.0;
+    (0..y.len()).map(|j| y[j] * (b[j] + half(j))).collect()
 }
 
 /// The root y > 0 of a y² + b y = D for a, D > 0; 0 where there is no pattern, a = 0.
@@ -255,13 +272,6 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Energy that every share gives.
-    fn given(a: &DMatrix<f64>, b: &[f64], y: &[f64]) -> Vec<f64> {
-        let n = y.len();
-        let half = |j: usize| (0..n).map(|k| a[(j, k)] * y[k]).sum::<f64>() / 2.0;
-        (0..n).map(|j| y[j] * (b[j] + half(j))).collect()
-    }
-
     proptest! {
         /// Random patterns of 4 velocities, at most as many independent ones, also alike.
         #[test]
@@ -269,21 +279,24 @@ mod tests {
             w in proptest::collection::vec(proptest::collection::vec(-1.0..1.0_f64, 4), 1..7),
             v in proptest::collection::vec(-1.0..1.0_f64, 4),
             d in proptest::collection::vec(0.001..1.0_f64, 7),
+            bound in 0.01..10.0_f64,
         ) {
             let dot = |p: &[f64], q: &[f64]| -> f64 { p.iter().zip(q).map(|(p, q)| p * q).sum() };
             let n = w.len();
             let a = DMatrix::from_fn(n, n, |j, k| dot(&w[j], &w[k]));
             let b: Vec<f64> = w.iter().map(|w| dot(w, &v)).collect();
-            let y = shares(&a, &b, &d[..n], &signs(&a, &b, &d[..n]));
+            let signs = signs(&a, &b, &d[..n]);
+            let y = shares(&a, &b, &d[..n], &signs, &[f64::INFINITY; 7]);
             for (j, given) in given(&a, &b, &y).into_iter().enumerate() {
                 prop_assert!((given - d[j]).abs() < 1e-6, "{given} {}", d[j]);
                 prop_assert!(y[j] * b[j] >= 0.0);
             }
-            // the whole energy, to round-off of the terms that it is the sum of
-            let total: f64 = given(&a, &b, &y).iter().sum();
-            let terms = (0..n).map(|j| (y[j] * b[j]).abs() + (0..n).map(|k| (y[j] * a[(j, k)] * y[k]).abs()).sum::<f64>());
-            let scale: f64 = terms.sum();
-            prop_assert!((total - d[..n].iter().sum::<f64>()).abs() < 1e-13 * scale);
+            // no share is above its bound, and one at its bound gives a part of its energy
+            let y = shares(&a, &b, &d[..n], &signs, &[bound; 7]);
+            for (j, given) in given(&a, &b, &y).into_iter().enumerate() {
+                prop_assert!(y[j].abs() <= bound && given > -1e-6 && given < d[j] + 1e-6);
+                prop_assert!(y[j] == 0.0 || y[j].abs() == bound || (given - d[j]).abs() < 1e-6);
+            }
         }
     }
 
@@ -294,7 +307,7 @@ mod tests {
         for s in [0.0625, 0.25, 0.5, 0.75, 0.9375] {
             let (v, d) = (1.0 - 2.0 * s, 2.0 * s * (1.0 - s));
             let (a, b) = (DMatrix::from_element(1, 1, 4.0), [2.0 * v]);
-            let y = shares(&a, &b, &[d], &signs(&a, &b, &[d]))[0];
+            let y = shares(&a, &b, &[d], &signs(&a, &b, &[d]), &[f64::INFINITY])[0];
             let expected = if s > 0.5 { -1.0 } else { 1.0 };
             assert!((v + 2.0 * y - expected).abs() < 1e-15, "{s}");
         }
@@ -303,7 +316,13 @@ mod tests {
     #[test]
     fn patterns_that_are_alike_share_alike_and_one_without_motion_has_none() {
         let a = DMatrix::from_row_slice(3, 3, &[1.0, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
-        let y = shares(&a, &[0.5, 0.5, 0.0], &[0.1; 3], &[1.0; 3]);
+        let y = shares(
+            &a,
+            &[0.5, 0.5, 0.0],
+            &[0.1; 3],
+            &[1.0; 3],
+            &[f64::INFINITY; 3],
+        );
         assert!((y[0] - y[1]).abs() < 1e-12 && y[2] == 0.0, "{y:?}");
     }
 }

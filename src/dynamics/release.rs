@@ -97,7 +97,7 @@ impl Releasing<'_, '_> {
         None
     }
 
-    /// dU = K_ii^-1 (R - F + Bn^T Pn), eq. (6.12), Pn of the complementarity problem of the gaps.
+    /// dU = K_ii^-1 (R - F + Bn^T Pn), eq. (6.14), Pn of the complementarity problem of the gaps.
     fn newton_step(&mut self, u: &[f64]) -> Option<Vec<f64>> {
         let (problem, end) = (self.problem, self.interval.end);
         let motion = Motion::at(u, &self.end.internal);
@@ -155,7 +155,7 @@ impl Releasing<'_, '_> {
         found.is_some()
     }
 
-    /// What the rest at the displacements `u` takes, eq. (6.13), and the internal variables there; none if it would
+    /// What the rest at the displacements `u` takes, eq. (6.15), and the internal variables there; none if it would
     /// give energy.
     fn release(&self, u: &[f64]) -> Option<(Release, Vec<f64>)> {
         let (elements, end) = (self.problem.elements, self.interval.end);

@@ -33,6 +33,11 @@ fn total(report: &IncrementReport) -> f64 {
 /// The balance is round-off, all that normal contact forces take is given back, contact by contact, and
 /// energy that nothing brings in never rises. Returns the energy given back as a part of the start.
 fn check(keep: &Keep, what: &str) -> f64 {
+    check_but_for(keep, what, 0.0)
+}
+
+/// The same, where the bounds of the returns lose at most the part `lost` of the energy.
+fn check_but_for(keep: &Keep, what: &str, lost: f64) -> f64 {
     let scale = keep.reports.iter().map(total).fold(0.0, f64::max);
     for pair in keep.reports.windows(2) {
         let (before, after) = (&pair[0].energy, &pair[1].energy);
@@ -42,7 +47,8 @@ fn check(keep: &Keep, what: &str) -> f64 {
             after.balance
         );
         let taken = after.normal_contact_work + after.landing_return;
-        assert!(taken.abs() < 1e-10 * scale, "{what}: {taken:e}");
+        let least = -(1e-10 + lost) * scale;
+        assert!(taken > least && taken < 1e-10 * scale, "{what}: {taken:e}");
         let work = after.external_work - before.external_work;
         let rise = total(&pair[1]) - total(&pair[0]) - work;
         assert!(rise < 1e-10 * scale, "{what}: {rise:e}");
@@ -78,7 +84,8 @@ fn a_stiff_element_bounces_like_a_point_mass() {
     for way in [2.0625, 2.25, 2.5, 2.75, 2.9375] {
         let (model, _) = falling_square(1e12, way, 0.01, 0.0);
         let (keep, _) = run_to_end(&model);
-        check(&keep, "square");
+        // to bounce with all of its energy, the elastic square would have to pull by 3e-8 of its force
+        check_but_for(&keep, "square", 5e-8);
         let last = keep.reports.last().expect("reports");
         let body = last.bodies[1];
         println!("{way}: {body:?}");

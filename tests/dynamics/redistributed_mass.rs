@@ -189,7 +189,7 @@ fn a_block_falls_and_lands_on_a_moving_table() {
 }
 
 /// Forces at nodes without mass, which press them on a table and then pull, do work as these nodes come to
-/// rest after they are released, eq. (6.13): without it the balance would not close.
+/// rest after they are released, eq. (6.15): without it the balance would not close.
 #[test]
 fn loads_do_work_on_the_way_to_rest() {
     let mut model = model(1e3, 0.3, 1.0);

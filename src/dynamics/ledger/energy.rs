@@ -200,7 +200,7 @@ impl Ledger {
             e.friction_dissipation += work.friction;
         }
         // what landings and releases are given back, with the work of the supports on the way, eq. (6.10), and of
-        // friction that is taken back, eq. (6.11), R and the work of the loads on the way to rest, eq. (6.13)
+        // friction that is taken back, eq. (6.13), R and the work of the loads on the way to rest, eq. (6.15)
         let returned = &solved.returned;
         let (loss, load_work) = (returned.release.loss, returned.release.load_work);
         e.landing_return += returned.energy();
