@@ -38,7 +38,7 @@ HEADER = ("increments", "cutbacks", "passes", "max", "cut", "factorisations", "C
 """Titles; the passes are the mean and the largest number of an increment, and those of all
 attempts that were cut back."""
 
-CUTBACK = re.compile(r"cutback +increment (\d+) ")
+CUTBACK = re.compile(r"(?:cutback|repeated) +increment (\d+) ")
 TABLE = re.compile(r" +pass +residual ")
 BELOW = ("     ", "advice ")
 """Lines of a log: a cutback, the head of a table of passes; how lines below a cutback begin."""

@@ -178,8 +178,8 @@ mod tests {
     use crate::lcp::{FrictionalLcp, LcpError};
     use crate::materials::Law;
     use crate::model::{
-        Damping, Element, ElementType, Frames, Increments, Material, Mesh, Model, Procedure,
-        Section, Set, Settings, Step,
+        Damping, Element, ElementType, Frames, Incrementation, Increments, Material, Mesh, Model,
+        Procedure, Section, Set, Settings, Step,
     };
     use crate::output::ResultSummary;
     use clap::Parser;
@@ -221,7 +221,7 @@ mod tests {
                     period: 1.0,
                     dt_min: 0.0,
                     dt_max: f64::INFINITY,
-                    direct: true,
+                    incrementation: Incrementation::Fixed,
                 },
                 settings: Settings::default(),
                 supports: vec![],
@@ -288,6 +288,7 @@ mod tests {
             outcome,
             increments,
             cutbacks: 0,
+            rejections: 0,
             events: 0,
             solver: SolverCounts::default(),
             timings: Timings::default(),

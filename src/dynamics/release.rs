@@ -34,7 +34,7 @@ pub(crate) fn bring_to_rest(
     interval: Interval,
     solved: &mut Solved,
 ) -> Release {
-    if problem.redistribution.is_empty() {
+    if problem.redistribution.is_empty() || !problem.integration.energy_momentum {
         return Release::default();
     }
     let still = &solved.end.contact;

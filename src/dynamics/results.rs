@@ -211,6 +211,8 @@ pub struct IncrementReport {
     pub dt: f64,
     /// Whether this is the last increment of its step.
     pub ends_step: bool,
+    /// Truncation error beside the displacements, in a step whose increments it decides.
+    pub truncation_error: Option<f64>,
     /// Motion at the end.
     pub state: State,
     /// Results at nodes.
@@ -485,6 +487,8 @@ pub struct RunSummary {
     pub increments: usize,
     /// Number of cutbacks.
     pub cutbacks: usize,
+    /// Number of increments that were repeated because of their truncation error.
+    pub rejections: usize,
     /// Number of increments that an impact ended (`IMPACT TIME=EVENT`).
     pub events: usize,
     /// Counters summed over the increments (`lcp_size`, `residual` and `violation`: the largest).
@@ -526,6 +530,13 @@ pub enum Cause {
     Indefinite {
         /// Node (index) whose pivot is not positive.
         node: usize,
+    },
+    /// The truncation error of a converged increment is too large.
+    Inaccurate {
+        /// It, beside the displacements.
+        error: f64,
+        /// The largest that counts as small.
+        tolerance: f64,
     },
     /// The factorisation or a solve with it failed.
     LinearSolver(LinearError),
@@ -674,6 +685,12 @@ impl fmt::Display for Cause {
                 write!(
                     f,
                     "the energy balance would be off by {part:.1e} of the largest energy"
+                )
+            }
+            Cause::Inaccurate { error, tolerance } => {
+                write!(
+                    f,
+                    "its truncation error of {error:.1e} is above {tolerance:.1e} of the displacements"
                 )
             }
             Cause::LinearSolver(error) => write!(f, "the linear solver failed: {error}"),

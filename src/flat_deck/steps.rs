@@ -4,9 +4,9 @@
 use super::lines::{DeckWriter, named, number, set};
 use super::model::{elements_field, first_of_rigid};
 use crate::model::{
-    Amplitude, BodyForce, Frames, HistorySet, Increments, Load, Model, NamedSets, PointLoad,
-    Pressure, Procedure, Rate, RigidBody, Scheme, Settings, Step, Support, SupportMotion, Traction,
-    Variation,
+    Amplitude, BodyForce, Frames, HistorySet, Incrementation, Increments, Load, Model, NamedSets,
+    PointLoad, Pressure, Procedure, Rate, RigidBody, Scheme, Settings, Step, Support,
+    SupportMotion, Traction, Variation,
 };
 use crate::reader::{self, carried_loads};
 use std::collections::HashMap;
@@ -24,7 +24,7 @@ pub(super) fn write(model: &Model, lines: &mut DeckWriter) {
     let mut loads = LoadCards::default();
     for (index, step) in model.steps.iter().enumerate() {
         let now = LoadCards::of(step, model);
-        head(step, &now, lines);
+        head(step, model, &now, lines);
         settings(&step.settings, lines);
         let held = own_supports(step, model);
         write_supports(&held, &supports, model, lines);
@@ -58,13 +58,13 @@ fn dof_fields(dof: usize, model: &Model) -> [String; 2] {
 }
 
 /// `*STEP` and its procedure.
-fn head(step: &Step, loads: &LoadCards, lines: &mut DeckWriter) {
+fn head(step: &Step, model: &Model, loads: &LoadCards, lines: &mut DeckWriter) {
     let mut parameters = vec!["NLGEOM".to_owned()];
     parameters.extend(step.name.as_ref().map(|name| named("NAME", name)));
     let ramps = loads.ramp();
     let amplitude = match step.procedure {
         Procedure::Dynamic => ramps.then_some("RAMP"),
-        Procedure::Static => (!ramps).then_some("STEP"),
+        Procedure::QuasiStatic | Procedure::Static => (!ramps).then_some("STEP"),
     };
     parameters.extend(amplitude.map(|amplitude| set("AMPLITUDE", amplitude)));
     lines.card_of("STEP", &parameters);
@@ -73,20 +73,30 @@ fn head(step: &Step, loads: &LoadCards, lines: &mut DeckWriter) {
         period,
         dt_min,
         dt_max,
-        direct,
+        incrementation,
     } = step.increments;
-    let procedure = match step.procedure {
-        Procedure::Dynamic => "DYNAMIC",
-        Procedure::Static => "STATIC",
+    let (procedure, application) = match step.procedure {
+        Procedure::Dynamic => ("DYNAMIC", None),
+        Procedure::QuasiStatic => ("DYNAMIC", Some(set("APPLICATION", "QUASI-STATIC"))),
+        Procedure::Static => ("STATIC", None),
     };
-    match direct {
-        true => {
-            lines.card(procedure, ["DIRECT".to_owned()]);
+    let mut parameters: Vec<String> = application.into_iter().collect();
+    match incrementation {
+        Incrementation::Fixed => {
+            parameters.insert(0, "DIRECT".to_owned());
+            lines.card_of(procedure, &parameters);
             lines.row([dt, period, dt_min].map(number));
         }
-        // in a dynamic step the largest increment says that they do not grow
-        false => {
-            lines.card(procedure, []);
+        Incrementation::Passes => {
+            lines.card_of(procedure, &parameters);
+            lines.row([dt, period, dt_min, dt_max].map(number));
+        }
+        Incrementation::Error { tolerance } => {
+            let factor = tolerance / reader::tolerance_of_factor(!model.contacts.is_empty());
+            let is_default = tolerance == reader::TRUNCATION_ERROR;
+            let scale = (!is_default).then(|| set("HALFINC SCALE FACTOR", number(factor)));
+            parameters.extend(scale);
+            lines.card_of(procedure, &parameters);
             lines.row([dt, period, dt_min, dt_max].map(number));
         }
     }

@@ -28,9 +28,9 @@ pub use mesh::{Bodies, Element, ElementsAtNodes, Face, Mesh, NO_SECTION, Nodes, 
 pub use sets::{HistorySet, Instance, NamedSets, RequestedFields, element_name, node_name};
 pub use side::{Segment, Side, SideNodes};
 pub use step::{
-    BodyForce, ContactMass, Factorization, Frames, Impact, ImpactTime, Increments, LandingRule,
-    LcpChoice, Load, PointLoad, Pressure, Procedure, Rate, Scheme, Settings, SolverChoice, Step,
-    Support, SupportMotion, Traction, Variation,
+    BodyForce, ContactMass, Factorization, Frames, Impact, ImpactTime, Incrementation, Increments,
+    LandingRule, LcpChoice, Load, PointLoad, Pressure, Procedure, Rate, Scheme, Settings,
+    SolverChoice, Step, Support, SupportMotion, Traction, Variation,
 };
 
 use crate::vectors::polygon_area;

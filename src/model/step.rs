@@ -33,6 +33,9 @@ pub struct Step {
 pub enum Procedure {
     /// The equation of motion, integrated implicitly in time (`*DYNAMIC`).
     Dynamic,
+    /// The equation of motion by the backward Euler rule, which takes the energy of vibrations (`*DYNAMIC,
+    /// APPLICATION=QUASI-STATIC`).
+    QuasiStatic,
     /// Equilibrium without inertia, damping and impacts (`*STATIC`).
     Static,
 }
@@ -47,10 +50,24 @@ pub struct Increments {
     /// Smallest increment a cutback may reach (time); by default 0, in a static step without DIRECT 1e-5 of the
     /// duration, or the increment if that is smaller.
     pub dt_min: f64,
-    /// Largest increment (time); those of a dynamic step do not grow.
+    /// Largest increment (time).
     pub dt_max: f64,
-    /// Whether the deck requests fixed increments (DIRECT).
-    pub direct: bool,
+    /// What decides their length.
+    pub incrementation: Incrementation,
+}
+
+/// What decides how long the increments of a step are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Incrementation {
+    /// The deck: they have one length but for cutbacks (DIRECT).
+    Fixed,
+    /// The passes that they take.
+    Passes,
+    /// Their truncation error.
+    Error {
+        /// The largest, beside the displacements of the step so far.
+        tolerance: f64,
+    },
 }
 
 /// When field frames are written. The start and the end of a step are always written.

@@ -9,7 +9,8 @@ use super::status::monitored;
 use crate::diagnostics::Sources;
 use crate::model::{
     Connector, ConnectorLaw, Contact, EdgeScales, Element, ElementType, Frames, Impact, ImpactTime,
-    LandingRule, Model, Procedure, Scheme, Settings, SolverChoice, Step, SurfaceKind,
+    Incrementation, LandingRule, Model, Procedure, Scheme, Settings, SolverChoice, Step,
+    SurfaceKind,
 };
 use crate::prepare::{InitialGap, PreparedModel};
 use crate::vectors::extents;
@@ -122,19 +123,30 @@ impl ModelEcho {
 
     fn step_lines(&self, index: usize, step: &Step) -> Vec<String> {
         let increments = &step.increments;
-        let fixed = if increments.direct { " fixed" } else { "" };
+        let decided = match increments.incrementation {
+            Incrementation::Fixed => " fixed".to_owned(),
+            Incrementation::Passes => " automatic".to_owned(),
+            Incrementation::Error { tolerance } => {
+                let largest = general(increments.dt_max, 4);
+                format!(
+                    " at first, at most {largest}, truncation error {}",
+                    general(tolerance, 2)
+                )
+            }
+        };
         let name = step.name.as_deref().unwrap_or_default();
         let times = [
             format!("{name} 0 .. {}", general(increments.period, 4))
                 .trim_start()
                 .to_owned(),
-            format!("dt {}{fixed}", general(increments.dt, 4)),
+            format!("dt {}{decided}", general(increments.dt, 4)),
             format!("edge/wave speed {}", general(self.edges.time, 2)),
             frames(&step.frames),
         ];
         let settings = &step.settings;
         let own = match step.procedure {
             Procedure::Static => vec!["static".to_owned()],
+            Procedure::QuasiStatic => vec!["quasi-static: backward Euler".to_owned()],
             Procedure::Dynamic => vec![scheme(settings.scheme), impact(settings)],
         };
         let solver = format!("solver {}", solver(settings.solver));

@@ -441,7 +441,10 @@ fn cause_advice(cause: &Cause, model: &Model) -> Option<&'static str> {
             _ => "take smaller increments",
         },
         Cause::NotFinite { .. } => "see whether loads, materials and times are in consistent units",
-        Cause::Inverted { .. } | Cause::Crossed { .. } | Cause::LinearSolver(_) => return None,
+        Cause::Inverted { .. }
+        | Cause::Crossed { .. }
+        | Cause::LinearSolver(_)
+        | Cause::Inaccurate { .. } => return None,
     })
 }
 
@@ -473,7 +476,7 @@ pub(crate) fn pass_table(passes: &[PassReport]) -> Vec<String> {
     std::iter::once(header).chain(rows).collect()
 }
 
-/// The lines about a cutback: increment, cause, and how the passes went.
+/// The lines about a cutback, or an increment repeated because of its truncation error: increment, cause, and how the passes went.
 pub(crate) fn cutback_lines(cutback: &Cutback, model: &Model) -> Vec<String> {
     let failure = &cutback.failure;
     let pieces = [
@@ -486,7 +489,11 @@ pub(crate) fn cutback_lines(cutback: &Cutback, model: &Model) -> Vec<String> {
         ),
         failure.cause.to_string(),
     ];
-    let mut lines = wrap("cutback", &pieces);
+    let head = match failure.cause {
+        Cause::Inaccurate { .. } => "repeated",
+        _ => "cutback",
+    };
+    let mut lines = wrap(head, &pieces);
     let course = failure.course.as_deref();
     lines.extend(
         course
@@ -511,7 +518,9 @@ mod tests {
 
     use crate::dynamics::FailedLcp;
     use crate::lcp::FrictionalLcp;
-    use crate::model::{Element, ElementType, Increments, Mesh, Procedure, Set, Settings};
+    use crate::model::{
+        Element, ElementType, Incrementation, Increments, Mesh, Procedure, Set, Settings,
+    };
 
     #[test]
     fn a_crushed_corner_at_a_contact_is_named() {
@@ -579,7 +588,7 @@ mod tests {
                 period: 1.0,
                 dt_min: 0.01,
                 dt_max: f64::INFINITY,
-                direct: false,
+                incrementation: Incrementation::Passes,
             },
             settings: Settings::default(),
             supports: vec![],

@@ -157,7 +157,7 @@ impl Frame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Increments, Procedure, Settings};
+    use crate::model::{Incrementation, Increments, Procedure, Settings};
 
     fn model(frames: Frames, period: f64) -> Model {
         let increments = Increments {
@@ -165,7 +165,7 @@ mod tests {
             period,
             dt_min: 0.0,
             dt_max: f64::INFINITY,
-            direct: true,
+            incrementation: Incrementation::Fixed,
         };
         let step = Step {
             name: None,

@@ -16,7 +16,9 @@ use crate::dynamics::{
 use crate::elements::{
     ConnectorState, ElementInertia, ElementResult, MeanGradient, PlacedConnector,
 };
-use crate::model::{Bodies, Contact, HistorySet, LandingRule, Model, RigidBody, Set, Step};
+use crate::model::{
+    Bodies, Contact, HistorySet, Incrementation, LandingRule, Model, RigidBody, Set, Step,
+};
 
 /// What a dataset holds of a record `Q`.
 enum Value<Q> {
@@ -53,6 +55,17 @@ impl<'m> History<'m> {
         };
         history.columns.count(&at, ROWS, |_| 1)?;
         history.table(&at, &[], &INCREMENT, |r, each| each(r))?;
+        let decides =
+            |step: &Step| matches!(step.increments.incrementation, Incrementation::Error { .. });
+        if model.steps.iter().any(decides) {
+            let meaning = (
+                "1",
+                "truncation error beside the largest displacement of the step so far",
+            );
+            history.add(&at, "truncation_error", &[], meaning, |r, values| {
+                values.push(r.truncation_error.unwrap_or(f64::NAN));
+            })?;
+        }
         history.table(&group(&at, "energy")?, &[], &ENERGY, |r, each| {
             each(&r.energy)
         })?;

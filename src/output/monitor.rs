@@ -85,9 +85,14 @@ impl Monitor {
         }
     }
 
+    /// Counts an attempt at an increment that is repeated.
+    pub fn add_attempt(&mut self) {
+        self.failed_attempts += 1;
+    }
+
     /// Counts a cutback; returns their number so far.
     pub fn add_cutback(&mut self) -> usize {
-        self.failed_attempts += 1;
+        self.add_attempt();
         self.cutbacks += 1;
         self.cutbacks
     }
@@ -304,6 +309,9 @@ pub(crate) fn timing_lines(summary: &RunSummary, output: f64, total: f64) -> Vec
         counted(summary.increments, "increment"),
         counted(summary.cutbacks, "cutback")
     )];
+    if summary.rejections > 0 {
+        pieces.push(format!("{} repeated for their error", summary.rejections));
+    }
     if summary.events > 0 {
         pieces.push(format!("{} cut at impacts", summary.events));
     }

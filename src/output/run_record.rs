@@ -68,6 +68,7 @@ impl RecordWriter {
         set_attribute(&self.at, "seconds_total", total)?;
         set_attribute(&self.at, "increments", summary.increments as i64)?;
         set_attribute(&self.at, "cutbacks", summary.cutbacks as i64)?;
+        set_attribute(&self.at, "rejections", summary.rejections as i64)?;
         set_attribute(&self.at, "events", summary.events as i64)?;
         if let Some(peak) = peak_memory() {
             set_attribute(&self.at, "peak_memory", peak as i64)?;

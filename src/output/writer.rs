@@ -209,10 +209,16 @@ impl<'a> ResultWriter<'a> {
         Ok(())
     }
 
-    /// Prints a cutback: all to the log, the first ones also to the screen.
+    /// Prints a cutback: all to the log, the first ones that failed also to the screen.
     fn print_cutback(&mut self, cutback: &Cutback) -> io::Result<()> {
-        let count = self.monitor.add_cutback();
         let mut lines = cutback_lines(cutback, self.model);
+        if let Cause::Inaccurate { .. } = cutback.failure.cause {
+            self.monitor.add_attempt();
+            return lines
+                .iter()
+                .try_for_each(|line| self.console.log.line(line));
+        }
+        let count = self.monitor.add_cutback();
         if self.monitor.is_new_kind(cutback) {
             lines.extend(cutback_advice(cutback, self.model));
         }

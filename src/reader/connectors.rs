@@ -61,7 +61,7 @@ pub(super) fn check(model: &Model, elements: &[ConnectorElement], cx: &mut Conte
     {
         has_mass[node] = true;
     }
-    let dynamic = |step: &&Step| matches!(step.procedure, Procedure::Dynamic);
+    let dynamic = |step: &&Step| step.procedure != Procedure::Static;
     let is_held = |node: usize| {
         model.steps.iter().filter(dynamic).all(|step| {
             let held = |dof: usize| {

@@ -26,7 +26,10 @@ mod steps;
 mod surfaces;
 
 pub(crate) use loads::carried_loads;
-pub(crate) use steps::{CONTACT_MASS, FACTORIZATION, IMPACT, IMPACT_TIME, LANDING, LCP, SOLVER};
+pub(crate) use steps::{
+    CONTACT_MASS, FACTORIZATION, IMPACT, IMPACT_TIME, LANDING, LCP, SOLVER, TRUNCATION_ERROR,
+    tolerance_of_factor,
+};
 
 use crate::deck::{self, Card, Deck};
 use crate::diagnostics::{Code, Diagnostics, Sources};

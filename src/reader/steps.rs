@@ -9,8 +9,8 @@ use super::surfaces::Surfaces;
 use crate::deck::{Card, Line};
 use crate::diagnostics::{Code, shown};
 use crate::model::{
-    ContactMass, Factorization, Impact, ImpactTime, Increments, LandingRule, LcpChoice, Procedure,
-    Scheme, Settings, SolverChoice, Step, Support,
+    ContactMass, Factorization, Impact, ImpactTime, Incrementation, Increments, LandingRule,
+    LcpChoice, Procedure, Scheme, Settings, SolverChoice, Step, Support,
 };
 
 /// Most increments of a step: at a microsecond each they would take eleven days.
@@ -38,6 +38,9 @@ pub(crate) fn read(
         targets,
         surfaces,
         guide,
+        has_contacts: ["CONTACT PAIR", "CONTACT"]
+            .iter()
+            .any(|keyword| !outline.model_cards(keyword).is_empty()),
         settings: Settings::default(),
         supports: Supports::default(),
         support_operation: Operation::default(),
@@ -74,6 +77,7 @@ struct StepReader<'a> {
     targets: Targets<'a>,
     surfaces: &'a Surfaces,
     guide: Option<f64>,
+    has_contacts: bool,
     settings: Settings,
     supports: Supports,
     support_operation: Operation,
@@ -97,7 +101,7 @@ impl StepReader<'_> {
         let (procedure, increments) = self.procedure(cards, cx);
         let ramp = match cards.head.choice("AMPLITUDE") {
             Some(amplitude) => amplitude == "RAMP",
-            None => procedure == Procedure::Static,
+            None => procedure != Procedure::Dynamic,
         };
         let context = StepContext { step: number, ramp };
         let period = increments.map_or(0.0, |increments| increments.period);
@@ -186,7 +190,15 @@ impl StepReader<'_> {
             Some(_) => self.settings.impact = Impact::Impulse,
             None => {}
         }
-        (Procedure::Dynamic, increments(card, self.guide, cx))
+        let procedure = match card.choice("APPLICATION") {
+            Some("QUASI-STATIC") => Procedure::QuasiStatic,
+            _ => Procedure::Dynamic,
+        };
+        let contacts = self.has_contacts;
+        (
+            procedure,
+            increments(card, procedure, (self.guide, contacts), cx),
+        )
     }
 
     fn own_settings(&mut self, cards: &StepCards, number: usize, cx: &mut Context) {
@@ -225,9 +237,29 @@ fn named<'a>(cards: &StepCards<'a>, keyword: &str) -> Vec<&'a Card> {
     all.filter(|card| card.keyword.name == keyword).collect()
 }
 
+/// Largest truncation error of an increment, beside the displacements of the step so far.
+pub(crate) const TRUNCATION_ERROR: f64 = 1e-4;
+
+/// Parts of a dynamic step without DIRECT: of the first increment and of the duration, the lesser of which increments are
+/// not cut below by default, and of the duration, the largest increment by default.
+const LEAST_PART: f64 = 1.0 / 1024.0;
+const LEAST_DYNAMIC: f64 = 1e-5;
+const LARGEST_DYNAMIC: f64 = 0.1;
+
+/// Tolerance of the truncation error for HALFINC SCALE FACTOR=1: its default, 10000 with contacts and 1000 without,
+/// stands for [`TRUNCATION_ERROR`].
+pub(crate) fn tolerance_of_factor(has_contacts: bool) -> f64 {
+    TRUNCATION_ERROR / if has_contacts { 1e4 } else { 1e3 }
+}
+
 /// `dt, T[, smallest dt[, largest dt]]`
-fn increments(card: &Card, guide: Option<f64>, cx: &mut Context) -> Option<Increments> {
-    let direct = card.has("DIRECT") && card.choice("DIRECT") != Some("NO");
+fn increments(
+    card: &Card,
+    procedure: Procedure,
+    (guide, has_contacts): (Option<f64>, bool),
+    cx: &mut Context,
+) -> Option<Increments> {
+    let direct = is_direct(card);
     let Some(row) = card.rows.first() else {
         let message = "*DYNAMIC needs a data line: the increment and the duration";
         cx.error(Code::MissingData, card.span, message);
@@ -237,27 +269,87 @@ fn increments(card: &Card, guide: Option<f64>, cx: &mut Context) -> Option<Incre
     if let Some(extra) = card.rows.get(1) {
         cx.error(Code::StrayData, extra.span(), "*DYNAMIC has one data line");
     }
+    let tolerance = truncation_error(card, (direct, procedure), has_contacts, cx)?;
     let first = first_increment(row, guide, cx);
     let period = row.real(1, "the duration of the step", cx.d);
-    let dt_min = row.real_or(2, 0.0, cx.d);
-    let dt_max = row.real_or(3, f64::INFINITY, cx.d);
-    let (first, period, dt_min, dt_max) = (first?, period?, dt_min?, dt_max?);
+    let (first, period) = (first?, period?);
+    let (least, largest) = match direct {
+        true => (0.0, f64::INFINITY),
+        false => (
+            (LEAST_PART * first).min(LEAST_DYNAMIC * period),
+            match procedure {
+                Procedure::Dynamic => first.max(LARGEST_DYNAMIC * period),
+                _ => period,
+            },
+        ),
+    };
+    let (dt_min, dt_max) = (row.real_or(2, least, cx.d), row.real_or(3, largest, cx.d));
+    let (dt_min, dt_max) = (dt_min?, dt_max?);
     let dt = if direct { first } else { first.min(dt_max) };
     check_times(row, dt, period, dt_min, dt_max, cx)?;
     if direct {
         let help = "with DIRECT increments keep their size but for cutbacks";
         row.without_effect(3, "this largest increment has no effect", help, cx.d);
         note_short_end(row, dt, period, cx);
-    } else if dt < dt_max.min(period) {
-        warn_that_increments_stay(row, cx);
     }
     Some(Increments {
         dt,
         period,
         dt_min,
-        dt_max: dt,
-        direct,
+        dt_max: if direct { dt } else { dt_max },
+        incrementation: match (direct, procedure) {
+            (true, _) => Incrementation::Fixed,
+            (false, Procedure::Dynamic) => Incrementation::Error { tolerance },
+            (false, _) => Incrementation::Passes,
+        },
     })
+}
+
+fn is_direct(card: &Card) -> bool {
+    card.has("DIRECT") && card.choice("DIRECT") != Some("NO")
+}
+
+/// Tolerance of the truncation error of a dynamic step.
+fn truncation_error(
+    card: &Card,
+    (direct, procedure): (bool, Procedure),
+    has_contacts: bool,
+    cx: &mut Context,
+) -> Option<f64> {
+    let about = ["HAFTOL", "HALFINC SCALE FACTOR", "NOHAF"];
+    if procedure == Procedure::QuasiStatic {
+        let help = "increments of a quasi-static step follow their passes";
+        for given in about.into_iter().filter(|name| card.has(name)) {
+            let message = format!("{given} has no effect with APPLICATION=QUASI-STATIC");
+            cx.d.warning(Code::IgnoredParameter, card.span_of(given), message)
+                .help(help);
+        }
+        return Some(TRUNCATION_ERROR);
+    }
+    if let Some(given) = about.into_iter().find(|name| direct && card.has(name)) {
+        let message = format!("{given} is for automatic increments, and DIRECT keeps their size");
+        cx.error(Code::BadIncrement, card.span_of(given), message)
+            .help(format!("leave out {given}, or DIRECT"));
+        return None;
+    }
+    let Some(factor) = card.real("HALFINC SCALE FACTOR", cx.d) else {
+        return Some(TRUNCATION_ERROR);
+    };
+    let span = card.span_of("HALFINC SCALE FACTOR");
+    let is_fine = card.choice("APPLICATION") == Some("TRANSIENT FIDELITY");
+    let tolerance = factor * tolerance_of_factor(has_contacts && !is_fine);
+    if !(tolerance > 0.0 && tolerance < 1.0) {
+        let message = format!(
+            "the scale factor must be positive and give a tolerance below 1, found {tolerance:.1e}"
+        );
+        cx.error(Code::BadIncrement, span, message);
+        return None;
+    }
+    let message = format!(
+        "no half-increment residual is looked at: the truncation error stays below {tolerance:.1e} of the displacements"
+    );
+    cx.d.warning(Code::ScaledTolerance, span, message);
+    Some(tolerance)
 }
 
 /// Part of the duration of a static step that its increments are not cut below by default.
@@ -265,14 +357,18 @@ const LEAST_STATIC: f64 = 1e-5;
 
 /// `[dt[, T[, smallest dt[, largest dt]]]]` of a static step: T is 1 by default, dt the whole.
 fn static_increments(card: &Card, cx: &mut Context) -> Option<Increments> {
-    let direct = card.has("DIRECT") && card.choice("DIRECT") != Some("NO");
+    let direct = is_direct(card);
+    let incrementation = match direct {
+        true => Incrementation::Fixed,
+        false => Incrementation::Passes,
+    };
     let Some(row) = card.rows.first() else {
         return Some(Increments {
             dt: 1.0,
             period: 1.0,
             dt_min: if direct { 0.0 } else { LEAST_STATIC },
             dt_max: 1.0,
-            direct,
+            incrementation,
         });
     };
     row.at_most(4, cx.d);
@@ -300,7 +396,7 @@ fn static_increments(card: &Card, cx: &mut Context) -> Option<Increments> {
         period,
         dt_min,
         dt_max: if direct { dt } else { dt_max },
-        direct,
+        incrementation,
     })
 }
 
@@ -359,19 +455,6 @@ fn check_times(
     let span = row.span_at(field);
     cx.error(Code::BadIncrement, span, fault);
     None
-}
-
-/// Warns that increments do not grow, as those of other codes do.
-fn warn_that_increments_stay(row: Line, cx: &mut Context) {
-    let [first, largest] = [0, 3].map(|i| row.get(i));
-    let span = largest.or(first).map_or(row.span(), |field| field.span);
-    let message = "increments do not grow: none is longer than the first";
-    let warning = (cx.d)
-        .warning_once(Code::ConstantIncrement, span, message)
-        .help("give the increment that suits the whole step in the first field");
-    if largest.is_some() {
-        warning.label("bounds the first increment only");
-    }
 }
 
 /// Notes that the duration is not a multiple of the increment.

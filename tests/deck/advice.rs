@@ -372,15 +372,24 @@ fn times_of_histories_are_read_though_histories_hold_every_increment() {
 }
 
 #[test]
-fn increments_that_do_not_grow() {
-    let dynamic = |row: &str| square("*DYNAMIC, DIRECT\n0.1, 1.", &format!("*DYNAMIC\n{row}"));
-    insta::assert_snapshot!(texts_of(
-        Code::ConstantIncrement,
-        &[dynamic("0.1, 1., 1.e-3, 0.2"), dynamic("0.1, 1.")],
-    ));
-    for row in ["0.1, 1., 1.e-3, 0.1", "0.2, 1., , 0.1", "1., 1."] {
-        assert_eq!(messages(&dynamic(row)).1, "");
-    }
+fn a_half_increment_residual_scales_the_tolerance_of_the_truncation_error() {
+    let dynamic = |head: &str| {
+        square(
+            "*DYNAMIC, DIRECT\n0.1, 1.",
+            &format!("*DYNAMIC{head}\n0.1, 1."),
+        )
+    };
+    assert_eq!(messages(&dynamic("")).1, "");
+    let fine = dynamic(", HALFINC SCALE FACTOR=500.");
+    insta::assert_snapshot!(texts_of(Code::ScaledTolerance, &[fine]));
+    let refused = [
+        ", DIRECT, HAFTOL=3.",
+        ", DIRECT, NOHAF",
+        ", DIRECT, HALFINC SCALE FACTOR=2.",
+        ", HALFINC SCALE FACTOR=0.",
+        ", HALFINC SCALE FACTOR=1.E9",
+    ];
+    insta::assert_snapshot!(texts_of(Code::BadIncrement, &refused.map(dynamic)));
 }
 
 #[test]

@@ -218,7 +218,7 @@ fn faulty(code: Code) -> Source {
              *STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.1, 1.\n*BOUNDARY, AMPLITUDE=SHIFT\n4, 1, 1, 0.1\n",
         ),
         BadEquation => model("*EQUATION\n2\n4, 1, 0., 3, 1, -1."),
-        ConstantIncrement => square("*DYNAMIC, DIRECT\n0.1, 1.", "*DYNAMIC\n0.1, 1., 1.e-3, 0.2"),
+        ScaledTolerance => square("*DYNAMIC, DIRECT", "*DYNAMIC, HALFINC SCALE FACTOR=500."),
     }
 }
 

@@ -324,7 +324,7 @@ fn named_supports_fix_their_directions() {
 }
 
 #[test]
-fn increments_are_limited_unless_direct() {
+fn increments_follow_their_error_unless_direct() {
     let times = |row: &str, direct: bool| {
         let head = if direct {
             "*DYNAMIC, DIRECT\n"
@@ -333,13 +333,26 @@ fn increments_are_limited_unless_direct() {
         };
         let model = square("*DYNAMIC, DIRECT\n0.1, 1.", &format!("{head}{row}")).0;
         let i = model.steps[0].increments;
-        (i.dt, i.period, i.dt_min, i.direct)
+        (i.dt, i.dt_min, i.dt_max, i.incrementation)
     };
+    let by_error = |tolerance| Incrementation::Error { tolerance };
+    let fixed = Incrementation::Fixed;
     assert_eq!(
         times("0.1, 1., 1e-3, 0.05", false),
-        (0.05, 1.0, 1e-3, false)
+        (0.05, 1e-3, 0.05, by_error(1e-4))
     );
-    assert_eq!(times("0.1, 1., , 0.05", true), (0.1, 1.0, 0.0, true));
+    assert_eq!(times("0.05, 1.", false), (0.05, 1e-5, 0.1, by_error(1e-4)));
+    assert_eq!(
+        times("0.001, 1.", false),
+        (0.001, 0.001 / 1024.0, 0.1, by_error(1e-4))
+    );
+    assert_eq!(times("0.1, 1., , 0.05", true), (0.1, 0.0, 0.1, fixed));
+    for application in ["", ", APPLICATION=TRANSIENT FIDELITY"] {
+        let head = format!("*DYNAMIC, HALFINC SCALE FACTOR=500.{application}");
+        let model = square("*DYNAMIC, DIRECT", &head).0;
+        let found = model.steps[0].increments.incrementation;
+        assert_eq!(found, by_error(500.0 * (1e-4 / 1e3)), "{application}");
+    }
 }
 
 #[test]

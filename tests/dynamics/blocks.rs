@@ -8,9 +8,9 @@ use stickslip::dynamics::{
 };
 use stickslip::materials::Law;
 use stickslip::model::{
-    BodyForce, Contact, Damping, Element, ElementType, Face, Frames, Friction, Increments,
-    Interaction, Load, Material, Model, Procedure, Scheme, Section, Settings, Step, Support,
-    SupportMotion, Surface, SurfaceKind, Variation,
+    BodyForce, Contact, Damping, Element, ElementType, Face, Frames, Friction, Incrementation,
+    Increments, Interaction, Load, Material, Model, Procedure, Scheme, Section, Settings, Step,
+    Support, SupportMotion, Surface, SurfaceKind, Variation,
 };
 use stickslip::prepare::PreparedModel;
 
@@ -200,7 +200,7 @@ pub fn step(dt: f64, count: usize, settings: Settings, mut supports: Vec<Support
             period: dt * count as f64,
             dt_min: 0.0,
             dt_max: f64::INFINITY,
-            direct: true,
+            incrementation: Incrementation::Fixed,
         },
         settings,
         supports,

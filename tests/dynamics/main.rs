@@ -1,6 +1,7 @@
 //! The solver as a library: problems with known answers.
 
 mod accounts;
+mod automatic;
 mod bends;
 mod blocks;
 mod collapse;
@@ -24,6 +25,7 @@ mod many;
 mod mean_dilatation;
 mod neo_hooke;
 mod patch;
+mod quasi_static;
 mod redistributed_mass;
 mod rest;
 mod rigid;

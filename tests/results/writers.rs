@@ -20,9 +20,9 @@ use stickslip::dynamics::{
 use stickslip::elements::{ElementResult, Strained};
 use stickslip::materials::Law;
 use stickslip::model::{
-    Contact, Damping, Element, ElementType, Face, Frames, Friction, HistorySet, Increments,
-    Interaction, Material, Mesh, Model, NamedSets, Procedure, RequestedFields, Section, Set,
-    Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
+    Contact, Damping, Element, ElementType, Face, Frames, Friction, HistorySet, Incrementation,
+    Increments, Interaction, Material, Mesh, Model, NamedSets, Procedure, RequestedFields, Section,
+    Set, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
 };
 use stickslip::output::{Claim, JobFiles, ResultWriter, RunRecord, Verbosity};
 
@@ -145,7 +145,7 @@ fn step() -> Step {
             period: 1.0,
             dt_min: 0.0,
             dt_max: f64::INFINITY,
-            direct: true,
+            incrementation: Incrementation::Fixed,
         },
         settings: Settings::default(),
         supports: vec![

@@ -630,9 +630,9 @@ impl<'m> Attempt<'_, 'm> {
         }
         let v0p = v0p.v0p.into_owned();
         let tangent_way = v.tangent_way;
-        // V1 = (2/dt) d - V0+, eq. (4.2); of what is prescribed from the amplitude; at rest in a static step
-        let rate = 2.0 / self.interval.dt;
-        let mut v: Vec<f64> = d.iter().zip(&v0p).map(|(d, v0p)| rate * d - v0p).collect();
+        // V1 of eq. (4.2); of what is prescribed from the amplitude; at rest in a static step
+        let integration = &self.problem.integration;
+        let mut v = integration.end_velocity(d, &v0p, self.interval.dt);
         (self.problem.unknowns).prescribe(self.interval.end, &mut u, &mut v);
         if !self.problem.integration.has_rates {
             v.fill(0.0);

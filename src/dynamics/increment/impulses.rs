@@ -544,7 +544,9 @@ mod tests {
     use crate::contact::testing::{self, closed_pairs as pairs};
     use crate::dynamics::step::{ClosedConstraints, Discretization, Equilibrium};
     use crate::elements::Motion;
-    use crate::model::{ContactMass, Frames, Increments, Procedure, Scheme, Settings, Step};
+    use crate::model::{
+        ContactMass, Frames, Incrementation, Increments, Procedure, Scheme, Settings, Step,
+    };
     use crate::prepare::{PreparedModel, redistribution_tests::block};
 
     const DT: f64 = 0.1;
@@ -570,7 +572,7 @@ mod tests {
                 period: 1.0,
                 dt_min: 0.0,
                 dt_max: f64::INFINITY,
-                direct: true,
+                incrementation: Incrementation::Fixed,
             },
             settings,
             supports: vec![],

@@ -189,7 +189,17 @@ impl Ledger {
         };
         let [load, internal, inertia, contact] =
             [load, internal, inertia, contact].map(|force| problem.unknowns.passed_on(force));
-        for p in problem.unknowns.prescribed().chain(turning.driven_dofs()) {
+        let prescribed = || problem.unknowns.prescribed().chain(turning.driven_dofs());
+        // (d - dt V_mid).M A of what is free, eq. (4.26)
+        if problem.integration.backward_euler {
+            let beyond = |dof: usize| d[dof] - dt * (v0p[dof] + end.v[dof]) / 2.0;
+            let all: f64 = (0..d.len())
+                .map(|dof| beyond(dof) * solved.equilibrium.inertia[dof])
+                .sum();
+            let passed: f64 = prescribed().map(|p| beyond(p) * inertia[p]).sum();
+            e.numerical_dissipation += all - passed;
+        }
+        for p in prescribed() {
             let v_mid = (v0p[p] + end.v[p]) / 2.0;
             e.external_work +=
                 dt * v_mid * inertia[p] + d[p] * (internal[p] - load[p] - contact[p]);

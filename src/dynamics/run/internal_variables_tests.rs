@@ -9,8 +9,8 @@ use crate::elements::{Elements, Motion};
 use crate::materials::Law;
 use crate::materials::yielding::Yielding;
 use crate::model::{
-    Damping, Element, ElementType, Frames, Increments, Material, Model, Procedure, Section,
-    Settings, Step,
+    Damping, Element, ElementType, Frames, Incrementation, Increments, Material, Model, Procedure,
+    Section, Settings, Step,
 };
 use crate::prepare::PreparedModel;
 
@@ -64,7 +64,7 @@ fn step(dt: f64, count: usize) -> Step {
             period: dt * count as f64,
             dt_min: 0.0,
             dt_max: f64::INFINITY,
-            direct: true,
+            incrementation: Incrementation::Fixed,
         },
         settings: Settings::default(),
         supports: vec![],

@@ -5,5 +5,6 @@ mod acceptance;
 mod internal_variables_tests;
 mod runner;
 mod time_control;
+mod truncation_error;
 
 pub use runner::{RunError, run};

@@ -8,6 +8,7 @@ use super::time_control::{
     Automatic, Bisection, Ended, ImpactControl, NominalIncrement, Span, TimeControl,
     nominal_increments,
 };
+use super::truncation_error::{Ends, TruncationError};
 use crate::contact::ClosedPairs;
 use crate::contact::ConstraintSet;
 use crate::dynamics::events::{FailedSubincrement, Subincrement, Subincrements};
@@ -22,7 +23,7 @@ use crate::dynamics::step::{
 };
 use crate::elements::{Motion, most_strained};
 use crate::linear::largest;
-use crate::model::{Procedure, Step};
+use crate::model::{Incrementation, Procedure, Step};
 use crate::prepare::PreparedModel;
 
 /// Displacement of a static increment, beside that at the rate of the last one, from which on it may be a jump.
@@ -81,6 +82,16 @@ fn initial_velocity(discretization: &Discretization) -> Vec<f64> {
     v
 }
 
+/// The ends of an increment of length `dt` from a state.
+fn ends<'a>(start: &'a State, solved: &'a Solved, dt: f64) -> Ends<'a> {
+    Ends {
+        u1: &solved.end.u,
+        v0: &start.v,
+        v1: &solved.end.v,
+        dt,
+    }
+}
+
 /// A run in progress.
 struct Runner<'m, 'o> {
     discretization: &'m Discretization<'m>,
@@ -95,6 +106,8 @@ struct Runner<'m, 'o> {
     procedure: Procedure,
     /// The motion of the last increment, in a static step.
     path: Option<Path>,
+    /// Measures the increments, in a step whose truncation error decides their length.
+    accuracy: Option<TruncationError>,
     accounts: Accounts,
     summary: RunSummary,
     observer: &'o mut dyn Observer,
@@ -120,11 +133,13 @@ impl<'m, 'o> Runner<'m, 'o> {
             rejected: None,
             procedure: Procedure::Dynamic,
             path: None,
+            accuracy: None,
             accounts: Accounts::new(discretization),
             summary: RunSummary {
                 outcome: Outcome::Finished,
                 increments: 0,
                 cutbacks: 0,
+                rejections: 0,
                 events: 0,
                 solver: SolverCounts::at_start(),
                 timings: Timings::default(),
@@ -178,13 +193,18 @@ impl<'m, 'o> Runner<'m, 'o> {
         {
             return Ok(Outcome::Stopped(Box::new(failure)));
         }
-        if place.number > 1 && self.procedure != step.procedure {
+        let is_static = |procedure: Procedure| procedure == Procedure::Static;
+        if place.number > 1 && is_static(self.procedure) != is_static(step.procedure) {
             self.begin_motion(problem, workspace, place);
             self.ledger.change_procedure(problem, &self.state);
         }
         self.procedure = step.procedure;
-        if step.procedure == Procedure::Static && !step.increments.direct {
-            let mut control = Automatic::new(place, step.increments);
+        let decides = matches!(step.increments.incrementation, Incrementation::Error { .. });
+        let State { u, a, .. } = &self.state;
+        self.accuracy = decides.then(|| TruncationError::new(u, a));
+        if step.increments.incrementation != Incrementation::Fixed {
+            let at_impacts = problem.ends_at_impacts();
+            let mut control = Automatic::new(place, step.increments, at_impacts);
             let nominal = control.nominal();
             return self.increment(problem, workspace, nominal, &mut control);
         }
@@ -211,7 +231,7 @@ impl<'m, 'o> Runner<'m, 'o> {
                 return Ok(Outcome::Interrupted);
             }
             let halvings = control.halvings();
-            let attempt = self.attempt(problem, workspace, span, nominal.length);
+            let attempt = self.attempt(problem, workspace, span);
             let before = Before {
                 state: &self.state,
                 ledger: &self.ledger,
@@ -219,8 +239,9 @@ impl<'m, 'o> Runner<'m, 'o> {
             let checked = attempt.and_then(|found| {
                 Accepted::new(problem, workspace, before, found, halvings, &nominal)
             });
+            let checked = checked.and_then(|accepted| self.measured(problem, accepted, control));
             match checked {
-                Ok(accepted) => {
+                Ok((accepted, error)) => {
                     let Subincrement {
                         interval,
                         is_cut,
@@ -229,14 +250,19 @@ impl<'m, 'o> Runner<'m, 'o> {
                     let how = Ended {
                         at_impact: is_cut,
                         passes: solved.passes.len(),
+                        error: error.unwrap_or(0.0),
                     };
                     control.accepted(&interval, how);
-                    self.accept(problem, workspace, nominal.place, accepted)?;
+                    self.accept(problem, workspace, nominal.place, (accepted, error))?;
                 }
                 Err(failed) => {
                     let dt = failed.0.dt;
-                    let may_be_cut = control.may_be_cut(dt, nominal.dt_min);
-                    control.failed(&failed.0);
+                    let error = match failed.1.cause {
+                        Cause::Inaccurate { error, .. } => Some(error),
+                        _ => None,
+                    };
+                    let may_be_cut = error.is_some() || control.may_be_cut(dt, nominal.dt_min);
+                    control.failed(&failed.0, error);
                     let next_dt = control.next().map_or(dt, |span| span.interval.dt);
                     let number = self.summary.increments + 1;
                     let failure = failure(number, nominal.place, *failed, halvings);
@@ -250,14 +276,43 @@ impl<'m, 'o> Runner<'m, 'o> {
         Ok(Outcome::Finished)
     }
 
-    /// Solves a span, or its part up to the next impact; `nominal` is the length of the nominal
-    /// increment.
+    /// An accepted increment with its truncation error, where that decides the increments of the step.
+    ///
+    /// # Errors
+    /// [`Cause::Inaccurate`] where it is so large that the increment is to be repeated.
+    fn measured(
+        &self,
+        problem: &StepProblem,
+        accepted: Accepted,
+        control: &dyn TimeControl,
+    ) -> Result<(Accepted, Option<f64>), FailedSubincrement> {
+        let Some(accuracy) = &self.accuracy else {
+            return Ok((accepted, None));
+        };
+        let Subincrement {
+            interval, solved, ..
+        } = &accepted.subincrement;
+        let error = accuracy.of(problem, &ends(&self.state, solved, interval.dt));
+        match control.largest_error(interval.dt) {
+            Some(tolerance) if error > tolerance => {
+                let failed = Failed {
+                    cause: Cause::Inaccurate { error, tolerance },
+                    course: None,
+                    worst: None,
+                    passes: accepted.subincrement.solved.passes,
+                };
+                Err(Box::new((accepted.subincrement.interval, failed)))
+            }
+            _ => Ok((accepted, Some(error))),
+        }
+    }
+
+    /// Solves a span, or its part up to the next impact.
     fn attempt(
         &mut self,
         problem: &StepProblem<'m>,
         workspace: &mut Workspace<'m>,
         span: Span,
-        nominal: f64,
     ) -> Result<Subincrement, FailedSubincrement> {
         workspace.meter.counts = SolverCounts::default();
         if !problem.integration.has_rates {
@@ -268,7 +323,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             workspace,
             start: &self.state,
             rest: span.interval,
-            nominal,
+            nominal: span.nominal,
         };
         match span.until_impact {
             true => subincrements.next(),
@@ -366,7 +421,10 @@ impl<'m, 'o> Runner<'m, 'o> {
             Some(next_dt) if !failure.cause.stays() => next_dt,
             _ => return Ok(Some(failure)),
         };
-        self.summary.cutbacks += 1;
+        match failure.cause {
+            Cause::Inaccurate { .. } => self.summary.rejections += 1,
+            _ => self.summary.cutbacks += 1,
+        }
         self.observer.cutback(&Cutback { failure, next_dt })?;
         Ok(None)
     }
@@ -377,16 +435,20 @@ impl<'m, 'o> Runner<'m, 'o> {
         problem: &StepProblem,
         workspace: &Workspace,
         place: StepPlace,
-        Accepted {
+        (accepted, truncation_error): (Accepted, Option<f64>),
+    ) -> Result<(), RunError> {
+        let Accepted {
             subincrement,
             ledger,
-        }: Accepted,
-    ) -> Result<(), RunError> {
+        } = accepted;
         let Subincrement {
             interval,
             solved,
             is_cut,
         } = subincrement;
+        if let Some(accuracy) = &mut self.accuracy {
+            accuracy.accept(&ends(&self.state, &solved, interval.dt));
+        }
         let path = (!problem.integration.has_rates).then(|| solved.static_path(interval.dt));
         let accounted = (self.accounts).enter(problem, &solved, interval, &ledger);
         let solver = SolverCounts {
@@ -404,6 +466,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             step_time: interval.end.step,
             dt: interval.dt,
             ends_step: interval.end.step == place.period,
+            truncation_error,
             energy: ledger.energy,
             contact_energy: ledger.contact_energy,
             strain: most_strained(&ledger.elements),

@@ -10,7 +10,7 @@
 //! fails. Section 6 of docs/theory.md, Impacts as events.
 
 use crate::dynamics::step::{Interval, StepPlace};
-use crate::model::Increments;
+use crate::model::{Incrementation, Increments};
 
 /// The next subincrement of a time control.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +18,8 @@ pub(crate) struct Span {
     pub interval: Interval,
     /// Whether the next impact ends it.
     pub until_impact: bool,
+    /// Length of the increment that it is part of (time).
+    pub nominal: f64,
 }
 
 /// Divides one nominal increment.
@@ -31,8 +33,13 @@ pub(crate) trait TimeControl {
     /// Continues from the end of an accepted interval.
     fn accepted(&mut self, interval: &Interval, how: Ended);
 
-    /// Cuts an interval that failed.
-    fn failed(&mut self, interval: &Interval);
+    /// Truncation error above which a converged interval of this length is repeated; none where it counts as it is.
+    fn largest_error(&self, _dt: f64) -> Option<f64> {
+        None
+    }
+
+    /// Cuts an interval that failed, or whose truncation error is too large.
+    fn failed(&mut self, interval: &Interval, error: Option<f64>);
 
     /// Whether an interval of this length may be cut once more; `dt_min` is the least of the step.
     fn may_be_cut(&self, dt: f64, dt_min: f64) -> bool {
@@ -41,12 +48,14 @@ pub(crate) trait TimeControl {
 }
 
 /// How an accepted interval ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ended {
     /// Whether an impact has ended it.
     pub at_impact: bool,
     /// Passes that it took.
     pub passes: usize,
+    /// Its truncation error, beside the displacements.
+    pub error: f64,
 }
 
 /// Most halvings of an increment; a further failure stops the run.
@@ -143,6 +152,7 @@ impl TimeControl for Bisection {
         (self.part < 1 << self.halvings).then(|| Span {
             interval: interval(),
             until_impact: false,
+            nominal: self.nominal.length,
         })
     }
 
@@ -157,7 +167,7 @@ impl TimeControl for Bisection {
         }
     }
 
-    fn failed(&mut self, _: &Interval) {
+    fn failed(&mut self, _: &Interval, _: Option<f64>) {
         (self.part, self.halvings) = (2 * self.part, self.halvings + 1);
     }
 }
@@ -202,6 +212,7 @@ impl TimeControl for ImpactControl {
                 dt: if is_whole { length } else { to - self.from },
             },
             until_impact: self.events < MOST_EVENTS && self.halvings() < EVENT_HALVINGS,
+            nominal: length,
         })
     }
 
@@ -218,7 +229,7 @@ impl TimeControl for ImpactControl {
         }
     }
 
-    fn failed(&mut self, interval: &Interval) {
+    fn failed(&mut self, interval: &Interval, _: Option<f64>) {
         self.ends.push(self.from + interval.dt / 2.0);
     }
 }
@@ -233,23 +244,39 @@ const GROWTH: f64 = 1.5;
 const CUT: f64 = 0.25;
 /// Part of an increment that is not left over for one of its own.
 const LEFT_OVER: f64 = 1e-6;
+/// Rejections in a row because of the truncation error.
+const REJECTIONS: u32 = 2;
+/// Least part of a rejected increment that is tried next.
+const LEAST_PART: f64 = 0.3;
+/// Part of the length with an error of the tolerance that is tried after a rejection, and that an increment grows to.
+const SAFE: f64 = 0.85;
+const SAFE_GROWTH: f64 = 0.9;
+/// Growth that is worth new factors of K*.
+const WORTHWHILE: f64 = 1.25;
 
-/// Automatic increments of a whole static step: cut to a quarter where one fails, larger after easy ones.
+/// Automatic increments of a whole step, shorter where one fails and longer after easy ones: by their passes, cut to a
+/// quarter where one fails, or by their truncation error (section 4 of docs/theory.md, Automatic increments).
 pub(crate) struct Automatic {
     /// The step.
     nominal: NominalIncrement,
-    dt_max: f64,
+    increments: Increments,
+    /// Whether impacts end subincrements.
+    ends_at_impacts: bool,
     from: f64,
     dt: f64,
-    /// Easy increments in a row.
+    /// Increments in a row that allow growth.
     easy: u32,
     /// Cuts since the last accepted increment.
     cuts: u32,
+    /// Those of them because of the truncation error, in a row.
+    rejections: u32,
+    /// Impacts in a row that have ended subincrements.
+    events: usize,
 }
 
 impl Automatic {
     /// Starts with the first increment of a step.
-    pub fn new(place: StepPlace, increments: Increments) -> Self {
+    pub fn new(place: StepPlace, increments: Increments, ends_at_impacts: bool) -> Self {
         Automatic {
             nominal: NominalIncrement {
                 place,
@@ -258,11 +285,14 @@ impl Automatic {
                 length: increments.dt,
                 dt_min: increments.dt_min,
             },
-            dt_max: increments.dt_max,
+            increments,
+            ends_at_impacts,
             from: 0.0,
             dt: increments.dt,
             easy: 0,
             cuts: 0,
+            rejections: 0,
+            events: 0,
         }
     }
 
@@ -270,14 +300,29 @@ impl Automatic {
     pub fn nominal(&self) -> NominalIncrement {
         self.nominal
     }
+
+    /// Growth that an accepted increment allows the next one; none where it was not easy.
+    fn allowed_growth(&self, how: Ended) -> Option<f64> {
+        let growth = match self.increments.incrementation {
+            Incrementation::Error { tolerance } => {
+                let safe = SAFE_GROWTH * (tolerance / how.error).sqrt();
+                (safe > WORTHWHILE).then(|| safe.min(GROWTH))
+            }
+            _ => (how.passes <= EASY_PASSES).then_some(GROWTH),
+        };
+        growth.filter(|_| self.cuts == 0)
+    }
 }
 
 impl TimeControl for Automatic {
     fn next(&self) -> Option<Span> {
         let left = self.nominal.to - self.from;
-        let ends = self.dt >= left * (1.0 - LEFT_OVER);
-        let end = if ends {
+        let by_error = matches!(self.increments.incrementation, Incrementation::Error { .. });
+        let end = if self.dt >= left * (1.0 - LEFT_OVER) {
             self.nominal.to
+        } else if by_error && 2.0 * self.dt >= left {
+            // no short one is left over
+            self.from + left / 2.0
         } else {
             self.from + self.dt
         };
@@ -287,7 +332,10 @@ impl TimeControl for Automatic {
                 end: self.nominal.place.time_point(end),
                 dt: end - self.from,
             },
-            until_impact: false,
+            until_impact: self.ends_at_impacts
+                && self.events < MOST_EVENTS
+                && self.cuts - self.rejections < EVENT_HALVINGS,
+            nominal: self.dt,
         })
     }
 
@@ -295,24 +343,54 @@ impl TimeControl for Automatic {
         self.cuts
     }
 
+    fn largest_error(&self, dt: f64) -> Option<f64> {
+        let may_be_rejected = self.rejections < REJECTIONS && dt > self.nominal.dt_min;
+        match self.increments.incrementation {
+            Incrementation::Error { tolerance } => may_be_rejected.then_some(tolerance),
+            _ => None,
+        }
+    }
+
     fn accepted(&mut self, interval: &Interval, how: Ended) {
-        let is_easy = self.cuts == 0 && how.passes <= EASY_PASSES;
-        (self.from, self.cuts) = (interval.end.step, 0);
-        self.easy = if is_easy { self.easy + 1 } else { 0 };
-        if self.easy >= EASY_INCREMENTS {
-            self.dt = (GROWTH * self.dt).min(self.dt_max);
+        let growth = self.allowed_growth(how);
+        (self.from, self.cuts, self.rejections) = (interval.end.step, 0, 0);
+        self.events = if how.at_impact { self.events + 1 } else { 0 };
+        // what an impact has cut short says nothing of the whole
+        if how.at_impact {
+            return;
+        }
+        self.easy = growth.map_or(0, |_| self.easy + 1);
+        if let Some(growth) = growth
+            && self.easy >= EASY_INCREMENTS
+        {
+            self.dt = (growth * self.dt).min(self.increments.dt_max);
             self.easy = 0;
         }
     }
 
-    fn failed(&mut self, interval: &Interval) {
-        self.dt = CUT * interval.dt;
+    fn failed(&mut self, interval: &Interval, error: Option<f64>) {
+        let part = match (self.increments.incrementation, error) {
+            (Incrementation::Error { tolerance }, Some(error)) => {
+                self.rejections += 1;
+                (SAFE * (tolerance / error).sqrt()).max(LEAST_PART)
+            }
+            (Incrementation::Error { .. }, None) => 0.5,
+            _ => CUT,
+        };
+        self.dt = match error {
+            Some(_) => (part * interval.dt).max(self.nominal.dt_min),
+            None => part * interval.dt,
+        };
         self.cuts += 1;
         self.easy = 0;
     }
 
     fn may_be_cut(&self, dt: f64, dt_min: f64) -> bool {
-        CUT * dt >= dt_min
+        let part = match self.increments.incrementation {
+            Incrementation::Error { .. } => 0.5,
+            _ => CUT,
+        };
+        part * dt >= dt_min
     }
 }
 
@@ -324,10 +402,12 @@ mod nominal_tests {
     pub const SMOOTH: Ended = Ended {
         at_impact: false,
         passes: 4,
+        error: 0.0,
     };
     pub const IMPACT: Ended = Ended {
         at_impact: true,
         passes: 4,
+        error: 0.0,
     };
 
     /// The increment from 0.3 to 0.4 of a step that starts at 2.
@@ -364,7 +444,7 @@ mod nominal_tests {
             period: 0.25,
             dt_min: 0.0,
             dt_max: f64::INFINITY,
-            direct: true,
+            incrementation: Incrementation::Fixed,
         };
         let all: Vec<NominalIncrement> = nominal_increments(place, increments).collect();
         assert_eq!(all.len(), 3);
@@ -396,7 +476,7 @@ mod tests {
         while let Some(Span { interval, .. }) = control.next() {
             // the first half of the increment needs two halvings, its second none
             if interval.start.step < 0.34 && interval.dt > 0.026 {
-                control.failed(&interval);
+                control.failed(&interval, None);
             } else {
                 lengths.push(interval.dt);
                 control.accepted(&interval, SMOOTH);
@@ -434,7 +514,7 @@ mod impact_control_tests {
         let whole = next(&control);
         control.accepted(&up_to(whole, 0.02), IMPACT);
         let rest = next(&control);
-        control.failed(&rest);
+        control.failed(&rest, None);
         assert_eq!(control.halvings(), 1);
         let half = next(&control);
         control.accepted(&half, SMOOTH);
@@ -452,7 +532,7 @@ mod impact_control_tests {
         for _ in 0..3 {
             let span = control.next().expect("something is left");
             with_events.push(span.until_impact);
-            control.failed(&span.interval);
+            control.failed(&span.interval, None);
         }
         assert_eq!(with_events, [true, true, false]);
         while let Some(span) = control.next() {
@@ -469,6 +549,7 @@ mod impact_control_tests {
         while let Some(Span {
             interval,
             until_impact: true,
+            ..
         }) = control.next()
         {
             count += 1;
@@ -492,15 +573,15 @@ mod automatic_tests {
             period: 1.0,
             dt_min: 1e-3,
             dt_max: 0.3,
-            direct: false,
+            incrementation: Incrementation::Passes,
         };
-        let mut control = Automatic::new(nominal().place, increments);
+        let mut control = Automatic::new(nominal().place, increments, false);
         let (mut lengths, mut has_failed) = (Vec::new(), false);
         while let Some(Span { interval, .. }) = control.next() {
             if interval.end.step > 0.51 && !has_failed {
                 has_failed = true;
                 assert!(control.may_be_cut(interval.dt, 1e-3));
-                control.failed(&interval);
+                control.failed(&interval, None);
                 continue;
             }
             lengths.push(interval.dt);
@@ -515,5 +596,58 @@ mod automatic_tests {
         for (length, expected) in lengths.iter().zip(expected) {
             assert!((length - expected).abs() < 1e-12, "{length} {expected}");
         }
+    }
+
+    /// Runs a step of length 1 whose increments have errors `error(dt)`; lengths of the accepted and of the repeated ones.
+    fn lengths(error: impl Fn(f64, f64) -> f64) -> [Vec<f64>; 2] {
+        let increments = Increments {
+            dt: 0.01,
+            period: 1.0,
+            dt_min: 1e-4,
+            dt_max: 0.1,
+            incrementation: Incrementation::Error { tolerance: 1e-4 },
+        };
+        let mut control = Automatic::new(nominal().place, increments, false);
+        let [mut accepted, mut repeated] = [Vec::new(), Vec::new()];
+        while let Some(Span { interval, .. }) = control.next() {
+            let error = error(interval.start.step, interval.dt);
+            match control.largest_error(interval.dt) {
+                Some(tolerance) if error > tolerance => {
+                    repeated.push(interval.dt);
+                    control.failed(&interval, Some(error));
+                }
+                _ => {
+                    accepted.push(interval.dt);
+                    control.accepted(&interval, Ended { error, ..SMOOTH });
+                }
+            }
+        }
+        [accepted, repeated]
+    }
+
+    #[test]
+    fn increments_follow_an_error_of_second_order() {
+        // an error of 1e-4 at the length 0.05
+        let [accepted, repeated] = lengths(|_, dt| 0.04 * dt * dt);
+        assert!(repeated.is_empty(), "{repeated:?}");
+        assert!((accepted.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        assert_eq!(accepted[..4], [0.01, 0.01, 0.015, 0.015]);
+        let longest = accepted.iter().fold(0.0, |a: f64, b| a.max(*b));
+        assert!(longest > 0.036 && longest < 0.05, "{longest}");
+        // the last two have one length
+        let [.., a, b] = accepted[..] else { panic!() };
+        assert!((a - b).abs() < 1e-12, "{a} {b}");
+    }
+
+    #[test]
+    fn an_error_that_stays_rejects_twice_and_not_below_the_least_increment() {
+        let [accepted, repeated] = lengths(|start, _| f64::from(u8::from(start >= 0.5)));
+        let least = accepted.iter().fold(1.0, |a: f64, b| a.min(*b));
+        assert!(least >= 1e-4 * (1.0 - 1e-9), "{least}");
+        let before = accepted
+            .iter()
+            .take_while(|dt| **dt <= 0.1 + 1e-12 && **dt > 0.009)
+            .count();
+        assert!(before > 5 && repeated.len() < 12, "{repeated:?}");
     }
 }

@@ -126,8 +126,8 @@ mod tests {
     use crate::dynamics::step::{ClosedConstraints, Discretization, Workspace};
     use crate::materials::{Law, SaintVenantKirchhoff};
     use crate::model::{
-        Damping, Element, ElementType, Frames, Increments, Material, Model, Procedure, Section,
-        Settings, Step, Support, SupportMotion,
+        Damping, Element, ElementType, Frames, Incrementation, Increments, Material, Model,
+        Procedure, Section, Settings, Step, Support, SupportMotion,
     };
     use crate::prepare::PreparedModel;
 
@@ -186,7 +186,7 @@ mod tests {
                 period: 1.0,
                 dt_min: 0.0,
                 dt_max: f64::INFINITY,
-                direct: true,
+                incrementation: Incrementation::Fixed,
             },
             settings: Settings::default(),
             supports: supports.iter().map(support).collect(),

@@ -1,6 +1,6 @@
 //! What an increment is balanced with, by the procedure of its step: weights and configurations of the
-//! schemes SS22 of Zienkiewicz, Wood & Hine (1984) and the energy-momentum form of Simo & Tarnow (1992), and
-//! whether anything depends on rates. Section 4 of docs/theory.md.
+//! schemes SS22 of Zienkiewicz, Wood & Hine (1984) and the energy-momentum form of Simo & Tarnow (1992), of the backward
+//! Euler rule, and whether anything depends on rates. Section 4 of docs/theory.md.
 
 use crate::contact::RowForm;
 use crate::dynamics::results::State;
@@ -8,14 +8,17 @@ use crate::elements::Motion;
 use crate::model::{Procedure, Scheme, Step};
 
 /// The single-step scheme SS22 with its weights, or the energy-momentum form of its mid-point rule; a static
-/// step is SS22 with both weights 1 without rates.
+/// step is SS22 with both weights 1 without rates, a quasi-static one that with the inertia of the backward Euler rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Integration {
     pub theta1: f64,
     pub theta2: f64,
     pub energy_momentum: bool,
-    /// Whether inertia, damping and impulses take part.
+    /// Whether inertia and damping take part.
     pub has_rates: bool,
+    /// Whether V1 = d/dt, the backward Euler rule, which needs no impulses: a node that lands is at rest in the next
+    /// increment.
+    pub backward_euler: bool,
 }
 
 impl Integration {
@@ -27,18 +30,28 @@ impl Integration {
                 theta2: 1.0,
                 energy_momentum: false,
                 has_rates: false,
+                backward_euler: false,
+            },
+            (Procedure::QuasiStatic, _) => Integration {
+                theta1: 1.0,
+                theta2: 1.0,
+                energy_momentum: false,
+                has_rates: true,
+                backward_euler: true,
             },
             (Procedure::Dynamic, Scheme::EnergyMomentum) => Integration {
                 theta1: 0.5,
                 theta2: 0.5,
                 energy_momentum: true,
                 has_rates: true,
+                backward_euler: false,
             },
             (Procedure::Dynamic, Scheme::Ss22 { theta1, theta2 }) => Integration {
                 theta1,
                 theta2,
                 energy_momentum: false,
                 has_rates: true,
+                backward_euler: false,
             },
         }
     }
@@ -62,11 +75,26 @@ impl Integration {
         self.theta1 != self.theta2
     }
 
-    /// Factor of M in K* for increments of length `dt`: 2/dt², eq. (4.6); 0 in a static step (1/time^2).
+    /// Factor of M in K* for increments of length `dt`: 2/dt², eq. (4.6), or 1/dt², eq. (4.25); 0 in a static step (1/time^2).
     pub fn mass_factor(&self, dt: f64) -> f64 {
-        match self.has_rates {
-            true => 2.0 / (dt * dt),
-            false => 0.0,
+        match (self.has_rates, self.backward_euler) {
+            (false, _) => 0.0,
+            (true, false) => 2.0 / (dt * dt),
+            (true, true) => 1.0 / (dt * dt),
+        }
+    }
+
+    /// Writes the velocity at the end of an increment of length `dt`: V1 = (2/dt) d - V0+, eq. (4.2), or
+    /// V1 = d/dt, eq. (4.24); zero in a static step.
+    pub fn end_velocity(&self, d: &[f64], v0p: &[f64], dt: f64) -> Vec<f64> {
+        if !self.has_rates {
+            return vec![0.0; d.len()];
+        }
+        let rate = 2.0 / dt;
+        let both = d.iter().zip(v0p);
+        match self.backward_euler {
+            false => both.map(|(d, v0p)| rate * d - v0p).collect(),
+            true => d.iter().map(|d| d / dt).collect(),
         }
     }
 

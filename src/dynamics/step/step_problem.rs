@@ -133,19 +133,24 @@ impl StepProblem<'_> {
         self.integration.has_rates && self.elements.has_damping()
     }
 
+    /// Whether landing nodes have a velocity that something is done about.
+    fn has_impacts(&self) -> bool {
+        self.integration.has_rates && !self.integration.backward_euler
+    }
+
     /// Whether impact impulses act.
     pub fn has_impulses(&self) -> bool {
-        self.integration.has_rates && self.settings.impact == Impact::Impulse
+        self.has_impacts() && self.settings.impact == Impact::Impulse
     }
 
     /// Whether impacts end subincrements.
     pub fn ends_at_impacts(&self) -> bool {
-        self.integration.has_rates && self.settings.impact_time == ImpactTime::Event
+        self.has_impacts() && self.settings.impact_time == ImpactTime::Event
     }
 
     /// Whether what landings take is given back.
     pub fn returns_landings(&self) -> bool {
-        self.integration.has_rates && self.settings.landing == LandingRule::Return
+        self.has_impacts() && self.settings.landing == LandingRule::Return
     }
 
     /// V <- P V: nodes without mass follow their donors, except where they are prescribed.

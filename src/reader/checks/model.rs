@@ -27,7 +27,7 @@ pub(crate) fn proportion(
     let Some(guide) = guide else {
         return;
     };
-    let timed = |(step, _): &(&Step, _)| step.procedure == Procedure::Dynamic;
+    let timed = |(step, _): &(&Step, _)| step.procedure != Procedure::Static;
     for (step, cards) in steps.iter().zip(cards).filter(timed) {
         let mut procedures = cards.cards.iter();
         let card = procedures.find(|card| card.keyword.name == "DYNAMIC");

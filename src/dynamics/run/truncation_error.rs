@@ -1,0 +1,92 @@
+//! Truncation error of an increment, from the third derivative of the motion. Section 4 of docs/theory.md, Automatic
+//! increments.
+
+use crate::dynamics::step::{StepProblem, dot};
+use crate::linear::{larger, largest};
+
+/// What the truncation error of the increments of a step is measured by.
+pub(crate) struct TruncationError {
+    /// Displacement at the start of the step.
+    start: Vec<f64>,
+    /// The largest displacement from there so far (length).
+    way: f64,
+    /// Mean acceleration of the last increment, with impulses and what landings are given back; at first that of the
+    /// start.
+    acceleration: Vec<f64>,
+    /// Length of the last increment; 0 at the start (time).
+    dt: f64,
+}
+
+/// Ends of an increment: displacement, and velocity before and after.
+pub(crate) struct Ends<'a> {
+    pub u1: &'a [f64],
+    pub v0: &'a [f64],
+    pub v1: &'a [f64],
+    pub dt: f64,
+}
+
+impl Ends<'_> {
+    /// A = (V1 - V0)/dt
+    fn acceleration(&self) -> impl Iterator<Item = f64> {
+        let both = self.v1.iter().zip(self.v0);
+        both.map(|(v1, v0)| (v1 - v0) / self.dt)
+    }
+}
+
+impl TruncationError {
+    /// At the start of a step, with its displacement and acceleration.
+    pub fn new(u: &[f64], a: &[f64]) -> Self {
+        TruncationError {
+            start: u.to_vec(),
+            way: 0.0,
+            acceleration: a.to_vec(),
+            dt: 0.0,
+        }
+    }
+
+    /// Error of an increment in the displacements, the largest of the bodies in the norm of their mass, beside the
+    /// largest displacement of the step so far.
+    ///
+    /// ```text
+    /// e = (dt³/6) (A - A_last)/(dt + dt_last),  sqrt(e.M e/m)/max |U - U_start|    eq. (4.22), eq. (4.23)
+    /// ```
+    pub fn of(&self, problem: &StepProblem, ends: &Ends) -> f64 {
+        let StepProblem {
+            mass,
+            parts,
+            unknowns,
+            ..
+        } = problem;
+        let factor = ends.dt.powi(3) / (6.0 * (ends.dt + self.dt));
+        let both = ends.acceleration().zip(&self.acceleration);
+        let mut e: Vec<f64> = both.map(|(a, last)| factor * (a - last)).collect();
+        unknowns.prescribed().for_each(|dof| e[dof] = 0.0);
+        let m_e = mass.times(&e);
+        let mut of_bodies = vec![[0.0; 2]; parts.bodies()];
+        for (node, &body) in parts.of_nodes().iter().enumerate() {
+            let dofs = 2 * node..2 * node + 2;
+            of_bodies[body][0] += dot(&e[dofs.clone()], &m_e[dofs]);
+            of_bodies[body][1] += mass.shares[node];
+        }
+        let square = |[e_m_e, m]: &[f64; 2]| if *m > 0.0 { e_m_e / m } else { 0.0 };
+        let error = of_bodies.iter().map(square).fold(0.0, larger).sqrt();
+        match larger(self.way, self.way_to(ends.u1)) {
+            0.0 => 0.0,
+            way => error / way,
+        }
+    }
+
+    /// Goes on from an accepted increment.
+    pub fn accept(&mut self, ends: &Ends) {
+        self.way = larger(self.way, self.way_to(ends.u1));
+        self.acceleration.clear();
+        self.acceleration.extend(ends.acceleration());
+        self.dt = ends.dt;
+    }
+
+    /// Largest displacement from the start of the step.
+    fn way_to(&self, u: &[f64]) -> f64 {
+        let way: Vec<f64> = u.iter().zip(&self.start).map(|(u, u0)| u - u0).collect();
+        largest(&way)
+    }
+}
