@@ -208,6 +208,7 @@ fn the_blocks_run_and_their_instances_are_in_the_result() {
     let folder = TempDir::new().expect("folder");
     let path = |name: &str| folder.path().join(name);
     let deck = BLOCKS.replacen("*End Step", "*Monitor, dof=2, node=Block-2.3\n*End Step", 1);
+    let deck = deck.replacen("*Dynamic", "*Dynamic, direct", 1);
     fs::write(path("blocks.inp"), deck).expect("deck");
     let mut command = Command::cargo_bin("stickslip").expect("binary");
     let command = command

@@ -173,8 +173,10 @@ pub(super) static STEPS: &[Keyword] = &[
          follows from their truncation error, which stays below 1e-4 of the largest displacement of the step so far: \
          at most two repetitions in a row, growth by at most half after two increments. Increments that fail are halved. With \
          DIRECT increments keep their size, and the largest increment has no effect (warning).",
-        "*DYNAMIC\n\
-         1.E-7, 1.E-4, , 1.E-6",
+        "*STEP, NLGEOM\n\
+         *DYNAMIC\n\
+         1.E-7, 1.E-4, , 1.E-6\n\
+         *END STEP",
     ),
     Keyword::read(
         "STICKSLIP",
