@@ -75,7 +75,7 @@ class Outcome:
         k = np.clip(np.searchsorted(self.time, times) - 1, 0, len(self.time) - 2)
         length = (self.time[k + 1] - self.time[k])[:, None, None]
         s = (times - self.time[k])[:, None, None] / length
-        x, v = self.center, self.velocity * 1.0
+        x, v = self.center, self.velocity
         start, end = x[k], x[k + 1]
         first, last = length * v[k], length * v[k + 1]
         way = end - start
@@ -89,7 +89,7 @@ class Outcome:
         return float(np.sqrt(((mine - other) ** 2).sum(axis=(1, 2)).mean()) / way)
 
 
-def bar(elements: int, landing: str = "RETURN") -> Deck:
+def bar(elements: int) -> Deck:
     """An elastic bar that flies, hits a wall and flies back."""
     size, count = 1.0 / elements, elements + 1
     low = [(0.3 + k * size, 0.0) for k in range(count)]
@@ -104,21 +104,20 @@ def bar(elements: int, landing: str = "RETURN") -> Deck:
     deck.elastic("M", 100.0, 0.0, 1.0).section("BAR", "M").section("WALL", "M")
     deck.contact("FACE", "GROUND").velocity("BAR", -1.0, 0.0)
     deck.support("WALL")
-    with deck.step(0.004, 1.0, landing=landing):
+    with deck.step(0.004, 1.0, landing="PLASTIC"):
         pass
     return deck
 
 
 def bounce() -> Deck:
-    """A rigid block that bounces on the ground."""
-    deck = Deck.titled("a rigid block bounces on the ground")
-    deck.add("NODE, NSET=BLOCK", (1, 0.0, 1.0), (2, 0.2, 1.2), (3, 0.0, 1.4), (4, -0.2, 1.2), (5, 0.0, 1.2))
-    deck.add("NODE, NSET=WALL", (11, -1.0, -1.0), (12, 1.0, -1.0), (13, 1.0, 0.0), (14, -1.0, 0.0))
-    deck.add("ELEMENT, TYPE=CPE4, ELSET=BLOCK", (1, 1, 2, 3, 4))
-    deck.add("ELEMENT, TYPE=CPE4, ELSET=WALL", (11, 11, 12, 13, 14))
-    deck.add("SURFACE, NAME=FOOT", (1, "S1"), (1, "S4")).add("SURFACE, NAME=GROUND", (11, "S3"))
-    deck.elastic("M", 1e5, 0.3, 1.0).section("BLOCK", "M").section("WALL", "M")
-    deck.add("RIGID BODY, REF NODE=5, ELSET=BLOCK")
+    """A stiff block that bounces on the ground like a point mass."""
+    deck = Deck.titled("a stiff block bounces on the ground")
+    deck.add("NODE, NSET=BLOCK", (1, 0.0, 1.0), (2, 1.0, 1.0), (3, 1.0, 2.0), (4, 0.0, 2.0))
+    deck.add("NODE, NSET=WALL", (11, -1.0, -0.5), (12, 2.0, -0.5), (13, 2.0, 0.0), (14, -1.0, 0.0))
+    deck.add("ELEMENT, TYPE=CPS4, ELSET=BLOCK", (1, 1, 2, 3, 4))
+    deck.add("ELEMENT, TYPE=CPS4, ELSET=WALL", (11, 11, 12, 13, 14))
+    deck.add("SURFACE, NAME=FOOT", (1, "S1")).add("SURFACE, NAME=GROUND", (11, "S3"))
+    deck.elastic("M", 1e9, 0.0, 1.0).section("BLOCK", "M").section("WALL", "M")
     deck.contact("FOOT", "GROUND").support("WALL")
     with deck.step(0.01, 4.0, landing="RETURN", impact="NONE") as step:
         step.gravity("BLOCK", 10.0)
@@ -143,17 +142,15 @@ def cases() -> Iterator[Case]:
     yield Case("bounce", bounce(), 0.02)
     for elements in (20, 80):
         yield Case(f"bar of {elements}", bar(elements), 0.004)
-        yield Case(f"plastic {elements}", bar(elements, "PLASTIC"), 0.004)
     own = (
         ("input/two_cantilevers/A_mu02", 0.03),
         ("input/corner_to_corner/corners_left_mu02", 0.005),
         ("input/bouncing_rings/rings_mu02", 0.005),
         ("input/rubber_ring/rubber_ring_mu05", 0.002),
-        ("input/shapes_in_a_box/shapes_two", 0.004),
         ("verification/elastic_bar/em_impulse", 0.006),
     )
     for name, dt in own:
-        yield Case(name, Deck.read(ROOT / f"{name}.inp"), dt, FACTORS[6:-6], 1.0 / 8.0)
+        yield Case(name, Deck.read(ROOT / f"{name}.inp"), dt, FACTORS[:-6], 1.0 / 8.0)
 
 
 def fixed(deck: Deck, dt: float) -> Deck:

@@ -382,13 +382,6 @@ fn a_half_increment_residual_scales_the_tolerance_of_the_truncation_error() {
     assert_eq!(messages(&dynamic("")).1, "");
     let fine = dynamic(", HALFINC SCALE FACTOR=500.");
     insta::assert_snapshot!(texts_of(Code::ScaledTolerance, &[fine]));
-    for half in [", DIRECT, HAFTOL=3.", ", DIRECT, NOHAF"] {
-        let (d, text) = messages(&dynamic(half));
-        assert!(
-            d.iter().any(|item| item.code == Code::BadIncrement),
-            "{text}"
-        );
-    }
     let refused = [
         ", DIRECT, HALFINC SCALE FACTOR=2.",
         ", HALFINC SCALE FACTOR=0.",

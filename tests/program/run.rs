@@ -266,7 +266,7 @@ fn strict_and_lenient_reading() {
 fn what_is_doubtful_before_the_run_is_on_the_screen_and_in_the_log() {
     let wrong_side = DROP
         .replace("BASE, S3", "BASE, S1")
-        .replace("DYNAMIC, DIRECT", "DYNAMIC");
+        .replace("DYNAMIC, DIRECT", "DYNAMIC, HALFINC SCALE FACTOR=5000.");
     let bench = Bench::new(&wrong_side.replace("2.01", "3.01").replace("1.01", "2.01"));
     let told = |text: &str| ["D418", "D516"].map(|code| text.contains(code)) == [true, true];
     let (code, out, err) = bench.stickslip(&["check", "drop.inp"]);

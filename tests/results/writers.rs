@@ -174,6 +174,7 @@ pub fn report(k: usize) -> IncrementReport {
         time,
         step_time: time,
         dt: if k == 0 { 0.0 } else { 0.1 },
+        truncation_error: None,
         ends_step: k == INCREMENTS,
         state: State {
             u: ramp(1.0),
@@ -282,6 +283,7 @@ pub fn summary(outcome: Outcome, increments: usize) -> RunSummary {
     RunSummary {
         outcome,
         increments,
+        rejections: 0,
         cutbacks: 0,
         events: 0,
         solver: SolverCounts::default(),
