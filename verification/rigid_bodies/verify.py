@@ -1,4 +1,4 @@
-"""Rigid bodies that turn: pendulum, dead moment, collision, a tumbling square, Painleve's rod."""
+"""Rigid bodies that turn: pendulum, moment, collision, tumbling square, Painleve's rod, cam, gears."""
 
 import sys
 from pathlib import Path
@@ -11,6 +11,8 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from stickslip.plot import style  # noqa: E402
 from stickslip.result import Array, Result  # noqa: E402
+
+import generate as made  # noqa: E402
 
 GRAVITY = 9.81
 
@@ -32,6 +34,44 @@ def momentum_error(results: Result) -> float:
     linear = np.abs(results.history.momentum.linear - results.history.momentum.linear[0]).max()
     angular = np.abs(results.history.momentum.angular - results.history.momentum.angular[0]).max()
     return float(max(linear, angular)) / (2.0 * results.history.energy["kinetic"][0]) ** 0.5
+
+
+def check_cam(verification: runner.Verification) -> None:
+    """Lift, force and friction of the cam against those of a circle."""
+    for name in ("cam", "cam_720"):
+        results = verification.results[name]
+        theta = made.CAM_SPEED * results.history.time
+        lift = made.OFFSET * (1 - np.cos(theta))
+        error = np.abs(of_body(results, "EFOLLOWER", "U")[:, 1] - lift).max() / made.OFFSET
+        at_corners = name == "cam"
+        end = ", corners at the increments" if at_corners else ""
+        verification.check("lift / closed form" + end, name, float(error))
+        if not at_corners:
+            continue
+        inertia = made.OFFSET * made.CAM_SPEED**2 * np.cos(theta)
+        force = made.PRELOAD + made.SPRING * lift + inertia
+        (contact,) = results.history.contact.values()
+        # the force of an increment is that of its middle; the first two are the start
+        error = np.abs(contact.normal - force)[2:].max() / force.max()
+        verification.check("force / closed form" + end, name, float(error))
+        height = made.RADIUS - made.OFFSET * np.cos(theta)
+        work = made.CAM_FRICTION * float(np.trapezoid(force * height, theta))
+        spent = results.history.energy["friction_dissipation"][-1]
+        verification.check("friction work / closed form" + end, name, float(spent / work))
+
+
+def check_gears(verification: runner.Verification) -> None:
+    """The ratio of the gears at every angle, and what their contact takes."""
+    results = verification.results["gears"]
+    drive, driven = (of_body(results, name, "angle") for name in ("EDRIVE", "EDRIVEN"))
+    ratio = made.TEETH[0] / made.TEETH[1]
+    verification.check(
+        "angle of the driven gear / closed form", "gears", float(np.abs(driven + ratio * drive).max())
+    )
+    account = results.history.energy
+    lost = account["external_work"][-1] - account["kinetic"][-1] + account["kinetic"][0]
+    done = made.MOMENT * abs(driven[-1])
+    verification.check("work lost between the gears", "gears", float(lost / done))
 
 
 def main() -> int:
@@ -65,6 +105,9 @@ def main() -> int:
         verification.check("largest rise of the energy", name, rise(all_results[name]))
     square = of_body(all_results["square"], "ESQUARE", "center")
     verification.check("height at rest / closed form", "square", float(square[-1, 1] / 0.5))
+
+    check_cam(verification)
+    check_gears(verification)
 
     figure, axes = plt.subplots(figsize=(8, 4))
     for name, body in (("square", "ESQUARE"), ("rod", "NENDS")):
