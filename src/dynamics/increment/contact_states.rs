@@ -7,6 +7,7 @@ use crate::contact::tolerances::PROJECTION_BEYOND_ENDS;
 use crate::contact::{ClosedPairs, Constraint, ConstraintSet};
 use crate::dynamics::results::State;
 use crate::dynamics::step::{StepProblem, Workspace};
+use crate::lcp::ContactState;
 
 /// The pairs of an increment.
 #[derive(Default)]
@@ -31,8 +32,8 @@ impl ContactStates {
         }
     }
 
-    /// Writes the constraints of the iterate U in an increment of length `dt`: those that count, and the others. With
-    /// `kept`, slave nodes keep their targets up to this overrun beyond the ends (segment lengths).
+    /// Writes the constraints of the iterate U in an increment of length `dt`: those that count, and the others. Pairs
+    /// that stick have the friction at rest, others that of their slip. With `kept`, slave nodes keep their targets up to this overrun beyond the ends (segment lengths).
     pub fn find(
         &mut self,
         problem: &StepProblem,
@@ -43,7 +44,10 @@ impl ContactStates {
     ) {
         let (last, held) = (&self.forces.constraints, (&start.contact, kept));
         workspace.constraints(problem, [&start.u, u], last, held, &mut self.found);
-        (self.found.iter_mut()).for_each(|constraint| constraint.take_slip_rate(dt));
+        let closed = &self.forces.closed;
+        let slides = |c: &Constraint| closed.state(c.key) != ContactState::Stick;
+        let sliding = self.found.iter_mut().filter(|c| slides(c));
+        sliding.for_each(|constraint| constraint.take_slip_rate(dt));
         set.split(
             problem.positions(&start.u),
             &mut self.found,
