@@ -1,0 +1,405 @@
+"""Writes the decks of static contact: `generate.py [-o FOLDER]`."""
+
+import sys
+from collections.abc import Callable
+from math import cos, pi, radians, sin, sqrt
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+sys.path.insert(0, str(ROOT / "python"))
+
+from stickslip.cards import card, dry, elastic  # noqa: E402
+from stickslip.deck import write_to_folder  # noqa: E402
+from stickslip.quads import Grid  # noqa: E402
+
+YOUNG, POISSON = 1000.0, 0.3
+MODULUS = YOUNG / (1 - POISSON**2)
+"""Of plane strain."""
+
+RADIUS, HEIGHT, WIDTH = 1.0, 1.0, 0.8
+"""Of the cylinders, which are cut off above their middle and at both sides (half of the width)."""
+HALF_WIDTH = 0.0125
+"""Of Hertz' contact."""
+PRESS = pi / 4 * MODULUS * HALF_WIDTH**2 / RADIUS
+"""Load of Hertz' contact, the same on a rigid plane and on a like cylinder."""
+FRICTION = 0.3
+SHARE = 0.6
+"""Tangential load as a part of the largest that friction holds."""
+
+STRIP, SLIP_LENGTH, STRAIN = 4.0, 2.0, 0.002
+"""Length of the strip on a rough plane, how much of it slips, and its strain where it is pulled."""
+
+ROUND_OFF = card("STICKSLIP, TOLERANCE=1e-7")
+"""The round-off of thin strips that are held by many nodes is above the default."""
+
+BELT, TENSION, STROKE = 0.02, 1e-3, 0.03
+"""Thickness of a strip around a cylinder of radius 1, strain at one end, way of the other."""
+
+ARCH, PUNCH = (10.0, 0.4, 0.2), 0.3
+"""Span, rise and depth of the arch, radius of the punch."""
+SNAP, DAMPING = 100.0, 0.3
+"""Time in which the arch comes to rest after it has snapped through, and its damping (ALPHA)."""
+
+
+def static(*cards: str, dt: float = 1.0, direct: bool = False) -> str:
+    """A static step of the duration 1."""
+    keyword = "STATIC, DIRECT" if direct else "STATIC"
+    return "".join([card("STEP, NLGEOM"), card(keyword, (dt, 1.0)), *cards, card("END STEP")])
+
+
+def after(*grids: Grid) -> dict[str, int]:
+    """First node and element of a grid after others."""
+    return {"first_node": grids[-1].next_node, "first_element": grids[-1].next_element}
+
+
+def block(name: str, size: tuple[int, int], lengths: tuple[float, float], **labels: int) -> Grid:
+    """A rectangle of so many elements above y = 0, right of x = 0."""
+    (nx, ny), (lx, ly) = size, lengths
+    return Grid(name, nx, ny, lambda i, j: (lx * i / nx, ly * j / ny), **labels)
+
+
+def plane(name: str, start: float, end: float) -> str:
+    """A rigid plane at y = 0, which holds what lies above."""
+    reference = 100_000
+    return "".join(
+        [
+            card("NODE, NSET=REFERENCE", (reference, start, -1.0)),
+            card(f"SURFACE, NAME={name}, TYPE=SEGMENTS", ("START", start, 0.0), ("LINE", end, 0.0)),
+            card(f"RIGID BODY, ANALYTICAL SURFACE={name}, REF NODE=REFERENCE"),
+        ]
+    )
+
+
+def graded(size: float, even: float, end: float, growth: float = 1.35) -> list[float]:
+    """Places from 0 to `end`: of equal distance up to `even`, then farther and farther apart."""
+    places = [k * size for k in range(round(even / size) + 1)]
+    steps, reach = [], 0.0
+    while reach < end - places[-1]:
+        steps.append(size * growth ** (len(steps) + 1))
+        reach += steps[-1]
+    stretch = (end - places[-1]) / reach
+    for step in steps:
+        places.append(places[-1] + step * stretch)
+    return places
+
+
+def cylinder(name: str, size: float, *, half: bool, below: bool = False, **labels: int) -> Grid:
+    """A cylinder that touches y = 0 at x = 0 from above or below; `size` of the elements there."""
+    right = graded(size, 1.5 * HALF_WIDTH, WIDTH)
+    x = right if half else [-place for place in reversed(right[1:])] + right
+    t = graded(size, HALF_WIDTH, HEIGHT)
+    rows = len(t) - 1
+
+    def place(i: int, j: int) -> tuple[float, float]:
+        foot = RADIUS - sqrt(RADIUS**2 - x[i] ** 2)
+        up = foot + (HEIGHT - foot) * t[rows - j if below else j] / HEIGHT
+        return x[i], -up if below else up
+
+    return Grid(name, len(x) - 1, rows, place, **labels)
+
+
+def guided(grid: Grid, *directions: int) -> str:
+    """The top of a grid moves in these directions as its first node, HEAD, does."""
+    top = [grid.node(i, grid.ny) for i in range(grid.nx + 1)]
+    return "".join(
+        [
+            card("NSET, NSET=HEAD", (top[0],)),
+            card("NSET, NSET=OTHERS, GENERATE", (top[1], top[-1], 1)),
+            *(
+                card("EQUATION", (2,), ("OTHERS", direction, 1.0, "HEAD", direction, -1.0))
+                for direction in directions
+            ),
+        ]
+    )
+
+
+def hertz(
+    division: int, friction: float = 0.0, like: bool = False, increments: int = 4
+) -> str:
+    """Half of a cylinder on a plane or on a like one, `division` elements in the half width."""
+    size = HALF_WIDTH / division
+    upper = cylinder("UPPER", size, half=True)
+    lower = cylinder("LOWER", size, half=True, below=True, **after(upper))
+    bodies = [upper, lower] if like else [upper]
+    return "".join(
+        [
+            card("HEADING", ("a cylinder on a like one" if like else "a cylinder on a plane",)),
+            *(body.mesh("CPE4") for body in bodies),
+            upper.side_surface("FOOT", "bottom"),
+            upper.side_nodes("MIDDLE", "left"),
+            *(
+                [lower.side_surface("GROUND", "top"), lower.side_nodes("BASE", "bottom")]
+                + [lower.side_nodes("MIDDLE_BELOW", "left")]
+                if like
+                else [plane("GROUND", -0.1, WIDTH)]
+            ),
+            guided(upper, 1, 2),
+            elastic(YOUNG, POISSON, 1.0, *(body.name for body in bodies)),
+            dry(friction),
+            card("CONTACT PAIR, INTERACTION=DRY", ("FOOT", "GROUND")),
+            card(
+                "BOUNDARY",
+                ("MIDDLE", 1, 1),
+                *(("MIDDLE_BELOW", 1, 1), ("BASE", 2, 2)) if like else (("REFERENCE", 1, 2),),
+            ),
+            static(
+                card("CLOAD", ("HEAD", 2, -PRESS / 2)), dt=1.0 / increments, direct=True
+            ),
+        ]
+    )
+
+
+def mindlin(increments: int, friction: float = FRICTION, cycles: int = 0, division: int = 8) -> str:
+    """Two like cylinders, pressed, then sheared in so many increments, then to and fro."""
+    size = HALF_WIDTH / division
+    upper = cylinder("UPPER", size, half=False)
+    lower = cylinder("LOWER", size, half=False, below=True, **after(upper))
+    shear = SHARE * FRICTION * PRESS
+    steps = [card("CLOAD", ("HEAD", 2, -PRESS)) + card("NODE PRINT, NSET=HEAD", ("U",))]
+    steps += [card("CLOAD", ("HEAD", 1, shear * (-1) ** k)) for k in range(1 + 2 * cycles)]
+    return "".join(
+        [
+            card("HEADING", ("two cylinders, pressed and sheared",)),
+            upper.mesh("CPE4"),
+            lower.mesh("CPE4"),
+            upper.side_surface("FOOT", "bottom"),
+            lower.side_surface("GROUND", "top"),
+            lower.side_nodes("BASE", "bottom"),
+            guided(upper, 1, 2),
+            elastic(YOUNG, POISSON, 1.0, "UPPER", "LOWER"),
+            dry(friction),
+            card("CONTACT PAIR, INTERACTION=DRY", ("FOOT", "GROUND")),
+            card("BOUNDARY", ("BASE", 1, 2)),
+            static(steps[0], dt=0.25, direct=True),
+            *(static(step, dt=1.0 / increments, direct=True) for step in steps[1:]),
+        ]
+    )
+
+
+def shear_lag(thickness: float = 0.05) -> str:
+    """A strip pressed on a rough plane, pulled at its end and let go."""
+    size = thickness / 2
+    strip = block("STRIP", (round(STRIP / size), 2), (STRIP, thickness))
+    pull = STRAIN * YOUNG * thickness
+    pressure = pull / (FRICTION * SLIP_LENGTH)
+    return "".join(
+        [
+            card("HEADING", ("a strip pulled over a rough plane",)),
+            strip.mesh("CPS4"),
+            strip.side_surface("SOLE", "bottom"),
+            strip.side_surface("ROOF", "top"),
+            strip.side_surface("FRONT", "right"),
+            strip.side_nodes("END", "right"),
+            plane("GROUND", -1.0, STRIP + 1.0),
+            elastic(YOUNG, 0.0, 1.0, "STRIP"),
+            dry(FRICTION),
+            card("CONTACT PAIR, INTERACTION=DRY", ("SOLE", "GROUND")),
+            card("BOUNDARY", ("REFERENCE", 1, 2)),
+            static(
+                ROUND_OFF,
+                card("DSLOAD", ("ROOF", "P", pressure)),
+                card("NODE PRINT, NSET=END", ("U",)),
+            ),
+            *(
+                static(
+                    card(
+                        "DSLOAD, FOLLOWER=NO", ("FRONT", "TRVEC", load / thickness, 1.0, 0.0)
+                    ),
+                    dt=0.25,
+                    direct=True,
+                )
+                for load in (pull, 0.0)
+            ),
+        ]
+    )
+
+
+def capstan(friction: float, degrees: int) -> str:
+    """A strip around a part of a cylinder, dead load at the left, pulled at the right."""
+    arc, tail = degrees // 2, 8
+    half = radians(degrees) / 2
+    size = radians(2.0)
+
+    def place(i: int, j: int) -> tuple[float, float]:
+        along = (i - tail - arc / 2) * size
+        turn = max(-half, min(half, along))
+        radius, straight = 1.0 + BELT * j / 2, along - turn
+        x, y = radius * sin(turn), radius * cos(turn)
+        return x + straight * cos(turn), y - straight * sin(turn)
+
+    strip = Grid("STRIP", arc + 2 * tail, 2, place)
+    reach = half + radians(10)
+    shore = (sin(reach), cos(reach))
+    pull = (cos(half), -sin(half))
+    load = TENSION * YOUNG
+    way = (STROKE * pull[0], STROKE * pull[1])
+    return "".join(
+        [
+            card("HEADING", ("a strip around a cylinder",)),
+            strip.mesh("CPS4"),
+            strip.side_surface("INSIDE", "bottom"),
+            strip.side_surface("LOADED", "left"),
+            strip.side_nodes("PULLED", "right"),
+            card("NODE, NSET=REFERENCE", (100_000, 0.0, 0.0)),
+            card(
+                "SURFACE, NAME=POST, TYPE=SEGMENTS",
+                ("START", -shore[0], shore[1]),
+                ("CIRCL", 0.0, 1.0, 0.0, 0.0),
+                ("CIRCL", *shore, 0.0, 0.0),
+            ),
+            card("RIGID BODY, ANALYTICAL SURFACE=POST, REF NODE=REFERENCE"),
+            elastic(YOUNG, 0.0, 1.0, "STRIP"),
+            dry(friction),
+            card("CONTACT PAIR, INTERACTION=DRY", ("INSIDE", "POST")),
+            card("BOUNDARY", ("REFERENCE", 1, 2)),
+            static(
+                ROUND_OFF,
+                card("BOUNDARY", ("PULLED", 1, 2)),
+                card("DSLOAD, FOLLOWER=NO", ("LOADED", "TRVEC", load, -pull[0], pull[1])),
+                card("NODE PRINT, NSET=PULLED", ("U, RF",)),
+                dt=0.1,
+            ),
+            static(
+                card("BOUNDARY", ("PULLED", 1, 1, way[0]), ("PULLED", 2, 2, way[1])),
+                dt=0.05,
+            ),
+        ]
+    )
+
+
+def arch(load: float, after_limit: float = 0.0) -> str:
+    """Half of a shallow arch, pushed through by a rigid punch (load 0) or by a loaded block.
+
+    Loads are parts of the largest force. With `after_limit` the load is at once so large in a
+    dynamic step: the arch snaps through, comes to rest by damping and ends in a static step.
+    """
+    span, rise, depth = ARCH
+    count, middle = 200, span / 2
+    tip = rise + depth / 2
+
+    def place(i: int, j: int) -> tuple[float, float]:
+        x = middle * i / count
+        return x, rise / 2 * (1 - cos(2 * pi * x / span)) + depth * (j - 1) / 2
+
+    def punch(i: int, j: int) -> tuple[float, float]:
+        x = PUNCH * (i - 2) / 4
+        foot = PUNCH - sqrt(PUNCH**2 - x**2)
+        return middle + x, tip + foot + (PUNCH - foot) * j / 2
+
+    body = Grid("ARCH", count, 2, place)
+    block = Grid("PUNCH", 2, 2, punch, **after(body))
+    print_way = card("NODE PRINT, NSET=HEAD", ("U, RF",))
+    if load:
+        force = limit_load(*ARCH)[0] / 2
+        pushes = "".join(
+            [
+                block.mesh("CPS4"),
+                block.side_surface("FOOT", "bottom"),
+                guided(block, 2),
+                card("BOUNDARY", ("PUNCH", 1, 1)),
+            ]
+        )
+        steps = [static(card("CLOAD", ("HEAD", 2, -load * force)), print_way, dt=0.1)]
+    else:
+        pushes = "".join(
+            [
+                card("NODE, NSET=HEAD", (100_000, middle, tip + PUNCH)),
+                card(
+                    "SURFACE, NAME=FOOT, TYPE=SEGMENTS",
+                    ("START", middle + PUNCH, tip + PUNCH),
+                    ("CIRCL", middle, tip, middle, tip + PUNCH),
+                    ("CIRCL", middle - PUNCH, tip + PUNCH, middle, tip + PUNCH),
+                ),
+                card("RIGID BODY, ANALYTICAL SURFACE=FOOT, REF NODE=HEAD"),
+                card("BOUNDARY", ("HEAD", 1, 1)),
+            ]
+        )
+        push = card("BOUNDARY", ("HEAD", 2, 2, -2 * rise))
+        steps = [static(push, print_way, dt=0.025, direct=True)]
+    if after_limit:
+        push = card("CLOAD", ("HEAD", 2, -after_limit * force))
+        steps += [
+            card("STEP, NLGEOM") + card("DYNAMIC, DIRECT", (SNAP / 200, SNAP)) + push,
+            card("END STEP"),
+            static(push),
+        ]
+    return "".join(
+        [
+            card("HEADING", ("a punch on a shallow arch",)),
+            body.mesh("CPS4"),
+            body.side_surface("BACK", "top"),
+            body.side_nodes("HELD", "left"),
+            body.side_nodes("CROWN", "right"),
+            pushes,
+            elastic(
+                YOUNG,
+                0.0,
+                1.0,
+                *(["ARCH", "PUNCH"] if load else ["ARCH"]),
+                alpha=DAMPING if after_limit else 0.0,
+            ),
+            dry(FRICTION),
+            card("CONTACT PAIR, INTERACTION=DRY", ("BACK", "FOOT")),
+            card("BOUNDARY", ("HELD", 1, 2), ("CROWN", 1, 1)),
+            *steps,
+        ]
+    )
+
+
+def punch_forces(span: float, rise: float, depth: float) -> list[tuple[float, float]]:
+    """Ways and forces of a punch in the middle of a clamped shallow arch, along its path.
+
+    w = sum a_k (1 - cos b_k x), b_k = 2 pi k/span, from w0 = rise/2 (1 - cos b_1 x), has
+    the thrust N
+
+        (EI b_k^4 - N b_k^2) a_k span/2 = EI b_k^4 a0_k span/2 - 2 P (k odd)
+        N = EA/4 sum b_k^2 (a0_k^2 - a_k^2)
+
+    which is quadratic in P for each N.
+    """
+    terms = 200
+    area, bending = YOUNG * depth, YOUNG * depth**3 / 12
+    k = [2 * pi * (n + 1) / span for n in range(terms)]
+    start = [rise / 2] + [0.0] * (terms - 1)
+    found = []
+    for part in range(1, 2000):
+        thrust = part / 2000 * bending * k[1] ** 2
+        stiff = [bending * b**4 - thrust * b**2 for b in k]
+        if min(map(abs, stiff)) < 1e-9 * bending * k[0] ** 4:
+            continue
+        at_rest = [bending * b**4 * a / c for b, a, c in zip(k, start, stiff)]
+        by_load = [-4 / span / c if n % 2 == 0 else 0.0 for n, c in enumerate(stiff)]
+        # sum b^2 (a0^2 - (r + P q)^2) EA/4 = N
+        square = sum(b * b * q * q for b, q in zip(k, by_load))
+        linear = sum(b * b * r * q for b, r, q in zip(k, at_rest, by_load))
+        rest = sum(b * b * (r * r - a * a) for b, r, a in zip(k, at_rest, start))
+        rest += 4 * thrust / area
+        root = linear**2 - square * rest
+        if root < 0.0:
+            continue
+        for sign in (-1, 1):
+            load = (-linear + sign * sqrt(root)) / square
+            odd = zip(at_rest[::2], by_load[::2])
+            found.append((rise - 2 * sum(r + load * q for r, q in odd), load))
+    return sorted(found)
+
+
+def limit_load(span: float, rise: float, depth: float) -> tuple[float, float]:
+    """The largest force of the punch on its way to half of the rise, and the way there."""
+    return max((load, way) for way, load in punch_forces(span, rise, depth) if 0 < way < rise)
+
+
+PROBLEMS: dict[str, Callable[..., str]] = {
+    "hertz": hertz,
+    "mindlin": mindlin,
+    "shear_lag": shear_lag,
+    "capstan": capstan,
+    "arch": arch,
+}
+
+
+def write(folder: Path, problem: str, **parameters: float | str | bool) -> None:
+    """Writes the deck of a problem into `folder`."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / f"{problem}.inp").write_text(PROBLEMS[problem](**parameters))
