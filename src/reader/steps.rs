@@ -332,6 +332,15 @@ fn truncation_error(
             .help(format!("leave out {given}, or DIRECT"));
         return None;
     }
+    for given in ["HAFTOL", "NOHAF"]
+        .into_iter()
+        .filter(|name| card.has(name))
+    {
+        let message = format!("{given} has no effect: increments follow their truncation error");
+        (cx.d
+            .warning(Code::IgnoredParameter, card.span_of(given), message))
+        .help("HALFINC SCALE FACTOR scales its tolerance");
+    }
     let Some(factor) = card.real("HALFINC SCALE FACTOR", cx.d) else {
         return Some(TRUNCATION_ERROR);
     };

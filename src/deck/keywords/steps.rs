@@ -3,7 +3,7 @@
 use super::common::{OTHER_NUMBERS, OTHER_SOLVER};
 use super::types::{Data, Keyword, Parameter as P, Scope, Unread, Value as V, row};
 
-const TRUNCATION: &str = "increments follow their truncation error: see HALFINC SCALE FACTOR";
+const TRUNCATION: &str = "no effect (warning): increments follow their truncation error";
 const UNSCALED: &str = "Masses are not scaled: remove it, implicit increments do not need it.";
 const INTEGRATOR: &str = "the time integration is that of *STICKSLIP, SCHEME=";
 const PROCEDURE: &str = "Steps are static or dynamic: use *STATIC or *DYNAMIC.";
@@ -151,13 +151,13 @@ pub(super) static STEPS: &[Keyword] = &[
             P::value("BETA", INTEGRATOR).warned(),
             P::value("GAMMA", INTEGRATOR).warned(),
             P::value("TIME INTEGRATOR", INTEGRATOR).warned(),
-            P::value("HAFTOL", TRUNCATION).measuring("force").warned(),
+            P::value("HAFTOL", TRUNCATION).measuring("force"),
             P::value(
                 "HALFINC SCALE FACTOR",
                 "scales the tolerance of the truncation error (warning): 10000 with contacts, 1000 without, and with \
                  TRANSIENT FIDELITY, stand for 1e-4",
             ),
-            P::flag("NOHAF", TRUNCATION).warned(),
+            P::flag("NOHAF", TRUNCATION),
             P::value("INITIAL", OTHER_SOLVER).warned(),
             P::value("INCREMENTATION", OTHER_SOLVER).warned(),
             P::value("SINGULAR MASS", OTHER_SOLVER).warned(),

@@ -10,10 +10,15 @@ pub(crate) struct TruncationError {
     start: Vec<f64>,
     /// The largest displacement from there so far (length).
     way: f64,
-    /// Mean acceleration of the last increment, with impulses and what landings are given back; at first that of the
-    /// start.
+    /// The last two increments, the later one last; at first the start, of no length.
+    last: Vec<Past>,
+}
+
+/// An increment that is done.
+struct Past {
+    /// Mean acceleration, with impulses and what landings are given back.
     acceleration: Vec<f64>,
-    /// Length of the last increment; 0 at the start (time).
+    /// Length (time).
     dt: f64,
 }
 
@@ -39,8 +44,10 @@ impl TruncationError {
         TruncationError {
             start: u.to_vec(),
             way: 0.0,
-            acceleration: a.to_vec(),
-            dt: 0.0,
+            last: vec![Past {
+                acceleration: a.to_vec(),
+                dt: 0.0,
+            }],
         }
     }
 
@@ -48,8 +55,10 @@ impl TruncationError {
     /// largest displacement of the step so far.
     ///
     /// ```text
-    /// e = (dt³/6) (A - A_last)/(dt + dt_last),  sqrt(e.M e/m)/max |U - U_start|    eq. (4.22), eq. (4.23)
+    /// e = (dt³/12) (A - A_2)/(dt/2 + dt_1 + dt_2/2),  sqrt(e.M e/m)/max |U - U_start|    eq. (4.22), eq. (4.23)
     /// ```
+    ///
+    /// 1 being the increment before and 2 that before it: what is too stiff for the increments changes its sign in each.
     pub fn of(&self, problem: &StepProblem, ends: &Ends) -> f64 {
         let StepProblem {
             mass,
@@ -57,8 +66,12 @@ impl TruncationError {
             unknowns,
             ..
         } = problem;
-        let factor = ends.dt.powi(3) / (6.0 * (ends.dt + self.dt));
-        let both = ends.acceleration().zip(&self.acceleration);
+        let (before, since) = match &self.last[..] {
+            [earlier, later] => (earlier, later.dt + earlier.dt / 2.0),
+            others => (&others[0], 0.0),
+        };
+        let factor = ends.dt.powi(3) / (12.0 * (ends.dt / 2.0 + since));
+        let both = ends.acceleration().zip(&before.acceleration);
         let mut e: Vec<f64> = both.map(|(a, last)| factor * (a - last)).collect();
         unknowns.prescribed().for_each(|dof| e[dof] = 0.0);
         let m_e = mass.times(&e);
@@ -79,9 +92,13 @@ impl TruncationError {
     /// Goes on from an accepted increment.
     pub fn accept(&mut self, ends: &Ends) {
         self.way = larger(self.way, self.way_to(ends.u1));
-        self.acceleration.clear();
-        self.acceleration.extend(ends.acceleration());
-        self.dt = ends.dt;
+        if self.last.len() == 2 {
+            self.last.remove(0);
+        }
+        self.last.push(Past {
+            acceleration: ends.acceleration().collect(),
+            dt: ends.dt,
+        });
     }
 
     /// Largest displacement from the start of the step.
