@@ -259,7 +259,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("program", type=Path, metavar="PROGRAM")
     parser.add_argument("names", nargs="*", metavar="DECK", help="decks of the table (default: all)")
     parser.add_argument("--jobs", type=positive_integer, default=2, metavar="N", help="decks at a time")
-    return parser.parse_args()
+    return parser.parse_intermixed_args()
 
 
 def main() -> int:
