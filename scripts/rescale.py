@@ -84,6 +84,11 @@ TABLE = table()
 
 def rescale(deck: Deck, units: Units) -> Deck:
     """The deck in other units."""
+    if deck.find("PARAMETER"):
+        raise Unscalable(
+            "the deck has parameters, whose dimensions are not known: "
+            "`stickslip flatten` writes it with their values"
+        )
     return Deck([_card(card, units) for card in deck.cards])
 
 

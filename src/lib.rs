@@ -8,7 +8,7 @@
 //!
 //! # Layers
 //!
-//! A module imports only from modules before it in this list: `vectors`, `diagnostics`, `deck`,
+//! A module imports only from modules before it in this list: `vectors`, `archive`, `diagnostics`, `deck`,
 //! `materials`, `model`, `reader`, `flat_deck`, `elements`, `linear`, `lcp`, `contact`, `prepare`, `dynamics`,
 //! `output`, `cli`. The rooms of a layer (its sub-folders) import one way as well.
 //!
@@ -71,6 +71,7 @@
 
 #![deny(missing_docs)]
 
+pub mod archive;
 pub mod cli;
 pub mod contact;
 pub mod deck;

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -28,6 +28,9 @@ POLL = 0.1
 
 OPTIONS = ("frames", "every", "solver", "threads")
 """Options of `stickslip run` with a value."""
+
+Value = float | int | str
+"""Value of a parameter of a deck."""
 
 FLAGS = ("strict", "lenient", "verbose")
 """Options of `stickslip run` without a value."""
@@ -130,6 +133,7 @@ def run(
     *words: str,
     job: str = "job",
     overwrite: bool = True,
+    parameters: Mapping[str, Value] | None = None,
     progress: bool | Callable[[Progress], object] = False,
     **options: object,
 ) -> Result:
@@ -138,13 +142,15 @@ def run(
     The results go to the folder `output`, under the name of the deck's file, or `job` for a `Deck`,
     which is written there too. `options` are those of `stickslip run`: frames, every, solver,
     threads with a value; strict, lenient, verbose as True. `words` are options as they are typed.
+    `parameters` are values of the deck's parameters, in place of those of its `*PARAMETER` cards.
     `progress` prints how far the run is, or is called with a `Progress` some times a second. Raises
     DeckRejected, RunStopped or RunFailed.
     """
     folder = Path(output)
     folder.mkdir(parents=True, exist_ok=True)
     path = deck.write(folder / f"{job}.inp") if isinstance(deck, Deck) else Path(deck)
-    command = [str(binary()), "run", str(path), "-o", str(folder), "-q", *_words(options), *words]
+    command = [str(binary()), "run", str(path), "-o", str(folder), "-q"]
+    command += [*settings(parameters or {}), *_words(options), *words]
     if overwrite:
         command.append("--overwrite")
     result = folder / f"{job_name(path)}.vtkhdf"
@@ -163,11 +169,28 @@ def run(
     raise RunFailed(text, code, result)
 
 
-def check(deck: Deck | Path | str) -> list[Diagnostic]:
+def settings(values: Mapping[str, Value]) -> list[str]:
+    """The options that give parameters of a deck their values; numbers with all their digits."""
+    words = []
+    for name, value in values.items():
+        match value:
+            case str():
+                written = f"'{value}'"
+            case int():
+                written = str(int(value))
+            case _:
+                written = repr(float(value))
+        words += ["--set", f"{name}={written}"]
+    return words
+
+
+def check(
+    deck: Deck | Path | str, parameters: Mapping[str, Value] | None = None
+) -> list[Diagnostic]:
     """Reads a deck without solving it; returns its warnings, or raises DeckRejected."""
     with tempfile.TemporaryDirectory() as folder:
         path = deck.write(Path(folder) / "job.inp") if isinstance(deck, Deck) else Path(deck)
-        command = [str(binary()), "check", str(path)]
+        command = [str(binary()), "check", str(path), *settings(parameters or {})]
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
         if done.returncode == REJECTED:
             raise DeckRejected(done.stderr.strip(), done.returncode, path)

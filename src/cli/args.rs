@@ -5,8 +5,11 @@ use std::num::NonZero;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 use std::thread;
+use std::time::Duration;
 
 use clap::{ArgAction, Args as ClapArgs, Parser, Subcommand, ValueEnum};
+
+use serde::{Deserialize, Serialize};
 
 use crate::diagnostics::Strictness;
 use crate::model::{Frames, SolverChoice};
@@ -49,7 +52,7 @@ pub(super) enum Command {
 }
 
 /// A deck and how to read it.
-#[derive(Debug, ClapArgs)]
+#[derive(Debug, Clone, ClapArgs)]
 pub(super) struct DeckArgs {
     /// The deck
     #[arg(value_name = "DECK.inp")]
@@ -60,6 +63,9 @@ pub(super) struct DeckArgs {
     /// Leave out unknown keywords and parameters with a warning
     #[arg(long)]
     pub lenient: bool,
+    /// Give a parameter of the deck (*PARAMETER) this value; may be repeated
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub settings: Vec<String>,
 }
 
 impl DeckArgs {
@@ -74,7 +80,7 @@ impl DeckArgs {
 }
 
 /// Arguments of `run`.
-#[derive(Debug, ClapArgs)]
+#[derive(Debug, Clone, ClapArgs)]
 pub(super) struct RunArgs {
     /// The deck
     #[command(flatten)]
@@ -91,6 +97,19 @@ pub(super) struct RunArgs {
     /// Replace the results of an earlier run
     #[arg(long)]
     pub overwrite: bool,
+    /// Write a checkpoint JOB.restart every so many seconds of wall-clock time, and at the end
+    ///
+    /// It is also written where the deck has *RESTART, WRITE, and when a signal stops the run.
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub checkpoint: Option<Duration>,
+    /// Go on from the last checkpoint of the job, in the same files and with the same options
+    ///
+    /// The results are the same bits as without the stop. A deck that has changed is refused.
+    #[arg(long, conflicts_with_all = ["overwrite", "frames", "every", "solver", "strict", "lenient", "settings"])]
+    pub resume: bool,
+    /// Go on for a time T beyond the end of the last step
+    #[arg(long, value_name = "T", value_parser = positive_time, requires = "resume")]
+    pub extend: Option<f64>,
     /// Sparse factorisation (default faer, or what the deck says)
     #[arg(long, value_name = "NAME")]
     pub solver: Option<Solver>,
@@ -105,7 +124,41 @@ pub(super) struct RunArgs {
     pub verbose: bool,
 }
 
+/// Options of `run` that change what is computed or written.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Options {
+    strict: bool,
+    lenient: bool,
+    settings: Vec<String>,
+    frames: Option<usize>,
+    every: Option<f64>,
+    solver: Option<Solver>,
+}
+
 impl RunArgs {
+    /// The options that change what is computed or written, as text.
+    pub fn options(&self) -> String {
+        let options = Options {
+            strict: self.deck.strict,
+            lenient: self.deck.lenient,
+            settings: self.deck.settings.clone(),
+            frames: self.frames,
+            every: self.every,
+            solver: self.solver,
+        };
+        // numbers and words are text
+        serde_json::to_string(&options).unwrap_or_default()
+    }
+
+    /// Takes over such options.
+    pub fn take_options(&mut self, text: &str) {
+        let options: Options = serde_json::from_str(text).unwrap_or_default();
+        (self.deck.strict, self.deck.lenient) = (options.strict, options.lenient);
+        self.deck.settings = options.settings;
+        (self.frames, self.every) = (options.frames, options.every);
+        self.solver = options.solver;
+    }
+
     /// How much to print.
     pub fn verbosity(&self) -> Verbosity {
         match (self.quiet, self.verbose) {
@@ -127,6 +180,14 @@ pub(super) struct CheckArgs {
     /// The deck
     #[command(flatten)]
     pub deck: DeckArgs,
+    /// Print errors, warnings and notes as text, or as JSON and nothing else
+    #[arg(
+        long,
+        value_name = "FORMAT",
+        default_value = "text",
+        conflicts_with = "picture"
+    )]
+    pub format: Format,
     /// Draw the model: bodies, supports, loads, velocities, surfaces with normals, contacts
     #[arg(long, value_name = "FILE.svg", value_parser = svg_file)]
     pub picture: Option<PathBuf>,
@@ -177,8 +238,17 @@ pub(super) struct LcpArgs {
     pub problem: PathBuf,
 }
 
-/// Names of the sparse factorisations.
+/// Forms of messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Format {
+    /// for people
+    Text,
+    /// for programs (docs/output.md)
+    Json,
+}
+
+/// Names of the sparse factorisations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 pub(super) enum Solver {
     /// multifrontal LDL^T in faer's order
     Faer,
@@ -201,6 +271,12 @@ fn svg_file(text: &str) -> Result<PathBuf, String> {
         Some(extension) if extension.eq_ignore_ascii_case("svg") => Ok(path),
         _ => Err("expected the name of a file that ends in .svg".into()),
     }
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().ok().filter(|seconds: &f64| *seconds >= 0.0);
+    let duration = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    duration.ok_or_else(|| "expected a number of seconds".into())
 }
 
 fn positive_count(text: &str) -> Result<usize, String> {

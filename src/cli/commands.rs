@@ -5,11 +5,11 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::args::{CheckArgs, DeckArgs, ExplainArgs, FlattenArgs, InfoArgs, LcpArgs};
+use super::args::{CheckArgs, DeckArgs, ExplainArgs, FlattenArgs, Format, InfoArgs, LcpArgs};
 use super::error::{CliError, Exit};
 use super::terminal::{coloured, complain, print};
 use crate::deck::{find_keyword, keywords};
-use crate::diagnostics::{Code, Diagnostics, Severity, Sources, Strictness, closest, wrapped};
+use crate::diagnostics::{Code, Diagnostics, Severity, Sources, closest, wrapped};
 use crate::dynamics::{Observer, RunError, RunSummary};
 use crate::flat_deck::{flat_deck, reads_as};
 use crate::lcp::solve_json;
@@ -22,6 +22,13 @@ use crate::{dynamics, reader};
 /// Reads a deck and describes its model.
 pub(super) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exit, CliError> {
     let loaded = load(&args.deck, numerics)?;
+    if args.format == Format::Json {
+        print(std::slice::from_ref(&loaded.json))?;
+        return Ok(match loaded.model {
+            Some(_) => Exit::Finished,
+            None => Exit::Rejected,
+        });
+    }
     complain(&loaded.all_messages);
     let Some(model) = &loaded.model else {
         print(&[loaded.line(&args.deck.path, None)])?;
@@ -50,7 +57,7 @@ pub(super) fn describe(
 /// Reads a deck; a deck that cannot be opened is an error of the file system.
 pub(super) fn load(deck: &DeckArgs, numerics: &Numerics) -> Result<Loaded, CliError> {
     openable(&deck.path)?;
-    Ok((numerics.load)(&deck.path, deck.strictness(), coloured()))
+    Ok((numerics.load)(deck, coloured()))
 }
 
 /// Refuses a deck that cannot be opened.
@@ -135,7 +142,7 @@ fn unknown(words: &[String]) -> CliError {
 /// is rejected.
 pub(super) fn flatten(args: &FlattenArgs) -> Result<Exit, CliError> {
     openable(&args.deck.path)?;
-    let mut sources = Sources::new();
+    let mut sources = Sources::with_settings(&args.deck.settings);
     let mut d = Diagnostics::with_strictness(args.deck.strictness());
     let model = reader::read_model(&args.deck.path, &mut sources, &mut d);
     // the flat deck has the nodes where the deck has them
@@ -217,6 +224,8 @@ pub(super) struct Loaded {
     pub model: Option<PreparedModel>,
     /// Errors, warnings and notes for the screen of `check`.
     pub all_messages: String,
+    /// The same as JSON.
+    pub json: String,
     /// The same for the screen of `run`, without those about differences from other codes.
     pub messages: String,
     /// The same without colour, for the log.
@@ -237,7 +246,7 @@ impl Loaded {
 }
 
 /// Reads a deck; messages coloured or not.
-type Load = fn(&Path, Strictness, bool) -> Loaded;
+type Load = fn(&DeckArgs, bool) -> Loaded;
 /// Solves all steps of a model.
 type Solve = fn(&PreparedModel, &mut dyn Observer) -> Result<RunSummary, RunError>;
 
@@ -258,15 +267,16 @@ impl Numerics {
 }
 
 /// Reads and prepares a deck.
-fn read_deck(path: &Path, strictness: Strictness, colour: bool) -> Loaded {
-    let mut sources = Sources::new();
-    let mut d = Diagnostics::with_strictness(strictness);
-    let model = reader::read_model(path, &mut sources, &mut d);
+fn read_deck(deck: &DeckArgs, colour: bool) -> Loaded {
+    let mut sources = Sources::with_settings(&deck.settings);
+    let mut d = Diagnostics::with_strictness(deck.strictness());
+    let model = reader::read_model(&deck.path, &mut sources, &mut d);
     let model = model.and_then(|model| prepare(model, &mut d));
     let ours = d.without(Code::LongNumber);
     Loaded {
         model,
         all_messages: d.render(&sources, colour),
+        json: d.json(&sources),
         messages: ours.render(&sources, colour),
         plain_messages: ours.render(&sources, false),
         errors: d.count(Severity::Error),

@@ -7,7 +7,9 @@ use std::process::ExitCode;
 
 use thiserror::Error;
 
-use crate::output::{FileError, MemoryError, NameError, OutputError, SummaryError, reason};
+use crate::output::{
+    CheckpointError, FileError, MemoryError, NameError, OutputError, SummaryError, reason,
+};
 
 /// Exit codes of the program: a contract with scripts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,6 +55,9 @@ pub(super) enum CliError {
     /// The files of the job cannot be created.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// There is no checkpoint to go on from.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
     /// A result cannot be written.
     #[error("cannot write the results: {0}")]
     Write(#[from] io::Error),

@@ -1,17 +1,20 @@
 //! The subcommand `run`: from the deck to the finished result files, however the run ends.
 
 use std::error::Error;
+use std::io;
 
-use super::args::{COMMIT, NUMBER, PROFILE, RunArgs, processors};
+use super::args::{COMMIT, NUMBER, PROFILE, RunArgs, VERSION, processors};
 use super::commands::{Loaded, Numerics, describe, load};
 use super::error::{CliError, Exit};
 use super::signals;
-use super::terminal::{complain, print};
-use crate::dynamics::{Outcome, RunError};
+use super::terminal::{coloured, complain, print};
+use crate::deck::first_change;
+use crate::diagnostics::{Diagnostics, Sources};
+use crate::dynamics::{Outcome, RunError, resume};
 use crate::model::{Frames, SolverChoice, Step};
 use crate::output::{
-    Claim, Interrupt, JobFiles, ModelEcho, ResultWriter, RunRecord, Verbosity, check_memory,
-    check_names, frames, program_lines, solver,
+    Checkpoint, Checkpoints, Claim, Interrupt, JobFiles, ModelEcho, Origin, ResultWriter,
+    RunRecord, Verbosity, check_memory, check_names, frames, program_lines, scientific, solver,
 };
 use crate::prepare::{MemoryNeed, PreparedModel};
 
@@ -23,7 +26,34 @@ pub(super) fn run(
     numerics: &Numerics,
     interrupt: &Interrupt,
 ) -> Result<Exit, CliError> {
+    let files = JobFiles::new(&args.deck.path, &args.output);
+    let earlier = match args.resume {
+        true => Some(Checkpoint::read(&files.restart, VERSION)?),
+        false => None,
+    };
+    let mut args = args.clone();
+    if let Some(earlier) = &earlier {
+        args.take_options(&earlier.origin.options);
+    }
+    let args = &args;
     let mut loaded = load(&args.deck, numerics)?;
+    let origin = Origin {
+        deck: texts(&loaded.sources),
+        options: args.options(),
+        extension: earlier
+            .as_ref()
+            .map_or(0.0, |earlier| earlier.origin.extension)
+            + args.extend.unwrap_or(0.0),
+    };
+    let extension = origin.extension;
+    if let Some(earlier) = &earlier
+        && let Some(changed) = first_change(&earlier.origin.deck, &loaded.sources)
+    {
+        let mut d = Diagnostics::new();
+        d.push(changed);
+        complain(&d.render(&loaded.sources, coloured()));
+        return Ok(Exit::Rejected);
+    }
     let Some(mut model) = loaded.model.take() else {
         complain(&loaded.messages);
         return Ok(Exit::Rejected);
@@ -40,8 +70,7 @@ pub(super) fn run(
     }
     let need = MemoryNeed::new(&model);
     check_memory(need)?;
-    let files = JobFiles::new(&args.deck.path, &args.output);
-    let claim = Claim::take(&files, args.overwrite)?;
+    let claim = Claim::take(&files, args.overwrite || args.resume)?;
     let record = RunRecord {
         version: NUMBER.into(),
         commit: COMMIT.into(),
@@ -53,21 +82,47 @@ pub(super) fn run(
     let notes = override_steps(args, &mut model.model.steps);
     let mut writer = ResultWriter::create(&model.model, claim, &record, args.verbosity())?;
     writer.heed(interrupt);
+    writer.keep_checkpoints(Checkpoints {
+        program: VERSION.into(),
+        origin,
+        every: args.checkpoint,
+    });
     for line in header(args, &files, &loaded, &record, &model) {
         writer.line(&line)?;
     }
     for note in &notes {
         writer.line(note)?;
     }
+    if let Some(earlier) = &earlier {
+        let time = scientific(earlier.time, 6);
+        writer.line(&format!("resumed  from the checkpoint at time {time}"))?;
+        writer.go_on(earlier)?;
+    }
     if !loaded.plain_messages.is_empty() {
         writer.detail(loaded.plain_messages.trim_end())?;
     }
     writer.line("")?;
-    let exit = solve(&model, &mut writer, numerics, interrupt)?;
+    let exit = solve(
+        &model,
+        &mut writer,
+        numerics,
+        (
+            interrupt,
+            earlier.as_ref().map(|earlier| (earlier, extension)),
+        ),
+    )?;
     match writer.lost_screen() {
         Some(error) if exit == Exit::Finished => Err(CliError::Screen(error)),
         _ => Ok(exit),
     }
+}
+
+/// Names and texts of the files of a deck.
+fn texts(sources: &Sources) -> Vec<(String, String)> {
+    let files = sources.files().iter();
+    files
+        .map(|file| (file.name().to_owned(), file.text().to_owned()))
+        .collect()
 }
 
 /// Describes the model of a deck that shall not be solved; no file is touched.
@@ -87,10 +142,16 @@ fn solve(
     model: &PreparedModel,
     writer: &mut ResultWriter,
     numerics: &Numerics,
-    interrupt: &Interrupt,
+    (interrupt, earlier): (&Interrupt, Option<(&Checkpoint, f64)>),
 ) -> Result<Exit, CliError> {
-    let solved = (numerics.solve)(model, writer);
-    let solved = solved.map_err(|RunError::Observer(error)| error);
+    let solved = match earlier {
+        Some((earlier, extension)) => resume(model, &earlier.solver, extension, writer),
+        None => (numerics.solve)(model, writer),
+    };
+    let solved = solved.map_err(|error| match error {
+        RunError::Observer(error) => error,
+        RunError::Checkpoint(error) => io::Error::other(error),
+    });
     let finished = solved.and_then(|summary| writer.finish(&summary).map(|()| summary.outcome));
     match finished {
         Ok(Outcome::Finished) => Ok(Exit::Finished),
@@ -185,7 +246,6 @@ mod tests {
     use clap::Parser;
     use nalgebra::{DMatrix, DVector};
     use std::cell;
-    use std::io;
     use std::path::{Path, PathBuf};
     use std::sync::Arc;
     use tempfile::TempDir;
@@ -385,7 +445,7 @@ mod tests {
 
     fn numerics() -> Numerics {
         Numerics {
-            load: |_, _, _| loaded(Some(square())),
+            load: |_, _| loaded(Some(square())),
             solve: to_the_end,
         }
     }
@@ -561,11 +621,11 @@ mod tests {
     #[test]
     fn a_rejected_deck_touches_no_file() {
         let bench = Bench::new();
-        let load = |_: &Path, _, _| loaded(None);
+        let load = |_: &_, _| loaded(None);
         let exit = bench.run(&["-q"], &Numerics { load, ..numerics() });
         assert_eq!(code(&exit), Exit::Rejected);
         assert!(!bench.touched());
-        let load = |_: &Path, _, _| {
+        let load = |_: &_, _| {
             let name = "A/B".into();
             let mut model = square();
             model.sets.elements = vec![Set {

@@ -8,7 +8,7 @@ use super::targets::PairTarget;
 use crate::lcp::ContactState;
 
 /// A pair in contact.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ClosedPair {
     /// Its constraint.
     pub key: ConstraintKey,
@@ -44,7 +44,7 @@ impl ClosedPair {
 
 /// The pairs in contact, with increasing keys: those that carry a force, or, at an impact, those
 /// that touch.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct ClosedPairs(Vec<ClosedPair>);
 
 /// The pairs must come with increasing keys.

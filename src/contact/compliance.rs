@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use pulp::Simd;
 
 use super::constraint::{Constraint, Rows};
+use crate::archive::{Archive, ArchiveError};
 use crate::linear::{CheckedSolver, LinearError, Rotation, Transformation};
 
 /// The inverse of a factorised matrix at the unknowns that constraints act on, a block for each connected
@@ -33,7 +34,7 @@ pub struct Compliance {
 }
 
 /// Constraints whose compliance is computed together.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub enum Scope {
     /// All of them.
     All,
@@ -85,6 +86,57 @@ impl Compliance {
         self.groups = groups;
         self.rotation = Rotation::default();
         self.inverses.clear();
+    }
+
+    /// Carries the rotation and the unknowns at which the inverse is known; what is read is computed anew by the
+    /// `solver`, the same bits.
+    ///
+    /// # Errors
+    /// What is read is of another model.
+    pub fn carry(
+        &mut self,
+        archive: &mut Archive,
+        solver: &mut CheckedSolver,
+    ) -> Result<(), ArchiveError> {
+        self.map.carry(archive)?;
+        archive.carry(&mut self.rotation)?;
+        archive.carry_values(&mut self.groups)?;
+        let lists = |blocks: &Vec<Block>| {
+            let list = |block: &Block| (block.group, block.unknowns.clone());
+            blocks.iter().map(list).collect::<Vec<_>>()
+        };
+        let scopes = self.inverses.iter();
+        let mut lists: Vec<_> = scopes
+            .map(|(scope, blocks)| (scope.clone(), lists(blocks)))
+            .collect();
+        archive.carry(&mut lists)?;
+        if !archive.is_reading() {
+            return Ok(());
+        }
+        self.inverses.clear();
+        for (scope, blocks) in lists {
+            let unknowns: Vec<&[usize]> = blocks.iter().map(|block| &block.1[..]).collect();
+            let size = solver.matrix().size();
+            if unknowns
+                .iter()
+                .flat_map(|list| *list)
+                .any(|&unknown| unknown >= size)
+            {
+                return Err(ArchiveError::Size);
+            }
+            let inverses = match solver.is_factorized() {
+                true => solver.unchecked_inverse_at(&unknowns),
+                false => vec![Vec::new(); blocks.len()],
+            };
+            let block = |((group, unknowns), inverse)| Block {
+                group,
+                unknowns,
+                inverse,
+            };
+            let blocks = blocks.into_iter().zip(inverses).map(block);
+            self.inverses.insert(scope, blocks.collect());
+        }
+        Ok(())
     }
 
     /// Turns W with the bodies, to R W R^T, by their angles since the matrix was factorised (rad).

@@ -20,7 +20,7 @@ use super::tolerances::NOTHING;
 pub type PerDof<T> = SmallVec<[T; 8]>;
 
 /// A normal and a tangential row over the dofs of a constraint.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Rows {
     /// Normal row.
     pub normal: PerDof<f64>,
@@ -74,7 +74,7 @@ fn in_place<T: Copy + Default, const N: usize>(values: [T; N]) -> PerDof<T> {
 ///
 /// Force rows and derivative rows are two things even where they hold the same numbers: the former
 /// make work and momenta right, the latter say how gap and slip go on from the iterate.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Constraint {
     /// What identifies it.
     pub key: ConstraintKey,

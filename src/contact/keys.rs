@@ -3,7 +3,9 @@
 use crate::lcp::ContactName;
 
 /// What identifies a slave node among those of all contacts: a node may be slave in several.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub struct SlaveKey {
     /// Contact of the model.
     pub(super) contact: usize,
@@ -20,7 +22,9 @@ impl SlaveKey {
 
 /// What identifies a constraint through passes and increments. The rest of the program compares keys and asks
 /// them for what they share with others; it does not know what they are made of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub struct ConstraintKey {
     pub(super) slave: SlaveKey,
     /// Segment in its contact, at a corner that before it. A kind with one constraint for each slave

@@ -7,6 +7,7 @@ use super::keys::{ConstraintKey, SlaveKey};
 use super::tolerances::{
     PAIRING_REACH, PROJECTION_BEYOND_ENDS, SEARCH_MARGIN, SEARCH_MARGIN_PER_MOTION,
 };
+use crate::archive::{Archive, ArchiveError};
 use crate::vectors::{Circle, CircleTree, difference, dot, length};
 
 /// A segment that a slave node may pair with.
@@ -57,6 +58,45 @@ impl<'m> Search<'m> {
                 side.set_travel(|node| dt * length(v(node)));
             }
         }
+    }
+
+    /// Carries the lists, with the positions that they are valid for.
+    ///
+    /// # Errors
+    /// What is read is of other contacts.
+    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        for territory in &mut self.territories {
+            let Territory {
+                contact,
+                slaves,
+                segments,
+                candidates,
+                starts,
+                ..
+            } = territory;
+            for side in [slaves, segments] {
+                archive.carry_values(&mut side.travel)?;
+                archive.carry(&mut side.reference)?;
+                archive.carry(&mut side.margin)?;
+                let sizes = [side.reference.len(), side.margin.len()];
+                if sizes != [0; 2] && sizes != [side.ends.len(); 2] {
+                    return Err(ArchiveError::Size);
+                }
+            }
+            archive.carry(candidates)?;
+            archive.carry(starts)?;
+            let last = starts.last().map_or(0, |last| *last);
+            let segments = contact.segments.len();
+            let fit = last == candidates.len()
+                && starts.is_sorted()
+                && candidates
+                    .iter()
+                    .all(|&segment| (segment as usize) < segments);
+            if !fit {
+                return Err(ArchiveError::Size);
+            }
+        }
+        archive.carry(&mut self.searches)
     }
 
     /// Searches the contacts whose lists are not valid for the displacements `u`.

@@ -23,7 +23,7 @@ use crate::model::Friction;
 use crate::vectors::{angle, cross, difference, dot};
 
 /// What a slave node must not penetrate: a segment, or the corner at its end.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContactTarget {
     /// Index of the segment in its contact.
     pub segment: usize,
@@ -61,7 +61,7 @@ impl ContactTarget {
 }
 
 /// Which slave node meets which segment, or which corner.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PairTarget {
     /// Key of their constraint.
     pub key: ConstraintKey,
@@ -640,7 +640,7 @@ impl SlaveNode<'_> {
 }
 
 /// A convex corner, between a segment and the next, as the target of a slave node.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Corner {
     /// The segment after the corner.
     pub next: usize,

@@ -5,9 +5,11 @@ use super::card::{Card, Instance, Rows};
 use super::content::Content;
 use super::keywords::{Data, Keyword, Status};
 use super::lines::{Line, LineKind, Lines, overlong};
+use super::parameters::Parameters;
 use super::resolve::{self, Piece};
 use super::text::Text;
 use crate::diagnostics::{Code, Diagnostics, FileId, Severity, Source, Sources, Span};
+use memchr::memchr;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -89,6 +91,7 @@ fn collect(
     sources: &mut Sources,
     d: &mut Diagnostics,
 ) -> Deck {
+    let parameters = Parameters::new(sources.settings(), d);
     let file = sources.next_id();
     let mut collector = Collector {
         sources,
@@ -96,8 +99,12 @@ fn collect(
         deck: Deck::default(),
         rows: RowRule::Stray,
         open,
+        parameters,
     };
     collector.content(name, content, None, false);
+    if !collector.deck.incomplete && !collector.deck.dropped {
+        collector.parameters.finish(collector.d);
+    }
     let deck = collector.deck;
     if deck.cards.is_empty() && !d.has_errors() {
         let start = Span {
@@ -137,6 +144,8 @@ enum RowRule {
     Stray,
     /// They belong to the last card.
     Keep,
+    /// They define parameters.
+    Define,
     /// They are left out.
     Skip,
     /// The last card takes none.
@@ -152,6 +161,7 @@ struct Collector<'a> {
     rows: RowRule,
     /// The files being read, outermost first.
     open: Vec<OpenFile>,
+    parameters: Parameters,
 }
 
 impl Collector<'_> {
@@ -205,11 +215,23 @@ impl Collector<'_> {
         }
         match (self.rows, self.deck.cards.last_mut()) {
             (RowRule::Skip, _) => {}
+            (RowRule::Define, _) => {
+                lines
+                    .data()
+                    .for_each(|line| self.parameters.define(line, self.d));
+            }
             (RowRule::Keep, Some(card)) => {
                 if card.keyword.data != Data::Text && text.contains('"') {
                     lines.data().for_each(|line| line.check_quotes(self.d));
                 }
-                card.rows.add(lines, source);
+                let has_names = memchr(b'<', text.as_bytes()).is_some();
+                match has_names && card.keyword.data != Data::Text {
+                    true => {
+                        let replaced = self.parameters.replaced(lines, self.sources, self.d);
+                        card.rows.add(Lines::at(lines, &replaced), &replaced);
+                    }
+                    false => card.rows.add(lines, source),
+                }
             }
             (RowRule::Refuse, Some(card)) => {
                 let message = format!("{} takes no data lines", card.title());
@@ -237,7 +259,8 @@ impl Collector<'_> {
         }
         let last = self.deck.cards.last();
         let in_text = last.is_some_and(|card| card.keyword.data == Data::Text);
-        let is_free = self.rows == RowRule::Skip || (self.rows == RowRule::Keep && in_text);
+        let are_free = matches!(self.rows, RowRule::Skip | RowRule::Define);
+        let is_free = are_free || (self.rows == RowRule::Keep && in_text);
         let strange = line.text.char_indices().find(|(_, c)| !c.is_ascii());
         if let (false, Some((at, c))) = (is_free, strange) {
             let span = line.span_of(at..at + c.len_utf8());
@@ -250,7 +273,14 @@ impl Collector<'_> {
     /// that it names.
     fn keyword_line<'l>(&mut self, line: Line<'l>, rest: &mut Lines<'l>) {
         let mut pieces = Vec::new();
-        for (index, line) in continued(line, rest).into_iter().enumerate() {
+        let lines = continued(line, rest);
+        let replace = |line: &Line| self.parameters.replace(*line, self.sources, self.d);
+        let replaced: Vec<Option<String>> = lines.iter().map(replace).collect();
+        for (index, (line, replaced)) in lines.iter().zip(&replaced).enumerate() {
+            let line = Line {
+                text: replaced.as_deref().unwrap_or(line.text),
+                ..*line
+            };
             line.check_quotes(self.d);
             self.remark_on_form(line);
             pieces.extend(line.fields().map(|text| Piece {
@@ -278,8 +308,10 @@ impl Collector<'_> {
         }
         // the lines of an included file continue the card before it
         let is_inclusion = keyword.name == "INCLUDE";
+        let defines = keyword.name == "PARAMETER";
         let rows = match keyword.data {
             _ if is_inclusion => self.rows,
+            _ if defines => RowRule::Define,
             Data::None => RowRule::Refuse,
             Data::Rows(_) | Data::Required(_) | Data::Text => RowRule::Keep,
             Data::Words | Data::Skipped => RowRule::Skip,
@@ -292,9 +324,9 @@ impl Collector<'_> {
             None => None,
         };
         let path = path.map(|path| (path.text.trim_matches('"').to_string(), path.span));
-        if is_inclusion {
+        if is_inclusion || defines {
             self.deck.cards.pop();
-            self.deck.incomplete |= path.is_none();
+            self.deck.incomplete |= is_inclusion && path.is_none();
         }
         if let Some((path, span)) = path {
             self.include(&path, span, !is_inclusion);

@@ -274,6 +274,17 @@ impl<'a> Lines<'a> {
         }
     }
 
+    /// The same lines with another text, which is theirs alone.
+    pub fn at<'t>(self, text: &'t str) -> Lines<'t> {
+        Lines {
+            file: self.file,
+            text,
+            start: 0,
+            before: self.before,
+            instance: self.instance,
+        }
+    }
+
     /// The text of these lines.
     pub fn rest(&self) -> &'a str {
         self.text.get(self.start..).unwrap_or("")

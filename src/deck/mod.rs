@@ -6,15 +6,19 @@
 
 mod assembly;
 mod card;
+mod change;
 mod collect;
 mod content;
+mod expression;
 mod keywords;
 mod lines;
 mod number;
+mod parameters;
 mod resolve;
 mod text;
 
 pub use card::{Card, Instance, Param, Placement, Rows};
+pub use change::first_change;
 pub use collect::Deck;
 pub use keywords::{
     Data, Field, Keyword, Parameter, Quantity, RowForm, Scope, Status, Takes, Value,

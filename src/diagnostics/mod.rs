@@ -5,12 +5,13 @@
 
 mod code;
 mod diagnostic;
+mod json;
 mod render;
 mod sources;
 mod words;
 
 pub use code::Code;
 pub use diagnostic::{Added, Diagnostic, Diagnostics, FileId, Severity, Span, Strictness};
-pub use sources::{Source, Sources};
+pub use sources::{Replaced, Source, Sources};
 pub use words::{closest, shown};
 pub(crate) use words::{list_of, wrapped};

@@ -54,7 +54,7 @@ fn level(severity: Severity) -> Level<'static> {
 fn group<'a>(item: &'a Diagnostic, sources: &'a Sources) -> Group<'a> {
     let title = level(item.severity).primary_title(item.message.as_str());
     let mut group = Group::with_title(title.id(item.code.id()));
-    if let Some(span) = item.span {
+    if let Some(span) = item.span.map(|span| sources.typed(span)) {
         group = match snippet(span, item, sources) {
             Some(snippet) => group.element(snippet),
             None => group.elements(origin(span, sources)),
@@ -104,6 +104,7 @@ fn in_instance(name: &str, place: Span, sources: &Sources) -> String {
 }
 
 fn position(place: Span, sources: &Sources) -> String {
+    let place = sources.typed(place);
     let name = sources.get(place.file).map_or("", |source| source.name());
     format!("{name}:{}:{}", place.line, place.column)
 }

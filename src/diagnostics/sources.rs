@@ -2,6 +2,7 @@
 
 use super::{FileId, Span};
 use memchr::memchr_iter;
+use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
 /// Bytes of a piece of a text whose lines are counted together.
@@ -86,12 +87,40 @@ pub struct Sources {
     files: Vec<Source>,
     /// Names of the instances of parts, and where each is placed.
     instances: Vec<(String, Span)>,
+    /// Values that stand for something else in lines, which the reader sees in its place.
+    replaced: BTreeMap<(u32, u32), Vec<Replaced>>,
+    /// Values of parameters in place of those of the deck.
+    settings: Vec<String>,
+}
+
+/// A value that the reader sees in a line, and what was typed in its place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Replaced {
+    /// Its first column in the line that the reader sees, from 1.
+    pub column: u32,
+    /// Its length in characters.
+    pub length: u32,
+    /// What was typed.
+    pub typed: Span,
 }
 
 impl Sources {
     /// No files yet.
     pub fn new() -> Sources {
         Sources::default()
+    }
+
+    /// No files yet, and values `name=expression` of parameters in place of those of the deck.
+    pub fn with_settings(settings: &[String]) -> Sources {
+        Sources {
+            settings: settings.to_vec(),
+            ..Sources::default()
+        }
+    }
+
+    /// Values of parameters in place of those of the deck.
+    pub fn settings(&self) -> &[String] {
+        &self.settings
     }
 
     /// Adds a file.
@@ -131,6 +160,37 @@ impl Sources {
         let index = (span.instance as usize).checked_sub(1)?;
         let (name, place) = self.instances.get(index)?;
         Some((name, *place))
+    }
+
+    /// Notes what stands for something else in a line, from left to right.
+    pub fn replace(&mut self, file: FileId, line: u32, replaced: Vec<Replaced>) {
+        self.replaced.insert((file.0, line), replaced);
+    }
+
+    /// The place that was typed of one that the reader has seen.
+    pub fn typed(&self, span: Span) -> Span {
+        let Some(replaced) = self.replaced.get(&(span.file.0, span.line)) else {
+            return span;
+        };
+        // the place of a column, at whose value `side` says where
+        let typed = |column: u32, side: fn(&Replaced) -> u32| {
+            let before = replaced.iter().take_while(|value| value.column <= column);
+            match before.last() {
+                Some(value) if column < value.column + value.length => side(value),
+                Some(value) => {
+                    value.typed.column + value.typed.length + (column - value.column - value.length)
+                }
+                None => column,
+            }
+        };
+        let first = typed(span.column, |value| value.typed.column);
+        let end = |value: &Replaced| value.typed.column + value.typed.length - 1;
+        let last = typed(span.column + span.length.max(1) - 1, end);
+        Span {
+            column: first,
+            length: (last + 1).saturating_sub(first).max(1),
+            ..span
+        }
     }
 
     /// The file of an id.

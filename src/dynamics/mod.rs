@@ -16,4 +16,4 @@ pub use results::{
     Momentum, NodalResults, NodeMass, NodeStatus, Observer, Outcome, PassReport, ReturnedImpulse,
     RigidReaction, RunSummary, SolverCounts, State, Timings, Touch, Unbalanced, Worst,
 };
-pub use run::{RunError, run};
+pub use run::{RunError, resume, run};

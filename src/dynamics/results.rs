@@ -21,7 +21,7 @@ use crate::lcp::{FrictionalLcp, LcpError};
 use crate::linear::LinearError;
 
 /// Motion at one time, `2 N` entries each, what the materials remember, and the pairs in contact.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct State {
     /// Displacement (length).
     pub u: Vec<f64>,
@@ -37,7 +37,18 @@ pub struct State {
 }
 
 /// Contact status of a node as slave; a node that is slave of several pairs shows the highest.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Default,
+    serde::Serialize,
+    serde::Deserialize,
+)]
 #[repr(u8)]
 pub enum NodeStatus {
     /// No candidate segment.
@@ -52,7 +63,7 @@ pub enum NodeStatus {
 }
 
 /// Mass of a node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[repr(u8)]
 pub enum NodeMass {
     /// Its own; no node of a contact surface.
@@ -65,7 +76,7 @@ pub enum NodeMass {
 }
 
 /// Results at nodes, apart from the motion.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct NodalResults {
     /// Support reaction, with the force that the support exerts through equations, eq. (9.12), `2 N` entries
     /// (force); 0 at all other dofs. That of a rigid surface is at its reference node.
@@ -89,7 +100,7 @@ pub struct NodalResults {
 }
 
 /// Energies; all but the first two are cumulative from the start of the analysis.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Energy {
     /// Kinetic energy T.
     pub kinetic: f64,
@@ -118,7 +129,7 @@ pub struct Energy {
 }
 
 /// Momentum of all bodies.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Momentum {
     /// Linear momentum (mass length/time).
     pub linear: [f64; 2],
@@ -170,7 +181,7 @@ pub struct RigidReaction {
 }
 
 /// Work of the solver in an increment or in a whole run, and the errors of its answer.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct SolverCounts {
     /// Predictor and corrector passes.
     pub passes: usize,
@@ -285,10 +296,21 @@ pub trait Observer {
     fn wants_stop(&self) -> bool {
         false
     }
+
+    /// Whether a checkpoint is due; asked after every increment.
+    fn wants_checkpoint(&self) -> bool {
+        false
+    }
+
+    /// All that the rest of the run depends on, for [`super::resume`]: when it is wanted, and before the run ends
+    /// because it shall.
+    fn checkpoint(&mut self, _checkpoint: Vec<u8>) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 /// Impulses of a contact: those of its forces, of its impacts and of landing returns.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct ContactImpulse {
     /// Impulse on the slave surface (force time).
     pub vector: [f64; 2],
@@ -306,7 +328,7 @@ pub struct ContactImpulse {
 }
 
 /// How far the pairs at the end of an increment are from the contact law, in lengths of their segments.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct ContactViolation {
     /// Largest overlap of an open pair.
     pub overlap: f64,
@@ -373,7 +395,7 @@ pub struct ContactResultant {
 
 /// The contact of two bodies, or of a body and a rigid surface, from the landing of a first node until no pair is
 /// closed.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Touch {
     /// The bodies, in the order of [`crate::model::Bodies`]; none for a rigid surface.
     pub bodies: [Option<usize>; 2],

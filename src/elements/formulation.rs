@@ -262,7 +262,7 @@ pub(super) fn determinant(h: &Matrix2<f64>) -> f64 {
 }
 
 /// Strain energy of one element, and its stress and strain averaged over the volume.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct ElementResult {
     /// Strain energy (force length).
     pub energy: f64,
@@ -278,7 +278,7 @@ pub struct ElementResult {
 }
 
 /// The element with the largest principal strain.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Strained {
     /// Element (index).
     pub element: usize,

@@ -267,6 +267,11 @@ fn requests(index: usize, step: &Step, model: &Model, lines: &mut DeckWriter) {
     if let Some(when) = when {
         lines.card("OUTPUT", ["FIELD".to_owned(), when]);
     }
+    for restart in model.restarts.iter().filter(|r| r.from_step == index + 1) {
+        let mut parameters = vec!["WRITE".to_owned(), set("FREQUENCY", restart.every)];
+        parameters.extend((!restart.keeps_all).then(|| "OVERLAY".to_owned()));
+        lines.card_of("RESTART", &parameters);
+    }
     if index == 0 {
         histories(&model.sets, lines);
         for &dof in &model.sets.monitored {

@@ -190,12 +190,14 @@ const SINGULAR: f64 = 1e-12;
 const TOGETHER: usize = 4;
 
 /// Factors of a square matrix held by columns.
+#[derive(serde::Serialize, serde::Deserialize)]
 pub(crate) struct Factors {
     values: Vec<f64>,
     size: usize,
     kind: Kind,
 }
 
+#[derive(serde::Serialize, serde::Deserialize)]
 enum Kind {
     /// L L^T, the lower triangle holds L.
     Cholesky,

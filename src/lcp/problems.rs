@@ -283,7 +283,7 @@ impl FrictionalLcp {
 }
 
 /// State of a contact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum ContactState {
     /// No force: Pn = Pt = 0, gap >= 0.
     Open,

@@ -7,6 +7,7 @@ use bumpalo::Bump;
 use super::dense::{Factors, List, copy, dot, filled, list, max_abs};
 use super::problems::{ContactState, FrictionalSolution, Spare};
 use super::scaled::Scaled;
+use crate::archive::{Archive, ArchiveError};
 
 /// Unknowns of the kept factors for one of the border: with fewer, new factors are not dearer.
 const UNKNOWNS_PER_BORDER: usize = 8;
@@ -390,6 +391,7 @@ pub struct KeptFactors {
 }
 
 /// Factors with the system that they are of.
+#[derive(serde::Serialize, serde::Deserialize)]
 pub(super) struct Kept {
     names: Vec<ContactName>,
     states: Vec<ContactState>,
@@ -457,6 +459,15 @@ impl<'a> System<'a> {
 }
 
 impl KeptFactors {
+    /// Carries names and factors.
+    ///
+    /// # Errors
+    /// What is read are no factors.
+    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        archive.carry(&mut self.names)?;
+        archive.carry(&mut self.kept)
+    }
+
     /// Names the contacts of the next problem, each differently.
     pub fn name_contacts(&mut self, names: impl Iterator<Item = ContactName>) {
         self.names.clear();

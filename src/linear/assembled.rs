@@ -9,6 +9,7 @@ use smallvec::SmallVec;
 use sprs::{CsMat, CsMatBase, CsMatView};
 
 use super::Transformation;
+use crate::archive::{Archive, ArchiveError};
 
 /// Marks an entry of an element matrix that equations distribute over several entries.
 const DISTRIBUTED: u32 = u32::MAX;
@@ -252,6 +253,12 @@ impl Assembled {
             self.coefficients.clear();
             self.coefficients.extend(map.coefficients());
         }
+    }
+
+    /// Carries the values and coefficients.
+    pub(super) fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        archive.carry_values(self.matrix.data_mut())?;
+        archive.carry_values(&mut self.coefficients)
     }
 
     /// Sets all values to zero.
@@ -515,6 +522,11 @@ impl BlockSum {
                 values[self.positions[at]] += value;
             }
         }
+    }
+
+    /// Values of the sum.
+    pub fn values_mut(&mut self) -> &mut [f64] {
+        self.sum.data_mut()
     }
 
     /// The sum.

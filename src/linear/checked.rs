@@ -6,6 +6,7 @@ use sprs::CsMatView;
 
 use super::assembled::{BlockSum, united};
 use super::{AddedBlocks, Assembled, LinearError, LinearSolver, SMALLEST, larger, largest};
+use crate::archive::{Archive, ArchiveError};
 
 /// Largest residual of a solve, relative to the terms it is made of. A backward stable solve stays
 /// near the round-off unit.
@@ -63,6 +64,36 @@ impl CheckedSolver {
             sum.fill(matrix, &blocks);
             self.sum = Some(sum);
         }
+    }
+
+    /// Carries the matrix with its blocks; factors that are read are made anew, the same bits.
+    ///
+    /// # Errors
+    /// What is read is of another matrix.
+    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        self.matrix.carry(archive)?;
+        let mut places = self.sum.as_ref().map(|sum| sum.places().to_vec());
+        archive.carry(&mut places)?;
+        if archive.is_reading() {
+            let n = self.matrix.size();
+            let are_inside = |places: &Vec<(usize, usize)>| {
+                places.iter().all(|&(column, row)| column < n && row < n)
+                    && places.is_sorted_by(|one, other| one < other)
+            };
+            if places.as_ref().is_some_and(|places| !are_inside(places)) {
+                return Err(ArchiveError::Size);
+            }
+            self.sum = places.map(|places| BlockSum::new(self.matrix.matrix(), places));
+        }
+        if let Some(sum) = &mut self.sum {
+            archive.carry_values(sum.values_mut())?;
+        }
+        archive.carry(&mut self.has_blocks)?;
+        archive.carry(&mut self.factorized)?;
+        if archive.is_reading() && self.factorized {
+            self.factorize().map_err(|_| ArchiveError::Factors)?;
+        }
+        Ok(())
     }
 
     /// Factorises the matrix with the added blocks.

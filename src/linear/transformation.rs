@@ -6,6 +6,7 @@ use std::ops::Range;
 use smallvec::SmallVec;
 
 use super::{larger, largest};
+use crate::archive::{Archive, ArchiveError};
 
 /// The matrix T of u = T q + g: every dof is a sum of terms c q_k.
 ///
@@ -96,6 +97,19 @@ impl Transformation {
         let own = || self.terms.iter().map(|term| term.1).collect();
         self.derivatives.get_or_insert_with(own)[last] = derivative;
         self.terms[last].1 = force;
+    }
+
+    /// Carries the coefficients, which bodies that turn change.
+    ///
+    /// # Errors
+    /// What is read is of another map.
+    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        archive.carry(&mut self.derivatives)?;
+        match &self.derivatives {
+            Some(derivatives) if derivatives.len() != self.terms.len() => Err(ArchiveError::Size),
+            Some(_) => archive.carry_values(&mut self.terms),
+            None => Ok(()),
+        }
     }
 
     /// Coefficients of all terms.
@@ -209,7 +223,7 @@ impl Transformation {
 
 /// R: turns x and y of every node by the angle of its body. W is the inverse of a matrix, R W R^T
 /// that of the matrix turned with the bodies.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Rotation {
     /// Cosine and sine of the angle of every node; none where no body is turned, so that it costs nothing.
     nodes: Vec<[f64; 2]>,

@@ -16,7 +16,7 @@ pub struct Interaction {
 }
 
 /// Coefficient of friction mu as a function of the slip rate, eq. (3.10).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Friction {
     /// Coefficient mu_s >= 0 at rest.
     pub at_rest: f64,

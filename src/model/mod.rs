@@ -29,7 +29,7 @@ pub use sets::{HistorySet, Instance, NamedSets, RequestedFields, element_name, n
 pub use side::{Segment, Side, SideNodes};
 pub use step::{
     BodyForce, ContactMass, Factorization, Frames, Impact, ImpactTime, Incrementation, Increments,
-    LandingRule, LcpChoice, Load, PointLoad, Pressure, Procedure, Rate, Scheme, Settings,
+    LandingRule, LcpChoice, Load, PointLoad, Pressure, Procedure, Rate, RestartOutput, Scheme, Settings,
     SolverChoice, Step, Support, SupportMotion, Traction, Variation,
 };
 
@@ -65,6 +65,8 @@ pub struct Model {
     pub steps: Vec<Step>,
     /// Rigid surfaces with their reference nodes, and bodies that turn.
     pub rigid_bodies: Vec<RigidBody>,
+    /// Requests of checkpoints, in the order of their steps.
+    pub restarts: Vec<RestartOutput>,
 }
 
 impl Model {

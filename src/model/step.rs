@@ -28,8 +28,19 @@ pub struct Step {
     pub frames: Frames,
 }
 
+/// When checkpoints are written, from a step on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct RestartOutput {
+    /// Number of the step, from 1.
+    pub from_step: usize,
+    /// Increments of a step between two checkpoints; its last increment has one too. 0: none.
+    pub every: usize,
+    /// Whether earlier checkpoints of the step are kept.
+    pub keeps_all: bool,
+}
+
 /// Procedure of a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Procedure {
     /// The equation of motion, integrated implicitly in time (`*DYNAMIC`).
     Dynamic,

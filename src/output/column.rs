@@ -3,8 +3,10 @@
 
 use hdf5::plist::dataset_create::{AllocTime, FillTime};
 use hdf5::types::VarLenUnicode;
-use hdf5::{Attribute, Dataset, Extent, Extents, Group, H5Type, Hyperslab, Location, SliceOrIndex};
-use ndarray::{ArrayView, IxDyn};
+use hdf5::{
+    Attribute, Dataset, Extent, Extents, File, Group, H5Type, Hyperslab, Location, SliceOrIndex,
+};
+use ndarray::{ArrayD, ArrayView, IxDyn};
 
 /// What a dataset holds: the dimension of its values, such as "length/time" ("1" for a pure number), and a
 /// sentence. They are its attributes `dimension` and `description`.
@@ -285,6 +287,12 @@ trait Growing<R> {
 
     /// Bytes of the rows of a report.
     fn report_bytes(&self) -> usize;
+
+    /// Rows in the file.
+    fn written(&self) -> usize;
+
+    /// Writes the first rows of the same dataset of an earlier file.
+    fn copy(&mut self, earlier: &File, rows: usize) -> hdf5::Result<()>;
 }
 
 impl<R, T: Number, F: FnMut(&R, &mut Vec<T>)> Growing<R> for Column<T, F> {
@@ -323,7 +331,33 @@ impl<R, T: Number, F: FnMut(&R, &mut Vec<T>)> Growing<R> for Column<T, F> {
     fn report_bytes(&self) -> usize {
         self.layout.rows * self.layout.size() * size_of::<T>()
     }
+
+    fn written(&self) -> usize {
+        self.written
+    }
+
+    fn copy(&mut self, earlier: &File, rows: usize) -> hdf5::Result<()> {
+        let source = earlier.dataset(&self.dataset.name())?;
+        let Layout {
+            chunk_rows, given, ..
+        } = &self.layout;
+        let bytes = chunk_rows * self.layout.size() * size_of::<T>();
+        let piece = chunk_rows * (COPIED_BYTES / bytes.max(1)).max(1);
+        let given = given.clone();
+        while self.written < rows {
+            let end = rows.min(self.written + piece);
+            let mut ranges = vec![SliceOrIndex::from(self.written..end)];
+            ranges.extend(given.iter().map(|&n| SliceOrIndex::from(0..n)));
+            let values: ArrayD<T> = source.read_slice(Hyperslab::from(ranges))?;
+            self.pending = values.iter().copied().collect();
+            self.flush()?;
+        }
+        Ok(())
+    }
 }
+
+/// Bytes of a dataset that are copied in one go.
+const COPIED_BYTES: usize = 1 << 22;
 
 /// A number by which readers go: it is written after all that it counts.
 struct Count<R> {
@@ -416,6 +450,29 @@ impl<'m, R> Columns<'m, R> {
     pub fn flush(&mut self) -> hdf5::Result<()> {
         self.waiting = 0;
         self.all.iter_mut().try_for_each(|column| column.flush())
+    }
+
+    /// Rows of all datasets in the file, then the counts.
+    pub fn written(&self) -> Vec<usize> {
+        let rows = self.all.iter().map(|column| column.written());
+        rows.chain(self.counts.iter().map(|count| count.rows))
+            .collect()
+    }
+
+    /// Writes the rows of an earlier file of the same model of which [`Self::written`] tells.
+    pub fn copy(&mut self, earlier: &File, written: &[usize]) -> hdf5::Result<()> {
+        let sizes = (self.all.len() + self.counts.len(), written.len());
+        if sizes.0 != sizes.1 {
+            return Err(format!("{} datasets, not {}", sizes.1, sizes.0).into());
+        }
+        let (rows, counts) = written.split_at(self.all.len());
+        for (column, rows) in self.all.iter_mut().zip(rows) {
+            column.copy(earlier, *rows)?;
+        }
+        for (count, rows) in self.counts.iter_mut().zip(counts) {
+            count.rows = *rows;
+        }
+        Ok(())
     }
 
     /// Writes the numbers of rows.

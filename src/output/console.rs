@@ -3,7 +3,7 @@
 //! convergence of passes and the cutbacks.
 
 use std::fs::File;
-use std::io::{self, ErrorKind, IsTerminal, LineWriter, Write};
+use std::io::{self, ErrorKind, IsTerminal, LineWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -328,6 +328,15 @@ impl Log {
             path: path.to_owned(),
             waiting: Some(String::new()),
         }
+    }
+
+    /// Writes the buffered lines behind the old text.
+    pub fn go_on(&mut self) -> io::Result<()> {
+        let waiting = self.waiting.take().unwrap_or_default();
+        let at_end = self.file.get_mut().seek(SeekFrom::End(0));
+        at_end
+            .and_then(|_| self.file.write_all(waiting.as_bytes()))
+            .map_err(at(&self.path))
     }
 
     /// Empties the file and writes the buffered lines.

@@ -100,11 +100,9 @@ impl<'m> FieldGroup<'m> {
         match self.first_field {
             Some(first) => self.offsets.link_hard(first, name)?,
             None => {
-                let (mut end, rows) = (0, self.rows as i64);
-                let at = &self.offsets;
-                per_frame(&mut self.columns, at, name, &[], FIRST_ROW, move |_| {
-                    end += rows;
-                    end - rows
+                let (at, rows) = (&self.offsets, self.rows);
+                per_frame(&mut self.columns, at, name, &[], FIRST_ROW, move |frame| {
+                    (frame.index * rows) as i64
                 })?;
                 self.first_field = Some(name);
             }

@@ -1,7 +1,7 @@
 //! Numbers as text, and the layout of lines: width, labels in the first columns, wrapping.
 
 /// `x` in scientific notation with at least two digits of the exponent, such as `1.00e-05`.
-pub(crate) fn scientific(x: f64, decimals: usize) -> String {
+pub fn scientific(x: f64, decimals: usize) -> String {
     let text = format!("{x:.decimals$e}");
     match text.split_once('e') {
         Some((mantissa, exponent)) => {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::archive::{Archive, ArchiveError};
 use crate::dynamics::{IncrementReport, NodalResults, State};
 use crate::elements::ElementResult;
 use crate::model::{Frames, Model, Step};
@@ -36,6 +37,24 @@ impl<'a> FrameSchedule<'a> {
             next: 1,
             increments: 0,
         }
+    }
+
+    /// Carries how far it has come.
+    pub(super) fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        let FrameSchedule {
+            steps: _,
+            step,
+            next,
+            increments,
+        } = self;
+        archive.carry(step)?;
+        archive.carry(next)?;
+        archive.carry(increments)
+    }
+
+    /// Number of the step, from 1, and its increments so far.
+    pub(super) fn place(&self) -> [usize; 2] {
+        [self.step, self.increments]
     }
 
     /// Whether the increment writes a frame: the start, the end of a step, and every increment
@@ -127,6 +146,8 @@ pub(super) fn are_dense(step: &Step) -> bool {
 /// Contents of a field frame.
 #[derive(Default)]
 pub(crate) struct Frame {
+    /// Its place among the frames of the file.
+    pub index: usize,
     pub time: f64,
     pub state: State,
     pub nodal: NodalResults,
@@ -135,6 +156,25 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
+    /// Carries all of it.
+    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        let Frame {
+            index,
+            time,
+            state,
+            nodal,
+            elements,
+        } = self;
+        archive.carry(index)?;
+        archive.carry(time)?;
+        archive.carry(state)?;
+        archive.carry(nodal)?;
+        let mut of_elements = elements.to_vec();
+        archive.carry(&mut of_elements)?;
+        *elements = of_elements.into();
+        Ok(())
+    }
+
     /// Copies the results of an increment, reusing the allocated memory.
     pub fn set(&mut self, report: &IncrementReport) {
         let (state, nodal) = (&report.state, &report.nodal);

@@ -23,6 +23,8 @@ pub struct JobFiles {
     pub status: PathBuf,
     /// `JOB.log`.
     pub log: PathBuf,
+    /// `JOB.restart`.
+    pub restart: PathBuf,
 }
 
 impl JobFiles {
@@ -39,6 +41,7 @@ impl JobFiles {
             result: path("vtkhdf"),
             status: path("sta"),
             log: path("log"),
+            restart: path("restart"),
             name,
         }
     }
@@ -47,6 +50,26 @@ impl JobFiles {
     pub fn failed_lcp(&self, increment: usize) -> PathBuf {
         let name = format!("{}-lcp-{increment}.json", self.name);
         self.log.with_file_name(name)
+    }
+
+    /// `JOB-STEP-INC.restart`, for a checkpoint that stays beside later ones.
+    pub(super) fn kept_checkpoint(&self, [step, increment]: [usize; 2]) -> PathBuf {
+        let name = format!("{}-{step}-{increment}.restart", self.name);
+        self.restart.with_file_name(name)
+    }
+
+    /// Whether a file has the name of one of its checkpoints.
+    fn is_checkpoint(&self, path: &Path) -> bool {
+        let file = path.file_name().unwrap_or_default().to_string_lossy();
+        let Some(rest) = file
+            .strip_prefix(self.name.as_str())
+            .and_then(|rest| rest.strip_suffix(".restart"))
+        else {
+            return false;
+        };
+        let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+        let numbers = rest.strip_prefix('-').and_then(|rest| rest.split_once('-'));
+        rest.is_empty() || numbers.is_some_and(|(step, inc)| is_number(step) && is_number(inc))
     }
 
     /// `JOB.vtkhdf.part`, the result until its first frame is complete.
@@ -142,6 +165,19 @@ impl Claim {
             }
             _ => Ok(draft),
         }
+    }
+
+    /// Removes the checkpoints of an earlier run.
+    pub(crate) fn forget_checkpoints(&self) -> io::Result<()> {
+        let folder = self.files.restart.parent();
+        let folder = folder.filter(|folder| !folder.as_os_str().is_empty());
+        for entry in fs::read_dir(folder.unwrap_or(Path::new(".")))? {
+            let path = entry?.path();
+            if self.files.is_checkpoint(&path) {
+                fs::remove_file(&path).map_err(at(&path))?;
+            }
+        }
+        Ok(())
     }
 
     /// Gives the result its final name in one operation.
@@ -266,5 +302,13 @@ mod tests {
         let files = JobFiles::new(Path::new("B.INP"), Path::new("out"));
         assert_eq!(files.log, Path::new("out/B.log"));
         assert_eq!(files.draft(), Path::new("out/B.vtkhdf.part"));
+        let is_own = |name: &str| files.is_checkpoint(Path::new(name));
+        assert!(
+            is_own("out/B.restart")
+                && is_own(&files.kept_checkpoint([1, 20]).display().to_string())
+        );
+        assert!(
+            !is_own("out/B-1.restart") && !is_own("out/BC.restart") && !is_own("out/B-a-1.restart")
+        );
     }
 }

@@ -9,6 +9,7 @@ use super::model_group::{body_times, contact_names};
 use super::run_record::phases;
 use super::strain::StrainWatch;
 use super::warnings::{Findings, Losses, Touches, never_closed, part};
+use crate::archive::{Archive, ArchiveError};
 use crate::dynamics::{
     Cause, ContactViolation, Course, Cutback, Energy, IncrementReport, Momentum, Outcome,
     RunSummary, SolverCounts, Touch,
@@ -62,6 +63,33 @@ impl Monitor {
             landings: 0,
             cone_violations: [0.0; 2],
         }
+    }
+
+    /// Carries what is known of the run, but for the kinds of cutbacks that the log has explained.
+    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        let Monitor {
+            balance,
+            strain,
+            closed,
+            touches,
+            dt,
+            time,
+            failed_attempts,
+            cutbacks,
+            kinds: _,
+            landings,
+            cone_violations,
+        } = self;
+        archive.carry(balance)?;
+        strain.carry(archive)?;
+        archive.carry(closed)?;
+        archive.carry(touches)?;
+        archive.carry(dt)?;
+        archive.carry(time)?;
+        archive.carry(failed_attempts)?;
+        archive.carry(cutbacks)?;
+        archive.carry(landings)?;
+        archive.carry(cone_violations)
     }
 
     /// Enters an accepted increment.
@@ -168,7 +196,7 @@ impl Monitor {
 }
 
 /// Follows the energy balance, the energy that contact puts in and, of a free model, the momentum.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Balance {
     /// Largest energy or external work so far.
     largest: f64,
@@ -192,7 +220,7 @@ pub(crate) struct Balance {
 
 /// Increments in which the normal contact forces did positive work: with energy-momentum contact
 /// those that a pair enters with a negative gap.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct ContactEnergy {
     /// Number of these increments.
     pub count: usize,

@@ -14,6 +14,7 @@ use super::frames::Frame;
 use super::history::History;
 use super::run_record::{RecordWriter, RunRecord};
 use super::space::Space;
+use crate::archive::Archive;
 use crate::dynamics::{IncrementReport, RunSummary};
 use crate::model::Model;
 
@@ -88,7 +89,8 @@ impl<'m> ResultFile<'m> {
     }
 
     /// Appends a frame, which waits in memory.
-    pub fn frame(&mut self, frame: &Frame) {
+    pub fn frame(&mut self, frame: &mut Frame) {
+        frame.index = self.frames;
         self.fields.push(frame);
         self.frames += 1;
         self.frame_time = frame.time;
@@ -105,9 +107,35 @@ impl<'m> ResultFile<'m> {
         }
     }
 
+    /// Carries how far the file is written, after [`Self::write_through`]; what is read is copied from the `earlier`
+    /// file.
+    pub fn carry(&mut self, archive: &mut Archive, earlier: Option<&Path>) -> io::Result<()> {
+        let mut written = [self.fields.written(), self.history.written()];
+        archive.carry(&mut written).map_err(io::Error::other)?;
+        archive.carry(&mut self.frames).map_err(io::Error::other)?;
+        archive
+            .carry(&mut self.frame_time)
+            .map_err(io::Error::other)?;
+        let Some(earlier) = earlier else {
+            return Ok(());
+        };
+        let [fields, history] = &written;
+        let copied = File::open(earlier).and_then(|file| {
+            self.fields.copy(&file, fields)?;
+            self.history.copy(&file, history)
+        });
+        copied.map_err(io_error).map_err(at(earlier))?;
+        self.write_through()
+    }
+
+    /// Brings what is written to the disk itself.
+    pub fn sync(&self) -> io::Result<()> {
+        self.space.sync().map_err(at(&self.path))
+    }
+
     /// Writes everything to the disk, so that the file is readable even when the program is killed;
     /// then reserves space for what comes next.
-    fn write_through(&mut self) -> io::Result<()> {
+    pub fn write_through(&mut self) -> io::Result<()> {
         let start = Instant::now();
         self.room()?;
         self.write()?;

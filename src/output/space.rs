@@ -43,6 +43,11 @@ impl Space {
         })
     }
 
+    /// Brings the file to the disk.
+    pub fn sync(&self) -> io::Result<()> {
+        self.file.sync_data()
+    }
+
     /// Reserves the space for a file that may grow by `growth` bytes, and by the record, until it is
     /// written through.
     ///

@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -57,7 +57,24 @@ pub(crate) struct StatusFile {
 impl StatusFile {
     /// Creates the file, or empties it.
     pub fn create(path: &Path, model: &Model) -> io::Result<Self> {
-        let mut file = BufWriter::new(File::create(path).map_err(at(path))?);
+        let (mut status, names) = Self::at(path, File::create(path), model)?;
+        writeln!(status.file, "{TITLE}\n#{}", &names[1..]).map_err(at(path))?;
+        status.flush()?;
+        Ok(status)
+    }
+
+    /// Goes on behind the first `length` bytes of the file.
+    pub fn go_on(path: &Path, model: &Model, length: u64) -> io::Result<Self> {
+        let mut file = File::options().write(true).open(path).map_err(at(path))?;
+        let cut = file
+            .set_len(length)
+            .and_then(|()| file.seek(SeekFrom::End(0)));
+        cut.map_err(at(path))?;
+        Ok(Self::at(path, Ok(file), model)?.0)
+    }
+
+    /// Writes to a file; with the names of its columns.
+    fn at(path: &Path, file: io::Result<File>, model: &Model) -> io::Result<(Self, String)> {
         let mut names: String = (COLUMNS.iter())
             .map(|(name, width)| format!("{name:>width$}"))
             .collect();
@@ -67,15 +84,24 @@ impl StatusFile {
             names.push_str(&format!("{name:>width$}"));
             columns.push((dof, width));
         }
-        writeln!(file, "{TITLE}\n#{}", &names[1..]).map_err(at(path))?;
-        let mut status = StatusFile {
-            file,
+        let status = StatusFile {
+            file: BufWriter::new(file.map_err(at(path))?),
             path: path.to_owned(),
             monitored: columns,
             written: Instant::now(),
         };
-        status.flush()?;
-        Ok(status)
+        Ok((status, names))
+    }
+
+    /// Writes all lines to the disk and gives the length of the file.
+    pub fn length(&mut self) -> io::Result<u64> {
+        self.flush()?;
+        Ok(self
+            .file
+            .get_ref()
+            .metadata()
+            .map_err(at(&self.path))?
+            .len())
     }
 
     /// Writes the lines so far to the disk.

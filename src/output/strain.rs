@@ -1,6 +1,7 @@
 //! The largest principal strain of a run, compared with the range of the material law.
 
 use super::format::scientific;
+use crate::archive::{Archive, ArchiveError};
 use crate::dynamics::IncrementReport;
 use crate::elements::Strained;
 
@@ -66,6 +67,19 @@ pub(crate) struct StrainWatch {
 }
 
 impl StrainWatch {
+    /// Carries the largest strain so far.
+    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        let StrainWatch {
+            limited: _,
+            most,
+            increment,
+            warned,
+        } = self;
+        archive.carry(most)?;
+        archive.carry(increment)?;
+        archive.carry(warned)
+    }
+
     /// Follows the elements of `model`.
     pub fn new(model: &Model) -> Self {
         StrainWatch {

@@ -16,12 +16,14 @@ use super::frames::{Frame, FrameSchedule};
 use super::job::Claim;
 use super::model_group::check_names;
 use super::monitor::{Monitor, Remarks, error_line, lcp_lines, timing_lines};
+use super::restart::{Checkpoint, Origin};
 use super::result_file::ResultFile;
 use super::run_record::RunRecord;
 use super::status::StatusFile;
 use super::strain::warning_lines;
+use crate::archive::Archive;
 use crate::dynamics::{Cause, Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary};
-use crate::model::Model;
+use crate::model::{Model, RestartOutput};
 
 /// Cutbacks that the screen shows.
 const SCREEN_CUTBACKS: usize = 20;
@@ -45,6 +47,23 @@ pub struct ResultWriter<'a> {
     spent: Duration,
     interrupt: Interrupt,
     claim: Claim,
+    checkpoints: Checkpoints,
+    /// When the last checkpoint was written, or the run began.
+    checkpointed: Instant,
+    is_checkpoint_due: bool,
+    /// Whether the next one stays beside later ones.
+    is_checkpoint_kept: bool,
+}
+
+/// Checkpoints of a run, which are written where the deck wants them and when the run is interrupted.
+#[derive(Debug, Clone, Default)]
+pub struct Checkpoints {
+    /// The program: version and commit.
+    pub program: String,
+    /// Deck and options of the run.
+    pub origin: Origin,
+    /// Wall-clock time from one to the next, where the deck does not say when.
+    pub every: Option<Duration>,
 }
 
 impl<'a> ResultWriter<'a> {
@@ -72,12 +91,95 @@ impl<'a> ResultWriter<'a> {
             spent: started.elapsed(),
             interrupt: Interrupt::default(),
             claim,
+            checkpoints: Checkpoints::default(),
+            checkpointed: started,
+            is_checkpoint_due: false,
+            is_checkpoint_kept: false,
         })
+    }
+
+    /// Goes on from a checkpoint: with the rows and frames before it, behind the old text of the log.
+    ///
+    /// # Errors
+    /// The result file cannot be read, or is not that of the checkpoint.
+    pub fn go_on(&mut self, checkpoint: &Checkpoint) -> io::Result<()> {
+        let files = self.claim.files().clone();
+        let mut archive = Archive::Reading(&checkpoint.files);
+        let length = self.carry(&mut archive, Some(&files.result), 0)?;
+        self.claim.publish()?;
+        self.status = Some(StatusFile::go_on(&files.status, self.model, length)?);
+        self.console.log.go_on()
+    }
+
+    /// Carries how far the files are written; gives the length of the status file.
+    fn carry(
+        &mut self,
+        archive: &mut Archive,
+        earlier: Option<&Path>,
+        mut length: u64,
+    ) -> io::Result<u64> {
+        let carried = (self.schedule.carry(archive))
+            .and_then(|()| self.monitor.carry(archive))
+            .and_then(|()| self.last.carry(archive))
+            .and_then(|()| archive.carry(&mut self.is_last_written))
+            .and_then(|()| archive.carry(&mut length));
+        carried.map_err(io::Error::other)?;
+        self.result.carry(archive, earlier)?;
+        Ok(length)
+    }
+
+    /// Writes what is known to the disk, and then a checkpoint with it.
+    fn write_checkpoint(&mut self, solver: Vec<u8>) -> io::Result<()> {
+        let Some(status) = &mut self.status else {
+            return Ok(());
+        };
+        let length = status.length()?;
+        self.result.write_through()?;
+        self.result.sync()?;
+        let mut archive = Archive::new();
+        self.carry(&mut archive, None, length)?;
+        let checkpoint = Checkpoint {
+            program: self.checkpoints.program.clone(),
+            origin: self.checkpoints.origin.clone(),
+            time: self.last.time,
+            files: archive.into_bytes(),
+            solver,
+        };
+        let files = self.claim.files();
+        checkpoint.write(&files.restart)?;
+        if std::mem::take(&mut self.is_checkpoint_kept) {
+            let kept = files.kept_checkpoint(self.schedule.place());
+            // that of the run that this one goes on from
+            let _ = fs::remove_file(&kept);
+            fs::hard_link(&files.restart, &kept).map_err(at(&kept))?;
+        }
+        (self.checkpointed, self.is_checkpoint_due) = (Instant::now(), false);
+        Ok(())
+    }
+
+    /// Notes whether a checkpoint is due after an increment: as the deck wants it, some time after the last one, or at
+    /// the end of the last step.
+    fn note_due(&mut self, report: &IncrementReport) {
+        let of_step = |restart: &&RestartOutput| restart.from_step <= report.step;
+        let wanted = self.model.restarts.iter().rfind(of_step);
+        let every = wanted.map_or(0, |restart| restart.every);
+        let [_, increments] = self.schedule.place();
+        let by_deck = every > 0 && (report.ends_step || increments.is_multiple_of(every));
+        let is_end = report.ends_step && report.step == self.model.steps.len();
+        let by_time = |every| is_end || self.checkpointed.elapsed() >= every;
+        let is_asked = by_deck || self.checkpoints.every.is_some_and(by_time);
+        self.is_checkpoint_kept = by_deck && wanted.is_some_and(|restart| restart.keeps_all);
+        self.is_checkpoint_due |= report.increment > 0 && is_asked;
     }
 
     /// Ends the run after the increment in which `interrupt` asks for it.
     pub fn heed(&mut self, interrupt: &Interrupt) {
         self.interrupt = interrupt.clone();
+    }
+
+    /// Says what checkpoints are of, and when they are written.
+    pub fn keep_checkpoints(&mut self, checkpoints: Checkpoints) {
+        self.checkpoints = checkpoints;
     }
 
     /// After an error: up to which time the results can be read.
@@ -99,6 +201,7 @@ impl<'a> ResultWriter<'a> {
     /// first, since the others without it would stand in the way of the next run.
     fn publish(&mut self) -> io::Result<()> {
         if self.status.is_none() {
+            self.claim.forget_checkpoints()?;
             self.claim.publish()?;
             self.status = Some(StatusFile::create(&self.claim.files().status, self.model)?);
             self.console.log.begin()?;
@@ -122,7 +225,7 @@ impl<'a> ResultWriter<'a> {
         self.console.finish();
         let has_state = !self.last.state.u.is_empty();
         if summary.outcome != Outcome::Finished && !self.is_last_written && has_state {
-            self.result.frame(&self.last);
+            self.result.frame(&mut self.last);
         }
         self.result.write()?;
         self.publish()?;
@@ -158,9 +261,10 @@ impl<'a> ResultWriter<'a> {
         self.result.history(report);
         self.last.set(report);
         let is_frame = self.schedule.is_due(report);
+        self.note_due(report);
         self.is_last_written = is_frame;
         if is_frame {
-            self.result.frame(&self.last);
+            self.result.frame(&mut self.last);
         }
         self.result.write_when_due()?;
         match is_frame {
@@ -306,6 +410,17 @@ impl Observer for ResultWriter<'_> {
 
     fn wants_stop(&self) -> bool {
         self.interrupt.signal().is_some()
+    }
+
+    fn wants_checkpoint(&self) -> bool {
+        self.is_checkpoint_due
+    }
+
+    fn checkpoint(&mut self, solver: Vec<u8>) -> io::Result<()> {
+        let start = Instant::now();
+        self.write_checkpoint(solver)?;
+        self.spent += start.elapsed();
+        Ok(())
     }
 }
 

@@ -114,6 +114,7 @@ fn read(cx: &mut Context) -> Model {
         initial_velocity,
         steps: steps.all,
         rigid_bodies: bodies,
+        restarts: steps.restarts,
     };
     let all: [&dyn Fn(&mut Context); 8] = [
         &|cx| connectors::check(&model, &mesh_index.connectors, cx),

@@ -8,7 +8,7 @@ use super::names::Named;
 use super::sets::Sets;
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, shown};
-use crate::model::{Frames, HistorySet, RequestedFields, TimeBase};
+use crate::model::{Frames, HistorySet, RequestedFields, RestartOutput, TimeBase};
 
 /// Variables that the result file holds.
 const WRITTEN: &[&str] = &[
@@ -28,6 +28,10 @@ pub(crate) struct Requests {
     total_times: Option<Vec<f64>>,
     /// What the histories and the status file show.
     pub histories: Histories,
+    /// Requests of checkpoints.
+    pub restarts: Vec<RestartOutput>,
+    /// Number of the step that is read, from 1.
+    pub step: usize,
 }
 
 impl Requests {
@@ -38,6 +42,29 @@ impl Requests {
             frames: Frames::Default,
             total_times: None,
             histories: Histories::default(),
+            restarts: Vec::new(),
+            step: 1,
+        }
+    }
+
+    /// `*RESTART, WRITE`: checkpoints from this step on.
+    pub fn restart(&mut self, card: &Card, cx: &mut Context) {
+        if card.has("READ") || !card.has("WRITE") {
+            return;
+        }
+        let every = match card.has("FREQUENCY") {
+            true => count(card, "FREQUENCY", 0, cx),
+            false => Some(1),
+        };
+        let every = every.unwrap_or(0);
+        self.restarts
+            .retain(|earlier| earlier.from_step < self.step);
+        if every > 0 || !self.restarts.is_empty() {
+            self.restarts.push(RestartOutput {
+                from_step: self.step,
+                every,
+                keeps_all: !card.has("OVERLAY"),
+            });
         }
     }
 
@@ -66,7 +93,7 @@ impl Requests {
                 }
                 ("CONTACT PRINT", _) => self.check_when(card, cx),
                 ("ENERGY OUTPUT", _) => {}
-                ("RESTART", _) => restart(card, cx),
+                ("RESTART", _) => self.restart(card, cx),
                 ("MONITOR", _) => self.histories.monitor(card, targets, cx),
                 _ => continue,
             }
@@ -206,18 +233,6 @@ fn time_interval(card: &Card, cx: &mut Context) -> Option<Frames> {
     );
     let interval = interval.real_that(|t| t > 0.0, rule, Code::OutputTimes, cx.d);
     interval.map(Frames::Every)
-}
-
-/// Warns that `*RESTART` writes nothing.
-pub(crate) fn restart(card: &Card, cx: &mut Context) {
-    let off = card.integer("FREQUENCY", cx.d) == Some(0);
-    if card.has("WRITE") && !off {
-        let message = "*RESTART, WRITE is left out: there are no restart files";
-        cx.d.warning_once(Code::IgnoredKeyword, card.span, message).help(
-            "a run that ends early leaves its frames, the last good state among them; to go on from there, run \
-             the deck with all its steps again",
-        );
-    }
 }
 
 /// Warns about variables that are not written.

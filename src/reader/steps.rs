@@ -4,13 +4,13 @@ use super::boundary::{Supports, Targets};
 use super::context::Context;
 use super::loads::{LoadHistories, Operation, StepContext};
 use super::outline::{Outline, StepCards};
-use super::output::{Histories, Requests, restart};
+use super::output::{Histories, Requests};
 use super::surfaces::Surfaces;
 use crate::deck::{Card, Line};
 use crate::diagnostics::{Code, shown};
 use crate::model::{
     ContactMass, Factorization, Impact, ImpactTime, Incrementation, Increments, LandingRule,
-    LcpChoice, Procedure, Scheme, Settings, SolverChoice, Step, Support,
+    LcpChoice, Procedure, RestartOutput, Scheme, Settings, SolverChoice, Step, Support,
 };
 
 /// Most increments of a step: at a microsecond each they would take eleven days.
@@ -22,6 +22,8 @@ pub(crate) struct Steps {
     pub all: Vec<Step>,
     /// What the histories and the status file show.
     pub histories: Histories,
+    /// Requests of checkpoints.
+    pub restarts: Vec<RestartOutput>,
     /// Supports of the first step.
     pub at_start: Vec<Support>,
 }
@@ -58,7 +60,7 @@ pub(crate) fn read(
     }
     reading.settings.is_check_only = !outline.model_cards("NO ANALYSIS").is_empty();
     for card in outline.model_cards("RESTART") {
-        restart(card, cx);
+        reading.requests.restart(card, cx);
     }
     let mut steps = Vec::new();
     let mut at_start = None;
@@ -68,6 +70,7 @@ pub(crate) fn read(
     Steps {
         all: steps,
         histories: reading.requests.histories,
+        restarts: reading.requests.restarts,
         at_start: at_start.unwrap_or_default(),
     }
 }
@@ -107,6 +110,7 @@ impl StepReader<'_> {
         let period = increments.map_or(0.0, |increments| increments.period);
         self.own_settings(cards, number, cx);
         self.conditions(cards, context, cx);
+        self.requests.step = number;
         self.requests.cards(&cards.cards, self.targets, cx);
         let supports = self.supports.list();
         at_start.get_or_insert_with(|| supports.clone());

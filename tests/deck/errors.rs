@@ -24,13 +24,15 @@ const PAIR: &str = "*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE\nSBOT, 
 enum Source {
     Text(String),
     File(&'static str),
+    /// One that a run goes on with from a checkpoint of the square.
+    Resumed(String),
 }
 
 impl Source {
     /// The lines of the deck.
     fn text(&self) -> String {
         match self {
-            Source::Text(text) => text.clone(),
+            Source::Text(text) | Source::Resumed(text) => text.clone(),
             Source::File(path) => std::fs::read_to_string(path).expect("a deck"),
         }
     }
@@ -42,6 +44,14 @@ fn messages(source: &Source) -> (Diagnostics, String) {
     let deck = match source {
         Source::Text(text) => deck::parse_str("deck.inp", text, &mut sources, &mut d),
         Source::File(path) => deck::read(Path::new(path), &mut sources, &mut d),
+        Source::Resumed(text) => {
+            sources.add("deck.inp", text.clone(), None);
+            let earlier = [("deck.inp".to_owned(), SQUARE.to_owned())];
+            let change = deck::first_change(&earlier, &sources);
+            d.push(change.expect("a change"));
+            let text = d.render(&sources, false);
+            return (d, text);
+        }
     };
     let model = reader::build(&deck, &mut d);
     assert_eq!(model.is_some(), !d.has_errors());
@@ -120,6 +130,9 @@ fn faulty(code: Code) -> Source {
         NonAscii => square("NAME=TOP", "NAME=TÖP"),
         NotText => square("RUBBER", "RUB\0BER"),
         EndlessLine => square("one square", &"one square ".repeat(6000)),
+        BadExpression => square("*MATERIAL", "*PARAMETER\nnu = 0.6*sin(30\n*MATERIAL"),
+        UnknownValue => square("1000.", "<young>"),
+        UnusedValue => square("*MATERIAL", "*PARAMETER\nyoung = 1e3\n*MATERIAL"),
         UnsupportedKeyword => model("*TIE, NAME=GLUE\nTOP, TOP"),
         UnsupportedParameter => model("*AMPLITUDE, NAME=A, DEFINITION=USER\n0., 0., 1., 1."),
         IgnoredKeyword => step("*CONTROLS, RESET"),
@@ -127,6 +140,7 @@ fn faulty(code: Code) -> Source {
         WrongPlace => step("*MATERIAL, NAME=STEEL"),
         MissingEndStep => square("*END STEP\n", ""),
         StepStructure => square("*DYNAMIC, DIRECT\n0.1, 1.\n", ""),
+        ChangedDeck => Source::Resumed(square("1000.", "1100.").text()),
         RepeatedCard => square("*DENSITY", "*DENSITY\n2.\n*DENSITY"),
         AssemblyStructure => change(BLOCKS, "*End Part\n", ""),
         Placement => change(

@@ -5,6 +5,7 @@ mod errors;
 mod flat;
 mod fuzz;
 mod model;
+mod parameters;
 mod picture;
 mod reference;
 mod syntax;

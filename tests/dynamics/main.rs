@@ -28,6 +28,7 @@ mod patch;
 mod quasi_static;
 mod redistributed_mass;
 mod rest;
+mod restart;
 mod rigid;
 mod scales;
 mod statics;

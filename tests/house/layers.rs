@@ -7,8 +7,9 @@ use crate::sources::{parse_sources, read_sources};
 use std::collections::BTreeMap;
 
 /// The layers, lowest first.
-const LAYERS: [&str; 15] = [
+const LAYERS: [&str; 16] = [
     "vectors",
+    "archive",
     "diagnostics",
     "deck",
     "materials",

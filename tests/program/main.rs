@@ -5,6 +5,7 @@ mod killed;
 mod lcp;
 mod memory;
 mod repeat;
+mod restart;
 mod rubber_ring;
 mod run;
 #[path = "../results/writers.rs"]

@@ -50,9 +50,15 @@ def is_used(form: dict[str, Any], field: int, card: Card) -> bool:
 def test_the_deck_uses_every_keyword_that_is_read() -> None:
     used = {card.keyword for path in ALL_CARDS for card in Deck.read(path).cards}
     assert "*INCLUDE" in EVERY_CARD.read_text()
-    # with *NO ANALYSIS the deck would not run
-    assert read_keywords() - used - {"INCLUDE", "NOANALYSIS"} == set()
+    # with *NO ANALYSIS the deck would not run; decks with *PARAMETER are refused
+    assert read_keywords() - used - {"INCLUDE", "NOANALYSIS", "PARAMETER"} == set()
     assert len(read_keywords()) > 40
+
+
+def test_a_deck_with_parameters_is_refused() -> None:
+    deck = Deck.parse("*PARAMETER\nmu = 0.3\n*FRICTION\n<mu>\n")
+    with pytest.raises(Unscalable, match="stickslip flatten"):
+        rescale(deck, Units(length=0.01))
 
 
 def test_the_deck_uses_every_number_that_has_a_dimension() -> None:

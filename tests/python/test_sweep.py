@@ -17,8 +17,7 @@ import pytest
 from conftest import ROOT
 from decks import CANTILEVERS
 from stickslip import Deck, Fault, Result, run
-from stickslip.parameters import with_parameters
-from stickslip.program import binary
+from stickslip.program import binary, settings
 from stickslip.sweep import Settings, latin_hypercube, product, read_points, sweep
 from stickslip.sweep.__main__ import main, memory
 from stickslip.sweep.engine import duration
@@ -80,7 +79,7 @@ def check_table(table: list[dict[str, str]]) -> None:
         with Result(row["result"]) as result:
             assert result.history.time[-1] == pytest.approx(END)
             assert result.history.dt[1] == pytest.approx(float(row["dt"]))
-            assert f"*FRICTION\n{float(row['mu'])!r}\n" in result.deck
+            assert f"mu={float(row['mu'])!r}" in result.run["command"]
             assert float(row[TIP]) == result.quantity("nodes/UPPER_TIP/U:2").min()
             assert float(row[WORK]) == result.history.energy.friction_dissipation[-1]
         assert (float(row[WORK]) > 0.0) == (row["mu"] != "0.0")
@@ -239,10 +238,10 @@ def test_a_failing_point_is_a_row_with_its_message(
         (["--vary", "mu"], "NAME=VALUES is needed"),
         (["--vary", "mu=0:1"], "FROM:TO:COUNT"),
         (["--vary", "mu=0,1", "--vary", "mu=2"], "--vary names mu twice"),
-        (["--vary", "mu=0:1:2"], "the deck's parameter <DT> has no value"),
+        (["--vary", "mu=0:1:2"], "there is no parameter dt"),
         (
             ["--vary", "mu=0", "--vary", "dt=0.1", "--vary", "e=1"],
-            "no parameter <e>: it uses DT, MU",
+            "the deck has no parameter e",
         ),
         (["--vary", "mu=0:1:2", "--latin-hypercube", "3"], "a Latin hypercube needs FROM:TO"),
         (["--vary", "mu=0", "--vary", "dt=0.1", "-q", "energy/kinetic@least"], "one of last, min"),
@@ -279,26 +278,29 @@ def test_a_latin_hypercube_has_one_point_in_each_stripe() -> None:
     assert points != latin_hypercube({"mu": (0.0, 0.5), "e": (-2.0, 8.0)}, 20, seed=4)
 
 
-def test_parameters_are_replaced_everywhere_and_exactly() -> None:
-    text = "*PARAMETER\nMu = 0.25\n*HEADING\nmu <MU>\n*FRICTION\n< mu >\n*AMPLITUDE, NAME=<name>\n0, <t>\n"
-    values = {"t": 1.0 / 3.0, "name": "A"}
-    deck = with_parameters(Deck.parse(text), values)
-    assert (
-        deck.text()
-        == "*HEADING\nmu 0.25\n*FRICTION\n0.25\n*AMPLITUDE, NAME=A\n0, 0.3333333333333333\n"
-    )
-    assert "*FRICTION\n0.5\n" in with_parameters(Deck.parse(text), {**values, "mu": 0.5}).text()
-    with pytest.raises(Fault, match="<NAME>, <T> has no value"):
-        with_parameters(Deck.parse(text), {})
-    with pytest.raises(Fault, match="no parameter <nu>: it uses MU, NAME, T"):
-        with_parameters(Deck.parse(text), {**values, "nu": 1.0})
-    with pytest.raises(Fault, match="is no number"):
-        with_parameters(Deck.parse("*PARAMETER\na = 2 * b\n*HEADING\n<a>\n"), {})
+def test_names_without_value_and_values_without_name_are_told_before_the_first_run(
+    study: Path, tmp_path: Path
+) -> None:
+    deck = Deck.read(study / "arm.inp")
+    for values, message in (
+        ({"mu": 0.1}, "there is no parameter dt"),
+        ({"mu": 0.1, "dt": 0.1, "nu": 1.0}, "the deck has no parameter nu"),
+    ):
+        with pytest.raises(Fault, match=message):
+            sweep(deck, [values], tmp_path)
+    assert settings({"mu": 1.0 / 3.0, "n": 2, "name": "A"}) == [
+        "--set",
+        "mu=0.3333333333333333",
+        "--set",
+        "n=2",
+        "--set",
+        "name='A'",
+    ]
 
 
 def test_what_is_taken_of_a_history(study: Path) -> None:
     with run(
-        with_parameters(Deck.read(study / "arm.inp"), {"mu": 0.1, "dt": 0.1}), study
+        Deck.read(study / "arm.inp"), study, parameters={"mu": 0.1, "dt": 0.1}
     ) as result:
         tip = result.history.nodes["UPPER_TIP"].U[:, :, 1].mean(axis=1)
         for word, value in (("min", tip.min()), ("peak", np.abs(tip).max()), ("last", tip[-1])):

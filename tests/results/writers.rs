@@ -38,6 +38,7 @@ pub fn deck_text() -> String {
 pub fn model() -> Model {
     Model {
         title: "two squares and a triangle".into(),
+        restarts: Vec::new(),
         connectors: Vec::new(),
         mesh: mesh(),
         sets: NamedSets {

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from stickslip.deck import Deck
 from stickslip.errors import Fault, one_line
-from stickslip.parameters import with_parameters
-from stickslip.program import binary
+from stickslip.program import DeckRejected, binary, check
 from stickslip.sweep.point import Task, point_name, solve
 from stickslip.sweep.points import Point
 from stickslip.sweep.quantities import Quantity, usual
@@ -23,6 +22,9 @@ if TYPE_CHECKING:
 
 DECK = "deck.inp"
 """The deck with its parameters, in one file, in the folder of a study."""
+
+PARAMETER_CODES = ("D123", "D124", "D125")
+"""Codes of messages about parameters."""
 
 FAILURES = 3
 """A point whose worker has died more often than this is given up."""
@@ -80,12 +82,24 @@ def _tasks(template: Deck, points: Sequence[Point], folder: Path, settings: Sett
     """The runs of a study. Names that the deck does not know are told before the first run."""
     if not points:
         raise Fault("a study needs points")
+    for names in {tuple(values): values for values in points}.values():
+        _check_names(template, names)
     options = ("--threads", str(settings.threads), *settings.options)
     tasks = []
     for values in points:
-        name = point_name(with_parameters(template, values), settings.options)
+        name = point_name(template, values, settings.options)
         tasks.append(Task(folder, name, values, options, settings.memory))
     return tasks
+
+
+def _check_names(template: Deck, values: Point) -> None:
+    """Parameters that the deck does not know, and those without a value, are Faults; other faults of it are rows."""
+    try:
+        check(template, values)
+    except DeckRejected as rejected:
+        of_names = [d.message for d in rejected.diagnostics if d.code in PARAMETER_CODES]
+        if of_names:
+            raise Fault("; ".join(of_names)) from None
 
 
 @contextmanager

@@ -17,8 +17,7 @@ from typing import Any
 
 from stickslip.deck import Deck
 from stickslip.errors import Fault, one_line
-from stickslip.parameters import with_parameters
-from stickslip.program import REJECTED, STOPPED, binary, version
+from stickslip.program import REJECTED, STOPPED, binary, settings, version
 from stickslip.result import Result
 from stickslip.sweep.points import Point
 
@@ -67,9 +66,9 @@ class Task:
         return row is not None and row["exit_status"] in ENDED
 
 
-def point_name(deck: Deck, options: Sequence[str]) -> str:
-    """A name that changes with the deck, the options that change the result, and the program."""
-    text = "\n".join([version(), *options, deck.text()])
+def point_name(deck: Deck, values: Point, options: Sequence[str]) -> str:
+    """A name that changes with the deck, its parameters, the options that change the result, and the program."""
+    text = "\n".join([version(), *options, *settings(values), deck.text()])
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
@@ -96,9 +95,9 @@ def _run(task: Task, template: Path, folder: Path) -> dict[str, Any]:
     """Runs the program in a folder."""
     row: dict[str, Any] = {"values": task.values}
     try:
-        deck = with_parameters(Deck.read(template), task.values)
-        path = deck.write(folder / f"{task.name}.inp")
-        command = [str(binary()), "run", str(path), "-o", str(folder), "-q", *task.options]
+        path = Path(shutil.copy(template, folder / f"{task.name}.inp"))
+        command = [str(binary()), "run", str(path), "-o", str(folder), "-q"]
+        command += [*settings(task.values), *task.options]
     except Fault as fault:
         return {**row, "exit_status": REJECTED, "message": one_line(fault), "warnings": []}
     done = subprocess.run(

@@ -289,24 +289,27 @@ pub(super) static STEPS: &[Keyword] = &[
         Scope::Anywhere,
         Data::None,
         &[
-            P::flag(
-                "WRITE",
-                "left out with a warning; the result file keeps all frames",
-            ),
+            P::flag("WRITE", "write checkpoints, in JOB.restart"),
             P::flag(
                 "READ",
-                "a run cannot be continued: give all steps in one deck",
+                "a run goes on with `run --resume` and `--extend`: give all steps in one deck",
             )
             .refused(),
-            P::value("FREQUENCY", "0 switches restart files off"),
-            P::value("NUMBER INTERVAL", "there are no restart files").ignored(),
-            P::value("STEP", "a run cannot be continued").ignored(),
-            P::value("INC", "a run cannot be continued").ignored(),
-            P::flag("OVERLAY", "there are no restart files").ignored(),
+            P::value(
+                "FREQUENCY",
+                "increments of a step from one checkpoint to the next (default 1); the last increment has one too; 0: none",
+            ),
+            P::value(
+                "NUMBER INTERVAL",
+                "checkpoints are counted by increments: give FREQUENCY",
+            )
+            .refused(),
+            P::value("STEP", "belongs to READ").ignored(),
+            P::value("INC", "belongs to READ").ignored(),
+            P::flag("OVERLAY", "keep the last checkpoint of a step only"),
         ],
-        "There are no restart files: a run goes from the first step to the last. One that ends early leaves \
-         its frames, the last good state among them. FREQUENCY=0 is accepted silently.",
-        "*RESTART, WRITE, FREQUENCY=0",
+        "Checkpoints, from which `run --resume` goes on (docs/restart.md). In a step it holds for later steps too.",
+        "*RESTART, WRITE, FREQUENCY=100, OVERLAY",
     ),
 ];
 

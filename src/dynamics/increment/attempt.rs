@@ -78,6 +78,7 @@ pub(crate) struct Solved {
 
 /// The motion of a converged increment between its ends, which another attempt from the same start may begin
 /// with.
+#[derive(serde::Serialize, serde::Deserialize)]
 pub(crate) struct Path {
     /// Velocity V0+.
     pub v: Vec<f64>,

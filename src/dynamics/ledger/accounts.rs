@@ -7,6 +7,7 @@ use super::contact_ledger::ContactLedger;
 use super::energy::Ledger;
 use super::nodal_results::{SlaveFaces, contact_resultants, nodal_results, node_masses};
 use super::touches::Touches;
+use crate::archive::{Archive, ArchiveError};
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{
     ContactOnBody, ContactResultant, IncrementReport, Momentum, NodalResults, NodeStatus,
@@ -57,6 +58,22 @@ impl Accounts {
             faces,
             damped: Momentum::default(),
         }
+    }
+
+    /// Carries the sums over the run.
+    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        let Self {
+            bodies: _,
+            rigid: _,
+            faces: _,
+            contacts,
+            touches,
+            consistent: _,
+            damped,
+        } = self;
+        contacts.carry(archive)?;
+        touches.carry(archive)?;
+        archive.carry(damped)
     }
 
     /// Motion at the start with the energies of the ledger, without forces.

@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::pair_work::PairWork;
+use crate::archive::{Archive, ArchiveError};
 use crate::contact::{Constraint, ConstraintKey, Search, crossed_edges};
 use crate::dynamics::increment::{PairReturn, Solved};
 use crate::dynamics::results::{
@@ -18,7 +19,7 @@ use crate::model::{Bodies, Model};
 use crate::vectors::cross;
 
 /// Sums over the run of one contact.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
 struct Sums {
     normal_work: f64,
     handover_work: f64,
@@ -51,6 +52,17 @@ impl ContactLedger {
                 .map(|contact| reference(contact.master).map(|body| body.reference))
                 .collect(),
         }
+    }
+
+    /// Carries the sums and slips.
+    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        let Self {
+            contacts,
+            slip,
+            reference: _,
+        } = self;
+        archive.carry_values(contacts)?;
+        archive.carry_values(slip)
     }
 
     /// Enters a converged increment of length `dt` and completes the resultants of the contacts.

@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use super::pair_work::{EndForces, PairWork, steady_works};
+use crate::archive::{Archive, ArchiveError};
 use crate::contact::Constraint;
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::dynamics::increment::{ContactStates, Solved};
@@ -70,6 +71,32 @@ impl Ledger {
         ledger.enter_bodies(problem, start, &elements);
         ledger.elements = elements.into();
         ledger
+    }
+
+    /// Carries all of it.
+    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        let Self {
+            energy,
+            largest,
+            momentum,
+            elements,
+            contact_energy,
+            scale,
+            works,
+            end,
+            start,
+        } = self;
+        let mut of_elements = elements.to_vec();
+        archive.carry(&mut of_elements)?;
+        *elements = of_elements.into();
+        archive.carry(energy)?;
+        archive.carry(largest)?;
+        archive.carry(momentum)?;
+        archive.carry(contact_energy)?;
+        archive.carry(scale)?;
+        archive.carry(works)?;
+        archive.carry(end)?;
+        archive.carry(start)
     }
 
     /// Goes on to a step of another procedure at a state, whose velocities have become those of the step: what a body

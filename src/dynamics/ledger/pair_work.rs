@@ -9,7 +9,7 @@ use crate::dynamics::step::{StepProblem, difference, dot};
 use crate::elements::Motion;
 
 /// Work of the contact forces of a pair in an increment.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct PairWork {
     /// The pair.
     pub key: ConstraintKey,
@@ -39,7 +39,7 @@ pub(super) fn steady_works(solved: &Solved) -> Vec<PairWork> {
 }
 
 /// Forces of an equilibrium, from which the work of the next static increment begins.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct EndForces {
     /// Load and internal force over all dofs (force).
     pub load: Vec<f64>,

@@ -3,6 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::archive::{Archive, ArchiveError};
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::contact::{ClosedPair, Constraint, SlaveKey};
 use crate::dynamics::increment::Solved;
@@ -15,7 +16,9 @@ use crate::vectors::{angle, difference};
 const CORNER: f64 = 1.0;
 
 /// What touches: a body, or the rigid surface of a contact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 enum Partner {
     Body(usize),
     Surface(usize),
@@ -31,7 +34,7 @@ pub(crate) struct Touches {
 }
 
 /// A touch that has not ended.
-#[derive(Default)]
+#[derive(Default, serde::Serialize, serde::Deserialize)]
 struct UnderWay {
     touch: Touch,
     /// Impulse on the first partner.
@@ -50,6 +53,17 @@ impl Touches {
             increments: 0,
             under_way: BTreeMap::new(),
         }
+    }
+
+    /// Carries the touches under way.
+    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        let Self {
+            corners: _,
+            increments,
+            under_way,
+        } = self;
+        archive.carry(increments)?;
+        archive.carry(under_way)
     }
 
     /// Enters a converged increment; adds the work of nodes that take the place of others to the contacts, and gives

@@ -7,4 +7,4 @@ mod runner;
 mod time_control;
 mod truncation_error;
 
-pub use runner::{RunError, run};
+pub use runner::{RunError, resume, run};

@@ -1,7 +1,7 @@
 //! Time stepping of a run: steps, and nominal increments divided by their time control; each
 //! subincrement is attempted, checked, and accepted or cut back. Section 4 of docs/theory.md, Cutback.
 
-use std::io;
+use std::{io, iter};
 
 use super::acceptance::{Accepted, Before, failure, start_failure};
 use super::time_control::{
@@ -9,6 +9,7 @@ use super::time_control::{
     nominal_increments,
 };
 use super::truncation_error::{Ends, TruncationError};
+use crate::archive::{Archive, ArchiveError};
 use crate::contact::ClosedPairs;
 use crate::contact::ConstraintSet;
 use crate::dynamics::events::{FailedSubincrement, Subincrement, Subincrements};
@@ -39,6 +40,9 @@ pub enum RunError {
     /// The observer could not take the results.
     #[error(transparent)]
     Observer(#[from] io::Error),
+    /// A checkpoint is not that of the model.
+    #[error("the checkpoint cannot be read: {0}")]
+    Checkpoint(#[from] ArchiveError),
 }
 
 /// Runs all steps of a model; the observer receives the start and every increment.
@@ -47,29 +51,57 @@ pub enum RunError {
 /// Those of the observer. A failed increment is an [`Outcome`].
 pub fn run(prepared: &PreparedModel, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
     let discretization = Discretization::new(prepared);
-    let mut runner = Runner::new(&discretization, observer);
-    let mut start = 0.0;
-    for (index, step) in prepared.model.steps.iter().enumerate() {
-        let place = StepPlace {
-            number: index + 1,
-            start,
-            period: step.increments.period,
-        };
-        runner.summary.outcome = runner.step(step, place)?;
-        if runner.summary.outcome != Outcome::Finished {
-            break;
-        }
-        start += place.period;
-    }
-    Ok(runner.summary)
+    Runner::new(&discretization, observer).steps(None, 0.0)
 }
 
-/// The time control of a nominal increment.
-fn time_control(problem: &StepProblem, nominal: NominalIncrement) -> Box<dyn TimeControl> {
-    match problem.ends_at_impacts() {
-        true => Box::new(ImpactControl::new(nominal)),
-        false => Box::new(Bisection::new(nominal)),
+/// Goes on with a run from a checkpoint that its observer has received, in the same bits, and beyond the end of the last
+/// step by a time `extension`; the observer receives the increments after it. Only the time that this takes is in the
+/// summary.
+///
+/// # Errors
+/// Those of the observer; a checkpoint of another model.
+pub fn resume(
+    prepared: &PreparedModel,
+    checkpoint: &[u8],
+    extension: f64,
+    observer: &mut dyn Observer,
+) -> Result<RunSummary, RunError> {
+    let discretization = Discretization::new(prepared);
+    let archive = Archive::Reading(checkpoint);
+    Runner::new(&discretization, observer).steps(Some(archive), extension)
+}
+
+/// The nominal increments of a step with their time controls.
+fn nominal_controls(
+    problem: &StepProblem,
+    place: StepPlace,
+    step: &Step,
+) -> Box<dyn Iterator<Item = (NominalIncrement, Box<dyn TimeControl>)>> {
+    let ends_at_impacts = problem.ends_at_impacts();
+    if step.increments.incrementation != Incrementation::Fixed {
+        let control = Automatic::new(place, step.increments, ends_at_impacts);
+        return Box::new(iter::once((control.nominal(), Box::new(control) as _)));
     }
+    let with_control = move |nominal| -> (NominalIncrement, Box<dyn TimeControl>) {
+        match ends_at_impacts {
+            true => (nominal, Box::new(ImpactControl::new(nominal))),
+            false => (nominal, Box::new(Bisection::new(nominal))),
+        }
+    };
+    Box::new(nominal_increments(place, step.increments).map(with_control))
+}
+
+/// How far a run has come.
+#[derive(Default, serde::Serialize, serde::Deserialize)]
+struct Progress {
+    /// Number of the step, from 1.
+    step: usize,
+    /// Displacement and velocity at its start.
+    start: [Vec<f64>; 2],
+    /// Forces of supports that fade over it (dof, force).
+    released: Vec<(usize, f64)>,
+    /// Index of its nominal increment.
+    nominal: usize,
 }
 
 /// Velocities of a model, with those of angles as the unknowns have them.
@@ -110,6 +142,7 @@ struct Runner<'m, 'o> {
     accuracy: Option<TruncationError>,
     accounts: Accounts,
     summary: RunSummary,
+    progress: Progress,
     observer: &'o mut dyn Observer,
 }
 
@@ -144,18 +177,129 @@ impl<'m, 'o> Runner<'m, 'o> {
                 solver: SolverCounts::at_start(),
                 timings: Timings::default(),
             },
+            progress: Progress::default(),
             observer,
         }
     }
 
-    /// Runs a step; returns how it ends.
-    fn step(&mut self, step: &'m Step, place: StepPlace) -> Result<Outcome, RunError> {
-        let mut problem =
-            StepProblem::new(self.discretization, step, [&self.state.u, &self.state.v]);
-        self.release_supports(&mut problem);
+    /// Runs the steps, the last one for a time `extension` longer than in the deck; `resumed` is the checkpoint that
+    /// they go on from.
+    fn steps(
+        mut self,
+        mut resumed: Option<Archive>,
+        extension: f64,
+    ) -> Result<RunSummary, RunError> {
+        if let Some(archive) = &mut resumed {
+            self.carry(archive)?;
+        }
+        let model = self.discretization.model;
+        let first = self.progress.step.max(1);
+        let mut start = 0.0;
+        for (step, number) in model.steps.iter().zip(1..) {
+            let place = StepPlace {
+                number,
+                start,
+                period: step.increments.period,
+                extension: if number == model.steps.len() {
+                    extension
+                } else {
+                    0.0
+                },
+            };
+            if number >= first {
+                self.summary.outcome = self.step(step, place, resumed.take())?;
+            }
+            if self.summary.outcome != Outcome::Finished {
+                break;
+            }
+            start += place.period;
+        }
+        Ok(self.summary)
+    }
+
+    /// Carries what increments hand on, but for the workspace of their step and their time control.
+    fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        let Runner {
+            discretization: _,
+            state,
+            ledger,
+            rejected,
+            supported,
+            procedure,
+            path,
+            accuracy,
+            accounts,
+            summary,
+            progress,
+            observer: _,
+        } = self;
+        archive.carry(progress)?;
+        let dofs = state.u.len();
+        archive.carry(state)?;
+        if [&state.u, &state.v, &state.a].map(Vec::len) != [dofs; 3] {
+            return Err(ArchiveError::Size);
+        }
+        ledger.carry(archive)?;
+        archive.carry(rejected)?;
+        archive.carry(supported)?;
+        archive.carry(procedure)?;
+        archive.carry(path)?;
+        archive.carry(accuracy)?;
+        accounts.carry(archive)?;
+        let RunSummary {
+            outcome: _,
+            increments,
+            cutbacks,
+            rejections,
+            events,
+            solver,
+            timings: _,
+        } = summary;
+        archive.carry(increments)?;
+        archive.carry(cutbacks)?;
+        archive.carry(rejections)?;
+        archive.carry(events)?;
+        archive.carry(solver)
+    }
+
+    /// Hands the observer all that the rest of the run depends on.
+    fn checkpoint(
+        &mut self,
+        workspace: &mut Workspace,
+        control: &mut dyn TimeControl,
+    ) -> Result<(), RunError> {
+        let mut archive = Archive::new();
+        self.carry(&mut archive)?;
+        workspace.carry(&mut archive)?;
+        control.carry(&mut archive)?;
+        Ok(self.observer.checkpoint(archive.into_bytes())?)
+    }
+
+    /// Runs a step, or what is left of it after the checkpoint `resumed`; returns how it ends.
+    fn step(
+        &mut self,
+        step: &'m Step,
+        place: StepPlace,
+        resumed: Option<Archive>,
+    ) -> Result<Outcome, RunError> {
+        if resumed.is_none() {
+            self.progress = Progress {
+                step: place.number,
+                start: [self.state.u.clone(), self.state.v.clone()],
+                ..Progress::default()
+            };
+        }
+        let start = self.progress.start.each_ref().map(Vec::as_slice);
+        let mut problem = StepProblem::new(self.discretization, step, start);
+        match resumed {
+            None => {
+                self.release_supports(&mut problem);
+                self.path = None;
+            }
+            Some(_) => problem.loads.release(self.progress.released.clone()),
+        }
         let mut workspace = Workspace::new(&problem);
-        self.path = None;
-        let outcome = self.increments(&problem, &mut workspace, step, place);
+        let outcome = self.increments(&problem, &mut workspace, (step, place), resumed);
         self.summary.timings.add(&workspace.meter.timings);
         outcome
     }
@@ -175,23 +319,54 @@ impl<'m, 'o> Runner<'m, 'o> {
             released
                 .iter()
                 .for_each(|&(dof, force)| end.load[dof] += force);
+            self.progress.released.clone_from(&released);
             problem.loads.release(released);
         }
         self.supported = problem.unknowns.prescribed().collect();
     }
 
-    /// The motion of the start, then all increments.
+    /// The motion of the start, then all increments; or those after the checkpoint `resumed`.
     fn increments(
         &mut self,
         problem: &StepProblem<'m>,
         workspace: &mut Workspace<'m>,
-        step: &Step,
-        place: StepPlace,
+        (step, place): (&Step, StepPlace),
+        mut resumed: Option<Archive>,
     ) -> Result<Outcome, RunError> {
+        match &mut resumed {
+            Some(archive) => workspace.carry(archive)?,
+            None => {
+                if let Some(failure) = self.begin(problem, workspace, (step, place))? {
+                    return Ok(Outcome::Stopped(Box::new(failure)));
+                }
+            }
+        }
+        let done = self.progress.nominal;
+        let nominals = nominal_controls(problem, place, step).enumerate();
+        for (index, (nominal, mut control)) in nominals.skip(done) {
+            self.progress.nominal = index;
+            if let Some(mut archive) = resumed.take() {
+                control.carry(&mut archive)?;
+            }
+            let end = self.increment(problem, workspace, nominal, &mut *control)?;
+            if end != Outcome::Finished {
+                return Ok(end);
+            }
+        }
+        Ok(Outcome::Finished)
+    }
+
+    /// The motion at the start of a step; the failure where that of the analysis is not finite.
+    fn begin(
+        &mut self,
+        problem: &StepProblem<'m>,
+        workspace: &mut Workspace<'m>,
+        (step, place): (&Step, StepPlace),
+    ) -> Result<Option<Failure>, RunError> {
         if place.number == 1
             && let Some(failure) = self.start(problem, workspace, place)?
         {
-            return Ok(Outcome::Stopped(Box::new(failure)));
+            return Ok(Some(failure));
         }
         let is_static = |procedure: Procedure| procedure == Procedure::Static;
         if place.number > 1 && is_static(self.procedure) != is_static(step.procedure) {
@@ -202,20 +377,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         let decides = matches!(step.increments.incrementation, Incrementation::Error { .. });
         let State { u, a, .. } = &self.state;
         self.accuracy = decides.then(|| TruncationError::new(u, a));
-        if step.increments.incrementation != Incrementation::Fixed {
-            let at_impacts = problem.ends_at_impacts();
-            let mut control = Automatic::new(place, step.increments, at_impacts);
-            let nominal = control.nominal();
-            return self.increment(problem, workspace, nominal, &mut control);
-        }
-        for nominal in nominal_increments(place, step.increments) {
-            let control = &mut *time_control(problem, nominal);
-            let end = self.increment(problem, workspace, nominal, control)?;
-            if end != Outcome::Finished {
-                return Ok(end);
-            }
-        }
-        Ok(Outcome::Finished)
+        Ok(None)
     }
 
     /// One nominal increment, divided by its time control: attempt, check, accept or cut back.
@@ -226,8 +388,15 @@ impl<'m, 'o> Runner<'m, 'o> {
         nominal: NominalIncrement,
         control: &mut dyn TimeControl,
     ) -> Result<Outcome, RunError> {
-        while let Some(span) = control.next() {
+        loop {
+            if self.observer.wants_checkpoint() {
+                self.checkpoint(workspace, control)?;
+            }
+            let Some(span) = control.next() else {
+                return Ok(Outcome::Finished);
+            };
             if self.observer.wants_stop() {
+                self.checkpoint(workspace, control)?;
                 return Ok(Outcome::Interrupted);
             }
             let halvings = control.halvings();
@@ -273,7 +442,6 @@ impl<'m, 'o> Runner<'m, 'o> {
                 }
             }
         }
-        Ok(Outcome::Finished)
     }
 
     /// An accepted increment with its truncation error, where that decides the increments of the step.
@@ -465,7 +633,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             time: interval.end.total,
             step_time: interval.end.step,
             dt: interval.dt,
-            ends_step: interval.end.step == place.period,
+            ends_step: interval.end.step == place.end(),
             truncation_error,
             energy: ledger.energy,
             contact_energy: ledger.contact_energy,

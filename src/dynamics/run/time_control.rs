@@ -9,6 +9,7 @@
 //! Impact events: a nominal increment in subincrements that end at impacts, or halfway where one
 //! fails. Section 6 of docs/theory.md, Impacts as events.
 
+use crate::archive::{Archive, ArchiveError};
 use crate::dynamics::step::{Interval, StepPlace};
 use crate::model::{Incrementation, Increments};
 
@@ -40,6 +41,12 @@ pub(crate) trait TimeControl {
 
     /// Cuts an interval that failed, or whose truncation error is too large.
     fn failed(&mut self, interval: &Interval, error: Option<f64>);
+
+    /// Carries how far the nominal increment is solved.
+    ///
+    /// # Errors
+    /// What is read is no such control.
+    fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError>;
 
     /// Whether an interval of this length may be cut once more; `dt_min` is the least of the step.
     fn may_be_cut(&self, dt: f64, dt_min: f64) -> bool {
@@ -96,11 +103,11 @@ pub(crate) fn nominal_increments(
     place: StepPlace,
     Increments { dt, dt_min, .. }: Increments,
 ) -> impl Iterator<Item = NominalIncrement> {
-    let count = increments_of(place.period, dt);
+    let count = increments_of(place.end(), dt);
     (0..count).map(move |i| {
         let from = dt * i as f64;
         let to = if i + 1 == count {
-            place.period
+            place.end()
         } else {
             dt * (i + 1) as f64
         };
@@ -147,6 +154,16 @@ impl Bisection {
 }
 
 impl TimeControl for Bisection {
+    fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        let Bisection {
+            nominal: _,
+            part,
+            halvings,
+        } = self;
+        archive.carry(part)?;
+        archive.carry(halvings)
+    }
+
     fn next(&self) -> Option<Span> {
         let interval = || self.nominal.part(self.part, self.halvings);
         (self.part < 1 << self.halvings).then(|| Span {
@@ -201,6 +218,18 @@ impl ImpactControl {
 }
 
 impl TimeControl for ImpactControl {
+    fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        let ImpactControl {
+            nominal: _,
+            from,
+            events,
+            ends,
+        } = self;
+        archive.carry(from)?;
+        archive.carry(events)?;
+        archive.carry(ends)
+    }
+
     fn next(&self) -> Option<Span> {
         let to = *self.ends.last()?;
         let NominalIncrement { place, length, .. } = self.nominal;
@@ -281,7 +310,7 @@ impl Automatic {
             nominal: NominalIncrement {
                 place,
                 from: 0.0,
-                to: place.period,
+                to: place.end(),
                 length: increments.dt,
                 dt_min: increments.dt_min,
             },
@@ -315,6 +344,26 @@ impl Automatic {
 }
 
 impl TimeControl for Automatic {
+    fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        let Automatic {
+            nominal: _,
+            increments: _,
+            ends_at_impacts: _,
+            from,
+            dt,
+            easy,
+            cuts,
+            rejections,
+            events,
+        } = self;
+        archive.carry(from)?;
+        archive.carry(dt)?;
+        archive.carry(easy)?;
+        archive.carry(cuts)?;
+        archive.carry(rejections)?;
+        archive.carry(events)
+    }
+
     fn next(&self) -> Option<Span> {
         let left = self.nominal.to - self.from;
         let by_error = matches!(self.increments.incrementation, Incrementation::Error { .. });
@@ -421,6 +470,7 @@ mod nominal_tests {
                 number: 1,
                 start: 2.0,
                 period: 1.0,
+                extension: 0.0,
             },
             from: 0.3,
             to: 0.4,

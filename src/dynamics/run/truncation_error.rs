@@ -5,6 +5,7 @@ use crate::dynamics::step::{StepProblem, dot};
 use crate::linear::{larger, largest};
 
 /// What the truncation error of the increments of a step is measured by.
+#[derive(serde::Serialize, serde::Deserialize)]
 pub(crate) struct TruncationError {
     /// Displacement at the start of the step.
     start: Vec<f64>,

@@ -7,6 +7,7 @@ use smallvec::{SmallVec, smallvec};
 
 use super::PerBody;
 use super::step_problem::StepProblem;
+use crate::archive::{Archive, ArchiveError};
 use crate::elements::Motion;
 use crate::vectors::{cross, difference, dot};
 
@@ -36,6 +37,11 @@ impl BodyAngles {
             arms: body_of.iter().enumerate().filter_map(arm).collect(),
             assembled: smallvec![0.0; holds.len()],
         }
+    }
+
+    /// Carries the angles of the configuration in which K* was assembled.
+    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        archive.carry_values(&mut self.assembled)
     }
 
     /// K* is assembled in the configuration of a motion.

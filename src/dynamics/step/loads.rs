@@ -42,6 +42,11 @@ impl TimePoint {
         [amplitude.at(end), to[0] - from[0], second]
     }
 
+    /// Part of what is ramped over the step.
+    pub fn ramped(&self) -> f64 {
+        (self.step / self.period).min(1.0)
+    }
+
     fn of(&self, base: TimeBase) -> f64 {
         match base {
             TimeBase::Step => self.step,
@@ -52,7 +57,7 @@ impl TimePoint {
     fn magnitude<T>(&self, model: &Model, load: &Load<T>) -> f64 {
         match load.variation {
             Variation::Constant => load.magnitude,
-            Variation::Ramp { from } => from + (load.magnitude - from) * (self.step / self.period),
+            Variation::Ramp { from } => from + (load.magnitude - from) * self.ramped(),
             Variation::Amplitude(index) => load.magnitude * self.amplitude(model, index),
         }
     }
@@ -147,7 +152,7 @@ impl<'m> Loads<'m> {
             r[load.at.dof] += weight * at.magnitude(self.model, load);
         }
         for &(dof, force) in &self.released {
-            r[dof] += weight * force * (1.0 - at.step / at.period);
+            r[dof] += weight * force * (1.0 - at.ramped());
         }
     }
 
@@ -225,11 +230,18 @@ pub(crate) struct StepPlace {
     pub number: usize,
     /// Time of the analysis at which it starts.
     pub start: f64,
-    /// Duration (time).
+    /// Duration in the deck (time).
     pub period: f64,
+    /// Time by which a run goes on beyond it; what is ramped over the step stays as it is at its end.
+    pub extension: f64,
 }
 
 impl StepPlace {
+    /// Step time at which the step ends.
+    pub fn end(&self) -> f64 {
+        self.period + self.extension
+    }
+
     /// The point at time `step` since the start of the step.
     pub fn time_point(&self, step: f64) -> TimePoint {
         TimePoint {

@@ -13,6 +13,7 @@ use super::mass::{Masses, unknown_mass};
 use super::meter::Meter;
 use super::pins::{Pins, Softening, pin_columns};
 use super::step_problem::StepProblem;
+use crate::archive::{Archive, ArchiveError};
 use crate::contact::{
     ClosedPair, Compliance, Configurations, Constraint, DelassusSpace, Scope, frictional_lcp,
 };
@@ -91,6 +92,29 @@ impl FactoredMatrix {
         self.solver.factorize()
     }
 
+    /// Carries the matrix and what is known of its inverse.
+    fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        let Self {
+            solver,
+            compliance,
+            kept,
+            softening,
+            space: _,
+            vectors: _,
+        } = self;
+        solver.carry(archive)?;
+        compliance.carry(archive, solver)?;
+        let mut scopes: Vec<Scope> = kept.keys().cloned().collect();
+        archive.carry(&mut scopes)?;
+        if archive.is_reading() {
+            kept.clear();
+        }
+        for scope in scopes {
+            kept.entry(scope).or_default().carry(archive)?;
+        }
+        archive.carry(softening)
+    }
+
     /// Solves for the columns of the compliance that `constraints` need.
     pub fn prepare(
         &mut self,
@@ -110,7 +134,7 @@ const AS_RIGID: f64 = 1e3;
 const NEUTRAL: f64 = 1e-10;
 
 /// What K* is made of besides inertia.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(crate) enum StiffnessForm {
     /// Tangents of the elements and contact stiffness.
     Tangent,
@@ -204,6 +228,28 @@ impl EffectiveStiffness {
             stiffness: Vec::new(),
             inertia: Vec::new(),
         }
+    }
+
+    /// Carries both matrices and the configuration of K*.
+    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        let Self {
+            k,
+            m,
+            angles,
+            form,
+            pin,
+            dt,
+            stiffness,
+            inertia,
+        } = self;
+        k.carry(archive)?;
+        m.carry(archive)?;
+        angles.carry(archive)?;
+        archive.carry(form)?;
+        archive.carry(pin)?;
+        archive.carry(dt)?;
+        archive.carry(stiffness)?;
+        archive.carry(inertia)
     }
 
     /// Sets the rows of T of bodies that turn in K* to those of the increment `d` from `u0`.

@@ -291,6 +291,7 @@ fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
 /// ```text
 /// W b = K_r^-1 b - V C V^T b,  V = K_r^-1 S,  C = (1/(a' - a) + S^T V)^-1            eq. (12.4)
 /// ```
+#[derive(serde::Serialize, serde::Deserialize)]
 pub(crate) struct Softening {
     /// Columns of V over the unknowns.
     columns: Vec<Vec<f64>>,

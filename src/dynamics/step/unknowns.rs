@@ -316,8 +316,9 @@ impl<'m> Supports<'m> {
     ) -> [f64; 2] {
         match motion {
             SupportMotion::Ramp { to } => {
-                let u = from + (to - from) * (at.step / at.period);
-                [u, (to - from) / at.period]
+                let u = from + (to - from) * at.ramped();
+                let moves = at.step <= at.period;
+                [u, if moves { (to - from) / at.period } else { 0.0 }]
             }
             SupportMotion::Amplitude { value, amplitude } => [
                 value * at.amplitude(self.model, amplitude),

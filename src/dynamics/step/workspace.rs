@@ -6,6 +6,7 @@ use super::matrices::{ClosedConstraints, EffectiveStiffness, StiffnessForm, Syst
 use super::meter::Meter;
 use super::pins::Pins;
 use super::step_problem::{StepProblem, difference, sum};
+use crate::archive::{Archive, ArchiveError};
 use crate::contact::{
     ClosedPairs, Constraint, NodeAtSegment, PairTarget, Search, find_penetration, find_targets,
 };
@@ -35,6 +36,19 @@ impl<'m> Workspace<'m> {
             pins: Pins::new(problem),
             pairs: Vec::new(),
         }
+    }
+
+    /// Carries what the increments of the step hand on.
+    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        let Self {
+            stiffness,
+            search,
+            meter: _,
+            pins: _,
+            pairs: _,
+        } = self;
+        stiffness.carry(archive)?;
+        search.carry(archive)
     }
 
     /// The effective stiffness K*.

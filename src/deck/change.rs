@@ -1,0 +1,153 @@
+//! Whether a deck is the one that a checkpoint is of: the first card or number that differs.
+
+use super::lines::{Line, LineKind, Lines};
+use super::text::Text;
+use crate::diagnostics::{Code, Diagnostic, FileId, Sources, Span};
+
+/// A field of a deck with the keyword line that it belongs to.
+struct Entry<'a> {
+    card: &'a str,
+    field: Text<'a>,
+}
+
+/// The fields of a text in their order, without comments and without the cards that may change.
+fn entries(file: FileId, text: &str) -> impl Iterator<Item = Entry<'_>> {
+    let is_said = |line: &Line| !matches!(line.kind(), LineKind::Blank | LineKind::Comment);
+    let lines = Lines::new(file, text).filter(is_said);
+    let with_cards = lines.scan("", |card, line| {
+        if line.kind() == LineKind::Keyword {
+            *card = line.fields().next().map_or("", |field| field.text);
+        }
+        Some((*card, line))
+    });
+    let counts = |(card, _): &(&str, Line)| {
+        let name = card.trim_start_matches('*').trim();
+        !name.eq_ignore_ascii_case("RESTART")
+    };
+    let fields = with_cards.filter(counts);
+    fields.flat_map(|(card, line)| line.fields().map(move |field| Entry { card, field }))
+}
+
+/// The first change of a deck, file by file, against earlier texts with their names.
+pub fn first_change(earlier: &[(String, String)], sources: &Sources) -> Option<Diagnostic> {
+    for (index, file) in sources.files().iter().enumerate() {
+        let id = FileId(index as u32);
+        let start = Span {
+            file: id,
+            line: 1,
+            column: 1,
+            length: 1,
+            instance: 0,
+        };
+        let Some((name, before)) = earlier.get(index) else {
+            let message = format!(
+                "the deck has changed since the checkpoint: it has another file, {}",
+                file.name()
+            );
+            return Some(changed(start, message));
+        };
+        if before == file.text() {
+            continue;
+        }
+        let mut old = entries(id, before);
+        let mut last = start;
+        for Entry { card, field } in entries(id, file.text()) {
+            last = field.span;
+            let was = match old.next() {
+                Some(was) if is_same(was.field, field) => continue,
+                Some(was) => format!("was `{}` of {}", was.field.text, was.card),
+                None => "is new".to_owned(),
+            };
+            let what = format!("`{}` of {card} {was}", field.text);
+            return Some(changed(
+                field.span,
+                format!("the deck has changed since the checkpoint: {what}"),
+            ));
+        }
+        if let Some(Entry { card, field }) = old.next() {
+            let message = format!(
+                "the deck has changed since the checkpoint: {name} had `{}` of {card} after this",
+                field.text
+            );
+            return Some(changed(last, message));
+        }
+    }
+    let (name, _) = earlier.get(sources.files().len())?;
+    let message = format!("the deck has changed since the checkpoint: it had another file, {name}");
+    let file = FileId(0);
+    Some(changed(
+        Span {
+            file,
+            line: 1,
+            column: 1,
+            length: 1,
+            instance: 0,
+        },
+        message,
+    ))
+}
+
+fn is_same(one: Text, other: Text) -> bool {
+    one.text == other.text || (one.as_real().is_some() && one.as_real() == other.as_real())
+}
+
+fn changed(span: Span, message: String) -> Diagnostic {
+    Diagnostic::error(Code::ChangedDeck, span, message).help(
+        "a run goes on with the deck that it began with, but for comments and *RESTART: put it back, or run it \
+         anew with --overwrite",
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn change(before: &str, now: &str) -> Option<(String, u32, u32)> {
+        let mut sources = Sources::new();
+        sources.add("deck.inp", now, None);
+        let found = first_change(&[("deck.inp".into(), before.into())], &sources)?;
+        let span = found.span.expect("a place");
+        let (_, what) = found.message.split_once(": ")?;
+        Some((what.to_owned(), span.line, span.column))
+    }
+
+    #[test]
+    fn the_first_card_or_number_that_differs_is_told() {
+        let deck = "*NODE\n1, 0., 2.5\n*ELASTIC\n100., 0.3\n*RESTART, WRITE\n";
+        let told = |now: &str| change(deck, now);
+        assert_eq!(told(deck), None);
+        assert_eq!(
+            told("** comment\n*NODE\n 1,0, 2.50\n*ELASTIC\n100., .3\n"),
+            None
+        );
+        let number = told("*NODE\n1, 0., 2.5\n*ELASTIC\n100., 0.31\n");
+        assert_eq!(
+            number,
+            Some(("`0.31` of *ELASTIC was `0.3` of *ELASTIC".into(), 4, 7))
+        );
+        let card = told("*NODE\n1, 0., 2.5\n*PLASTIC\n100., 0.3\n");
+        assert_eq!(
+            card,
+            Some((
+                "`*PLASTIC` of *PLASTIC was `*ELASTIC` of *ELASTIC".into(),
+                3,
+                1
+            ))
+        );
+        let more = told("*NODE\n1, 0., 2.5\n*ELASTIC\n100., 0.3, 1\n");
+        assert_eq!(more, Some(("`1` of *ELASTIC is new".into(), 4, 12)));
+        let less = told("*NODE\n1, 0., 2.5\n*ELASTIC\n100.\n");
+        assert_eq!(
+            less,
+            Some(("deck.inp had `0.3` of *ELASTIC after this".into(), 4, 1))
+        );
+        let file = change("*NODE", "*NODE").or_else(|| {
+            let mut sources = Sources::new();
+            sources.add("deck.inp", "*NODE", None);
+            sources.add("more.inp", "1, 0., 0.", None);
+            let found = first_change(&[("deck.inp".into(), "*NODE".into())], &sources)?;
+            Some((found.message, 0, 0))
+        });
+        assert!(file.is_some_and(|(message, ..)| message.ends_with("another file, more.inp")));
+    }
+}

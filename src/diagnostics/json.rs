@@ -1,0 +1,52 @@
+//! Diagnostics as JSON, for editors. docs/output.md, Messages as JSON.
+
+use super::{Diagnostic, Diagnostics, Severity, Sources, Span};
+use serde_json::{Value, json};
+
+impl Diagnostics {
+    /// All diagnostics by their place, one JSON object.
+    pub fn json(&self, sources: &Sources) -> String {
+        let all: Vec<Value> = self
+            .sorted()
+            .into_iter()
+            .map(|item| object(item, sources))
+            .collect();
+        let counts = [Severity::Error, Severity::Warning].map(|severity| self.count(severity));
+        let whole = json!({
+            "diagnostics": all,
+            "errors": counts[0],
+            "warnings": counts[1],
+        });
+        format!("{whole:#}")
+    }
+}
+
+fn object(item: &Diagnostic, sources: &Sources) -> Value {
+    let severity = match item.severity {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+        Severity::Note => "note",
+    };
+    let chain = item.span.map(|span| sources.include_chain(span));
+    let instance = item.span.and_then(|span| sources.instance_of(span));
+    json!({
+        "severity": severity,
+        "code": item.code.id(),
+        "message": item.message,
+        "label": item.label,
+        "help": item.help,
+        "place": item.span.map(|span| place(span, sources)),
+        "included_from": chain.unwrap_or_default().into_iter().map(|span| place(span, sources)).collect::<Vec<_>>(),
+        "instance": instance.map(|(name, _)| name),
+    })
+}
+
+/// File and range: lines and columns in characters, from 1; the end is behind the last character.
+fn place(span: Span, sources: &Sources) -> Value {
+    let span = sources.typed(span);
+    json!({
+        "file": sources.get(span.file).map_or("", |source| source.name()),
+        "start": {"line": span.line, "column": span.column},
+        "end": {"line": span.line, "column": span.column + span.length},
+    })
+}

@@ -1,0 +1,173 @@
+//! `JOB.restart`: the last checkpoint of a run, with the deck that it belongs to. It is written whole to another name,
+//! brought to the disk and then renamed, so that there is always a whole one. docs/restart.md.
+
+use std::fs::File;
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::{error, fmt, fs};
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::error::{FileError, at};
+
+/// First bytes of the file.
+const MAGIC: &[u8] = b"stickslip restart 1\n";
+
+/// Bytes of the check sum behind them.
+const SUM: usize = 32;
+
+/// A checkpoint with what it is of.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Checkpoint {
+    /// The program that wrote it: version and commit.
+    pub program: String,
+    /// How the deck was read and run.
+    pub origin: Origin,
+    /// Time at the end of the last increment.
+    pub time: f64,
+    /// How far the files of the job were written.
+    pub files: Vec<u8>,
+    /// All that the rest of the run depends on.
+    pub solver: Vec<u8>,
+}
+
+/// Deck and options of a run, which the run that goes on must have as well.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Origin {
+    /// The deck with its includes, file by file: name and text.
+    pub deck: Vec<(String, String)>,
+    /// Options that change what is computed or written.
+    pub options: String,
+    /// Time by which the last step is longer than in the deck.
+    pub extension: f64,
+}
+
+/// Why there is no checkpoint to go on from.
+#[derive(Debug)]
+pub enum CheckpointError {
+    /// The file cannot be read.
+    File(FileError),
+    /// It is no whole checkpoint.
+    Content(PathBuf),
+    /// It was written by another version of the program.
+    Program {
+        /// The file.
+        path: PathBuf,
+        /// That version.
+        other: String,
+    },
+}
+
+impl fmt::Display for CheckpointError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            CheckpointError::File(error) if error.source.kind() == ErrorKind::NotFound => write!(
+                f,
+                "there is no checkpoint {}: a run writes one with *RESTART, WRITE, with --checkpoint, and when it is \
+                 interrupted",
+                error.path.display()
+            ),
+            CheckpointError::File(error) => error.fmt(f),
+            CheckpointError::Content(path) => {
+                write!(f, "{} is no whole checkpoint", path.display())
+            }
+            CheckpointError::Program { path, other } => write!(
+                f,
+                "{} is of stickslip {other}: only the same version goes on in the same bits",
+                path.display()
+            ),
+        }
+    }
+}
+
+impl error::Error for CheckpointError {}
+
+impl Checkpoint {
+    /// Reads a checkpoint that `program` has written.
+    ///
+    /// # Errors
+    /// There is none, it is not whole, or it is of another program.
+    pub fn read(path: &Path, program: &str) -> Result<Self, CheckpointError> {
+        let bytes = fs::read(path).map_err(FileError::new("read", path));
+        let bytes = bytes.map_err(CheckpointError::File)?;
+        let content = || CheckpointError::Content(path.to_owned());
+        let rest = bytes.strip_prefix(MAGIC).ok_or_else(content)?;
+        let (sum, body) = rest.split_at_checked(SUM).ok_or_else(content)?;
+        if sum != Sha256::digest(body).as_slice() {
+            return Err(content());
+        }
+        // its first value is the program
+        let (other, _) = postcard::take_from_bytes::<String>(body).map_err(|_| content())?;
+        if other != program {
+            let path = path.to_owned();
+            return Err(CheckpointError::Program { path, other });
+        }
+        postcard::from_bytes(body).map_err(|_| content())
+    }
+
+    /// Writes the file in place of the last checkpoint, of which it is never without one.
+    ///
+    /// # Errors
+    /// Those of the file system.
+    pub fn write(&self, path: &Path) -> io::Result<()> {
+        let mut name = path.file_name().unwrap_or_default().to_owned();
+        name.push(".part");
+        let draft = path.with_file_name(name);
+        let body = postcard::to_stdvec(self).map_err(io::Error::other)?;
+        let write = || {
+            let mut file = File::create(&draft)?;
+            file.write_all(MAGIC)?;
+            file.write_all(&Sha256::digest(&body))?;
+            file.write_all(&body)?;
+            file.sync_all()?;
+            fs::rename(&draft, path)?;
+            let folder = path
+                .parent()
+                .filter(|folder| !folder.as_os_str().is_empty());
+            File::open(folder.unwrap_or(Path::new(".")))?.sync_all()
+        };
+        let written = write();
+        if written.is_err() {
+            // the first error is reported
+            let _ = fs::remove_file(&draft);
+        }
+        written.map_err(at(path))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_checkpoint_comes_back_or_says_why_not() {
+        let folder = tempfile::TempDir::new().expect("folder");
+        let path = folder.path().join("job.restart");
+        let missing = Checkpoint::read(&path, "1").expect_err("none");
+        assert!(missing.to_string().contains("there is no checkpoint"));
+        let checkpoint = Checkpoint {
+            program: "1".into(),
+            time: 7.5,
+            solver: vec![1, 2, 3],
+            ..Checkpoint::default()
+        };
+        checkpoint.write(&path).expect("written");
+        let read = Checkpoint::read(&path, "1").expect("read");
+        assert_eq!(read, checkpoint);
+        let other = Checkpoint::read(&path, "2").expect_err("another program");
+        assert!(other.to_string().contains("only the same version"));
+        let bytes = fs::read(&path).expect("bytes");
+        for spoiled in [
+            &bytes[..bytes.len() - 1],
+            &bytes[..10],
+            &[],
+            b"something else",
+        ] {
+            fs::write(&path, spoiled).expect("spoiled");
+            let error = Checkpoint::read(&path, "1").expect_err("spoiled");
+            assert!(error.to_string().contains("no whole checkpoint"));
+        }
+        assert_eq!(fs::read_dir(folder.path()).expect("folder").count(), 1);
+    }
+}
