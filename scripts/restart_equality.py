@@ -1,5 +1,7 @@
-"""Stops and kills runs at random times, goes on with `--resume`, and compares the results bit by bit with a run that
-was never stopped: all datasets and attributes outside /run, and the status file (docs/restart.md).
+"""Stops and kills runs at random times, goes on with `--resume`, and compares the results.
+
+They must be the same bits as those of a run that was never stopped: all datasets and attributes
+outside /run, and the status file (docs/restart.md).
 
     python scripts/restart_equality.py                   five stops and five kills of five decks
     python scripts/restart_equality.py --count 1 DECK    once each, of this deck
@@ -60,7 +62,8 @@ class Job:
         process = self.start(*options)
         _, message = process.communicate()
         if process.returncode != 0:
-            sys.exit(f"{self.deck.name} {' '.join(options)}: exit code {process.returncode}\n{message.decode()}")
+            what = f"{self.deck.name} {' '.join(options)}: exit code {process.returncode}"
+            sys.exit(f"{what}\n{message.decode()}")
         return time.perf_counter() - begin
 
     def file(self, extension: str) -> Path:
@@ -76,7 +79,8 @@ def contents(path: Path) -> dict[str, object]:
         if name.split("/")[0] == "run":
             return
         for key, value in item.attrs.items():
-            found[f"{name}@{key}"] = value.tobytes() if isinstance(value, np.generic | np.ndarray) else value
+            is_array = isinstance(value, np.generic | np.ndarray)
+            found[f"{name}@{key}"] = value.tobytes() if is_array else value
         if isinstance(item, h5py.Dataset):
             found[name] = (item.shape, item.dtype.str, item[()].tobytes())
 
@@ -95,7 +99,10 @@ def differences(one: Job, other: Job) -> list[str]:
 
 
 def stopped(job: Job, after: float, how: signal.Signals) -> str:
-    """Stops a run after some seconds, and goes on until it ends, with another number of threads each time."""
+    """Stops a run after some seconds and goes on to its end, with another number of threads.
+
+    Returns why that was no stop.
+    """
     shutil.rmtree(job.folder, ignore_errors=True)
     process = job.start("--checkpoint", CHECKPOINTS, "--threads", THREADS[0])
     time.sleep(after)
@@ -113,7 +120,8 @@ def check(deck: Path, count: int, scratch: Path, chance: random.Random) -> bool:
     """Compares `count` stops and `count` kills of a deck with its whole run."""
     whole, other = Job(deck, scratch / "whole"), Job(deck, scratch / "other")
     seconds = whole.finish()
-    ways = [(chance.choice(SIGNALS), "stop") for _ in range(count)] + [(signal.SIGKILL, "kill")] * count
+    ways = [(chance.choice(SIGNALS), "stop") for _ in range(count)]
+    ways += [(signal.SIGKILL, "kill")] * count
     is_same = True
     for how, word in ways:
         reason = "once"
@@ -123,7 +131,8 @@ def check(deck: Path, count: int, scratch: Path, chance: random.Random) -> bool:
         found = differences(whole, other)
         is_same &= not found
         text = "same bits" if not found else f"{len(found)} differences: {', '.join(found[:5])}"
-        print(f"{deck.name:28} {word} after {after:6.2f} of {seconds:.2f} s by {how.name:8} {text}", flush=True)
+        when = f"{word} after {after:6.2f} of {seconds:.2f} s by {how.name:8}"
+        print(f"{deck.name:28} {when} {text}", flush=True)
     return is_same
 
 
@@ -138,12 +147,16 @@ def shortened(deck: Path, period: float | None, scratch: Path) -> Path:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("decks", nargs="*", type=Path, metavar="DECK", help="decks (default: five of the repository)")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    help_ = "decks (default: five of the repository)"
+    parser.add_argument("decks", nargs="*", type=Path, metavar="DECK", help=help_)
     parser.add_argument("--count", type=int, default=5, help="stops and kills of each (default 5)")
     parser.add_argument("--seed", type=int, default=0, help="of the random times (default 0)")
     arguments = parser.parse_args()
-    decks = {deck: None for deck in arguments.decks} or {ROOT / name: end for name, end in PERIODS.items()}
+    of_repository = {ROOT / name: end for name, end in PERIODS.items()}
+    decks = dict.fromkeys(arguments.decks) or of_repository
     chance = random.Random(arguments.seed)
     is_same = True
     for deck, period in decks.items():

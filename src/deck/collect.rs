@@ -229,6 +229,11 @@ impl Collector<'_> {
                     true => {
                         let replaced = self.parameters.replaced(lines, self.sources, self.d);
                         card.rows.add(Lines::at(lines, &replaced), &replaced);
+                        if self.parameters.take_failure() {
+                            self.deck.cards.pop();
+                            self.deck.dropped = true;
+                            self.rows = RowRule::Skip;
+                        }
                     }
                     false => card.rows.add(lines, source),
                 }
@@ -291,6 +296,11 @@ impl Collector<'_> {
         let Some((first, rest)) = pieces.split_first() else {
             return;
         };
+        if self.parameters.take_failure() {
+            self.drop_card(rest);
+            self.rows = RowRule::Skip;
+            return;
+        }
         let span = first.text.span;
         let Some(keyword) = resolve::keyword(first.text, self.d) else {
             if !self.d.is_lenient() {

@@ -22,6 +22,8 @@ pub(super) struct Parameters {
     given: BTreeSet<String>,
     /// Those without a value, which is reported.
     faulty: BTreeSet<String>,
+    /// Whether a line had a name without value since [`Self::take_failure`].
+    has_failed: bool,
 }
 
 impl Parameters {
@@ -105,6 +107,11 @@ impl Parameters {
         }
     }
 
+    /// Whether a line had a name without value, which is reported, since this was last asked.
+    pub fn take_failure(&mut self) -> bool {
+        std::mem::take(&mut self.has_failed)
+    }
+
     /// Lines with the values of their parameters.
     pub fn replaced(
         &mut self,
@@ -135,25 +142,26 @@ impl Parameters {
         let mut replaced = Vec::new();
         let mut rest = 0..line.text.len();
         while let Some((bytes, name)) = next_name(line.text, rest.clone()) {
-            let value = match self.values.get(name) {
-                Some(value) => value.written(),
-                None => {
-                    if !self.faulty.contains(name) {
-                        self.report_unknown(name, line.span_of(bytes.clone()), d);
-                    }
-                    // a number, since most values are: one message is enough
-                    "0".to_owned()
-                }
-            };
             self.used.insert(name.to_owned());
             text.push_str(&line.text[rest.start..bytes.start]);
-            let start = text.chars().count() as u32 + 1;
-            text.push_str(&value);
-            replaced.push(Replaced {
-                column: start,
-                length: value.chars().count() as u32,
-                typed: line.span_of(bytes.clone()),
-            });
+            let (column, typed) = (text.chars().count() as u32 + 1, line.span_of(bytes.clone()));
+            match self.values.get(name).map(Value::written) {
+                Some(value) => {
+                    text.push_str(&value);
+                    replaced.push(Replaced {
+                        column,
+                        length: value.chars().count() as u32,
+                        typed,
+                    });
+                }
+                None => {
+                    text.push_str(&line.text[bytes.clone()]);
+                    self.has_failed = true;
+                    if !self.faulty.contains(name) {
+                        self.report_unknown(name, Span { column, ..typed }, d);
+                    }
+                }
+            }
             rest.start = bytes.end;
         }
         if replaced.is_empty() {

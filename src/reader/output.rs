@@ -54,6 +54,8 @@ impl Requests {
         }
         let every = match card.has("FREQUENCY") {
             true => count(card, "FREQUENCY", 0, cx),
+            // at the ends of steps
+            false if card.has("NUMBER INTERVAL") => Some(usize::MAX >> 1),
             false => Some(1),
         };
         let every = every.unwrap_or(0);

@@ -1,6 +1,7 @@
 //! The program as users run it: exit codes, files, kills, memory.
 
 mod exit;
+mod json;
 mod killed;
 mod lcp;
 mod memory;

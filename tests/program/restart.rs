@@ -118,7 +118,7 @@ fn a_run_goes_on_beyond_its_end() {
     ));
     assert_done(&run(extended.path(), &["--resume", "--extend", "0.05"]));
     assert_done(&run(extended.path(), &["--resume", "--extend", "0.05"]));
-    let [a, b] = [whole.path(), extended.path()].map(|folder| contents(folder));
+    let [a, b] = [whole.path(), extended.path()].map(contents);
     // the last increments before 0.6 and 0.65 end there, and not at multiples of 0.002, which differ in round-off
     for name in [
         "/history/time",

@@ -301,9 +301,9 @@ pub(super) static STEPS: &[Keyword] = &[
             ),
             P::value(
                 "NUMBER INTERVAL",
-                "checkpoints are counted by increments: give FREQUENCY",
+                "checkpoints are counted by increments (FREQUENCY), else at the end of each step",
             )
-            .refused(),
+            .warned(),
             P::value("STEP", "belongs to READ").ignored(),
             P::value("INC", "belongs to READ").ignored(),
             P::flag("OVERLAY", "keep the last checkpoint of a step only"),
