@@ -2,6 +2,7 @@
 
 use std::error::Error;
 use std::io;
+use std::time::Duration;
 
 use super::args::{COMMIT, NUMBER, PROFILE, RunArgs, VERSION, processors};
 use super::commands::{Loaded, Numerics, describe, load};
@@ -85,7 +86,8 @@ pub(super) fn run(
     writer.keep_checkpoints(Checkpoints {
         program: VERSION.into(),
         origin,
-        every: args.checkpoint,
+        // an extended run may be extended again
+        every: args.checkpoint.or(args.extend.map(|_| Duration::MAX)),
     });
     for line in header(args, &files, &loaded, &record, &model) {
         writer.line(&line)?;

@@ -14,8 +14,8 @@ use std::ops::Range;
 
 use nom::branch::alt;
 use nom::bytes::complete::{tag, take_while, take_while1};
-use nom::character::complete::{char, digit0, digit1, multispace0, one_of};
-use nom::combinator::{cut, opt, recognize};
+use nom::character::complete::{char, multispace0};
+use nom::combinator::{cut, opt};
 use nom::multi::{many0, separated_list0};
 use nom::sequence::{delimited, pair, preceded, terminated};
 use nom::{IResult, Parser};
@@ -254,13 +254,34 @@ fn closing(input: &str) -> Parsed<'_, char> {
 
 /// digits[.digits][e[+-]digits], or .digits
 fn number(input: &str) -> Parsed<'_, Tree<'_>> {
-    let mantissa = alt((
-        recognize(pair(digit1, opt(pair(char('.'), digit0)))),
-        recognize(pair(char('.'), digit1)),
-    ));
-    let exponent = opt((one_of("eE"), opt(one_of("+-")), digit1));
-    let (rest, place) = placed(recognize(pair(mantissa, exponent))).parse(input)?;
-    Ok((rest, Tree::Number(place)))
+    let input = input.trim_start();
+    let bytes = input.as_bytes();
+    let is = |at: usize, set: &[u8]| bytes.get(at).is_some_and(|byte| set.contains(byte));
+    let after_digits = |from: usize| {
+        let rest = bytes.iter().skip(from);
+        from + rest.take_while(|byte| byte.is_ascii_digit()).count()
+    };
+    let mut end = after_digits(0);
+    if is(end, b".") {
+        let fraction = after_digits(end + 1);
+        if fraction > 1 {
+            end = fraction;
+        }
+    }
+    if end == 0 {
+        let what = "a number, a name or `(`";
+        let left = input.len();
+        return Err(nom::Err::Error(Expected { left, what }));
+    }
+    if is(end, b"eE") {
+        let first = end + 1 + usize::from(is(end + 1, b"+-"));
+        let exponent = after_digits(first);
+        if exponent > first {
+            end = exponent;
+        }
+    }
+    let (number, rest) = input.split_at(end);
+    Ok((rest, Tree::Number((input.len(), number))))
 }
 
 /// Evaluates the nodes of an expression.
@@ -449,6 +470,9 @@ mod tests {
             ("atan2(1, 1)", "0.7853981633974483"),
             ("log10(100) + exp(0) + sqrt(4)", "5.0"),
             ("1e-3*.5", "0.0005"),
+            ("0.45", "0.45"),
+            ("1.", "1.0"),
+            ("2.5e-3", "0.0025"),
             ("10**10", "10000000000"),
             ("10**30", "1e30"),
             ("'STEEL'", "STEEL"),

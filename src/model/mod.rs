@@ -29,8 +29,8 @@ pub use sets::{HistorySet, Instance, NamedSets, RequestedFields, element_name, n
 pub use side::{Segment, Side, SideNodes};
 pub use step::{
     BodyForce, ContactMass, Factorization, Frames, Impact, ImpactTime, Incrementation, Increments,
-    LandingRule, LcpChoice, Load, PointLoad, Pressure, Procedure, Rate, RestartOutput, Scheme, Settings,
-    SolverChoice, Step, Support, SupportMotion, Traction, Variation,
+    LandingRule, LcpChoice, Load, PointLoad, Pressure, Procedure, Rate, RestartOutput, Scheme,
+    Settings, SolverChoice, Step, Support, SupportMotion, Traction, Variation,
 };
 
 use crate::vectors::polygon_area;

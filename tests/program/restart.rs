@@ -150,7 +150,7 @@ fn what_cannot_go_on_says_why() {
     refused(&["--resume", "--overwrite"], 3, "cannot be used with");
     refused(&["--resume", "--frames", "3"], 3, "cannot be used with");
     refused(&["--extend", "1"], 3, "--resume");
-    refused(&["--checkpoint", "-1"], 3, "--checkpoint");
+    refused(&["--checkpoint", "soon"], 3, "a number of seconds");
     let path = stopped.path().join("job.inp");
     fs::write(&path, BEAM.replacen("0.002, 0.6", "0.002, 0.65", 1)).expect("deck");
     refused(&["--resume"], 2, "error[D211]");
