@@ -16,6 +16,7 @@ pub(crate) struct TruncationError {
 }
 
 /// An increment that is done.
+#[derive(serde::Serialize, serde::Deserialize)]
 struct Past {
     /// Mean acceleration, with impulses and what landings are given back.
     acceleration: Vec<f64>,
