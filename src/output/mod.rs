@@ -17,6 +17,7 @@ mod frames;
 mod history;
 mod job;
 mod memory;
+mod model_data;
 mod model_group;
 mod monitor;
 mod picture;

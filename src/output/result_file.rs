@@ -60,6 +60,7 @@ impl<'m> ResultFile<'m> {
         let file = builder().map_err(io_error).map_err(at(path))?;
         let parts = || {
             super::model_group::write(&file, model)?;
+            super::model_data::write(&file.group("model")?, model)?;
             let fields = fields::create(&file, model)?;
             let history = History::create(&file, model)?;
             let record = RecordWriter::create(&file, record)?;

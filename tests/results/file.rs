@@ -131,6 +131,27 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
         ("/model/bodies/mass", vec![B]),
         ("/model/bodies/edge_time", vec![B]),
         ("/model/bodies/wave_time", vec![B]),
+        ("/model/element_types", vec![E]),
+        ("/model/element_materials", vec![E]),
+        ("/model/thickness", vec![E]),
+        ("/model/materials/law", vec![1]),
+        ("/model/materials/young", vec![1]),
+        ("/model/materials/poisson", vec![1]),
+        ("/model/materials/density", vec![1]),
+        ("/model/materials/alpha", vec![1]),
+        ("/model/materials/beta", vec![1]),
+        ("/model/steps/scheme", vec![1]),
+        ("/model/steps/theta", vec![1, 2]),
+        ("/model/supported_nodes", vec![1]),
+        ("/model/constrained_nodes", vec![0]),
+        ("/model/loaded_nodes", vec![0]),
+        ("/model/load_groups", vec![E]),
+        ("/model/contacts/BOTTOM_TOP/slaves", vec![4]),
+        ("/model/contacts/BOTTOM_TOP/segments", vec![2, 2]),
+        ("/model/contacts/BOTTOM_TOP/friction", vec![2]),
+        ("/model/contacts/BOTTOM_TOP_2/slaves", vec![4]),
+        ("/model/contacts/BOTTOM_TOP_2/segments", vec![2, 2]),
+        ("/model/contacts/BOTTOM_TOP_2/friction", vec![2]),
         ("/history/bodies/center", vec![I, B, 2]),
         ("/history/bodies/velocity", vec![I, B, 2]),
         ("/history/bodies/angular_velocity", vec![I, B]),
@@ -385,6 +406,15 @@ fn sums_and_means_over_node_sets() {
     }
     let all = file.group("history/nodes/ALL").expect("group");
     assert!(all.dataset("U").is_err(), "sums only");
+    assert_eq!(values::<u8>(&file, "model/element_types"), [1, 1, 0]);
+    assert_eq!(values::<f64>(&file, "model/thickness"), [0.5; E]);
+    assert_eq!(values::<f64>(&file, "model/materials/young"), [1000.0]);
+    let slaves: Vec<i64> = values(&file, "model/contacts/BOTTOM_TOP/slaves");
+    assert_eq!(slaves, [0, 1, 2, 6]);
+    let segments: Vec<i64> = values(&file, "model/contacts/BOTTOM_TOP/segments");
+    assert_eq!(segments, [4, 3, 5, 4]);
+    let friction: Vec<f64> = values(&file, "model/contacts/BOTTOM_TOP/friction");
+    assert_eq!(friction, [0.3, 0.3]);
     let bodies: Vec<i64> = values(&file, "model/bodies/node");
     assert_eq!(bodies, [0; N]);
     let mass: Vec<f64> = values(&file, "model/bodies/mass");

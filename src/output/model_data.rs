@@ -1,0 +1,222 @@
+//! Group `/model`: what the equations of the run are made of. With it elements, materials, contacts and steps need not be
+//! read from the deck to recompute forces, energies and the contact law from the fields. Sections 2 to 4 of
+//! docs/theory.md.
+
+use std::collections::BTreeMap;
+
+use hdf5::Group;
+
+use super::column::{Meaning, constant, group};
+use super::model_group::contact_names;
+use crate::materials::Law;
+use crate::model::{
+    ElementType, Formulation, Material, Model, Procedure, Scheme, Segment, Step, Variation,
+};
+
+/// Writes the datasets and groups into `/model`.
+pub(super) fn write(at: &Group, model: &Model) -> hdf5::Result<()> {
+    write_elements(at, model)?;
+    write_materials(&group(at, "materials")?, model)?;
+    write_contacts(&group(at, "contacts")?, model)?;
+    write_steps(&group(at, "steps")?, &model.steps)?;
+    indices(at, "supported_nodes", supported(model), SUPPORTED)?;
+    indices(at, "constrained_nodes", constrained(model), CONSTRAINED)?;
+    indices(at, "loaded_nodes", loaded_nodes(model), LOADED_NODES)?;
+    let groups = load_groups(model);
+    constant(at, "load_groups", &[groups.len()], &groups, LOAD_GROUPS)
+}
+
+/// Type, material and thickness of every element.
+fn write_elements(at: &Group, model: &Model) -> hdf5::Result<()> {
+    let elements = &model.mesh.elements;
+    let types: Vec<u8> = elements.iter().map(|e| type_code(e.element_type)).collect();
+    constant(at, "element_types", &[types.len()], &types, ELEMENT_TYPES)?;
+    let section = |e: usize| model.sections.get(elements[e].section);
+    let material = |e: usize| section(e).map_or(-1, |section| section.material as i64);
+    let thickness = |e: usize| section(e).map_or(f64::NAN, |section| section.thickness);
+    let materials: Vec<i64> = (0..elements.len()).map(material).collect();
+    constant(
+        at,
+        "element_materials",
+        &[materials.len()],
+        &materials,
+        MATERIAL,
+    )?;
+    let values: Vec<f64> = (0..elements.len()).map(thickness).collect();
+    constant(at, "thickness", &[values.len()], &values, THICKNESS)
+}
+
+/// Number of an element type in the file: its place in [`ElementType::NAMED`], or one beyond for mean
+/// dilatation.
+fn type_code(element_type: ElementType) -> u8 {
+    let standard = ElementType {
+        formulation: Formulation::Displacement,
+        ..element_type
+    };
+    let mut named = ElementType::NAMED.iter();
+    match element_type.formulation {
+        Formulation::MeanDilatation => ElementType::NAMED.len() as u8,
+        _ => named.position(|known| *known == standard).unwrap_or(0) as u8,
+    }
+}
+
+/// Laws and constants of the materials.
+fn write_materials(at: &Group, model: &Model) -> hdf5::Result<()> {
+    let all = &model.materials;
+    let laws: Vec<u8> = all.iter().map(|material| law_code(&material.law)).collect();
+    constant(at, "law", &[laws.len()], &laws, LAW)?;
+    let column = |name, meaning, of: fn(&Material) -> f64| {
+        let values: Vec<f64> = all.iter().map(of).collect();
+        constant(at, name, &[values.len()], &values, meaning)
+    };
+    column("young", YOUNG, |m| m.law.small_strain().young)?;
+    column("poisson", POISSON, |m| m.law.small_strain().poisson)?;
+    column("density", DENSITY, |m| m.density)?;
+    column("alpha", ALPHA, |m| m.damping.alpha)?;
+    column("beta", BETA, |m| m.damping.beta)
+}
+
+fn law_code(law: &Law) -> u8 {
+    match law {
+        Law::SaintVenantKirchhoff(_) => 0,
+        Law::NeoHooke(_) => 1,
+        #[cfg(test)]
+        Law::Yielding(_) => u8::MAX,
+    }
+}
+
+/// Slave nodes, master segments and friction of every contact, under the names of `/history/contact`.
+fn write_contacts(at: &Group, model: &Model) -> hdf5::Result<()> {
+    for (contact, name) in model.contacts.iter().zip(contact_names(model)) {
+        let at = group(at, &name)?;
+        let takes_part = |node: &usize| contact.left_out.binary_search(node).is_err();
+        let slaves = model.surfaces[contact.slave].nodes(&model.mesh);
+        let slaves: Vec<usize> = slaves.into_iter().filter(takes_part).collect();
+        indices(&at, "slaves", slaves, SLAVES)?;
+        let segments: Vec<Segment> = model.surfaces[contact.master].segments(&model.mesh);
+        let nodes: Vec<i64> = segments.as_flattened().iter().map(|&n| n as i64).collect();
+        constant(&at, "segments", &[segments.len(), 2], &nodes, SEGMENTS)?;
+        let friction = contact.interaction.friction;
+        let values = [friction.at_rest, friction.sliding];
+        constant(&at, "friction", &[2], &values, FRICTION)?;
+    }
+    Ok(())
+}
+
+/// Procedure and scheme of every step.
+fn write_steps(at: &Group, steps: &[Step]) -> hdf5::Result<()> {
+    let scheme = |step: &Step| match (step.procedure, step.settings.scheme) {
+        (Procedure::Static, _) => (0, [1.0, 1.0]),
+        (Procedure::QuasiStatic, _) => (3, [1.0, 1.0]),
+        (Procedure::Dynamic, Scheme::EnergyMomentum) => (1, [0.5, 0.5]),
+        (Procedure::Dynamic, Scheme::Ss22 { theta1, theta2 }) => (2, [theta1, theta2]),
+    };
+    let (codes, theta): (Vec<u8>, Vec<[f64; 2]>) = steps.iter().map(scheme).unzip();
+    constant(at, "scheme", &[codes.len()], &codes, SCHEME)?;
+    constant(at, "theta", &[codes.len(), 2], theta.as_flattened(), THETA)
+}
+
+/// Nodes with a support in any step.
+fn supported(model: &Model) -> Vec<usize> {
+    let supports = model.steps.iter().flat_map(|step| &step.supports);
+    let nodes = supports.map(|support| support.dof / 2);
+    nodes.filter(|&n| n < model.mesh.node_count()).collect()
+}
+
+/// Nodes with a force that is neither internal, of inertia, of contact, of a support nor a load.
+fn constrained(model: &Model) -> Vec<usize> {
+    let equations = model.equations.iter().flat_map(|equation| equation.dofs());
+    let connectors = model
+        .connectors
+        .iter()
+        .flat_map(|c| c.nodes.iter().copied());
+    let bodies = model.rigid_bodies.iter();
+    let rigid = bodies.flat_map(|body| body.nodes.iter().copied().chain([body.reference]));
+    let nodes = equations.map(|dof| dof / 2).chain(connectors).chain(rigid);
+    nodes.filter(|&n| n < model.mesh.node_count()).collect()
+}
+
+/// Nodes with a concentrated load, a pressure or a traction in any step.
+fn loaded_nodes(model: &Model) -> Vec<usize> {
+    let mut nodes: Vec<usize> = Vec::new();
+    for step in &model.steps {
+        let pressures = step.pressures.iter().map(|load| load.at.face);
+        let tractions = step.tractions.iter().map(|load| load.at.face);
+        nodes.extend(step.point_loads.iter().map(|load| load.at.dof / 2));
+        nodes.extend((pressures.chain(tractions)).flat_map(|face| face.nodes(&model.mesh)));
+    }
+    nodes.retain(|&node| node < model.mesh.node_count());
+    nodes
+}
+
+/// A body force as far as forces of different elements may differ.
+type Signature = (usize, bool, [u64; 3], [u64; 2]);
+
+/// Group of every element: those with the same body forces have the same number, -1 without any.
+fn load_groups(model: &Model) -> Vec<i64> {
+    let mut forces: Vec<Vec<Signature>> = vec![Vec::new(); model.mesh.elements.len()];
+    for (number, step) in model.steps.iter().enumerate() {
+        for load in &step.body_forces {
+            let [x, y] = load.at.direction;
+            let variation = match load.variation {
+                Variation::Constant => [0, 0],
+                Variation::Ramp { from } => [1, from.to_bits()],
+                Variation::Amplitude(index) => [2, index as u64],
+            };
+            let size = [x, y, load.magnitude].map(f64::to_bits);
+            let signature = (number, load.at.per_mass, size, variation);
+            forces[load.at.element].push(signature);
+        }
+    }
+    let mut numbers: BTreeMap<Vec<Signature>, i64> = BTreeMap::new();
+    let mut number = |own: Vec<Signature>| match own.is_empty() {
+        true => -1,
+        false => {
+            let next = numbers.len() as i64;
+            *numbers.entry(own).or_insert(next)
+        }
+    };
+    forces.into_iter().map(&mut number).collect()
+}
+
+/// Writes indices, increasing and each once.
+fn indices(at: &Group, name: &str, mut found: Vec<usize>, text: &'static str) -> hdf5::Result<()> {
+    found.sort_unstable();
+    found.dedup();
+    let values: Vec<i64> = found.into_iter().map(|index| index as i64).collect();
+    constant(at, name, &[values.len()], &values, ("1", text))
+}
+
+const SUPPORTED: &str = "indices of nodes with a support in any step";
+const CONSTRAINED: &str = "indices of nodes of equations, springs, dashpots and rigid bodies";
+const LOADED_NODES: &str = "indices of nodes with a concentrated load, a pressure or a traction";
+const SLAVES: &str = "indices of the slave nodes";
+const LOAD_GROUPS: Meaning = (
+    "1",
+    "elements with the same body forces have the same number, -1 without any",
+);
+const ELEMENT_TYPES: Meaning = (
+    "1",
+    "0 CPE3, 1 CPE4, 2 CPS3, 3 CPS4, 4 CPE4 with mean dilatation",
+);
+const MATERIAL: Meaning = (
+    "1",
+    "index of the material in /model/materials, -1 for none",
+);
+const THICKNESS: Meaning = ("length", "thickness of each element");
+const LAW: Meaning = ("1", "0 St. Venant-Kirchhoff, 1 neo-Hooke");
+const YOUNG: Meaning = ("force/length^2", "Young's modulus at small strains");
+const POISSON: Meaning = ("1", "Poisson's ratio at small strains");
+const DENSITY: Meaning = ("mass/length^3", "density of the undeformed material");
+const ALPHA: Meaning = ("1/time", "damping in proportion to the mass");
+const BETA: Meaning = ("time", "damping in proportion to the elasticity");
+const SEGMENTS: Meaning = (
+    "1",
+    "node indices of the master segments, its body on the left of the way from the first to the second",
+);
+const FRICTION: Meaning = (
+    "1",
+    "coefficient of friction at rest and of fast slip, eq. (3.10)",
+);
+const SCHEME: Meaning = ("1", "0 static, 1 energy-momentum, 2 SS22, 3 backward Euler");
+const THETA: Meaning = ("1", "weights theta1 and theta2 of the scheme");
