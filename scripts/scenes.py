@@ -21,10 +21,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-import penetration
 from measured_run import run
 from random_scenes import INCREMENTS, KINDS, MATERIALS
 from stickslip import command
+from stickslip.penetration import intrusion as penetration
 from stickslip.program import STOPPED, binary
 from stickslip.result import Result
 

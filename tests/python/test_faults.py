@@ -8,13 +8,13 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-import penetration
 import pytest
 from conftest import ROOT, Job
 from decks import CANTILEVERS, shortened
 from stickslip import command, program
 from stickslip.command import FAULT
 from stickslip.errors import Fault
+from stickslip.penetration import intrusion as penetration
 from stickslip.plot import history as plot_history
 from stickslip.plot import motion as plot_motion
 from stickslip.result import Result
@@ -22,7 +22,7 @@ from stickslip.result import Result
 MAINS = {
     "plot_motion": plot_motion.run,
     "plot_history": plot_history.run,
-    "penetration": penetration.main,
+    "penetration": penetration.look,
 }
 
 Run = Callable[..., tuple[int, str]]

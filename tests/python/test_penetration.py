@@ -6,14 +6,13 @@ from math import cos, pi, sin
 from pathlib import Path
 
 import numpy as np
-import penetration
 import pytest
 from conftest import ROOT, Job
 from decks import CANTILEVERS, parse, shortened
-from outlines import Outline, outlines, side
-from penetration import Overlap, compare, in_obstacle, still_gone
-from profiles import Profile
 from stickslip.errors import Fault
+from stickslip.penetration.intrusion import Overlap, compare, in_obstacle, still_gone
+from stickslip.penetration.outlines import Outline, outlines, side
+from stickslip.penetration.profiles import Profile
 from stickslip.result import Result
 
 Points = list[tuple[float, float]]
@@ -324,4 +323,3 @@ def test_command_line(job: Job) -> None:
     clear = ("no node inside", "; 0 nodes deeper than 1e-09")
     assert len(lines) == 5
     assert all(any(words in line for words in clear) for line in lines), done.stdout
-    assert Path(penetration.__file__) == ROOT / "scripts" / "penetration.py"

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import random_scenes
 import scene_shapes
-from outlines import LIMIT
 from scenes import GAIN, Trial
+from stickslip.penetration.outlines import LIMIT
 from stickslip.result import Array
 
 INCREMENTS = 100

@@ -9,7 +9,7 @@ sys.path.insert(0, str(HERE.parent))
 import runner  # noqa: E402  (first: it finds the modules of scripts/)
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
-import penetration  # noqa: E402
+from stickslip.penetration import intrusion as penetration  # noqa: E402
 from stickslip.plot import style  # noqa: E402
 from stickslip.plot.motion import Look, panels, shown_at  # noqa: E402
 from stickslip.result import Array, Result  # noqa: E402

@@ -8,6 +8,9 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.certificate.certify import certify
+from stickslip.certificate.own import own_checks
+from stickslip.errors import Fault
 from stickslip.report.pack import Packed
 from stickslip.result import Result
 
@@ -23,19 +26,8 @@ WAY_PARTS = 20000.0
 MOST_ROWS = 20000
 """Longer histories show the smallest and the largest value of equal parts of the increments."""
 
-CHECKS = (
-    ("solver/residual", "force residual of the last pass, part of the largest force"),
-    ("solver/overlap", "overlap of an open pair, lengths of its segment"),
-    ("solver/gap_violation", "gap of a closed pair, lengths of its segment"),
-    ("solver/slip_violation", "slip of a sticking pair, lengths of its segment"),
-    ("solver/penetration", "penetration by nodes or edges, lengths of the edge"),
-    ("cone_violation", "force outside Coulomb's cone, part of the largest normal force"),
-    (
-        "impulse_cone_violation",
-        "impulse outside Coulomb's cone, part of the largest normal impulse",
-    ),
-)
-"""Histories that check an increment, with what they measure; without a slash those of contacts."""
+CERTIFIED = 4_000_000
+"""Results with more elements times frames than this are not certified in a page: it would take minutes."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +60,7 @@ def collect(path: Path, packed: Packed, choice: Choice) -> dict[str, Any]:
             "surfaces": surfaces,
             "histories": _histories(result, packed),
             "checks": _checks(result),
+            "certificate": _certificate(result),
             "deck": result.deck,
         }
 
@@ -409,28 +402,28 @@ def _checks(result: Result) -> list[dict[str, Any]]:
     """The largest value of every check of the increments, and where it is."""
     time = result.history["time"]
     found = []
-
-    def add(name: str, text: str, of: str, values: Array) -> None:
-        if len(values) == 0 or np.isnan(values).all():
-            return
-        row = int(np.nanargmax(np.abs(values)))
-        where = {"increment": row, "time": float(time[row])}
+    for check in own_checks(result):
+        if len(check.values) == 0 or np.isnan(check.values).all():
+            continue
+        row = int(np.nanargmax(np.abs(check.values)))
         found.append(
-            {"name": name, "text": text, "of": of, "largest": float(abs(values[row])), **where}
+            {
+                "name": check.name,
+                "text": check.text,
+                "of": check.contact,
+                "largest": float(abs(check.values[row])),
+                "increment": row,
+                "time": float(time[row]),
+            }
         )
-
-    for name, text in CHECKS:
-        if name in result.histories:
-            add(name, text, "", result.history[name])
-        for contact in result.contact:
-            if f"contact/{contact}/{name}" in result.histories:
-                add(f"contact/{contact}/{name}", text, contact, result.contact[contact][name])
-    names = [name for name in result.histories if name.startswith("energy/")]
-    energies = {name: result.history[name] for name in names}
-    balance = energies.pop("energy/balance")
-    largest = max(
-        (float(np.nanmax(np.abs(each), initial=0.0)) for each in energies.values()), default=0.0
-    )
-    if largest > 0.0:
-        add("energy/balance", "energy balance, part of the largest energy", "", balance / largest)
     return found
+
+
+def _certificate(result: Result) -> str:
+    """The line of the certificate, or why there is none."""
+    if len(result.cells) * len(result.frames) > CERTIFIED:
+        return "not made for a page of this size: stickslip-certify makes it"
+    try:
+        return certify(result).line
+    except Fault as fault:
+        return str(fault)

@@ -257,6 +257,8 @@ class Page {
       const where = check.largest > 0 ? [String(check.increment), time] : ["–", "–"];
       return make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, check.largest > 0 ? check.largest.toExponential(1) : "0"), ...where.map((each) => make("td", {}, each)));
     });
+    const { certificate } = this.result;
+    byId("checks").append(make("p", { class: "note" }, `Certificate, recomputed from the file: ${certificate}.`));
     byId("checks").append(make("table", { class: "checks" }, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...rows)));
   }
 }

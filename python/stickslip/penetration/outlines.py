@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
+
 from stickslip.errors import Fault
 from stickslip.result import Array, Result
 

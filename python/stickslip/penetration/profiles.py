@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from outlines import LIMIT, Integers, Outline, distances, side, winding
+
+from stickslip.penetration.outlines import LIMIT, Integers, Outline, distances, side, winding
 from stickslip.result import Array, Result
 
 Flags = NDArray[np.bool_]

@@ -1,0 +1,81 @@
+"""A check of the certificate: its worst value beside its bound."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+
+@dataclass
+class Check:
+    """One quantity, everywhere in the file where it can be told."""
+
+    name: str
+    text: str
+    """What is compared, in a few words."""
+    value: float = 0.0
+    """Worst value, as a part of the scale that `text` names."""
+    bound: float = 0.0
+    """Its bound there; round-off of positions makes bounds differ from place to place."""
+    place: str = ""
+    """Where it is."""
+    count: int = 0
+    """How many values were compared."""
+    scale: float = 0.0
+    """What values and bounds are shown as a part of; 0 where they are pure numbers."""
+    reasons: list[str] = field(default_factory=list)
+    """Why it could not be told, or not everywhere."""
+
+    @property
+    def is_told(self) -> bool:
+        """Whether anything was compared."""
+        return self.count > 0
+
+    @property
+    def holds(self) -> bool:
+        """Whether no value is above its bound."""
+        return self.value <= self.bound
+
+    def add(self, value: ArrayLike, bound: ArrayLike, place: str) -> None:
+        """Compares values with their bounds; a value that is no number is above any bound."""
+        values, bounds = np.broadcast_arrays(
+            np.asarray(value, dtype=np.float64), np.asarray(bound, dtype=np.float64)
+        )
+        if values.size == 0:
+            return
+        self.count += values.size
+        values = np.where(np.isnan(values), np.inf, np.maximum(values, 0.0))
+        above = np.where(values > bounds, np.inf, 0.0)
+        ratio = np.divide(values, bounds, out=above, where=bounds > 0.0)
+        worst = int(ratio.argmax())
+        if not self.place or ratio.flat[worst] > self._ratio:
+            self._ratio = float(ratio.flat[worst])
+            self.value, self.bound = float(values.flat[worst]), float(bounds.flat[worst])
+            self.place = place.format(worst)
+
+    _ratio: float = 0.0
+
+    def shown(self) -> tuple[float, float]:
+        """Worst value and bound as parts of the scale."""
+        scale = self.scale or 1.0
+        return self.value / scale, self.bound / scale
+
+    def skip(self, reason: str) -> None:
+        """Notes why something could not be told."""
+        if reason not in self.reasons:
+            self.reasons.append(reason)
+
+
+class Checks:
+    """The checks by name, in the order in which they were first used."""
+
+    def __init__(self, texts: dict[str, str]) -> None:
+        self._texts = texts
+        self._checks = {name: Check(name, text) for name, text in texts.items()}
+
+    def __getitem__(self, name: str) -> Check:
+        return self._checks[name]
+
+    def all(self) -> list[Check]:
+        """All checks."""
+        return list(self._checks.values())

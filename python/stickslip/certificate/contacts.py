@@ -1,0 +1,218 @@
+"""Gaps, forces and cones of the contacts of a frame, from positions and nodal forces alone."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from stickslip.result import Array, Integers, Result
+
+BEYOND = 1.0
+"""A node belongs to the line of a segment as far as this part of a length beyond its ends, and as far
+as it moves in an increment: the law extends segments at corners (docs/theory.md, Contact targets)."""
+
+CORNER = 2e-5
+"""Nodes that pass the end of a segment within this part of its length have the gap (10.3)."""
+
+PAIRS = 2_000_000
+"""Pairs of nodes and segments that are compared at a time."""
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A contact of the deck."""
+
+    name: str
+    slaves: Integers
+    segments: Integers
+    """[S, 2], the master body on the left."""
+    friction: Array
+    """Coefficients at rest and of fast slip."""
+    body: Integers
+    """Body of each node, -1 for those of rigid surfaces [N]."""
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether friction does not depend on the slip rate."""
+        return bool(self.friction[0] == self.friction[1])
+
+
+def contacts(result: Result) -> list[Contact]:
+    """All contacts of a result."""
+    at = "model/contacts"
+    with result.reading(at):
+        names = list(result.file[at])
+    return [
+        Contact(
+            name,
+            *(result.read(f"{at}/{name}/{part}") for part in ("slaves", "segments", "friction")),
+            result.read("model/bodies/node"),
+        )
+        for name in names
+    ]
+
+
+@dataclass(frozen=True)
+class Places:
+    """Some nodes beside all segments of a contact [n, S]."""
+
+    nodes: Integers
+    gap: Array
+    """Distance from the line of the segment, positive outside, in lengths."""
+    distance: Array
+    """Distance from the line where the node belongs to it, else from the segment, in lengths."""
+    reach: Array
+    """Distance from the segment itself, in lengths."""
+    ends: Array
+    """Distance from the nearer end of the segment, in lengths."""
+    way: Array
+    """How far node and segment have moved in the increment, in lengths."""
+    length: Array
+    """[S]"""
+
+
+def places(x: Array, way: Array, nodes: Integers, contact: Contact) -> Iterator[Places]:
+    """Compares nodes with segments, some of them at a time; a node's own segments are far away.
+
+    `way` [N] is how far the nodes have moved in the increment.
+    """
+    segments = contact.segments
+    if len(segments) == 0:
+        return
+    a, b = x[segments[:, 0]], x[segments[:, 1]]
+    along = b - a
+    length = np.linalg.norm(along, axis=1)
+    tangent = along / length[:, None]
+    far = np.maximum(way[segments[:, 0]], way[segments[:, 1]])
+    step = max(1, PAIRS // len(segments))
+    for first in range(0, len(nodes), step):
+        some = nodes[first : first + step]
+        arm = x[some][:, None] - a
+        gap = (arm[..., 0] * tangent[:, 1] - arm[..., 1] * tangent[:, 0]) / length
+        xi = np.einsum("nsi,si->ns", arm, tangent) / length
+        off = np.maximum(np.maximum(-xi, xi - 1.0), 0.0)
+        moved = (far + way[some][:, None]) / length
+        reach = np.hypot(gap, off)
+        ends = np.hypot(gap, np.minimum(np.abs(xi), np.abs(xi - 1.0)))
+        # lines of the node's own body are not extended: its neighbours lie on them
+        other = contact.body[segments[:, 0]] != contact.body[some][:, None]
+        distance = np.where((off <= BEYOND + moved) & other, np.abs(gap), reach)
+        distance = np.where(ends <= CORNER, 0.0, distance)
+        own = (segments[:, 0] == some[:, None]) | (segments[:, 1] == some[:, None])
+        values = (np.where(own, np.inf, each) for each in (gap, distance, reach, ends))
+        yield Places(some, *values, moved, length)
+
+
+@dataclass(frozen=True)
+class Touch:
+    """A slave node on a segment."""
+
+    contact: Contact
+    node: int
+    segment: tuple[int, int]
+
+
+def touching(
+    x: Array, way: Array, found: list[Contact], nodes: Integers, limit: float
+) -> tuple[list[Touch], Array, Array]:
+    """Slave nodes among `nodes` that are on segments; the nearest distance of each node from a line,
+    and of a slave node from a segment beyond the way of the increment [N]."""
+    nearest = np.full(len(x), np.inf)
+    reached = np.full(len(x), np.inf)
+    touches = []
+    for contact in found:
+        for near in places(x, way, np.intersect1d(contact.slaves, nodes), contact):
+            least = near.distance.min(axis=1)
+            for row in np.flatnonzero(least > limit):
+                least[row], ends = _at_corner(x, way, contact, int(near.nodes[row]), least[row])
+                for end in ends:
+                    nearest[end] = min(nearest[end], least[row])
+            nearest[near.nodes] = np.minimum(nearest[near.nodes], least)
+            beyond = np.maximum(near.reach - near.way, 0.0).min(axis=1)
+            reached[near.nodes] = np.minimum(reached[near.nodes], beyond)
+            for row, segment in zip(*np.nonzero(near.distance <= limit)):
+                one, two = contact.segments[segment]
+                touches.append(Touch(contact, int(near.nodes[row]), (int(one), int(two))))
+                for end in (one, two):
+                    nearest[end] = min(nearest[end], near.distance[row, segment])
+    return touches, nearest, reached
+
+
+def _at_corner(
+    x: Array, way: Array, contact: Contact, node: int, least: float
+) -> tuple[float, set[int]]:
+    """The smaller one of a distance and that from a corner, with the nodes of the corner's segments."""
+    error, ends = corner_error(x, way, contact, node, 0.0)
+    return (error, ends) if error < least else (least, set())
+
+
+def corner_error(
+    x: Array, way: Array, contact: Contact, node: int, gap: float
+) -> tuple[float, set[int]]:
+    """How far a gap is from all that (10.3) allows at the nearest corner, in lengths.
+
+    The node must be in front of neither segment, or over one by no more than its way. With a normal
+    between those of the segments i and j the gap is between g_i and g_j, or up to the distance from
+    the corner where the node is in front of neither. Also returns the nodes of both segments.
+    """
+    before, after = contact.segments[:, 1], contact.segments[:, 0]
+    corners = np.setdiff1d(np.intersect1d(before, after), [node])
+    if len(corners) == 0:
+        return np.inf, set()
+    arms = x[node] - x[corners]
+    nearest = int(np.linalg.norm(arms, axis=1).argmin())
+    arm, corner = arms[nearest], corners[nearest]
+    gaps, over, length = [], [], 0.0
+    ends_of: set[int] = set()
+    for ends, sign in ((before, 1.0), (after, -1.0)):
+        a, b = contact.segments[int(np.flatnonzero(ends == corner)[0])]
+        ends_of |= {int(a), int(b)}
+        along = x[b] - x[a]
+        length = max(length, float(np.linalg.norm(along)))
+        tangent = along / np.linalg.norm(along)
+        gaps.append(float(arm[0] * tangent[1] - arm[1] * tangent[0]))
+        over.append(max(-sign * float(arm @ tangent), 0.0))
+    if min(over) > 0.0 or max(over) > way[node] + way[corner] + CORNER * length:
+        return np.inf, ends_of
+    high = max(gaps) if any(over) else float(np.linalg.norm(arm))
+    return max(min(gaps) - gap, gap - high, 0.0) / length, ends_of
+
+
+@dataclass(frozen=True)
+class Split:
+    """Force and slip of a slave node on a segment in an increment."""
+
+    normal: float
+    tangential: float
+    slip: float
+    """Dt, in lengths of the segment."""
+    has_slid_on: bool
+    """Whether the node was over another segment at the start."""
+
+
+def split(x0: Array, x1: Array, force: Array, touch: Touch, halfway: bool) -> Split:
+    """Pn, Pt and Dt of the node; `halfway`: rows of the energy-momentum form, eqs (7.2) and (7.3)."""
+    a, b = touch.segment
+    e0, e1 = x0[b] - x0[a], x1[b] - x1[a]
+    r0, r1 = x0[touch.node] - x0[a], x1[touch.node] - x1[a]
+    l0, l1 = np.linalg.norm(e0), np.linalg.norm(e1)
+    xi0, xi1 = r0 @ e0 / l0**2, r1 @ e1 / l1**2
+    if halfway:
+        mean, length = 0.5 * (e0 + e1), 0.5 * (l0 + l1)
+        alpha = 0.5 * (1.0 / l0 + 1.0 / l1)
+        gamma = 0.5 * length * (1.0 / l0**2 + 1.0 / l1**2)
+        slip = length * (xi1 - xi0)
+    else:
+        mean, alpha, gamma = e1, 1.0 / l1, 1.0 / l1
+        tangent = e1 / l1
+        d = [x1[node] - x0[node] for node in (touch.node, a, b)]
+        slip = tangent @ (d[0] - (1.0 - xi1) * d[1] - xi1 * d[2])
+    normal = np.array([mean[1], -mean[0]])
+    square = mean @ mean
+    slid = not -1e-9 <= xi0 <= 1.0 + 1e-9
+    return Split(
+        float(force @ normal / (square * alpha)),
+        float(force @ mean / (square * gamma)),
+        float(slip / l1),
+        slid,
+    )

@@ -1,0 +1,381 @@
+"""Masses, energies, stresses and forces of the elements of a result, from `/model` and displacements.
+
+Equation numbers are those of docs/theory.md. Arrays of tensors at integration points have the shape
+[E, G, 2, 2], E elements of one kind with G points each.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.result import Array, Integers, Result
+
+EPS = float(np.finfo(np.float64).eps)
+
+CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+"""Corners of the reference square."""
+
+PATH, PATH_WEIGHTS = np.polynomial.legendre.leggauss(5)
+"""Gauss points on the way from the start to the end of an increment."""
+
+NEO_HOOKE = 1
+"""Law of /model/materials/law other than St. Venant-Kirchhoff."""
+
+KINDS = ((3, False, False), (4, False, False), (3, True, False), (4, True, False), (4, False, True))
+"""Nodes, plane stress and mean dilatation of each of the element types."""
+
+
+@dataclass
+class Block:
+    """Elements of one type and material."""
+
+    elements: Integers
+    nodes: Integers
+    """[E, k]"""
+    gradient: Array
+    """dN_a/dX_j at the points [E, G, k, 2]."""
+    weight: Array
+    """Reference volume of the points [E, G]."""
+    plane_stress: bool
+    mean_dilatation: bool
+    law: int
+    young: float
+    poisson: float
+    density: float
+    alpha: float
+    beta: float
+
+    # Constants of the material.
+
+    @property
+    def shear(self) -> float:
+        """mu."""
+        return self.young / (2.0 * (1.0 + self.poisson))
+
+    @property
+    def bulk(self) -> float:
+        """K."""
+        return self.young / (3.0 * (1.0 - 2.0 * self.poisson))
+
+    @property
+    def lame(self) -> float:
+        """lambda of the plane."""
+        if self.plane_stress:
+            return self.young * self.poisson / (1.0 - self.poisson**2)
+        return self.bulk - 2.0 / 3.0 * self.shear
+
+    @property
+    def area_modulus(self) -> float:
+        """kappa of eq. (4.17)."""
+        if self.plane_stress:
+            return self.young / (2.0 * (1.0 - self.poisson))
+        return self.bulk + self.shear / 3.0
+
+    @property
+    def stiffness(self) -> float:
+        """An upper bound of an entry of K on the diagonal, of undeformed elements."""
+        each = (self.lame + 2.0 * self.shear) * np.einsum(
+            "eg,egaj->ea", self.weight, self.gradient**2
+        )
+        return float(each.max(initial=0.0))
+
+    # Kinematics.
+
+    def displacement_gradient(self, u: Array) -> Array:
+        """H = du/dX, eq. (2.1)."""
+        return np.einsum("eai,egaj->egij", u[self.nodes], self.gradient)
+
+    def strain(self, h: Array) -> Array:
+        """E, eq. (2.2)."""
+        turned = h.swapaxes(2, 3)
+        return 0.5 * (h + turned + turned @ h)
+
+    def energy_density(self, e: Array) -> Array:
+        """W(E), eqs (2.13) and (2.14)."""
+        trace, determinant = _trace(e), _determinant(e)
+        if self.law != NEO_HOOKE:
+            return 0.5 * self.lame * trace**2 + self.shear * np.einsum("egij,egij->eg", e, e)
+        t, q = 2.0 * trace, 4.0 * determinant
+        b = np.expm1(np.log1p(t + q) / 3.0)
+        jump = np.expm1(np.log1p(t + q) / 2.0)
+        shape = (b * b * (b + 3.0) - q) / (1.0 + b)
+        return 0.5 * self.shear * shape + 0.5 * self.bulk * jump**2
+
+    def stress(self, e: Array) -> Array:
+        """S(E), eqs (2.13), (2.15) and (2.16)."""
+        trace = _trace(e)
+        if self.law != NEO_HOOKE:
+            return self.lame * _identity(trace) + 2.0 * self.shear * e
+        t, q = 2.0 * trace, 4.0 * _determinant(e)
+        square = 1.0 + t + q
+        jump = np.expm1(np.log1p(t + q) / 2.0)
+        shape = _identity(2.0 * t / 3.0 + q) - 2.0 * (1.0 + t / 3.0)[..., None, None] * _cofactor(e)
+        deviator = self.shear * square ** (-1.0 / 3.0) / square
+        pressure = self.bulk * jump / np.sqrt(square)
+        cofactor = _identity(np.ones_like(t)) + 2.0 * _cofactor(e)
+        return deviator[..., None, None] * shape + pressure[..., None, None] * cofactor
+
+    def discrete_gradient(self, e0: Array, e1: Array) -> Array:
+        """S_m of eq. (4.8); W1 - W0 is the integral of S along the way."""
+        middle, change = 0.5 * (e0 + e1), e1 - e0
+        stress = self.stress(middle)
+        if self.law != NEO_HOOKE:
+            return stress
+        square = np.einsum("egij,egij->eg", change, change)
+        f = np.zeros_like(square)
+        for place, weight in zip(PATH, PATH_WEIGHTS):
+            off = self.stress(middle + 0.5 * place * change) - stress
+            f += 0.5 * weight * np.einsum("egij,egij->eg", off, change)
+        ratio = np.divide(f, square, out=np.zeros_like(f), where=square > 0.0)
+        return stress + ratio[..., None, None] * change
+
+    def viscous(self, e0: Array, e1: Array, dt: float) -> Array:
+        """S_d of eq. (4.17)."""
+        if self.beta == 0.0 or dt == 0.0:
+            return np.zeros_like(e0)
+        one = _identity(np.ones(e0.shape[:2]))
+        c0, c1 = one + 2.0 * e0, one + 2.0 * e1
+        j0, j1 = np.sqrt(_determinant(c0)), np.sqrt(_determinant(c1))
+        mean = 0.5 * (j0 + j1)
+        g = _cofactor(0.5 * (c0 + c1)) / mean[..., None, None]
+        change = e1 - e0
+        volume = np.einsum("egij,egij->eg", g, change)
+        shape = g @ change @ g - 0.5 * volume[..., None, None] * g
+        factor = (self.beta / (dt * mean))[..., None, None]
+        kappa = self.area_modulus * volume[..., None, None]
+        return factor * (2.0 * self.shear * shape + kappa * g)
+
+    # Mean dilatation.
+
+    def dilatation(self, h: Array) -> tuple[Array, Array]:
+        """J and theta [E, G] of eq. (2.9)."""
+        j = _determinant(_identity(np.ones(h.shape[:2])) + h)
+        theta = (self.weight * j).sum(axis=1) / self.weight.sum(axis=1)
+        return j, np.broadcast_to(theta[:, None], j.shape)
+
+    def enhanced(self, h: Array) -> Array:
+        """The strain that the material sees: E, or Ebar of eq. (2.10)."""
+        e = self.strain(h)
+        if not self.mean_dilatation:
+            return e
+        j, theta = self.dilatation(h)
+        r = theta / j
+        return r[..., None, None] * e + _identity(0.5 * (r - 1.0))
+
+    def effective(self, stress: Array, h0: Array, h1: Array) -> Array:
+        """S_eff of eq. (2.11) from the stress of the material."""
+        if not self.mean_dilatation:
+            return stress
+        (j0, theta0), (j1, theta1) = self.dilatation(h0), self.dilatation(h1)
+        one = _identity(np.ones(h0.shape[:2]))
+        c = one + self.strain(h0) + self.strain(h1)
+        j_m, theta_m = 0.5 * (j0 + j1), 0.5 * (theta0 + theta1)
+        r_m = 0.5 * (theta0 / j0 + theta1 / j1)
+        f = one + 0.5 * (h0 + h1)
+        k = _determinant(f)[..., None, None] * np.linalg.inv(f.swapaxes(2, 3) @ f)
+        a = np.einsum("egij,egij->eg", stress, c) / (2.0 * j0 * j1)
+        mean = ((self.weight * a * j_m).sum(axis=1) / self.weight.sum(axis=1))[:, None]
+        return r_m[..., None, None] * stress + (mean - a * theta_m)[..., None, None] * k
+
+    # Sums.
+
+    def energy(self, u: Array) -> Array:
+        """Strain energy of each element."""
+        return (
+            self.weight * self.energy_density(self.enhanced(self.displacement_gradient(u)))
+        ).sum(axis=1)
+
+    def means(self, u: Array) -> tuple[Array, Array]:
+        """Cauchy stress, eq. (2.8), and Green-Lagrange strain of the elements [E, 3] as xx yy xy."""
+        h = self.displacement_gradient(u)
+        stress = self.effective(self.stress(self.enhanced(h)), h, h)
+        f = _identity(np.ones(h.shape[:2])) + h
+        e = self.strain(h)
+        j = _determinant(f)
+        if self.plane_stress:
+            across = -self.poisson / (1.0 - self.poisson) * _trace(e)
+            j = j * np.sqrt(1.0 + 2.0 * across)
+        cauchy = f @ stress @ f.swapaxes(2, 3) / j[..., None, None]
+        part = self.weight / self.weight.sum(axis=1, keepdims=True)
+        mean = [np.einsum("eg,egij->eij", part, each) for each in (cauchy, e)]
+        return tuple(np.stack([m[:, 0, 0], m[:, 1, 1], m[:, 0, 1]], axis=1) for m in mean)
+
+    def add_forces(self, total: Array, u0: Array, u1: Array, halfway: bool) -> None:
+        """Adds F of eq. (4.5); `halfway`: the energy-momentum form, else that of u1."""
+        h0, h1 = self.displacement_gradient(u0), self.displacement_gradient(u1)
+        if halfway:
+            stress = self.discrete_gradient(self.enhanced(h0), self.enhanced(h1))
+        else:
+            stress = self.stress(self.enhanced(h1))
+            h0 = h1
+        stress = self.effective(stress, h0, h1)
+        self._add(total, stress, 0.5 * (h0 + h1))
+
+    def add_damping(self, total: Array, u0: Array, u1: Array, dt: float) -> None:
+        """Adds F_d of eq. (4.16)."""
+        if dt == 0.0:
+            return
+        if self.beta != 0.0:
+            h0, h1 = self.displacement_gradient(u0), self.displacement_gradient(u1)
+            stress = self.viscous(self.enhanced(h0), self.enhanced(h1), dt)
+            self._add(total, self.effective(stress, h0, h1), 0.5 * (h0 + h1))
+        if self.alpha != 0.0:
+            self.add_mass(total, (self.alpha / dt) * (u1 - u0))
+
+    def _add(self, total: Array, stress: Array, h: Array) -> None:
+        """Adds the forces of a stress S in a configuration: eq. (2.5) with B_L^T S = F S grad N."""
+        f = _identity(np.ones(h.shape[:2])) + h
+        each = np.einsum("eg,egij,egaj->eai", self.weight, f @ stress, self.gradient)
+        np.add.at(total, self.nodes, each)
+
+    @cached_property
+    def mass(self) -> Array:
+        """Consistent mass between the nodes of an element [E, k, k], eq. (2.7)."""
+        count = self.nodes.shape[1]
+        if count == 3:
+            each = (np.ones((3, 3)) + np.eye(3)) / 12.0
+            return self.density * self.weight.sum(axis=1)[:, None, None] * each
+        points = CORNERS / np.sqrt(3.0)
+        shape = 0.25 * (1.0 + points[:, :1] * CORNERS[:, 0]) * (1.0 + points[:, 1:] * CORNERS[:, 1])
+        return self.density * np.einsum("eg,ga,gb->eab", self.weight, shape, shape)
+
+    def add_mass(self, total: Array, values: Array) -> None:
+        """Adds M times nodal values [N, ...]."""
+        np.add.at(total, self.nodes, np.einsum("eab,ebi->eai", self.mass, values[self.nodes]))
+
+
+class Elements:
+    """All elements of a result, in blocks of one type and material each."""
+
+    def __init__(self, result: Result) -> None:
+        self.nodes = len(result.coordinates)
+        self.body = result.read("model/bodies/element")
+        self.bodies = len(result.read("model/bodies/mass"))
+        self.of_node = result.read("model/bodies/node")
+        self.blocks = list(_blocks(result))
+        self.count = len(result.cells)
+
+    def mass(self) -> Array:
+        """Mass of each body."""
+        each = [block.density * block.weight.sum(axis=1) for block in self.blocks]
+        return self._of_bodies(each)
+
+    def strain_energy(self, u: Array) -> Array:
+        """Strain energy of each body."""
+        return self._of_bodies([block.energy(u) for block in self.blocks])
+
+    def _of_bodies(self, values: list[Array]) -> Array:
+        total = np.zeros(self.bodies)
+        for block, each in zip(self.blocks, values):
+            np.add.at(total, self.body[block.elements], each)
+        return total
+
+    def momentum(self, v: Array) -> Array:
+        """M V at the nodes [N, 2]."""
+        total = np.zeros((self.nodes, 2))
+        for block in self.blocks:
+            block.add_mass(total, v)
+        return total
+
+    def load_patterns(self, groups: Integers) -> list[tuple[int, Array]]:
+        """Mass at the nodes [N] of the elements of one body, material and group of loads, with the body.
+
+        All body forces are accelerations of these patterns.
+        """
+        found = []
+        for block in self.blocks:
+            keys = np.stack([self.body[block.elements], groups[block.elements]], axis=1)
+            for body, group in np.unique(keys[keys[:, 1] >= 0], axis=0):
+                inside = (keys == (body, group)).all(axis=1)
+                total = np.zeros(self.nodes)
+                np.add.at(total, block.nodes[inside], block.mass[inside].sum(axis=2))
+                found.append((int(body), total))
+        return found
+
+    def stresses(self, u: Array) -> tuple[Array, Array]:
+        """Mean Cauchy stress and strain of all elements [E, 3]."""
+        both = np.zeros((2, self.count, 3))
+        for block in self.blocks:
+            both[0, block.elements], both[1, block.elements] = block.means(u)
+        return both[0], both[1]
+
+    def forces(self, scheme: int, u0: Array, u1: Array, at: Array, dt: float) -> Array:
+        """Internal and damping forces of an increment at the nodes [N, 2], on the side of the inertia.
+
+        `at` is U_theta of SS22 and of static steps.
+        """
+        total = np.zeros((self.nodes, 2))
+        halfway = scheme == 1
+        for block in self.blocks:
+            block.add_forces(total, u0, u1 if halfway else at, halfway)
+            if scheme != 0:
+                block.add_damping(total, u0, u1, dt)
+        return total
+
+
+def _blocks(result: Result) -> list[Block]:
+    """The blocks of a result."""
+    types = result.read("model/element_types")
+    materials = result.read("model/element_materials")
+    thickness = result.read("model/thickness")
+    constants = {
+        name: result.read(f"model/materials/{name}")
+        for name in ("law", "young", "poisson", "density", "alpha", "beta")
+    }
+    found = []
+    keys = np.stack([types.astype(np.int64), materials], axis=1)
+    for kind, material in np.unique(keys[materials >= 0], axis=0):
+        elements = np.flatnonzero((types == kind) & (materials == material))
+        count, plane_stress, mean = KINDS[kind]
+        nodes = np.array([result.cells[e] for e in elements]).reshape(-1, count)
+        gradient, area = _gradients(result.coordinates[nodes])
+        found.append(
+            Block(
+                elements,
+                nodes,
+                gradient,
+                area * thickness[elements][:, None],
+                plane_stress,
+                mean,
+                **{name: values[material].item() for name, values in constants.items()},
+            )
+        )
+    return found
+
+
+def _gradients(corners: Array) -> tuple[Array, Array]:
+    """dN_a/dX_j [E, G, k, 2] and the areas of the points [E, G]."""
+    if corners.shape[1] == 3:
+        natural = np.array([[[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]]])
+        weight = 0.5
+    else:
+        points = CORNERS / np.sqrt(3.0)
+        x, y = points[:, :1], points[:, 1:]
+        along = 0.25 * CORNERS[:, 0] * (1.0 + y * CORNERS[:, 1])
+        up = 0.25 * CORNERS[:, 1] * (1.0 + x * CORNERS[:, 0])
+        natural = np.stack([along, up], axis=2)
+        weight = 1.0
+    jacobian = np.einsum("eai,gar->egir", corners, natural)
+    gradient = np.einsum("gar,egrj->egaj", natural, np.linalg.inv(jacobian))
+    return gradient, weight * _determinant(jacobian)
+
+
+def _trace(a: Array) -> Array:
+    return a[..., 0, 0] + a[..., 1, 1]
+
+
+def _determinant(a: Array) -> Array:
+    return a[..., 0, 0] * a[..., 1, 1] - a[..., 0, 1] * a[..., 1, 0]
+
+
+def _identity(factor: NDArray[np.float64]) -> Array:
+    return factor[..., None, None] * np.eye(2)
+
+
+def _cofactor(a: Array) -> Array:
+    """Cofactor of symmetric tensors."""
+    result = -a.copy()
+    result[..., 0, 0], result[..., 1, 1] = a[..., 1, 1], a[..., 0, 0]
+    return result

@@ -1,0 +1,463 @@
+"""Checks of every frame: energies, momenta, stresses, equilibrium and the contact law, recomputed."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stickslip.certificate.check import Checks
+from stickslip.certificate.contacts import (
+    BEYOND,
+    Touch,
+    contacts,
+    corner_error,
+    places,
+    split,
+    touching,
+)
+from stickslip.certificate.elements import EPS, Elements
+from stickslip.frame import Frame
+from stickslip.result import OPEN, STICK, Array, Integers, Result
+
+ENERGY = 1e-11
+"""Energies, momenta and masses: error as a part of the largest of the run."""
+
+FORCES = 1e-10
+"""Unbalanced forces, as a part of the largest force of the body; the solver stops at 1e-11."""
+
+STRESS = 1e-11
+"""Stresses and strains, as a part of the largest."""
+
+GAP = 1e-9
+"""Gap of a closed pair in lengths of its segment; the solver stops at 1e-10."""
+
+TOUCH = 1e-8
+"""Nodes nearer to a segment than this part of its length are on it."""
+
+SLIP = 1e-8
+"""Slip of a node that sticks, in lengths of the segment."""
+
+CONE = 1e-8
+"""Forces outside of the cone, as a part of the largest force of the frame."""
+
+EULER = 3
+"""The backward Euler rule among the schemes of /model/steps."""
+
+FORCE = 1e-9
+"""Contact forces below this part of the largest one are none."""
+
+
+@dataclass(frozen=True)
+class Increment:
+    """The increment that ends with a frame."""
+
+    row: int
+    """Of the history."""
+    scheme: int
+    theta: Array
+    dt: float
+    start: Array | None
+    """Displacements at its start; none where the file does not tell them."""
+    exact: bool
+    """Whether the start is that of a frame, and not what velocities and accelerations tell."""
+
+
+class Frames:
+    """What the checks of the frames share."""
+
+    def __init__(self, result: Result, checks: Checks) -> None:
+        self.result = result
+        self.checks = checks
+        self.elements = Elements(result)
+        self.contacts = contacts(result)
+        self.time = result.history["time"]
+        self.supported = result.read("model/supported_nodes")
+        self.constrained = result.read("model/constrained_nodes")
+        self.loaded = result.read("model/loaded_nodes")
+        self.patterns = self.elements.load_patterns(result.read("model/load_groups"))
+        self.scheme = result.read("model/steps/scheme")
+        self.theta = result.read("model/steps/theta")
+        self.is_redistributed = "CONTACT_MASS" in result.frames.fields
+        self.returned: set[int] = set()
+        if "returns" in result.file["history"]:
+            self.returned = set(result.complete_rows("history/returns/increment").tolist())
+        self.rigid = _whole_bodies(self.elements, self.constrained)
+        self.force_scale = max(
+            (float(np.abs(frame["CONTACT_FORCE"]).max()) for frame in result.frames), default=0.0
+        )
+        self.stiffness = np.zeros(self.elements.bodies)
+        for block in self.elements.blocks:
+            np.maximum.at(self.stiffness, self.elements.body[block.elements], block.stiffness)
+
+    def check(self) -> None:
+        """All checks of all frames."""
+        stored = self.result.read("model/bodies/mass")
+        mass = self.elements.mass()
+        self.checks["mass"].add(np.abs(mass - stored) / stored.max(), ENERGY, "body {}")
+        last: tuple[int, Array] | None = None
+        for frame in self.result.frames:
+            rows = np.flatnonzero(self.time == frame.time)
+            if len(rows) == 0:
+                self.checks["time"].add(1.0, 0.0, f"frame {frame.index} has no increment")
+                continue
+            row = int(rows[-1])
+            u = frame["U"]
+            increment = self._increment(frame, row, last)
+            self._finite(frame)
+            self._energies(frame, row)
+            self._stresses(frame)
+            self._actions(frame, increment)
+            if row > 0:
+                self._equilibrium(frame, increment)
+            self._law(frame, increment)
+            self._sets(frame, row)
+            last = (row, u)
+
+    def _finite(self, frame: Frame) -> None:
+        """No field of motion and force is NaN."""
+        for name in ("U", "V", "A", "RF", "CONTACT_FORCE"):
+            bad = ~np.isfinite(frame.full(name)).all()
+            self.checks["time"].add(float(bad), 0.0, f"{name} of frame {frame.index} is no number")
+
+    def _increment(self, frame: Frame, row: int, last: tuple[int, Array] | None) -> Increment:
+        """The increment of a frame; where it starts by the last frame, or by (4.1) and (4.2)."""
+        step = int(self.result.history["step"][row]) - 1
+        scheme, theta = int(self.scheme[step]), self.theta[step]
+        dt = float(self.result.history["dt"][row])
+        start, exact = None, False
+        if last is not None and last[0] == row - 1:
+            start, exact = last[1], True
+        elif scheme != 0 and row not in self.returned and not self.is_redistributed:
+            # d = dt V1, or d = dt V1 - dt² A/2, from V1 = V0+ + dt A
+            start = frame["U"] - dt * frame["V"]
+            if scheme != EULER:
+                start += 0.5 * dt * dt * frame["A"]
+        return Increment(row, scheme, theta, dt, start, exact)
+
+    def _energies(self, frame: Frame, row: int) -> None:
+        """Energies and momenta of the bodies, of all of them and each."""
+        history, u, v = self.result.history, frame["U"], frame["V"]
+        place = f"body {{}}, t = {frame.time:g}"
+        largest = history.energy.largest or 1.0
+        elastic = ~self.rigid
+        noise = EPS * (self.stiffness * np.abs(u).max() ** 2) / largest
+        strain = self.elements.strain_energy(u)
+        error = np.abs(strain - history.bodies["strain"][row])[elastic] / largest
+        self.checks["strain energy"].add(error, ENERGY + noise[elastic], place)
+        if elastic.all() and "connectors" not in self.result.file["history"]:
+            total = abs(strain.sum() - history.energy["strain"][row]) / largest
+            self.checks["strain energy"].add(total, ENERGY + noise.sum(), f"t = {frame.time:g}")
+        elif not elastic.all():
+            self.checks["strain energy"].skip("bodies that move as a whole are left out")
+        if self.is_redistributed:
+            for name in ("kinetic energy", "momenta", "equilibrium"):
+                self.checks[name].skip("the mass of the contact surfaces is redistributed")
+            return
+        x = frame.positions
+        p = self.elements.momentum(v)
+        kinetic = self._sum(0.5 * np.einsum("ni,ni->n", v, p))
+        error = np.abs(kinetic - history.bodies["kinetic"][row])[elastic] / largest
+        self.checks["kinetic energy"].add(error, ENERGY, place)
+        mass = self.elements.momentum(np.ones_like(v))[:, 0]
+        body_mass = self._sum(mass)
+        centre = self._sum(mass[:, None] * x) / body_mass[:, None]
+        momentum = self._sum(p)
+        size = (
+            np.abs(history.momentum["linear"]).max()
+            + np.abs(body_mass[:, None] * history.bodies["velocity"]).max()
+        )
+        if size > 0.0:
+            stored = body_mass[:, None] * history.bodies["velocity"][row]
+            error = np.abs(momentum - stored).max(axis=1)[elastic] / size
+            self.checks["momenta"].add(error, ENERGY, place)
+        extent = np.abs(x[self.result.in_cells]).max()
+        error = np.abs(centre - history.bodies["center"][row]).max(axis=1)[elastic] / extent
+        self.checks["momenta"].add(error, ENERGY, "centre of " + place)
+        if not elastic.all():
+            self.checks["momenta"].skip("bodies that move as a whole are left out")
+            return
+        if "rigid" in self.result.file["history"] and any(
+            "kinetic" in each for each in history.rigid.values()
+        ):
+            return
+        total = abs(kinetic.sum() - history.energy["kinetic"][row]) / largest
+        self.checks["kinetic energy"].add(total, ENERGY, f"t = {frame.time:g}")
+        linear = np.abs(p.sum(axis=0) - history.momentum["linear"][row]).max()
+        angular = float((x[:, 0] * p[:, 1] - x[:, 1] * p[:, 0]).sum())
+        error = abs(angular - history.momentum["angular"][row])
+        if size > 0.0:
+            self.checks["momenta"].add(linear / size, ENERGY, f"t = {frame.time:g}")
+            at = f"angular, t = {frame.time:g}"
+            self.checks["momenta"].add(error / (size * extent), ENERGY, at)
+
+    def _sets(self, frame: Frame, row: int) -> None:
+        """Histories of sets are those of the frames."""
+        check, place = self.checks["accounts"], f"t = {frame.time:g}"
+        groups = (
+            (self.result.history.nodes, self.result.node_labels, ("U", "V", "RF")),
+            (self.result.history.elements, self.result.element_labels, ("S", "E", "MISES")),
+        )
+        for group, labels, names in groups:
+            for name, members in group.items():
+                at = np.flatnonzero(np.isin(labels, members["labels"]))
+                at = at[np.argsort(labels[at])][np.argsort(np.argsort(members["labels"]))]
+                for field in names:
+                    if field in members:
+                        differ = (members[field][row] != frame[field][at]).any()
+                        check.add(float(differ), 0.0, f"{field} of the set {name}, {place}")
+
+    def _sum(self, values: Array) -> Array:
+        """Sums of nodal values over the bodies."""
+        inside = self.elements.of_node >= 0
+        total = np.zeros((self.elements.bodies, *values.shape[1:]))
+        np.add.at(total, self.elements.of_node[inside], values[inside])
+        return total
+
+    def _stresses(self, frame: Frame) -> None:
+        """Stresses and strains of the elements."""
+        stress, strain = self.elements.stresses(frame["U"])
+        moduli = np.zeros(self.elements.count)
+        gradient = np.zeros(self.elements.count)
+        for block in self.elements.blocks:
+            moduli[block.elements] = block.lame + 2.0 * block.shear
+            gradient[block.elements] = np.abs(block.gradient).max(axis=(1, 2, 3))
+        noise = 16 * EPS * gradient * np.abs(frame["U"]).max()
+        elastic = ~self.rigid[self.elements.body]
+        place = f"element {{}}, t = {frame.time:g}"
+        for found, name, factor in ((stress, "S", moduli), (strain, "E", np.ones_like(moduli))):
+            stored = frame[name]
+            check = self.checks["stresses" if name == "S" else "strains"]
+            size = float(np.abs(found[elastic]).max(initial=0.0))
+            check.scale = max(check.scale, size)
+            error = np.abs(found - stored).max(axis=1)[elastic]
+            check.add(error, (STRESS * size + factor * noise)[elastic], f"{name} of {place}")
+        across = frame["S33"]
+        mises = np.sqrt(
+            0.5
+            * (
+                (stress[:, 0] - stress[:, 1]) ** 2
+                + (stress[:, 1] - across) ** 2
+                + (across - stress[:, 0]) ** 2
+            )
+            + 3.0 * stress[:, 2] ** 2
+        )
+        size = float(np.abs(stress[elastic]).max(initial=0.0))
+        error = np.abs(mises - frame["MISES"])[elastic]
+        bound = (STRESS * size + 4.0 * moduli * noise)[elastic]
+        self.checks["stresses"].add(error, bound, f"MISES of {place}")
+
+    def _actions(self, frame: Frame, increment: Increment) -> None:
+        """Contact forces of a frame have no resultant and no moment."""
+        force = frame["CONTACT_FORCE"]
+        size = np.abs(force).sum()
+        if size == 0.0:
+            return
+        check = self.checks["action"]
+        place = f"t = {frame.time:g}"
+        check.add(np.abs(force.sum(axis=0)).max() / size, ENERGY, place)
+        for contact in self.contacts:
+            others = [one for one in self.contacts if one is not contact]
+            alone = np.concatenate(
+                [
+                    contact.segments.ravel(),
+                    *(np.append(o.slaves, o.segments.ravel()) for o in others),
+                ]
+            )
+            if not np.isin(contact.slaves, alone).any():
+                total = force[contact.slaves].sum(axis=0)
+                stored = self.result.contact[contact.name]["force"][increment.row]
+                check.add(
+                    np.abs(total - stored).max() / size,
+                    ENERGY,
+                    f"{contact.name}, t = {frame.time:g}",
+                )
+        if increment.start is None or increment.scheme != 1:
+            return
+        x = self.result.coordinates + 0.5 * (increment.start + frame["U"])
+        loaded = np.abs(force).max(axis=1) > 0.0
+        moment = x[:, 0] * force[:, 1] - x[:, 1] * force[:, 0]
+        arm = np.abs(x[loaded]).max()
+        if self._start_is_told(frame, increment)[loaded].all():
+            check.add(abs(moment.sum()) / (size * arm), 1e-9, f"moment, t = {frame.time:g}")
+
+    def _start_is_told(self, frame: Frame, increment: Increment) -> Array:
+        """Nodes whose place at the start of the increment is known [N]."""
+        told = np.ones(len(frame["U"]), np.bool_)
+        if not increment.exact:
+            a = np.abs(frame["A"]).max(axis=1) * increment.dt**2
+            size = np.abs(self.result.coordinates + frame["U"]).max()
+            driven = np.append(self.supported, self.constrained)
+            told[driven[a[driven] > 4 * EPS * size]] = False
+        return told
+
+    def _equilibrium(self, frame: Frame, increment: Increment) -> None:
+        """Unbalanced forces of free nodes, eq. (4.5) or (12.1)."""
+        check = self.checks["equilibrium"]
+        if self.is_redistributed:
+            return
+        u1, a, v1 = frame["U"], frame["A"], frame["V"]
+        force = frame["CONTACT_FORCE"]
+        start, dt = increment.start, increment.dt
+        if increment.scheme == 0:
+            internal = self.elements.forces(0, u1, u1, u1, dt)
+            inertia = np.zeros_like(u1)
+        elif start is None:
+            check.skip("frames of increments with a landing return are left out")
+            return
+        else:
+            d = u1 - start
+            theta1, theta2 = increment.theta
+            at = start + theta2 * d + (theta1 - theta2) * dt * (v1 - dt * a)
+            internal = self.elements.forces(increment.scheme, start, u1, at, dt)
+            inertia = self.elements.momentum(a)
+        residual = inertia + internal - force - frame["RF"]
+        told = self._start_is_told(frame, increment)
+        for block in self.elements.blocks:
+            unknown = ~told[block.nodes].all(axis=1)
+            told[block.nodes[unknown]] = False
+        told[self.constrained] = told[self.loaded] = False
+        told &= self.elements.of_node >= 0
+        residual = self._without_weight(residual, told)
+        size = np.abs(residual).max(axis=1)
+        largest = np.maximum(np.abs(internal), np.maximum(np.abs(inertia), np.abs(force)))
+        scale = np.zeros(self.elements.bodies)
+        reach = np.zeros(self.elements.bodies)
+        inside = self.elements.of_node >= 0
+        bodies = self.elements.of_node[inside]
+        np.maximum.at(scale, bodies, largest.max(axis=1)[inside])
+        way = np.abs(u1) + dt * np.abs(v1) + dt * dt * np.abs(a)
+        way += np.abs(force).any(axis=1)[:, None] * np.abs(self.result.coordinates)
+        np.maximum.at(reach, bodies, way.max(axis=1)[inside])
+        noise = 32 * EPS * self.stiffness * reach
+        nodes = np.flatnonzero(told)
+        body = self.elements.of_node[nodes]
+        check.scale = max(check.scale, float(scale.max(initial=0.0)))
+        place = f"{{}} of {len(nodes)} nodes, t = {frame.time:g}"
+        check.add(size[nodes], FORCES * scale[body] + noise[body], place)
+        if not len(nodes):
+            check.skip("no node is free of supports and loads")
+
+    def _without_weight(self, residual: Array, told: Array) -> Array:
+        """Takes out the body forces: the accelerations of their patterns that fit best."""
+        if not self.patterns:
+            return residual
+        residual = residual.copy()
+        for body in sorted({body for body, _ in self.patterns}):
+            nodes = told & (self.elements.of_node == body)
+            columns = [pattern[nodes] for number, pattern in self.patterns if number == body]
+            matrix = np.stack(columns, axis=1)
+            fit = np.linalg.lstsq(matrix, residual[nodes], rcond=None)[0]
+            residual[nodes] -= matrix @ fit
+        self.checks["equilibrium"].skip("body forces are fitted, an acceleration for each load")
+        return residual
+
+    def _law(self, frame: Frame, increment: Increment) -> None:
+        """Gaps, complementarity, friction cones and slips of the contacts."""
+        if not self.contacts or not self.force_scale:
+            return
+        x = self.result.coordinates + frame["U"]
+        force = np.linalg.norm(frame["CONTACT_FORCE"], axis=1)
+        status, gaps = frame["CONTACT_STATUS"], frame["GAP"]
+        closed = np.flatnonzero(status >= STICK)
+        active = np.union1d(closed, np.flatnonzero(force > FORCE * self.force_scale))
+        dt = increment.dt
+        way = np.abs(dt * frame["V"]).sum(axis=1) + np.abs(dt * dt * frame["A"]).sum(axis=1)
+        if increment.start is not None:
+            way = np.abs(frame["U"] - increment.start).sum(axis=1)
+        touches, nearest, reached = touching(x, way, self.contacts, active, TOUCH)
+        noise = 16 * EPS * np.abs(x).max() / self._edge
+        place = f"t = {frame.time:g}"
+        self.checks["gap"].add(
+            nearest[closed], GAP + noise, f"{{}} of {len(closed)} closed nodes, {place}"
+        )
+        self.checks["gap"].add(
+            np.abs(gaps[closed]) / self._edge,
+            GAP + noise,
+            f"GAP, {{}} of the closed nodes, {place}",
+        )
+        self.checks["reach"].add(
+            reached[closed], BEYOND, f"{{}} of {len(closed)} closed nodes, {place}"
+        )
+        opened = np.flatnonzero(status == OPEN)
+        self.checks["gap"].add(
+            np.nan_to_num(-gaps[opened]) / self._edge,
+            GAP + noise,
+            f"GAP, {{}} of the open nodes, {place}",
+        )
+        self._gap_field(x, way, status, gaps, noise, place)
+        loaded = np.flatnonzero(force > FORCE * self.force_scale)
+        self.checks["complementarity"].add(
+            nearest[loaded], TOUCH + noise, f"{{}} of {len(loaded)} loaded nodes, {place}"
+        )
+        self._cones(frame, increment, touches, status)
+
+    def _gap_field(
+        self, x: Array, way: Array, status: Integers, gaps: Array, noise: float, place: str
+    ) -> None:
+        """GAP is the distance from the line of some segment."""
+        asked = np.flatnonzero((status == OPEN) & np.isfinite(gaps))
+        off = np.full(len(x), np.inf)
+        bound = 1e-8 + noise
+        for contact in self.contacts:
+            for near in places(x, way, np.intersect1d(contact.slaves, asked), contact):
+                error = np.abs(near.gap - gaps[near.nodes][:, None] / near.length).min(axis=1)
+                for row in np.flatnonzero(error > bound):
+                    node = int(near.nodes[row])
+                    error[row] = min(error[row], corner_error(x, way, contact, node, gaps[node])[0])
+                off[near.nodes] = np.minimum(off[near.nodes], error)
+        self.checks["gap"].add(
+            off[asked], bound, f"GAP of {{}} of {len(asked)} open nodes, {place}"
+        )
+
+    def _cones(
+        self, frame: Frame, increment: Increment, touches: list[Touch], status: Integers
+    ) -> None:
+        """Cone and slip of the nodes that touch one segment, and are no end of a touched one."""
+        if increment.start is None and increment.scheme != 0:
+            return
+        x1 = self.result.coordinates + frame["U"]
+        halfway = increment.scheme == 1
+        known = increment.start is not None
+        x0 = self.result.coordinates + increment.start if known else x1
+        ends = {node for touch in touches for node in touch.segment}
+        count: dict[int, int] = {}
+        for touch in touches:
+            count[touch.node] = count.get(touch.node, 0) + 1
+        told = self._start_is_told(frame, increment)
+        force = frame["CONTACT_FORCE"]
+        place = f"t = {frame.time:g}"
+        for touch in touches:
+            nodes = (touch.node, *touch.segment)
+            if count[touch.node] > 1 or touch.node in ends or not told[list(nodes)].all():
+                continue
+            own = split(x0, x1, force[touch.node], touch, halfway)
+            if own.has_slid_on:
+                continue
+            friction = float(touch.contact.friction.max())
+            label = self.result.node_labels[touch.node]
+            outside = max(abs(own.tangential) - friction * own.normal, -own.normal)
+            at = f"node {label}, {place}"
+            self.checks["cone"].add(outside / self.force_scale, CONE, at)
+            if not known or not touch.contact.is_constant or friction == 0.0:
+                continue
+            # inside of the cone nothing slips, on it friction opposes the slip
+            room = friction * own.normal - abs(own.tangential)
+            noise = 64 * EPS * np.abs(x1).max() / self._edge
+            if room > 1e-6 * self.force_scale:
+                self.checks["slip"].add(abs(own.slip), SLIP + noise, at)
+            elif abs(own.slip) > SLIP + noise:
+                self.checks["slip"].add(float(own.slip * own.tangential > 0.0), 0.0, at)
+
+    @property
+    def _edge(self) -> float:
+        """The length by which gaps are measured."""
+        return self.result.edge_length
+
+
+def _whole_bodies(elements: Elements, constrained: Integers) -> Array:
+    """Bodies all of whose nodes are constrained, as those of rigid bodies are [B]."""
+    free = np.ones(elements.nodes, np.bool_)
+    free[constrained] = False
+    has_free = np.zeros(elements.bodies, np.bool_)
+    inside = elements.of_node >= 0
+    np.logical_or.at(has_free, elements.of_node[inside], free[inside])
+    return ~has_free

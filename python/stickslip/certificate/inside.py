@@ -1,0 +1,107 @@
+"""Slave nodes inside of masters and edges that cross, in every frame, from the deformed meshes alone."""
+
+import numpy as np
+
+from stickslip.certificate.check import Checks
+from stickslip.certificate.contacts import Contact
+from stickslip.errors import Fault
+from stickslip.penetration.intrusion import (
+    Gone,
+    Intrusion,
+    crossings,
+    in_obstacle,
+    intrusions,
+    still_gone,
+)
+from stickslip.penetration.outlines import Outline, outlines
+from stickslip.penetration.profiles import Profile, profiles
+from stickslip.result import Array, Integers, Result
+
+DEPTH = 1e-9
+"""Depth of a slave node, in lengths of the edge, that is round-off."""
+
+EDGES = 500
+"""Edges that are compared with others at a time."""
+
+
+def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -> None:
+    """Adds the checks of the frames."""
+    if not contacts:
+        return
+    try:
+        bodies = outlines(result)
+    except Fault as fault:
+        for name in ("penetration", "crossing"):
+            checks[name].skip(str(fault).partition(": ")[2])
+        return
+    obstacles = profiles(result)
+    recorded = result.history["time"], result.history.solver["penetration"]
+    gone: Gone = frozenset()
+    before = result.frames[0].positions
+    for frame in result.frames:
+        x = frame.positions
+        noise = 64 * np.finfo(np.float64).eps * float(np.abs(x).max()) / result.edge_length
+        place = f"t = {frame.time:g}"
+        gone = still_gone(before, x, bodies, obstacles, gone)
+        before = x
+        depth, count = 0.0, 0
+        crossed = 0.0
+        for contact in contacts:
+            found = _in_bodies(x, bodies, contact, result.body)
+            found += _in_obstacles(x, bodies, obstacles, contact, gone)
+            depth = max((one.depth for one in found), default=depth)
+            count += len(contact.slaves)
+            crossed = max(crossed, _crossed(x, bodies, contact))
+        checks["penetration"].add(depth, DEPTH + noise, place)
+        row = np.flatnonzero(recorded[0] == frame.time)
+        if len(row) and row[-1] > 0:
+            told = float(recorded[1][row[-1]])
+            checks["crossing"].add(crossed - told, DEPTH + noise + 1e-6 * told, place)
+
+
+def _in_bodies(
+    x: Array, bodies: list[Outline], contact: Contact, of_node: Integers
+) -> list[Intrusion]:
+    """Slave nodes inside of the bodies of master segments, nearest to such a segment."""
+    masters = {(int(a), int(b)) for a, b in contact.segments}
+    touched = set(of_node[contact.segments.ravel()].tolist())
+    found = []
+    for host in bodies:
+        number = int(of_node[host.nodes[0]])
+        if number not in touched:
+            continue
+        others = np.setdiff1d(contact.slaves, host.nodes)
+        inside = intrusions(x, host, others, number)
+        if np.isin(host.nodes, contact.slaves).all():
+            inside += intrusions(x, host, host.nodes, number)
+        found += [one for one in inside if one.edge in masters]
+    return found
+
+
+def _in_obstacles(
+    x: Array, bodies: list[Outline], obstacles: list[Profile], contact: Contact, gone: Gone
+) -> list[Intrusion]:
+    """Slave nodes inside of the obstacles of the contact."""
+    masters, slaves = set(contact.segments.ravel().tolist()), set(contact.slaves.tolist())
+    found = []
+    for other, obstacle in enumerate(obstacles):
+        if not masters.issuperset(obstacle.corners.tolist()):
+            continue
+        for number, body in enumerate(bodies):
+            inside = in_obstacle(x, body, obstacle, (number, other) in gone)
+            found += [one for one in inside if one.node in slaves]
+    return found
+
+
+def _crossed(x: Array, bodies: list[Outline], contact: Contact) -> float:
+    """How far edges of the slave surface cross master segments, eq. (10.6)."""
+    masters = Profile(contact.segments[:, 0], contact.segments[:, 1])
+    worst = 0.0
+    for body in bodies:
+        both = np.isin(body.nodes, contact.slaves) & np.isin(body.after, contact.slaves)
+        nodes, after = body.nodes[both], body.after[both]
+        for first in range(0, len(nodes), EDGES):
+            some = slice(first, first + EDGES)
+            depth = crossings(x, Profile(nodes[some], after[some]), masters)
+            worst = max(worst, float(depth.max(initial=0.0)))
+    return worst

@@ -1,0 +1,1 @@
+"""Nodes and edges inside bodies and obstacles, from the deformed meshes alone."""

@@ -1,0 +1,329 @@
+"""The certificate of results: it holds for what the program writes, and fails for every spoiled quantity."""
+
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from conftest import ROOT, Job
+from decks import CANTILEVERS, parse, shortened
+from stickslip.certificate.certify import Certificate, certify
+from stickslip.certificate.check import Check
+from stickslip.deck import Deck
+from stickslip.errors import Fault
+from stickslip.result import Result
+
+DECKS = ROOT / "tests" / "decks"
+CONTACT = "UPPER_FACE_LOWER_FACE"
+
+Spoil = Callable[[h5py.File], object]
+
+
+@pytest.fixture(scope="module")
+def result(job: Job) -> Path:
+    """The cantilevers in contact, with friction; every second increment is a frame."""
+    return job(shortened(CANTILEVERS / "B_mu04.inp", 60), "--frames", "30")
+
+
+def spoiled(result: Path, folder: Path, spoil: Spoil) -> Certificate:
+    """The certificate of a copy of a result that has been spoiled."""
+    path = Path(shutil.copy(result, folder / "spoiled.vtkhdf"))
+    with h5py.File(path, "r+") as file:
+        spoil(file)
+    return certify(path)
+
+
+def broken(certificate: Certificate) -> list[str]:
+    """Names of the checks that fail."""
+    return [check.name for check in certificate.checks if not check.holds]
+
+
+def add(path: str, part: float, at: tuple[int, ...] | None = None) -> Spoil:
+    """Adds a part of the largest value to one number of a dataset: its largest, where none is named."""
+
+    def spoil(file: h5py.File) -> None:
+        values = file[path][()]
+        size = np.abs(np.nan_to_num(values.astype(float)))
+        place = at or np.unravel_index(size.argmax(), values.shape)
+        values[place] += part * (size.max() or 1.0)
+        file[path][...] = values
+
+    return spoil
+
+
+def accelerate(file: h5py.File) -> None:
+    """Changes the largest acceleration of a node without support in the last frame."""
+    values = file["VTKHDF/PointData/A"][()]
+    last = values[-file["model/node_labels"].size :]
+    size = np.abs(last).max(axis=1)
+    size[file["model/supported_nodes"][()]] = 0.0
+    last[size.argmax()] *= 1.0 + 1e-6
+    file["VTKHDF/PointData/A"][...] = values
+
+
+def shift(field: str, status: int, amount: float) -> Spoil:
+    """Adds an amount to a field, at one of the slave nodes that have a contact state."""
+
+    def spoil(file: h5py.File) -> None:
+        states = file["VTKHDF/PointData/CONTACT_STATUS"][()]
+        data = file[f"VTKHDF/PointData/{field}"]
+        values = data[()]
+        finite = np.isfinite(values.reshape(len(values), -1)).all(axis=1)
+        rows = np.flatnonzero((states == status) & finite)
+        row = int(rows[len(rows) // 2])
+        values[row] += amount
+        data[...] = values
+
+    return spoil
+
+
+def turned(file: h5py.File) -> None:
+    """Turns the contact forces of the last frame that has some, which takes them out of their cones."""
+    data = file["VTKHDF/PointData/CONTACT_FORCE"]
+    force = data[()]
+    force[:, :2] = force[:, 1::-1] * (1.0, -1.0)
+    data[...] = force
+
+
+def forget_balance(file: h5py.File) -> None:
+    """Books a millionth of the energy where it does not belong."""
+    file["history/energy/balance"][-1] += 1e-6 * file["history/energy/strain"][()].max()
+
+
+def less_friction(file: h5py.File) -> None:
+    """Less friction than the forces have needed."""
+    file[f"model/contacts/{CONTACT}/friction"][...] *= 0.5
+
+
+SPOILED: dict[str, tuple[Spoil, str]] = {
+    "a displacement": (add("VTKHDF/PointData/U", 1e-6), "stresses"),
+    "a velocity": (add("VTKHDF/PointData/V", 1e-6), "kinetic energy"),
+    "an acceleration": (accelerate, "equilibrium"),
+    "a reaction": (add("VTKHDF/PointData/RF", 1e-6), "equilibrium"),
+    "a contact force": (add("VTKHDF/PointData/CONTACT_FORCE", 1e-6), "equilibrium"),
+    "the sum of contact forces": (add("VTKHDF/PointData/CONTACT_FORCE", 1e-6), "action"),
+    "turned contact forces": (turned, "cone"),
+    "a gap of a closed node": (shift("GAP", 2, 1e-6), "gap"),
+    "a gap of an open node": (shift("GAP", 1, 1e-4), "gap"),
+    "a state": (shift("CONTACT_STATUS", 1, 1), "gap"),
+    "a force where nothing touches": (shift("CONTACT_FORCE", 1, 1e-3), "complementarity"),
+    "no number": (add("VTKHDF/PointData/V", np.nan), "time"),
+    "a stress": (add("VTKHDF/CellData/S", 1e-6), "stresses"),
+    "a strain": (add("VTKHDF/CellData/E", 1e-6), "strains"),
+    "a stress of von Mises": (add("VTKHDF/CellData/MISES", 1e-6), "stresses"),
+    "a stress across": (add("VTKHDF/CellData/S33", 1e-3, (-1,)), "stresses"),
+    "the time": (add("history/time", 1e-6), "time"),
+    "an increment": (add("history/dt", 1e-6), "time"),
+    "a pass": (add("history/solver/converged", -1.0), "time"),
+    "a residual": (add("history/solver/residual", 1e5), "law"),
+    "an overlap": (add("history/solver/overlap", 1e-6), "law"),
+    "a gap of the solver": (add("history/solver/gap_violation", 1e9), "law"),
+    "a slip of the solver": (add("history/solver/slip_violation", 1e9), "law"),
+    "a density": (add("model/materials/density", 1e-6), "mass"),
+    "a mass": (add("model/bodies/mass", 1e-6), "mass"),
+    "a modulus": (add("model/materials/young", 1e-6), "stresses"),
+    "a thickness": (add("model/thickness", 1e-6), "mass"),
+    "a coordinate": (add("model/coordinates", 1e-6), "stresses"),
+    "friction": (less_friction, "cone"),
+    "cone": (add(f"history/contact/{CONTACT}/cone_violation", 1e-6), "cone"),
+    "impulse cone": (add(f"history/contact/{CONTACT}/impulse_cone_violation", 1e-6), "cone"),
+    "a normal force": (add(f"history/contact/{CONTACT}/normal", -2.0), "cone"),
+    "a tangential force": (add(f"history/contact/{CONTACT}/tangential", 9.0), "cone"),
+    "a resultant": (add(f"history/contact/{CONTACT}/force", 1e-6), "accounts"),
+    "an impulse": (add(f"history/contact/{CONTACT}/impulse", 1e-6), "accounts"),
+    "a sum of impulses": (add(f"history/contact/{CONTACT}/normal_impulse_sum", 1e-6), "accounts"),
+    "the work of a contact": (add(f"history/contact/{CONTACT}/normal_work", 1e-6), "accounts"),
+    "the friction of a contact": (
+        add(f"history/contact/{CONTACT}/friction_dissipation", 1e-6),
+        "accounts",
+    ),
+    "a momentum": (add("history/momentum/linear", 1e-6), "momentum"),
+    "the angular momentum": (add("history/momentum/angular", 1e-6, (-1,)), "momenta"),
+    "a velocity of a body": (add("history/bodies/velocity", 1e-6), "momentum"),
+    "a centre": (add("history/bodies/center", 1e-6, (-1, 0, 0)), "momenta"),
+    "an energy of a body": (add("history/bodies/strain", 1e-6, (-1, 0)), "strain energy"),
+    "a motion of a body": (add("history/bodies/kinetic", 1e-6, (-1, 0)), "kinetic energy"),
+    "a force on a body": (add("history/bodies/contact_force", 1e-6), "accounts"),
+    "a history of a node": (add("history/nodes/UPPER_TIP/U", 1e-6, (-1, 0, 0)), "accounts"),
+    **{
+        f"the account {name}": (add(f"history/energy/{name}", 1e-3), "balance")
+        for name in (
+            "kinetic",
+            "strain",
+            "external_work",
+            "normal_contact_work",
+            "friction_dissipation",
+            "impact_loss",
+            "landing_return",
+            "release_loss",
+            "damping",
+            "material_dissipation",
+            "numerical_dissipation",
+        )
+    },
+    "the balance": (forget_balance, "balance"),
+}
+"""What is spoiled, how, and a check that must fail."""
+
+
+def test_a_result_holds(result: Path) -> None:
+    certificate = certify(result)
+    assert certificate.holds and not broken(certificate), certificate.table()
+    assert certificate.line.startswith("all ")
+    told = {check.name: check for check in certificate.checks if check.is_told}
+    assert {"equilibrium", "gap", "cone", "complementarity", "balance", "penetration"} <= set(told)
+    # the figures are round-off: a bound is not merely wide
+    for name in ("strain energy", "kinetic energy", "momenta", "action", "mass", "cone", "gap"):
+        assert told[name].shown()[0] < 1e-13, (name, told[name])
+    assert told["equilibrium"].shown()[0] < 1e-11 and told["equilibrium"].count > 1000
+
+
+@pytest.mark.parametrize("what", SPOILED)
+def test_a_spoiled_file_fails(result: Path, tmp_path: Path, what: str) -> None:
+    spoil, check = SPOILED[what]
+    certificate = spoiled(result, tmp_path, spoil)
+    assert not certificate.holds
+    assert check in broken(certificate), certificate.table()
+    assert " fail: " in certificate.line and check in certificate.line
+
+
+def test_a_node_inside_of_a_body_fails(result: Path, tmp_path: Path) -> None:
+    def push(file: h5py.File) -> None:
+        """Moves a slave node that is closed by a hundredth of an edge into its master."""
+        states = file["VTKHDF/PointData/CONTACT_STATUS"][()]
+        force = file["VTKHDF/PointData/CONTACT_FORCE"][()]
+        row = int(np.flatnonzero(states >= 2)[-1])
+        values = file["VTKHDF/PointData/U"][()]
+        values[row] -= 1e-2 * force[row] / np.linalg.norm(force[row])
+        file["VTKHDF/PointData/U"][...] = values
+
+    names = broken(spoiled(result, tmp_path, push))
+    assert {"gap", "penetration", "complementarity", "equilibrium"} <= set(names)
+
+
+def test_edges_that_cross_beyond_what_is_recorded_fail(job: Job, tmp_path: Path) -> None:
+    deck = parse(CROSSING, tmp_path)
+    path = job(deck, "--frames", "20")
+    certificate = certify(path)
+    assert certificate.holds, certificate.table()
+    with Result(path) as result:
+        assert result.history.solver.penetration.max() > 1e-3
+
+    def forget(file: h5py.File) -> None:
+        file["history/solver/penetration"][...] = 0.0
+
+    assert broken(spoiled(path, tmp_path, forget)) == ["crossing"]
+
+
+CROSSING = """*HEADING
+the corner of a narrow punch between the nodes of a block that is the slave
+*NODE, NSET=ALL
+1, 0., 0.
+2, 1., 0.
+3, 2., 0.
+4, 3., 0.
+5, 0., 1.
+6, 1., 1.
+7, 2., 1.
+8, 3., 1.
+11, 0.9, 1.01
+12, 1.5, 1.01
+13, 0.9, 2.
+14, 1.5, 2.
+*NSET, NSET=FLOOR
+1, 2, 3, 4
+*NSET, NSET=HEAD
+13, 14
+*ELEMENT, TYPE=CPE4, ELSET=BLOCK
+1, 1, 2, 6, 5
+2, 2, 3, 7, 6
+3, 3, 4, 8, 7
+*ELEMENT, TYPE=CPE4, ELSET=PUNCH
+11, 11, 12, 14, 13
+*ELSET, ELSET=BODIES
+BLOCK, PUNCH
+*MATERIAL, NAME=M
+*ELASTIC
+1000., 0.3
+*DENSITY
+1.
+*SOLID SECTION, ELSET=BODIES, MATERIAL=M
+1.
+*SURFACE, NAME=TOP
+BLOCK, S3
+*SURFACE, NAME=TIP
+PUNCH, S1
+PUNCH, S2
+*SURFACE INTERACTION, NAME=DRY
+*FRICTION
+0.3
+*CONTACT PAIR, INTERACTION=DRY
+TOP, TIP
+*BOUNDARY
+FLOOR, 1, 2
+*STEP, NLGEOM
+*DYNAMIC, DIRECT
+0.01, 0.2
+*BOUNDARY
+HEAD, 1, 1
+HEAD, 2, 2, -0.05
+*END STEP
+"""
+"""One slave node holds the punch; its corner goes behind the edge between two slave nodes."""
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["assembly", "connections", "drop", "every_card", "rigid_floor", "static_steps", "steps"],
+)
+def test_decks_of_all_kinds_hold(job: Job, name: str) -> None:
+    deck = Deck.read(DECKS / f"{name}.inp")
+    certificate = certify(job(deck, "--frames", "20"))
+    assert certificate.holds, certificate.table()
+
+
+def test_command_line(result: Path, tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "stickslip.certificate"]
+
+    def run(*words: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [*command, *words], stdin=subprocess.DEVNULL, capture_output=True, text=True
+        )
+
+    done = run(str(result))
+    assert done.returncode == 0, done.stderr
+    assert "hold: equilibrium" in done.stdout and "\nstrain energy " in done.stdout
+    bad = Path(shutil.copy(result, tmp_path / "bad.vtkhdf"))
+    with h5py.File(bad, "r+") as file:
+        SPOILED["a contact force"][0](file)
+    done = run("-q", str(result), str(bad))
+    assert done.returncode == 1
+    assert len(done.stdout.splitlines()) == 2 and "fail: " in done.stdout
+    done = run(str(tmp_path / "none.vtkhdf"))
+    assert done.returncode == 2 and "there is no file" in done.stderr
+
+
+def test_a_file_of_an_older_program_is_refused(result: Path, tmp_path: Path) -> None:
+    def forget(file: h5py.File) -> None:
+        del file["model/element_types"]
+
+    with pytest.raises(Fault, match="before there were certificates"):
+        spoiled(result, tmp_path, forget)
+
+
+def test_a_check_keeps_its_worst_value() -> None:
+    check = Check("x", "a number")
+    assert check.holds and not check.is_told
+    check.add([1e-3, 2e-3], [1.0, 1.0], "row {}")
+    check.add([1e-4], [1e-3], "other {}")
+    assert (check.value, check.bound, check.place, check.count) == (1e-4, 1e-3, "other 0", 3)
+    check.add([0.0], [0.0], "zero")
+    assert check.holds and check.place == "other 0"
+    check.add([1e-300], [0.0], "above zero")
+    assert not check.holds and check.place == "above zero"
+    check.add([np.nan], [1.0], "no number")
+    assert not check.holds and check.count == 6
