@@ -1,0 +1,82 @@
+"""The wheel: its commands, and a run in an empty environment without a compiler.
+
+The wheel is the newest in target/wheels, which scripts/wheel builds, or that of $STICKSLIP_WHEEL.
+"""
+
+import importlib
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+
+COMMANDS = sorted((ROOT / "packaging" / "data" / "scripts").iterdir())
+
+
+@pytest.mark.parametrize("path", COMMANDS, ids=lambda path: path.name)
+def test_commands_call_the_package(path: Path) -> None:
+    lines = path.read_text().splitlines()
+    assert lines[0] == "#!python"  # what installers put in the place of their interpreter
+    module = re.fullmatch(r"from (stickslip\.[\w.]+) import main", lines[1])
+    assert module and callable(importlib.import_module(module[1]).main)
+    assert lines[2:] == ["", "main()"] and os.access(path, os.X_OK)
+
+
+def test_versions_agree() -> None:
+    cargo = tomllib.loads((ROOT / "Cargo.toml").read_text())["package"]["version"]
+    for name, pattern in (
+        ("CITATION.cff", rf"^version: {re.escape(cargo)}$"),
+        ("CHANGELOG.md", rf"^## {re.escape(cargo)}\b"),
+        ("packaging/conda/recipe.yaml", rf'^  version: "{re.escape(cargo)}"$'),
+    ):
+        assert re.search(pattern, (ROOT / name).read_text(), flags=re.MULTILINE), name
+
+
+def wheel() -> Path:
+    """The wheel to install; skips the test where there is none."""
+    if "STICKSLIP_WHEEL" in os.environ:
+        return Path(os.environ["STICKSLIP_WHEEL"])
+    built = sorted(
+        (ROOT / "target" / "wheels").glob("*.whl"), key=lambda path: path.stat().st_mtime
+    )
+    if not built:
+        pytest.skip("no wheel in target/wheels: scripts/wheel builds one")
+    return built[-1]
+
+
+def test_a_wheel_runs_without_a_compiler(tmp_path: Path) -> None:
+    built = wheel()
+    place = tmp_path / "empty"
+    subprocess.run([sys.executable, "-m", "venv", place], check=True, stdin=subprocess.DEVNULL)
+    commands = place / "bin"
+    clean = {
+        name: value
+        for name, value in os.environ.items()
+        if not name.startswith(("STICKSLIP", "PYTHON"))
+    }
+    install = [commands / "python", "-m", "pip", "install", "--quiet", built]
+    subprocess.run(install, check=True, stdin=subprocess.DEVNULL, env=clean)
+    clean["PATH"] = str(commands)  # no compiler, no cargo, no HDF5
+
+    def run(*words: str) -> str:
+        done = subprocess.run(
+            [commands / words[0], *words[1:]],
+            cwd=tmp_path,
+            env=clean,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    assert re.match(r"stickslip \d", run("stickslip", "--version"))
+    run("stickslip", "run", str(ROOT / "tests" / "decks" / "rigid_floor.inp"), "-q")
+    assert "hold" in run("stickslip-certify", "-q", "rigid_floor.vtkhdf")
+    assert "wrote" in run("stickslip-report", "rigid_floor.vtkhdf")
+    code = "import stickslip; print(stickslip.program.version(), stickslip.program.binary())"
+    assert str(commands) in run("python", "-c", code)
