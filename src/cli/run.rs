@@ -325,6 +325,7 @@ mod tests {
             nodal: NodalResults {
                 reaction: vec![0.0; 8],
                 contact_force: vec![0.0; 8],
+                tie_force: vec![],
                 gap: vec![f64::NAN; 4],
                 status: vec![NodeStatus::None; 4],
                 concentrated: vec![0.0; 8],

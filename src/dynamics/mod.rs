@@ -17,3 +17,4 @@ pub use results::{
     RigidReaction, RunSummary, SolverCounts, State, Timings, Touch, Unbalanced, Worst,
 };
 pub use run::{RunError, resume, run};
+pub(crate) use step::rigid_inertia;

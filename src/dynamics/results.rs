@@ -85,6 +85,8 @@ pub struct NodalResults {
     pub concentrated: Vec<f64>,
     /// Contact force on the node, `2 N` entries (force).
     pub contact_force: Vec<f64>,
+    /// Force of its tie on a tied node, `2 N` entries (force); none where there are no ties.
+    pub tie_force: Vec<f64>,
     /// Gap of the node to its segment, `N` entries (length); NaN without candidate.
     pub gap: Vec<f64>,
     /// Contact status, `N` entries.
@@ -267,6 +269,7 @@ impl IncrementReport {
             &mut nodal.reaction,
             &mut nodal.concentrated,
             &mut nodal.contact_force,
+            &mut nodal.tie_force,
         ] {
             vector.truncate(2 * nodes);
         }

@@ -6,7 +6,7 @@ use crate::materials::{Law, NeoHooke, SaintVenantKirchhoff};
 use crate::model::{
     ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorLaw, Contact, Curve, Damping, Direction,
     Element, Equation, Face, ForceCurve, Formulation, Friction, Interaction, Material, Mesh, Model,
-    Reach, Section, Set, Signal, SurfaceKind, TimeBase,
+    Reach, Section, Set, Signal, SurfaceKind, Tie, TieReach, TimeBase,
 };
 
 /// Terms of an equation on a data line.
@@ -40,6 +40,20 @@ fn write_contacts(model: &Model, lines: &mut DeckWriter) {
         }
     }
     for body in &model.rigid_bodies {
+        if body.is_coupling {
+            let labels = |node: usize| model.mesh.node_labels[node].to_string();
+            lines.card(
+                "KINEMATIC COUPLING",
+                [
+                    named("NAME", &body.name),
+                    set("REF NODE", labels(body.reference)),
+                ],
+            );
+            for &node in &body.nodes {
+                lines.row([labels(node), "1".to_owned(), "2".to_owned()]);
+            }
+            continue;
+        }
         let parameter = match body.surface {
             Some(_) => "ANALYTICAL SURFACE",
             None if body.elements.is_empty() => "NSET",
@@ -50,7 +64,15 @@ fn write_contacts(model: &Model, lines: &mut DeckWriter) {
         lines.card("RIGID BODY", [name, set("REF NODE", label)]);
     }
     point_elements(model, lines);
-    for equation in &model.equations {
+    for tie in &model.ties {
+        write_tie(tie, model, lines);
+    }
+    let mut of_ties: Vec<usize> = (model.ties.iter())
+        .flat_map(|tie| tie.nodes.iter().map(|tied| tied.node))
+        .collect();
+    of_ties.sort_unstable();
+    let is_own = |equation: &&Equation| of_ties.binary_search(&(equation.dof / 2)).is_err();
+    for equation in model.equations.iter().filter(is_own) {
         write_equation(equation, model, lines);
     }
 }
@@ -149,6 +171,18 @@ fn initialization(reach: Reach, lines: &mut DeckWriter) {
     lines.card_of("CONTACT INITIALIZATION DATA", &parameters);
     lines.card("CONTACT INITIALIZATION ASSIGNMENT", []);
     lines.row([String::new(), String::new(), NAME.to_owned()]);
+}
+
+/// Writes a tie, whose nodes are where they shall be.
+fn write_tie(tie: &Tie, model: &Model, lines: &mut DeckWriter) {
+    let mut parameters = vec![named("NAME", &tie.name), set("ADJUST", "NO")];
+    parameters.extend(match tie.reach {
+        TieReach::Near => None,
+        TieReach::Within(tolerance) => Some(set("POSITION TOLERANCE", number(tolerance))),
+        TieReach::Nodes(set) => Some(named("TIED NSET", &model.sets.nodes[set].name)),
+    });
+    lines.card_of("TIE", &parameters);
+    lines.row([tie.slave, tie.master].map(|surface| name(&model.surfaces[surface].name)));
 }
 
 /// Writes -u_dof + sum c_k u_k = 0.

@@ -207,6 +207,8 @@ pub struct RigidBody {
     pub nodes: Vec<usize>,
     /// Its elements (indices, increasing), which have mass and no strain.
     pub elements: Vec<usize>,
+    /// Whether it is made of coupled nodes (`*COUPLING`, `*KINEMATIC COUPLING`, `*MPC`), whose mass it has.
+    pub is_coupling: bool,
     /// Its motion, if it turns.
     pub turning: Option<TurningBody>,
 }

@@ -4,7 +4,10 @@ use smallvec::SmallVec;
 
 use super::ElementType;
 use super::side::{Segment, Side, SideNodes};
-use crate::vectors::{difference, distance, dot};
+use crate::vectors::{cross, difference, distance, dot, polygon_area};
+
+/// Smallest ratio of an element's area to that before its nodes are moved.
+const SMALLEST_AREA: f64 = 0.5;
 
 /// Nodes and elements of a model.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -235,6 +238,22 @@ impl Element {
     /// Nodes at the corners, counter-clockwise.
     pub fn corners(&self) -> &[usize] {
         &self.nodes[..self.side_count()]
+    }
+
+    /// Whether moving the nodes has taken its convexity or half its area.
+    pub fn is_spoiled(&self, before: &[[f64; 2]], after: &[[f64; 2]]) -> bool {
+        let nodes = self.corners();
+        if nodes.iter().all(|&n| before[n] == after[n]) {
+            return false;
+        }
+        let count = nodes.len();
+        let corner = |i: usize| {
+            let [p, q, r] = [i, i + 1, i + 2].map(|k| after[nodes[k % count]]);
+            cross(difference(p, q), difference(q, r))
+        };
+        let area = |x: &[[f64; 2]]| polygon_area(nodes.iter().map(|&n| x[n]));
+        let small = area(after) < SMALLEST_AREA * area(before);
+        small || (0..count).any(|i| corner(i) <= 0.0)
     }
 
     /// Side `side`, 0-based: 0 is S1/P1.

@@ -13,6 +13,7 @@ mod mesh;
 mod sets;
 mod side;
 mod step;
+mod tie;
 
 pub use crate::materials::Plane;
 use crate::materials::{Law, SmallStrainModuli};
@@ -32,6 +33,8 @@ pub use step::{
     LandingRule, LcpChoice, Load, PointLoad, Pressure, Procedure, Rate, RestartOutput, Scheme,
     Settings, SolverChoice, Step, Support, SupportMotion, Traction, Variation,
 };
+pub(crate) use tie::{NEAR, nearest_of};
+pub use tie::{Tie, TieReach, TiedNode};
 
 use crate::vectors::polygon_area;
 
@@ -56,6 +59,8 @@ pub struct Model {
     pub contacts: Vec<Contact>,
     /// Amplitude curves.
     pub amplitudes: Vec<Amplitude>,
+    /// Ties, whose equations are among the others.
+    pub ties: Vec<Tie>,
     /// Equations between displacements, sorted by the dof that they eliminate, each at most once.
     pub equations: Vec<Equation>,
     /// Initial velocity, `2 N` entries (length/time), then those of the bodies that turn, with their
@@ -70,8 +75,12 @@ pub struct Model {
 }
 
 impl Model {
-    /// What the deck calls a node: its number, or `Instance.number`.
+    /// What the deck calls a node: its number, or `Instance.number`; of the nodes that a body which turns has beside
+    /// those of the mesh, its reference node.
     pub fn node_name(&self, node: usize) -> String {
+        let beyond = node.checked_sub(self.mesh.node_count());
+        let body = beyond.and_then(|k| self.turning_bodies().nth(k / 2));
+        let node = body.map_or(node, |(body, _)| body.reference);
         node_name(node, &self.mesh, &self.sets.instances)
     }
 

@@ -1,5 +1,6 @@
 //! The first lines of the screen: program, deck, and the model in a few lines, as `check` prints it too.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use super::format::{counted, general, grouped, label, scientific, wrap, wrap_words};
@@ -7,6 +8,7 @@ use super::frames::{DEFAULT_FRAMES, are_dense};
 use super::run_record::{RunRecord, utc_now};
 use super::status::monitored;
 use crate::diagnostics::Sources;
+use crate::dynamics::rigid_inertia;
 use crate::model::{
     Connector, ConnectorLaw, Contact, EdgeScales, Element, ElementType, Frames, Impact, ImpactTime,
     Incrementation, LandingRule, Model, Procedure, Scheme, Settings, SolverChoice, Step,
@@ -38,8 +40,10 @@ impl ModelEcho {
     pub fn new(model: &Model) -> Self {
         let [lower, upper] = extents(model.mesh.coordinates.iter().copied());
         let elements = model.mesh.elements.iter();
+        let points = model.turning_bodies().flat_map(|(_, body)| &body.masses);
+        let points: f64 = points.map(|(_, mass)| mass).sum();
         ModelEcho {
-            mass: elements.fold(0.0, |mass, element| mass + model.element_mass(element)),
+            mass: elements.fold(0.0, |mass, element| mass + model.element_mass(element)) + points,
             lower,
             upper,
             edges: EdgeScales::new(&model.mesh, &model.sections, &model.materials),
@@ -114,8 +118,20 @@ impl ModelEcho {
             let counts: Vec<String> = counts.map(|(count, what)| counted(count, what)).collect();
             lines.push(label("", &counts.join("  ")));
         }
-        if !model.equations.is_empty() {
-            let count = counted(model.equations.len(), "equation");
+        lines.extend(rigid_lines(model));
+        for tie in &model.ties {
+            let [slave, master] = [tie.slave, tie.master].map(|k| &model.surfaces[k].name);
+            let count = counted(tie.nodes.len(), "node");
+            let tied = format!("{}: {count} of {slave} tied to {master}", tie.name);
+            lines.extend(wrap_words("tie", &tied));
+        }
+        let of_ties: HashSet<usize> = (model.ties.iter())
+            .flat_map(|tie| tie.nodes.iter().map(|tied| tied.node))
+            .collect();
+        let own = (model.equations.iter()).filter(|e| !of_ties.contains(&(e.dof / 2)));
+        let equations = own.count();
+        if equations > 0 {
+            let count = counted(equations, "equation");
             lines.push(label("", &format!("{count} between displacements")));
         }
         lines
@@ -226,6 +242,45 @@ fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<S
         smallest_gap(gaps),
     ];
     wrap("contact", &pieces)
+}
+
+/// Bodies that turn, with their mass and the directions in which they move freely.
+fn rigid_lines(model: &Model) -> Vec<String> {
+    let mut lines = Vec::new();
+    for ((body, turning), [mass, inertia]) in model.turning_bodies().zip(rigid_inertia(model)) {
+        let reference = model.node_name(body.reference);
+        let nodes = counted(body.nodes.len(), "node");
+        let what = match body.is_coupling {
+            true => format!("{}: {nodes} ride on node {reference}", body.name),
+            false => format!("{}: {nodes} turn with node {reference}", body.name),
+        };
+        let mut pieces = vec![what];
+        if mass > 0.0 {
+            let [mass, inertia] = [mass, inertia].map(|value| general(value, 4));
+            pieces.push(format!("mass {mass}, inertia {inertia}"));
+        }
+        let x = 2 * body.reference;
+        let dofs = [(x, 1), (x + 1, 2), (model.angle_of(turning), 6)];
+        let free = |step: &Step| {
+            let is_free = |dof: usize| step.supports.binary_search_by_key(&dof, |s| s.dof).is_err();
+            let free = dofs.iter().filter(|(dof, _)| is_free(*dof));
+            let names: Vec<String> = free.map(|(_, name)| name.to_string()).collect();
+            match names.is_empty() {
+                true => "driven".to_owned(),
+                false => format!("free in {}", names.join(", ")),
+            }
+        };
+        let of_steps: Vec<String> = model.steps.iter().map(free).collect();
+        match of_steps.iter().all(|own| Some(own) == of_steps.first()) {
+            true => pieces.extend(of_steps.into_iter().take(1)),
+            false => {
+                let numbered = of_steps.iter().enumerate();
+                pieces.extend(numbered.map(|(k, own)| format!("step {}: {own}", k + 1)));
+            }
+        }
+        lines.extend(wrap("rigid", &pieces));
+    }
+    lines
 }
 
 /// Nodes without mass and the nodes of contact surfaces that keep theirs, where mass is redistributed.

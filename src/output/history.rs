@@ -19,6 +19,7 @@ use crate::elements::{
 use crate::model::{
     Bodies, Contact, HistorySet, Incrementation, LandingRule, Model, RigidBody, Set, Step,
 };
+use crate::vectors::cross;
 
 /// What a dataset holds of a record `Q`.
 enum Value<Q> {
@@ -80,6 +81,7 @@ impl<'m> History<'m> {
             history.create_contact(&group(&contacts, &name)?, k, contact, &bodies)?;
         }
         history.create_connectors(&at)?;
+        history.create_ties(&at)?;
         history.create_events(&at)?;
         let surfaces = group(&at, "rigid")?;
         for (k, body) in model.rigid_bodies.iter().enumerate() {
@@ -250,6 +252,40 @@ impl<'m> History<'m> {
             self.add(&at, name, &count, (dimension, text), move |r, v| {
                 let states = placed.iter().map(|c| c.state(&r.state.u, &r.state.v));
                 v.extend(states.map(|state| of(&state)));
+            })?;
+        }
+        Ok(())
+    }
+
+    /// `/history/ties/<NAME>`: the force of every tie.
+    fn create_ties(&mut self, at: &Group) -> hdf5::Result<()> {
+        if self.model.ties.is_empty() {
+            return Ok(());
+        }
+        let ties = group(at, "ties")?;
+        for tie in &self.model.ties {
+            let at = group(&ties, &tie.name)?;
+            let nodes = || tie.nodes.iter().map(|tied| tied.node);
+            let labels: Vec<i64> = nodes()
+                .map(|node| self.model.mesh.node_labels[node] as i64)
+                .collect();
+            let text = ("1", "node numbers of the tied nodes");
+            constant(&at, "labels", &[labels.len()], &labels, text)?;
+            let nodes: Vec<usize> = nodes().collect();
+            let text = ("force", "force of the tie on its slave nodes");
+            let members = nodes.clone();
+            self.add(&at, "force", &[2], text, move |r, v| {
+                v.extend(sum(&members, &r.nodal.tie_force));
+            })?;
+            let x = &self.model.mesh.coordinates;
+            let text = ("force*length", "moment of the force about the origin");
+            self.add(&at, "moment", &[], text, move |r, v| {
+                let moment = |&node: &usize| {
+                    let [at, force] = [&r.state.u, &r.nodal.tie_force]
+                        .map(|all| [all[2 * node], all[2 * node + 1]]);
+                    cross([0, 1].map(|i| x[node][i] + at[i]), force)
+                };
+                v.push(nodes.iter().map(moment).sum());
             })?;
         }
         Ok(())

@@ -7,11 +7,8 @@ use crate::contact::tolerances::{ADJUSTMENT_REACH, COORDINATE_ROUND_OFF};
 use crate::contact::{ContactSurfaces, project};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
 use crate::model::{Adjust, Contact, Element, Model, Reach};
-use crate::vectors::{cross, difference, distance, polygon_area};
+use crate::vectors::distance;
 use std::collections::HashSet;
-
-/// Smallest ratio of an element's area to that before.
-const SMALLEST_AREA: f64 = 0.5;
 
 /// Most sweeps over the nodes of a surface that touches itself.
 const SWEEPS: usize = 20;
@@ -131,7 +128,7 @@ fn adjusted_of(
         .map(|&node| (distance(before[node], after[node]), node));
     let moved: Vec<(f64, usize)> = ways.filter(|(way, _)| *way > 0.0).collect();
     let &(largest, node) = (moved.iter()).max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)))?;
-    let is_spoiled = |element: &Element| is_spoiled(element, before, after);
+    let is_spoiled = |element: &Element| element.is_spoiled(before, after);
     Some(Adjusted {
         contact,
         count: moved.len(),
@@ -139,22 +136,6 @@ fn adjusted_of(
         largest,
         spoiled: model.mesh.elements.iter().position(is_spoiled),
     })
-}
-
-/// Whether an element has lost its convexity or half its area.
-fn is_spoiled(element: &Element, before: &[[f64; 2]], after: &[[f64; 2]]) -> bool {
-    let nodes = element.corners();
-    if nodes.iter().all(|&n| before[n] == after[n]) {
-        return false;
-    }
-    let count = nodes.len();
-    let corner = |i: usize| {
-        let [p, q, r] = [i, i + 1, i + 2].map(|k| after[nodes[k % count]]);
-        cross(difference(p, q), difference(q, r))
-    };
-    let area = |x: &[[f64; 2]]| polygon_area(nodes.iter().map(|&n| x[n]));
-    let small = area(after) < SMALLEST_AREA * area(before);
-    small || (0..count).any(|i| corner(i) <= 0.0)
 }
 
 /// Reports the moved nodes; an element that was spoiled is an error.
@@ -215,7 +196,7 @@ mod tests {
             nodes: vec![0, 1, 2, 3].into(),
             section: 0,
         };
-        is_spoiled(&element, &before, &after)
+        element.is_spoiled(&before, &after)
     }
 
     #[test]

@@ -3,10 +3,12 @@
 
 use super::boundary::{Direction, Targets, direction};
 use super::context::Context;
+use super::couplings::Link;
 use super::outline::Outline;
+use super::ties::Ties;
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span};
-use crate::model::{Equation, Step, Support};
+use crate::model::{Equation, Step, Support, SupportMotion};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Terms on a data line; each takes three fields.
@@ -39,10 +41,11 @@ type ByDof = BTreeMap<usize, Solved>;
 pub(crate) fn read(
     outline: &Outline,
     targets: Targets,
-    steps: &[Step],
+    (ties, links, steps): (&Ties, &[Link], &[Step]),
     cx: &mut Context,
 ) -> Vec<(Equation, Span)> {
-    let mut solved = ByDof::new();
+    let mut solved = of_ties(ties, targets, steps, cx);
+    of_links(links, &mut solved, targets, steps, cx);
     for card in outline.model_cards("EQUATION") {
         let mut rows = card.rows.iter();
         while let Some(row) = rows.next() {
@@ -186,6 +189,113 @@ fn solve(terms: &[Term], solved: &mut ByDof, targets: Targets, cx: &mut Context)
             cx.error(Code::BadEquation, first.span, message)
                 .help("put another term first");
         }
+    }
+}
+
+/// The equations of the tied nodes.
+fn of_ties(ties: &Ties, targets: Targets, steps: &[Step], cx: &mut Context) -> ByDof {
+    let mut solved = ByDof::new();
+    for (tie, &span) in ties.all.iter().zip(&ties.spans) {
+        let mut held = Vec::new();
+        for equation in tie
+            .nodes
+            .iter()
+            .flat_map(|tied| [0, 1].map(|i| tied.equation(i)))
+        {
+            let Equation { dof, terms } = equation;
+            match tied_and_prescribed(dof, &terms, steps) {
+                Prescribed::Not => drop(solved.insert(dof, Solved { terms, span })),
+                Prescribed::Alike => {}
+                Prescribed::Otherwise => held.push(dof),
+            }
+        }
+        if let Some(&dof) = held.first() {
+            let message = format!(
+                "{} follows the master of {} and is prescribed",
+                name(dof, targets),
+                tie.name
+            );
+            let others = match held.len() - 1 {
+                0 => String::new(),
+                others => format!("so are {others} more directions of tied nodes; "),
+            };
+            cx.error(Code::Tie, span, message).help(format!(
+                "{others}prescribe the nodes of the master there alike, exchange slave and master, or leave the node \
+                 out with TIED NSET="
+            ));
+        }
+    }
+    solved
+}
+
+/// Adds the equations of nodes that are joined, and of reference nodes that follow the mean of others.
+fn of_links(
+    links: &[Link],
+    solved: &mut ByDof,
+    targets: Targets,
+    steps: &[Step],
+    cx: &mut Context,
+) {
+    let is_prescribed = |dof: usize| {
+        let mut supports = steps.iter().map(|step| &step.supports);
+        supports.any(|all| all.binary_search_by_key(&dof, |s| s.dof).is_ok())
+    };
+    for link in links {
+        for direction in 0..2 {
+            let at = |node: &usize| 2 * node + direction;
+            let (mut dof, mut terms, span) = match link {
+                Link::Joined { node, to, span } => (at(node), vec![(at(to), 1.0)], *span),
+                Link::Mean { node, of, span } => {
+                    let weight = 1.0 / of.len() as f64;
+                    let terms = of.iter().map(|other| (at(other), weight));
+                    (at(node), terms.collect(), *span)
+                }
+            };
+            // a support holds the term that follows: the first that can be eliminated in its place
+            let is_taken = |dof: usize| is_prescribed(dof) || solved.contains_key(&dof);
+            if is_taken(dof)
+                && let Some(index) = terms.iter().position(|term| !is_taken(term.0))
+            {
+                let (first, weight) = terms[index];
+                terms.iter_mut().for_each(|term| term.1 /= -weight);
+                terms[index] = (dof, 1.0 / weight);
+                dof = first;
+            }
+            if solved.insert(dof, Solved { terms, span }).is_some() {
+                let message = format!("{} follows other nodes already", name(dof, targets));
+                cx.error(Code::Coupling, span, message);
+            }
+        }
+    }
+}
+
+/// Whether a tied dof is prescribed.
+enum Prescribed {
+    Not,
+    /// As the dofs of the master in the same direction are: its support makes what the tie would.
+    Alike,
+    Otherwise,
+}
+
+/// Whether a tied dof is prescribed, and in all steps as those of the same direction that it follows.
+fn tied_and_prescribed(dof: usize, terms: &[(usize, f64)], steps: &[Step]) -> Prescribed {
+    let motion = |step: &Step, dof: usize| -> Option<SupportMotion> {
+        let supports = &step.supports;
+        let found = supports.binary_search_by_key(&dof, |support| support.dof);
+        found.ok().map(|index| supports[index].motion)
+    };
+    let same_direction = || terms.iter().filter(|(to, _)| to % 2 == dof % 2);
+    if steps.iter().all(|step| motion(step, dof).is_none()) {
+        return Prescribed::Not;
+    }
+    let alike = steps.iter().all(|step| {
+        let own = motion(step, dof);
+        own.is_some() && same_direction().all(|(to, _)| motion(step, *to) == own)
+    });
+    if alike {
+        Prescribed::Alike
+    } else {
+        Prescribed::Otherwise
     }
 }
 

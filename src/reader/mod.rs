@@ -10,6 +10,7 @@ mod checks;
 mod connectors;
 mod contact;
 mod context;
+mod couplings;
 mod equations;
 mod label;
 mod loads;
@@ -24,6 +25,7 @@ mod sections;
 mod sets;
 mod steps;
 mod surfaces;
+mod ties;
 
 pub(crate) use loads::carried_loads;
 pub(crate) use steps::{
@@ -38,6 +40,7 @@ use boundary::Targets;
 use context::Context;
 use outline::Outline;
 use output::Histories;
+use rigid_bodies::Lookup;
 use sets::Sets;
 use std::path::Path;
 
@@ -73,10 +76,19 @@ fn read(cx: &mut Context) -> Model {
     let mut surfaces = surfaces::read(&outline, &mesh_index, &sets, &at_nodes, cx);
     drop(at_nodes);
     mesh_index.add_points(&surfaces.rigid_points);
-    let rigid_bodies = rigid_bodies::read(&outline, &mesh_index, &sets, &surfaces, cx);
+    let lookup = Lookup {
+        mesh_index: &mesh_index,
+        sets: &sets,
+        surfaces: &surfaces,
+    };
+    let mut rigid_bodies = rigid_bodies::read(&outline, lookup, cx);
+    let links = couplings::read(&outline, lookup, &mut rigid_bodies, cx);
+    rigid_bodies::point_masses(&mut rigid_bodies, &outline, lookup, cx);
     let properties = sections::read(&outline, &mut mesh_index, &sets, cx);
     checks::magnitudes(&mesh_index, &properties, cx);
-    let contacts = contact::read(&outline, &mesh_index, &sets, &mut surfaces, cx);
+    let ties = ties::read(&outline, &mut mesh_index, &sets, &surfaces, cx);
+    let mut contacts = contact::read(&outline, &mesh_index, &sets, &mut surfaces, cx);
+    ties.leave_out(&mut contacts, &surfaces.all, &mesh_index);
     let (sections, mesh) = (&properties.sections, &mesh_index.mesh);
     checks::thickness(&contacts, &surfaces.all, sections, mesh, cx);
     let edges = EdgeScales::new(mesh, sections, &properties.materials);
@@ -93,7 +105,7 @@ fn read(cx: &mut Context) -> Model {
     let mut initial_velocity = boundary::initial_velocity(&outline, targets, &steps.at_start, cx);
     let all = &mut steps.all;
     let bodies = rigid_bodies::complete(&rigid_bodies, &mesh_index, all, &mut initial_velocity, cx);
-    let equations = equations::read(&outline, targets, &steps.all, cx);
+    let equations = equations::read(&outline, targets, (&ties, &links, &steps.all), cx);
     rigid_bodies::check(&rigid_bodies, &bodies, (&steps.all, &equations), cx);
     boundary::check_start(&outline, steps.all.first(), cx);
     equations::check_velocities(&equations, &initial_velocity, &steps.at_start, targets, cx);
@@ -107,6 +119,7 @@ fn read(cx: &mut Context) -> Model {
         connectors,
         contacts,
         amplitudes: amplitudes.named.all,
+        ties: ties.all,
         equations: equations
             .into_iter()
             .map(|(equation, _)| equation)

@@ -623,9 +623,21 @@ fn fields<'a>(outline: &Outline<'a>) -> Vec<Text<'a>> {
     let rows = equations.flat_map(|card| card.rows.iter());
     let terms = rows.filter(|row| row.get(1).is_some());
     let names = ["REF NODE", "NSET", "PIN NSET", "TIE NSET"];
+    let kinematic = outline.model_cards("KINEMATIC COUPLING").into_iter();
+    let couplings = outline.model_cards("COUPLING").into_iter();
+    let coupled = kinematic.clone().flat_map(|card| card.rows.iter());
+    let coupled = coupled.filter_map(|row| row.get(0));
+    let mpc = outline.model_cards("MPC").into_iter();
+    let joined = mpc
+        .flat_map(|card| card.rows.iter())
+        .flat_map(|row| row.fields().skip(1));
     bodies
+        .chain(kinematic)
+        .chain(couplings)
         .flat_map(|card| names.map(|name| card.value(name)))
         .flatten()
         .chain(terms.flat_map(|row| row.fields().step_by(3)))
+        .chain(coupled)
+        .chain(joined)
         .collect()
 }

@@ -33,11 +33,74 @@ pub(crate) struct Rigid {
     masses: Vec<(usize, f64)>,
     /// Rotary inertia at its nodes.
     rotary_inertia: f64,
-    /// Place of `*RIGID BODY`.
+    /// Whether it is made of coupled nodes: it moves freely where nothing is prescribed, with the mass of its nodes.
+    is_coupling: bool,
+    /// Place of `*RIGID BODY`, or of what couples its nodes.
     span: Span,
 }
 
 impl Rigid {
+    /// Nodes that ride on a reference node.
+    pub fn of_coupling(
+        name: &str,
+        reference: usize,
+        nodes: Vec<usize>,
+        mesh_index: &MeshIndex,
+        span: Span,
+    ) -> Self {
+        Rigid {
+            surface: None,
+            name: name.to_owned(),
+            nodes,
+            elements: Vec::new(),
+            reference,
+            label: mesh_index.node_name(reference),
+            masses: Vec::new(),
+            rotary_inertia: 0.0,
+            is_coupling: true,
+            span,
+        }
+    }
+
+    /// Its nodes with the reference node.
+    pub fn nodes(&self) -> impl Iterator<Item = usize> + '_ {
+        self.nodes.iter().copied().chain([self.reference])
+    }
+
+    /// Whether a node is one of them.
+    pub fn has(&self, node: usize) -> bool {
+        self.reference == node || self.nodes.binary_search(&node).is_ok()
+    }
+
+    /// Adds nodes.
+    pub fn add(&mut self, nodes: BTreeSet<usize>) {
+        let reference = self.reference;
+        self.nodes
+            .extend(nodes.into_iter().filter(|&node| node != reference));
+        self.nodes.sort_unstable();
+        self.nodes.dedup();
+    }
+
+    /// Name in the deck.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Place in the deck.
+    pub fn span(&self) -> Span {
+        self.span
+    }
+
+    /// Whether it is made of coupled nodes.
+    pub fn is_coupling(&self) -> bool {
+        self.is_coupling
+    }
+
+    /// Whether it moves where nothing is prescribed: it has mass, its own or that of its nodes.
+    fn moves_freely(&self) -> bool {
+        self.has_mass() || self.is_coupling
+    }
+
     /// Whether it has mass.
     fn has_mass(&self) -> bool {
         !self.elements.is_empty() || !self.masses.is_empty()
@@ -53,26 +116,16 @@ impl Rigid {
 
 /// The mesh, its sets and surfaces, among which a card names.
 #[derive(Clone, Copy)]
-struct Lookup<'a> {
-    mesh_index: &'a MeshIndex,
-    sets: &'a Sets,
-    surfaces: &'a Surfaces,
+pub(super) struct Lookup<'a> {
+    pub mesh_index: &'a MeshIndex,
+    pub sets: &'a Sets,
+    pub surfaces: &'a Surfaces,
 }
 
 /// Reads all rigid surfaces with their reference nodes, by the index of the surface, and all sets of
 /// rigid elements.
-pub(crate) fn read(
-    outline: &Outline,
-    mesh_index: &MeshIndex,
-    sets: &Sets,
-    surfaces: &Surfaces,
-    cx: &mut Context,
-) -> Vec<Rigid> {
-    let lookup = Lookup {
-        mesh_index,
-        sets,
-        surfaces,
-    };
+pub(crate) fn read(outline: &Outline, lookup: Lookup, cx: &mut Context) -> Vec<Rigid> {
+    let surfaces = lookup.surfaces;
     let mut of_surfaces = BTreeMap::new();
     let mut of_elements = Vec::new();
     let mut incomplete = cx.may_lack_cards();
@@ -91,8 +144,7 @@ pub(crate) fn read(
         }
         of_surfaces.insert(index, rigid);
     }
-    let mut all: Vec<Rigid> = of_surfaces.into_values().chain(of_elements).collect();
-    point_masses(&mut all, outline, lookup, cx);
+    let all: Vec<Rigid> = of_surfaces.into_values().chain(of_elements).collect();
     let has_body = |index: usize| all.iter().any(|rigid| rigid.surface == Some(index));
     let lone = |(index, _): &&(usize, Span)| !has_body(*index);
     for &(index, span) in surfaces.rigid.iter().filter(lone) {
@@ -106,7 +158,7 @@ pub(crate) fn read(
 }
 
 /// Gives the bodies the masses and inertia of `*MASS` and `*ROTARY INERTIA`.
-fn point_masses(all: &mut [Rigid], outline: &Outline, lookup: Lookup, cx: &mut Context) {
+pub(super) fn point_masses(all: &mut [Rigid], outline: &Outline, lookup: Lookup, cx: &mut Context) {
     let points = &lookup.mesh_index.points;
     let mut values: Vec<Option<f64>> = vec![None; points.len()];
     for (keyword, kind, column, what) in [
@@ -151,9 +203,7 @@ fn point_masses(all: &mut [Rigid], outline: &Outline, lookup: Lookup, cx: &mut C
         }
     }
     for (point, value) in points.iter().zip(values) {
-        let owner = all.iter_mut().find(|rigid| {
-            rigid.reference == point.node || rigid.nodes.binary_search(&point.node).is_ok()
-        });
+        let owner = all.iter_mut().find(|rigid| rigid.has(point.node));
         let fault = match (owner, value, point.kind) {
             (Some(rigid), Some(value), PointKind::Mass) => {
                 rigid.masses.push((point.node, value));
@@ -203,6 +253,7 @@ fn rigid(card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Rigid> {
         elements,
         masses: Vec::new(),
         rotary_inertia: 0.0,
+        is_coupling: false,
         reference,
         label: lookup.mesh_index.node_name(reference),
         span: card.span,
@@ -346,6 +397,7 @@ pub(crate) fn complete(
         reference: rigid.reference,
         nodes: rigid.nodes.clone(),
         elements: rigid.elements.clone(),
+        is_coupling: rigid.is_coupling,
         turning: match *motion {
             Motion::Translates => None,
             Motion::Turns(number) => Some(TurningBody {
@@ -383,7 +435,7 @@ pub(crate) fn check(
             (steps.iter()).any(|step| step.settings.contact_mass == ContactMass::Redistributed);
         let is_static = (steps.iter()).any(|step| step.procedure == Procedure::Static);
         let options = [
-            (is_static, "a static step"),
+            (is_static && !rigid.is_coupling, "a static step"),
             (returns, "LANDING=RETURN"),
             (redistributes, "CONTACT MASS=REDISTRIBUTED"),
         ];
@@ -429,14 +481,14 @@ fn motion_of(step: &Step, dof: usize) -> Option<SupportMotion> {
 
 /// Whether a body turns: its angle moves in some step, or a body with mass is free in some direction of some step.
 fn turns(rigid: &Rigid, angle: usize, steps: &[Step], velocity: &[f64]) -> bool {
-    let has_mass = rigid.has_mass();
+    let moves_freely = rigid.moves_freely();
     let translations = [0, 1].map(|i| 2 * rigid.reference + i);
     velocity.get(angle).is_some_and(|omega| *omega != 0.0)
         || steps.iter().any(|step| match motion_of(step, angle) {
             Some(motion) if !is_still(motion) => true,
             of_angle => {
                 let is_free = |dof: &usize| motion_of(step, *dof).is_none();
-                has_mass && (of_angle.is_none() || translations.iter().any(is_free))
+                moves_freely && (of_angle.is_none() || translations.iter().any(is_free))
             }
         })
 }
@@ -498,12 +550,15 @@ fn complete_turning(
 ) {
     let has_mass = rigid.has_mass();
     let own: BTreeSet<usize> = rigid.nodes.iter().copied().collect();
+    if rigid.is_coupling && !report_empty_coupling(rigid, &own, mesh_index, cx) {
+        return;
+    }
     for (index, step) in steps.iter_mut().enumerate() {
         if let Some(held) = step.supports.iter().find(|s| own.contains(&(s.dof / 2))) {
             return report_other_motion(rigid, &mesh_index.node_name(held.dof / 2), cx);
         }
         let turns_freely = motion_of(step, angle).is_none();
-        if has_mass && turns_freely && !rigid.has_inertia() {
+        if has_mass && turns_freely && !rigid.is_coupling && !rigid.has_inertia() {
             let message = format!("{} may turn and has no rotary inertia", rigid.name);
             cx.error(Code::RigidSurface, rigid.span, message).help(
                 "add *ELEMENT, TYPE=ROTARYI and *ROTARY INERTIA, or hold direction 6 of its reference node",
@@ -523,7 +578,7 @@ fn complete_turning(
             );
             return;
         }
-        if has_mass {
+        if rigid.moves_freely() {
             continue;
         }
         for direction in 0..2 {
@@ -543,6 +598,36 @@ fn complete_turning(
             step.supports.insert(at, Support { dof: angle, motion });
         }
     }
+}
+
+/// Whether a coupling can move freely: reports one without a node of an element, or without an arm.
+fn report_empty_coupling(
+    rigid: &Rigid,
+    own: &BTreeSet<usize>,
+    mesh_index: &MeshIndex,
+    cx: &mut Context,
+) -> bool {
+    let mesh = &mesh_index.mesh;
+    let x = &mesh.coordinates;
+    let mut of_elements = mesh.elements.iter().flat_map(|element| &element.nodes);
+    let (message, help) = if !of_elements.any(|node| own.contains(node)) {
+        (
+            format!("no node of {} belongs to an element", rigid.name),
+            "couple nodes of a body",
+        )
+    } else if own.iter().all(|&node| x[node] == x[rigid.reference]) {
+        (
+            format!(
+                "all nodes of {} are at the place of its reference node",
+                rigid.name
+            ),
+            "join two nodes at one place by *MPC of the type PIN",
+        )
+    } else {
+        return true;
+    };
+    cx.error(Code::Coupling, rigid.span, message).help(help);
+    false
 }
 
 /// Adds the supports of the nodes of rigid bodies that do not turn to those of a step: they move as their reference

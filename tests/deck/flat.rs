@@ -391,6 +391,58 @@ fn rigid_bodies_that_turn() {
 }
 
 #[test]
+fn ties() {
+    let gap = "*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE\nSBOT, STOP";
+    for (options, nodes) in [
+        ("NAME=BOND", 2),
+        ("ADJUST=NO, POSITION TOLERANCE=100.", 2),
+        ("TIED NSET=NEAREST", 1),
+    ] {
+        let tie = format!("*NSET, NSET=NEAREST\n11\n*TIE, {options}\nSBOT, STOP\n{gap}");
+        let deck = SHARED.replacen(gap, &tie, 1).replace(", 1.1", ", 1.05");
+        let model = read(&deck);
+        assert_eq!(model.ties[0].nodes.len(), nodes, "{options}");
+        assert_eq!(model.equations.len(), 2 * nodes);
+        assert_eq!(model.contacts[0].left_out.len(), nodes);
+        round_trip(model);
+    }
+}
+
+#[test]
+fn couplings() {
+    for (cards, coupled, equations) in [
+        (
+            "*COUPLING, CONSTRAINT NAME=GRIP, REF NODE=99, SURFACE=SBOT\n*KINEMATIC\n1, 2",
+            2,
+            0,
+        ),
+        (
+            "*COUPLING, CONSTRAINT NAME=PULL, REF NODE=99, SURFACE=SBOT\n*DISTRIBUTING",
+            0,
+            2,
+        ),
+        ("*KINEMATIC COUPLING, REF NODE=99\nNBLOCK, 1, 2", 4, 0),
+        ("*MPC\nBEAM, 13, 99\nBEAM, 14, 99", 2, 0),
+        ("*MPC\nPIN, 11, 4\nTIE, 12, 6", 0, 4),
+        ("*MPC\nBEAM, NBLOCK, 99\nPIN, 98, 11", 5, 0),
+    ] {
+        let nodes = ["99, 2., 3.", "98, 1., 1.1"].map(|row| match cards.contains(&row[..2]) {
+            true => format!("*NODE\n{row}\n"),
+            false => String::new(),
+        });
+        let nodes = nodes.concat() + "*SURFACE, NAME=STOP";
+        let deck = SHARED.replacen("*SURFACE, NAME=STOP", &nodes, 1);
+        // a body starts with the velocity of its reference node
+        let deck = deck.replacen("NBLOCK, 2, -1000.", "NBLOCK, 2, 0.", 1);
+        let model = read(&deck.replacen("*STEP", &format!("{cards}\n*STEP"), 1));
+        let bodies = model.rigid_bodies.iter().map(|body| body.nodes.len());
+        assert_eq!(bodies.sum::<usize>(), coupled, "{cards}");
+        assert_eq!(model.equations.len(), equations, "{cards}");
+        round_trip(model);
+    }
+}
+
+#[test]
 fn friction_that_decays() {
     for decay in ["0.3, 0.1, 5.", "0.3, 0.3, 5.", "0.3, 0.1, 0."] {
         let card = format!("*FRICTION, EXPONENTIAL DECAY\n{decay}");

@@ -781,6 +781,7 @@ fn a_rigid_surface_moves_with_its_reference_node() {
         reference: nodes - 4,
         nodes: vec![a, b, c],
         elements: vec![],
+        is_coupling: false,
         turning: None,
     };
     assert_eq!(model.rigid_bodies, [body]);

@@ -19,7 +19,8 @@ EVERY_CARD = ROOT / "tests/decks/every_card.inp"
 ASSEMBLY = ROOT / "tests/decks/assembly.inp"
 CONNECTIONS = ROOT / "tests/decks/connections.inp"
 STATIC_STEPS = ROOT / "tests/decks/static_steps.inp"
-ALL_CARDS = [EVERY_CARD, ASSEMBLY, CONNECTIONS, STATIC_STEPS]
+TIES = ROOT / "tests/decks/ties.inp"
+ALL_CARDS = [EVERY_CARD, ASSEMBLY, CONNECTIONS, STATIC_STEPS, TIES]
 """Decks that use every keyword, and every number with a dimension."""
 EXAMPLES = sorted((ROOT / "input").glob("*/*.inp"))
 POWERS_OF_TWO = [Units(length=2.0**7), Units(mass=2.0**-11), Units(time=2.0**5)]

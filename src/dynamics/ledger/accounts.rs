@@ -5,7 +5,9 @@
 use super::bodies::{BodyMasses, Moving, RigidSurfaces, momentum};
 use super::contact_ledger::ContactLedger;
 use super::energy::Ledger;
-use super::nodal_results::{SlaveFaces, contact_resultants, nodal_results, node_masses};
+use super::nodal_results::{
+    SlaveFaces, contact_resultants, nodal_results, node_masses, tie_forces,
+};
 use super::touches::Touches;
 use crate::archive::{Archive, ArchiveError};
 use crate::dynamics::increment::Solved;
@@ -92,6 +94,7 @@ impl Accounts {
                 reaction: vec![0.0; dofs],
                 concentrated: vec![0.0; dofs],
                 contact_force: vec![0.0; dofs],
+                tie_force: tie_forces(problem.model, |_| 0.0),
                 gap: vec![f64::NAN; nodes],
                 status: vec![NodeStatus::None; nodes],
                 pressure: self.faces.start.clone(),

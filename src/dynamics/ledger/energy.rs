@@ -284,13 +284,26 @@ impl Ledger {
             &contact.forces,
         );
         let e = &mut self.energy;
-        // d.(R0 + R1)/2, and at supports d_p ((F - R - B^T P)0 + (F - R - B^T P)1)_p/2, eq. (12.6)
-        e.external_work += EndForces::trapezoid(d, [&before.load, &end.load]);
-        for forces in [&before, &end] {
-            let missing = forces.missing(d.len());
+        // d.(R0 + R1)/2, and at supports d_p ((F - R - B^T P)0 + (F - R - B^T P)1)_p/2, eq. (12.6); what is left is
+        // the work of the forces within rigid bodies on the chords of their nodes
+        let turning = &problem.unknowns.turning;
+        let way = turning.way(d);
+        e.external_work += EndForces::trapezoid(&way, [&before.load, &end.load]);
+        for (forces, u) in [(&before, &start.u), (&end, &solved.end.u)] {
+            let mut missing = forces.missing(d.len());
+            let mut left = match turning.is_empty() {
+                true => 0.0,
+                false => dot(&way, &missing),
+            };
+            turning.hand_over([u, d], false, &mut missing);
             let missing = problem.unknowns.passed_on(&missing);
             for p in problem.unknowns.prescribed() {
-                e.external_work += d[p] * missing[p] / 2.0;
+                let work = way[p] * missing[p];
+                e.external_work += work / 2.0;
+                left -= work;
+            }
+            if !turning.is_empty() {
+                e.numerical_dissipation -= left / 2.0;
             }
         }
         let (works, kept) = before.works(solved, &end);

@@ -38,6 +38,7 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
     // M A + F - R - B^T P at the supports, with what equations pass on to them, eq. (9.12)
     let missing = |p: usize| inertia[p] + internal[p] - load[p] - contact_force[p];
     let mut missing: Vec<f64> = (0..dofs).map(missing).collect();
+    let tie_force = tie_forces(problem.model, |dof| missing[dof]);
     let turning = &problem.unknowns.turning;
     turning.hand_over([&solved.end.u, &solved.d], false, &mut missing);
     let passed_on = problem.unknowns.passed_on(&missing);
@@ -48,6 +49,7 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
     let mut results = NodalResults {
         reaction,
         contact_force,
+        tie_force,
         gap: vec![f64::NAN; dofs / 2],
         status: vec![NodeStatus::None; dofs / 2],
         mass: node_masses(problem),
@@ -66,6 +68,27 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         }
     }
     results
+}
+
+/// What of the forces of constraints on the dofs is that of ties; none where there are no ties.
+pub(crate) fn tie_forces(model: &Model, force: impl Fn(usize) -> f64) -> Vec<f64> {
+    if model.ties.is_empty() {
+        return Vec::new();
+    }
+    let mut all = vec![0.0; model.dof_count()];
+    for tied in model.ties.iter().flat_map(|tie| &tie.nodes) {
+        for dof in [2 * tied.node, 2 * tied.node + 1] {
+            // a support takes the place of an equation
+            if model
+                .equations
+                .binary_search_by_key(&dof, |e| e.dof)
+                .is_ok()
+            {
+                all[dof] = force(dof);
+            }
+        }
+    }
+    all
 }
 
 /// Masses of the nodes, where they are redistributed.

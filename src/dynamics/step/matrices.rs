@@ -431,7 +431,7 @@ impl<'a> System<'a> {
         let numbered = constraints.iter().enumerate();
         let compliances: Vec<_> = numbered.map(|(j, &c)| (c, lcp.q[(j, j)])).collect();
         self.take_back(lcp);
-        let dofs = 2 * problem.model.mesh.node_count();
+        let dofs = problem.model.dof_count();
         let both = (map, problem.parts);
         let softening = Softening::new(pins, both, [a, part], columns, &compliances, dofs);
         let stiffness = softening.stiffness.clone();

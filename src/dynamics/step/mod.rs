@@ -28,5 +28,5 @@ pub(crate) use step_problem::{
     Discretization, Equilibrium, StartVelocity, StepProblem, check_finite, difference, sum,
     write_difference, write_sum,
 };
-pub(crate) use turning::TurningBody;
+pub(crate) use turning::{TurningBody, rigid_inertia};
 pub(crate) use workspace::Workspace;

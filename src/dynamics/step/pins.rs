@@ -53,7 +53,12 @@ impl Pins {
         let holds = holds(problem);
         let mut nodes = vec![Vec::new(); parts.bodies()];
         let mut has_unknowns = vec![false; parts.bodies()];
-        for (node, &body) in parts.of_nodes().iter().enumerate() {
+        // what bodies that turn have beside their nodes has no place
+        let of_mesh = parts
+            .of_nodes()
+            .iter()
+            .take(problem.model.mesh.node_count());
+        for (node, &body) in of_mesh.enumerate() {
             nodes[body].push(node);
         }
         for &dof in &unknowns.dof {
@@ -134,6 +139,10 @@ impl PinnedBody {
             let of_terms: Vector3<f64> = terms.iter().map(|&(to, c)| c * row(to)).sum();
             let asked = row(*dof) - of_terms;
             gram += asked * asked.transpose();
+        }
+        let mut turning = unknowns.turning.bodies.iter();
+        if turning.any(|body| own(2 * body.reference) && unknowns.is_prescribed(body.spin)) {
+            gram[(2, 2)] += 1.0;
         }
         let eigen = gram.symmetric_eigen();
         let least = FREE * nodes.len() as f64;

@@ -153,6 +153,15 @@ impl TurningBody {
     }
 }
 
+/// Mass and moment of inertia about the centre of mass of every body of a model that turns.
+pub(crate) fn rigid_inertia(model: &Model) -> Vec<[f64; 2]> {
+    if model.turning_bodies().next().is_none() {
+        return Vec::new();
+    }
+    let all = TurningBody::all(model, &Elements::new(model));
+    all.iter().map(|body| [body.mass, body.inertia]).collect()
+}
+
 /// The bodies that turn in a step.
 pub(crate) struct Turning<'m> {
     pub bodies: &'m [TurningBody],
@@ -162,11 +171,17 @@ pub(crate) struct Turning<'m> {
     driven: Vec<bool>,
     /// Body of every node that moves with one, by the index of the node.
     body_of: Vec<Option<usize>>,
+    /// Whether forces are those at the end of an increment, in a static step, and act there.
+    acts_at_end: bool,
 }
 
 impl<'m> Turning<'m> {
     /// The bodies of a step in which some dofs are prescribed.
-    pub fn new(bodies: &'m [TurningBody], is_prescribed: impl Fn(usize) -> bool) -> Self {
+    pub fn new(
+        bodies: &'m [TurningBody],
+        acts_at_end: bool,
+        is_prescribed: impl Fn(usize) -> bool,
+    ) -> Self {
         let held = |body: &TurningBody| [0, 1].map(|i| is_prescribed(2 * body.reference + i));
         let pole = |body: &TurningBody| match body.mass > 0.0 && held(body) == [false; 2] {
             true => body.centre,
@@ -183,6 +198,7 @@ impl<'m> Turning<'m> {
             driven: bodies.iter().map(is_driven).collect(),
             bodies,
             body_of,
+            acts_at_end,
         }
     }
 
@@ -198,10 +214,14 @@ impl<'m> Turning<'m> {
         first.is_some() && nodes.iter().all(|node| body(node) == first)
     }
 
-    /// Whether the mass matrix over the unknowns changes as they turn: a centre of mass follows a reference node.
+    /// Whether the mass matrix over the unknowns changes as they turn: a centre of mass follows a reference node, or
+    /// nodes with mass of elements that deform follow a pole.
     pub fn turn_mass(&self) -> bool {
         let mut all = self.with_poles();
-        all.any(|(body, pole)| body.mass > 0.0 && pole != body.centre)
+        all.any(|(body, pole)| {
+            let follows = body.mass > 0.0 && pole != body.centre;
+            follows || !body.loaded.is_empty()
+        })
     }
 
     /// Whether a node belongs to a body that turns.
@@ -248,6 +268,8 @@ impl<'m> Turning<'m> {
     /// ```text
     /// force rows  (f, r_m x f),   derivative rows  (f, (r_1 x f)/(1 + c²/4))      eq. (11.3)
     /// ```
+    ///
+    /// In a static step forces act at the end, (f, r_1 x f).
     pub fn write_rows(&self, [u0, d]: [&[f64]; 2], map: &mut Transformation) {
         for (body, pole) in self.with_poles() {
             if map.row(body.spin).is_empty() {
@@ -259,7 +281,8 @@ impl<'m> Turning<'m> {
                 let end = turned([0, 1].map(|i| r0[i] + c * j[i]));
                 for i in 0..2 {
                     let derivative = end[i] / (1.0 + c * c / 4.0);
-                    map.set_last(2 * node + i, [j[i] / l, derivative / l]);
+                    let force = if self.acts_at_end { end[i] } else { j[i] };
+                    map.set_last(2 * node + i, [force / l, derivative / l]);
                 }
             }
         }
@@ -286,6 +309,16 @@ impl<'m> Turning<'m> {
             let c = d[body.spin] / body.length;
             u[body.spin] = u0[body.spin] + body.length * (2.0 * (c / 2.0).atan());
         }
+    }
+
+    /// The increment `d` with the differences L (theta_1 - theta_0) of the angles in place of s = L c.
+    pub fn way(&self, d: &[f64]) -> Vec<f64> {
+        let mut way = d.to_vec();
+        for body in self.bodies {
+            let half = d[body.spin] / body.length / 2.0;
+            way[body.spin] = body.length * (2.0 * half.atan());
+        }
+        way
     }
 
     /// Increments s = L c of the angles in place of their differences L (theta_1 - theta_0): c = 2 tan(dtheta/2).
@@ -373,12 +406,15 @@ impl<'m> Turning<'m> {
     }
 
     /// Hands forces on all dofs over from the nodes of every body to its pole and its angle, where they do the same
-    /// work in the increment `d` that ends with the displacements `u1`; those of driven bodies stay where they are if
+    /// work in the increment `d` that ends with the displacements `u1`, or act at its end; those of driven bodies stay where they are if
     /// `keeps_driven`.
     pub fn hand_over(&self, [u1, d]: [&[f64]; 2], keeps_driven: bool, force: &mut [f64]) {
         let all = self.with_poles().zip(&self.driven);
         for ((body, pole), _) in all.filter(|(_, driven)| !(keeps_driven && **driven)) {
-            let c = d[body.spin] / body.length;
+            let c = match self.acts_at_end {
+                true => 0.0,
+                false => d[body.spin] / body.length,
+            };
             for (node, r1) in body.arms_from(pole, body.angle(u1)) {
                 let f = [0, 1].map(|i| std::mem::take(&mut force[2 * node + i]));
                 (0..2).for_each(|i| force[2 * pole + i] += f[i]);
@@ -388,11 +424,12 @@ impl<'m> Turning<'m> {
     }
 
     /// Makes moments M on the angles the forces on s = L c that do the work M dtheta in the increment `d`:
-    /// (M/L) dtheta/c, eq. (11.4).
+    /// (M/L) dtheta/c, eq. (11.4); in a static step M/L.
     pub fn scale_moments(&self, d: &[f64], force: &mut [f64]) {
         for body in self.bodies {
             let half = d[body.spin] / body.length / 2.0;
-            let part = if half == 0.0 { 1.0 } else { half.atan() / half };
+            let acts_alike = half == 0.0 || self.acts_at_end;
+            let part = if acts_alike { 1.0 } else { half.atan() / half };
             force[body.spin] *= part / body.length;
         }
     }
@@ -462,7 +499,7 @@ mod tests {
     fn an_increment_is_a_rigid_motion_and_forces_do_its_work() {
         let bodies = body();
         for held in [&[][..], &[0, 1]] {
-            let turning = Turning::new(&bodies, |dof| held.contains(&dof));
+            let turning = Turning::new(&bodies, false, |dof| held.contains(&dof));
             let u0 = start(&turning);
             let mut d = vec![0.0; DOFS];
             let leading = turning.leading().zip([0.2, 0.5, -2.3]);
@@ -494,7 +531,7 @@ mod tests {
     #[test]
     fn derivative_rows_are_the_derivatives_of_the_positions() {
         let bodies = body();
-        let turning = Turning::new(&bodies, |_| false);
+        let turning = Turning::new(&bodies, false, |_| false);
         let u0 = start(&turning);
         let at = |s: f64| {
             let mut d = vec![0.0; DOFS];
@@ -520,7 +557,7 @@ mod tests {
     #[test]
     fn a_dead_moment_does_the_work_of_the_angle() {
         let bodies = body();
-        let turning = Turning::new(&bodies, |_| false);
+        let turning = Turning::new(&bodies, false, |_| false);
         let (mut d, mut force) = (vec![0.0; DOFS], vec![0.0; DOFS]);
         let (spin, l) = (bodies[0].spin, bodies[0].length);
         d[spin] = l * 2.0 * (1.3_f64 / 2.0).tan();

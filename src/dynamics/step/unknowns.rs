@@ -13,7 +13,7 @@ use crate::contact::tolerances::TIED_ROW;
 use crate::contact::{Constraint, PerDof};
 use crate::elements::Elements;
 use crate::linear::Transformation;
-use crate::model::{Equation, Model, Rate, Step, SupportMotion};
+use crate::model::{Equation, Model, Procedure, Rate, Step, SupportMotion};
 
 /// The unknowns q of a step, U = T q + g(t), eq. (3.7): the displacements of the free dofs.
 ///
@@ -42,7 +42,8 @@ impl<'m> Unknowns<'m> {
         [u, v]: [&[f64]; 2],
     ) -> Self {
         let equations = model.equations.as_slice();
-        let turning = Turning::new(bodies, |dof| {
+        let is_static = step.procedure == Procedure::Static;
+        let turning = Turning::new(bodies, is_static, |dof| {
             let supports = &step.supports;
             supports
                 .binary_search_by_key(&dof, |support| support.dof)

@@ -1,0 +1,283 @@
+//! `*COUPLING`, `*KINEMATIC COUPLING` and `*MPC`: nodes that ride on a reference node as a rigid body, nodes whose mean a
+//! reference node follows, and nodes joined to each other. Sections 3 and 11 of docs/theory.md.
+
+use super::boundary::{Direction, direction};
+use super::context::Context;
+use super::outline::{CardBlock, Outline};
+use super::rigid_bodies::{Lookup, Rigid};
+use crate::deck::{Card, Line, Text};
+use crate::diagnostics::{Code, Span};
+use crate::vectors::distance;
+use std::collections::BTreeSet;
+
+/// Largest distance of two nodes that a pin joins, one of them on a rigid body, in distances of the nodes of the body.
+const AT_ONE_PLACE: f64 = 1e-6;
+
+/// Nodes that are joined without a rigid body.
+pub(crate) enum Link {
+    /// Both displacements of a node are those of another.
+    Joined { node: usize, to: usize, span: Span },
+    /// Both displacements of a node are the means of those of others.
+    Mean {
+        node: usize,
+        of: Vec<usize>,
+        span: Span,
+    },
+}
+
+/// Adds the rigid bodies of all couplings and constraints to the others; the links without one.
+pub(super) fn read(
+    outline: &Outline,
+    lookup: Lookup,
+    bodies: &mut Vec<Rigid>,
+    cx: &mut Context,
+) -> Vec<Link> {
+    let mut links = Vec::new();
+    for block in outline.blocks("COUPLING") {
+        coupling(block, lookup, (bodies, &mut links), cx);
+    }
+    for card in outline.model_cards("KINEMATIC COUPLING") {
+        let Some(reference) = reference(card, lookup, cx) else {
+            continue;
+        };
+        let mut nodes = BTreeSet::new();
+        for row in card.rows.iter() {
+            row.at_most(3, cx.d);
+            if let Some(field) = row.required(0, "a node or node set", cx.d) {
+                nodes.extend(lookup.sets.nodes_of(field, lookup.mesh_index, cx));
+            }
+            takes_both([row.get(1), row.get(2)], row, cx);
+        }
+        let named = card.value("NAME").map(|field| field.text.to_owned());
+        let label = lookup.mesh_index.node_name(reference);
+        let name = named.unwrap_or_else(|| format!("COUPLING-{label}"));
+        ride(&name, reference, nodes, card.span, lookup, bodies, cx);
+    }
+    for card in outline.model_cards("MPC") {
+        for row in card.rows.iter() {
+            mpc(row, lookup, (bodies, &mut links), cx);
+        }
+    }
+    report_shared(bodies, lookup, cx);
+    links
+}
+
+fn reference(card: &Card, lookup: Lookup, cx: &mut Context) -> Option<usize> {
+    let field = card.required("REF NODE", cx.d)?;
+    let other = (Code::Coupling, "nodes are coupled to one node");
+    lookup.sets.single_node(field, lookup.mesh_index, other, cx)
+}
+
+/// `*COUPLING` with `*KINEMATIC` or `*DISTRIBUTING` under it.
+fn coupling(
+    block: &CardBlock,
+    lookup: Lookup,
+    (bodies, links): (&mut Vec<Rigid>, &mut Vec<Link>),
+    cx: &mut Context,
+) {
+    let card = block.head;
+    let reference = reference(card, lookup, cx);
+    let nodes = card.required("SURFACE", cx.d).and_then(|field| {
+        let (_, surface, _) = lookup.surfaces.find(field, cx)?;
+        Some(surface.nodes(&lookup.mesh_index.mesh))
+    });
+    let name = card
+        .required("CONSTRAINT NAME", cx.d)
+        .map(|field| field.text.to_owned());
+    let [kind] = block.parts[..] else {
+        if !card.faulty && !cx.may_lack_cards() {
+            let message = "*COUPLING has one card under it: *KINEMATIC or *DISTRIBUTING";
+            cx.error(Code::Coupling, card.span, message);
+        }
+        return;
+    };
+    for row in kind.rows.iter() {
+        row.at_most(2, cx.d);
+        takes_both([row.get(0), row.get(1)], row, cx);
+    }
+    let (Some(reference), Some(nodes), Some(name)) = (reference, nodes, name) else {
+        return;
+    };
+    let nodes: BTreeSet<usize> = nodes.into_iter().collect();
+    match kind.keyword.name {
+        "DISTRIBUTING" => {
+            if nodes.contains(&reference) {
+                let message =
+                    "the reference node is one of the nodes that its loads are distributed to";
+                cx.error(Code::Coupling, card.span, message)
+                    .help("take a node of its own");
+                return;
+            }
+            links.push(Link::Mean {
+                node: reference,
+                of: nodes.into_iter().collect(),
+                span: card.span,
+            });
+        }
+        _ => ride(&name, reference, nodes, card.span, lookup, bodies, cx),
+    }
+}
+
+/// Checks that `first[, last]` stand for both directions of the plane; none do.
+fn takes_both([first, last]: [Option<Text>; 2], row: Line, cx: &mut Context) {
+    let Some(first) = first else { return };
+    let mut number = |field: Text| match direction(field, cx)? {
+        Direction::Plane(axis) => Some(axis + 1),
+        Direction::OutOfPlane => Some(3),
+        Direction::Rotation => Some(6),
+    };
+    let Some(from) = number(first) else { return };
+    let Some(to) = last.map_or(Some(from), number) else {
+        return;
+    };
+    if from > 1 || to < 2 {
+        let message = "nodes are coupled in directions 1 and 2 together";
+        cx.error(Code::Coupling, row.span(), message)
+            .help("couple a single direction with *EQUATION");
+    }
+}
+
+/// Makes nodes ride on a reference node: adds them to its body, or makes it one.
+fn ride(
+    name: &str,
+    reference: usize,
+    mut nodes: BTreeSet<usize>,
+    span: Span,
+    lookup: Lookup,
+    bodies: &mut Vec<Rigid>,
+    cx: &mut Context,
+) {
+    nodes.remove(&reference);
+    if nodes.is_empty() {
+        if cx.errors() == 0 && !cx.may_lack_cards() {
+            cx.error(
+                Code::Coupling,
+                span,
+                "no node is coupled to the reference node",
+            );
+        }
+        return;
+    }
+    match bodies.iter_mut().find(|body| body.has(reference)) {
+        Some(body) => body.add(nodes),
+        None => bodies.push(Rigid::of_coupling(
+            name,
+            reference,
+            nodes.into_iter().collect(),
+            lookup.mesh_index,
+            span,
+        )),
+    }
+}
+
+/// `type, n1, n2`
+fn mpc(
+    row: Line,
+    lookup: Lookup,
+    (bodies, links): (&mut Vec<Rigid>, &mut Vec<Link>),
+    cx: &mut Context,
+) {
+    row.at_most(3, cx.d);
+    let Some(kind) = row.required(0, "the type of the constraint", cx.d) else {
+        return;
+    };
+    let key = kind.name_key();
+    if !["BEAM", "PIN", "TIE"].contains(&key.as_str()) {
+        let message = format!("constraints of the type {} cannot be used", kind.text);
+        cx.error(Code::Coupling, kind.span, message)
+            .help("types are BEAM, PIN and TIE; linear constraints are *EQUATION");
+        return;
+    }
+    let mut nodes = |index: usize| {
+        let field = row.required(index, "a node or node set", cx.d)?;
+        let nodes = lookup.sets.nodes_of(field, lookup.mesh_index, cx);
+        (!nodes.is_empty()).then_some(nodes)
+    };
+    let (Some(first), Some(second)) = (nodes(1), nodes(2)) else {
+        return;
+    };
+    if second.len() != 1 && second.len() != first.len() {
+        let message = format!(
+            "{} nodes are joined to {}: sets are of one length, or the second is one node",
+            first.len(),
+            second.len()
+        );
+        cx.error(Code::Coupling, row.span(), message);
+        return;
+    }
+    for (k, &node) in first.iter().enumerate() {
+        let to = second[if second.len() == 1 { 0 } else { k }];
+        match key.as_str() {
+            "BEAM" => {
+                let label = lookup.mesh_index.node_name(to);
+                let name = format!("BEAM-{label}");
+                ride(
+                    &name,
+                    to,
+                    BTreeSet::from([node]),
+                    row.span(),
+                    lookup,
+                    bodies,
+                    cx,
+                );
+            }
+            _ => join([node, to], row.span(), lookup, (bodies, links), cx),
+        }
+    }
+}
+
+/// Joins two nodes: by equations, or on the rigid body that one of them belongs to.
+fn join(
+    [node, to]: [usize; 2],
+    span: Span,
+    lookup: Lookup,
+    (bodies, links): (&mut [Rigid], &mut Vec<Link>),
+    cx: &mut Context,
+) {
+    let body_of = |node: usize| bodies.iter().position(|body| body.has(node));
+    let (body, rider) = match [node, to].map(body_of) {
+        [None, None] => {
+            links.push(Link::Joined { node, to, span });
+            return;
+        }
+        [Some(body), None] => (body, to),
+        [None, Some(body)] => (body, node),
+        [Some(_), Some(_)] => {
+            let message = "both nodes belong to rigid bodies, which cannot be joined yet";
+            cx.error(Code::Coupling, span, message)
+                .help("join them by *ELEMENT, TYPE=SPRINGA or a piece of elements that deforms");
+            return;
+        }
+    };
+    let x = &lookup.mesh_index.mesh.coordinates;
+    let size = bodies[body].nodes().map(|n| distance(x[n], x[rider]));
+    if distance(x[node], x[to]) > AT_ONE_PLACE * size.fold(0.0, f64::max) {
+        let message = "a node joined to a rigid body must be at the place of the other node";
+        cx.error(Code::Coupling, span, message)
+            .help("MPC of the type BEAM joins nodes over a distance");
+        return;
+    }
+    bodies[body].add(BTreeSet::from([rider]));
+}
+
+/// Reports a node of two rigid bodies, one of them a coupling.
+fn report_shared(bodies: &[Rigid], lookup: Lookup, cx: &mut Context) {
+    for (index, body) in bodies.iter().enumerate() {
+        let earlier = &bodies[..index];
+        let shared = body.nodes().find_map(|node| {
+            let other = earlier.iter().find(|other| other.has(node))?;
+            (body.is_coupling() || other.is_coupling()).then_some((node, other))
+        });
+        if let Some((node, other)) = shared {
+            let message = format!(
+                "node {} belongs to {} and to {}",
+                lookup.mesh_index.node_name(node),
+                other.name(),
+                body.name()
+            );
+            cx.error(Code::Coupling, body.span(), message).help(
+                "a node rides on one body: couple the second to the reference node of the first",
+            );
+        }
+    }
+}

@@ -1,0 +1,417 @@
+//! `*TIE`: slave nodes are moved onto the segments of the master surface that they face, or keep their place
+//! beside them, and follow these at all times. Section 3 of docs/theory.md, Ties.
+
+use super::context::Context;
+use super::mesh_index::MeshIndex;
+use super::names::Names;
+use super::outline::Outline;
+use super::sets::Sets;
+use super::surfaces::{Found, Surfaces};
+use crate::deck::{Card, Line, Name};
+use crate::diagnostics::{Code, Span, shown};
+use crate::model::{
+    Contact, Element, NEAR, Segment, Surface, SurfaceKind, Tie, TieReach, TiedNode, nearest_of,
+};
+use crate::vectors::{Circle, CircleTree, distance};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
+
+/// Most nodes that a message names.
+const MOST_NAMES: usize = 10;
+
+/// The ties of a deck.
+pub(crate) struct Ties {
+    /// All of them.
+    pub all: Vec<Tie>,
+    /// Their places.
+    pub spans: Vec<Span>,
+    /// Nodes of both surfaces with the segments that they are tied to, or lie at: contact leaves them out.
+    bonds: Vec<(usize, Segment)>,
+}
+
+/// A row of `*TIE` with what the card says of it.
+struct Row {
+    name: String,
+    slave: usize,
+    master: usize,
+    reach: TieReach,
+    /// Members of the set that the reach names, increasing.
+    members: Vec<usize>,
+    adjusts: bool,
+    span: Span,
+}
+
+/// Reads all ties and moves their slave nodes, in the order of the deck; then their nodes stay where they are and
+/// all are tied.
+pub(super) fn read(
+    outline: &Outline,
+    mesh_index: &mut MeshIndex,
+    sets: &Sets,
+    surfaces: &Surfaces,
+    cx: &mut Context,
+) -> Ties {
+    let mut names = Names::new("tie");
+    let mut rows = Vec::new();
+    for card in outline.model_cards("TIE") {
+        rows.extend(rows_of(card, &mut names, (mesh_index, sets, surfaces), cx));
+    }
+    let mut ties = Ties {
+        all: Vec::new(),
+        spans: rows.iter().map(|row| row.span).collect(),
+        bonds: Vec::new(),
+    };
+    for row in rows.iter().filter(|row| row.adjusts) {
+        let near = Faced::new(row, &surfaces.all, mesh_index);
+        adjust(row, &near, mesh_index, cx);
+    }
+    let mut owner: BTreeMap<usize, usize> = BTreeMap::new();
+    for (index, row) in rows.iter().enumerate() {
+        let faced = Faced::new(row, &surfaces.all, mesh_index);
+        let (mut own, mut elsewhere) = (Vec::new(), Vec::new());
+        for (node, segment) in &faced.near {
+            match owner.get(node) {
+                Some(_) => elsewhere.push(*node),
+                None => own.push((*node, *segment)),
+            }
+        }
+        owner.extend(own.iter().map(|(node, _)| (*node, index)));
+        report(row, &own, (&faced.far, &elsewhere), mesh_index, cx);
+        let x = &mesh_index.mesh.coordinates;
+        let tied = |&(node, segment): &(usize, Segment)| TiedNode::new(node, segment, x);
+        ties.bonds.extend(&own);
+        ties.bonds
+            .extend(covered(row, &own, &surfaces.all, mesh_index));
+        ties.all.push(Tie {
+            name: row.name.clone(),
+            slave: row.slave,
+            master: row.master,
+            reach: row.reach,
+            nodes: own.iter().map(tied).collect(),
+        });
+    }
+    ties
+}
+
+/// The rows of a card.
+fn rows_of(
+    card: &Card,
+    names: &mut Names,
+    (mesh_index, sets, surfaces): (&MeshIndex, &Sets, &Surfaces),
+    cx: &mut Context,
+) -> Vec<Row> {
+    let name = match card.has("NAME") {
+        true => names.new_name(card, cx),
+        false => Some(Name::plain(&format!("TIE-{}", names.typed().count() + 1))),
+    };
+    let Some(name) = name else { return Vec::new() };
+    let reach = reach(card, sets, cx);
+    let members = card.value("TIED NSET").filter(|_| reach.is_some());
+    let members = members.map(|field| sets.nodes_of(field, mesh_index, cx));
+    let mut members = members.unwrap_or_default();
+    members.sort_unstable();
+    let adjusts = card.choice("ADJUST") != Some("NO");
+    let count = card.rows.iter().count();
+    let mut rows = Vec::new();
+    for (number, row) in card.rows.iter().enumerate() {
+        let Some(reach) = reach else { break };
+        let Some((slave, master)) = pair(row, surfaces, cx) else {
+            continue;
+        };
+        rows.push(Row {
+            name: match count {
+                1 => name.typed.clone(),
+                _ => format!("{}-{}", name.typed, number + 1),
+            },
+            slave,
+            master,
+            reach,
+            members: members.clone(),
+            adjusts,
+            span: row.span(),
+        });
+    }
+    names.define(name);
+    rows
+}
+
+/// Which nodes a card ties; `None` with an error.
+fn reach(card: &Card, sets: &Sets, cx: &mut Context) -> Option<TieReach> {
+    if let Some(field) = card.value("TIED NSET") {
+        if card.has("POSITION TOLERANCE") {
+            let span = card.span_of("POSITION TOLERANCE");
+            let message = "TIED NSET= names the tied nodes: there is no tolerance";
+            cx.error(Code::Tie, span, message)
+                .help("leave out one of the two");
+            return None;
+        }
+        return sets.node_names.find(field, cx).map(TieReach::Nodes);
+    }
+    let Some(field) = card.value("POSITION TOLERANCE") else {
+        return Some(TieReach::Near);
+    };
+    let rule = "the tolerance must not be negative";
+    let tolerance = field.real_that(|x| x >= 0.0, rule, Code::BadValue, cx.d)?;
+    Some(TieReach::Within(tolerance))
+}
+
+/// `slave, master`
+fn pair(row: Line, surfaces: &Surfaces, cx: &mut Context) -> Option<(usize, usize)> {
+    row.at_most(2, cx.d);
+    let slave = row.required(0, "the slave surface", cx.d);
+    let slave = slave.and_then(|field| surfaces.find(field, cx));
+    let master = row.required(1, "the master surface", cx.d);
+    let master = master.and_then(|field| surfaces.find(field, cx));
+    let (slave, master): (Found, Found) = (slave?, master?);
+    let (message, help, span) = if slave.0 == master.0 {
+        (
+            format!("surface {} is slave and master at once", slave.1.name),
+            "a tie joins two surfaces",
+            master.2,
+        )
+    } else if let SurfaceKind::Rigid(_) = slave.1.kind {
+        (
+            format!("the rigid surface {} cannot be slave", slave.1.name),
+            "a rigid surface is a master: write the other surface first",
+            slave.2,
+        )
+    } else if let SurfaceKind::Nodes(_) = master.1.kind {
+        (
+            format!("the master surface {} is made of nodes", master.1.name),
+            "a master is made of element faces; the slave may be made of nodes",
+            master.2,
+        )
+    } else {
+        return Some((slave.0, master.0));
+    };
+    cx.error(Code::SurfaceUse, span, message).help(help);
+    None
+}
+
+/// The slave nodes of a row beside the master surface.
+struct Faced {
+    /// Those that are tied, with the segments nearest to them, in the order of the surface.
+    near: Vec<(usize, Segment)>,
+    /// Those that are not.
+    far: Vec<usize>,
+}
+
+impl Faced {
+    fn new(row: &Row, surfaces: &[Surface], mesh_index: &MeshIndex) -> Self {
+        let mesh = &mesh_index.mesh;
+        let segments = surfaces[row.master].segments(mesh);
+        let of_master: HashSet<usize> = segments.as_flattened().iter().copied().collect();
+        let is_meant = |node: &usize| match row.reach {
+            TieReach::Nodes(_) => row.members.binary_search(node).is_ok(),
+            TieReach::Near | TieReach::Within(_) => true,
+        };
+        let nodes = surfaces[row.slave].nodes(mesh).into_iter();
+        let nodes = nodes.filter(|node| !of_master.contains(node) && is_meant(node));
+        let nearest = Nearest::new(&segments, &mesh.coordinates);
+        let (mut near, mut far) = (Vec::new(), Vec::new());
+        for node in nodes {
+            match nearest.of(node).filter(|found| found.is_within(row.reach)) {
+                Some(found) => near.push((node, found.segment)),
+                None => far.push(node),
+            }
+        }
+        Faced { near, far }
+    }
+}
+
+/// The segment nearest to a node.
+struct NearestSegment {
+    segment: Segment,
+    distance: f64,
+    length: f64,
+}
+
+impl NearestSegment {
+    fn is_within(&self, reach: TieReach) -> bool {
+        match reach {
+            TieReach::Near => self.distance <= NEAR * self.length,
+            TieReach::Within(tolerance) => self.distance <= tolerance,
+            TieReach::Nodes(_) => true,
+        }
+    }
+}
+
+/// Segments by their places.
+struct Nearest<'a> {
+    segments: &'a [Segment],
+    x: &'a [[f64; 2]],
+    tree: CircleTree,
+}
+
+impl<'a> Nearest<'a> {
+    fn new(segments: &'a [Segment], x: &'a [[f64; 2]]) -> Self {
+        let circle = |segment: &Segment| {
+            let [a, b] = segment.map(|node| x[node]);
+            Circle {
+                centre: [0, 1].map(|i| a[i] + (b[i] - a[i]) / 2.0),
+                radius: distance(a, b) / 2.0,
+            }
+        };
+        let tree = CircleTree::new(segments.iter().map(circle));
+        Nearest { segments, x, tree }
+    }
+
+    /// The segment nearest to a node, of several the first.
+    fn of(&self, node: usize) -> Option<NearestSegment> {
+        let mut best: Option<(f64, usize)> = None;
+        let measured = |k: usize| nearest_of(self.x[node], self.segments[k].map(|n| self.x[n]));
+        self.tree.visit_near(
+            self.x[node],
+            |_, _| true,
+            |k| {
+                let found = (measured(k).1, k);
+                if best.is_none_or(|best| found < best) {
+                    best = Some(found);
+                }
+                best.map_or(f64::INFINITY, |best| best.0)
+            },
+        );
+        let (_, k) = best?;
+        let off = measured(k).1;
+        let [a, b] = self.segments[k].map(|n| self.x[n]);
+        Some(NearestSegment {
+            segment: self.segments[k],
+            distance: off,
+            length: distance(a, b),
+        })
+    }
+}
+
+/// Moves the slave nodes of a row onto the master, free of strain.
+fn adjust(row: &Row, faced: &Faced, mesh_index: &mut MeshIndex, cx: &mut Context) {
+    let mesh = &mut mesh_index.mesh;
+    let before = mesh.coordinates.clone();
+    let (mut count, mut most) = (0, (0.0, 0));
+    for &(node, segment) in &faced.near {
+        let (foot, way) = nearest_of(before[node], segment.map(|node| before[node]));
+        if TiedNode::new(node, segment, &before).eta != 0.0 || way > 0.0 {
+            mesh.coordinates[node] = foot;
+            count += usize::from(way > 0.0);
+            most = if way > most.0 { (way, node) } else { most };
+        }
+    }
+    let after = &mesh.coordinates;
+    let spoiled = |element: &Element| element.is_spoiled(&before, after);
+    if let Some(element) = mesh.elements.iter().position(spoiled) {
+        let label = mesh_index.element_name(element);
+        let message =
+            format!("moving the tied nodes onto the master spoils the shape of element {label}");
+        cx.error(Code::Adjusted, row.span, message)
+            .help("mend the mesh, tie fewer nodes, or leave them where they are with ADJUST=NO");
+    } else if count > 0 {
+        let name = mesh_index.node_name(most.1);
+        let nodes = if count == 1 { "node" } else { "nodes" };
+        let message = format!(
+            "{count} {nodes} of the tie {} moved onto the master, node {name} by {:.3e}",
+            row.name, most.0
+        );
+        cx.d.note(Code::Adjusted, row.span, message);
+    }
+}
+
+/// Reports nodes that are not tied: too far from the master, or tied already.
+fn report(
+    row: &Row,
+    own: &[(usize, Segment)],
+    (far, elsewhere): (&[usize], &[usize]),
+    mesh_index: &MeshIndex,
+    cx: &mut Context,
+) {
+    if cx.may_lack_cards() {
+        return;
+    }
+    let names = |nodes: &[usize]| {
+        let shown = nodes.iter().take(MOST_NAMES);
+        let names: Vec<String> = shown.map(|&n| mesh_index.node_name(n)).collect();
+        match nodes.len() - names.len() {
+            0 => names.join(", "),
+            more => format!("{} and {more} more", names.join(", ")),
+        }
+    };
+    let reach = match row.reach {
+        TieReach::Near => "0.05 of the segments that they face".to_owned(),
+        TieReach::Within(tolerance) => shown(tolerance),
+        TieReach::Nodes(_) => String::new(),
+    };
+    if own.is_empty() && elsewhere.is_empty() {
+        let message = format!("the tie {} ties no node", row.name);
+        let help = match row.reach {
+            TieReach::Nodes(_) => "TIED NSET= names nodes of the slave surface",
+            _ => "POSITION TOLERANCE= is the largest distance of tied nodes from the master",
+        };
+        cx.error(Code::Tie, row.span, message).help(help);
+    } else if !far.is_empty() {
+        let message = format!(
+            "the tie {} leaves out {} farther from the master than {reach}: {}",
+            row.name,
+            match far.len() {
+                1 => "1 slave node".to_owned(),
+                count => format!("{count} slave nodes"),
+            },
+            names(far)
+        );
+        cx.warning(Code::Tie, row.span, message)
+            .help("POSITION TOLERANCE= is the largest distance of tied nodes from the master");
+    }
+    if !elsewhere.is_empty() {
+        let message = format!(
+            "slave nodes of the tie {} follow an earlier tie: {}",
+            row.name,
+            names(elsewhere)
+        );
+        cx.warning(Code::Tie, row.span, message);
+    }
+}
+
+/// Nodes of the master that lie at segments of the slave between tied nodes.
+fn covered(
+    row: &Row,
+    own: &[(usize, Segment)],
+    surfaces: &[Surface],
+    mesh_index: &MeshIndex,
+) -> Vec<(usize, Segment)> {
+    let mesh = &mesh_index.mesh;
+    let x = &mesh.coordinates;
+    let tied: HashSet<usize> = own.iter().map(|(node, _)| *node).collect();
+    let mut segments = surfaces[row.slave].segments(mesh);
+    segments.retain(|segment| segment.iter().all(|node| tied.contains(node)));
+    let nodes: BTreeSet<usize> = own.iter().flat_map(|(_, segment)| *segment).collect();
+    let nearest = Nearest::new(&segments, x);
+    // tied nodes beside the same place are as far away
+    let off = own.iter().map(|(node, segment)| {
+        let [a, b] = segment.map(|node| x[node]);
+        nearest_of(x[*node], [a, b]).1.max(NEAR * distance(a, b))
+    });
+    let most = off.fold(0.0, f64::max);
+    let found = nodes
+        .into_iter()
+        .filter_map(|node| Some((node, nearest.of(node)?)));
+    let found = found.filter(|(_, found)| found.distance <= most);
+    found.map(|(node, found)| (node, found.segment)).collect()
+}
+
+impl Ties {
+    /// Leaves tied nodes out of the contacts with what they are tied to.
+    pub fn leave_out(
+        &self,
+        contacts: &mut [Contact],
+        surfaces: &[Surface],
+        mesh_index: &MeshIndex,
+    ) {
+        if self.bonds.is_empty() {
+            return;
+        }
+        for contact in contacts {
+            let segments = surfaces[contact.master].segments(&mesh_index.mesh);
+            let segments: HashSet<Segment> = segments.into_iter().collect();
+            let bonds = self.bonds.iter();
+            let tied = bonds.filter(|(_, segment)| segments.contains(segment));
+            contact.left_out.extend(tied.map(|(node, _)| *node));
+            contact.left_out.sort_unstable();
+            contact.left_out.dedup();
+        }
+    }
+}
