@@ -285,3 +285,24 @@ def test_a_dead_load_beyond_the_limit_of_an_arch_is_refused(tmp_path: Path) -> N
         solve(tmp_path, *cards)
     load = 0.12 * stop.value.result.history.time[-1]
     assert 0.9 < load / 0.0841 < 1.02
+
+
+@pytest.mark.parametrize("way", [1e-6, 0.3])
+def test_a_part_may_be_moved_before_it_touches_anything(tmp_path: Path, way: float) -> None:
+    """A body without any load is moved: round-off of its forces is all the work that there is."""
+    part = block("PART", (1, 1), (1.0, 1.0), x=0.1, y=0.3)
+    deck = tmp_path / "deck.inp"
+    deck.write_text(
+        "".join(
+            [
+                part.mesh("CPE4"),
+                part.side_nodes("HELD", "left"),
+                elastic(1e3, 0.3, 1.0, "PART"),
+                card("BOUNDARY", ("HELD", 2, 2)),
+                static(card("BOUNDARY", ("HELD", 1, 1, way)), dt=0.1),
+            ]
+        )
+    )
+    result = program.run(deck, tmp_path, "--threads", "1")
+    moved = result.frame(result.history.time[-1])["U"]
+    assert np.abs(moved[:, :2] - [way, 0.0]).max() < 1e-12
