@@ -23,7 +23,7 @@ pub struct Tie {
 /// Which nodes of a slave surface are tied.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TieReach {
-    /// Those no farther from the master than a part of the segment that they face ([`NEAR`]).
+    /// Those no farther from the master than a part of the segment that they face (`NEAR`).
     Near,
     /// Those no farther from the master (length).
     Within(f64),

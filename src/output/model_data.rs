@@ -132,7 +132,12 @@ fn constrained(model: &Model) -> Vec<usize> {
         .flat_map(|c| c.nodes.iter().copied());
     let bodies = model.rigid_bodies.iter();
     let rigid = bodies.flat_map(|body| body.nodes.iter().copied().chain([body.reference]));
-    let nodes = equations.map(|dof| dof / 2).chain(connectors).chain(rigid);
+    let ties = model.ties.iter().flat_map(|tie| &tie.nodes);
+    let tied = ties.flat_map(|tied| [tied.node, tied.segment[0], tied.segment[1]]);
+    let nodes = (equations.map(|dof| dof / 2))
+        .chain(connectors)
+        .chain(rigid)
+        .chain(tied);
     nodes.filter(|&n| n < model.mesh.node_count()).collect()
 }
 
