@@ -407,6 +407,8 @@ def boosted(deck: Deck, velocity: Array) -> Deck:
         raise Unchangeable("ALPHA damps the velocity itself")
     if deck.find("EQUATION"):
         raise Unchangeable("has equations")
+    if any("DIRECT" not in card.parameters for card in deck.find("DYNAMIC")):
+        raise Unchangeable("automatic increments depend on the displacements")
     new = _with_initial_velocity(deck, velocity)
     amplitudes = {card.parameters["NAME"]: card for card in deck.find("AMPLITUDE")}
     added: dict[str, Card] = {}

@@ -343,7 +343,9 @@ def test_the_example_of_snakemake(shorter: Path) -> None:
     assert done.returncode == 0, done.stderr
     results = sorted(shorter.glob("snakemake/*.vtkhdf"))
     assert [path.stem for path in results] == ["0.0", "0.2", "0.4"]
-    assert "*FRICTION\n0.2\n" in Result(results[1]).deck
+    with Result(results[1]) as result:
+        (contact,) = result.file["model/contacts"].values()
+        assert contact["friction"][0] == 0.2
 
 
 def test_the_commands_of_the_document(shorter: Path, here: str, command: Command) -> None:

@@ -2,7 +2,8 @@
 //! increments.
 
 use crate::dynamics::step::{StepProblem, dot};
-use crate::linear::{larger, largest};
+use crate::linear::larger;
+use crate::vectors::distance;
 
 /// What the truncation error of the increments of a step is measured by.
 #[derive(serde::Serialize, serde::Deserialize)]
@@ -105,7 +106,11 @@ impl TruncationError {
 
     /// Largest displacement from the start of the step.
     fn way_to(&self, u: &[f64]) -> f64 {
-        let way: Vec<f64> = u.iter().zip(&self.start).map(|(u, u0)| u - u0).collect();
-        largest(&way)
+        let of_node = |dofs: (&[f64], &[f64])| match dofs {
+            ([x, y], [x0, y0]) => distance([*x0, *y0], [*x, *y]),
+            _ => 0.0,
+        };
+        let nodes = u.chunks_exact(2).zip(self.start.chunks_exact(2));
+        nodes.map(of_node).fold(0.0, larger)
     }
 }
