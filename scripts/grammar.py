@@ -1,4 +1,4 @@
-"""Writes editors/stickslip.tmLanguage.json, the TextMate grammar of decks, from the keyword table.
+"""Writes docs/editor/stickslip.tmLanguage.json, the TextMate grammar of decks, from the keyword table.
 
 The table is that of the reader: scripts/dimensions.json for keywords that are read, with their
 parameters and values, and docs/keywords.md for those that are not. Both are written by the program.
@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
-GRAMMAR = ROOT / "editors" / "stickslip.tmLanguage.json"
+GRAMMAR = ROOT / "docs" / "editor" / "stickslip.tmLanguage.json"
 
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?"
 END = r"(?=\s*(?:,|$))"

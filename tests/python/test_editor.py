@@ -90,7 +90,7 @@ def test_decks_have_no_invalid_piece(path: Path) -> None:
 
 
 def test_the_problem_matcher_reads_messages(tmp_path: Path) -> None:
-    task = json.loads((ROOT / "editors" / "problem-matcher.json").read_text())["tasks"][0]
+    task = json.loads((ROOT / "docs" / "editor" / "problem-matcher.json").read_text())["tasks"][0]
     head, place = (re.compile(one["regexp"]) for one in task["problemMatcher"]["pattern"])
     deck = tmp_path / "bad.inp"
     deck.write_text("*NODE\n1, 0., 0.\n*BONDARY\n1, 1\n")

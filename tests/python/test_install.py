@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from conftest import ROOT
 
-COMMANDS = sorted((ROOT / "packaging" / "data" / "scripts").iterdir())
+COMMANDS = sorted((ROOT / "python" / "packaging" / "data" / "scripts").iterdir())
 
 
 @pytest.mark.parametrize("path", COMMANDS, ids=lambda path: path.name)
@@ -31,7 +31,7 @@ def test_versions_agree() -> None:
     for name, pattern in (
         ("CITATION.cff", rf"^version: {re.escape(cargo)}$"),
         ("CHANGELOG.md", rf"^## {re.escape(cargo)}\b"),
-        ("packaging/conda/recipe.yaml", rf'^  version: "{re.escape(cargo)}"$'),
+        ("python/packaging/conda/recipe.yaml", rf'^  version: "{re.escape(cargo)}"$'),
     ):
         assert re.search(pattern, (ROOT / name).read_text(), flags=re.MULTILINE), name
 

@@ -94,9 +94,10 @@ pub(super) static STEPS: &[Keyword] = &[
             P::flag("LONG TERM", "there is no creep").refused(),
             P::flag("FULLY PLASTIC", "there is no plasticity").refused(),
         ],
-        "A static step: equilibrium without inertia, damping and impacts, at the end of every increment exact with \
-         contact and friction. First increment (the duration by default), duration (1 by default), smallest \
-         increment (1e-5 of the duration by default), largest increment. Increments that fail are cut to a \
+        "A static step finds equilibrium without inertia, damping and impacts. Contact and friction are exact at \
+         the end of every increment. The row holds the first increment (the duration by default), the duration (1 \
+         by default), the smallest increment (1e-5 of the duration by default) and the largest one. Increments \
+         that fail are cut to a \
          quarter; after two increments of at most five passes they grow by half. With DIRECT they keep their size, \
          and those that fail are halved. Loads without amplitude grow linearly over the step.",
         "*STEP, NLGEOM\n\

@@ -93,19 +93,7 @@ impl<'m> Workspace<'m> {
     ) -> Result<(), LinearError> {
         let mut result = Ok(());
         for form in StiffnessForm::ALL {
-            let Workspace {
-                stiffness,
-                meter,
-                pins,
-                ..
-            } = &mut *self;
-            let assemble = || {
-                stiffness.assemble(problem, dt, motion, form);
-                stiffness.add_contact(problem, contact, form, pins);
-            };
-            meter.time(|t| &mut t.assembly, assemble);
-            meter.counts.factorizations += 1;
-            result = self.k().factorize();
+            result = self.factorize_form(problem, (dt, form), motion, contact);
             if !matches!(result, Err(LinearError::NotPositiveDefinite { .. })) {
                 break;
             }
@@ -127,13 +115,23 @@ impl<'m> Workspace<'m> {
             return Ok(());
         }
         let form = StiffnessForm::Stability;
-        let dt = self.stiffness.dt();
+        self.factorize_form(problem, (self.stiffness.dt(), form), motion, contact)
+    }
+
+    /// Assembles and factorises one form of K* for an increment of length `dt`.
+    fn factorize_form(
+        &mut self,
+        problem: &StepProblem,
+        (dt, form): (f64, StiffnessForm),
+        motion: Motion,
+        contact: &ClosedConstraints,
+    ) -> Result<(), LinearError> {
         let Workspace {
             stiffness,
             meter,
             pins,
             ..
-        } = &mut *self;
+        } = self;
         let assemble = || {
             stiffness.assemble(problem, dt, motion, form);
             stiffness.add_contact(problem, contact, form, pins);
