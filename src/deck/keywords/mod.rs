@@ -1,9 +1,7 @@
 //! The table of all keywords, joined from its families, with the dimensions of their fields; look-up
 //! by name, and the documents made from it.
 
-mod common;
 mod documents;
-mod steps;
 mod table;
 mod types;
 
@@ -13,22 +11,17 @@ pub use types::{Data, Field, Keyword, Parameter, Quantity, RowForm, Scope, Statu
 use super::text::fold;
 use std::collections::HashMap;
 use std::sync::LazyLock;
-use types::Unread;
 
 static ALL: LazyLock<Vec<Keyword>> = LazyLock::new(|| {
-    let mut all = Vec::new();
-    for text in [
+    let texts = [
         include_str!("mesh.txt"),
         include_str!("materials.txt"),
         include_str!("contact.txt"),
         include_str!("conditions.txt"),
-    ] {
-        all.extend(table::read(text));
-    }
-    all.extend(steps::STEPS);
-    all.extend(steps::UNREAD_STEPS.iter().flat_map(Unread::keywords));
-    all.extend(table::read(include_str!("output.txt")));
-    all
+        include_str!("steps.txt"),
+        include_str!("output.txt"),
+    ];
+    texts.into_iter().flat_map(table::read).collect()
 });
 
 /// All known keywords.

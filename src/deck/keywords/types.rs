@@ -72,86 +72,6 @@ impl Keyword {
         let folded = fold(name);
         self.parameters.iter().find(|p| fold(p.name) == folded)
     }
-
-    /// A keyword that is read.
-    pub(super) const fn read(
-        name: &'static str,
-        scope: Scope,
-        data: Data,
-        parameters: &'static [Parameter],
-        text: &'static str,
-        example: &'static str,
-    ) -> Keyword {
-        Keyword {
-            name,
-            status: Status::Read,
-            scope,
-            data,
-            parameters,
-            text,
-            example,
-        }
-    }
-}
-
-/// Known keywords that are not read, for the same reason.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Unread {
-    status: Status,
-    /// Their names, between commas.
-    names: &'static str,
-    text: &'static str,
-    example: &'static str,
-    data: Data,
-}
-
-impl Unread {
-    /// Keywords that are left out silently.
-    pub(super) const fn ignored(names: &'static str, text: &'static str) -> Unread {
-        Unread {
-            status: Status::Ignored,
-            names,
-            text,
-            example: "",
-            data: Data::Skipped,
-        }
-    }
-
-    /// Keywords that are left out with a warning.
-    pub(super) const fn warned(names: &'static str, text: &'static str) -> Unread {
-        Unread {
-            status: Status::Warned,
-            ..Unread::ignored(names, text)
-        }
-    }
-
-    /// Keywords that stop with an error.
-    pub(super) const fn refused(names: &'static str, text: &'static str) -> Unread {
-        Unread {
-            status: Status::Refused,
-            ..Unread::ignored(names, text)
-        }
-    }
-
-    /// The same with lines of a deck that say in another way what they say.
-    pub(super) const fn example(self, example: &'static str) -> Unread {
-        Unread { example, ..self }
-    }
-
-    /// The keywords.
-    pub(super) fn keywords(&self) -> impl Iterator<Item = Keyword> {
-        let Unread {
-            status,
-            names,
-            text,
-            example,
-            data,
-        } = *self;
-        names.split(", ").map(move |name| Keyword {
-            status,
-            ..Keyword::read(name, Scope::Anywhere, data, &[], text, example)
-        })
-    }
 }
 
 /// What the program does with a keyword, a parameter or a value.
@@ -209,68 +129,6 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    const fn new(name: &'static str, takes: Takes, text: &'static str) -> Parameter {
-        Parameter {
-            name,
-            takes,
-            measures: "",
-            status: Status::Read,
-            text,
-        }
-    }
-
-    /// A parameter without value.
-    pub(super) const fn flag(name: &'static str, text: &'static str) -> Parameter {
-        Parameter::new(name, Takes::Nothing, text)
-    }
-
-    /// A name, a path, or a number that is the same in all units.
-    pub(super) const fn value(name: &'static str, text: &'static str) -> Parameter {
-        Parameter::new(name, Takes::Value, text)
-    }
-
-    /// A name or a number that is the same in all units; it may be left out.
-    pub(super) const fn optional(name: &'static str, text: &'static str) -> Parameter {
-        Parameter::new(name, Takes::Optional, text)
-    }
-
-    pub(super) const fn choice(
-        name: &'static str,
-        values: &'static [Value],
-        text: &'static str,
-    ) -> Parameter {
-        Parameter::new(name, Takes::Choice(values), text)
-    }
-
-    pub(super) const fn optional_choice(
-        name: &'static str,
-        values: &'static [Value],
-        text: &'static str,
-    ) -> Parameter {
-        Parameter::new(name, Takes::OptionalChoice(values), text)
-    }
-
-    /// The same for a number that measures something.
-    pub(super) const fn measuring(self, measures: &'static str) -> Parameter {
-        Parameter { measures, ..self }
-    }
-
-    pub(super) const fn ignored(self) -> Parameter {
-        self.with(Status::Ignored)
-    }
-
-    pub(super) const fn warned(self) -> Parameter {
-        self.with(Status::Warned)
-    }
-
-    pub(super) const fn refused(self) -> Parameter {
-        self.with(Status::Refused)
-    }
-
-    const fn with(self, status: Status) -> Parameter {
-        Parameter { status, ..self }
-    }
-
     /// What a value holds.
     pub fn holds(&self) -> Quantity {
         match self.measures {
@@ -285,24 +143,6 @@ impl Parameter {
             Takes::Choice(values) | Takes::OptionalChoice(values) => values,
             Takes::Nothing | Takes::Value | Takes::Optional => &[],
         }
-    }
-}
-
-impl Value {
-    pub(super) const fn read(name: &'static str, text: &'static str) -> Value {
-        Value::new(name, Status::Read, text)
-    }
-
-    pub(super) const fn warned(name: &'static str, text: &'static str) -> Value {
-        Value::new(name, Status::Warned, text)
-    }
-
-    pub(super) const fn refused(name: &'static str, text: &'static str) -> Value {
-        Value::new(name, Status::Refused, text)
-    }
-
-    const fn new(name: &'static str, status: Status, text: &'static str) -> Value {
-        Value { name, status, text }
     }
 }
 
@@ -370,17 +210,6 @@ pub struct RowForm {
     pub fields: &'static str,
     /// Number of the last fields that repeat along the line.
     pub repeating: usize,
-}
-
-/// Data lines with these fields.
-pub(super) const fn row(fields: &'static str) -> RowForm {
-    RowForm {
-        parameter: None,
-        word: None,
-        first: false,
-        fields,
-        repeating: 0,
-    }
 }
 
 impl RowForm {
