@@ -155,6 +155,8 @@ class Contact(Group):
     sticking: Integers
     min_gap: Array
     """Smallest gap [I]; NaN without any pair."""
+    friction_coefficient: Array
+    """Mean coefficient of friction of the closed pairs by their normal force [I]; NaN without any."""
     cone_violation: Array
     impulse_cone_violation: Array
     normal_work: Array

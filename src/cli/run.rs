@@ -330,6 +330,7 @@ mod tests {
                 status: vec![NodeStatus::None; 4],
                 concentrated: vec![0.0; 8],
                 pressure: vec![0.0; 4],
+                friction_coefficient: vec![],
                 slip: vec![0.0; 4],
                 mass: vec![],
             },

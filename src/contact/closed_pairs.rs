@@ -16,6 +16,8 @@ pub struct ClosedPair {
     pub(super) source: PairTarget,
     /// Pn and Pt (force), or the impulses Phi and Psi.
     pub force: [f64; 2],
+    /// Its coefficient of friction mu.
+    pub mu: f64,
     /// Whether it sticks or slides.
     pub state: ContactState,
 }
@@ -27,13 +29,17 @@ impl ClosedPair {
             key: constraint.key,
             source: constraint.source,
             force,
+            mu: constraint.mu,
             state,
         }
     }
 
     /// Its constraint between other configurations, at whose start the same target holds it.
     pub fn constraint(&self, at: &Configurations) -> Constraint {
-        Constraint::new(self.source.untilted(), at)
+        Constraint {
+            mu: self.mu,
+            ..Constraint::new(self.source.untilted(), at)
+        }
     }
 
     /// Its nodes; one may come twice.

@@ -92,8 +92,10 @@ pub struct Constraint {
     pub start_gap: f64,
     /// Slip Dt since the start of the increment (length).
     pub slip: f64,
-    /// Coefficient of friction mu at the slip rate that it was last given, at first at rest.
+    /// Coefficient of friction mu that it was last given; at first none.
     pub mu: f64,
+    /// Whether the coefficient depends on slip rate or pressure.
+    pub mu_varies: bool,
     /// Length that gaps are relative to: that of the segment.
     pub scale: f64,
     /// The slave node and target it was made from.
@@ -123,15 +125,11 @@ impl Constraint {
             gap,
             start_gap: gap - product(&force.normal),
             slip: product(&force.tangential),
-            mu: source.friction.at_rest,
+            mu: 0.0,
+            mu_varies: false,
             scale,
             source,
         }
-    }
-
-    /// Takes the coefficient of friction at the slip rate |Dt|/dt of an increment of length `dt`, eq. (3.10).
-    pub fn take_slip_rate(&mut self, dt: f64) {
-        self.mu = self.source.friction.at(self.slip / dt);
     }
 
     /// The same constraint with its force rows as derivative rows, so that Q is symmetric.
@@ -229,11 +227,6 @@ impl Constraint {
         let slave = self.key.slave;
         let segments = self.source.target.segments();
         segments.map(move |segment| ConstraintKey { slave, segment })
-    }
-
-    /// Whether friction does not depend on the slip rate.
-    pub fn has_constant_friction(&self) -> bool {
-        self.source.friction.is_constant()
     }
 
     /// Its slave nodes.

@@ -15,7 +15,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::tolerances::{INSIDE_ROUND_OFF, NEARER_HALF, SHARP_TURN_COSINE};
-use crate::model::{Contact, Element, ElementsAtNodes, Friction, Mesh, Model, SurfaceKind};
+use crate::model::{Contact, Element, ElementsAtNodes, Mesh, Model, SurfaceKind};
 use crate::vectors::{cross, difference, dot, length};
 
 /// A point in the local frame of a segment from a to b, which has its body on the left.
@@ -107,8 +107,6 @@ pub struct ContactSurfaces {
     /// configuration: an angle below 120 degrees. Folded legs of any other corner are a closed
     /// concave corner.
     pub sharp_corners: Vec<bool>,
-    /// Coulomb friction.
-    pub friction: Friction,
     /// Interior of the bodies; behind a segment without an element everything is inside.
     pub interior: Arc<Interior>,
 }
@@ -116,12 +114,7 @@ pub struct ContactSurfaces {
 impl ContactSurfaces {
     /// Slave nodes against master segments; `own` are the segments of the slave surface, none if it
     /// is made of nodes.
-    pub fn new(
-        slaves: Vec<usize>,
-        own: &[[usize; 2]],
-        segments: Vec<[usize; 2]>,
-        friction: Friction,
-    ) -> Self {
+    pub fn new(slaves: Vec<usize>, own: &[[usize; 2]], segments: Vec<[usize; 2]>) -> Self {
         // node at the other end of the segment that starts or ends at a node
         let following: HashMap<usize, usize> = own.iter().map(|&[a, b]| (a, b)).collect();
         let preceding: HashMap<usize, usize> = own.iter().map(|&[a, b]| (b, a)).collect();
@@ -139,7 +132,6 @@ impl ContactSurfaces {
             sharp_corners: vec![false; segments.len()],
             slaves,
             segments,
-            friction,
             interior: Arc::default(),
         }
     }
@@ -241,7 +233,6 @@ pub fn contact_surfaces(model: &Model, bodies: &[usize]) -> Vec<ContactSurfaces>
             slaves,
             &slave.segments(&model.mesh),
             master.segments(&model.mesh),
-            contact.interaction.friction,
         )
         .with_sharp_corners(&model.mesh.coordinates)
         .with_interior(Arc::clone(&interior));

@@ -21,6 +21,7 @@ impl Constraint {
         }
         Constraint {
             mu: self.mu,
+            mu_varies: self.mu_varies,
             ..Constraint::new(source, start)
         }
     }
@@ -34,6 +35,7 @@ impl Constraint {
     pub fn relinearized(&self, at: &Configurations) -> Self {
         Constraint {
             mu: self.mu,
+            mu_varies: self.mu_varies,
             ..Constraint::new(self.source, at)
         }
     }

@@ -194,14 +194,13 @@ mod tests {
     use super::*;
     use crate::contact::geometry::position;
     use crate::contact::testing;
-    use crate::model::Friction;
 
     const X: [[f64; 2]; 3] = [[0.7, 0.4], [2.0, 0.1], [-0.5, -0.2]];
     const U0: [f64; 6] = [0.1, -0.05, 0.02, 0.07, -0.03, 0.01];
     const U1: [f64; 6] = [-0.4, -0.35, 0.3, 0.2, 0.25, -0.3];
 
     fn between(form: RowForm, u0: &[f64], u: &[f64]) -> Constraint {
-        let source = testing::face(Friction::constant(0.3));
+        let source = testing::face();
         let x = &X;
         Constraint::new(source, &Configurations { form, x, u0, u })
     }
@@ -249,7 +248,7 @@ mod tests {
             let u = [-slip, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
             let source = PairTarget {
                 from: Some([3, 1]),
-                ..testing::face(Friction::constant(0.3))
+                ..testing::face()
             };
             let form = RowForm::DiscreteGradient;
             let u0 = &[0.0; 8];

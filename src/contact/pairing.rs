@@ -86,7 +86,6 @@ fn pair_target(listed: &ListedSlave, target: ContactTarget) -> PairTarget {
         target,
         nodes: [s, a, b, c],
         from: target.from.map(|i| surfaces.segments[i]),
-        friction: surfaces.friction,
     }
 }
 

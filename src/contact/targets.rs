@@ -19,7 +19,6 @@ use super::tolerances::{
     STRAIGHT_SINE,
 };
 use crate::linear::largest;
-use crate::model::Friction;
 use crate::vectors::{angle, cross, difference, dot};
 
 /// What a slave node must not penetrate: a segment, or the corner at its end.
@@ -72,8 +71,6 @@ pub struct PairTarget {
     pub nodes: [usize; 4],
     /// Ends of the segment that held the node at the start, where it has slid on from there.
     pub from: Option<[usize; 2]>,
-    /// Coulomb friction.
-    pub friction: Friction,
 }
 
 impl PairTarget {
@@ -688,11 +685,10 @@ pub fn common_normal(normals: [[f64; 2]; 2], own: [[f64; 2]; 2]) -> Option<f64> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Friction;
 
     #[test]
     fn how_deep_a_node_still_touches_is_a_part_of_the_length_of_the_segment() {
-        let surfaces = ContactSurfaces::new(vec![2], &[], vec![[0, 1]], Friction::default());
+        let surfaces = ContactSurfaces::new(vec![2], &[], vec![[0, 1]]);
         let was_in_front = |length: f64, depth: f64| {
             // the segment runs from right to left, with the body below it
             let x = [[length, 0.0], [0.0, 0.0], [0.5 * length, -depth * length]];

@@ -6,7 +6,6 @@ use super::keys::{ConstraintKey, SlaveKey};
 use super::targets::ContactTarget;
 use super::targets::PairTarget;
 use crate::lcp::ContactState;
-use crate::model::Friction;
 
 /// Key of slave node number `slave` of the first contact at a segment.
 pub(crate) fn key(slave: usize, segment: usize) -> ConstraintKey {
@@ -21,22 +20,18 @@ pub(crate) fn pair(target: ContactTarget, nodes: [usize; 4]) -> PairTarget {
         target,
         nodes,
         from: None,
-        friction: Friction::constant(0.3),
     }
 }
 
 /// Node 0 at the segment from node 1 to node 2.
-pub(crate) fn face(friction: Friction) -> PairTarget {
-    PairTarget {
-        friction,
-        ..pair(ContactTarget::face(0), [0, 1, 2, 2])
-    }
+pub(crate) fn face() -> PairTarget {
+    pair(ContactTarget::face(0), [0, 1, 2, 2])
 }
 
 /// A constraint of some dofs with the given rows as force rows and derivative rows: no gap, no slip, mu = 0.5, the
 /// length 1; the first node is its slave node.
 pub(crate) fn made_up(dofs: &[usize], rows: Rows) -> Constraint {
-    let source = face(Friction::constant(0.5));
+    let source = face();
     Constraint {
         key: source.key,
         dofs: dofs.iter().copied().collect(),
@@ -47,6 +42,7 @@ pub(crate) fn made_up(dofs: &[usize], rows: Rows) -> Constraint {
         start_gap: 0.0,
         slip: 0.0,
         mu: 0.5,
+        mu_varies: false,
         scale: 1.0,
         source,
     }
@@ -62,6 +58,7 @@ pub(crate) fn closed_pair(slave: usize, segment: usize) -> ClosedPair {
             ..pair(ContactTarget::face(segment), [0, 1, 2, 2])
         },
         force: [0.0; 2],
+        mu: 0.0,
         state: ContactState::Stick,
     }
 }

@@ -298,7 +298,6 @@ fn crossed_by(edge: [[f64; 2]; 2], segment: [[f64; 2]; 2]) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::contact::ContactSurfaces;
-    use crate::model::Friction;
 
     #[test]
     fn edges_cross_by_the_nearest_end() {
@@ -325,7 +324,7 @@ mod tests {
         ];
         let sides = vec![[0, 1], [1, 2]];
         let beam = [[3, 4], [4, 3]];
-        let surfaces = ContactSurfaces::new(vec![3, 4], &beam, sides, Friction::default());
+        let surfaces = ContactSurfaces::new(vec![3, 4], &beam, sides);
         let contacts = [surfaces];
         let mut search = Search::new(&contacts, &x);
         let mut depth = |height: f64| {

@@ -6,7 +6,6 @@ use super::keys::NodeAtSegment;
 use super::search::Search;
 use super::testing::{closed_pair, key};
 use super::tunnelling::find_penetration;
-use crate::model::Friction;
 
 /// A plate from (0, 0) to (8, 0.5) with segments of length 1 along and 0.5 across, its body on
 /// the left of the way; node 0 is the slave.
@@ -16,7 +15,7 @@ fn plate(closed: bool) -> (ContactSurfaces, Vec<[f64; 2]>) {
     x.extend((0..=8).rev().map(|i| [f64::from(i), 0.5]));
     let count = if closed { 18 } else { 17 };
     let segments: Vec<[usize; 2]> = (0..count).map(|i| [i + 1, (i + 1) % 18 + 1]).collect();
-    let surfaces = ContactSurfaces::new(vec![0], &[], segments, Friction::default());
+    let surfaces = ContactSurfaces::new(vec![0], &[], segments);
     (surfaces, x)
 }
 
@@ -188,7 +187,7 @@ fn a_node_may_slide_over_several_segments() {
 #[test]
 fn a_hollow_corner_holds_a_node_with_both_sides() {
     // A valley over (2, 1), (0, 0), (-2, 1): the node goes on along the line of its left slope.
-    let surfaces = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]], Friction::default());
+    let surfaces = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]]);
     let entry = |travel: f64| {
         let x = [[0.2, 0.1], [2.0, 1.0], [0.0, 0.0], [-2.0, 1.0]];
         let u0 = [0.0; 8];
@@ -214,7 +213,7 @@ fn a_node_may_not_end_inside_a_vertex_that_has_become_a_hollow() {
     // The node touches the roof near its top, which sinks until the corner is concave; it ends on
     // the line of the first side, behind the second.
     let x = [[0.05, -0.05], [1.0, -1.0], [0.0, 0.0], [-1.0, -0.9]];
-    let surfaces = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]], Friction::default());
+    let surfaces = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]]);
     let end = [[-0.2, -0.36], [1.0, 0.0], [0.0, -0.3], [-1.0, 0.0]];
     let contacts = [surfaces];
     let mut search = Search::new(&contacts, &x);

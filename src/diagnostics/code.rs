@@ -255,9 +255,9 @@ codes! {
          needed."
         "A master surface consists of faces, and a pair has two surfaces."
         "Exchange or correct the two names of the pair."
-    FrictionRange "D408" "A friction coefficient lies outside its range."
-        "It is negative, or more than one coefficient is given."
-        "Give a coefficient of 0 or more."
+    FrictionRange "D408" "A number of friction lies outside its range."
+        "A coefficient, slip rate, pressure or limit is negative, or the rows of a table are not in order."
+        "Give numbers of 0 or more: for one pressure after the other the slip rates, both increasing."
     UnitsHint "D409" "A magnitude that hints at mixed units."
         "The wave speed or gravity is far from that of real materials in usual units."
         "Check E, density and gravity: with mm, t and s they are about 2E5, 8E-9 and 9810 for \

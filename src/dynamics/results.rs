@@ -94,6 +94,9 @@ pub struct NodalResults {
     /// Contact pressure, `N` entries (force/length^2); NaN at all nodes but slave
     /// nodes.
     pub pressure: Vec<f64>,
+    /// Coefficient of friction of the closed pairs of the node, their mean by Pn, `N` entries where a friction varies,
+    /// else none; NaN without closed pairs.
+    pub friction_coefficient: Vec<f64>,
     /// Accumulated slip since the start of the analysis, `N` entries (length); NaN at all nodes but
     /// slave nodes.
     pub slip: Vec<f64>,
@@ -369,6 +372,8 @@ pub struct ContactResultant {
     pub sticking: usize,
     /// Smallest gap over the candidate pairs (length); NaN without candidates.
     pub min_gap: f64,
+    /// Coefficient of friction of the closed pairs, their mean by Pn; NaN without any.
+    pub friction_coefficient: f64,
     /// max(|Pt| - mu Pn, 0) / max(Pn); 0 without contact.
     pub cone_violation: f64,
     /// The same of the total impulses of the pairs in the increment, with impacts and what is given back; of a

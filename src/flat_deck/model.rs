@@ -5,8 +5,8 @@ use super::lines::{DeckWriter, name, named, number, set};
 use crate::materials::{Law, NeoHooke, SaintVenantKirchhoff};
 use crate::model::{
     ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorLaw, Contact, Curve, Damping, Direction,
-    Element, Equation, Face, ForceCurve, Formulation, Friction, Interaction, Material, Mesh, Model,
-    Reach, Section, Set, Signal, SurfaceKind, Tie, TieReach, TimeBase,
+    Element, Equation, Face, ForceCurve, Formulation, Friction, FrictionLaw, Interaction, Material,
+    Mesh, Model, Reach, Section, Set, Signal, SurfaceKind, Tie, TieReach, TimeBase,
 };
 
 /// Terms of an equation on a data line.
@@ -30,7 +30,7 @@ fn write_contacts(model: &Model, lines: &mut DeckWriter) {
         pair(contact, &interactions, model, lines);
     }
     if let Some(general) = model.contacts.iter().find(is_general) {
-        let interaction = interactions.name(general.interaction);
+        let interaction = interactions.name(&general.interaction);
         lines.card("CONTACT", []);
         lines.card("CONTACT INCLUSIONS", ["ALL EXTERIOR".to_owned()]);
         lines.card("CONTACT PROPERTY ASSIGNMENT", []);
@@ -110,42 +110,68 @@ impl Interactions {
         let mut all = Vec::new();
         for contact in contacts {
             if !all.contains(&contact.interaction) {
-                all.push(contact.interaction);
+                all.push(contact.interaction.clone());
             }
         }
         let interactions = Interactions(all);
-        for &interaction in &interactions.0 {
-            let Interaction { friction } = interaction;
+        for interaction in &interactions.0 {
             lines.card(
                 "SURFACE INTERACTION",
                 [set("NAME", interactions.name(interaction))],
             );
             lines.card("SURFACE BEHAVIOR", [set("PRESSURE-OVERCLOSURE", "HARD")]);
-            if friction == Friction::constant(friction.at_rest) {
-                lines.card("FRICTION", []);
-                lines.row([number(friction.at_rest)]);
-            } else {
-                lines.card("FRICTION", ["EXPONENTIAL DECAY".to_string()]);
-                let Friction {
-                    at_rest,
-                    sliding,
-                    decay,
-                } = friction;
-                lines.row([at_rest, sliding, decay].map(number));
-            }
+            friction(&interaction.friction, lines);
         }
         interactions
     }
 
-    fn name(&self, interaction: Interaction) -> String {
-        let index = self.0.iter().position(|known| *known == interaction);
+    fn name(&self, interaction: &Interaction) -> String {
+        let index = self.0.iter().position(|known| known == interaction);
         format!("INTERACTION-{}", index.map_or(0, |index| index + 1))
+    }
+}
+
+/// Writes what a contact has of friction.
+fn friction(friction: &Friction, lines: &mut DeckWriter) {
+    let mut parameters = Vec::new();
+    if friction.has_limit() {
+        parameters.push(set("TAUMAX", number(friction.shear_limit)));
+    }
+    let rows: Vec<Vec<f64>> = match &friction.law {
+        FrictionLaw::Decay {
+            at_rest,
+            sliding,
+            decay,
+        } if at_rest == sliding && *decay == 0.0 => vec![vec![*at_rest]],
+        FrictionLaw::Decay {
+            at_rest,
+            sliding,
+            decay,
+        } => {
+            parameters.push("EXPONENTIAL DECAY".to_owned());
+            vec![vec![*at_rest, *sliding, *decay]]
+        }
+        FrictionLaw::Table(curves) => {
+            let rows = curves.iter().flat_map(|curve| {
+                let of_curve = |[rate, mu]: &[f64; 2]| vec![*mu, *rate, curve.pressure];
+                curve.points.iter().map(of_curve)
+            });
+            rows.collect()
+        }
+        FrictionLaw::Rough => {
+            parameters.push("ROUGH".to_owned());
+            Vec::new()
+        }
+    };
+    lines.card_of("FRICTION", &parameters);
+    for row in rows {
+        lines.row(row.into_iter().map(number));
     }
 }
 
 fn pair(contact: &Contact, interactions: &Interactions, model: &Model, lines: &mut DeckWriter) {
     let mut parameters = vec![
-        set("INTERACTION", interactions.name(contact.interaction)),
+        set("INTERACTION", interactions.name(&contact.interaction)),
         set("TYPE", "NODE TO SURFACE"),
     ];
     parameters.extend(contact.adjust.map(|adjust| match adjust {

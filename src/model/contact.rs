@@ -5,65 +5,15 @@
 //! Segments run from a to b with the body on the left.
 
 use super::Segment;
+use super::friction::Friction;
 use super::mesh::{Face, Mesh};
 use crate::diagnostics::Span;
 
 /// Contact law between two surfaces: hard normal contact and Coulomb friction.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Interaction {
     /// Coulomb friction.
     pub friction: Friction,
-}
-
-/// Coefficient of friction mu as a function of the slip rate, eq. (3.10).
-#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
-pub struct Friction {
-    /// Coefficient mu_s >= 0 at rest.
-    pub at_rest: f64,
-    /// Coefficient mu_k >= 0 of fast slip.
-    pub sliding: f64,
-    /// Decay d_c >= 0 from the one to the other (time/length).
-    pub decay: f64,
-}
-
-impl Friction {
-    /// The same coefficient at all slip rates.
-    pub const fn constant(mu: f64) -> Self {
-        Friction {
-            at_rest: mu,
-            sliding: mu,
-            decay: 0.0,
-        }
-    }
-
-    /// Whether the coefficient is the same at all slip rates.
-    pub fn is_constant(&self) -> bool {
-        self.at_rest == self.sliding || self.decay == 0.0
-    }
-
-    /// Coefficient at a slip rate (length/time).
-    pub fn at(&self, rate: f64) -> f64 {
-        if self.is_constant() {
-            return self.at_rest;
-        }
-        // mu = mu_k + (mu_s - mu_k) exp(-d_c |rate|), eq. (3.10)
-        self.sliding + (self.at_rest - self.sliding) * (-self.decay * rate.abs()).exp()
-    }
-}
-
-/// `mu 0.3`, or `mu 0.3 at rest, 0.2 sliding, decay 0.001`.
-impl std::fmt::Display for Friction {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "mu {}", self.at_rest)?;
-        if self.is_constant() {
-            return Ok(());
-        }
-        write!(
-            f,
-            " at rest, {} sliding, decay {}",
-            self.sliding, self.decay
-        )
-    }
 }
 
 /// A slave surface whose nodes may not enter the body behind the master surface; self-contact if

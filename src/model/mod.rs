@@ -9,6 +9,7 @@ mod amplitude;
 mod connector;
 mod contact;
 mod element_type;
+mod friction;
 mod mesh;
 mod sets;
 mod side;
@@ -20,10 +21,11 @@ use crate::materials::{Law, SmallStrainModuli};
 pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
 pub use connector::{Connector, ConnectorLaw, Direction, ForceCurve};
 pub use contact::{
-    ALL_EXTERIOR, Adjust, Contact, Equation, Friction, Interaction, Reach, RigidBody, Surface,
-    SurfaceKind, TurningBody,
+    ALL_EXTERIOR, Adjust, Contact, Equation, Interaction, Reach, RigidBody, Surface, SurfaceKind,
+    TurningBody,
 };
 pub use element_type::{ElementType, Formulation, Shape, Topology};
+pub use friction::{Friction, FrictionCurve, FrictionLaw};
 pub(crate) use mesh::sides;
 pub use mesh::{Bodies, Element, ElementsAtNodes, Face, Mesh, NO_SECTION, Nodes, Set};
 pub use sets::{HistorySet, Instance, NamedSets, RequestedFields, element_name, node_name};
@@ -133,6 +135,12 @@ impl Model {
     pub fn redistributes_mass(&self) -> bool {
         let redistributes = |step: &Step| step.settings.contact_mass == ContactMass::Redistributed;
         self.steps.iter().any(redistributes)
+    }
+
+    /// Whether the coefficient of friction of a contact is not always the same.
+    pub fn has_varying_friction(&self) -> bool {
+        let varies = |contact: &Contact| !contact.interaction.friction.is_constant();
+        self.contacts.iter().any(varies)
     }
 
     /// Whether the deck shall be read and checked only (`*NO ANALYSIS`).

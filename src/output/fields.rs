@@ -114,7 +114,12 @@ impl<'m> FieldGroup<'m> {
     fn create_points(&mut self, model: &Model) -> hdf5::Result<()> {
         let [nodal, concentrated] = [&NODAL[..], &CONCENTRATED];
         let is_asked = model.sets.fields.concentrated_load;
-        let tables = [nodal, if is_asked { concentrated } else { &[] }].into_iter();
+        let friction: &[NodalField] = match model.has_varying_friction() {
+            true => &FRICTION,
+            false => &[],
+        };
+        let concentrated = if is_asked { concentrated } else { &[] };
+        let tables = [nodal, concentrated, friction].into_iter();
         for &(name, row, mostly, dimension, text, of) in tables.flatten() {
             self.add(name, row, mostly, (dimension, text), move |frame, v| {
                 v.extend_from_slice(of(frame));
@@ -326,6 +331,14 @@ const NODAL: [NodalField; 8] = [
 #[rustfmt::skip]
 const CONCENTRATED: [NodalField; 1] = [
     ("CF", IN_SPACE, Mostly::Zero, "force", "concentrated loads on the node", |f| &f.nodal.concentrated),
+];
+
+/// A field of models in which the coefficient of friction of a contact varies.
+#[rustfmt::skip]
+const FRICTION: [NodalField; 1] = [
+    ("FRICTION_COEFFICIENT", SCALAR, Mostly::Nan, "1",
+     "coefficient of friction of the slave node's pairs, mean by Pn, NaN without contact",
+     |f| &f.nodal.friction_coefficient),
 ];
 
 /// A field of the elements: name, meaning and value.

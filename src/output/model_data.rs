@@ -96,9 +96,8 @@ fn write_contacts(at: &Group, model: &Model) -> hdf5::Result<()> {
         let segments: Vec<Segment> = model.surfaces[contact.master].segments(&model.mesh);
         let nodes: Vec<i64> = segments.as_flattened().iter().map(|&n| n as i64).collect();
         constant(&at, "segments", &[segments.len(), 2], &nodes, SEGMENTS)?;
-        let friction = contact.interaction.friction;
-        let values = [friction.at_rest, friction.sliding];
-        constant(&at, "friction", &[2], &values, FRICTION)?;
+        let range = contact.interaction.friction.range();
+        constant(&at, "friction", &[2], &range, FRICTION)?;
     }
     Ok(())
 }
@@ -221,7 +220,7 @@ const SEGMENTS: Meaning = (
 );
 const FRICTION: Meaning = (
     "1",
-    "coefficient of friction at rest and of fast slip, eq. (3.10)",
+    "coefficient of friction at rest and of fast slip, or the largest and smallest of a table or below TAUMAX",
 );
 const SCHEME: Meaning = ("1", "0 static, 1 energy-momentum, 2 SS22, 3 backward Euler");
 const THETA: Meaning = ("1", "weights theta1 and theta2 of the scheme");

@@ -237,12 +237,12 @@ mod tests {
     use std::sync::Arc;
 
     use crate::contact::Interior;
-    use crate::model::{Element, ElementType, Friction, Mesh};
+    use crate::model::{Element, ElementType, Mesh};
 
     /// Gap of a node at `s` to the roof over the nodes 1, 2, 3 at heights 0, `top`, 0, whose body
     /// is `body`.
     fn gap(top: f64, s: [f64; 2], body: usize) -> Option<f64> {
-        let contact = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]], Friction::default());
+        let contact = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]]);
         let x = [s, [2.0, 0.0], [0.0, top], [-2.0, 0.0]];
         let found = gaps(&contact, &x, &[0, body, body, body]);
         found.first().map(|found| found.gap)
@@ -275,9 +275,8 @@ mod tests {
             coordinates: coordinates.clone(),
             ..Mesh::default()
         };
-        let contact =
-            ContactSurfaces::new(vec![0, 5], &[], vec![[1, 2], [2, 3]], Friction::default())
-                .with_interior(Arc::new(Interior::new(&mesh, |_| true)));
+        let contact = ContactSurfaces::new(vec![0, 5], &[], vec![[1, 2], [2, 3]])
+            .with_interior(Arc::new(Interior::new(&mesh, |_| true)));
         let found = gaps(&contact, &coordinates, &[0; 7]);
         let of = |slave| found.iter().find(|g| g.slave == slave).map(|g| g.gap);
         [of(0), of(5)]
@@ -297,8 +296,7 @@ mod tests {
         let at = |i: usize| outline(i as f64 / count as f64);
         let x: Vec<[f64; 2]> = (0..count).map(at).collect();
         let segments = (0..count).map(|i| [i, (i + 1) % count]).collect();
-        let contact =
-            ContactSurfaces::new((0..count).collect(), &[], segments, Friction::default());
+        let contact = ContactSurfaces::new((0..count).collect(), &[], segments);
         let bodies = vec![0; count];
         let start = Start::new(&contact, &x, &bodies);
         let mut visits = 0;
@@ -339,7 +337,7 @@ mod tests {
         };
         let x: Vec<[f64; 2]> = (0..60).map(at).collect();
         let segments = (20..59).map(|i| [i, i + 1]).collect();
-        let contact = ContactSurfaces::new((0..60).collect(), &[], segments, Friction::default());
+        let contact = ContactSurfaces::new((0..60).collect(), &[], segments);
         let bodies: Vec<usize> = (0..60).map(|i| usize::from(i > 30)).collect();
         let start = Start::new(&contact, &x, &bodies);
         let expected = |slave: usize| {

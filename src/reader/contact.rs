@@ -10,7 +10,8 @@ use super::surfaces::{Found, Surfaces};
 use crate::deck::{Card, Line, Name, Text};
 use crate::diagnostics::{Code, Span};
 use crate::model::{
-    ALL_EXTERIOR, Adjust, Contact, Face, Friction, Interaction, Mesh, Reach, Surface, SurfaceKind,
+    ALL_EXTERIOR, Adjust, Contact, Face, Friction, FrictionCurve, FrictionLaw, Interaction, Mesh,
+    Reach, Surface, SurfaceKind,
 };
 use std::collections::{HashMap, HashSet};
 
@@ -26,10 +27,10 @@ pub(crate) fn read(
     let mut contacts = Vec::new();
     for card in outline.model_cards("CONTACT PAIR") {
         let name = card.required("INTERACTION", cx.d);
-        let interaction = name.and_then(|name| interactions.find(name, cx).copied());
+        let interaction = name.and_then(|name| interactions.find(name, cx).cloned());
         let adjust = adjust(card, sets, cx);
         for row in card.rows.iter() {
-            let contact = contact(row, interaction, surfaces, cx);
+            let contact = contact(row, interaction.clone(), surfaces, cx);
             report_adjusted_self_contact(contact.as_ref(), card, cx);
             contacts.extend(contact.map(|contact| Contact { adjust, ..contact }));
         }
@@ -197,8 +198,36 @@ fn out_of_plane_thickness(head: &Card, cx: &mut Context) {
     }
 }
 
-/// `mu[, ...]`, or with EXPONENTIAL DECAY `mu at rest, mu sliding, decay`.
+/// What the card says of the coefficient, and `TAUMAX`.
 fn law(card: &Card, cx: &mut Context) -> Option<Friction> {
+    let limit = card.real("TAUMAX", cx.d).unwrap_or(0.0);
+    let span = card.span_of("TAUMAX");
+    if limit < 0.0 {
+        let message = "the largest shear stress must not be negative";
+        cx.error(Code::FrictionRange, span, message);
+        return None;
+    }
+    if card.has("TAUMAX") && card.has("ROUGH") {
+        let message = "surfaces that never slip have no largest shear stress";
+        cx.error(Code::FrictionRange, span, message)
+            .help("leave out ROUGH or TAUMAX");
+        return None;
+    }
+    Some(Friction {
+        law: coefficient(card, cx)?,
+        shear_limit: if limit > 0.0 { limit } else { f64::INFINITY },
+    })
+}
+
+/// `mu[, ...]`; with EXPONENTIAL DECAY `mu at rest, mu sliding, decay`; rows `mu, slip rate, pressure`; none with ROUGH.
+fn coefficient(card: &Card, cx: &mut Context) -> Option<FrictionLaw> {
+    if card.has("ROUGH") {
+        if let Some(row) = card.rows.first() {
+            let message = "*FRICTION, ROUGH has no data line";
+            cx.error(Code::StrayData, row.span(), message);
+        }
+        return Some(FrictionLaw::Rough);
+    }
     let Some(row) = card.rows.first() else {
         cx.error(
             Code::MissingData,
@@ -207,26 +236,78 @@ fn law(card: &Card, cx: &mut Context) -> Option<Friction> {
         );
         return None;
     };
-    if let Some(second) = card.rows.get(1) {
-        let message = "friction that depends on slip rate, pressure or temperature cannot be used";
-        cx.error(Code::UnsupportedParameter, second.span(), message);
-    }
     if card.has("EXPONENTIAL DECAY") {
+        if let Some(extra) = card.rows.get(1) {
+            let message = "*FRICTION, EXPONENTIAL DECAY has one data line";
+            cx.error(Code::StrayData, extra.span(), message);
+        }
         row.at_most(3, cx.d);
         let at_rest = not_negative(row, 0, "the coefficient of friction at rest", cx);
         let sliding = not_negative(row, 1, "the coefficient of sliding friction", cx);
         let decay = not_negative(row, 2, "the decay of friction", cx);
-        return Some(Friction {
+        return Some(FrictionLaw::Decay {
             at_rest: at_rest?,
             sliding: sliding?,
             decay: decay?,
         });
     }
+    if card.rows.get(1).is_some() {
+        return table(card, cx);
+    }
     let friction = not_negative(row, 0, "the coefficient of friction", cx)?;
     let message = "only the coefficient of friction is read here";
     let help = "sticking is exact: it needs no stick slope or slip rate";
     row.without_effect(1, message, help, cx.d);
-    Some(Friction::constant(friction))
+    Some(Friction::constant(friction).law)
+}
+
+/// Rows `mu, slip rate, pressure`: for one pressure after the other the slip rates, both increasing.
+fn table(card: &Card, cx: &mut Context) -> Option<FrictionLaw> {
+    let mut curves: Vec<FrictionCurve> = Vec::new();
+    let mut temperature = None;
+    for row in card.rows.iter() {
+        row.at_most(4, cx.d);
+        let mu = not_negative(row, 0, "the coefficient of friction", cx);
+        let rate = not_negative_or_zero(row, 1, "the slip rate", cx);
+        let pressure = not_negative_or_zero(row, 2, "the pressure", cx);
+        let (mu, rate, pressure) = (mu?, rate?, pressure?);
+        let own = row.real_or(3, 0.0, cx.d)?;
+        if *temperature.get_or_insert(own) != own {
+            let message = "friction that depends on temperature cannot be used";
+            cx.error(Code::UnsupportedParameter, row.span_at(3), message);
+            return None;
+        }
+        let fault = match curves.last_mut() {
+            Some(curve) if curve.pressure == pressure => {
+                let follows = curve.points.last().is_some_and(|last| last[0] < rate);
+                curve.points.push([rate, mu]);
+                let message = "slip rates must increase from row to row of a pressure";
+                (!follows).then_some((1, message))
+            }
+            last => {
+                let follows = last.is_none_or(|curve| curve.pressure < pressure);
+                curves.push(FrictionCurve {
+                    pressure,
+                    points: vec![[rate, mu]],
+                });
+                let message = "pressures must increase: all rows of one, then those of the next";
+                (!follows).then_some((2, message))
+            }
+        };
+        if let Some((field, message)) = fault {
+            cx.error(Code::FrictionRange, row.span_at(field), message);
+            return None;
+        }
+    }
+    Some(FrictionLaw::Table(curves))
+}
+
+/// A field that is not negative, 0 where it is empty; `what` it is.
+fn not_negative_or_zero(row: Line, index: usize, what: &str, cx: &mut Context) -> Option<f64> {
+    match row.get(index) {
+        Some(_) => not_negative(row, index, what, cx),
+        None => Some(0.0),
+    }
 }
 
 /// A field that is not negative; `what` it is.
@@ -369,7 +450,7 @@ fn assigned_in(
     cx: &mut Context,
 ) -> Option<Interaction> {
     let name = of_all_surfaces(row, "the interaction", cx)?;
-    interactions.find(name, cx).copied()
+    interactions.find(name, cx).cloned()
 }
 
 /// All faces that belong to one element only, chain by chain along the boundaries.

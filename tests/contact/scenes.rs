@@ -1,7 +1,6 @@
 //! Scenes of many closed bodies for contact search.
 
 use stickslip::contact::ContactSurfaces;
-use stickslip::model::Friction;
 
 /// A body: centre, radius, number of nodes and the depth of its waves (in radii).
 pub type Body = ([f64; 2], f64, usize, f64);
@@ -20,7 +19,7 @@ pub fn scene(bodies: &[Body]) -> (ContactSurfaces, Vec<[f64; 2]>) {
         }
     }
     let slaves = (0..x.len()).collect();
-    let surfaces = ContactSurfaces::new(slaves, &segments.clone(), segments, Friction::default());
+    let surfaces = ContactSurfaces::new(slaves, &segments.clone(), segments);
     (surfaces, x)
 }
 

@@ -1,7 +1,6 @@
 //! Segments and corners that are selected as targets of a slave node.
 
 use stickslip::contact::{ContactSurfaces, ContactTarget, Positions, SlaveNode, all_segments};
-use stickslip::model::Friction;
 
 /// A closed or open chain of master segments over `points`, the body on their left.
 fn chain(points: &[[f64; 2]], closed: bool) -> Vec<[usize; 2]> {
@@ -25,7 +24,7 @@ fn targets_near(
         x.extend_from_slice(points);
     }
     let slave = x.len();
-    let surfaces = ContactSurfaces::new(vec![slave], &[], segments, Friction::default());
+    let surfaces = ContactSurfaces::new(vec![slave], &[], segments);
     let (mut start, mut now) = (x.clone(), x);
     start.push(from);
     now.push(to);
@@ -122,7 +121,7 @@ fn a_corner_that_slides_over_a_corner_is_held_by_the_face_that_its_surface_lies_
     let mut now = start.clone();
     now[5][1] = 0.99;
     let held_by = |own: &[[usize; 2]]| {
-        let surfaces = ContactSurfaces::new(vec![5], own, segments.clone(), Friction::default());
+        let surfaces = ContactSurfaces::new(vec![5], own, segments.clone());
         self::segments(&targets_of(&surfaces, &start, &now))
     };
     assert_eq!(held_by(&[[4, 5], [5, 6]]), [2]);
@@ -141,7 +140,7 @@ fn a_corner_that_turns_concave_under_a_node_that_comes_over_it_does_not_let_it_i
     start.push([1.003, 0.9975e-4]);
     now.push([0.95, -0.03]);
     let segments = chain(&start[..3], false);
-    let surfaces = ContactSurfaces::new(vec![3], &[], segments, Friction::default());
+    let surfaces = ContactSurfaces::new(vec![3], &[], segments);
     let targets = targets_of(&surfaces, &start, &now);
     let slid_on = targets.iter().find(|target| target.segment == 1);
     assert_eq!(
@@ -190,8 +189,7 @@ fn a_sharp_corner_differs_from_a_closed_concave_corner() {
     let tip = [[-0.01, -1.0], [0.0, 0.0], [0.01, -1.0]].map(|[x, y]: [f64; 2]| [-x, y]);
     let mut x = tip.to_vec();
     x.push([1e-3, 0.5]);
-    let surfaces = ContactSurfaces::new(vec![3], &[], vec![[0, 1], [1, 2]], Friction::default())
-        .with_sharp_corners(&x);
+    let surfaces = ContactSurfaces::new(vec![3], &[], vec![[0, 1], [1, 2]]).with_sharp_corners(&x);
     let mut now = x.clone();
     now[3] = [1e-3, 0.1];
     let targets = targets_of(&surfaces, &x, &now);
@@ -236,7 +234,7 @@ fn tip_to_tip(from: [f64; 2], to: [f64; 2], sides: [[f64; 2]; 2]) -> Vec<Contact
     }
     // the triangle's way round, body on the left: left upper node, tip, right upper node
     let own = [[4, 3], [3, 5]];
-    let surfaces = ContactSurfaces::new(vec![3], &own, vec![[0, 1], [1, 2]], Friction::default());
+    let surfaces = ContactSurfaces::new(vec![3], &own, vec![[0, 1], [1, 2]]);
     targets_of(&surfaces, &start, &now)
 }
 

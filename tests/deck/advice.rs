@@ -110,8 +110,15 @@ fn friction_that_cannot_be() {
         "*FRICTION, EXPONENTIAL DECAY\n0.3, 0.2, -1.",
         "*FRICTION, EXPONENTIAL DECAY\n0.3, 0.2, 1., 4.",
         "*FRICTION, EXPONENTIAL DECAY, TEST DATA\n0.3, 0.2, 1.",
-        "*FRICTION\n0.3, 0.\n0.2, 100.",
-        "*FRICTION, TAUMAX=10.\n0.3",
+        "*FRICTION, EXPONENTIAL DECAY\n0.3, 0.2, 1.\n0.2, 0.1, 1.",
+        "*FRICTION\n0.3, 1.\n0.2, 1.",
+        "*FRICTION\n0.3, 0., 2.\n0.2, 1., 2.\n0.1, 0., 1.",
+        "*FRICTION\n0.3, 0.\n0.2, -1.",
+        "*FRICTION\n0.3, 0., 0., 20.\n0.2, 1., 0., 30.",
+        "*FRICTION, TAUMAX=-10.\n0.3",
+        "*FRICTION, TAUMAX=10., ROUGH",
+        "*FRICTION, ROUGH\n0.3",
+        "*FRICTION",
     ];
     let messages: Vec<String> = texts
         .iter()

@@ -135,7 +135,7 @@ fn check(model: &Model) {
                 .is_empty()
         );
         assert!(!model.surfaces[contact.slave].nodes(&model.mesh).is_empty());
-        assert!(contact.interaction.friction.at_rest >= 0.0);
+        assert!(contact.interaction.friction.at_rest(0.0) >= 0.0);
     }
     for amplitude in &model.amplitudes {
         if let Curve::Linear(points) | Curve::SmoothStep(points) = &amplitude.curve {

@@ -96,14 +96,14 @@ fn one_surface_on_a_pair_touches_itself() {
 fn general_contact_is_that_of_all_exterior_faces() {
     let general = "*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n";
     let model = contacts(general);
-    assert_eq!(model.contacts[0].interaction.friction.at_rest, 0.0);
+    assert_eq!(model.contacts[0].interaction.friction.at_rest(0.0), 0.0);
     let assigned = format!("{general}*CONTACT PROPERTY ASSIGNMENT\n ,  , DRY\n");
     let model = contacts(&assigned);
     let [contact] = &model.contacts[..] else {
         panic!("{:?}", model.contacts);
     };
     assert!(contact.is_self_contact());
-    assert_eq!(contact.interaction.friction.at_rest, 0.3);
+    assert_eq!(contact.interaction.friction.at_rest(0.0), 0.3);
     assert_eq!(contact_names(&model), [ALL_EXTERIOR]);
     let labels = |[a, b]: [usize; 2]| [a, b].map(|node| model.mesh.node_labels[node]);
     let surface = &model.surfaces[contact.slave];
@@ -259,15 +259,54 @@ fn friction_may_decay_with_the_slip_rate() {
     let end = start + deck[start..].find("*CONTACT PAIR").expect("a pair");
     let decay = "*FRICTION, EXPONENTIAL DECAY\n0.3, 0.2, 1.D-3\n";
     let (model, messages) = read(&deck.replacen(&deck[start..end], decay, 1));
-    let friction = Friction {
+    let friction = Friction::from(FrictionLaw::Decay {
         at_rest: 0.3,
         sliding: 0.2,
         decay: 1e-3,
-    };
+    });
     assert_eq!(model.contacts[0].interaction.friction, friction);
     assert!(!messages.contains("FRICTION"), "{messages}");
-    assert_eq!([0.0, 1e6].map(|rate| friction.at(rate)), [0.3, 0.2]);
-    assert_eq!(friction.at(-1e3), 0.2 + (0.3 - 0.2) * (-1_f64).exp());
+    let at = |rate| friction.at(rate, 0.0);
+    assert_eq!([0.0, 1e6].map(at), [0.3, 0.2]);
+    assert_eq!(at(-1e3), 0.2 + (0.3 - 0.2) * (-1_f64).exp());
+}
+
+#[test]
+fn friction_may_follow_a_table_and_have_a_limit() {
+    let deck = include_str!("../decks/friction.inp");
+    let (model, messages) = read(deck);
+    assert!(!messages.contains("FRICTION"), "{messages}");
+    let curve = |pressure, points: [[f64; 2]; 2]| FrictionCurve {
+        pressure,
+        points: points.to_vec(),
+    };
+    let curves = vec![
+        curve(5.0, [[0.0, 0.4], [1.0, 0.2]]),
+        curve(20.0, [[0.0, 0.3], [1.0, 0.1]]),
+    ];
+    let [table, rough] = [0, 1].map(|i| model.contacts[i].interaction.friction.clone());
+    assert_eq!(
+        (table.law, table.shear_limit),
+        (FrictionLaw::Table(curves), 4.0)
+    );
+    assert_eq!(
+        (rough.law, rough.shear_limit),
+        (FrictionLaw::Rough, f64::INFINITY)
+    );
+    let without = deck.replacen("TAUMAX=4.", "TAUMAX=0", 1);
+    assert!(
+        !read(&without).0.contacts[0]
+            .interaction
+            .friction
+            .has_limit()
+    );
+    let one = deck.replacen("0.4, 0., 5.\n0.2, 1., 5.\n0.3, 0., 20.\n", "", 1);
+    let (model, messages) = read(&one);
+    assert_eq!(model.contacts[0].interaction.friction.at_rest(0.0), 0.1);
+    assert!(
+        messages.contains("only the coefficient of friction"),
+        "{messages}"
+    );
 }
 
 #[test]
@@ -806,7 +845,7 @@ fn rigid_surfaces_take_part_in_general_contact() {
     let contact = &with_pair.contacts[2];
     assert_eq!(labels(&contact.left_out), [11, 12]);
     assert!(with_pair.contacts[1].left_out.is_empty());
-    assert_eq!(contact.interaction.friction.at_rest, 0.3);
+    assert_eq!(contact.interaction.friction.at_rest(0.0), 0.3);
     let slaves = &contact_surfaces(&with_pair, &with_pair.mesh.bodies())[2].slaves;
     assert_eq!(labels(slaves), [1, 2, 3, 6, 5, 4, 13, 14]);
 }

@@ -15,7 +15,7 @@ mod facing;
 mod fast;
 mod finite;
 mod friction;
-mod friction_decay;
+mod friction_laws;
 mod halving;
 mod invariants;
 mod landing_return;

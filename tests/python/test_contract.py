@@ -54,6 +54,7 @@ CONTACT = {
     "closed": (),
     "sticking": (),
     "min_gap": (),
+    "friction_coefficient": (),
     "cone_violation": (),
     "impulse_cone_violation": (),
     "handover_work": (),

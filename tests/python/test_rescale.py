@@ -20,7 +20,8 @@ ASSEMBLY = ROOT / "tests/decks/assembly.inp"
 CONNECTIONS = ROOT / "tests/decks/connections.inp"
 STATIC_STEPS = ROOT / "tests/decks/static_steps.inp"
 TIES = ROOT / "tests/decks/ties.inp"
-ALL_CARDS = [EVERY_CARD, ASSEMBLY, CONNECTIONS, STATIC_STEPS, TIES]
+FRICTION = ROOT / "tests/decks/friction.inp"
+ALL_CARDS = [EVERY_CARD, ASSEMBLY, CONNECTIONS, STATIC_STEPS, TIES, FRICTION]
 """Decks that use every keyword, and every number with a dimension."""
 EXAMPLES = sorted((ROOT / "input").glob("*/*.inp"))
 POWERS_OF_TWO = [Units(length=2.0**7), Units(mass=2.0**-11), Units(time=2.0**5)]
@@ -200,7 +201,7 @@ def test_files_of_data_lines_are_read_in_their_place(tmp_path: Path) -> None:
         ("*NODE\n1, 0., 0., 0., 5.\n", "field 5 of \\*NODE"),
         ("*NODE\n1, abc, 0.\n", "field 2 of \\*NODE.* is no number"),
         ("*AMPLITUDE, NAME=A, DEFINITION=DECAY\n1., 2., 3., 4., 5.\n", "field 5 of \\*AMPLITUDE"),
-        ("*FRICTION\n0.3, 2.1E5\n", "field 2 of \\*FRICTION"),
+        ("*FRICTION\n0.3, 0., 0., 20.\n", "field 4 of \\*FRICTION"),
         ("*SURFACE BEHAVIOR\n0.1\n", "field 1 of \\*SURFACE BEHAVIOR"),
         ("*SURFACE, NAME=S, TYPE=CYLINDER\nA\n", "TYPE of \\*SURFACE"),
         ("*SURFACE, NAME=S, TYPE=SEGMENTS\nPARAB, 1., 2., 3., 4.\n", "PARAB|field 3"),
@@ -217,12 +218,12 @@ def test_what_has_no_known_dimension_is_refused(text: str, named: str, tmp_path:
 
 def test_the_script_says_in_one_line_what_it_refuses(tmp_path: Path) -> None:
     deck = tmp_path / "deck.inp"
-    deck.write_text("*FRICTION\n0.3, 2.1E5\n")
+    deck.write_text("*FRICTION\n0.3, 0., 0., 20.\n")
     script = [sys.executable, str(ROOT / "scripts/rescale.py")]
     stray = tmp_path / "stray.inp"
     stray.write_text("1, 2.\n")
     missing = tmp_path / "missing.inp"
-    faults = {deck: "field 2 of *FRICTION", stray: str(stray), missing: str(missing)}
+    faults = {deck: "field 4 of *FRICTION", stray: str(stray), missing: str(missing)}
     for path, named in faults.items():
         command = [*script, str(path), "-o", str(tmp_path / "new.inp"), "--length", "2"]
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)

@@ -207,7 +207,7 @@ const VECTOR_PER_INCREMENT: [&str; 18] = [
     "/history/nodes/TIP/mean/A",
 ];
 
-const PER_INCREMENT: [&str; 77] = [
+const PER_INCREMENT: [&str; 79] = [
     "/history/contact/BOTTOM_TOP/normal_work",
     "/history/contact/BOTTOM_TOP/friction_dissipation",
     "/history/contact/BOTTOM_TOP/normal_impulse",
@@ -259,6 +259,7 @@ const PER_INCREMENT: [&str; 77] = [
     "/history/contact/BOTTOM_TOP/closed",
     "/history/contact/BOTTOM_TOP/sticking",
     "/history/contact/BOTTOM_TOP/min_gap",
+    "/history/contact/BOTTOM_TOP/friction_coefficient",
     "/history/contact/BOTTOM_TOP/cone_violation",
     "/history/contact/BOTTOM_TOP/impulse_cone_violation",
     "/history/contact/BOTTOM_TOP/handover_work",
@@ -268,6 +269,7 @@ const PER_INCREMENT: [&str; 77] = [
     "/history/contact/BOTTOM_TOP_2/closed",
     "/history/contact/BOTTOM_TOP_2/sticking",
     "/history/contact/BOTTOM_TOP_2/min_gap",
+    "/history/contact/BOTTOM_TOP_2/friction_coefficient",
     "/history/contact/BOTTOM_TOP_2/cone_violation",
     "/history/contact/BOTTOM_TOP_2/impulse_cone_violation",
     "/history/contact/BOTTOM_TOP_2/handover_work",

@@ -239,6 +239,7 @@ fn nodal(k: usize, reaction: Vec<f64>, contact_force: Vec<f64>) -> NodalResults 
         gap,
         status,
         pressure: vec![0.25 * k as f64; 7],
+        friction_coefficient: vec![],
         slip: vec![0.5 * k as f64; 7],
         mass: vec![],
     }

@@ -395,7 +395,7 @@ impl<'m> Attempt<'_, 'm> {
         contact.find(
             problem,
             self.workspace,
-            (start, self.interval.dt),
+            (start, self.interval),
             &v.u,
             of_set,
         );

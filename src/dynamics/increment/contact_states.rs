@@ -6,8 +6,7 @@ use super::impulses::Impulses;
 use crate::contact::tolerances::PROJECTION_BEYOND_ENDS;
 use crate::contact::{ClosedPairs, Constraint, ConstraintSet};
 use crate::dynamics::results::State;
-use crate::dynamics::step::{StepProblem, Workspace};
-use crate::lcp::ContactState;
+use crate::dynamics::step::{Interval, StepProblem, Workspace};
 
 /// The pairs of an increment.
 #[derive(Default)]
@@ -32,22 +31,21 @@ impl ContactStates {
         }
     }
 
-    /// Writes the constraints of the iterate U in an increment of length `dt`: those that count, and the others. Pairs
-    /// that stick have the friction at rest, others that of their slip. With `kept`, slave nodes keep their targets up to this overrun beyond the ends (segment lengths).
+    /// Writes the constraints of the iterate U in an increment: those that count, and the others. Pairs that stick have
+    /// the friction at rest, others that of their slip. With `kept`, slave nodes keep their targets up to this overrun
+    /// beyond the ends (segment lengths).
     pub fn find(
         &mut self,
         problem: &StepProblem,
         workspace: &mut Workspace,
-        (start, dt): (&State, f64),
+        (start, interval): (&State, Interval),
         u: &[f64],
         (set, kept): (ConstraintSet, Option<f64>),
     ) {
         let (last, held) = (&self.forces.constraints, (&start.contact, kept));
         workspace.constraints(problem, [&start.u, u], last, held, &mut self.found);
-        let closed = &self.forces.closed;
-        let slides = |c: &Constraint| closed.state(c.key) != ContactState::Stick;
-        let sliding = self.found.iter_mut().filter(|c| slides(c));
-        sliding.for_each(|constraint| constraint.take_slip_rate(dt));
+        let iterate = (&start.u[..], interval, &self.forces.closed);
+        (problem.frictions).give(problem.coordinates, iterate, &mut self.found);
         set.split(
             problem.positions(&start.u),
             &mut self.found,

@@ -193,7 +193,7 @@ impl<'a> Scales<'a> {
             ContactState::Stick => pt.abs() - most,
             _ => (pt.abs() - most).abs(),
         };
-        constraint.has_constant_friction() || excess <= self.tolerance * most
+        !constraint.mu_varies || excess <= self.tolerance * most
     }
 
     /// Whether a pass with the correction dU closes the gaps of its closed pairs, as far as open pairs may
@@ -461,23 +461,26 @@ impl<'a> Iterate<'a> {
 mod tests {
     use super::*;
     use crate::contact::{Configurations, RowForm, Rows, testing};
-    use crate::model::{Friction, Mesh, Model};
+    use crate::model::{Friction, FrictionLaw, Mesh, Model};
     use crate::prepare::redistribution_tests::block;
 
-    const FALLING: Friction = Friction {
-        at_rest: 0.3,
-        sliding: 0.1,
-        decay: 2.0,
-    };
+    fn falling() -> Friction {
+        FrictionLaw::Decay {
+            at_rest: 0.3,
+            sliding: 0.1,
+            decay: 2.0,
+        }
+        .into()
+    }
 
     /// Whether a node at 1/4 of a segment of length 2 may end an increment of length 1 with the given gap, slip and
     /// forces, none where it is open.
     fn obeys(
         [gap, slip]: [f64; 2],
-        friction: Friction,
+        friction: &Friction,
         closed: Option<([f64; 2], ContactState)>,
     ) -> bool {
-        let source = testing::face(friction);
+        let source = testing::face();
         let mut u = [0.0; 6];
         // the tangent of the segment from 0 to -2 is -x
         (u[0], u[1]) = (-slip, gap);
@@ -488,7 +491,8 @@ mod tests {
             u: &u,
         };
         let mut constraint = Constraint::new(source, &at);
-        constraint.take_slip_rate(1.0);
+        constraint.mu = friction.at(constraint.slip, 0.0);
+        constraint.mu_varies = !friction.is_constant();
         let pair = closed.map(|(force, state)| ClosedPair::new(&constraint, force, state));
         let mut forces = ContactForces::without_constraints(&pair.into_iter().collect());
         forces.relinearize(&mut vec![constraint]);
@@ -509,23 +513,23 @@ mod tests {
             false => ContactState::SlipMinus,
         };
         for slip in [0.25, -0.25, 2.0, -2.0] {
-            let own = FALLING.at(slip);
+            let own = falling().at(slip, 0.0);
             let with = |mu: f64| {
                 let pt = -mu * slip.signum() * 5.0;
-                obeys([0.0, slip], FALLING, Some(([5.0, pt], sign(pt))))
+                obeys([0.0, slip], &falling(), Some(([5.0, pt], sign(pt))))
             };
             assert!(with(own) && with(own * (1.0 + 1e-12)), "{slip}");
-            for other in [own * (1.0 + 1e-9), own * (1.0 - 1e-9), FALLING.at_rest] {
+            for other in [own * (1.0 + 1e-9), own * (1.0 - 1e-9), 0.3] {
                 assert!(!with(other), "{slip} {other}");
             }
         }
-        let sticks = |pt: f64| obeys([0.0; 2], FALLING, Some(([5.0, pt], ContactState::Stick)));
+        let sticks = |pt: f64| obeys([0.0; 2], &falling(), Some(([5.0, pt], ContactState::Stick)));
         assert!(sticks(0.0) && sticks(-1.5) && !sticks(1.5 * (1.0 + 1e-9)));
     }
 
     #[test]
     fn an_increment_ends_with_gaps_and_slips_of_the_contact_law() {
-        let mu = Friction::constant(0.5);
+        let (mu, none) = (&Friction::constant(0.5), &Friction::constant(0.0));
         let [stick, plus] = [ContactState::Stick, ContactState::SlipPlus];
         let closed = |gap, slip, mu, state| obeys([gap, slip], mu, Some(([1.0, 0.0], state)));
         assert!(obeys([1e-3, 0.1], mu, None) && obeys([-1e-12, 0.1], mu, None));
@@ -533,7 +537,7 @@ mod tests {
         assert!(closed(1e-12, 1e-12, mu, stick));
         assert!(!closed(1e-9, 0.0, mu, stick) && !closed(-1e-9, 0.0, mu, stick));
         assert!(!closed(0.0, 1e-9, mu, stick) && !closed(0.0, -1e-9, mu, stick));
-        assert!(closed(0.0, 0.1, Friction::constant(0.0), stick));
+        assert!(closed(0.0, 0.1, none, stick));
         assert!(closed(0.0, 0.1, mu, plus), "slides against its friction");
         assert!(!closed(0.0, -1e-9, mu, plus), "slides along its friction");
     }

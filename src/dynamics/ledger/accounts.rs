@@ -6,7 +6,7 @@ use super::bodies::{BodyMasses, Moving, RigidSurfaces, momentum};
 use super::contact_ledger::ContactLedger;
 use super::energy::Ledger;
 use super::nodal_results::{
-    SlaveFaces, contact_resultants, nodal_results, node_masses, tie_forces,
+    contact_pressure, contact_resultants, nodal_results, node_masses, tie_forces,
 };
 use super::touches::Touches;
 use crate::archive::{Archive, ArchiveError};
@@ -15,7 +15,7 @@ use crate::dynamics::results::{
     ContactOnBody, ContactResultant, IncrementReport, Momentum, NodalResults, NodeStatus,
     RigidReaction, State,
 };
-use crate::dynamics::step::{Discretization, Interval, Mass, StepProblem};
+use crate::dynamics::step::{Discretization, Interval, Mass, SlaveFaces, StepProblem};
 use crate::model::Contact;
 use crate::prepare::Redistribution;
 
@@ -83,6 +83,7 @@ impl Accounts {
         let (dofs, nodes) = (state.u.len(), state.u.len() / 2);
         let of_contact = |contact: &Contact| ContactResultant {
             min_gap: f64::NAN,
+            friction_coefficient: f64::NAN,
             bodies: match contact.is_self_contact() {
                 true => vec![ContactOnBody::default(); self.bodies.bodies.count],
                 false => Vec::new(),
@@ -98,6 +99,10 @@ impl Accounts {
                 gap: vec![f64::NAN; nodes],
                 status: vec![NodeStatus::None; nodes],
                 pressure: self.faces.start.clone(),
+                friction_coefficient: match problem.model.has_varying_friction() {
+                    true => vec![f64::NAN; problem.model.mesh.node_count()],
+                    false => Vec::new(),
+                },
                 slip: self.contacts.slip.clone(),
                 mass: node_masses(problem),
             },
@@ -139,7 +144,7 @@ impl Accounts {
         let mut nodal = nodal_results(problem, solved);
         let (theta1, Interval { start, end, .. }) = (problem.integration.theta1, interval);
         nodal.concentrated = problem.loads.concentrated(theta1, start, end, u.len());
-        nodal.pressure = self.faces.pressure(problem, u, &solved.contact.forces);
+        nodal.pressure = contact_pressure(&self.faces, problem, u, &solved.contact.forces);
         nodal.slip.clone_from(&self.contacts.slip);
         report.rigid = self.rigid.collect(problem, u, &mut nodal.reaction);
         self.rigid

@@ -326,11 +326,10 @@ fn violation_of_pair(constraint: &Constraint, state: Option<ContactState>) -> Co
 mod tests {
     use super::*;
     use crate::contact::{Configurations, RowForm, testing};
-    use crate::model::Friction;
 
     /// Violation of a node at 1/4 of a segment of length 2, with the given gap and slip.
     fn violation([gap, slip]: [f64; 2], mu: f64, state: Option<ContactState>) -> ContactViolation {
-        let source = testing::face(Friction::constant(mu));
+        let source = testing::face();
         let mut u = [0.0; 6];
         (u[0], u[1]) = (slip, gap);
         let at = Configurations {
@@ -339,7 +338,9 @@ mod tests {
             u0: &[0.0; 6],
             u: &u,
         };
-        violation_of_pair(&Constraint::new(source, &at), state)
+        let mut constraint = Constraint::new(source, &at);
+        constraint.mu = mu;
+        violation_of_pair(&constraint, state)
     }
 
     #[test]

@@ -4,8 +4,6 @@
 //!
 //! Contact pressure at slave nodes: normal force over the area of a node.
 
-use std::collections::BTreeSet;
-
 use crate::contact::{
     ClosedPair, Configurations, Constraint, Crossing, Direction, Motion, RowForm, crossings,
     line_crossings, project,
@@ -14,10 +12,10 @@ use crate::dynamics::increment::{ContactForces, Solved};
 use crate::dynamics::results::{
     ContactResultant, Landing, NodalResults, NodeMass, NodeStatus, State,
 };
-use crate::dynamics::step::{Equilibrium, Interval, StepProblem};
+use crate::dynamics::step::{Equilibrium, Interval, SlaveFaces, StepProblem};
 use crate::lcp::ContactState;
 use crate::linear::larger;
-use crate::model::{ContactMass, Face, Model, Segment, SurfaceKind};
+use crate::model::{ContactMass, Model};
 use crate::vectors::cross;
 
 /// Change of velocity, relative to the largest velocity of the two bodies, from which an impulse is
@@ -52,6 +50,7 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         tie_force,
         gap: vec![f64::NAN; dofs / 2],
         status: vec![NodeStatus::None; dofs / 2],
+        friction_coefficient: friction_coefficients(problem, &solved.contact.forces),
         mass: node_masses(problem),
         ..NodalResults::default()
     };
@@ -68,6 +67,42 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         }
     }
     results
+}
+
+/// Mean coefficient of friction by Pn: a first one, and Pn with Pn times what the others differ from it.
+#[derive(Clone, Copy, Default)]
+struct MeanCoefficient {
+    first: f64,
+    sums: [f64; 2],
+}
+
+impl MeanCoefficient {
+    fn add(&mut self, mu: f64, pn: f64) {
+        if self.sums[0] == 0.0 {
+            self.first = mu;
+        }
+        self.sums[0] += pn;
+        self.sums[1] += pn * (mu - self.first);
+    }
+
+    /// NaN where no force was added.
+    fn value(&self) -> f64 {
+        self.first + self.sums[1] / self.sums[0]
+    }
+}
+
+/// Coefficients of friction at the nodes; none where no friction varies.
+fn friction_coefficients(problem: &StepProblem, forces: &ContactForces) -> Vec<f64> {
+    if !problem.model.has_varying_friction() {
+        return Vec::new();
+    }
+    let mut means = vec![MeanCoefficient::default(); problem.model.mesh.node_count()];
+    for (constraint, pair) in forces.acting() {
+        for node in constraint.slave_nodes() {
+            means[node].add(constraint.mu, pair.force[0]);
+        }
+    }
+    means.iter().map(MeanCoefficient::value).collect()
 }
 
 /// What of the forces of constraints on the dofs is that of ties; none where there are no ties.
@@ -124,10 +159,12 @@ fn end_rows_at<'a>(problem: &'a StepProblem, u: &'a [f64]) -> Configurations<'a>
 pub(crate) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<ContactResultant> {
     let none = ContactResultant {
         min_gap: f64::NAN,
+        friction_coefficient: f64::NAN,
         ..ContactResultant::default()
     };
     let mut resultants = vec![none; problem.contacts.len()];
     let mut largest_normal = vec![0.0_f64; resultants.len()];
+    let mut coefficients = vec![MeanCoefficient::default(); resultants.len()];
     for (constraint, pair) in solved.contact.forces.iter() {
         let contact = constraint.key.contact();
         let r = &mut resultants[contact];
@@ -146,8 +183,12 @@ pub(crate) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
         r.sticking += usize::from(pair.state == ContactState::Stick);
         r.cone_violation = larger(r.cone_violation, pt.abs() - constraint.mu * pn);
         largest_normal[contact] = larger(largest_normal[contact], pn);
+        coefficients[contact].add(constraint.mu, pn);
     }
-    for (r, largest) in resultants.iter_mut().zip(largest_normal) {
+    for (r, (largest, mean)) in
+        (resultants.iter_mut()).zip(largest_normal.into_iter().zip(coefficients))
+    {
+        r.friction_coefficient = mean.value();
         if largest > 0.0 {
             r.cone_violation /= largest;
         }
@@ -244,106 +285,34 @@ fn impact_time(motions: &[Motion; 3], dt: f64) -> f64 {
         .unwrap_or(dt)
 }
 
-/// A segment of a face on which slave nodes take pressure.
-struct SlaveFace {
-    nodes: Segment,
-    /// Which of its two nodes take it.
-    counts: [bool; 2],
-    thickness: f64,
-}
-
-/// The slave nodes of all contacts with their faces.
-pub(crate) struct SlaveFaces {
-    /// 0 at slave nodes, NaN at others, `N` entries.
-    pub start: Vec<f64>,
-    faces: Vec<SlaveFace>,
-}
-
-impl SlaveFaces {
-    /// Faces of the slave surfaces; slave nodes without such a face take the exterior faces of their
-    /// elements.
-    pub fn new(model: &Model) -> Self {
-        let mesh = &model.mesh;
-        let (mut start, mut own) = (vec![f64::NAN; mesh.node_count()], BTreeSet::new());
-        for contact in &model.contacts {
-            let slave = &model.surfaces[contact.slave];
-            if let SurfaceKind::Faces(faces) = &slave.kind {
-                own.extend(faces.iter().copied());
-            }
-            for node in slave.nodes(mesh) {
-                start[node] = 0.0;
-            }
-        }
-        let mut is_bare: Vec<bool> = start.iter().map(|start| !start.is_nan()).collect();
-        for node in own.iter().flat_map(|face| face.nodes(mesh)) {
-            is_bare[node] = false;
-        }
-        let slave_faces = |face: &Face, counts: &dyn Fn(usize) -> bool| -> Vec<SlaveFace> {
-            let of_segment = |nodes: Segment| SlaveFace {
-                nodes,
-                counts: nodes.map(counts),
-                thickness: thickness(model, face),
-            };
-            face.segments(mesh).into_iter().map(of_segment).collect()
-        };
-        let mut faces: Vec<SlaveFace> = (own.iter())
-            .flat_map(|face| slave_faces(face, &|_| true))
-            .collect();
-        if is_bare.contains(&true) {
-            let exterior = mesh.exterior_faces().into_iter();
-            let bare = exterior.flat_map(|face| slave_faces(&face, &|node| is_bare[node]));
-            faces.extend(bare.filter(|face| face.counts.contains(&true)));
-        }
-        SlaveFaces { start, faces }
+/// Contact pressure |N|/A of every node, `N` entries (force/length^2), in the configuration of displacements `u`; NaN
+/// without area, and at all nodes but slave nodes.
+///
+/// ```text
+/// N = sum Bn^T Pn,  p = |N|/A    eq. (9.8)
+/// ```
+///
+/// The sum of N runs over all pairs of the node.
+pub(crate) fn contact_pressure(
+    faces: &SlaveFaces,
+    problem: &StepProblem,
+    u: &[f64],
+    forces: &ContactForces,
+) -> Vec<f64> {
+    let mut normal = vec![0.0; u.len()];
+    for (constraint, pair) in forces.acting() {
+        constraint.add_force([pair.force[0], 0.0], &mut normal);
     }
-
-    /// Pressure |N| / A of every node, `N` entries (force/length^2), in the configuration of
-    /// displacements `u`; NaN without area, and at all nodes but slave nodes.
-    ///
-    /// ```text
-    /// N = sum Bn^T Pn,  A = sum over the faces max(-n.N/|N|, 0) t l/2,  p = |N|/A    eq. (9.8)
-    /// ```
-    ///
-    /// The sum of N runs over all pairs of the node; n, l and t are outward normal, current length
-    /// and thickness of a face.
-    pub fn pressure(&self, problem: &StepProblem, u: &[f64], forces: &ContactForces) -> Vec<f64> {
-        let mut pressure = self.start.clone();
-        let mut normal = vec![0.0; u.len()];
-        for (constraint, pair) in forces.acting() {
-            constraint.add_force([pair.force[0], 0.0], &mut normal);
+    let mut pressure = faces.start.clone();
+    for (node, pressure) in pressure.iter_mut().enumerate() {
+        let force = [normal[2 * node], normal[2 * node + 1]];
+        let size = force[0].hypot(force[1]);
+        if size > 0.0 {
+            let area = faces.area(node, force, |node| problem.position(u, node));
+            *pressure += if area > 0.0 { size / area } else { f64::NAN };
         }
-        let of_node = |node: usize| [normal[2 * node], normal[2 * node + 1]];
-        let size = |[x, y]: [f64; 2]| x.hypot(y);
-        let mut area = vec![0.0; pressure.len()];
-        for face in &self.faces {
-            let [a, b] = face.nodes.map(|node| problem.position(u, node));
-            // n l = (e_y, -e_x): on the right of the direction from a to b
-            let e = [b[0] - a[0], b[1] - a[1]];
-            for (node, _) in (face.nodes.iter().zip(face.counts)).filter(|(_, counts)| *counts) {
-                let force = of_node(*node);
-                let against = force[1] * e[0] - force[0] * e[1];
-                if against > 0.0 {
-                    area[*node] += face.thickness * against / size(force) / 2.0;
-                }
-            }
-        }
-        for (node, pressure) in pressure.iter_mut().enumerate() {
-            let force = size(of_node(node));
-            if force > 0.0 {
-                *pressure += if area[node] > 0.0 {
-                    force / area[node]
-                } else {
-                    f64::NAN
-                };
-            }
-        }
-        pressure
     }
-}
-
-fn thickness(model: &Model, face: &Face) -> f64 {
-    let section = model.mesh.elements[face.element].section;
-    model.sections[section].thickness
+    pressure
 }
 
 #[cfg(test)]

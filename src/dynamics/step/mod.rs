@@ -2,6 +2,7 @@
 //! workspace of its increments.
 
 mod bodies;
+mod friction;
 mod integration;
 mod loads;
 mod mass;
@@ -9,6 +10,7 @@ mod matrices;
 mod meter;
 mod parts;
 mod pins;
+mod slave_faces;
 mod step_problem;
 mod turning;
 mod unknowns;
@@ -24,6 +26,7 @@ pub(crate) use matrices::{
 pub(crate) use meter::Meter;
 pub(crate) use parts::{Parts, PerBody};
 pub(crate) use pins::add_pin_forces;
+pub(crate) use slave_faces::SlaveFaces;
 pub(crate) use step_problem::{
     Discretization, Equilibrium, StartVelocity, StepProblem, check_finite, difference, sum,
     write_difference, write_sum,

@@ -6,6 +6,7 @@
 
 use std::borrow::Cow;
 
+use super::friction::Frictions;
 use super::integration::Integration;
 use super::loads::{Interval, Loads};
 use super::mass::Mass;
@@ -34,6 +35,7 @@ pub(crate) struct StepProblem<'m> {
     pub redistribution: &'m Redistribution,
     pub parts: &'m Parts,
     pub contacts: &'m [ContactSurfaces],
+    pub frictions: Frictions<'m>,
     pub settings: Settings,
     pub integration: Integration,
     pub unknowns: Unknowns<'m>,
@@ -113,6 +115,7 @@ impl<'m> StepProblem<'m> {
             redistribution,
             parts,
             contacts,
+            frictions: Frictions::new(model),
             settings: step.settings,
             integration: Integration::new(step),
             parts_of_unknowns: parts.of_unknowns(&unknowns.dof),

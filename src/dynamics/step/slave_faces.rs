@@ -1,0 +1,93 @@
+//! Faces of the slave surfaces, and the area that a slave node has on them. Section 9 of docs/theory.md.
+
+use std::collections::BTreeSet;
+
+use crate::model::{Face, Model, Segment, SurfaceKind};
+
+/// A segment of a face on which a slave node takes pressure.
+struct SlaveFace {
+    node: usize,
+    segment: Segment,
+    thickness: f64,
+}
+
+/// The slave nodes of all contacts with their faces.
+pub(crate) struct SlaveFaces {
+    /// 0 at slave nodes, NaN at others, `N` entries.
+    pub start: Vec<f64>,
+    /// With increasing nodes.
+    faces: Vec<SlaveFace>,
+}
+
+impl SlaveFaces {
+    /// Faces of the slave surfaces; slave nodes without such a face take the exterior faces of their
+    /// elements.
+    pub fn new(model: &Model) -> Self {
+        let mesh = &model.mesh;
+        let (mut start, mut own) = (vec![f64::NAN; mesh.node_count()], BTreeSet::new());
+        for contact in &model.contacts {
+            let slave = &model.surfaces[contact.slave];
+            if let SurfaceKind::Faces(faces) = &slave.kind {
+                own.extend(faces.iter().copied());
+            }
+            for node in slave.nodes(mesh) {
+                start[node] = 0.0;
+            }
+        }
+        let mut is_bare: Vec<bool> = start.iter().map(|start| !start.is_nan()).collect();
+        for node in own.iter().flat_map(|face| face.nodes(mesh)) {
+            is_bare[node] = false;
+        }
+        let slave_faces = |face: &Face, counts: &dyn Fn(usize) -> bool| -> Vec<SlaveFace> {
+            let thickness = thickness(model, face);
+            let at_nodes = face.segments(mesh).into_iter().flat_map(|segment| {
+                segment.map(|node| SlaveFace {
+                    node,
+                    segment,
+                    thickness,
+                })
+            });
+            at_nodes.filter(|face| counts(face.node)).collect()
+        };
+        let mut faces: Vec<SlaveFace> = (own.iter())
+            .flat_map(|face| slave_faces(face, &|_| true))
+            .collect();
+        if is_bare.contains(&true) {
+            let exterior = mesh.exterior_faces().into_iter();
+            faces.extend(exterior.flat_map(|face| slave_faces(&face, &|node| is_bare[node])));
+        }
+        faces.sort_by_key(|face| face.node);
+        SlaveFaces { start, faces }
+    }
+
+    /// Area of a node against a force N on it, with the given positions of nodes.
+    ///
+    /// ```text
+    /// A = sum over its faces max(-n.N/|N|, 0) t l/2    eq. (9.8)
+    /// ```
+    ///
+    /// n, l and t are outward normal, current length and thickness of a face.
+    pub fn area(&self, node: usize, force: [f64; 2], at: impl Fn(usize) -> [f64; 2]) -> f64 {
+        let from = self.faces.partition_point(|face| face.node < node);
+        let own = self.faces[from..]
+            .iter()
+            .take_while(|face| face.node == node);
+        let size = force[0].hypot(force[1]);
+        let mut area = 0.0;
+        for face in own {
+            let [a, b] = face.segment.map(&at);
+            // n l = (e_y, -e_x): on the right of the direction from a to b
+            let e = [b[0] - a[0], b[1] - a[1]];
+            let against = force[1] * e[0] - force[0] * e[1];
+            if against > 0.0 {
+                area += face.thickness * against / size / 2.0;
+            }
+        }
+        area
+    }
+}
+
+fn thickness(model: &Model, face: &Face) -> f64 {
+    let section = model.mesh.elements[face.element].section;
+    model.sections[section].thickness
+}
