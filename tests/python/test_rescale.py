@@ -107,7 +107,7 @@ def test_other_decks_of_cards_in_other_units_give_the_same_bits(path: Path, job:
 
 def cut(deck: Deck) -> Deck:
     """The deck with a few increments in each step, at the pace of the whole."""
-    for card in deck.find("DYNAMIC"):
+    for card in [*deck.find("DYNAMIC"), *deck.find("STATIC")]:
         dt, period = map(float, card.rows[0][:2])
         card.rows = [[repr(dt), repr(min(period, INCREMENTS * dt))]]
     return deck

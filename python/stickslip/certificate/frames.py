@@ -84,6 +84,10 @@ class Frames:
         self.force_scale = max(
             (float(np.abs(frame["CONTACT_FORCE"]).max()) for frame in result.frames), default=0.0
         )
+        self.spring_force = np.zeros(len(self.time))
+        if "connectors" in result.history:
+            force = np.abs(result.history["connectors"].force)
+            self.spring_force = force.max(axis=1, initial=0.0)
         self.stiffness = np.zeros(self.elements.bodies)
         for block in self.elements.blocks:
             np.maximum.at(self.stiffness, self.elements.body[block.elements], block.stiffness)
@@ -319,7 +323,7 @@ class Frames:
         residual = self._without_weight(residual, told)
         size = np.abs(residual).max(axis=1)
         largest = np.maximum(np.abs(internal), np.maximum(np.abs(inertia), np.abs(force)))
-        scale = np.zeros(self.elements.bodies)
+        scale = np.full(self.elements.bodies, self.spring_force[increment.row])
         reach = np.zeros(self.elements.bodies)
         inside = self.elements.of_node >= 0
         bodies = self.elements.of_node[inside]
