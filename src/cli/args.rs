@@ -63,6 +63,9 @@ pub(super) struct DeckArgs {
     /// Leave out unknown keywords and parameters with a warning
     #[arg(long)]
     pub lenient: bool,
+    /// The job that *RESTART, READ of the deck goes on from: the path of JOB.restart, with or without .restart
+    #[arg(long, value_name = "JOB")]
+    pub oldjob: Option<PathBuf>,
     /// Give a parameter of the deck (*PARAMETER) this value; may be repeated
     #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub settings: Vec<String>,
@@ -105,7 +108,7 @@ pub(super) struct RunArgs {
     /// Go on from the last checkpoint of the job, in the same files and with the same options
     ///
     /// The results are the same bits as without the stop. A deck that has changed is refused.
-    #[arg(long, conflicts_with_all = ["overwrite", "frames", "every", "solver", "strict", "lenient", "settings"])]
+    #[arg(long, conflicts_with_all = ["overwrite", "frames", "every", "solver", "strict", "lenient", "settings", "oldjob"])]
     pub resume: bool,
     /// Go on for a time T beyond the end of the last step
     #[arg(long, value_name = "T", value_parser = positive_time, requires = "resume")]

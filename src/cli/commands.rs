@@ -5,23 +5,27 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::args::{CheckArgs, DeckArgs, ExplainArgs, FlattenArgs, Format, InfoArgs, LcpArgs};
+use super::args::{
+    CheckArgs, DeckArgs, ExplainArgs, FlattenArgs, Format, InfoArgs, LcpArgs, VERSION,
+};
 use super::error::{CliError, Exit};
 use super::terminal::{coloured, complain, print};
 use crate::deck::{find_keyword, keywords};
-use crate::diagnostics::{Code, Diagnostics, Severity, Sources, closest, wrapped};
+use crate::diagnostics::{Code, Diagnostics, EarlierDeck, Severity, Sources, closest, wrapped};
 use crate::dynamics::{Observer, RunError, RunSummary};
 use crate::flat_deck::{flat_deck, reads_as};
 use crate::lcp::solve_json;
 use crate::output::{
-    FileError, ModelEcho, ResultSummary, check_names, deck_line, not_regular, picture, regular_file,
+    Checkpoint, FileError, ModelEcho, ResultSummary, check_names, deck_line, not_regular, picture,
+    regular_file,
 };
 use crate::prepare::{PreparedModel, prepare};
 use crate::{dynamics, reader};
 
 /// Reads a deck and describes its model.
 pub(super) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exit, CliError> {
-    let loaded = load(&args.deck, numerics)?;
+    let earlier = old_job(&args.deck)?.map(|earlier| earlier.as_earlier_deck());
+    let loaded = load(&args.deck, earlier, numerics)?;
     if args.format == Format::Json {
         print(std::slice::from_ref(&loaded.json))?;
         return Ok(match loaded.model {
@@ -54,10 +58,34 @@ pub(super) fn describe(
     print(&echo.guide())
 }
 
-/// Reads a deck; a deck that cannot be opened is an error of the file system.
-pub(super) fn load(deck: &DeckArgs, numerics: &Numerics) -> Result<Loaded, CliError> {
+/// Reads a deck, which goes on from an earlier one; a deck that cannot be opened is an error of the file system.
+pub(super) fn load(
+    deck: &DeckArgs,
+    earlier: Option<EarlierDeck>,
+    numerics: &Numerics,
+) -> Result<Loaded, CliError> {
     openable(&deck.path)?;
-    Ok((numerics.load)(deck, coloured()))
+    Ok((numerics.load)(deck, earlier, coloured()))
+}
+
+/// The checkpoint that the command line names for `*RESTART, READ`.
+pub(super) fn old_job(deck: &DeckArgs) -> Result<Option<Checkpoint>, CliError> {
+    let Some(job) = &deck.oldjob else {
+        return Ok(None);
+    };
+    let path = match job.extension() {
+        Some(extension) if extension == "restart" => job.clone(),
+        _ => {
+            let mut name = job.clone().into_os_string();
+            name.push(".restart");
+            name.into()
+        }
+    };
+    let earlier = Checkpoint::read(&path, VERSION)?;
+    match earlier.origin.extension > 0.0 {
+        true => Err(CliError::Extended(path)),
+        false => Ok(Some(earlier)),
+    }
 }
 
 /// Refuses a deck that cannot be opened.
@@ -142,7 +170,8 @@ fn unknown(words: &[String]) -> CliError {
 /// is rejected.
 pub(super) fn flatten(args: &FlattenArgs) -> Result<Exit, CliError> {
     openable(&args.deck.path)?;
-    let mut sources = Sources::with_settings(&args.deck.settings);
+    let earlier = old_job(&args.deck)?.map(|earlier| earlier.as_earlier_deck());
+    let mut sources = Sources::with_settings(&args.deck.settings, earlier);
     let mut d = Diagnostics::with_strictness(args.deck.strictness());
     let model = reader::read_model(&args.deck.path, &mut sources, &mut d);
     // the flat deck has the nodes where the deck has them
@@ -246,7 +275,7 @@ impl Loaded {
 }
 
 /// Reads a deck; messages coloured or not.
-type Load = fn(&DeckArgs, bool) -> Loaded;
+type Load = fn(&DeckArgs, Option<EarlierDeck>, bool) -> Loaded;
 /// Solves all steps of a model.
 type Solve = fn(&PreparedModel, &mut dyn Observer) -> Result<RunSummary, RunError>;
 
@@ -267,8 +296,8 @@ impl Numerics {
 }
 
 /// Reads and prepares a deck.
-fn read_deck(deck: &DeckArgs, colour: bool) -> Loaded {
-    let mut sources = Sources::with_settings(&deck.settings);
+fn read_deck(deck: &DeckArgs, earlier: Option<EarlierDeck>, colour: bool) -> Loaded {
+    let mut sources = Sources::with_settings(&deck.settings, earlier);
     let mut d = Diagnostics::with_strictness(deck.strictness());
     let model = reader::read_model(&deck.path, &mut sources, &mut d);
     let model = model.and_then(|model| prepare(model, &mut d));

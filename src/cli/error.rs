@@ -58,6 +58,12 @@ pub(super) enum CliError {
     /// There is no checkpoint to go on from.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+    /// A job that goes beyond the end of its deck has no place in it where another one could go on.
+    #[error(
+        "{} is of a job that --extend took beyond the end of its deck: give it the longer step, and run it anew",
+        .0.display()
+    )]
+    Extended(PathBuf),
     /// A result cannot be written.
     #[error("cannot write the results: {0}")]
     Write(#[from] io::Error),

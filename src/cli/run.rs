@@ -5,7 +5,7 @@ use std::io;
 use std::time::Duration;
 
 use super::args::{COMMIT, NUMBER, PROFILE, RunArgs, VERSION, processors};
-use super::commands::{Loaded, Numerics, describe, load};
+use super::commands::{Loaded, Numerics, describe, load, old_job};
 use super::error::{CliError, Exit};
 use super::signals;
 use super::terminal::{coloured, complain, print};
@@ -37,10 +37,17 @@ pub(super) fn run(
         args.take_options(&earlier.origin.options);
     }
     let args = &args;
-    let mut loaded = load(&args.deck, numerics)?;
+    let old_job = old_job(&args.deck)?;
+    let earlier_deck = match &earlier {
+        Some(earlier) => earlier.origin.earlier.clone(),
+        None => old_job.as_ref().map(Checkpoint::as_earlier_deck),
+    };
+    let mut loaded = load(&args.deck, earlier_deck.clone(), numerics)?;
     let origin = Origin {
         deck: texts(&loaded.sources),
         options: args.options(),
+        settings: args.deck.settings.clone(),
+        earlier: earlier_deck,
         extension: earlier
             .as_ref()
             .map_or(0.0, |earlier| earlier.origin.extension)
@@ -100,6 +107,13 @@ pub(super) fn run(
         writer.line(&format!("resumed  from the checkpoint at time {time}"))?;
         writer.go_on(earlier)?;
     }
+    if let Some(old_job) = &old_job {
+        let time = scientific(old_job.time, 6);
+        writer.line(&format!(
+            "goes on  from the checkpoint at time {time} of the earlier job"
+        ))?;
+        writer.begin_at(old_job)?;
+    }
     if !loaded.plain_messages.is_empty() {
         writer.detail(loaded.plain_messages.trim_end())?;
     }
@@ -110,7 +124,7 @@ pub(super) fn run(
         numerics,
         (
             interrupt,
-            earlier.as_ref().map(|earlier| (earlier, extension)),
+            (earlier.as_ref().or(old_job.as_ref())).map(|earlier| (earlier, extension)),
         ),
     )?;
     match writer.lost_screen() {
@@ -449,7 +463,7 @@ mod tests {
 
     fn numerics() -> Numerics {
         Numerics {
-            load: |_, _| loaded(Some(square())),
+            load: |_, _, _| loaded(Some(square())),
             solve: to_the_end,
         }
     }
@@ -625,11 +639,11 @@ mod tests {
     #[test]
     fn a_rejected_deck_touches_no_file() {
         let bench = Bench::new();
-        let load = |_: &_, _| loaded(None);
+        let load = |_: &_, _, _| loaded(None);
         let exit = bench.run(&["-q"], &Numerics { load, ..numerics() });
         assert_eq!(code(&exit), Exit::Rejected);
         assert!(!bench.touched());
-        let load = |_: &_, _| {
+        let load = |_: &_, _, _| {
             let name = "A/B".into();
             let mut model = square();
             model.sets.elements = vec![Set {

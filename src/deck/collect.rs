@@ -8,9 +8,10 @@ use super::lines::{Line, LineKind, Lines, overlong};
 use super::parameters::Parameters;
 use super::resolve::{self, Piece};
 use super::text::Text;
-use crate::diagnostics::{Code, Diagnostics, FileId, Severity, Source, Sources, Span};
+use crate::diagnostics::{Code, Diagnostics, EarlierDeck, FileId, Severity, Source, Sources, Span};
 use memchr::memchr;
 use std::collections::HashSet;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -56,6 +57,18 @@ const DEEPEST: usize = 20;
 /// Most files of one deck.
 const MOST_FILES: usize = 1000;
 
+/// Cards of the model that may stand in a deck that goes on from an earlier job.
+const ADDED: [&str; 8] = [
+    "HEADING",
+    "AMPLITUDE",
+    "NSET",
+    "ELSET",
+    "SURFACE",
+    "TIME POINTS",
+    "NO ANALYSIS",
+    "RESTART",
+];
+
 /// Longest line that other codes read.
 const LONGEST_USUAL_LINE: usize = 256;
 
@@ -100,8 +113,19 @@ fn collect(
         rows: RowRule::Stray,
         open,
         parameters,
+        earlier: None,
+        earlier_files: Vec::new(),
+        earlier_steps: None,
     };
+    let earlier = collector.sources.earlier().cloned();
+    collector.earlier = earlier.map(Box::new);
     collector.content(name, content, None, false);
+    collector.put_steps_behind();
+    if let (Some(_), false) = (&collector.earlier, collector.deck.incomplete) {
+        let message =
+            "the command line names a job to go on from, and the deck has no *RESTART, READ";
+        collector.d.error_without_place(Code::EarlierJob, message);
+    }
     if !collector.deck.incomplete && !collector.deck.dropped {
         collector.parameters.finish(collector.d);
     }
@@ -162,6 +186,12 @@ struct Collector<'a> {
     /// The files being read, outermost first.
     open: Vec<OpenFile>,
     parameters: Parameters,
+    /// The deck that the one being read goes on from.
+    earlier: Option<Box<EarlierDeck>>,
+    /// Texts of the earlier deck that is being read, by their names.
+    earlier_files: Vec<(String, String)>,
+    /// The cards of the steps of the earlier deck, and where its cards end.
+    earlier_steps: Option<Range<usize>>,
 }
 
 impl Collector<'_> {
@@ -334,6 +364,11 @@ impl Collector<'_> {
             None => None,
         };
         let path = path.map(|path| (path.text.trim_matches('"').to_string(), path.span));
+        if keyword.name == "RESTART" && self.deck.cards.last().is_some_and(|card| card.has("READ"))
+        {
+            self.go_on_from_earlier();
+            return;
+        }
         if is_inclusion || defines {
             self.deck.cards.pop();
             self.deck.incomplete |= is_inclusion && path.is_none();
@@ -389,6 +424,110 @@ impl Collector<'_> {
         }
     }
 
+    /// Reads the deck of the earlier job in the place of the last card, `*RESTART, READ`, up to the step that its
+    /// checkpoint is of.
+    fn go_on_from_earlier(&mut self) {
+        self.rows = RowRule::Refuse;
+        let Some(card) = self.deck.cards.pop() else {
+            return;
+        };
+        let is_first = (self.deck.cards.iter()).all(|card| card.keyword.name == "HEADING");
+        let Some(earlier) = self.earlier.take().filter(|_| is_first) else {
+            self.deck.incomplete = true;
+            match is_first {
+                true => self
+                    .d
+                    .error(
+                        Code::EarlierJob,
+                        card.span,
+                        "which job does this deck go on from?",
+                    )
+                    .help(
+                        "--oldjob JOB on the command line names it: its checkpoint is JOB.restart",
+                    ),
+                false => self.d.error(
+                    Code::WrongPlace,
+                    card.span,
+                    "*RESTART, READ stands before all other cards but *HEADING",
+                ),
+            };
+            return;
+        };
+        self.check_place(&card, &earlier);
+        let EarlierDeck {
+            files,
+            settings,
+            place: [steps, _],
+            ends_step: _,
+            before,
+        } = *earlier;
+        let Some((name, text)) = files.first().cloned() else {
+            return;
+        };
+        let parameters = Parameters::new(&settings, self.d);
+        let parameters = std::mem::replace(&mut self.parameters, parameters);
+        let open = std::mem::replace(&mut self.open, vec![OpenFile::new(Path::new(&name))]);
+        let files = std::mem::replace(&mut self.earlier_files, files);
+        self.earlier = before;
+        let first = self.deck.cards.len();
+        self.content(&name, Content::new(&text), Some(card.span), false);
+        self.put_steps_behind();
+        (self.parameters, self.open, self.earlier_files) = (parameters, open, files);
+        let mut begins = (first..self.deck.cards.len())
+            .filter(|&index| self.deck.cards[index].keyword.name == "STEP");
+        let first_step = begins.next().unwrap_or(self.deck.cards.len());
+        if let Some(after) = steps.checked_sub(1).and_then(|others| begins.nth(others)) {
+            self.deck.cards.truncate(after);
+        }
+        self.earlier_steps = Some(first_step..self.deck.cards.len());
+        if card.has("WRITE") {
+            self.deck.cards.push(card);
+        }
+        self.rows = RowRule::Refuse;
+    }
+
+    /// Checks that `*RESTART, READ` means the place of the checkpoint.
+    fn check_place(&mut self, card: &Card, earlier: &EarlierDeck) {
+        let [step, increment] = earlier.place;
+        let asked = |name, d: &mut Diagnostics| card.integer(name, d).map(|number| number as usize);
+        let (asked_step, asked_increment) = (asked("STEP", self.d), asked("INC", self.d));
+        let ends_there =
+            card.has("END STEP") || (asked_step.is_some() && asked_increment.is_none());
+        let message = if asked_step.is_some_and(|asked| asked != step)
+            || asked_increment.is_some_and(|asked| asked != increment)
+        {
+            format!("the checkpoint is of increment {increment} of step {step}")
+        } else if ends_there && !earlier.ends_step {
+            format!(
+                "the checkpoint is of increment {increment} of step {step}, which is not the end of the step"
+            )
+        } else {
+            return;
+        };
+        self.d.error(Code::EarlierJob, card.span, message).help(
+            "a checkpoint JOB-STEP-INC.restart that *RESTART, WRITE has kept is taken with --oldjob JOB-STEP-INC",
+        );
+    }
+
+    /// Puts the cards that a deck adds to the model of the earlier job before the steps of that.
+    fn put_steps_behind(&mut self) {
+        let Some(Range { start, end }) = self.earlier_steps.take() else {
+            return;
+        };
+        let cards = &mut self.deck.cards;
+        let added = cards[end..].iter();
+        let added = added.take_while(|card| card.keyword.name != "STEP").count();
+        for card in &cards[end..end + added] {
+            if card.keyword.status == Status::Read && !ADDED.contains(&card.keyword.name) {
+                let message = format!("{} would change the model of the earlier job", card.title());
+                self.d.error(Code::WrongPlace, card.span, message).help(
+                    "before its steps this deck may have amplitudes, sets, surfaces, time points and *RESTART",
+                );
+            }
+        }
+        cards[start..end + added].rotate_left(end - start);
+    }
+
     /// Reads a file, which may hold data lines only, in the place `span` where it is named.
     fn include(&mut self, typed: &str, span: Span, rows_only: bool) {
         match self.open_included(typed) {
@@ -418,7 +557,12 @@ impl Collector<'_> {
             let why = format!("more than {DEEPEST} levels or {MOST_FILES} files");
             return Err((Code::IncludeCycle, why));
         }
-        let content = content_of(&path).map_err(unreadable)?;
+        let name = path.display().to_string();
+        let kept = self.earlier_files.iter().find(|(kept, _)| *kept == name);
+        let content = match kept {
+            Some((_, text)) => Content::new(text),
+            None => content_of(&path).map_err(unreadable)?,
+        };
         Ok((path, content))
     }
 
@@ -428,7 +572,11 @@ impl Collector<'_> {
             return Err("this deck was not read from a file".to_string());
         };
         let [near, far] = [last, first].map(|open| open.folder.join(path));
-        match (near.exists(), far.exists()) {
+        let exists = |path: &Path| {
+            let name = path.display().to_string();
+            path.exists() || self.earlier_files.iter().any(|(kept, _)| *kept == name)
+        };
+        match (exists(&near), exists(&far)) {
             (true, _) => Ok(near),
             (false, true) => Ok(far),
             (false, false) => Err(format!("no such file ({})", near.display())),

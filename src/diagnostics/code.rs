@@ -165,6 +165,10 @@ codes! {
         "A card or a number has changed since the run began: what was computed before would not belong to what \
          comes after."
         "Put the deck back, or run it anew with --overwrite; comments and *RESTART may change."
+    EarlierJob "D212" "The deck goes on from another job, which does not fit."
+        "*RESTART, READ takes the model and the steps before from a checkpoint. The command line names its job, and \
+         STEP= and INC= of the card must be those of the checkpoint."
+        "Name the job with --oldjob, and give a checkpoint of that step and increment."
     RepeatedNode "D301" "A node is defined twice with different coordinates."
         "Two meshes with the same numbers are joined, or a line was copied."
         "Renumber the nodes of one of them."

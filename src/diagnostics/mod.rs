@@ -12,6 +12,6 @@ mod words;
 
 pub use code::Code;
 pub use diagnostic::{Added, Diagnostic, Diagnostics, FileId, Severity, Span, Strictness};
-pub use sources::{Replaced, Source, Sources};
+pub use sources::{EarlierDeck, Replaced, Source, Sources};
 pub use words::{closest, shown};
 pub(crate) use words::{list_of, wrapped};

@@ -2,6 +2,7 @@
 
 use super::{FileId, Span};
 use memchr::memchr_iter;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
@@ -81,6 +82,21 @@ impl Source {
     }
 }
 
+/// The deck of an earlier job, which a deck goes on from (`*RESTART, READ`).
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct EarlierDeck {
+    /// Names and texts of its files, the deck itself first.
+    pub files: Vec<(String, String)>,
+    /// Values `name=expression` of its parameters in place of those that it gives.
+    pub settings: Vec<String>,
+    /// Step and increment of the step at which the job goes on.
+    pub place: [usize; 2],
+    /// Whether the increment is the last one of its step.
+    pub ends_step: bool,
+    /// The deck that the earlier one goes on from.
+    pub before: Option<Box<EarlierDeck>>,
+}
+
 /// The texts of a deck and of the files it includes.
 #[derive(Debug, Clone, Default)]
 pub struct Sources {
@@ -91,6 +107,8 @@ pub struct Sources {
     replaced: BTreeMap<(u32, u32), Vec<Replaced>>,
     /// Values of parameters in place of those of the deck.
     settings: Vec<String>,
+    /// The deck that this one goes on from.
+    earlier: Option<EarlierDeck>,
 }
 
 /// A value that the reader sees in a line, and what was typed in its place.
@@ -110,12 +128,19 @@ impl Sources {
         Sources::default()
     }
 
-    /// No files yet, and values `name=expression` of parameters in place of those of the deck.
-    pub fn with_settings(settings: &[String]) -> Sources {
+    /// No files yet; values `name=expression` of parameters in place of those of the deck, and the deck that it goes on
+    /// from.
+    pub fn with_settings(settings: &[String], earlier: Option<EarlierDeck>) -> Sources {
         Sources {
             settings: settings.to_vec(),
+            earlier,
             ..Sources::default()
         }
+    }
+
+    /// The deck that this one goes on from.
+    pub fn earlier(&self) -> Option<&EarlierDeck> {
+        self.earlier.as_ref()
     }
 
     /// Values of parameters in place of those of the deck.

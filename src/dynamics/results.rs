@@ -150,7 +150,7 @@ pub struct Momentum {
 }
 
 /// Motion, energies and contact force of a body.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct BodyResult {
     /// Centre of mass (length).
     pub center: [f64; 2],
@@ -169,7 +169,7 @@ pub struct BodyResult {
 }
 
 /// Reaction that holds a rigid body, and the motion of one that turns.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct RigidReaction {
     /// Force.
     pub force: [f64; 2],
@@ -212,8 +212,9 @@ pub struct SolverCounts {
     pub converged: bool,
 }
 
-/// Everything about one finished increment; number 0 is the start.
-#[derive(Debug, Clone, PartialEq, Default)]
+/// Everything about one finished increment; number 0 is the start. A checkpoint keeps the numbers of the last one
+/// ([`IncrementReport::numbers`]).
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct IncrementReport {
     /// Number of the increment over all steps.
     pub increment: usize,
@@ -230,10 +231,13 @@ pub struct IncrementReport {
     /// Truncation error beside the displacements, in a step whose increments it decides.
     pub truncation_error: Option<f64>,
     /// Motion at the end.
+    #[serde(skip)]
     pub state: State,
     /// Results at nodes.
+    #[serde(skip)]
     pub nodal: NodalResults,
     /// Strain energy, mean stress and mean strain of every element.
+    #[serde(skip)]
     pub elements: Arc<[ElementResult]>,
     /// Energy ledger.
     pub energy: Energy,
@@ -250,18 +254,44 @@ pub struct IncrementReport {
     /// Resultants, one per contact of the model.
     pub contacts: Vec<ContactResultant>,
     /// Landings of this increment.
+    #[serde(skip)]
     pub landings: Vec<Landing>,
     /// Total impulses of the pairs that were given energy back.
+    #[serde(skip)]
     pub returns: Vec<ReturnedImpulse>,
     /// Touches that have ended.
+    #[serde(skip)]
     pub touches: Vec<Touch>,
     /// Counters of this increment.
     pub solver: SolverCounts,
     /// Its passes.
+    #[serde(skip)]
     pub passes: Vec<PassReport>,
 }
 
 impl IncrementReport {
+    /// Its numbers, without fields and without what happened in it.
+    pub fn numbers(&self) -> IncrementReport {
+        IncrementReport {
+            increment: self.increment,
+            step: self.step,
+            time: self.time,
+            step_time: self.step_time,
+            dt: self.dt,
+            ends_step: self.ends_step,
+            truncation_error: self.truncation_error,
+            energy: self.energy,
+            contact_energy: self.contact_energy,
+            momentum: self.momentum,
+            bodies: self.bodies.clone(),
+            rigid: self.rigid.clone(),
+            strain: self.strain,
+            contacts: self.contacts.clone(),
+            solver: self.solver,
+            ..IncrementReport::default()
+        }
+    }
+
     /// Leaves out what vectors over the dofs hold beyond those of so many nodes.
     pub fn keep_nodes(&mut self, nodes: usize) {
         let (state, nodal) = (&mut self.state, &mut self.nodal);
@@ -347,7 +377,7 @@ pub struct ContactViolation {
 }
 
 /// Force of one contact on a body.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct ContactOnBody {
     /// Force.
     pub force: [f64; 2],
@@ -356,7 +386,7 @@ pub struct ContactOnBody {
 }
 
 /// Resultants of one contact of the model.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct ContactResultant {
     /// Force on the slave surface (force).
     pub force: [f64; 2],

@@ -184,6 +184,7 @@ impl Frame {
         self.state.a.clone_from(&state.a);
         self.nodal.reaction.clone_from(&nodal.reaction);
         self.nodal.concentrated.clone_from(&nodal.concentrated);
+        self.nodal.tie_force.clone_from(&nodal.tie_force);
         self.nodal.contact_force.clone_from(&nodal.contact_force);
         self.nodal.gap.clone_from(&nodal.gap);
         self.nodal.status.clone_from(&nodal.status);

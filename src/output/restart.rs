@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::error::{FileError, at};
+use crate::diagnostics::EarlierDeck;
 
 /// First bytes of the file.
 const MAGIC: &[u8] = b"stickslip restart 1\n";
@@ -26,6 +27,10 @@ pub struct Checkpoint {
     pub origin: Origin,
     /// Time at the end of the last increment.
     pub time: f64,
+    /// Its step, and its number in the step.
+    pub place: [usize; 2],
+    /// Whether it is the last one of the step.
+    pub ends_step: bool,
     /// How far the files of the job were written.
     pub files: Vec<u8>,
     /// All that the rest of the run depends on.
@@ -39,8 +44,12 @@ pub struct Origin {
     pub deck: Vec<(String, String)>,
     /// Options that change what is computed or written.
     pub options: String,
+    /// Values of parameters in place of those of the deck.
+    pub settings: Vec<String>,
     /// Time by which the last step is longer than in the deck.
     pub extension: f64,
+    /// The deck of the job that this one goes on from.
+    pub earlier: Option<EarlierDeck>,
 }
 
 /// Why there is no checkpoint to go on from.
@@ -84,6 +93,17 @@ impl fmt::Display for CheckpointError {
 impl error::Error for CheckpointError {}
 
 impl Checkpoint {
+    /// The deck with the place at which another one goes on from here.
+    pub fn as_earlier_deck(&self) -> EarlierDeck {
+        EarlierDeck {
+            files: self.origin.deck.clone(),
+            settings: self.origin.settings.clone(),
+            place: self.place,
+            ends_step: self.ends_step,
+            before: self.origin.earlier.clone().map(Box::new),
+        }
+    }
+
     /// Reads a checkpoint that `program` has written.
     ///
     /// # Errors

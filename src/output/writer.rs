@@ -21,7 +21,7 @@ use super::result_file::ResultFile;
 use super::run_record::RunRecord;
 use super::status::StatusFile;
 use super::strain::warning_lines;
-use crate::archive::Archive;
+use crate::archive::{Archive, ArchiveError};
 use crate::dynamics::{Cause, Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary};
 use crate::model::{Model, RestartOutput};
 
@@ -41,6 +41,8 @@ pub struct ResultWriter<'a> {
     monitor: Monitor,
     /// The last good state: the final frame of a run that stops.
     last: Frame,
+    /// The numbers of its increment.
+    numbers: IncrementReport,
     is_last_written: bool,
     started: Instant,
     /// Time spent on output.
@@ -86,6 +88,7 @@ impl<'a> ResultWriter<'a> {
             schedule: FrameSchedule::new(model),
             monitor: Monitor::new(model),
             last: Frame::default(),
+            numbers: IncrementReport::default(),
             is_last_written: false,
             started,
             spent: started.elapsed(),
@@ -111,6 +114,32 @@ impl<'a> ResultWriter<'a> {
         self.console.log.go_on()
     }
 
+    /// Begins the files with the state of a checkpoint of another job.
+    ///
+    /// # Errors
+    /// The checkpoint is of another model; those of the file system.
+    pub fn begin_at(&mut self, checkpoint: &Checkpoint) -> io::Result<()> {
+        let mut archive = Archive::Reading(&checkpoint.files);
+        self.carry_state(&mut archive).map_err(io::Error::other)?;
+        let mut report = self.numbers.clone();
+        report.state = self.last.state.clone();
+        report.nodal = self.last.nodal.clone();
+        report.elements = Arc::clone(&self.last.elements);
+        self.result.history(&report);
+        self.result.frame(&mut self.last);
+        self.is_last_written = true;
+        self.result.write()?;
+        self.publish()
+    }
+
+    /// Carries how far the run has come, and the last good state.
+    fn carry_state(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        self.schedule.carry(archive)?;
+        self.monitor.carry(archive)?;
+        self.last.carry(archive)?;
+        archive.carry(&mut self.numbers)
+    }
+
     /// Carries how far the files are written; gives the length of the status file.
     fn carry(
         &mut self,
@@ -118,9 +147,7 @@ impl<'a> ResultWriter<'a> {
         earlier: Option<&Path>,
         mut length: u64,
     ) -> io::Result<u64> {
-        let carried = (self.schedule.carry(archive))
-            .and_then(|()| self.monitor.carry(archive))
-            .and_then(|()| self.last.carry(archive))
+        let carried = (self.carry_state(archive))
             .and_then(|()| archive.carry(&mut self.is_last_written))
             .and_then(|()| archive.carry(&mut length));
         carried.map_err(io::Error::other)?;
@@ -142,6 +169,8 @@ impl<'a> ResultWriter<'a> {
             program: self.checkpoints.program.clone(),
             origin: self.checkpoints.origin.clone(),
             time: self.last.time,
+            place: self.schedule.place(),
+            ends_step: self.numbers.ends_step,
             files: archive.into_bytes(),
             solver,
         };
@@ -260,6 +289,7 @@ impl<'a> ResultWriter<'a> {
         self.print_remarks(report, &remarks)?;
         self.result.history(report);
         self.last.set(report);
+        self.numbers = report.numbers();
         let is_frame = self.schedule.is_due(report);
         self.note_due(report);
         self.is_last_written = is_frame;

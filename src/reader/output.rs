@@ -49,7 +49,7 @@ impl Requests {
 
     /// `*RESTART, WRITE`: checkpoints from this step on.
     pub fn restart(&mut self, card: &Card, cx: &mut Context) {
-        if card.has("READ") || !card.has("WRITE") {
+        if !card.has("WRITE") {
             return;
         }
         let every = match card.has("FREQUENCY") {

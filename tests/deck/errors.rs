@@ -141,6 +141,7 @@ fn faulty(code: Code) -> Source {
         MissingEndStep => square("*END STEP\n", ""),
         StepStructure => square("*DYNAMIC, DIRECT\n0.1, 1.\n", ""),
         ChangedDeck => Source::Resumed(square("1000.", "1100.").text()),
+        EarlierJob => square("*NODE", "*RESTART, READ, STEP=1\n*NODE"),
         RepeatedCard => square("*DENSITY", "*DENSITY\n2.\n*DENSITY"),
         AssemblyStructure => change(BLOCKS, "*End Part\n", ""),
         Placement => change(

@@ -15,7 +15,7 @@ fn read(changes: &[(&str, &str)], settings: &[&str]) -> (Option<Model>, Diagnost
         text = text.replacen(old, new, 1);
     }
     let settings: Vec<String> = settings.iter().map(|text| (*text).to_owned()).collect();
-    let (mut sources, mut d) = (Sources::with_settings(&settings), Diagnostics::new());
+    let (mut sources, mut d) = (Sources::with_settings(&settings, None), Diagnostics::new());
     let deck = parse_str("deck.inp", &text, &mut sources, &mut d);
     let model = reader::build(&deck, &mut d);
     let text = d.render(&sources, false);

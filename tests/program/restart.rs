@@ -168,3 +168,132 @@ fn what_cannot_go_on_says_why() {
     fs::remove_file(stopped.path().join("job.vtkhdf")).expect("removed");
     refused(&["--resume"], 4, "job.vtkhdf");
 }
+
+const SECOND: &str = "*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.002, 0.1\n*DLOAD, OP=NEW, AMPLITUDE=FADE\n, GRAV, 9.81, 0., -1.\n\
+                      *NODE PRINT, NSET=TIP\nU\n*END STEP\n";
+const THIRD: &str = "*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.001, 0.05\n*END STEP\n";
+const FADE: &str = "*NSET, NSET=TIP\n1\n*AMPLITUDE, NAME=FADE\n0., 1., 0.1, 0.\n";
+
+/// The last rows of the histories of a job by the names of their datasets; the last frames.
+fn last_rows(folder: &Path, job: &str, rows: usize) -> BTreeMap<String, Vec<u64>> {
+    let file = hdf5::File::open(folder.join(job).with_extension("vtkhdf")).expect("a result");
+    let mut found = BTreeMap::new();
+    datasets(&file.group("history").expect("histories"), &mut found);
+    let all = found["/history/time"].0[0];
+    found.retain(|_, (shape, _)| shape[0] == all);
+    let last = |(name, (shape, bits)): (String, (Vec<usize>, Vec<u64>))| {
+        let width = bits.len() / shape[0];
+        (name, bits[bits.len() - rows * width..].to_vec())
+    };
+    found.into_iter().map(last).collect()
+}
+
+#[test]
+fn a_deck_goes_on_from_the_end_of_another_job_in_the_same_bits() {
+    let place = TempDir::new().expect("folder");
+    let path = |name: &str| place.path().join(name);
+    let write = |name: &str, text: &str| fs::write(path(name), text).expect("deck");
+    let (mesh, step) = BEAM.split_once("\n*STEP").expect("a step");
+    write(
+        "whole.inp",
+        &format!("{mesh}\n{FADE}*STEP{step}\n{SECOND}{THIRD}"),
+    );
+    write("mesh.inp", mesh);
+    write(
+        "one.inp",
+        &format!("*PARAMETER\nlong = 0.5\n*INCLUDE, INPUT=mesh.inp\n*RESTART, WRITE, FREQUENCY=70\n*STEP{step}\n")
+            .replacen("0.002, 0.6", "0.002, <long>", 1),
+    );
+    write(
+        "two.inp",
+        &format!("*RESTART, READ, STEP=1, END STEP\n{FADE}{SECOND}"),
+    );
+    write(
+        "three.inp",
+        &format!("*HEADING\nthe end\n*RESTART, READ\n{THIRD}"),
+    );
+    let job = |words: &[&str]| program(place.path(), &[&["run", "-q"], words].concat());
+    assert_done(&job(&["whole.inp"]));
+    assert_done(&job(&["one.inp", "--set", "long=0.6"]));
+    // the checkpoint has the decks
+    fs::remove_file(path("mesh.inp")).expect("removed");
+    fs::remove_file(path("one.inp")).expect("removed");
+    assert_done(&job(&[
+        "two.inp",
+        "--oldjob",
+        "one",
+        "--checkpoint",
+        "1000",
+    ]));
+    assert_done(&job(&[
+        "three.inp",
+        "--oldjob",
+        "two.restart",
+        "--checkpoint",
+        "0",
+    ]));
+    assert_done(&job(&["three.inp", "--resume"]));
+    let rows = |job: &str| {
+        let file = hdf5::File::open(path(job)).expect("a result");
+        let dataset = file.dataset("history/time").expect("times");
+        dataset.shape()[0]
+    };
+    let (two, three) = (rows("two.vtkhdf"), rows("three.vtkhdf"));
+    assert!(two >= 51 && three >= 51, "{two} {three}");
+    // those of the second job, with the state that it begins from, stand before those of the third
+    let whole = last_rows(place.path(), "whole", two + three - 1);
+    let (a, b) = (
+        last_rows(place.path(), "two", two),
+        last_rows(place.path(), "three", three),
+    );
+    assert_eq!(
+        whole.keys().collect::<Vec<_>>(),
+        a.keys().collect::<Vec<_>>()
+    );
+    for (name, rows) in &whole {
+        let width = rows.len() / (two + three - 1);
+        assert_eq!(rows[..two * width], a[name][..], "{name} of the second job");
+        if let Some(b) = b.get(name) {
+            assert_eq!(rows[(two - 1) * width..], b[..], "{name} of the third job");
+        }
+    }
+    let refused = |words: &[&str], code: i32, text: &str| {
+        let output = job(words);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{message}");
+        assert!(message.contains(text), "{message}");
+    };
+    refused(
+        &["two.inp", "--overwrite"],
+        2,
+        "which job does this deck go on from?",
+    );
+    let early = ["two.inp", "--overwrite", "--oldjob", "one-1-70"];
+    refused(
+        &early,
+        2,
+        "of increment 70 of step 1, which is not the end of the step",
+    );
+    let other = ["whole.inp", "--overwrite", "--oldjob", "one"];
+    refused(&other, 2, "has no *RESTART, READ");
+    write(
+        "more.inp",
+        &format!("*RESTART, READ\n*NODE\n99999, 0., 0.\n{THIRD}"),
+    );
+    refused(
+        &["more.inp", "--oldjob", "one"],
+        2,
+        "*NODE would change the model of the earlier job",
+    );
+    // in the middle of a step: the rest of it comes first
+    write(
+        "two.inp",
+        &format!("*RESTART, READ, STEP=1, INC=70\n{FADE}{SECOND}"),
+    );
+    assert_done(&job(&["two.inp", "--overwrite", "--oldjob", "one-1-70"]));
+    let rows = rows("two.vtkhdf");
+    let whole = last_rows(place.path(), "whole", two + three - 1);
+    let all = last_rows(place.path(), "two", rows);
+    let name = "/history/energy/kinetic";
+    assert!(rows > 200 && all[name].ends_with(&whole[name][..two]));
+}
