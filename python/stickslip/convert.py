@@ -87,7 +87,9 @@ def to_xarray(result: "Result", fields: Sequence[str]) -> "xarray.Dataset":
     return xarray.Dataset(variables, coordinates, {"job": result.job})
 
 
-def _variable(axes: list[str], data: Array, attributes: Any, coordinates: dict[str, Any]) -> tuple:
+def _variable(
+    axes: list[str], data: Array, attributes: Any, coordinates: dict[str, Any]
+) -> tuple[list[str], Array, dict[str, str]]:
     """Axes, values and attributes; the last axis of vectors and tensors has the names of components."""
     if data.ndim > len(axes):
         components = COMPONENTS[data.shape[-1]]

@@ -46,7 +46,7 @@ class Mesh:
     def __init__(
         self,
         points: ArrayLike,
-        elements: Sequence[ArrayLike] | ArrayLike,
+        elements: Sequence[ArrayLike] | NDArray[Any],
         element_sets: Mapping[str, ArrayLike] = {},
         node_sets: Mapping[str, ArrayLike] = {},
         sides: Mapping[str, ArrayLike] = {},

@@ -17,7 +17,10 @@ from numpy.typing import NDArray
 
 from stickslip.errors import Fault, one_line
 from stickslip.frame import Frame, Frames
-from stickslip.history import Array, Contacts, History, Integers
+from stickslip.history import Array as Array
+from stickslip.history import Contacts, History
+from stickslip.history import Flags as Flags
+from stickslip.history import Integers as Integers
 
 if TYPE_CHECKING:
     import pandas
@@ -267,7 +270,7 @@ class Result:
         return found
 
     @property
-    def run(self) -> dict[str, object]:
+    def run(self) -> dict[str, Any]:
         """Attributes of the run record."""
         return dict(self.file["run"].attrs)
 

@@ -58,10 +58,10 @@ class Certificate:
         broken = [check for check in told if not check.holds]
         size = f"{self.increments} increments and {self.frames} frames"
         if broken:
-            names = ", ".join("{} {:.1e} above {:.0e}".format(c.name, *c.shown()) for c in broken)
+            names = ", ".join("{} {:.1e} above {:.1e}".format(c.name, *c.shown()) for c in broken)
             return f"{len(broken)} of {len(told)} checks of {size} fail: {names}"
         shown = ("equilibrium", "gap", "cone", "penetration", "balance")
-        worst = ", ".join(f"{c.name} {c.shown()[0]:.0e}" for c in told if c.name in shown)
+        worst = ", ".join(f"{c.name} {c.shown(1)[0]:.0e}" for c in told if c.name in shown)
         return f"all {len(told)} checks of {size} hold: {worst}"
 
     def table(self) -> list[str]:

@@ -1,6 +1,10 @@
-"""A check of the certificate: its worst value beside its bound."""
+"""A check of the certificate: its worst value beside its bound.
+
+Both are rounded outward, values up and bounds down, and so are the digits of values that are shown.
+"""
 
 from dataclasses import dataclass, field
+from decimal import ROUND_UP, Context
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -45,6 +49,8 @@ class Check:
             return
         self.count += values.size
         values = np.where(np.isnan(values), np.inf, np.maximum(values, 0.0))
+        values = np.where(values > 0.0, np.nextafter(values, np.inf), 0.0)
+        bounds = np.where(bounds > 0.0, np.nextafter(bounds, 0.0), bounds)
         above = np.where(values > bounds, np.inf, 0.0)
         ratio = np.divide(values, bounds, out=above, where=bounds > 0.0)
         worst = int(ratio.argmax())
@@ -55,10 +61,12 @@ class Check:
 
     _ratio: float = 0.0
 
-    def shown(self) -> tuple[float, float]:
-        """Worst value and bound as parts of the scale."""
+    def shown(self, digits: int = 2) -> tuple[float, float]:
+        """Worst value, rounded up to so many digits, and bound, as parts of the scale."""
         scale = self.scale or 1.0
-        return self.value / scale, self.bound / scale
+        value = np.nextafter(self.value / scale, np.inf) if self.value > 0.0 else 0.0
+        up = Context(prec=digits, rounding=ROUND_UP)
+        return float(up.create_decimal(float(value))), self.bound / scale
 
     def skip(self, reason: str) -> None:
         """Notes why something could not be told."""

@@ -42,14 +42,13 @@ def contacts(result: Result) -> list[Contact]:
     at = "model/contacts"
     with result.reading(at):
         names = list(result.file[at])
-    return [
-        Contact(
-            name,
-            *(result.read(f"{at}/{name}/{part}") for part in ("slaves", "segments", "friction")),
-            result.read("model/bodies/node"),
-        )
-        for name in names
-    ]
+    body = result.read("model/bodies/node")
+    found = []
+    for name in names:
+        parts = ("slaves", "segments", "friction")
+        slaves, segments, friction = (result.read(f"{at}/{name}/{part}") for part in parts)
+        found.append(Contact(name, slaves, segments, friction, body))
+    return found
 
 
 @dataclass(frozen=True)
@@ -99,8 +98,10 @@ def places(x: Array, way: Array, nodes: Integers, contact: Contact) -> Iterator[
         distance = np.where((off <= BEYOND + moved) & other, np.abs(gap), reach)
         distance = np.where(ends <= CORNER, 0.0, distance)
         own = (segments[:, 0] == some[:, None]) | (segments[:, 1] == some[:, None])
-        values = (np.where(own, np.inf, each) for each in (gap, distance, reach, ends))
-        yield Places(some, *values, moved, length)
+        gap, distance, reach, ends = (
+            np.where(own, np.inf, each) for each in (gap, distance, reach, ends)
+        )
+        yield Places(some, gap, distance, reach, ends, moved, length)
 
 
 @dataclass(frozen=True)

@@ -199,8 +199,7 @@ class Block:
             j = j * np.sqrt(1.0 + 2.0 * across)
         cauchy = f @ stress @ f.swapaxes(2, 3) / j[..., None, None]
         part = self.weight / self.weight.sum(axis=1, keepdims=True)
-        mean = [np.einsum("eg,egij->eij", part, each) for each in (cauchy, e)]
-        return tuple(np.stack([m[:, 0, 0], m[:, 1, 1], m[:, 0, 1]], axis=1) for m in mean)
+        return _mean(part, cauchy), _mean(part, e)
 
     def add_forces(self, total: Array, u0: Array, u1: Array, halfway: bool) -> None:
         """Adds F of eq. (4.5); `halfway`: the energy-momentum form, else that of u1."""
@@ -360,6 +359,12 @@ def _gradients(corners: Array) -> tuple[Array, Array]:
     jacobian = np.einsum("eai,gar->egir", corners, natural)
     gradient = np.einsum("gar,egrj->egaj", natural, np.linalg.inv(jacobian))
     return gradient, weight * _determinant(jacobian)
+
+
+def _mean(part: Array, values: Array) -> Array:
+    """Means of symmetric tensors over the elements, as xx yy xy."""
+    mean = np.einsum("eg,egij->eij", part, values)
+    return np.stack([mean[:, 0, 0], mean[:, 1, 1], mean[:, 0, 1]], axis=1)
 
 
 def _trace(a: Array) -> Array:

@@ -16,7 +16,7 @@ from stickslip.certificate.contacts import (
 )
 from stickslip.certificate.elements import EPS, Elements
 from stickslip.frame import Frame
-from stickslip.result import OPEN, STICK, Array, Integers, Result
+from stickslip.result import OPEN, STICK, Array, Flags, Integers, Result
 
 ENERGY = 1e-11
 """Energies, momenta and masses: error as a part of the largest of the run."""
@@ -283,7 +283,7 @@ class Frames:
         if self._start_is_told(frame, increment)[loaded].all():
             check.add(abs(moment.sum()) / (size * arm), 1e-9, f"moment, t = {frame.time:g}")
 
-    def _start_is_told(self, frame: Frame, increment: Increment) -> Array:
+    def _start_is_told(self, frame: Frame, increment: Increment) -> Flags:
         """Nodes whose place at the start of the increment is known [N]."""
         told = np.ones(len(frame["U"]), np.bool_)
         if not increment.exact:
@@ -340,7 +340,7 @@ class Frames:
         if not len(nodes):
             check.skip("no node is free of supports and loads")
 
-    def _without_weight(self, residual: Array, told: Array) -> Array:
+    def _without_weight(self, residual: Array, told: Flags) -> Array:
         """Takes out the body forces: the accelerations of their patterns that fit best."""
         if not self.patterns:
             return residual
@@ -421,7 +421,7 @@ class Frames:
         x1 = self.result.coordinates + frame["U"]
         halfway = increment.scheme == 1
         known = increment.start is not None
-        x0 = self.result.coordinates + increment.start if known else x1
+        x0 = x1 if increment.start is None else self.result.coordinates + increment.start
         ends = {node for touch in touches for node in touch.segment}
         count: dict[int, int] = {}
         for touch in touches:
@@ -457,7 +457,7 @@ class Frames:
         return self.result.edge_length
 
 
-def _whole_bodies(elements: Elements, constrained: Integers) -> Array:
+def _whole_bodies(elements: Elements, constrained: Integers) -> Flags:
     """Bodies all of whose nodes are constrained, as those of rigid bodies are [B]."""
     free = np.ones(elements.nodes, np.bool_)
     free[constrained] = False

@@ -3,7 +3,7 @@
 import numpy as np
 
 from stickslip.certificate.check import Check, Checks
-from stickslip.result import Array, Integers, Result
+from stickslip.result import Array, Flags, Integers, Result
 
 EPS = float(np.finfo(np.float64).eps)
 
@@ -207,7 +207,7 @@ def _momenta(result: Result, check: Check) -> None:
         check.skip("no body is free")
 
 
-def _shares(result: Result, of_node: Integers, bodies: int, quantity: str) -> tuple[Array, Array]:
+def _shares(result: Result, of_node: Integers, bodies: int, quantity: str) -> tuple[Flags, Array]:
     """Force or impulse of all contacts on each body [I, B, 2], and whether it can be told [I, B]."""
     dt = result.history["dt"]
     told = np.ones((len(dt), bodies), np.bool_)

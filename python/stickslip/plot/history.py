@@ -18,6 +18,7 @@ from collections.abc import Callable, Sequence
 from itertools import cycle
 from pathlib import Path
 from textwrap import fill
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -63,7 +64,7 @@ def energy(axes: Axes, results: Result) -> None:
     parts = np.array([sign * account[name] for (name, _, sign), _ in entered])
     labels = [label for (_, label, _), _ in entered]
     colours = [colour for _, colour in entered]
-    look = {"colors": colours, "alpha": 0.85, "linewidth": 0}
+    look: dict[str, Any] = {"colors": colours, "alpha": 0.85, "linewidth": 0}
     axes.stackplot(results.history.time, np.maximum(parts, 0.0), labels=labels, **look)
     axes.stackplot(results.history.time, np.minimum(parts, 0.0), **look)
     axes.plot(results.history.time, start + account["external_work"], "k--", lw=1, label="put in")
@@ -138,12 +139,12 @@ def contact_state(axes: Axes, results: Result) -> None:
 
 def legend_beside(axes: Sequence[Axes]) -> None:
     """One legend to the right of a row of axes, for all lines in them, equal labels once."""
-    entries = {}
+    entries: dict[str, Any] = {}
     for each in axes:
         handles, labels = each.get_legend_handles_labels()
         entries |= dict(zip(labels, handles))
     if entries:
-        place = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
+        place: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
         legend = axes[-1].legend(list(entries.values()), list(entries), **place)
         for line in legend.get_lines():
             line.set_linewidth(1.8)  # thin ones have pale colours
@@ -239,7 +240,8 @@ def draw_named(all_results: list[Result], along: str, rows: list[list[str]]) -> 
 
 def draw_row(axes: Axes, all_results: list[Result], along: str, shown: list[str]) -> list[str]:
     """Draws the histories of one row; returns the titles of the abscissa."""
-    abscissae, ordinates = {}, {}
+    abscissae: dict[str, None] = {}
+    ordinates: dict[str, None] = {}
     colours = iter(style.colours(len(all_results) * len(shown)))
     for job, results in zip(names(all_results), all_results):
         across = find(results, along)

@@ -131,7 +131,7 @@ def overlay(rows: Sequence[Sequence[Shown]], window: Box | None = None) -> Figur
     columns = page.grid.columns
     for i, row in enumerate(rows):
         axes = page.panel(i // columns, i % columns, i + columns >= len(rows))
-        draw_overlay(axes, row, shades(len(row)))
+        draw_overlay(axes, row, list(shades(len(row))))
         axes.set_title(row[0][0].job, pad=4)
     return page.figure
 
@@ -155,7 +155,7 @@ def write_film(path: Path, pictures: Iterable[Image.Image], frames_per_second: i
     if path.suffix == ".gif":
         first, *others = pictures
         palette = first.quantize(256)
-        others = [picture.quantize(palette=palette, dither=0) for picture in others]
+        others = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in others]
         duration = round(1000 / frames_per_second)
         palette.save(path, save_all=True, append_images=others, duration=duration, loop=0)
         return
@@ -219,7 +219,7 @@ def chosen_times(results: Result, times: list[float] | None, interval: float | N
     count = (end - first) / interval
     if count > MOST:
         raise Fault(f"--interval {interval:g} asks for {count:.0f} panels: {MOST} at most")
-    return first + interval * np.arange(int(count + 1e-9) + 1)
+    return first + interval * np.arange(int(count + 1e-9) + 1, dtype=np.float64)
 
 
 def shown_at(results: Result, times: Iterable[float]) -> list[Shown]:

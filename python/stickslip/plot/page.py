@@ -129,7 +129,7 @@ def longest_tick(low: float, high: float) -> int:
     formatter.create_dummy_axis()
     labels = []
     for bins in range(1, TICKS + 1):
-        labels += formatter.format_ticks(MaxNLocator(bins).tick_values(low, high))
+        labels += formatter.format_ticks(list(MaxNLocator(bins).tick_values(low, high)))
     return max(map(len, labels))
 
 

@@ -2,11 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, cast
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import Collection, LineCollection, PolyCollection
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
@@ -90,7 +92,7 @@ class Arrows:
     def legend(self) -> list[Artist]:
         """What an arrow is."""
         label = f"{VECTORS[self.name]},\nlongest {self.largest:.3g}"
-        look = {"color": ARROW, "marker": r"$\rightarrow$", "markersize": 11, "linestyle": "none"}
+        look: dict[str, Any] = {"color": ARROW, "marker": r"$\rightarrow$", "markersize": 11, "linestyle": "none"}
         return [Line2D([], [], label=label, **look)]
 
 
@@ -103,25 +105,25 @@ def draw_shape(axes: Axes, results: Result, frame: int, colouring: Colouring | N
     bodies.set_linewidth(mesh_line(axes, results))
     bodies.set_edgecolor("#ffffff80" if on_cells else "#b8c0c8")
     bodies.set_facecolor(BACKGROUND)
-    outline = LineCollection(position[results.boundary], colors=EDGE, linewidths=0.8)
+    outline = LineCollection(list(position[results.boundary]), colors=EDGE, linewidths=0.8)
     axes.add_collection(bodies)
     axes.add_collection(outline)
     if colouring is not None:
         values = colouring.field.values(results, frame)
-        coloured = bodies
+        coloured: Collection = bodies
         if on_edges:
             there = np.isfinite(values) & (values != 0.0)
             values = values[there]
-            coloured = LineCollection(position[results.boundary[there]], linewidths=3.0, zorder=3)
+            coloured = LineCollection(list(position[results.boundary[there]]), linewidths=3.0, zorder=3)
             axes.add_collection(coloured)
         coloured.set(array=values, cmap="viridis", norm=colouring.norm)
-    axes.add_collection(LineCollection(position[results.rigid], colors=EDGE, linewidths=1.6))
+    axes.add_collection(LineCollection(list(position[results.rigid]), colors=EDGE, linewidths=1.6))
     if on_edges:
         return  # marks of the nodes would cover the coloured edges
     status = results.frames[frame]["CONTACT_STATUS"]
     for value, face in ((STICK, MARK), (SLIP, "white")):
         at = position[status == value]
-        axes.scatter(*at.T, s=11, facecolor=face, edgecolor=MARK, linewidth=0.9, zorder=5)
+        axes.scatter(at[:, 0], at[:, 1], s=11, facecolor=face, edgecolor=MARK, linewidth=0.9, zorder=5)
 
 
 def mesh_line(axes: Axes, results: Result) -> float:
@@ -130,7 +132,8 @@ def mesh_line(axes: Axes, results: Result) -> float:
     Lines of a fine mesh would drown the colours of its elements.
     """
     left, right = axes.get_xlim()
-    across = axes.get_position().width * axes.figure.get_size_inches()[0] * POINTS_PER_INCH
+    figure = cast(Figure, axes.figure)
+    across = axes.get_position().width * figure.get_size_inches()[0] * POINTS_PER_INCH
     edge = results.edge_length * across / ((right - left) or 1.0)
     return float(min(MESH_LINE, edge / 30.0)) if edge > 3.0 else 0.0
 
@@ -142,7 +145,7 @@ def status_legend(shown: Sequence[Shown]) -> list[Artist]:
         for results, frame in shown
         for value in np.unique(results.frames[frame]["CONTACT_STATUS"])
     }
-    look = {"marker": "o", "markersize": 3.6, "markeredgecolor": MARK, "linestyle": "none"}
+    look: dict[str, Any] = {"marker": "o", "markersize": 3.6, "markeredgecolor": MARK, "linestyle": "none"}
     return [
         Line2D([], [], markerfacecolor=face, label=label, **look)
         for value, face, label in ((STICK, MARK, "stick"), (SLIP, "white", "slip"))
@@ -189,8 +192,8 @@ def draw_overlay(axes: Axes, shown: Sequence[Shown], shades: Sequence[Array]) ->
         outline = position[[side for side in results.boundary if select[side[0]]]]
         rigid = position[[side for side in results.rigid if select[side[0]]]]
         axes.add_collection(PolyCollection(cells, facecolors=face, linewidths=0))
-        axes.add_collection(LineCollection(outline, colors=[edge], linewidths=1.1))
-        axes.add_collection(LineCollection(rigid, colors=[edge], linewidths=1.6))
+        axes.add_collection(LineCollection(list(outline), colors=[edge], linewidths=1.1))
+        axes.add_collection(LineCollection(list(rigid), colors=[edge], linewidths=1.6))
 
     if not moving.all():
         draw(shown[0][1], ~moving, BACKGROUND, EDGE)

@@ -68,7 +68,7 @@ def save(figure: Figure, path: Path | str, dpi: float | None = None) -> Path:
         raise Fault(f"{path} cannot be written: {one_line(error)}") from None
     if path.suffix == ".png":
         with Image.open(path) as picture:
-            small = picture.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, 3, dither=0)
+            small = picture.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, 3, dither=Image.Dither.NONE)
         small.save(path, optimize=True)
     print(f"wrote {path}")
     return path

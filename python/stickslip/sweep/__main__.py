@@ -77,14 +77,13 @@ def points(arguments: argparse.Namespace) -> list[Point]:
         return read_points(arguments.points)
     if not arguments.vary:
         raise Fault("what shall vary? Give --vary NAME=FROM:TO:COUNT or --points FILE.csv")
-    parse = ranged if arguments.latin_hypercube else varied
-    values = [parse(text) for text in arguments.vary]
-    names = [name for name, _ in values]
+    names = [text.partition("=")[0].strip() for text in arguments.vary]
     if twice := {name for name in names if names.count(name) > 1}:
         raise Fault(f"--vary names {', '.join(sorted(twice))} twice")
     if arguments.latin_hypercube:
-        return latin_hypercube(dict(values), arguments.latin_hypercube, arguments.seed)
-    return product(dict(values))
+        ranges = dict(map(ranged, arguments.vary))
+        return latin_hypercube(ranges, arguments.latin_hypercube, arguments.seed)
+    return product(dict(map(varied, arguments.vary)))
 
 
 def run() -> int:
