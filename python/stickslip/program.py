@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 
 from stickslip.deck import Deck
-from stickslip.errors import Fault
+from stickslip.errors import Fault, one_line
 from stickslip.result import Result
 
 STOPPED = 1
@@ -26,13 +26,13 @@ REJECTED = 2
 POLL = 0.1
 """Seconds between two looks at a running program."""
 
-OPTIONS = ("frames", "every", "solver", "threads")
+OPTIONS = ("frames", "every", "solver", "threads", "checkpoint", "extend", "oldjob")
 """Options of `stickslip run` with a value."""
 
 Value = float | int | str
 """Value of a parameter of a deck."""
 
-FLAGS = ("strict", "lenient", "verbose")
+FLAGS = ("strict", "lenient", "verbose", "resume")
 """Options of `stickslip run` without a value."""
 
 
@@ -140,21 +140,27 @@ def run(
     """Solves a deck, a file or a `Deck`, and returns its result.
 
     The results go to the folder `output`, under the name of the deck's file, or `job` for a `Deck`,
-    which is written there too. `options` are those of `stickslip run`: frames, every, solver,
-    threads with a value; strict, lenient, verbose as True. `words` are options as they are typed.
+    which is written there too. Results that exist are replaced, unless `overwrite` is False or the run
+    goes on from its checkpoint with `resume`. `options` are those of `stickslip run`: frames, every,
+    solver, threads, checkpoint, extend, oldjob with a value; strict, lenient, verbose, resume as True.
+    `words` are options as they are typed.
     `parameters` are values of the deck's parameters, in place of those of its `*PARAMETER` cards.
     `progress` prints how far the run is, or is called with a `Progress` some times a second. Raises
     DeckRejected, RunStopped or RunFailed.
     """
     folder = Path(output)
-    folder.mkdir(parents=True, exist_ok=True)
-    path = deck.write(folder / f"{job}.inp") if isinstance(deck, Deck) else Path(deck)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        path = deck.write(folder / f"{job}.inp") if isinstance(deck, Deck) else Path(deck)
+    except OSError as error:
+        raise Fault(f"{folder} cannot be written: {one_line(error)}") from None
     command = [str(binary()), "run", str(path), "-o", str(folder), "-q"]
     command += [*settings(parameters or {}), *_words(options), *words]
-    if overwrite:
+    if overwrite and not options.get("resume"):
         command.append("--overwrite")
     result = folder / f"{job_name(path)}.vtkhdf"
-    watch = _watch(path, result, progress) if progress else None
+    end = None if "extend" in options else _duration(path)
+    watch = _watch(result.with_suffix(".sta"), end, progress) if progress else None
     with tempfile.TemporaryFile("w+", errors="replace") as errors:
         code = _wait(subprocess.Popen(command, stdin=subprocess.DEVNULL, stderr=errors), watch)
         errors.seek(0)
@@ -244,18 +250,25 @@ def _wait(process: subprocess.Popen[bytes], watch: Callable[[bool], None] | None
     return code
 
 
+def _duration(deck: Path) -> float | None:
+    """Time of all steps of a deck, where it can be told."""
+    try:
+        return Deck.read(deck).duration
+    except (OSError, Fault):  # the program says what is wrong
+        return None
+
+
 def _watch(
-    deck: Path, result: Path, progress: bool | Callable[[Progress], object]
+    status: Path, end: float | None, progress: bool | Callable[[Progress], object]
 ) -> Callable[[bool], None]:
     """What looks at the status file of a run and tells how far it is."""
     tell = progress if callable(progress) else _print
-    status, start, end = result.with_suffix(".sta"), time.monotonic(), Deck.read(deck).duration
-    began = time.time()
+    start, old = time.monotonic(), _stamp(status)
     last = -1
 
     def watch(ended: bool) -> None:
         nonlocal last
-        increment, when = _last_increment(status, began)
+        increment, when = (0, 0.0) if _stamp(status) == old else _last_increment(status)
         if increment > last:
             last = increment
             tell(Progress(when, end, increment, time.monotonic() - start))
@@ -265,12 +278,19 @@ def _watch(
     return watch
 
 
-def _last_increment(status: Path, began: float) -> tuple[int, float]:
-    """Number and time of the last increment in a status file that this run has written."""
+def _stamp(file: Path) -> tuple[int, ...]:
+    """What changes when a file is written; nothing where there is none."""
+    try:
+        found = file.stat()
+    except OSError:
+        return ()
+    return found.st_ino, found.st_mtime_ns, found.st_size
+
+
+def _last_increment(status: Path) -> tuple[int, float]:
+    """Number and time of the last increment in a status file."""
     try:
         with status.open("rb") as file:
-            if os.fstat(file.fileno()).st_mtime < began - 1.0:
-                return 0, 0.0
             file.seek(max(0, os.fstat(file.fileno()).st_size - 4096))
             lines = file.read().decode(errors="replace").splitlines(keepends=True)
         row = [line for line in lines if line.endswith("\n") and line[:1] == " "][-1].split()

@@ -183,6 +183,21 @@ def test_options_are_those_of_the_program(tmp_path: Path) -> None:
     stickslip.run(falling(2), tmp_path)
     with pytest.raises(RunFailed, match="--overwrite"):
         stickslip.run(falling(2), tmp_path, overwrite=False)
+    (tmp_path / "file").touch()
+    with pytest.raises(Fault, match="file cannot be written"):
+        stickslip.run(falling(2), tmp_path / "file")
+    with pytest.raises(RunFailed, match="none.inp"):
+        stickslip.run(tmp_path / "none.inp", tmp_path, progress=True)
+
+
+def test_progress_is_that_of_this_run(tmp_path: Path) -> None:
+    """The status file of an earlier run counts only when this run has written it."""
+    stickslip.run(falling(2), tmp_path)
+    told: list[Progress] = []
+    stickslip.run(falling(20), tmp_path, checkpoint=60, progress=told.append)
+    assert told[0].increment == 0 and told[-1].increment >= 20
+    stickslip.run(falling(20), tmp_path, resume=True, extend=0.004, progress=told.append)
+    assert told[-1].increment >= 24 and told[-1].end is None and told[-1].part is None
 
 
 # Meshes.
