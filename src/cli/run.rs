@@ -305,6 +305,7 @@ mod tests {
                 body_forces: vec![],
                 pressures: vec![],
                 tractions: vec![],
+                interferences: vec![],
                 frames: Frames::Count(1),
             }],
             ..Model::default()

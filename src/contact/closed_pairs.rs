@@ -27,7 +27,7 @@ impl ClosedPair {
     pub fn new(constraint: &Constraint, force: [f64; 2], state: ContactState) -> Self {
         ClosedPair {
             key: constraint.key,
-            source: constraint.source,
+            source: constraint.source.allowing(1),
             force,
             mu: constraint.mu,
             state,

@@ -15,13 +15,14 @@ impl Constraint {
 
     /// The same constraint at the start, with the segment that holds the node there.
     pub fn at_start(&self, start: &Configurations) -> Self {
-        let mut source = self.source;
+        let mut source = self.source.allowing(0);
         if let Some([a, b]) = source.from.take() {
             (source.nodes[1], source.nodes[2], source.nodes[3]) = (a, b, b);
         }
         Constraint {
             mu: self.mu,
             mu_varies: self.mu_varies,
+            shrinkage: self.shrinkage,
             ..Constraint::new(source, start)
         }
     }

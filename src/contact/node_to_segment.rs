@@ -56,7 +56,12 @@ pub(super) fn tilt(source: &PairTarget, at: &Configurations) -> f64 {
     let [start, end] =
         [at.start([s, a, b]), at.iterate([s, a, b])].map(|[s, a, b]| project(s, a, b));
     let [s, i, j] = at.start([s, i, j]);
-    let rise = rise(&start, project(s, i, j).gap, s);
+    let allowed = source.allowed[0];
+    let start = Projection {
+        gap: start.gap + allowed,
+        ..start
+    };
+    let rise = rise(&start, project(s, i, j).gap + allowed, s);
     let slip = (start.length + end.length) / 2.0 * (end.xi - start.xi);
     // a node that has not moved has no direction to be tilted in
     match rise != 0.0 && slip.abs() > position_round_off(s) {

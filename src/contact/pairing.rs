@@ -42,6 +42,7 @@ pub fn find_targets(
             now,
             slave: listed.key.slave,
             held_by: &held_by,
+            allowed: listed.allowed(),
         };
         let found = node.targets(listed.candidates());
         let mut own = Targets::new();
@@ -86,6 +87,7 @@ fn pair_target(listed: &ListedSlave, target: ContactTarget) -> PairTarget {
         target,
         nodes: [s, a, b, c],
         from: target.from.map(|i| surfaces.segments[i]),
+        allowed: listed.allowed(),
     }
 }
 

@@ -49,6 +49,20 @@ impl<'m> Search<'m> {
         }
     }
 
+    /// Takes the overlaps that fits allow the slave nodes of every contact at the start of an increment and at its end
+    /// (length); of a contact without a fit none.
+    pub fn allow(&mut self, allowed: Vec<Vec<[f64; 2]>>) {
+        for (territory, allowed) in self.territories.iter_mut().zip(allowed) {
+            territory.is_fitted = allowed.iter().any(|[_, end]| *end != 0.0);
+            territory.allowed = allowed;
+        }
+    }
+
+    /// Lets nodes of a contact pair with segments that they are behind by a further `overlap` (length).
+    pub fn reach_into(&mut self, contact: usize, overlap: f64) {
+        self.territories[contact].reach += overlap;
+    }
+
     /// Starts an increment of length `dt` with the velocities `v`: the reach of a pair grows by the
     /// displacements dt |v| of its node and its segment.
     pub fn start(&mut self, v: &[f64], dt: f64) {
@@ -192,6 +206,17 @@ impl<'a> ListedSlave<'a, '_> {
         }
     }
 
+    /// Overlap that a fit allows it at the start of the increment and at its end (length).
+    pub fn allowed(&self) -> [f64; 2] {
+        let allowed = self.territory.allowed.get(self.key.slave);
+        allowed.copied().unwrap_or_default()
+    }
+
+    /// Whether nodes of its contact may overlap at the end of the increment.
+    pub fn is_fitted(&self) -> bool {
+        self.territory.is_fitted
+    }
+
     /// Its candidates, with increasing segments.
     pub fn candidates(&self) -> impl Iterator<Item = Candidate> + Clone + use<'a> {
         self.territory.candidates(self.key.slave)
@@ -213,6 +238,10 @@ pub struct Territory<'m> {
     starts: Vec<usize>,
     /// The same as pairs, in the order in which they are found.
     found: Vec<[u32; 2]>,
+    /// Overlaps that a fit allows the slave nodes at the start of the increment and at its end (length); else none.
+    allowed: Vec<[f64; 2]>,
+    /// Whether there are some at the end of the increment.
+    is_fitted: bool,
 }
 
 impl<'m> Territory<'m> {
@@ -231,6 +260,8 @@ impl<'m> Territory<'m> {
             candidates: Vec::new(),
             starts: Vec::new(),
             found: Vec::new(),
+            allowed: Vec::new(),
+            is_fitted: false,
         }
     }
 

@@ -71,12 +71,23 @@ pub struct PairTarget {
     pub nodes: [usize; 4],
     /// Ends of the segment that held the node at the start, where it has slid on from there.
     pub from: Option<[usize; 2]>,
+    /// Overlap that a fit allows the node at the start of the increment and at its end (length), eq. (3.15).
+    pub allowed: [f64; 2],
 }
 
 impl PairTarget {
     /// The same target, whatever held the node at the start.
     pub(super) fn untilted(self) -> Self {
         PairTarget { from: None, ..self }
+    }
+
+    /// The same target in one configuration, with the overlap that is allowed at the start of the increment (0) or at
+    /// its end (1).
+    pub(super) fn allowing(self, end: usize) -> Self {
+        PairTarget {
+            allowed: [self.allowed[end]; 2],
+            ..self
+        }
     }
 }
 
@@ -466,6 +477,8 @@ pub struct SlaveNode<'a> {
     pub slave: usize,
     /// Segments of the pairs of the node that were closed at the start.
     pub held_by: &'a [usize],
+    /// Overlap that a fit allows it at the start and in the iterate (length): what its gaps are larger by, eq. (3.12).
+    pub allowed: [f64; 2],
 }
 
 impl SlaveNode<'_> {
@@ -474,6 +487,7 @@ impl SlaveNode<'_> {
         let [a, b] = self.surfaces.segments[segment];
         let motions = [self.node(), a, b]
             .map(|node| Motion::straight(self.start.of(node), self.now.of(node)));
+        let motions = raised(motions, self.allowed);
         let is_entering = |c: &Crossing| c.direction == Direction::Entering;
         crossings(&motions, 1.0).iter().any(is_entering)
     }
@@ -616,24 +630,42 @@ impl SlaveNode<'_> {
     /// Projection on a segment in the iterate.
     #[inline]
     pub(crate) fn project(&self, segment: usize) -> Projection {
-        self.project_at(self.now, segment)
+        self.project_at((self.now, self.allowed[1]), segment)
     }
 
     /// Projection on a segment at the start.
     pub(crate) fn project_at_start(&self, segment: usize) -> Projection {
-        self.project_at(self.start, segment)
+        self.project_at((self.start, self.allowed[0]), segment)
     }
 
     #[inline]
-    fn project_at(&self, at: Positions, segment: usize) -> Projection {
+    fn project_at(&self, (at, allowed): (Positions, f64), segment: usize) -> Projection {
         let [a, b] = self.surfaces.segments[segment];
-        project(at.of(self.node()), at.of(a), at.of(b))
+        let p = project(at.of(self.node()), at.of(a), at.of(b));
+        Projection {
+            gap: p.gap + allowed,
+            ..p
+        }
     }
 
     #[inline]
     fn node(&self) -> usize {
         self.surfaces.slaves[self.slave]
     }
+}
+
+/// Motions of a node and of the ends of a segment, the node being raised along the normal by the overlap that a fit
+/// allows it at both ends of the path (length).
+pub(super) fn raised([mut s, a, b]: [Motion; 3], allowed: [f64; 2]) -> [Motion; 3] {
+    if allowed != [0.0; 2] {
+        let raised = |part: f64, by: f64| {
+            let [x, a, b] = [&s, &a, &b].map(|motion| motion.at(part));
+            let normal = project(x, a, b).normal;
+            [0, 1].map(|i| x[i] + by * normal[i])
+        };
+        s = Motion::straight(raised(0.0, allowed[0]), raised(1.0, allowed[1]));
+    }
+    [s, a, b]
 }
 
 /// A convex corner, between a segment and the next, as the target of a slave node.
@@ -699,6 +731,7 @@ mod tests {
                 now: at,
                 slave: 0,
                 held_by: &[],
+                allowed: [0.0; 2],
             };
             node.was_in_front(0)
         };

@@ -20,6 +20,7 @@ pub(crate) fn pair(target: ContactTarget, nodes: [usize; 4]) -> PairTarget {
         target,
         nodes,
         from: None,
+        allowed: [0.0; 2],
     }
 }
 
@@ -43,6 +44,7 @@ pub(crate) fn made_up(dofs: &[usize], rows: Rows) -> Constraint {
         slip: 0.0,
         mu: 0.5,
         mu_varies: false,
+        shrinkage: 0.0,
         scale: 1.0,
         source,
     }

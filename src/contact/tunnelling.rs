@@ -10,6 +10,7 @@ use super::geometry::{Along, ContactSurfaces, Projection, position, project};
 use super::keys::NodeAtSegment;
 use super::keys::SlaveKey;
 use super::search::Search;
+use super::targets::raised;
 use super::tolerances::{CORNER_CLIP_DEPTH, DEPTH_ROUND_OFF, SEGMENT_END};
 use crate::linear::{larger, largest};
 use crate::vectors::{cross, difference};
@@ -38,6 +39,7 @@ pub fn find_penetration(
             key: listed.key,
             closed,
             unsolved,
+            allowed: listed.allowed(),
         };
         events.clear();
         for candidate in listed.candidates() {
@@ -62,6 +64,8 @@ struct NodePath<'a> {
     /// Closed pairs before the increment and at its end.
     closed: [&'a ClosedPairs; 2],
     unsolved: &'a [f64],
+    /// Overlap that a fit allows the node at the start and at the end (length).
+    allowed: [f64; 2],
 }
 
 impl NodePath<'_> {
@@ -78,10 +82,11 @@ impl NodePath<'_> {
 
     fn motions(&self, segment: usize) -> [Motion; 3] {
         let [a, b] = self.contact.segments[segment];
-        [self.slave, a, b].map(|node| {
+        let motions = [self.slave, a, b].map(|node| {
             let [from, to] = self.u.map(|u| position(self.x, u, node));
             Motion::straight(from, to)
-        })
+        });
+        raised(motions, self.allowed)
     }
 
     /// Projection on a segment at a fraction of the path.
@@ -269,7 +274,7 @@ fn turns_left(first: &Projection, second: &Projection) -> bool {
 pub fn crossed_edges(search: &Search, u: &[f64]) -> f64 {
     let at = |node: usize| position(search.coordinates(), u, node);
     let mut most = 0.0;
-    for listed in search.slaves() {
+    for listed in search.slaves().filter(|listed| !listed.is_fitted()) {
         let slave = listed.node();
         let Some(adjacent) = listed.surfaces.adjacent[listed.key.slave] else {
             continue;

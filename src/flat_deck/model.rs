@@ -35,9 +35,11 @@ fn write_contacts(model: &Model, lines: &mut DeckWriter) {
         lines.card("CONTACT INCLUSIONS", ["ALL EXTERIOR".to_owned()]);
         lines.card("CONTACT PROPERTY ASSIGNMENT", []);
         lines.row([String::new(), String::new(), interaction]);
-        if let Some(Adjust::Within(reach)) = general.adjust {
-            initialization(reach, lines);
-        }
+        let reach = match general.adjust {
+            Some(Adjust::Within(reach)) => Some(reach),
+            _ => None,
+        };
+        initialization(reach, general.is_interference_fit, lines);
     }
     for body in &model.rigid_bodies {
         if body.is_coupling {
@@ -186,14 +188,25 @@ fn pair(contact: &Contact, interactions: &Interactions, model: &Model, lines: &m
     }
 }
 
-/// Writes which nodes of general contact are moved before the start.
-fn initialization(reach: Reach, lines: &mut DeckWriter) {
+/// Writes which nodes of general contact are moved before the start, and whether overlaps are pressed out.
+fn initialization(reach: Option<Reach>, is_fit: bool, lines: &mut DeckWriter) {
     const NAME: &str = "INITIALIZATION-1";
-    let mut parameters = vec![set("NAME", NAME), set("SEARCH ABOVE", number(reach.above))];
-    if reach.below.is_finite() {
-        parameters.push(set("SEARCH BELOW", number(reach.below)));
+    if reach.is_none() && !is_fit {
+        return;
     }
-    parameters.push(set("INITIAL CLEARANCE", number(reach.clearance)));
+    let mut parameters = vec![set("NAME", NAME)];
+    if let Some(reach) = reach {
+        parameters.push(set("SEARCH ABOVE", number(reach.above)));
+        if reach.below.is_finite() {
+            parameters.push(set("SEARCH BELOW", number(reach.below)));
+        }
+        parameters.push(match is_fit {
+            true => set("INTERFERENCE FIT", number(-reach.clearance)),
+            false => set("INITIAL CLEARANCE", number(reach.clearance)),
+        });
+    } else {
+        parameters.push("INTERFERENCE FIT".to_owned());
+    }
     lines.card_of("CONTACT INITIALIZATION DATA", &parameters);
     lines.card("CONTACT INITIALIZATION ASSIGNMENT", []);
     lines.row([String::new(), String::new(), NAME.to_owned()]);

@@ -1,12 +1,12 @@
 //! Initial velocities and steps, with the cards that lead to the loads of a step from those of the
 //! step before.
 
-use super::lines::{DeckWriter, named, number, set};
+use super::lines::{DeckWriter, name, named, number, set};
 use super::model::{elements_field, first_of_rigid};
 use crate::model::{
-    Amplitude, BodyForce, Frames, HistorySet, Incrementation, Increments, Load, Model, NamedSets,
-    PointLoad, Pressure, Procedure, Rate, RigidBody, Scheme, Settings, Step, Support,
-    SupportMotion, Traction, Variation,
+    ALL_EXTERIOR, Amplitude, BodyForce, Frames, HistorySet, Incrementation, Increments,
+    Interference, Load, Model, NamedSets, PointLoad, Pressure, Procedure, Rate, RigidBody, Scheme,
+    Settings, Step, Support, SupportMotion, TimeBase, Traction, Variation,
 };
 use crate::reader::{self, carried_loads};
 use std::collections::HashMap;
@@ -29,6 +29,8 @@ pub(super) fn write(model: &Model, lines: &mut DeckWriter) {
         let held = own_supports(step, model);
         write_supports(&held, &supports, model, lines);
         now.write(&loads, model, lines);
+        let before = index.checked_sub(1).map(|before| &model.steps[before]);
+        write_interferences(step, before, model, lines);
         requests(index, step, model, lines);
         lines.card("END STEP", []);
         supports = carried(&held, step, &model.amplitudes);
@@ -159,6 +161,46 @@ fn carried(supports: &[Support], step: &Step, amplitudes: &[Amplitude]) -> Vec<S
         motion: motion.after_step(period, amplitudes),
     });
     kept.collect()
+}
+
+/// Writes the overlaps that contact pairs allow, but those that the step before leaves.
+fn write_interferences(step: &Step, before: Option<&Step>, model: &Model, lines: &mut DeckWriter) {
+    let is_pair = |load: &&Load<Interference>| {
+        let contact = &model.contacts[load.at.contact];
+        model.surfaces[contact.slave].name != ALL_EXTERIOR
+    };
+    let left = |contact: usize| {
+        let before = before?;
+        let mut all = before.interferences.iter();
+        let load = all.find(|load| load.at.contact == contact)?;
+        let curve = match load.variation {
+            Variation::Amplitude(index) => Some(&model.amplitudes[index]),
+            Variation::Constant | Variation::Ramp { .. } => None,
+        };
+        Some(match curve {
+            Some(curve) if curve.time == TimeBase::Total => *load,
+            Some(curve) => load.between([load.magnitude * curve.at(before.increments.period); 2]),
+            None => load.between([load.magnitude; 2]),
+        })
+    };
+    let is_given = |load: &&Load<Interference>| left(load.at.contact) != Some(**load);
+    for load in step.interferences.iter().filter(is_pair).filter(is_given) {
+        // without an amplitude an overlap falls to nothing
+        let (amplitude, overlap) = match load.variation {
+            Variation::Amplitude(index) => (Some(index), load.magnitude),
+            Variation::Ramp { from } => (None, from),
+            Variation::Constant => (None, load.magnitude),
+        };
+        let is_shrink = load.at.is_shrink;
+        let amplitude = amplitude.map(|index| named("AMPLITUDE", &model.amplitudes[index].name));
+        let shrink = is_shrink.then(|| "SHRINK".to_owned());
+        let parameters: Vec<String> = amplitude.into_iter().chain(shrink).collect();
+        lines.card_of("CONTACT INTERFERENCE", &parameters);
+        let contact = &model.contacts[load.at.contact];
+        let surfaces = [contact.slave, contact.master].map(|s| name(&model.surfaces[s].name));
+        let overlap = (!is_shrink).then(|| number(overlap));
+        lines.row(surfaces.into_iter().chain(overlap));
+    }
 }
 
 /// What a card of supports says on its keyword line: the derivative that it prescribes, and the

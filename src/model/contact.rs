@@ -30,6 +30,8 @@ pub struct Contact {
     pub adjust: Option<Adjust>,
     /// Slave nodes that take no part (indices, increasing).
     pub left_out: Vec<usize>,
+    /// Whether it is general contact that presses the overlap of bodies out in the first step.
+    pub is_interference_fit: bool,
     /// Place in the deck, for messages.
     pub span: Span,
 }

@@ -32,8 +32,9 @@ pub use sets::{HistorySet, Instance, NamedSets, RequestedFields, element_name, n
 pub use side::{Segment, Side, SideNodes};
 pub use step::{
     BodyForce, ContactMass, Factorization, Frames, Impact, ImpactTime, Incrementation, Increments,
-    LandingRule, LcpChoice, Load, PointLoad, Pressure, Procedure, Rate, RestartOutput, Scheme,
-    Settings, SolverChoice, Step, Support, SupportMotion, Traction, Variation,
+    Interference, LandingRule, LcpChoice, Load, PointLoad, Pressure, Procedure, Rate,
+    RestartOutput, Scheme, Settings, SolverChoice, Step, Support, SupportMotion, Traction,
+    Variation,
 };
 pub(crate) use tie::{NEAR, nearest_of};
 pub use tie::{Tie, TieReach, TiedNode};
@@ -146,6 +147,36 @@ impl Model {
     /// Whether the deck shall be read and checked only (`*NO ANALYSIS`).
     pub fn is_check_only(&self) -> bool {
         self.steps.iter().any(|step| step.settings.is_check_only)
+    }
+
+    /// Overlaps that contacts allow in the first step.
+    fn first_interferences(&self) -> impl Iterator<Item = &Load<Interference>> {
+        let first = self.steps.first();
+        first.into_iter().flat_map(|step| &step.interferences)
+    }
+
+    /// Whether a contact (index) presses the overlap of the start out in the first step.
+    pub fn shrinks(&self, contact: usize) -> bool {
+        let mut all = self.first_interferences();
+        all.any(|load| load.at.contact == contact && load.at.is_shrink)
+    }
+
+    /// Whether a contact (index) allows an overlap in the first step.
+    pub fn is_fitted(&self, contact: usize) -> bool {
+        let mut all = self.first_interferences();
+        all.any(|load| load.at.contact == contact)
+    }
+
+    /// Overlap that a contact (index) allows all its slave nodes at the start of the analysis (length).
+    pub fn allowed_at_start(&self, contact: usize) -> f64 {
+        let at_start = |load: &Load<Interference>| match load.variation {
+            Variation::Constant => load.magnitude,
+            Variation::Ramp { from } => from,
+            Variation::Amplitude(index) => load.magnitude * self.amplitudes[index].at(0.0),
+        };
+        let all = self.first_interferences();
+        let own = all.filter(|load| load.at.contact == contact && !load.at.is_shrink);
+        own.map(at_start).sum()
     }
 
     /// Segments [a, b] of all rigid surfaces.

@@ -24,6 +24,8 @@ pub struct Step {
     pub pressures: Vec<Load<Pressure>>,
     /// Dead tractions.
     pub tractions: Vec<Load<Traction>>,
+    /// Overlaps that contacts allow, by contact.
+    pub interferences: Vec<Load<Interference>>,
     /// When field frames are written.
     pub frames: Frames,
 }
@@ -179,6 +181,16 @@ pub struct Traction {
     pub face: Face,
     /// Direction; a unit vector.
     pub direction: [f64; 2],
+}
+
+/// Overlap that a contact allows (magnitude: length, the same for all its slave nodes; of a shrink fit the part of what
+/// each node overlaps at the start of the analysis).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interference {
+    /// Index of the contact.
+    pub contact: usize,
+    /// Whether every node may overlap by what it does at the start of the analysis.
+    pub is_shrink: bool,
 }
 
 /// A dof whose displacement is prescribed.

@@ -596,6 +596,7 @@ mod tests {
             body_forces: vec![],
             pressures: vec![],
             tractions: vec![],
+            interferences: vec![],
             frames: crate::model::Frames::Default,
         };
         Model {

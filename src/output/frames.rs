@@ -218,6 +218,7 @@ mod tests {
             body_forces: vec![],
             pressures: vec![],
             tractions: vec![],
+            interferences: vec![],
             frames,
         };
         Model {

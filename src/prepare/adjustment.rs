@@ -47,7 +47,8 @@ pub(super) fn adjust(model: &mut Model, surfaces: &[ContactSurfaces]) -> Vec<Adj
         let before = model.mesh.coordinates.clone();
         let clearance = wanted.clearance();
         let meant = |model: &Model| {
-            let mut meant = gaps(surfaces, &model.mesh.coordinates, &bodies);
+            let shrinks = model.contacts[i].is_interference_fit;
+            let mut meant = gaps(surfaces, &model.mesh.coordinates, &bodies, shrinks);
             meant.retain(|gap| {
                 let off = (gap.gap - clearance).abs();
                 off > COORDINATE_ROUND_OFF * gap.edge && is_meant(model, wanted, gap)
@@ -59,7 +60,7 @@ pub(super) fn adjust(model: &mut Model, surfaces: &[ContactSurfaces]) -> Vec<Adj
             for _ in 0..SWEEPS {
                 move_nodes(model, &independent(wanted_moves), clearance);
                 wanted_moves = meant(model);
-                wanted_moves.retain(|gap| gap.gap < 0.0);
+                wanted_moves.retain(|gap| gap.gap < clearance.min(0.0));
                 if wanted_moves.is_empty() {
                     break;
                 }
@@ -244,6 +245,7 @@ mod tests {
                 clearance: 0.0,
             })),
             left_out: Vec::new(),
+            is_interference_fit: false,
             span: Span::default(),
         });
         let surfaces = contact_surfaces(&model, &model.mesh.bodies());

@@ -5,9 +5,9 @@
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
-use crate::contact::tolerances::PROJECTION_BEYOND_ENDS;
+use crate::contact::tolerances::{FACING_SINE, PROJECTION_BEYOND_ENDS};
 use crate::contact::{ContactSurfaces, Projection, project};
-use crate::vectors::{Circle, CircleTree, difference, distance, length};
+use crate::vectors::{Circle, CircleTree, difference, distance, dot, length};
 
 /// Gap of a slave node to the segment it faces in the reference configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,9 +27,14 @@ pub struct InitialGap {
 }
 
 /// Gaps of the slave nodes of a contact at the positions `x`; nodes that face no segment are left
-/// out.
-pub(super) fn gaps(contact: &ContactSurfaces, x: &[[f64; 2]], bodies: &[usize]) -> Vec<InitialGap> {
-    let start = Start::new(contact, x, bodies);
+/// out. Nodes of a contact that presses its overlap out may lie deeper behind a segment, which their own surface faces.
+pub(super) fn gaps(
+    contact: &ContactSurfaces,
+    x: &[[f64; 2]],
+    bodies: &[usize],
+    shrinks: bool,
+) -> Vec<InitialGap> {
+    let start = Start::new(contact, x, bodies, shrinks);
     let slaves = contact.slaves.iter();
     slaves.filter_map(|&slave| start.gap(slave)).collect()
 }
@@ -53,7 +58,14 @@ struct Start<'m> {
     fans: Vec<Option<NormalFan>>,
     /// Length of the shortest face at every slave node that has one.
     shortest: HashMap<usize, f64>,
+    /// Nodes before and after every slave node on its own surface, where the contact presses its overlap out.
+    adjacent: Option<HashMap<usize, [usize; 2]>>,
+    /// How deep behind a segment a node may face it (segment lengths).
+    deepest: f64,
 }
+
+/// How deep behind a segment a node may lie whose overlap is pressed out (segment lengths).
+const DEEPEST_FIT: f64 = 8.0;
 
 /// Length of the shortest of some faces at each of their nodes.
 fn shortest_faces(faces: &[[usize; 2]], x: &[[f64; 2]]) -> HashMap<usize, f64> {
@@ -69,12 +81,25 @@ fn shortest_faces(faces: &[[usize; 2]], x: &[[f64; 2]]) -> HashMap<usize, f64> {
 }
 
 impl<'m> Start<'m> {
-    fn new(contact: &'m ContactSurfaces, x: &'m [[f64; 2]], bodies: &'m [usize]) -> Self {
+    fn new(
+        contact: &'m ContactSurfaces,
+        x: &'m [[f64; 2]],
+        bodies: &'m [usize],
+        shrinks: bool,
+    ) -> Self {
         let circles = contact.segments.iter().map(|&[a, b]| circle(x[a], x[b]));
         let tree = CircleTree::new(circles);
         let ends = |i: usize| contact.segments[i].map(|node| x[node]);
-        let fan = |i: usize| NormalFan::new(ends(i), contact.next[i].map(ends));
+        let deepest = if shrinks { DEEPEST_FIT } else { 1.0 };
+        let fan = |i: usize| NormalFan {
+            deepest: deepest * distance(ends(i)[0], ends(i)[1]),
+            ..NormalFan::new(ends(i), contact.next[i].map(ends))
+        };
+        let own = contact.slaves.iter().zip(&contact.adjacent);
+        let own = own.filter_map(|(&slave, adjacent)| Some((slave, (*adjacent)?)));
         Start {
+            adjacent: shrinks.then(|| own.collect()),
+            deepest,
             fans: tree.of_groups(fan, NormalFan::join),
             shortest: shortest_faces(&contact.slave_faces, x),
             contact,
@@ -149,13 +174,23 @@ impl<'m> Start<'m> {
     fn faced(&self, slave: usize, i: usize) -> Option<Projection> {
         let [a, b] = self.contact.segments[i];
         let p = self.project(slave, i);
-        let may_face = ![a, b].contains(&slave) && p.gap >= -p.length;
+        let may_face = ![a, b].contains(&slave) && p.gap >= -self.deepest * p.length;
         let is_own_body = self.bodies[a] == self.bodies[slave];
         let is_back = || {
             let interior = &self.contact.interior;
             is_own_body && p.gap < 0.0 && !interior.contains([a, b], slave, |node| self.x[node])
         };
-        (may_face && !is_back()).then_some(p)
+        (may_face && !is_back() && self.is_opposite(slave, &p)).then_some(p)
+    }
+
+    /// Whether the surface of a node that may be pressed out of a body faces a segment: it lies in front of the parallel
+    /// to it through the node.
+    fn is_opposite(&self, slave: usize, p: &Projection) -> bool {
+        let adjacent = self.adjacent.as_ref().and_then(|all| all.get(&slave));
+        adjacent.into_iter().flatten().all(|&adjacent| {
+            let r = difference(self.x[slave], self.x[adjacent]);
+            dot(r, p.normal) >= -FACING_SINE * length(r)
+        })
     }
 }
 
@@ -170,8 +205,8 @@ pub(super) struct NormalFan {
     middle: f64,
     /// Largest angle from it (rad); pi for all directions.
     half: f64,
-    /// Length of the longest segment.
-    longest: f64,
+    /// How deep a node may lie behind them: the length of the longest segment, or more.
+    deepest: f64,
 }
 
 impl NormalFan {
@@ -188,7 +223,7 @@ impl NormalFan {
         NormalFan {
             middle: if is_clear { middle + turn / 2.0 } else { 0.0 },
             half: if is_clear { turn.abs() / 2.0 } else { PI },
-            longest: length(difference(a, b)),
+            deepest: length(difference(a, b)),
         }
     }
 
@@ -200,7 +235,7 @@ impl NormalFan {
         NormalFan {
             middle: self.middle + (low + high) / 2.0,
             half: f64::min((high - low) / 2.0, PI),
-            longest: self.longest.max(other.longest),
+            deepest: self.deepest.max(other.deepest),
         }
     }
 
@@ -220,7 +255,7 @@ impl NormalFan {
         let phi = turn(self.middle, d[1].atan2(d[0])).abs();
         let reach = self.half + beta + ANGLE_ROUND_OFF;
         let nearest = (phi - self.half - ANGLE_ROUND_OFF).max(0.0);
-        let is_shallow = || distance * nearest.cos() + circle.radius >= -self.longest;
+        let is_shallow = || distance * nearest.cos() + circle.radius >= -self.deepest;
         phi <= reach || (PI - phi <= reach && is_shallow())
     }
 }
@@ -244,7 +279,7 @@ mod tests {
     fn gap(top: f64, s: [f64; 2], body: usize) -> Option<f64> {
         let contact = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]]);
         let x = [s, [2.0, 0.0], [0.0, top], [-2.0, 0.0]];
-        let found = gaps(&contact, &x, &[0, body, body, body]);
+        let found = gaps(&contact, &x, &[0, body, body, body], false);
         found.first().map(|found| found.gap)
     }
 
@@ -277,7 +312,7 @@ mod tests {
         };
         let contact = ContactSurfaces::new(vec![0, 5], &[], vec![[1, 2], [2, 3]])
             .with_interior(Arc::new(Interior::new(&mesh, |_| true)));
-        let found = gaps(&contact, &coordinates, &[0; 7]);
+        let found = gaps(&contact, &coordinates, &[0; 7], false);
         let of = |slave| found.iter().find(|g| g.slave == slave).map(|g| g.gap);
         [of(0), of(5)]
     }
@@ -298,7 +333,7 @@ mod tests {
         let segments = (0..count).map(|i| [i, (i + 1) % count]).collect();
         let contact = ContactSurfaces::new((0..count).collect(), &[], segments);
         let bodies = vec![0; count];
-        let start = Start::new(&contact, &x, &bodies);
+        let start = Start::new(&contact, &x, &bodies, false);
         let mut visits = 0;
         for &point in &x {
             start.visit_faced(point, |_| {
@@ -339,7 +374,7 @@ mod tests {
         let segments = (20..59).map(|i| [i, i + 1]).collect();
         let contact = ContactSurfaces::new((0..60).collect(), &[], segments);
         let bodies: Vec<usize> = (0..60).map(|i| usize::from(i > 30)).collect();
-        let start = Start::new(&contact, &x, &bodies);
+        let start = Start::new(&contact, &x, &bodies, false);
         let expected = |slave: usize| {
             let all = (0..39).flat_map(|i| [start.over(slave, i), start.in_wedge(slave, i)]);
             let closest = all
@@ -348,7 +383,7 @@ mod tests {
             closest.map(|(_, i)| (slave, contact.segments[i]))
         };
         let expected: Vec<(usize, [usize; 2])> = (0..60).filter_map(expected).collect();
-        let found = gaps(&contact, &x, &bodies);
+        let found = gaps(&contact, &x, &bodies, false);
         let found: Vec<(usize, [usize; 2])> = found.iter().map(|g| (g.slave, g.segment)).collect();
         assert_eq!(found, expected);
     }

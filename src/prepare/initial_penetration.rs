@@ -2,6 +2,7 @@
 //! not face each other, reported as diagnostics at the contact in the deck.
 
 use super::initial_gaps::InitialGap;
+use super::prepared_model::PreparedModel;
 use crate::contact::tolerances::{COORDINATE_ROUND_OFF, PENETRATION_FAULT};
 use crate::contact::{ContactSurfaces, project};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
@@ -15,14 +16,16 @@ const FEW: usize = 8;
 /// the first increment pushes out, as warnings. Bodies that lie on the same side of a common face
 /// are errors too: all gaps are zero there, and contact would never close. A pair of which no node
 /// faces the other surface is a warning.
-pub(super) fn report_penetrations(
-    model: &Model,
-    surfaces: &[ContactSurfaces],
-    all_gaps: &[Vec<InitialGap>],
-    d: &mut Diagnostics,
-) {
-    report_nothing_faced(model, all_gaps, d);
-    for (i, (contact, gaps)) in model.contacts.iter().zip(all_gaps).enumerate() {
+pub(super) fn report_penetrations(prepared: &PreparedModel, d: &mut Diagnostics) {
+    let PreparedModel {
+        model, surfaces, ..
+    } = prepared;
+    let all_gaps: Vec<Vec<InitialGap>> = (0..surfaces.len())
+        .map(|contact| left_gaps(prepared, contact))
+        .collect();
+    report_nothing_faced(model, &all_gaps, d);
+    report_no_overlap(prepared, d);
+    for (i, (contact, gaps)) in model.contacts.iter().zip(&all_gaps).enumerate() {
         if let Some(behind) = behind_the_body(model, &surfaces[i], gaps) {
             d.push(facing_away(model, contact, behind));
             continue;
@@ -37,6 +40,50 @@ pub(super) fn report_penetrations(
         if let Some(deepest) = deepest {
             d.push(diagnostic(model, contact, deepest, inside().count()));
         }
+    }
+}
+
+/// Initial gaps of a contact, larger by the overlaps that it allows at the start.
+fn left_gaps(prepared: &PreparedModel, contact: usize) -> Vec<InitialGap> {
+    let PreparedModel {
+        model,
+        surfaces,
+        gaps,
+        overlaps,
+        ..
+    } = prepared;
+    let overlap: HashMap<usize, f64> = (surfaces[contact].slaves.iter().copied())
+        .zip(overlaps[contact].iter().copied())
+        .collect();
+    let allowed = model.allowed_at_start(contact);
+    let left = |gap: &InitialGap| InitialGap {
+        gap: gap.gap + overlap.get(&gap.slave).copied().unwrap_or(allowed),
+        ..*gap
+    };
+    gaps[contact].iter().map(left).collect()
+}
+
+/// Warns about contacts that shall press an overlap out and have none.
+fn report_no_overlap(prepared: &PreparedModel, d: &mut Diagnostics) {
+    let model = &prepared.model;
+    let has_overlap = |contact: usize| prepared.overlaps[contact].iter().any(|o| *o > 0.0);
+    for (i, contact) in model.contacts.iter().enumerate() {
+        // of general contact all bodies and rigid surfaces are meant
+        let others = model.contacts.iter().enumerate();
+        let mut others = others.filter(|(_, other)| {
+            let [a, b] = [contact, *other].map(|contact| [contact.slave, contact.master]);
+            a == [b[1], b[0]] || (contact.is_interference_fit && other.is_interference_fit)
+        });
+        if !model.shrinks(i) || has_overlap(i) || others.any(|(other, _)| has_overlap(other)) {
+            continue;
+        }
+        let message = format!(
+            "no node of {} is inside {} at the start: there is no overlap to press out",
+            model.surfaces[contact.slave].name,
+            opposite(model, contact)
+        );
+        (d.warning_once(Code::Interference, contact.span, message))
+            .help("the bodies of a fit overlap in the mesh by their interference");
     }
 }
 

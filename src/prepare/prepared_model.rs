@@ -8,6 +8,7 @@ use super::redistribution::Redistribution;
 use crate::contact::{ContactSurfaces, contact_surfaces};
 use crate::diagnostics::Diagnostics;
 use crate::model::Model;
+use std::collections::HashMap;
 
 /// A model with its nodes adjusted, its contact surfaces and the initial gaps between them. Mesh and
 /// contacts stay as they are from here on; the settings of steps may change.
@@ -20,6 +21,8 @@ pub struct PreparedModel {
     /// Gaps of the slave nodes of each contact in the reference configuration; nodes that face no
     /// segment are left out.
     pub gaps: Vec<Vec<InitialGap>>,
+    /// Overlaps of all slave nodes of the contacts that press them out in the first step (length); of others none.
+    pub overlaps: Vec<Vec<f64>>,
     /// Moved nodes, contact by contact.
     pub adjusted: Vec<Adjusted>,
     /// Nodes without mass, and those that carry it.
@@ -32,9 +35,23 @@ pub fn prepare(model: Model, d: &mut Diagnostics) -> Option<PreparedModel> {
     let prepared = PreparedModel::new(model);
     report_adjusted(&prepared.model, &prepared.adjusted, d);
     if !d.has_errors() {
-        report_penetrations(&prepared.model, &prepared.surfaces, &prepared.gaps, d);
+        report_penetrations(&prepared, d);
     }
     (!d.has_errors()).then_some(prepared)
+}
+
+/// Overlaps of all slave nodes of a contact (length): how deep they lie in a body that their own surface faces.
+fn overlaps(contact: &ContactSurfaces, gaps: &[InitialGap], x: &[[f64; 2]]) -> Vec<f64> {
+    let inside = gaps.iter().filter(|gap| {
+        let takes_in =
+            |gap: &InitialGap| (contact.interior).takes_in(gap.segment, gap.slave, |node| x[node]);
+        gap.gap < 0.0 && takes_in(gap)
+    });
+    let depths: HashMap<usize, f64> = inside.map(|gap| (gap.slave, -gap.gap)).collect();
+    let slaves = contact.slaves.iter();
+    slaves
+        .map(|slave| depths.get(slave).copied().unwrap_or(0.0))
+        .collect()
 }
 
 impl PreparedModel {
@@ -52,9 +69,20 @@ impl PreparedModel {
             true => Redistribution::new(&model, &surfaces),
             false => Redistribution::default(),
         };
-        let of_contact = |contact: &ContactSurfaces| gaps(contact, x, &bodies);
+        let shrinks = |contact: usize| model.shrinks(contact);
+        let numbered = surfaces.iter().enumerate();
+        let gaps: Vec<Vec<InitialGap>> = numbered
+            .map(|(i, contact)| gaps(contact, x, &bodies, shrinks(i)))
+            .collect();
+        let of_contact = surfaces.iter().zip(&gaps).enumerate();
         PreparedModel {
-            gaps: surfaces.iter().map(of_contact).collect(),
+            overlaps: of_contact
+                .map(|(i, (contact, gaps))| match shrinks(i) {
+                    true => overlaps(contact, gaps, x),
+                    false => Vec::new(),
+                })
+                .collect(),
+            gaps,
             surfaces,
             adjusted,
             redistribution,

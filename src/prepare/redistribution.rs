@@ -477,6 +477,7 @@ pub(crate) mod tests {
             interaction: Interaction::default(),
             adjust: None,
             left_out: Vec::new(),
+            is_interference_fit: false,
             span: Span::default(),
         });
         model

@@ -106,6 +106,7 @@ fn contact(
         interaction: interaction?,
         adjust: None,
         left_out: Vec::new(),
+        is_interference_fit: false,
         span: row.span(),
     })
 }
@@ -372,7 +373,7 @@ fn general(
     let block = blocks.first()?;
     let span = inclusions(block, cx);
     let assigned = assignment(block, interactions, cx);
-    let adjust = initialization(outline, block, cx);
+    let initialization = initialization(outline, block, cx);
     let span = span?;
     if surfaces.names.is_defined(&Name::plain(ALL_EXTERIOR)) {
         let message = format!("the deck has a surface {ALL_EXTERIOR} of its own");
@@ -380,6 +381,10 @@ fn general(
             .help("rename it: general contact makes a surface of this name");
         return None;
     }
+    let (adjust, is_interference_fit) = match initialization.ok()? {
+        None => (None, false),
+        Some(Initialization { moved, is_fit }) => (moved.map(Adjust::Within), is_fit),
+    };
     let surface = surfaces.all.len();
     surfaces.all.push(Surface {
         name: ALL_EXTERIOR.to_string(),
@@ -389,8 +394,9 @@ fn general(
         slave: surface,
         master: surface,
         interaction: assigned.ok()?,
-        adjust: adjust.ok()?,
+        adjust,
         left_out: Vec::new(),
+        is_interference_fit,
         span,
     })
 }
@@ -479,27 +485,81 @@ fn initialization(
     outline: &Outline,
     block: &CardBlock,
     cx: &mut Context,
-) -> Result<Option<Adjust>, ()> {
+) -> Result<Option<Initialization>, ()> {
     let all = initializations(outline, block, cx);
     let mut assigned = Ok(None);
     for card in block.parts_of("CONTACT INITIALIZATION ASSIGNMENT") {
         for row in card.rows.iter() {
             let name = of_all_surfaces(row, "the contact initialization", cx);
-            let reach = name.and_then(|name| all.find(name, cx)).copied();
-            assigned = reach.map(|reach| Some(Adjust::Within(reach))).ok_or(());
+            let found = name.and_then(|name| all.find(name, cx)).copied();
+            assigned = found.map(Some).ok_or(());
         }
     }
     assigned
 }
 
 /// All data of initialization, which may stand in the block or outside.
-fn initializations(outline: &Outline, block: &CardBlock, cx: &mut Context) -> Named<Reach> {
+fn initializations(
+    outline: &Outline,
+    block: &CardBlock,
+    cx: &mut Context,
+) -> Named<Initialization> {
     const KEYWORD: &str = "CONTACT INITIALIZATION DATA";
     let mut all = Named::new("contact initialization");
     for card in [outline.model_cards(KEYWORD), block.parts_of(KEYWORD)].concat() {
-        all.add(card, cx, |_, cx| reach(card, cx).filter(|_| !card.faulty));
+        all.add(card, cx, |_, cx| {
+            own_initialization(card, cx).filter(|_| !card.faulty)
+        });
     }
     all
+}
+
+/// What general contact does before the start.
+#[derive(Debug, Clone, Copy)]
+struct Initialization {
+    /// Which nodes are moved.
+    moved: Option<Reach>,
+    /// Whether overlaps are pressed out in the first step.
+    is_fit: bool,
+}
+
+/// Nodes that are moved, or overlaps that stay.
+fn own_initialization(card: &Card, cx: &mut Context) -> Option<Initialization> {
+    if !card.has("INTERFERENCE FIT") {
+        let moved = Some(reach(card, cx)?);
+        return Some(Initialization {
+            moved,
+            is_fit: false,
+        });
+    }
+    let is_moved = card.value("INTERFERENCE FIT").is_some();
+    let mut others = ["SEARCH ABOVE", "SEARCH BELOW"].into_iter();
+    let not_meant = match card.has("INITIAL CLEARANCE") {
+        true => Some("INITIAL CLEARANCE"),
+        false => others.find(|name| !is_moved && card.has(name)),
+    };
+    if let Some(name) = not_meant {
+        let message =
+            format!("{name} moves nodes, and INTERFERENCE FIT leaves them where they are");
+        cx.error(Code::Interference, card.span_of(name), message)
+            .help(format!("leave out {name}"));
+        return None;
+    }
+    let moved = match card.value("INTERFERENCE FIT") {
+        None => None,
+        Some(value) => {
+            let rule = "the overlap must be positive";
+            let overlap = value.real_that(|x| x > 0.0, rule, Code::BadValue, cx.d)?;
+            Some(Reach {
+                clearance: -overlap,
+                ..reach(card, cx)?
+            })
+        }
+    };
+    Some(Initialization {
+        moved,
+        is_fit: true,
+    })
 }
 
 /// Which nodes are moved and where to: those inside, unless the card says more.

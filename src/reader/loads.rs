@@ -519,6 +519,21 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         self.parts.push((key, part.rising_from(from)));
     }
 
+    /// Adds a load that falls from a magnitude to nothing over the step; it replaces those of earlier steps under the
+    /// same key.
+    pub fn add_falling(&mut self, key: K, at: T, from: f64, step: usize) {
+        let context = StepContext { step, ramp: true };
+        (self.earlier(key, context)).for_each(|part| part.replaced = true);
+        let part = CarriedLoad::new(at, 0.0, None, context);
+        self.parts.push((key, part.rising_from(from)));
+    }
+
+    /// Magnitude that the step before has left under a key.
+    pub fn left(&mut self, key: K, step: usize) -> f64 {
+        let context = StepContext { step, ramp: true };
+        self.earlier(key, context).map(|part| part.end).sum()
+    }
+
     /// Parts of earlier steps under a key.
     fn earlier(
         &mut self,

@@ -12,6 +12,7 @@ mod contact;
 mod context;
 mod couplings;
 mod equations;
+mod interference;
 mod label;
 mod loads;
 mod materials;
@@ -101,7 +102,7 @@ fn read(cx: &mut Context) -> Model {
         rigid_bodies: &rigid_bodies,
     };
     let connectors = connectors::read(&outline, targets, cx);
-    let mut steps = steps::read(&outline, targets, &surfaces, guide, cx);
+    let mut steps = steps::read(&outline, targets, (&surfaces, &contacts), guide, cx);
     let mut initial_velocity = boundary::initial_velocity(&outline, targets, &steps.at_start, cx);
     let all = &mut steps.all;
     let bodies = rigid_bodies::complete(&rigid_bodies, &mesh_index, all, &mut initial_velocity, cx);

@@ -2,6 +2,7 @@
 
 use super::boundary::{Supports, Targets};
 use super::context::Context;
+use super::interference::{Interferences, Pairs};
 use super::loads::{LoadHistories, Operation, StepContext};
 use super::outline::{Outline, StepCards};
 use super::output::{Histories, Requests};
@@ -9,8 +10,9 @@ use super::surfaces::Surfaces;
 use crate::deck::{Card, Line};
 use crate::diagnostics::{Code, shown};
 use crate::model::{
-    ContactMass, Factorization, Impact, ImpactTime, Incrementation, Increments, LandingRule,
-    LcpChoice, Procedure, RestartOutput, Scheme, Settings, SolverChoice, Step, Support,
+    Contact, ContactMass, Factorization, Impact, ImpactTime, Incrementation, Increments,
+    LandingRule, LcpChoice, Procedure, RestartOutput, Scheme, Settings, SolverChoice, Step,
+    Support,
 };
 
 /// Most increments of a step: at a microsecond each they would take eleven days.
@@ -32,13 +34,14 @@ pub(crate) struct Steps {
 pub(crate) fn read(
     outline: &Outline,
     targets: Targets,
-    surfaces: &Surfaces,
+    (surfaces, contacts): (&Surfaces, &[Contact]),
     guide: Option<f64>,
     cx: &mut Context,
 ) -> Steps {
     let mut reading = StepReader {
         targets,
         surfaces,
+        contacts,
         guide,
         has_contacts: ["CONTACT PAIR", "CONTACT"]
             .iter()
@@ -47,6 +50,7 @@ pub(crate) fn read(
         supports: Supports::default(),
         support_operation: Operation::default(),
         loads: LoadHistories::default(),
+        interferences: Interferences::default(),
         requests: Requests::new(cx),
         nonlinear: false,
         start: 0.0,
@@ -62,6 +66,7 @@ pub(crate) fn read(
     for card in outline.model_cards("RESTART") {
         reading.requests.restart(card, cx);
     }
+    reading.interferences.first_step(contacts);
     let mut steps = Vec::new();
     let mut at_start = None;
     for (index, cards) in outline.steps.iter().enumerate() {
@@ -79,12 +84,14 @@ pub(crate) fn read(
 struct StepReader<'a> {
     targets: Targets<'a>,
     surfaces: &'a Surfaces,
+    contacts: &'a [Contact],
     guide: Option<f64>,
     has_contacts: bool,
     settings: Settings,
     supports: Supports,
     support_operation: Operation,
     loads: LoadHistories,
+    interferences: Interferences,
     requests: Requests,
     nonlinear: bool,
     start: f64,
@@ -124,6 +131,9 @@ impl StepReader<'_> {
                 number == self.last,
             )
         });
+        if let Some(step) = &step {
+            check_fit(step, cards, cx);
+        }
         if number < self.last {
             self.end(period);
         }
@@ -147,6 +157,7 @@ impl StepReader<'_> {
             body_forces: Vec::new(),
             pressures: Vec::new(),
             tractions: Vec::new(),
+            interferences: self.interferences.list(is_last),
             frames: self.requests.frames(self.start, increments.period),
         };
         self.loads.fill(&mut step, is_last);
@@ -158,6 +169,7 @@ impl StepReader<'_> {
         let all = &self.targets.amplitudes.named.all;
         self.supports.end_step(period, all);
         self.loads.end_step(period, self.start, all);
+        self.interferences.end_step(period, self.start, all);
     }
 
     fn check_nonlinear(&mut self, head: &Card, cx: &mut Context) {
@@ -230,9 +242,29 @@ impl StepReader<'_> {
                     self.loads
                         .card(card, context, self.targets, self.surfaces, cx);
                 }
+                "CONTACT INTERFERENCE" => {
+                    let pairs = Pairs {
+                        surfaces: self.surfaces,
+                        contacts: self.contacts,
+                        targets: self.targets,
+                        start: self.start,
+                    };
+                    self.interferences.card(card, context.step, pairs, cx);
+                }
                 _ => {}
             }
         }
+    }
+}
+
+/// Times of impacts are those at which surfaces meet as they are.
+fn check_fit(step: &Step, cards: &StepCards, cx: &mut Context) {
+    let has_events =
+        step.procedure == Procedure::Dynamic && step.settings.impact_time == ImpactTime::Event;
+    if has_events && !step.interferences.is_empty() {
+        let message = "a fit cannot be pressed together in a step with IMPACT TIME=EVENT";
+        cx.error(Code::Interference, cards.head.span, message)
+            .help("press it together in a step before, or leave out IMPACT TIME=EVENT in this one");
     }
 }
 

@@ -48,6 +48,7 @@ fn finds_all(search: &Search, surfaces: &ContactSurfaces, x: &[[f64; 2]], [u0, u
             now: Positions::new(x, u),
             slave,
             held_by: &[],
+            allowed: [0.0; 2],
         };
         assert_eq!(
             node.targets(territory.candidates(slave)),

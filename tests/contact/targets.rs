@@ -44,6 +44,7 @@ fn targets_of(
         now: Positions::new(now, &still),
         slave: 0,
         held_by: &[],
+        allowed: [0.0; 2],
     };
     node.targets(all_segments(surfaces)).into_vec()
 }

@@ -156,6 +156,7 @@ pub fn add_contact(model: &mut Model, slave: Vec<Face>, master: Vec<Face>, frict
         },
         adjust: None,
         left_out: Vec::new(),
+        is_interference_fit: false,
         span: Span::default(),
     });
 }
@@ -208,6 +209,7 @@ pub fn step(dt: f64, count: usize, settings: Settings, mut supports: Vec<Support
         body_forces: Vec::new(),
         pressures: Vec::new(),
         tractions: Vec::new(),
+        interferences: Vec::new(),
         frames: Frames::Default,
     }
 }

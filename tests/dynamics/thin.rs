@@ -44,6 +44,7 @@ fn foils(ratio: f64, layers: usize, triangles: bool, lifts: &[f64]) -> (Model, V
         interaction: Interaction::default(),
         adjust: None,
         left_out: Vec::new(),
+        is_interference_fit: false,
         span: Span::default(),
     });
     (model, foils)

@@ -133,6 +133,7 @@ fn contact() -> Contact {
         },
         adjust: None,
         left_out: Vec::new(),
+        is_interference_fit: false,
         span: Span::default(),
     }
 }
@@ -158,6 +159,7 @@ fn step() -> Step {
         body_forces: vec![],
         pressures: vec![],
         tractions: vec![],
+        interferences: vec![],
         frames: Frames::Count(5),
     }
 }

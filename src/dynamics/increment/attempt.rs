@@ -242,6 +242,10 @@ impl<'m> Attempt<'_, 'm> {
                 _ => &self.start.v,
             };
             (self.workspace.search).start(v, self.interval.dt);
+            if !self.problem.fits.are_none() {
+                let allowed = self.problem.fits.allowed(self.interval);
+                self.workspace.search.allow(allowed);
+            }
             let mut factors = Refactorization::new(rule, self.problem.settings.tolerance);
             match self.passes(&mut factors, &mut trace, &mut vectors) {
                 Ok(solved) => {

@@ -398,9 +398,10 @@ impl<'a> Before<'a> {
     }
 }
 
-/// Gn V0 + (2/dt) max(g0, 0), eq. (6.2), of a constraint with its force rows as derivative rows.
+/// Gn V0 + (2/dt) max(g0, 0), eq. (6.2), of a constraint with its force rows as derivative rows; a fit shrinks beside.
 pub(super) fn approach(constraint: &Constraint, v0: &[f64], dt: f64) -> f64 {
-    constraint.normal_motion(v0) + 2.0 / dt * constraint.start_gap.max(0.0)
+    constraint.normal_motion(v0) - constraint.shrinkage / dt
+        + 2.0 / dt * constraint.start_gap.max(0.0)
 }
 
 /// What a change of impulses is measured by.
@@ -580,6 +581,7 @@ mod tests {
             body_forces: vec![],
             pressures: vec![],
             tractions: vec![],
+            interferences: vec![],
             frames: Frames::Default,
         };
         let mut model = block([rows; 2], |_, _| false, |_, _| true);

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use super::pair_work::{EndForces, PairWork, steady_works};
+use super::pair_work::{EndForces, PairWork, fit_impulse_work, steady_works};
 use crate::archive::{Archive, ArchiveError};
 use crate::contact::Constraint;
 use crate::contact::tolerances::CLOSED_GAP;
@@ -232,8 +232,13 @@ impl Ledger {
                 dt * v_mid * inertia[p] + d[p] * (internal[p] - load[p] - contact[p]);
         }
         self.works = steady_works(solved);
+        // Phi (a0 - a1)/dt, eq. (9.14)
+        let of_fits = fit_impulse_work(solved, dt);
+        e.external_work += of_fits;
+        e.impact_loss += of_fits;
         for work in &self.works {
             e.normal_contact_work += work.normal;
+            e.external_work += work.fit;
             e.friction_dissipation += work.friction;
         }
         // what landings and releases are given back, with the work of the supports on the way, eq. (6.10), and of
@@ -309,6 +314,7 @@ impl Ledger {
         let (works, kept) = before.works(solved, &end);
         for work in &works {
             e.normal_contact_work += work.normal;
+            e.external_work += work.fit;
             e.friction_dissipation += work.friction;
         }
         self.works = works;
@@ -467,10 +473,11 @@ fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) 
     }
     let works = (solved.contact.forces.acting()).map(|(constraint, pair)| {
         let p = problem.positions(&start.u).place(constraint.pair().nodes);
-        let was_beyond = !(0.0..=1.0).contains(&p.xi) && p.gap < -CLOSED_GAP * p.length;
+        let gap = p.gap + constraint.allowed_at_start();
+        let was_beyond = !(0.0..=1.0).contains(&p.xi) && gap < -CLOSED_GAP * p.length;
         // Pn (Bn d) of a pair that was behind, beyond the ends, eq. (7.7)
         let work = if was_beyond {
-            pair.force[0] * constraint.normal_motion(&solved.d)
+            pair.force[0] * (constraint.normal_motion(&solved.d) - constraint.shrinkage)
         } else {
             0.0
         };

@@ -13,8 +13,10 @@ use crate::elements::Motion;
 pub(crate) struct PairWork {
     /// The pair.
     pub key: ConstraintKey,
-    /// That of the normal force.
+    /// That of the normal force, without what follows.
     pub normal: f64,
+    /// That of the normal force as it parts the surfaces of a fit.
+    pub fit: f64,
     /// Energy that friction dissipates.
     pub friction: f64,
 }
@@ -22,12 +24,13 @@ pub(crate) struct PairWork {
 /// Work of the pairs in an increment whose forces act all the time:
 ///
 /// ```text
-/// Pn.(Bn d), eq. (9.2), and -Pt.(Bt d), eq. (9.3)
+/// Pn.(Bn d) - Pn (a0 - a1), eq. (9.2), Pn (a0 - a1), eq. (9.14), and -Pt.(Bt d), eq. (9.3)
 /// ```
 pub(super) fn steady_works(solved: &Solved) -> Vec<PairWork> {
     let work = |(constraint, [pn, pt]): (&Constraint, [f64; 2])| PairWork {
         key: constraint.key,
-        normal: pn * constraint.normal_motion(&solved.d),
+        normal: pn * (constraint.normal_motion(&solved.d) - constraint.shrinkage),
+        fit: pn * constraint.shrinkage,
         friction: -(pt * constraint.tangential_motion(&solved.d)),
     };
     let acting = solved
@@ -36,6 +39,20 @@ pub(super) fn steady_works(solved: &Solved) -> Vec<PairWork> {
         .acting()
         .map(|(c, pair)| (c, pair.force));
     acting.map(work).collect()
+}
+
+/// Work that parts the surfaces of fits by the impulses in an increment of length `dt`: the surfaces move with the velocity
+/// of the overlap that is allowed.
+///
+/// ```text
+/// Phi (a0 - a1)/dt, eq. (9.14)
+/// ```
+pub(super) fn fit_impulse_work(solved: &Solved, dt: f64) -> f64 {
+    let fitted = solved.contact.impulses.acting();
+    let fitted = fitted.filter(|(constraint, _)| constraint.shrinkage != 0.0);
+    fitted
+        .map(|(constraint, pair)| pair.force[0] * constraint.shrinkage / dt)
+        .sum()
 }
 
 /// Forces of an equilibrium, from which the work of the next static increment begins.
@@ -112,15 +129,22 @@ impl EndForces {
             let (p0, p1) = (of(&before), of(&after));
             if p1 > 0.0 { (1.0 + p0 / p1) / 2.0 } else { 1.0 }
         };
+        let all = solved.contact.forces.iter();
+        let fitted = all.filter(|(constraint, _)| constraint.shrinkage != 0.0);
+        let shrinkage: BTreeMap<SlaveKey, f64> = fitted
+            .map(|(constraint, _)| (constraint.key.slave(), constraint.shrinkage))
+            .collect();
         let mut tangential = 0.0;
         let mut works = Vec::new();
         for (forces, is_end) in [(self, false), (end, true)] {
             for (constraint, [pn, pt]) in &forces.pairs {
                 let work = pt * constraint.tangential_motion(d);
+                let parts = shrinkage.get(&constraint.key.slave()).unwrap_or(&0.0);
                 tangential += work / 2.0;
                 works.push(PairWork {
                     key: constraint.key,
-                    normal: pn * constraint.normal_motion(d) / 2.0,
+                    normal: pn * (constraint.normal_motion(d) - parts) / 2.0,
+                    fit: pn * parts / 2.0,
                     friction: if is_end {
                         -mean(constraint.key.slave()) * work
                     } else {

@@ -72,6 +72,7 @@ fn step(dt: f64, count: usize) -> Step {
         body_forces: vec![],
         pressures: vec![],
         tractions: vec![],
+        interferences: vec![],
         frames: Frames::Default,
     }
 }

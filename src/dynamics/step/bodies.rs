@@ -200,6 +200,7 @@ mod tests {
             body_forces: vec![],
             pressures: vec![],
             tractions: vec![],
+            interferences: vec![],
             frames: Frames::Default,
         }
     }

@@ -54,7 +54,8 @@ impl TimePoint {
         }
     }
 
-    fn magnitude<T>(&self, model: &Model, load: &Load<T>) -> f64 {
+    /// Magnitude of a load.
+    pub fn magnitude<T>(&self, model: &Model, load: &Load<T>) -> f64 {
         match load.variation {
             Variation::Constant => load.magnitude,
             Variation::Ramp { from } => from + (load.magnitude - from) * self.ramped(),

@@ -2,6 +2,7 @@
 //! workspace of its increments.
 
 mod bodies;
+mod fits;
 mod friction;
 mod integration;
 mod loads;

@@ -6,6 +6,7 @@
 
 use std::borrow::Cow;
 
+use super::fits::Fits;
 use super::friction::Frictions;
 use super::integration::Integration;
 use super::loads::{Interval, Loads};
@@ -42,6 +43,7 @@ pub(crate) struct StepProblem<'m> {
     /// Unknowns of the parts.
     pub parts_of_unknowns: Vec<Run>,
     pub loads: Loads<'m>,
+    pub fits: Fits<'m>,
 }
 
 /// Velocity at the start of an increment.
@@ -105,6 +107,7 @@ impl<'m> StepProblem<'m> {
             parts,
             turning,
             coordinates,
+            overlaps,
         } = discretization;
         let unknowns = Unknowns::new(model, (elements, turning), step, start);
         StepProblem {
@@ -121,6 +124,9 @@ impl<'m> StepProblem<'m> {
             parts_of_unknowns: parts.of_unknowns(&unknowns.dof),
             unknowns,
             loads: Loads::new(model, step, redistribution),
+            fits: Fits::new(model, step, overlaps, |contact| {
+                contacts[contact].slaves.len()
+            }),
         }
     }
 }
@@ -403,6 +409,8 @@ pub(crate) struct Discretization<'m> {
     pub turning: Vec<TurningBody>,
     /// Reference coordinates of the nodes, then of the bodies that turn.
     pub coordinates: Vec<[f64; 2]>,
+    /// Overlaps of slave nodes at the start, of contacts with shrink fits (length).
+    pub overlaps: &'m [Vec<f64>],
 }
 
 impl<'m> Discretization<'m> {
@@ -431,6 +439,7 @@ impl<'m> Discretization<'m> {
             elements,
             turning,
             coordinates,
+            overlaps: &prepared.overlaps,
         }
     }
 }

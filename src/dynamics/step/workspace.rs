@@ -29,9 +29,13 @@ impl<'m> Workspace<'m> {
     /// The workspace of a step, without factors and without lists of candidates.
     pub fn new(problem: &StepProblem<'m>) -> Self {
         let x = &problem.model.mesh.coordinates;
+        let mut search = Search::new(problem.contacts, x);
+        for (contact, overlap) in problem.fits.largest() {
+            search.reach_into(contact, overlap);
+        }
         Workspace {
             stiffness: EffectiveStiffness::new(problem),
-            search: Search::new(problem.contacts, x),
+            search,
             meter: Meter::default(),
             pins: Pins::new(problem),
             pairs: Vec::new(),

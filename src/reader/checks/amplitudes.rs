@@ -82,6 +82,7 @@ fn followed(step: &Step) -> BTreeSet<usize> {
         .chain(of_loads(&step.body_forces))
         .chain(of_loads(&step.pressures))
         .chain(of_loads(&step.tractions))
+        .chain(of_loads(&step.interferences))
         .chain(of_supports)
         .collect()
 }

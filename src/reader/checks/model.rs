@@ -89,6 +89,7 @@ fn has_cause(step: &Step) -> bool {
         || acts(&step.body_forces)
         || acts(&step.pressures)
         || acts(&step.tractions)
+        || !step.interferences.is_empty()
 }
 
 fn acts<T>(loads: &[Load<T>]) -> bool {

@@ -82,15 +82,17 @@ impl Acting {
             let nodes = sides.iter().flat_map(|side| side.nodes(&model.mesh));
             nodes.map(|node| bodies[node]).collect()
         };
-        let moves = |contact: &&Contact| contact.adjust.is_some();
+        let moves =
+            |(i, contact): &(usize, &Contact)| contact.adjust.is_some() || model.is_fitted(*i);
         let is_general = |contact: &Contact| model.surfaces[contact.slave].name == ALL_EXTERIOR;
         Acting {
             is_general: model.contacts.iter().any(is_general),
             moved: model
                 .contacts
                 .iter()
+                .enumerate()
                 .filter(moves)
-                .map(of_contact)
+                .map(|(_, contact)| of_contact(contact))
                 .collect(),
         }
     }

@@ -1,0 +1,67 @@
+//! Fits: the overlaps that contacts allow in an increment, eq. (3.12). Section 3 of docs/theory.md.
+
+use std::borrow::Cow;
+
+use super::loads::Interval;
+use crate::linear::largest;
+use crate::model::{Interference, Load, Model, Step};
+
+/// The contacts of a step that allow an overlap.
+pub(crate) struct Fits<'m> {
+    model: &'m Model,
+    all: Vec<Fit<'m>>,
+}
+
+/// A contact that allows an overlap.
+struct Fit<'m> {
+    load: &'m Load<Interference>,
+    /// What its magnitude multiplies at every slave node: the overlap of the start of the analysis (length), or 1.
+    nodes: Cow<'m, [f64]>,
+}
+
+impl<'m> Fits<'m> {
+    /// Those of a step; `overlaps` are the overlaps of the slave nodes at the start of the analysis, and `slaves` their
+    /// number, contact by contact.
+    pub fn new(
+        model: &'m Model,
+        step: &'m Step,
+        overlaps: &'m [Vec<f64>],
+        slaves: impl Fn(usize) -> usize,
+    ) -> Self {
+        let fit = |load: &'m Load<Interference>| {
+            let contact = load.at.contact;
+            let nodes = match load.at.is_shrink {
+                true => Cow::Borrowed(overlaps[contact].as_slice()),
+                false => Cow::Owned(vec![1.0; slaves(contact)]),
+            };
+            Fit { load, nodes }
+        };
+        Fits {
+            model,
+            all: step.interferences.iter().map(fit).collect(),
+        }
+    }
+
+    /// Whether no contact allows an overlap.
+    pub fn are_none(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    /// Overlaps that the slave nodes of every contact may have at the start of an increment and at its end (length), none
+    /// of a contact without a fit.
+    pub fn allowed(&self, interval: Interval) -> Vec<Vec<[f64; 2]>> {
+        let mut allowed = vec![Vec::new(); self.model.contacts.len()];
+        for Fit { load, nodes } in &self.all {
+            // a = s o, eq. (3.12)
+            let part = [interval.start, interval.end].map(|time| time.magnitude(self.model, load));
+            allowed[load.at.contact] = nodes.iter().map(|o| part.map(|part| part * o)).collect();
+        }
+        allowed
+    }
+
+    /// Contacts with the largest overlap at the start of the analysis that they press out (length).
+    pub fn largest(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let shrinks = self.all.iter().filter(|fit| fit.load.at.is_shrink);
+        shrinks.map(|fit| (fit.load.at.contact, largest(&fit.nodes)))
+    }
+}
