@@ -95,6 +95,7 @@ fn main() {
                         now: Positions::new(&x, black_box(&u)),
                         slave,
                         held_by: &[],
+                        allowed: [0.0; 2],
                     };
                     node.targets(all_segments(surfaces)).len()
                 };

@@ -86,7 +86,7 @@ pub struct Constraint {
     pub force_rows: Rows,
     /// Derivative rows Gn and Gt (dimensionless), where they are others than the force rows.
     pub other_derivative_rows: Option<Rows>,
-    /// Gap g of the iterate (length), positive when open; of a fit with the overlap that is allowed, eq. (3.12).
+    /// Gap g of the iterate (length), positive when open; of a fit with the overlap that is allowed, eq. (3.15).
     pub gap: f64,
     /// Gap of the start in the sense of the force rows, g - Bn d, of a fit with what is allowed there (length).
     pub start_gap: f64,
@@ -96,7 +96,7 @@ pub struct Constraint {
     pub mu: f64,
     /// Whether the coefficient depends on slip rate or pressure.
     pub mu_varies: bool,
-    /// What the overlap that a fit allows becomes less by in the increment (length), eq. (3.12).
+    /// What the overlap that a fit allows becomes less by in the increment (length), eq. (3.15).
     pub shrinkage: f64,
     /// Length that gaps are relative to: that of the segment.
     pub scale: f64,
@@ -138,11 +138,6 @@ impl Constraint {
     /// Overlap that a fit allows at the start of the increment (length).
     pub fn allowed_at_start(&self) -> f64 {
         self.source.allowed[0]
-    }
-
-    /// Gap of the positions (length), without what a fit allows.
-    pub fn true_gap(&self) -> f64 {
-        self.gap - self.source.allowed[1]
     }
 
     /// The same constraint with its force rows as derivative rows, so that Q is symmetric.

@@ -477,7 +477,7 @@ pub struct SlaveNode<'a> {
     pub slave: usize,
     /// Segments of the pairs of the node that were closed at the start.
     pub held_by: &'a [usize],
-    /// Overlap that a fit allows it at the start and in the iterate (length): what its gaps are larger by, eq. (3.12).
+    /// Overlap that a fit allows it at the start and in the iterate (length): what its gaps are larger by, eq. (3.15).
     pub allowed: [f64; 2],
 }
 

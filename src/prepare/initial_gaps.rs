@@ -5,7 +5,7 @@
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
-use crate::contact::tolerances::{FACING_SINE, PROJECTION_BEYOND_ENDS};
+use crate::contact::tolerances::{COORDINATE_ROUND_OFF, FACING_SINE, PROJECTION_BEYOND_ENDS};
 use crate::contact::{ContactSurfaces, Projection, project};
 use crate::vectors::{Circle, CircleTree, difference, distance, dot, length};
 
@@ -174,13 +174,18 @@ impl<'m> Start<'m> {
     fn faced(&self, slave: usize, i: usize) -> Option<Projection> {
         let [a, b] = self.contact.segments[i];
         let p = self.project(slave, i);
-        let may_face = ![a, b].contains(&slave) && p.gap >= -self.deepest * p.length;
-        let is_own_body = self.bodies[a] == self.bodies[slave];
-        let is_back = || {
-            let interior = &self.contact.interior;
-            is_own_body && p.gap < 0.0 && !interior.contains([a, b], slave, |node| self.x[node])
+        let interior = &self.contact.interior;
+        let at = |node: usize| self.x[node];
+        // deeper nodes are those of a fit that lie in the body, nearer to this side than to the far one
+        let may_face = || {
+            p.gap >= -p.length
+                || (p.gap >= -self.deepest * p.length && interior.takes_in([a, b], slave, at))
         };
-        (may_face && !is_back() && self.is_opposite(slave, &p)).then_some(p)
+        let is_own_body = self.bodies[a] == self.bodies[slave];
+        let is_back = || is_own_body && p.gap < 0.0 && !interior.contains([a, b], slave, at);
+        let is_meant = ![a, b].contains(&slave) && may_face() && !is_back();
+        (is_meant && (p.gap > COORDINATE_ROUND_OFF * p.length || self.is_opposite(slave, &p)))
+            .then_some(p)
     }
 
     /// Whether the surface of a node that may be pressed out of a body faces a segment: it lies in front of the parallel

@@ -43,9 +43,9 @@ pub fn prepare(model: Model, d: &mut Diagnostics) -> Option<PreparedModel> {
 /// Overlaps of all slave nodes of a contact (length): how deep they lie in a body that their own surface faces.
 fn overlaps(contact: &ContactSurfaces, gaps: &[InitialGap], x: &[[f64; 2]]) -> Vec<f64> {
     let inside = gaps.iter().filter(|gap| {
-        let takes_in =
-            |gap: &InitialGap| (contact.interior).takes_in(gap.segment, gap.slave, |node| x[node]);
-        gap.gap < 0.0 && takes_in(gap)
+        let is_inside =
+            |gap: &InitialGap| (contact.interior).contains(gap.segment, gap.slave, |node| x[node]);
+        gap.gap < 0.0 && is_inside(gap)
     });
     let depths: HashMap<usize, f64> = inside.map(|gap| (gap.slave, -gap.gap)).collect();
     let slaves = contact.slaves.iter();

@@ -204,6 +204,10 @@ fn faulty(code: Code) -> Source {
         Adjusted => shared("DRY, TYPE", "DRY, ADJUST=0.2, TYPE"),
         FacingAway => shared("EBASE, S3", "EBASE, S1"),
         Tie => shared(PAIR, "*TIE, POSITION TOLERANCE=0.\nSBOT, STOP\n"),
+        Interference => shared(
+            "*DLOAD",
+            "*CONTACT INTERFERENCE, SHRINK\nSTOP, STOP\n*DLOAD",
+        ),
         Coupling => model("*MPC\nLINK, 1, 3"),
         FixedSlave => shared("SBOT, STOP", "STOP, SBOT\n*BOUNDARY\n4, 1, 2\n5, 1, 2"),
         BadDof => square("FOOT, 1, 2", "FOOT, 1, 8"),

@@ -149,6 +149,11 @@ fn static_steps_with_automatic_increments() {
 }
 
 #[test]
+fn fits_that_shrink() {
+    check("tests/decks/fits.inp", 1000, 3);
+}
+
+#[test]
 fn bodies_that_turn() {
     check("verification/rigid_bodies/boxes.inp", 200, 41);
 }

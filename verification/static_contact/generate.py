@@ -38,6 +38,9 @@ BELT, TENSION, STROKE = 0.02, 1e-3, 0.03
 
 ARCH, PUNCH = (10.0, 0.4, 0.2), 0.3
 """Span, rise and depth of the arch, radius of the punch."""
+FIT = {"bore": 0.4, "radius": 1.0, "rim": 2.0, "overlap": 2e-3}
+"""Radii of a hollow shaft and the ring pressed on it, and their interference."""
+
 SNAP, DAMPING = 100.0, 0.3
 """Time in which the arch comes to rest after it has snapped through, and its damping (ALPHA)."""
 
@@ -347,6 +350,91 @@ def arch(load: float, after_limit: float = 0.0) -> str:
     )
 
 
+def fit(
+    division: int,
+    friction: float = 0.0,
+    surfaces: str = "faces",
+    passes: int = 1,
+    ring: float = 1.0,
+    shrink: bool = True,
+    units: float = 1.0,
+    stiffer: float = 1.0,
+) -> str:
+    """A quarter of a ring pressed on a hollow shaft, both with symmetry.
+
+    `division` elements around the quarter of the shaft, `ring` times as many around that of the
+    ring; surfaces are the two cylinders (faces), the whole outlines (skins) or general contact.
+    """
+
+    def quarter(name: str, radii: tuple[float, float], around: int, **labels: int) -> Grid:
+        across = max(2, round((radii[1] - radii[0]) * division / 2))
+
+        def place(i: int, j: int) -> tuple[float, float]:
+            radius = units * (radii[0] + (radii[1] - radii[0]) * i / across)
+            angle = pi / 2 * j / around
+            # both ends lie on the axes
+            x = 0.0 if j == around else radius * cos(angle)
+            return x, radius * sin(angle)
+
+        return Grid(name, across, around, place, **labels)
+
+    overlap = FIT["overlap"]
+    shaft = quarter("SHAFT", (FIT["bore"], FIT["radius"] + overlap), division)
+    hub = quarter("HUB", (FIT["radius"], FIT["rim"]), round(ring * division), **after(shaft))
+    bodies = [shaft, hub]
+    names = {"faces": ("BORE", "SEAT"), "skins": ("HUB", "SHAFT")}.get(surfaces)
+    outlines = "".join(card(f"SURFACE, NAME={body.name}", (body.name,)) for body in bodies)
+    if names is None:
+        contact = "".join(
+            [
+                card("CONTACT"),
+                card("CONTACT INCLUSIONS, ALL EXTERIOR"),
+                card("CONTACT PROPERTY ASSIGNMENT", ("", "", "DRY")),
+                card("CONTACT INITIALIZATION DATA, NAME=FIT, INTERFERENCE FIT"),
+                card("CONTACT INITIALIZATION ASSIGNMENT", ("", "", "FIT")),
+            ]
+        )
+        pressed = ""
+    else:
+        rows = [names, names[::-1]][:passes]
+        contact = card("CONTACT PAIR, INTERACTION=DRY", *rows)
+        if shrink:
+            pressed = card("CONTACT INTERFERENCE, SHRINK", names)
+        else:
+            pressed = card("CONTACT INTERFERENCE", (*names, 1.5 * units * overlap))
+    return "".join(
+        [
+            card("HEADING", ("a ring pressed on a shaft",)),
+            *(body.mesh("CPS4") for body in bodies),
+            hub.side_surface("BORE", "left"),
+            shaft.side_surface("SEAT", "right"),
+            outlines,
+            hub.side_nodes("INSIDE", "left"),
+            *(
+                body.side_nodes(f"{body.name}_{side}".upper(), side)
+                for body in bodies
+                for side in ("bottom", "top")
+            ),
+            elastic(stiffer * YOUNG, POISSON, 1.0, "SHAFT", "HUB", thickness=units),
+            dry(friction),
+            contact,
+            card(
+                "BOUNDARY",
+                *((f"{body.name}_BOTTOM", 2, 2) for body in bodies),
+                *((f"{body.name}_TOP", 1, 1) for body in bodies),
+            ),
+            static(pressed, dt=0.5),
+        ]
+    )
+
+
+def lame() -> tuple[float, float]:
+    """Pressure of the fit, and C of the hoop stress C (1 + b^2/r^2) of the ring beside it."""
+    bore, rim = ((FIT[name] / FIT["radius"]) ** 2 for name in ("bore", "rim"))
+    compliance = (rim + 1) / (rim - 1) + (1 + bore) / (1 - bore)
+    return YOUNG * FIT["overlap"] / FIT["radius"] / compliance, 1 / (rim - 1)
+
+
 def punch_forces(span: float, rise: float, depth: float) -> list[tuple[float, float]]:
     """Ways and forces of a punch in the middle of a clamped shallow arch, along its path.
 
@@ -396,6 +484,7 @@ PROBLEMS: dict[str, Callable[..., str]] = {
     "shear_lag": shear_lag,
     "capstan": capstan,
     "arch": arch,
+    "fit": fit,
 }
 
 

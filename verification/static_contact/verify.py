@@ -16,7 +16,7 @@ decks = runner.load(HERE / "generate.py")
 PEAK = 2 * decks.PRESS / (pi * decks.HALF_WIDTH)
 """Of Hertz' pressure."""
 
-EDGES = {"lag": 0.025, "capstan": 0.01, "arch": 0.025}
+EDGES = {"lag": 0.025, "capstan": 0.01, "arch": 0.025, "fit": 0.01}
 """Smallest edges of the elements; those of the cylinders depend on their half width."""
 
 
@@ -215,12 +215,47 @@ def arch(verification: runner.Verification) -> None:
     verification.check("way of the punch / shallow arch", "arch_snaps", way["arch_snaps"][-1] / end)
 
 
+def fits(verification: runner.Verification) -> None:
+    """Pressure, hoop stress and energy of a ring pressed on a shaft."""
+    hoop = {}
+    for case, result in verification.group("fit"):
+        units, stiffer = (case.parameters.get(name, 1.0) for name in ("units", "stiffer"))
+        pressure, hollow = decks.lame()
+        scale = stiffer * pressure
+        frame = result.frames[-1]
+        inside = result.node_set("INSIDE")
+        inner = inside[1:-1]
+        found = np.nan_to_num(frame["CONTACT_PRESSURE"][inner]) / scale
+        name = "hoop stress / Lame"
+        if case.parameters.get("ring", 1.0) == 1.0:
+            verification.check("pressure / Lame", case.name, float(found.mean()))
+        else:
+            name += ", meshes that do not match"
+        ring = result.element_set("HUB")
+        corners = np.array([result.cells[element] for element in ring])
+        centre = frame.positions[corners].mean(axis=1)
+        radius = np.hypot(*centre.T)
+        x, y = centre.T / radius
+        s = frame["S"][ring]
+        around = s[:, 0] * y**2 + s[:, 1] * x**2 - 2 * s[:, 2] * x * y
+        exact = scale * hollow * (1 + (units * decks.FIT["rim"] / radius) ** 2)
+        hoop[case.name] = float((around / exact).mean())
+        verification.check(name, case.name, hoop[case.name])
+        energy = result.history.energy
+        lost = energy.external_work[-1] - energy.strain[-1]
+        verification.check(
+            "external work less strain energy", case.name, abs(lost) / energy.strain[-1]
+        )
+    errors = [1 - hoop[f"fit_fine_ring_{k}"] for k in (32, 64)]
+    verification.check("error of hoop stress, fine / coarse", "fit_fine_ring", errors[1] / errors[0])
+
+
 def main() -> int:
     """Runs, checks, reports."""
     verification = runner.start(HERE)
     for case in verification.cases:
         verification.check_run(case.name, EDGES.get(case.group, decks.HALF_WIDTH / 32))
-    for part in (hertz, mindlin, shear_lag, capstan, arch):
+    for part in (hertz, mindlin, shear_lag, capstan, arch, fits):
         part(verification)
     rows = [
         (name, len(result.history.dt) - 1, int(result.history.solver["passes"][1:].max()))

@@ -1,4 +1,4 @@
-//! Fits: the overlaps that contacts allow in an increment, eq. (3.12). Section 3 of docs/theory.md.
+//! Fits: the overlaps that contacts allow in an increment, eq. (3.15). Section 3 of docs/theory.md.
 
 use std::borrow::Cow;
 
@@ -52,7 +52,7 @@ impl<'m> Fits<'m> {
     pub fn allowed(&self, interval: Interval) -> Vec<Vec<[f64; 2]>> {
         let mut allowed = vec![Vec::new(); self.model.contacts.len()];
         for Fit { load, nodes } in &self.all {
-            // a = s o, eq. (3.12)
+            // a = s o, eq. (3.15)
             let part = [interval.start, interval.end].map(|time| time.magnitude(self.model, load));
             allowed[load.at.contact] = nodes.iter().map(|o| part.map(|part| part * o)).collect();
         }
