@@ -14,8 +14,8 @@ use std::collections::BTreeMap;
 pub(crate) struct Interferences {
     all: LoadHistory<usize, Interference>,
     operation: Operation,
-    /// Step in which a contact was given last.
-    given: BTreeMap<usize, usize>,
+    /// Step in which a contact was given last, and whether by a row of its own rather than of the other order.
+    given: BTreeMap<usize, (usize, bool)>,
 }
 
 /// What the rows of a card are read with.
@@ -81,12 +81,19 @@ impl Interferences {
         let named: Vec<usize> = read.iter().filter_map(|(_, [own, _], _)| *own).collect();
         for (row, [own, other], overlap) in read {
             let other = other.filter(|other| !named.contains(other));
-            for contact in [own, other].into_iter().flatten() {
-                if self.given.insert(contact, step) == Some(step) {
-                    let message = "this pair has an overlap in this step already";
-                    cx.error(Code::Interference, row.span(), message);
-                    continue;
+            for (contact, is_own) in [(own, true), (other, false)] {
+                let Some(contact) = contact else { continue };
+                match self.given.get(&contact) {
+                    Some(&(last, true)) if last == step && is_own => {
+                        let message = "this pair has an overlap in this step already";
+                        cx.error(Code::Interference, row.span(), message);
+                        continue;
+                    }
+                    Some(&(last, _)) if last == step && !is_own => continue,
+                    Some(&(last, _)) if last == step => self.all.take_back(contact, step),
+                    _ => {}
                 }
+                self.given.insert(contact, (step, is_own));
                 if shrinks {
                     self.shrink(contact, step);
                 } else {

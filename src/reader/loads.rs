@@ -528,6 +528,11 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         self.parts.push((key, part.rising_from(from)));
     }
 
+    /// Takes back what a step has added under a key.
+    pub fn take_back(&mut self, key: K, step: usize) {
+        (self.parts).retain(|(known, part)| *known != key || part.step as usize != step);
+    }
+
     /// Magnitude that the step before has left under a key.
     pub fn left(&mut self, key: K, step: usize) -> f64 {
         let context = StepContext { step, ramp: true };
