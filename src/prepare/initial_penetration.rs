@@ -2,7 +2,6 @@
 //! not face each other, reported as diagnostics at the contact in the deck.
 
 use super::initial_gaps::InitialGap;
-use super::prepared_model::PreparedModel;
 use crate::contact::tolerances::{COORDINATE_ROUND_OFF, PENETRATION_FAULT};
 use crate::contact::{ContactSurfaces, project};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
@@ -16,15 +15,23 @@ const FEW: usize = 8;
 /// the first increment pushes out, as warnings. Bodies that lie on the same side of a common face
 /// are errors too: all gaps are zero there, and contact would never close. A pair of which no node
 /// faces the other surface is a warning.
-pub(super) fn report_penetrations(prepared: &PreparedModel, d: &mut Diagnostics) {
-    let PreparedModel {
-        model, surfaces, ..
-    } = prepared;
-    let all_gaps: Vec<Vec<InitialGap>> = (0..surfaces.len())
-        .map(|contact| left_gaps(prepared, contact))
-        .collect();
+pub(super) fn report_penetrations(
+    model: &Model,
+    surfaces: &[ContactSurfaces],
+    (gaps, overlaps): (&[Vec<InitialGap>], &[Vec<f64>]),
+    d: &mut Diagnostics,
+) {
+    let left = |contact: usize| {
+        let allowed = model.allowed_at_start(contact);
+        left_gaps(
+            &gaps[contact],
+            &surfaces[contact],
+            (&overlaps[contact], allowed),
+        )
+    };
+    let all_gaps: Vec<Vec<InitialGap>> = (0..surfaces.len()).map(left).collect();
     report_nothing_faced(model, &all_gaps, d);
-    report_no_overlap(prepared, d);
+    report_no_overlap(model, overlaps, d);
     for (i, (contact, gaps)) in model.contacts.iter().zip(&all_gaps).enumerate() {
         if let Some(behind) = behind_the_body(model, &surfaces[i], gaps) {
             d.push(facing_away(model, contact, behind));
@@ -43,30 +50,25 @@ pub(super) fn report_penetrations(prepared: &PreparedModel, d: &mut Diagnostics)
     }
 }
 
-/// Initial gaps of a contact, larger by the overlaps that it allows at the start.
-fn left_gaps(prepared: &PreparedModel, contact: usize) -> Vec<InitialGap> {
-    let PreparedModel {
-        model,
-        surfaces,
-        gaps,
-        overlaps,
-        ..
-    } = prepared;
-    let overlap: HashMap<usize, f64> = (surfaces[contact].slaves.iter().copied())
-        .zip(overlaps[contact].iter().copied())
-        .collect();
-    let allowed = model.allowed_at_start(contact);
+/// Initial gaps of a contact, larger by the overlaps that it allows its slave nodes at the start: own ones, or one for
+/// all.
+fn left_gaps(
+    gaps: &[InitialGap],
+    contact: &ContactSurfaces,
+    (overlaps, allowed): (&[f64], f64),
+) -> Vec<InitialGap> {
+    let slaves = contact.slaves.iter().copied();
+    let own: HashMap<usize, f64> = slaves.zip(overlaps.iter().copied()).collect();
     let left = |gap: &InitialGap| InitialGap {
-        gap: gap.gap + overlap.get(&gap.slave).copied().unwrap_or(allowed),
+        gap: gap.gap + own.get(&gap.slave).copied().unwrap_or(allowed),
         ..*gap
     };
-    gaps[contact].iter().map(left).collect()
+    gaps.iter().map(left).collect()
 }
 
 /// Warns about contacts that shall press an overlap out and have none.
-fn report_no_overlap(prepared: &PreparedModel, d: &mut Diagnostics) {
-    let model = &prepared.model;
-    let has_overlap = |contact: usize| prepared.overlaps[contact].iter().any(|o| *o > 0.0);
+fn report_no_overlap(model: &Model, overlaps: &[Vec<f64>], d: &mut Diagnostics) {
+    let has_overlap = |contact: usize| overlaps[contact].iter().any(|o| *o > 0.0);
     for (i, contact) in model.contacts.iter().enumerate() {
         // of general contact all bodies and rigid surfaces are meant
         let others = model.contacts.iter().enumerate();

@@ -35,7 +35,14 @@ pub fn prepare(model: Model, d: &mut Diagnostics) -> Option<PreparedModel> {
     let prepared = PreparedModel::new(model);
     report_adjusted(&prepared.model, &prepared.adjusted, d);
     if !d.has_errors() {
-        report_penetrations(&prepared, d);
+        let PreparedModel {
+            model,
+            surfaces,
+            gaps,
+            overlaps,
+            ..
+        } = &prepared;
+        report_penetrations(model, surfaces, (gaps, overlaps), d);
     }
     (!d.has_errors()).then_some(prepared)
 }

@@ -528,9 +528,11 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         self.parts.push((key, part.rising_from(from)));
     }
 
-    /// Takes back what a step has added under a key.
+    /// Takes back what a step has added under a key, and what it has replaced.
     pub fn take_back(&mut self, key: K, step: usize) {
         (self.parts).retain(|(known, part)| *known != key || part.step as usize != step);
+        let own = self.parts.iter_mut().filter(|(known, _)| *known == key);
+        own.for_each(|(_, part)| part.replaced = false);
     }
 
     /// Magnitude that the step before has left under a key.
