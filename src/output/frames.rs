@@ -189,6 +189,7 @@ impl Frame {
         self.nodal.gap.clone_from(&nodal.gap);
         self.nodal.status.clone_from(&nodal.status);
         self.nodal.pressure.clone_from(&nodal.pressure);
+        (self.nodal.friction_coefficient).clone_from(&nodal.friction_coefficient);
         self.nodal.slip.clone_from(&nodal.slip);
         self.nodal.mass.clone_from(&nodal.mass);
         self.elements.clone_from(&report.elements);
