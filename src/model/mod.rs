@@ -81,10 +81,15 @@ impl Model {
     /// What the deck calls a node: its number, or `Instance.number`; of the nodes that a body which turns has beside
     /// those of the mesh, its reference node.
     pub fn node_name(&self, node: usize) -> String {
+        node_name(self.node_of(node), &self.mesh, &self.sets.instances)
+    }
+
+    /// The node of the mesh that a pair of dofs belongs to: beyond those of the nodes the reference node of the rigid body
+    /// that turns.
+    pub fn node_of(&self, node: usize) -> usize {
         let beyond = node.checked_sub(self.mesh.node_count());
         let body = beyond.and_then(|k| self.turning_bodies().nth(k / 2));
-        let node = body.map_or(node, |(body, _)| body.reference);
-        node_name(node, &self.mesh, &self.sets.instances)
+        body.map_or(node, |(body, _)| body.reference)
     }
 
     /// What the deck calls an element: its number, or `Instance.number`.

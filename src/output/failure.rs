@@ -271,6 +271,7 @@ fn pairs_line(failed: &FailedLcp, model: &Model) -> String {
 
 /// Current position of a node.
 fn position(model: &Model, node: usize, u: &[f64]) -> [f64; 2] {
+    let node = model.node_of(node);
     let [x, y] = model.mesh.coordinates[node];
     match u.get(2 * node..2 * node + 2) {
         Some(d) => [x + d[0], y + d[1]],

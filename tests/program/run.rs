@@ -425,3 +425,13 @@ fn equations_of_a_deck_are_echoed_and_kept() {
     assert_eq!((code, err.as_str()), (0, ""), "{out}");
     assert!(out.contains("1 equation between displacements"), "{out}");
 }
+
+#[test]
+fn a_number_of_a_turning_body_that_is_not_finite_is_that_of_its_reference_node() {
+    let ties = include_str!("../decks/ties.inp");
+    let fast = ties.replacen("ALL, 2.5,", "ALL, 1e300,", 1);
+    assert_ne!(fast, ties);
+    let (code, out, err) = Bench::new(&fast).stickslip(&["run", "drop.inp"]);
+    assert_eq!(code, 1, "{out}{err}");
+    assert!(out.contains("node     9"), "{out}{err}");
+}

@@ -30,9 +30,6 @@ SHARE = 0.6
 STRIP, SLIP_LENGTH, STRAIN = 4.0, 2.0, 0.002
 """Length of the strip on a rough plane, how much of it slips, and its strain where it is pulled."""
 
-ROUND_OFF = card("STICKSLIP, TOLERANCE=1e-7")
-"""The round-off of thin strips that are held by many nodes is above the default."""
-
 BELT, TENSION, STROKE = 0.02, 1e-3, 0.03
 """Thickness of a strip around a cylinder of radius 1, strain at one end, way of the other."""
 
@@ -200,7 +197,6 @@ def shear_lag(thickness: float = 0.05) -> str:
             card("CONTACT PAIR, INTERACTION=DRY", ("SOLE", "GROUND")),
             card("BOUNDARY", ("REFERENCE", 1, 2)),
             static(
-                ROUND_OFF,
                 card("DSLOAD", ("ROOF", "P", pressure)),
                 card("NODE PRINT, NSET=END", ("U",)),
             ),
@@ -257,7 +253,6 @@ def capstan(friction: float, degrees: int) -> str:
             card("CONTACT PAIR, INTERACTION=DRY", ("INSIDE", "POST")),
             card("BOUNDARY", ("REFERENCE", 1, 2)),
             static(
-                ROUND_OFF,
                 card("BOUNDARY", ("PULLED", 1, 2)),
                 card("DSLOAD, FOLLOWER=NO", ("LOADED", "TRVEC", load, -pull[0], pull[1])),
                 card("NODE PRINT, NSET=PULLED", ("U, RF",)),

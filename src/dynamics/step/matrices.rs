@@ -138,7 +138,7 @@ const NEUTRAL: f64 = 1e-10;
 pub(crate) enum StiffnessForm {
     /// Tangents of the elements and contact stiffness.
     Tangent,
-    /// Tangents of the elements, with the closed constraints held.
+    /// Tangents of the elements, in a static step with contact stiffness, and the closed constraints held.
     Held,
     /// Positive parts of the tangents, with the closed constraints held.
     Positive,
@@ -148,8 +148,15 @@ pub(crate) enum StiffnessForm {
 }
 
 impl StiffnessForm {
-    /// All, from the one with which passes converge fastest to the one that is never indefinite.
-    pub const ALL: [Self; 3] = [Self::Tangent, Self::Held, Self::Positive];
+    /// Those of a step with inertia or without, from the one with which passes converge fastest to the one that is
+    /// never indefinite.
+    pub fn forms(has_inertia: bool) -> &'static [Self] {
+        match has_inertia {
+            true => &[Self::Tangent, Self::Held, Self::Positive],
+            // K alone, soft in bending, would leave contact forces of slender bodies few digits
+            false => &[Self::Held, Self::Positive],
+        }
+    }
 
     /// Part of the tangents of the elements.
     fn part(self) -> TangentPart {
