@@ -11,13 +11,17 @@ from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
-from stickslip.deck import Card, Deck
+from stickslip.deck import PROCEDURES, Card, Deck
 from stickslip.errors import Fault
 
 Array = NDArray[np.float64]
 
 OUTLINES = ("START", "LINE")
 """First fields of the rows of rigid surfaces; arcs are chords in flat decks."""
+
+
+GROUNDED = {"SPRING1", "DASHPOT1"}
+ALONG_AXES = {"SPRING2", "DASHPOT2"}
 
 
 class Unchangeable(Fault):
@@ -70,6 +74,7 @@ def turned(deck: Deck, matrix: Array) -> Deck:
     Where supports do not follow the axes after the turn, a node without element takes them over in
     the axes of before, and equations tie the supported node to it.
     """
+    _refuse_fixed_directions(deck)
     new = with_points(deck, lambda point: matrix @ point)
     if np.linalg.det(matrix) < 0.0:
         new = _mirrored(new)
@@ -85,7 +90,7 @@ def _mirrored(deck: Deck) -> Deck:
         if card.keyword == "ELEMENT":
             rows = []
             for label, *nodes in card.rows:
-                rows.append([label, nodes[1], nodes[0], *reversed(nodes[2:])])
+                rows.append([label, *nodes[1::-1], *reversed(nodes[2:])])
                 # face 1-2 stays, the others are met in the other order
                 others = [str(face) for face in range(2, len(nodes) + 1)]
                 faces[label] = {"1": "1"} | dict(zip(others, reversed(others)))
@@ -218,7 +223,8 @@ def supports(deck: Deck) -> list[Held]:
     now: Supports = {}
     time = 0.0
     for cards in _steps(deck):
-        period = float(next(card for card in cards if card.keyword == "DYNAMIC").rows[0][1])
+        rows = next(card for card in cards if card.keyword in PROCEDURES).rows
+        period = float(rows[0][1]) if rows and len(rows[0]) > 1 else 1.0
         for card in cards:
             if card.keyword == "BOUNDARY":
                 now = {} if card.parameters.get("OP") == "NEW" else now
@@ -264,7 +270,7 @@ def with_supports(deck: Deck, steps: list[Supports]) -> Deck:
         if card.keyword == "BOUNDARY":
             continue
         cards.append(card)
-        if card.keyword == "DYNAMIC":
+        if card.keyword in PROCEDURES:
             step, now = next(remaining)
             cards += _support_cards(now, is_first=step == 0)
     return Deck(cards)
@@ -280,6 +286,20 @@ def _support_cards(now: Supports, is_first: bool) -> list[Card]:
     if not now and not is_first:
         return [Card("BOUNDARY", "*BOUNDARY, OP=NEW")]
     return list(cards.values())
+
+
+def _types(deck: Deck) -> set[str]:
+    """Types of the elements."""
+    return {card.parameters.get("TYPE", "").upper() for card in deck.find("ELEMENT")}
+
+
+def _refuse_fixed_directions(deck: Deck) -> None:
+    """Springs along axes and angles are not turned here."""
+    if (GROUNDED | ALONG_AXES) & _types(deck):
+        raise Unchangeable("springs and dashpots act along the axes")
+    for keyword in ("BOUNDARY", "CLOAD", "INITIAL CONDITIONS"):
+        if any("6" in row[1:3] for card in deck.find(keyword) for row in card.rows):
+            raise Unchangeable("something is given in direction 6")
 
 
 def _turned_supports(deck: Deck, matrix: Array) -> Deck:
@@ -407,6 +427,10 @@ def boosted(deck: Deck, velocity: Array) -> Deck:
         raise Unchangeable("ALPHA damps the velocity itself")
     if deck.find("EQUATION"):
         raise Unchangeable("has equations")
+    if GROUNDED & _types(deck):
+        raise Unchangeable("springs and dashpots to the ground stay where they are")
+    if deck.find("STATIC"):
+        raise Unchangeable("static steps begin at rest")
     if any("DIRECT" not in card.parameters for card in deck.find("DYNAMIC")):
         raise Unchangeable("automatic increments depend on the displacements")
     new = _with_initial_velocity(deck, velocity)
@@ -416,7 +440,7 @@ def boosted(deck: Deck, velocity: Array) -> Deck:
     for number, held in enumerate(supports(deck)):
         now: Supports = {}
         for (node, direction), support in held.now.items():
-            speed = float(velocity[direction - 1])
+            speed = float(velocity[direction - 1]) if direction < 3 else 0.0
             now[node, direction] = _boosted(support, speed, held, number, amplitudes, added)
         steps.append(now)
     new = with_supports(new, steps)
@@ -514,6 +538,7 @@ def renumbered(deck: Deck, seed: int = 1) -> tuple[Deck, dict[str, str], dict[st
             "NSET": (nodes, None),
             "ELSET": (elements, None),
             "CLOAD": (nodes, 1),
+            "KINEMATICCOUPLING": (nodes, 1),
             "BOUNDARY": (nodes, 1),
             "INITIALCONDITIONS": (nodes, 1),
             "DLOAD": (elements, 1),

@@ -174,7 +174,7 @@ def part(runs: Sequence[Convergence], end: float, deck: Deck) -> str:
     first = next(which for which, one in enumerate(runs) if one.reached == end)
     why = "at the limit" if runs[first].run.was_stopped else "stopped"
     who = f"{('OLD', 'NEW')[first]} {why}" if len(runs) > 1 else why
-    period = sum(float(card.rows[0][1]) for card in deck.find("DYNAMIC"))
+    period = deck.duration or inf
     return f"to time {end:.4g} of {period:.4g}: {who}"
 
 

@@ -130,7 +130,7 @@ def _summary(
     part = ""
     if span is not None:
         end = float(old["history/time"][rows - 1])
-        period = sum(float(card.rows[0][1]) for card in deck.find("DYNAMIC"))
+        period = deck.duration or float("inf")
         part = f"SHORTENED to time {end:.4g} of {period:.4g} ({100 * end / period:.0f} %), "
     return f"{part}{rows - 1} increments, {frames} frames, {comparison.datasets} datasets"
 

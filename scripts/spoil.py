@@ -89,7 +89,7 @@ def seeds() -> dict[str, str]:
 
 def shorten(deck: Deck) -> None:
     """Cuts the steps of a deck to a few increments."""
-    for card in deck.find("DYNAMIC"):
+    for card in [*deck.find("DYNAMIC"), *deck.find("STATIC")]:
         try:
             dt, period = (float(field) for field in card.rows[0][:2])
         except (ValueError, IndexError):
