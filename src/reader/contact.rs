@@ -10,8 +10,8 @@ use super::surfaces::{Found, Surfaces};
 use crate::deck::{Card, Line, Name, Text};
 use crate::diagnostics::{Code, Span};
 use crate::model::{
-    ALL_EXTERIOR, Adjust, Contact, Face, Friction, FrictionCurve, FrictionLaw, Interaction, Mesh,
-    Reach, Surface, SurfaceKind,
+    ALL_EXTERIOR, Adjust, Contact, Face, Friction, FrictionCurve, FrictionLaw, Interaction, Reach,
+    Surface, SurfaceKind,
 };
 use std::collections::{HashMap, HashSet};
 
@@ -388,7 +388,7 @@ fn general(
     let surface = surfaces.all.len();
     surfaces.all.push(Surface {
         name: ALL_EXTERIOR.to_string(),
-        kind: SurfaceKind::Faces(exterior(&mesh_index.mesh)),
+        kind: SurfaceKind::Faces(exterior(mesh_index)),
     });
     Some(Contact {
         slave: surface,
@@ -460,8 +460,10 @@ fn assigned_in(
 }
 
 /// All faces that belong to one element only, chain by chain along the boundaries.
-fn exterior(mesh: &Mesh) -> Vec<Face> {
-    let free = mesh.exterior_faces();
+fn exterior(mesh_index: &MeshIndex) -> Vec<Face> {
+    let mesh = &mesh_index.mesh;
+    let mut free = mesh.exterior_faces();
+    free.retain(|face| !mesh_index.cut_faces.contains(face));
     let mut starts: HashMap<usize, Vec<usize>> = HashMap::new();
     for (i, face) in free.iter().enumerate() {
         starts.entry(face.ends(mesh)[0]).or_default().push(i);

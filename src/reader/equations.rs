@@ -5,6 +5,7 @@ use super::boundary::{Direction, Targets, direction};
 use super::context::Context;
 use super::couplings::Link;
 use super::outline::Outline;
+use super::pretension::Cut;
 use super::ties::Ties;
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span};
@@ -41,11 +42,17 @@ type ByDof = BTreeMap<usize, Solved>;
 pub(crate) fn read(
     outline: &Outline,
     targets: Targets,
-    (ties, links, steps): (&Ties, &[Link], &[Step]),
+    (ties, links, cuts, steps): (&Ties, &[Link], &[Cut], &[Step]),
     cx: &mut Context,
 ) -> Vec<(Equation, Span)> {
     let mut solved = of_ties(ties, targets, steps, cx);
     of_links(links, &mut solved, targets, steps, cx);
+    for cut in cuts {
+        for Equation { dof, terms } in cut.equations() {
+            let span = cut.span;
+            solved.insert(dof, Solved { terms, span });
+        }
+    }
     for card in outline.model_cards("EQUATION") {
         let mut rows = card.rows.iter();
         while let Some(row) = rows.next() {

@@ -8,6 +8,7 @@ use super::names::{Labelled, Labels};
 use crate::deck::{Card, Name};
 use crate::diagnostics::{Code, Span};
 use crate::model::{ConnectorLaw, Face, Instance, Mesh, element_name, node_name};
+use std::collections::HashSet;
 
 /// The mesh, with the numbers and sets that the deck gives to its nodes and elements.
 pub(crate) struct MeshIndex {
@@ -32,6 +33,8 @@ pub(crate) struct MeshIndex {
     pub node_groups: Vec<Group>,
     /// Element sets named on `*ELEMENT`.
     pub element_groups: Vec<Group>,
+    /// Faces on both sides of the cuts of pre-tension sections, which belong to no surface but those that name them.
+    pub cut_faces: HashSet<Face>,
 }
 
 /// An element at one node.
@@ -141,6 +144,7 @@ impl Default for MeshIndex {
             places: Vec::new(),
             node_groups: Vec::new(),
             element_groups: Vec::new(),
+            cut_faces: HashSet::new(),
         }
     }
 }

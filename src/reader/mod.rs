@@ -21,6 +21,7 @@ mod names;
 mod nodes_elements;
 mod outline;
 mod output;
+mod pretension;
 mod rigid_bodies;
 mod sections;
 mod sets;
@@ -74,6 +75,11 @@ fn read(cx: &mut Context) -> Model {
     let at_nodes = ElementsAtNodes::new(&mesh_index.mesh);
     checks::mesh(&mesh_index, &at_nodes, cx);
     let sets = sets::read(&outline, &mesh_index, cx);
+    let cuts = pretension::read(&outline, &mut mesh_index, &sets, cx);
+    let at_nodes = match cuts.is_empty() {
+        true => at_nodes,
+        false => ElementsAtNodes::new(&mesh_index.mesh),
+    };
     let mut surfaces = surfaces::read(&outline, &mesh_index, &sets, &at_nodes, cx);
     drop(at_nodes);
     mesh_index.add_points(&surfaces.rigid_points);
@@ -106,7 +112,7 @@ fn read(cx: &mut Context) -> Model {
     let mut initial_velocity = boundary::initial_velocity(&outline, targets, &steps.at_start, cx);
     let all = &mut steps.all;
     let bodies = rigid_bodies::complete(&rigid_bodies, &mesh_index, all, &mut initial_velocity, cx);
-    let equations = equations::read(&outline, targets, (&ties, &links, &steps.all), cx);
+    let equations = equations::read(&outline, targets, (&ties, &links, &cuts, &steps.all), cx);
     rigid_bodies::check(&rigid_bodies, &bodies, (&steps.all, &equations), cx);
     boundary::check_start(&outline, steps.all.first(), cx);
     equations::check_velocities(&equations, &initial_velocity, &steps.at_start, targets, cx);

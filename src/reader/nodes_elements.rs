@@ -623,6 +623,8 @@ fn fields<'a>(outline: &Outline<'a>) -> Vec<Text<'a>> {
     let rows = equations.flat_map(|card| card.rows.iter());
     let terms = rows.filter(|row| row.get(1).is_some());
     let names = ["REF NODE", "NSET", "PIN NSET", "TIE NSET"];
+    let sections = outline.model_cards("PRE-TENSION SECTION").into_iter();
+    let tightened = sections.filter_map(|card| card.value("NODE"));
     let kinematic = outline.model_cards("KINEMATIC COUPLING").into_iter();
     let couplings = outline.model_cards("COUPLING").into_iter();
     let coupled = kinematic.clone().flat_map(|card| card.rows.iter());
@@ -637,6 +639,7 @@ fn fields<'a>(outline: &Outline<'a>) -> Vec<Text<'a>> {
         .flat_map(|card| names.map(|name| card.value(name)))
         .flatten()
         .chain(terms.flat_map(|row| row.fields().step_by(3)))
+        .chain(tightened)
         .chain(coupled)
         .chain(joined)
         .collect()

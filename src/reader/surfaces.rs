@@ -5,8 +5,8 @@ use super::mesh_index::MeshIndex;
 use super::names::Names;
 use super::outline::Outline;
 use super::sets::Sets;
-use crate::deck::{Card, Line, Text};
-use crate::diagnostics::{Code, Diagnostic, Span, closest, shown};
+use crate::deck::{Card, Deck, Line, Text};
+use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span, closest, shown};
 use crate::model::{ElementsAtNodes, Face, Mesh, Surface, SurfaceKind};
 use crate::vectors::{angle, difference};
 use std::collections::{BTreeSet, HashSet};
@@ -145,6 +145,22 @@ fn faces(
     faces
 }
 
+/// Faces of elements that a card `*SURFACE` names, what is wrong with it being reported elsewhere.
+pub(super) fn named_faces_of(
+    card: &Card,
+    mesh_index: &MeshIndex,
+    sets: &Sets,
+    at_nodes: &ElementsAtNodes,
+    deck: &Deck,
+) -> Vec<Face> {
+    if matches!(card.choice("TYPE"), Some("NODE" | "SEGMENTS")) {
+        return Vec::new();
+    }
+    let mut unheard = Diagnostics::default();
+    let cx = &mut Context::new(deck, &mut unheard);
+    faces(card, mesh_index, sets, at_nodes, cx)
+}
+
 /// Exterior sides of the elements that a field names, and the faces that its line elements name.
 fn unnamed_faces(
     field: Text,
@@ -154,6 +170,7 @@ fn unnamed_faces(
 ) -> Vec<Face> {
     let (elements, lines) = sets.elements_and_lines_of(field, mesh_index, cx);
     let mut faces = exterior_faces(&elements, at_nodes, &mesh_index.mesh);
+    faces.retain(|face| !mesh_index.cut_faces.contains(face));
     let known: HashSet<Face> = faces.iter().copied().collect();
     faces.extend(lines.into_iter().filter(|face| !known.contains(face)));
     faces

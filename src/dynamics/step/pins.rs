@@ -10,12 +10,15 @@ use crate::contact::Constraint;
 use crate::dynamics::results::{Cause, Unbalanced};
 use crate::linear::{LinearError, Transformation, larger, largest};
 use crate::model::Equation;
+use std::collections::BTreeSet;
 
 /// Largest motion of a node, and angle (rad), by which a pass moves a body as a rigid one: of the reach of the search.
 const LARGEST_WAY: f64 = 0.8;
 const LARGEST_ANGLE: f64 = 0.2;
 /// Part of the largest eigenvalue up to which a rigid motion is free.
 const FREE: f64 = 1e-10;
+/// Part of the size of its terms up to which an equation agrees with a rigid motion.
+const AGREES: f64 = 1e-9;
 /// Compliance of pins in the complementarity problems beside that of the pairs of their body: much softer ones leave
 /// problems with friction several solutions.
 const SOFT: f64 = 1e2;
@@ -64,9 +67,14 @@ impl Pins {
         for &dof in &unknowns.dof {
             has_unknowns[parts.of_nodes()[dof / 2]] = true;
         }
+        let mut has_elements = vec![false; problem.coordinates.len()];
+        for &node in problem.elements.connected().flatten() {
+            has_elements[node] = true;
+        }
         let pinned = |(body, nodes): (usize, Vec<usize>)| {
             let movable = has_unknowns[body] && nodes.len() > 1;
-            movable.then(|| PinnedBody::new(problem, body, nodes, holds[body]))?
+            let of_body = (body, holds[body], has_elements.as_slice());
+            movable.then(|| PinnedBody::new(problem, of_body, nodes))?
         };
         Pins {
             bodies: nodes.into_iter().enumerate().filter_map(pinned).collect(),
@@ -120,7 +128,11 @@ impl Pins {
 }
 
 impl PinnedBody {
-    fn new(problem: &StepProblem, body: usize, nodes: Vec<usize>, hold: Hold) -> Option<Self> {
+    fn new(
+        problem: &StepProblem,
+        (body, hold, has_elements): (usize, Hold, &[bool]),
+        nodes: Vec<usize>,
+    ) -> Option<Self> {
         let (model, unknowns) = (problem.model, &problem.unknowns);
         let x = |node: usize| model.mesh.coordinates[node];
         let pole = pole(hold, &nodes, &x);
@@ -132,10 +144,17 @@ impl PinnedBody {
         // what supports and equations ask of a rigid motion
         let mut gram = Matrix3::zeros();
         let own = |dof: usize| nodes.binary_search(&(dof / 2)).is_ok();
-        for dof in unknowns.prescribed().filter(|&dof| own(dof)) {
+        let tightening = tightening(&model.equations, has_elements, own, row);
+        let moves_parts = |dof: usize| tightening.contains(&dof);
+        for dof in unknowns
+            .prescribed()
+            .filter(|&dof| own(dof) && !moves_parts(dof))
+        {
             gram += row(dof) * row(dof).transpose();
         }
-        for Equation { dof, terms } in model.equations.iter().filter(|e| own(e.dof)) {
+        let equations = model.equations.iter().filter(|e| own(e.dof));
+        let is_rigid = |e: &&Equation| !e.terms.iter().any(|term| moves_parts(term.0));
+        for Equation { dof, terms } in equations.filter(is_rigid) {
             let of_terms: Vector3<f64> = terms.iter().map(|&(to, c)| c * row(to)).sum();
             let asked = row(*dof) - of_terms;
             gram += asked * asked.transpose();
@@ -154,7 +173,8 @@ impl PinnedBody {
             return None;
         }
         let free = DMatrix::from_fn(3, free.len(), |i, k| free[k][i]);
-        let candidates = unknowns.dof.iter().copied().filter(|&dof| own(dof));
+        let is_meant = |&dof: &usize| own(dof) && !moves_parts(dof);
+        let candidates = unknowns.dof.iter().copied().filter(is_meant);
         let dofs = independent_dofs(candidates.collect(), &free, row)?;
         Some(PinnedBody {
             body,
@@ -240,6 +260,33 @@ impl PinnedBody {
         }
         part < 1.0
     }
+}
+
+/// Dofs of nodes without elements by which equations move parts of a body beside each other, as the tightening of a
+/// pre-tension section does: with them an equation forbids rigid motions that it allows without.
+fn tightening(
+    equations: &[Equation],
+    has_elements: &[bool],
+    own: impl Fn(usize) -> bool,
+    row: impl Fn(usize) -> Vector3<f64>,
+) -> BTreeSet<usize> {
+    let mut found = BTreeSet::new();
+    for Equation { dof, terms } in equations.iter().filter(|e| own(e.dof)) {
+        let alone = |&&(to, _): &&(usize, f64)| !has_elements[to / 2];
+        if !terms.iter().any(|term| alone(&term)) {
+            continue;
+        }
+        let sum = |terms: &mut dyn Iterator<Item = &(usize, f64)>| -> Vector3<f64> {
+            terms.map(|&(to, c)| c * row(to)).sum()
+        };
+        let all = row(*dof) - sum(&mut terms.iter());
+        let without = all + sum(&mut terms.iter().filter(alone));
+        let size = row(*dof).norm();
+        if all.norm() > AGREES * size && without.norm() <= AGREES * size {
+            found.extend(terms.iter().filter(alone).map(|term| term.0));
+        }
+    }
+    found
 }
 
 /// What a body turns about: the node that it is pinned at, or the mean of its nodes.

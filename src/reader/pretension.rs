@@ -1,0 +1,220 @@
+//! `*PRE-TENSION SECTION`: a body is cut along a surface, and equations let both sides of the cut overlap by one more
+//! displacement, which a force tightens and a support locks. Section 3 of docs/theory.md, Pre-tension.
+
+use super::context::Context;
+use super::mesh_index::MeshIndex;
+use super::outline::Outline;
+use super::sets::Sets;
+use super::surfaces::named_faces_of;
+use crate::deck::{Card, Line};
+use crate::diagnostics::{Code, Span};
+use crate::model::{ElementsAtNodes, Equation, Face};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A body that is cut.
+pub(crate) struct Cut {
+    /// Pre-tension node.
+    node: usize,
+    /// Direction in which the side of the surface moves out of its elements; a unit vector.
+    normal: [f64; 2],
+    /// Nodes of the surface, and those of the elements behind it at the same places.
+    pairs: Vec<[usize; 2]>,
+    /// Place of the card.
+    pub span: Span,
+}
+
+impl Cut {
+    /// Equations of the nodes behind the cut, u_b = u_a - q n, eq. (3.16).
+    pub fn equations(&self) -> impl Iterator<Item = Equation> + '_ {
+        let of_pair = |&[a, b]: &[usize; 2]| {
+            [0, 1].map(|i| {
+                let tightening = (2 * self.node, -self.normal[i]);
+                let terms = [(2 * a + i, 1.0), tightening].into_iter();
+                Equation {
+                    dof: 2 * b + i,
+                    terms: terms.filter(|term| term.1 != 0.0).collect(),
+                }
+            })
+        };
+        self.pairs.iter().flat_map(of_pair)
+    }
+}
+
+/// Reads all sections and cuts the mesh.
+pub(super) fn read(
+    outline: &Outline,
+    mesh_index: &mut MeshIndex,
+    sets: &Sets,
+    cx: &mut Context,
+) -> Vec<Cut> {
+    let mut cuts = Vec::new();
+    for card in outline.model_cards("PRE-TENSION SECTION") {
+        let other = (Code::PreTension, "a section has one node of its own");
+        let node = card
+            .required("NODE", cx.d)
+            .and_then(|field| sets.single_node(field, mesh_index, other, cx));
+        let at_nodes = ElementsAtNodes::new(&mesh_index.mesh);
+        let faces = faces(card, outline, mesh_index, sets, &at_nodes, cx);
+        let (Some(node), Some(faces)) = (node, faces) else {
+            continue;
+        };
+        if at_nodes.of(node).next().is_some() {
+            let message = "the node of a section belongs to an element";
+            cx.error(Code::PreTension, card.span_of("NODE"), message)
+                .help("take a node of its own: its displacement in direction 1 is the tightening");
+            continue;
+        }
+        let normal = match card.rows.first() {
+            Some(row) => given_normal(row, cx),
+            None => Some(mean_normal(&faces, mesh_index)),
+        };
+        let Some(normal) = normal else { continue };
+        if let Some(pairs) = cut(&faces, mesh_index, &at_nodes, card.span, cx) {
+            cuts.push(Cut {
+                node,
+                normal,
+                pairs,
+                span: card.span,
+            });
+        }
+    }
+    cuts
+}
+
+/// Faces of the surface that a card names.
+fn faces(
+    card: &Card,
+    outline: &Outline,
+    mesh_index: &MeshIndex,
+    sets: &Sets,
+    at_nodes: &ElementsAtNodes,
+    cx: &mut Context,
+) -> Option<Vec<Face>> {
+    let field = card.required("SURFACE", cx.d)?;
+    let key = cx.key_of(field);
+    let is_meant = |surface: &&Card| {
+        let name = surface.value("NAME");
+        name.is_some_and(|name| cx.key_of(name) == key)
+    };
+    let all = outline.model_cards("SURFACE");
+    let Some(surface) = all.into_iter().find(is_meant) else {
+        if !cx.may_lack_cards() {
+            let message = format!("surface {} is not defined", field.text);
+            cx.error(Code::PreTension, field.span, message);
+        }
+        return None;
+    };
+    let found = named_faces_of(surface, mesh_index, sets, at_nodes, cx.deck);
+    if found.is_empty() {
+        let message = format!("surface {} has no faces of elements", field.text);
+        cx.error(Code::PreTension, field.span, message)
+            .help("name the faces between the elements that are parted: element set, S1 to S4");
+        return None;
+    }
+    Some(found)
+}
+
+/// `nx, ny[, nz]`
+fn given_normal(row: Line, cx: &mut Context) -> Option<[f64; 2]> {
+    row.at_most(3, cx.d);
+    let [x, y, z] = [0, 1, 2].map(|i| row.real_or(i, 0.0, cx.d));
+    let (x, y, z) = (x?, y?, z?);
+    let length = x.hypot(y);
+    if z != 0.0 || length == 0.0 || !length.is_finite() {
+        let message = "the normal of the section must lie in the plane";
+        cx.error(Code::BadDirection, row.span(), message);
+        return None;
+    }
+    Some([x / length, y / length])
+}
+
+/// Mean normal out of the elements of the faces.
+fn mean_normal(faces: &[Face], mesh_index: &MeshIndex) -> [f64; 2] {
+    let mesh = &mesh_index.mesh;
+    let mut sum = [0.0; 2];
+    for face in faces {
+        let [a, b] = face.ends(mesh).map(|node| mesh.coordinates[node]);
+        // the body lies on the left
+        sum = [sum[0] + b[1] - a[1], sum[1] + a[0] - b[0]];
+    }
+    let length = sum[0].hypot(sum[1]);
+    sum.map(|x| {
+        if x.abs() < 1e-14 * length {
+            0.0
+        } else {
+            x / length
+        }
+    })
+}
+
+/// Gives the elements behind the faces nodes of their own; pairs of nodes of both sides.
+fn cut(
+    faces: &[Face],
+    mesh_index: &mut MeshIndex,
+    at_nodes: &ElementsAtNodes,
+    span: Span,
+    cx: &mut Context,
+) -> Option<Vec<[usize; 2]>> {
+    let mesh = &mesh_index.mesh;
+    let sorted = |[a, b]: [usize; 2]| if a < b { [a, b] } else { [b, a] };
+    let edges: BTreeSet<[usize; 2]> = faces.iter().map(|face| sorted(face.ends(mesh))).collect();
+    let mut front: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
+    for face in faces {
+        for node in face.nodes(mesh) {
+            front.entry(node).or_default().insert(face.element);
+        }
+    }
+    // the elements at a node that sides other than those of the cut lead to
+    let mut behind: Vec<(usize, Vec<usize>)> = Vec::new();
+    for (&node, first) in &front {
+        let sides = |element: usize| mesh.elements[element].side_ends().map(sorted);
+        let mut reached = first.clone();
+        let mut open: Vec<usize> = first.iter().copied().collect();
+        while let Some(element) = open.pop() {
+            let own: Vec<[usize; 2]> = sides(element)
+                .filter(|side| side.contains(&node) && !edges.contains(side))
+                .collect();
+            for other in at_nodes.of(node) {
+                if !reached.contains(&other) && sides(other).any(|side| own.contains(&side)) {
+                    reached.insert(other);
+                    open.push(other);
+                }
+            }
+        }
+        let others: Vec<usize> = (at_nodes.of(node).filter(|e| !reached.contains(e))).collect();
+        if others.is_empty() {
+            let message = format!(
+                "the surface does not part the body at node {}",
+                mesh_index.node_name(node)
+            );
+            cx.error(Code::PreTension, span, message)
+                .help("it runs between elements from one side of the body to the other");
+            return None;
+        }
+        behind.push((node, others));
+    }
+    let twins: Vec<Face> = (behind.iter().flat_map(|(_, elements)| elements))
+        .flat_map(|&element| {
+            let sides = 0..mesh.elements[element].side_count();
+            sides.map(move |side| Face { element, side })
+        })
+        .filter(|face| edges.contains(&sorted(face.ends(mesh))))
+        .collect();
+    mesh_index
+        .cut_faces
+        .extend(faces.iter().copied().chain(twins));
+    let places: Vec<[f64; 2]> = (behind.iter())
+        .map(|(node, _)| mesh_index.mesh.coordinates[*node])
+        .collect();
+    let first = mesh_index.mesh.node_count();
+    mesh_index.add_points(&places);
+    let mut pairs = Vec::new();
+    for (new, (node, elements)) in (first..).zip(behind) {
+        for element in elements {
+            let nodes = mesh_index.mesh.elements[element].nodes.iter_mut();
+            nodes.filter(|own| **own == node).for_each(|own| *own = new);
+        }
+        pairs.push([node, new]);
+    }
+    Some(pairs)
+}
