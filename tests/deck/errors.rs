@@ -204,6 +204,7 @@ fn faulty(code: Code) -> Source {
         Adjusted => shared("DRY, TYPE", "DRY, ADJUST=0.2, TYPE"),
         FacingAway => shared("EBASE, S3", "EBASE, S1"),
         Tie => shared(PAIR, "*TIE, POSITION TOLERANCE=0.\nSBOT, STOP\n"),
+        PreTension => model("*PRE-TENSION SECTION, NODE=1, SURFACE=NONE"),
         Interference => shared(
             "*DLOAD",
             "*CONTACT INTERFERENCE, SHRINK\nSTOP, STOP\n*DLOAD",

@@ -21,7 +21,7 @@ CONNECTIONS = ROOT / "tests/decks/connections.inp"
 STATIC_STEPS = ROOT / "tests/decks/static_steps.inp"
 TIES = ROOT / "tests/decks/ties.inp"
 FRICTION = ROOT / "tests/decks/friction.inp"
-FITS = [ROOT / f"tests/decks/{name}.inp" for name in ("fits", "general_fit")]
+FITS = [ROOT / f"tests/decks/{name}.inp" for name in ("fits", "general_fit", "bolt")]
 ALL_CARDS = [EVERY_CARD, ASSEMBLY, CONNECTIONS, STATIC_STEPS, TIES, FRICTION, *FITS]
 """Decks that use every keyword, and every number with a dimension."""
 EXAMPLES = sorted((ROOT / "input").glob("*/*.inp"))

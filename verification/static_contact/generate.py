@@ -38,6 +38,9 @@ ARCH, PUNCH = (10.0, 0.4, 0.2), 0.3
 FIT = {"bore": 0.4, "radius": 1.0, "rim": 2.0, "overlap": 2e-3}
 """Radii of a hollow shaft and the ring pressed on it, and their interference."""
 
+BOLT = {"length": 4.0, "bolt": 1.0, "flange": 2.0, "preload": 0.1}
+"""Length and widths of a bolt and of the flange that it clamps, and its preload."""
+
 SNAP, DAMPING = 100.0, 0.3
 """Time in which the arch comes to rest after it has snapped through, and its damping (ALPHA)."""
 
@@ -423,6 +426,58 @@ def fit(
     )
 
 
+def bolt(pull: float) -> str:
+    """A bolt clamps a flange, is locked and pulled; `pull` beside the preload.
+
+    The head, whose nodes move along y alike, presses a plate on the flange.
+    """
+    length = BOLT["length"]
+    shank = block("BOLT", (2, 8), (BOLT["bolt"], length))
+    size = BOLT["flange"] / 4
+
+    def beside(i: int, j: int) -> tuple[float, float]:
+        return 2 + size * i, length * j / 8
+
+    flange = Grid("FLANGE", 4, 8, beside, **after(shank))
+    above = after(flange)
+    plate = Grid("PLATE", 4, 1, lambda i, j: (2 + size * i, length + j / 2), **above)
+    head = plate.next_node
+    cut = [(shank.element(i, 3),) for i in range(2)]
+    load = BOLT["preload"]
+    return "".join(
+        [
+            card("HEADING", ("a bolt clamps a flange, is locked and pulled",)),
+            *(body.mesh("CPS4") for body in (shank, flange, plate)),
+            card("NODE, NSET=HEAD", (head, 1.5, length + 1)),
+            card("NODE, NSET=TIGHTENING", (head + 1, 0.0, 0.0)),
+            card("ELSET, ELSET=BELOW", *cut),
+            card("SURFACE, NAME=SECTION", ("BELOW", "S3")),
+            card("PRE-TENSION SECTION, NODE=TIGHTENING, SURFACE=SECTION"),
+            shank.side_nodes("FOOT", "bottom"),
+            flange.side_nodes("GROUND", "bottom"),
+            shank.side_nodes("TOP", "top"),
+            flange.side_surface("SEAT", "top"),
+            plate.side_surface("SOLE", "bottom"),
+            elastic(YOUNG, 0.0, 1.0, "BOLT", "FLANGE", "PLATE"),
+            dry(0.0),
+            card("CONTACT PAIR, INTERACTION=DRY", ("SOLE", "SEAT")),
+            *(card("EQUATION", (2,), (name, 2, 1.0, "HEAD", 2, -1.0)) for name in ("TOP", "PLATE")),
+            card("BOUNDARY", ("FOOT", 1, 2), ("GROUND", 1, 2), ("PLATE", 1, 1)),
+            static(
+                card("CLOAD", ("TIGHTENING", 1, load)),
+                card("NODE PRINT, NSET=TIGHTENING", ("U, RF",)),
+            ),
+            static(
+                card("CLOAD, OP=NEW"),
+                card("BOUNDARY, FIXED", ("TIGHTENING", 1, 1)),
+                card("CLOAD", ("HEAD", 2, pull * load)),
+                dt=0.1,
+                direct=True,
+            ),
+        ]
+    )
+
+
 def lame() -> tuple[float, float]:
     """Pressure of the fit, and C of the hoop stress C (1 + b^2/r^2) of the ring beside it."""
     bore, rim = ((FIT[name] / FIT["radius"]) ** 2 for name in ("bore", "rim"))
@@ -480,6 +535,7 @@ PROBLEMS: dict[str, Callable[..., str]] = {
     "capstan": capstan,
     "arch": arch,
     "fit": fit,
+    "bolt": bolt,
 }
 
 

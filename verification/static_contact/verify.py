@@ -16,7 +16,7 @@ decks = runner.load(HERE / "generate.py")
 PEAK = 2 * decks.PRESS / (pi * decks.HALF_WIDTH)
 """Of Hertz' pressure."""
 
-EDGES = {"lag": 0.025, "capstan": 0.01, "arch": 0.025, "fit": 0.01}
+EDGES = {"lag": 0.025, "capstan": 0.01, "arch": 0.025, "fit": 0.01, "bolt": 0.5}
 """Smallest edges of the elements; those of the cylinders depend on their half width."""
 
 
@@ -250,12 +250,29 @@ def fits(verification: runner.Verification) -> None:
     verification.check("error of hoop stress, fine / coarse", "fit_fine_ring", errors[1] / errors[0])
 
 
+def bolts(verification: runner.Verification) -> None:
+    """Way of the tightening, and force of the locked bolt beside springs side by side."""
+    length, load = decks.BOLT["length"], decks.BOLT["preload"]
+    stiff = [decks.YOUNG * decks.BOLT[name] / length for name in ("bolt", "flange")]
+    for case, result in verification.group("bolt"):
+        asked = result.history.nodes["TIGHTENING"]
+        tightened, end = ends(result)
+        way = load / stiff[0] + load / stiff[1]
+        verification.check(
+            "tightening / springs", case.name, float(asked.U[tightened, 0, 0]) / way
+        )
+        pull = case.parameters["pull"] * load
+        exact = max(load + pull * stiff[0] / sum(stiff), pull)
+        force = float(asked.RF[end, 0, 0])
+        verification.check("force of the bolt / springs", case.name, force / exact)
+
+
 def main() -> int:
     """Runs, checks, reports."""
     verification = runner.start(HERE)
     for case in verification.cases:
         verification.check_run(case.name, EDGES.get(case.group, decks.HALF_WIDTH / 32))
-    for part in (hertz, mindlin, shear_lag, capstan, arch, fits):
+    for part in (hertz, mindlin, shear_lag, capstan, arch, fits, bolts):
         part(verification)
     rows = [
         (name, len(result.history.dt) - 1, int(result.history.solver["passes"][1:].max()))
