@@ -11,8 +11,8 @@ use crate::diagnostics::Sources;
 use crate::dynamics::rigid_inertia;
 use crate::model::{
     Connector, ConnectorLaw, Contact, EdgeScales, Element, ElementType, Frames, Impact, ImpactTime,
-    Incrementation, LandingRule, Model, Procedure, Scheme, Settings, SolverChoice, Step,
-    SurfaceKind,
+    Incrementation, Interference, LandingRule, Load, Model, Procedure, Scheme, Settings,
+    SolverChoice, Step, SurfaceKind,
 };
 use crate::prepare::{InitialGap, PreparedModel};
 use crate::vectors::extents;
@@ -65,6 +65,7 @@ impl ModelEcho {
         lines.extend(monitor_lines(model));
         for (i, step) in model.steps.iter().enumerate() {
             lines.extend(self.step_lines(i, step));
+            lines.extend(fit_lines(prepared, step));
         }
         lines
     }
@@ -242,6 +243,26 @@ fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<S
         smallest_gap(gaps),
     ];
     wrap("contact", &pieces)
+}
+
+/// The overlaps that contacts allow in a step.
+fn fit_lines(prepared: &PreparedModel, step: &Step) -> Vec<String> {
+    let model = &prepared.model;
+    let line = |load: &Load<Interference>| {
+        let contact = &model.contacts[load.at.contact];
+        let slave = &model.surfaces[contact.slave].name;
+        let overlaps = prepared.overlaps[load.at.contact].iter();
+        let largest = overlaps.fold(0.0, |most: f64, o| most.max(*o));
+        let overlap = match (load.at.is_shrink, load.ends()) {
+            (true, _) => format!("up to {} shrinks to nothing", scientific(largest, 1)),
+            (false, Some([from, to])) => {
+                format!("from {} to {}", scientific(from, 1), scientific(to, 1))
+            }
+            (false, None) => format!("{} times an amplitude", scientific(load.magnitude, 1)),
+        };
+        label("", &format!("{slave} may overlap: {overlap}"))
+    };
+    step.interferences.iter().map(line).collect()
 }
 
 /// Bodies that turn, with their mass and the directions in which they move freely.
