@@ -247,7 +247,8 @@ def fits(verification: runner.Verification) -> None:
             "external work less strain energy", case.name, abs(lost) / energy.strain[-1]
         )
     errors = [1 - hoop[f"fit_fine_ring_{k}"] for k in (32, 64)]
-    verification.check("error of hoop stress, fine / coarse", "fit_fine_ring", errors[1] / errors[0])
+    ratio = errors[1] / errors[0]
+    verification.check("error of hoop stress, fine / coarse", "fit_fine_ring", ratio)
 
 
 def bolts(verification: runner.Verification) -> None:
