@@ -38,7 +38,7 @@ pub struct FrictionCurve {
 }
 
 /// Coefficient of surfaces that never slip: normal forces so small beside the tangential ones are none.
-const ROUGH: f64 = 1e6;
+const ROUGH: f64 = 1e4;
 
 impl Default for Friction {
     fn default() -> Self {
