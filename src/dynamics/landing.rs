@@ -145,6 +145,7 @@ pub(super) fn factorize_anew(
     let closed = ClosedConstraints {
         acting: solved.contact.forces.acting().collect(),
         at: problem.configurations(&start.u, &u1),
+        are_held: false,
     };
     let factorized = workspace.factorize(problem, dt, motion, &closed);
     factorized.map_err(|error| problem.unsolvable(error))

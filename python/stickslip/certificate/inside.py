@@ -4,6 +4,7 @@ import numpy as np
 
 from stickslip.certificate.check import Checks
 from stickslip.certificate.contacts import Contact
+from stickslip.certificate.fits import REASON, Fits
 from stickslip.errors import Fault
 from stickslip.penetration.intrusion import (
     Gone,
@@ -38,7 +39,12 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
     recorded = result.history["time"], result.history.solver["penetration"]
     gone: Gone = frozenset()
     before = result.frames[0].positions
+    fits = Fits(result)
     for frame in result.frames:
+        if fits.changes(frame):
+            for name in ("penetration", "crossing"):
+                checks[name].skip(REASON)
+            continue
         x = frame.positions
         noise = 64 * np.finfo(np.float64).eps * float(np.abs(x).max()) / result.edge_length
         place = f"t = {frame.time:g}"

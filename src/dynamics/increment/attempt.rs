@@ -236,6 +236,10 @@ impl<'m> Attempt<'_, 'm> {
         let mut failed = Cause::NotConverged;
         (self.workspace.stiffness).start(self.problem, &self.start.u);
         for &rule in self.factor_rules() {
+            let may_be_digits = matches!(failed, Cause::NotConverged | Cause::Diverged);
+            if rule == FactorRule::Held && !may_be_digits {
+                break;
+            }
             trace.begin();
             let v = match self.guess {
                 Some(path) if !self.problem.integration.has_rates => &path.v,
@@ -262,12 +266,17 @@ impl<'m> Attempt<'_, 'm> {
     }
 
     /// Rules of the factors in the order in which they are tried: in a static step, whose tangent is exact, new ones
-    /// in every pass, from the motion of the last increment and then from rest.
+    /// in every pass, from the motion of the last increment and then from rest; then with closed pairs held, since K
+    /// alone, soft in bending, leaves the contact forces of slender bodies few digits.
     fn factor_rules(&self) -> &'static [FactorRule] {
         match (self.problem.integration.has_rates, self.guess) {
             (true, _) => FactorRule::order(self.problem.settings.factorization),
-            (false, Some(_)) => &[FactorRule::EveryPass, FactorRule::EveryPass],
-            (false, None) => &[FactorRule::EveryPass],
+            (false, Some(_)) => &[
+                FactorRule::EveryPass,
+                FactorRule::EveryPass,
+                FactorRule::Held,
+            ],
+            (false, None) => &[FactorRule::EveryPass, FactorRule::Held],
         }
     }
 
@@ -565,6 +574,7 @@ impl<'m> Attempt<'_, 'm> {
         let closed = ClosedConstraints {
             acting: contact.acting().collect(),
             at: problem.configurations(&self.start.u, u),
+            are_held: factors.hold_pairs(),
         };
         let factorized = (self.workspace).factorize(problem, dt, motion, &closed);
         factorized.map_err(|error| problem.unsolvable(error))

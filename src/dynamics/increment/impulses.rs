@@ -594,6 +594,7 @@ mod tests {
         let contact = ClosedConstraints {
             acting: vec![],
             at: problem.configurations(&still, &still),
+            are_held: false,
         };
         let motion = Motion::at(&still, &[]);
         (workspace.factorize(&problem, DT, motion, &contact)).expect("positive definite");

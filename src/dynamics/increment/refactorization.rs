@@ -29,9 +29,16 @@ pub(super) enum FactorRule {
     Fresh,
     /// New ones at every pass.
     EveryPass,
+    /// New ones at every pass, in which closed pairs are held, eq. (4.13).
+    Held,
 }
 
 impl FactorRule {
+    /// Whether every pass has new factors.
+    fn is_every_pass(self) -> bool {
+        matches!(self, FactorRule::EveryPass | FactorRule::Held)
+    }
+
     /// The rules in the order in which they are tried.
     pub fn order(choice: Factorization) -> &'static [FactorRule] {
         match choice {
@@ -76,6 +83,11 @@ impl Refactorization {
         }
     }
 
+    /// Whether K* holds closed pairs.
+    pub fn hold_pairs(&self) -> bool {
+        self.rule == FactorRule::Held
+    }
+
     /// Whether K* is to be factorised before the next pass.
     pub fn are_worn(&self) -> bool {
         self.worn
@@ -115,7 +127,7 @@ impl Refactorization {
         self.age += 1;
         (self.correction, self.rate) = (correction, rate);
         if is_first {
-            self.worn = self.rule == FactorRule::EveryPass;
+            self.worn = self.rule.is_every_pass();
             return Ok(());
         }
         if self.own && self.age == 2 {
@@ -136,7 +148,7 @@ impl Refactorization {
                 99.0
             }
         };
-        self.worn = self.rule == FactorRule::EveryPass
+        self.worn = self.rule.is_every_pass()
             || (self.age >= 2 && left(rate) > COST + left(self.fresh_rate));
         Ok(())
     }

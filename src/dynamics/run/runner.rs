@@ -545,6 +545,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         let contact = ClosedConstraints {
             acting: solved.contact.forces.acting().collect(),
             at: problem.configurations(&self.state.u, &end.u),
+            are_held: false,
         };
         let motion = Motion::at(&end.u, &end.internal);
         let stable = workspace.check_stability(problem, motion, &contact);

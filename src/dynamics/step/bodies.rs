@@ -261,6 +261,7 @@ mod tests {
         let contact = ClosedConstraints {
             acting: vec![],
             at: problem.configurations(&u0, &u1),
+            are_held: false,
         };
         let first = kept.factorize(&problem, 0.1, before, &contact);
         let second = fresh.factorize(&problem, 0.1, after, &contact);

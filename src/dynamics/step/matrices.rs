@@ -148,13 +148,12 @@ pub(crate) enum StiffnessForm {
 }
 
 impl StiffnessForm {
-    /// Those of a step with inertia or without, from the one with which passes converge fastest to the one that is
-    /// never indefinite.
-    pub fn forms(has_inertia: bool) -> &'static [Self] {
-        match has_inertia {
-            true => &[Self::Tangent, Self::Held, Self::Positive],
-            // K alone, soft in bending, would leave contact forces of slender bodies few digits
-            false => &[Self::Held, Self::Positive],
+    /// All, from the one with which passes converge fastest to the one that is never indefinite; those that hold closed
+    /// constraints where these `are_held`.
+    pub fn forms(are_held: bool) -> &'static [Self] {
+        match are_held {
+            false => &[Self::Tangent, Self::Held, Self::Positive],
+            true => &[Self::Held, Self::Positive],
         }
     }
 
@@ -172,6 +171,8 @@ pub(crate) struct ClosedConstraints<'a> {
     pub acting: Vec<(&'a Constraint, &'a ClosedPair)>,
     /// Configurations that they are linearised between.
     pub at: Configurations<'a>,
+    /// Whether K* holds them though it is definite without.
+    pub are_held: bool,
 }
 
 /// The largest entry of the mass on the diagonal of nodes without mass: no impulse acts there, and M

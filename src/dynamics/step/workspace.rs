@@ -96,7 +96,7 @@ impl<'m> Workspace<'m> {
         contact: &ClosedConstraints,
     ) -> Result<(), LinearError> {
         let mut result = Ok(());
-        for &form in StiffnessForm::forms(problem.integration.has_rates) {
+        for &form in StiffnessForm::forms(contact.are_held) {
             result = self.factorize_form(problem, (dt, form), motion, contact);
             if !matches!(result, Err(LinearError::NotPositiveDefinite { .. })) {
                 break;
@@ -115,8 +115,7 @@ impl<'m> Workspace<'m> {
         motion: Motion,
         contact: &ClosedConstraints,
     ) -> Result<(), LinearError> {
-        let is_whole = self.stiffness.form == StiffnessForm::Held;
-        if self.pins.are_none() && is_whole && contact.acting.is_empty() {
+        if self.pins.are_none() && self.stiffness.form == StiffnessForm::Tangent {
             return Ok(());
         }
         let form = StiffnessForm::Stability;

@@ -1,0 +1,43 @@
+"""Steps in which overlaps of fits or the contacts themselves change, of which the file does not tell all."""
+
+from stickslip.frame import Frame
+from stickslip.result import Result
+
+REASON = "the deck changes overlaps or contacts in some steps"
+
+
+class Fits:
+    """The steps of a run in which its deck changes overlaps or contacts."""
+
+    def __init__(self, result: Result) -> None:
+        self._time = result.history["time"]
+        self._step = result.history["step"]
+        self.steps, self.last = _steps(result.deck)
+
+    def changes(self, frame: Frame) -> bool:
+        """Whether they change in the step of a frame, or may have changed before."""
+        rows = (self._time == frame.time).nonzero()[0]
+        step = int(self._step[rows[-1]]) if len(rows) else 0
+        return step in self.steps or step >= self.last
+
+
+def _steps(deck: str) -> tuple[set[int], float]:
+    """Steps with changes that end with them, and the first from which on changes may stay."""
+    step, steps, last = 0, set(), float("inf")
+    goes_on = False
+    for line in deck.upper().splitlines():
+        card = line.replace(" ", "")
+        if card.startswith("*STEP"):
+            step += 1
+        elif card.startswith("*RESTART") and ",READ" in card:
+            goes_on = True
+        elif card.startswith("*CONTACTINTERFERENCE"):
+            steps.add(step)
+            if "AMPLITUDE=" in card:
+                last = min(last, step)
+        elif card.startswith("*MODELCHANGE"):
+            last = min(last, step)
+        elif card.startswith("*CONTACTINITIALIZATIONDATA") and "INTERFERENCEFIT" in card:
+            steps.add(1)
+    # the text of an earlier job stands behind the deck, so that its steps are not counted here
+    return steps, 0 if goes_on and (steps or last < float("inf")) else last
