@@ -65,7 +65,7 @@ STOPPED = re.compile(r"increment|impulse|at time|step \d+")
 WITHOUT_PLACE = ("cannot stand in the result file",)
 """Errors of a deck that the program finds when it makes the result file."""
 
-OF_PAIRS = ("GAP", "CONTACT_PRESSURE", "SLIP")
+OF_PAIRS = ("GAP", "CONTACT_PRESSURE", "SLIP", "FRICTION_COEFFICIENT")
 """Fields that are NaN at nodes without a pair."""
 
 Mutation = Callable[[list[Card], random.Random], None]
