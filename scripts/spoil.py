@@ -65,7 +65,9 @@ STOPPED = re.compile(r"increment|impulse|at time|step \d+")
 WITHOUT_PLACE = ("cannot stand in the result file",)
 """Errors of a deck that the program finds when it makes the result file."""
 
-OF_PAIRS = ("GAP", "CONTACT_PRESSURE", "SLIP", "FRICTION_COEFFICIENT")
+OF_PAIRS = (
+    "GAP", "CONTACT_PRESSURE", "SLIP", "FRICTION_COEFFICIENT", "FRICTION_WORK", "WEAR", "FRICTION_HEAT",
+)  # fmt: skip
 """Fields that are NaN at nodes without a pair."""
 
 Mutation = Callable[[list[Card], random.Random], None]

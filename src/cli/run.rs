@@ -248,15 +248,16 @@ mod tests {
     use super::*;
     use crate::diagnostics::Sources;
     use crate::dynamics::{
-        Cause, Cutback, FailedLcp, Failure, IncrementReport, NodalResults, NodeStatus, Observer,
-        Outcome, PassReport, RunError, RunSummary, SolverCounts, State, Timings, Worst,
+        Cause, Cutback, FailedLcp, Failure, FrictionResults, IncrementReport, NodalResults,
+        NodeStatus, Observer, Outcome, PassReport, RunError, RunSummary, SolverCounts, State,
+        Timings, Worst,
     };
     use crate::elements::{ElementResult, Strained};
     use crate::lcp::{FrictionalLcp, LcpError};
     use crate::materials::Law;
     use crate::model::{
-        Damping, Element, ElementType, Frames, Incrementation, Increments, Material, Mesh, Model,
-        Procedure, Section, Set, Settings, Step,
+        ContactChanges, Damping, Element, ElementType, Frames, Incrementation, Increments,
+        Material, Mesh, Model, Procedure, Section, Set, Settings, Step,
     };
     use crate::output::ResultSummary;
     use clap::Parser;
@@ -306,6 +307,7 @@ mod tests {
                 pressures: vec![],
                 tractions: vec![],
                 interferences: vec![],
+                contacts: ContactChanges::default(),
                 frames: Frames::Count(1),
             }],
             ..Model::default()
@@ -345,7 +347,7 @@ mod tests {
                 status: vec![NodeStatus::None; 4],
                 concentrated: vec![0.0; 8],
                 pressure: vec![0.0; 4],
-                friction_coefficient: vec![],
+                friction: FrictionResults::default(),
                 slip: vec![0.0; 4],
                 mass: vec![],
             },

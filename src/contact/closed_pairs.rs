@@ -70,6 +70,11 @@ impl ClosedPairs {
         debug_assert!(self.0.is_sorted_by(|p, q| p.key < q.key), "increasing keys");
     }
 
+    /// Keeps the pairs for which a condition holds.
+    pub fn retain(&mut self, holds: impl Fn(&ClosedPair) -> bool) {
+        self.0.retain(holds);
+    }
+
     /// Removes all pairs.
     pub fn clear(&mut self) {
         self.0.clear();

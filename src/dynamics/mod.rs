@@ -12,9 +12,10 @@ mod step;
 
 pub use results::{
     Alternation, BodyResult, Cause, ContactImpulse, ContactOnBody, ContactResultant,
-    ContactViolation, Course, Cutback, Energy, FailedLcp, Failure, IncrementReport, Landing,
-    Momentum, NodalResults, NodeMass, NodeStatus, Observer, Outcome, PassReport, ReturnedImpulse,
-    RigidReaction, RunSummary, SolverCounts, State, Timings, Touch, Unbalanced, Worst,
+    ContactViolation, Course, Cutback, Energy, FailedLcp, Failure, FrictionResults,
+    IncrementReport, Landing, Momentum, NodalResults, NodeMass, NodeStatus, Observer, Outcome,
+    PassReport, ReturnedImpulse, RigidReaction, RunSummary, SolverCounts, State, Timings, Touch,
+    Unbalanced, Worst,
 };
 pub use run::{RunError, resume, run};
 pub(crate) use step::rigid_inertia;

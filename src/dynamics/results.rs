@@ -94,14 +94,27 @@ pub struct NodalResults {
     /// Contact pressure, `N` entries (force/length^2); NaN at all nodes but slave
     /// nodes.
     pub pressure: Vec<f64>,
-    /// Coefficient of friction of the closed pairs of the node, their mean by Pn, `N` entries where a friction varies,
-    /// else none; NaN without closed pairs.
-    pub friction_coefficient: Vec<f64>,
+    /// What friction does at slave nodes.
+    pub friction: FrictionResults,
     /// Accumulated slip since the start of the analysis, `N` entries (length); NaN at all nodes but
     /// slave nodes.
     pub slip: Vec<f64>,
     /// Masses, `N` entries where they are redistributed, else none.
     pub mass: Vec<NodeMass>,
+}
+
+/// What friction does at the nodes as slaves: `N` entries each where a contact of the deck has it, else none; NaN at
+/// all nodes but slave nodes.
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct FrictionResults {
+    /// Coefficient of friction of the closed pairs, their mean by Pn, where it varies; NaN without closed pairs.
+    pub coefficient: Vec<f64>,
+    /// Its work since the start of the analysis over the area of the node (energy/length^2).
+    pub work: Vec<f64>,
+    /// Depth of wear since the start (length).
+    pub wear: Vec<f64>,
+    /// Heat into the slave surface since the start (energy).
+    pub heat: Vec<f64>,
 }
 
 /// Energies; all but the first two are cumulative from the start of the analysis.
@@ -611,6 +624,15 @@ pub enum Cause {
         /// Whether the motion of all three is prescribed.
         prescribed: bool,
     },
+    /// A contact is added while a slave node is inside the master body.
+    Overlaps {
+        /// Slave node (index).
+        slave: usize,
+        /// Ends (indices) of the segment.
+        segment: [usize; 2],
+        /// How deep it is inside (length).
+        depth: f64,
+    },
     /// Positive work of the normal contact forces: contact would put energy in.
     GainedEnergy {
         /// The energy put in, relative to the largest energy.
@@ -738,6 +760,10 @@ impl fmt::Display for Cause {
             }
             Cause::Indefinite { .. } => write!(f, "the effective matrix is not positive definite"),
             Cause::Crossed { .. } => write!(f, "a node went through a segment"),
+            Cause::Overlaps { depth, .. } => write!(
+                f,
+                "a contact is added while its bodies overlap by {depth:.3e}"
+            ),
             Cause::GainedEnergy { part } => {
                 write!(f, "contact would put energy in ({part:.1e} of the largest)")
             }

@@ -36,6 +36,7 @@ fn flat(mut model: Model) -> Model {
     model.sets.instances.clear();
     for contact in &mut model.contacts {
         contact.span = Span::default();
+        contact.interaction.name.clear();
     }
     model
 }

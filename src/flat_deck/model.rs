@@ -6,7 +6,7 @@ use crate::materials::{Law, NeoHooke, SaintVenantKirchhoff};
 use crate::model::{
     ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorLaw, Contact, Curve, Damping, Direction,
     Element, Equation, Face, ForceCurve, Formulation, Friction, FrictionLaw, Interaction, Material,
-    Mesh, Model, Reach, Section, Set, Signal, SurfaceKind, Tie, TieReach, TimeBase,
+    Mesh, Model, Reach, Section, Set, Signal, SurfaceKind, Tie, TieReach, TimeBase, Wear,
 };
 
 /// Terms of an equation on a data line.
@@ -105,17 +105,22 @@ fn point_elements(model: &Model, lines: &mut DeckWriter) {
 }
 
 /// The different interactions in the order of the contacts.
-struct Interactions(Vec<Interaction>);
+pub(super) struct Interactions(Vec<Interaction>);
 
 impl Interactions {
-    fn write(contacts: &[Contact], lines: &mut DeckWriter) -> Self {
+    /// Those of the contacts.
+    pub fn new(contacts: &[Contact]) -> Self {
         let mut all = Vec::new();
         for contact in contacts {
             if !all.contains(&contact.interaction) {
                 all.push(contact.interaction.clone());
             }
         }
-        let interactions = Interactions(all);
+        Interactions(all)
+    }
+
+    fn write(contacts: &[Contact], lines: &mut DeckWriter) -> Self {
+        let interactions = Interactions::new(contacts);
         for interaction in &interactions.0 {
             lines.card(
                 "SURFACE INTERACTION",
@@ -123,18 +128,29 @@ impl Interactions {
             );
             lines.card("SURFACE BEHAVIOR", [set("PRESSURE-OVERCLOSURE", "HARD")]);
             friction(&interaction.friction, lines);
+            if let Some(Wear { rate, by_friction }) = interaction.wear {
+                let dependent = set("FRIC COEF DEPENDENT", "YES");
+                let parameters: Vec<String> =
+                    by_friction.then_some(dependent).into_iter().collect();
+                lines.card_of("WEAR SURFACE PROPERTIES", &parameters);
+                lines.row([number(rate)]);
+            }
+            if let Some(heat) = interaction.heat {
+                lines.card("GAP HEAT GENERATION", []);
+                lines.row([heat, 1.0].map(number));
+            }
         }
         interactions
     }
 
-    fn name(&self, interaction: &Interaction) -> String {
+    pub fn name(&self, interaction: &Interaction) -> String {
         let index = self.0.iter().position(|known| known == interaction);
         format!("INTERACTION-{}", index.map_or(0, |index| index + 1))
     }
 }
 
 /// Writes what a contact has of friction.
-fn friction(friction: &Friction, lines: &mut DeckWriter) {
+pub(super) fn friction(friction: &Friction, lines: &mut DeckWriter) {
     let mut parameters = Vec::new();
     if friction.has_limit() {
         parameters.push(set("TAUMAX", number(friction.shear_limit)));
@@ -171,6 +187,15 @@ fn friction(friction: &Friction, lines: &mut DeckWriter) {
     }
 }
 
+/// Writes slave and master of a pair.
+pub(super) fn pair_row(contact: &Contact, model: &Model, lines: &mut DeckWriter) {
+    let surface = |index: usize| name(&model.surfaces[index].name);
+    match contact.is_self_contact() {
+        true => lines.row([surface(contact.slave)]),
+        false => lines.row([contact.slave, contact.master].map(surface)),
+    }
+}
+
 fn pair(contact: &Contact, interactions: &Interactions, model: &Model, lines: &mut DeckWriter) {
     let mut parameters = vec![
         set("INTERACTION", interactions.name(&contact.interaction)),
@@ -181,11 +206,7 @@ fn pair(contact: &Contact, interactions: &Interactions, model: &Model, lines: &m
         Adjust::Nodes(set) => named("ADJUST", &model.sets.nodes[set].name),
     }));
     lines.card_of("CONTACT PAIR", &parameters);
-    let surface = |index: usize| name(&model.surfaces[index].name);
-    match contact.is_self_contact() {
-        true => lines.row([surface(contact.slave)]),
-        false => lines.row([contact.slave, contact.master].map(surface)),
-    }
+    pair_row(contact, model, lines);
 }
 
 /// Writes which nodes of general contact are moved before the start, and whether overlaps are pressed out.

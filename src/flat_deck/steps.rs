@@ -2,11 +2,11 @@
 //! step before.
 
 use super::lines::{DeckWriter, name, named, number, set};
-use super::model::{elements_field, first_of_rigid};
+use super::model::{Interactions, elements_field, first_of_rigid, friction, pair_row};
 use crate::model::{
-    ALL_EXTERIOR, Amplitude, BodyForce, Frames, HistorySet, Incrementation, Increments,
-    Interference, Load, Model, NamedSets, PointLoad, Pressure, Procedure, Rate, RigidBody, Scheme,
-    Settings, Step, Support, SupportMotion, TimeBase, Traction, Variation,
+    ALL_EXTERIOR, Amplitude, BodyForce, ContactChanges, Frames, HistorySet, Incrementation,
+    Increments, Interference, Load, Model, NamedSets, PointLoad, Pressure, Procedure, Rate,
+    RigidBody, Scheme, Settings, Step, Support, SupportMotion, TimeBase, Traction, Variation,
 };
 use crate::reader::{self, carried_loads};
 use std::collections::HashMap;
@@ -22,15 +22,19 @@ pub(super) fn write(model: &Model, lines: &mut DeckWriter) {
     }
     let mut supports = Vec::new();
     let mut loads = LoadCards::default();
+    let mut contacts = &ContactChanges::default();
     for (index, step) in model.steps.iter().enumerate() {
         let now = LoadCards::of(step, model);
-        head(step, model, &now, lines);
+        let ramps = now.ramp() || step.contacts.ramp();
+        head(step, model, ramps, lines);
         settings(&step.settings, lines);
         let held = own_supports(step, model);
         write_supports(&held, &supports, model, lines);
-        now.write(&loads, model, lines);
+        now.write((&loads, ramps), model, lines);
         let before = index.checked_sub(1).map(|before| &model.steps[before]);
         write_interferences(step, before, model, lines);
+        contact_changes([contacts, &step.contacts], model, lines);
+        contacts = &step.contacts;
         requests(index, step, model, lines);
         lines.card("END STEP", []);
         supports = carried(&held, step, &model.amplitudes);
@@ -60,10 +64,9 @@ fn dof_fields(dof: usize, model: &Model) -> [String; 2] {
 }
 
 /// `*STEP` and its procedure.
-fn head(step: &Step, model: &Model, loads: &LoadCards, lines: &mut DeckWriter) {
+fn head(step: &Step, model: &Model, ramps: bool, lines: &mut DeckWriter) {
     let mut parameters = vec!["NLGEOM".to_owned()];
     parameters.extend(step.name.as_ref().map(|name| named("NAME", name)));
-    let ramps = loads.ramp();
     let amplitude = match step.procedure {
         Procedure::Dynamic => ramps.then_some("RAMP"),
         Procedure::QuasiStatic | Procedure::Static => (!ramps).then_some("STEP"),
@@ -100,6 +103,48 @@ fn head(step: &Step, model: &Model, loads: &LoadCards, lines: &mut DeckWriter) {
             parameters.extend(scale);
             lines.card_of(procedure, &parameters);
             lines.row([dt, period, dt_min, dt_max].map(number));
+        }
+    }
+}
+
+/// Cards of what is different of the contacts from one step to the next.
+fn contact_changes([before, now]: [&ContactChanges; 2], model: &Model, lines: &mut DeckWriter) {
+    let interactions = Interactions::new(&model.contacts);
+    let mut written = Vec::new();
+    for (index, contact) in model.contacts.iter().enumerate() {
+        let own = &contact.interaction;
+        let in_step = |changes: &'_ ContactChanges| {
+            let mut of_step = changes.friction.iter();
+            let change = of_step.find(|change| change.contact == index);
+            change.map_or(own.friction.clone(), |change| change.friction.clone())
+        };
+        let [before, now] = [before, now].map(in_step);
+        if before == now || written.contains(own) {
+            continue;
+        }
+        written.push(own.clone());
+        let parameter = set("INTERACTION", interactions.name(own));
+        match now == own.friction {
+            true => lines.card("CHANGE FRICTION", [parameter, "RESET".to_owned()]),
+            false => {
+                lines.card("CHANGE FRICTION", [parameter]);
+                friction(&now, lines);
+            }
+        }
+    }
+    for (operation, [in_first, in_second]) in [
+        ("REMOVE", [&now.removed, &before.removed]),
+        ("ADD", [&before.removed, &now.removed]),
+    ] {
+        let changed = in_first.iter().filter(|index| !in_second.contains(index));
+        let changed: Vec<usize> = changed.copied().collect();
+        if changed.is_empty() {
+            continue;
+        }
+        let kind = set("TYPE", "CONTACT PAIR");
+        lines.card("MODEL CHANGE", [kind, operation.to_owned()]);
+        for index in changed {
+            pair_row(&model.contacts[index], model, lines);
         }
     }
 }
@@ -393,14 +438,19 @@ impl LoadCards {
     }
 
     /// Writes the cards of a step that begins with the loads `carried` from the step before.
-    pub fn write(&self, carried: &LoadCards, model: &Model, lines: &mut DeckWriter) {
+    pub fn write(
+        &self,
+        (carried, ramps): (&LoadCards, bool),
+        model: &Model,
+        lines: &mut DeckWriter,
+    ) {
         let families = self.0.iter().zip(&carried.0);
         for (keyword, (now, carried)) in ["CLOAD", "DLOAD"].into_iter().zip(families) {
             if now == carried {
                 continue;
             }
             // Where loads ramp, OP=NEW would fade those that stay.
-            let is_new = !carried.is_empty() && !self.ramp();
+            let is_new = !carried.is_empty() && !ramps;
             let operation = is_new.then(|| set("OP", "NEW"));
             let entries = match is_new {
                 true => now.clone(),

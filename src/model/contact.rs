@@ -12,8 +12,23 @@ use crate::diagnostics::Span;
 /// Contact law between two surfaces: hard normal contact and Coulomb friction.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Interaction {
+    /// Its name as compared, empty without one.
+    pub name: String,
     /// Coulomb friction.
     pub friction: Friction,
+    /// Wear of the slave surface.
+    pub wear: Option<Wear>,
+    /// Part of the work of friction that heats the slave surface.
+    pub heat: Option<f64>,
+}
+
+/// Archard's law of wear; the geometry stays as it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wear {
+    /// Depth over the product of pressure and way, k/H (length^2/force).
+    pub rate: f64,
+    /// Whether it is that over the work of friction, mu times the product.
+    pub by_friction: bool,
 }
 
 /// A slave surface whose nodes may not enter the body behind the master surface; self-contact if

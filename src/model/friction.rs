@@ -37,7 +37,8 @@ pub struct FrictionCurve {
     pub points: Vec<[f64; 2]>,
 }
 
-/// Coefficient of surfaces that never slip: normal forces so small beside the tangential ones are none.
+/// Coefficient of surfaces that never slip: normal forces that are smaller beside the tangential ones are as good as none.
+/// A larger one costs complementarity problems their digits: with 1e6 some end on a ray.
 const ROUGH: f64 = 1e4;
 
 impl Default for Friction {
@@ -94,18 +95,33 @@ impl Friction {
         self.shear_limit.is_finite()
     }
 
+    /// Whether the coefficient can ramp to that of another friction.
+    pub fn ramps_to(&self, other: &Friction) -> bool {
+        let is_rough = |friction: &Friction| friction.law == FrictionLaw::Rough;
+        self.law != other.law && !is_rough(self) && !is_rough(other)
+    }
+
     /// Coefficient at rest under a contact pressure (force/length^2).
     pub fn at_rest(&self, pressure: f64) -> f64 {
-        let mu = match &self.law {
-            FrictionLaw::Decay { at_rest, .. } => *at_rest,
-            _ => self.law.at(0.0, pressure),
-        };
-        self.limited(mu, pressure)
+        self.limited(self.law.at(None, pressure), pressure)
     }
 
     /// Coefficient at a slip rate (length/time) and a contact pressure (force/length^2).
     pub fn at(&self, rate: f64, pressure: f64) -> f64 {
-        self.limited(self.law.at(rate.abs(), pressure), pressure)
+        self.limited(self.law.at(Some(rate), pressure), pressure)
+    }
+
+    /// Coefficient at a slip rate, none at rest, and a pressure where it has gone a part of the way from that of another
+    /// friction.
+    pub fn on_the_way(
+        &self,
+        (from, part): (&Friction, f64),
+        rate: Option<f64>,
+        pressure: f64,
+    ) -> f64 {
+        // mu = (1 - r) mu_before + r mu, eq. (3.17)
+        let [before, after] = [from, self].map(|friction| friction.law.at(rate, pressure));
+        self.limited(before + part * (after - before), pressure)
     }
 
     /// mu <- min(mu, tau_max/p), eq. (3.14).
@@ -145,25 +161,33 @@ impl Friction {
 }
 
 impl FrictionLaw {
-    /// Coefficient at a slip rate |v| (length/time) and a contact pressure (force/length^2).
-    fn at(&self, rate: f64, pressure: f64) -> f64 {
+    /// Coefficient at a slip rate v (length/time), none at rest, and a contact pressure (force/length^2).
+    fn at(&self, rate: Option<f64>, pressure: f64) -> f64 {
+        let rate = rate.map(f64::abs);
         match self {
             FrictionLaw::Decay {
                 at_rest,
                 sliding,
                 decay,
-            } if at_rest == sliding || *decay == 0.0 => *at_rest,
+            } if at_rest == sliding || *decay == 0.0 || rate.is_none() => *at_rest,
             // mu = mu_k + (mu_s - mu_k) exp(-d_c |v|), eq. (3.10)
             FrictionLaw::Decay {
                 at_rest,
                 sliding,
                 decay,
-            } => sliding + (at_rest - sliding) * (-decay * rate).exp(),
+            } => sliding + (at_rest - sliding) * (-decay * rate.unwrap_or(0.0)).exp(),
             FrictionLaw::Table(curves) => between(
                 curves,
                 pressure,
                 |c| c.pressure,
-                |c| between(&c.points, rate, |point| point[0], |point| point[1]),
+                |c| {
+                    between(
+                        &c.points,
+                        rate.unwrap_or(0.0),
+                        |point| point[0],
+                        |point| point[1],
+                    )
+                },
             ),
             FrictionLaw::Rough => ROUGH,
         }

@@ -22,7 +22,7 @@ pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
 pub use connector::{Connector, ConnectorLaw, Direction, ForceCurve};
 pub use contact::{
     ALL_EXTERIOR, Adjust, Contact, Equation, Interaction, Reach, RigidBody, Surface, SurfaceKind,
-    TurningBody,
+    TurningBody, Wear,
 };
 pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub use friction::{Friction, FrictionCurve, FrictionLaw};
@@ -31,10 +31,10 @@ pub use mesh::{Bodies, Element, ElementsAtNodes, Face, Mesh, NO_SECTION, Nodes, 
 pub use sets::{HistorySet, Instance, NamedSets, RequestedFields, element_name, node_name};
 pub use side::{Segment, Side, SideNodes};
 pub use step::{
-    BodyForce, ContactMass, Factorization, Frames, Impact, ImpactTime, Incrementation, Increments,
-    Interference, LandingRule, LcpChoice, Load, PointLoad, Pressure, Procedure, Rate,
-    RestartOutput, Scheme, Settings, SolverChoice, Step, Support, SupportMotion, Traction,
-    Variation,
+    BodyForce, ContactChanges, ContactMass, Factorization, Frames, FrictionChange, Impact,
+    ImpactTime, Incrementation, Increments, Interference, LandingRule, LcpChoice, Load, PointLoad,
+    Pressure, Procedure, Rate, RestartOutput, Scheme, Settings, SolverChoice, Step, Support,
+    SupportMotion, Traction, Variation,
 };
 pub(crate) use tie::{NEAR, nearest_of};
 pub use tie::{Tie, TieReach, TiedNode};
@@ -145,8 +145,30 @@ impl Model {
 
     /// Whether the coefficient of friction of a contact is not always the same.
     pub fn has_varying_friction(&self) -> bool {
-        let varies = |contact: &Contact| !contact.interaction.friction.is_constant();
-        self.contacts.iter().any(varies)
+        let mut all = (0..self.contacts.len()).map(|contact| self.friction_range(contact));
+        let is_varying = |contact: &Contact| !contact.interaction.friction.is_constant();
+        self.contacts.iter().any(is_varying) || all.any(|[first, other]| first != other)
+    }
+
+    /// Two coefficients of friction of a contact, which are the same where it is constant in all steps: those of
+    /// [`Friction::range`], or the largest and the smallest one where steps change it.
+    pub fn friction_range(&self, contact: usize) -> [f64; 2] {
+        let own = self.contacts[contact].interaction.friction.range();
+        let changes = self.steps.iter().flat_map(|step| &step.contacts.friction);
+        let all = changes
+            .filter(|change| change.contact == contact)
+            .flat_map(|change| change.friction.range())
+            .collect::<Vec<f64>>();
+        match all.is_empty() {
+            true => own,
+            false => {
+                let all = || all.iter().chain(&own).copied();
+                [
+                    all().fold(0.0, f64::max),
+                    all().fold(f64::INFINITY, f64::min),
+                ]
+            }
+        }
     }
 
     /// Whether the deck shall be read and checked only (`*NO ANALYSIS`).

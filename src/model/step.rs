@@ -1,7 +1,7 @@
 //! Steps: time increments, prescribed displacements and loads with their variation in time, times of field output, and
 //! the settings of the solver. Docs/theory.md, section 4 (time, convergence), 6 (impacts) and 8 (complementarity).
 
-use super::{Amplitude, Face, TimeBase};
+use super::{Amplitude, Face, Friction, TimeBase};
 
 /// One step with everything that acts in it, whether given in it or in an earlier step.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,8 +26,37 @@ pub struct Step {
     pub tractions: Vec<Load<Traction>>,
     /// Overlaps that contacts allow, by contact.
     pub interferences: Vec<Load<Interference>>,
+    /// What it changes of the contacts.
+    pub contacts: ContactChanges,
     /// When field frames are written.
     pub frames: Frames,
+}
+
+/// What is different of the contacts in a step, whether it or an earlier one has changed it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ContactChanges {
+    /// Contacts that do not act (indices, increasing).
+    pub removed: Vec<usize>,
+    /// Contacts with another friction than that of their interaction, by increasing contacts.
+    pub friction: Vec<FrictionChange>,
+}
+
+/// Friction of a contact in a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrictionChange {
+    /// The contact (index).
+    pub contact: usize,
+    /// Its friction, at the end of the step where the coefficient ramps.
+    pub friction: Friction,
+    /// Friction at the start of the step whose coefficient ramps over it.
+    pub from: Option<Friction>,
+}
+
+impl ContactChanges {
+    /// Whether a coefficient of friction ramps over the step.
+    pub fn ramp(&self) -> bool {
+        self.friction.iter().any(|change| change.from.is_some())
+    }
 }
 
 /// When checkpoints are written, from a step on.

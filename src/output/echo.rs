@@ -5,14 +5,15 @@ use std::path::Path;
 
 use super::format::{counted, general, grouped, label, scientific, wrap, wrap_words};
 use super::frames::{DEFAULT_FRAMES, are_dense};
+use super::model_group::contact_names;
 use super::run_record::{RunRecord, utc_now};
 use super::status::monitored;
 use crate::diagnostics::Sources;
 use crate::dynamics::rigid_inertia;
 use crate::model::{
-    Connector, ConnectorLaw, Contact, EdgeScales, Element, ElementType, Frames, Impact, ImpactTime,
-    Incrementation, Interference, LandingRule, Load, Model, Procedure, Scheme, Settings,
-    SolverChoice, Step, SurfaceKind,
+    Connector, ConnectorLaw, Contact, ContactChanges, EdgeScales, Element, ElementType, Frames,
+    Impact, ImpactTime, Incrementation, Interference, LandingRule, Load, Model, Procedure, Scheme,
+    Settings, SolverChoice, Step, SurfaceKind,
 };
 use crate::prepare::{InitialGap, PreparedModel};
 use crate::vectors::extents;
@@ -66,6 +67,7 @@ impl ModelEcho {
         for (i, step) in model.steps.iter().enumerate() {
             lines.extend(self.step_lines(i, step));
             lines.extend(fit_lines(prepared, step));
+            lines.extend(contact_changes(model, &step.contacts));
         }
         lines
     }
@@ -177,6 +179,30 @@ impl ModelEcho {
             ));
         }
         lines
+    }
+}
+
+/// What is different of the contacts in a step.
+fn contact_changes(
+    model: &Model,
+    ContactChanges { removed, friction }: &ContactChanges,
+) -> Vec<String> {
+    let names = contact_names(model);
+    let removed = removed
+        .iter()
+        .map(|&contact| format!("{} removed", names[contact]));
+    let friction = friction.iter().map(|change| {
+        let when = if change.from.is_some() {
+            " at the end"
+        } else {
+            ""
+        };
+        format!("{} {}{when}", names[change.contact], change.friction)
+    });
+    let changes: Vec<String> = removed.chain(friction).collect();
+    match changes.is_empty() {
+        true => changes,
+        false => wrap("", &changes),
     }
 }
 

@@ -172,6 +172,17 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
             model.node_name(a),
             model.node_name(b),
         )),
+        Cause::Overlaps {
+            slave,
+            segment: [a, b],
+            ..
+        } => Some(format!(
+            "node     {} at {} behind the segment {}-{}",
+            model.node_name(slave),
+            point(position(model, slave, u)),
+            model.node_name(a),
+            model.node_name(b),
+        )),
         Cause::Collapsed { segment: [a, b] } => Some(format!(
             "segment  {}-{} at {}",
             model.node_name(a),
@@ -423,6 +434,7 @@ fn cause_advice(cause: &Cause, model: &Model) -> Option<&'static str> {
         Cause::Crossed {
             prescribed: false, ..
         } => "take smaller increments, or a finer mesh where the node went in",
+        Cause::Overlaps { .. } => "move the bodies apart before the step that adds the contact",
         Cause::GainedEnergy { .. } => "take smaller increments",
         Cause::Unbalanced { is_round_off, .. } => match is_round_off {
             true => {
@@ -520,7 +532,8 @@ mod tests {
     use crate::dynamics::FailedLcp;
     use crate::lcp::FrictionalLcp;
     use crate::model::{
-        Element, ElementType, Incrementation, Increments, Mesh, Procedure, Set, Settings,
+        ContactChanges, Element, ElementType, Incrementation, Increments, Mesh, Procedure, Set,
+        Settings,
     };
 
     #[test]
@@ -598,6 +611,7 @@ mod tests {
             pressures: vec![],
             tractions: vec![],
             interferences: vec![],
+            contacts: ContactChanges::default(),
             frames: crate::model::Frames::Default,
         };
         Model {

@@ -9,7 +9,7 @@ use super::column::{Columns, Layout, Meaning, Mostly, Number, constant, group, s
 use super::frames::{Frame, expected_frames};
 use super::model_group::{body_numbers, connectivity};
 use crate::elements::{ElementResult, MeanGradient};
-use crate::model::{Bodies, Mesh, Model};
+use crate::model::{Bodies, Interaction, Mesh, Model};
 
 /// Cell type of VTK of a rigid segment.
 const VTK_LINE: u8 = 3;
@@ -114,12 +114,20 @@ impl<'m> FieldGroup<'m> {
     fn create_points(&mut self, model: &Model) -> hdf5::Result<()> {
         let [nodal, concentrated] = [&NODAL[..], &CONCENTRATED];
         let is_asked = model.sets.fields.concentrated_load;
-        let friction: &[NodalField] = match model.has_varying_friction() {
-            true => &FRICTION,
-            false => &[],
+        let of_contacts = |has: fn(&Interaction) -> bool| {
+            (model.contacts.iter()).any(|contact| has(&contact.interaction))
         };
+        let has = [
+            model.has_varying_friction(),
+            of_contacts(|own| own.wear.is_some() || own.heat.is_some()),
+            of_contacts(|own| own.wear.is_some()),
+            of_contacts(|own| own.heat.is_some()),
+        ];
+        let friction: Vec<NodalField> = (FRICTION.into_iter().zip(has))
+            .filter_map(|(field, has)| has.then_some(field))
+            .collect();
         let concentrated = if is_asked { concentrated } else { &[] };
-        let tables = [nodal, concentrated, friction].into_iter();
+        let tables = [nodal, concentrated, &friction].into_iter();
         for &(name, row, mostly, dimension, text, of) in tables.flatten() {
             self.add(name, row, mostly, (dimension, text), move |frame, v| {
                 v.extend_from_slice(of(frame));
@@ -333,12 +341,18 @@ const CONCENTRATED: [NodalField; 1] = [
     ("CF", IN_SPACE, Mostly::Zero, "force", "concentrated loads on the node", |f| &f.nodal.concentrated),
 ];
 
-/// A field of models in which the coefficient of friction of a contact varies.
+/// Fields of models in which the coefficient of friction of a contact varies, and of those with wear and heat.
 #[rustfmt::skip]
-const FRICTION: [NodalField; 1] = [
+const FRICTION: [NodalField; 4] = [
     ("FRICTION_COEFFICIENT", SCALAR, Mostly::Nan, "1",
      "coefficient of friction of the slave node's pairs, mean by Pn, NaN without contact",
-     |f| &f.nodal.friction_coefficient),
+     |f| &f.nodal.friction.coefficient),
+    ("FRICTION_WORK", SCALAR, Mostly::Nan, "energy/length^2",
+     "work of friction since the start over the area of the slave node, NaN at others", |f| &f.nodal.friction.work),
+    ("WEAR", SCALAR, Mostly::Nan, "length",
+     "depth of wear since the start at slave nodes, NaN at others", |f| &f.nodal.friction.wear),
+    ("FRICTION_HEAT", SCALAR, Mostly::Nan, "energy",
+     "heat of friction since the start into the surface at slave nodes, NaN at others", |f| &f.nodal.friction.heat),
 ];
 
 /// A field of the elements: name, meaning and value.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::archive::{Archive, ArchiveError};
-use crate::dynamics::{IncrementReport, NodalResults, State};
+use crate::dynamics::{FrictionResults, IncrementReport, NodalResults, State};
 use crate::elements::ElementResult;
 use crate::model::{Frames, Model, Step};
 
@@ -189,9 +189,18 @@ impl Frame {
         self.nodal.gap.clone_from(&nodal.gap);
         self.nodal.status.clone_from(&nodal.status);
         self.nodal.pressure.clone_from(&nodal.pressure);
-        (self.nodal.friction_coefficient).clone_from(&nodal.friction_coefficient);
         self.nodal.slip.clone_from(&nodal.slip);
         self.nodal.mass.clone_from(&nodal.mass);
+        let FrictionResults {
+            coefficient,
+            work,
+            wear,
+            heat,
+        } = &nodal.friction;
+        self.nodal.friction.coefficient.clone_from(coefficient);
+        self.nodal.friction.work.clone_from(work);
+        self.nodal.friction.wear.clone_from(wear);
+        self.nodal.friction.heat.clone_from(heat);
         self.elements.clone_from(&report.elements);
     }
 }
@@ -199,7 +208,7 @@ impl Frame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Incrementation, Increments, Procedure, Settings};
+    use crate::model::{ContactChanges, Incrementation, Increments, Procedure, Settings};
 
     fn model(frames: Frames, period: f64) -> Model {
         let increments = Increments {
@@ -220,6 +229,7 @@ mod tests {
             pressures: vec![],
             tractions: vec![],
             interferences: vec![],
+            contacts: ContactChanges::default(),
             frames,
         };
         Model {

@@ -87,7 +87,7 @@ fn law_code(law: &Law) -> u8 {
 
 /// Slave nodes, master segments and friction of every contact, under the names of `/history/contact`.
 fn write_contacts(at: &Group, model: &Model) -> hdf5::Result<()> {
-    for (contact, name) in model.contacts.iter().zip(contact_names(model)) {
+    for ((index, contact), name) in (model.contacts.iter().enumerate()).zip(contact_names(model)) {
         let at = group(at, &name)?;
         let takes_part = |node: &usize| contact.left_out.binary_search(node).is_err();
         let slaves = model.surfaces[contact.slave].nodes(&model.mesh);
@@ -96,8 +96,16 @@ fn write_contacts(at: &Group, model: &Model) -> hdf5::Result<()> {
         let segments: Vec<Segment> = model.surfaces[contact.master].segments(&model.mesh);
         let nodes: Vec<i64> = segments.as_flattened().iter().map(|&n| n as i64).collect();
         constant(&at, "segments", &[segments.len(), 2], &nodes, SEGMENTS)?;
-        let range = contact.interaction.friction.range();
-        constant(&at, "friction", &[2], &range, FRICTION)?;
+        constant(
+            &at,
+            "friction",
+            &[2],
+            &model.friction_range(index),
+            FRICTION,
+        )?;
+        let acts = |step: &Step| u8::from(!step.contacts.removed.contains(&index));
+        let acts: Vec<u8> = model.steps.iter().map(acts).collect();
+        constant(&at, "acts", &[acts.len()], &acts, ACTS)?;
     }
     Ok(())
 }
@@ -140,7 +148,8 @@ fn constrained(model: &Model) -> Vec<usize> {
     nodes.filter(|&n| n < model.mesh.node_count()).collect()
 }
 
-/// Nodes with a concentrated load, a pressure or a traction in any step.
+/// Nodes with a concentrated load, a pressure or a traction in any step, and those of contacts whose forces fade over a
+/// static step that removes them.
 fn loaded_nodes(model: &Model) -> Vec<usize> {
     let mut nodes: Vec<usize> = Vec::new();
     for step in &model.steps {
@@ -148,6 +157,18 @@ fn loaded_nodes(model: &Model) -> Vec<usize> {
         let tractions = step.tractions.iter().map(|load| load.at.face);
         nodes.extend(step.point_loads.iter().map(|load| load.at.dof / 2));
         nodes.extend((pressures.chain(tractions)).flat_map(|face| face.nodes(&model.mesh)));
+        let fading = match step.procedure {
+            Procedure::Static => step.contacts.removed.as_slice(),
+            _ => &[],
+        };
+        for contact in fading.iter().map(|&index| &model.contacts[index]) {
+            let surfaces = [contact.slave, contact.master].map(|index| &model.surfaces[index]);
+            nodes.extend(
+                surfaces
+                    .iter()
+                    .flat_map(|surface| surface.nodes(&model.mesh)),
+            );
+        }
     }
     nodes.retain(|&node| node < model.mesh.node_count());
     nodes
@@ -193,7 +214,7 @@ fn indices(at: &Group, name: &str, mut found: Vec<usize>, text: &'static str) ->
 
 const SUPPORTED: &str = "indices of nodes with a support in any step";
 const CONSTRAINED: &str = "indices of nodes of equations, springs, dashpots and rigid bodies";
-const LOADED_NODES: &str = "indices of nodes with a concentrated load, a pressure or a traction";
+const LOADED_NODES: &str = "indices of nodes with a concentrated load, a pressure, a traction or the fading force of a contact";
 const SLAVES: &str = "indices of the slave nodes";
 const LOAD_GROUPS: Meaning = (
     "1",
@@ -218,9 +239,13 @@ const SEGMENTS: Meaning = (
     "1",
     "node indices of the master segments, its body on the left of the way from the first to the second",
 );
+const ACTS: Meaning = (
+    "1",
+    "whether the contact acts in each step: 1, or 0 where it is removed",
+);
 const FRICTION: Meaning = (
     "1",
-    "coefficient of friction at rest and of fast slip, or the largest and smallest of a table or below TAUMAX",
+    "coefficient of friction at rest and of fast slip, or the largest and smallest of a table, below TAUMAX, or of all steps",
 );
 const SCHEME: Meaning = ("1", "0 static, 1 energy-momentum, 2 SS22, 3 backward Euler");
 const THETA: Meaning = ("1", "weights theta1 and theta2 of the scheme");

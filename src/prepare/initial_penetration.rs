@@ -1,7 +1,7 @@
 //! Check of the initial configuration: penetrated nodes, overlapping bodies and surfaces that do
 //! not face each other, reported as diagnostics at the contact in the deck.
 
-use super::initial_gaps::InitialGap;
+use super::initial_gaps::{InitialGap, gaps};
 use crate::contact::tolerances::{COORDINATE_ROUND_OFF, PENETRATION_FAULT};
 use crate::contact::{ContactSurfaces, project};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
@@ -32,7 +32,11 @@ pub(super) fn report_penetrations(
     let all_gaps: Vec<Vec<InitialGap>> = (0..surfaces.len()).map(left).collect();
     report_nothing_faced(model, &all_gaps, d);
     report_no_overlap(model, overlaps, d);
+    let removed = (model.steps.first()).map_or(&[][..], |step| &step.contacts.removed);
     for (i, (contact, gaps)) in model.contacts.iter().zip(&all_gaps).enumerate() {
+        if removed.contains(&i) {
+            continue;
+        }
         if let Some(behind) = behind_the_body(model, &surfaces[i], gaps) {
             d.push(facing_away(model, contact, behind));
             continue;
@@ -87,6 +91,19 @@ fn report_no_overlap(model: &Model, overlaps: &[Vec<f64>], d: &mut Diagnostics) 
         (d.warning_once(Code::Interference, contact.span, message))
             .help("the bodies of a fit overlap in the mesh by their interference");
     }
+}
+
+/// The deepest slave node of a contact at the positions `x` that is deeper inside the master body than it may be at the
+/// start.
+pub(crate) fn deepest_fault(
+    contact: &ContactSurfaces,
+    x: &[[f64; 2]],
+    bodies: &[usize],
+) -> Option<InitialGap> {
+    let depth = |gap: &InitialGap| -gap.gap / gap.edge;
+    let all = gaps(contact, x, bodies, false).into_iter();
+    let faults = all.filter(|gap| depth(gap) > PENETRATION_FAULT);
+    faults.max_by(|a, b| depth(a).total_cmp(&depth(b)))
 }
 
 /// Warns about pairs without a node that faces the master, in both orders if both are given.

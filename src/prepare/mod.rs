@@ -11,6 +11,7 @@ mod redistribution;
 
 pub use adjustment::Adjusted;
 pub use initial_gaps::InitialGap;
+pub(crate) use initial_penetration::deepest_fault;
 pub use memory_need::MemoryNeed;
 pub use prepared_model::{PreparedModel, prepare};
 pub use redistribution::Redistribution;

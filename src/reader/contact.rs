@@ -11,7 +11,7 @@ use crate::deck::{Card, Line, Name, Text};
 use crate::diagnostics::{Code, Span};
 use crate::model::{
     ALL_EXTERIOR, Adjust, Contact, Face, Friction, FrictionCurve, FrictionLaw, Interaction, Reach,
-    Surface, SurfaceKind,
+    Surface, SurfaceKind, Wear,
 };
 use std::collections::{HashMap, HashSet};
 
@@ -147,9 +147,19 @@ fn check_use(row: Line, slave: Found, master: Found, cx: &mut Context) -> Option
 fn interactions(outline: &Outline, cx: &mut Context) -> Named<Interaction> {
     let mut interactions = Named::new("surface interaction");
     for block in outline.blocks("SURFACE INTERACTION") {
-        interactions.add(block.head, cx, |_, cx| {
+        interactions.add(block.head, cx, |name, cx| {
             let friction = friction(block, cx)?;
-            Some(Interaction { friction })
+            let [wear, heat] = ["WEAR SURFACE PROPERTIES", "GAP HEAT GENERATION"].map(|keyword| {
+                let cards = block.parts_of(keyword);
+                cx.only_once(&cards);
+                cards.first().copied().filter(|card| !card.faulty)
+            });
+            Some(Interaction {
+                name: name.key.clone(),
+                friction,
+                wear: wear.and_then(|card| wear_of(card, cx)),
+                heat: heat.and_then(|card| heat_of(card, cx)),
+            })
         });
     }
     interactions
@@ -168,7 +178,7 @@ fn friction(block: &CardBlock, cx: &mut Context) -> Option<Friction> {
     match cards.first() {
         None => Some(Friction::default()),
         Some(card) if card.faulty => None,
-        Some(card) => law(card, cx),
+        Some(card) => friction_of(card, cx),
     }
 }
 
@@ -200,7 +210,7 @@ fn out_of_plane_thickness(head: &Card, cx: &mut Context) {
 }
 
 /// What the card says of the coefficient, and `TAUMAX`.
-fn law(card: &Card, cx: &mut Context) -> Option<Friction> {
+pub(super) fn friction_of(card: &Card, cx: &mut Context) -> Option<Friction> {
     let limit = card.real("TAUMAX", cx.d).unwrap_or(0.0);
     let span = card.span_of("TAUMAX");
     if limit < 0.0 {
@@ -301,6 +311,53 @@ fn table(card: &Card, cx: &mut Context) -> Option<FrictionLaw> {
         }
     }
     Some(FrictionLaw::Table(curves))
+}
+
+/// `k`, or `k/H` without UNITLESS WEAR COEF.
+fn wear_of(card: &Card, cx: &mut Context) -> Option<Wear> {
+    let row = card.rows.first()?;
+    if let Some(extra) = card.rows.get(1) {
+        let message = "a coefficient of wear that depends on pressure or depth cannot be used";
+        cx.error(Code::UnsupportedParameter, extra.span(), message);
+    }
+    row.at_most(1, cx.d);
+    let coefficient = not_negative(row, 0, "the coefficient of wear", cx)?;
+    let hardness = match card.choice("UNITLESS WEAR COEF") {
+        Some("YES") => {
+            let hardness = card.required("REFERENCE STRESS", cx.d)?;
+            let rule = "the hardness must be positive";
+            hardness.real_that(|x| x > 0.0, rule, Code::BadValue, cx.d)?
+        }
+        _ => {
+            if card.has("REFERENCE STRESS") {
+                let message = "REFERENCE STRESS has no effect without UNITLESS WEAR COEF=YES";
+                let span = card.span_of("REFERENCE STRESS");
+                cx.error(Code::BadValue, span, message);
+            }
+            1.0
+        }
+    };
+    Some(Wear {
+        rate: coefficient / hardness,
+        by_friction: card.choice("FRIC COEF DEPENDENT") == Some("YES"),
+    })
+}
+
+/// `part of the work of friction, part of it that heats the slave`
+fn heat_of(card: &Card, cx: &mut Context) -> Option<f64> {
+    let part = |index: usize, default: f64, cx: &mut Context| {
+        let field = card.rows.first().and_then(|row| row.get(index));
+        let rule = "parts lie between 0 and 1";
+        field.map_or(Some(default), |field| {
+            field.real_that(|x| (0.0..=1.0).contains(&x), rule, Code::BadValue, cx.d)
+        })
+    };
+    if let Some(row) = card.rows.first() {
+        let help = "heat is that of the work of friction";
+        row.without_effect(2, "only the two parts are read here", help, cx.d);
+    }
+    let (heat, slave) = (part(0, 1.0, cx), part(1, 0.5, cx));
+    Some(heat? * slave?)
 }
 
 /// A field that is not negative, 0 where it is empty; `what` it is.

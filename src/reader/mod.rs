@@ -9,6 +9,7 @@ mod boundary;
 mod checks;
 mod connectors;
 mod contact;
+mod contact_changes;
 mod context;
 mod couplings;
 mod equations;

@@ -86,6 +86,10 @@ impl<'a> Outline<'a> {
             ("STEP", _) => self.begin_step(card, cx),
             ("END STEP", _) => self.end_step(card, cx),
             (_, Scope::Block(head)) => self.place_in_block(card, head, cx),
+            (_, Scope::BlockOrAfter(head, of_step)) => match self.is_after(of_step) {
+                true => self.place_in_step(card, cx),
+                false => self.place_in_block(card, head, cx),
+            },
             (_, Scope::BlockOrModel(head)) => match self.open_block(head) {
                 Some(block) => block.parts.push(card),
                 None => self.place_in_model(card, cx),
@@ -138,6 +142,13 @@ impl<'a> Outline<'a> {
     fn open_block(&mut self, head: &str) -> Option<&mut CardBlock<'a>> {
         let last = self.model.last_mut().filter(|_| self.in_model);
         last.filter(|block| block.head.keyword.name == head)
+    }
+
+    /// Whether the last card is that of a step with this keyword.
+    fn is_after(&self, of_step: &str) -> bool {
+        let step = self.steps.last().filter(|_| self.open);
+        let last = step.and_then(|step| step.cards.last());
+        last.is_some_and(|card| card.keyword.name == of_step)
     }
 
     fn place_in_block(&mut self, card: &'a Card, head: &str, cx: &mut Context) {

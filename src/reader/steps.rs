@@ -1,6 +1,7 @@
 //! `*STEP`, `*STATIC`, `*DYNAMIC` and `*STICKSLIP`; the state of supports, loads and settings from step to step.
 
 use super::boundary::{Supports, Targets};
+use super::contact_changes::ContactHistory;
 use super::context::Context;
 use super::interference::{Interferences, Pairs};
 use super::loads::{LoadHistories, Operation, StepContext};
@@ -10,9 +11,9 @@ use super::surfaces::Surfaces;
 use crate::deck::{Card, Line};
 use crate::diagnostics::{Code, shown};
 use crate::model::{
-    Contact, ContactMass, Factorization, Impact, ImpactTime, Incrementation, Increments,
-    LandingRule, LcpChoice, Procedure, RestartOutput, Scheme, Settings, SolverChoice, Step,
-    Support,
+    Contact, ContactChanges, ContactMass, Factorization, Impact, ImpactTime, Incrementation,
+    Increments, LandingRule, LcpChoice, Procedure, RestartOutput, Scheme, Settings, SolverChoice,
+    Step, Support,
 };
 
 /// Most increments of a step: at a microsecond each they would take eleven days.
@@ -46,6 +47,7 @@ pub(crate) fn read(
         has_contacts: ["CONTACT PAIR", "CONTACT"]
             .iter()
             .any(|keyword| !outline.model_cards(keyword).is_empty()),
+        changes: ContactHistory::new(contacts),
         settings: Settings::default(),
         supports: Supports::default(),
         support_operation: Operation::default(),
@@ -87,6 +89,7 @@ struct StepReader<'a> {
     contacts: &'a [Contact],
     guide: Option<f64>,
     has_contacts: bool,
+    changes: ContactHistory<'a>,
     settings: Settings,
     supports: Supports,
     support_operation: Operation,
@@ -117,6 +120,7 @@ impl StepReader<'_> {
         let period = increments.map_or(0.0, |increments| increments.period);
         self.own_settings(cards, number, cx);
         self.conditions(cards, context, cx);
+        let contacts = (self.changes).step(&cards.cards, context, self.surfaces, cx);
         self.requests.step = number;
         self.requests.cards(&cards.cards, self.targets, cx);
         let supports = self.supports.list();
@@ -124,6 +128,7 @@ impl StepReader<'_> {
         let name = cards.head.value("NAME").and_then(|name| name.name(cx.d));
         let step = increments.map(|increments| Step {
             supports,
+            contacts,
             ..self.build(
                 name.map(|n| n.typed),
                 procedure,
@@ -158,6 +163,7 @@ impl StepReader<'_> {
             pressures: Vec::new(),
             tractions: Vec::new(),
             interferences: self.interferences.list(is_last),
+            contacts: ContactChanges::default(),
             frames: self.requests.frames(self.start, increments.period),
         };
         self.loads.fill(&mut step, is_last);

@@ -135,6 +135,51 @@ fn friction_that_cannot_be() {
 }
 
 #[test]
+fn contact_changes_wear_and_heat_that_cannot_be() {
+    let shared = include_str!("../decks/shared.inp");
+    let in_step = |text: &str| shared.replacen("*END STEP", &format!("{text}\n*END STEP"), 1);
+    let friction = "*FRICTION\n0.3, 2.1E5\n";
+    let in_model = |text: &str| shared.replacen(friction, &format!("{friction}{text}\n"), 1);
+    let remove = "*MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE\nSBOT, STOP";
+    let repeated = format!("{remove}\n{remove}");
+    let [steps, model] = [
+        &[
+            "*CHANGE FRICTION, INTERACTION=WET\n*FRICTION\n0.1",
+            "*CHANGE FRICTION, INTERACTION=DRY",
+            "*CHANGE FRICTION, INTERACTION=DRY, RESET\n*FRICTION\n0.1",
+            "*CHANGE FRICTION, INTERACTION=DRY\n*FRICTION\n-0.1",
+            "*FRICTION\n0.1",
+            "*MODEL CHANGE, TYPE=CONTACT PAIR\nSBOT, STOP",
+            "*MODEL CHANGE, REMOVE\nSBOT, STOP",
+            "*MODEL CHANGE, TYPE=ELEMENT, REMOVE\nSBOT",
+            "*MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE\nSBOT",
+            "*MODEL CHANGE, TYPE=CONTACT PAIR, ADD\nSBOT, STOP",
+            &repeated,
+        ][..],
+        &[
+            "*WEAR SURFACE PROPERTIES\n-1.",
+            "*WEAR SURFACE PROPERTIES\n1., 2.",
+            "*WEAR SURFACE PROPERTIES\n1.\n2.",
+            "*WEAR SURFACE PROPERTIES, UNITLESS WEAR COEF=YES\n1.",
+            "*WEAR SURFACE PROPERTIES, UNITLESS WEAR COEF=YES, REFERENCE STRESS=0.\n1.",
+            "*WEAR SURFACE PROPERTIES, REFERENCE STRESS=2.\n1.",
+            "*GAP HEAT GENERATION\n1.5",
+            "*GAP HEAT GENERATION\n1., 0.5, 3.",
+        ][..],
+    ];
+    let decks = (steps.iter().map(|text| (*text, in_step(text))))
+        .chain(model.iter().map(|text| (*text, in_model(text))));
+    let all = decks.map(|(text, deck)| {
+        let (_, messages) = messages(&Source::Text(deck));
+        let own = messages
+            .split_inclusive("\n\n")
+            .filter(|text| !text.contains("stick slope"));
+        format!("--- {text}\n{}", own.collect::<String>())
+    });
+    insta::assert_snapshot!(all.collect::<String>());
+}
+
+#[test]
 fn damping_that_cannot_be() {
     let texts = [
         "*DAMPING",

@@ -209,6 +209,10 @@ fn faulty(code: Code) -> Source {
             "*DLOAD",
             "*CONTACT INTERFERENCE, SHRINK\nSTOP, STOP\n*DLOAD",
         ),
+        ContactChange => shared(
+            "*END STEP",
+            "*MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE\nSTOP, SBOT\n*END STEP",
+        ),
         Coupling => model("*MPC\nLINK, 1, 3"),
         FixedSlave => shared("SBOT, STOP", "STOP, SBOT\n*BOUNDARY\n4, 1, 2\n5, 1, 2"),
         BadDof => square("FOOT, 1, 2", "FOOT, 1, 8"),

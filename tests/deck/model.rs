@@ -293,6 +293,12 @@ fn friction_may_follow_a_table_and_have_a_limit() {
         (rough.law, rough.shear_limit),
         (FrictionLaw::Rough, f64::INFINITY)
     );
+    let wear = [0, 1].map(|i| model.contacts[i].interaction.wear);
+    let expected = [(1e-4 / 2e3, false), (5e-8, true)];
+    let expected = expected.map(|(rate, by_friction)| Some(Wear { rate, by_friction }));
+    assert_eq!(wear, expected);
+    let heat = [0, 1].map(|i| model.contacts[i].interaction.heat);
+    assert_eq!(heat, [Some(0.9 * 0.5), None]);
     let without = deck.replacen("TAUMAX=4.", "TAUMAX=0", 1);
     assert!(
         !read(&without).0.contacts[0]
@@ -307,6 +313,35 @@ fn friction_may_follow_a_table_and_have_a_limit() {
         messages.contains("only the coefficient of friction"),
         "{messages}"
     );
+}
+
+#[test]
+fn contacts_change_from_step_to_step() {
+    let (model, messages) = read(include_str!("../decks/friction.inp"));
+    assert_eq!(messages, "");
+    let own = [0, 1].map(|i| model.contacts[i].interaction.friction.clone());
+    let of_step = |number: usize| {
+        let changes = &model.steps[number - 1].contacts;
+        let friction = (changes.friction.iter())
+            .map(|change| (change.contact, change.friction.clone(), change.from.clone()))
+            .collect::<Vec<_>>();
+        (friction, changes.removed.clone())
+    };
+    assert_eq!([1, 2].map(of_step), [(vec![], vec![]), (vec![], vec![])]);
+    let falling = FrictionLaw::Decay {
+        at_rest: 0.5,
+        sliding: 0.3,
+        decay: 2.0,
+    };
+    // what never slips ramps to nothing
+    let slippery = Friction::constant(0.1);
+    let ramped = (0, slippery.clone(), Some(own[0].clone()));
+    assert_eq!(
+        of_step(3),
+        (vec![ramped, (1, falling.into(), None)], vec![])
+    );
+    assert_eq!(of_step(4), (vec![(0, slippery, None)], vec![0]));
+    assert_eq!(model.friction_range(0), [0.4, 0.0]);
 }
 
 #[test]

@@ -172,7 +172,7 @@ fn deck_with(lines: &str, scope: Scope) -> String {
             let law = if lines.contains("ELASTIC") { "" } else { LAW };
             put("*SOLID SECTION", &format!("*MATERIAL, NAME=NEW\n{law}"))
         }
-        Scope::Block("SURFACE INTERACTION") => {
+        Scope::Block("SURFACE INTERACTION") | Scope::BlockOrAfter(..) => {
             put("*CONTACT PAIR", "*SURFACE INTERACTION, NAME=NEW\n")
         }
         _ => put("*STEP", ""),

@@ -8,9 +8,9 @@ use stickslip::dynamics::{
 };
 use stickslip::materials::Law;
 use stickslip::model::{
-    BodyForce, Contact, Damping, Element, ElementType, Face, Frames, Friction, Incrementation,
-    Increments, Interaction, Load, Material, Model, Procedure, Scheme, Section, Settings, Step,
-    Support, SupportMotion, Surface, SurfaceKind, Variation,
+    BodyForce, Contact, ContactChanges, Damping, Element, ElementType, Face, Frames, Friction,
+    Incrementation, Increments, Interaction, Load, Material, Model, Procedure, Scheme, Section,
+    Settings, Step, Support, SupportMotion, Surface, SurfaceKind, Variation,
 };
 use stickslip::prepare::PreparedModel;
 
@@ -152,7 +152,9 @@ pub fn add_contact(model: &mut Model, slave: Vec<Face>, master: Vec<Face>, frict
         slave: master - 1,
         master,
         interaction: Interaction {
+            name: "DRY".into(),
             friction: Friction::constant(friction),
+            ..Interaction::default()
         },
         adjust: None,
         left_out: Vec::new(),
@@ -210,6 +212,7 @@ pub fn step(dt: f64, count: usize, settings: Settings, mut supports: Vec<Support
         pressures: Vec::new(),
         tractions: Vec::new(),
         interferences: Vec::new(),
+        contacts: ContactChanges::default(),
         frames: Frames::Default,
     }
 }

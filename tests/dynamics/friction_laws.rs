@@ -2,9 +2,7 @@
 //! coefficient of its own slip rate and pressure at every node.
 
 use stickslip::dynamics::IncrementReport;
-use stickslip::model::{
-    Friction, FrictionCurve, FrictionLaw, Interaction, LcpChoice, Model, Scheme,
-};
+use stickslip::model::{Friction, FrictionCurve, FrictionLaw, LcpChoice, Model, Scheme};
 
 use crate::blocks::{Block, SCHEMES, run_to_end, throw};
 use crate::friction::block_on_base;
@@ -15,9 +13,7 @@ const SPEED: f64 = 1.0;
 /// The block of [`block_on_base`] thrown along the base.
 fn thrown(scheme: Scheme, friction: &Friction, speed: f64) -> (Model, Block) {
     let (mut model, block) = block_on_base(0.0, [0.0, -1.0], scheme);
-    model.contacts[0].interaction = Interaction {
-        friction: friction.clone(),
-    };
+    model.contacts[0].interaction.friction = friction.clone();
     throw(&mut model, &block, [speed, 0.0], 0.0, [0.0, 0.0]);
     (model, block)
 }
@@ -211,7 +207,7 @@ fn every_node_has_the_friction_of_its_own_slip_rate_and_pressure() {
                     "{scheme:?} {}: {pt} {coulomb}",
                     now.time
                 );
-                assert!((now.nodal.friction_coefficient[node] - mu).abs() < 1e-6);
+                assert!((now.nodal.friction.coefficient[node] - mu).abs() < 1e-6);
                 checked += 1;
             }
         }

@@ -178,3 +178,8 @@ fn a_checkpoint_of_another_model_is_refused() {
         assert!(resume(&own, &checkpoint[..cut], 0.0, &mut Record::default()).is_err());
     }
 }
+
+#[test]
+fn friction_and_contacts_that_steps_change() {
+    check("tests/decks/friction.inp", 100, 4);
+}

@@ -278,7 +278,7 @@ HEAD, 2, 2, -0.05
 
 @pytest.mark.parametrize(
     "name",
-    ["assembly", "connections", "drop", "every_card", "rigid_floor", "static_steps", "steps"],
+    ["assembly", "connections", "drop", "every_card", "friction", "rigid_floor", "static_steps", "steps"],
 )
 def test_decks_of_all_kinds_hold(job: Job, name: str) -> None:
     deck = Deck.read(DECKS / f"{name}.inp")

@@ -13,16 +13,16 @@ use std::path::Path;
 
 use stickslip::diagnostics::Span;
 use stickslip::dynamics::{
-    BodyResult, ContactImpulse, ContactResultant, Energy, IncrementReport, Landing, Momentum,
-    NodalResults, NodeStatus, Observer, Outcome, PassReport, RunSummary, SolverCounts, State,
-    Timings,
+    BodyResult, ContactImpulse, ContactResultant, Energy, FrictionResults, IncrementReport,
+    Landing, Momentum, NodalResults, NodeStatus, Observer, Outcome, PassReport, RunSummary,
+    SolverCounts, State, Timings,
 };
 use stickslip::elements::{ElementResult, Strained};
 use stickslip::materials::Law;
 use stickslip::model::{
-    Contact, Damping, Element, ElementType, Face, Frames, Friction, HistorySet, Incrementation,
-    Increments, Interaction, Material, Mesh, Model, NamedSets, Procedure, RequestedFields, Section,
-    Set, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
+    Contact, ContactChanges, Damping, Element, ElementType, Face, Frames, Friction, HistorySet,
+    Incrementation, Increments, Interaction, Material, Mesh, Model, NamedSets, Procedure,
+    RequestedFields, Section, Set, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
 };
 use stickslip::output::{Claim, JobFiles, ResultWriter, RunRecord, Verbosity};
 
@@ -129,7 +129,9 @@ fn contact() -> Contact {
         slave: 0,
         master: 1,
         interaction: Interaction {
+            name: "DRY".into(),
             friction: Friction::constant(0.3),
+            ..Interaction::default()
         },
         adjust: None,
         left_out: Vec::new(),
@@ -160,6 +162,7 @@ fn step() -> Step {
         pressures: vec![],
         tractions: vec![],
         interferences: vec![],
+        contacts: ContactChanges::default(),
         frames: Frames::Count(5),
     }
 }
@@ -241,7 +244,7 @@ fn nodal(k: usize, reaction: Vec<f64>, contact_force: Vec<f64>) -> NodalResults 
         gap,
         status,
         pressure: vec![0.25 * k as f64; 7],
-        friction_coefficient: vec![],
+        friction: FrictionResults::default(),
         slip: vec![0.5 * k as f64; 7],
         mass: vec![],
     }

@@ -27,13 +27,15 @@ class Contact:
     segments: Integers
     """[S, 2], the master body on the left."""
     friction: Array
-    """Coefficients at rest and of fast slip."""
+    """Coefficients at rest and of fast slip; or two others, the larger first, where they vary."""
+    acts: Integers
+    """Whether it acts in each step."""
     body: Integers
     """Body of each node, -1 for those of rigid surfaces [N]."""
 
     @property
     def is_constant(self) -> bool:
-        """Whether friction does not depend on the slip rate."""
+        """Whether friction is always the same."""
         return bool(self.friction[0] == self.friction[1])
 
 
@@ -45,9 +47,9 @@ def contacts(result: Result) -> list[Contact]:
     body = result.read("model/bodies/node")
     found = []
     for name in names:
-        parts = ("slaves", "segments", "friction")
-        slaves, segments, friction = (result.read(f"{at}/{name}/{part}") for part in parts)
-        found.append(Contact(name, slaves, segments, friction, body))
+        parts = ("slaves", "segments", "friction", "acts")
+        slaves, segments, friction, acts = (result.read(f"{at}/{name}/{part}") for part in parts)
+        found.append(Contact(name, slaves, segments, friction, acts, body))
     return found
 
 

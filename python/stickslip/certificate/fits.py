@@ -1,13 +1,13 @@
-"""Steps in which overlaps of fits or the contacts themselves change, of which the file does not tell all."""
+"""Steps in which overlaps of fits change, of which the file does not tell how much is left."""
 
 from stickslip.frame import Frame
 from stickslip.result import Result
 
-REASON = "the deck changes overlaps or contacts in some steps"
+REASON = "the deck changes overlaps in some steps"
 
 
 class Fits:
-    """The steps of a run in which its deck changes overlaps or contacts."""
+    """The steps of a run in which its deck changes overlaps."""
 
     def __init__(self, result: Result) -> None:
         self._time = result.history["time"]
@@ -16,9 +16,13 @@ class Fits:
 
     def changes(self, frame: Frame) -> bool:
         """Whether they change in the step of a frame, or may have changed before."""
-        rows = (self._time == frame.time).nonzero()[0]
-        step = int(self._step[rows[-1]]) if len(rows) else 0
+        step = self.step(frame)
         return step in self.steps or step >= self.last
+
+    def step(self, frame: Frame) -> int:
+        """The step of a frame, from 1; 0 where no increment has its time."""
+        rows = (self._time == frame.time).nonzero()[0]
+        return int(self._step[rows[-1]]) if len(rows) else 0
 
 
 def _steps(deck: str) -> tuple[set[int], float]:
@@ -35,8 +39,6 @@ def _steps(deck: str) -> tuple[set[int], float]:
             steps.add(step)
             if "AMPLITUDE=" in card:
                 last = min(last, step)
-        elif card.startswith("*MODELCHANGE"):
-            last = min(last, step)
         elif card.startswith("*CONTACTINITIALIZATIONDATA") and "INTERFERENCEFIT" in card:
             steps.add(1)
     # the text of an earlier job stands behind the deck, so that its steps are not counted here

@@ -7,6 +7,7 @@ import numpy as np
 from stickslip.certificate.check import Checks
 from stickslip.certificate.contacts import (
     BEYOND,
+    Contact,
     Touch,
     contacts,
     corner_error,
@@ -53,6 +54,8 @@ class Increment:
 
     row: int
     """Of the history."""
+    step: int
+    """Index of its step."""
     scheme: int
     theta: Array
     dt: float
@@ -137,7 +140,7 @@ class Frames:
             start = frame["U"] - dt * frame["V"]
             if scheme != EULER:
                 start += 0.5 * dt * dt * frame["A"]
-        return Increment(row, scheme, theta, dt, start, exact)
+        return Increment(row, step, scheme, theta, dt, start, exact)
 
     def _energies(self, frame: Frame, row: int) -> None:
         """Energies and momenta of the bodies, of all of them and each."""
@@ -373,7 +376,8 @@ class Frames:
         way = np.abs(dt * frame["V"]).sum(axis=1) + np.abs(dt * dt * frame["A"]).sum(axis=1)
         if increment.start is not None:
             way = np.abs(frame["U"] - increment.start).sum(axis=1)
-        touches, nearest, reached = touching(x, way, self.contacts, active, TOUCH)
+        contacts = [contact for contact in self.contacts if contact.acts[increment.step]]
+        touches, nearest, reached = touching(x, way, contacts, active, TOUCH)
         noise = 16 * EPS * np.abs(x).max() / self._edge
         place = f"t = {frame.time:g}"
         self.checks["gap"].add(
@@ -393,7 +397,7 @@ class Frames:
             GAP + noise,
             f"GAP, {{}} of the open nodes, {place}",
         )
-        self._gap_field(x, way, status, gaps, noise, place)
+        self._gap_field(x, way, status, gaps, noise, contacts, place)
         loaded = np.flatnonzero(force > FORCE * self.force_scale)
         self.checks["complementarity"].add(
             nearest[loaded], TOUCH + noise, f"{{}} of {len(loaded)} loaded nodes, {place}"
@@ -401,13 +405,20 @@ class Frames:
         self._cones(frame, increment, touches, status)
 
     def _gap_field(
-        self, x: Array, way: Array, status: Integers, gaps: Array, noise: float, place: str
+        self,
+        x: Array,
+        way: Array,
+        status: Integers,
+        gaps: Array,
+        noise: float,
+        contacts: list[Contact],
+        place: str,
     ) -> None:
         """GAP is the distance from the line of some segment."""
         asked = np.flatnonzero((status == OPEN) & np.isfinite(gaps))
         off = np.full(len(x), np.inf)
         bound = 1e-8 + noise
-        for contact in self.contacts:
+        for contact in contacts:
             for near in places(x, way, np.intersect1d(contact.slaves, asked), contact):
                 error = np.abs(near.gap - gaps[near.nodes][:, None] / near.length).min(axis=1)
                 for row in np.flatnonzero(error > bound):

@@ -53,6 +53,8 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
         depth, count = 0.0, 0
         crossed = 0.0
         for contact in contacts:
+            if not contact.acts[fits.step(frame) - 1]:
+                continue
             found = _in_bodies(x, bodies, contact, result.body)
             found += _in_obstacles(x, bodies, obstacles, contact, gone)
             depth = max((one.depth for one in found), default=depth)

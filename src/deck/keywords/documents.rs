@@ -206,6 +206,7 @@ pub(super) fn place(keyword: &Keyword) -> String {
         Scope::Step => "in a step".to_string(),
         Scope::Anywhere => "before the first step or in a step".to_string(),
         Scope::Block(name) => format!("under `*{name}`"),
+        Scope::BlockOrAfter(name, other) => format!("under `*{name}` or `*{other}`"),
         Scope::BlockOrModel(name) => format!("under `*{name}` or before the first step"),
         Scope::Assembly => "in assembly decks".to_string(),
     }

@@ -79,7 +79,10 @@ fn treatment(what: &'static str) -> (Status, Scope, &'static str) {
     let scope = match place.strip_prefix("under *") {
         Some(block) => match block.strip_suffix(" or model") {
             Some(block) => Scope::BlockOrModel(block),
-            None => Scope::Block(block),
+            None => match block.split_once(" or *") {
+                Some((block, of_step)) => Scope::BlockOrAfter(block, of_step),
+                None => Scope::Block(block),
+            },
         },
         None => match place {
             "step" => Scope::Step,

@@ -14,6 +14,8 @@ pub enum Scope {
     Anywhere,
     /// In the block of the model keyword of this name.
     Block(&'static str),
+    /// In the block of the first, a model keyword, or right after the second, a keyword of steps.
+    BlockOrAfter(&'static str, &'static str),
     /// In such a block, or by itself before the first step.
     BlockOrModel(&'static str),
     /// Structure of assembly decks.

@@ -546,7 +546,8 @@ mod tests {
     use crate::dynamics::step::{ClosedConstraints, Discretization, Equilibrium};
     use crate::elements::Motion;
     use crate::model::{
-        ContactMass, Frames, Incrementation, Increments, Procedure, Scheme, Settings, Step,
+        ContactChanges, ContactMass, Frames, Incrementation, Increments, Procedure, Scheme,
+        Settings, Step,
     };
     use crate::prepare::{PreparedModel, redistribution_tests::block};
 
@@ -582,6 +583,7 @@ mod tests {
             pressures: vec![],
             tractions: vec![],
             interferences: vec![],
+            contacts: ContactChanges::default(),
             frames: Frames::Default,
         };
         let mut model = block([rows; 2], |_, _| false, |_, _| true);

@@ -8,12 +8,13 @@ use super::energy::Ledger;
 use super::nodal_results::{
     contact_pressure, contact_resultants, nodal_results, node_masses, tie_forces,
 };
+use super::surface_work::SurfaceWork;
 use super::touches::Touches;
 use crate::archive::{Archive, ArchiveError};
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{
-    ContactOnBody, ContactResultant, IncrementReport, Momentum, NodalResults, NodeStatus,
-    RigidReaction, State,
+    ContactOnBody, ContactResultant, FrictionResults, IncrementReport, Momentum, NodalResults,
+    NodeStatus, RigidReaction, State,
 };
 use crate::dynamics::step::{Discretization, Interval, Mass, SlaveFaces, StepProblem};
 use crate::model::Contact;
@@ -26,6 +27,7 @@ pub(crate) struct Accounts {
     faces: SlaveFaces,
     contacts: ContactLedger,
     touches: Touches,
+    surface_work: SurfaceWork,
     /// The consistent mass, where the mass is redistributed.
     consistent: Option<Mass>,
     /// Momentum that mass-proportional damping has taken.
@@ -56,6 +58,7 @@ impl Accounts {
             rigid: RigidSurfaces::new(model),
             contacts: ContactLedger::new(model, faces.start.clone()),
             touches: Touches::new(&model.mesh),
+            surface_work: SurfaceWork::new(model, &faces.start),
             consistent: (!redistribution.is_empty()).then(consistent),
             faces,
             damped: Momentum::default(),
@@ -70,11 +73,13 @@ impl Accounts {
             faces: _,
             contacts,
             touches,
+            surface_work,
             consistent: _,
             damped,
         } = self;
         contacts.carry(archive)?;
         touches.carry(archive)?;
+        surface_work.carry(archive)?;
         archive.carry(damped)
     }
 
@@ -99,9 +104,12 @@ impl Accounts {
                 gap: vec![f64::NAN; nodes],
                 status: vec![NodeStatus::None; nodes],
                 pressure: self.faces.start.clone(),
-                friction_coefficient: match problem.model.has_varying_friction() {
-                    true => vec![f64::NAN; problem.model.mesh.node_count()],
-                    false => Vec::new(),
+                friction: FrictionResults {
+                    coefficient: match problem.model.has_varying_friction() {
+                        true => vec![f64::NAN; problem.model.mesh.node_count()],
+                        false => Vec::new(),
+                    },
+                    ..self.surface_work.results()
                 },
                 slip: self.contacts.slip.clone(),
                 mass: node_masses(problem),
@@ -146,6 +154,11 @@ impl Accounts {
         nodal.concentrated = problem.loads.concentrated(theta1, start, end, u.len());
         nodal.pressure = contact_pressure(&self.faces, problem, u, &solved.contact.forces);
         nodal.slip.clone_from(&self.contacts.slip);
+        (self.surface_work).enter(problem, &self.faces, solved, &ledger.works);
+        nodal.friction = FrictionResults {
+            coefficient: nodal.friction.coefficient,
+            ..self.surface_work.results()
+        };
         report.rigid = self.rigid.collect(problem, u, &mut nodal.reaction);
         self.rigid
             .set_motion(problem, &solved.end, &mut report.rigid);

@@ -6,6 +6,7 @@ mod contact_ledger;
 mod energy;
 mod nodal_results;
 mod pair_work;
+mod surface_work;
 mod touches;
 
 pub(crate) use accounts::Accounts;

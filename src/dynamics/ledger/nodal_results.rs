@@ -10,7 +10,7 @@ use crate::contact::{
 };
 use crate::dynamics::increment::{ContactForces, Solved};
 use crate::dynamics::results::{
-    ContactResultant, Landing, NodalResults, NodeMass, NodeStatus, State,
+    ContactResultant, FrictionResults, Landing, NodalResults, NodeMass, NodeStatus, State,
 };
 use crate::dynamics::step::{Equilibrium, Interval, SlaveFaces, StepProblem};
 use crate::lcp::ContactState;
@@ -50,7 +50,10 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         tie_force,
         gap: vec![f64::NAN; dofs / 2],
         status: vec![NodeStatus::None; dofs / 2],
-        friction_coefficient: friction_coefficients(problem, &solved.contact.forces),
+        friction: FrictionResults {
+            coefficient: friction_coefficients(problem, &solved.contact.forces),
+            ..FrictionResults::default()
+        },
         mass: node_masses(problem),
         ..NodalResults::default()
     };

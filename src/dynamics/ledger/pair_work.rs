@@ -19,6 +19,8 @@ pub(crate) struct PairWork {
     pub fit: f64,
     /// Energy that friction dissipates.
     pub friction: f64,
+    /// Normal force times the way that the pair slides (energy).
+    pub sliding: f64,
 }
 
 /// Work of the pairs in an increment whose forces act all the time:
@@ -27,11 +29,15 @@ pub(crate) struct PairWork {
 /// Pn.(Bn d) - Pn (a0 - a1), eq. (9.2), Pn (a0 - a1), eq. (9.14), and -Pt.(Bt d), eq. (9.3)
 /// ```
 pub(super) fn steady_works(solved: &Solved) -> Vec<PairWork> {
-    let work = |(constraint, [pn, pt]): (&Constraint, [f64; 2])| PairWork {
-        key: constraint.key,
-        normal: pn * (constraint.normal_motion(&solved.d) - constraint.shrinkage),
-        fit: pn * constraint.shrinkage,
-        friction: -(pt * constraint.tangential_motion(&solved.d)),
+    let work = |(constraint, [pn, pt]): (&Constraint, [f64; 2])| {
+        let slip = constraint.tangential_motion(&solved.d);
+        PairWork {
+            key: constraint.key,
+            normal: pn * (constraint.normal_motion(&solved.d) - constraint.shrinkage),
+            fit: pn * constraint.shrinkage,
+            friction: -(pt * slip),
+            sliding: pn * slip.abs(),
+        }
     };
     let acting = solved
         .contact
@@ -104,6 +110,19 @@ impl EndForces {
         force
     }
 
+    /// Takes out the pairs of contacts that do not act any more; gives their force over all dofs (force).
+    pub fn take_out(&mut self, removed: &[usize], dofs: usize) -> Vec<f64> {
+        let mut force = vec![0.0; dofs];
+        self.pairs.retain(|(constraint, pair)| {
+            let is_out = removed.contains(&constraint.key.contact());
+            if is_out {
+                constraint.add_force(*pair, &mut force);
+            }
+            !is_out
+        });
+        force
+    }
+
     /// Sum of the normal forces of every slave node.
     fn normal_forces(&self) -> BTreeMap<SlaveKey, f64> {
         let mut sums = BTreeMap::new();
@@ -138,7 +157,8 @@ impl EndForces {
         let mut works = Vec::new();
         for (forces, is_end) in [(self, false), (end, true)] {
             for (constraint, [pn, pt]) in &forces.pairs {
-                let work = pt * constraint.tangential_motion(d);
+                let slip = constraint.tangential_motion(d);
+                let work = pt * slip;
                 let parts = shrinkage.get(&constraint.key.slave()).unwrap_or(&0.0);
                 tangential += work / 2.0;
                 works.push(PairWork {
@@ -147,6 +167,11 @@ impl EndForces {
                     fit: pn * parts / 2.0,
                     friction: if is_end {
                         -mean(constraint.key.slave()) * work
+                    } else {
+                        0.0
+                    },
+                    sliding: if is_end {
+                        mean(constraint.key.slave()) * pn * slip.abs()
                     } else {
                         0.0
                     },

@@ -159,8 +159,13 @@ pub(crate) fn failure(
 /// The failure of a start whose motion or energies are not finite.
 pub(crate) fn start_failure(state: &State, ledger: &Ledger, place: StepPlace) -> Option<Failure> {
     let checked = state.check_finite().and_then(|()| ledger.check(state));
-    checked.err().map(|cause| Failure {
-        increment: 0,
+    checked.err().map(|cause| failure_at_start(cause, 0, place))
+}
+
+/// The failure of a step before its first increment, after so many of the run.
+pub(crate) fn failure_at_start(cause: Cause, increment: usize, place: StepPlace) -> Failure {
+    Failure {
+        increment,
         step: place.number,
         time: place.start,
         dt: 0.0,
@@ -169,5 +174,5 @@ pub(crate) fn start_failure(state: &State, ledger: &Ledger, place: StepPlace) ->
         worst: None,
         passes: Vec::new(),
         halvings: 0,
-    })
+    }
 }

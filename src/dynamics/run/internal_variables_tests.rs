@@ -9,8 +9,8 @@ use crate::elements::{Elements, Motion};
 use crate::materials::Law;
 use crate::materials::yielding::Yielding;
 use crate::model::{
-    Damping, Element, ElementType, Frames, Incrementation, Increments, Material, Model, Procedure,
-    Section, Settings, Step,
+    ContactChanges, Damping, Element, ElementType, Frames, Incrementation, Increments, Material,
+    Model, Procedure, Section, Settings, Step,
 };
 use crate::prepare::PreparedModel;
 
@@ -73,6 +73,7 @@ fn step(dt: f64, count: usize) -> Step {
         pressures: vec![],
         tractions: vec![],
         interferences: vec![],
+        contacts: ContactChanges::default(),
         frames: Frames::Default,
     }
 }

@@ -3,7 +3,7 @@
 
 use std::{io, iter};
 
-use super::acceptance::{Accepted, Before, failure, start_failure};
+use super::acceptance::{Accepted, Before, failure, failure_at_start, start_failure};
 use super::time_control::{
     Automatic, Bisection, Ended, ImpactControl, NominalIncrement, Span, TimeControl,
     nominal_increments,
@@ -25,7 +25,7 @@ use crate::dynamics::step::{
 use crate::elements::{Motion, most_strained};
 use crate::linear::largest;
 use crate::model::{Incrementation, Procedure, Step};
-use crate::prepare::PreparedModel;
+use crate::prepare::{PreparedModel, deepest_fault};
 
 /// Displacement of a static increment, beside that at the rate of the last one, from which on it may be a jump.
 const FAR: f64 = 5.0;
@@ -293,7 +293,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         let mut problem = StepProblem::new(self.discretization, step, start);
         match resumed {
             None => {
-                self.release_supports(&mut problem);
+                self.release(&mut problem, step);
                 self.path = None;
             }
             Some(_) => problem.loads.release(self.progress.released.clone()),
@@ -304,18 +304,26 @@ impl<'m, 'o> Runner<'m, 'o> {
         outcome
     }
 
-    /// Lets the forces of the supports that a static step has not any more fade over it.
-    fn release_supports(&mut self, problem: &mut StepProblem) {
+    /// Takes the forces of contacts that a step has removed, and of supports that it has not any more: at once in a
+    /// dynamic step, while over a static one they fade.
+    fn release(&mut self, problem: &mut StepProblem, step: &Step) {
+        let removed = &step.contacts.removed;
+        (self.state.contact).retain(|pair| !removed.contains(&pair.key.contact()));
+        let dofs = self.state.u.len();
+        let forces = self.ledger.end.as_mut().map(|end| {
+            let missing = end.missing(dofs);
+            (missing, end.take_out(removed, dofs))
+        });
         if problem.integration.has_rates {
             return;
         }
-        if let Some(end) = &mut self.ledger.end {
-            let missing = end.missing(self.state.u.len());
-            let released = self
-                .supported
-                .iter()
-                .filter(|dof| problem.unknowns.is_free(**dof));
-            let released: Vec<(usize, f64)> = released.map(|&dof| (dof, missing[dof])).collect();
+        if let (Some(end), Some((missing, of_contacts))) = (&mut self.ledger.end, forces) {
+            let supports = self.supported.iter();
+            let free = supports.filter(|dof| problem.unknowns.is_free(**dof));
+            let of_contacts = of_contacts.into_iter().enumerate();
+            let released: Vec<(usize, f64)> = (free.map(|&dof| (dof, missing[dof])))
+                .chain(of_contacts.filter(|(_, force)| *force != 0.0))
+                .collect();
             released
                 .iter()
                 .for_each(|&(dof, force)| end.load[dof] += force);
@@ -368,6 +376,9 @@ impl<'m, 'o> Runner<'m, 'o> {
         {
             return Ok(Some(failure));
         }
+        if let Some(failure) = self.overlap(problem, step, place) {
+            return Ok(Some(failure));
+        }
         let is_static = |procedure: Procedure| procedure == Procedure::Static;
         if place.number > 1 && is_static(self.procedure) != is_static(step.procedure) {
             self.begin_motion(problem, workspace, place);
@@ -378,6 +389,28 @@ impl<'m, 'o> Runner<'m, 'o> {
         let State { u, a, .. } = &self.state;
         self.accuracy = decides.then(|| TruncationError::new(u, a));
         Ok(None)
+    }
+
+    /// The failure of a step that adds a contact whose bodies overlap.
+    fn overlap(&self, problem: &StepProblem, step: &Step, place: StepPlace) -> Option<Failure> {
+        let model = problem.model;
+        let before = &model.steps.get(place.number.checked_sub(2)?)?.contacts;
+        let is_added = |contact: &&usize| !step.contacts.removed.contains(contact);
+        let added: Vec<&usize> = before.removed.iter().filter(is_added).collect();
+        if added.is_empty() {
+            return None;
+        }
+        let nodes = 0..model.mesh.node_count();
+        let x: Vec<[f64; 2]> = nodes.map(|n| problem.position(&self.state.u, n)).collect();
+        let bodies = model.mesh.bodies();
+        let deepest = |contact: &usize| deepest_fault(&problem.contacts[*contact], &x, &bodies);
+        let found = added.into_iter().find_map(deepest)?;
+        let cause = Cause::Overlaps {
+            slave: found.slave,
+            segment: found.segment,
+            depth: -found.gap,
+        };
+        Some(failure_at_start(cause, self.summary.increments, place))
     }
 
     /// One nominal increment, divided by its time control: attempt, check, accept or cut back.

@@ -132,8 +132,8 @@ mod tests {
     use crate::dynamics::step::{ClosedConstraints, Discretization, Workspace};
     use crate::materials::{Law, SaintVenantKirchhoff};
     use crate::model::{
-        Damping, Element, ElementType, Frames, Incrementation, Increments, Material, Model,
-        Procedure, Section, Settings, Step, Support, SupportMotion,
+        ContactChanges, Damping, Element, ElementType, Frames, Incrementation, Increments,
+        Material, Model, Procedure, Section, Settings, Step, Support, SupportMotion,
     };
     use crate::prepare::PreparedModel;
 
@@ -201,6 +201,7 @@ mod tests {
             pressures: vec![],
             tractions: vec![],
             interferences: vec![],
+            contacts: ContactChanges::default(),
             frames: Frames::Default,
         }
     }

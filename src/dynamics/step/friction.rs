@@ -5,21 +5,60 @@ use super::loads::Interval;
 use super::slave_faces::SlaveFaces;
 use crate::contact::{ClosedPairs, Constraint, position};
 use crate::lcp::ContactState;
-use crate::model::{Friction, Model};
+use crate::model::{Friction, Model, Step};
 
 /// Friction of the contacts in a step.
 pub(crate) struct Frictions<'m> {
-    of_contacts: Vec<&'m Friction>,
+    of_contacts: Vec<Course<'m>>,
     /// Where the pressure counts.
     faces: Option<SlaveFaces>,
 }
 
+/// Friction of a contact.
+struct Course<'m> {
+    friction: &'m Friction,
+    /// That of the start of the step, where its coefficient ramps to that of the end.
+    from: Option<&'m Friction>,
+}
+
+impl Course<'_> {
+    fn all(&self) -> impl Iterator<Item = &Friction> {
+        [Some(self.friction), self.from].into_iter().flatten()
+    }
+
+    fn is_constant(&self) -> bool {
+        self.all().all(Friction::is_constant)
+    }
+
+    fn depends_on_pressure(&self) -> bool {
+        self.all().any(Friction::depends_on_pressure)
+    }
+
+    /// Coefficient at a slip rate, none at rest, under a pressure, at the part `ramped` of the step.
+    fn at(&self, rate: Option<f64>, pressure: f64, ramped: f64) -> f64 {
+        match (self.from, rate) {
+            (Some(from), _) => self.friction.on_the_way((from, ramped), rate, pressure),
+            (None, None) => self.friction.at_rest(pressure),
+            (None, Some(rate)) => self.friction.at(rate, pressure),
+        }
+    }
+}
+
 impl<'m> Frictions<'m> {
-    /// That of a model.
-    pub fn new(model: &'m Model) -> Self {
-        let of_contacts = model.contacts.iter();
-        let of_contacts: Vec<&Friction> = of_contacts.map(|c| &c.interaction.friction).collect();
-        let counts = of_contacts.iter().any(|f| f.depends_on_pressure());
+    /// That of a model in a step.
+    pub fn new(model: &'m Model, step: &'m Step) -> Self {
+        let own = model.contacts.iter().map(|contact| Course {
+            friction: &contact.interaction.friction,
+            from: None,
+        });
+        let mut of_contacts: Vec<Course> = own.collect();
+        for change in &step.contacts.friction {
+            of_contacts[change.contact] = Course {
+                friction: &change.friction,
+                from: change.from.as_ref(),
+            };
+        }
+        let counts = of_contacts.iter().any(Course::depends_on_pressure);
         Frictions {
             faces: counts.then(|| SlaveFaces::new(model)),
             of_contacts,
@@ -30,49 +69,42 @@ impl<'m> Frictions<'m> {
     /// |Dt|/dt of the increment; both under the pressure that the forces at hand exert on the slave node,
     ///
     /// ```text
-    /// p = sum Pn/A    eq. (3.13)
+    /// p = |N|/A,  N = sum Bn^T Pn    eq. (3.13)
     /// ```
     ///
-    /// the sum being that of the pairs of the node, A its area against the normal in the configuration of the start,
-    /// which the displacements `u0` lead to.
+    /// A being its area against N in the configuration of the start, which the displacements `u0` lead to.
     pub fn give(
         &self,
         x: &[[f64; 2]],
         (u0, interval, closed): (&[f64], Interval, &ClosedPairs),
         constraints: &mut [Constraint],
     ) {
+        let normal = self.faces.as_ref().map(|faces| {
+            let mut force = vec![0.0; 2 * x.len()];
+            for constraint in constraints.iter() {
+                let [pn, _] = closed.force(constraint.key);
+                constraint.add_force([pn, 0.0], &mut force);
+            }
+            (faces, force)
+        });
+        let pressure = |node: usize| {
+            let (faces, force) = normal.as_ref()?;
+            let own = [force[2 * node], force[2 * node + 1]];
+            let area = faces.area(node, own, |node| position(x, u0, node));
+            Some(own[0].hypot(own[1]) / area).filter(|pressure| !pressure.is_nan())
+        };
         for constraint in constraints {
-            let friction = self.of_contacts[constraint.key.contact()];
+            let friction = &self.of_contacts[constraint.key.contact()];
             constraint.mu_varies = !friction.is_constant();
-            let pressure = match &self.faces {
-                Some(faces) if friction.depends_on_pressure() => {
-                    pressure(constraint, closed, |node, normal| {
-                        faces.area(node, normal, |node| position(x, u0, node))
-                    })
-                }
-                _ => 0.0,
-            };
-            constraint.mu = match constraint.mu_varies {
-                true if closed.state(constraint.key) != ContactState::Stick => {
-                    friction.at(constraint.slip / interval.dt, pressure)
-                }
-                _ => friction.at_rest(pressure),
-            };
+            let slave = constraint.nodes().next();
+            let pressure = slave
+                .filter(|_| friction.depends_on_pressure())
+                .and_then(pressure)
+                .unwrap_or(0.0);
+            let slides =
+                constraint.mu_varies && closed.state(constraint.key) != ContactState::Stick;
+            let rate = slides.then(|| constraint.slip / interval.dt);
+            constraint.mu = friction.at(rate, pressure, interval.end.ramped());
         }
-    }
-}
-
-/// Pressure of the closed pairs of the slave node of a constraint, on its area against a normal.
-fn pressure(
-    constraint: &Constraint,
-    closed: &ClosedPairs,
-    area: impl Fn(usize, [f64; 2]) -> f64,
-) -> f64 {
-    let pairs = closed.of_slave(constraint.key.slave());
-    let normal: f64 = pairs.iter().map(|pair| pair.force[0]).sum();
-    let of_slave = constraint.slave_forces([1.0, 0.0]).next();
-    match of_slave {
-        Some((node, direction)) if normal > 0.0 => normal / area(node, direction),
-        _ => 0.0,
     }
 }

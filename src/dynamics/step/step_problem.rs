@@ -100,7 +100,6 @@ impl<'m> StepProblem<'m> {
     pub fn new(discretization: &'m Discretization<'m>, step: &'m Step, start: [&[f64]; 2]) -> Self {
         let Discretization {
             model,
-            contacts,
             elements,
             mass,
             redistribution,
@@ -108,6 +107,7 @@ impl<'m> StepProblem<'m> {
             turning,
             coordinates,
             overlaps,
+            ..
         } = discretization;
         let unknowns = Unknowns::new(model, (elements, turning), step, start);
         StepProblem {
@@ -117,15 +117,15 @@ impl<'m> StepProblem<'m> {
             mass,
             redistribution,
             parts,
-            contacts,
-            frictions: Frictions::new(model),
+            contacts: discretization.contacts_of(step),
+            frictions: Frictions::new(model, step),
             settings: step.settings,
             integration: Integration::new(step),
             parts_of_unknowns: parts.of_unknowns(&unknowns.dof),
             unknowns,
             loads: Loads::new(model, step, redistribution),
             fits: Fits::new(model, step, overlaps, |contact| {
-                contacts[contact].slaves.len()
+                discretization.contacts[contact].slaves.len()
             }),
         }
     }
@@ -401,7 +401,9 @@ pub(crate) fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
 /// A prepared model with its elements, their mass, and the bodies and parts that scale convergence.
 pub(crate) struct Discretization<'m> {
     pub model: &'m Model,
-    pub contacts: &'m [ContactSurfaces],
+    contacts: &'m [ContactSurfaces],
+    /// The same without nodes and segments of those that some steps have removed: their indices, and all contacts.
+    remaining: Vec<(&'m [usize], Vec<ContactSurfaces>)>,
     pub elements: Elements,
     pub mass: Mass,
     pub redistribution: &'m Redistribution,
@@ -413,7 +415,33 @@ pub(crate) struct Discretization<'m> {
     pub overlaps: &'m [Vec<f64>],
 }
 
+/// The contacts of the steps that have removed some.
+fn remaining(prepared: &PreparedModel) -> Vec<(&[usize], Vec<ContactSurfaces>)> {
+    let mut all: Vec<(&[usize], Vec<ContactSurfaces>)> = Vec::new();
+    for step in &prepared.model.steps {
+        let removed = step.contacts.removed.as_slice();
+        if removed.is_empty() || all.iter().any(|(known, _)| *known == removed) {
+            continue;
+        }
+        let of_contact =
+            |(index, surfaces): (usize, &ContactSurfaces)| match removed.contains(&index) {
+                true => ContactSurfaces::new(Vec::new(), &[], Vec::new()),
+                false => surfaces.clone(),
+            };
+        let surfaces = prepared.surfaces.iter().enumerate();
+        all.push((removed, surfaces.map(of_contact).collect()));
+    }
+    all
+}
+
 impl<'m> Discretization<'m> {
+    /// Surfaces of the contacts in a step.
+    fn contacts_of(&self, step: &Step) -> &[ContactSurfaces] {
+        let mut remaining = self.remaining.iter();
+        let found = remaining.find(|(removed, _)| *removed == step.contacts.removed);
+        found.map_or(self.contacts, |(_, contacts)| contacts)
+    }
+
     /// Whether there are dofs beside those of the nodes.
     pub fn has_more_dofs(&self) -> bool {
         !self.turning.is_empty()
@@ -433,6 +461,7 @@ impl<'m> Discretization<'m> {
         Discretization {
             model,
             contacts: &prepared.surfaces,
+            remaining: remaining(prepared),
             mass: Mass::new((&elements, &turning), redistribution, coordinates.len()),
             redistribution,
             parts: Parts::new(model),

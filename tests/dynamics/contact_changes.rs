@@ -1,0 +1,204 @@
+//! Friction and contacts that change from step to step, against closed forms.
+
+use stickslip::dynamics::{Cause, Outcome};
+use stickslip::model::{
+    ContactChanges, Friction, FrictionChange, FrictionLaw, Model, Procedure, Scheme, Step,
+    Variation,
+};
+
+use crate::blocks::{Block, Keep, SCHEMES, run, run_to_end};
+use crate::friction::block_on_base;
+
+const GRAVITY: f64 = 10.0;
+
+fn slope() -> (f64, [f64; 2]) {
+    let slope = 20.0_f64.to_radians();
+    (slope, [slope.sin(), -slope.cos()])
+}
+
+/// The block of [`block_on_base`] on a slope, at rest for a step; the second step of `count` increments has these
+/// changes.
+fn two_steps(scheme: Scheme, count: usize, changes: ContactChanges) -> (Model, Block) {
+    let (mut model, block) = block_on_base(0.5, slope().1, scheme);
+    let mut next: Step = model.steps[0].clone();
+    for load in &mut next.body_forces {
+        load.variation = Variation::Constant;
+    }
+    next.increments.period = 0.002 * count as f64;
+    next.contacts = changes;
+    model.steps.push(next);
+    (model, block)
+}
+
+fn friction(friction: Friction, from: Option<Friction>) -> ContactChanges {
+    ContactChanges {
+        removed: Vec::new(),
+        friction: vec![FrictionChange {
+            contact: 0,
+            friction,
+            from,
+        }],
+    }
+}
+
+fn removed() -> ContactChanges {
+    ContactChanges {
+        removed: vec![0],
+        friction: Vec::new(),
+    }
+}
+
+#[test]
+fn a_block_slides_off_when_the_friction_is_changed() {
+    let (slope, _) = slope();
+    let [drive, press] = [GRAVITY * slope.sin(), GRAVITY * slope.cos()];
+    // at once, and along a ramp from 0.5 to 0.1 over 0.4, on which it begins to slide at mu = tan(slope)
+    let start = 0.4 * (0.5 - slope.tan()) / 0.4;
+    let ramped = |t: f64| {
+        let s = (t - start).max(0.0);
+        s * s / 2.0 * press
+    };
+    let jumped = |t: f64| (drive - 0.1 * press) * t;
+    let cases: [(_, &dyn Fn(f64) -> f64); 2] =
+        [(None, &jumped), (Some(Friction::constant(0.5)), &ramped)];
+    for scheme in SCHEMES {
+        for (from, expected) in &cases {
+            let changes = friction(Friction::constant(0.1), from.clone());
+            let (model, _) = two_steps(scheme, 200, changes);
+            let (keep, _) = run_to_end(&model);
+            let mut largest = 0.0_f64;
+            for report in &keep.reports {
+                let v = match report.step {
+                    1 => 0.0,
+                    _ => expected(report.step_time),
+                };
+                largest = largest.max((report.momentum.linear[0] / 2.0 - v).abs());
+                let mu = report.contacts[0].friction_coefficient;
+                let wanted = match (report.step, from) {
+                    (1, _) => 0.5,
+                    (_, None) => 0.1,
+                    (_, Some(_)) => 0.5 - 0.4 * report.step_time / 0.4,
+                };
+                assert!(mu.is_nan() || (mu - wanted).abs() < 1e-12, "{mu} {wanted}");
+            }
+            let last = keep.reports.last().expect("reports");
+            println!("{scheme:?} {from:?}: largest error of the speed {largest:.2e}");
+            assert!(largest < 0.015, "{scheme:?} {from:?}: {largest}");
+            assert!(last.energy.balance.abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn surfaces_that_a_step_makes_rough_hold() {
+    for scheme in SCHEMES {
+        let (mut model, _) = block_on_base(0.2, slope().1, scheme);
+        model.steps[0].contacts = friction(FrictionLaw::Rough.into(), None);
+        let (keep, _) = run_to_end(&model);
+        let slip = keep.reports.iter().map(|report| {
+            let slips = report.nodal.slip.iter().filter(|slip| !slip.is_nan());
+            slips.fold(0.0_f64, |most, slip| most.max(*slip))
+        });
+        let slip = slip.fold(0.0, f64::max);
+        assert!(slip < 1e-12, "{scheme:?}: {slip:e}");
+    }
+}
+
+#[test]
+fn a_body_falls_freely_from_a_contact_that_is_removed() {
+    for scheme in SCHEMES {
+        let (model, _) = two_steps(scheme, 50, removed());
+        let (keep, _) = run_to_end(&model);
+        let at_rest = keep.reports.iter().rfind(|report| report.step == 1);
+        let [x0, y0] = at_rest.expect("a step").momentum.linear.map(|p| p / 2.0);
+        let (_, down) = slope();
+        for report in keep.reports.iter().filter(|report| report.step == 2) {
+            let [x, y] = report.momentum.linear.map(|p| p / 2.0);
+            let t = report.step_time;
+            let [ax, ay] = down.map(|e| GRAVITY * e * t);
+            assert!(
+                (x - x0 - ax).abs() < 1e-9 && (y - y0 - ay).abs() < 1e-9,
+                "{scheme:?} {t}"
+            );
+            assert_eq!(report.contacts[0].closed, 0);
+            assert!(report.energy.balance.abs() < 1e-9);
+        }
+        let last = keep.reports.last().expect("reports");
+        assert!(last.bodies[1].center[1] < 0.21, "it has gone into the base");
+    }
+}
+
+#[test]
+fn a_contact_is_not_added_where_its_bodies_overlap() {
+    let (mut model, _) = two_steps(SCHEMES[0], 50, removed());
+    let mut third = model.steps[1].clone();
+    third.contacts = ContactChanges::default();
+    model.steps.push(third);
+    let mut keep = Keep::default();
+    let summary = run(&model, &mut keep).expect("the observer never fails");
+    let Outcome::Stopped(failure) = summary.outcome else {
+        panic!("{:?}", summary.outcome);
+    };
+    assert_eq!(failure.step, 3);
+    let Cause::Overlaps { depth, .. } = failure.cause else {
+        panic!("{:?}", failure.cause);
+    };
+    let (_, down) = slope();
+    // down for 0.1 with g
+    let expected = -down[1] * GRAVITY * 0.01 / 2.0;
+    assert!((depth - expected).abs() < 2e-3, "{depth} {expected}");
+}
+
+#[test]
+fn a_contact_is_added_that_was_removed_from_the_start() {
+    for scheme in SCHEMES {
+        let (mut model, _) = two_steps(scheme, 200, ContactChanges::default());
+        model.steps[0].contacts = removed();
+        for load in &mut model.steps[0].body_forces {
+            load.magnitude = 0.0;
+        }
+        let (keep, _) = run_to_end(&model);
+        let last = keep.reports.last().expect("reports");
+        // without weight it stays where it is, and with it the base holds it
+        let [_, y] = last.bodies[1].center;
+        assert!((y - 0.25).abs() < 1e-3, "{scheme:?}: {y}");
+        let closed = keep.reports.iter().map(|report| report.contacts[0].closed);
+        assert_eq!(closed.max(), Some(9), "{scheme:?}");
+    }
+}
+
+#[test]
+fn in_a_static_step_the_forces_of_a_removed_contact_fade() {
+    // The block lies on the base, and hangs on one side as the contact is taken away.
+    let (mut model, block) = two_steps(SCHEMES[0], 200, removed());
+    let hangs = |step: &mut Step| {
+        for j in 0..=1 {
+            for dof in [0, 1] {
+                step.supports
+                    .push(crate::blocks::fixed(2 * block.node(0, j) + dof));
+            }
+        }
+        step.supports.sort_by_key(|support| support.dof);
+        step.procedure = Procedure::Static;
+        step.increments.dt = step.increments.period / 4.0;
+    };
+    model.steps.iter_mut().for_each(hangs);
+    let (keep, _) = run_to_end(&model);
+    let end_of = |step: usize| keep.reports.iter().rfind(|report| report.step == step);
+    let (first, last) = (end_of(1).expect("a step"), end_of(2).expect("a step"));
+    let pressed = first.contacts[0].normal;
+    assert!(pressed > 10.0 && last.contacts[0].normal == 0.0);
+    // the reaction takes over what the base carried, in proportion to the time of the step
+    let held = |nodal: &stickslip::dynamics::NodalResults| {
+        let nodes = (0..=1).map(|j| block.node(0, j));
+        nodes.map(|node| nodal.reaction[2 * node + 1]).sum::<f64>()
+    };
+    let total = held(&last.nodal) - held(&first.nodal);
+    assert!((total / pressed - 1.0).abs() < 1e-3, "{total} {pressed}");
+    for report in keep.reports.iter().filter(|report| report.step == 2) {
+        let part = report.step_time / model.steps[1].increments.period;
+        let taken = held(&report.nodal) - held(&first.nodal);
+        assert!((taken / total - part).abs() < 1e-3, "{taken} {part}");
+        assert!(report.energy.balance.abs() < 1e-9);
+    }
+}
