@@ -33,7 +33,8 @@ impl DelassusSpace {
 /// The complementarity problem of some constraints: Q = G W B^T, eq. (5.1), with the compliance W,
 /// derivative rows G and force rows B, and the given constant terms, of gap and slip of every one.
 ///
-/// Every constraint must have been prepared in the scope of the compliance. Q is symmetric where G = B.
+/// Every constraint must have been prepared in the scope of the compliance. Q is symmetric where G = B, unless bodies
+/// turn: their rows of T are others in gaps than in forces, eq. (11.3).
 pub fn frictional_lcp(
     constraints: &[&Constraint],
     (compliance, scope): (&Compliance, &Scope),
@@ -101,11 +102,8 @@ fn delassus(
         sum.write_to(&mut q);
     }
     let mut q = DMatrix::from_vec(2 * n, 2 * n, q);
-    if n > 0
-        && constraints
-            .iter()
-            .all(|c| c.other_derivative_rows.is_none())
-    {
+    let is_symmetric = |c: &&Constraint| c.other_derivative_rows.is_none();
+    if n > 0 && !compliance.map().has_own_derivatives() && constraints.iter().all(is_symmetric) {
         mirror(&mut q);
     }
     q

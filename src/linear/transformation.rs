@@ -83,6 +83,11 @@ impl Transformation {
         self.derivatives_in(self.starts[dof]..self.starts[dof + 1])
     }
 
+    /// Whether forces act by other coefficients than the derivatives: T W T^T is not symmetric then.
+    pub fn has_own_derivatives(&self) -> bool {
+        self.derivatives.is_some()
+    }
+
     /// Derivatives in a range of the terms.
     fn derivatives_in(&self, range: Range<usize>) -> impl Iterator<Item = (usize, f64)> + '_ {
         let of = self.derivatives.as_deref();

@@ -66,7 +66,9 @@ def check_gears(verification: runner.Verification) -> None:
     drive, driven = (of_body(results, name, "angle") for name in ("EDRIVE", "EDRIVEN"))
     ratio = made.TEETH[0] / made.TEETH[1]
     verification.check(
-        "angle of the driven gear / closed form", "gears", float(np.abs(driven + ratio * drive).max())
+        "angle of the driven gear / closed form",
+        "gears",
+        float(np.abs(driven + ratio * drive).max()),
     )
     account = results.history.energy
     lost = account["external_work"][-1] - account["kinetic"][-1] + account["kinetic"][0]
@@ -103,6 +105,8 @@ def main() -> int:
     verification.check("change of the momenta", "boxes", momentum_error(all_results["boxes"]))
     for name in ("boxes", "square", "rod"):
         verification.check("largest rise of the energy", name, rise(all_results[name]))
+    for name in ("boxes", "square", "rod"):
+        verification.check("cutbacks", name, int(all_results[name].run["cutbacks"]))
     square = of_body(all_results["square"], "ESQUARE", "center")
     verification.check("height at rest / closed form", "square", float(square[-1, 1] / 0.5))
 
