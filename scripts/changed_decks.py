@@ -19,6 +19,8 @@ Array = NDArray[np.float64]
 OUTLINES = ("START", "LINE")
 """First fields of the rows of rigid surfaces; arcs are chords in flat decks."""
 
+ANGLE = "6"
+"""The direction of angles and moments."""
 
 GROUNDED = {"SPRING1", "DASHPOT1"}
 ALONG_AXES = {"SPRING2", "DASHPOT2"}
@@ -162,14 +164,22 @@ def _axis(matrix: Array, direction: int) -> int:
 def _turned_components(rows: list[list[str]], matrix: Array) -> list[list[str]]:
     """Rows of node, direction, value."""
     vectors: dict[str, Array] = {}
+    angles: list[list[str]] = []
     for node, direction, value in rows:
-        vectors.setdefault(node, np.zeros(2))[int(direction) - 1] += float(value)
+        if direction == ANGLE:
+            angles.append([node, direction, repr(float(value) * _hand(matrix))])
+        else:
+            vectors.setdefault(node, np.zeros(2))[int(direction) - 1] += float(value)
     return [
         [node, str(direction), repr(float(value))]
         for node, vector in vectors.items()
         for direction, value in enumerate(matrix @ vector, 1)
-        if value != 0.0
-    ]
+    ] + angles
+
+
+def _hand(matrix: Array) -> float:
+    """-1 where angles change their sign."""
+    return float(np.sign(np.linalg.det(matrix)))
 
 
 def _turned_loads(rows: list[list[str]], matrix: Array) -> list[list[str]]:
@@ -203,7 +213,7 @@ class Support:
 
 
 Supports = dict[tuple[str, int], Support]
-"""By node and direction, 1 or 2."""
+"""By node and direction, 1, 2 or 6."""
 
 
 @dataclass(frozen=True)
@@ -294,12 +304,11 @@ def _types(deck: Deck) -> set[str]:
 
 
 def _refuse_fixed_directions(deck: Deck) -> None:
-    """Springs along axes and angles are not turned here."""
+    """Springs along axes and angles in equations are not turned here."""
     if (GROUNDED | ALONG_AXES) & _types(deck):
         raise Unchangeable("springs and dashpots act along the axes")
-    for keyword in ("BOUNDARY", "CLOAD", "INITIAL CONDITIONS"):
-        if any("6" in row[1:3] for card in deck.find(keyword) for row in card.rows):
-            raise Unchangeable("something is given in direction 6")
+    if any(ANGLE in row[1::3] for card in deck.find("EQUATION") for row in card.rows):
+        raise Unchangeable("an equation has an angle")
 
 
 def _turned_supports(deck: Deck, matrix: Array) -> Deck:
@@ -330,6 +339,10 @@ def _turned_supports(deck: Deck, matrix: Array) -> Deck:
                 now |= _by_axes(node, held.now, matrix)
             else:
                 now |= _turned_pair(node, held.now, matrix) or {}
+            angle = held.now.get((node, int(ANGLE)))
+            if angle:
+                value = angle.value * _hand(matrix) + 0.0
+                now[node, int(ANGLE)] = replace(angle, value=value)
         after.append(now)
     _refuse_changing(indirect, before)
     deck = with_supports(deck, after)
@@ -433,6 +446,8 @@ def boosted(deck: Deck, velocity: Array) -> Deck:
         raise Unchangeable("static steps begin at rest")
     if any("DIRECT" not in card.parameters for card in deck.find("DYNAMIC")):
         raise Unchangeable("automatic increments depend on the displacements")
+    if deck.find("KINEMATIC COUPLING"):
+        raise Unchangeable("has couplings")
     new = _with_initial_velocity(deck, velocity)
     amplitudes = {card.parameters["NAME"]: card for card in deck.find("AMPLITUDE")}
     added: dict[str, Card] = {}
@@ -448,22 +463,47 @@ def boosted(deck: Deck, velocity: Array) -> Deck:
 
 
 def _with_initial_velocity(deck: Deck, velocity: Array) -> Deck:
-    """The deck with a velocity added to that of every node of an element without support."""
+    """The deck with a velocity added to that of every node of an element without support.
+
+    Rigid bodies have that of their reference nodes.
+    """
     used = {label for card in deck.find("ELEMENT") for row in card.rows for label in row[1:]}
-    start = {label: velocity.copy() for label in sorted(used, key=int)}
+    for body in deck.find("RIGID BODY"):
+        used = used - _carried(deck, body) | {body.parameters["REFNODE"]}
+    start = {
+        (node, direction): float(speed)
+        for node in sorted(used, key=int)
+        for direction, speed in enumerate(velocity, 1)
+    }
     for card in deck.find("INITIAL CONDITIONS"):
         for node, direction, value in card.rows:
-            start.setdefault(node, velocity.copy())[int(direction) - 1] += float(value)
+            if node in used:
+                place = node, int(direction)
+                start[place] = start.get(place, 0.0) + float(value)
     held = supports(deck)[0].now
     rows = [
-        [node, str(direction), repr(float(value))]
-        for node, vector in start.items()
-        for direction, value in enumerate(vector, 1)
+        [node, str(direction), repr(value)]
+        for (node, direction), value in start.items()
         if (node, direction) not in held
     ]
     kept = Deck([card for card in deck.cards if card.keyword != "INITIALCONDITIONS"])
+    if not rows:
+        return kept
     card = Card("INITIALCONDITIONS", "*INITIAL CONDITIONS, TYPE=VELOCITY", rows)
     return _with_model_cards(kept, card)
+
+
+def _carried(deck: Deck, body: Card) -> set[str]:
+    """Nodes of a rigid body."""
+    elements = {row[0]: row[1:] for card in deck.find("ELEMENT") for row in card.rows}
+    carried: set[str] = set()
+    for keyword in ("ELSET", "NSET"):
+        for card in deck.find(keyword):
+            if card.parameters[keyword] == body.parameters.get(keyword):
+                labels = [label for row in card.rows for label in row]
+                nodes = labels if keyword == "NSET" else sum(map(elements.get, labels), [])
+                carried.update(nodes)
+    return carried
 
 
 def _boosted(
@@ -573,7 +613,7 @@ def _renamed_terms(row: list[str], nodes: dict[str, str]) -> list[str]:
 def reordered(deck: Deck, seed: int = 2) -> Deck:
     """The deck with nodes, elements, faces of surfaces and cards of elements in another order.
 
-    Elements begin with another of their nodes too.
+    Elements begin with another of their nodes too; springs pull from the same one.
     """
     random = np.random.default_rng(seed)
     faces: dict[str, dict[str, str]] = {}
@@ -590,7 +630,7 @@ def reordered(deck: Deck, seed: int = 2) -> Deck:
             rows = []
             for label, *nodes in card.rows:
                 n = len(nodes)
-                by = int(random.integers(n))
+                by = int(random.integers(n)) if card.parameters["TYPE"].startswith("C") else 0
                 rows.append([label, *nodes[by:], *nodes[:by]])
                 faces[label] = {str(old + 1): str((old - by) % n + 1) for old in range(n)}
             return _with_rows(card, rows)

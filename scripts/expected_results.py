@@ -46,11 +46,17 @@ STRAINS = ("E", "LE")
 TENSORS = (*STRAINS, "S")
 """Rows xx, yy, xy."""
 
-HANDED = re.compile(r"\w*(tangential\w*|angular|angular_velocity|moment)")
+HANDED = re.compile(r"\w*(tangential\w*|angle|angular|angular_velocity|moment)")
 """Scalars that a mirror turns round."""
 
 OF_CONSISTENT_MASS = ("ELKE", "consistent_angular")
 """What a boost changes by momenta of the consistent mass, which no history has."""
+
+OF_FORCES = ("history/contact", "history/ties")
+"""Groups whose moments are about the origin."""
+
+OF_CONNECTORS = "history/connectors"
+"""Forces and lengths along an axis."""
 
 OF_BODIES = re.compile(r"history/bodies/\w+|history/contact/.+/body_\w+")
 
@@ -87,6 +93,13 @@ class Seen:
             [float(card.rows[0][0]) for card in deck.find("ELASTIC")]
             + [6.0 * float(card.rows[0][0]) for card in deck.find("HYPERELASTIC")]
         )
+        self.points = sum(
+            float(card.rows[0][0]) * len(element.rows)
+            for card in deck.find("MASS")
+            for element in deck.find("ELEMENT")
+            if element.parameters.get("ELSET") == card.parameters["ELSET"]
+        )
+        """Mass of the points, which no history has."""
         self.data: dict[str, NDArray] = {}
         self.dimensions: dict[str, str] = {}
         with h5py.File(path) as file:
@@ -118,6 +131,11 @@ class Seen:
 
     def __getitem__(self, name: str) -> NDArray:
         return self.data[name]
+
+    @property
+    def mass(self) -> float:
+        """Mass of the model."""
+        return float(self["model/bodies/mass"].sum()) + self.points
 
     def names(self) -> list[str]:
         """Histories with a row for each increment, fields of frames."""
@@ -168,7 +186,7 @@ class Seen:
         found["1"] = 1.0
         # bodies may not turn at all, momenta and moments may cancel
         length = float(np.ptp(self["model/coordinates"], axis=0).max())
-        mass = float(self["model/bodies/mass"].sum())
+        mass = self.mass
         speed = found.get("length/time", 0.0)
         inertia = mass * found.get("length/time^2", 0.0)
         found["force"] = max(found.get("force", 0.0), inertia)
@@ -253,6 +271,8 @@ def expected(old: Seen, name: str, change: Change, theta: float) -> NDArray | No
     turn = change.matrix
     if own in TENSORS:
         return _turned_tensor(values, turn) * factor
+    if group == OF_CONNECTORS:
+        return values * factor
     if own in (*POINTS, *DISPLACEMENTS, *VELOCITIES, *VECTORS):
         new = values.copy()
         new[..., :2] = values[..., :2] @ turn.T
@@ -263,10 +283,14 @@ def expected(old: Seen, name: str, change: Change, theta: float) -> NDArray | No
         if own in VELOCITIES:
             new[..., :2] += change.velocity
         if own == "linear":
-            new += change.velocity * old["model/bodies/mass"].sum()
+            new += change.velocity * old.mass
         return new * factor
     if own in OF_CONSISTENT_MASS and change.is_boost:
         return None
+    if own == "angular" and change.is_boost and old.points:
+        return None  # no history has the centre of all points
+    if group.startswith("history/rigid/") and own == "kinetic" and change.is_boost:
+        return None  # no history has the mass of the body
     if own in ("kinetic", "external_work"):
         return _energy(old, name, change) * factor
     if HANDED.fullmatch(own):
@@ -294,7 +318,7 @@ def _energy(old: Seen, name: str, change: Change) -> Array:
         return values + momenta @ velocity + masses * (velocity @ velocity) / 2.0
     momentum = old["history/momentum/linear"] @ change.matrix.T @ velocity
     if name == "history/energy/kinetic":
-        return values + momentum + masses.sum() * (velocity @ velocity) / 2.0
+        return values + momentum + old.mass * (velocity @ velocity) / 2.0
     return values + momentum - momentum[0]
 
 
@@ -302,7 +326,7 @@ def _about_origin(old: Seen, name: str, change: Change, theta: float) -> Array |
     """What a moment about the origin changes by: shift x force, way of the boost x force."""
     group, _, own = name.rpartition("/")
     turn, time = change.matrix, old["history/time"][:, None]
-    if own == "moment" and group.startswith("history/contact") or own == "body_moment":
+    if own == "moment" and group.startswith(OF_FORCES) or own == "body_moment":
         force = old[f"{group}/{own.replace('moment', 'force')}"] @ turn.T
         acting = time - (1.0 - theta) * old["history/dt"][:, None]
         arm = change.shift + change.velocity * acting
@@ -405,7 +429,7 @@ def _in_order(
         return wanted, actual[:, order.bodies]
     group, _, own = name.rpartition("/")
     labels = f"{group}/labels"
-    if labels in old.data and wanted.ndim > 1:
+    if labels in old.data and not group.startswith("history/ties"):
         map_ = change.nodes if group.startswith("history/nodes") else change.elements
         return wanted, actual[:, _places(old[labels], new[labels], map_, 0, 0)]
     return wanted, actual

@@ -203,9 +203,11 @@ def _judge(sample: Sample, settings: Settings, folder: Path, verdict: Verdict) -
     first, base = _seen(settings.program, deck, folder / "base", settings.limit)
     longer = LONGER * settings.limit
     grown: dict[str, Array] = {}
+    ends_alike = True
     for sign in (1.0, -1.0):
         noisy = changed.noisy(deck, sign * NOISE * changed.size(deck))
-        _, seen = _seen(settings.program, noisy, folder / f"noise{sign}", longer)
+        ended, seen = _seen(settings.program, noisy, folder / f"noise{sign}", longer)
+        ends_alike &= not _other_ends(first, ended, base, seen)
         _add(grown, deviations(base, seen, Change(), theta, set()))
     _end_all(base, grown)
     _tell_growth(verdict, base, grown)
@@ -217,7 +219,8 @@ def _judge(sample: Sample, settings: Settings, folder: Path, verdict: Verdict) -
             outcome.refused = one_line(refused)
             continue
         ended, seen = _seen(settings.program, form.deck, folder / name.replace(" ", "_"), longer)
-        _compare_ends(first, ended, base, seen, outcome)
+        if ends_alike:
+            outcome.decisions += _other_ends(first, ended, base, seen)
         tied = _tied_nodes(form.deck) - _tied_nodes(deck)
         found = deviations(base, seen, form.change, theta, tied)
         _compare(found, grown, max(TOLERANCE, _tolerance(deck)), outcome)
@@ -255,6 +258,8 @@ def _tied_nodes(deck: Deck) -> set[int]:
 def _seen(program: Path, deck: Deck, folder: Path, limit: float) -> tuple[Run, Seen]:
     folder.mkdir()
     ended = run(program, deck.write(folder / "job.inp"), folder, limit)
+    if ended.was_stopped and not ended.result.exists():  # before its first increment
+        ended = run(program, deck.write(folder / "job.inp"), folder, 10.0 * limit)
     if ended.code not in GOOD_ENDS and not ended.was_stopped:
         raise Fault(f"{folder.name} ends with exit code {ended.code}: {ended.complaint}")
     return ended, Seen(ended.result, deck, ended.was_stopped)
@@ -299,17 +304,16 @@ def _tell_growth(verdict: Verdict, base: Seen, grown: dict[str, Array]) -> None:
             verdict.first = name
 
 
-def _compare_ends(first: Run, ended: Run, base: Seen, seen: Seen, outcome: Outcome) -> None:
-    """Runs that went to their ends have as many increments and cutbacks."""
+def _other_ends(first: Run, ended: Run, base: Seen, seen: Seen) -> list[str]:
+    """What differs in the ends of two runs, if both went to their end."""
     if first.was_stopped or ended.was_stopped:
-        return
-    for what, a, b in (
+        return []
+    counts = (
         ("exit code", first.code, ended.code),
         ("increments", base.rows - 1, seen.rows - 1),
         ("cutbacks", base.cutbacks, seen.cutbacks),
-    ):
-        if a != b:
-            outcome.decisions.append(f"{what} {a} / {b}")
+    )
+    return [f"{what} {a} / {b}" for what, a, b in counts if a != b]
 
 
 def _compare(
