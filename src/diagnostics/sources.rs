@@ -87,7 +87,7 @@ impl Source {
 pub struct EarlierDeck {
     /// Names and texts of its files, the deck itself first.
     pub files: Vec<(String, String)>,
-    /// Values `name=expression` of its parameters in place of those that it gives.
+    /// Parameters `name=expression` that replaced those of its deck (`--set`).
     pub settings: Vec<String>,
     /// Step and increment of the step at which the job goes on.
     pub place: [usize; 2],
